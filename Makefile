@@ -1,0 +1,95 @@
+# The README's two commands are `make demo` and `make test`; `make help` lists the others.
+#
+# Each command does its own set-up and nothing twice: Debian's packages where something is missing,
+# a virtual environment in .venv, pip install. The files in .venv/done remember what has been done.
+
+PYTHON ?= python3
+# The whole path: once it exists, the virtual environment's python3 comes first in PATH.
+override PYTHON := $(or $(shell command -v $(PYTHON)),$(PYTHON))
+export PYTHON
+export VIRTUAL_ENV := $(CURDIR)/.venv
+export PATH := $(VIRTUAL_ENV)/bin:$(PATH)
+
+DONE := .venv/done
+PIP_INSTALL := python -m pip install --quiet --disable-pip-version-check
+# Folders too: a file that is added or removed changes its folder.
+SOURCES := pyproject.toml CMakeLists.txt $(shell find cpp python ! -path '*__pycache__*')
+
+.DEFAULT_GOAL := help
+.PHONY: demo test compare bench build-bench lint tidy sanitize clean help
+
+demo: $(DONE)/installed  ## build, run the textbook's case, say where its figure and summary are
+	pendcore run -o out/textbook
+	@echo "figure:  out/textbook/angles.png"
+	@echo "summary: out/textbook/summary.txt"
+
+test: $(DONE)/installed $(DONE)/test-requirements  ## build and run all tests
+	cmake --preset release
+	cmake --build --preset release
+	ctest --preset release
+	pytest
+
+compare: $(DONE)/installed build-bench  ## accuracy and speed beside other solvers
+	python bench/compare/compare.py
+
+bench: build-bench  ## what the parts of the core cost, in nanoseconds
+	build/bench/bench/pendcore_bench
+
+build-bench: $(DONE)/bench-requirements
+	cmake --preset bench
+	cmake --build --preset bench
+
+lint: $(DONE)/lint-requirements  ## formatting, style, types and spelling, as before a commit
+	pre-commit run --all-files
+
+tidy: $(DONE)/build-requirements $(DONE)/lint-requirements  ## clang-tidy over the core
+	cmake --preset tidy
+	cmake --build --preset tidy
+
+# Python itself is not built with the sanitizers, so their libraries are loaded before it; what it
+# never frees is not reported.
+SANITIZED := $(CURDIR)/build/sanitizer/site
+PRELOAD = $(shell g++ -print-file-name=libasan.so) $(shell g++ -print-file-name=libstdc++.so)
+
+sanitize: $(DONE)/installed $(DONE)/test-requirements  ## all tests under sanitizers
+	cmake --preset sanitizer -Dpybind11_DIR=$$(pybind11-config --cmakedir)
+	cmake --build --preset sanitizer
+	ctest --preset sanitizer
+	rm -rf $(SANITIZED) && mkdir -p $(SANITIZED) && cp -r python/pendcore $(SANITIZED)
+	cmake --install build/sanitizer --prefix $(SANITIZED)/pendcore
+	PYTHONPATH=$(SANITIZED) LD_PRELOAD="$(PRELOAD)" ASAN_OPTIONS=detect_leaks=0 \
+	    pytest -m "not sweep and not outside_build"
+
+clean:  ## remove all that was built, and the virtual environment
+	rm -rf build out .venv
+
+help:  ## this list
+	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' Makefile | expand -t 18
+
+$(DONE)/venv:
+	@sh setup/debian_packages.sh python compiler also eigen doctest
+	$(PYTHON) -m venv .venv
+	@mkdir -p $(DONE) && touch $@
+
+# Without pip's build isolation a rebuild compiles what has changed and nothing else.
+$(DONE)/build-requirements: pyproject.toml | $(DONE)/venv
+	python setup/requirements.py build | $(PIP_INSTALL) cmake ninja -r /dev/stdin
+	@touch $@
+
+$(DONE)/installed: $(SOURCES) $(DONE)/build-requirements
+	$(PIP_INSTALL) --no-build-isolation .
+	@touch $@
+
+$(DONE)/test-requirements: pyproject.toml | $(DONE)/build-requirements
+	@sh setup/debian_packages.sh doctest
+	python setup/requirements.py test export | $(PIP_INSTALL) -r /dev/stdin
+	@touch $@
+
+$(DONE)/bench-requirements: pyproject.toml | $(DONE)/build-requirements
+	@sh setup/debian_packages.sh also benchmark boost
+	python setup/requirements.py bench | $(PIP_INSTALL) -r /dev/stdin
+	@touch $@
+
+$(DONE)/lint-requirements: pyproject.toml | $(DONE)/venv
+	python setup/requirements.py lint | $(PIP_INSTALL) -r /dev/stdin
+	@touch $@

@@ -1,0 +1,66 @@
+"""What is solved: a chain of uniform rods, a start, a grid of times, and the states known there.
+
+The reference is `tests/data/trajectories.json`, integrated in multiple precision by a program that
+is none of the contenders.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+REFERENCES = Path(__file__).parents[2] / "tests" / "data" / "trajectories.json"
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Case:
+    """Masses (n,) in kg, lengths (n,) in m, gravity in m/s^2; rad, rad/s and s.
+
+    `start` (2n,) is q_1..q_n, qd_1..qd_n; `reference` (n_t, 2n) are the states at `times` (n_t,).
+    """
+
+    name: str
+    masses: tuple[float, ...]
+    lengths: tuple[float, ...]
+    gravity: float
+    start: Array
+    times: Array
+    reference: Array
+
+    @property
+    def n(self) -> int:
+        return len(self.masses)
+
+
+def read_case(name: str, path: Path = REFERENCES) -> Case:
+    """Read the case of this name; every number is the double that the file's decimals read as."""
+    known = json.loads(path.read_text(encoding="utf-8"))
+    if name not in known:
+        raise ValueError(f"case {name!r}: not in {path.name}, which has {', '.join(known)}")
+    data = known[name]
+    if data["viscous_joint"]:
+        raise ValueError(
+            f"case {name!r}: has viscous joints, which the contenders do not carry yet"
+        )
+    return Case(
+        name=name,
+        masses=tuple(data["masses"]),
+        lengths=tuple(data["lengths"]),
+        gravity=data["g"],
+        start=np.array([*data["q0"], *data["qd0"]], dtype=np.float64),
+        times=np.array(data["t"], dtype=np.float64),
+        reference=np.column_stack([np.array(data["q"], float), np.array(data["qd"], float)]),
+    )
+
+
+def one_step(case: Case, duration: float = 1e-4) -> Case:
+    """Keep the start and shorten the interval until one step covers it: a call's fixed cost."""
+    times = case.times[0] + np.array([0.0, duration])
+    return replace(
+        case, name=f"{case.name}, one step", times=times, reference=np.tile(case.start, (2, 1))
+    )

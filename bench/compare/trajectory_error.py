@@ -1,0 +1,56 @@
+"""How wrong a computed trajectory is.
+
+The measure is the largest distance, over a fixed grid of times, between computed and reference
+joints and tip, divided by the total length. Arrays are (n_t, n) for angles and rates, (n,) for
+masses and lengths; angles run from +x towards +y, y down.
+"""
+
+from __future__ import annotations
+
+from typing import cast
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+
+
+def joints_and_tip(q: Array, lengths: Array) -> Array:
+    """Find the positions (n_t, n, 2) of the far ends of the links."""
+    along = np.stack([np.cos(q), np.sin(q)], axis=-1)
+    return cast(Array, np.cumsum(lengths[:, None] * along, axis=-2))
+
+
+def distances(q: Array, reference: Array, lengths: Array) -> Array:
+    """Measure the largest distance at each time (n_t,), as a share of the total length."""
+    apart = joints_and_tip(q, lengths) - joints_and_tip(reference, lengths)
+    return cast(Array, np.hypot(apart[..., 0], apart[..., 1]).max(axis=-1) / lengths.sum())
+
+
+def position_error(q: Array, reference: Array, lengths: Array) -> float:
+    """Take the largest of the distances over the grid; NaN where a state is NaN."""
+    return float(distances(q, reference, lengths).max())
+
+
+def end_error(q: Array, reference: Array, lengths: Array) -> float:
+    """Take the distance at the last time alone."""
+    return float(distances(q, reference, lengths)[-1])
+
+
+def energy_error(q: Array, qd: Array, masses: Array, lengths: Array, gravity: float) -> float:
+    """Measure the largest drift of the energy of uniform rods from its start.
+
+    As a share of what the whole mass gains falling the whole length; without gravity, of the
+    kinetic energy at the start.
+    """
+    below = np.append(np.cumsum(masses[::-1])[::-1][1:], 0.0)  # mass carried beyond each link
+    moment = lengths * (masses / 2 + below)
+    links = np.arange(len(masses))
+    nearer, farther = np.minimum.outer(links, links), np.maximum.outer(links, links)
+    inertia = lengths[nearer] * moment[farther]
+    inertia[links, links] = lengths**2 * (masses / 3 + below)
+    couplings = inertia * np.cos(q[:, :, None] - q[:, None, :])
+    kinetic = 0.5 * np.einsum("ti,tij,tj->t", qd, couplings, qd)
+    total = kinetic - gravity * (np.sin(q) @ moment)
+    scale = gravity * masses.sum() * lengths.sum() if gravity else kinetic[0]
+    return float(np.abs(total - total[0]).max() / scale)

@@ -1,0 +1,53 @@
+"""Work against precision: a contender's time at an error that none of its tolerances hits.
+
+A contender's points are (error, time) pairs, one a tolerance. Its envelope keeps those that no
+other point beats in both; between them, log time is linear in log error.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from itertools import pairwise
+
+Point = tuple[float, float]
+
+
+def envelope(points: Iterable[Point]) -> list[Point]:
+    """Keep the unbeaten points, from the loosest and cheapest to the most accurate and dearest."""
+    kept: list[Point] = []
+    cheapest = math.inf
+    for error, time in sorted(points):  # from the most accurate: a looser one must be cheaper
+        if time < cheapest:
+            kept.append((error, time))
+            cheapest = time
+    return kept[::-1]
+
+
+def time_at(points: Iterable[Point], error: float) -> float | None:
+    """Find the time that achieves the error.
+
+    An error looser than the loosest point's: that point's time, since it serves. An error tighter
+    than the best point's: None.
+    """
+    curve = envelope(points)
+    if not curve or error < curve[-1][0]:
+        return None
+    if error >= curve[0][0]:
+        return curve[0][1]
+    for (loose, cheap), (tight, dear) in pairwise(curve):
+        if error >= tight:
+            share = math.log(loose / error) / math.log(loose / tight)
+            return cheap * math.pow(dear / cheap, share)
+    raise AssertionError("unreachable: the error lies within the curve")
+
+
+def ratios_at(
+    ours: Sequence[Point], theirs: Sequence[Point], errors: Iterable[float]
+) -> dict[float, float | None]:
+    """Divide our time by theirs at each error; None where one of the two does not get there."""
+    result: dict[float, float | None] = {}
+    for error in errors:
+        mine, other = time_at(ours, error), time_at(theirs, error)
+        result[error] = None if mine is None or other is None else mine / other
+    return result

@@ -1,0 +1,95 @@
+#include "arguments.hpp"
+
+namespace pendcore::bindings {
+namespace {
+
+[[noreturn]] void refuse_type(const char* name, py::handle value, const char* wanted) {
+  throw py::type_error(std::string(name) + " = " + py::repr(value).cast<std::string>() +
+                       ": must be " + wanted);
+}
+
+bool is_plain_number(py::handle value) {
+  return PyFloat_Check(value.ptr()) || (PyLong_Check(value.ptr()) && !PyBool_Check(value.ptr()));
+}
+
+double plain_number(py::handle value) {
+  const double x = PyFloat_AsDouble(value.ptr());
+  if (x == -1.0 && PyErr_Occurred() != nullptr) throw py::error_already_set();
+  return x;
+}
+
+/// Any array-like of real numbers, or an empty optional where it is something else.
+std::optional<Array> real_array(py::handle value) {
+  if (py::isinstance<py::str>(value) || py::isinstance<py::bytes>(value)) return std::nullopt;
+  const py::array any = py::array::ensure(value);
+  if (!any) {
+    PyErr_Clear();
+    return std::nullopt;
+  }
+  const char kind = any.dtype().kind();
+  if (kind != 'f' && kind != 'i' && kind != 'u') return std::nullopt;
+  return Array::ensure(any);
+}
+
+}  // namespace
+
+double number(const char* name, py::handle value) {
+  if (is_plain_number(value)) return plain_number(value);
+  const auto array = real_array(value);
+  if (!array || array->ndim() != 0) refuse_type(name, value, "a real number");
+  return *array->data();
+}
+
+std::optional<double> optional_number(const char* name, py::handle value) {
+  if (value.is_none()) return std::nullopt;
+  return number(name, value);
+}
+
+long long whole_number(const char* name, py::handle value) {
+  if (PyBool_Check(value.ptr()) || !PyIndex_Check(value.ptr())) {
+    refuse_type(name, value, "a whole number");
+  }
+  const auto index = py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr()));
+  if (!index) throw py::error_already_set();
+  const long long result = PyLong_AsLongLong(index.ptr());
+  if (result == -1 && PyErr_Occurred() != nullptr) throw py::error_already_set();
+  return result;
+}
+
+std::vector<double> numbers(const char* name, py::handle value, const std::string& wanted,
+                            std::size_t copies) {
+  if (is_plain_number(value)) return std::vector<double>(copies, plain_number(value));
+  if (PyList_Check(value.ptr()) || PyTuple_Check(value.ptr())) {
+    const auto size = static_cast<std::size_t>(PySequence_Fast_GET_SIZE(value.ptr()));
+    PyObject* const* items = PySequence_Fast_ITEMS(value.ptr());
+    std::vector<double> result(size);
+    std::size_t i = 0;
+    while (i < size && is_plain_number(items[i])) {
+      result[i] = plain_number(items[i]);
+      ++i;
+    }
+    if (i == size) return result;
+  }
+  const auto array = real_array(value);
+  if (!array) refuse_type(name, value, "real numbers");
+  if (array->ndim() == 0) return std::vector<double>(copies, *array->data());
+  if (array->ndim() != 1) {
+    throw py::value_error(std::string(name) + ": shape " +
+                          py::str(array->attr("shape")).cast<std::string>() + ": must be " +
+                          wanted);
+  }
+  return {array->data(), array->data() + array->size()};
+}
+
+py::array view(const std::vector<double>& numbers, std::vector<py::ssize_t> shape,
+               py::handle owner) {
+  Array array(std::move(shape), numbers.data(), owner);
+  array.attr("flags").attr("writeable") = false;
+  return array;
+}
+
+py::array copy(const std::vector<double>& numbers, std::vector<py::ssize_t> shape) {
+  return Array(std::move(shape), numbers.data());
+}
+
+}  // namespace pendcore::bindings

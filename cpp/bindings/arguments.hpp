@@ -1,0 +1,38 @@
+/// \file
+/// Python's numbers and arrays as the core's, or an error that names the argument.
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pendcore::bindings {
+
+namespace py = pybind11;
+
+/// An array of doubles, contiguous, made from what is given if need be.
+using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// A real number. TypeError for booleans, strings, complex numbers and arrays with axes.
+double number(const char* name, py::handle value);
+std::optional<double> optional_number(const char* name, py::handle value);
+
+/// A whole number. TypeError for anything else.
+long long whole_number(const char* name, py::handle value);
+
+/// Real numbers along one axis; a number alone counts as `copies` of it. TypeError for what is not
+/// real numbers, ValueError for more axes, which says the shape that is `wanted`.
+std::vector<double> numbers(const char* name, py::handle value, const std::string& wanted = "(k,)",
+                            std::size_t copies = 1);
+
+/// A read-only array of that shape over numbers that `owner` keeps alive.
+py::array view(const std::vector<double>& numbers, std::vector<py::ssize_t> shape,
+               py::handle owner);
+
+/// An array of that shape with a copy of the numbers.
+py::array copy(const std::vector<double>& numbers, std::vector<py::ssize_t> shape);
+
+}  // namespace pendcore::bindings

@@ -1,0 +1,146 @@
+#include <pybind11/stl.h>
+
+#include "arguments.hpp"
+#include "pendcore/arithmetic/floating_point_environment.hpp"
+#include "pendcore/integrate/methods.hpp"
+#include "pendcore/pendcore.hpp"
+
+namespace pendcore::bindings {
+namespace {
+
+using LinkNumbers = std::tuple<double, double, double, double>;
+
+Scene make_scene(const std::vector<LinkNumbers>& links, double gravity) {
+  Scene scene{.links = {}, .gravity = gravity};
+  for (const auto& [mass, length, center, inertia] : links) {
+    scene.links.push_back({mass, length, center, inertia});
+  }
+  check(scene);
+  return scene;
+}
+
+/// Rows of n numbers each, seen as vectors; (m, n) arrays of the Python layer.
+class Rows {
+ public:
+  Rows(const Scene& scene, const char* name, const Array& array)
+      : n_(static_cast<py::ssize_t>(scene.links.size())), array_(array) {
+    if (array.ndim() != 2 || array.shape(1) != n_) {
+      throw py::value_error(std::string(name) + ": must be (m, " + std::to_string(n_) + ")");
+    }
+  }
+  py::ssize_t count() const { return array_.shape(0); }
+  Eigen::Map<const Eigen::VectorXd> operator[](py::ssize_t i) const {
+    return {array_.data(i, 0), n_};
+  }
+  const double* data(py::ssize_t i) const { return array_.data(i, 0); }
+
+ private:
+  py::ssize_t n_;
+  const Array& array_;
+};
+
+Eigen::Map<Points> points(Array& array, py::ssize_t i) {
+  return {array.mutable_data(i, 0, 0), array.shape(1), 2};
+}
+
+Array accelerations(const Scene& scene, const Array& t, const Array& q, const Array& qd) {
+  const FloatingPointEnvironment ieee;
+  const Rows angles(scene, "q", q);
+  const Rows rates(scene, "qd", qd);
+  const auto n = static_cast<py::ssize_t>(scene.links.size());
+  const auto stepper = make_stepper(scene, Methods::infos[0]->name);
+  Array result({angles.count(), n});
+  std::vector<double> y(2 * n);
+  std::vector<double> dydt(2 * n);
+  for (py::ssize_t i = 0; i < angles.count(); ++i) {
+    std::copy_n(angles.data(i), n, y.begin());
+    std::copy_n(rates.data(i), n, y.begin() + n);
+    stepper->evaluate(t.at(i), y.data(), dydt.data());
+    std::copy_n(dydt.begin() + n, n, result.mutable_data(i, 0));
+  }
+  return result;
+}
+
+Array reaction_forces(const Scene& scene, const Array& t, const Array& q, const Array& qd) {
+  const FloatingPointEnvironment ieee;
+  const Array qdd = accelerations(scene, t, q, qd);
+  const Rows angles(scene, "q", q);
+  const Rows rates(scene, "qd", qd);
+  const Rows second(scene, "qdd", qdd);
+  Array result({q.shape(0), q.shape(1), py::ssize_t{2}});
+  for (py::ssize_t i = 0; i < angles.count(); ++i) {
+    reactions(scene, angles[i], rates[i], second[i], points(result, i));
+  }
+  return result;
+}
+
+}  // namespace
+
+void bind_scene(py::module_& module) {
+  py::class_<Scene>(module, "Scene", "A scene that was checked, as the core holds it.")
+      .def(py::init(&make_scene), py::arg("links"), py::arg("gravity"))
+      .def_property_readonly("n", [](const Scene& scene) { return scene.links.size(); })
+      .def_property_readonly("warnings", &plausibility_warnings)
+      .def("accelerations", &accelerations, py::arg("t"), py::arg("q"), py::arg("qd"))
+      .def("reactions", &reaction_forces, py::arg("t"), py::arg("q"), py::arg("qd"))
+      .def(
+          "mass_matrix",
+          [](const Scene& scene, const Array& q) {
+            const FloatingPointEnvironment ieee;
+            const Rows angles(scene, "q", q);
+            const auto n = static_cast<py::ssize_t>(scene.links.size());
+            const Inertia inertia(scene);
+            Array result({angles.count(), n, n});
+            for (py::ssize_t i = 0; i < angles.count(); ++i) {
+              Eigen::Map<Eigen::MatrixXd>(result.mutable_data(i, 0, 0), n, n) =
+                  mass_matrix(inertia, angles[i]);
+            }
+            return result;
+          },
+          py::arg("q"))
+      .def(
+          "positions",
+          [](const Scene& scene, const Array& q) {
+            const FloatingPointEnvironment ieee;
+            const Rows angles(scene, "q", q);
+            Array result({angles.count(), q.shape(1) + 1, py::ssize_t{2}});
+            for (py::ssize_t i = 0; i < angles.count(); ++i) {
+              positions(scene, angles[i], points(result, i));
+            }
+            return result;
+          },
+          py::arg("q"))
+      .def(
+          "mass_centers",
+          [](const Scene& scene, const Array& q) {
+            const FloatingPointEnvironment ieee;
+            const Rows angles(scene, "q", q);
+            Array result({angles.count(), q.shape(1), py::ssize_t{2}});
+            for (py::ssize_t i = 0; i < angles.count(); ++i) {
+              mass_centers(scene, angles[i], points(result, i));
+            }
+            return result;
+          },
+          py::arg("q"))
+      .def(
+          "energy",
+          [](const Scene& scene, const Array& q, const Array& qd) {
+            const FloatingPointEnvironment ieee;
+            const Rows angles(scene, "q", q);
+            const Rows rates(scene, "qd", qd);
+            Array kinetic(angles.count());
+            Array potential(angles.count());
+            for (py::ssize_t i = 0; i < angles.count(); ++i) {
+              kinetic.mutable_at(i) = kinetic_energy(scene, angles[i], rates[i]);
+              potential.mutable_at(i) = potential_energy(scene, angles[i]);
+            }
+            return py::make_tuple(kinetic, potential);
+          },
+          py::arg("q"), py::arg("qd"))
+      .def("mobility", [](const Scene& scene) {
+        const Mobility m = mobility(scene);
+        return py::make_tuple(m.links, m.c5, m.c4, m.degrees_of_freedom);
+      });
+}
+
+}  // namespace pendcore::bindings

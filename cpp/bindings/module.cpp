@@ -1,0 +1,23 @@
+// The parts of the extension module; each is bound in a file of its own.
+#include <pybind11/pybind11.h>
+
+namespace pendcore::bindings {
+
+void bind_scene(pybind11::module_& module);
+void bind_run(pybind11::module_& module);
+void bind_simulate(pybind11::module_& module);
+void bind_methods(pybind11::module_& module);
+void bind_arithmetic(pybind11::module_& module);
+
+}  // namespace pendcore::bindings
+
+PYBIND11_MODULE(_core, module, pybind11::mod_gil_not_used()) {
+  using namespace pendcore::bindings;
+  module.doc() = "The compiled core: scenes, runs and methods as numbers and arrays.";
+  module.attr("__version__") = PENDCORE_VERSION;
+  bind_scene(module);
+  bind_run(module);
+  bind_simulate(module);
+  bind_methods(module);
+  bind_arithmetic(module);
+}

@@ -1,0 +1,40 @@
+/// \file
+/// Rounding to nearest, denormal numbers kept, while an object of this class lives.
+///
+/// A library built with -ffast-math switches the processor to flushing denormals to zero in every
+/// thread that loads it, and a host program may have set another rounding. Each entry into the core
+/// sets the IEEE defaults and puts back what it found.
+#pragma once
+
+#if defined(__x86_64__)
+#include <xmmintrin.h>
+#else
+#include <cfenv>
+#endif
+
+namespace pendcore {
+
+class FloatingPointEnvironment {
+ public:
+  FloatingPointEnvironment(const FloatingPointEnvironment&) = delete;
+  FloatingPointEnvironment& operator=(const FloatingPointEnvironment&) = delete;
+#if defined(__x86_64__)
+  FloatingPointEnvironment() : found_(_mm_getcsr()) { _mm_setcsr(ieee_defaults); }
+  ~FloatingPointEnvironment() { _mm_setcsr(found_); }
+
+ private:
+  static constexpr unsigned ieee_defaults = 0x1f80;  // nearest, no flushing, exceptions masked
+  unsigned found_;
+#else
+  FloatingPointEnvironment() {
+    std::fegetenv(&found_);
+    std::fesetenv(FE_DFL_ENV);
+  }
+  ~FloatingPointEnvironment() { std::fesetenv(&found_); }
+
+ private:
+  std::fenv_t found_;
+#endif
+};
+
+}  // namespace pendcore

@@ -1,0 +1,65 @@
+/// \file
+/// The same operations at the width that the processor offers, chosen while the program runs.
+///
+/// A kernel is an ordinary always-inline function. `fastest<kernel>()` hands out one of its clones:
+/// compiled for any x86-64 processor, for x86-64-v3 (AVX2 and fused multiply-add, from 2013 on)
+/// or for x86-64-v4 (AVX-512). All clones come from one source with contraction off, so that they
+/// return the same bits; they differ in speed alone. No file is compiled with -march: inline
+/// functions that such files share would be merged by the linker, into whichever copy it meets.
+///
+/// The environment variable PENDCORE_INSTRUCTION_SET (baseline, x86-64-v3, x86-64-v4) chooses a
+/// lower one, which is how the tests compare them.
+#pragma once
+
+#define PENDCORE_INLINE [[gnu::always_inline]] inline
+
+// A build that is given -march for AVX2 or more is for that processor alone: it needs no clones.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__AVX2__) && \
+    !defined(PENDCORE_BASELINE_ONLY)
+#define PENDCORE_CLONES 1
+#else
+#define PENDCORE_CLONES 0
+#endif
+
+namespace pendcore {
+
+enum class InstructionSet { baseline, x86_64_v3, x86_64_v4 };
+
+/// The best that this processor has, or the lower one that the environment asks for.
+InstructionSet instruction_set();
+
+/// Its name: "baseline", "x86-64-v3" or "x86-64-v4".
+const char* name(InstructionSet set);
+
+template <auto kernel>
+struct Clones;
+
+template <class Result, class... Arguments, Result (*kernel)(Arguments...)>
+struct Clones<kernel> {
+  using Function = Result (*)(Arguments...);
+
+  [[gnu::flatten]] static Result baseline(Arguments... arguments) { return kernel(arguments...); }
+#if PENDCORE_CLONES
+  [[gnu::flatten, gnu::target("arch=x86-64-v3")]] static Result v3(Arguments... arguments) {
+    return kernel(arguments...);
+  }
+  [[gnu::flatten, gnu::target("arch=x86-64-v4")]] static Result v4(Arguments... arguments) {
+    return kernel(arguments...);
+  }
+#endif
+};
+
+/// The clone of `kernel` for this processor.
+template <auto kernel>
+typename Clones<kernel>::Function fastest() {
+#if PENDCORE_CLONES
+  switch (instruction_set()) {
+    case InstructionSet::x86_64_v4: return Clones<kernel>::v4;
+    case InstructionSet::x86_64_v3: return Clones<kernel>::v3;
+    case InstructionSet::baseline: break;
+  }
+#endif
+  return Clones<kernel>::baseline;
+}
+
+}  // namespace pendcore

@@ -1,0 +1,133 @@
+/// \file
+/// A pack: a few doubles that one processor instruction works on together.
+///
+/// The same operation in the same order acts on every lane, and a product and a sum are fused only
+/// where the source says `fma`. A lane therefore holds the same bits whatever the width of the
+/// pack, whatever the instruction set, alone or beside others. A plain double is a pack of one.
+#pragma once
+
+#include "pendcore/arithmetic/instruction_set.hpp"
+
+namespace pendcore {
+
+/// How many numbers a `Real` holds, and the integers of the same shape. GCC takes the size of a
+/// vector as a literal only, hence one specialisation a width.
+template <class Real>
+struct Lanes {
+  static constexpr int width = 1;
+  using Integers = long long;
+};
+
+namespace pack_detail {
+template <int width>
+struct Vector;
+template <>
+struct Vector<2> {
+  typedef double Reals __attribute__((vector_size(16)));
+  typedef long long Integers __attribute__((vector_size(16)));
+};
+template <>
+struct Vector<4> {
+  typedef double Reals __attribute__((vector_size(32)));
+  typedef long long Integers __attribute__((vector_size(32)));
+};
+template <>
+struct Vector<8> {
+  typedef double Reals __attribute__((vector_size(64)));
+  typedef long long Integers __attribute__((vector_size(64)));
+};
+}  // namespace pack_detail
+
+template <int width>
+using Pack = typename pack_detail::Vector<width>::Reals;
+
+template <>
+struct Lanes<Pack<2>> : pack_detail::Vector<2> {
+  static constexpr int width = 2;
+};
+template <>
+struct Lanes<Pack<4>> : pack_detail::Vector<4> {
+  static constexpr int width = 4;
+};
+template <>
+struct Lanes<Pack<8>> : pack_detail::Vector<8> {
+  static constexpr int width = 8;
+};
+
+/// The same number in every lane.
+template <class Real>
+PENDCORE_INLINE Real broadcast(double x) {
+  if constexpr (Lanes<Real>::width == 1) {
+    return x;
+  } else {
+    return x - Real{};  // x - 0 is x, minus zero included
+  }
+}
+
+template <class Real>
+PENDCORE_INLINE double lane(const Real& x, int index) {
+  if constexpr (Lanes<Real>::width == 1) {
+    return x;
+  } else {
+    return x[index];
+  }
+}
+
+template <class Real>
+PENDCORE_INLINE void set_lane(Real& x, int index, double value) {
+  if constexpr (Lanes<Real>::width == 1) {
+    x = value;
+  } else {
+    x[index] = value;
+  }
+}
+
+/// A pack from consecutive numbers in memory, and back; any alignment.
+template <class Real>
+PENDCORE_INLINE Real load(const double* from) {
+  Real x;
+  __builtin_memcpy(&x, from, sizeof x);
+  return x;
+}
+template <class Real>
+PENDCORE_INLINE void store(double* to, const Real& x) {
+  __builtin_memcpy(to, &x, sizeof x);
+}
+
+/// a b + c, rounded once: correctly rounded by definition, hence the same on every processor.
+template <class Real>
+PENDCORE_INLINE Real fma(const Real& a, const Real& b, const Real& c) {
+  Real result;
+  for (int i = 0; i < Lanes<Real>::width; ++i) {
+    set_lane(result, i, __builtin_fma(lane(a, i), lane(b, i), lane(c, i)));
+  }
+  return result;
+}
+template <class Real>
+  requires(Lanes<Real>::width > 1)
+PENDCORE_INLINE Real fma(double a, const Real& b, const Real& c) {
+  return fma(broadcast<Real>(a), b, c);
+}
+
+template <class Real>
+PENDCORE_INLINE Real absolute(const Real& x) {
+  Real result;
+  for (int i = 0; i < Lanes<Real>::width; ++i) set_lane(result, i, __builtin_fabs(lane(x, i)));
+  return result;
+}
+
+/// The larger number in every lane; `b` where either is NaN.
+template <class Real>
+PENDCORE_INLINE Real larger(const Real& a, const Real& b) {
+  return a > b ? a : b;
+}
+
+/// The lanes added up, from the first to the last.
+template <class Real>
+PENDCORE_INLINE double sum_of_lanes(const Real& x) {
+  double sum = lane(x, 0);
+  for (int i = 1; i < Lanes<Real>::width; ++i) sum += lane(x, i);
+  return sum;
+}
+
+}  // namespace pendcore

@@ -1,0 +1,35 @@
+/// \file
+/// A number carried as the unevaluated sum of two doubles: about 106 bits.
+///
+/// Time is kept so: after ten million steps of rounded additions t would have drifted by its own
+/// last thousand units, and a step below the last bit of t would be lost. The sums are those of
+/// Knuth, The Art of Computer Programming, volume 2, section 4.2.2 (TwoSum) and Dekker (1971).
+#pragma once
+
+#include "pendcore/arithmetic/instruction_set.hpp"
+
+namespace pendcore {
+
+struct TwoDouble {
+  double high = 0.0;  ///< the sum, rounded to a double
+  double low = 0.0;   ///< what the rounding left over
+};
+
+PENDCORE_INLINE TwoDouble two_sum(double a, double b) {
+  const double sum = a + b;
+  const double b_part = sum - a;
+  return {sum, (a - (sum - b_part)) + (b - b_part)};
+}
+
+PENDCORE_INLINE TwoDouble operator+(const TwoDouble& a, double b) {
+  const TwoDouble sum = two_sum(a.high, b);
+  return two_sum(sum.high, sum.low + a.low);
+}
+
+/// b - a, rounded to a double.
+PENDCORE_INLINE double difference(double b, const TwoDouble& a) {
+  const TwoDouble sum = two_sum(b, -a.high);
+  return sum.high + (sum.low - a.low);
+}
+
+}  // namespace pendcore

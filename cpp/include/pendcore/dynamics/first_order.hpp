@@ -1,0 +1,24 @@
+/// \file
+/// Equations of motion as the first-order system that an integrator takes: y = (q, qd),
+/// dy/dt = (qd, qdd).
+#pragma once
+
+#include "pendcore/arithmetic/pack.hpp"
+
+namespace pendcore {
+
+template <class Dynamics>
+struct FirstOrder {
+  using Block = typename Dynamics::Links;  ///< what one instruction works on
+  static constexpr int blocks = 2;         ///< q and qd
+
+  Dynamics dynamics;
+
+  /// The derivative dydt (rad/s, rad/s^2) of the state y (rad, rad/s) at time t (s).
+  PENDCORE_INLINE void operator()(double /*t*/, const Block* y, Block* dydt) const {
+    dydt[0] = y[1];
+    dydt[1] = dynamics.accelerations(y[0], y[1]);
+  }
+};
+
+}  // namespace pendcore

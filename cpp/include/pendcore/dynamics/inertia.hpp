@@ -1,0 +1,32 @@
+/// \file
+/// The constants of the mass matrix of a chain of n links.
+///
+///     S_i = m_{i+1} + ... + m_n          mass beyond link i, kg
+///     a_i = m_i c_i + L_i S_i            first moment about joint i, kg m
+///     A_ii = I_i + m_i c_i^2 + L_i^2 S_i      A_ij = L_min(i,j) a_max(i,j)      kg m^2
+///
+/// so that T = 1/2 sum_ij A_ij cos(q_i - q_j) qd_i qd_j and V = -g sum_i a_i sin q_i.
+/// Every effect that only changes constants (a payload, a rotor's inertia) changes them here.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "pendcore/scene.hpp"
+
+namespace pendcore {
+
+struct Inertia {
+  std::vector<double> carried;       ///< S_i, (n)
+  std::vector<double> first_moment;  ///< a_i, (n)
+  std::vector<double> diagonal;      ///< A_ii, (n)
+  std::vector<double> length;        ///< L_i, (n)
+
+  explicit Inertia(const Scene& scene);
+  double coupling(std::size_t i, std::size_t j) const;  ///< A_ij, indices from 0
+};
+
+/// A_ij cos(q_i - q_j), (n, n), kg m^2.
+Eigen::MatrixXd mass_matrix(const Inertia& inertia, const Eigen::Ref<const Eigen::VectorXd>& q);
+
+}  // namespace pendcore

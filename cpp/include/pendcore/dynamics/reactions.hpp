@@ -1,0 +1,17 @@
+/// \file
+/// The joint reactions, from the tip to the base:
+///
+///     F_{i-1,i} = m_i (a_{C_i} - g e_y) + F_{i,i+1},    F_{n,n+1} = 0
+///
+/// the force ON link i FROM link i-1 at joint i, N: row 1 is the textbook's F_01 (from the ground),
+/// row 2 is F_12 = -F_21 (Eq. (2.3), y downward: the weight is +m g e_y).
+#pragma once
+
+#include "pendcore/dynamics/kinematics.hpp"
+
+namespace pendcore {
+
+/// (n, 2), N.
+void reactions(const Scene& scene, Values q, Values qd, Values qdd, PointsOut forces);
+
+}  // namespace pendcore

@@ -1,0 +1,27 @@
+/// \file
+/// One link: qdd = (a_1 g / A_11) cos q.
+///
+/// The textbook's Eq. (2.1) without a second link, y downward. Cost: one cosine and one product.
+#pragma once
+
+#include "pendcore/arithmetic/sine_cosine.hpp"
+#include "pendcore/dynamics/inertia.hpp"
+
+namespace pendcore {
+
+struct SinglePendulum {
+  using Links = double;  ///< a quantity of the one link
+
+  double weight;  ///< a_1 g / A_11, 1/s^2
+
+  SinglePendulum(const Inertia& inertia, double gravity)
+      : weight(inertia.first_moment[0] * gravity / inertia.diagonal[0]) {}
+
+  PENDCORE_INLINE Links accelerations(const Links& q, const Links& /*qd*/) const {
+    Links s, c;
+    sine_cosine(q, s, c);
+    return weight * c;
+  }
+};
+
+}  // namespace pendcore

@@ -1,0 +1,119 @@
+/// \file
+/// An explicit Runge-Kutta method applied to a system, as the loop sees it.
+#pragma once
+
+#include <cmath>
+
+#include "pendcore/integrate/step.hpp"
+#include "pendcore/integrate/stepper.hpp"
+
+namespace pendcore {
+
+/// The right-hand side on plain numbers.
+template <class System>
+PENDCORE_INLINE void evaluate_system(const System* system, double t, const double* y,
+                                     double* dydt) {
+  using Block = typename System::Block;
+  constexpr int width = Lanes<Block>::width;
+  Block state[System::blocks];
+  Block rate[System::blocks];
+  for (int i = 0; i < System::blocks; ++i) state[i] = load<Block>(y + i * width);
+  (*system)(t, state, rate);
+  for (int i = 0; i < System::blocks; ++i) store(dydt + i * width, rate[i]);
+}
+
+template <const auto& method, class System>
+class ExplicitRungeKutta final : public Stepper {
+  using Memory = StepMemory<method, System>;
+  using Block = typename Memory::Block;
+  static constexpr int blocks = Memory::blocks;
+  static constexpr int width = Lanes<Block>::width;
+  static constexpr int stages = Memory::stages;
+
+ public:
+  explicit ExplicitRungeKutta(const System& system) : memory_{system} {}
+
+  const MethodInfo& info() const override { return method.info; }
+  int dimension() const override { return blocks * width; }
+  int interpolant_degree() const override { return Memory::degree; }
+
+  void set_tolerances(const double* rtol, const double* atol) override {
+    read(rtol, memory_.rtol);
+    read(atol, memory_.atol);
+  }
+
+  void start(const double* y, const double* dydt) override {
+    read(y, memory_.y);
+    read(dydt, memory_.k[0]);
+  }
+
+  void get_state(double* y) const override { write(memory_.y, y); }
+  void get_derivative(double* dydt) const override { write(memory_.k[0], dydt); }
+  void get_new_state(double* y) const override { write(memory_.y_new, y); }
+
+  void evaluate(double t, const double* y, double* dydt) override {
+    evaluate_(&memory_.system, t, y, dydt);
+    ++evaluations;
+  }
+
+  double attempt(double t, double h) override {
+    evaluations += stages - 1;
+    return attempt_(&memory_, t, h);
+  }
+
+  void accept(double t_new) override {
+    for (int i = 0; i < blocks; ++i) memory_.y[i] = memory_.y_new[i];
+    if constexpr (method.first_same_as_last) {
+      for (int i = 0; i < blocks; ++i) memory_.k[0][i] = memory_.k[stages - 1][i];
+    } else {
+      double y[blocks * width];
+      double rate[blocks * width];
+      write(memory_.y_new, y);
+      evaluate(t_new, y, rate);
+      read(rate, memory_.k[0]);
+    }
+  }
+
+  void interpolant(double h, double* coefficients) const override {
+    interpolant_(&memory_, h, coefficients);
+  }
+
+  void sample(const double* coefficients, double start, double h, const double* times, int count,
+              double* states) const override {
+    sample_(coefficients, start, h, times, count, states);
+  }
+
+  /// |k_7 - k_6| / |y_7 - y_6|: the last two stages lie at the same time.
+  double stiffness(double h) const override {
+    double rates = 0.0;
+    double states = 0.0;
+    for (int i = 0; i < blocks; ++i) {
+      const Block y =
+          fma(h, weighted_sum(method.a[stages - 2], memory_.k, i, stages - 2), memory_.y[i]);
+      const Block dk = memory_.k[stages - 1][i] - memory_.k[stages - 2][i];
+      const Block dy = memory_.y_new[i] - y;
+      rates += sum_of_lanes(Block(dk * dk));
+      states += sum_of_lanes(Block(dy * dy));
+    }
+    return states > 0.0 ? std::abs(h) * std::sqrt(rates / states) : 0.0;
+  }
+
+ private:
+  static void read(const double* from, Block* to) {
+    for (int i = 0; i < blocks; ++i) to[i] = load<Block>(from + i * width);
+  }
+  static void write(const Block* from, double* to) {
+    for (int i = 0; i < blocks; ++i) store(to + i * width, from[i]);
+  }
+
+  Memory memory_;
+  double (*attempt_)(Memory*, double, double) = fastest<&attempt_step<method, System>>();
+  void (*interpolant_)(const Memory*, double,
+                       double*) = fastest<&interpolant_of_step<method, System>>();
+  void (*sample_)(const double*, double, double, const double*, int,
+                  double*) = fastest<&sample_interpolant<Block, blocks, Memory::degree>>();
+  void (*evaluate_)(const System*, double, const double*,
+                    double*) = fastest<&evaluate_system<System>>();
+};
+
+}  // namespace pendcore

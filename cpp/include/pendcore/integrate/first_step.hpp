@@ -1,0 +1,17 @@
+/// \file
+/// A starting step from two right-hand sides.
+///
+/// Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), II.4, as the
+/// program DOPRI5 has it: an Euler step of 1 % of |y|/|dydt| gives the second derivative, and
+/// h^order max(|d2y|, |dydt|) = 0.01 in the norm of the tolerances.
+#pragma once
+
+#include "pendcore/integrate/stepper.hpp"
+
+namespace pendcore {
+
+/// A positive step (s) from the stepper's state at time t; `direction` is 1 or -1.
+double first_step(Stepper& stepper, double t, double direction, double max_step, const double* rtol,
+                  const double* atol);
+
+}  // namespace pendcore

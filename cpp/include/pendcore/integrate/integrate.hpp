@@ -1,0 +1,66 @@
+/// \file
+/// WHERE IS THE LOOP: steps from where a run stands to the end of its interval.
+///
+/// The loop knows no method (a Stepper does) and no pendulum; what is kept of the steps is an
+/// Observer's affair and changes none of them.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "pendcore/arithmetic/two_double.hpp"
+#include "pendcore/integrate/statistics.hpp"
+#include "pendcore/integrate/status.hpp"
+#include "pendcore/integrate/step_control.hpp"
+#include "pendcore/integrate/stepper.hpp"
+
+namespace pendcore {
+
+/// Everything the next step depends on: a run that goes on from here takes the very steps it would
+/// have taken had it never stopped.
+struct Position {
+  TwoDouble t;
+  double h = 0.0;  ///< s, the step to try next; its sign is the direction
+  bool h_is_max_step = false;
+  StepControl control;
+  int stiff_hits = 0;  ///< of Hairer's stiffness test, in a row,
+  int stiff_misses = 0;
+  Statistics statistics;
+  std::vector<double> y;     ///< (dimension)
+  std::vector<double> dydt;  ///< (dimension)
+};
+
+/// Is called about every 50 ms with the share of the interval that is done; false stops the run.
+using Monitor = std::function<bool(double fraction)>;
+
+struct Limits {
+  double t_end;
+  double max_step = std::numeric_limits<double>::infinity();  ///< s
+  bool fixed_step = false;  ///< keep the position's h, whatever the error
+  long long max_steps = std::numeric_limits<long long>::max();  ///< attempted, accepted or not
+  double time_limit = std::numeric_limits<double>::infinity();  ///< s, of the clock on the wall
+  Monitor monitor;
+};
+
+/// Is shown each accepted step before it becomes the past.
+class Observer {
+ public:
+  virtual ~Observer() = default;
+  virtual void step_accepted(const Stepper& stepper, double t_old, double h, double t_new) = 0;
+  /// The next step is cut to end at t_end. A run that goes on later restarts here.
+  virtual void end_in_sight() = 0;
+};
+
+struct Ending {
+  Status status;
+  std::string message;
+};
+
+/// Takes steps from `position` (which moves along) until `limits` ends them. `resumable` becomes
+/// the last position that no cut step came before.
+Ending integrate(Stepper& stepper, Position& position, Position& resumable, const Limits& limits,
+                 Observer& observer);
+
+}  // namespace pendcore

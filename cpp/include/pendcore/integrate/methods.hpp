@@ -1,0 +1,21 @@
+/// \file
+/// THE LIST of methods. A new one is a file with its table and a line here; the Python layer, the
+/// documentation and the tests of order conditions, convergence and dense output find it by itself.
+#pragma once
+
+#include "pendcore/integrate/dormand_prince_5.hpp"
+
+namespace pendcore {
+
+template <const auto&... tables>
+struct MethodList {
+  static constexpr std::array infos = {&tables.info...};
+};
+
+using Methods = MethodList<dormand_prince_5  // order 5(4): the textbook's ode45
+                           >;
+
+/// The method of that name or alias; throws std::invalid_argument that lists those there are.
+const MethodInfo& find_method(std::string_view name);
+
+}  // namespace pendcore

@@ -1,0 +1,21 @@
+/// \file
+/// What a run cost.
+#pragma once
+
+namespace pendcore {
+
+struct Statistics {
+  long long nfev = 0;  ///< right-hand sides
+  long long njev = 0;  ///< Jacobians (implicit methods)
+  long long nlu = 0;   ///< factorisations (implicit methods)
+  long long accepted = 0;
+  long long rejected = 0;
+  long long limited_by_tolerance = 0;  ///< accepted steps whose size the error control chose,
+  long long limited_by_max_step = 0;   ///< or max_step, or a fixed step,
+  long long limited_by_break = 0;      ///< or the end of the interval or a break point
+  double min_step = 0.0;               ///< s; the smallest and the largest accepted step, those cut
+  double max_step = 0.0;  ///< short by a break point aside (unless there are no others)
+  bool stiff = false;     ///< Hairer's test found the step limited by stability
+};
+
+}  // namespace pendcore

@@ -1,0 +1,48 @@
+/// \file
+/// Why a run ended, each with its sentence for the user.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace pendcore {
+
+enum class Status {
+  finished,
+  event,
+  at_rest,
+  max_steps,
+  step_too_small,
+  non_finite,
+  time_limit,
+  interrupted,
+  callback_error,
+};
+
+struct StatusText {
+  std::string_view name;
+  bool success;
+  std::string_view sentence;  ///< what happened, and what can be done about it
+};
+
+inline constexpr std::array<StatusText, 9> status_texts = {{
+    {"finished", true, "reached the end of the interval"},
+    {"event", true, "stopped at a terminal event"},
+    {"at_rest", true, "came to rest for good before the end of the interval"},
+    {"max_steps", false,
+     "the cap on steps was reached: raise max_steps, shorten t_span or loosen rtol and atol"},
+    {"step_too_small", false,
+     "the step fell below what time can resolve: the motion may blow up here, the tolerances may "
+     "be too tight, or t0 may be so large that t + h = t"},
+    {"non_finite", false,
+     "the motion stopped being finite: check the scene's parameters and the start"},
+    {"time_limit", false, "the time limit was reached: raise time_limit, or resume the solution"},
+    {"interrupted", false, "interrupted: what was computed so far is kept and can be resumed"},
+    {"callback_error", false, "a function of the user's raised an exception"},
+}};
+
+constexpr const StatusText& text(Status status) {
+  return status_texts[static_cast<std::size_t>(status)];
+}
+
+}  // namespace pendcore

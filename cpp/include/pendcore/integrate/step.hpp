@@ -1,0 +1,145 @@
+/// \file
+/// WHERE IS THE STEPPER: one step of an explicit Runge-Kutta method, from its table.
+///
+/// `attempt_step` is the kernel: the stages, the new state and its error norm, unrolled for the
+/// table and the system at compile time. It allocates nothing and branches on nothing.
+/// explicit_runge_kutta.hpp clones it for each instruction set and hands it to the loop.
+///
+/// A system is a type with `Block` (a double or a pack), `blocks` (how many make a state) and
+/// operator()(t, y, dydt) on blocks.
+#pragma once
+
+#include <type_traits>
+
+#include "pendcore/arithmetic/pack.hpp"
+#include "pendcore/arithmetic/power.hpp"
+#include "pendcore/integrate/tableau.hpp"
+
+namespace pendcore {
+
+template <const auto& method, class System>
+struct StepMemory {
+  using Block = typename System::Block;
+  static constexpr int blocks = System::blocks;
+  static constexpr int stages = std::remove_cvref_t<decltype(method)>::stages;
+  static constexpr int degree = std::remove_cvref_t<decltype(method)>::degree;
+
+  System system;
+  Block y[blocks] = {};
+  Block y_new[blocks] = {};
+  Block k[stages][blocks] = {};
+  Block rtol[blocks] = {};
+  Block atol[blocks] = {};
+};
+
+/// The sum of weights[j] k[j] over the first `count` stages; terms with weight zero are left out.
+template <class Block, class Weights, int blocks>
+PENDCORE_INLINE Block weighted_sum(const Weights& weights, const Block (*k)[blocks], int block,
+                                   int count) {
+  Block sum{};
+  bool empty = true;
+#pragma GCC unroll 16
+  for (int j = 0; j < count; ++j) {
+    if (weights[j].numerator == 0) continue;
+    const Block weight = broadcast<Block>(weights[j].value());
+    sum = empty ? weight * k[j][block] : fma(weight, k[j][block], sum);
+    empty = false;
+  }
+  return sum;
+}
+
+/// Tries a step; returns log2 of its error norm (Stepper::attempt says which).
+template <const auto& method, class System>
+PENDCORE_INLINE double attempt_step(StepMemory<method, System>* memory, double t, double h) {
+  using Memory = StepMemory<method, System>;
+  using Block = typename Memory::Block;
+  constexpr int blocks = Memory::blocks;
+  constexpr int stages = Memory::stages;
+
+  // Local copies stay in registers; memory is written once, at the end.
+  const System system = memory->system;
+  Block y[blocks];
+  Block z[blocks];
+  Block k[stages][blocks];
+#pragma GCC unroll 16
+  for (int i = 0; i < blocks; ++i) {
+    y[i] = memory->y[i];
+    k[0][i] = memory->k[0][i];
+  }
+#pragma GCC unroll 16
+  for (int s = 1; s < stages; ++s) {
+#pragma GCC unroll 16
+    for (int i = 0; i < blocks; ++i) z[i] = fma(h, weighted_sum(method.a[s], k, i, s), y[i]);
+    system(t + method.c[s].value() * h, z, k[s]);
+  }
+  if constexpr (!method.first_same_as_last) {
+#pragma GCC unroll 16
+    for (int i = 0; i < blocks; ++i) z[i] = fma(h, weighted_sum(method.b, k, i, stages), y[i]);
+  }
+
+  // The scales wait for y_new only, so their division is done before the last stage is.
+  Block squares[blocks];
+#pragma GCC unroll 16
+  for (int i = 0; i < blocks; ++i) {
+    const Block size = larger(absolute(y[i]), absolute(z[i]));
+    const Block scale = h / fma(memory->rtol[i], size, memory->atol[i]);
+    const Block ratio = scale * weighted_sum(method.e, k, i, stages);
+    squares[i] = ratio * ratio;
+  }
+#pragma GCC unroll 16
+  for (int i = 1; i < blocks; ++i) squares[0] += squares[i];
+#pragma GCC unroll 16
+  for (int i = 0; i < blocks; ++i) {
+    memory->y_new[i] = z[i];
+#pragma GCC unroll 16
+    for (int s = 1; s < stages; ++s) memory->k[s][i] = k[s][i];
+  }
+  const double mean_square = sum_of_lanes(squares[0]) * (1.0 / (blocks * Lanes<Block>::width));
+  return mean_square == mean_square ? 0.5 * approximate_log2(mean_square) : mean_square;
+}
+
+/// coefficient[p] = h sum_s P_sp k_s for p = 1 .. degree, and coefficient[0] = y: the dense output
+/// of the attempted step, (degree + 1) rows of a state each.
+template <const auto& method, class System>
+PENDCORE_INLINE void interpolant_of_step(const StepMemory<method, System>* memory, double h,
+                                         double* coefficients) {
+  using Memory = StepMemory<method, System>;
+  using Block = typename Memory::Block;
+  constexpr int blocks = Memory::blocks;
+  constexpr int width = Lanes<Block>::width;
+#pragma GCC unroll 16
+  for (int i = 0; i < blocks; ++i) {
+    store(coefficients + i * width, memory->y[i]);
+#pragma GCC unroll 16
+    for (int p = 0; p < Memory::degree; ++p) {
+      Block sum{};
+#pragma GCC unroll 16
+      for (int s = 0; s < Memory::stages; ++s) {
+        if (method.interpolant[s][p].numerator == 0) continue;
+        sum = fma(broadcast<Block>(method.interpolant[s][p].value()), memory->k[s][i], sum);
+      }
+      store(coefficients + ((p + 1) * blocks + i) * width, Block(h * sum));
+    }
+  }
+}
+
+/// Horner's scheme in theta = (time - start) / h, at `count` times.
+template <class Block, int blocks, int degree>
+PENDCORE_INLINE void sample_interpolant(const double* coefficients, double start, double h,
+                                        const double* times, int count, double* states) {
+  constexpr int width = Lanes<Block>::width;
+  for (int k = 0; k < count; ++k) {
+    const double theta = (times[k] - start) / h;
+#pragma GCC unroll 16
+    for (int i = 0; i < blocks; ++i) {
+      Block value = load<Block>(coefficients + (degree * blocks + i) * width);
+#pragma GCC unroll 16
+      for (int p = degree - 1; p >= 0; --p) {
+        value = fma(theta, value, load<Block>(coefficients + (p * blocks + i) * width));
+      }
+      store(states + (k * blocks + i) * width, value);
+    }
+  }
+}
+
+}  // namespace pendcore

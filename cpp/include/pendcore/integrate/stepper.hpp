@@ -1,0 +1,52 @@
+/// \file
+/// What the integration loop sees of a method applied to a system: no tableau, no pendulum.
+#pragma once
+
+#include "pendcore/integrate/tableau.hpp"
+
+namespace pendcore {
+
+class Stepper {
+ public:
+  virtual ~Stepper() = default;
+
+  virtual const MethodInfo& info() const = 0;
+  virtual int dimension() const = 0;           ///< numbers in a state
+  virtual int interpolant_degree() const = 0;  ///< of the polynomial in theta
+
+  /// The tolerances of each component (dimension() numbers each).
+  virtual void set_tolerances(const double* rtol, const double* atol) = 0;
+
+  /// Begins at y, where the right-hand side is dydt.
+  virtual void start(const double* y, const double* dydt) = 0;
+
+  virtual void get_state(double* y) const = 0;          ///< y at the start of the step
+  virtual void get_derivative(double* dydt) const = 0;  ///< its derivative
+  virtual void get_new_state(double* y) const = 0;      ///< y at the end of the attempted step
+  virtual void evaluate(double t, const double* y, double* dydt) = 0;  ///< the right-hand side
+
+  /// Tries a step of size h from the state at time t. Returns log2 of the error norm, the root of
+  /// the mean over components of (err / (atol + rtol max(|y|, |y_new|)))^2: not above 0 where the
+  /// step is within the tolerances, NaN where a stage was not finite.
+  virtual double attempt(double t, double h) = 0;
+
+  /// Makes the attempted step the past: y becomes y_new.
+  virtual void accept(double t_new) = 0;
+
+  /// Of the attempted step: the dense output, (degree + 1, dimension) row-major,
+  /// y(t + theta h) = sum_p theta^p coefficient[p].
+  virtual void interpolant(double h, double* coefficients) const = 0;
+
+  /// The values of such a polynomial, of a step of size h from `start`, at `count` times:
+  /// (count, dimension) row-major.
+  virtual void sample(const double* coefficients, double start, double h, const double* times,
+                      int count, double* states) const = 0;
+
+  /// An estimate of h |lambda|, lambda the eigenvalue of largest size, from the attempted step
+  /// (Hairer and Wanner, volume II, IV.2).
+  virtual double stiffness(double h) const = 0;
+
+  long long evaluations = 0;  ///< right-hand sides so far
+};
+
+}  // namespace pendcore

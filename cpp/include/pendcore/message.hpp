@@ -1,0 +1,25 @@
+/// \file
+/// How a bad value is refused: the field, the value, the allowed range, the remedy.
+#pragma once
+
+#include <charconv>
+#include <stdexcept>
+#include <string>
+
+namespace pendcore {
+
+/// The shortest digits that read back as the same double.
+inline std::string text(double x) {
+  char digits[32];
+  const auto end = std::to_chars(digits, digits + sizeof digits, x).ptr;
+  std::string result(digits, end);
+  if (result.find_first_not_of("-0123456789") == std::string::npos) result += ".0";
+  return result;
+}
+
+/// Throws std::invalid_argument: "link 2: mass = -1.0: must be finite and > 0 (kg)".
+[[noreturn]] inline void refuse(const std::string& field, double value, const std::string& range) {
+  throw std::invalid_argument(field + " = " + text(value) + ": must be " + range);
+}
+
+}  // namespace pendcore

@@ -1,0 +1,11 @@
+/// \file
+/// All of pendcore in one include.
+#pragma once
+
+#include "pendcore/dynamics/energy.hpp"
+#include "pendcore/dynamics/inertia.hpp"
+#include "pendcore/dynamics/kinematics.hpp"
+#include "pendcore/dynamics/reactions.hpp"
+#include "pendcore/scene.hpp"
+#include "pendcore/simulate.hpp"
+#include "pendcore/solution.hpp"

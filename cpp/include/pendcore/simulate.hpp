@@ -1,0 +1,29 @@
+/// \file
+/// From a scene and a start to a solution.
+#pragma once
+
+#include <memory>
+
+#include "pendcore/integrate/stepper.hpp"
+#include "pendcore/scene.hpp"
+#include "pendcore/solution.hpp"
+
+namespace pendcore {
+
+/// The method applied to the equations of motion that the scene calls for: the closed form of one
+/// or two links. Throws std::invalid_argument for an unknown method and for more links.
+std::unique_ptr<Stepper> make_stepper(const Scene& scene, std::string_view method);
+
+/// Simulates the scene from angles q0 (rad, n) and rates qd0 (rad/s, n) over t0 .. t_end (s), which
+/// may run backward. Throws std::invalid_argument for bad input, naming the argument; a run that
+/// fails returns what it has, with a status and a message that say why.
+Solution simulate(const Scene& scene, const std::vector<double>& q0, const std::vector<double>& qd0,
+                  double t0, double t_end, const Options& options = {});
+
+/// The solution of the same run to t_end further on, bitwise as if it had never stopped. `t_eval`
+/// names further times (Store::times); max_steps, time_limit and monitor count for this leg.
+Solution resume(const Scene& scene, const Solution& solution, double t_end,
+                const std::vector<double>& t_eval, long long max_steps, double time_limit,
+                const Monitor& monitor);
+
+}  // namespace pendcore

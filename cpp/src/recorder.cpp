@@ -1,0 +1,65 @@
+#include "pendcore/recorder.hpp"
+
+#include <algorithm>
+
+namespace pendcore {
+
+Recorder::Recorder(Solution& solution, const Stepper& stepper)
+    : solution_(solution),
+      keeps_polynomials_(solution.options.store == Store::dense),
+      keeps_steps_(solution.options.store == Store::steps ||
+                   (keeps_polynomials_ && solution.options.t_eval.empty())),
+      dimension_(static_cast<std::size_t>(stepper.dimension())),
+      polynomial_(static_cast<std::size_t>(stepper.interpolant_degree() + 1) * dimension_) {
+  solution_.t.reserve(solution_.options.t_eval.size());
+  solution_.states.reserve(solution_.options.t_eval.size() * dimension_);
+}
+
+void Recorder::start(double t, const std::vector<double>& y) {
+  const std::vector<double>& samples = solution_.options.t_eval;
+  const bool asked_for = !samples.empty() && samples.front() == t;
+  if (keeps_steps_ || asked_for) std::ranges::copy(y, append(t));
+}
+
+void Recorder::step_accepted(const Stepper& stepper, double t_old, double h, double t_new) {
+  if (keeps_polynomials_) {
+    DenseOutput& dense = solution_.dense;
+    const std::size_t size = dense.coefficients.size();
+    dense.start.push_back(t_old);
+    dense.h.push_back(h);
+    dense.coefficients.resize(size + polynomial_.size());
+    stepper.interpolant(h, dense.coefficients.data() + size);
+  }
+  if (keeps_steps_) {
+    stepper.get_new_state(append(t_new));
+  } else {
+    sample_step(stepper, t_old, h, t_new);
+  }
+}
+
+void Recorder::count() {
+  solution_.resumable_t = solution_.t.size();
+  solution_.resumable_steps = solution_.dense.h.size();
+}
+
+void Recorder::sample_step(const Stepper& stepper, double t_old, double h, double t_new) {
+  const std::vector<double>& samples = solution_.options.t_eval;
+  const std::size_t first = solution_.t.size();
+  std::size_t end = first;
+  while (end < samples.size() && (samples[end] - t_new) * h < 0.0) ++end;
+  if (end > first) {
+    for (std::size_t i = first; i < end; ++i) append(samples[i]);
+    stepper.interpolant(h, polynomial_.data());
+    stepper.sample(polynomial_.data(), t_old, h, samples.data() + first,
+                   static_cast<int>(end - first), solution_.states.data() + first * dimension_);
+  }
+  if (end < samples.size() && samples[end] == t_new) stepper.get_new_state(append(t_new));
+}
+
+double* Recorder::append(double t) {
+  solution_.t.push_back(t);
+  solution_.states.resize(solution_.states.size() + dimension_);
+  return solution_.states.data() + solution_.states.size() - dimension_;
+}
+
+}  // namespace pendcore

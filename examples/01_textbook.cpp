@@ -1,0 +1,18 @@
+// The textbook's double pendulum, section 2.1: two rods, released at rest from 45 and 60 degrees.
+// Prints the same numbers, to the last bit, as 01_textbook.py.
+//
+// In CMake: find_package(pendcore REQUIRED), and link with pendcore::pendcore.
+#include <cstdio>
+#include <numbers>
+#include <pendcore/pendcore.hpp>
+
+int main() {
+  constexpr double pi = std::numbers::pi;
+  const pendcore::Solution solution =
+      pendcore::simulate(pendcore::Scene::textbook(), {pi / 4, pi / 3}, {0.0, 0.0}, 0.0, 5.0);
+
+  const double* end = solution.states.data() + solution.states.size() - 4;  // q_1, q_2, qd_1, qd_2
+  for (int i = 0; i < 2; ++i) {
+    std::printf("q_%d(5) = %.17g rad, qd_%d(5) = %.17g rad/s\n", i + 1, end[i], i + 1, end[2 + i]);
+  }
+}

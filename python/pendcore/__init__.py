@@ -1,0 +1,50 @@
+"""Direct dynamics of pendulum chains, by a compiled core.
+
+    import numpy as np
+    import pendcore as pc
+
+    scene = pc.Scene.textbook()                  # two rods of 1 kg and 1 m, g = 9.807 m/s^2
+    scene = pc.Scene(links=[pc.Link(mass=1.0, length=1.0), pc.Link(mass=0.5, length=0.7)])
+
+    sol = pc.simulate(scene, q0=[np.pi / 4, np.pi / 3], qd0=[0, 0], t_span=(0, 5))
+    print(sol)                                   # what came of it
+    sol.t, sol.q, sol.qd                         # s, rad, rad/s: (n_t,), (n_t, n), (n_t, n)
+    sol(2.5)                                     # the state at any time: q_1, q_2, qd_1, qd_2
+    sol.reactions()                              # N: on each link, where it begins
+    sol.energy().total                           # J
+    sol.plot()                                   # the angles over time, as in the textbook
+    sol.save("run.npz")                          # and pc.load("run.npz")
+
+x points right, **y points down**, and an angle q is absolute, from x towards y: q = 0 is
+horizontal, q = pi/2 hangs straight down. Everything is in SI units: kg, m, s, rad, N, J. Links and
+joints count from 1.
+"""
+
+from __future__ import annotations
+
+from pendcore._core import __version__
+from pendcore.angles import angles_from_vertical, angles_to_vertical
+from pendcore.archive import load
+from pendcore.case import Case
+from pendcore.case_file import read_case
+from pendcore.scene import Link, Mobility, Scene
+from pendcore.simulate import simulate
+from pendcore.solution import Energy, Solution, Statistics
+from pendcore.warning import PendcoreWarning
+
+__all__ = [
+    "Case",
+    "Energy",
+    "Link",
+    "Mobility",
+    "PendcoreWarning",
+    "Scene",
+    "Solution",
+    "Statistics",
+    "__version__",
+    "angles_from_vertical",
+    "angles_to_vertical",
+    "load",
+    "read_case",
+    "simulate",
+]

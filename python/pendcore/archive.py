@@ -1,0 +1,90 @@
+"""Solutions on disk: NumPy's npz, readable without pendcore, and without pickle.
+
+Entries: ``t``, ``q``, ``qd``, ``y`` (as in `Solution`), ``case`` (TOML), ``statistics`` (JSON),
+``version``, and ``run.*``, from which the whole object comes back: interpolants, and what is needed
+to resume.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import warnings
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import numpy as np
+
+from pendcore import _core
+from pendcore.case_file import case_from_text
+from pendcore.scene import Scene
+from pendcore.solution import Solution
+from pendcore.warning import PendcoreWarning
+
+_RUN = "run."
+
+
+def save(solution: Solution, path: str | os.PathLike[str], name: str = "") -> None:
+    """Write a solution to the file ``path``, under just that name."""
+    entries: dict[str, Any] = {
+        "t": solution.t,
+        "q": solution.q,
+        "qd": solution.qd,
+        "y": solution.y,
+        "case": solution.case(name).to_toml(),
+        "statistics": json.dumps(solution.stats._asdict()),
+        "version": _core.__version__,
+    }
+    state = {_RUN + key: value for key, value in solution._run.__getstate__().items()}
+    with Path(path).open("wb") as file:
+        np.savez(file, **entries, **state)
+
+
+def load(path: str | os.PathLike[str]) -> Solution:
+    """Read a solution that `Solution.save` wrote.
+
+    Parameters
+    ----------
+    path : path
+        The file.
+
+    Returns
+    -------
+    Solution
+        Equal to the saved one to the last bit; it evaluates and resumes as that did.
+
+    Raises
+    ------
+    ValueError
+        If the file is no such solution.
+    OSError
+        If the file cannot be read.
+    """
+    with Path(path).open("rb") as file:
+        try:
+            return _loaded(file)
+        except Exception as error:  # whatever a damaged file makes of zip, npy, TOML or the core
+            raise ValueError(f"{path}: is not a solution that pendcore saved ({error})") from None
+
+
+def _loaded(file: BinaryIO) -> Solution:
+    run = _core.Run.__new__(_core.Run)
+    with np.load(file, allow_pickle=False) as entries:
+        scene = _scene(str(entries["case"]))
+        run.__setstate__(
+            {key.removeprefix(_RUN): _plain(entries[key]) for key in entries if _RUN in key}
+        )
+    if run.states.shape[1] != 2 * len(scene.links):
+        raise ValueError("case and run have different numbers of links")
+    return Solution(scene, run)
+
+
+def _scene(case: str) -> Scene:
+    with warnings.catch_warnings():  # what is implausible was said when the scene was made
+        warnings.simplefilter("ignore", PendcoreWarning)
+        return case_from_text(case, "case").scene
+
+
+def _plain(entry: Any) -> Any:
+    """Numbers and strings were written as arrays without axes."""
+    return entry.item() if entry.ndim == 0 else entry

@@ -1,0 +1,48 @@
+"""Checks of the numbers that a user hands over, for everything but a run (the core checks those).
+
+Booleans, strings and complex numbers are a TypeError; a wrong shape, and what is not finite, a
+ValueError.
+"""
+
+from __future__ import annotations
+
+from numbers import Real
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+Floats: TypeAlias = npt.NDArray[np.float64]
+
+
+def number(name: str, value: object, unit: str) -> float:
+    """Return one real number as a float."""
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise TypeError(f"{name} = {value!r}: must be a real number ({unit})")
+    return float(value)
+
+
+def finite_array(name: str, value: npt.ArrayLike, unit: str) -> Floats:
+    """Return finite real numbers of any shape as an array of floats."""
+    try:
+        array = np.asarray(value)
+    except ValueError:
+        raise ValueError(f"{name}: rows of different lengths: must be an array ({unit})") from None
+    if array.dtype.kind not in "iuf":
+        raise TypeError(f"{name}: holds {array.dtype}: must hold real numbers ({unit})")
+    array = array.astype(np.float64, copy=False)
+    if not np.isfinite(array).all():
+        where = np.argwhere(~np.isfinite(array))[0]
+        place = "".join(f"[{i}]" for i in where)
+        raise ValueError(f"{name}{place} = {array[tuple(where)]}: must be finite ({unit})")
+    return array
+
+
+def link_array(name: str, value: npt.ArrayLike, n: int, unit: str) -> Floats:
+    """Return an array whose last axis runs over the n links."""
+    array = finite_array(name, value, unit)
+    if array.ndim == 0 or array.shape[-1] != n:
+        raise ValueError(
+            f"{name}: shape {array.shape}: must be (..., {n}), one value per link ({unit})"
+        )
+    return array

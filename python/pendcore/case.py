@@ -1,0 +1,155 @@
+"""A case: a scene, where it starts, how it is run. It can be run, and written as TOML."""
+
+from __future__ import annotations
+
+import inspect
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from math import pi
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from pendcore.arguments import finite_array
+from pendcore.scene import Scene
+from pendcore.simulate import simulate
+from pendcore.solution import Solution
+
+RUN_DEFAULTS: dict[str, Any] = {
+    name: parameter.default
+    for name, parameter in inspect.signature(simulate).parameters.items()
+    if parameter.kind is parameter.KEYWORD_ONLY
+}
+"""The keywords of `simulate` that say how to run, and their defaults."""
+
+
+@dataclass(frozen=True, slots=True, init=False)
+class Case:
+    """A scene, where it starts, how long and how it is run.
+
+    Parameters
+    ----------
+    scene : Scene
+        What moves.
+    q0 : array_like, (n,)
+        Absolute angles at the start, rad. A scalar holds for every link.
+    qd0 : array_like, (n,), default 0
+        Rates at the start, rad/s. A scalar holds for every link.
+    t_span : (float, float)
+        Start and end, s.
+    name : str
+        For people.
+    options : mapping
+        Keywords of `simulate`; those not given have its defaults.
+
+    Raises
+    ------
+    ValueError, TypeError
+        If q0, qd0 or t_span are not finite numbers of that shape, or an option is unknown.
+    """
+
+    scene: Scene
+    q0: tuple[float, ...]
+    qd0: tuple[float, ...]
+    t_span: tuple[float, float]
+    name: str
+    options: dict[str, Any]
+
+    def __init__(
+        self,
+        *,
+        scene: Scene,
+        q0: npt.ArrayLike,
+        qd0: npt.ArrayLike = 0.0,
+        t_span: npt.ArrayLike,
+        name: str = "",
+        options: Mapping[str, Any] | None = None,
+    ) -> None:
+        n = len(scene.links)
+        given = {key: _plain(value) for key, value in (options or {}).items() if value is not None}
+        for key in given:
+            if key not in RUN_DEFAULTS:
+                known = ", ".join(RUN_DEFAULTS)
+                raise TypeError(f"options: simulate() has no keyword {key!r}: known are {known}")
+        object.__setattr__(self, "scene", scene)
+        object.__setattr__(self, "q0", _floats("q0", q0, n, "rad"))
+        object.__setattr__(self, "qd0", _floats("qd0", qd0, n, "rad/s"))
+        object.__setattr__(self, "t_span", _floats("t_span", t_span, 2, "s"))
+        object.__setattr__(self, "name", name)
+        object.__setattr__(self, "options", given)
+
+    @classmethod
+    def textbook(cls) -> Case:
+        """Section 2.1 of the textbook: released at rest from 45 and 60 degrees, for 5 s."""
+        return cls(
+            name="double pendulum, section 2.1",
+            scene=Scene.textbook(),
+            q0=(pi / 4, pi / 3),
+            t_span=(0.0, 5.0),
+        )
+
+    @classmethod
+    def of_solution(cls, solution: Solution, name: str = "") -> Case:
+        """Return what was asked for when a solution was computed."""
+        asked = {key: _plain(value) for key, value in solution._run.arguments.items()}
+        start = {key: asked.pop(key) for key in ("q0", "qd0")}
+        t_span = (asked.pop("t_start"), asked.pop("t_end"))
+        options = {key: value for key, value in asked.items() if value != RUN_DEFAULTS[key]}
+        return cls(scene=solution.scene, **start, t_span=t_span, name=name, options=options)
+
+    def simulate(self) -> Solution:
+        """Run it; see `pendcore.simulate`."""
+        return simulate(self.scene, self.q0, self.qd0, self.t_span, **self.options)
+
+    def to_toml(self) -> str:
+        """Return the case as TOML; `pendcore.read_case` makes an equal one of it, to the last bit.
+
+        Raises
+        ------
+        TypeError
+            If an option is a Python function, which TOML cannot hold.
+        """
+        t_start, t_end = self.t_span
+        tables: list[tuple[str, dict[str, Any]]] = [
+            ("", {"name": self.name, "gravity": self.scene.gravity}),
+            *(("[[link]]\n", link.particulars()) for link in self.scene.links),
+            ("[start]\n", {"q": self.q0, "qd": self.qd0}),
+            ("[run]\n", {"t_start": t_start, "t_end": t_end, **self.options}),
+        ]
+        return "\n".join(header + "".join(_lines(table)) for header, table in tables)
+
+
+def _floats(name: str, value: npt.ArrayLike, count: int, unit: str) -> tuple[float, ...]:
+    array = finite_array(name, value, unit)
+    if array.ndim == 0 and name != "t_span":
+        array = np.full(count, array)
+    if array.shape != (count,):
+        raise ValueError(f"{name}: shape {array.shape}: must be ({count},) ({unit})")
+    return tuple(array.tolist())
+
+
+def _plain(value: Any) -> Any:
+    """Return NumPy's numbers and arrays as Python's own, lists as tuples."""
+    if isinstance(value, np.ndarray | np.generic):
+        value = value.tolist()
+    return tuple(value) if isinstance(value, list) else value
+
+
+def _lines(table: Mapping[str, Any]) -> Iterator[str]:
+    for key, value in table.items():
+        yield f"{key} = {_toml(key, value)}\n"
+
+
+def _toml(key: str, value: Any) -> str:
+    if isinstance(value, tuple):
+        return f"[{', '.join(_toml(key, x) for x in value)}]"
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, int | float):
+        return repr(value)
+    if isinstance(value, str):
+        # JSON's escapes are TOML's, but for the surrogate pairs that ensure_ascii would make.
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    raise TypeError(f"{key} = {value!r}: cannot be written as TOML; leave it out of the case")

@@ -1,0 +1,141 @@
+"""Reading a case from TOML.
+
+A case::
+
+    name = "double pendulum, section 2.1"
+    gravity = 9.807                 # m/s^2
+    [[link]]                        # a table per link, from the pivot outwards
+    mass = 1.0                      # kg
+    length = 1.0                    # m; center and inertia as in pendcore.Link
+    [[link]]
+    mass = 1.0
+    length = 1.0
+    [start]
+    q = [0.7853981633974483, 1.0471975511965976]    # rad; or q_deg = [45, 60]
+    qd = [0.0, 0.0]                 # rad/s; 0 if left out
+    [run]
+    t_start = 0.0                   # s; 0 if left out
+    t_end = 5.0                     # s
+    method = "dopri5"               # this and any other keyword of pendcore.simulate
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from dataclasses import fields
+from math import radians
+from pathlib import Path
+from typing import Any
+
+from pendcore.case import RUN_DEFAULTS, Case
+from pendcore.scene import Link, Scene
+from pendcore.toml_text import Place, TomlText
+
+KEYS = {
+    "": ("name", "gravity", "link", "start", "run"),
+    "link": tuple(f.name for f in fields(Link)),
+    "start": ("q", "q_deg", "qd"),
+    "run": ("t_start", "t_end", *RUN_DEFAULTS),
+}
+"""The known keys of every kind of table; "" stands for what is above all tables."""
+
+
+def read_case(source: str | os.PathLike[str]) -> Case:
+    """Read a case from TOML.
+
+    Parameters
+    ----------
+    source : path or str
+        A file, or the text itself: a string with a line break is text.
+
+    Returns
+    -------
+    Case
+
+    Raises
+    ------
+    ValueError
+        If the text is not TOML, a key is unknown or missing, or a value is not what its key asks
+        for. The message names the line and, for an unknown key, the nearest known one.
+    OSError
+        If the file cannot be read.
+    """
+    if isinstance(source, str) and "\n" in source:
+        return case_from_text(source, "case")
+    path = Path(source)
+    try:
+        return case_from_text(path.read_text(encoding="utf-8"), str(path))
+    except UnicodeDecodeError:
+        raise ValueError(f"{path}: is not a text file in UTF-8") from None
+
+
+def case_from_text(content: str, name: str) -> Case:
+    """Read a case from TOML that messages call ``name``; see `read_case`."""
+    text = TomlText(content, name)
+    text.check_keys((), KEYS)
+    text.check_keys(("start",), KEYS)
+    text.check_keys(("run",), KEYS)
+    scene = _scene(text)
+    q0, qd0 = _start(text)
+    t_span, options = _run(text)
+    title = text.value(("name",)) or ""
+    if not isinstance(title, str):
+        raise text.error(("name",), f"name = {title!r}: must be a string")
+    try:
+        return Case(scene=scene, q0=q0, qd0=qd0, t_span=t_span, name=title, options=options)
+    except ValueError as error:
+        raise text.error(_place(str(error)), str(error)) from None
+
+
+def _scene(text: TomlText) -> Scene:
+    tables = text.value(("link",))
+    if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
+        raise text.error(("link",), "links are needed: a table [[link]] for each")
+    links = []
+    for i, table in enumerate(tables):
+        text.check_keys(("link", i), KEYS)
+        for key in ("mass", "length"):
+            if key not in table:
+                raise text.error(("link", i), f"link {i + 1} needs {key}")
+        links.append(Link(**{key: text.number(("link", i, key)) for key in table}))
+    gravity = {"gravity": text.number(("gravity",))} if "gravity" in text.content else {}
+    try:
+        return Scene(links=links, **gravity)
+    except ValueError as error:
+        raise text.error(_place(str(error)), str(error)) from None
+
+
+def _start(text: TomlText) -> tuple[list[float], list[float] | float]:
+    start = text.table(("start",))
+    if ("q" in start) == ("q_deg" in start):
+        raise text.error(("start",), "[start] needs q (rad) or q_deg (degrees), one of the two")
+    if "q" in start:
+        q0 = text.numbers(("start", "q"))
+    else:
+        q0 = [radians(x) for x in text.numbers(("start", "q_deg"))]
+    return q0, text.numbers(("start", "qd")) if "qd" in start else 0.0
+
+
+def _run(text: TomlText) -> tuple[tuple[float, float], dict[str, Any]]:
+    run = text.table(("run",))
+    if "t_end" not in run:
+        raise text.error(("run",), "[run] needs t_end (s)")
+    t_start = text.number(("run", "t_start")) if "t_start" in run else 0.0
+    options = {key: value for key, value in run.items() if key in RUN_DEFAULTS}
+    for key, value in options.items():
+        if isinstance(value, list):
+            text.numbers(("run", key))
+        elif not isinstance(value, int | float | str):
+            raise text.error(("run", key), f"{key} = {value!r}: must be a number, text or a list")
+    return (t_start, text.number(("run", "t_end"))), options
+
+
+def _place(message: str) -> Place:
+    """Return where in the file stands what the message of a Scene or Case begins with."""
+    if found := re.match(r"link (\d+): (\w+)", message):
+        return ("link", int(found[1]) - 1, found[2])
+    if found := re.match(r"\w+", message):
+        known: dict[str, Place] = {"q0": ("start", "q"), "qd0": ("start", "qd"), "t_span": ("run",)}
+        return known.get(found[0], (found[0],))
+    return ()

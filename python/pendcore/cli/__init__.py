@@ -1,0 +1,72 @@
+"""The command `pendcore`. A file for each sub-command: it adds its arguments, and runs."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import warnings
+from collections.abc import Sequence
+
+from pendcore import _core
+from pendcore.cli import plot, run
+from pendcore.cli.usage import UsageError
+from pendcore.warning import PendcoreWarning
+
+_EXAMPLES = """
+examples:
+  pendcore run                            the textbook's double pendulum, into out/textbook
+  pendcore run swing.toml                 your own case, into out/swing
+  pendcore run swing.toml --json | jq .energy
+  pendcore plot out/swing/solution.npz -o swing.pdf
+
+exit status: 0 fine, 1 the run failed (what it has is written all the same), 2 wrong usage
+"""
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command.
+
+    Parameters
+    ----------
+    argv : sequence of str, optional
+        Arguments without the name of the program. Default: those of the process.
+
+    Returns
+    -------
+    int
+        Exit status: 0 fine, 1 the run failed, 2 wrong usage.
+    """
+    parser = _parser()
+    try:
+        args = parser.parse_args(argv)
+    except SystemExit as stop:  # after --help, --version and wrong usage
+        return int(stop.code or 0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", PendcoreWarning)
+        warnings.showwarning = _show_warning
+        try:
+            return int(args.execute(args))
+        except UsageError as error:
+            print(f"pendcore {args.command}: {error}", file=sys.stderr)
+            return 2
+        except OSError as error:
+            print(f"pendcore {args.command}: {error}", file=sys.stderr)
+            return 1
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="pendcore",
+        description="Direct dynamics of pendulum chains.",
+        epilog=_EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--version", action="version", version=f"pendcore {_core.__version__}")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    for command in (run, plot):
+        command.add_parser(commands)
+    return parser
+
+
+def _show_warning(message: Warning | str, *_: object, **__: object) -> None:
+    print(f"pendcore: warning: {message}", file=sys.stderr)

@@ -1,0 +1,51 @@
+"""`pendcore plot`: draw a saved solution."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+from pendcore.archive import load
+from pendcore.cli.usage import blamed_on_usage
+from pendcore.views.plot import save_figure
+
+_EPILOG = """
+example:
+  pendcore plot out/textbook/solution.npz -o angles.pdf
+"""
+
+
+def add_parser(commands: Any) -> None:
+    """Add the sub-command and its arguments."""
+    parser = commands.add_parser(
+        "plot",
+        help="draw a saved solution",
+        description="Draw the angles in degrees over time, as the textbook does.",
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("solution", type=Path, metavar="RUN.npz", help="written by `pendcore run`")
+    parser.add_argument(
+        "-o",
+        "--out",
+        type=Path,
+        metavar="FILE",
+        help="figure to write, its kind from the suffix (png, pdf, svg); default: RUN.png",
+    )
+    parser.add_argument("--json", action="store_true", help="print what was written as JSON")
+    parser.set_defaults(execute=execute)
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Do it; return the exit status."""
+    out = args.out or args.solution.with_suffix(".png")
+    with blamed_on_usage():
+        solution = load(args.solution)
+        save_figure(solution, out)
+    if args.json:
+        print(json.dumps({"figure": str(out), "status": solution.status}))
+    print(f"written to {out}", file=sys.stderr)
+    return 0

@@ -1,0 +1,21 @@
+"""What a user did wrong, told in a line and without a traceback."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+
+class UsageError(Exception):
+    """The command cannot do what it was asked for; exit status 2."""
+
+
+@contextmanager
+def blamed_on_usage(what: str = "") -> Iterator[None]:
+    """Within, files that cannot be opened and values out of range are the user's."""
+    try:
+        yield
+    except OSError as error:
+        raise UsageError(f"{error.filename}: {error.strerror}") from None
+    except (ValueError, TypeError) as error:
+        raise UsageError(f"{what}: {error}" if what else str(error)) from None

@@ -1,0 +1,77 @@
+"""When a run shows how far it is: after a second, on a terminal, unless told otherwise."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from math import inf
+from time import monotonic
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+if TYPE_CHECKING:
+    from tqdm import tqdm
+
+Progress: TypeAlias = bool | Callable[[float], object] | None
+"""None: a bar after a second, on a terminal. True: a bar at once. A callable gets the fraction."""
+
+
+class ProgressBar:
+    """A bar on standard error, drawn once a run on a terminal has taken a while.
+
+    It costs a run nothing before its first call, which the core makes after 50 ms.
+    """
+
+    patience = 1.0
+    """s."""
+    _since: float | None = None
+    _bar: tqdm[Any] | None = None
+
+    def __call__(self, fraction: float) -> None:
+        if self._since is None:
+            self._since = monotonic() if self.wanted() else inf
+        if monotonic() - self._since < self.patience:
+            return
+        if self._bar is None:
+            self._bar = _new_bar()
+        self._bar.update(100 * fraction - self._bar.n)
+
+    def wanted(self) -> bool:
+        """Only people look at bars."""
+        return sys.stderr.isatty()
+
+    def close(self) -> None:
+        """End the line of the bar, if there is one."""
+        if self._bar is not None:
+            self._bar.close()
+
+
+class ImmediateBar(ProgressBar):
+    """A bar that is there at once, wherever standard error goes."""
+
+    patience = 0.0
+
+    def wanted(self) -> bool:
+        """It was asked for."""
+        return True
+
+
+def _new_bar() -> tqdm[Any]:
+    from tqdm import tqdm  # 20 ms that a short run does not owe
+
+    layout = "{desc} {percentage:3.0f} % |{bar}| {elapsed}, {remaining} to go"
+    return tqdm(total=100, desc="simulating", bar_format=layout, file=sys.stderr)
+
+
+def callback(progress: Progress) -> Callable[[float], object] | None:
+    """Return what the core is to call, or None."""
+    if progress is None:
+        return ProgressBar()
+    if progress is True:
+        return ImmediateBar()
+    if progress is False:
+        return None
+    if not callable(progress):
+        raise TypeError(
+            f"progress = {progress!r}: must be None, True, False, or a function of a fraction"
+        )
+    return progress

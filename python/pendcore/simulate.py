@@ -1,0 +1,99 @@
+"""From a scene and a start to a solution."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import inf
+
+import numpy.typing as npt
+
+from pendcore import _core
+from pendcore.progress import Progress, callback
+from pendcore.scene import Scene
+from pendcore.solution import Solution, solution_of
+
+
+def simulate(
+    scene: Scene,
+    q0: npt.ArrayLike,
+    qd0: npt.ArrayLike = 0.0,
+    t_span: Iterable[float] = (),
+    *,
+    method: str = "dopri5",
+    rtol: npt.ArrayLike = 1e-9,
+    atol: npt.ArrayLike = 1e-12,
+    t_eval: npt.ArrayLike | None = None,
+    store: str | None = None,
+    first_step: float | None = None,
+    max_step: float = inf,
+    step: float | None = None,
+    max_steps: int = 10_000_000,
+    time_limit: float | None = None,
+    progress: Progress = None,
+) -> Solution:
+    """Solve the equations of motion of a scene from a start.
+
+    Parameters
+    ----------
+    scene : Scene
+        What moves.
+    q0 : array_like, (n,)
+        Absolute angles at the start, rad. A scalar holds for every link.
+    qd0 : array_like, (n,), default 0
+        Angular rates at the start, rad/s. A scalar holds for every link.
+    t_span : (float, float)
+        Start and end, s. The end may lie before the start: the run then goes backward.
+    method : str
+        ``"dopri5"`` (also ``"RK45"``, ``"ode45"``): Dormand-Prince 5(4) with dense output.
+    rtol, atol : float or (2n,)
+        The error of a step is kept below ``atol + rtol abs(y)``, in root mean square over
+        ``y = (q, qd)``.
+    t_eval : array_like, (k,), optional
+        Times of the result, s, within the run and in its order. They do not change the steps.
+    store : {"dense", "steps", "times", "end"}, optional
+        What is kept: every step with its interpolant, every step, ``t_eval`` alone, the end alone;
+        the last two in constant memory. Default: ``"times"`` with a ``t_eval``, else ``"dense"``.
+    first_step : float, optional
+        s, > 0. Default: chosen from the start (Hairer's rule).
+    max_step : float
+        s, > 0.
+    step : float, optional
+        A fixed step, s, > 0, in place of the tolerances.
+    max_steps : int
+        The run ends with status ``max_steps`` after as many attempts.
+    time_limit : float, optional
+        s of the clock; the run then ends with status ``time_limit``.
+    progress : None, bool or callable
+        None: a bar after a second, on a terminal. A callable gets the fraction done, in 0...1.
+
+    Returns
+    -------
+    Solution
+        What happened, also if the run could not be finished: see its ``status`` and ``message``.
+
+    Raises
+    ------
+    ValueError, TypeError
+        If an argument is not what is asked for; the message names it.
+    KeyboardInterrupt, or any exception of ``progress``
+        With the run so far as the attribute ``solution``.
+
+    Notes
+    -----
+    The step control is that of Hairer, Norsett and Wanner, *Solving Ordinary Differential Equations
+    I*, II.4. The same arguments give the same bits on every x86-64 machine, whatever is stored.
+    """
+    try:
+        t_start, t_end = t_span
+    except (TypeError, ValueError):
+        raise TypeError(f"t_span = {t_span!r}: must be (t_start, t_end), in s") from None
+    try:
+        compiled = scene._compiled
+    except AttributeError:
+        raise TypeError(f"scene = {scene!r}: must be a pendcore.Scene") from None
+    report = callback(progress)
+    run = _core.simulate(
+        compiled, q0, qd0, t_start, t_end, method, rtol, atol, t_eval, store,
+        first_step, max_step, step, max_steps, time_limit, report,
+    )  # fmt: skip
+    return solution_of(scene, run, report)

@@ -1,0 +1,261 @@
+"""What a run found: times, angles, rates, and what follows from them.
+
+n is the number of links, n_t the number of kept times. Angles are absolute, from +x towards +y, and
+y points **down**. Nothing is computed before it is asked for.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from pendcore import _core
+from pendcore.arguments import Floats, finite_array
+from pendcore.progress import Progress, ProgressBar, callback
+from pendcore.scene import Scene
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+    from matplotlib.lines import Line2D
+
+    from pendcore.case import Case
+
+
+class Statistics(NamedTuple):
+    """What a run took."""
+
+    nfev: int
+    """Right-hand sides."""
+    njev: int
+    """Jacobians."""
+    nlu: int
+    """Factorisations."""
+    accepted: int
+    """Steps that were kept."""
+    rejected: int
+    """Steps that were tried again, shorter."""
+    limited_by_tolerance: int
+    """Accepted steps of the size that accuracy allowed,"""
+    limited_by_max_step: int
+    """or max_step, or a fixed step,"""
+    limited_by_break: int
+    """or the end of the run."""
+    min_step: float
+    """s, as max_step: the sizes of the accepted steps, those cut short aside."""
+    max_step: float
+    stiff: bool
+    """Steps were limited by stability rather than by accuracy."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Energy:
+    """Energies over time, J, each (n_t,). The potential energy is zero at the pivot's height."""
+
+    kinetic: Floats
+    potential: Floats
+    total: Floats
+
+
+class Solution:
+    """The result of `simulate`.
+
+    Call it, ``sol(t)``, for the state between the steps. It pickles; `save` and `load` keep it all.
+
+    Attributes
+    ----------
+    scene : Scene
+        What moved.
+    """
+
+    __slots__ = ("_run", "scene")
+
+    def __init__(self, scene: Scene, run: _core.Run) -> None:
+        self.scene = scene
+        self._run = run
+
+    @property
+    def t(self) -> Floats:
+        """Times of the accepted steps, or ``t_eval``, s, (n_t,)."""
+        return self._run.t
+
+    @property
+    def q(self) -> Floats:
+        """Absolute angles, rad, (n_t, n)."""
+        return self._run.states[:, : len(self.scene.links)]
+
+    @property
+    def qd(self) -> Floats:
+        """Angular rates, rad/s, (n_t, n)."""
+        return self._run.states[:, len(self.scene.links) :]
+
+    @property
+    def y(self) -> Floats:
+        """States as SciPy lays them out, (2n, n_t): q_1..q_n (rad), then qd_1..qd_n (rad/s)."""
+        return self._run.states.T
+
+    def __call__(self, t: npt.ArrayLike) -> Floats:
+        """State at any time within the run, from the method's own interpolant.
+
+        Parameters
+        ----------
+        t : float or array_like, (k,)
+            s.
+
+        Returns
+        -------
+        ndarray, (2n,) or (2n, k)
+            q_1..q_n (rad), then qd_1..qd_n (rad/s).
+
+        Raises
+        ------
+        ValueError
+            If a time lies outside the run, or the run did not store its interpolants.
+        """
+        times = finite_array("t", t, "s")
+        if times.ndim > 1:
+            raise ValueError(f"t: shape {times.shape}: must be a number or (k,) (s)")
+        states = self._run.evaluate(times.reshape(-1)).T
+        return states[:, 0] if times.ndim == 0 else states
+
+    @property
+    def status(self) -> str:
+        """How the run ended, in a word: ``"finished"``, ``"max_steps"``, ``"non_finite"``, ..."""
+        return self._run.status
+
+    @property
+    def message(self) -> str:
+        """How the run ended, in a sentence, with advice where there is some."""
+        return self._run.message
+
+    @property
+    def success(self) -> bool:
+        """Whether the run got where it was to go."""
+        return self._run.success
+
+    @property
+    def method(self) -> str:
+        """Name of the method."""
+        return self._run.method
+
+    @property
+    def store(self) -> str:
+        """What was kept: ``"dense"``, ``"steps"``, ``"times"`` or ``"end"``."""
+        return self._run.store
+
+    @property
+    def stats(self) -> Statistics:
+        """What the run took: right-hand sides, steps, and what limited them."""
+        return Statistics(**self._run.statistics)
+
+    def relative_angles(self) -> Floats:
+        """Angles of the joints, phi_i = q_i - q_{i-1} with q_0 = 0, rad, (n_t, n)."""
+        return np.diff(self.q, prepend=0.0)
+
+    def accelerations(self) -> Floats:
+        """Angular accelerations, rad/s^2, (n_t, n)."""
+        return self.scene.accelerations(self.t, self.q, self.qd)
+
+    def positions(self) -> Floats:
+        """Pivot, joints and tip, m, (n_t, n+1, 2): x right, y down."""
+        return self.scene._compiled.positions(self.q)
+
+    def mass_centers(self) -> Floats:
+        """Mass centres of the links, m, (n_t, n, 2): x right, y down."""
+        return self.scene._compiled.mass_centers(self.q)
+
+    def reactions(self) -> Floats:
+        """Force on each link at the joint where it begins, N, (n_t, n, 2): x right, y down.
+
+        The textbook's F_01 (the ground's on link 1), F_12 (link 1's on link 2), and so on.
+        """
+        return self.scene._compiled.reactions(self.t, self.q, self.qd)
+
+    def energy(self) -> Energy:
+        """Kinetic, potential and total energy, J, each (n_t,)."""
+        kinetic, potential = self.scene._compiled.energy(self.q, self.qd)
+        return Energy(kinetic, potential, kinetic + potential)
+
+    def resume(
+        self,
+        t_end: float,
+        t_eval: npt.ArrayLike | None = None,
+        *,
+        max_steps: int = 10_000_000,
+        time_limit: float | None = None,
+        progress: Progress = None,
+    ) -> Solution:
+        """Continue to a later end, bitwise as if the run had never stopped.
+
+        Parameters
+        ----------
+        t_end : float
+            s; beyond the end of this run, in its direction.
+        t_eval, max_steps, time_limit, progress
+            As in `simulate`, for the continuation.
+
+        Returns
+        -------
+        Solution
+            The whole run, from its first start. This one stays as it is.
+        """
+        report = callback(progress)
+        run = self._run.resume(t_end, t_eval, max_steps, time_limit, report)
+        return solution_of(self.scene, run, report)
+
+    def case(self, name: str = "") -> Case:
+        """Return what was asked for, ready to be run again or written as TOML."""
+        from pendcore.case import Case
+
+        return Case.of_solution(self, name)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write everything to a file of NumPy's npz format; see `pendcore.load`."""
+        from pendcore.archive import save
+
+        save(self, path)
+
+    def plot(self, ax: Any = None) -> list[Line2D]:
+        """Draw the angles over time, as in the textbook; see `pendcore.views.plot.plot`."""
+        from pendcore.views.plot import plot
+
+        return plot(self, ax)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Return a table with a row per time and the columns q_1.., qd_1..; units in ``attrs``."""
+        from pendcore.views.export import to_pandas
+
+        return to_pandas(self)
+
+    def to_xarray(self) -> xr.Dataset:
+        """Return ``q`` and ``qd`` over time and link; units and the case in ``attrs``."""
+        from pendcore.views.export import to_xarray
+
+        return to_xarray(self)
+
+    def __repr__(self) -> str:
+        from pendcore.views.table import text
+
+        return text(self)
+
+    def _repr_html_(self) -> str:
+        from pendcore.views.table import html
+
+        return html(self)
+
+
+def solution_of(scene: Scene, run: _core.Run, report: Callable[[float], object] | None) -> Solution:
+    """Wrap a run; if it was broken off by an exception, raise that with the run so far."""
+    solution = Solution(scene, run)
+    if isinstance(report, ProgressBar):
+        report.close()
+    error = run.error
+    if error is not None:
+        error.solution = solution  # type: ignore[attr-defined]
+        raise error
+    return solution

@@ -1,0 +1,144 @@
+"""TOML that knows on which line each key stands, so that an error can say where."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterable, Iterator, Mapping
+from difflib import get_close_matches
+from typing import Any, TypeAlias
+
+Place: TypeAlias = tuple[str | int, ...]
+"""Way to a key: ``("link", 1, "mass")`` is the mass in the second ``[[link]]``."""
+
+_STRING_OR_COMMENT = re.compile(
+    r'"""(?:\\.|[^\\])*?"""|\'\'\'.*?\'\'\'|"(?:\\.|[^"\\\n])*"|\'[^\'\n]*\'|#[^\n]*', re.DOTALL
+)
+_HEADER = re.compile(r"\s*\[(\[?)([^\[\]]+)\]")
+_KEY = re.compile(r"""\s*([\w\-."' ]+?)\s*=""")
+
+
+class TomlText:
+    """A TOML document: its content, and errors that name document and line.
+
+    Parameters
+    ----------
+    text : str
+        The document.
+    name : str
+        What messages call it.
+
+    Raises
+    ------
+    ValueError
+        If the text is not TOML.
+    """
+
+    def __init__(self, text: str, name: str) -> None:
+        self.name = name
+        self._lines = dict(_lines_of_keys(text))
+        try:
+            self.content: dict[str, Any] = tomllib.loads(text)
+        except tomllib.TOMLDecodeError as error:
+            raise ValueError(f"{name}: {error}") from None
+
+    def error(self, place: Place, complaint: str) -> ValueError:
+        """Return an error that names the line of the place, or of what it stands in."""
+        for length in range(len(place), 0, -1):
+            if place[:length] in self._lines:
+                return ValueError(f"{self.name}, line {self._lines[place[:length]]}: {complaint}")
+        return ValueError(f"{self.name}: {complaint}")
+
+    def check_keys(self, place: Place, known: Mapping[str, Iterable[str]]) -> None:
+        """Refuse the first unknown key of a table, and name the nearest known one.
+
+        ``known`` has the keys of every kind of table, so that a key in a wrong table is told where
+        it belongs.
+        """
+        kind = str(place[0]) if place else ""
+        here = tuple(known[kind])
+        for key in self.table(place):
+            if key in here:
+                continue
+            home = next((other for other, keys in known.items() if key in keys), None)
+            if home is not None:
+                remedy = f"it belongs {f'in [{home}]' if home else 'above all tables'}"
+            elif near := get_close_matches(key, here, n=1, cutoff=0.5):
+                remedy = f"did you mean {near[0]!r}?"
+            else:
+                remedy = f"known are {', '.join(here)}"
+            where = f" in [{kind}]" if kind else ""
+            raise self.error((*place, key), f"unknown key {key!r}{where}: {remedy}")
+
+    def value(self, place: Place) -> Any:
+        """Return what stands at a place; None if there is nothing."""
+        found: Any = self.content
+        for step in place:
+            found = found.get(step) if isinstance(step, str) else found[step]
+        return found
+
+    def table(self, place: Place) -> dict[str, Any]:
+        """Return the table at a place; empty if there is none."""
+        table = self.value(place)
+        if table is None:
+            return {}
+        if not isinstance(table, dict):
+            raise self.error(place, f"{place[0]} = {table!r}: must be a table")
+        return table
+
+    def number(self, place: Place) -> float:
+        """Return the number at a place."""
+        value = self.value(place)
+        if not _is_number(value):
+            raise self.error(place, f"{place[-1]} = {value!r}: must be a number")
+        return float(value)
+
+    def numbers(self, place: Place) -> list[float]:
+        """Return the list of numbers at a place."""
+        value = self.value(place)
+        if not isinstance(value, list) or not all(map(_is_number, value)):
+            raise self.error(place, f"{place[-1]} = {value!r}: must be a list of numbers")
+        return [float(x) for x in value]
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _lines_of_keys(text: str) -> Iterator[tuple[Place, int]]:
+    tables: Place = ()
+    last: dict[tuple[str, ...], int] = {}  # of the tables [[name]], the index of the last one
+    depth = 0
+    for number, line in enumerate(_STRING_OR_COMMENT.sub(_hushed, text).split("\n"), start=1):
+        if depth == 0 and (header := _HEADER.match(line)):
+            names = _split(header[2])
+            if header[1]:
+                last[names] = last.get(names, -1) + 1
+            tables = _with_indices(names, last)
+            yield tables, number
+        elif depth == 0 and (key := _KEY.match(line)):
+            names = _split(key[1])
+            for length in range(len(names)):
+                yield (*tables, *names[: length + 1]), number
+        depth += len(re.findall(r"[\[{]", line)) - len(re.findall(r"[\]}]", line))
+
+
+def _hushed(match: re.Match[str]) -> str:
+    """Keep the lines of a string or comment, and nothing in it that looks like structure."""
+    found = match[0]
+    if found.startswith(("#", '"""', "'''")):
+        return "\n" * found.count("\n")
+    return re.sub(r"[\[\]{}=]", "_", found)
+
+
+def _split(dotted: str) -> tuple[str, ...]:
+    return tuple(name.strip().strip("\"'") for name in dotted.split("."))
+
+
+def _with_indices(names: tuple[str, ...], last: Mapping[tuple[str, ...], int]) -> Place:
+    place: list[str | int] = []
+    for length, name in enumerate(names, start=1):
+        place.append(name)
+        if names[:length] in last:
+            place.append(last[names[:length]])
+    return tuple(place)

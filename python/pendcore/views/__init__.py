@@ -1,0 +1,1 @@
+"""What can be made of a solution: figures, tables, summaries, other libraries' objects."""

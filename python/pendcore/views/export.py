@@ -1,0 +1,63 @@
+"""Solutions as pandas and xarray know them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from pendcore.solution import Solution
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+_HINT = 'needs {}: pip install "pendcore[export]"'
+
+
+def to_pandas(solution: Solution) -> pd.DataFrame:
+    """Return a row per time, index ``time`` (s), columns q_1.. (rad) and qd_1.. (rad/s).
+
+    ``attrs`` holds ``units``, by column, and ``case``, the TOML of what was simulated.
+
+    Raises
+    ------
+    ImportError
+        If pandas is not installed.
+    """
+    try:
+        import pandas as pd
+    except ImportError:
+        raise ImportError("to_pandas() " + _HINT.format("pandas")) from None
+    links = range(1, len(solution.scene.links) + 1)
+    units = {f"q_{i}": "rad" for i in links} | {f"qd_{i}": "rad/s" for i in links}
+    frame = pd.DataFrame(
+        solution.y.T.copy(), columns=list(units), index=pd.Index(solution.t.copy(), name="time")
+    )
+    frame.attrs = {"units": {"time": "s", **units}, "case": solution.case().to_toml()}
+    return frame
+
+
+def to_xarray(solution: Solution) -> xr.Dataset:
+    """Return ``q`` and ``qd`` over ``time`` and ``link``, each with ``attrs["units"]``.
+
+    The set's ``attrs["case"]`` is the TOML of what was simulated.
+
+    Raises
+    ------
+    ImportError
+        If xarray is not installed.
+    """
+    try:
+        import xarray as xr
+    except ImportError:
+        raise ImportError("to_xarray() " + _HINT.format("xarray")) from None
+    links = range(1, len(solution.scene.links) + 1)
+    angle = {"units": "rad", "long_name": "absolute angle, from +x (right) towards +y (down)"}
+    rate = {"units": "rad/s", "long_name": "angular rate"}
+    return xr.Dataset(
+        {
+            "q": (("time", "link"), solution.q.copy(), angle),
+            "qd": (("time", "link"), solution.qd.copy(), rate),
+        },
+        coords={"time": ("time", solution.t.copy(), {"units": "s"}), "link": list(links)},
+        attrs={"case": solution.case().to_toml()},
+    )

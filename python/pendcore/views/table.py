@@ -1,0 +1,47 @@
+"""A solution in a few lines, as text and as HTML."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from html import escape
+
+from pendcore.arguments import Floats
+from pendcore.solution import Solution
+
+
+def text(solution: Solution) -> str:
+    """Return what was run, how it ended and where, a line each."""
+    rows = _rows(solution)
+    width = max(len(name) for name, _ in rows)
+    return "\n".join(["Solution", *(f"  {name:{width}}  {value}" for name, value in rows)])
+
+
+def html(solution: Solution) -> str:
+    """Return the same as an HTML table."""
+    rows = "".join(
+        f"<tr><th style='text-align: left'>{escape(name)}</th><td>{escape(value)}</td></tr>"
+        for name, value in _rows(solution)
+    )
+    return f"<table>{rows}</table>"
+
+
+def listed(values: Sequence[float] | Floats, most: int = 6) -> str:
+    """Return numbers as people read them: six digits, and dots in place of the last of many."""
+    some = [f"{x:.6g}" for x in values[:most]]
+    return ", ".join([*some, "..."] if len(values) > most else some)
+
+
+def _rows(solution: Solution) -> list[tuple[str, str]]:
+    n, t, stats = len(solution.scene.links), solution.t, solution.stats
+    rows = [
+        ("status", f"{solution.status}: {solution.message}"),
+        ("scene", f"{n} link{'s'[: n > 1]}, gravity {solution.scene.gravity:.6g} m/s^2"),
+        ("method", f"{solution.method}, {stats.accepted} steps, {stats.nfev} right-hand sides"),
+    ]
+    if len(t):
+        rows += [
+            ("t", f"{t[0]:.6g} ... {t[-1]:.6g} s, {len(t)} kept"),
+            ("last q", f"{listed(solution.q[-1])} rad"),
+            ("last qd", f"{listed(solution.qd[-1])} rad/s"),
+        ]
+    return rows

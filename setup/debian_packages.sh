@@ -1,0 +1,74 @@
+#!/bin/sh
+# Installs those of the Debian packages that a step of the Makefile needs which are missing; when
+# nothing is missing it does nothing and asks for no right. What stands after `also` the step can do
+# without, but asking once for everything is kinder.
+#
+#   setup/debian_packages.sh [python] [compiler] [eigen] [doctest] [benchmark] [boost] [also ...]
+set -eu
+
+python=${PYTHON:-python3}
+needed=
+also=
+kind=needed
+
+stop() {
+    printf '%s\n' "" "$@" "" >&2
+    exit 1
+}
+
+miss() {
+    if [ $kind = needed ]; then needed="$needed $1"; else also="$also $1"; fi
+}
+
+look_at_python() {
+    "$python" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null ||
+        stop "pendcore needs Python 3.11 or newer: $python is missing or older. With another one:" \
+            "    make PYTHON=/path/to/python3.11 demo"
+    before=$needed
+    "$python" -c 'import ensurepip, venv' 2>/dev/null || miss python3-venv
+    headers=$("$python" -c 'import sysconfig; print(sysconfig.get_path("include"))')
+    [ -e "$headers/Python.h" ] || miss python3-dev
+    home=$("$python" -c 'import sys; print(sys.base_prefix)')
+    [ "$needed" = "$before" ] || [ "$home" = /usr ] ||
+        stop "$python has no ensurepip or no Python.h, and is not Debian's own, which packages" \
+            "could complete. With Debian's:" "    make PYTHON=/usr/bin/python3 demo"
+}
+
+for thing in "$@"; do
+    case $thing in
+        also) kind=also ;;
+        python) look_at_python ;;
+        compiler) command -v g++ >/dev/null || miss g++ ;;
+        eigen) [ -e /usr/include/eigen3/Eigen/Core ] || miss libeigen3-dev ;;
+        doctest) [ -e /usr/include/doctest/doctest.h ] || miss doctest-dev ;;
+        benchmark) [ -e /usr/include/benchmark/benchmark.h ] || miss libbenchmark-dev ;;
+        boost) [ -e /usr/include/boost/numeric/odeint.hpp ] || miss libboost-dev ;;
+        *) stop "debian_packages.sh: no '$thing' is known" ;;
+    esac
+done
+packages="$needed$also"
+[ -n "$packages" ] || exit 0
+
+if ! command -v apt-get >/dev/null; then
+    may=no
+elif [ "$(id -u)" = 0 ]; then
+    may=yes as=
+elif command -v sudo >/dev/null && { sudo -n true 2>/dev/null || { [ -t 0 ] && sudo -v; }; }; then
+    may=yes as=sudo
+else
+    may=no
+fi
+
+if [ $may = yes ]; then
+    echo "installing Debian packages:$packages"
+    $as apt-get update -qq
+    # shellcheck disable=SC2086 # a list of words
+    $as env DEBIAN_FRONTEND=noninteractive \
+        apt-get install -y -qq --no-install-recommends $packages >/dev/null
+elif [ -n "$needed" ]; then
+    stop "Packages are missing, and you are neither root nor may use sudo to install them. Ask" \
+        "whoever administers this machine for (names as in Debian 12)" \
+        "    apt-get install$packages" "and run make again."
+else
+    echo "going on without, for want of the right to install:$packages"
+fi

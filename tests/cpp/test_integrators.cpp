@@ -1,0 +1,188 @@
+// Every method in the list on equations that have nothing to do with pendulums.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "pendcore/integrate/explicit_runge_kutta.hpp"
+#include "pendcore/integrate/first_step.hpp"
+#include "pendcore/integrate/integrate.hpp"
+#include "pendcore/integrate/methods.hpp"
+
+using namespace pendcore;
+
+namespace {
+
+/// dy/dt = f(t, y) in one component.
+template <double (*f)(double, double)>
+struct Scalar {
+  using Block = double;
+  static constexpr int blocks = 1;
+  PENDCORE_INLINE void operator()(double t, const double* y, double* dydt) const {
+    dydt[0] = f(t, y[0]);
+  }
+};
+
+double growing(double t, double y) { return y * std::cos(t); }  // y = y0 exp(sin t)
+double decaying(double t, double y) { return -1e6 * (y - std::sin(t)) + std::cos(t); }
+double exploding(double, double y) { return y * y; }  // y = 1/(1 - t)
+double undefined_from_one(double t, double) { return t < 1.0 ? 1.0 : std::nan(""); }
+double undefined(double, double) { return std::nan(""); }
+double undefined_over_half(double, double y) { return y + 0.0 * std::sqrt(0.5 - y); }
+
+class Nothing final : public Observer {
+ public:
+  void step_accepted(const Stepper&, double, double, double) override {}
+  void end_in_sight() override {}
+};
+
+struct Result {
+  Status status;
+  double t;
+  double y;
+  Statistics statistics;
+  Position resumable;
+};
+
+struct Request {
+  double t0 = 0.0;
+  double t_end = 1.0;
+  double y0 = 1.0;
+  double tolerance = 1e-9;
+  double step = 0.0;
+  long long max_steps = 1'000'000;
+};
+
+template <const auto& method, class System>
+Result solve(const Request& request) {
+  ExplicitRungeKutta<method, System> stepper(System{});
+  stepper.set_tolerances(&request.tolerance, &request.tolerance);
+  Position position;
+  position.t = {request.t0, 0.0};
+  position.y = {request.y0};
+  position.dydt = {0.0};
+  stepper.evaluate(request.t0, position.y.data(), position.dydt.data());
+  stepper.start(position.y.data(), position.dydt.data());
+  const double direction = request.t_end < request.t0 ? -1.0 : 1.0;
+  const double infinity = std::numeric_limits<double>::infinity();
+  position.h =
+      direction * (request.step > 0.0 ? request.step
+                                      : first_step(stepper, request.t0, direction, infinity,
+                                                   &request.tolerance, &request.tolerance));
+  Nothing nothing;
+  Position resumable;
+  const Limits limits{.t_end = request.t_end,
+                      .fixed_step = request.step > 0.0,
+                      .max_steps = request.max_steps,
+                      .monitor = {}};
+  const Ending ending = integrate(stepper, position, resumable, limits, nothing);
+  return {ending.status, position.t.high, position.y[0], position.statistics, resumable};
+}
+
+template <class Check, const auto&... tables>
+void for_each_method(MethodList<tables...>, Check check) {
+  (check.template operator()<tables>(), ...);
+}
+
+}  // namespace
+
+TEST_CASE("the error falls with the order of the method, time-dependent rates included") {
+  for_each_method(Methods{}, []<const auto & method>() {
+    CAPTURE(method.info.name);
+    const double exact = std::exp(std::sin(2.0));
+    auto error = [&](double h) {
+      return std::abs(solve<method, Scalar<growing>>({.t_end = 2.0, .step = h}).y - exact);
+    };
+    const double coarse = 0.2;
+    const double order = std::log2(error(coarse) / error(coarse / 8)) / 3;
+    CHECK(order > method.info.order - 0.25);
+    CHECK(order < method.info.order + 0.6);
+  });
+}
+
+TEST_CASE("a step limited by stability is flagged as stiff in bounded work") {
+  for_each_method(Methods{}, []<const auto & method>() {
+    if (method.info.stability == 0.0) return;
+    CAPTURE(method.info.name);
+    const Result stiff = solve<method, Scalar<decaying>>({.tolerance = 1e-3, .max_steps = 10'000});
+    CHECK(stiff.status == Status::max_steps);
+    CHECK(stiff.statistics.stiff);
+    const Result mild = solve<method, Scalar<growing>>({.t_end = 1e4, .tolerance = 1e-6});
+    CHECK(mild.statistics.accepted > 5000);
+    CHECK_FALSE(mild.statistics.stiff);
+  });
+}
+
+TEST_CASE("a motion that blows up ends as step_too_small or non_finite, near the pole") {
+  for_each_method(Methods{}, []<const auto & method>() {
+    if (method.info.error_order == 0) return;
+    CAPTURE(method.info.name);
+    const Result result = solve<method, Scalar<exploding>>({.t_end = 2.0, .tolerance = 1e-6});
+    const bool typed =
+        result.status == Status::step_too_small || result.status == Status::non_finite;
+    CHECK(typed);
+    CHECK(result.t == doctest::Approx(1.0).epsilon(1e-5));
+    CHECK(std::isfinite(result.y));
+  });
+}
+
+TEST_CASE("a rate that is not a number is never accepted") {
+  for_each_method(Methods{}, []<const auto & method>() {
+    if (method.info.error_order == 0) return;
+    CAPTURE(method.info.name);
+    const Result from_one = solve<method, Scalar<undefined_from_one>>({.t_end = 2.0});
+    CHECK(from_one.status == Status::non_finite);
+    CHECK(from_one.t <= 1.0);
+    CHECK(from_one.t == doctest::Approx(1.0).epsilon(1e-9));
+    CHECK(from_one.y == doctest::Approx(2.0).epsilon(1e-9));
+    const Result from_the_start = solve<method, Scalar<undefined>>({});
+    CHECK(from_the_start.status == Status::non_finite);
+    CHECK(from_the_start.statistics.accepted == 0);
+    // a trial stage beyond the border alone is a shorter step, not the end
+    const Result border = solve<method, Scalar<undefined_over_half>>({.t_end = -1.0, .y0 = 0.49});
+    CHECK(border.status == Status::finished);
+    const Result beyond = solve<method, Scalar<undefined_over_half>>({.t_end = 1.0, .y0 = 0.4});
+    CHECK(beyond.status == Status::non_finite);
+    CHECK(beyond.y == doctest::Approx(0.5).epsilon(1e-6));
+  });
+}
+
+TEST_CASE("a fixed step that is not finite ends the run") {
+  for_each_method(Methods{}, []<const auto & method>() {
+    CAPTURE(method.info.name);
+    const Result result = solve<method, Scalar<undefined_from_one>>({.t_end = 2.0, .step = 0.125});
+    CHECK(result.status == Status::non_finite);
+    CHECK(result.t < 1.0);
+  });
+}
+
+TEST_CASE("time too large for the step is said plainly") {
+  for_each_method(Methods{}, []<const auto & method>() {
+    CAPTURE(method.info.name);
+    const Result result = solve<method, Scalar<growing>>(
+        {.t0 = 1e17, .t_end = 1e17 + 1e6, .tolerance = 1e-9, .step = 0.01});
+    CHECK(result.status == Status::step_too_small);
+    CHECK(result.t == 1e17);
+  });
+}
+
+TEST_CASE("the interval of a hundred units in the last place is crossed") {
+  for_each_method(Methods{}, []<const auto & method>() {
+    if (method.info.error_order == 0) return;
+    const double t_end = 1.0 + 100 * std::numeric_limits<double>::epsilon();
+    const Result result = solve<method, Scalar<growing>>({.t0 = 1.0, .t_end = t_end});
+    CHECK(result.status == Status::finished);
+    CHECK(result.t == t_end);
+  });
+}
+
+TEST_CASE("the cap on steps is exact") {
+  for_each_method(Methods{}, []<const auto & method>() {
+    if (method.info.error_order == 0) return;
+    const Result result =
+        solve<method, Scalar<growing>>({.t_end = 100.0, .tolerance = 1e-10, .max_steps = 37});
+    CHECK(result.status == Status::max_steps);
+    CHECK(result.statistics.accepted + result.statistics.rejected == 37);
+  });
+}

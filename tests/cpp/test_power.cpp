@@ -1,0 +1,32 @@
+// The powers of two of the step control against the library's.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "pendcore/arithmetic/power.hpp"
+
+using namespace pendcore;
+
+TEST_CASE("the logarithm is right to 1e-9 over all magnitudes") {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution exponent(-1000.0, 1000.0);
+  for (int i = 0; i < 100'000; ++i) {
+    const double x = std::exp2(exponent(random));
+    CHECK(std::abs(approximate_log2(x) - std::log2(x)) < 1.5e-9);
+  }
+  CHECK(approximate_log2(1.0) == 0.0);
+}
+
+TEST_CASE("an error of zero counts as very small, not as a NaN") {
+  CHECK(approximate_log2(0.0) < -1000.0);
+  CHECK(approximate_log2(std::numeric_limits<double>::denorm_min()) < -1000.0);
+  CHECK(approximate_log2(std::numeric_limits<double>::infinity()) > 1000.0);
+}
+
+TEST_CASE("the power is right to a relative 1e-10") {
+  for (double x = -1000.0; x <= 1000.0; x += 0.0137) {
+    CHECK(std::abs(approximate_exp2(x) / std::exp2(x) - 1.0) < 1e-10);
+  }
+}

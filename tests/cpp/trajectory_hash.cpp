@@ -1,0 +1,45 @@
+// A line for each of a few runs: its name and a hash of every bit of its times and states.
+#include <cinttypes>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+
+#include "pendcore/pendcore.hpp"
+
+using namespace pendcore;
+
+namespace {
+
+std::uint64_t hash(std::uint64_t h, const std::vector<double>& numbers) {  // FNV-1a
+  for (const double x : numbers) {
+    unsigned char bytes[sizeof x];
+    std::memcpy(bytes, &x, sizeof x);
+    for (const unsigned char byte : bytes) h = (h ^ byte) * 0x100000001b3u;
+  }
+  return h;
+}
+
+void print(const char* name, const Solution& solution) {
+  std::uint64_t h = hash(0xcbf29ce484222325u, solution.t);
+  h = hash(h, solution.states);
+  h = hash(h, solution.dense.coefficients);
+  std::printf("%s %016" PRIx64 "\n", name, h);
+}
+
+}  // namespace
+
+int main() {
+  const Scene book = Scene::textbook();
+  const Scene rod{.links = {Link::uniform_rod(1.3, 0.8)}, .gravity = 9.80665};
+  Scene uneven{.links = {Link::uniform_rod(2.5, 0.7), Link::point_mass(0.4, 1.6)}, .gravity = 9.81};
+  Options tight;
+  tight.rtol = {1e-12};
+  print("textbook", simulate(book, {0.25 * M_PI, M_PI / 3}, {0, 0}, 0, 60));
+  print("chaotic", simulate(book, {-1.4, -1.1}, {0, 0}, 0, 60, tight));
+  print("backward", simulate(uneven, {2.8, -0.4}, {1.5, -2.0}, 0, -20));
+  print("rod", simulate(rod, {-1.2}, {0}, 0, 60));
+  print("far", simulate(book, {3e8, -2e7}, {30, -70}, 0, 5));
+  print("tiny",
+        simulate({.links = book.links, .gravity = 0.0}, {0.3, 0.9}, {3e-160, -1e-160}, 0, 1e159));
+  return 0;
+}

@@ -1,0 +1,212 @@
+"""The house rules that a machine can check.
+
+A rule takes the root of a source tree and yields one sentence for each breach that it finds.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+import statistics
+import tomllib
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pendcore
+
+Rule = Callable[[Path], Iterator[str]]
+
+CODE = {".hpp", ".cpp", ".py", ".pyi", ".cmake", ".sh"}
+FOLDERS = ["cpp", "python", "tests", "bench", "examples", "docs", "setup"]
+
+# Data flows one way. Each stage of the C++ core, and what it may include.
+CPP_FLOW = {
+    "arithmetic": set[str](),
+    "message": set[str](),
+    "scene": {"arithmetic", "message"},
+    "dynamics": {"arithmetic", "message", "scene"},
+    "integrate": {"arithmetic", "message"},
+    "solution": {"arithmetic", "message", "scene", "dynamics", "integrate"},
+    "bindings": {"arithmetic", "message", "scene", "dynamics", "integrate", "solution"},
+}
+# The files that stand in no folder and where the two branches, dynamics and integrate, meet.
+CPP_FILES = dict.fromkeys(["options", "recorder", "simulate", "steppers", "pendcore"], "solution")
+
+# The same for Python: modules in the order of the flow; each may import those above it, with the
+# exceptions that are named below.
+PYTHON_FLOW = [
+    "_core",
+    "warning",
+    "arguments",
+    "angles",
+    "progress",
+    "toml_text",
+    "scene",
+    "solution",
+    "simulate",
+    "case",
+    "case_file",
+    "archive",
+    "views",
+    "cli",
+]
+# A solution's methods (plot, save, ...) call what comes later, but only when they are called.
+LATE_IMPORTS = {"solution": {"case", "archive", "views"}, "case": {"case_file"}}
+NOT_FOR_VIEWS = {"simulate", "archive", "case_file", "toml_text"}
+
+FORBIDDEN_NAMES = {"util", "utils", "helper", "helpers", "common", "misc", "impl"}
+LIBM = (
+    "sin|cos|tan|sincos|asin|acos|atan|atan2|sinh|cosh|tanh|"
+    "exp|exp2|expm1|log|log2|log10|log1p|pow|cbrt|hypot"
+)
+KERNELS = ["arithmetic", "dynamics", "integrate"]
+
+
+def files(root: Path, suffixes: set[str], *folders: str) -> Iterator[Path]:
+    for folder in folders:
+        for path in sorted((root / folder).rglob("*")):
+            if path.suffix in suffixes and "__pycache__" not in path.parts:
+                yield path
+
+
+def without_comments(text: str) -> str:
+    return re.sub(r"//[^\n]*|/\*.*?\*/", "", text, flags=re.DOTALL)
+
+
+def cpp_stage(cpp: Path, place: Path) -> str:
+    """The stage of a file that stands at `place` in cpp/include/pendcore, cpp/src or cpp."""
+    if len(place.parts) == 1:  # a source belongs where its header is
+        headers = sorted((cpp / "include/pendcore").rglob(f"{place.stem}.hpp"))
+        place = headers[0].relative_to(cpp / "include/pendcore") if headers else place
+    name = place.parts[0].removesuffix(place.suffix)
+    stage = CPP_FILES.get(name, name)
+    return stage if stage in CPP_FLOW else f"{name}, no stage of the flow"
+
+
+def includes_follow_the_flow(root: Path) -> Iterator[str]:
+    cpp = root / "cpp"
+    for path in files(cpp, {".hpp", ".cpp"}, "include/pendcore", "src", "bindings"):
+        base = next(b for b in (cpp / "include/pendcore", cpp / "src", cpp) if b in path.parents)
+        stage = cpp_stage(cpp, path.relative_to(base))
+        allowed = CPP_FLOW.get(stage, set()) | {stage}
+        for mark, name in re.findall(r'^#include (["<])([^">]+)', path.read_text(), re.MULTILINE):
+            inside = name.removeprefix("pendcore/")
+            if inside != name and cpp_stage(cpp, Path(inside)) not in allowed:
+                yield f"{path.relative_to(root)} ({stage}) includes {name}"
+            if inside == name and mark == '"' and stage != "bindings":
+                yield f"{path.relative_to(root)} includes {name}, not by its place in pendcore/"
+
+
+def imports_of(tree: ast.Module) -> Iterator[tuple[str, bool]]:
+    """The package's modules that a file imports, and whether in a function or for types alone."""
+    late = {
+        id(node)
+        for outer in ast.walk(tree)
+        if isinstance(outer, ast.FunctionDef | ast.AsyncFunctionDef)
+        or (isinstance(outer, ast.If) and ast.unparse(outer.test) == "TYPE_CHECKING")
+        for node in ast.walk(outer)
+    }
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and node.level:
+            names = ["pendcore.(relative)"]
+        elif isinstance(node, ast.ImportFrom):
+            names = [f"{node.module}.{alias.name}" for alias in node.names]
+        else:
+            continue
+        for name in names:
+            if name.startswith("pendcore."):
+                yield name.split(".")[1], id(node) in late
+
+
+def imports_follow_the_flow(root: Path) -> Iterator[str]:
+    package = root / "python/pendcore"
+    for path in files(root, {".py"}, "python/pendcore"):
+        if path == package / "__init__.py":
+            continue
+        relative = path.relative_to(package)
+        module = relative.parts[0].removesuffix(".py").replace("__main__", "cli")
+        if module not in PYTHON_FLOW:
+            yield f"{path.relative_to(root)} has no place in the flow"
+            continue
+        allowed = {*PYTHON_FLOW[: PYTHON_FLOW.index(module) + 1]}
+        if module == "views":
+            allowed -= NOT_FOR_VIEWS
+        for name, late in imports_of(ast.parse(path.read_text())):
+            if name not in allowed | (LATE_IMPORTS.get(module, set()) if late else set()):
+                yield f"{path.relative_to(root)} imports {name}"
+
+
+def names_say_what_a_file_holds(root: Path) -> Iterator[str]:
+    for path in files(root, CODE | {".md", ".txt"}, *FOLDERS):
+        relative = path.relative_to(root)
+        words = set(re.split(r"[/_.\-]", str(relative).lower()))
+        for word in sorted(words & FORBIDDEN_NAMES):
+            yield f"{relative}: {word!r} names no thing of physics or numerics"
+
+
+def files_are_short(root: Path) -> Iterator[str]:
+    lengths = {}
+    for path in files(root, CODE, *FOLDERS):
+        lines = path.read_text().splitlines()
+        lengths[path] = len(lines)
+        relative = path.relative_to(root)
+        if len(lines) > 400:
+            yield f"{relative} has {len(lines)} lines: more than 400"
+        for number, line in enumerate(lines, start=1):
+            if len(line) > 100:
+                yield f"{relative}:{number} has {len(line)} columns: more than 100"
+    if lengths and statistics.median(lengths.values()) > 120:
+        yield "half of the files have more than 120 lines"
+    if sum(length > 300 for length in lengths.values()) > len(lengths) / 20:
+        yield "more than one file in twenty has more than 300 lines"
+
+
+def kernels_call_no_libm(root: Path) -> Iterator[str]:
+    """Only what is correctly rounded (sqrt, fma, ...) gives the same bits on every machine."""
+    call = re.compile(rf"(?<![\w.>:])(?:std::|::|__builtin_)?(?:{LIBM})[fl]?\s*\(")
+    for folder in KERNELS:
+        places = [f"cpp/include/pendcore/{folder}", f"cpp/src/{folder}"]
+        for path in files(root, {".hpp", ".cpp"}, *places):
+            for found in call.findall(without_comments(path.read_text())):
+                yield f"{path.relative_to(root)} calls {found}...)"
+
+
+def builds_use_no_flag_that_changes_bits(root: Path) -> Iterator[str]:
+    places = [*root.glob("CMake*"), *files(root, {".cmake", ".txt"}, "cpp", "tests/cpp")]
+    for path in places:
+        text = re.sub(r"#[^\n]*", "", path.read_text())
+        for flag in re.findall(
+            r"(?<![\w-])-(?:march=\S+|ffast-math|Ofast|ffp-contract=fast)", text
+        ):
+            yield f"{path.relative_to(root)} passes {flag}"
+
+
+def sources_are_listed(root: Path) -> Iterator[str]:
+    listed = (root / "CMakeLists.txt").read_text()
+    for path in files(root, {".cpp"}, "cpp/src", "cpp/bindings"):
+        name = str(path.relative_to(root))
+        if name not in listed:
+            yield f"CMakeLists.txt does not list {name}"
+
+
+def version_is_the_same_everywhere(root: Path) -> Iterator[str]:
+    version = tomllib.loads((root / "pyproject.toml").read_text())["project"]["version"]
+    cited = re.findall(r"^version: (\S+)$", (root / "CITATION.cff").read_text(), re.MULTILINE)
+    if cited != [version]:
+        yield f"CITATION.cff has version {', '.join(cited)}, pyproject.toml {version}"
+    if pendcore.__version__ != version:
+        yield f"the built core has version {pendcore.__version__}, pyproject.toml {version}"
+
+
+RULES: list[Rule] = [
+    includes_follow_the_flow,
+    imports_follow_the_flow,
+    names_say_what_a_file_holds,
+    files_are_short,
+    kernels_call_no_libm,
+    builds_use_no_flag_that_changes_bits,
+    sources_are_listed,
+    version_is_the_same_everywhere,
+]

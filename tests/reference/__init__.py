@@ -1,0 +1,1 @@
+"""What the compiled core is compared with: written in Python, independently of it, and plainly."""

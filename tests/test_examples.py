@@ -1,0 +1,59 @@
+"""Every example runs, and says what it promises; the C++ ones say the same as their twins."""
+
+from __future__ import annotations
+
+import runpy
+import subprocess
+import sys
+from pathlib import Path
+
+import cmake
+import matplotlib.pyplot as plt
+import pendcore as pc
+import pytest
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+SAYS = {
+    "01_textbook": ("q_1(5) = 1.083066", "q_2(5) = 0.538460"),
+    "02_reactions": ("F_01 = [ 0.         -0.28571429]", "F_12 = [0.         0.07142857]"),
+    "03_case_file": ("heavy hammer", "finished", "t_end = 20.0"),
+}
+PROJECT = """
+cmake_minimum_required(VERSION 3.25)
+project(example LANGUAGES CXX)
+find_package(pendcore REQUIRED)
+add_executable(example {source})
+target_link_libraries(example PRIVATE pendcore::pendcore)
+"""
+
+
+def said_by(path, capsys):
+    runpy.run_path(str(path), run_name="__main__")
+    plt.close("all")
+    return capsys.readouterr().out
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.py")), ids=lambda path: path.stem)
+def test_an_example_says_what_it_promises(path, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    said = said_by(path, capsys)
+    for promise in SAYS[path.stem]:
+        assert promise in said
+
+
+@pytest.mark.outside_build
+@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.cpp")), ids=lambda path: path.name)
+def test_a_cpp_example_says_the_same_as_its_python_twin(path, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("CMakeLists.txt").write_text(PROJECT.format(source=path))
+    program = str(Path(cmake.CMAKE_BIN_DIR) / "cmake")
+    package = Path(pc.__file__).parent
+    where = [f"-Dpendcore_ROOT={package}", f"-DPython_EXECUTABLE={sys.executable}"]
+    for command in (
+        [program, "-B", "build", *where],
+        [program, "--build", "build"],
+        ["build/example"],
+    ):
+        done = subprocess.run(command, capture_output=True, text=True)
+        assert done.returncode == 0, done.stdout + done.stderr
+    assert done.stdout == said_by(path.with_suffix(".py"), capsys)

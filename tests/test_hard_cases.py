@@ -1,0 +1,226 @@
+"""Where simulators break: each case states its right answer from theory."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import signal
+import threading
+import time
+
+import numpy as np
+import pendcore as pc
+import pytest
+from mpmath import ellipk, mp, mpf
+from pendcore import _core
+
+BOOK = pc.Scene.textbook()
+ROD = pc.Scene(links=[pc.Link(mass=1.0, length=1.0)])
+FLOATING = pc.Scene(links=BOOK.links, gravity=0.0)
+METHODS = [method["name"] for method in _core.methods() if method["error_order"]]
+
+
+def total_energy(sol: pc.Solution) -> np.ndarray:
+    return sol.energy().total
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_hundred_units_in_the_last_place_are_one_step(method):
+    t_end = 1 + 100 * np.finfo(float).eps
+    sol = pc.simulate(BOOK, 0.3, 0, (1.0, t_end), method=method)
+    assert sol.success
+    assert sol.t.tolist() == [1.0, t_end]
+
+
+def test_a_time_too_large_for_its_step_is_said_plainly():
+    sol = pc.simulate(BOOK, 0.3, 0, (1e17, 1e17 + 1000))
+    assert sol.status == "step_too_small"
+    assert not sol.success
+    assert "t + h = t" in sol.message
+    assert sol.t.tolist() == [1e17]
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_backward_is_the_mirror_of_forward(method):
+    forward = pc.simulate(BOOK, [0.3, 1.1], [2.0, -1.0], (0, 10), method=method)
+    backward = pc.simulate(BOOK, [0.3, 1.1], [-2.0, 1.0], (0, -10), method=method)
+    assert np.array_equal(backward.t, -forward.t)
+    assert np.array_equal(backward.q, forward.q)
+    assert np.array_equal(backward.qd, -forward.qd)
+    times = np.linspace(0, 10, 33)
+    assert np.array_equal(backward(-times)[:2], forward(times)[:2])
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_there_and_back_is_where_it_began(method):
+    there = pc.simulate(BOOK, [0.8, 1.0], 0, (0, 10), method=method, rtol=1e-12, atol=1e-13)
+    back = pc.simulate(
+        BOOK, there.q[-1], there.qd[-1], (10, 0), method=method, rtol=1e-12, atol=1e-13
+    )
+    assert np.abs(back.y[:, -1] - there.y[:, 0]).max() < 1e-9
+
+
+def test_hanging_at_rest_stays_for_ever():
+    sol = pc.simulate(BOOK, np.pi / 2, 0, (0, 1000))
+    assert np.abs(sol.q - np.pi / 2).max() < 1e-9  # rtol
+
+
+def test_upright_falls_when_theory_says():
+    # fl(-pi/2) is 6e-17 beside the upright: from there the modes of the linearised equations
+    # A x'' = diag(a g) x grow, x = V cosh(rate t) c. The state is rounded by up to 1e-16, as much
+    # as the push: good for a factor of e^4 in size, or 4/7.2 s of the fast mode.
+    start = -np.pi / 2
+    sol = pc.simulate(BOOK, start, 0, (0, 8), rtol=1e-13, atol=1e-16)
+    fell = sol.t[np.argmax(np.abs(sol.q - start).max(axis=1) > 1.0)]
+
+    push = float(np.cos(start))
+    stiffness = np.diag([1.5, 0.5]) * BOOK.gravity
+    squares, modes = np.linalg.eig(np.linalg.solve(BOOK.mass_matrix([start, start]), stiffness))
+    amplitudes = np.linalg.solve(modes, [push, push])
+    times = np.linspace(0, 8, 8001)
+    growing = np.einsum(
+        "ik,kt,k->it", modes, np.cosh(np.outer(np.sqrt(squares), times)), amplitudes
+    )
+    expected = times[np.argmax(np.abs(growing).max(axis=0) > 1.0)]
+    assert fell == pytest.approx(expected, abs=4 / np.sqrt(squares.max()))
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_all_links_horizontal_at_rest_begins_to_fall_at_once(method):
+    sol = pc.simulate(BOOK, 0, 0, (0, 1e-3), method=method)
+    expected = 0.5 * 1e-6 * np.array([9, -3]) / 7 * BOOK.gravity
+    assert sol.q[-1] == pytest.approx(expected, rel=1e-5)
+
+
+@pytest.mark.parametrize("tolerance", [1e30, 1e3, 1e-20])
+def test_absurd_tolerances_end_in_a_solution(tolerance):
+    sol = pc.simulate(BOOK, [0.8, 1.0], 0, (0, 0.1), rtol=tolerance, atol=tolerance)
+    assert sol.success
+    assert np.isfinite(sol.y).all()
+
+
+def test_no_absolute_tolerance_with_components_that_stay_zero():
+    hanging = pc.Scene(links=ROD.links, gravity=0.0)
+    sol = pc.simulate(hanging, 0.0, 0.0, (0, 5), atol=0)
+    assert sol.success
+    assert not sol.y.any()
+    moving = pc.simulate(hanging, 0.0, 2.0, (0, 5), atol=0)
+    assert moving.q[-1, 0] == pytest.approx(10.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("ratio", [1e-12, 1e-6, 1e6, 1e12])
+@pytest.mark.parametrize("what", ["mass", "length"])
+def test_extreme_ratios_keep_their_energy(what, ratio):
+    changed = {"mass": 1.0, "length": 1.0} | {what: ratio}
+    scene = pc.Scene(links=[pc.Link(mass=1.0, length=1.0), pc.Link(**changed)])
+    fastest = np.sqrt(
+        9.807 / min(1.0, changed["length"]) * max(1.0, ratio if what == "mass" else 1)
+    )
+    sol = pc.simulate(scene, [0.5, 1.2], 0, (0, 20 / fastest), rtol=1e-11, atol=1e-14)
+    energy = total_energy(sol)
+    kinetic = sol.energy().kinetic.max()
+    assert sol.success
+    assert np.ptp(energy) < 1e-8 * max(kinetic, 1e-3 * np.abs(energy).max())
+
+
+def test_a_spin_of_a_million_keeps_its_energy_and_momentum():
+    sol = pc.simulate(FLOATING, [0.0, 1.0], [1e6, -2e6], (0, 1e-4), rtol=1e-12, atol=1e-9)
+    energy = total_energy(sol)
+    assert np.ptp(energy) < 1e-9 * energy[0]
+    momentum = np.einsum("tij,tj->t", FLOATING.mass_matrix(sol.q), sol.qd)
+    assert np.ptp(momentum) < 1e-9 * np.abs(sol.qd).max()
+
+
+def test_angles_of_a_hundred_million_turn_as_small_ones_do():
+    turns = 2 * np.pi * 1.6e7
+    far = pc.simulate(BOOK, [turns + 0.5, turns + 1.2], 0, (0, 2), rtol=1e-10, atol=1e-10)
+    # the start is rounded to 1.5e-8 rad: compare with the angle that it stands for
+    with mp.workdps(40):
+        near = [float(mpf(x) - round(mpf(x) / (2 * mp.pi)) * 2 * mp.pi) for x in far.q[0]]
+    close = pc.simulate(BOOK, near, 0, (0, 2), rtol=1e-12)
+    assert np.abs((far.q[-1] - far.q[0]) - (close.q[-1] - close.q[0])).max() < 1e-6
+
+
+def test_denormal_rates_are_not_lost():
+    still = pc.Scene(links=ROD.links, gravity=0.0)
+    sol = pc.simulate(still, 0.0, 4e-310, (0, 1.0), atol=0)
+    assert sol.qd[-1, 0] == 4e-310
+    assert sol.q[-1, 0] == pytest.approx(4e-310, rel=1e-12)
+
+
+@pytest.mark.parametrize("scale", [1e-9, 1e11])
+def test_the_units_do_not_matter(scale):
+    # lengths times s and times times sqrt(s) at the same gravity: the same motion
+    scene = pc.Scene(links=[pc.Link(mass=3e4, length=scale), pc.Link(mass=3e4, length=scale)])
+    scaled = pc.simulate(scene, [0.8, 1.0], 0, (0, 5 * np.sqrt(scale)), rtol=1e-11, atol=1e-300)
+    plain = pc.simulate(BOOK, [0.8, 1.0], 0, (0, 5), rtol=1e-11)
+    assert scaled.q[-1] == pytest.approx(plain.q[-1], abs=1e-7)
+
+
+def test_four_times_the_gravity_is_half_the_time():
+    heavy = pc.Scene(links=BOOK.links, gravity=4 * BOOK.gravity)
+    fast = pc.simulate(heavy, [0.8, 1.0], 0, (0, 2.5), rtol=1e-12)
+    slow = pc.simulate(BOOK, [0.8, 1.0], 0, (0, 5.0), rtol=1e-12)
+    assert fast.q[-1] == pytest.approx(slow.q[-1], abs=1e-9)
+    assert fast.qd[-1] == pytest.approx(2 * slow.qd[-1], abs=1e-8)
+
+
+def test_a_swing_next_to_the_separatrix_takes_the_time_of_the_elliptic_integral():
+    modulus = 0.999999
+    angle = 2 * np.arcsin(modulus)  # from the hanging vertical
+    period = 4 * float(ellipk(modulus**2)) * np.sqrt(2 / (3 * 9.807))
+    sol = pc.simulate(ROD, np.pi / 2 - angle, 0, (0, period), rtol=1e-13, atol=1e-14)
+    assert sol.q[-1, 0] == pytest.approx(np.pi / 2 - angle, abs=1e-8)
+
+
+def test_energy_drifts_with_the_tolerance_alone():
+    drift = []
+    for tolerance in (1e-6, 1e-9, 1e-12):
+        energy = total_energy(
+            pc.simulate(BOOK, [0.8, 1.0], 0, (0, 60), rtol=tolerance, atol=tolerance)
+        )
+        drift.append(np.abs(energy - energy[0]).max())
+    assert drift[2] < 1e-8
+    assert drift[1] < 100 * drift[2] ** 0.75
+    assert drift[0] > drift[1] > drift[2]
+
+
+def test_constant_memory_stays_constant():
+    sol = pc.simulate(BOOK, [0.8, 1.0], 0, (0, 300), store="end")
+    assert sol.y.shape == (4, 1)
+    assert len(pickle.dumps(sol)) < 5000
+    assert sol.stats.accepted > 10_000
+
+
+def test_ctrl_c_is_heard_within_a_tenth_of_a_second():
+    asked, heard = 0.0, 0.0
+
+    def interrupt() -> None:
+        nonlocal asked
+        time.sleep(0.3)
+        asked = time.monotonic()
+        os.kill(os.getpid(), signal.SIGINT)
+
+    thread = threading.Thread(target=interrupt)
+    thread.start()
+    with pytest.raises(KeyboardInterrupt) as caught:
+        pc.simulate(BOOK, [0.8, 1.0], 0, (0, 1e9), store="end", max_steps=10**12)
+    heard = time.monotonic()
+    thread.join()
+    assert heard - asked < 0.1
+    partial = caught.value.solution
+    assert partial.status == "interrupted"
+    assert partial.stats.accepted > 1000
+    assert 0 < partial.t[-1] < 1e9
+    assert partial.resume(partial.t[-1] + 1).success
+
+
+def test_a_fork_may_simulate_too():
+    here = pc.simulate(BOOK, [0.8, 1.0], 0, (0, 5)).y[:, -1]
+    reader, writer = os.pipe()
+    child = os.fork()
+    if child == 0:
+        os.write(writer, pc.simulate(BOOK, [0.8, 1.0], 0, (0, 5)).y[:, -1].tobytes())
+        os._exit(0)
+    os.waitpid(child, 0)
+    assert os.read(reader, 32) == here.tobytes()

@@ -1,0 +1,130 @@
+"""Every method of the list: order conditions in exact fractions, convergence, dense output."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pendcore as pc
+import pytest
+from pendcore import _core
+from reference.order_conditions import holds, order_of, trees
+from reference.trajectories import trajectory
+
+METHODS = {method["name"]: method for method in _core.methods()}
+BOOK = pc.Scene.textbook()
+START = [np.pi / 4, np.pi / 3]
+
+
+def fractions(rows: list[Any]) -> list[Any]:
+    """Turn pairs into fractions, in lists as deep as they are."""
+    if isinstance(rows[0], int):
+        return Fraction(*rows)
+    return [fractions(row) for row in rows]
+
+
+@pytest.fixture(params=METHODS)
+def method(request: pytest.FixtureRequest) -> dict[str, Any]:
+    return METHODS[request.param]
+
+
+@pytest.fixture
+def tableau(method: dict[str, Any]) -> dict[str, Any]:
+    return {key: fractions(rows) for key, rows in _core.tableau(method["name"]).items()}
+
+
+def test_the_weights_have_the_order_of_the_method(method, tableau):
+    assert order_of(tableau["a"], tableau["b"]) == method["order"]
+
+
+def test_the_embedded_weights_have_the_order_of_the_error(method, tableau):
+    if method["error_order"] == 0:
+        assert not any(tableau["e"])
+        return
+    embedded = [b - e for b, e in zip(tableau["b"], tableau["e"], strict=True)]
+    assert order_of(tableau["a"], embedded) == method["error_order"]
+
+
+def test_the_nodes_are_the_row_sums_and_the_stages_explicit(tableau):
+    for i, row in enumerate(tableau["a"]):
+        assert sum(row) == tableau["c"][i]
+        assert not any(row[i:])
+
+
+def test_the_interpolant_has_its_order_all_along_the_step_and_no_more(method, tableau):
+    thetas = [Fraction(k, 7) for k in range(8)]
+
+    def is_of_order(p: int) -> bool:
+        for theta in thetas:
+            weights = [
+                sum(c * theta ** (k + 1) for k, c in enumerate(row))
+                for row in tableau["interpolant"]
+            ]
+            if not all(
+                holds(tableau["a"], weights, t, theta) for n in range(p + 1)[1:] for t in trees(n)
+            ):
+                return False
+        return True
+
+    assert is_of_order(method["interpolant_order"])
+    assert not is_of_order(method["interpolant_order"] + 1)
+
+
+def test_the_interpolant_ends_at_the_new_state(tableau):
+    assert [sum(row) for row in tableau["interpolant"]] == tableau["b"]
+
+
+def errors(method: str, steps: list[int], t: np.ndarray, exact: np.ndarray) -> np.ndarray:
+    """Largest errors over the times t of runs in 1, 2, 4, ... times as many steps."""
+    span = (0.0, float(t[-1]))
+    runs = [pc.simulate(BOOK, START, 0, span, method=method, step=span[1] / n) for n in steps]
+    return np.array([np.abs(run(t) - exact).max() for run in runs])
+
+
+def test_the_error_falls_at_the_order_over_four_decades(method):
+    case = trajectory("textbook")
+    exact = np.hstack([case.q, case.qd]).T
+    error = errors(method["name"], [80 * 2**k for k in range(7)], case.t, exact)
+    kept = error[error > 1e-12]  # below, rounding
+    slopes = -np.diff(np.log2(kept))
+    assert kept[0] / kept[-1] > 1e4
+    assert np.mean(slopes) == pytest.approx(method["order"], abs=0.2)
+    assert slopes[-1] == pytest.approx(method["order"], abs=0.2)
+
+
+def test_the_dense_output_converges_at_its_order_between_the_steps(method):
+    case = trajectory("textbook")
+    exact = np.hstack([case.q, case.qd]).T
+    # 5 s in 64 .. 1024 steps: a time of the grid that is a step's end says nothing of the between
+    steps = [64 * 2**k for k in range(5)]
+    between = [k for k in range(101) if (k * 64) % 100 != 0 and k < 100]
+    error = errors(
+        method["name"], steps, np.append(case.t[between], 5.0), exact[:, [*between, 100]]
+    )
+    slopes = -np.diff(np.log2(error))
+    expected = min(method["order"], method["interpolant_order"] + 1)
+    assert slopes[-3:].mean() == pytest.approx(expected, abs=0.4)
+
+
+def test_a_step_between_the_knots_shows_the_order_of_the_interpolant_itself(method):
+    # one step of h from an exact state, the reference inside it from a run in steps of h/64
+    theta = np.array([0.15, 0.35, 0.55, 0.85])
+    local = []
+    for h in (0.04, 0.02, 0.01):
+        coarse = pc.simulate(
+            BOOK, START, [1.0, -0.5], (0.0, 1.5 * h), method=method["name"], step=h
+        )
+        fine = pc.simulate(
+            BOOK, START, [1.0, -0.5], (0.0, 1.5 * h), method=method["name"], step=h / 64
+        )
+        local.append(np.abs(coarse(theta * h) - fine(theta * h)).max())
+    slopes = -np.diff(np.log2(local))
+    assert slopes[-1] == pytest.approx(method["interpolant_order"] + 1, abs=0.2)
+
+
+def test_the_dense_output_is_continuous_and_meets_the_steps(method):
+    run = pc.simulate(BOOK, START, 0, (0.0, 5.0), method=method["name"], step=0.01)
+    assert np.array_equal(run(run.t), run.y)
+    before = run(run.t[1:] * (1 - 1e-15))
+    assert np.abs(before - run.y[:, 1:]).max() < 1e-12

@@ -1,0 +1,93 @@
+"""The figure is the textbook's: angles in degrees over time, red and blue, one axes each."""
+
+from __future__ import annotations
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pendcore as pc
+import pytest
+from matplotlib.colors import to_rgb
+
+SCENE = pc.Scene.textbook()
+
+
+@pytest.fixture(autouse=True)
+def no_figure_left_over(monkeypatch):
+    def show(*_, **__):
+        raise AssertionError("a plot must not show itself")
+
+    monkeypatch.setattr(plt, "show", show)
+    yield
+    plt.close("all")
+
+
+@pytest.fixture(scope="module")
+def sol():
+    return pc.Case.textbook().simulate()
+
+
+def test_labels_units_colors_and_grid_are_the_books(sol):
+    lines = sol.plot()
+    axes = [line.axes for line in lines]
+    assert [ax.get_ylabel() for ax in axes] == ["q1 (deg)", "q2 (deg)"]
+    assert [ax.get_xlabel() for ax in axes] == ["t (s)", "t (s)"]
+    assert [to_rgb(line.get_color()) for line in lines] == [(1, 0, 0), (0, 0, 1)]
+    assert all(line.get_visible() for ax in axes for line in ax.get_xgridlines())
+    assert axes[0] is not axes[1]
+    assert axes[0].figure is axes[1].figure
+
+
+def test_curves_are_the_angles_in_degrees(sol):
+    for i, line in enumerate(sol.plot()):
+        t, angle = line.get_data()
+        assert (t[0], t[-1]) == (0.0, 5.0)
+        np.testing.assert_allclose(angle, np.rad2deg(sol(t)[i]), rtol=1e-14)
+    assert angle[0] == pytest.approx(60)
+
+
+@pytest.mark.parametrize("t_span", [(0, 5), (5, 0)])
+def test_curves_are_smooth_where_the_steps_are_long(t_span):
+    run = pc.simulate(SCENE, [0.5, 1.0], t_span=t_span, rtol=1e-3)
+    assert len(run.t) < 100
+    line = run.plot()[0]
+    assert len(line.get_xdata()) > 1000
+    assert set(run.t) <= set(line.get_xdata())
+
+
+def test_without_dense_output_the_kept_points_are_joined():
+    t = np.linspace(0, 5, 11)
+    line = pc.simulate(SCENE, 1.0, t_span=(0, 5), t_eval=t).plot()[0]
+    assert np.array_equal(line.get_xdata(), t)
+
+
+def test_a_single_point_can_be_seen():
+    line = pc.simulate(SCENE, 1.0, t_span=(0, 5), store="end").plot()[0]
+    assert len(line.get_xdata()) == 1
+    assert line.get_marker() == "."
+
+
+def test_it_draws_into_the_axes_it_is_given(sol):
+    _, axes = plt.subplots(1, 2)
+    assert [line.axes for line in sol.plot(ax=axes)] == list(axes)
+    assert len(plt.get_fignums()) == 1
+
+
+def test_one_axes_takes_all_curves_and_names_them(sol):
+    _, ax = plt.subplots()
+    lines = sol.plot(ax=ax)
+    assert [line.axes for line in lines] == [ax, ax]
+    assert ax.get_ylabel() == "q (deg)"
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["q1", "q2"]
+
+
+def test_a_single_link_has_a_single_axes():
+    rod = pc.Scene(links=[pc.Link(mass=1, length=1)])
+    (line,) = pc.simulate(rod, 1.0, t_span=(0, 1)).plot()
+    assert line.axes.get_ylabel() == "q1 (deg)"
+    assert len(line.figure.axes) == 1
+
+
+def test_a_wrong_number_of_axes_is_refused(sol):
+    _, axes = plt.subplots(3, 1)
+    with pytest.raises(ValueError, match=r"^ax: 3 axes: must be one, or 2"):
+        sol.plot(ax=axes)

@@ -1,0 +1,126 @@
+"""Accelerations, joint forces, energies and mass centres at one instant, against the reference.
+
+Errors are measured against the size of what they are made of: L qdd against the accelerations at
+hand (gravity and the centripetal ones), a force against that times the mass it moves. A component
+that happens to vanish by cancellation asks for no more digits than the terms that cancel have.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pendcore as pc
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import ArrayLike
+from reference.arithmetic import DOUBLE, Arithmetic, multiple_precision
+from reference.conserved import energy, mass_centers
+from reference.newton_euler import Body, newton_euler, uniform_rod
+
+TOLERANCE = 1e-12
+SIXTY = multiple_precision(60)
+
+angles = st.floats(-10, 10)
+rates = st.floats(-20, 20).map(lambda w: round(w, 6))
+gravities = st.just(0.0) | st.floats(0.1, 30)
+State = tuple[list[float], list[float]]
+
+
+@st.composite
+def links(draw: st.DrawFn) -> Body:
+    """A link that a rod with a few lumps on it could be."""
+    mass, length = 10 ** draw(st.floats(-2, 2)), 10 ** draw(st.floats(-1, 1))
+    center = length * draw(st.floats(0.2, 0.8))
+    return Body(mass, length, center, draw(st.floats(0.1, 0.9)) * mass * center * (length - center))
+
+
+@st.composite
+def states(draw: st.DrawFn, n: int) -> State:
+    return [draw(angles) for _ in range(n)], [draw(rates) for _ in range(n)]
+
+
+def scene_of(bodies: Sequence[Body], gravity: float) -> pc.Scene:
+    return pc.Scene(links=[pc.Link(**body._asdict()) for body in bodies], gravity=gravity)
+
+
+def assert_close(computed: ArrayLike, exact: object, scale: ArrayLike) -> None:
+    error = np.abs(np.asarray(computed) - np.array(exact, dtype=float))
+    assert np.all(error <= TOLERANCE * np.asarray(scale))
+
+
+def check_instant(
+    bodies: Sequence[Body], gravity: float, state: State, arithmetic: Arithmetic = DOUBLE
+) -> None:
+    q, qd = state
+    scene = scene_of(bodies, gravity)
+    now = pc.simulate(scene, q, qd, t_span=(0.0, 0.0), store="steps")
+    exact = newton_euler(bodies, gravity, q, qd, arithmetic=arithmetic)
+
+    masses, lengths, *_ = np.array(bodies).T
+    w = np.array(qd)
+    size = gravity + np.sum(lengths * w**2)
+    carried = np.cumsum(masses[::-1])[::-1]
+    assert_close(scene.accelerations(0.0, q, qd), exact.accelerations, size / lengths)
+    assert_close(now.accelerations()[0], exact.accelerations, size / lengths)
+    assert_close(now.reactions()[0], exact.reactions, (carried * size)[:, np.newaxis])
+
+    centers = [center[:2] for center in mass_centers(bodies, q, qd, arithmetic)]
+    reach = np.cumsum(lengths)
+    assert_close(now.mass_centers()[0], centers, reach[:, np.newaxis])
+    speed = np.cumsum(lengths * np.abs(w))
+    kinetic, potential = energy(bodies, gravity, q, qd, arithmetic)
+    assert_close(now.energy().kinetic[0], kinetic, np.sum(masses * speed**2))
+    assert_close(now.energy().potential[0], potential, gravity * np.sum(masses * reach))
+
+
+@given(links(), gravities, states(1))
+def test_one_link(link: Body, gravity: float, state: State) -> None:
+    check_instant([link], gravity, state)
+
+
+@given(st.tuples(links(), links()), gravities, states(2))
+def test_two_links(pair: tuple[Body, Body], gravity: float, state: State) -> None:
+    check_instant(pair, gravity, state)
+
+
+@settings(max_examples=50, deadline=None)
+@given(*[st.floats(-12, 12)] * 2, gravities, states(2))
+def test_mass_and_length_ratios_up_to_1e12(
+    mass: float, length: float, gravity: float, state: State
+) -> None:
+    rods = [uniform_rod(1.0, 1.0), uniform_rod(10**mass, 10**length)]
+    check_instant(rods, gravity, state, SIXTY)
+
+
+@pytest.mark.parametrize("mass", [1e-12, 1e12])
+@pytest.mark.parametrize("length", [1e-12, 1e12])
+@pytest.mark.parametrize("q", [(0.7, 0.7), (0.7, 0.7 + np.pi), (0.7, -1.3)], ids=str)
+def test_the_corners_of_the_ratios_also_straight_and_folded(
+    mass: float, length: float, q: tuple[float, float]
+) -> None:
+    rods = [uniform_rod(1.0, 1.0), uniform_rod(mass, length)]
+    check_instant(rods, 9.81, (list(q), [2.0, -3.0]), SIXTY)
+
+
+@given(st.tuples(links(), links()), st.tuples(angles, angles))
+def test_the_mass_matrix_is_that_of_the_kinetic_energy(
+    pair: tuple[Body, Body], q: tuple[float, float]
+) -> None:
+    def doubled(*qd: float) -> float:
+        return 2 * float(energy(pair, 0.0, q, qd).kinetic)
+
+    first, second = doubled(1, 0), doubled(0, 1)
+    mixed = (doubled(1, 1) - first - second) / 2
+    scale = np.sqrt(np.outer([first, second], [first, second]))
+    assert_close(scene_of(pair, 9.81).mass_matrix(q), [[first, mixed], [mixed, second]], scale)
+
+
+def test_many_states_at_once() -> None:
+    rods = [uniform_rod(1.3, 0.8), uniform_rod(0.4, 1.1)]
+    q, qd = np.random.default_rng(1).uniform(-4, 4, (2, 50, 2))
+    exact = [newton_euler(rods, 9.81, *state).accelerations for state in zip(q, qd, strict=True)]
+    size = 9.81 + (qd**2) @ [0.8, 1.1]
+    computed = scene_of(rods, 9.81).accelerations(0.0, q, qd)
+    assert_close(computed, exact, size[:, np.newaxis] / [0.8, 1.1])

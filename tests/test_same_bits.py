@@ -1,0 +1,162 @@
+"""The same scene gives the same bits: on any processor, from any build, whatever is stored."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import cmake
+import numpy as np
+import pendcore as pc
+import pytest
+from pendcore import _core
+
+ROOT = Path(__file__).parent.parent
+CMAKE = Path(cmake.CMAKE_BIN_DIR) / "cmake"
+BOOK = pc.Scene.textbook()
+SETS = ["baseline", "x86-64-v3", "x86-64-v4"]
+
+SCENES = """
+import ctypes, ctypes.util, hashlib, numpy as np, pendcore as pc
+from pendcore import _core
+book = pc.Scene.textbook()
+rod = pc.Scene(links=[pc.Link(mass=1.3, length=0.8)], gravity=9.80665)
+floating = pc.Scene(links=book.links, gravity=0.0)
+"""
+# Angles near and far, a chaotic start, denormal rates; everything that a run leaves behind.
+RUNS = """
+runs = [
+    pc.simulate(book, [0.7853981633974483, 1.0471975511965976], 0, (0, 60)),
+    pc.simulate(book, [-1.4, -1.1], 0, (0, 30), rtol=1e-12),
+    pc.simulate(book, [3e8, -2e7], [30, -70], (5, 0)),
+    pc.simulate(rod, -1.2, 0, (0, 30), rtol=1e-6),
+    pc.simulate(floating, [0.3, 0.9], [3e-160, -1e-160], (0, 1e159)),
+    pc.simulate(floating, [0.3, 0.9], [4e-310, -1e-310], (0, 1e-3), atol=0),
+]
+digest = hashlib.sha256()
+for sol in runs:
+    assert sol.success
+    energy, dense = sol.energy(), sol._run.__getstate__()["dense_coefficients"]
+    for part in (sol.t, sol.y, dense, sol.accelerations(), sol.reactions(), sol.positions(),
+                 energy.kinetic, energy.potential):
+        digest.update(np.ascontiguousarray(part).tobytes())
+print(_core.instruction_set(), digest.hexdigest())
+"""
+
+
+def hash_of_runs(between: str = "", after: str = "", **environment: str) -> tuple[str, str]:
+    """In a process of its own, run them: the instruction set that it used, and the hash."""
+    done = subprocess.run(
+        [sys.executable, "-c", SCENES + between + RUNS + after],
+        env=os.environ | environment, text=True, capture_output=True, check=True,
+    )  # fmt: skip
+    used, digest = done.stdout.split()[-2:]
+    return used, digest
+
+
+def test_every_instruction_set_gives_the_same_bits():
+    best = SETS.index(_core.instruction_set())
+    found = [hash_of_runs(PENDCORE_INSTRUCTION_SET=name) for name in SETS[: best + 1]]
+    assert [used for used, _ in found] == SETS[: best + 1]
+    assert len({digest for _, digest in found}) == 1
+
+
+def test_a_library_that_flushes_denormals_to_zero_changes_no_bit(tmp_path):
+    source, library = tmp_path / "fast.c", tmp_path / "fast.so"
+    source.write_text("double half(double x) { return 0.5 * x; }\n")
+    subprocess.run(
+        ["g++", "-x", "c", "-ffast-math", "-shared", "-fPIC", source, "-o", library], check=True
+    )
+    load = f"""
+half = ctypes.CDLL({str(library)!r}).half
+half.restype, half.argtypes = ctypes.c_double, [ctypes.c_double]
+assert half(1e-310) == 0.0, "the processor does not flush to zero"
+"""
+    still = "\nassert half(1e-310) == 0.0, 'what the run found was not put back'\n"
+    assert hash_of_runs(load, still) == hash_of_runs()
+
+
+def test_another_rounding_of_the_host_program_changes_no_bit():
+    upward = """
+libm = ctypes.CDLL(ctypes.util.find_library("m"))
+assert libm.fesetround(0x800) == 0
+"""
+    still = "\nassert libm.fegetround() == 0x800, 'what the run found was not put back'\n"
+    assert hash_of_runs(upward, still) == hash_of_runs()
+
+
+@pytest.mark.outside_build
+def test_every_optimisation_gives_the_same_bits(tmp_path):
+    builds = {
+        "O1": "-O1",
+        "O3": "-O3",
+        "baseline": "-O2 -DPENDCORE_BASELINE_ONLY",
+    }
+    printed = {}
+    for name, flags in builds.items():
+        where = tmp_path / name
+        options = ["-DPENDCORE_PYTHON=OFF", "-DPENDCORE_TESTS=ON", "-DCMAKE_BUILD_TYPE=None"]
+        configure = [CMAKE, "-S", ROOT, "-B", where, *options, f"-DCMAKE_CXX_FLAGS={flags}"]
+        build = [CMAKE, "--build", where, "--target", "trajectory_hash", "-j", "2"]
+        for command in (configure, build):
+            subprocess.run(command, capture_output=True, text=True, check=True)
+        program = where / "tests/cpp/trajectory_hash"
+        printed[name] = subprocess.run([program], capture_output=True, check=True).stdout
+    assert len(printed["O1"].splitlines()) > 3
+    assert printed["O1"] == printed["O3"] == printed["baseline"]
+
+
+def test_what_is_stored_or_sampled_changes_no_step():
+    span, grid = (0.0, 20.0), np.linspace(0.0, 20.0, 777)
+    dense = pc.simulate(BOOK, [-1.4, -1.1], 0, span)
+    steps = pc.simulate(BOOK, [-1.4, -1.1], 0, span, store="steps")
+    end = pc.simulate(BOOK, [-1.4, -1.1], 0, span, store="end")
+    times = pc.simulate(BOOK, [-1.4, -1.1], 0, span, t_eval=grid)
+    both = pc.simulate(BOOK, [-1.4, -1.1], 0, span, t_eval=grid, store="dense")
+    assert np.array_equal(dense.t, steps.t)
+    assert np.array_equal(dense.y, steps.y)
+    assert np.array_equal(end.y[:, -1], dense.y[:, -1])
+    assert np.array_equal(times.y, dense(grid))
+    assert np.array_equal(times.y, both.y)
+    assert dense.stats == steps.stats == end.stats == times.stats == both.stats
+
+
+def test_threads_that_share_a_scene_do_not_disturb_each_other():
+    starts = [[0.1 * k, 1.0 - 0.2 * k] for k in range(40)]
+    alone = [pc.simulate(BOOK, q0, 0, (0, 20)).y for q0 in starts]
+    with ThreadPoolExecutor(8) as pool:
+        together = list(pool.map(lambda q0: pc.simulate(BOOK, q0, 0, (0, 20)).y, starts))
+    assert all(np.array_equal(a, b) for a, b in zip(alone, together, strict=True))
+
+
+@pytest.mark.parametrize("store", ["end", "times", "steps", "dense"])
+@pytest.mark.parametrize("stop", [0.0, 1e-4, 3.21, 9.999])
+def test_a_resumed_run_has_the_bits_of_one_that_never_stopped(store, stop):
+    grid = np.linspace(0, 10, 101)
+    early, late = grid[grid <= stop], grid[grid > stop]
+    wanted = {"t_eval": grid} if store == "times" else {}
+    had = {"t_eval": early} if store == "times" else {}
+    more = {"t_eval": late} if store == "times" else {}
+    whole = pc.simulate(BOOK, [-1.4, -1.1], 0, (0, 10), store=store, **wanted)
+    resumed = pc.simulate(BOOK, [-1.4, -1.1], 0, (0, stop), store=store, **had).resume(10, **more)
+    assert np.array_equal(whole.t, resumed.t)
+    assert np.array_equal(whole.y, resumed.y)
+    assert whole.stats == resumed.stats
+    if store == "dense":
+        assert np.array_equal(whole(grid), resumed(grid))
+
+
+def test_mirrored_starts_move_as_mirror_images():
+    # left and right: theta -> -theta is q -> pi - q, so reflect about the vertical at g = 0 instead
+    floating = pc.Scene(links=BOOK.links, gravity=0.0)
+    one = pc.simulate(floating, [0.3, 1.1], [2.0, -1.0], (0, 10))
+    other = pc.simulate(floating, [-0.3, -1.1], [-2.0, 1.0], (0, 10))
+    assert np.array_equal(one.t, other.t)
+    assert np.array_equal(one.y, -other.y)
+
+
+def test_the_module_says_which_instructions_it_uses():
+    assert _core.instruction_set() in SETS

@@ -1,0 +1,302 @@
+"""A solution has what interface and docstrings promise: shapes, units, and itself on disk."""
+
+from __future__ import annotations
+
+import copy
+import json
+import pickle
+import sys
+from math import pi
+
+import numpy as np
+import pendcore as pc
+import pytest
+
+G = 9.807
+SCENE = pc.Scene(
+    links=[pc.Link(mass=1, length=0.8), pc.Link(mass=2, length=0.5, center=0.3, inertia=0.02)]
+)
+
+
+@pytest.fixture(scope="module")
+def sol():
+    return pc.simulate(SCENE, q0=[0.3, -0.4], qd0=[1.0, -2.0], t_span=(1, 3))
+
+
+def same(a, b):
+    """To the last bit, between the steps too, and in what is said about it."""
+    between = np.linspace(a.t[0], a.t[-1], 7)
+    return (
+        a.scene == b.scene
+        and np.array_equal(a.t, b.t)
+        and np.array_equal(a.y, b.y)
+        and (a.store != "dense" or np.array_equal(a(between), b(between)))
+        and (a.status, a.message, a.stats, a.case()) == (b.status, b.message, b.stats, b.case())
+    )
+
+
+def test_shapes(sol):
+    n_t = len(sol.t)
+    assert sol.q.shape == sol.qd.shape == (n_t, 2)
+    assert sol.y.shape == (4, n_t)
+    assert sol.relative_angles().shape == sol.accelerations().shape == (n_t, 2)
+    assert sol.positions().shape == (n_t, 3, 2)
+    assert sol.mass_centers().shape == sol.reactions().shape == (n_t, 2, 2)
+    energy = sol.energy()
+    assert energy.kinetic.shape == energy.potential.shape == energy.total.shape == (n_t,)
+
+
+def test_y_is_angles_over_rates(sol):
+    assert np.array_equal(sol.y, np.vstack([sol.q.T, sol.qd.T]))
+    assert sol.y[:, 0].tolist() == [0.3, -0.4, 1.0, -2.0]
+    assert (sol.t[0], sol.t[-1]) == (1.0, 3.0)
+
+
+@pytest.mark.parametrize("name", ["t", "q", "qd", "y"])
+def test_what_was_found_cannot_be_overwritten(sol, name):
+    with pytest.raises(ValueError, match="read-only"):
+        getattr(sol, name)[..., 0] = 0.0
+
+
+def test_arrays_outlive_their_solution():
+    y = pc.simulate(SCENE, 0.3, 0.0, (0, 1)).y
+    assert np.array_equal(y, pc.simulate(SCENE, 0.3, 0.0, (0, 1)).y)
+
+
+def test_a_call_gives_the_state_at_one_time_or_many(sol):
+    assert sol(2).shape == (4,)
+    assert sol([1.5, 2, 2.5]).shape == (4, 3)
+    assert np.array_equal(sol([2.5, 1.5]), np.column_stack([sol(2.5), sol(1.5)]))
+    assert sol([]).shape == (4, 0)
+
+
+def test_a_call_at_a_step_gives_the_step(sol):
+    assert np.array_equal(sol(sol.t), sol.y)
+
+
+def test_a_call_outside_the_run_is_refused(sol):
+    for t in (0.999, 3.001, [2, 5]):
+        with pytest.raises(ValueError, match=r"^t = .* must be within the run, 1\.0 to 3\.0 s"):
+            sol(t)
+
+
+def test_a_call_without_dense_output_is_refused_with_the_remedy():
+    for store in ("steps", "end"):
+        with pytest.raises(ValueError, match='store="dense"'):
+            pc.simulate(SCENE, 0.3, 0.0, (0, 1), store=store)(0.5)
+
+
+def test_relative_angles_are_those_of_the_joints(sol):
+    phi = sol.relative_angles()
+    assert np.array_equal(phi[:, 0], sol.q[:, 0])
+    assert np.array_equal(phi[:, 1], sol.q[:, 1] - sol.q[:, 0])
+
+
+def test_positions_are_lengths_along_the_angles_with_y_down(sol):
+    place = sol.positions()
+    assert np.array_equal(place[:, 0], np.zeros((len(sol.t), 2)))
+    along = np.stack([np.cos(sol.q), np.sin(sol.q)], axis=-1)
+    steps = np.diff(place, axis=1)
+    np.testing.assert_allclose(steps, along * [[0.8], [0.5]], atol=1e-15)
+    np.testing.assert_allclose(
+        sol.mass_centers() - place[:, :-1], along * [[0.4], [0.3]], atol=1e-15
+    )
+
+
+def test_accelerations_are_the_scenes(sol):
+    assert np.array_equal(sol.accelerations(), SCENE.accelerations(sol.t, sol.q, sol.qd))
+
+
+def test_reactions_carry_the_weight_at_rest():
+    hanging = pc.simulate(SCENE, q0=pi / 2, t_span=(0, 0))
+    force = hanging.reactions()[0]
+    np.testing.assert_allclose(force, [[0, -3 * G], [0, -2 * G]], atol=1e-14)
+
+
+def test_reactions_are_what_newton_asks_of_the_mass_centers():
+    """Accelerations by differences of the path (fourth order) against forces over mass."""
+    t = np.linspace(0, 1, 2001)
+    run = pc.simulate(SCENE, [0.3, -0.4], [1.0, -2.0], (0, 1), t_eval=t, rtol=1e-13)
+    windows = np.lib.stride_tricks.sliding_window_view(run.mass_centers(), 5, axis=0)
+    acceleration = windows @ [-1, 16, -30, 16, -1] / (12 * t[1] ** 2)
+    force = run.reactions()[2:-2]
+    resultant = force - np.concatenate([force[:, 1:], np.zeros_like(force[:, :1])], axis=1)
+    expected = resultant / [[1.0], [2.0]] + [0.0, G]
+    assert np.abs(acceleration - expected).max() < 1e-6 * np.abs(expected).max()
+
+
+def test_energy_is_kept_and_made_of_its_parts(sol):
+    energy = sol.energy()
+    assert np.array_equal(energy.total, energy.kinetic + energy.potential)
+    assert np.abs(energy.total - energy.total[0]).max() < 1e-7
+    a = np.array([1 * 0.4 + 0.8 * 2, 2 * 0.3])
+    np.testing.assert_allclose(energy.potential, -G * np.sin(sol.q) @ a, rtol=1e-13)
+
+
+def test_statistics_add_up(sol):
+    stats = sol.stats
+    assert stats.accepted == len(sol.t) - 1
+    limited = stats.limited_by_tolerance + stats.limited_by_max_step + stats.limited_by_break
+    assert limited == stats.accepted
+    assert 0 < stats.min_step <= stats.max_step
+    assert stats.nfev >= 6 * (stats.accepted + stats.rejected)
+    assert not stats.stiff
+
+
+def test_a_resumed_run_is_bitwise_as_if_it_had_never_stopped(sol):
+    part = pc.simulate(SCENE, q0=[0.3, -0.4], qd0=[1.0, -2.0], t_span=(1, 2.2))
+    whole = part.resume(3)
+    assert part.t[-1] == 2.2
+    assert np.array_equal(whole.t, sol.t)
+    assert np.array_equal(whole.y, sol.y)
+    assert whole.stats == sol.stats
+    assert whole.case() == sol.case()
+    assert np.array_equal(whole([1.7, 2.3]), sol([1.7, 2.3]))
+
+
+def test_a_capped_run_can_be_resumed(sol):
+    capped = pc.simulate(SCENE, [0.3, -0.4], [1.0, -2.0], (1, 3), max_steps=9)
+    assert capped.status == "max_steps"
+    assert np.array_equal(capped.resume(3).y, sol.y)
+
+
+def test_resume_samples_where_it_is_asked_to(sol):
+    part = pc.simulate(SCENE, [0.3, -0.4], [1.0, -2.0], (1, 2), t_eval=[1.5, 2.0])
+    whole = part.resume(3, t_eval=[2.5, 3.0])
+    assert whole.t.tolist() == [1.5, 2.0, 2.5, 3.0]
+    assert np.array_equal(whole.y, sol([1.5, 2.0, 2.5, 3.0]))
+
+
+def test_resume_does_not_go_back(sol):
+    with pytest.raises(
+        ValueError, match=r"^t_end = 2\.0: must be .* not before the end of the run so far, 3\.0 s"
+    ):
+        sol.resume(2)
+
+
+def test_resume_has_limits_and_progress_of_its_own(sol):
+    part = pc.simulate(SCENE, [0.3, -0.4], [1.0, -2.0], (1, 1.1), max_steps=1000)
+    capped = part.resume(3, max_steps=5)
+    assert capped.status == "max_steps"
+    assert part.t[-1] <= capped.t[-1] < 3
+
+    def break_off(fraction):
+        raise LookupError
+
+    with pytest.raises(LookupError) as stop:
+        part.resume(1e9, time_limit=10, progress=break_off)
+    assert stop.value.solution.t[-1] > 1.1
+    assert part.t[-1] == 1.1
+
+
+def test_the_case_of_a_solution_gives_the_same_solution(sol):
+    assert sol.case() == pc.Case(scene=SCENE, q0=(0.3, -0.4), qd0=(1.0, -2.0), t_span=(1.0, 3.0))
+    assert same(sol.case().simulate(), sol)
+
+
+@pytest.mark.parametrize("store", ["dense", "steps", "times", "end"])
+@pytest.mark.parametrize("way", ["pickle", "deepcopy", "npz"])
+def test_a_solution_comes_back_whole(store, way, tmp_path):
+    t_eval = [0.25, 0.5, 1.0] if store == "times" else None
+    first = pc.simulate(SCENE, 0.3, 0.0, (0, 1), store=store, t_eval=t_eval, rtol=[1e-8] * 4)
+    if way == "npz":
+        first.save(tmp_path / "run.npz")
+        again = pc.load(tmp_path / "run.npz")
+    else:
+        again = copy.deepcopy(first) if way == "deepcopy" else pickle.loads(pickle.dumps(first))
+    assert same(first, again)
+    assert same(first.resume(2.0), again.resume(2.0))
+
+
+def test_a_file_is_written_under_the_name_asked_for(sol, tmp_path):
+    sol.save(str(tmp_path / "run"))
+    assert [path.name for path in tmp_path.iterdir()] == ["run"]
+
+
+def test_a_file_can_be_read_without_pendcore(sol, tmp_path):
+    sol.save(tmp_path / "run.npz")
+    with np.load(tmp_path / "run.npz", allow_pickle=False) as file:
+        entries = dict(file)
+    assert all(entry.dtype.kind != "O" for entry in entries.values())
+    for name in ("t", "q", "qd", "y"):
+        assert np.array_equal(entries[name], getattr(sol, name))
+    assert pc.read_case(str(entries["case"])) == sol.case()
+    assert json.loads(str(entries["statistics"])) == sol.stats._asdict()
+    assert str(entries["version"]) == pc.__version__
+
+
+def test_a_file_that_is_no_solution_is_named(sol, tmp_path):
+    sol.save(tmp_path / "run.npz")
+    whole = (tmp_path / "run.npz").read_bytes()
+    with np.load(tmp_path / "run.npz") as file:
+        entries = dict(file)
+    np.savez(tmp_path / "other.npz", t=[1, 2])
+    np.savez(tmp_path / "no case.npz", **{**entries, "case": "README.md"})
+    np.savez(tmp_path / "status.npz", **{**entries, "run.status": 5})
+    np.savez(tmp_path / "sizes.npz", **{**entries, "run.states": np.zeros(4)})
+    rod = pc.Case(scene=pc.Scene(links=SCENE.links[:1]), q0=0, t_span=(0, 1))
+    np.savez(tmp_path / "links.npz", **{**entries, "case": rod.to_toml()})
+    (tmp_path / "text.npz").write_text("t = 1\n")
+    (tmp_path / "empty.npz").write_bytes(b"")
+    (tmp_path / "half.npz").write_bytes(whole[: len(whole) // 2])
+    np.save(tmp_path / "array.npz.npy", np.zeros(3))
+    for path in set(tmp_path.iterdir()) - {tmp_path / "run.npz"}:
+        with pytest.raises(
+            ValueError, match=rf"{path.name}: is not a solution that pendcore saved"
+        ):
+            pc.load(path)
+    with pytest.raises(FileNotFoundError):
+        pc.load(tmp_path / "nothing.npz")
+
+
+def test_a_warning_about_the_scene_is_not_given_again(tmp_path):
+    with pytest.warns(pc.PendcoreWarning):
+        scene = pc.Scene(links=[pc.Link(mass=1, length=1, inertia=5)])
+    run = pc.simulate(scene, 0, 0, (0, 1))
+    run.save(tmp_path / "run.npz")
+    assert pc.load(tmp_path / "run.npz").scene == pickle.loads(pickle.dumps(run)).scene == scene
+
+
+def test_pandas_gets_a_row_per_time_with_units(sol):
+    pytest.importorskip("pandas")
+    frame = sol.to_pandas()
+    assert list(frame.columns) == ["q_1", "q_2", "qd_1", "qd_2"]
+    assert frame.index.name == "time"
+    assert np.array_equal(frame.index, sol.t)
+    assert np.array_equal(frame.to_numpy(), sol.y.T)
+    assert frame.attrs["units"]["qd_2"] == "rad/s"
+    assert pc.read_case(frame.attrs["case"]) == sol.case()
+    frame.loc[:, "q_1"] = 0.0  # it is the user's
+
+
+def test_xarray_gets_time_and_link_with_units(sol):
+    pytest.importorskip("xarray")
+    data = sol.to_xarray()
+    assert data.q.dims == data.qd.dims == ("time", "link")
+    assert data.link.values.tolist() == [1, 2]
+    assert np.array_equal(data.q.sel(link=2), sol.q[:, 1])
+    assert (data.q.units, data.qd.units, data.time.units) == ("rad", "rad/s", "s")
+    assert pc.read_case(data.attrs["case"]) == sol.case()
+
+
+@pytest.mark.parametrize("library", ["pandas", "xarray"])
+def test_a_missing_library_is_named_with_what_installs_it(sol, library, monkeypatch):
+    monkeypatch.setitem(sys.modules, library, None)
+    with pytest.raises(ImportError, match=rf'{library}: pip install "pendcore\[export\]"'):
+        getattr(sol, f"to_{library}")()
+
+
+def test_repr_is_a_short_table():
+    run = pc.simulate(pc.Scene.textbook(), [1, 2], 0, (0, 1), step=0.25)
+    lines = repr(run).splitlines()
+    assert lines[0] == "Solution"
+    assert lines[1] == "  status   finished: reached the end of the interval"
+    assert lines[2] == "  scene    2 links, gravity 9.807 m/s^2"
+    assert lines[3] == f"  method   dopri5, 4 steps, {run.stats.nfev} right-hand sides"
+    assert lines[4] == "  t        0 ... 1 s, 5 kept"
+    assert lines[5].startswith("  last q   ")
+    assert lines[6].endswith(" rad/s")
+    assert max(map(len, lines)) <= 80
+    table = run._repr_html_()
+    assert table.startswith("<table>")
+    assert all(line.split("  ")[1] in table for line in lines[1:])
