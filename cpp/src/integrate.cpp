@@ -157,9 +157,9 @@ Ending integrate(Stepper& stepper, Position& position, Position& resumable, cons
     }
 
     ++attempts;
-    const double log2_error = stepper.attempt(t, h);
-    const bool finite = !std::isnan(log2_error);
-    if (log2_error <= 0.0 || (limits.fixed_step && finite)) {
+    const Attempt attempt = stepper.attempt(t, h, position.control.gain(method));
+    const bool finite = !std::isnan(attempt.squared_error);
+    if (attempt.squared_error <= 1.0 || (limits.fixed_step && finite)) {
       trial_was_finite = true;
       const TwoDouble t_new = cut ? TwoDouble{limits.t_end, 0.0} : position.t + h;
       count_accepted(position.statistics, h, cut, position.h_is_max_step);
@@ -168,7 +168,7 @@ Ending integrate(Stepper& stepper, Position& position, Position& resumable, cons
       stepper.accept(t_new.high);
       position.t = t_new;
       if (!limits.fixed_step) {
-        position.h = h * position.control.accept(method, log2_error);
+        position.h = h * position.control.accept(method, attempt);
         position.h_is_max_step = std::abs(position.h) >= limits.max_step;
         if (position.h_is_max_step) position.h = std::copysign(limits.max_step, h);
       }
@@ -178,7 +178,7 @@ Ending integrate(Stepper& stepper, Position& position, Position& resumable, cons
       if (limits.fixed_step) {
         return end_with(not_finite(new_state(stepper), t), cut_before);
       }
-      position.h = h * position.control.reject(method, log2_error);
+      position.h = h * position.control.reject(method, attempt);
       position.h_is_max_step = false;
     }
   }

@@ -48,7 +48,9 @@ void Recorder::sample_step(const Stepper& stepper, double t_old, double h, doubl
   std::size_t end = first;
   while (end < samples.size() && (samples[end] - t_new) * h < 0.0) ++end;
   if (end > first) {
-    for (std::size_t i = first; i < end; ++i) append(samples[i]);
+    solution_.t.insert(solution_.t.end(), samples.begin() + static_cast<std::ptrdiff_t>(first),
+                       samples.begin() + static_cast<std::ptrdiff_t>(end));
+    solution_.states.resize(end * dimension_);
     stepper.interpolant(h, polynomial_.data());
     stepper.sample(polynomial_.data(), t_old, h, samples.data() + first,
                    static_cast<int>(end - first), solution_.states.data() + first * dimension_);

@@ -30,3 +30,16 @@ TEST_CASE("the power is right to a relative 1e-10") {
     CHECK(std::abs(approximate_exp2(x) / std::exp2(x) - 1.0) < 1e-10);
   }
 }
+
+TEST_CASE("the scaled power is right to a relative 1e-9") {
+  std::mt19937_64 random(2);
+  std::uniform_real_distribution exponent(-300.0, 300.0);
+  for (const double power : {-0.25, -0.085, -0.0625, 0.1}) {
+    for (int i = 0; i < 20'000; ++i) {
+      const double x = std::exp2(exponent(random));
+      const double gain = 0.01 * exponent(random);
+      const double exact = std::exp2(gain) * std::pow(x, power);
+      CHECK(std::abs(scaled_power(x, power, gain) / exact - 1.0) < 1e-9);
+    }
+  }
+}

@@ -1,8 +1,9 @@
 /// \file
-/// Powers of two and their logarithm for the step control, the same bits on every processor.
+/// Powers for the step control, the same bits on every processor.
 ///
-/// A step size needs few digits but must not depend on a library: both functions are right to
-/// 1e-9. Minimax polynomials (tests/reference/minimax.py) on the mantissa and the fraction.
+/// A step size needs few digits, but must not depend on a library: minimax polynomials
+/// (tests/reference/minimax.py) of the mantissa. `approximate_log2` and `approximate_exp2` fuse
+/// nothing: they serve in code that is not cloned, where a fused product would be a call.
 #pragma once
 
 #include <array>
@@ -13,40 +14,76 @@
 
 namespace pendcore {
 
-/// log2(x) for x >= 0, within 1e-9; zero and denormal numbers count as 2^-1023, infinity as 2^1024.
-PENDCORE_INLINE double approximate_log2(double x) {
-  // x = 2^exponent (1 + u) with 1/sqrt 2 <= 1 + u < sqrt 2, and log2(1 + u) = u p(u)
+namespace power_detail {
+
+/// x = 2^exponent (1 + u), 1/sqrt 2 <= 1 + u < sqrt 2.
+struct Split {
+  double exponent;
+  double u;
+};
+
+PENDCORE_INLINE Split split(double x) {
   constexpr std::uint64_t sqrt_half = 0x3fe6a09e667f3bcd;
   const std::uint64_t bits = std::bit_cast<std::uint64_t>(x);
   const std::int64_t exponent = static_cast<std::int64_t>(bits - sqrt_half) >> 52;
-  const double u = std::bit_cast<double>(bits - (static_cast<std::uint64_t>(exponent) << 52)) - 1.0;
-  constexpr std::array c = {0x1.71547656bc463p+0,  -0x1.71547650c1062p-1, 0x1.ec707e7253c52p-2,
-                            -0x1.7154668fe1efdp-2, 0x1.2780908101543p-2,  -0x1.ec86699f3c9b2p-3,
-                            0x1.a3f4af271dcc9p-3,  -0x1.6db76d7b0fdd4p-3, 0x1.5f8fc100f16f2p-3,
-                            -0x1.5d960f5e80bc0p-3, 0x1.987b15238e820p-4};
+  const std::uint64_t mantissa = bits - (static_cast<std::uint64_t>(exponent) << 52);
+  return {static_cast<double>(exponent), std::bit_cast<double>(mantissa) - 1.0};
+}
+
+/// log2(1 + u) = u p(u)
+inline constexpr std::array log2_of_mantissa = {
+    0x1.71547656bc463p+0, -0x1.71547650c1062p-1, 0x1.ec707e7253c52p-2, -0x1.7154668fe1efdp-2,
+    0x1.2780908101543p-2, -0x1.ec86699f3c9b2p-3, 0x1.a3f4af271dcc9p-3, -0x1.6db76d7b0fdd4p-3,
+    0x1.5f8fc100f16f2p-3, -0x1.5d960f5e80bc0p-3, 0x1.987b15238e820p-4};
+
+/// 2^f for |f| <= 1/2
+inline constexpr std::array exp2_of_fraction = {
+    0x1.ffffffffabbccp-1, 0x1.62e42ff11627ap-1,  0x1.ebfbe0a4be886p-3,  0x1.c6b08aaf3156ep-5,
+    0x1.3b29dc40d2ec5p-7, 0x1.5d8a7085cddb8p-10, 0x1.446a1fdd54f3ap-13, 0x1.fe1786b50da52p-17};
+
+}  // namespace power_detail
+
+/// log2(x) for x >= 0, within 1e-9; zero and denormal numbers count as 2^-1023, infinity as 2^1024.
+PENDCORE_INLINE double approximate_log2(double x) {
+  const auto& c = power_detail::log2_of_mantissa;
+  const auto [exponent, u] = power_detail::split(x);
+  double p = c.back();
+  for (int i = c.size() - 2; i >= 0; --i) p = c[i] + p * u;
+  return exponent + p * u;
+}
+
+/// 2^x within a relative 1e-10, for |x| <= 1000.
+PENDCORE_INLINE double approximate_exp2(double x) {
+  const auto& c = power_detail::exp2_of_fraction;
+  constexpr double to_integer = 0x1.8p52;
+  const double shifted = x + to_integer;
+  const double f = x - (shifted - to_integer);
+  const double f2 = f * f;
+  const double low = (c[0] + c[1] * f) + (c[2] + c[3] * f) * f2;
+  const double high = (c[4] + c[5] * f) + (c[6] + c[7] * f) * f2;
+  const std::int64_t exponent = std::bit_cast<std::int64_t>(shifted) << 52;
+  return std::bit_cast<double>(std::bit_cast<std::int64_t>(low + high * (f2 * f2)) + exponent);
+}
+
+/// 2^gain x^power within a relative 1e-9, for |power| <= 0.25: what the next step waits for, hence
+/// short. The exponent of x goes through exp2 while the mantissa's small power, 2^w with
+/// w = power log2(1 + u), is summed.
+PENDCORE_INLINE double scaled_power(double x, double power, double gain) {
+  const auto& c = power_detail::log2_of_mantissa;
+  const auto [exponent, u] = power_detail::split(x);
+  const double of_exponent = approximate_exp2(fma(power, exponent, gain));
   const double u2 = u * u;
   const double u4 = u2 * u2;
   const double low = fma(fma(c[3], u, c[2]), u2, fma(c[1], u, c[0]));
   const double middle = fma(fma(c[7], u, c[6]), u2, fma(c[5], u, c[4]));
   const double high = fma(c[10], u2, fma(c[9], u, c[8]));
-  return fma(fma(fma(high, u4, middle), u4, low), u, static_cast<double>(exponent));
-}
-
-/// 2^x within a relative 1e-10, for |x| <= 1000. Nothing is fused: it serves in code that is not
-/// cloned, where a fused product would be a call.
-PENDCORE_INLINE double approximate_exp2(double x) {
-  constexpr double to_integer = 0x1.8p52;
-  const double shifted = x + to_integer;
-  const double f = x - (shifted - to_integer);  // |f| <= 1/2
-  constexpr std::array c = {0x1.ffffffffabbccp-1,  0x1.62e42ff11627ap-1, 0x1.ebfbe0a4be886p-3,
-                            0x1.c6b08aaf3156ep-5,  0x1.3b29dc40d2ec5p-7, 0x1.5d8a7085cddb8p-10,
-                            0x1.446a1fdd54f3ap-13, 0x1.fe1786b50da52p-17};
-  const double f2 = f * f;
-  const double low = (c[0] + c[1] * f) + (c[2] + c[3] * f) * f2;
-  const double high = (c[4] + c[5] * f) + (c[6] + c[7] * f) * f2;
-  const double mantissa = low + high * (f2 * f2);
-  const std::int64_t exponent = std::bit_cast<std::int64_t>(shifted) << 52;
-  return std::bit_cast<double>(std::bit_cast<std::int64_t>(mantissa) + exponent);
+  const double w = fma(fma(high, u4, middle), u4, low) * (power * u);
+  constexpr std::array e = {0x1.62e42fefa39efp-1, 0x1.ebfbdff82c58fp-3, 0x1.c6b08d704a0c0p-5,
+                            0x1.3b2ab6fba4e77p-7, 0x1.5d87fe78a6731p-10};  // ln(2)^k / k!
+  const double w2 = w * w;
+  const double of_mantissa =
+      fma(fma(fma(e[4], w, e[3]), w2, fma(e[2], w, e[1])), w2, fma(e[0], w, 1.0));
+  return of_mantissa * of_exponent;
 }
 
 }  // namespace pendcore

@@ -46,7 +46,7 @@ struct DoublePendulum {
     const Pair determinant = fma(product * sine, sine, broadcast<Pair>(delta));
     const Pair qd_other = other(qd);
     const Pair alone = fma(-(coupling * sine), qd_other * qd_other, weight * c);
-    return fma(-(coupling * cosine), other(alone), alone) / determinant;
+    return fma(-(coupling * cosine), other(alone), alone) * (1.0 / determinant);
   }
 };
 

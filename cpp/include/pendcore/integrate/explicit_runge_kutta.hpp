@@ -56,9 +56,9 @@ class ExplicitRungeKutta final : public Stepper {
     ++evaluations;
   }
 
-  double attempt(double t, double h) override {
+  Attempt attempt(double t, double h, double gain) override {
     evaluations += stages - 1;
-    return attempt_(&memory_, t, h);
+    return attempt_(&memory_, t, h, gain);
   }
 
   void accept(double t_new) override {
@@ -88,8 +88,7 @@ class ExplicitRungeKutta final : public Stepper {
     double rates = 0.0;
     double states = 0.0;
     for (int i = 0; i < blocks; ++i) {
-      const Block y =
-          fma(h, weighted_sum(method.a[stages - 2], memory_.k, i, stages - 2), memory_.y[i]);
+      const Block y = advance(memory_.y[i], h, method.a[stages - 2], memory_.k, i, stages - 2);
       const Block dk = memory_.k[stages - 1][i] - memory_.k[stages - 2][i];
       const Block dy = memory_.y_new[i] - y;
       rates += sum_of_lanes(Block(dk * dk));
@@ -107,7 +106,7 @@ class ExplicitRungeKutta final : public Stepper {
   }
 
   Memory memory_;
-  double (*attempt_)(Memory*, double, double) = fastest<&attempt_step<method, System>>();
+  Attempt (*attempt_)(Memory*, double, double, double) = fastest<&attempt_step<method, System>>();
   void (*interpolant_)(const Memory*, double,
                        double*) = fastest<&interpolant_of_step<method, System>>();
   void (*sample_)(const double*, double, double, const double*, int,

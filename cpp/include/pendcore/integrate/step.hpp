@@ -13,7 +13,8 @@
 
 #include "pendcore/arithmetic/pack.hpp"
 #include "pendcore/arithmetic/power.hpp"
-#include "pendcore/integrate/tableau.hpp"
+#include "pendcore/integrate/attempt.hpp"
+#include "pendcore/integrate/step_control.hpp"
 
 namespace pendcore {
 
@@ -32,25 +33,31 @@ struct StepMemory {
   Block atol[blocks] = {};
 };
 
-/// The sum of weights[j] k[j] over the first `count` stages; terms with weight zero are left out.
-template <class Block, class Weights, int blocks>
-PENDCORE_INLINE Block weighted_sum(const Weights& weights, const Block (*k)[blocks], int block,
-                                   int count) {
+/// start + h (sum of weights[j] k[j] over the first `count` stages); terms with weight zero are
+/// left out. The last stage is the one that is waited for: it comes in last, its weight times h
+/// ready.
+template <class Block, class Scale, class Weights, int blocks>
+PENDCORE_INLINE Block advance(const Block& start, const Scale& h, const Weights& weights,
+                              const Block (*k)[blocks], int block, int count) {
+  int last = count - 1;
+  while (weights[last].numerator == 0) --last;
   Block sum{};
   bool empty = true;
 #pragma GCC unroll 16
-  for (int j = 0; j < count; ++j) {
+  for (int j = 0; j < last; ++j) {
     if (weights[j].numerator == 0) continue;
     const Block weight = broadcast<Block>(weights[j].value());
     sum = empty ? weight * k[j][block] : fma(weight, k[j][block], sum);
     empty = false;
   }
-  return sum;
+  const Block known = empty ? start : fma(h, sum, start);
+  return fma(h * weights[last].value(), k[last][block], known);
 }
 
-/// Tries a step; returns log2 of its error norm (Stepper::attempt says which).
+/// Tries a step of size h at time t, as Stepper::attempt says.
 template <const auto& method, class System>
-PENDCORE_INLINE double attempt_step(StepMemory<method, System>* memory, double t, double h) {
+PENDCORE_INLINE Attempt attempt_step(StepMemory<method, System>* memory, double t, double h,
+                                     double gain) {
   using Memory = StepMemory<method, System>;
   using Block = typename Memory::Block;
   constexpr int blocks = Memory::blocks;
@@ -69,12 +76,12 @@ PENDCORE_INLINE double attempt_step(StepMemory<method, System>* memory, double t
 #pragma GCC unroll 16
   for (int s = 1; s < stages; ++s) {
 #pragma GCC unroll 16
-    for (int i = 0; i < blocks; ++i) z[i] = fma(h, weighted_sum(method.a[s], k, i, s), y[i]);
+    for (int i = 0; i < blocks; ++i) z[i] = advance(y[i], h, method.a[s], k, i, s);
     system(t + method.c[s].value() * h, z, k[s]);
   }
   if constexpr (!method.first_same_as_last) {
 #pragma GCC unroll 16
-    for (int i = 0; i < blocks; ++i) z[i] = fma(h, weighted_sum(method.b, k, i, stages), y[i]);
+    for (int i = 0; i < blocks; ++i) z[i] = advance(y[i], h, method.b, k, i, stages);
   }
 
   // The scales wait for y_new only, so their division is done before the last stage is.
@@ -83,7 +90,7 @@ PENDCORE_INLINE double attempt_step(StepMemory<method, System>* memory, double t
   for (int i = 0; i < blocks; ++i) {
     const Block size = larger(absolute(y[i]), absolute(z[i]));
     const Block scale = h / fma(memory->rtol[i], size, memory->atol[i]);
-    const Block ratio = scale * weighted_sum(method.e, k, i, stages);
+    const Block ratio = advance(Block{}, scale, method.e, k, i, stages);
     squares[i] = ratio * ratio;
   }
 #pragma GCC unroll 16
@@ -94,8 +101,8 @@ PENDCORE_INLINE double attempt_step(StepMemory<method, System>* memory, double t
 #pragma GCC unroll 16
     for (int s = 1; s < stages; ++s) memory->k[s][i] = k[s][i];
   }
-  const double mean_square = sum_of_lanes(squares[0]) * (1.0 / (blocks * Lanes<Block>::width));
-  return mean_square == mean_square ? 0.5 * approximate_log2(mean_square) : mean_square;
+  const double squared_error = sum_of_lanes(squares[0]) * (1.0 / (blocks * Lanes<Block>::width));
+  return {squared_error, scaled_power(squared_error, -0.5 * exponent(method.info), gain)};
 }
 
 /// coefficient[p] = h sum_s P_sp k_s for p = 1 .. degree, and coefficient[0] = y: the dense output

@@ -2,6 +2,7 @@
 /// What the integration loop sees of a method applied to a system: no tableau, no pendulum.
 #pragma once
 
+#include "pendcore/integrate/attempt.hpp"
 #include "pendcore/integrate/tableau.hpp"
 
 namespace pendcore {
@@ -25,10 +26,8 @@ class Stepper {
   virtual void get_new_state(double* y) const = 0;      ///< y at the end of the attempted step
   virtual void evaluate(double t, const double* y, double* dydt) = 0;  ///< the right-hand side
 
-  /// Tries a step of size h from the state at time t. Returns log2 of the error norm, the root of
-  /// the mean over components of (err / (atol + rtol max(|y|, |y_new|)))^2: not above 0 where the
-  /// step is within the tolerances, NaN where a stage was not finite.
-  virtual double attempt(double t, double h) = 0;
+  /// Tries a step of size h from the state at time t; `gain` is the control's.
+  virtual Attempt attempt(double t, double h, double gain) = 0;
 
   /// Makes the attempted step the past: y becomes y_new.
   virtual void accept(double t_new) = 0;

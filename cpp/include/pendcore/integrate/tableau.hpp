@@ -33,9 +33,9 @@ struct MethodInfo {
   int error_order;        ///< of the embedded method; 0: no error estimate, fixed steps only
   int interpolant_order;  ///< of y(t + theta h), uniformly in theta
   double beta = 0.0;      ///< weight of the previous error in the PI control
-  double safety = 0.9;    ///< the step aims at safety^(error_order + 1) of the tolerance
-  double shrink = 0.2;    ///< a step is at least this share of the one before,
-  double growth = 10.0;   ///< and at most this multiple
+  double log2_safety = -0.15200309344504997;  ///< of 0.9: a step aims a tenth short
+  double shrink = 0.2;                        ///< a step is at least this share of the one before,
+  double growth = 10.0;                       ///< and at most this multiple
   double stability =
       0.0;  ///< h |lambda| on the negative real axis that counts as stiff; 0: no test
 };
