@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any
 
 import contenders
+import excerpts
 import figure
 import page
 from cases import Case, one_step, read_case
@@ -134,6 +135,8 @@ def main(given: Sequence[str] | None = None) -> int:
         return 130
     raw.with_suffix(".md").write_text(page.page(record), encoding="utf-8")
     figure.draw(record, raw.with_suffix(".png"))
+    if folder == PROJECT / "docs/comparison" and asked.case == "textbook":
+        excerpts.write(PROJECT, record)
     print(page.summary(record))
     print(f"written: {raw}, {raw.stem}.md, {raw.stem}.png")
     return 0

@@ -23,14 +23,14 @@ void latency(benchmark::State& state) {
   const auto made = stepper();
   double t = 0.0;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(made->attempt(t, h));
+    benchmark::DoNotOptimize(made->attempt(t, h, 0.0));
     made->accept(t += h);
   }
 }
 
 void again(benchmark::State& state) {
   const auto made = stepper();
-  for (auto _ : state) benchmark::DoNotOptimize(made->attempt(0.0, h));
+  for (auto _ : state) benchmark::DoNotOptimize(made->attempt(0.0, h, 0.0));
 }
 
 BENCHMARK(latency)->Name("step/latency");
