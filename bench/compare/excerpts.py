@@ -45,11 +45,10 @@ def figures(record: Record) -> str:
             f"{min(found):.2f} to {max(found):.2f} of its time."
         )
     for peer in PYTHON_PEERS:
-        share = (
-            at_tolerance(python, 1e-6)["minimum_us"] / at_tolerance(known[peer], 1e-6)["minimum_us"]
-        )
+        own, other = (at_tolerance(who, 1e-6)["minimum_us"] for who in (python, known[peer]))
         lines.append(
-            f"* `pc.simulate` against {known[peer]['label']}, at rtol 1e-6: 1/{1 / share:.1f} of its time."
+            f"* `pc.simulate` against {known[peer]['label']}, at rtol 1e-6: "
+            f"1/{other / own:.1f} of its time."
         )
     each = per_evaluation(at_tolerance(core, 1e-9))
     call = python["one_step"]["minimum_us"]

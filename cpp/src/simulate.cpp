@@ -37,6 +37,9 @@ void run(const Scene& scene, Solution& solution, double t_end, const Limits& lim
   stepper->set_tolerances(rtol.data(), atol.data());
 
   Recorder recorder(solution, *stepper);
+  if (!from_the_start && solution.dense.degree != stepper->interpolant_degree()) {
+    throw std::invalid_argument("the dense output of this solution is not that of its method");
+  }
   solution.dense.degree = stepper->interpolant_degree();
   Position position = solution.resumable;
   const double t = position.t.high;

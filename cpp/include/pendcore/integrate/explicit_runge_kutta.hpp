@@ -85,6 +85,7 @@ class ExplicitRungeKutta final : public Stepper {
 
   /// |k_7 - k_6| / |y_7 - y_6|: the last two stages lie at the same time.
   double stiffness(double h) const override {
+    if constexpr (method.info.stability == 0.0) return 0.0;
     double rates = 0.0;
     double states = 0.0;
     for (int i = 0; i < blocks; ++i) {

@@ -40,7 +40,8 @@ template <class Block, class Scale, class Weights, int blocks>
 PENDCORE_INLINE Block advance(const Block& start, const Scale& h, const Weights& weights,
                               const Block (*k)[blocks], int block, int count) {
   int last = count - 1;
-  while (weights[last].numerator == 0) --last;
+  while (last >= 0 && weights[last].numerator == 0) --last;
+  if (last < 0) return start;
   Block sum{};
   bool empty = true;
 #pragma GCC unroll 16

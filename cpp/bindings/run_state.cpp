@@ -1,0 +1,195 @@
+#include "run_state.hpp"
+
+#include <array>
+#include <limits>
+
+#include "pendcore/integrate/methods.hpp"
+
+namespace pendcore::bindings {
+namespace {
+
+constexpr std::array<const char*, 4> store_names = {"end", "times", "steps", "dense"};
+
+/// Puts fields into a dictionary.
+class Writer {
+ public:
+  py::dict fields;
+
+  template <class Number>
+  void operator()(const std::string& key, const Number& value) {
+    fields[py::str(key)] = value;
+  }
+  void operator()(const std::string& key, const std::vector<double>& values) {
+    fields[py::str(key)] = copy(values, {static_cast<py::ssize_t>(values.size())});
+  }
+  /// A number that was not given is a NaN.
+  void operator()(const std::string& key, const std::optional<double>& value) {
+    fields[py::str(key)] = value.value_or(std::numeric_limits<double>::quiet_NaN());
+  }
+  void operator()(const std::string& key, Status status) {
+    const std::string_view word = text(status).name;
+    fields[py::str(key)] = py::str(word.data(), word.size());
+  }
+  void operator()(const std::string& key, Store store) { fields[py::str(key)] = name(store); }
+};
+
+/// Takes the same fields out of one.
+class Reader {
+ public:
+  explicit Reader(const py::dict& fields) : fields_(fields) {}
+
+  template <class Number>
+  void operator()(const std::string& key, Number& value) const {
+    try {
+      value = fields_[py::str(key)].template cast<Number>();
+    } catch (const py::cast_error&) {
+      throw py::value_error(key + ": is not what a solution keeps there");
+    }
+  }
+  void operator()(const std::string& key, std::vector<double>& values) const {
+    values = numbers(key.c_str(), fields_[py::str(key)]);
+  }
+  void operator()(const std::string& key, std::optional<double>& value) const {
+    double number = 0.0;
+    (*this)(key, number);
+    value = std::isnan(number) ? std::nullopt : std::optional(number);
+  }
+  void operator()(const std::string& key, Status& status) const {
+    std::string word;
+    (*this)(key, word);
+    for (std::size_t i = 0; i < status_texts.size(); ++i) {
+      if (status_texts[i].name == word) {
+        status = static_cast<Status>(i);
+        return;
+      }
+    }
+    throw py::value_error("status = \"" + word + "\": is none");
+  }
+  void operator()(const std::string& key, Store& store) const {
+    std::string word;
+    (*this)(key, word);
+    for (std::size_t i = 0; i < store_names.size(); ++i) {
+      if (store_names[i] == word) {
+        store = static_cast<Store>(i);
+        return;
+      }
+    }
+    throw py::value_error("store = \"" + word + "\": is none");
+  }
+
+ private:
+  const py::dict& fields_;
+};
+
+template <class Archive, class AnyStatistics>
+void visit_statistics(Archive& io, const std::string& prefix, AnyStatistics& s) {
+  io(prefix + "nfev", s.nfev);
+  io(prefix + "njev", s.njev);
+  io(prefix + "nlu", s.nlu);
+  io(prefix + "accepted", s.accepted);
+  io(prefix + "rejected", s.rejected);
+  io(prefix + "limited_by_tolerance", s.limited_by_tolerance);
+  io(prefix + "limited_by_max_step", s.limited_by_max_step);
+  io(prefix + "limited_by_break", s.limited_by_break);
+  io(prefix + "min_step", s.min_step);
+  io(prefix + "max_step", s.max_step);
+  io(prefix + "stiff", s.stiff);
+}
+
+/// Every field of a solution, for writing and for reading.
+template <class Archive, class AnySolution>
+void visit(Archive& io, AnySolution& s) {
+  io("status", s.status);
+  io("message", s.message);
+  visit_statistics(io, "statistics_", s.statistics);
+  io("t", s.t);
+  io("states", s.states);
+  io("dense_degree", s.dense.degree);
+  io("dense_start", s.dense.start);
+  io("dense_h", s.dense.h);
+  io("dense_coefficients", s.dense.coefficients);
+  io("method", s.options.method);
+  io("rtol", s.options.rtol);
+  io("atol", s.options.atol);
+  io("store", s.options.store);
+  io("t_eval", s.options.t_eval);
+  io("first_step", s.options.first_step);
+  io("max_step", s.options.max_step);
+  io("step", s.options.step);
+  io("max_steps", s.options.max_steps);
+  io("time_limit", s.options.time_limit);
+  io("t_start", s.t0);
+  io("t_end", s.t_end);
+  io("start", s.start);
+  io("t_reached", s.t_reached);
+  io("y_reached", s.y_reached);
+  io("resumable_t", s.resumable_t);
+  io("resumable_steps", s.resumable_steps);
+  auto& p = s.resumable;
+  io("position_t", p.t.high);
+  io("position_t_low", p.t.low);
+  io("position_h", p.h);
+  io("position_h_is_max_step", p.h_is_max_step);
+  io("position_log2_error_before", p.control.log2_error_before);
+  io("position_after_rejection", p.control.after_rejection);
+  io("position_stiff_hits", p.stiff_hits);
+  io("position_stiff_misses", p.stiff_misses);
+  visit_statistics(io, "position_", p.statistics);
+  io("position_y", p.y);
+  io("position_dydt", p.dydt);
+}
+
+/// A damaged file must end in an error, never in memory that is not ours.
+void check_sizes(const Solution& s) {
+  const auto n = static_cast<std::size_t>(s.dimension);
+  const std::size_t steps = s.dense.h.size();
+  const bool fits =
+      s.states.size() == s.t.size() * n && s.start.size() == n && s.y_reached.size() == n &&
+      s.resumable.y.size() == n && s.resumable.dydt.size() == n && s.resumable_t <= s.t.size() &&
+      s.resumable_steps <= steps && s.dense.start.size() == steps && s.dense.degree >= 0 &&
+      s.dense.degree <= 64 &&
+      s.dense.coefficients.size() == steps * (static_cast<std::size_t>(s.dense.degree) + 1) * n;
+  if (!fits) throw py::value_error("the arrays of this solution do not fit together");
+}
+
+}  // namespace
+
+const char* name(Store store) { return store_names[static_cast<std::size_t>(store)]; }
+
+py::dict statistics(const Statistics& statistics) {
+  Writer io;
+  visit_statistics(io, "", statistics);
+  return io.fields;
+}
+
+py::dict get_state(const Run& run) {
+  Writer io;
+  std::vector<double> links;
+  for (const Link& link : run.scene.links) {
+    links.insert(links.end(), {link.mass, link.length, link.center, link.inertia});
+  }
+  io("links", links);
+  io("gravity", run.scene.gravity);
+  visit(io, run.solution);
+  return io.fields;
+}
+
+Run set_state(const py::dict& state) {
+  const Reader io(state);
+  Run run;
+  std::vector<double> links;
+  io("links", links);
+  for (std::size_t i = 0; i + 4 <= links.size(); i += 4) {
+    run.scene.links.push_back({links[i], links[i + 1], links[i + 2], links[i + 3]});
+  }
+  io("gravity", run.scene.gravity);
+  check(run.scene);
+  visit(io, run.solution);
+  Solution& s = run.solution;
+  s.options.method = find_method(s.options.method).name;
+  s.dimension = 2 * static_cast<int>(run.scene.links.size());
+  check_sizes(s);
+  return run;
+}
+
+}  // namespace pendcore::bindings
