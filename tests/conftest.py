@@ -1,7 +1,8 @@
-"""What several tests share: the multiple-precision trajectories."""
+"""What several tests share: the multiple-precision trajectories, and a Ctrl-C that is heard."""
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Callable
 
 import pytest
@@ -12,3 +13,9 @@ from reference.trajectories import Trajectory, trajectory
 def reference_case() -> Callable[[str], Trajectory]:
     """Read a case of tests/data/trajectories.json by its name."""
     return trajectory
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _ctrl_c_is_heard() -> None:
+    """Undo that a shell starts what it runs in the background with Ctrl-C ignored."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)

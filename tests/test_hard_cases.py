@@ -204,7 +204,7 @@ def test_ctrl_c_is_heard_within_a_tenth_of_a_second():
     thread = threading.Thread(target=interrupt)
     thread.start()
     with pytest.raises(KeyboardInterrupt) as caught:
-        pc.simulate(BOOK, [0.8, 1.0], 0, (0, 1e9), store="end", max_steps=10**12)
+        pc.simulate(BOOK, [0.8, 1.0], 0, (0, 1e9), store="end", max_steps=10**12, time_limit=10)
     heard = time.monotonic()
     thread.join()
     assert heard - asked < 0.1
