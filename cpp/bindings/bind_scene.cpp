@@ -43,6 +43,16 @@ Eigen::Map<Points> points(Array& array, py::ssize_t i) {
   return {array.mutable_data(i, 0, 0), array.shape(1), 2};
 }
 
+/// positions() or mass_centers() of each row of angles, with `count` points each.
+Array points_of_rows(void (*compute)(const Scene&, Values, PointsOut), const Scene& scene,
+                     const Array& q, std::size_t count) {
+  const FloatingPointEnvironment ieee;
+  const Rows angles(scene, "q", q);
+  Array result({angles.count(), static_cast<py::ssize_t>(count), py::ssize_t{2}});
+  for (py::ssize_t i = 0; i < angles.count(); ++i) compute(scene, angles[i], points(result, i));
+  return result;
+}
+
 Array accelerations(const Scene& scene, const Array& t, const Array& q, const Array& qd) {
   const FloatingPointEnvironment ieee;
   const Rows angles(scene, "q", q);
@@ -101,25 +111,13 @@ void bind_scene(py::module_& module) {
       .def(
           "positions",
           [](const Scene& scene, const Array& q) {
-            const FloatingPointEnvironment ieee;
-            const Rows angles(scene, "q", q);
-            Array result({angles.count(), q.shape(1) + 1, py::ssize_t{2}});
-            for (py::ssize_t i = 0; i < angles.count(); ++i) {
-              positions(scene, angles[i], points(result, i));
-            }
-            return result;
+            return points_of_rows(&positions, scene, q, scene.links.size() + 1);
           },
           py::arg("q"))
       .def(
           "mass_centers",
           [](const Scene& scene, const Array& q) {
-            const FloatingPointEnvironment ieee;
-            const Rows angles(scene, "q", q);
-            Array result({angles.count(), q.shape(1), py::ssize_t{2}});
-            for (py::ssize_t i = 0; i < angles.count(); ++i) {
-              mass_centers(scene, angles[i], points(result, i));
-            }
-            return result;
+            return points_of_rows(&mass_centers, scene, q, scene.links.size());
           },
           py::arg("q"))
       .def(
