@@ -51,15 +51,15 @@ PYTHON_FLOW = [
     "cli",
 ]
 # A solution's methods (plot, save, ...) call what comes later, but only when they are called.
-LATE_IMPORTS = {"solution": {"case", "archive", "views"}, "case": {"case_file"}}
-NOT_FOR_VIEWS = {"simulate", "archive", "case_file", "toml_text"}
+LATE_IMPORTS = {"solution": {"case", "archive", "views"}}
+NOT_FOR_VIEWS = {"simulate", "archive", "case", "case_file", "toml_text"}
 
 FORBIDDEN_NAMES = {"util", "utils", "helper", "helpers", "common", "misc", "impl"}
 LIBM = (
     "sin|cos|tan|sincos|asin|acos|atan|atan2|sinh|cosh|tanh|"
     "exp|exp2|expm1|log|log2|log10|log1p|pow|cbrt|hypot"
 )
-KERNELS = ["arithmetic", "dynamics", "integrate"]
+KERNELS = ["arithmetic", "dynamics", "integrate", "solution"]
 
 
 def files(root: Path, suffixes: set[str], *folders: str) -> Iterator[Path]:
@@ -166,9 +166,11 @@ def files_are_short(root: Path) -> Iterator[str]:
 def kernels_call_no_libm(root: Path) -> Iterator[str]:
     """Only what is correctly rounded (sqrt, fma, ...) gives the same bits on every machine."""
     call = re.compile(rf"(?<![\w.>:])(?:std::|::|__builtin_)?(?:{LIBM})[fl]?\s*\(")
-    for folder in KERNELS:
-        places = [f"cpp/include/pendcore/{folder}", f"cpp/src/{folder}"]
-        for path in files(root, {".hpp", ".cpp"}, *places):
+    cpp = root / "cpp"
+    for base in (cpp / "include/pendcore", cpp / "src"):
+        for path in files(base, {".hpp", ".cpp"}, ""):
+            if cpp_stage(cpp, path.relative_to(base)) not in KERNELS:
+                continue
             for found in call.findall(without_comments(path.read_text())):
                 yield f"{path.relative_to(root)} calls {found}...)"
 

@@ -111,6 +111,9 @@ OUT_OF_RANGE = {
     "max_steps negative": ({"max_steps": -5}, r"max_steps = -5: must be >= 1"),
     "time_limit zero": ({"time_limit": 0}, r"time_limit = 0\.0: must be > 0 \(s\)"),
     "time_limit nan": ({"time_limit": nan}, r"time_limit = nan: must be > 0 \(s\)"),
+    "t_eval empty": ({"t_eval": []}, r"t_eval: is empty: must hold a time \(s\), or be left out"),
+    "two first steps": ({"step": 0.1, "first_step": 0.1}, r"first_step: a fixed step is given as"),
+    "step too long": ({"step": 0.1, "max_step": 0.01}, r"step = 0\.1: must be <= max_step = 0\.01"),
     "t_eval not sorted": (
         {"t_eval": [0.5, 0.25]},
         r"t_eval\[1\] = 0\.25: must be beyond t_eval\[0\] = 0\.5 .*: sort the times",
@@ -137,10 +140,11 @@ OUT_OF_RANGE = {
         r"store = 'all': must be \"dense\", \"steps\", \"times\" or \"end\"",
     ),
     "store no text": ({"store": 1}, r"store = 1: "),
-    "times without times": ({"store": "times"}, r"t_eval: store=\"times\" keeps.*: give them"),
+    "times without times": ({"store": "times"}, r"t_eval: none given: store = \"times\" keeps"),
     "t_span a number": ({"t_span": 5}, r"t_span = 5: must be \(t_start, t_end\)"),
     "t_span of three": ({"t_span": (0, 1, 2)}, r"t_span = \(0, 1, 2\): must be \(t_start, t_end\)"),
     "t_span missing": ({"t_span": ()}, r"t_span = \(\): must be \(t_start, t_end\)"),
+    "t_span left out": ({"t_span": None}, r"t_span is missing: give \(t_start, t_end\), in s"),
     "no scene": ({"scene": "textbook"}, r"scene = 'textbook': must be a pendcore.Scene"),
     "progress no function": ({"progress": 3}, r"progress = 3: must be None, True, False, or"),
 }
@@ -151,6 +155,35 @@ def test_a_value_out_of_range_is_told_with_the_range(case):
     changes, message = OUT_OF_RANGE[case]
     with pytest.raises((ValueError, TypeError), match=f"^{message}"):
         simulate(**changes)
+
+
+def test_a_scene_alone_is_told_what_is_missing():
+    with pytest.raises(TypeError, match=r"^q0 is missing: give"):
+        pc.simulate(pc.Scene.textbook())
+    with pytest.raises(TypeError, match=r"^t_span is missing: give"):
+        pc.simulate(pc.Scene.textbook(), 1)
+
+
+def test_whoever_simulates_a_case_is_told_how():
+    with pytest.raises(TypeError, match=r"^scene: is a Case: .*case\.simulate\(\)"):
+        pc.simulate(pc.Case.textbook())
+
+
+def test_the_scene_is_looked_at_first():
+    with pytest.raises(TypeError, match=r"^scene = 5: must be a pendcore\.Scene"):
+        pc.simulate(5, t_span=5)
+
+
+@pytest.mark.parametrize("size", [400, 5000])
+def test_an_integer_beyond_the_floats_is_refused_by_name(size):
+    huge = 10**size
+    for name in ("mass", "length", "center", "inertia"):
+        with pytest.raises(ValueError, match=rf"^{name}: is too large: must be below 1.8e308 \("):
+            pc.Link(**{"mass": 1, "length": 1, name: huge})
+    for q in (huge, [1, huge]):
+        with pytest.raises(ValueError, match=r"^q: is too large: must be below 1.8e308 \(rad\)"):
+            pc.Scene.textbook().mass_matrix(q)
+    assert pc.Scene.textbook().mass_matrix([10**20, 0]).shape == (2, 2)
 
 
 def test_an_unknown_keyword_is_a_type_error():

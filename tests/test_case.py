@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
 import re
 from math import pi
 
@@ -106,6 +108,35 @@ def test_the_start_may_be_given_in_degrees():
     assert read.q0 == (pi / 4, pi / 3)
 
 
+@pytest.mark.parametrize(("key", "value"), [("q", "1"), ("q_deg", "45.0"), ("qd", "0.5")])
+def test_one_number_holds_for_every_link(key, value):
+    both = [f"{key} = {value}", f"{key} = [{value}, {value}]"]
+    others = "q = 1\n" * (key == "qd")
+    links = 2 * "[[link]]\nmass = 1\nlength = 1\n"
+    one, two = (
+        pc.read_case(f"{links}[start]\n{others}{line}\n[run]\nt_end = 1\n") for line in both
+    )
+    assert one == two
+
+
+def test_a_byte_order_mark_is_no_part_of_the_text(tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(TEXTBOOK, encoding="utf-8-sig")
+    assert pc.read_case(path) == pc.read_case("\ufeff" + TEXTBOOK) == pc.read_case(TEXTBOOK)
+
+
+@given(cases())
+def test_a_case_hashes_and_comes_back_from_pickle(case):
+    again = pickle.loads(pickle.dumps(case))
+    assert again == copy.deepcopy(case) == case
+    assert hash(again) == hash(case)
+
+
+def test_options_cannot_be_changed():
+    with pytest.raises(TypeError):
+        pc.read_case(TEXTBOOK).options["rtol"] = 1e-3
+
+
 def test_tables_may_be_written_inline():
     inline = """
         link = [{mass = 1.0, length = 1.0},
@@ -176,16 +207,31 @@ MISTAKES = {
     "no end": (("t_end = 5.0\n", ""), "line 12: [run] needs t_end (s)"),
     "text for a number": (("gravity = 9.807", 'gravity = "9.8"'), "line 2: gravity = '9.8': must"),
     "truth for a number": (("mass = 1.0", "mass = true"), "line 4: mass = True: must be a"),
-    "number for a list": (("qd = [0.0, 0.0]", "qd = 0.0"), "line 11: qd = 0.0: must be a list"),
-    "text in a list": (("[0.0, 0.0]", '[0.0, "0"]'), "line 11: qd = [0.0, '0']: must be a list"),
+    "text for a list": (("qd = [0.0, 0.0]", 'qd = "0"'), "line 11: qd = '0': must be a number or"),
+    "text in a list": (("[0.0, 0.0]", '[0.0, "0"]'), "line 11: qd = [0.0, '0']: must be a number"),
+    "bad degrees": (
+        ("q = [0.7853981633974483, 1.0471975511965976]", "q_deg = [45, nan]"),
+        "line 10: q_deg[1] = nan: must be finite (deg)",
+    ),
+    "too many degrees": (
+        ("q = [0.7853981633974483, 1.0471975511965976]", "q_deg = [45, 60, 75]"),
+        "line 10: q_deg: shape (3,): must be (2,) (deg)",
+    ),
+    "rates in degrees": (
+        ("qd =", "qd_deg ="),
+        "line 11: unknown key 'qd_deg' in [start]: give qd, in rad/s",
+    ),
+    "huge number": (("gravity = 9.807", f"gravity = 1{400 * '0'}"), "line 2: gravity: is too"),
+    "huge in a list": (("[0.0, 0.0]", f"[0, 1{400 * '0'}]"), "line 11: qd: is too large"),
+    "endless number": (("gravity = 9.807", f"gravity = 1{5000 * '0'}"), "case.toml: "),
     "number for text": (('"double pendulum, section 2.1"', "2.1"), "line 1: name = 2.1: must be"),
     "date in [run]": (("rtol = 1e-9", "rtol = 2020-01-01"), "line 16: rtol = "),
     "date in a list": (("rtol = 1e-9", "rtol = [2020-01-01]"), "line 16: rtol = "),
     "negative mass": (("mass = 1.0\nlength = 1.0\n[start]", "mass = -1.0\nlength = 1.0\n[start]"),
                       "line 7: link 2: mass = -1"),
-    "not a number": (("qd = [0.0, 0.0]", "qd = [0.0, nan]"), "line 11: qd0[1] = nan: must be"),
+    "not a number": (("qd = [0.0, 0.0]", "qd = [0.0, nan]"), "line 11: qd[1] = nan: must be"),
     "infinite gravity": (("9.807", "inf"), "line 2: gravity = inf: must be finite"),
-    "too many angles": (("[0.0, 0.0]", "[0.0, 0.0, 0.0]"), "line 11: qd0: shape (3,): must be"),
+    "too many angles": (("[0.0, 0.0]", "[0.0, 0.0, 0.0]"), "line 11: qd: shape (3,): must be"),
 }  # fmt: skip
 
 

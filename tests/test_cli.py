@@ -58,7 +58,7 @@ def test_the_summary_tells_what_was_simulated_and_what_came_of_it(capsys):
         r"1 +1 +1 +0\.5 +0\.0833333",
         r"gravity +9\.807 m/s\^2",
         r"mobility +M = 3 n - 2 c5 - c4 = 3\*2 - 2\*2 - 0 = 2",
-        r"start +t = 0 s, q = \(0\.785398, 1\.0472\) rad, qd = \(0, 0\) rad/s",
+        r"start +t = 0 s, q = \(0\.785398, 1\.0472\) rad = \(45, 60\) deg, qd =",
         r"method +dopri5, rtol 1e-09, atol 1e-12",
         r"not simulated +friction",
         r"status +finished",
@@ -68,6 +68,8 @@ def test_the_summary_tells_what_was_simulated_and_what_came_of_it(capsys):
         r"largest reaction +joint 1: 31\.9\d+ N at t = 0\.6",
     ):
         assert re.search(fact, text), fact
+    assert "kept time" not in text
+    assert "too large to trust" not in text
 
 
 def test_json_has_the_same_facts(capsys):
@@ -95,7 +97,8 @@ def test_a_failed_run_writes_what_it_has_and_ends_with_1(capsys):
     out, err = capsys.readouterr()
     assert written("out/short") == FILES
     assert json.loads(out)["status"] == "max_steps"
-    assert "the run failed: " in err
+    assert "the run is not complete: " in err
+    assert "to go on, in Python: pc.load('out/short/solution.npz').resume(5.0)" in err
     assert 0 < pc.load("out/short/solution.npz").t[-1] < 5
 
 
@@ -104,17 +107,85 @@ def test_ctrl_c_writes_what_there_is_and_ends_with_1(capsys):
     Path("long.toml").write_text(endless)
     threading.Timer(0.3, signal.raise_signal, [signal.SIGINT]).start()
     assert main(["run", "long.toml"]) == 1
-    assert "interrupted" in capsys.readouterr().err
+    out, err = capsys.readouterr()
     assert written("out/long") == FILES
+    assert "interrupted" in err
+    assert "interrupted: interrupted" not in out + err
+    (again,) = re.findall(r"to go on, in Python: (.*)\.resume\(1000000000\.0\)", err)
+    assert eval(again, {"pc": pc}).status == "interrupted"
 
 
-@pytest.mark.parametrize("store", ["steps", "end", "times"])
-def test_whatever_is_stored_can_be_summed_up(store):
-    asked = f'store = "{store}"\n' + "t_eval = [1.0, 2.0]\n" * (store == "times")
-    Path("swing.toml").write_text(CASE + asked)
+@pytest.mark.parametrize("stage", ["pendcore.case.simulate", "pendcore.cli.run.facts"])
+def test_ctrl_c_outside_the_run_is_told_in_a_line(stage, monkeypatch, capsys):
+    def stop(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(stage, stop)
+    assert main(["run"]) == 1
+    assert capsys.readouterr() == ("", "pendcore run: interrupted\n")
+
+
+@pytest.mark.parametrize(
+    ("asked", "among"),
+    [
+        ('store = "steps"', None),
+        ('store = "end"', "among the 1 kept time\n"),
+        ("t_eval = [1.0, 2.0]", "among the 2 kept times\n"),
+        ('t_eval = [1.0, 2.0]\nstore = "dense"', "among the 2 kept times\n"),
+    ],
+)
+def test_whatever_is_kept_start_end_and_drift_are_the_runs(asked, among, capsys):
+    Path("swing.toml").write_text(f"{CASE}{asked}\n")
     assert main(["run", "swing.toml"]) == 0
-    energy = json.loads(Path("out/swing/summary.json").read_text())["energy"]
-    assert (energy is None) == (store == "end")
+    found = json.loads(Path("out/swing/summary.json").read_text())
+    whole = pc.Case.textbook().simulate()
+    assert found["end"] == {"t": 5.0, "q": [*whole.q[-1]], "qd": [*whole.qd[-1]]}
+    total = whole.energy().total
+    assert (found["energy"]["start"], found["energy"]["end"]) == (total[0], total[-1])
+    assert 0 < found["energy"]["largest_drift"] < 1e-7
+    said = capsys.readouterr().out
+    assert (among or "joint 2") in said
+    assert ("kept time" in said) == (among is not None)
+
+
+def test_a_run_that_ended_before_the_first_time_asked_for_is_summed_up(capsys):
+    Path("short.toml").write_text(f"{CASE}t_eval = [4.0]\nmax_steps = 5\n")
+    assert main(["run", "short.toml"]) == 1
+    out = capsys.readouterr().out
+    assert re.search(r"largest reaction +among the 0 kept times", out)
+    assert re.search(r"\n  end +t = 0\.\d+ s, q = \(0\.7", out)
+
+
+def test_a_fixed_step_takes_the_place_of_the_tolerances(capsys):
+    Path("fixed.toml").write_text(CASE + "step = 0.01\nrtol = 1e-6\n")
+    assert main(["run", "fixed.toml"]) == 0
+    out = capsys.readouterr().out
+    assert "  method            dopri5, step 0.01\n" in out
+    assert "tol" not in json.loads(Path("out/fixed/summary.json").read_text())["run"]
+
+
+def test_a_drift_that_is_too_large_is_called_out(capsys):
+    Path("coarse.toml").write_text(CASE + "rtol = 0.1\natol = 0.1\n")
+    assert main(["run", "coarse.toml"]) == 0
+    assert "too large to trust this run: tighten rtol and atol" in capsys.readouterr().out
+    assert json.loads(Path("out/coarse/summary.json").read_text())["energy"]["too_large"] is True
+
+
+def test_earlier_files_are_replaced_and_it_says_so(capsys):
+    said = []
+    for argv in 2 * [["run"]] + 2 * [["plot", "out/textbook/solution.npz", "-o", "a.png"]]:
+        assert main(argv) == 0
+        said.append(capsys.readouterr().err)
+    assert ["replaced" in err for err in said] == [False, True, False, True]
+
+
+def test_a_refused_case_leaves_no_folder_behind():
+    Path("bad.toml").write_text(CASE + "rtol = -1.0\n")
+    Path("there").mkdir()
+    for out in ("a/b/c", "there/d", "there"):
+        assert main(["run", "bad.toml", "-o", out]) == 2
+    assert written(".") == ["bad.toml", "there"]
+    assert written("there") == []
 
 
 def test_an_implausible_scene_is_run_with_a_warning(capsys):
@@ -127,8 +198,10 @@ MISTAKES = {
     "no such file": (["run", "nothing.toml"], "nothing.toml: No such file or directory"),
     "a folder": (["run", "."], "Is a directory"),
     "unknown key": (["run", "key.toml"], "key.toml, line 2: unknown key 'gravty'"),
-    "bad tolerance": (["run", "rtol.toml"], "rtol.toml: rtol = -1"),
-    "unknown method": (["run", "method.toml"], 'method.toml: method = "euler"'),
+    "bad tolerance": (["run", "rtol.toml"], "rtol.toml, line 19: rtol = -1"),
+    "unknown method": (["run", "method.toml"], 'method.toml, line 19: method = "euler"'),
+    "times not sorted": (["run", "t_eval.toml"], "t_eval.toml, line 20: t_eval[1] = 1.0: must"),
+    "too many links": (["run", "links.toml"], "links.toml, line 4: links: 3 links: this version"),
     "a file for a folder": (["run", "-o", "key.toml"], "key.toml: File exists"),
     "unknown command": (["jump"], "invalid choice: 'jump'"),
     "no command": ([], "COMMAND"),
@@ -144,6 +217,9 @@ def test_wrong_usage_is_told_in_a_line_and_ends_with_2(mistake, capsys):
     Path("key.toml").write_text(CASE.replace("gravity", "gravty"))
     Path("rtol.toml").write_text(CASE + "rtol = -1.0\n")
     Path("method.toml").write_text(CASE + 'method = "euler"\n')
+    Path("t_eval.toml").write_text(CASE + "\nt_eval = [2.0, 1.0]\n")
+    three = CASE.replace("[start]", "[[link]]\nmass = 1\nlength = 1\n[start]")
+    Path("links.toml").write_text(re.sub(r"q(d?) = .*", r"q\1 = 0", three))
     pc.simulate(pc.Scene.textbook(), 1, t_span=(0, 1)).save("run.npz")
     argv, message = MISTAKES[mistake]
     assert main(argv) == 2
@@ -195,3 +271,16 @@ def test_it_runs_as_a_module_of_python():
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     assert json.loads(done.stdout)["success"]
     assert done.stderr == "written to here\n"
+
+
+@pytest.mark.outside_build
+@pytest.mark.parametrize("argv", [["run"], ["run", "--json"]], ids=" ".join)
+def test_nobody_reading_is_no_failure_of_the_run(argv):
+    command = [sys.executable, "-m", "pendcore", *argv]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    process.stdout.close()
+    err = process.stderr.read()
+    process.stderr.close()
+    assert process.wait() == 141
+    assert err == "written to out/textbook\n"
+    assert written("out/textbook") == FILES

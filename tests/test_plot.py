@@ -80,6 +80,68 @@ def test_one_axes_takes_all_curves_and_names_them(sol):
     assert [text.get_text() for text in ax.get_legend().get_texts()] == ["q1", "q2"]
 
 
+def test_solutions_on_the_same_axes_can_be_told_apart(sol):
+    first = sol.plot(label="rtol 1e-9")
+    axes = [line.axes for line in first]
+    second = pc.simulate(SCENE, 1.0, t_span=(0, 5)).plot(axes, label="another start")
+    for i in range(2):
+        assert first[i].get_linestyle() != second[i].get_linestyle()
+        legend = [text.get_text() for text in axes[i].get_legend().get_texts()]
+        assert legend == ["rtol 1e-9", "another start"]
+
+
+def test_solutions_on_one_axes_can_be_told_apart(sol):
+    _, ax = plt.subplots()
+    lines = [line for label in "abc" for line in sol.plot(ax, label=label)]
+    assert len({(line.get_color(), line.get_linestyle()) for line in lines}) == 6
+    legend = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert legend == ["q1, a", "q2, a", "q1, b", "q2, b", "q1, c", "q2, c"]
+
+
+@pytest.mark.parametrize("names", [("color", "linestyle", "linewidth"), ("c", "ls", "lw")])
+def test_lines_are_drawn_as_asked(sol, names):
+    asked = dict(zip(names, ("tab:green", ":", 3.0), strict=True))
+    for line in sol.plot(**asked):
+        assert to_rgb(line.get_color()) == to_rgb("tab:green")
+        assert (line.get_linestyle(), line.get_linewidth()) == (":", 3.0)
+
+
+@pytest.mark.parametrize(("count", "marker"), [(11, "."), (1001, "")])
+def test_few_points_with_nothing_between_them_are_marked(count, marker):
+    run = pc.simulate(SCENE, 1.0, t_span=(0, 5), t_eval=np.linspace(0, 5, count))
+    assert run.plot()[0].get_marker() == marker
+
+
+def test_rest_looks_like_rest():
+    hanging = pc.simulate(SCENE, np.pi / 2, t_span=(0, 5))
+    line = hanging.plot()[0]
+    low, high = line.axes.get_ylim()
+    assert high - low == pytest.approx(0.1)
+    line.figure.canvas.draw()
+    assert line.axes.yaxis.get_major_formatter().get_offset() == ""
+
+
+def test_late_times_are_written_out():
+    """Not as the last digits of an offset in the corner."""
+    line = pc.simulate(SCENE, 1.0, t_span=(2e4, 2e4 + 1)).plot()[0]
+    line.figure.canvas.draw()
+    assert line.axes.xaxis.get_major_formatter().get_offset() == ""
+
+
+def test_what_is_drawn_after_rest_is_seen_whole(sol):
+    hanging = pc.simulate(SCENE, np.pi / 2, t_span=(0, 5)).plot()
+    sol.plot([line.axes for line in hanging])
+    low, high = hanging[0].axes.get_ylim()
+    assert low < np.rad2deg(sol.q[:, 0]).min()
+    assert high > np.rad2deg(sol.q[:, 0]).max()
+
+
+@pytest.mark.parametrize("ax", ["axes", 5, [None, None]], ids=repr)
+def test_what_is_no_axes_is_refused_by_name(sol, ax):
+    with pytest.raises(TypeError, match=r"^ax = .*: must be matplotlib Axes, one, or 2"):
+        sol.plot(ax=ax)
+
+
 def test_a_single_link_has_a_single_axes():
     rod = pc.Scene(links=[pc.Link(mass=1, length=1)])
     (line,) = pc.simulate(rod, 1.0, t_span=(0, 1)).plot()

@@ -17,6 +17,8 @@ from pendcore import _core
 ROOT = Path(__file__).parent.parent
 CMAKE = Path(cmake.CMAKE_BIN_DIR) / "cmake"
 BOOK = pc.Scene.textbook()
+ERROR_ORDERS = {method["name"]: method["error_order"] for method in _core.methods()}
+METHODS = list(ERROR_ORDERS)
 SETS = ["baseline", "x86-64-v3", "x86-64-v4"]
 
 SCENES = """
@@ -35,6 +37,8 @@ runs = [
     pc.simulate(rod, -1.2, 0, (0, 30), rtol=1e-6),
     pc.simulate(floating, [0.3, 0.9], [3e-160, -1e-160], (0, 1e159)),
     pc.simulate(floating, [0.3, 0.9], [4e-310, -1e-310], (0, 1e-3), atol=0),
+    *(pc.simulate(book, [0.8, 1.0], 0, (0, 5), method=method["name"], step=0.01)
+      for method in _core.methods()),
 ]
 digest = hashlib.sha256()
 for sol in runs:
@@ -132,16 +136,17 @@ def test_threads_that_share_a_scene_do_not_disturb_each_other():
     assert all(np.array_equal(a, b) for a, b in zip(alone, together, strict=True))
 
 
+@pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("store", ["end", "times", "steps", "dense"])
 @pytest.mark.parametrize("stop", [0.0, 1e-4, 3.21, 9.999])
-def test_a_resumed_run_has_the_bits_of_one_that_never_stopped(store, stop):
+def test_a_resumed_run_has_the_bits_of_one_that_never_stopped(method, store, stop):
     grid = np.linspace(0, 10, 101)
     early, late = grid[grid <= stop], grid[grid > stop]
-    wanted = {"t_eval": grid} if store == "times" else {}
-    had = {"t_eval": early} if store == "times" else {}
-    more = {"t_eval": late} if store == "times" else {}
-    whole = pc.simulate(BOOK, [-1.4, -1.1], 0, (0, 10), store=store, **wanted)
-    resumed = pc.simulate(BOOK, [-1.4, -1.1], 0, (0, stop), store=store, **had).resume(10, **more)
+    how = {"method": method, "store": store, "step": None if ERROR_ORDERS[method] else 0.01}
+    sampled = store == "times"
+    whole = pc.simulate(BOOK, [-1.4, -1.1], 0, (0, 10), t_eval=grid if sampled else None, **how)
+    begun = pc.simulate(BOOK, [-1.4, -1.1], 0, (0, stop), t_eval=early if sampled else None, **how)
+    resumed = begun.resume(10, t_eval=late if sampled else None)
     assert np.array_equal(whole.t, resumed.t)
     assert np.array_equal(whole.y, resumed.y)
     assert whole.stats == resumed.stats
@@ -150,7 +155,7 @@ def test_a_resumed_run_has_the_bits_of_one_that_never_stopped(store, stop):
 
 
 def test_mirrored_starts_move_as_mirror_images():
-    # left and right: theta -> -theta is q -> pi - q, so reflect about the vertical at g = 0 instead
+    # without gravity the plane may be turned over about the horizontal, q -> -q
     floating = pc.Scene(links=BOOK.links, gravity=0.0)
     one = pc.simulate(floating, [0.3, 1.1], [2.0, -1.0], (0, 10))
     other = pc.simulate(floating, [-0.3, -1.1], [-2.0, 1.0], (0, 10))
@@ -158,5 +163,7 @@ def test_mirrored_starts_move_as_mirror_images():
     assert np.array_equal(one.y, -other.y)
 
 
-def test_the_module_says_which_instructions_it_uses():
-    assert _core.instruction_set() in SETS
+def test_a_misspelt_instruction_set_is_refused():
+    with pytest.raises(subprocess.CalledProcessError) as failed:
+        hash_of_runs(PENDCORE_INSTRUCTION_SET="avx2")
+    assert "must be baseline, x86-64-v3 or x86-64-v4" in failed.value.stderr

@@ -92,17 +92,6 @@ def test_the_result_has_the_times_asked_for():
     assert np.array_equal(run.y, textbook()(t))
 
 
-def test_what_is_stored_changes_no_bit():
-    dense, t = textbook(), (1.0, 4.5, 5.0)
-    assert dense.store == "dense"
-    assert same_bits(textbook(store="steps"), dense)
-    assert np.array_equal(textbook(store="times", t_eval=t).y, dense(t))
-    end = textbook(store="end")
-    assert end.t.tolist() == [5.0]
-    assert np.array_equal(end.y[:, 0], dense.y[:, -1])
-    assert end.stats == dense.stats
-
-
 def test_dense_output_may_be_kept_beside_the_times_asked_for():
     run = textbook(t_eval=[1.0, 2.0], store="dense")
     assert run.t.tolist() == [1.0, 2.0]

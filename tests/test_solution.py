@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import copy
-import json
 import pickle
+import re
 import sys
 from math import pi
 
@@ -143,17 +143,6 @@ def test_statistics_add_up(sol):
     assert not stats.stiff
 
 
-def test_a_resumed_run_is_bitwise_as_if_it_had_never_stopped(sol):
-    part = pc.simulate(SCENE, q0=[0.3, -0.4], qd0=[1.0, -2.0], t_span=(1, 2.2))
-    whole = part.resume(3)
-    assert part.t[-1] == 2.2
-    assert np.array_equal(whole.t, sol.t)
-    assert np.array_equal(whole.y, sol.y)
-    assert whole.stats == sol.stats
-    assert whole.case() == sol.case()
-    assert np.array_equal(whole([1.7, 2.3]), sol([1.7, 2.3]))
-
-
 def test_a_capped_run_can_be_resumed(sol):
     capped = pc.simulate(SCENE, [0.3, -0.4], [1.0, -2.0], (1, 3), max_steps=9)
     assert capped.status == "max_steps"
@@ -169,7 +158,7 @@ def test_resume_samples_where_it_is_asked_to(sol):
 
 def test_resume_does_not_go_back(sol):
     with pytest.raises(
-        ValueError, match=r"^t_end = 2\.0: must be .* not before the end of the run so far, 3\.0 s"
+        ValueError, match=r"^t_end = 2\.0: must be .* at or beyond the end reached, 3\.0 s"
     ):
         sol.resume(2)
 
@@ -189,6 +178,29 @@ def test_resume_has_limits_and_progress_of_its_own(sol):
     assert part.t[-1] == 1.1
 
 
+def test_a_name_stays_with_the_solution_of_a_case(tmp_path):
+    sol = pc.Case.textbook().simulate()
+    sol.save(tmp_path / "run.npz")
+    for again in (sol, pc.load(tmp_path / "run.npz"), pickle.loads(pickle.dumps(sol))):
+        for run in (again, again.resume(6.0)):
+            assert run.name == run.case().name == "double pendulum, section 2.1"
+    assert pc.simulate(SCENE, 0.3, t_span=(0, 1)).name == ""
+
+
+def test_a_name_stays_with_a_run_that_was_broken_off():
+    def break_off(fraction):
+        raise LookupError
+
+    endless = {"store": "end", "time_limit": 10.0, "progress": break_off}
+    case = pc.Case(scene=SCENE, q0=1, t_span=(0, 1e9), name="long", options=endless)
+    with pytest.raises(LookupError) as stop:
+        case.simulate()
+    assert stop.value.solution.name == "long"
+    with pytest.raises(LookupError) as stop:
+        pc.Case.textbook().simulate().resume(1e9, time_limit=10, progress=break_off)
+    assert stop.value.solution.name == "double pendulum, section 2.1"
+
+
 def test_the_case_of_a_solution_gives_the_same_solution(sol):
     assert sol.case() == pc.Case(scene=SCENE, q0=(0.3, -0.4), qd0=(1.0, -2.0), t_span=(1.0, 3.0))
     assert same(sol.case().simulate(), sol)
@@ -206,55 +218,6 @@ def test_a_solution_comes_back_whole(store, way, tmp_path):
         again = copy.deepcopy(first) if way == "deepcopy" else pickle.loads(pickle.dumps(first))
     assert same(first, again)
     assert same(first.resume(2.0), again.resume(2.0))
-
-
-def test_a_file_is_written_under_the_name_asked_for(sol, tmp_path):
-    sol.save(str(tmp_path / "run"))
-    assert [path.name for path in tmp_path.iterdir()] == ["run"]
-
-
-def test_a_file_can_be_read_without_pendcore(sol, tmp_path):
-    sol.save(tmp_path / "run.npz")
-    with np.load(tmp_path / "run.npz", allow_pickle=False) as file:
-        entries = dict(file)
-    assert all(entry.dtype.kind != "O" for entry in entries.values())
-    for name in ("t", "q", "qd", "y"):
-        assert np.array_equal(entries[name], getattr(sol, name))
-    assert pc.read_case(str(entries["case"])) == sol.case()
-    assert json.loads(str(entries["statistics"])) == sol.stats._asdict()
-    assert str(entries["version"]) == pc.__version__
-
-
-def test_a_file_that_is_no_solution_is_named(sol, tmp_path):
-    sol.save(tmp_path / "run.npz")
-    whole = (tmp_path / "run.npz").read_bytes()
-    with np.load(tmp_path / "run.npz") as file:
-        entries = dict(file)
-    np.savez(tmp_path / "other.npz", t=[1, 2])
-    np.savez(tmp_path / "no case.npz", **{**entries, "case": "README.md"})
-    np.savez(tmp_path / "status.npz", **{**entries, "run.status": 5})
-    np.savez(tmp_path / "sizes.npz", **{**entries, "run.states": np.zeros(4)})
-    rod = pc.Case(scene=pc.Scene(links=SCENE.links[:1]), q0=0, t_span=(0, 1))
-    np.savez(tmp_path / "links.npz", **{**entries, "case": rod.to_toml()})
-    (tmp_path / "text.npz").write_text("t = 1\n")
-    (tmp_path / "empty.npz").write_bytes(b"")
-    (tmp_path / "half.npz").write_bytes(whole[: len(whole) // 2])
-    np.save(tmp_path / "array.npz.npy", np.zeros(3))
-    for path in set(tmp_path.iterdir()) - {tmp_path / "run.npz"}:
-        with pytest.raises(
-            ValueError, match=rf"{path.name}: is not a solution that pendcore saved"
-        ):
-            pc.load(path)
-    with pytest.raises(FileNotFoundError):
-        pc.load(tmp_path / "nothing.npz")
-
-
-def test_a_warning_about_the_scene_is_not_given_again(tmp_path):
-    with pytest.warns(pc.PendcoreWarning):
-        scene = pc.Scene(links=[pc.Link(mass=1, length=1, inertia=5)])
-    run = pc.simulate(scene, 0, 0, (0, 1))
-    run.save(tmp_path / "run.npz")
-    assert pc.load(tmp_path / "run.npz").scene == pickle.loads(pickle.dumps(run)).scene == scene
 
 
 def test_pandas_gets_a_row_per_time_with_units(sol):
@@ -296,7 +259,15 @@ def test_repr_is_a_short_table():
     assert lines[4] == "  t        0 ... 1 s, 5 kept"
     assert lines[5].startswith("  last q   ")
     assert lines[6].endswith(" rad/s")
+    assert lines[7].startswith("  energy   drift ")
     assert max(map(len, lines)) <= 80
     table = run._repr_html_()
     assert table.startswith("<table>")
     assert all(line.split("  ")[1] in table for line in lines[1:])
+
+
+def test_energy_is_shown_in_a_line(sol):
+    assert re.fullmatch(
+        r"<Energy: kinetic, potential, total at \d+ times, total \S+ \.\.\. \S+ J>",
+        repr(sol.energy()),
+    )

@@ -12,9 +12,14 @@ bool is_plain_number(py::handle value) {
   return PyFloat_Check(value.ptr()) || (PyLong_Check(value.ptr()) && !PyBool_Check(value.ptr()));
 }
 
-double plain_number(py::handle value) {
+[[noreturn]] void refuse_size(const char* name, const char* range) {
+  PyErr_Clear();
+  throw py::value_error(std::string(name) + ": is too large: must be " + range);
+}
+
+double plain_number(const char* name, py::handle value) {
   const double x = PyFloat_AsDouble(value.ptr());
-  if (x == -1.0 && PyErr_Occurred() != nullptr) throw py::error_already_set();
+  if (x == -1.0 && PyErr_Occurred() != nullptr) refuse_size(name, "below 1.8e308");
   return x;
 }
 
@@ -34,7 +39,7 @@ std::optional<Array> real_array(py::handle value) {
 }  // namespace
 
 double number(const char* name, py::handle value) {
-  if (is_plain_number(value)) return plain_number(value);
+  if (is_plain_number(value)) return plain_number(name, value);
   const auto array = real_array(value);
   if (!array || array->ndim() != 0) refuse_type(name, value, "a real number");
   return *array->data();
@@ -52,20 +57,20 @@ long long whole_number(const char* name, py::handle value) {
   const auto index = py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr()));
   if (!index) throw py::error_already_set();
   const long long result = PyLong_AsLongLong(index.ptr());
-  if (result == -1 && PyErr_Occurred() != nullptr) throw py::error_already_set();
+  if (result == -1 && PyErr_Occurred() != nullptr) refuse_size(name, "below 2^63");
   return result;
 }
 
 std::vector<double> numbers(const char* name, py::handle value, const std::string& wanted,
                             std::size_t copies) {
-  if (is_plain_number(value)) return std::vector<double>(copies, plain_number(value));
+  if (is_plain_number(value)) return std::vector<double>(copies, plain_number(name, value));
   if (PyList_Check(value.ptr()) || PyTuple_Check(value.ptr())) {
     const auto size = static_cast<std::size_t>(PySequence_Fast_GET_SIZE(value.ptr()));
     PyObject* const* items = PySequence_Fast_ITEMS(value.ptr());
     std::vector<double> result(size);
     std::size_t i = 0;
     while (i < size && is_plain_number(items[i])) {
-      result[i] = plain_number(items[i]);
+      result[i] = plain_number(name, items[i]);
       ++i;
     }
     if (i == size) return result;

@@ -1,10 +1,9 @@
 #include <pybind11/stl.h>
 
-#include <array>
 #include <cmath>
-#include <utility>
 
-#include "run.hpp"
+#include "arguments.hpp"
+#include "python_monitor.hpp"
 #include "run_state.hpp"
 
 namespace pendcore::bindings {
@@ -41,7 +40,7 @@ py::dict arguments(const Run& run) {
   result["atol"] = one_or_many(s.options.atol);
   result["t_eval"] = times ? py::object(copy_flat(s.options.t_eval)) : py::none();
   const Store usual = times ? Store::times : Store::dense;
-  result["store"] = or_none(s.options.store != usual, name(s.options.store));
+  result["store"] = or_none(s.options.store != usual, store_name(s.options.store));
   result["first_step"] = s.options.first_step;
   result["max_step"] = s.options.max_step;
   result["step"] = s.options.step;
@@ -87,6 +86,9 @@ void bind_run(py::module_& module) {
                                const Solution& s = self.cast<const Run&>().solution;
                                return view(s.states, {size(s.t), s.dimension}, self);
                              })
+      .def_property_readonly("t_reached", [](const Run& run) { return run.solution.t_reached; })
+      .def_property_readonly("y_reached",
+                             [](const Run& run) { return copy_flat(run.solution.y_reached); })
       .def_property_readonly("status",
                              [](const Run& run) { return text(run.solution.status).name; })
       .def_property_readonly("message", [](const Run& run) { return run.solution.message; })
@@ -94,7 +96,7 @@ void bind_run(py::module_& module) {
                              [](const Run& run) { return text(run.solution.status).success; })
       .def_property_readonly("method", [](const Run& run) { return run.solution.options.method; })
       .def_property_readonly("store",
-                             [](const Run& run) { return name(run.solution.options.store); })
+                             [](const Run& run) { return store_name(run.solution.options.store); })
       .def_property_readonly("statistics",
                              [](const Run& run) { return statistics(run.solution.statistics); })
       .def_property_readonly("arguments", &arguments)

@@ -1,8 +1,9 @@
 #include <pybind11/stl.h>
 
+#include <span>
+
 #include "arguments.hpp"
 #include "pendcore/arithmetic/floating_point_environment.hpp"
-#include "pendcore/integrate/methods.hpp"
 #include "pendcore/pendcore.hpp"
 
 namespace pendcore::bindings {
@@ -29,57 +30,51 @@ class Rows {
     }
   }
   py::ssize_t count() const { return array_.shape(0); }
-  Eigen::Map<const Eigen::VectorXd> operator[](py::ssize_t i) const {
-    return {array_.data(i, 0), n_};
+  std::span<const double> operator[](py::ssize_t i) const {
+    return {array_.data(i, 0), static_cast<std::size_t>(n_)};
   }
-  const double* data(py::ssize_t i) const { return array_.data(i, 0); }
 
  private:
   py::ssize_t n_;
   const Array& array_;
 };
 
-Eigen::Map<Points> points(Array& array, py::ssize_t i) {
-  return {array.mutable_data(i, 0, 0), array.shape(1), 2};
+/// Row i of an array with two more axes.
+std::span<double> row(Array& array, py::ssize_t i) {
+  return {array.mutable_data(i, 0, 0), static_cast<std::size_t>(array.shape(1) * array.shape(2))};
 }
 
 /// positions() or mass_centers() of each row of angles, with `count` points each.
-Array points_of_rows(void (*compute)(const Scene&, Values, PointsOut), const Scene& scene,
-                     const Array& q, std::size_t count) {
+Array points_of_rows(void (*compute)(const Scene&, std::span<const double>, std::span<double>),
+                     const Scene& scene, const Array& q, std::size_t count) {
   const FloatingPointEnvironment ieee;
   const Rows angles(scene, "q", q);
   Array result({angles.count(), static_cast<py::ssize_t>(count), py::ssize_t{2}});
-  for (py::ssize_t i = 0; i < angles.count(); ++i) compute(scene, angles[i], points(result, i));
+  for (py::ssize_t i = 0; i < angles.count(); ++i) compute(scene, angles[i], row(result, i));
   return result;
 }
 
-Array accelerations(const Scene& scene, const Array& t, const Array& q, const Array& qd) {
+Array acceleration_rows(const Scene& scene, const Array& t, const Array& q, const Array& qd) {
   const FloatingPointEnvironment ieee;
   const Rows angles(scene, "q", q);
   const Rows rates(scene, "qd", qd);
-  const auto n = static_cast<py::ssize_t>(scene.links.size());
-  const auto stepper = make_stepper(scene, Methods::infos[0]->name);
-  Array result({angles.count(), n});
-  std::vector<double> y(2 * n);
-  std::vector<double> dydt(2 * n);
+  const EquationsOfMotion equations = equations_of_motion(scene);
+  Array result({angles.count(), static_cast<py::ssize_t>(scene.links.size())});
   for (py::ssize_t i = 0; i < angles.count(); ++i) {
-    std::copy_n(angles.data(i), n, y.begin());
-    std::copy_n(rates.data(i), n, y.begin() + n);
-    stepper->evaluate(t.at(i), y.data(), dydt.data());
-    std::copy_n(dydt.begin() + n, n, result.mutable_data(i, 0));
+    accelerations(equations, t.at(i), angles[i].data(), rates[i].data(), result.mutable_data(i, 0));
   }
   return result;
 }
 
 Array reaction_forces(const Scene& scene, const Array& t, const Array& q, const Array& qd) {
   const FloatingPointEnvironment ieee;
-  const Array qdd = accelerations(scene, t, q, qd);
+  const Array qdd = acceleration_rows(scene, t, q, qd);
   const Rows angles(scene, "q", q);
   const Rows rates(scene, "qd", qd);
   const Rows second(scene, "qdd", qdd);
   Array result({q.shape(0), q.shape(1), py::ssize_t{2}});
   for (py::ssize_t i = 0; i < angles.count(); ++i) {
-    reactions(scene, angles[i], rates[i], second[i], points(result, i));
+    reactions(scene, angles[i], rates[i], second[i], row(result, i));
   }
   return result;
 }
@@ -91,7 +86,7 @@ void bind_scene(py::module_& module) {
       .def(py::init(&make_scene), py::arg("links"), py::arg("gravity"))
       .def_property_readonly("n", [](const Scene& scene) { return scene.links.size(); })
       .def_property_readonly("warnings", &plausibility_warnings)
-      .def("accelerations", &accelerations, py::arg("t"), py::arg("q"), py::arg("qd"))
+      .def("accelerations", &acceleration_rows, py::arg("t"), py::arg("q"), py::arg("qd"))
       .def("reactions", &reaction_forces, py::arg("t"), py::arg("q"), py::arg("qd"))
       .def(
           "mass_matrix",
@@ -102,8 +97,7 @@ void bind_scene(py::module_& module) {
             const Inertia inertia(scene);
             Array result({angles.count(), n, n});
             for (py::ssize_t i = 0; i < angles.count(); ++i) {
-              Eigen::Map<Eigen::MatrixXd>(result.mutable_data(i, 0, 0), n, n) =
-                  mass_matrix(inertia, angles[i]);
+              mass_matrix(inertia, angles[i], row(result, i));
             }
             return result;
           },

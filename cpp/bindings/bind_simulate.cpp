@@ -1,44 +1,46 @@
-#include "run.hpp"
+#include "arguments.hpp"
+#include "python_monitor.hpp"
 
 namespace pendcore::bindings {
 namespace {
 
 Store store_named(py::handle store, bool has_times) {
   if (store.is_none()) return has_times ? Store::times : Store::dense;
-  const std::string name = py::str(store);
-  if (name == "end") return Store::end;
-  if (name == "times") return Store::times;
-  if (name == "steps") return Store::steps;
-  if (name == "dense") return Store::dense;
+  for (std::size_t i = 0; i < store_names.size(); ++i) {
+    if (py::str(store).cast<std::string>() == store_names[i]) return static_cast<Store>(i);
+  }
   throw py::value_error("store = " + py::repr(store).cast<std::string>() +
                         ": must be \"dense\", \"steps\", \"times\" or \"end\"");
+}
+
+std::string method_named(py::handle method) {
+  try {
+    if (py::isinstance<py::str>(method)) return method.cast<std::string>();
+  } catch (const py::cast_error&) {  // a string that is no text
+  }
+  throw py::type_error("method = " + py::repr(method).cast<std::string>() +
+                       ": must be the name of a method");
 }
 
 Run simulate_run(const Scene& scene, py::handle q0, py::handle qd0, py::handle t0, py::handle t_end,
                  py::handle method, py::handle rtol, py::handle atol, py::handle t_eval,
                  py::handle store, py::handle first_step, py::handle max_step, py::handle step,
                  py::handle max_steps, py::handle time_limit, py::handle progress) {
-  if (!py::isinstance<py::str>(method)) {
-    throw py::type_error("method = " + py::repr(method).cast<std::string>() +
-                         ": must be the name of a method");
-  }
   const std::size_t n = scene.links.size();
   const std::string one_a_link = "(" + std::to_string(n) + ",)";
   const std::string one_a_component = "a number or (" + std::to_string(2 * n) + ",)";
   PythonMonitor monitor(progress);
   Options options;
-  options.method = method.cast<std::string>();
+  options.method = method_named(method);
   options.rtol = numbers("rtol", rtol, one_a_component);
   options.atol = numbers("atol", atol, one_a_component);
-  if (!t_eval.is_none()) options.t_eval = numbers("t_eval", t_eval);
+  if (!t_eval.is_none()) {
+    options.t_eval = numbers("t_eval", t_eval);
+    if (options.t_eval.empty()) {
+      throw py::value_error("t_eval: is empty: must hold a time (s), or be left out");
+    }
+  }
   options.store = store_named(store, !t_eval.is_none());
-  if (options.store == Store::times && t_eval.is_none()) {
-    throw py::value_error("t_eval: store=\"times\" keeps the times in t_eval: give them (s)");
-  }
-  if ((options.store == Store::end || options.store == Store::steps) && !t_eval.is_none()) {
-    throw py::value_error(
-        "store: keeps no times of t_eval: must be \"times\" or \"dense\" with it");
-  }
   options.first_step = optional_number("first_step", first_step);
   options.max_step = number("max_step", max_step);
   options.step = optional_number("step", step);
@@ -60,29 +62,6 @@ Run simulate_run(const Scene& scene, py::handle q0, py::handle qd0, py::handle t
 }
 
 }  // namespace
-
-bool PythonMonitor::operator()(double fraction) {
-  const py::gil_scoped_acquire lock;
-  if (PyErr_CheckSignals() == 0) {
-    if (progress_.is_none()) return true;
-    const py::object done = py::float_(fraction);
-    PyObject* result = PyObject_CallOneArg(progress_.ptr(), done.ptr());
-    Py_XDECREF(result);
-    if (result != nullptr) return true;
-  }
-  py::error_already_set error;
-  *error_ = error.value();
-  return false;
-}
-
-void PythonMonitor::close(Run& run) const {
-  if (!*error_) return;
-  run.error = *error_;
-  if (!PyErr_GivenExceptionMatches(run.error.ptr(), PyExc_KeyboardInterrupt)) {
-    run.solution.status = Status::callback_error;
-    run.solution.message = text(Status::callback_error).sentence;
-  }
-}
 
 void bind_simulate(py::module_& module) {
   module.def("simulate", &simulate_run, py::arg("scene"), py::arg("q0"), py::arg("qd0"),

@@ -1,14 +1,14 @@
 #include "run_state.hpp"
 
 #include <array>
+#include <cmath>
 #include <limits>
 
+#include "arguments.hpp"
 #include "pendcore/integrate/methods.hpp"
 
 namespace pendcore::bindings {
 namespace {
-
-constexpr std::array<const char*, 4> store_names = {"end", "times", "steps", "dense"};
 
 /// Puts fields into a dictionary.
 class Writer {
@@ -30,7 +30,9 @@ class Writer {
     const std::string_view word = text(status).name;
     fields[py::str(key)] = py::str(word.data(), word.size());
   }
-  void operator()(const std::string& key, Store store) { fields[py::str(key)] = name(store); }
+  void operator()(const std::string& key, Store store) {
+    (*this)(key, std::string(store_name(store)));
+  }
 };
 
 /// Takes the same fields out of one.
@@ -106,6 +108,7 @@ void visit(Archive& io, AnySolution& s) {
   io("states", s.states);
   io("dense_degree", s.dense.degree);
   io("dense_start", s.dense.start);
+  io("dense_start_low", s.dense.start_low);
   io("dense_h", s.dense.h);
   io("dense_coefficients", s.dense.coefficients);
   io("method", s.options.method);
@@ -139,22 +142,39 @@ void visit(Archive& io, AnySolution& s) {
   io("position_dydt", p.dydt);
 }
 
-/// A damaged file must end in an error, never in memory that is not ours.
-void check_sizes(const Solution& s) {
+bool arrays_fit(const Solution& s) {
   const auto n = static_cast<std::size_t>(s.dimension);
   const std::size_t steps = s.dense.h.size();
-  const bool fits =
-      s.states.size() == s.t.size() * n && s.start.size() == n && s.y_reached.size() == n &&
-      s.resumable.y.size() == n && s.resumable.dydt.size() == n && s.resumable_t <= s.t.size() &&
-      s.resumable_steps <= steps && s.dense.start.size() == steps && s.dense.degree >= 0 &&
-      s.dense.degree <= 64 &&
-      s.dense.coefficients.size() == steps * (static_cast<std::size_t>(s.dense.degree) + 1) * n;
-  if (!fits) throw py::value_error("the arrays of this solution do not fit together");
+  return s.states.size() == s.t.size() * n && s.start.size() == n && s.y_reached.size() == n &&
+         s.resumable.y.size() == n && s.resumable.dydt.size() == n && s.resumable_t <= s.t.size() &&
+         s.resumable_steps <= steps && s.dense.start.size() == steps &&
+         s.dense.start_low.size() == steps && s.dense.degree >= 0 && s.dense.degree <= 64 &&
+         s.dense.coefficients.size() == steps * (static_cast<std::size_t>(s.dense.degree) + 1) * n;
+}
+
+/// The polynomials lead from the start to the time reached, one after the other.
+bool polynomials_fit(const Solution& s) {
+  const std::vector<double>& start = s.dense.start;
+  if (!std::isfinite(s.t0) || !std::isfinite(s.t_reached)) return false;
+  if (s.options.store != Store::dense || s.t_reached == s.t0) return start.empty();
+  if (start.empty() || start.front() != s.t0) return false;
+  const double direction = s.t_reached < s.t0 ? -1.0 : 1.0;
+  for (std::size_t i = 0; i < start.size(); ++i) {
+    const double next = i + 1 < start.size() ? start[i + 1] : s.t_reached;
+    const bool onward = (next - start[i]) * direction > 0.0;
+    if (!(onward && s.dense.h[i] * direction > 0.0 && std::isfinite(s.dense.h[i]))) return false;
+  }
+  return true;
+}
+
+/// A damaged file must end in an error, never in memory that is not ours.
+void check_parts(const Solution& s) {
+  if (!arrays_fit(s) || !polynomials_fit(s)) {
+    throw py::value_error("the parts of this solution do not fit together");
+  }
 }
 
 }  // namespace
-
-const char* name(Store store) { return store_names[static_cast<std::size_t>(store)]; }
 
 py::dict statistics(const Statistics& statistics) {
   Writer io;
@@ -179,7 +199,8 @@ Run set_state(const py::dict& state) {
   Run run;
   std::vector<double> links;
   io("links", links);
-  for (std::size_t i = 0; i + 4 <= links.size(); i += 4) {
+  if (links.size() % 4 != 0) throw py::value_error("links: must have four numbers a link");
+  for (std::size_t i = 0; i < links.size(); i += 4) {
     run.scene.links.push_back({links[i], links[i + 1], links[i + 2], links[i + 3]});
   }
   io("gravity", run.scene.gravity);
@@ -188,7 +209,7 @@ Run set_state(const py::dict& state) {
   Solution& s = run.solution;
   s.options.method = find_method(s.options.method).name;
   s.dimension = 2 * static_cast<int>(run.scene.links.size());
-  check_sizes(s);
+  check_parts(s);
   return run;
 }
 

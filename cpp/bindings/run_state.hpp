@@ -6,8 +6,6 @@
 
 namespace pendcore::bindings {
 
-const char* name(Store store);  ///< "end", "times", "steps" or "dense"
-
 py::dict statistics(const Statistics& statistics);
 
 py::dict get_state(const Run& run);

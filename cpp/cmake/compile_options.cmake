@@ -5,7 +5,7 @@
 # running. The last two flags change no value; they free sqrt of errno and let selects be blends.
 set(pendcore_arithmetic -ffp-contract=off -fno-fast-math -fno-math-errno -fno-trapping-math)
 
-# The kernels say themselves what is unrolled; -O3 made their steps 5 % slower (GCC 12).
+# The kernels say themselves what is unrolled; -O3 made their steps slower (GCC 12).
 set(pendcore_optimisation $<$<CONFIG:Release>:-O2>)
 
 set(pendcore_warnings

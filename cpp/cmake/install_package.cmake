@@ -12,5 +12,4 @@ configure_package_config_file(cpp/cmake/pendcoreConfig.cmake.in pendcoreConfig.c
 write_basic_package_version_file(pendcoreConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/pendcoreConfig.cmake
               ${PROJECT_BINARY_DIR}/pendcoreConfigVersion.cmake
-              cpp/cmake/FindEigen.cmake
         DESTINATION ${package_dir})

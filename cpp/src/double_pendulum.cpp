@@ -11,9 +11,8 @@ DoublePendulum::DoublePendulum(const Scene& scene, const Inertia& inertia) {
   }
   product = coupling[0] * coupling[1];
   // A_11 A_22 - A_12^2 = (I_1 + m_1 c_1^2) A_22 + L_1^2 m_2 I_2: no difference is taken
-  const double own = first.inertia + first.mass * first.center * first.center;
   const double hung = first.length * first.length * second.mass;
-  delta = own / inertia.diagonal[0] +
+  delta = first.inertia_about_joint() / inertia.diagonal[0] +
           (hung / inertia.diagonal[0]) * (second.inertia / inertia.diagonal[1]);
 }
 

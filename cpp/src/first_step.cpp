@@ -11,9 +11,14 @@ namespace pendcore {
 double first_step(Stepper& stepper, double t, double direction, double max_step, const double* rtol,
                   const double* atol) {
   const int n = stepper.dimension();
-  std::vector<double> y(n), rate(n), euler(n), euler_rate(n), scale(n);
-  stepper.get_state(y.data());
-  stepper.get_derivative(rate.data());
+  std::vector<double> memory(5 * n);
+  double* const y = memory.data();
+  double* const rate = y + n;
+  double* const euler = rate + n;
+  double* const euler_rate = euler + n;
+  double* const scale = euler_rate + n;
+  stepper.get_state(y);
+  stepper.get_derivative(rate);
 
   double rate_squares = 0.0;
   double state_squares = 0.0;
@@ -28,7 +33,7 @@ double first_step(Stepper& stepper, double t, double direction, double max_step,
   h = std::min(h, max_step);
 
   for (int i = 0; i < n; ++i) euler[i] = y[i] + direction * h * rate[i];
-  stepper.evaluate(t + direction * h, euler.data(), euler_rate.data());
+  stepper.evaluate(t + direction * h, euler, euler_rate);
   double change_squares = 0.0;
   for (int i = 0; i < n; ++i) {
     const double change = (euler_rate[i] - rate[i]) / scale[i];

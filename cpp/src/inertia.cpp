@@ -1,6 +1,7 @@
 #include "pendcore/dynamics/inertia.hpp"
 
 #include <algorithm>
+#include <Eigen/Core>
 
 #include "pendcore/dynamics/kinematics.hpp"
 
@@ -8,18 +9,15 @@ namespace pendcore {
 
 Inertia::Inertia(const Scene& scene) {
   const std::size_t n = scene.links.size();
-  carried.resize(n);
   first_moment.resize(n);
   diagonal.resize(n);
   length.resize(n);
-  double beyond = 0.0;
+  double beyond = 0.0;  // S_i
   for (std::size_t i = n; i-- > 0;) {
     const Link& link = scene.links[i];
-    carried[i] = beyond;
     length[i] = link.length;
     first_moment[i] = link.mass * link.center + link.length * beyond;
-    diagonal[i] =
-        link.inertia + link.mass * link.center * link.center + link.length * link.length * beyond;
+    diagonal[i] = link.inertia_about_joint() + link.length * link.length * beyond;
     beyond += link.mass;
   }
 }
@@ -28,17 +26,18 @@ double Inertia::coupling(std::size_t i, std::size_t j) const {
   return i == j ? diagonal[i] : length[std::min(i, j)] * first_moment[std::max(i, j)];
 }
 
-Eigen::MatrixXd mass_matrix(const Inertia& inertia, const Eigen::Ref<const Eigen::VectorXd>& q) {
-  const Points u = directions(q);
-  Eigen::MatrixXd matrix = u * u.transpose();  // cos(q_i - q_j)
+void mass_matrix(const Inertia& inertia, std::span<const double> q, std::span<double> matrix) {
   const std::size_t n = inertia.diagonal.size();
+  require_size("q", q, n);
+  require_size("matrix", matrix, n * n);
+  Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor> u(n, 2);
+  directions(q, {u.data(), 2 * n});
+  Eigen::Map<Eigen::MatrixXd> a(matrix.data(), n, n);
+  a = u * u.transpose();  // cos(q_i - q_j)
   for (std::size_t i = 0; i < n; ++i) {
-    matrix(i, i) = inertia.diagonal[i];
-    for (std::size_t j = 0; j < i; ++j) {
-      matrix(i, j) = matrix(j, i) = inertia.coupling(i, j) * matrix(i, j);
-    }
+    a(i, i) = inertia.diagonal[i];
+    for (std::size_t j = 0; j < i; ++j) a(i, j) = a(j, i) = inertia.coupling(i, j) * a(i, j);
   }
-  return matrix;
 }
 
 }  // namespace pendcore

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <stdexcept>
+#include <string>
 #include <string_view>
 
 namespace pendcore {
@@ -26,10 +28,12 @@ InstructionSet best_of_processor() {
 InstructionSet allowed_by_environment() {
   const char* wish = std::getenv("PENDCORE_INSTRUCTION_SET");
   if (wish == nullptr) return InstructionSet::x86_64_v4;
-  for (InstructionSet set : {InstructionSet::baseline, InstructionSet::x86_64_v3}) {
+  for (const InstructionSet set :
+       {InstructionSet::baseline, InstructionSet::x86_64_v3, InstructionSet::x86_64_v4}) {
     if (std::string_view(wish) == name(set)) return set;
   }
-  return InstructionSet::x86_64_v4;
+  throw std::invalid_argument("PENDCORE_INSTRUCTION_SET = " + std::string(wish) +
+                              ": must be baseline, x86-64-v3 or x86-64-v4");
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 
 namespace pendcore {
 namespace {
@@ -47,36 +46,19 @@ class Watch {
   Clock::time_point last_call_ = start_;
 };
 
-bool all_finite(const std::vector<double>& y) {
-  return std::ranges::all_of(y, [](double x) { return std::isfinite(x); });
+/// The first component that is not finite, or -1.
+int bad_component(const std::vector<double>& y) {
+  const auto bad = std::ranges::find_if(y, [](double x) { return !std::isfinite(x); });
+  return bad == y.end() ? -1 : static_cast<int>(bad - y.begin());
 }
 
-/// "q_2" for component 1 of a chain of two links, "qd_1" for component 2.
-std::string component_name(std::size_t i, std::size_t dimension) {
-  const std::size_t n = dimension / 2;
-  return i < n ? "q_" + std::to_string(i + 1) : "qd_" + std::to_string(i - n + 1);
-}
-
-Ending ending(Status status, double t, const std::string& where = "") {
-  std::string message(text(status).sentence);
-  if (!text(status).success) {
-    char time[40];
-    std::snprintf(time, sizeof time, "t = %.17g s", t);
-    message += std::string(" (at ") + time + where + ")";
-  }
-  return {status, message};
-}
-
-Ending not_finite(const std::vector<double>& y, double t) {
-  std::size_t i = 0;
-  while (i < y.size() && std::isfinite(y[i])) ++i;
-  return ending(Status::non_finite, t, i < y.size() ? ", " + component_name(i, y.size()) : "");
-}
-
-std::vector<double> new_state(const Stepper& stepper) {
+/// Of the attempted step: the component whose new value, or new rate, is not finite, or -1.
+int bad_component_of_trial(Stepper& stepper, double t_new) {
   std::vector<double> y(stepper.dimension());
+  std::vector<double> dydt(stepper.dimension());
   stepper.get_new_state(y.data());
-  return y;
+  stepper.evaluate(t_new, y.data(), dydt.data());
+  return std::max(bad_component(y), bad_component(dydt));
 }
 
 /// Hairer's test, every thousandth accepted step and after each suspicious one: fifteen hits,
@@ -117,32 +99,37 @@ Ending integrate(Stepper& stepper, Position& position, Position& resumable, cons
     stepper.get_state(target.y.data());
     stepper.get_derivative(target.dydt.data());
   };
-  auto end_with = [&](Ending result, bool was_cut) {
+  bool cut_before = false;  // a step was cut to end at t_end: later ones depend on t_end
+  auto end_with = [&](Status status, int bad = -1) {
     write_down(position);
-    if (!was_cut) resumable = position;
-    return result;
+    if (!cut_before) resumable = position;
+    return Ending{status, cut_before, bad};
   };
 
   const MethodInfo& method = stepper.info();
   Watch watch(limits, position.t.high);
-  bool cut_before = false;  // a step was cut to end at t_end: later ones depend on t_end
+  int bad = -1;  // component of the last trial, while trials are not finite
   bool trial_was_finite = true;
   long long attempts = 0;
   const double rounding = std::numeric_limits<double>::epsilon();
 
-  if (!all_finite(position.dydt))
-    return end_with(not_finite(position.dydt, position.t.high), false);
-
+  if (bad_component(position.dydt) >= 0) {
+    return end_with(Status::non_finite, bad_component(position.dydt));
+  }
   while (true) {
     const double t = position.t.high;
     const double left = difference(limits.t_end, position.t);
-    if (left == 0.0) return end_with(ending(Status::finished, t), cut_before);
-    if (attempts == limits.max_steps) return end_with(ending(Status::max_steps, t), cut_before);
+    if (left == 0.0) return end_with(Status::finished);
+    if (attempts == limits.max_steps) return end_with(Status::max_steps);
     const Status clock = watch.look(t);
-    if (clock != Status::finished) return end_with(ending(clock, t), cut_before);
+    if (clock != Status::finished) return end_with(clock);
 
+    // The last step may be a hundredth longer (Hairer's rule), but not longer than max_step, the
+    // last bits of t aside: a step of those alone would not be one.
     double h = position.h;
-    const double reach = std::min(1.01 * std::abs(h), std::max(std::abs(h), limits.max_step));
+    const double last_bits = 4.0 * rounding * std::max(std::abs(t), std::abs(limits.t_end));
+    const double reach =
+        std::min(1.01 * std::abs(h), std::max(std::abs(h), limits.max_step)) + last_bits;
     const bool cut = std::abs(left) <= reach;
     if (cut) {
       if (!cut_before) {
@@ -152,19 +139,24 @@ Ending integrate(Stepper& stepper, Position& position, Position& resumable, cons
       cut_before = true;
       h = left;
     } else if (std::abs(h) <= 10.0 * rounding * std::abs(t) || std::abs(h) < 1e-300) {
-      if (trial_was_finite) return end_with(ending(Status::step_too_small, t), cut_before);
-      return end_with(not_finite(new_state(stepper), t), cut_before);
+      return end_with(trial_was_finite ? Status::step_too_small : Status::non_finite, bad);
     }
 
     ++attempts;
     const Attempt attempt = stepper.attempt(t, h, position.control.gain(method));
-    const bool finite = !std::isnan(attempt.squared_error);
-    if (attempt.squared_error <= 1.0 || (limits.fixed_step && finite)) {
+    if (!std::isfinite(attempt.squared_error)) {
+      // Beyond the square root of the largest double the norm overflows, and nothing is wrong.
+      bad = bad_component_of_trial(stepper, t + h);
+      trial_was_finite = bad < 0 && !std::isnan(attempt.squared_error);
+    } else {
       trial_was_finite = true;
+      bad = -1;
+    }
+    if (trial_was_finite && (attempt.squared_error <= 1.0 || limits.fixed_step)) {
       const TwoDouble t_new = cut ? TwoDouble{limits.t_end, 0.0} : position.t + h;
       count_accepted(position.statistics, h, cut, position.h_is_max_step);
       test_stiffness(stepper, h, position);
-      observer.step_accepted(stepper, t, h, t_new.high);
+      observer.step_accepted(stepper, position.t, h, t_new.high);
       stepper.accept(t_new.high);
       position.t = t_new;
       if (!limits.fixed_step) {
@@ -173,11 +165,8 @@ Ending integrate(Stepper& stepper, Position& position, Position& resumable, cons
         if (position.h_is_max_step) position.h = std::copysign(limits.max_step, h);
       }
     } else {
-      trial_was_finite = finite;
       ++position.statistics.rejected;
-      if (limits.fixed_step) {
-        return end_with(not_finite(new_state(stepper), t), cut_before);
-      }
+      if (limits.fixed_step) return end_with(Status::non_finite, bad);
       position.h = h * position.control.reject(method, attempt);
       position.h_is_max_step = false;
     }

@@ -1,44 +1,82 @@
 #include "pendcore/dynamics/kinematics.hpp"
 
+#include <Eigen/Core>
+#include <stdexcept>
+#include <string>
+
 #include "pendcore/arithmetic/sine_cosine.hpp"
 
 namespace pendcore {
+namespace {
 
-Points directions(Values q) {
-  Eigen::VectorXd sine(q.size());
-  Eigen::VectorXd cosine(q.size());
-  sine_cosine(q.data(), q.size(), sine.data(), cosine.data());
-  Points u(q.size(), 2);
-  u.col(0) = cosine;
-  u.col(1) = sine;
+using Eigen::RowVector2d;
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
+
+Eigen::Map<Rows> rows(std::span<double> points) {
+  return {points.data(), static_cast<Eigen::Index>(points.size() / 2), 2};
+}
+
+Rows directions_of(std::span<const double> q) {
+  Rows u(q.size(), 2);
+  directions(q, {u.data(), 2 * q.size()});
   return u;
 }
 
-void positions(const Scene& scene, Values q, PointsOut points) {
-  const Points u = directions(q);
-  points.row(0).setZero();
-  for (Eigen::Index i = 0; i < q.size(); ++i) {
-    points.row(i + 1) = points.row(i) + scene.links[i].length * u.row(i);
+}  // namespace
+
+void require_size(const char* name, std::span<const double> numbers, std::size_t size) {
+  if (numbers.size() == size) return;
+  throw std::invalid_argument(std::string(name) + ": has " + std::to_string(numbers.size()) +
+                              " numbers: must have " + std::to_string(size));
+}
+
+void directions(std::span<const double> q, std::span<double> u) {
+  require_size("u", u, 2 * q.size());
+  Eigen::ArrayXd sine(q.size());
+  Eigen::ArrayXd cosine(q.size());
+  sine_cosine(q.data(), static_cast<long long>(q.size()), sine.data(), cosine.data());
+  rows(u).col(0) = cosine;
+  rows(u).col(1) = sine;
+}
+
+void positions(const Scene& scene, std::span<const double> q, std::span<double> points) {
+  const std::size_t n = scene.links.size();
+  require_size("q", q, n);
+  require_size("points", points, 2 * (n + 1));
+  const Rows u = directions_of(q);
+  Eigen::Map<Rows> joints = rows(points);
+  joints.row(0).setZero();
+  for (std::size_t i = 0; i < n; ++i) {
+    joints.row(i + 1) = joints.row(i) + scene.links[i].length * u.row(i);
   }
 }
 
-void mass_centers(const Scene& scene, Values q, PointsOut points) {
-  const Points u = directions(q);
-  Eigen::RowVector2d joint = Eigen::RowVector2d::Zero();
-  for (Eigen::Index i = 0; i < q.size(); ++i) {
-    points.row(i) = joint + scene.links[i].center * u.row(i);
+void mass_centers(const Scene& scene, std::span<const double> q, std::span<double> points) {
+  const std::size_t n = scene.links.size();
+  require_size("q", q, n);
+  require_size("points", points, 2 * n);
+  const Rows u = directions_of(q);
+  RowVector2d joint = RowVector2d::Zero();
+  for (std::size_t i = 0; i < n; ++i) {
+    rows(points).row(i) = joint + scene.links[i].center * u.row(i);
     joint += scene.links[i].length * u.row(i);
   }
 }
 
-void mass_center_accelerations(const Scene& scene, Values q, Values qd, Values qdd,
-                               PointsOut accelerations) {
-  const Points u = directions(q);
-  Eigen::RowVector2d joint = Eigen::RowVector2d::Zero();
-  for (Eigen::Index i = 0; i < q.size(); ++i) {
-    const Eigen::RowVector2d across(-u(i, 1), u(i, 0));
-    const Eigen::RowVector2d unit = qdd(i) * across - qd(i) * qd(i) * u.row(i);
-    accelerations.row(i) = joint + scene.links[i].center * unit;
+void mass_center_accelerations(const Scene& scene, std::span<const double> q,
+                               std::span<const double> qd, std::span<const double> qdd,
+                               std::span<double> accelerations) {
+  const std::size_t n = scene.links.size();
+  require_size("q", q, n);
+  require_size("qd", qd, n);
+  require_size("qdd", qdd, n);
+  require_size("accelerations", accelerations, 2 * n);
+  const Rows u = directions_of(q);
+  RowVector2d joint = RowVector2d::Zero();
+  for (std::size_t i = 0; i < n; ++i) {
+    const RowVector2d across(-u(i, 1), u(i, 0));
+    const RowVector2d unit = qdd[i] * across - qd[i] * qd[i] * u.row(i);
+    rows(accelerations).row(i) = joint + scene.links[i].center * unit;
     joint += scene.links[i].length * unit;
   }
 }

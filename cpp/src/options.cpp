@@ -38,7 +38,7 @@ std::vector<double> relative_tolerances(const Options& options, std::size_t n) {
 }
 
 std::vector<double> absolute_tolerances(const Options& options, std::size_t n) {
-  return tolerances("atol", options.atol, 2 * n, true, std::numeric_limits<double>::min());
+  return tolerances("atol", options.atol, 2 * n, true, 1e-150);
 }
 
 void check_times(const std::vector<double>& times, double t0, double t_end) {
@@ -64,10 +64,24 @@ void check(const Options& options) {
       refuse(field, *value, "finite and > 0 (s)");
     }
   }
+  if (options.step && options.first_step) {
+    throw std::invalid_argument("first_step: a fixed step is given as step: leave one of them out");
+  }
+  if (options.step && *options.step > options.max_step) {
+    refuse("step", *options.step, "<= max_step = " + text(options.max_step) + " (s)");
+  }
   if (!(options.time_limit > 0.0)) refuse("time_limit", options.time_limit, "> 0 (s)");
   if (options.max_steps < 1) {
     throw std::invalid_argument("max_steps = " + std::to_string(options.max_steps) +
                                 ": must be >= 1");
+  }
+  const bool takes_times = options.store == Store::times || options.store == Store::dense;
+  if (options.store == Store::times && options.t_eval.empty()) {
+    throw std::invalid_argument("t_eval: none given: store = \"times\" keeps the times in it (s)");
+  }
+  if (!options.t_eval.empty() && !takes_times) {
+    throw std::invalid_argument(
+        "store: keeps no times of t_eval: must be \"times\" or \"dense\" with it");
   }
   const MethodInfo& method = find_method(options.method);
   if (method.error_order == 0 && !options.step) {

@@ -2,13 +2,15 @@
 
 namespace pendcore {
 
-void reactions(const Scene& scene, Values q, Values qd, Values qdd, PointsOut forces) {
+void reactions(const Scene& scene, std::span<const double> q, std::span<const double> qd,
+               std::span<const double> qdd, std::span<double> forces) {
   mass_center_accelerations(scene, q, qd, qdd, forces);
-  const Eigen::RowVector2d gravity(0.0, scene.gravity);
-  Eigen::RowVector2d from_beyond = Eigen::RowVector2d::Zero();
-  for (Eigen::Index i = q.size(); i-- > 0;) {
-    forces.row(i) = scene.links[i].mass * (forces.row(i) - gravity) + from_beyond;
-    from_beyond = forces.row(i);
+  double beyond_x = 0.0;
+  double beyond_y = 0.0;
+  for (std::size_t i = scene.links.size(); i-- > 0;) {
+    const double m = scene.links[i].mass;
+    forces[2 * i] = beyond_x += m * forces[2 * i];
+    forces[2 * i + 1] = beyond_y += m * (forces[2 * i + 1] - scene.gravity);
   }
 }
 

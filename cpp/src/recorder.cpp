@@ -21,11 +21,13 @@ void Recorder::start(double t, const std::vector<double>& y) {
   if (keeps_steps_ || asked_for) std::ranges::copy(y, append(t));
 }
 
-void Recorder::step_accepted(const Stepper& stepper, double t_old, double h, double t_new) {
+void Recorder::step_accepted(const Stepper& stepper, const TwoDouble& t_old, double h,
+                             double t_new) {
   if (keeps_polynomials_) {
     DenseOutput& dense = solution_.dense;
     const std::size_t size = dense.coefficients.size();
-    dense.start.push_back(t_old);
+    dense.start.push_back(t_old.high);
+    dense.start_low.push_back(t_old.low);
     dense.h.push_back(h);
     dense.coefficients.resize(size + polynomial_.size());
     stepper.interpolant(h, dense.coefficients.data() + size);
@@ -42,7 +44,7 @@ void Recorder::count() {
   solution_.resumable_steps = solution_.dense.h.size();
 }
 
-void Recorder::sample_step(const Stepper& stepper, double t_old, double h, double t_new) {
+void Recorder::sample_step(const Stepper& stepper, const TwoDouble& t_old, double h, double t_new) {
   const std::vector<double>& samples = solution_.options.t_eval;
   const std::size_t first = solution_.t.size();
   std::size_t end = first;

@@ -31,11 +31,6 @@ void check_link(const Link& link, std::size_t i, bool last) {
   }
 }
 
-/// About the link's own joint, without what hangs on it.
-double own_inertia(const Link& link) {
-  return link.inertia + link.mass * link.center * link.center;
-}
-
 }  // namespace
 
 Link Link::uniform_rod(double mass, double length) {
@@ -59,13 +54,13 @@ void check(const Scene& scene) {
   double carried = 0.0;
   for (std::size_t i = n; i-- > 0;) {
     const Link& link = scene.links[i];
-    const double about_joint = own_inertia(link) + link.length * link.length * carried;
+    const double about_joint = link.inertia_about_joint() + link.length * link.length * carried;
     if (!(about_joint > 0 && std::isfinite(about_joint))) {
       refuse(link_name(i) + ": inertia about its joint, with what it carries,", about_joint,
              "finite and > 0 (kg m^2): give it an inertia, or move its mass centre off the joint");
     }
     const bool next_is_a_point = i + 1 == n || scene.links[i + 1].inertia == 0;
-    if (own_inertia(link) == 0 && next_is_a_point) {
+    if (link.inertia_about_joint() == 0 && next_is_a_point) {
       throw std::invalid_argument(
           link_name(i) +
           ": has neither mass nor inertia about its joint: the mass matrix is singular when it "

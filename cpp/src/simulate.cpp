@@ -26,6 +26,50 @@ void check_start(const char* name, const std::vector<double>& values, std::size_
   }
 }
 
+/// A run goes on from where it ended, to times that it has not been asked for.
+void check_continuation(const Solution& solution, double t_end, const std::vector<double>& t_eval) {
+  const double reached = solution.t_reached;
+  const double span = solution.t_end - solution.t0;
+  auto before = [span](double a, double b) { return (b - a) * span > 0.0; };
+  if (!std::isfinite(t_end) || before(t_end, reached)) {
+    refuse("t_end", t_end, "finite and at or beyond the end reached, " + text(reached) + " s");
+  }
+  const std::vector<double>& asked = solution.options.t_eval;
+  if (!asked.empty() && before(t_end, asked.back())) {
+    refuse("t_end", t_end, "at or beyond the last time asked for, " + text(asked.back()) + " s");
+  }
+  if (t_eval.empty()) return;
+  if (asked.empty()) {
+    throw std::invalid_argument(
+        "t_eval: this run was not asked for times, and keeps what it kept so far: leave t_eval "
+        "out");
+  }
+  check_times(t_eval, reached, t_end);
+  if (!before(asked.back(), t_eval.front()) && span != 0.0) {
+    refuse("t_eval[0]", t_eval.front(),
+           "beyond the last time asked for so far, " + text(asked.back()) + " s");
+  }
+}
+
+/// "q_2" for component 1 of a chain of two links, "qd_1" for component 2.
+std::string component_name(int i, int dimension) {
+  const int n = dimension / 2;
+  return i < n ? "q_" + std::to_string(i + 1) : "qd_" + std::to_string(i - n + 1);
+}
+
+/// What happened, and for a run that failed where, and whether it was stiff there.
+std::string message_of(const Ending& ending, const Solution& solution) {
+  std::string message(text(ending.status).sentence);
+  if (text(ending.status).success) return message;
+  message += " (at t = " + text(solution.t_reached) + " s";
+  if (ending.bad >= 0) message += ", " + component_name(ending.bad, solution.dimension);
+  message += ")";
+  if (solution.statistics.stiff) {
+    message += "; the steps are limited by stability, not by accuracy: the problem is stiff";
+  }
+  return message;
+}
+
 /// From the solution's resumable position to t_end.
 void run(const Scene& scene, Solution& solution, double t_end, const Limits& limits,
          bool from_the_start) {
@@ -59,13 +103,12 @@ void run(const Scene& scene, Solution& solution, double t_end, const Limits& lim
   }
   position.statistics.nfev += stepper->evaluations;
   const Ending ending = integrate(*stepper, position, solution.resumable, limits, recorder);
+  if (!ending.cut) recorder.count();
   solution.status = ending.status;
-  solution.message = ending.message;
   solution.statistics = position.statistics;
-  const bool cut = solution.resumable.t.high != position.t.high;
-  if (!cut) recorder.count();
   solution.t_reached = position.t.high;
   solution.y_reached = std::move(position.y);
+  solution.message = message_of(ending, solution);
   if (options.store == Store::end) {
     solution.t = {solution.t_reached};
     solution.states = solution.y_reached;
@@ -118,17 +161,11 @@ Solution resume(const Scene& scene, const Solution& solution, double t_end,
   const FloatingPointEnvironment ieee;
   Solution longer = solution;
   Options& options = longer.options;
-  const double direction = solution.resumable.h < 0.0 ? -1.0 : 1.0;
-  const bool ahead = solution.resumable.h == 0.0 || (t_end - solution.t_reached) * direction >= 0.0;
-  if (!(std::isfinite(t_end) && ahead)) {
-    refuse("t_end", t_end,
-           "finite and not before the end of the run so far, " + text(solution.t_reached) + " s");
-  }
+  check_continuation(solution, t_end, t_eval);
   options.max_steps = max_steps;
   options.time_limit = time_limit;
   options.t_eval.insert(options.t_eval.end(), t_eval.begin(), t_eval.end());
   check(options);
-  check_times(options.t_eval, longer.t0, t_end);
 
   longer.t_end = t_end;
   const auto dimension = static_cast<std::size_t>(longer.dimension);
@@ -136,6 +173,7 @@ Solution resume(const Scene& scene, const Solution& solution, double t_end,
   longer.t.resize(longer.resumable_t);
   longer.states.resize(longer.resumable_t * dimension);
   longer.dense.start.resize(longer.resumable_steps);
+  longer.dense.start_low.resize(longer.resumable_steps);
   longer.dense.h.resize(longer.resumable_steps);
   longer.dense.coefficients.resize(longer.resumable_steps * (degree + 1) * dimension);
   Limits limits = limits_of(options, t_end);

@@ -44,8 +44,13 @@ std::vector<double> Solution::at(const std::vector<double>& times) const {
           dense.start.begin(), dense.start.end(), time,
           [direction](double a, double b) { return direction * a < direction * b; });
       const auto step = static_cast<std::size_t>(after - dense.start.begin()) - 1;
-      const double theta = (time - dense.start[step]) / dense.h[step];
-      sample(dense.coefficients.data() + step * row, dense.degree, dimension, theta, y);
+      const double* coefficients = dense.coefficients.data() + step * row;
+      const double theta = ((time - dense.start[step]) - dense.start_low[step]) / dense.h[step];
+      if (time == dense.start[step]) {
+        std::copy_n(coefficients, dimension, y);
+      } else {
+        sample(coefficients, dense.degree, dimension, theta, y);
+      }
     }
     y += dimension;
   }

@@ -1,10 +1,7 @@
 // The explicit instantiations: every method in the list with every form of the equations of motion.
 // Compile time lives here only.
-#include <stdexcept>
-
-#include "pendcore/dynamics/double_pendulum.hpp"
+#include "pendcore/dynamics/equations_of_motion.hpp"
 #include "pendcore/dynamics/first_order.hpp"
-#include "pendcore/dynamics/single_pendulum.hpp"
 #include "pendcore/integrate/explicit_runge_kutta.hpp"
 #include "pendcore/integrate/methods.hpp"
 #include "pendcore/simulate.hpp"
@@ -28,14 +25,8 @@ std::unique_ptr<Stepper> apply(MethodList<tables...>, std::string_view name,
 
 std::unique_ptr<Stepper> make_stepper(const Scene& scene, std::string_view method) {
   const std::string_view name = find_method(method).name;
-  const Inertia inertia(scene);
-  switch (scene.links.size()) {
-    case 1: return apply(Methods{}, name, SinglePendulum(inertia, scene.gravity));
-    case 2: return apply(Methods{}, name, DoublePendulum(scene, inertia));
-    default:
-      throw std::invalid_argument("links: " + std::to_string(scene.links.size()) +
-                                  " links: this version simulates chains of one or two");
-  }
+  return std::visit([name](const auto& dynamics) { return apply(Methods{}, name, dynamics); },
+                    equations_of_motion(scene));
 }
 
 }  // namespace pendcore

@@ -26,6 +26,11 @@ def angles_from_vertical(theta: npt.ArrayLike) -> Any:
     -------
     ndarray or float
         ``q = pi/2 - theta``, the same shape, rad.
+
+    Notes
+    -----
+    For angles alone. Rates have no pi/2 in them: ``qd = -thetad``, so negate them, and never pass
+    them through here.
     """
     return pi / 2 - np.asarray(theta)
 
@@ -42,5 +47,10 @@ def angles_to_vertical(q: npt.ArrayLike) -> Any:
     -------
     ndarray or float
         ``theta = pi/2 - q``, the same shape, rad.
+
+    Notes
+    -----
+    For angles alone. Rates have no pi/2 in them: ``thetad = -qd``, so negate them, and never pass
+    them through here.
     """
     return pi / 2 - np.asarray(q)

@@ -10,28 +10,30 @@ from __future__ import annotations
 import json
 import os
 import warnings
+import zipfile
 from pathlib import Path
 from typing import Any, BinaryIO
 
 import numpy as np
 
 from pendcore import _core
+from pendcore.case import Case
 from pendcore.case_file import case_from_text
-from pendcore.scene import Scene
+from pendcore.scene import Link, Scene
 from pendcore.solution import Solution
 from pendcore.warning import PendcoreWarning
 
 _RUN = "run."
 
 
-def save(solution: Solution, path: str | os.PathLike[str], name: str = "") -> None:
+def save(solution: Solution, path: str | os.PathLike[str]) -> None:
     """Write a solution to the file ``path``, under just that name."""
     entries: dict[str, Any] = {
         "t": solution.t,
         "q": solution.q,
         "qd": solution.qd,
         "y": solution.y,
-        "case": solution.case(name).to_toml(),
+        "case": solution.case().to_toml(),
         "statistics": json.dumps(solution.stats._asdict()),
         "version": _core.__version__,
     }
@@ -51,7 +53,7 @@ def load(path: str | os.PathLike[str]) -> Solution:
     Returns
     -------
     Solution
-        Equal to the saved one to the last bit; it evaluates and resumes as that did.
+        With every number of the saved one to the last bit; it evaluates and resumes as that did.
 
     Raises
     ------
@@ -68,21 +70,34 @@ def load(path: str | os.PathLike[str]) -> Solution:
 
 
 def _loaded(file: BinaryIO) -> Solution:
-    run = _core.Run.__new__(_core.Run)
+    if not zipfile.is_zipfile(file):
+        raise ValueError("it is no npz file, or was cut short")
+    file.seek(0)
     with np.load(file, allow_pickle=False) as entries:
-        scene = _scene(str(entries["case"]))
-        run.__setstate__(
-            {key.removeprefix(_RUN): _plain(entries[key]) for key in entries if _RUN in key}
-        )
-    if run.states.shape[1] != 2 * len(scene.links):
-        raise ValueError("case and run have different numbers of links")
-    return Solution(scene, run)
+        case = _case(str(entries["case"]))
+        state = {
+            key.removeprefix(_RUN): _plain(entries[key]) for key in entries if key.startswith(_RUN)
+        }
+    run = _core.Run.__new__(_core.Run)
+    run.__setstate__(state)
+    solution = Solution(_scene(state), run, case.name)
+    if solution.case() != case:
+        raise ValueError("its case is not that of its run")
+    return solution
 
 
-def _scene(case: str) -> Scene:
+def _case(text: str) -> Case:
     with warnings.catch_warnings():  # what is implausible was said when the scene was made
         warnings.simplefilter("ignore", PendcoreWarning)
-        return case_from_text(case, "case").scene
+        return case_from_text(text, "case")
+
+
+def _scene(state: dict[str, Any]) -> Scene:
+    """Return what the run itself moved."""
+    names = ("mass", "length", "center", "inertia")
+    rows = state["links"].reshape(-1, 4).tolist()
+    links = [Link(**dict(zip(names, row, strict=True))) for row in rows]
+    return Scene._unpickled(links, state["gravity"])
 
 
 def _plain(entry: Any) -> Any:

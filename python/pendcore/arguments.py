@@ -19,7 +19,10 @@ def number(name: str, value: object, unit: str) -> float:
     """Return one real number as a float."""
     if isinstance(value, bool) or not isinstance(value, Real):
         raise TypeError(f"{name} = {value!r}: must be a real number ({unit})")
-    return float(value)
+    try:
+        return float(value)
+    except OverflowError:
+        raise _too_large(name, unit) from None
 
 
 def finite_array(name: str, value: npt.ArrayLike, unit: str) -> Floats:
@@ -28,6 +31,11 @@ def finite_array(name: str, value: npt.ArrayLike, unit: str) -> Floats:
         array = np.asarray(value)
     except ValueError:
         raise ValueError(f"{name}: rows of different lengths: must be an array ({unit})") from None
+    if array.dtype.kind == "O" and all(type(x) is int for x in array.flat):
+        try:  # integers beyond 64 bits
+            array = array.astype(np.float64)
+        except OverflowError:
+            raise _too_large(name, unit) from None
     if array.dtype.kind not in "iuf":
         raise TypeError(f"{name}: holds {array.dtype}: must hold real numbers ({unit})")
     array = array.astype(np.float64, copy=False)
@@ -38,6 +46,16 @@ def finite_array(name: str, value: npt.ArrayLike, unit: str) -> Floats:
     return array
 
 
+def vector(name: str, value: npt.ArrayLike, count: int, unit: str) -> tuple[float, ...]:
+    """Return as many finite numbers; a scalar holds for each of them."""
+    array = finite_array(name, value, unit)
+    if array.ndim == 0:
+        array = np.full(count, array)
+    if array.shape != (count,):
+        raise ValueError(f"{name}: shape {array.shape}: must be ({count},) ({unit})")
+    return tuple(array.tolist())
+
+
 def link_array(name: str, value: npt.ArrayLike, n: int, unit: str) -> Floats:
     """Return an array whose last axis runs over the n links."""
     array = finite_array(name, value, unit)
@@ -46,3 +64,7 @@ def link_array(name: str, value: npt.ArrayLike, n: int, unit: str) -> Floats:
             f"{name}: shape {array.shape}: must be (..., {n}), one value per link ({unit})"
         )
     return array
+
+
+def _too_large(name: str, unit: str) -> ValueError:
+    return ValueError(f"{name}: is too large: must be below 1.8e308 ({unit})")

@@ -5,14 +5,15 @@ from __future__ import annotations
 import inspect
 import json
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from math import pi
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from pendcore.arguments import finite_array
+from pendcore.arguments import finite_array, vector
 from pendcore.scene import Scene
 from pendcore.simulate import simulate
 from pendcore.solution import Solution
@@ -25,9 +26,9 @@ RUN_DEFAULTS: dict[str, Any] = {
 """The keywords of `simulate` that say how to run, and their defaults."""
 
 
-@dataclass(frozen=True, slots=True, init=False)
+@dataclass(frozen=True, slots=True, init=False, repr=False)
 class Case:
-    """A scene, where it starts, how long and how it is run.
+    """A scene, where it starts, how long and how it is run. It cannot be changed, and hashes.
 
     Parameters
     ----------
@@ -42,7 +43,7 @@ class Case:
     name : str
         For people.
     options : mapping
-        Keywords of `simulate`; those not given have its defaults.
+        Keywords of `simulate`; those not given have its defaults. Kept as a read-only mapping.
 
     Raises
     ------
@@ -55,7 +56,7 @@ class Case:
     qd0: tuple[float, ...]
     t_span: tuple[float, float]
     name: str
-    options: dict[str, Any]
+    options: Mapping[str, Any]
 
     def __init__(
         self,
@@ -74,11 +75,11 @@ class Case:
                 known = ", ".join(RUN_DEFAULTS)
                 raise TypeError(f"options: simulate() has no keyword {key!r}: known are {known}")
         object.__setattr__(self, "scene", scene)
-        object.__setattr__(self, "q0", _floats("q0", q0, n, "rad"))
-        object.__setattr__(self, "qd0", _floats("qd0", qd0, n, "rad/s"))
-        object.__setattr__(self, "t_span", _floats("t_span", t_span, 2, "s"))
+        object.__setattr__(self, "q0", vector("q0", q0, n, "rad"))
+        object.__setattr__(self, "qd0", vector("qd0", qd0, n, "rad/s"))
+        object.__setattr__(self, "t_span", _pair("t_span", t_span, "s"))
         object.__setattr__(self, "name", name)
-        object.__setattr__(self, "options", given)
+        object.__setattr__(self, "options", MappingProxyType(given))
 
     @classmethod
     def textbook(cls) -> Case:
@@ -91,17 +92,26 @@ class Case:
         )
 
     @classmethod
-    def of_solution(cls, solution: Solution, name: str = "") -> Case:
+    def of_solution(cls, solution: Solution) -> Case:
         """Return what was asked for when a solution was computed."""
         asked = {key: _plain(value) for key, value in solution._run.arguments.items()}
         start = {key: asked.pop(key) for key in ("q0", "qd0")}
         t_span = (asked.pop("t_start"), asked.pop("t_end"))
         options = {key: value for key, value in asked.items() if value != RUN_DEFAULTS[key]}
-        return cls(scene=solution.scene, **start, t_span=t_span, name=name, options=options)
+        return cls(
+            scene=solution.scene, **start, t_span=t_span, name=solution.name, options=options
+        )
 
     def simulate(self) -> Solution:
-        """Run it; see `pendcore.simulate`."""
-        return simulate(self.scene, self.q0, self.qd0, self.t_span, **self.options)
+        """Run it; see `pendcore.simulate`. The solution has the name of the case."""
+        try:
+            solution = simulate(self.scene, self.q0, self.qd0, self.t_span, **self.options)
+        except BaseException as stop:
+            if isinstance(so_far := getattr(stop, "solution", None), Solution):
+                so_far.name = self.name
+            raise
+        solution.name = self.name
+        return solution
 
     def to_toml(self) -> str:
         """Return the case as TOML; `pendcore.read_case` makes an equal one of it, to the last bit.
@@ -120,21 +130,37 @@ class Case:
         ]
         return "\n".join(header + "".join(_lines(table)) for header, table in tables)
 
+    def _values(self) -> dict[str, Any]:
+        values = {field.name: getattr(self, field.name) for field in fields(self)}
+        return values | {"options": dict(self.options)}
 
-def _floats(name: str, value: npt.ArrayLike, count: int, unit: str) -> tuple[float, ...]:
+    def __repr__(self) -> str:
+        return f"Case({', '.join(f'{name}={x!r}' for name, x in self._values().items())})"
+
+    def __hash__(self) -> int:
+        return hash(tuple((self._values() | {"options": frozenset(self.options.items())}).values()))
+
+    def __reduce__(self) -> tuple[object, tuple[dict[str, Any]]]:
+        # A read-only mapping does not pickle, so the case is made anew.
+        return _case, (self._values(),)
+
+
+def _case(values: dict[str, Any]) -> Case:
+    return Case(**values)
+
+
+def _pair(name: str, value: npt.ArrayLike, unit: str) -> tuple[float, float]:
     array = finite_array(name, value, unit)
-    if array.ndim == 0 and name != "t_span":
-        array = np.full(count, array)
-    if array.shape != (count,):
-        raise ValueError(f"{name}: shape {array.shape}: must be ({count},) ({unit})")
-    return tuple(array.tolist())
+    if array.shape != (2,):
+        raise ValueError(f"{name}: shape {array.shape}: must be (2,) ({unit})")
+    return float(array[0]), float(array[1])
 
 
 def _plain(value: Any) -> Any:
     """Return NumPy's numbers and arrays as Python's own, lists as tuples."""
     if isinstance(value, np.ndarray | np.generic):
         value = value.tolist()
-    return tuple(value) if isinstance(value, list) else value
+    return tuple(map(_plain, value)) if isinstance(value, list | tuple) else value
 
 
 def _lines(table: Mapping[str, Any]) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""Reading a case from TOML.
+"""Reading a case from TOML; docs/case_files.md is the reference of its keys.
 
 A case::
 
@@ -12,7 +12,7 @@ A case::
     length = 1.0
     [start]
     q = [0.7853981633974483, 1.0471975511965976]    # rad; or q_deg = [45, 60]
-    qd = [0.0, 0.0]                 # rad/s; 0 if left out
+    qd = [0.0, 0.0]                 # rad/s; 0 if left out; one number holds for every link
     [run]
     t_start = 0.0                   # s; 0 if left out
     t_end = 5.0                     # s
@@ -23,11 +23,13 @@ from __future__ import annotations
 
 import os
 import re
+from collections.abc import Sequence
 from dataclasses import fields
 from math import radians
 from pathlib import Path
 from typing import Any
 
+from pendcore.arguments import vector
 from pendcore.case import RUN_DEFAULTS, Case
 from pendcore.scene import Link, Scene
 from pendcore.toml_text import Place, TomlText
@@ -63,21 +65,32 @@ def read_case(source: str | os.PathLike[str]) -> Case:
     """
     if isinstance(source, str) and "\n" in source:
         return case_from_text(source, "case")
-    path = Path(source)
+    return case_from_text(_text_of(Path(source)), str(source))
+
+
+def with_line(path: Path, complaint: str) -> str:
+    """Return a complaint of `Case.simulate` with file and line of what it begins with."""
+    text = TomlText(_text_of(path), str(path))
+    return str(text.error(_place(complaint), complaint))
+
+
+def _text_of(path: Path) -> str:
     try:
-        return case_from_text(path.read_text(encoding="utf-8"), str(path))
+        return path.read_text(encoding="utf-8-sig")  # Windows' editors write a byte order mark
     except UnicodeDecodeError:
         raise ValueError(f"{path}: is not a text file in UTF-8") from None
 
 
 def case_from_text(content: str, name: str) -> Case:
     """Read a case from TOML that messages call ``name``; see `read_case`."""
-    text = TomlText(content, name)
+    text = TomlText(content.removeprefix("\ufeff"), name)
     text.check_keys((), KEYS)
+    if "qd_deg" in text.table(("start",)):
+        raise text.error(("start", "qd_deg"), "unknown key 'qd_deg' in [start]: give qd, in rad/s")
     text.check_keys(("start",), KEYS)
     text.check_keys(("run",), KEYS)
     scene = _scene(text)
-    q0, qd0 = _start(text)
+    q0, qd0 = _start(text, len(scene.links))
     t_span, options = _run(text)
     title = text.value(("name",)) or ""
     if not isinstance(title, str):
@@ -106,15 +119,24 @@ def _scene(text: TomlText) -> Scene:
         raise text.error(_place(str(error)), str(error)) from None
 
 
-def _start(text: TomlText) -> tuple[list[float], list[float] | float]:
+def _start(text: TomlText, n: int) -> tuple[Sequence[float], Sequence[float] | float]:
     start = text.table(("start",))
     if ("q" in start) == ("q_deg" in start):
         raise text.error(("start",), "[start] needs q (rad) or q_deg (degrees), one of the two")
     if "q" in start:
-        q0 = text.numbers(("start", "q"))
+        q0 = _per_link(text, "q", n, "rad")
     else:
-        q0 = [radians(x) for x in text.numbers(("start", "q_deg"))]
-    return q0, text.numbers(("start", "qd")) if "qd" in start else 0.0
+        q0 = tuple(radians(x) for x in _per_link(text, "q_deg", n, "deg"))
+    return q0, _per_link(text, "qd", n, "rad/s") if "qd" in start else 0.0
+
+
+def _per_link(text: TomlText, key: str, n: int, unit: str) -> tuple[float, ...]:
+    place = ("start", key)
+    numbers = text.numbers(place)
+    try:
+        return vector(key, numbers, n, unit)
+    except ValueError as error:
+        raise text.error(place, str(error)) from None
 
 
 def _run(text: TomlText) -> tuple[tuple[float, float], dict[str, Any]]:
@@ -136,6 +158,7 @@ def _place(message: str) -> Place:
     if found := re.match(r"link (\d+): (\w+)", message):
         return ("link", int(found[1]) - 1, found[2])
     if found := re.match(r"\w+", message):
-        known: dict[str, Place] = {"q0": ("start", "q"), "qd0": ("start", "qd"), "t_span": ("run",)}
+        known: dict[str, Place] = {"t_span": ("run",), "links": ("link", 0)}
+        known |= {key: ("run", key) for key in KEYS["run"]}
         return known.get(found[0], (found[0],))
     return ()

@@ -40,12 +40,19 @@ class Link:
     ------
     TypeError
         If a value is not a real number. Ranges are checked by the `Scene`, which can name the link.
+
+    Notes
+    -----
+    A link cannot be changed; ``link.replace(mass=2.0)`` makes another. A centre or inertia that is
+    a uniform rod's counts as left to the default: links that are equal behave the same.
     """
 
-    mass: float
-    length: float
-    center: float
-    inertia: float
+    # init=False makes dataclasses.replace() refuse: it would carry centre and inertia of a rod over
+    # to another mass or length. `replace` below does it right.
+    mass: float = field(init=False)
+    length: float = field(init=False)
+    center: float = field(init=False)
+    inertia: float = field(init=False)
 
     def __init__(
         self,
@@ -79,6 +86,19 @@ class Link:
         """
         return cls(mass=mass, length=length, center=length, inertia=0.0)
 
+    def replace(self, **changes: float | None) -> Link:
+        """Return a link of other properties; what is as in a uniform rod stays as in one.
+
+        Parameters
+        ----------
+        **changes : float
+            Any of ``mass``, ``length``, ``center``, ``inertia``; for the last two None is a rod's.
+            A centre or inertia of its own stays what it is, in m and kg m^2.
+        """
+        return Link(**{**self.particulars(), **changes})  # type: ignore[arg-type]
+
+    __replace__ = replace  # copy.replace() of Python 3.13
+
     def particulars(self) -> dict[str, float]:
         """Return mass, length, and what is not as in a uniform rod: all it is made from."""
         rod = Link(mass=self.mass, length=self.length)
@@ -94,13 +114,23 @@ class Link:
 
 
 class Mobility(NamedTuple):
-    """The textbook's count of the degrees of freedom: ``M = 3 links - 2 c5 - c4``."""
+    """The textbook's count of the degrees of freedom: ``M = 3 links - 2 c5 - c4``.
+
+    Attributes
+    ----------
+    links : int
+        Moving links.
+    c5 : int
+        Joints with one degree of freedom (hinges).
+    c4 : int
+        Joints with two degrees of freedom.
+    degrees_of_freedom : int
+        ``M``.
+    """
 
     links: int
     c5: int
-    """Joints with one degree of freedom (hinges)."""
     c4: int
-    """Joints with two degrees of freedom."""
     degrees_of_freedom: int
 
 
@@ -111,7 +141,7 @@ class Scene:
     Parameters
     ----------
     links : iterable of Link
-        From the pivot outwards.
+        From the pivot outwards. This version simulates one or two.
     gravity : float, default 9.807
         Downward, m/s^2; finite. 0 is allowed.
 
@@ -125,6 +155,10 @@ class Scene:
     PendcoreWarning
         If a value is allowed and implausible, such as more inertia than a link of that length
         could have.
+
+    Notes
+    -----
+    A scene cannot be changed; ``scene.replace(gravity=1.62)`` makes another.
     """
 
     links: tuple[Link, ...]
@@ -133,8 +167,7 @@ class Scene:
 
     def __init__(self, *, links: Iterable[Link], gravity: float = 9.807) -> None:
         self._compile(links, gravity)
-        for message in self._compiled.warnings:
-            warnings.warn(message, PendcoreWarning, stacklevel=2)
+        self._warn()
 
     def _compile(self, links: Iterable[Link], gravity: float) -> None:
         links = _tuple_of_links(links)
@@ -144,10 +177,31 @@ class Scene:
         object.__setattr__(self, "gravity", gravity)
         object.__setattr__(self, "_compiled", _core.Scene(rows, gravity))
 
+    def _warn(self) -> None:
+        """Blame what is implausible on the line that called the method which calls this."""
+        for message in self._compiled.warnings:
+            warnings.warn(message, PendcoreWarning, stacklevel=3)
+
     @classmethod
     def textbook(cls) -> Scene:
         """Section 2.1 of the textbook: two uniform rods of 1 kg and 1 m, g = 9.807 m/s^2."""
         return cls(links=[Link(mass=1.0, length=1.0), Link(mass=1.0, length=1.0)])
+
+    def replace(
+        self, *, links: Iterable[Link] | None = None, gravity: float | None = None
+    ) -> Scene:
+        """Return a scene with other links or another gravity; what is not given stays.
+
+        Parameters
+        ----------
+        links, gravity
+            As in `Scene`.
+        """
+        scene = Scene._unpickled(
+            self.links if links is None else links, self.gravity if gravity is None else gravity
+        )
+        scene._warn()
+        return scene
 
     def accelerations(self, t: npt.ArrayLike, q: npt.ArrayLike, qd: npt.ArrayLike) -> Floats:
         """Angular accelerations of the links: the right-hand side that is integrated.
@@ -201,7 +255,7 @@ class Scene:
         return Mobility(*self._compiled.mobility())
 
     @classmethod
-    def _unpickled(cls, links: tuple[Link, ...], gravity: float) -> Scene:
+    def _unpickled(cls, links: Iterable[Link], gravity: float) -> Scene:
         scene = object.__new__(cls)
         scene._compile(links, gravity)
         return scene

@@ -15,9 +15,9 @@ from pendcore.solution import Solution, solution_of
 
 def simulate(
     scene: Scene,
-    q0: npt.ArrayLike,
+    q0: npt.ArrayLike | None = None,
     qd0: npt.ArrayLike = 0.0,
-    t_span: Iterable[float] = (),
+    t_span: Iterable[float] | None = None,
     *,
     method: str = "dopri5",
     rtol: npt.ArrayLike = 1e-9,
@@ -49,7 +49,8 @@ def simulate(
         The error of a step is kept below ``atol + rtol abs(y)``, in root mean square over
         ``y = (q, qd)``.
     t_eval : array_like, (k,), optional
-        Times of the result, s, within the run and in its order. They do not change the steps.
+        Times of the result, s, one or more, within the run and in its order. They do not change
+        the steps.
     store : {"dense", "steps", "times", "end"}, optional
         What is kept: every step with its interpolant, every step, ``t_eval`` alone, the end alone;
         the last two in constant memory. Default: ``"times"`` with a ``t_eval``, else ``"dense"``.
@@ -58,7 +59,8 @@ def simulate(
     max_step : float
         s, > 0.
     step : float, optional
-        A fixed step, s, > 0, in place of the tolerances.
+        A fixed step, s, > 0, in place of the tolerances; not together with ``first_step`` or a
+        smaller ``max_step``.
     max_steps : int
         The run ends with status ``max_steps`` after as many attempts.
     time_limit : float, optional
@@ -83,17 +85,27 @@ def simulate(
     The step control is that of Hairer, Norsett and Wanner, *Solving Ordinary Differential Equations
     I*, II.4. The same arguments give the same bits on every x86-64 machine, whatever is stored.
     """
+    if not isinstance(scene, Scene):
+        raise _no_scene(scene)
+    if q0 is None:
+        raise TypeError("q0 is missing: give the angles at the start, one per link, in rad")
+    if t_span is None:
+        raise TypeError("t_span is missing: give (t_start, t_end), in s")
     try:
         t_start, t_end = t_span
     except (TypeError, ValueError):
         raise TypeError(f"t_span = {t_span!r}: must be (t_start, t_end), in s") from None
-    try:
-        compiled = scene._compiled
-    except AttributeError:
-        raise TypeError(f"scene = {scene!r}: must be a pendcore.Scene") from None
     report = callback(progress)
     run = _core.simulate(
-        compiled, q0, qd0, t_start, t_end, method, rtol, atol, t_eval, store,
+        scene._compiled, q0, qd0, t_start, t_end, method, rtol, atol, t_eval, store,
         first_step, max_step, step, max_steps, time_limit, report,
     )  # fmt: skip
     return solution_of(scene, run, report)
+
+
+def _no_scene(value: object) -> TypeError:
+    if isinstance(getattr(value, "scene", None), Scene):
+        kind = type(value).__name__
+        remedy = "; case.simulate() runs a case" if hasattr(value, "simulate") else ""
+        return TypeError(f"scene: is a {kind}: must be a pendcore.Scene{remedy}")
+    return TypeError(f"scene = {value!r}: must be a pendcore.Scene")

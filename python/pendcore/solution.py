@@ -28,38 +28,63 @@ if TYPE_CHECKING:
 
 
 class Statistics(NamedTuple):
-    """What a run took."""
+    """What a run took.
+
+    Attributes
+    ----------
+    nfev : int
+        Right-hand sides.
+    njev : int
+        Jacobians.
+    nlu : int
+        Factorisations.
+    accepted : int
+        Steps that were kept.
+    rejected : int
+        Steps that were tried again, shorter.
+    limited_by_tolerance : int
+        Accepted steps of the size that accuracy allowed.
+    limited_by_max_step : int
+        Accepted steps of the size of ``max_step``, or of a fixed step.
+    limited_by_break : int
+        Accepted steps that the end of the run cut short.
+    min_step, max_step : float
+        Sizes of the accepted steps, those cut short aside, s.
+    stiff : bool
+        Whether stability rather than accuracy limited the steps.
+    """
 
     nfev: int
-    """Right-hand sides."""
     njev: int
-    """Jacobians."""
     nlu: int
-    """Factorisations."""
     accepted: int
-    """Steps that were kept."""
     rejected: int
-    """Steps that were tried again, shorter."""
     limited_by_tolerance: int
-    """Accepted steps of the size that accuracy allowed,"""
     limited_by_max_step: int
-    """or max_step, or a fixed step,"""
     limited_by_break: int
-    """or the end of the run."""
     min_step: float
-    """s, as max_step: the sizes of the accepted steps, those cut short aside."""
     max_step: float
     stiff: bool
-    """Steps were limited by stability rather than by accuracy."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Energy:
-    """Energies over time, J, each (n_t,). The potential energy is zero at the pivot's height."""
+    """Energies over time. The potential energy is zero at the pivot's height.
+
+    Attributes
+    ----------
+    kinetic, potential, total : ndarray, (n_t,)
+        J.
+    """
 
     kinetic: Floats
     potential: Floats
     total: Floats
+
+    def __repr__(self) -> str:
+        n_t = len(self.total)
+        ends = f", total {self.total[0]:.6g} ... {self.total[-1]:.6g} J" if n_t else ""
+        return f"<Energy: kinetic, potential, total at {n_t} times{ends}>"
 
 
 class Solution:
@@ -71,12 +96,15 @@ class Solution:
     ----------
     scene : Scene
         What moved.
+    name : str
+        For people; of the case, if there was one. It may be set.
     """
 
-    __slots__ = ("_run", "scene")
+    __slots__ = ("_run", "name", "scene")
 
-    def __init__(self, scene: Scene, run: _core.Run) -> None:
+    def __init__(self, scene: Scene, run: _core.Run, name: str = "") -> None:
         self.scene = scene
+        self.name = name
         self._run = run
 
     @property
@@ -195,24 +223,32 @@ class Solution:
         Parameters
         ----------
         t_end : float
-            s; beyond the end of this run, in its direction.
-        t_eval, max_steps, time_limit, progress
+            s; not before where this run ended, in its direction.
+        t_eval : array_like, (k,), optional
+            More times to keep, s: at or beyond where this run ended, and beyond those it was asked
+            for. Only for a run that had a ``t_eval``.
+        max_steps, time_limit, progress
             As in `simulate`, for the continuation.
 
         Returns
         -------
         Solution
             The whole run, from its first start. This one stays as it is.
+
+        Raises
+        ------
+        ValueError, TypeError
+            If an argument is not what is asked for; the message names it.
         """
         report = callback(progress)
         run = self._run.resume(t_end, t_eval, max_steps, time_limit, report)
-        return solution_of(self.scene, run, report)
+        return solution_of(self.scene, run, report, self.name)
 
-    def case(self, name: str = "") -> Case:
+    def case(self) -> Case:
         """Return what was asked for, ready to be run again or written as TOML."""
         from pendcore.case import Case
 
-        return Case.of_solution(self, name)
+        return Case.of_solution(self)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write everything to a file of NumPy's npz format; see `pendcore.load`."""
@@ -220,11 +256,17 @@ class Solution:
 
         save(self, path)
 
-    def plot(self, ax: Any = None) -> list[Line2D]:
-        """Draw the angles over time, as in the textbook; see `pendcore.views.plot.plot`."""
+    def plot(
+        self, ax: Any = None, *, label: str | None = None, **line_properties: Any
+    ) -> list[Line2D]:
+        """Draw the angles over time, as in the textbook; see `pendcore.views.plot.plot`.
+
+        ``ax`` is one axes, or one for each link; ``label`` names the solution in the legend; the
+        rest are properties of matplotlib's ``Line2D``. The lines are returned.
+        """
         from pendcore.views.plot import plot
 
-        return plot(self, ax)
+        return plot(self, ax, label=label, **line_properties)
 
     def to_pandas(self) -> pd.DataFrame:
         """Return a table with a row per time and the columns q_1.., qd_1..; units in ``attrs``."""
@@ -249,9 +291,11 @@ class Solution:
         return html(self)
 
 
-def solution_of(scene: Scene, run: _core.Run, report: Callable[[float], object] | None) -> Solution:
+def solution_of(
+    scene: Scene, run: _core.Run, report: Callable[[float], object] | None, name: str = ""
+) -> Solution:
     """Wrap a run; if it was broken off by an exception, raise that with the run so far."""
-    solution = Solution(scene, run)
+    solution = Solution(scene, run, name)
     if isinstance(report, ProgressBar):
         report.close()
     error = run.error

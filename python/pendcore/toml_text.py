@@ -39,7 +39,7 @@ class TomlText:
         self._lines = dict(_lines_of_keys(text))
         try:
             self.content: dict[str, Any] = tomllib.loads(text)
-        except tomllib.TOMLDecodeError as error:
+        except ValueError as error:  # TOMLDecodeError, and an integer of too many digits
             raise ValueError(f"{name}: {error}") from None
 
     def error(self, place: Place, complaint: str) -> ValueError:
@@ -91,14 +91,23 @@ class TomlText:
         value = self.value(place)
         if not _is_number(value):
             raise self.error(place, f"{place[-1]} = {value!r}: must be a number")
-        return float(value)
+        return self._float(place, value)
 
-    def numbers(self, place: Place) -> list[float]:
-        """Return the list of numbers at a place."""
+    def numbers(self, place: Place) -> float | list[float]:
+        """Return the number, or the list of numbers, at a place."""
         value = self.value(place)
+        if _is_number(value):
+            return self._float(place, value)
         if not isinstance(value, list) or not all(map(_is_number, value)):
-            raise self.error(place, f"{place[-1]} = {value!r}: must be a list of numbers")
-        return [float(x) for x in value]
+            wanted = "must be a number or a list of numbers"
+            raise self.error(place, f"{place[-1]} = {value!r}: {wanted}")
+        return [self._float(place, x) for x in value]
+
+    def _float(self, place: Place, value: float) -> float:
+        try:
+            return float(value)
+        except OverflowError:
+            raise self.error(place, f"{place[-1]}: is too large: must be below 1.8e308") from None
 
 
 def _is_number(value: object) -> bool:

@@ -2,9 +2,11 @@
 /// How a run is made: method, tolerances, what is kept, and where it ends at the latest.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pendcore/integrate/integrate.hpp"
@@ -18,6 +20,12 @@ enum class Store {
   steps,  ///< every accepted step
   dense,  ///< the polynomials; and the times asked for, or else every accepted step
 };
+
+inline constexpr std::array<std::string_view, 4> store_names = {"end", "times", "steps", "dense"};
+
+constexpr std::string_view store_name(Store store) {
+  return store_names[static_cast<std::size_t>(store)];
+}
 
 /// Kept with the solution, so that it can be resumed.
 struct Options {
@@ -34,16 +42,19 @@ struct Options {
   Monitor monitor;
 };
 
-/// Throws std::invalid_argument for options out of their range, but for tolerances and times:
+/// Throws std::invalid_argument for options out of their range or at odds with each other, but for
+/// tolerances and the order of times.
 void check(const Options& options);
 
-/// for times that do not run from t0 to t_end,
+/// Throws std::invalid_argument for times that do not run one after the other from t0 to t_end.
 void check_times(const std::vector<double>& times, double t0, double t_end);
 
-/// for tolerances; and returns them for a chain of n links, (2n), as the steps use them: rtol at
-/// least 10 eps, what doubles can resolve; atol at least the smallest normal double, so that a
-/// component that stays zero has an error of 0, not 0/0.
+/// The relative tolerances of a chain of n links, (2n), at least 10 eps: doubles resolve no more.
+/// Throws std::invalid_argument for a wrong number of them, or one that is not finite and > 0.
 std::vector<double> relative_tolerances(const Options& options, std::size_t n);
+
+/// The absolute ones, (2n), at least 1e-150: what stays zero has an error of 0, not 0/0.
+/// Throws std::invalid_argument for a wrong number of them, or one that is not finite and >= 0.
 std::vector<double> absolute_tolerances(const Options& options, std::size_t n);
 
 }  // namespace pendcore

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "pendcore/dynamics/energy.hpp"
+#include "pendcore/dynamics/equations_of_motion.hpp"
 #include "pendcore/dynamics/inertia.hpp"
 #include "pendcore/dynamics/kinematics.hpp"
 #include "pendcore/dynamics/reactions.hpp"

@@ -13,14 +13,15 @@ class Recorder final : public Observer {
   Recorder(Solution& solution, const Stepper& stepper);
 
   void start(double t, const std::vector<double>& y);
-  void step_accepted(const Stepper& stepper, double t_old, double h, double t_new) override;
+  void step_accepted(const Stepper& stepper, const TwoDouble& t_old, double h,
+                     double t_new) override;
   void end_in_sight() override { count(); }
 
   /// What is kept so far is what an unstopped run has as well.
   void count();
 
  private:
-  void sample_step(const Stepper& stepper, double t_old, double h, double t_new);
+  void sample_step(const Stepper& stepper, const TwoDouble& t_old, double h, double t_new);
   double* append(double t);  ///< room for the state at t
 
   Solution& solution_;

@@ -28,6 +28,9 @@ struct Link {
   double center;   ///< c, m, from the proximal joint to the mass centre, along the link
   double inertia;  ///< I, kg m^2, about the mass centre; >= 0
 
+  /// About its own joint, without what hangs on it, kg m^2: I + m c^2.
+  double inertia_about_joint() const { return inertia + mass * center * center; }
+
   static Link uniform_rod(double mass, double length);  ///< c = L/2, I = m L^2/12
   static Link point_mass(double mass, double length);   ///< all the mass at the distal end
 };

@@ -14,6 +14,7 @@ namespace pendcore {
 struct DenseOutput {
   int degree = 0;
   std::vector<double> start;         ///< s, (n_steps)
+  std::vector<double> start_low;     ///< s, (n_steps), what its double leaves over of the time
   std::vector<double> h;             ///< s, (n_steps), negative in a backward run
   std::vector<double> coefficients;  ///< (n_steps, degree + 1, 2n) row-major; row p: of theta^p
 };
@@ -34,9 +35,10 @@ struct Solution {
   double t_reached = 0.0;         ///< s; before t_end if the run failed
   std::vector<double> y_reached;  ///< (2n), the state there
 
-  Position resumable;  ///< the start of the last step that the end of the run did not cut; of `t`
-  std::size_t resumable_t = 0;      ///< and of the polynomials, this many are what an unstopped
-  std::size_t resumable_steps = 0;  ///< run has as well
+  /// Where a resumed run goes on: before the first step that the end of this one cut short.
+  Position resumable;
+  std::size_t resumable_t = 0;      ///< so many of `t` an unstopped run has as well,
+  std::size_t resumable_steps = 0;  ///< and so many polynomials
 
   /// States at m times within the run, (m, 2n) row-major, from the dense output; where two steps
   /// meet, the state itself. Throws std::invalid_argument outside the run or without dense output.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 import warnings
 from collections.abc import Sequence
@@ -19,7 +20,8 @@ examples:
   pendcore run swing.toml --json | jq .energy
   pendcore plot out/swing/solution.npz -o swing.pdf
 
-exit status: 0 fine, 1 the run failed (what it has is written all the same), 2 wrong usage
+exit status: 0 fine, 1 the run failed or was interrupted (what it has is written all the same),
+2 wrong usage, 141 nobody reads what is printed (what is written is whole)
 """
 
 
@@ -34,7 +36,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        Exit status: 0 fine, 1 the run failed, 2 wrong usage.
+        Exit status: 0 fine, 1 the run failed or was interrupted, 2 wrong usage, 141 nobody reads.
     """
     parser = _parser()
     try:
@@ -45,10 +47,18 @@ def main(argv: Sequence[str] | None = None) -> int:
         warnings.simplefilter("always", PendcoreWarning)
         warnings.showwarning = _show_warning
         try:
-            return int(args.execute(args))
+            status = int(args.execute(args))
+            sys.stdout.flush()
+            return status
         except UsageError as error:
             print(f"pendcore {args.command}: {error}", file=sys.stderr)
             return 2
+        except KeyboardInterrupt:  # outside the run, which would have kept what it had
+            print(f"pendcore {args.command}: interrupted", file=sys.stderr)
+            return 1
+        except BrokenPipeError:  # whoever read has what they wanted
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            return 141
         except OSError as error:
             print(f"pendcore {args.command}: {error}", file=sys.stderr)
             return 1

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from pendcore.archive import load
-from pendcore.cli.usage import blamed_on_usage
+from pendcore.cli.usage import blamed_on_usage, written
 from pendcore.views.plot import save_figure
 
 _EPILOG = """
@@ -44,8 +44,9 @@ def execute(args: argparse.Namespace) -> int:
     out = args.out or args.solution.with_suffix(".png")
     with blamed_on_usage():
         solution = load(args.solution)
+        where = written(out, [out])
         save_figure(solution, out)
+    print(where, file=sys.stderr)
     if args.json:
         print(json.dumps({"figure": str(out), "status": solution.status}))
-    print(f"written to {out}", file=sys.stderr)
     return 0

@@ -5,13 +5,15 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
 from pendcore.archive import save
 from pendcore.case import Case
-from pendcore.case_file import read_case
-from pendcore.cli.usage import blamed_on_usage
+from pendcore.case_file import read_case, with_line
+from pendcore.cli.usage import UsageError, blamed_on_usage, written
 from pendcore.solution import Solution
 from pendcore.views.plot import save_figure
 from pendcore.views.summary import facts, text
@@ -35,7 +37,11 @@ a case:
   q_deg = [45, 60]                 # from the horizontal, downward; or q in rad
   [run]
   t_end = 5.0                      # s; also rtol, t_eval, ...: any keyword of pendcore.simulate()
+  # docs/case_files.md has every key
 """
+
+FILES = ("solution.npz", "summary.txt", "summary.json", "angles.png")
+_CAN_GO_ON = {"max_steps", "time_limit", "interrupted"}
 
 
 def add_parser(commands: Any) -> None:
@@ -59,28 +65,51 @@ def execute(args: argparse.Namespace) -> int:
     """Do it; return the exit status."""
     with blamed_on_usage():
         case = Case.textbook() if args.case is None else read_case(args.case)
-        folder = args.out or Path("out", args.case.stem if args.case else "textbook")
-        folder.mkdir(parents=True, exist_ok=True)
-    with blamed_on_usage(str(args.case)):
-        solution = _simulated(case)
-    found = facts(solution, case)
-    _write(folder, solution, case, found)
-    print(json.dumps(found, indent=2) if args.json else text(found), end="\n" * args.json)
-    print(f"written to {folder}", file=sys.stderr)
+    folder = args.out or Path("out", args.case.stem if args.case else "textbook")
+    with _ready(folder):
+        solution = _simulated(case, args.case)
+    found = facts(solution)
+    where = written(folder, [folder / name for name in FILES])
+    _write(folder, solution, found)
+    print(where, file=sys.stderr)
     if not solution.success:
-        print(f"the run failed: {solution.message}", file=sys.stderr)
+        print(f"the run is not complete: {solution.message}", file=sys.stderr)
+    if solution.status in _CAN_GO_ON:
+        t_end = found["run"]["t_end"]
+        file = str(folder / "solution.npz")
+        print(f"to go on, in Python: pc.load({file!r}).resume({t_end!r})", file=sys.stderr)
+    print(json.dumps(found, indent=2) if args.json else text(found), end="\n" * args.json)
     return 0 if solution.success else 1
 
 
-def _simulated(case: Case) -> Solution:
+@contextmanager
+def _ready(folder: Path) -> Iterator[None]:
+    """Make the folder before a run may take hours, and leave none behind if nothing comes of it."""
+    new = [path for path in (folder, *folder.parents) if not path.exists()]
+    with blamed_on_usage():
+        folder.mkdir(parents=True, exist_ok=True)
+    try:
+        yield
+    except BaseException:
+        with suppress(OSError):
+            for path in new:
+                path.rmdir()
+        raise
+
+
+def _simulated(case: Case, file: Path | None) -> Solution:
     try:
         return case.simulate()
+    except (ValueError, TypeError) as error:
+        raise UsageError(with_line(file, str(error)) if file else str(error)) from None
     except KeyboardInterrupt as stop:
-        return stop.solution  # type: ignore[attr-defined,no-any-return]
+        if isinstance(so_far := getattr(stop, "solution", None), Solution):
+            return so_far
+        raise
 
 
-def _write(folder: Path, solution: Solution, case: Case, found: dict[str, Any]) -> None:
-    save(solution, folder / "solution.npz", case.name)
+def _write(folder: Path, solution: Solution, found: dict[str, Any]) -> None:
+    save(solution, folder / "solution.npz")
     (folder / "summary.txt").write_text(text(found), encoding="utf-8")
     (folder / "summary.json").write_text(json.dumps(found, indent=2) + "\n", encoding="utf-8")
     save_figure(solution, folder / "angles.png")

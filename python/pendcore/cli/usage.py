@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 
 class UsageError(Exception):
@@ -19,3 +20,9 @@ def blamed_on_usage(what: str = "") -> Iterator[None]:
         raise UsageError(f"{error.filename}: {error.strerror}") from None
     except (ValueError, TypeError) as error:
         raise UsageError(f"{what}: {error}" if what else str(error)) from None
+
+
+def written(to: Path, files: Iterable[Path]) -> str:
+    """Return where files are about to be written, and whether earlier ones give way."""
+    gone = any(file.exists() for file in files)
+    return f"written to {to}" + (", earlier files replaced" if gone else "")

@@ -13,21 +13,35 @@ from pendcore.arguments import Floats
 from pendcore.solution import Solution
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
 _COLORS = ("r", "b", "g", "m", "c", "k")  # red and blue are the book's
+_STYLES = ("-", "--", "-.", ":")  # of one solution after another on the same axes
+_FEW = 200
+"""Points that are drawn as such where there is nothing between them."""
+_LEAST_SPAN = 0.1
+"""deg: rest must look like rest, not like its last bits."""
 
 
-def plot(solution: Solution, ax: Any = None) -> list[Line2D]:
+def plot(
+    solution: Solution, ax: Any = None, *, label: str | None = None, **line_properties: Any
+) -> list[Line2D]:
     """Draw the absolute angles in degrees over time, one axes each.
 
     Parameters
     ----------
     solution : Solution
-        What to draw; with dense output the curves are smooth, otherwise the kept points are joined.
+        What to draw; with dense output the curves are smooth, otherwise the kept points are joined,
+        and marked if they are few.
     ax : Axes or array of Axes, optional
         One for each link, or one for all. Default: a new figure of pyplot's, which is not shown.
+        Where curves are drawn already, the next ones are dashed.
+    label : str, optional
+        Name of this solution in the legend.
+    **line_properties
+        Of matplotlib's ``Line2D``, such as ``color``, ``linestyle`` or ``linewidth``.
 
     Returns
     -------
@@ -36,30 +50,39 @@ def plot(solution: Solution, ax: Any = None) -> list[Line2D]:
 
     Raises
     ------
+    TypeError
+        If ``ax`` is something else than axes.
     ValueError
         If the number of axes is neither one nor that of the links.
     """
+    from matplotlib.cbook import normalize_kwargs
+    from matplotlib.lines import Line2D
+
     n = len(solution.scene.links)
     if ax is None:
         import matplotlib.pyplot as plt
 
         ax = _subplots(plt.figure, n)
-    axes = np.ravel(ax)
-    if len(axes) not in (1, n):
-        raise ValueError(f"ax: {len(axes)} axes: must be one, or {n}, one for each link")
+    axes = _axes(ax, n)
+    given = normalize_kwargs(line_properties, Line2D)
     t, degrees = _curves(solution)
-    marker = "." if len(t) == 1 else ""
+    style = _STYLES[len(axes[0].lines) // (n // len(axes)) % len(_STYLES)]
+    bare = solution.store != "dense" and len(t) < _FEW
     lines = []
     for i, angle in enumerate(degrees):
-        axis = axes[i % len(axes)]
-        color, label = _COLORS[i % len(_COLORS)], f"q{i + 1}"
-        lines += axis.plot(t, angle, color=color, label=label, marker=marker)
-        axis.set_ylabel(f"{label} (deg)" if len(axes) == n else "q (deg)")
-        axis.set_xlabel("t (s)")
-        axis.grid(True)
-        axis.margins(x=0)
-    if len(axes) < n:
-        axes[0].legend()
+        axis, name = axes[i % len(axes)], f"q{i + 1}"
+        ours = {
+            "color": _COLORS[i % len(_COLORS)],
+            "linestyle": style,
+            "marker": "." if bare or len(t) == 1 else "",
+            "label": _label(name, label, alone=len(axes) == n),
+        }
+        lines += axis.plot(t, angle, **{**ours, **given})
+        axis.set_ylabel(f"{name} (deg)" if len(axes) == n else "q (deg)")
+    for axis in axes:
+        _dress(axis)
+        if label is not None or len(axes) < n:
+            axis.legend()
     return lines
 
 
@@ -70,6 +93,39 @@ def save_figure(solution: Solution, path: str | os.PathLike[str]) -> None:
     axes = _subplots(Figure, len(solution.scene.links))
     plot(solution, axes)
     axes[0].figure.savefig(path, dpi=150)
+
+
+def _axes(ax: Any, n: int) -> list[Axes]:
+    from matplotlib.axes import Axes
+
+    axes = list(np.ravel(ax))
+    if not all(isinstance(axis, Axes) for axis in axes):
+        raise TypeError(f"ax = {ax!r}: must be matplotlib Axes, one, or {n}, one for each link")
+    if len(axes) not in (1, n):
+        raise ValueError(f"ax: {len(axes)} axes: must be one, or {n}, one for each link")
+    return axes
+
+
+def _label(name: str, label: str | None, *, alone: bool) -> str:
+    """Return what the legend says: the curve, the solution, or both where both are needed."""
+    if label is None:
+        return name
+    return label if alone else f"{name}, {label}"
+
+
+def _dress(axis: Axes) -> None:
+    from matplotlib.ticker import ScalarFormatter
+
+    axis.set_xlabel("t (s)")
+    axis.grid(True)
+    axis.margins(x=0)
+    for ticks in (axis.xaxis.get_major_formatter(), axis.yaxis.get_major_formatter()):
+        if isinstance(ticks, ScalarFormatter):
+            ticks.set_useOffset(False)
+    low, high = axis.get_ylim()
+    if axis.get_autoscaley_on() and abs(high - low) < _LEAST_SPAN:
+        middle, half = (low + high) / 2, _LEAST_SPAN / 2
+        axis.set_ylim(middle - half, middle + half, auto=True)  # curves to come may need more
 
 
 def _subplots(new_figure: Callable[..., Figure], n: int) -> Any:

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import asdict
-from math import isfinite
+from math import degrees, isfinite
 from textwrap import wrap
 from typing import Any
 
 import numpy as np
 
 from pendcore import _core
-from pendcore.case import RUN_DEFAULTS, Case
 from pendcore.solution import Solution
-from pendcore.views.table import listed
+from pendcore.views import energy_drift
+from pendcore.views.table import listed, outcome
 
 NOT_SIMULATED = (
     "friction and damping in the joints, drag of the air, motors, springs, stops, a moving pivot, "
@@ -21,21 +21,24 @@ NOT_SIMULATED = (
 )
 
 
-def facts(solution: Solution, case: Case) -> dict[str, Any]:
+def facts(solution: Solution) -> dict[str, Any]:
     """Return the facts as JSON can hold them: SI units, rad; None where there is no number."""
+    case, run = solution.case(), solution._run
+    n = len(case.scene.links)
     found = {
         "name": case.name,
         "links": [asdict(link) for link in case.scene.links],
         "gravity": case.scene.gravity,
         "mobility": case.scene.mobility()._asdict(),
         "start": {"t": case.t_span[0], "q": case.q0, "qd": case.qd0},
-        "run": {"t_end": case.t_span[1]} | _run_options(case),
+        "run": {"t_end": case.t_span[1]} | _run_options(solution),
         "status": solution.status,
         "message": solution.message,
         "success": solution.success,
-        "end": _end(solution),
+        "end": {"t": run.t_reached, "q": run.y_reached[:n], "qd": run.y_reached[n:]},
         "statistics": solution.stats._asdict(),
-        "energy": _energy(solution),
+        "energy": energy_drift.energy_drift(solution)._asdict(),
+        "kept": {"times": len(solution.t), "every_step": energy_drift.has_every_step(solution)},
         "largest_reactions": _largest_reactions(solution),
         "not_simulated": NOT_SIMULATED,
         "version": _core.__version__,
@@ -53,31 +56,13 @@ def text(found: dict[str, Any]) -> str:
     return "\n\n".join("\n".join(block) for block in blocks) + "\n"
 
 
-def _run_options(case: Case) -> dict[str, Any]:
-    always = {key: RUN_DEFAULTS[key] for key in ("method", "rtol", "atol")}
-    return always | {key: value for key, value in case.options.items() if not callable(value)}
-
-
-def _end(solution: Solution) -> dict[str, Any] | None:
-    if not len(solution.t):
-        return None
-    return {"t": solution.t[-1], "q": solution.q[-1], "qd": solution.qd[-1]}
-
-
-def _energy(solution: Solution) -> dict[str, Any] | None:
-    """Drift over the kept times; it takes two to drift."""
-    if len(solution.t) < 2:
-        return None
-    energy = solution.energy()
-    drift = float(np.abs(energy.total - energy.total[0]).max())
-    largest = float(energy.kinetic.max())
-    return {
-        "start": energy.total[0],
-        "end": energy.total[-1],
-        "largest_drift": drift,
-        "largest_kinetic": largest,
-        "relative_drift": drift / largest if largest > 0 else None,
-    }
+def _run_options(solution: Solution) -> dict[str, Any]:
+    asked = solution._run.arguments
+    always = {key: asked[key] for key in ("method", "rtol", "atol")}
+    options = always | dict(solution.case().options)
+    if "step" in options:  # a fixed step takes the place of the tolerances
+        del options["rtol"], options["atol"]
+    return options
 
 
 def _largest_reactions(solution: Solution) -> list[dict[str, Any]]:
@@ -100,7 +85,7 @@ def _asked(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
     n, c5, c4, freedom = found["mobility"].values()
     yield "gravity", f"{found['gravity']:.6g} m/s^2, downward"
     yield "mobility", f"M = 3 n - 2 c5 - c4 = 3*{n} - 2*{c5} - {c4} = {freedom}"
-    yield "start", f"t = {start['t']:.6g} s, {_state(start)}"
+    yield "start", f"t = {start['t']:.6g} s, {_state(start, in_degrees=True)}"
     yield "end", f"t = {run.pop('t_end'):.6g} s"
     yield (
         "method",
@@ -111,23 +96,33 @@ def _asked(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
 
 def _happened(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
     stats, end, energy = found["statistics"], found["end"], found["energy"]
-    yield "status", f"{found['status']}: {found['message']}"
-    if end:
-        yield "end", f"t = {end['t']:.6g} s, {_state(end)}"
+    yield "status", outcome(found["status"], found["message"])
+    yield "end", f"t = {end['t']:.6g} s, {_state(end)}"
     yield "steps", f"{stats['accepted']} accepted, {stats['rejected']} rejected"
     yield "", f"{stats['min_step']:.3g} ... {stats['max_step']:.3g} s long"
     yield "work", f"{stats['nfev']} right-hand sides"
-    if energy:
-        share = energy["relative_drift"]
-        of_kinetic = "" if share is None else f", {share:.1e} of the largest kinetic energy"
-        yield "energy drift", f"{energy['largest_drift']:.1e} J{of_kinetic}"
+    yield "energy drift", energy_drift.text(energy["largest_drift"], energy["relative_drift"])
+    if energy["too_large"]:
+        yield "", energy_drift.TOO_LARGE
     for largest in found["largest_reactions"]:
-        force = f"joint {largest['joint']}: {largest['force']:.6g} N at t = {largest['t']:.6g} s"
-        yield "largest reaction" if largest["joint"] == 1 else "", force
+        force = f"{_number(largest['force'])} N at t = {largest['t']:.6g} s"
+        name = "largest reaction" if largest["joint"] == 1 else ""
+        yield name, f"joint {largest['joint']}: {force}"
+    if not found["kept"]["every_step"]:
+        times = found["kept"]["times"]
+        name = "" if times else "largest reaction"
+        yield name, f"among the {times} kept time{'s'[: times != 1]}"
 
 
-def _state(at: dict[str, Any]) -> str:
-    return f"q = ({listed(at['q'])}) rad, qd = ({listed(at['qd'])}) rad/s"
+def _state(at: dict[str, Any], in_degrees: bool = False) -> str:
+    q = f"q = ({listed(at['q'])}) rad"
+    if in_degrees:
+        q += f" = ({listed([degrees(x) for x in at['q']])}) deg"
+    return f"{q}, qd = ({listed(at['qd'])}) rad/s"
+
+
+def _number(value: float | None) -> str:
+    return "not a number of" if value is None else f"{value:.6g}"
 
 
 def _brief(value: Any) -> str:

@@ -7,6 +7,10 @@ from html import escape
 
 from pendcore.arguments import Floats
 from pendcore.solution import Solution
+from pendcore.views import energy_drift
+
+_MANY = 4000
+"""Times of which the energy is not worth the wait for a repr."""
 
 
 def text(solution: Solution) -> str:
@@ -31,10 +35,15 @@ def listed(values: Sequence[float] | Floats, most: int = 6) -> str:
     return ", ".join([*some, "..."] if len(values) > most else some)
 
 
+def outcome(status: str, message: str) -> str:
+    """Return the word and the sentence, and no word twice."""
+    return message if message.startswith(f"{status}:") else f"{status}: {message}"
+
+
 def _rows(solution: Solution) -> list[tuple[str, str]]:
     n, t, stats = len(solution.scene.links), solution.t, solution.stats
     rows = [
-        ("status", f"{solution.status}: {solution.message}"),
+        ("status", outcome(solution.status, solution.message)),
         ("scene", f"{n} link{'s'[: n > 1]}, gravity {solution.scene.gravity:.6g} m/s^2"),
         ("method", f"{solution.method}, {stats.accepted} steps, {stats.nfev} right-hand sides"),
     ]
@@ -44,4 +53,9 @@ def _rows(solution: Solution) -> list[tuple[str, str]]:
             ("last q", f"{listed(solution.q[-1])} rad"),
             ("last qd", f"{listed(solution.qd[-1])} rad/s"),
         ]
+    if len(t) <= _MANY:
+        drift = energy_drift.energy_drift(solution)
+        kept = energy_drift.text(drift.largest_drift, drift.relative_drift)
+        rows.append(("energy", f"drift {kept}"))
+        rows += [("", energy_drift.TOO_LARGE)] * drift.too_large
     return rows

@@ -25,7 +25,8 @@ namespace pendcore {
 
 enum class InstructionSet { baseline, x86_64_v3, x86_64_v4 };
 
-/// The best that this processor has, or the lower one that the environment asks for.
+/// The best that this processor has, or the lower one that the environment asks for. Throws
+/// std::invalid_argument where the environment names none of the three.
 InstructionSet instruction_set();
 
 /// Its name: "baseline", "x86-64-v3" or "x86-64-v4".

@@ -17,7 +17,7 @@
 /// delta = 1 - rho rho' is summed from positive terms (see the constructor), so that D keeps its
 /// digits even where link 1 weighs next to nothing; for rods D > 1/4 always.
 ///
-/// Cost: one sine and cosine of a pair, one division, 16 more operations; 17 ns.
+/// Cost: one sine and cosine of a pair, one division, 16 more operations. Throws nothing.
 #pragma once
 
 #include "pendcore/arithmetic/sine_cosine.hpp"
@@ -36,17 +36,21 @@ struct DoublePendulum {
 
   DoublePendulum(const Scene& scene, const Inertia& inertia);
 
-  /// qdd (rad/s^2) from q (rad) and qd (rad/s).
-  PENDCORE_INLINE Pair accelerations(const Pair& q, const Pair& qd) const {
-    Pair s, c;
+  /// qdd (rad/s^2) from q (rad) and qd (rad/s), on any pair: see pair.hpp.
+  template <class AnyPair>
+  PENDCORE_INLINE AnyPair accelerations(const AnyPair& q, const AnyPair& qd) const {
+    using Constant = Constants<AnyPair>;
+    const AnyPair rho = Constant::of(coupling);
+    AnyPair s, c;
     sine_cosine(q, s, c);
-    const Pair c_other = other(c);
-    const Pair cosine = fma(c, c_other, s * other(s));   // C
-    const Pair sine = fma(s, c_other, -(c * other(s)));  // S, of opposite sign for the other link
-    const Pair determinant = fma(product * sine, sine, broadcast<Pair>(delta));
-    const Pair qd_other = other(qd);
-    const Pair alone = fma(-(coupling * sine), qd_other * qd_other, weight * c);
-    return fma(-(coupling * cosine), other(alone), alone) * (1.0 / determinant);
+    const AnyPair c_other = other(c);
+    const AnyPair cosine = fma(c, c_other, s * other(s));  // C
+    const AnyPair sine =
+        fma(s, c_other, -(c * other(s)));  // S, of opposite sign for the other link
+    const AnyPair determinant = fma(Constant::of(product) * sine, sine, Constant::of(delta));
+    const AnyPair qd_other = other(qd);
+    const AnyPair alone = fma(-(rho * sine), qd_other * qd_other, Constant::of(weight) * c);
+    return fma(-(rho * cosine), other(alone), alone) * (1.0 / determinant);
   }
 };
 

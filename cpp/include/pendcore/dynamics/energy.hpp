@@ -3,14 +3,15 @@
 ///
 ///     T = sum_i (m_i v_{C_i}^2 + I_i qd_i^2) / 2,     V = -g sum_i m_i y_{C_i}
 ///
-/// J; V = 0 at the height of the pivot.
+/// J; V = 0 at the height of the pivot. Angles (rad) and rates (rad/s) are (n). Cost: O(n). A span
+/// of another size is refused with std::invalid_argument.
 #pragma once
 
 #include "pendcore/dynamics/kinematics.hpp"
 
 namespace pendcore {
 
-double kinetic_energy(const Scene& scene, Values q, Values qd);
-double potential_energy(const Scene& scene, Values q);
+double kinetic_energy(const Scene& scene, std::span<const double> q, std::span<const double> qd);
+double potential_energy(const Scene& scene, std::span<const double> q);
 
 }  // namespace pendcore

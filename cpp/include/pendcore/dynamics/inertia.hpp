@@ -6,10 +6,11 @@
 ///     A_ii = I_i + m_i c_i^2 + L_i^2 S_i      A_ij = L_min(i,j) a_max(i,j)      kg m^2
 ///
 /// so that T = 1/2 sum_ij A_ij cos(q_i - q_j) qd_i qd_j and V = -g sum_i a_i sin q_i.
+/// Cost: O(n) to make, O(n^2) for the matrix. The scene is one that check() passed.
 /// Every effect that only changes constants (a payload, a rotor's inertia) changes them here.
 #pragma once
 
-#include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "pendcore/scene.hpp"
@@ -17,7 +18,6 @@
 namespace pendcore {
 
 struct Inertia {
-  std::vector<double> carried;       ///< S_i, (n)
   std::vector<double> first_moment;  ///< a_i, (n)
   std::vector<double> diagonal;      ///< A_ii, (n)
   std::vector<double> length;        ///< L_i, (n)
@@ -26,7 +26,8 @@ struct Inertia {
   double coupling(std::size_t i, std::size_t j) const;  ///< A_ij, indices from 0
 };
 
-/// A_ij cos(q_i - q_j), (n, n), kg m^2.
-Eigen::MatrixXd mass_matrix(const Inertia& inertia, const Eigen::Ref<const Eigen::VectorXd>& q);
+/// A_ij cos(q_i - q_j), (n, n), kg m^2, from angles (rad), (n). A span of another size is refused
+/// with std::invalid_argument.
+void mass_matrix(const Inertia& inertia, std::span<const double> q, std::span<double> matrix);
 
 }  // namespace pendcore

@@ -5,30 +5,32 @@
 ///     P_i = P_{i-1} + L_i u_i              C_i = P_{i-1} + c_i u_i
 ///     a_{P_i} = a_{P_{i-1}} + L_i (qdd_i n_i - qd_i^2 u_i),  a_{C_i} likewise with c_i
 ///
-/// (the textbook's section 2.1, Kinematics). Arrays are (n, 2), x right and y down; O(n).
+/// (the textbook's section 2.1, Kinematics). Angles (rad), rates (rad/s) and accelerations
+/// (rad/s^2) are (n); points are (n, 2) row-major, x right and y down. Cost: O(n). A span of
+/// another size is refused with std::invalid_argument.
 #pragma once
 
-#include <Eigen/Core>
+#include <span>
 
 #include "pendcore/scene.hpp"
 
 namespace pendcore {
 
-using Values = Eigen::Ref<const Eigen::VectorXd>;                          ///< (n)
-using Points = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;  ///< (n, 2)
-using PointsOut = Eigen::Ref<Points>;
-
 /// u_i, (n, 2).
-Points directions(Values q);
+void directions(std::span<const double> q, std::span<double> u);
 
 /// The pivot, the joints and the tip, (n + 1, 2), m.
-void positions(const Scene& scene, Values q, PointsOut points);
+void positions(const Scene& scene, std::span<const double> q, std::span<double> points);
 
 /// C_i, (n, 2), m.
-void mass_centers(const Scene& scene, Values q, PointsOut points);
+void mass_centers(const Scene& scene, std::span<const double> q, std::span<double> points);
 
-/// a_{C_i}, (n, 2), m/s^2, from angles (rad), rates (rad/s) and accelerations (rad/s^2).
-void mass_center_accelerations(const Scene& scene, Values q, Values qd, Values qdd,
-                               PointsOut accelerations);
+/// a_{C_i}, (n, 2), m/s^2.
+void mass_center_accelerations(const Scene& scene, std::span<const double> q,
+                               std::span<const double> qd, std::span<const double> qdd,
+                               std::span<double> accelerations);
+
+/// Throws std::invalid_argument unless the span has that many numbers.
+void require_size(const char* name, std::span<const double> numbers, std::size_t size);
 
 }  // namespace pendcore

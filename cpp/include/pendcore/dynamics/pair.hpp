@@ -3,16 +3,64 @@
 ///
 /// The equations of a double pendulum read the same for both links once the other link has a name:
 /// they are written for a pair, and `other` changes its places. For one trajectory the pair is a
-/// pack of two, so that both links cost one instruction; for many, a pack is what each place holds.
+/// pack of two, so that both links cost one instruction. For any other number type (a pack that
+/// holds many trajectories, a dual number) it is two of them.
 #pragma once
 
 #include "pendcore/arithmetic/pack.hpp"
+#include "pendcore/arithmetic/sine_cosine.hpp"
 
 namespace pendcore {
+
+template <class Real>
+struct Two {
+  Real first;
+  Real second;
+};
 
 using Pair = Pack<2>;
 
 /// (x_2, x_1)
 PENDCORE_INLINE Pair other(const Pair& x) { return Pair{x[1], x[0]}; }
+template <class Real>
+PENDCORE_INLINE Two<Real> other(const Two<Real>& x) {
+  return {x.second, x.first};
+}
+
+/// A pair of constants as a pair of the number type that is computed with.
+template <class Links>
+struct Constants {
+  PENDCORE_INLINE static Links of(const Pair& x) { return x; }
+  PENDCORE_INLINE static Links of(double x) { return broadcast<Links>(x); }
+};
+template <class Real>
+struct Constants<Two<Real>> {
+  PENDCORE_INLINE static Two<Real> of(const Pair& x) {
+    return {broadcast<Real>(x[0]), broadcast<Real>(x[1])};
+  }
+  PENDCORE_INLINE static Two<Real> of(double x) { return {broadcast<Real>(x), broadcast<Real>(x)}; }
+};
+
+template <class Real>
+PENDCORE_INLINE Two<Real> operator-(const Two<Real>& x) {
+  return {-x.first, -x.second};
+}
+template <class Real>
+PENDCORE_INLINE Two<Real> operator*(const Two<Real>& x, const Two<Real>& y) {
+  return {x.first * y.first, x.second * y.second};
+}
+template <class Real>
+PENDCORE_INLINE Two<Real> operator/(double x, const Two<Real>& y) {
+  return {x / y.first, x / y.second};
+}
+template <class Real>
+PENDCORE_INLINE Two<Real> fma(const Two<Real>& a, const Two<Real>& b, const Two<Real>& c) {
+  return {fma(a.first, b.first, c.first), fma(a.second, b.second, c.second)};
+}
+template <class Real>
+PENDCORE_INLINE void sine_cosine(const Two<Real>& x, Two<Real>& sine, Two<Real>& cosine) {
+  sine_cosine(x.first, sine.first, cosine.first);
+  sine_cosine(x.second, sine.second, cosine.second);
+}
 
 }  // namespace pendcore

@@ -11,7 +11,9 @@
 
 namespace pendcore {
 
-/// (n, 2), N.
-void reactions(const Scene& scene, Values q, Values qd, Values qdd, PointsOut forces);
+/// (n, 2) row-major, N, from angles (rad), rates (rad/s) and accelerations (rad/s^2), (n) each.
+/// Cost: O(n). A span of another size is refused with std::invalid_argument.
+void reactions(const Scene& scene, std::span<const double> q, std::span<const double> qd,
+               std::span<const double> qdd, std::span<double> forces);
 
 }  // namespace pendcore

@@ -17,8 +17,9 @@ struct SinglePendulum {
   SinglePendulum(const Inertia& inertia, double gravity)
       : weight(inertia.first_moment[0] * gravity / inertia.diagonal[0]) {}
 
-  PENDCORE_INLINE Links accelerations(const Links& q, const Links& /*qd*/) const {
-    Links s, c;
+  template <class Real>
+  PENDCORE_INLINE Real accelerations(const Real& q, const Real& /*qd*/) const {
+    Real s, c;
     sine_cosine(q, s, c);
     return weight * c;
   }

@@ -78,24 +78,30 @@ class ExplicitRungeKutta final : public Stepper {
     interpolant_(&memory_, h, coefficients);
   }
 
-  void sample(const double* coefficients, double start, double h, const double* times, int count,
-              double* states) const override {
+  void sample(const double* coefficients, const TwoDouble& start, double h, const double* times,
+              int count, double* states) const override {
     sample_(coefficients, start, h, times, count, states);
   }
 
-  /// |k_7 - k_6| / |y_7 - y_6|: the last two stages lie at the same time.
+  /// |k_last - k_before| / |y_last - y_before|: both stages lie at the end of the step.
   double stiffness(double h) const override {
-    if constexpr (method.info.stability == 0.0) return 0.0;
-    double rates = 0.0;
-    double states = 0.0;
-    for (int i = 0; i < blocks; ++i) {
-      const Block y = advance(memory_.y[i], h, method.a[stages - 2], memory_.k, i, stages - 2);
-      const Block dk = memory_.k[stages - 1][i] - memory_.k[stages - 2][i];
-      const Block dy = memory_.y_new[i] - y;
-      rates += sum_of_lanes(Block(dk * dk));
-      states += sum_of_lanes(Block(dy * dy));
+    if constexpr (method.info.stability == 0.0) {
+      return 0.0;
+    } else {
+      static_assert(method.first_same_as_last && stages >= 3 && method.c[stages - 2].value() == 1.0,
+                    "the test for stiffness needs two stages at the end of the step");
+      double rates = 0.0;
+      double states = 0.0;
+      for (int i = 0; i < blocks; ++i) {
+        const Block before =
+            advance(memory_.y[i], h, method.a[stages - 2], memory_.k, i, stages - 2);
+        const Block dk = memory_.k[stages - 1][i] - memory_.k[stages - 2][i];
+        const Block dy = memory_.y_new[i] - before;
+        rates += sum_of_lanes(Block(dk * dk));
+        states += sum_of_lanes(Block(dy * dy));
+      }
+      return states > 0.0 ? std::abs(h) * std::sqrt(rates / states) : 0.0;
     }
-    return states > 0.0 ? std::abs(h) * std::sqrt(rates / states) : 0.0;
   }
 
  private:
@@ -110,7 +116,7 @@ class ExplicitRungeKutta final : public Stepper {
   Attempt (*attempt_)(Memory*, double, double, double) = fastest<&attempt_step<method, System>>();
   void (*interpolant_)(const Memory*, double,
                        double*) = fastest<&interpolant_of_step<method, System>>();
-  void (*sample_)(const double*, double, double, const double*, int,
+  void (*sample_)(const double*, TwoDouble, double, const double*, int,
                   double*) = fastest<&sample_interpolant<Block, blocks, Memory::degree>>();
   void (*evaluate_)(const System*, double, const double*,
                     double*) = fastest<&evaluate_system<System>>();

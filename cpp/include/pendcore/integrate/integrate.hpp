@@ -7,7 +7,6 @@
 
 #include <functional>
 #include <limits>
-#include <string>
 #include <vector>
 
 #include "pendcore/arithmetic/two_double.hpp"
@@ -18,15 +17,15 @@
 
 namespace pendcore {
 
-/// Everything the next step depends on: a run that goes on from here takes the very steps it would
-/// have taken had it never stopped.
+/// Everything the next step depends on: a run that goes on from here takes the very steps that it
+/// would have taken had it never stopped.
 struct Position {
   TwoDouble t;
   double h = 0.0;  ///< s, the step to try next; its sign is the direction
   bool h_is_max_step = false;
   StepControl control;
-  int stiff_hits = 0;  ///< of Hairer's stiffness test, in a row,
-  int stiff_misses = 0;
+  int stiff_hits = 0;    ///< of Hairer's test for stiffness since it last forgot
+  int stiff_misses = 0;  ///< since the last hit
   Statistics statistics;
   std::vector<double> y;     ///< (dimension)
   std::vector<double> dydt;  ///< (dimension)
@@ -48,14 +47,16 @@ struct Limits {
 class Observer {
  public:
   virtual ~Observer() = default;
-  virtual void step_accepted(const Stepper& stepper, double t_old, double h, double t_new) = 0;
-  /// The next step is cut to end at t_end. A run that goes on later restarts here.
+  virtual void step_accepted(const Stepper& stepper, const TwoDouble& t_old, double h,
+                             double t_new) = 0;
+  /// The next step is the first that is cut to end at t_end. A run that goes on restarts here.
   virtual void end_in_sight() = 0;
 };
 
 struct Ending {
   Status status;
-  std::string message;
+  bool cut;      ///< the last step, or one before it, was cut to end at t_end
+  int bad = -1;  ///< of status non_finite: the component that is not finite, if it is known
 };
 
 /// Takes steps from `position` (which moves along) until `limits` ends them. `resumable` becomes

@@ -1,6 +1,6 @@
 /// \file
-/// THE LIST of methods. A new one is a file with its table and a line here; the Python layer, the
-/// documentation and the tests of order conditions, convergence and dense output find it by itself.
+/// THE LIST of methods. A new one is a file with its table and a line here (CONTRIBUTING.md); the
+/// Python layer and the tests of order conditions, convergence, dense output and bits find it.
 #pragma once
 
 #include "pendcore/integrate/dormand_prince_5.hpp"

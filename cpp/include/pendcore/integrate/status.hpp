@@ -30,12 +30,15 @@ inline constexpr std::array<StatusText, 9> status_texts = {{
     {"event", true, "stopped at a terminal event"},
     {"at_rest", true, "came to rest for good before the end of the interval"},
     {"max_steps", false,
-     "the cap on steps was reached: raise max_steps, shorten t_span or loosen rtol and atol"},
+     "the cap on steps was reached: raise max_steps, shorten the interval or loosen rtol and atol"},
     {"step_too_small", false,
-     "the step fell below what time can resolve: the motion may blow up here, the tolerances may "
-     "be too tight, or t0 may be so large that t + h = t"},
+     "the step fell below what time can resolve: the motion blows up here (or rtol and atol are "
+     "too "
+     "loose to follow it), they are too tight, or t0 is so large that t + h = t"},
     {"non_finite", false,
-     "the motion stopped being finite: check the scene's parameters and the start"},
+     "the motion stopped being finite: check parameters and start, and that step, rtol and atol "
+     "are "
+     "not too coarse"},
     {"time_limit", false, "the time limit was reached: raise time_limit, or resume the solution"},
     {"interrupted", false, "interrupted: what was computed so far is kept and can be resumed"},
     {"callback_error", false, "a function of the user's raised an exception"},

@@ -2,7 +2,7 @@
 /// WHERE IS THE STEPPER: one step of an explicit Runge-Kutta method, from its table.
 ///
 /// `attempt_step` is the kernel: the stages, the new state and its error norm, unrolled for the
-/// table and the system at compile time. It allocates nothing and branches on nothing.
+/// table and the system at compile time. It allocates nothing and branches on nothing itself.
 /// explicit_runge_kutta.hpp clones it for each instruction set and hands it to the loop.
 ///
 /// A system is a type with `Block` (a double or a pack), `blocks` (how many make a state) and
@@ -13,6 +13,7 @@
 
 #include "pendcore/arithmetic/pack.hpp"
 #include "pendcore/arithmetic/power.hpp"
+#include "pendcore/arithmetic/two_double.hpp"
 #include "pendcore/integrate/attempt.hpp"
 #include "pendcore/integrate/step_control.hpp"
 
@@ -91,7 +92,9 @@ PENDCORE_INLINE Attempt attempt_step(StepMemory<method, System>* memory, double 
   for (int i = 0; i < blocks; ++i) {
     const Block size = larger(absolute(y[i]), absolute(z[i]));
     const Block scale = h / fma(memory->rtol[i], size, memory->atol[i]);
-    const Block ratio = advance(Block{}, scale, method.e, k, i, stages);
+    // Without a stage at the new state nothing else says that it is finite: 0, or NaN.
+    const Block start = method.first_same_as_last ? Block{} : z[i] - z[i];
+    const Block ratio = advance(start, scale, method.e, k, i, stages);
     squares[i] = ratio * ratio;
   }
 #pragma GCC unroll 16
@@ -133,11 +136,11 @@ PENDCORE_INLINE void interpolant_of_step(const StepMemory<method, System>* memor
 
 /// Horner's scheme in theta = (time - start) / h, at `count` times.
 template <class Block, int blocks, int degree>
-PENDCORE_INLINE void sample_interpolant(const double* coefficients, double start, double h,
+PENDCORE_INLINE void sample_interpolant(const double* coefficients, TwoDouble start, double h,
                                         const double* times, int count, double* states) {
   constexpr int width = Lanes<Block>::width;
   for (int k = 0; k < count; ++k) {
-    const double theta = (times[k] - start) / h;
+    const double theta = ((times[k] - start.high) - start.low) / h;
 #pragma GCC unroll 16
     for (int i = 0; i < blocks; ++i) {
       Block value = load<Block>(coefficients + (degree * blocks + i) * width);

@@ -2,6 +2,7 @@
 /// What the integration loop sees of a method applied to a system: no tableau, no pendulum.
 #pragma once
 
+#include "pendcore/arithmetic/two_double.hpp"
 #include "pendcore/integrate/attempt.hpp"
 #include "pendcore/integrate/tableau.hpp"
 
@@ -38,8 +39,8 @@ class Stepper {
 
   /// The values of such a polynomial, of a step of size h from `start`, at `count` times:
   /// (count, dimension) row-major.
-  virtual void sample(const double* coefficients, double start, double h, const double* times,
-                      int count, double* states) const = 0;
+  virtual void sample(const double* coefficients, const TwoDouble& start, double h,
+                      const double* times, int count, double* states) const = 0;
 
   /// An estimate of h |lambda|, lambda the eigenvalue of largest size, from the attempted step
   /// (Hairer and Wanner, volume II, IV.2).

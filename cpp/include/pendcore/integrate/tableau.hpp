@@ -27,7 +27,7 @@ struct Fraction {
 /// What is said of a method, and how its steps are controlled.
 struct MethodInfo {
   std::string_view name;
-  std::span<const std::string_view> aliases;
+  std::span<const std::string_view> aliases = {};
   std::string_view citation;
   int order;              ///< of y_new
   int error_order;        ///< of the embedded method; 0: no error estimate, fixed steps only

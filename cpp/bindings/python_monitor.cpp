@@ -1,0 +1,30 @@
+#include "python_monitor.hpp"
+
+namespace pendcore::bindings {
+
+bool PythonMonitor::operator()(double fraction) {
+  const py::gil_scoped_acquire lock;
+  if (PyErr_CheckSignals() == 0) {
+    if (progress_.is_none()) return true;
+    const py::object done = py::float_(fraction);
+    PyObject* result = PyObject_CallOneArg(progress_.ptr(), done.ptr());
+    Py_XDECREF(result);
+    if (result != nullptr) return true;
+  }
+  const py::error_already_set error;
+  *error_ = error.value();
+  if (error.trace()) PyException_SetTraceback(error_->ptr(), error.trace().ptr());
+  return false;
+}
+
+void PythonMonitor::close(Run& run) const {
+  if (!*error_) return;
+  run.error = *error_;
+  if (PyErr_GivenExceptionMatches(run.error.ptr(), PyExc_KeyboardInterrupt)) return;
+  Solution& solution = run.solution;
+  const std::size_t sentence = text(solution.status).sentence.size();
+  solution.status = Status::callback_error;
+  solution.message.replace(0, sentence, text(Status::callback_error).sentence);
+}
+
+}  // namespace pendcore::bindings

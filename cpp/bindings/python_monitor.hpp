@@ -1,0 +1,27 @@
+/// \file
+/// Calls Python about every 50 ms while the core computes without its lock: for Ctrl-C, and to show
+/// the progress. An exception stops the run and is kept.
+#pragma once
+
+#include <memory>
+
+#include "run.hpp"
+
+namespace pendcore::bindings {
+
+class PythonMonitor {
+ public:
+  explicit PythonMonitor(py::handle progress) : progress_(progress) {}
+
+  /// What the core calls: false stops the run.
+  bool operator()(double fraction);
+
+  /// Puts the exception, and the status that it means, into the run.
+  void close(Run& run) const;
+
+ private:
+  py::handle progress_;
+  std::shared_ptr<py::object> error_ = std::make_shared<py::object>();  // shared by copies
+};
+
+}  // namespace pendcore::bindings

@@ -1,0 +1,43 @@
+"""docs/case_files.md has every key of a case file, and the defaults that hold."""
+
+from __future__ import annotations
+
+import re
+from math import inf
+from pathlib import Path
+
+import pendcore as pc
+from pendcore.case import RUN_DEFAULTS
+from pendcore.case_file import KEYS
+
+REFERENCE = (Path(__file__).parents[1] / "docs/case_files.md").read_text()
+
+
+def documented():
+    """Kind of table, key and default of every row of the reference."""
+    for section in REFERENCE.split("\n## ")[1:]:
+        title = section.splitlines()[0].strip("`[]")
+        for key, default in re.findall(r"^\| `(\w+)` \| [^|]*\| ([^|]*) \|", section, re.MULTILINE):
+            yield "" if title == "Above all tables" else title, key, default
+
+
+def test_the_reference_has_every_key_and_no_other():
+    found = [(kind, key) for kind, key, _ in documented()]
+    assert found == [(kind, key) for kind, keys in KEYS.items() for key in keys]
+
+
+def test_the_reference_has_the_defaults_of_simulate():
+    words = {"none", "chosen", "every step", "when it takes long"}
+    for kind, key, default in documented():
+        if kind == "run" and key in RUN_DEFAULTS:
+            usual = RUN_DEFAULTS[key]
+            if usual is None:
+                assert default in words or key == "store", key
+            else:
+                assert eval(default.strip("`"), {"inf": inf}) == usual, key
+
+
+def test_the_case_of_the_reference_is_the_examples():
+    (text,) = re.findall(r"```toml\n(.*?)```", REFERENCE, re.DOTALL)
+    example = Path(__file__).parents[1] / "examples/03_case_file.toml"
+    assert pc.read_case(text) == pc.read_case(example)

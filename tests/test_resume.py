@@ -1,0 +1,98 @@
+"""A run goes on from where it ended; what cannot be is refused by name."""
+
+from __future__ import annotations
+
+import traceback
+
+import numpy as np
+import pendcore as pc
+import pytest
+from pendcore import _core
+
+BOOK = pc.Scene.textbook()
+Q0 = [0.8, 1.0]
+
+
+def begun(t_end=5.0, **options):
+    return pc.simulate(BOOK, Q0, 0, (0, t_end), **options)
+
+
+def test_times_that_have_passed_are_refused_by_the_users_own_index():
+    with pytest.raises(ValueError, match=r"^t_eval\[0\] = 2\.0: must be within .*5\.0 to 10\.0"):
+        begun(t_eval=[0, 1]).resume(10, t_eval=[2, 6])
+    with pytest.raises(ValueError, match=r"^t_eval\[0\] = 5\.0: must be beyond the last .* 5\.0"):
+        begun(t_eval=[0, 5]).resume(10, t_eval=[5, 6])
+
+
+@pytest.mark.parametrize("store", ["dense", "steps", "end"])
+def test_a_run_that_was_not_sampled_is_not_sampled_on(store):
+    with pytest.raises(ValueError, match=r"^t_eval: this run was not asked for times"):
+        begun(store=store).resume(10, t_eval=[6, 7])
+
+
+def test_an_end_before_the_times_asked_for_is_refused():
+    capped = begun(t_eval=[1, 2, 3, 4, 5], max_steps=30)
+    assert capped.status == "max_steps"
+    with pytest.raises(ValueError, match=r"^t_end = 3\.0: must be at or beyond the last time"):
+        capped.resume(3)
+    assert capped.resume(5).t.tolist() == [1, 2, 3, 4, 5]
+
+
+def test_sampled_states_are_those_of_the_motion():
+    resumed = begun(t_eval=[0, 1]).resume(10, t_eval=[5, 6, 7])
+    whole = pc.simulate(BOOK, Q0, 0, (0, 10), t_eval=[0, 1, 5, 6, 7])
+    assert np.array_equal(resumed.t, whole.t)
+    assert np.array_equal(resumed.y, whole.y)
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        {"dense_start": [], "dense_start_low": [], "dense_h": [], "dense_coefficients": []},
+        {"t_start": -1.0},
+        {"t_reached": float("nan")},
+        {"links": [1.0, 1.0, 0.5]},
+        {"status": "splendid"},
+        {"dense_degree": 3},
+        {"t": [0.0]},
+    ],
+)
+def test_a_damaged_solution_is_refused(damage):
+    state = begun()._run.__getstate__() | damage
+    run = _core.Run.__new__(_core.Run)
+    with pytest.raises(ValueError, match=r"do not fit|four numbers|status|splendid"):
+        run.__setstate__(state)
+
+
+def test_a_shifted_dense_output_is_refused():
+    state = begun()._run.__getstate__()
+    state["dense_start"] = state["dense_start"] + 1.0
+    with pytest.raises(ValueError, match="do not fit together"):
+        _core.Run.__new__(_core.Run).__setstate__(state)
+
+
+def test_the_traceback_of_a_users_function_is_kept():
+    def fails_in_here(fraction):
+        raise LookupError("enough")
+
+    with pytest.raises(LookupError) as caught:
+        begun(1e9, store="end", progress=fails_in_here, time_limit=10)
+    names = [frame.name for frame in traceback.extract_tb(caught.value.__traceback__)]
+    assert "fails_in_here" in names
+    assert "(at t = " in caught.value.solution.message
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"step": 0.1, "first_step": 0.1}, "^first_step: a fixed step is given"),
+        ({"step": 0.1, "max_step": 0.01}, r"^step = 0\.1: must be <= max_step"),
+        ({"t_eval": []}, "^t_eval: is empty"),
+        ({"max_steps": 10**30}, "^max_steps: is too large"),
+        ({"rtol": 10**400}, "^rtol: is too large"),
+        ({"method": "\ud800"}, "^method = "),
+    ],
+)
+def test_options_at_odds_are_refused(options, message):
+    with pytest.raises((ValueError, TypeError), match=message):
+        begun(**options)
