@@ -58,7 +58,7 @@ sanitize: $(DONE)/installed $(DONE)/test-requirements  ## all tests under saniti
 	rm -rf $(SANITIZED) && mkdir -p $(SANITIZED) && cp -r python/pendcore $(SANITIZED)
 	cmake --install build/sanitizer --prefix $(SANITIZED)/pendcore
 	PYTHONPATH=$(SANITIZED) LD_PRELOAD="$(PRELOAD)" ASAN_OPTIONS=detect_leaks=0 \
-	    pytest -m "not sweep and not outside_build"
+	    pytest -m "not outside_build"
 
 clean:  ## remove all that was built, and the virtual environment
 	rm -rf build out .venv

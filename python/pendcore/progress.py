@@ -56,7 +56,7 @@ class ImmediateBar(ProgressBar):
 
 
 def _new_bar() -> tqdm[Any]:
-    from tqdm import tqdm  # 20 ms that a short run does not owe
+    from tqdm import tqdm  # slow to import: a short run does not owe that
 
     layout = "{desc} {percentage:3.0f} % |{bar}| {elapsed}, {remaining} to go"
     return tqdm(total=100, desc="simulating", bar_format=layout, file=sys.stderr)

@@ -1,6 +1,6 @@
 // Boost.odeint's dopri5 with dense output, at its best: the state a std::array of fixed size, the
-// constants of the textbook's case literal (3 % quicker than parameters), a loop of do_step and
-// calc_state (4 % quicker than integrate_times, which takes the last step apart), a first step that
+// constants of the textbook's case literal (quicker than parameters), a loop of do_step and
+// calc_state (quicker than integrate_times, which takes the last step apart), a first step that
 // suits the tolerance, results written in place, no allocation.
 #include <array>
 #include <boost/numeric/odeint/stepper/generation.hpp>

@@ -2,8 +2,8 @@
 /// Rounding to nearest, denormal numbers kept, while an object of this class lives.
 ///
 /// A library built with -ffast-math switches the processor to flushing denormals to zero in every
-/// thread that loads it, and a host program may have set another rounding. Each entry into the core
-/// sets the IEEE defaults and puts back what it found.
+/// thread that loads it, and a host program may have set another rounding. `simulate`, `resume`,
+/// `Solution::at` and the bindings set the IEEE defaults and put back what they found.
 #pragma once
 
 #if defined(__x86_64__)

@@ -10,12 +10,12 @@ struct Statistics {
   long long nlu = 0;   ///< factorisations (implicit methods)
   long long accepted = 0;
   long long rejected = 0;
-  long long limited_by_tolerance = 0;  ///< accepted steps whose size the error control chose,
-  long long limited_by_max_step = 0;   ///< or max_step, or a fixed step,
-  long long limited_by_break = 0;      ///< or the end of the interval or a break point
-  double min_step = 0.0;               ///< s; the smallest and the largest accepted step, those cut
-  double max_step = 0.0;  ///< short by a break point aside (unless there are no others)
-  bool stiff = false;     ///< Hairer's test found the step limited by stability
+  long long limited_by_tolerance = 0;  ///< accepted steps whose size the error control chose
+  long long limited_by_max_step = 0;   ///< accepted steps of max_step, or of a fixed step
+  long long limited_by_break = 0;      ///< accepted steps cut by the end or by a break point
+  double min_step = 0.0;               ///< s, the smallest accepted step, not cut (unless all are)
+  double max_step = 0.0;               ///< s, the largest, likewise
+  bool stiff = false;                  ///< Hairer's test found the step limited by stability
 };
 
 }  // namespace pendcore
