@@ -63,7 +63,7 @@ std::string message_of(const Ending& ending, const Solution& solution) {
   if (text(ending.status).success) return message;
   message += " (at t = " + text(solution.t_reached) + " s";
   if (ending.bad >= 0) message += ", " + component_name(ending.bad, solution.dimension);
-  message += ")";
+  message += ')';
   if (solution.statistics.stiff) {
     message += "; the steps are limited by stability, not by accuracy: the problem is stiff";
   }
