@@ -24,6 +24,14 @@ def test_times_that_have_passed_are_refused_by_the_users_own_index():
         begun(t_eval=[0, 5]).resume(10, t_eval=[5, 6])
 
 
+def test_a_run_of_no_length_goes_on_either_way_and_keeps_its_start_once():
+    point = begun(0.0, t_eval=[0.0])
+    assert point.resume(5, t_eval=[1, 5]).t.tolist() == [0, 1, 5]
+    assert point.resume(-5, t_eval=[-1, -5]).t.tolist() == [0, -1, -5]
+    with pytest.raises(ValueError, match=r"^t_eval\[0\] = 0\.0: must be beyond the last"):
+        point.resume(5, t_eval=[0, 1])
+
+
 @pytest.mark.parametrize("store", ["dense", "steps", "end"])
 def test_a_run_that_was_not_sampled_is_not_sampled_on(store):
     with pytest.raises(ValueError, match=r"^t_eval: this run was not asked for times"):

@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "pendcore/message.hpp"
+
 namespace pendcore {
 
 double kinetic_energy(const Scene& scene, std::span<const double> q, std::span<const double> qd) {

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 
 #include "pendcore/dynamics/kinematics.hpp"
+#include "pendcore/message.hpp"
 
 namespace pendcore {
 

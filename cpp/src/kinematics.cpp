@@ -1,10 +1,9 @@
 #include "pendcore/dynamics/kinematics.hpp"
 
 #include <Eigen/Core>
-#include <stdexcept>
-#include <string>
 
 #include "pendcore/arithmetic/sine_cosine.hpp"
+#include "pendcore/message.hpp"
 
 namespace pendcore {
 namespace {
@@ -23,12 +22,6 @@ Rows directions_of(std::span<const double> q) {
 }
 
 }  // namespace
-
-void require_size(const char* name, std::span<const double> numbers, std::size_t size) {
-  if (numbers.size() == size) return;
-  throw std::invalid_argument(std::string(name) + ": has " + std::to_string(numbers.size()) +
-                              " numbers: must have " + std::to_string(size));
-}
 
 void directions(std::span<const double> q, std::span<double> u) {
   require_size("u", u, 2 * q.size());

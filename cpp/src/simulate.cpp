@@ -29,7 +29,9 @@ void check_start(const char* name, const std::vector<double>& values, std::size_
 /// A run goes on from where it ended, to times that it has not been asked for.
 void check_continuation(const Solution& solution, double t_end, const std::vector<double>& t_eval) {
   const double reached = solution.t_reached;
-  const double span = solution.t_end - solution.t0;
+  // A run of no length has no direction yet: it takes that of what follows.
+  const bool has_length = solution.t_end != solution.t0;
+  const double span = (has_length ? solution.t_end : t_end) - solution.t0;
   auto before = [span](double a, double b) { return (b - a) * span > 0.0; };
   if (!std::isfinite(t_end) || before(t_end, reached)) {
     refuse("t_end", t_end, "finite and at or beyond the end reached, " + text(reached) + " s");
@@ -45,7 +47,7 @@ void check_continuation(const Solution& solution, double t_end, const std::vecto
         "out");
   }
   check_times(t_eval, reached, t_end);
-  if (!before(asked.back(), t_eval.front()) && span != 0.0) {
+  if (!before(asked.back(), t_eval.front())) {
     refuse("t_eval[0]", t_eval.front(),
            "beyond the last time asked for so far, " + text(asked.back()) + " s");
   }

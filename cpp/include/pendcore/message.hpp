@@ -3,6 +3,7 @@
 #pragma once
 
 #include <charconv>
+#include <span>
 #include <stdexcept>
 #include <string>
 
@@ -20,6 +21,13 @@ inline std::string text(double x) {
 /// Throws std::invalid_argument: "link 2: mass = -1.0: must be finite and > 0 (kg)".
 [[noreturn]] inline void refuse(const std::string& field, double value, const std::string& range) {
   throw std::invalid_argument(field + " = " + text(value) + ": must be " + range);
+}
+
+/// Throws std::invalid_argument unless there are that many numbers.
+inline void require_size(const char* name, std::span<const double> numbers, std::size_t size) {
+  if (numbers.size() == size) return;
+  throw std::invalid_argument(std::string(name) + ": has " + std::to_string(numbers.size()) +
+                              " numbers: must have " + std::to_string(size));
 }
 
 }  // namespace pendcore

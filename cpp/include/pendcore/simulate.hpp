@@ -21,7 +21,8 @@ Solution simulate(const Scene& scene, const std::vector<double>& q0, const std::
                   double t0, double t_end, const Options& options = {});
 
 /// The solution of the same run to t_end further on, bitwise as if it had never stopped. `t_eval`
-/// names further times (Store::times); max_steps, time_limit and monitor count for this leg.
+/// names further times of a run that was asked for times; max_steps, time_limit and monitor count
+/// for this leg. Throws std::invalid_argument for an end, or times, that the run has passed.
 Solution resume(const Scene& scene, const Solution& solution, double t_end,
                 const std::vector<double>& t_eval, long long max_steps, double time_limit,
                 const Monitor& monitor);

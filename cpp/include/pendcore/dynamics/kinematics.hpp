@@ -30,7 +30,4 @@ void mass_center_accelerations(const Scene& scene, std::span<const double> q,
                                std::span<const double> qd, std::span<const double> qdd,
                                std::span<double> accelerations);
 
-/// Throws std::invalid_argument unless the span has that many numbers.
-void require_size(const char* name, std::span<const double> numbers, std::size_t size);
-
 }  // namespace pendcore
