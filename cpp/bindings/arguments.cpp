@@ -61,6 +61,12 @@ long long whole_number(const char* name, py::handle value) {
   return result;
 }
 
+bool truth(const char* name, py::handle value) {
+  py::detail::make_caster<bool> caster;
+  if (!caster.load(value, /*convert=*/false)) refuse_type(name, value, "True or False");
+  return caster;
+}
+
 std::vector<double> numbers(const char* name, py::handle value, const std::string& wanted,
                             std::size_t copies) {
   if (is_plain_number(value)) return std::vector<double>(copies, plain_number(name, value));

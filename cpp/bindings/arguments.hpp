@@ -7,6 +7,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace pendcore::bindings {
@@ -16,12 +17,17 @@ namespace py = pybind11;
 /// An array of doubles, contiguous, made from what is given if need be.
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
+inline py::str string(std::string_view text) { return {text.data(), text.size()}; }
+
 /// A real number. TypeError for booleans, strings, complex numbers and arrays with axes.
 double number(const char* name, py::handle value);
 std::optional<double> optional_number(const char* name, py::handle value);
 
 /// A whole number. TypeError for anything else.
 long long whole_number(const char* name, py::handle value);
+
+/// True or false, NumPy's as well. TypeError for anything else.
+bool truth(const char* name, py::handle value);
 
 /// Real numbers along one axis; a number alone counts as `copies` of it. TypeError for what is not
 /// real numbers, ValueError for more axes, which says the shape that is `wanted`.

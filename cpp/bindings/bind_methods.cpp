@@ -4,8 +4,6 @@
 namespace pendcore::bindings {
 namespace {
 
-py::str string(std::string_view text) { return {text.data(), text.size()}; }
-
 template <class Row>
 py::list fractions(const Row& row) {
   py::list pairs;

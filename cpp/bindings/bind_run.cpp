@@ -28,11 +28,11 @@ py::object or_none(bool given, Number value) {
 /// The keywords of simulate() as they were given.
 py::dict arguments(const Run& run) {
   const Solution& s = run.solution;
-  const auto n = static_cast<std::ptrdiff_t>(run.scene.links.size());
+  const std::ptrdiff_t n = s.n;
   const bool times = !s.options.t_eval.empty();
   py::dict result;
   result["q0"] = copy_flat({s.start.begin(), s.start.begin() + n});
-  result["qd0"] = copy_flat({s.start.begin() + n, s.start.end()});
+  result["qd0"] = copy_flat({s.start.begin() + n, s.start.begin() + 2 * n});
   result["t_start"] = s.t0;
   result["t_end"] = s.t_end;
   result["method"] = s.options.method;
@@ -45,6 +45,7 @@ py::dict arguments(const Run& run) {
   result["max_step"] = s.options.max_step;
   result["step"] = s.options.step;
   result["max_steps"] = s.options.max_steps;
+  result["ledger"] = s.options.ledger;
   result["time_limit"] = or_none(std::isfinite(s.options.time_limit), s.options.time_limit);
   return result;
 }
@@ -58,7 +59,7 @@ Run resume_run(const Run& run, py::handle t_end, py::handle t_eval, py::handle m
   const long long most = whole_number("max_steps", max_steps);
   const double limit =
       optional_number("time_limit", time_limit).value_or(std::numeric_limits<double>::infinity());
-  Run longer{.scene = run.scene, .solution = {}};
+  Run longer{.scene = run.scene, .solution = {}, .python_scene = run.python_scene};
   {
     const py::gil_scoped_release without_lock;
     longer.solution = resume(run.scene, run.solution, end, times, most, limit, monitor);
@@ -67,9 +68,31 @@ Run resume_run(const Run& run, py::handle t_end, py::handle t_eval, py::handle m
   return longer;
 }
 
+/// Some columns of the rows that a solution keeps: angles, rates, then the ledger's entries.
+py::array columns(const py::array& rows, int begin, int end) {
+  return rows[py::make_tuple(py::slice(0, rows.shape(0), 1), py::slice(begin, end, 1))];
+}
+
+py::array rows(const py::object& self) {
+  const Solution& s = self.cast<const Run&>().solution;
+  return view(s.states, {size(s.t), s.dimension}, self);
+}
+
+py::dict ledger(const py::object& self) {
+  const Solution& s = self.cast<const Run&>().solution;
+  py::dict result;
+  int column = 2 * s.n;
+  for (const Account account : s.accounts) {
+    const py::array entry = columns(rows(self), column, column + 1);
+    result[string(account_name(account))] = entry.attr("reshape")(-1);
+    ++column;
+  }
+  return result;
+}
+
 py::array evaluate(const Run& run, const Array& t) {
   const std::vector<double> states = run.solution.at({t.data(), t.data() + t.size()});
-  return copy(states, {t.size(), run.solution.dimension});
+  return columns(copy(states, {t.size(), run.solution.dimension}), 0, 2 * run.solution.n);
 }
 
 }  // namespace
@@ -82,13 +105,17 @@ void bind_run(py::module_& module) {
                                return view(s.t, {size(s.t)}, self);
                              })
       .def_property_readonly("states",
-                             [](py::object self) {
-                               const Solution& s = self.cast<const Run&>().solution;
-                               return view(s.states, {size(s.t), s.dimension}, self);
+                             [](const py::object& self) {
+                               const int n = self.cast<const Run&>().solution.n;
+                               return columns(rows(self), 0, 2 * n);
                              })
+      .def_property_readonly("ledger", &ledger)
       .def_property_readonly("t_reached", [](const Run& run) { return run.solution.t_reached; })
       .def_property_readonly("y_reached",
-                             [](const Run& run) { return copy_flat(run.solution.y_reached); })
+                             [](const Run& run) {
+                               const std::vector<double>& y = run.solution.y_reached;
+                               return copy_flat({y.begin(), y.begin() + 2 * run.solution.n});
+                             })
       .def_property_readonly("status",
                              [](const Run& run) { return text(run.solution.status).name; })
       .def_property_readonly("message", [](const Run& run) { return run.solution.message; })

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "arguments.hpp"
+#include "bind_effects.hpp"
 #include "pendcore/arithmetic/floating_point_environment.hpp"
 #include "pendcore/pendcore.hpp"
 
@@ -11,11 +12,12 @@ namespace {
 
 using LinkNumbers = std::tuple<double, double, double, double>;
 
-Scene make_scene(const std::vector<LinkNumbers>& links, double gravity) {
-  Scene scene{.links = {}, .gravity = gravity};
+Scene make_scene(const std::vector<LinkNumbers>& links, double gravity, const py::list& effects) {
+  Scene scene{.links = {}, .gravity = gravity, .effects = {}};
   for (const auto& [mass, length, center, inertia] : links) {
     scene.links.push_back({mass, length, center, inertia});
   }
+  for (const py::handle effect : effects) scene.effects.push_back(make_effect(effect));
   check(scene);
   return scene;
 }
@@ -44,13 +46,18 @@ std::span<double> row(Array& array, py::ssize_t i) {
   return {array.mutable_data(i, 0, 0), static_cast<std::size_t>(array.shape(1) * array.shape(2))};
 }
 
+using Points = void(const Scene&, double t, std::span<const double> q, std::span<double>);
+
 /// positions() or mass_centers() of each row of angles, with `count` points each.
-Array points_of_rows(void (*compute)(const Scene&, std::span<const double>, std::span<double>),
-                     const Scene& scene, const Array& q, std::size_t count) {
+Array points_of_rows(Points compute, const Scene& scene, const Array& t, const Array& q,
+                     std::size_t count) {
   const FloatingPointEnvironment ieee;
   const Rows angles(scene, "q", q);
+  const Scene ready = compiled(scene);
   Array result({angles.count(), static_cast<py::ssize_t>(count), py::ssize_t{2}});
-  for (py::ssize_t i = 0; i < angles.count(); ++i) compute(scene, angles[i], row(result, i));
+  for (py::ssize_t i = 0; i < angles.count(); ++i) {
+    compute(ready, t.at(i), angles[i], row(result, i));
+  }
   return result;
 }
 
@@ -72,9 +79,11 @@ Array reaction_forces(const Scene& scene, const Array& t, const Array& q, const 
   const Rows angles(scene, "q", q);
   const Rows rates(scene, "qd", qd);
   const Rows second(scene, "qdd", qdd);
+  const Scene ready = compiled(scene);
+  const auto effects = effects_in_force(ready);
   Array result({q.shape(0), q.shape(1), py::ssize_t{2}});
   for (py::ssize_t i = 0; i < angles.count(); ++i) {
-    reactions(scene, angles[i], rates[i], second[i], row(result, i));
+    reactions(ready, *effects, t.at(i), angles[i], rates[i], second[i], row(result, i));
   }
   return result;
 }
@@ -83,7 +92,8 @@ Array reaction_forces(const Scene& scene, const Array& t, const Array& q, const 
 
 void bind_scene(py::module_& module) {
   py::class_<Scene>(module, "Scene", "A scene that was checked, as the core holds it.")
-      .def(py::init(&make_scene), py::arg("links"), py::arg("gravity"))
+      .def(py::init(&make_scene), py::arg("links"), py::arg("gravity"), py::arg("effects"),
+           py::keep_alive<1, 4>())  // the functions among the effects
       .def_property_readonly("n", [](const Scene& scene) { return scene.links.size(); })
       .def_property_readonly("warnings", &plausibility_warnings)
       .def("accelerations", &acceleration_rows, py::arg("t"), py::arg("q"), py::arg("qd"))
@@ -104,31 +114,40 @@ void bind_scene(py::module_& module) {
           py::arg("q"))
       .def(
           "positions",
-          [](const Scene& scene, const Array& q) {
-            return points_of_rows(&positions, scene, q, scene.links.size() + 1);
+          [](const Scene& scene, const Array& t, const Array& q) {
+            return points_of_rows(positions, scene, t, q, scene.links.size() + 1);
           },
-          py::arg("q"))
+          py::arg("t"), py::arg("q"))
       .def(
           "mass_centers",
-          [](const Scene& scene, const Array& q) {
-            return points_of_rows(&mass_centers, scene, q, scene.links.size());
+          [](const Scene& scene, const Array& t, const Array& q) {
+            return points_of_rows(mass_centers, scene, t, q, scene.links.size());
           },
-          py::arg("q"))
+          py::arg("t"), py::arg("q"))
       .def(
           "energy",
-          [](const Scene& scene, const Array& q, const Array& qd) {
+          [](const Scene& scene, const Array& t, const Array& q, const Array& qd) {
             const FloatingPointEnvironment ieee;
             const Rows angles(scene, "q", q);
             const Rows rates(scene, "qd", qd);
+            const Scene ready = compiled(scene);
             Array kinetic(angles.count());
             Array potential(angles.count());
             for (py::ssize_t i = 0; i < angles.count(); ++i) {
-              kinetic.mutable_at(i) = kinetic_energy(scene, angles[i], rates[i]);
-              potential.mutable_at(i) = potential_energy(scene, angles[i]);
+              kinetic.mutable_at(i) = kinetic_energy(ready, t.at(i), angles[i], rates[i]);
+              potential.mutable_at(i) = potential_energy(ready, t.at(i), angles[i]);
             }
             return py::make_tuple(kinetic, potential);
           },
-          py::arg("q"), py::arg("qd"))
+          py::arg("t"), py::arg("q"), py::arg("qd"))
+      .def("costs",
+           [](const Scene& scene) {
+             py::list result;
+             for (const Cost& cost : costs(scene)) {
+               result.append(py::make_tuple(cost.what, cost.operations, cost.nanoseconds));
+             }
+             return result;
+           })
       .def("mobility", [](const Scene& scene) {
         const Mobility m = mobility(scene);
         return py::make_tuple(m.links, m.c5, m.c4, m.degrees_of_freedom);

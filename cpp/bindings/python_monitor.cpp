@@ -1,5 +1,9 @@
 #include "python_monitor.hpp"
 
+#include <utility>
+
+#include "python_function.hpp"
+
 namespace pendcore::bindings {
 
 bool PythonMonitor::operator()(double fraction) {
@@ -18,13 +22,14 @@ bool PythonMonitor::operator()(double fraction) {
 }
 
 void PythonMonitor::close(Run& run) const {
+  Solution& solution = run.solution;
+  if (solution.error) *error_ = python_exception(std::exchange(solution.error, nullptr));
   if (!*error_) return;
   run.error = *error_;
-  if (PyErr_GivenExceptionMatches(run.error.ptr(), PyExc_KeyboardInterrupt)) return;
-  Solution& solution = run.solution;
+  const bool stopped = PyErr_GivenExceptionMatches(run.error.ptr(), PyExc_KeyboardInterrupt) != 0;
   const std::size_t sentence = text(solution.status).sentence.size();
-  solution.status = Status::callback_error;
-  solution.message.replace(0, sentence, text(Status::callback_error).sentence);
+  solution.status = stopped ? Status::interrupted : Status::callback_error;
+  solution.message.replace(0, sentence, text(solution.status).sentence);
 }
 
 }  // namespace pendcore::bindings

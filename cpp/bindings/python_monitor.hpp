@@ -1,6 +1,6 @@
 /// \file
 /// Calls Python about every 50 ms while the core computes without its lock: for Ctrl-C, and to show
-/// the progress. An exception stops the run and is kept.
+/// the progress. An exception stops the run and is kept, as is one of a function that is an effect.
 #pragma once
 
 #include <memory>

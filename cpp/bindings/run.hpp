@@ -14,6 +14,7 @@ namespace py = pybind11;
 struct Run {
   Scene scene;
   Solution solution;
+  py::object python_scene = py::none();  ///< keeps the functions among its effects alive
   py::object error = py::none();
 };
 

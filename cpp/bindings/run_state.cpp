@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "arguments.hpp"
+#include "bind_effects.hpp"
 #include "pendcore/integrate/methods.hpp"
 
 namespace pendcore::bindings {
@@ -21,6 +22,9 @@ class Writer {
   }
   void operator()(const std::string& key, const std::vector<double>& values) {
     fields[py::str(key)] = copy(values, {static_cast<py::ssize_t>(values.size())});
+  }
+  void operator()(const std::string& key, const std::vector<int>& values) {
+    fields[py::str(key)] = py::array_t<int>(static_cast<py::ssize_t>(values.size()), values.data());
   }
   /// A number that was not given is a NaN.
   void operator()(const std::string& key, const std::optional<double>& value) {
@@ -50,6 +54,12 @@ class Reader {
   }
   void operator()(const std::string& key, std::vector<double>& values) const {
     values = numbers(key.c_str(), fields_[py::str(key)]);
+  }
+  void operator()(const std::string& key, std::vector<int>& values) const {
+    values.clear();
+    for (const double x : numbers(key.c_str(), fields_[py::str(key)])) {
+      values.push_back(static_cast<int>(x));
+    }
   }
   void operator()(const std::string& key, std::optional<double>& value) const {
     double number = 0.0;
@@ -121,6 +131,7 @@ void visit(Archive& io, AnySolution& s) {
   io("step", s.options.step);
   io("max_steps", s.options.max_steps);
   io("time_limit", s.options.time_limit);
+  io("ledger", s.options.ledger);
   io("t_start", s.t0);
   io("t_end", s.t_end);
   io("start", s.start);
@@ -138,6 +149,7 @@ void visit(Archive& io, AnySolution& s) {
   io("position_stiff_hits", p.stiff_hits);
   io("position_stiff_misses", p.stiff_misses);
   visit_statistics(io, "position_", p.statistics);
+  io("position_modes", p.modes);
   io("position_y", p.y);
   io("position_dydt", p.dydt);
 }
@@ -167,6 +179,22 @@ bool polynomials_fit(const Solution& s) {
   return true;
 }
 
+/// The effects as JSON, which has every number to the last bit.
+std::string json_of_effects(const Scene& scene) {
+  py::list effects;
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    effects.append(kind_and_values(effect_name(scene, i), scene.effects[i]));
+  }
+  return py::module_::import("json").attr("dumps")(effects).cast<std::string>();
+}
+
+std::vector<Effect> effects_of_json(const std::string& json) {
+  std::vector<Effect> effects;
+  const py::object listed = py::module_::import("json").attr("loads")(json);
+  for (const py::handle effect : listed) effects.push_back(make_effect(effect));
+  return effects;
+}
+
 /// A damaged file must end in an error, never in memory that is not ours.
 void check_parts(const Solution& s) {
   if (!arrays_fit(s) || !polynomials_fit(s)) {
@@ -190,6 +218,7 @@ py::dict get_state(const Run& run) {
   }
   io("links", links);
   io("gravity", run.scene.gravity);
+  io("effects", json_of_effects(run.scene));
   visit(io, run.solution);
   return io.fields;
 }
@@ -204,11 +233,16 @@ Run set_state(const py::dict& state) {
     run.scene.links.push_back({links[i], links[i + 1], links[i + 2], links[i + 3]});
   }
   io("gravity", run.scene.gravity);
+  std::string effects;
+  io("effects", effects);
+  run.scene.effects = effects_of_json(effects);
   check(run.scene);
   visit(io, run.solution);
   Solution& s = run.solution;
   s.options.method = find_method(s.options.method).name;
-  s.dimension = 2 * static_cast<int>(run.scene.links.size());
+  s.n = static_cast<int>(run.scene.links.size());
+  if (s.options.ledger) s.accounts = accounts_of(run.scene);
+  s.dimension = 2 * s.n + static_cast<int>(s.accounts.size());
   check_parts(s);
   return run;
 }

@@ -5,15 +5,25 @@
 #include "pendcore/message.hpp"
 
 namespace pendcore {
+namespace {
 
-double kinetic_energy(const Scene& scene, std::span<const double> q, std::span<const double> qd) {
+/// Of joint j, counted from 1: x_j - x_{j-1}.
+double relative(std::span<const double> x, int joint) {
+  return joint > 1 ? x[joint - 1] - x[joint - 2] : x[0];
+}
+
+}  // namespace
+
+double kinetic_energy(const Scene& scene, double t, std::span<const double> q,
+                      std::span<const double> qd) {
   const std::size_t n = scene.links.size();
   require_size("q", q, n);
   require_size("qd", qd, n);
   std::vector<double> u(2 * n);
   directions(q, u);
-  double joint_x = 0.0;  // velocity of the joint where link i begins
-  double joint_y = 0.0;
+  const PivotMotion pivot = pivot_motion(scene, t);
+  double joint_x = pivot.velocity[0];  // velocity of the joint where link i begins
+  double joint_y = pivot.velocity[1];
   double twice = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
     const Link& link = scene.links[i];
@@ -25,17 +35,36 @@ double kinetic_energy(const Scene& scene, std::span<const double> q, std::span<c
     joint_x += link.length * x;
     joint_y += link.length * y;
   }
+  for (const Payload& payload : effects_of<Payload>(scene)) {
+    twice += payload.mass * (joint_x * joint_x + joint_y * joint_y);
+    twice += payload.inertia * qd[n - 1] * qd[n - 1];
+  }
+  for (const RotorInertia& rotor : effects_of<RotorInertia>(scene)) {
+    const double phid = relative(qd, rotor.joint);
+    twice += rotor.armature * phid * phid;
+  }
   return 0.5 * twice;
 }
 
-double potential_energy(const Scene& scene, std::span<const double> q) {
-  std::vector<double> centers(2 * scene.links.size());
-  mass_centers(scene, q, centers);
+double potential_energy(const Scene& scene, double t, std::span<const double> q) {
+  const std::size_t n = scene.links.size();
+  std::vector<double> centers(2 * n);
+  mass_centers(scene, t, q, centers);
   double moment = 0.0;
-  for (std::size_t i = 0; i < scene.links.size(); ++i) {
-    moment += scene.links[i].mass * centers[2 * i + 1];
+  for (std::size_t i = 0; i < n; ++i) moment += scene.links[i].mass * centers[2 * i + 1];
+  std::vector<double> joints(2 * n + 2);
+  positions(scene, t, q, joints);
+  for (const Payload& payload : effects_of<Payload>(scene)) moment += payload.mass * joints.back();
+  double kept = 0.0;
+  for (const Effect& effect : scene.effects) {
+    std::visit(
+        [&](const auto& one) {
+          if constexpr (requires { one.potential(0.0); })
+            kept += one.potential(relative(q, one.joint));
+        },
+        effect);
   }
-  return -scene.gravity * moment;
+  return kept - scene.gravity * moment;
 }
 
 }  // namespace pendcore

@@ -1,39 +1,113 @@
 #include "pendcore/dynamics/equations_of_motion.hpp"
 
-#include <stdexcept>
-#include <string>
+#include <algorithm>
+
+#include "pendcore/dynamics/chain_recursion.hpp"
 
 namespace pendcore {
 namespace {
 
 template <class Dynamics>
-PENDCORE_INLINE void accelerations_of(const Dynamics* dynamics, const double* q, const double* qd,
-                                      double* qdd) {
+PENDCORE_INLINE void of_links(const Dynamics* dynamics, double t, const double* q, const double* qd,
+                              double* qdd) {
   using Links = typename Dynamics::Links;
-  store(qdd, dynamics->accelerations(load<Links>(q), load<Links>(qd)));
+  const Links angles = load<Links>(q);
+  const Links rates = load<Links>(qd);
+  if constexpr (requires { dynamics->accelerations(t, angles, rates); }) {
+    store(qdd, dynamics->accelerations(t, angles, rates));
+  } else {
+    store(qdd, dynamics->accelerations(angles, rates));
+  }
+}
+
+PENDCORE_INLINE void of_chain(const Chain* chain, double t, const double* q, const double* qd,
+                              double* qdd) {
+  chain->accelerations(t, q, qd, qdd);
+}
+
+/// Whether the scene has more than constants of the mass matrix of the closed form.
+bool is_bare(const Scene& scene) {
+  return std::ranges::all_of(scene.effects, [](const Effect& effect) {
+    const auto* rotor = std::get_if<RotorInertia>(&effect);
+    return std::holds_alternative<Payload>(effect) || (rotor != nullptr && rotor->joint == 1);
+  });
 }
 
 }  // namespace
 
 EquationsOfMotion equations_of_motion(const Scene& scene) {
   const Inertia inertia(scene);
-  switch (scene.links.size()) {
-    case 1: return SinglePendulum(inertia, scene.gravity);
-    case 2: return DoublePendulum(scene, inertia);
-    default:
-      throw std::invalid_argument("links: " + std::to_string(scene.links.size()) +
-                                  " links: this version simulates chains of one or two");
+  const std::size_t n = scene.links.size();
+  if (n == 1 && is_bare(scene)) return {SinglePendulum(inertia, scene.gravity), nullptr};
+  if (n == 2 && is_bare(scene)) return {DoublePendulum(scene, inertia), nullptr};
+  if (n == 1) {
+    auto effects = std::make_shared<ActingEffects<double>>(scene);
+    return {SinglePendulumWithEffects(scene, inertia, effects.get()), effects};
+  }
+  if (n == 2) {
+    auto effects = std::make_shared<ActingEffects<Pair>>(scene);
+    const auto* in_force = effects.get();
+    const bool locked = std::ranges::any_of(effects->locked, [](char one) { return one != 0; });
+    const bool has_spline =
+        std::ranges::any_of(effects_of<DrivenPivot>(scene),
+                            [](const DrivenPivot& one) { return one.spline.has_value(); });
+    if (effects->entries.empty() && effects->users.empty() && !locked && !has_spline &&
+        effects->waves > 0 && effects->waves <= 2) {
+      return {DoublePendulumWithEffects<Parts::waves>(scene, inertia, in_force), effects};
+    }
+    if (effects->waves > 0 || !effects->pivots.empty() || !effects->users.empty() || locked) {
+      return {DoublePendulumWithEffects<Parts::everything>(scene, inertia, in_force), effects};
+    }
+    if (!effects->entries.empty()) {
+      return {DoublePendulumWithEffects<Parts::laws>(scene, inertia, in_force), effects};
+    }
+    return {DoublePendulumWithEffects<Parts::couples>(scene, inertia, in_force), effects};
+  }
+  auto effects = std::make_shared<ActingEffects<Pack<4>>>(scene);
+  return {std::make_shared<Chain>(scene, effects), effects};
+}
+
+void choose_modes(EffectsInForce& effects, double t, const double* q, const double* qd,
+                  bool forward) {
+  for (std::size_t i = 0; i < effects.effects.size(); ++i) {
+    std::visit(
+        [&]<class Kind>(const Kind& effect) {
+          if constexpr (requires { effect.has_modes(); }) {
+            double phi = 0.0;
+            double phid = 0.0;
+            if constexpr (requires { effect.joint; }) {
+              const int j = effect.joint - 1;
+              phi = j > 0 ? q[j] - q[j - 1] : q[j];
+              phid = j > 0 ? qd[j] - qd[j - 1] : qd[j];
+            }
+            effects.put_mode(i, effect.mode_at(t, phi, phid, forward));
+          }
+        },
+        effects.effects[i]);
   }
 }
 
-void accelerations(const EquationsOfMotion& equations, double /*t*/, const double* q,
-                   const double* qd, double* qdd) {
+void accelerations_in_force(const EquationsOfMotion& equations, double t, const double* q,
+                            const double* qd, double* qdd) {
   std::visit(
-      [=]<class Dynamics>(const Dynamics& dynamics) {
-        static const auto compute = fastest<&accelerations_of<Dynamics>>();
-        compute(&dynamics, q, qd, qdd);
+      [=]<class Form>(const Form& form) {
+        if constexpr (std::is_same_v<Form, std::shared_ptr<Chain>>) {
+          static const auto compute = fastest<&of_chain>();
+          compute(form.get(), t, q, qd, qdd);
+        } else {
+          static const auto compute = fastest<&of_links<Form>>();
+          compute(&form, t, q, qd, qdd);
+        }
       },
-      equations);
+      equations.form);
+}
+
+void accelerations(const EquationsOfMotion& equations, double t, const double* q, const double* qd,
+                   double* qdd) {
+  if (equations.effects && equations.effects->has_modes) {
+    choose_modes(*equations.effects, t, q, qd, true);
+  }
+  accelerations_in_force(equations, t, q, qd, qdd);
 }
 
 }  // namespace pendcore

@@ -10,13 +10,14 @@ namespace pendcore {
 
 double first_step(Stepper& stepper, double t, double direction, double max_step, const double* rtol,
                   const double* atol) {
-  const int n = stepper.dimension();
-  std::vector<double> memory(5 * n);
+  const int n = stepper.controlled();
+  const int size = stepper.dimension();
+  std::vector<double> memory(5 * size);
   double* const y = memory.data();
-  double* const rate = y + n;
-  double* const euler = rate + n;
-  double* const euler_rate = euler + n;
-  double* const scale = euler_rate + n;
+  double* const rate = y + size;
+  double* const euler = rate + size;
+  double* const euler_rate = euler + size;
+  double* const scale = euler_rate + size;
   stepper.get_state(y);
   stepper.get_derivative(rate);
 

@@ -13,13 +13,23 @@ Inertia::Inertia(const Scene& scene) {
   first_moment.resize(n);
   diagonal.resize(n);
   length.resize(n);
-  double beyond = 0.0;  // S_i
+  rotor.assign(n, 0.0);
+  for (const Payload& payload : effects_of<Payload>(scene)) {
+    payload_mass += payload.mass;
+    payload_inertia += payload.inertia;
+  }
+  for (const RotorInertia& one : effects_of<RotorInertia>(scene)) {
+    rotor[one.joint - 1] += one.armature;
+  }
+  double beyond = payload_mass;  // S_i
   for (std::size_t i = n; i-- > 0;) {
     const Link& link = scene.links[i];
     length[i] = link.length;
     first_moment[i] = link.mass * link.center + link.length * beyond;
     diagonal[i] = link.inertia_about_joint() + link.length * link.length * beyond;
     beyond += link.mass;
+    if (i + 1 == n) diagonal[i] += payload_inertia;
+    diagonal[i] += rotor[i] + (i + 1 < n ? rotor[i + 1] : 0.0);
   }
 }
 
@@ -37,7 +47,10 @@ void mass_matrix(const Inertia& inertia, std::span<const double> q, std::span<do
   a = u * u.transpose();  // cos(q_i - q_j)
   for (std::size_t i = 0; i < n; ++i) {
     a(i, i) = inertia.diagonal[i];
-    for (std::size_t j = 0; j < i; ++j) a(i, j) = a(j, i) = inertia.coupling(i, j) * a(i, j);
+    for (std::size_t j = 0; j < i; ++j) {
+      const double of_rotor = j + 1 == i ? inertia.rotor[i] : 0.0;
+      a(i, j) = a(j, i) = inertia.coupling(i, j) * a(i, j) - of_rotor;
+    }
   }
 }
 

@@ -32,31 +32,34 @@ void directions(std::span<const double> q, std::span<double> u) {
   rows(u).col(1) = sine;
 }
 
-void positions(const Scene& scene, std::span<const double> q, std::span<double> points) {
+void positions(const Scene& scene, double t, std::span<const double> q, std::span<double> points) {
   const std::size_t n = scene.links.size();
   require_size("q", q, n);
   require_size("points", points, 2 * (n + 1));
   const Rows u = directions_of(q);
   Eigen::Map<Rows> joints = rows(points);
-  joints.row(0).setZero();
+  const PivotMotion pivot = pivot_motion(scene, t);
+  joints.row(0) << pivot.position[0], pivot.position[1];
   for (std::size_t i = 0; i < n; ++i) {
     joints.row(i + 1) = joints.row(i) + scene.links[i].length * u.row(i);
   }
 }
 
-void mass_centers(const Scene& scene, std::span<const double> q, std::span<double> points) {
+void mass_centers(const Scene& scene, double t, std::span<const double> q,
+                  std::span<double> points) {
   const std::size_t n = scene.links.size();
   require_size("q", q, n);
   require_size("points", points, 2 * n);
   const Rows u = directions_of(q);
-  RowVector2d joint = RowVector2d::Zero();
+  const PivotMotion pivot = pivot_motion(scene, t);
+  RowVector2d joint(pivot.position[0], pivot.position[1]);
   for (std::size_t i = 0; i < n; ++i) {
     rows(points).row(i) = joint + scene.links[i].center * u.row(i);
     joint += scene.links[i].length * u.row(i);
   }
 }
 
-void mass_center_accelerations(const Scene& scene, std::span<const double> q,
+void mass_center_accelerations(const Scene& scene, double t, std::span<const double> q,
                                std::span<const double> qd, std::span<const double> qdd,
                                std::span<double> accelerations) {
   const std::size_t n = scene.links.size();
@@ -65,7 +68,8 @@ void mass_center_accelerations(const Scene& scene, std::span<const double> q,
   require_size("qdd", qdd, n);
   require_size("accelerations", accelerations, 2 * n);
   const Rows u = directions_of(q);
-  RowVector2d joint = RowVector2d::Zero();
+  const PivotMotion pivot = pivot_motion(scene, t);
+  RowVector2d joint(pivot.acceleration[0], pivot.acceleration[1]);
   for (std::size_t i = 0; i < n; ++i) {
     const RowVector2d across(-u(i, 1), u(i, 0));
     const RowVector2d unit = qdd[i] * across - qd[i] * qd[i] * u.row(i);

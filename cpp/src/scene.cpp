@@ -1,5 +1,6 @@
 #include "pendcore/scene.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "pendcore/message.hpp"
@@ -31,6 +32,38 @@ void check_link(const Link& link, std::size_t i, bool last) {
   }
 }
 
+void check_place(const std::string& where, const char* what, int number, int n) {
+  if (number <= n) return;
+  std::string message = where + what + " = " + std::to_string(number);
+  message += ": must be 1 to " + std::to_string(n) + ": the chain has " + std::to_string(n) + ' ';
+  message += what;
+  throw std::invalid_argument(n == 1 ? message : message + 's');
+}
+
+void check_effects(const Scene& scene) {
+  const int n = static_cast<int>(scene.links.size());
+  std::vector<bool> locked(n);
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    const std::string where = effect_name(scene, i);
+    check_effect(where, scene.effects[i]);
+    std::visit(
+        [&]<class Kind>(const Kind& effect) {
+          if constexpr (requires { effect.joint; }) {
+            check_place(where, "joint", effect.joint, n);
+          }
+          if constexpr (requires { effect.link; }) check_place(where, "link", effect.link, n);
+          if constexpr (std::is_same_v<Kind, Lock>) {
+            if (locked[effect.joint - 1]) {
+              throw std::invalid_argument(where + "joint " + std::to_string(effect.joint) +
+                                          " is locked already: leave one of the two out");
+            }
+            locked[effect.joint - 1] = true;
+          }
+        },
+        scene.effects[i]);
+  }
+}
+
 }  // namespace
 
 Link Link::uniform_rod(double mass, double length) {
@@ -51,7 +84,9 @@ void check(const Scene& scene) {
   }
   for (std::size_t i = 0; i < n; ++i) check_link(scene.links[i], i, i + 1 == n);
 
+  check_effects(scene);
   double carried = 0.0;
+  for (const Payload& payload : effects_of<Payload>(scene)) carried += payload.mass;
   for (std::size_t i = n; i-- > 0;) {
     const Link& link = scene.links[i];
     const double about_joint = link.inertia_about_joint() + link.length * link.length * carried;
@@ -60,7 +95,7 @@ void check(const Scene& scene) {
              "finite and > 0 (kg m^2): give it an inertia, or move its mass centre off the joint");
     }
     const bool next_is_a_point = i + 1 == n || scene.links[i + 1].inertia == 0;
-    if (link.inertia_about_joint() == 0 && next_is_a_point) {
+    if (link.inertia_about_joint() == 0 && next_is_a_point && i + 1 < n) {
       throw std::invalid_argument(
           link_name(i) +
           ": has neither mass nor inertia about its joint: the mass matrix is singular when it "
@@ -70,10 +105,56 @@ void check(const Scene& scene) {
   }
 }
 
+std::string effect_name(const Scene& scene, std::size_t i) {
+  return "effect " + std::to_string(i + 1) + " (" + std::string(info_of(scene.effects[i]).kind) +
+         "): ";
+}
+
+Scene compiled(Scene scene) {
+  for (Effect& effect : scene.effects) {
+    std::visit(
+        [](auto& one) {
+          if constexpr (requires { one.compiled(); }) one = one.compiled();
+        },
+        effect);
+  }
+  return scene;
+}
+
+PivotMotion pivot_motion(const Scene& scene, double t) {
+  PivotMotion sum;
+  for (const DrivenPivot& pivot : effects_of<DrivenPivot>(scene)) {
+    const PivotMotion one = pivot.at(t);
+    for (int axis = 0; axis < 2; ++axis) {
+      sum.position[axis] += one.position[axis];
+      sum.velocity[axis] += one.velocity[axis];
+      sum.acceleration[axis] += one.acceleration[axis];
+    }
+  }
+  return sum;
+}
+
+std::vector<bool> locked_joints(const Scene& scene) {
+  std::vector<bool> locked(scene.links.size());
+  for (const Lock& lock : effects_of<Lock>(scene)) locked[lock.joint - 1] = true;
+  return locked;
+}
+
 std::vector<std::string> plausibility_warnings(const Scene& scene) {
   std::vector<std::string> warnings;
   for (std::size_t i = 0; i < scene.links.size(); ++i) {
     const Link& link = scene.links[i];
+    const double densest = 22590.0 * link.length * link.length * link.length;
+    if (link.mass > densest) {
+      warnings.push_back(link_name(i) + ": mass = " + text(link.mass) +
+                         ": a cube of osmium as wide as the link is long has " + text(densest) +
+                         " kg: is the mass in g, or the length in another unit?");
+    }
+    if (link.center < 0 || link.center > link.length) {
+      warnings.push_back(link_name(i) + ": center = " + text(link.center) +
+                         ": is not between the joints, 0 to " + text(link.length) +
+                         " m: a counterweight, or another unit?");
+    }
     const double most = link.mass * link.center * (link.length - link.center);
     if (link.center >= 0 && link.center <= link.length && link.inertia > most * (1 + 1e-12)) {
       warnings.push_back(
@@ -82,12 +163,26 @@ std::vector<std::string> plausibility_warnings(const Scene& scene) {
           " kg m^2 about the mass centre: is it about the joint, or in other units?");
     }
   }
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    std::visit(
+        [&](const auto& effect) {
+          if constexpr (requires { effect.warnings(); }) {
+            for (const std::string& warning : effect.warnings()) {
+              warnings.push_back(effect_name(scene, i) + warning);
+            }
+          }
+        },
+        scene.effects[i]);
+  }
   return warnings;
 }
 
 Mobility mobility(const Scene& scene) {
   const int n = static_cast<int>(scene.links.size());
-  return {.links = n, .c5 = n, .c4 = 0, .degrees_of_freedom = 3 * n - 2 * n};
+  const std::vector<bool> locked = locked_joints(scene);
+  // A lock makes two links one, or the first one part of the ground.
+  const int moving = n - static_cast<int>(std::ranges::count(locked, true));
+  return {.links = moving, .c5 = moving, .c4 = 0, .degrees_of_freedom = 3 * moving - 2 * moving};
 }
 
 }  // namespace pendcore

@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "pendcore/arithmetic/floating_point_environment.hpp"
+#include "pendcore/dynamics/ledger.hpp"
 #include "pendcore/integrate/first_step.hpp"
 #include "pendcore/integrate/methods.hpp"
 #include "pendcore/message.hpp"
 #include "pendcore/recorder.hpp"
+#include "pendcore/switching.hpp"
 
 namespace pendcore {
 namespace {
@@ -54,17 +57,44 @@ void check_continuation(const Solution& solution, double t_end, const std::vecto
 }
 
 /// "q_2" for component 1 of a chain of two links, "qd_1" for component 2.
-std::string component_name(int i, int dimension) {
-  const int n = dimension / 2;
+std::string component_name(int i, int n) {
+  if (i >= 2 * n) return "the ledger";
   return i < n ? "q_" + std::to_string(i + 1) : "qd_" + std::to_string(i - n + 1);
 }
 
+/// The effect whose table or spline does not reach to time t, in the run's direction.
+std::string table_that_ends(const Scene& scene, double t, bool forward) {
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    const bool ends = std::visit(
+        [&](const auto& effect) {
+          if constexpr (requires { effect.last_time(); }) {
+            return forward ? !(effect.first_time() <= t && t < effect.last_time())
+                           : !(effect.first_time() < t && t <= effect.last_time());
+          }
+          return false;
+        },
+        scene.effects[i]);
+    if (ends) return effect_name(scene, i) + "its table does not go on from here";
+  }
+  return {};
+}
+
 /// What happened, and for a run that failed where, and whether it was stiff there.
-std::string message_of(const Ending& ending, const Solution& solution) {
+std::string message_of(const Ending& ending, const Scene& scene, const Solution& solution,
+                       const std::string& remark) {
   std::string message(text(ending.status).sentence);
+  if (ending.status == Status::at_rest) {
+    return message + " (at t = " + text(solution.t_reached) + " s: " + remark + ")";
+  }
   if (text(ending.status).success) return message;
+  const bool forward = !(solution.t_end < solution.t0);
+  const std::string table = ending.status == Status::non_finite
+                                ? table_that_ends(scene, solution.t_reached, forward)
+                                : std::string();
+  if (!table.empty())
+    return message + " (at t = " + text(solution.t_reached) + " s, " + table + ")";
   message += " (at t = " + text(solution.t_reached) + " s";
-  if (ending.bad >= 0) message += ", " + component_name(ending.bad, solution.dimension);
+  if (ending.bad >= 0) message += ", " + component_name(ending.bad, solution.n);
   message += ')';
   if (solution.statistics.stiff) {
     message += "; the steps are limited by stability, not by accuracy: the problem is stiff";
@@ -72,11 +102,42 @@ std::string message_of(const Ending& ending, const Solution& solution) {
   return message;
 }
 
+/// What the effects of a scene ask of a start and of an interval.
+void check_run(const Scene& scene, const std::vector<double>& q0, const std::vector<double>& qd0,
+               double t0, double t_end) {
+  auto of_joint = [](const std::vector<double>& x, int joint) {
+    return joint > 1 ? x[joint - 1] - x[joint - 2] : x[0];
+  };
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    const std::string where = effect_name(scene, i);
+    if (std::holds_alternative<DryJointFriction>(scene.effects[i]) && t_end < t0) {
+      throw std::invalid_argument("t_span: runs backward: " + where +
+                                  "with dry friction the past is not unique: run it forward");
+    }
+    const auto* lock = std::get_if<Lock>(&scene.effects[i]);
+    if (lock == nullptr) continue;
+    const std::string joint = std::to_string(lock->joint);
+    const double phi = of_joint(q0, lock->joint);
+    if (lock->angle && !(std::abs(phi - *lock->angle) <= 1e-9 * std::max(1.0, std::abs(phi)))) {
+      refuse(
+          "q0: angle of joint " + joint, phi,
+          text(*lock->angle) + " rad, as " + where + "says: start there, or leave its angle out");
+    }
+    const double rate = of_joint(qd0, lock->joint);
+    if (!(std::abs(rate) <= 1e-12 * std::abs(qd0[lock->joint - 1]))) {
+      refuse("qd0: rate of joint " + joint, rate, "0 (rad/s): " + where + "it is locked");
+    }
+  }
+}
+
 /// From the solution's resumable position to t_end.
 void run(const Scene& scene, Solution& solution, double t_end, const Limits& limits,
          bool from_the_start) {
   const Options& options = solution.options;
-  const auto stepper = make_stepper(scene, options.method);
+  const EquationsOfMotion equations = equations_of_motion(scene);
+  const auto stepper = make_stepper(scene, equations, options.method, options.ledger);
+  std::optional<Switching> switching;
+  if (Switching::is_needed(scene)) switching.emplace(scene, equations);
   const std::size_t n = scene.links.size();
   const std::vector<double> rtol = relative_tolerances(options, n);
   const std::vector<double> atol = absolute_tolerances(options, n);
@@ -89,6 +150,14 @@ void run(const Scene& scene, Solution& solution, double t_end, const Limits& lim
   solution.dense.degree = stepper->interpolant_degree();
   Position position = solution.resumable;
   const double t = position.t.high;
+  const bool forward = !(t_end < t);
+  Status at_start = Status::finished;
+  if (switching && from_the_start) {
+    at_start = switching->begin(t, position.y.data(), forward);
+    position.modes = switching->modes();
+  } else if (switching) {
+    switching->restore(position.modes, solution.start.data(), forward);
+  }
   if (from_the_start) {
     stepper->evaluate(t, position.y.data(), position.dydt.data());
     recorder.start(t, position.y);
@@ -104,13 +173,20 @@ void run(const Scene& scene, Solution& solution, double t_end, const Limits& lim
     position.h_is_max_step = options.step || size == options.max_step;
   }
   position.statistics.nfev += stepper->evaluations;
-  const Ending ending = integrate(*stepper, position, solution.resumable, limits, recorder);
+  Ending ending{at_start, false, -1, nullptr};
+  if (at_start == Status::finished) {
+    ending = integrate(*stepper, position, solution.resumable, limits, recorder,
+                       switching ? &*switching : nullptr);
+  } else {
+    solution.resumable = position;
+  }
   if (!ending.cut) recorder.count();
   solution.status = ending.status;
   solution.statistics = position.statistics;
   solution.t_reached = position.t.high;
   solution.y_reached = std::move(position.y);
-  solution.message = message_of(ending, solution);
+  solution.message = message_of(ending, scene, solution, switching ? switching->remark() : "");
+  solution.error = ending.error;
   if (options.store == Store::end) {
     solution.t = {solution.t_reached};
     solution.states = solution.y_reached;
@@ -127,6 +203,37 @@ Limits limits_of(const Options& options, double t_end) {
 }
 
 }  // namespace
+
+std::vector<std::string> run_warnings(const Scene& scene, const std::vector<double>& q0,
+                                      const std::vector<double>& /*qd0*/, double t0, double t_end) {
+  std::vector<std::string> warnings;
+  // Who writes degrees writes multiples of five, and hardly beyond two turns; in radians such
+  // numbers are next to none but 0, 5 and 10.
+  const bool as_degrees = std::ranges::all_of(
+      q0, [](double q) { return std::fmod(q, 5.0) == 0.0 && std::abs(q) <= 720.0; });
+  const auto large = std::ranges::find_if(q0, [](double q) { return std::abs(q) >= 15.0; });
+  if (as_degrees && large != q0.end()) {
+    warnings.push_back("q0[" + std::to_string(large - q0.begin()) + "] = " + text(*large) +
+                       " rad: that is " + text(*large * (180.0 / 3.14159265358979323846)) +
+                       " degrees: angles are in radians");
+  }
+  const double first = std::min(t0, t_end);
+  const double last = std::max(t0, t_end);
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    std::visit(
+        [&](const auto& effect) {
+          if constexpr (requires { effect.last_time(); }) {
+            if (effect.first_time() <= first && last <= effect.last_time()) return;
+            warnings.push_back(effect_name(scene, i) + "its table goes from " +
+                               text(effect.first_time()) + " to " + text(effect.last_time()) +
+                               " s, the run from " + text(t0) + " to " + text(t_end) +
+                               " s: the run ends where the table does");
+          }
+        },
+        scene.effects[i]);
+  }
+  return warnings;
+}
 
 Solution simulate(const Scene& scene, const std::vector<double>& q0, const std::vector<double>& qd0,
                   double t0, double t_end, const Options& options) {
@@ -146,13 +253,18 @@ Solution simulate(const Scene& scene, const std::vector<double>& q0, const std::
   solution.options.monitor = nullptr;
   solution.t0 = t0;
   solution.t_end = t_end;
-  solution.dimension = static_cast<int>(2 * n);
+  check_run(scene, q0, qd0, t0, t_end);
+  solution.n = static_cast<int>(n);
+  if (options.ledger) solution.accounts = accounts_of(scene);
+  const std::size_t dimension = 2 * n + solution.accounts.size();
+  solution.dimension = static_cast<int>(dimension);
   Position& start = solution.resumable;
   start.t = {t0, 0.0};
   start.y = q0;
   start.y.insert(start.y.end(), qd0.begin(), qd0.end());
+  start.y.resize(dimension);
   solution.start = start.y;
-  start.dydt.resize(2 * n);
+  start.dydt.resize(dimension);
   run(scene, solution, t_end, limits_of(options, t_end), true);
   return solution;
 }

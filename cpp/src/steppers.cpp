@@ -1,32 +1,91 @@
 // The explicit instantiations: every method in the list with every form of the equations of motion.
 // Compile time lives here only.
-#include "pendcore/dynamics/equations_of_motion.hpp"
 #include "pendcore/dynamics/first_order.hpp"
+#include "pendcore/dynamics/ledger.hpp"
 #include "pendcore/integrate/explicit_runge_kutta.hpp"
+#include "pendcore/integrate/general_runge_kutta.hpp"
 #include "pendcore/integrate/methods.hpp"
 #include "pendcore/simulate.hpp"
 
 namespace pendcore {
 namespace {
 
-template <class Dynamics, const auto&... tables>
-std::unique_ptr<Stepper> apply(MethodList<tables...>, std::string_view name,
-                               const Dynamics& dynamics) {
-  using System = FirstOrder<Dynamics>;
+/// Any form of the equations, with the ledger beside it if it is kept.
+class SceneSystem final : public GeneralSystem {
+ public:
+  SceneSystem(const Scene& scene, const EquationsOfMotion& equations, int row_size, bool ledger)
+      : GeneralSystem(row_size, ledger ? static_cast<int>(accounts_of(scene).size()) : 0),
+        equations_(equations),
+        n_(static_cast<int>(scene.links.size())) {
+    if (quadratures > 0) {
+      const auto effects = equations.effects ? equations.effects : effects_in_force(scene);
+      ledger_ = std::make_unique<Ledger>(scene, effects);
+    }
+  }
+
+  void operator()(double t, const double* y, double* dydt) const override {
+    __builtin_memcpy(dydt, y + row, n_ * sizeof(double));
+    accelerations_in_force(equations_, t, y, y + row, dydt + row);
+    if (ledger_) {
+      ledger_->powers(t, y, y + row, dydt + row, dydt + static_cast<std::ptrdiff_t>(2) * row);
+    }
+  }
+
+ private:
+  EquationsOfMotion equations_;
+  int n_;
+  std::unique_ptr<Ledger> ledger_;
+};
+
+template <class Make, const auto&... tables>
+std::unique_ptr<Stepper> with_method(MethodList<tables...>, std::string_view name, Make make) {
   std::unique_ptr<Stepper> stepper;
-  ((tables.info.name == name
-        ? void(stepper = std::make_unique<ExplicitRungeKutta<tables, System>>(System{dynamics}))
-        : void()),
-   ...);
+  ((tables.info.name == name ? void(stepper = make.template operator()<tables>()) : void()), ...);
   return stepper;
+}
+
+template <class Block>
+std::unique_ptr<Stepper> general(const Scene& scene, const EquationsOfMotion& equations,
+                                 std::string_view method, bool ledger) {
+  constexpr int width = Lanes<Block>::width;
+  const int n = static_cast<int>(scene.links.size());
+  const int row = (n + width - 1) / width * width;
+  return with_method(Methods{}, method, [&]<const auto & table>() -> std::unique_ptr<Stepper> {
+    return std::make_unique<GeneralRungeKutta<table, Block>>(
+        std::make_unique<SceneSystem>(scene, equations, row, ledger), n);
+  });
 }
 
 }  // namespace
 
-std::unique_ptr<Stepper> make_stepper(const Scene& scene, std::string_view method) {
+std::unique_ptr<Stepper> make_stepper(const Scene& scene, const EquationsOfMotion& equations,
+                                      std::string_view method, bool ledger) {
   const std::string_view name = find_method(method).name;
-  return std::visit([name](const auto& dynamics) { return apply(Methods{}, name, dynamics); },
-                    equations_of_motion(scene));
+  if (ledger && !accounts_of(scene).empty()) {
+    switch (scene.links.size()) {
+      case 1: return general<double>(scene, equations, name, true);
+      case 2: return general<Pair>(scene, equations, name, true);
+      default: return general<Pack<4>>(scene, equations, name, true);
+    }
+  }
+  return std::visit(
+      [&]<class Form>(const Form& form) -> std::unique_ptr<Stepper> {
+        if constexpr (std::is_same_v<Form, std::shared_ptr<Chain>>) {
+          return general<Pack<4>>(scene, equations, name, false);
+        } else {
+          using System = FirstOrder<Form>;
+          return with_method(Methods{}, name,
+                             [&]<const auto & table>() -> std::unique_ptr<Stepper> {
+                               return std::make_unique<ExplicitRungeKutta<table, System>>(
+                                   System{form}, equations.effects);
+                             });
+        }
+      },
+      equations.form);
+}
+
+std::unique_ptr<Stepper> make_stepper(const Scene& scene, std::string_view method) {
+  return make_stepper(scene, equations_of_motion(scene), method, false);
 }
 
 }  // namespace pendcore

@@ -21,20 +21,43 @@ void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 using namespace pendcore;
 
+namespace {
+
+long long count(const Scene& scene, Store store, double t_end, bool ledger) {
+  const std::size_t n = scene.links.size();
+  Options options;
+  options.store = store;
+  options.ledger = ledger;
+  if (store == Store::times) options.t_eval = {0.5 * t_end, t_end};
+  const long long before = allocations;
+  const Solution solution = simulate(scene, std::vector<double>(n, 0.7),
+                                     std::vector<double>(n, 0.1), 0.0, t_end, options);
+  CHECK(solution.statistics.accepted > 10);
+  return allocations - before;
+}
+
+}  // namespace
+
 TEST_CASE("the number of allocations does not depend on the number of steps") {
-  auto count = [](Store store, double t_end) {
-    Options options;
-    options.store = store;
-    if (store == Store::times) options.t_eval = {0.5 * t_end, t_end};
-    const long long before = allocations;
-    const Solution solution =
-        simulate(Scene::textbook(), {0.7, 1.0}, {0.0, 0.0}, 0.0, t_end, options);
-    CHECK(solution.statistics.accepted > 10);
-    return allocations - before;
+  const std::vector<Effect> effects = {
+      ViscousJoint{.joint = 1, .damping = 0.01},
+      RodDrag{.link = 1, .drag_coefficient = 1.0, .diameter = 0.01},
+      Motor{.joint = 1, .sinusoid = Sinusoid{0.1, 2.0, 0.0}},
+      DrivenPivot{.x = Sinusoid{0.1, 2.0, 0.0}},
   };
-  for (const Store store : {Store::end, Store::times}) {
-    const long long few = count(store, 0.2);
-    CHECK(few > 0);
-    CHECK(count(store, 200.0) == few);
+  std::vector<Scene> scenes;
+  for (const std::size_t n : {1, 2, 3, 6}) {
+    const std::vector<Link> links(n, Link::uniform_rod(1.0, 1.0));
+    scenes.push_back({.links = links});
+    scenes.push_back({.links = links, .effects = effects});
+  }
+  for (const Scene& scene : scenes) {
+    for (const Store store : {Store::end, Store::times}) {
+      for (const bool ledger : {false, true}) {
+        const long long few = count(scene, store, 0.5, ledger);
+        CHECK(few > 0);
+        CHECK(count(scene, store, 20.0, ledger) == few);
+      }
+    }
   }
 }

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "pendcore/dynamics/double_pendulum.hpp"
+#include "pendcore/dynamics/double_pendulum_with_effects.hpp"
 #include "pendcore/dynamics/single_pendulum.hpp"
 
 using namespace pendcore;
@@ -97,5 +98,37 @@ TEST_CASE("one link in a pack has the bits of one alone") {
   for (int k = 0; k < 4; ++k) {
     const double alone = pendulum.accelerations(double{q[k]}, 0.0);
     CHECK(together[k] == alone);
+  }
+}
+
+TEST_CASE("with effects, too, trajectories in a pack have the bits of each alone") {
+  Scene scene = uneven;
+  scene.effects = {ViscousJoint{.joint = 2, .damping = 0.3, .damping2 = 0.2, .damping3 = 0.1},
+                   TorsionalSpring{.joint = 1, .stiffness = 2.0, .rest_angle = 0.4},
+                   RodDrag{.link = 2, .drag_coefficient = 1.2, .diameter = 0.1, .wind = {3, 1}},
+                   Motor{.joint = 2, .sinusoid = Sinusoid{0.5, 3.0, 0.1}},
+                   Motor{.joint = 1, .pd = PD{2.0, 0.3, 1.0}},
+                   RotorInertia{.joint = 2, .armature = 0.05},
+                   DrivenPivot{.x = Sinusoid{0.1, 5.0, 0.0}, .y = Sinusoid{0.05, 11.0, 0.2}}};
+  const ActingEffects<Pair> effects(scene);
+  const DoublePendulumWithEffects<Parts::everything> pendulum(scene, Inertia(scene), &effects);
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution any(-4.0, 4.0);
+  for (int round = 0; round < 200; ++round) {
+    Two<Pack<4>> q, qd;
+    for (int k = 0; k < 4; ++k) {
+      q.first[k] = any(random);
+      q.second[k] = any(random);
+      qd.first[k] = any(random);
+      qd.second[k] = any(random);
+    }
+    const double t = any(random);
+    const Two<Pack<4>> together = pendulum.accelerations(t, q, qd);
+    for (int k = 0; k < 4; ++k) {
+      const Pair alone =
+          pendulum.accelerations(t, Pair{q.first[k], q.second[k]}, Pair{qd.first[k], qd.second[k]});
+      REQUIRE(std::bit_cast<long long>(together.first[k]) == std::bit_cast<long long>(alone[0]));
+      REQUIRE(std::bit_cast<long long>(together.second[k]) == std::bit_cast<long long>(alone[1]));
+    }
   }
 }

@@ -41,5 +41,22 @@ int main() {
   print("far", simulate(book, {3e8, -2e7}, {30, -70}, 0, 5));
   print("tiny",
         simulate({.links = book.links, .gravity = 0.0}, {0.3, 0.9}, {3e-160, -1e-160}, 0, 1e159));
+
+  const Scene busy{
+      .links = {Link::uniform_rod(1.0, 1.0), Link::uniform_rod(0.6, 0.7)},
+      .effects = {ViscousJoint{.joint = 1, .damping = 0.02, .damping2 = 0.01},
+                  RodDrag{.link = 2, .drag_coefficient = 1.2, .diameter = 0.03, .wind = {2, -1}},
+                  Motor{.joint = 2, .sinusoid = Sinusoid{0.5, 3.0, 0.1}},
+                  Motor{.joint = 1, .pd = PD{2.0, 0.3, 1.0}, .limit = 0.7},
+                  DryJointFriction{.joint = 2, .coulomb = 0.01, .static_ = 0.02, .exponent = 1.3},
+                  RotorInertia{.joint = 2, .armature = 0.01},
+                  DrivenPivot{.y = Sinusoid{0.05, 11.0, 0.0}}}};
+  print("effects", simulate(busy, {0.3, 0.9}, {4.0, -9.0}, 0, 4));
+  Scene chain{.links = std::vector<Link>(7, Link::uniform_rod(0.4, 0.3))};
+  print("chain", simulate(chain, {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7}, std::vector(7, 0.0), 0, 5));
+  chain.effects = busy.effects;
+  tight.ledger = true;
+  print("ledger", simulate(chain, {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7},
+                           {4.0, -9.0, 1.0, 2.0, 3.0, 4.0, 5.0}, 0, 2, tight));
   return 0;
 }

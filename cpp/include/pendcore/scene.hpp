@@ -16,8 +16,11 @@
 /// The state is y = (q_1 .. q_n, qd_1 .. qd_n), rad and rad/s: 2n numbers.
 #pragma once
 
+#include <ranges>
 #include <string>
 #include <vector>
+
+#include "pendcore/effects/registry.hpp"
 
 namespace pendcore {
 
@@ -35,18 +38,41 @@ struct Link {
   static Link point_mass(double mass, double length);   ///< all the mass at the distal end
 };
 
-/// A planar open chain hanging from a pivot.
+/// A planar open chain hanging from a pivot, and the effects that act on it.
 struct Scene {
   std::vector<Link> links;
-  double gravity = 9.807;  ///< g, m/s^2, downward (+y)
+  double gravity = 9.807;            ///< g, m/s^2, downward (+y)
+  std::vector<Effect> effects = {};  ///< each acts, in any number and order
 
   /// The double pendulum of section 2.1: two rods of 1 kg and 1 m, g = 9.807 m/s^2.
   static Scene textbook();
 };
 
-/// Throws std::invalid_argument, naming the link, the field, the value, the allowed range and the
-/// remedy, for a scene that has no motion: values that are not finite or out of range, or a mass
-/// matrix that is not positive definite.
+/// The effects of one kind, in their order.
+template <class Kind>
+auto effects_of(const Scene& scene) {
+  return scene.effects |
+         std::views::filter([](const Effect& one) { return std::holds_alternative<Kind>(one); }) |
+         std::views::transform(
+             [](const Effect& one) -> const Kind& { return std::get<Kind>(one); });
+}
+
+/// The same scene with what its effects compute only once, as the curvature of a spline: what is
+/// asked of a scene at many times is answered sooner.
+Scene compiled(Scene scene);
+
+/// "effect 2 (viscous_joint): ": how messages begin.
+std::string effect_name(const Scene& scene, std::size_t i);
+
+/// Where the pivot is, and how it moves: the sum of what drives it.
+PivotMotion pivot_motion(const Scene& scene, double t);
+
+/// Of each joint: whether a Lock holds it.
+std::vector<bool> locked_joints(const Scene& scene);
+
+/// Throws std::invalid_argument, naming the link or effect, the field, the value, the allowed range
+/// and the remedy, for a scene that has no motion: values that are not finite or out of range, or a
+/// mass matrix that is not positive definite.
 void check(const Scene& scene);
 
 /// What is possible in the equations but hardly in a workshop, a sentence each.

@@ -4,15 +4,23 @@
 
 #include <memory>
 
+#include "pendcore/dynamics/equations_of_motion.hpp"
 #include "pendcore/integrate/stepper.hpp"
 #include "pendcore/scene.hpp"
 #include "pendcore/solution.hpp"
 
 namespace pendcore {
 
-/// The method applied to the equations of motion that the scene calls for: the closed form of one
-/// or two links. Throws std::invalid_argument for an unknown method and for more links.
+/// The method applied to the equations of motion that the scene calls for, with the ledger's
+/// quadratures beside the state if it is kept. Throws std::invalid_argument for an unknown method.
 std::unique_ptr<Stepper> make_stepper(const Scene& scene, std::string_view method);
+std::unique_ptr<Stepper> make_stepper(const Scene& scene, const EquationsOfMotion& equations,
+                                      std::string_view method, bool ledger);
+
+/// What is possible in a run but hardly meant, a sentence each: a start that looks like degrees, a
+/// table that ends before the run does.
+std::vector<std::string> run_warnings(const Scene& scene, const std::vector<double>& q0,
+                                      const std::vector<double>& qd0, double t0, double t_end);
 
 /// Simulates the scene from angles q0 (rad, n) and rates qd0 (rad/s, n) over t0 .. t_end (s), which
 /// may run backward. Throws std::invalid_argument for bad input, naming the argument; a run that

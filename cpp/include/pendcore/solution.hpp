@@ -7,6 +7,7 @@
 
 #include "pendcore/integrate/integrate.hpp"
 #include "pendcore/options.hpp"
+#include "pendcore/scene.hpp"
 
 namespace pendcore {
 
@@ -16,32 +17,37 @@ struct DenseOutput {
   std::vector<double> start;         ///< s, (n_steps)
   std::vector<double> start_low;     ///< s, (n_steps), what its double leaves over of the time
   std::vector<double> h;             ///< s, (n_steps), negative in a backward run
-  std::vector<double> coefficients;  ///< (n_steps, degree + 1, 2n) row-major; row p: of theta^p
+  std::vector<double> coefficients;  ///< (n_steps, degree + 1, dimension) row-major
 };
 
 struct Solution {
   Status status = Status::finished;
   std::string message;
   Statistics statistics;
-  std::vector<double> t;       ///< s, (n_t)
-  std::vector<double> states;  ///< (n_t, 2n) row-major: q_1 .. q_n (rad), qd_1 .. qd_n (rad/s)
+  std::vector<double> t;  ///< s, (n_t)
+  /// (n_t, dimension) row-major: q_1 .. q_n (rad), qd_1 .. qd_n (rad/s), the accounts (J)
+  std::vector<double> states;
   DenseOutput dense;
 
   Options options;
   double t0 = 0.0;                ///< s, as asked for
   double t_end = 0.0;             ///< s, as asked for
-  std::vector<double> start;      ///< (2n), the state at t0
-  int dimension = 0;              ///< 2n
+  std::vector<double> start;      ///< (dimension), the state at t0
+  int n = 0;                      ///< links
+  int dimension = 0;              ///< 2n, and the accounts of the ledger
+  std::vector<Account> accounts;  ///< the ledger's, if it is kept
   double t_reached = 0.0;         ///< s; before t_end if the run failed
-  std::vector<double> y_reached;  ///< (2n), the state there
+  std::vector<double> y_reached;  ///< (dimension), the state there
+  std::exception_ptr error;       ///< what a function of the user's threw, if it ended the run
 
   /// Where a resumed run goes on: before the first step that the end of this one cut short.
   Position resumable;
   std::size_t resumable_t = 0;      ///< so many of `t` an unstopped run has as well,
   std::size_t resumable_steps = 0;  ///< and so many polynomials
 
-  /// States at m times within the run, (m, 2n) row-major, from the dense output; where two steps
-  /// meet, the state itself. Throws std::invalid_argument outside the run or without dense output.
+  /// States at m times within the run, (m, dimension) row-major, from the dense output; where two
+  /// steps meet, the state itself. Throws std::invalid_argument outside the run or without dense
+  /// output.
   std::vector<double> at(const std::vector<double>& times) const;
 };
 

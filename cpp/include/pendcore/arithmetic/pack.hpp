@@ -8,6 +8,9 @@
 
 #include "pendcore/arithmetic/instruction_set.hpp"
 
+// Only inlined functions pass packs to each other: how a call would is of no concern.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
 namespace pendcore {
 
 /// How many numbers a `Real` holds, and the integers of the same shape. GCC takes the size of a

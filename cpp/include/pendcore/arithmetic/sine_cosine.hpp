@@ -79,6 +79,15 @@ PENDCORE_INLINE void rotate(Integers quadrant, Real s, Real c, Real& sine_of_x, 
   cosine_of_x = std::bit_cast<Real>(std::bit_cast<Integers>(cosine_size) ^ cosine_sign);
 }
 
+/// No less than the largest of the lanes; NaN if one is.
+template <class Real>
+PENDCORE_INLINE double sum_of_sizes(const Real& x) {
+  double sum = __builtin_fabs(lane(x, 0));
+#pragma GCC unroll 8
+  for (int i = 1; i < Lanes<Real>::width; ++i) sum += __builtin_fabs(lane(x, i));
+  return sum;
+}
+
 }  // namespace sine_cosine_detail
 
 /// Sine and cosine of x (rad), lane by lane.
@@ -104,8 +113,11 @@ PENDCORE_INLINE void sine_cosine(const Real& x, Real& sine_of_x, Real& cosine_of
   detail::reduced(r, tail, s, c);
   detail::rotate(std::bit_cast<Integers>(shifted), s, c, sine_of_x, cosine_of_x);
 
+  // As a rule one comparison does for all lanes.
+  if (detail::sum_of_sizes(x) <= detail::largest) [[likely]]
+    return;
   for (int i = 0; i < Lanes<Real>::width; ++i) {
-    if (!(__builtin_fabs(lane(x, i)) <= detail::largest)) [[unlikely]] {
+    if (!(__builtin_fabs(lane(x, i)) <= detail::largest)) {
       double exact_sine, exact_cosine;
       sine_cosine_exact(lane(x, i), exact_sine, exact_cosine);
       set_lane(sine_of_x, i, exact_sine);

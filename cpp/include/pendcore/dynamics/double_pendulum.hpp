@@ -20,9 +20,9 @@
 /// Cost: one sine and cosine of a pair, one division, 16 more operations. Throws nothing.
 #pragma once
 
+#include "pendcore/arithmetic/pair.hpp"
 #include "pendcore/arithmetic/sine_cosine.hpp"
 #include "pendcore/dynamics/inertia.hpp"
-#include "pendcore/dynamics/pair.hpp"
 
 namespace pendcore {
 

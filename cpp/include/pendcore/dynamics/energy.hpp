@@ -11,7 +11,8 @@
 
 namespace pendcore {
 
-double kinetic_energy(const Scene& scene, std::span<const double> q, std::span<const double> qd);
-double potential_energy(const Scene& scene, std::span<const double> q);
+double kinetic_energy(const Scene& scene, double t, std::span<const double> q,
+                      std::span<const double> qd);
+double potential_energy(const Scene& scene, double t, std::span<const double> q);
 
 }  // namespace pendcore

@@ -1,24 +1,44 @@
 /// \file
 /// Which form of the equations of motion a scene calls for.
 ///
-/// A scene is compiled once, into a kernel that holds what the scene has and nothing else.
+/// A scene is compiled once, into a kernel that holds what the scene has and nothing else: the
+/// closed form of one or two links, bare where no effect acts beyond constants of the mass matrix,
+/// with a list of effects otherwise; the recursion of a chain for more.
 #pragma once
 
 #include <variant>
 
-#include "pendcore/dynamics/double_pendulum.hpp"
+#include "pendcore/dynamics/chain.hpp"
+#include "pendcore/dynamics/double_pendulum_with_effects.hpp"
 #include "pendcore/dynamics/single_pendulum.hpp"
+#include "pendcore/dynamics/single_pendulum_with_effects.hpp"
 
 namespace pendcore {
 
-using EquationsOfMotion = std::variant<SinglePendulum, DoublePendulum>;
+struct EquationsOfMotion {
+  std::variant<SinglePendulum, DoublePendulum, SinglePendulumWithEffects,
+               DoublePendulumWithEffects<Parts::couples>, DoublePendulumWithEffects<Parts::waves>,
+               DoublePendulumWithEffects<Parts::laws>, DoublePendulumWithEffects<Parts::everything>,
+               std::shared_ptr<Chain>>
+      form;
+  std::shared_ptr<EffectsInForce> effects;  ///< none for a bare form
+};
 
-/// Of a scene that check() passed. Throws std::invalid_argument for more than two links.
+/// Of a scene that check() passed.
 EquationsOfMotion equations_of_motion(const Scene& scene);
 
 /// qdd (rad/s^2) from the time (s), angles (rad) and rates (rad/s), (n) each; the same bits as in
-/// a run. Cost: a right-hand side. Throws nothing.
+/// a run. Effects are in the modes that the state calls for. Cost: a right-hand side. Throws what a
+/// user's function throws. Equations with effects serve one thread at a time.
 void accelerations(const EquationsOfMotion& equations, double t, const double* q, const double* qd,
                    double* qdd);
+
+/// The same in the modes that are in force.
+void accelerations_in_force(const EquationsOfMotion& equations, double t, const double* q,
+                            const double* qd, double* qdd);
+
+/// Freezes every effect to the mode that a state calls for; `forward` decides where two meet.
+void choose_modes(EffectsInForce& effects, double t, const double* q, const double* qd,
+                  bool forward);
 
 }  // namespace pendcore

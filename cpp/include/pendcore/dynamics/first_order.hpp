@@ -15,9 +15,13 @@ struct FirstOrder {
   Dynamics dynamics;
 
   /// The derivative dydt (rad/s, rad/s^2) of the state y (rad, rad/s) at time t (s).
-  PENDCORE_INLINE void operator()(double /*t*/, const Block* y, Block* dydt) const {
+  PENDCORE_INLINE void operator()(double t, const Block* y, Block* dydt) const {
     dydt[0] = y[1];
-    dydt[1] = dynamics.accelerations(y[0], y[1]);
+    if constexpr (requires { dynamics.accelerations(t, y[0], y[1]); }) {
+      dydt[1] = dynamics.accelerations(t, y[0], y[1]);
+    } else {
+      dydt[1] = dynamics.accelerations(y[0], y[1]);
+    }
   }
 };
 

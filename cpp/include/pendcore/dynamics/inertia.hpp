@@ -1,11 +1,12 @@
 /// \file
 /// The constants of the mass matrix of a chain of n links.
 ///
-///     S_i = m_{i+1} + ... + m_n          mass beyond link i, kg
+///     S_i = m_{i+1} + ... + m_n + m_p    mass beyond link i, kg
 ///     a_i = m_i c_i + L_i S_i            first moment about joint i, kg m
-///     A_ii = I_i + m_i c_i^2 + L_i^2 S_i      A_ij = L_min(i,j) a_max(i,j)      kg m^2
+///     A_ii = I_i + m_i c_i^2 + L_i^2 S_i (+ I_p for i = n)   A_ij = L_min(i,j) a_max(i,j)   kg m^2
 ///
-/// so that T = 1/2 sum_ij A_ij cos(q_i - q_j) qd_i qd_j and V = -g sum_i a_i sin q_i.
+/// so that T = 1/2 sum_ij A_ij cos(q_i - q_j) qd_i qd_j and V = -g sum_i a_i sin q_i. A rotor J_j
+/// in joint j adds J_j to M_jj and M_{j-1,j-1} and -J_j to M_{j,j-1}.
 /// Cost: O(n) to make, O(n^2) for the matrix. The scene is one that check() passed.
 /// Every effect that only changes constants (a payload, a rotor's inertia) changes them here.
 #pragma once
@@ -19,15 +20,18 @@ namespace pendcore {
 
 struct Inertia {
   std::vector<double> first_moment;  ///< a_i, (n)
-  std::vector<double> diagonal;      ///< A_ii, (n)
+  std::vector<double> diagonal;      ///< M_ii: A_ii and the rotors, (n)
   std::vector<double> length;        ///< L_i, (n)
+  std::vector<double> rotor;         ///< J_j, (n)
+  double payload_mass = 0.0;         ///< m_p
+  double payload_inertia = 0.0;      ///< I_p
 
   explicit Inertia(const Scene& scene);
   double coupling(std::size_t i, std::size_t j) const;  ///< A_ij, indices from 0
 };
 
-/// A_ij cos(q_i - q_j), (n, n), kg m^2, from angles (rad), (n). A span of another size is refused
-/// with std::invalid_argument.
+/// M_ij, that is A_ij cos(q_i - q_j) and the rotors, (n, n), kg m^2, from angles (rad), (n). A span
+/// of another size is refused with std::invalid_argument.
 void mass_matrix(const Inertia& inertia, std::span<const double> q, std::span<double> matrix);
 
 }  // namespace pendcore

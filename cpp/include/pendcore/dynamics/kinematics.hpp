@@ -19,14 +19,15 @@ namespace pendcore {
 /// u_i, (n, 2).
 void directions(std::span<const double> q, std::span<double> u);
 
-/// The pivot, the joints and the tip, (n + 1, 2), m.
-void positions(const Scene& scene, std::span<const double> q, std::span<double> points);
+/// The pivot, the joints and the tip, (n + 1, 2), m, at time t (s).
+void positions(const Scene& scene, double t, std::span<const double> q, std::span<double> points);
 
-/// C_i, (n, 2), m.
-void mass_centers(const Scene& scene, std::span<const double> q, std::span<double> points);
+/// C_i, (n, 2), m, at time t (s); of the links, a payload excluded.
+void mass_centers(const Scene& scene, double t, std::span<const double> q,
+                  std::span<double> points);
 
-/// a_{C_i}, (n, 2), m/s^2.
-void mass_center_accelerations(const Scene& scene, std::span<const double> q,
+/// a_{C_i}, (n, 2), m/s^2, at time t (s).
+void mass_center_accelerations(const Scene& scene, double t, std::span<const double> q,
                                std::span<const double> qd, std::span<const double> qdd,
                                std::span<double> accelerations);
 

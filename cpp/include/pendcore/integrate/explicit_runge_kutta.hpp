@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include "pendcore/integrate/step.hpp"
 #include "pendcore/integrate/stepper.hpp"
@@ -31,7 +33,9 @@ class ExplicitRungeKutta final : public Stepper {
   static constexpr int stages = Memory::stages;
 
  public:
-  explicit ExplicitRungeKutta(const System& system) : memory_{system} {}
+  /// `owner` keeps alive what the system points to.
+  explicit ExplicitRungeKutta(const System& system, std::shared_ptr<const void> owner = nullptr)
+      : memory_{system}, owner_(std::move(owner)) {}
 
   const MethodInfo& info() const override { return method.info; }
   int dimension() const override { return blocks * width; }
@@ -50,6 +54,8 @@ class ExplicitRungeKutta final : public Stepper {
   void get_state(double* y) const override { write(memory_.y, y); }
   void get_derivative(double* dydt) const override { write(memory_.k[0], dydt); }
   void get_new_state(double* y) const override { write(memory_.y_new, y); }
+
+  void set_new_state(const double* y) override { read(y, memory_.y_new); }
 
   void evaluate(double t, const double* y, double* dydt) override {
     evaluate_(&memory_.system, t, y, dydt);
@@ -94,7 +100,7 @@ class ExplicitRungeKutta final : public Stepper {
       double states = 0.0;
       for (int i = 0; i < blocks; ++i) {
         const Block before =
-            advance(memory_.y[i], h, method.a[stages - 2], memory_.k, i, stages - 2);
+            advance(memory_.y[i], h, method.a[stages - 2], StageBlock(memory_.k, i), stages - 2);
         const Block dk = memory_.k[stages - 1][i] - memory_.k[stages - 2][i];
         const Block dy = memory_.y_new[i] - before;
         rates += sum_of_lanes(Block(dk * dk));
@@ -113,6 +119,7 @@ class ExplicitRungeKutta final : public Stepper {
   }
 
   Memory memory_;
+  std::shared_ptr<const void> owner_;
   Attempt (*attempt_)(Memory*, double, double, double) = fastest<&attempt_step<method, System>>();
   void (*interpolant_)(const Memory*, double,
                        double*) = fastest<&interpolant_of_step<method, System>>();

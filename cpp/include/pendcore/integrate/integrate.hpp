@@ -5,11 +5,13 @@
 /// Observer's affair and changes none of them.
 #pragma once
 
+#include <exception>
 #include <functional>
 #include <limits>
 #include <vector>
 
 #include "pendcore/arithmetic/two_double.hpp"
+#include "pendcore/integrate/breaks.hpp"
 #include "pendcore/integrate/statistics.hpp"
 #include "pendcore/integrate/status.hpp"
 #include "pendcore/integrate/step_control.hpp"
@@ -29,6 +31,7 @@ struct Position {
   Statistics statistics;
   std::vector<double> y;     ///< (dimension)
   std::vector<double> dydt;  ///< (dimension)
+  std::vector<int> modes;    ///< of a right-hand side with breaks
 };
 
 /// Is called about every 50 ms with the share of the interval that is done; false stops the run.
@@ -57,11 +60,13 @@ struct Ending {
   Status status;
   bool cut;      ///< the last step, or one before it, was cut to end at t_end
   int bad = -1;  ///< of status non_finite: the component that is not finite, if it is known
+  std::exception_ptr error = nullptr;  ///< of status callback_error
 };
 
 /// Takes steps from `position` (which moves along) until `limits` ends them. `resumable` becomes
 /// the last position that no cut step came before.
+/// `breaks` is null where the right-hand side is smooth.
 Ending integrate(Stepper& stepper, Position& position, Position& resumable, const Limits& limits,
-                 Observer& observer);
+                 Observer& observer, Breaks* breaks = nullptr);
 
 }  // namespace pendcore

@@ -34,12 +34,12 @@ struct StepMemory {
   Block atol[blocks] = {};
 };
 
-/// start + h (sum of weights[j] k[j] over the first `count` stages); terms with weight zero are
+/// start + h (sum of weights[j] k(j) over the first `count` stages); terms with weight zero are
 /// left out. The last stage is the one that is waited for: it comes in last, its weight times h
 /// ready.
-template <class Block, class Scale, class Weights, int blocks>
+template <class Block, class Scale, class Weights, class Stage>
 PENDCORE_INLINE Block advance(const Block& start, const Scale& h, const Weights& weights,
-                              const Block (*k)[blocks], int block, int count) {
+                              const Stage& k, int count) {
   int last = count - 1;
   while (last >= 0 && weights[last].numerator == 0) --last;
   if (last < 0) return start;
@@ -49,12 +49,22 @@ PENDCORE_INLINE Block advance(const Block& start, const Scale& h, const Weights&
   for (int j = 0; j < last; ++j) {
     if (weights[j].numerator == 0) continue;
     const Block weight = broadcast<Block>(weights[j].value());
-    sum = empty ? weight * k[j][block] : fma(weight, k[j][block], sum);
+    sum = empty ? Block(weight * k(j)) : fma(weight, k(j), sum);
     empty = false;
   }
   const Block known = empty ? start : fma(h, sum, start);
-  return fma(h * weights[last].value(), k[last][block], known);
+  return fma(h * weights[last].value(), k(last), known);
 }
+
+/// One block of the stages k.
+template <class Block, int blocks>
+struct StageBlock {
+  const Block (*k)[blocks];
+  int block;
+  PENDCORE_INLINE const Block& operator()(int j) const { return k[j][block]; }
+};
+template <class Block, int blocks>
+StageBlock(const Block (*)[blocks], int) -> StageBlock<Block, blocks>;
 
 /// Tries a step of size h at time t, as Stepper::attempt says.
 template <const auto& method, class System>
@@ -78,12 +88,12 @@ PENDCORE_INLINE Attempt attempt_step(StepMemory<method, System>* memory, double 
 #pragma GCC unroll 16
   for (int s = 1; s < stages; ++s) {
 #pragma GCC unroll 16
-    for (int i = 0; i < blocks; ++i) z[i] = advance(y[i], h, method.a[s], k, i, s);
+    for (int i = 0; i < blocks; ++i) z[i] = advance(y[i], h, method.a[s], StageBlock(k, i), s);
     system(t + method.c[s].value() * h, z, k[s]);
   }
   if constexpr (!method.first_same_as_last) {
 #pragma GCC unroll 16
-    for (int i = 0; i < blocks; ++i) z[i] = advance(y[i], h, method.b, k, i, stages);
+    for (int i = 0; i < blocks; ++i) z[i] = advance(y[i], h, method.b, StageBlock(k, i), stages);
   }
 
   // The scales wait for y_new only, so their division is done before the last stage is.
@@ -94,7 +104,7 @@ PENDCORE_INLINE Attempt attempt_step(StepMemory<method, System>* memory, double 
     const Block scale = h / fma(memory->rtol[i], size, memory->atol[i]);
     // Without a stage at the new state nothing else says that it is finite: 0, or NaN.
     const Block start = method.first_same_as_last ? Block{} : z[i] - z[i];
-    const Block ratio = advance(start, scale, method.e, k, i, stages);
+    const Block ratio = advance(start, scale, method.e, StageBlock(k, i), stages);
     squares[i] = ratio * ratio;
   }
 #pragma GCC unroll 16

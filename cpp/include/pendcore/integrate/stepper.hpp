@@ -13,10 +13,11 @@ class Stepper {
   virtual ~Stepper() = default;
 
   virtual const MethodInfo& info() const = 0;
-  virtual int dimension() const = 0;           ///< numbers in a state
-  virtual int interpolant_degree() const = 0;  ///< of the polynomial in theta
+  virtual int dimension() const = 0;                      ///< numbers in a state
+  virtual int controlled() const { return dimension(); }  ///< how many of them, the first, count
+  virtual int interpolant_degree() const = 0;             ///< of the polynomial in theta
 
-  /// The tolerances of each component (dimension() numbers each).
+  /// The tolerances of each component that counts (controlled() numbers each).
   virtual void set_tolerances(const double* rtol, const double* atol) = 0;
 
   /// Begins at y, where the right-hand side is dydt.
@@ -25,6 +26,7 @@ class Stepper {
   virtual void get_state(double* y) const = 0;          ///< y at the start of the step
   virtual void get_derivative(double* dydt) const = 0;  ///< its derivative
   virtual void get_new_state(double* y) const = 0;      ///< y at the end of the attempted step
+  virtual void set_new_state(const double* y) = 0;      ///< puts another in its place
   virtual void evaluate(double t, const double* y, double* dydt) = 0;  ///< the right-hand side
 
   /// Tries a step of size h from the state at time t; `gain` is the control's.

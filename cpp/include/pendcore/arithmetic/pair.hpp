@@ -27,11 +27,15 @@ PENDCORE_INLINE Two<Real> other(const Two<Real>& x) {
   return {x.second, x.first};
 }
 
-/// A pair of constants as a pair of the number type that is computed with.
+/// Constants as the number type that is computed with: one for all, or a row of them.
 template <class Links>
 struct Constants {
-  PENDCORE_INLINE static Links of(const Pair& x) { return x; }
+  PENDCORE_INLINE static Links of(const Links& x) { return x; }
   PENDCORE_INLINE static Links of(double x) { return broadcast<Links>(x); }
+};
+template <>
+struct Constants<double> {
+  PENDCORE_INLINE static double of(double x) { return x; }
 };
 template <class Real>
 struct Constants<Two<Real>> {
@@ -41,9 +45,32 @@ struct Constants<Two<Real>> {
   PENDCORE_INLINE static Two<Real> of(double x) { return {broadcast<Real>(x), broadcast<Real>(x)}; }
 };
 
+/// Of the joint before, and of the joint after, and 0 beyond the ends of the chain:
+/// phi_j = q_j - q_{j-1} is q - before(q), tau_j - tau_{j+1} is tau - after(tau).
+PENDCORE_INLINE double before(double) { return 0.0; }
+PENDCORE_INLINE double after(double) { return 0.0; }
+PENDCORE_INLINE Pair before(const Pair& x) { return Pair{0.0, x[0]}; }
+PENDCORE_INLINE Pair after(const Pair& x) { return Pair{x[1], 0.0}; }
+template <class Real>
+PENDCORE_INLINE Two<Real> before(const Two<Real>& x) {
+  return {broadcast<Real>(0.0), x.first};
+}
+template <class Real>
+PENDCORE_INLINE Two<Real> after(const Two<Real>& x) {
+  return {x.second, broadcast<Real>(0.0)};
+}
+
 template <class Real>
 PENDCORE_INLINE Two<Real> operator-(const Two<Real>& x) {
   return {-x.first, -x.second};
+}
+template <class Real>
+PENDCORE_INLINE Two<Real> operator+(const Two<Real>& x, const Two<Real>& y) {
+  return {x.first + y.first, x.second + y.second};
+}
+template <class Real>
+PENDCORE_INLINE Two<Real> operator-(const Two<Real>& x, const Two<Real>& y) {
+  return {x.first - y.first, x.second - y.second};
 }
 template <class Real>
 PENDCORE_INLINE Two<Real> operator*(const Two<Real>& x, const Two<Real>& y) {
@@ -61,6 +88,11 @@ template <class Real>
 PENDCORE_INLINE void sine_cosine(const Two<Real>& x, Two<Real>& sine, Two<Real>& cosine) {
   sine_cosine(x.first, sine.first, cosine.first);
   sine_cosine(x.second, sine.second, cosine.second);
+}
+
+template <class Real>
+PENDCORE_INLINE Two<Real> absolute(const Two<Real>& x) {
+  return {absolute(x.first), absolute(x.second)};
 }
 
 }  // namespace pendcore

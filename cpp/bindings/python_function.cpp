@@ -1,0 +1,60 @@
+#include "python_function.hpp"
+
+#include <algorithm>
+
+#include "arguments.hpp"
+
+namespace pendcore::bindings {
+namespace {
+
+std::string name_of(py::handle function) {
+  const py::object name = py::getattr(function, "__qualname__", py::repr(function));
+  return "User: " + py::str(name).cast<std::string>() + "(t, q, qd)";
+}
+
+void call(double t, int n, const double* q, const double* qd, double* forces, void* data) {
+  const py::gil_scoped_acquire lock;
+  const py::handle function(static_cast<PyObject*>(data));
+  const py::object result = function(t, Array(n, q), Array(n, qd));
+  const auto size = static_cast<std::size_t>(n);
+  if (py::isinstance<Array>(result)) {
+    const auto array = py::reinterpret_borrow<Array>(result);
+    if (array.ndim() == 1 && array.size() == n) {
+      std::copy_n(array.data(), size, forces);
+      return;
+    }
+  }
+  const std::string name = name_of(function);
+  const std::string wanted =
+      "(" + std::to_string(n) + ",), the generalised forces of the absolute angles (N m)";
+  const std::vector<double> values = numbers(name.c_str(), result, wanted);
+  if (values.size() != size) {
+    throw py::value_error(name + ": shape (" + std::to_string(values.size()) + ",): must be " +
+                          wanted);
+  }
+  std::ranges::copy(values, forces);
+}
+
+}  // namespace
+
+CompiledUser effect_of_function(py::handle function) {
+  return {.address = reinterpret_cast<std::uintptr_t>(&call),
+          .data = reinterpret_cast<std::uintptr_t>(function.ptr())};
+}
+
+py::object python_exception(const std::exception_ptr& error) {
+  try {
+    std::rethrow_exception(error);
+  } catch (const py::error_already_set& raised) {
+    const py::object value = raised.value();
+    if (raised.trace()) PyException_SetTraceback(value.ptr(), raised.trace().ptr());
+    return value;
+  } catch (const py::builtin_exception& raised) {
+    raised.set_error();
+  } catch (const std::exception& raised) {
+    PyErr_SetString(PyExc_RuntimeError, raised.what());
+  }
+  return py::error_already_set().value();
+}
+
+}  // namespace pendcore::bindings

@@ -1,0 +1,21 @@
+/// \file
+/// A Python function as the core calls it: with its lock, and with the arrays that it is promised.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <exception>
+
+#include "pendcore/effects/user.hpp"
+
+namespace pendcore::bindings {
+
+namespace py = pybind11;
+
+/// f(t, q, qd) -> Q as an effect. Whoever holds the effect keeps the function alive.
+CompiledUser effect_of_function(py::handle function);
+
+/// The exception, of Python or of the core, as Python has it.
+py::object python_exception(const std::exception_ptr& error);
+
+}  // namespace pendcore::bindings

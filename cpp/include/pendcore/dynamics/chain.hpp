@@ -1,0 +1,97 @@
+/// \file
+/// A chain of n links, in O(n): the tridiagonal structure of the joint forces.
+///
+/// From the tip to the base, the force that link i needs at its joint is an affine function of that
+/// joint's acceleration a (gravity and the pivot's own are in a):  F_i = B_i a + b_i.  In the frame
+/// (u, n) of link i, with B and p of the links beyond it, p including the centripetal part,
+///
+///     p_u = b_u - L qd^2 B_uu      p_n = b_n - L qd^2 B_un      (the rest of F_{i+1})
+///     D   = I_o + L^2 B_nn         I_o = I + m c^2
+///     w   = (L B_un, m c + L B_nn)
+///     qdd = (Q - L p_n - w . a) / D
+///     B_i = m + B - w w^T / D      b_i = p - m c qd^2 u - F_ext + w (Q - L p_n) / D
+///
+/// and the components of B_i are summed without a difference where one would hurt:
+///
+///     D B_un = B_un (I_o - m c L)      D B_nn = m I + B_nn (I + m (L - c)^2)
+///
+/// then turned into the frame of link i - 1. At the tip B = m_p. From the base to the tip,
+/// a_0 = (xdd_0, ydd_0 - g) and a_i = a_{i-1} + L (qdd n - qd^2 u).
+///
+/// A rotor or a lock couples the turning of two links: then torque and angular acceleration join
+/// force and acceleration (the terms beta, kappa and t), with J the rotor's inertia and r and s
+///
+///     r = 1/(D + J), s = J r          locked: r = 0, s = 1
+///     qdd_i = r (Q - L p_n - t - w . a) + s qdd_{i-1}
+///
+/// Source: Featherstone, Rigid Body Dynamics Algorithms (2008), chapter 7, for the plane.
+/// Cost: 45 operations a link and an eighth of a sine and cosine pack; no allocation.
+#pragma once
+
+#include <memory>
+
+#include "pendcore/dynamics/acting_effects.hpp"
+#include "pendcore/dynamics/inertia.hpp"
+
+namespace pendcore {
+
+/// A chain as the recursion takes it, and room for one right-hand side: one thread at a time.
+class Chain {
+ public:
+  Chain(const Scene& scene, std::shared_ptr<ActingEffects<Pack<4>>> effects);
+
+  int links() const { return n_; }
+
+  /// qdd (rad/s^2) from the time (s), angles (rad) and rates (rad/s), (n) each. Defined in
+  /// chain_recursion.hpp.
+  PENDCORE_INLINE void accelerations(double t, const double* q, const double* qd,
+                                     double* qdd) const;
+
+  const ActingEffects<Pack<4>>* effects() const { return effects_.get(); }
+
+ private:
+  using Row = Pack<4>;
+  PENDCORE_INLINE void prepare(const double* q, const double* qd) const;
+  PENDCORE_INLINE void collect_loads(double t) const;
+  /// `size` is the number of links where the compiler knows it, and 0 otherwise.
+  template <int size>
+  PENDCORE_INLINE void recursion(double ax, double ay, double* qdd) const;
+  template <bool loaded, int size>
+  PENDCORE_INLINE void tip_to_base() const;
+  template <int size>
+  PENDCORE_INLINE void base_to_tip(double ax, double ay, double* qdd) const;
+  PENDCORE_INLINE void tip_to_base_coupled() const;
+  PENDCORE_INLINE void base_to_tip_coupled(double ax, double ay, double* qdd) const;
+
+  /// Arrays over the links have a pack of zeros before and after them.
+  static double* in(std::vector<double>& a) { return a.data() + 4; }
+  static const double* in(const std::vector<double>& a) { return a.data() + 4; }
+
+  int n_;
+  int padded_;  ///< links, filled up to whole packs
+  double gravity_;
+  double payload_mass_;
+  bool coupled_ = false;  ///< a rotor beyond joint 1, or a lock
+  bool loaded_;           ///< effects other than constants
+  std::shared_ptr<ActingEffects<Row>> effects_;
+
+  struct Constants {
+    double m, L, mc, I, Io, LL, turn, across;  // turn: I_o - m c L, across: I + m (L - c)^2
+  };
+  std::vector<Constants> links_;
+  std::vector<double> length_, mass_moment_;  // L, m c
+  std::vector<double> rotor_;                 // J
+  // of one right-hand side
+  mutable std::vector<double> q_, qd_, s_, c_;
+  mutable std::vector<double> centripetal_;               // L qd^2
+  mutable std::vector<double> center_;                    // m c qd^2
+  mutable std::vector<double> cc_, ss_, sc_, cos_, sin_;  // of q_i - q_{i-1}
+  mutable std::vector<double> couple_, torque_, fx_, fy_, vx_, vy_;
+  struct Response {
+    double free, x, y, from_before;  // qdd = free - (x, y) . a + from_before qdd_{i-1}
+  };
+  mutable std::vector<Response> response_;
+  Response& response_at(int i) const { return response_[i]; }
+};
+
+}  // namespace pendcore

@@ -1,0 +1,83 @@
+/// \file
+/// What the laws of effects see, and what they add to (effects/law.hpp has the contract): of a
+/// chain that is one row, one link or a pair, in registers; of any other in arrays.
+#pragma once
+
+#include "pendcore/arithmetic/pair.hpp"
+
+namespace pendcore {
+
+template <class V>
+struct RowAt {
+  using Value = V;
+
+  double t;
+  V q, qd, s, c;
+  V L;
+  const double* waves;
+  double pivot_vx, pivot_vy;
+
+  PENDCORE_INLINE V phi() const { return q - before(q); }
+  PENDCORE_INLINE V phid() const { return qd - before(qd); }
+  PENDCORE_INLINE V length() const { return L; }
+  PENDCORE_INLINE V vx() const { return Constants<V>::of(pivot_vx) - before(L * qd * s); }
+  PENDCORE_INLINE V vy() const { return Constants<V>::of(pivot_vy) + before(L * qd * c); }
+  PENDCORE_INLINE double wave(int k) const { return waves[k]; }
+};
+
+template <class V>
+struct RowLoads {
+  V couples = Constants<V>::of(0.0);
+  V moments = Constants<V>::of(0.0);
+  V fx = Constants<V>::of(0.0);
+  V fy = Constants<V>::of(0.0);
+
+  PENDCORE_INLINE void couple(const V& tau) { couples = couples + tau; }
+  PENDCORE_INLINE void generalised(const V& Q) { moments = moments + Q; }
+  PENDCORE_INLINE void force(const V& moment, const V& x, const V& y) {
+    moments = moments + moment;
+    fx = fx + x;
+    fy = fy + y;
+  }
+
+  /// Q_i of couples and moments alone.
+  PENDCORE_INLINE V torque() const { return moments + couples - after(couples); }
+  /// What the forces on the link after this one add: L_i n_i . F.
+  PENDCORE_INLINE V torque_of_forces(const RowAt<V>& at) const {
+    return at.L * fma(at.c, after(fy), -(at.s * after(fx)));
+  }
+};
+
+/// Numbers over the links, zeros before and after them.
+struct LinkArrays {
+  const double *q, *qd, *s, *c, *length, *vx, *vy;
+  const double* waves;
+};
+
+template <class Row>
+struct RowInArrays {
+  using Value = Row;
+
+  Row q, qd, s, c;
+  double t;
+  int i;  ///< the first link of the row, from 0
+  LinkArrays links;
+
+  PENDCORE_INLINE RowInArrays(const LinkArrays& arrays, double time, int row)
+      : q(load<Row>(arrays.q + row * Lanes<Row>::width)),
+        qd(load<Row>(arrays.qd + row * Lanes<Row>::width)),
+        s(load<Row>(arrays.s + row * Lanes<Row>::width)),
+        c(load<Row>(arrays.c + row * Lanes<Row>::width)),
+        t(time),
+        i(row * Lanes<Row>::width),
+        links(arrays) {}
+
+  PENDCORE_INLINE Row phi() const { return q - load<Row>(links.q + i - 1); }
+  PENDCORE_INLINE Row phid() const { return qd - load<Row>(links.qd + i - 1); }
+  PENDCORE_INLINE Row length() const { return load<Row>(links.length + i); }
+  PENDCORE_INLINE Row vx() const { return load<Row>(links.vx + i); }
+  PENDCORE_INLINE Row vy() const { return load<Row>(links.vy + i); }
+  PENDCORE_INLINE double wave(int k) const { return links.waves[k]; }
+};
+
+}  // namespace pendcore

@@ -1,0 +1,74 @@
+/// \file
+/// One link with effects: qdd = (a_1 (g cos q + xdd_0 sin q - ydd_0 cos q) + Q) / A_11, or 0 where
+/// its joint is locked.
+///
+/// Cost: the bare equation, 4 operations, and what is in the list of effects.
+#pragma once
+
+#include "pendcore/dynamics/acting_effects.hpp"
+#include "pendcore/dynamics/inertia.hpp"
+#include "pendcore/dynamics/row.hpp"
+
+namespace pendcore {
+
+struct SinglePendulumWithEffects {
+  using Links = double;
+
+  double length;
+  double inverse_inertia;  ///< 1/A_11
+  double moment;           ///< a_1/A_11, 1/m
+  double weight;           ///< a_1 g/A_11
+  const ActingEffects<double>* effects;
+
+  SinglePendulumWithEffects(const Scene& scene, const Inertia& inertia,
+                            const ActingEffects<double>* in_force)
+      : length(inertia.length[0]),
+        inverse_inertia(1.0 / inertia.diagonal[0]),
+        moment(inertia.first_moment[0] / inertia.diagonal[0]),
+        weight(inertia.first_moment[0] * scene.gravity / inertia.diagonal[0]),
+        effects(in_force) {}
+
+  PENDCORE_INLINE double accelerations(double t, double q, double qd) const {
+    double s, c;
+    sines(t, q, s, c);
+    double pull = weight * c;
+    RowAt<double> at{t, q, qd, s, c, length, effects->wave_sine.data(), 0.0, 0.0};
+    if (!effects->pivots.empty()) {
+      double x, y;
+      effects->pivot_acceleration(t, x, y);
+      pull = fma(moment, x * s - y * c, pull);
+      if (effects->has_forces) effects->pivot_velocity(t, at.pivot_vx, at.pivot_vy);
+    }
+    RowLoads<double> loads;
+    for (const auto& one : effects->couples) loads.couple(one.torque(at));
+    for (const JointWave& one : effects->joint_waves) {
+      loads.couple(one.gain * effects->wave_sine[one.wave]);
+    }
+    for (const auto& entry : effects->entries) ActingEffects<double>::add(entry, at, loads);
+    double torque = loads.torque();
+    if (!effects->users.empty()) torque += of_users(*effects, t, q, qd);
+    return effects->locked[0] ? 0.0 : fma(inverse_inertia, torque, pull);
+  }
+
+ private:
+  /// The link shares its sine with the first three waves.
+  PENDCORE_INLINE void sines(double t, double q, double& s, double& c) const {
+    if (effects->waves == 0) {
+      sine_cosine(q, s, c);
+      return;
+    }
+    const double* frequency = effects->angular_frequency.data();
+    const double* phase = effects->phase.data();
+    Pack<4> angle = fma(load<Pack<4>>(frequency), broadcast<Pack<4>>(t), load<Pack<4>>(phase));
+    angle = Pack<4>{angle[0], angle[1], angle[2], q};
+    Pack<4> sine, cosine;
+    sine_cosine(angle, sine, cosine);
+    s = sine[3];
+    c = cosine[3];
+    store(&effects->wave_sine[0], sine);
+    store(&effects->wave_cosine[0], cosine);
+    effects->compute_waves(t, 3);
+  }
+};
+
+}  // namespace pendcore

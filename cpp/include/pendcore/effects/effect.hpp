@@ -1,0 +1,165 @@
+/// \file
+/// THE CONTRACT OF AN EFFECT: what a file in this folder holds, and who reads it.
+///
+/// An effect is a plain struct of parameters. Its file opens with the law; the struct has
+///
+///     info         its name, a sentence, the source, and where the ledger books its work
+///     parameters   a tuple of `parameter(&Struct::field, {...})`: symbol, unit, range, a sentence
+///
+/// and, of what follows, the parts that the effect has:
+///
+///     couple(mode)                  its torque on a joint, where that is a polynomial: see law.hpp
+///     Law<Row>                      any other couples at joints, and forces along links
+///     put(law, lane)                its parameters into the lane of its joint or link
+///     wave()                        the sinusoid that drives it, if one does
+///     has_modes(), mode_at(t, phi, phid, forward), guards(mode), next_mode(mode, guard)
+///                                   where the law is smooth only in pieces: see law.hpp
+///     break_times(times)            times that no step may cross
+///     first_time(), last_time()     where its tables begin and end
+///     compiled()                    the same effect, with what need be computed only once
+///     potential(phi)                energy kept in the joint, J
+///     check(where)                  what the ranges of single parameters do not say
+///
+/// registry.hpp has the list of all effects, a line each. Nothing else names an effect that is a
+/// law; those that change the mass matrix, the joints or the pivot (payload, rotor, lock, driven
+/// pivot) are part of the equations of motion, which do.
+/// From `info` and `parameters` come the Python class, the TOML keys, the repr, the checks and
+/// their messages, the page of documentation, and the tests.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+#include "pendcore/message.hpp"
+
+namespace pendcore {
+
+/// Where the ledger books the work of an effect (J, positive as the name says).
+enum class Account {
+  none,     ///< it does none, or keeps it as energy
+  viscous,  ///< loss
+  dry,      ///< loss
+  drag,     ///< loss; what the wind adds is booked as `wind`
+  motor,    ///< work
+  drive,    ///< work, of the moving pivot
+  wind,     ///< work of moving air
+  user,     ///< work
+};
+
+inline constexpr std::array<std::string_view, 8> account_names = {
+    "none", "viscous", "dry", "drag", "motor", "drive", "wind", "user"};
+
+constexpr std::string_view account_name(Account account) {
+  return account_names[static_cast<std::size_t>(account)];
+}
+
+/// Whether what is booked is lost; otherwise it is work done on the chain.
+constexpr bool is_loss(Account account) {
+  return account == Account::viscous || account == Account::dry || account == Account::drag;
+}
+
+struct EffectInfo {
+  std::string_view name;      ///< "ViscousJoint"
+  std::string_view kind;      ///< "viscous_joint"
+  std::string_view sentence;  ///< what it is
+  std::string_view law;       ///< the equation, in plain text
+  std::string_view source;    ///< where the law comes from
+  Account account = Account::none;
+};
+
+/// Allowed values of a number.
+enum class Range { any, not_negative, positive, at_least_one, any_but_nan };
+
+constexpr std::string_view text(Range range) {
+  switch (range) {
+    case Range::any: return "finite";
+    case Range::not_negative: return "finite and >= 0";
+    case Range::positive: return "finite and > 0";
+    case Range::at_least_one: return "finite and >= 1";
+    case Range::any_but_nan: return "> 0, inf for no limit";
+  }
+  return "";
+}
+
+inline bool holds(Range range, double x) {
+  switch (range) {
+    case Range::any: return std::isfinite(x);
+    case Range::not_negative: return std::isfinite(x) && x >= 0;
+    case Range::positive: return std::isfinite(x) && x > 0;
+    case Range::at_least_one: return std::isfinite(x) && x >= 1;
+    case Range::any_but_nan: return x > 0;
+  }
+  return false;
+}
+
+struct ParameterInfo {
+  std::string_view name;    ///< as in Python and TOML
+  std::string_view symbol;  ///< as in the law; empty for what is no quantity
+  std::string_view unit;
+  std::string_view sentence;
+  Range range = Range::any;
+  bool required = false;  ///< otherwise its default is the struct's own
+};
+
+template <class Struct, class Value>
+struct Parameter {
+  Value Struct::* field;
+  ParameterInfo info;
+};
+
+template <class Struct, class Value>
+constexpr Parameter<Struct, Value> parameter(Value Struct::* field, ParameterInfo info) {
+  return {field, info};
+}
+
+inline constexpr ParameterInfo joint_number{.name = "joint",
+                                            .symbol = "j",
+                                            .unit = "",
+                                            .sentence = "where it acts; counts from 1",
+                                            .required = true};
+inline constexpr ParameterInfo link_number{.name = "link",
+                                           .symbol = "i",
+                                           .unit = "",
+                                           .sentence = "on which it acts; counts from 1",
+                                           .required = true};
+
+/// Calls visit(info, value) for each parameter.
+template <class Struct, class Visitor>
+void for_each_parameter(Struct& effect, Visitor visit) {
+  std::apply([&](const auto&... p) { (visit(p.info, effect.*(p.field)), ...); },
+             std::remove_cvref_t<Struct>::parameters);
+}
+
+/// Throws std::invalid_argument for a parameter out of its range, naming it after `where`, as in
+/// "effect 2 (viscous_joint): ".
+void check_value(const std::string& where, const ParameterInfo& info, double value);
+
+template <class Struct>
+void check_parameters(const std::string& where, const Struct& effect) {
+  for_each_parameter(effect, [&]<class Value>(const ParameterInfo& info, const Value& value) {
+    if constexpr (std::is_same_v<Value, int>) {
+      if (value < 1) refuse(where + std::string(info.name), value, "a number from 1 on");
+    } else if constexpr (std::is_same_v<Value, double>) {
+      check_value(where, info, value);
+    } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
+      if (value) check_value(where, info, *value);
+    } else if constexpr (requires { value.begin(); }) {
+      for (std::size_t i = 0; i < value.size(); ++i) {
+        ParameterInfo element = info;
+        const std::string name = std::string(info.name) + "[" + std::to_string(i) + "]";
+        element.name = name;
+        check_value(where, element, value[i]);
+      }
+    } else if constexpr (requires { value->parameters; }) {
+      if (value) check_parameters(where + std::string(info.name) + ".", *value);
+    }
+  });
+  if constexpr (requires { effect.check(where); }) effect.check(where);
+}
+
+}  // namespace pendcore

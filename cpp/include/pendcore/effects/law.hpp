@@ -1,0 +1,99 @@
+/// \file
+/// What a law sees, what it adds to, and when it changes.
+///
+/// A law is written once, for a row of joints or links: `Row` is double for a chain of one link,
+/// a Pair for two, a Pack<4> for every four of a longer one. Its fields are rows of parameters,
+/// neutral (mostly 0) where a joint does not have the effect. The number type V that it computes
+/// with is the same row, or one that holds more than a number for each joint (pair.hpp).
+///
+/// `at` has, of each link or joint of the row:
+///
+///     at.t                    time, s
+///     at.q, at.qd             absolute angle and rate of the link, rad, rad/s
+///     at.s, at.c              sin q and cos q: u = (c, s) along the link, n = (-s, c) across it
+///     at.phi(), at.phid()     angle and rate of the joint, phi_j = q_j - q_{j-1}
+///     at.length()             of the link, m
+///     at.vx(), at.vy()        velocity of the joint where the link begins, m/s
+///     at.wave(k)              the sinusoid of number k at time t, without its amplitude
+///
+/// and `loads` takes
+///
+///     loads.couple(tau)            tau_j on link j, and -tau_j on link j - 1
+///     loads.force(moment, fx, fy)  a force on each link (N), and its moment about the joint where
+///                                  the link begins (N m)
+///     loads.generalised(Q)         N m, on the absolute angle of each link
+///
+/// **Modes.** Where a law is smooth only in pieces it is frozen to one of them, its mode, while a
+/// step is taken, so that the integrator never sees a corner. A guard is positive as long as the
+/// mode holds; the step that would cross its zero is cut to end there, and `next_mode` follows.
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "pendcore/arithmetic/pair.hpp"
+
+namespace pendcore {
+
+/// g = offset + on_phi phi + on_phid phid + on_wave sin(wave): positive while the mode holds.
+struct Guard {
+  double offset = 0.0;
+  double on_phi = 0.0;
+  double on_phid = 0.0;
+  double on_wave = 0.0;
+};
+
+/// The torque of an effect whose law, in each of its modes, is a polynomial in time, angle and rate
+/// of its joint, and a wave:
+///
+///     tau = held + slope (t - start) + on_phi phi + on_phid w + on_phid2 w^2 + on_phid3 w^3
+///           + gain sin(wave)
+///
+/// Such effects need no Law: those on one joint are summed once, when the scene is compiled or a
+/// mode changes, and together cost what one does.
+struct Couple {
+  double held = 0.0;
+  double slope = 0.0;
+  double start = 0.0;
+  double on_phi = 0.0;
+  double on_phid = 0.0;
+  double on_phid2 = 0.0;
+  double on_phid3 = 0.0;
+  double gain = 0.0;
+
+  double torque(double t, double phi, double phid, double sine) const {
+    const double of_rate = ((on_phid3 * phid + on_phid2) * phid + on_phid) * phid;
+    return held + slope * (t - start) + on_phi * phi + of_rate + gain * sine;
+  }
+};
+
+/// The sums of the couples on a row of joints. Aligned here: GCC reports the alignment of a wide
+/// pack as that of the baseline, and its clones rely on the true one.
+template <class Row>
+struct alignas(sizeof(Row)) Couples {
+  int row = 0;
+  Row held{}, slope{}, start{}, on_phi{}, on_phid{}, on_phid2{}, on_phid3{};
+
+  template <class At>
+  PENDCORE_INLINE typename At::Value torque(const At& at) const {
+    using V = typename At::Value;
+    const V w = at.phid();
+    const V in_time = fma(Constants<V>::of(slope), Constants<V>::of(broadcast<Row>(at.t) - start),
+                          Constants<V>::of(held));
+    const V of_rate = fma(fma(Constants<V>::of(on_phid3), w, Constants<V>::of(on_phid2)), w,
+                          Constants<V>::of(on_phid));
+    return fma(of_rate, w, fma(Constants<V>::of(on_phi), at.phi(), in_time));
+  }
+};
+
+/// A wave that drives a joint: tau += gain sin(wave).
+struct JointWave {
+  int joint;  ///< from 0
+  int wave;
+  double gain;
+};
+
+/// The end of time: no time of change.
+inline constexpr double never = std::numeric_limits<double>::infinity();
+
+}  // namespace pendcore

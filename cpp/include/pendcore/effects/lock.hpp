@@ -1,0 +1,32 @@
+/// \file
+/// A joint that is locked:
+///
+///     phi_j = constant,   phid_j = phidd_j = 0
+///
+/// The joint is eliminated from the equations, so that nothing can wander. Does no work.
+#pragma once
+
+#include "pendcore/effects/effect.hpp"
+
+namespace pendcore {
+
+struct Lock {
+  int joint = 0;
+  std::optional<double> angle = {};  ///< where it starts, unless given
+
+  static constexpr EffectInfo info{
+      .name = "Lock",
+      .kind = "lock",
+      .sentence = "A joint locked at an angle: one degree of freedom less.",
+      .law = "phi = constant",
+      .source = "the textbook's mobility, 3 n - 2 c5 - c4, with two links made one"};
+  static constexpr auto parameters = std::tuple{
+      parameter(&Lock::joint, joint_number),
+      parameter(&Lock::angle, {.name = "angle",
+                               .symbol = "phi",
+                               .unit = "rad",
+                               .sentence = "of the joint; left out: where it starts"}),
+  };
+};
+
+}  // namespace pendcore

@@ -1,0 +1,82 @@
+/// \file
+/// A motor in a joint: a torque of one of four laws, clipped at +-limit,
+///
+///     constant    tau = value
+///     sinusoid    tau = A sin(omega t + phase)
+///     table       tau linear between given points; the run ends where the table does
+///     pd          tau = kp (reference - phi) - kd w
+///
+/// Power: tau w. Modes: the piece of the table between two of its points; free or clipped.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "pendcore/effects/effect.hpp"
+#include "pendcore/effects/law.hpp"
+#include "pendcore/effects/wave.hpp"
+
+namespace pendcore {
+
+struct Motor {
+  int joint = 0;
+  std::optional<double> constant = {};
+  std::optional<Sinusoid> sinusoid = {};
+  std::optional<Table> table = {};
+  std::optional<PD> pd = {};
+  double limit = never;
+
+  static constexpr EffectInfo info{
+      .name = "Motor",
+      .kind = "motor",
+      .sentence = "A motor in a joint: constant torque, sinusoid, table or PD controller.",
+      .law =
+          "tau = constant | A sin(omega t + phase) | linear between points | "
+          "kp (reference - phi) - kd w,  clipped at +-limit",
+      .source =
+          "Spong, Hutchinson, Vidyasagar, Robot Modeling and Control (2006), section 6.3, "
+          "for PD control",
+      .account = Account::motor};
+  static constexpr auto parameters = std::tuple{
+      parameter(&Motor::joint, joint_number),
+      parameter(
+          &Motor::constant,
+          {.name = "constant", .symbol = "tau", .unit = "N m", .sentence = "a constant torque"}),
+      parameter(
+          &Motor::sinusoid,
+          {.name = "sinusoid", .symbol = "", .unit = "N m", .sentence = "a torque that swings"}),
+      parameter(&Motor::table, {.name = "table",
+                                .symbol = "",
+                                .unit = "N m",
+                                .sentence = "a torque given at points in time"}),
+      parameter(&Motor::pd, {.name = "pd",
+                             .symbol = "",
+                             .unit = "N m",
+                             .sentence = "a controller that holds the joint at an angle"}),
+      parameter(&Motor::limit, {.name = "limit",
+                                .symbol = "",
+                                .unit = "N m",
+                                .sentence = "largest torque of either sign",
+                                .range = Range::any_but_nan}),
+  };
+  void check(const std::string& where) const;  ///< exactly one of the four laws
+
+  std::optional<Couple> couple(int mode) const;
+  std::optional<Sinusoid> wave() const { return sinusoid; }
+
+  bool has_modes() const {
+    return table || (limit < never && (pd || (sinusoid && std::abs(sinusoid->amplitude) > limit)));
+  }
+  int mode_at(double t, double phi, double phid, bool forward) const;
+  std::vector<Guard> guards(int mode) const;
+  int next_mode(int mode, std::size_t guard) const;
+  void break_times(std::vector<double>& times) const;
+  double first_time() const { return table ? table->t.front() : -never; }
+  double last_time() const { return table ? table->t.back() : never; }
+  Motor compiled() const;  ///< its table clipped, with points where it meets the limit
+
+ private:
+  double clipped(double torque) const { return std::max(-limit, std::min(torque, limit)); }
+};
+
+}  // namespace pendcore

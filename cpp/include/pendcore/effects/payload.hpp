@@ -1,0 +1,37 @@
+/// \file
+/// A rigid body at the tip of the chain, fixed to the last link:
+///
+///     S_i += m_p,   A_nn += m_p L_n^2 + I_p
+///
+/// Source: the parallel axis theorem. Constants alone; its weight and its energy count.
+#pragma once
+
+#include "pendcore/effects/effect.hpp"
+
+namespace pendcore {
+
+struct Payload {
+  double mass = 0.0;
+  double inertia = 0.0;
+
+  static constexpr EffectInfo info{.name = "Payload",
+                                   .kind = "payload",
+                                   .sentence = "A rigid body at the tip, fixed to the last link.",
+                                   .law = "S_i += m_p,  A_nn += m_p L_n^2 + I_p",
+                                   .source = "the parallel axis theorem"};
+  static constexpr auto parameters = std::tuple{
+      parameter(&Payload::mass, {.name = "mass",
+                                 .symbol = "m_p",
+                                 .unit = "kg",
+                                 .sentence = "of the body",
+                                 .range = Range::not_negative,
+                                 .required = true}),
+      parameter(&Payload::inertia, {.name = "inertia",
+                                    .symbol = "I_p",
+                                    .unit = "kg m^2",
+                                    .sentence = "about its own mass centre, at the tip",
+                                    .range = Range::not_negative}),
+  };
+};
+
+}  // namespace pendcore

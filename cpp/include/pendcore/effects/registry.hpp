@@ -1,0 +1,44 @@
+/// \file
+/// THE LIST OF EFFECTS, a line each: a file in this folder, and its name here.
+#pragma once
+
+#include <variant>
+
+#include "pendcore/effects/driven_pivot.hpp"
+#include "pendcore/effects/dry_joint_friction.hpp"
+#include "pendcore/effects/lock.hpp"
+#include "pendcore/effects/motor.hpp"
+#include "pendcore/effects/payload.hpp"
+#include "pendcore/effects/rod_drag.hpp"
+#include "pendcore/effects/rotor_inertia.hpp"
+#include "pendcore/effects/torsional_spring.hpp"
+#include "pendcore/effects/user.hpp"
+#include "pendcore/effects/viscous_joint.hpp"
+
+namespace pendcore {
+
+using Effect = std::variant<  //
+    ViscousJoint,             //
+    DryJointFriction,         //
+    RodDrag,                  //
+    TorsionalSpring,          //
+    Motor,                    //
+    RotorInertia,             //
+    Payload,                  //
+    Lock,                     //
+    DrivenPivot,              //
+    CompiledUser>;
+
+inline const EffectInfo& info_of(const Effect& effect) {
+  return std::visit([]<class Kind>(const Kind&) -> const EffectInfo& { return Kind::info; },
+                    effect);
+}
+
+/// The effect of that kind as it is by default, for filling in; throws std::invalid_argument for
+/// an unknown kind.
+Effect effect_of_kind(std::string_view kind);
+
+/// Throws std::invalid_argument for parameters out of their ranges; `where` begins the message.
+void check_effect(const std::string& where, const Effect& effect);
+
+}  // namespace pendcore

@@ -1,0 +1,34 @@
+/// \file
+/// The inertia of a rotor in a joint, as a geared motor has it seen from its output:
+///
+///     T += J phid^2 / 2:   M_jj += J,  M_{j-1,j-1} += J,  M_{j,j-1} -= J
+///
+/// Source: Featherstone, Rigid Body Dynamics Algorithms (2008), section 9.6. Constants alone.
+#pragma once
+
+#include "pendcore/effects/effect.hpp"
+
+namespace pendcore {
+
+struct RotorInertia {
+  int joint = 0;
+  double armature = 0.0;
+
+  static constexpr EffectInfo info{
+      .name = "RotorInertia",
+      .kind = "rotor_inertia",
+      .sentence = "The inertia of a rotor that turns with a joint.",
+      .law = "T += J phid^2 / 2",
+      .source = "Featherstone, Rigid Body Dynamics Algorithms (2008), section 9.6"};
+  static constexpr auto parameters = std::tuple{
+      parameter(&RotorInertia::joint, joint_number),
+      parameter(&RotorInertia::armature, {.name = "armature",
+                                          .symbol = "J",
+                                          .unit = "kg m^2",
+                                          .sentence = "moment of inertia as the joint feels it",
+                                          .range = Range::not_negative,
+                                          .required = true}),
+  };
+};
+
+}  // namespace pendcore

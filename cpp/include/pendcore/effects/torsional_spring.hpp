@@ -1,0 +1,48 @@
+/// \file
+/// A torsional spring in a joint:
+///
+///     tau = -k (phi - phi_0),   V = k (phi - phi_0)^2 / 2
+///
+/// Source: Hooke's law. Its energy is part of the potential energy.
+#pragma once
+
+#include "pendcore/effects/effect.hpp"
+#include "pendcore/effects/law.hpp"
+
+namespace pendcore {
+
+struct TorsionalSpring {
+  int joint = 0;
+  double stiffness = 0.0;
+  double rest_angle = 0.0;
+
+  static constexpr EffectInfo info{.name = "TorsionalSpring",
+                                   .kind = "torsional_spring",
+                                   .sentence = "A linear torsional spring in a joint.",
+                                   .law = "tau = -k (phi - phi_0),  V = k (phi - phi_0)^2 / 2",
+                                   .source = "Hooke's law"};
+  static constexpr auto parameters = std::tuple{
+      parameter(&TorsionalSpring::joint, joint_number),
+      parameter(&TorsionalSpring::stiffness,
+                {.name = "stiffness",
+                 .symbol = "k",
+                 .unit = "N m/rad",
+                 .sentence = "torque per angle; negative ones push away from the rest angle",
+                 .required = true}),
+      parameter(&TorsionalSpring::rest_angle, {.name = "rest_angle",
+                                               .symbol = "phi_0",
+                                               .unit = "rad",
+                                               .sentence = "angle of the joint without torque"}),
+  };
+
+  std::optional<Couple> couple(int /*mode*/) const {
+    return Couple{.held = stiffness * rest_angle, .on_phi = -stiffness};
+  }
+
+  double potential(double phi) const {
+    const double stretch = phi - rest_angle;
+    return 0.5 * stiffness * stretch * stretch;
+  }
+};
+
+}  // namespace pendcore

@@ -1,0 +1,74 @@
+/// \file
+/// An effect of the user's own: a compiled function that gives generalised forces,
+///
+///     void f(double t, int n, const double* q, const double* qd, double* Q, void* data)
+///
+/// of the absolute angles, Q (n), N m; Q comes zeroed, and is added to the equations. The address
+/// may be that of a C or C++ function, of one that numba compiled, or of a ctypes callback; the
+/// function must return the same for the same arguments. Power: Q . qd. In C++ anything that can be
+/// called will do:
+///
+///     auto magnet = [&](double t, std::span<const double> q, std::span<const double> qd,
+///                       std::span<double> Q) { Q[0] -= strength * std::sin(q[0]); };
+///     scene.effects.push_back(CompiledUser::of(magnet));   // magnet must outlive the scene
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "pendcore/effects/effect.hpp"
+
+namespace pendcore {
+
+using UserFunction = void (*)(double t, int n, const double* q, const double* qd, double* Q,
+                              void* data);
+
+struct CompiledUser {
+  std::uintptr_t address = 0;
+  std::uintptr_t data = 0;
+
+  static constexpr EffectInfo info{
+      .name = "CompiledUser",
+      .kind = "compiled_user",
+      .sentence = "An effect of the user's own, as a compiled function of t, q and qd.",
+      .law = "Q += f(t, q, qd)",
+      .source = "the user's",
+      .account = Account::user};
+  static constexpr auto parameters = std::tuple{
+      parameter(&CompiledUser::address,
+                {.name = "address",
+                 .symbol = "f",
+                 .unit = "",
+                 .sentence = "of void f(double t, int n, const double* q, const double* qd, "
+                             "double* Q, void* data)",
+                 .required = true}),
+      parameter(&CompiledUser::data, {.name = "data",
+                                      .symbol = "",
+                                      .unit = "",
+                                      .sentence = "handed to the function as it is"}),
+  };
+  /// Calls f(t, q, qd, Q) with spans, (n) each; f is not copied. What it throws ends the run.
+  template <class Function>
+  static CompiledUser of(Function& f) {
+    const UserFunction call = [](double t, int n, const double* q, const double* qd, double* Q,
+                                 void* data) {
+      const std::size_t size = n;
+      (*static_cast<Function*>(data))(t, std::span(q, size), std::span(qd, size),
+                                      std::span(Q, size));
+    };
+    return {reinterpret_cast<std::uintptr_t>(call), reinterpret_cast<std::uintptr_t>(&f)};
+  }
+
+  void check(const std::string& where) const {
+    if (address == 0) {
+      throw std::invalid_argument(where + "address = 0: must be the address of a function");
+    }
+  }
+
+  void operator()(double t, int n, const double* q, const double* qd, double* Q) const {
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): that is what the user gave
+    reinterpret_cast<UserFunction>(address)(t, n, q, qd, Q, reinterpret_cast<void*>(data));
+  }
+};
+
+}  // namespace pendcore

@@ -1,0 +1,65 @@
+/// \file
+/// Viscous damping in a joint:
+///
+///     tau = -(b w + b2 w |w| + b3 w^3),   w = phid
+///
+/// Source: the linear term is Rayleigh's dissipation (Theory of Sound I, 81); the quadratic and
+/// cubic ones are the next of an odd law. Power: -tau w is lost. Negative coefficients feed the
+/// motion, which may then blow up in finite time.
+///
+/// |w| has a corner at w = 0: where b2 is not 0, the sign of w is the mode, +1 or -1.
+#pragma once
+
+#include "pendcore/effects/effect.hpp"
+#include "pendcore/effects/law.hpp"
+
+namespace pendcore {
+
+struct ViscousJoint {
+  int joint = 0;
+  double damping = 0.0;
+  double damping2 = 0.0;
+  double damping3 = 0.0;
+
+  static constexpr EffectInfo info{
+      .name = "ViscousJoint",
+      .kind = "viscous_joint",
+      .sentence = "Viscous damping in a joint, with a linear, a quadratic and a cubic term.",
+      .law = "tau = -(b w + b2 w abs(w) + b3 w^3),  w = phid",
+      .source = "Rayleigh, The Theory of Sound I (1877), section 81, for the linear term",
+      .account = Account::viscous};
+  static constexpr auto parameters = std::tuple{
+      parameter(&ViscousJoint::joint, joint_number),
+      parameter(&ViscousJoint::damping,
+                {.name = "damping",
+                 .symbol = "b",
+                 .unit = "N m s/rad",
+                 .sentence = "linear coefficient; negative ones feed the motion",
+                 .required = true}),
+      parameter(&ViscousJoint::damping2, {.name = "damping2",
+                                          .symbol = "b2",
+                                          .unit = "N m s^2/rad^2",
+                                          .sentence = "quadratic coefficient"}),
+      parameter(&ViscousJoint::damping3, {.name = "damping3",
+                                          .symbol = "b3",
+                                          .unit = "N m s^3/rad^3",
+                                          .sentence = "cubic coefficient"}),
+  };
+
+  bool has_modes() const { return damping2 != 0.0; }
+  int mode_at(double /*t*/, double /*phi*/, double phid, bool /*forward*/) const {
+    return phid < 0.0 ? -1 : 1;
+  }
+  std::vector<Guard> guards(int mode) const { return {{.on_phid = static_cast<double>(mode)}}; }
+  int next_mode(int mode, std::size_t /*guard*/) const { return -mode; }
+  std::optional<Couple> couple(int mode) const {
+    return Couple{.on_phid = -damping, .on_phid2 = -mode * damping2, .on_phid3 = -damping3};
+  }
+
+  std::vector<std::string> warnings() const {
+    if (damping >= 0 && damping2 >= 0 && damping3 >= 0) return {};
+    return {"a negative damping coefficient feeds energy into the motion"};
+  }
+};
+
+}  // namespace pendcore

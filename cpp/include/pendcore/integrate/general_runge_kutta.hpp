@@ -1,0 +1,262 @@
+/// \file
+/// An explicit Runge-Kutta method on a state of any size, in memory.
+///
+/// The same step as step.hpp, operation for operation, where the size of the state or the system
+/// is not known to the compiler: long chains, and runs with quadratures beside the state, which
+/// count for nothing in the error norm. `Block` is the pack that the arrays are worked on with.
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "pendcore/integrate/step.hpp"
+#include "pendcore/integrate/stepper.hpp"
+
+namespace pendcore {
+
+/// dy/dt of a state in memory: two rows (q and qd) of `row` numbers each, and then quadratures.
+class GeneralSystem {
+ public:
+  GeneralSystem(int row_size, int quadrature_count)
+      : row(row_size), quadratures(quadrature_count) {}
+  virtual ~GeneralSystem() = default;
+
+  /// From the state (row, row) to its derivative (row, row, quadratures).
+  virtual void operator()(double t, const double* y, double* dydt) const = 0;
+
+  const int row;
+  const int quadratures;
+};
+
+/// What one step works on: rows of blocks, `stages` of them for k.
+struct GeneralMemory {
+  const GeneralSystem* system;
+  int blocks;        ///< of the state,
+  int error_blocks;  ///< and of its part in the error norm
+  double count;      ///< numbers in that part
+  double *y, *y_new, *k, *rtol, *atol;
+};
+
+/// One block of the stages k, rows of `size` numbers.
+template <class Block>
+struct StageInMemory {
+  const double* k;
+  int size;
+  PENDCORE_INLINE Block operator()(int j) const { return load<Block>(k + j * size); }
+};
+
+template <const auto& method, class Block>
+PENDCORE_INLINE Attempt attempt_in_memory(const GeneralMemory* memory, double t, double h,
+                                          double gain) {
+  constexpr int width = Lanes<Block>::width;
+  constexpr int stages = std::remove_cvref_t<decltype(method)>::stages;
+  const int blocks = memory->blocks;
+  const int size = blocks * width;
+  double* const z = memory->y_new;
+  double* const k = memory->k;
+#pragma GCC unroll 16
+  for (int s = 1; s < stages; ++s) {
+    for (int at = 0; at < size; at += width) {
+      store(z + at, advance(load<Block>(memory->y + at), h, method.a[s],
+                            StageInMemory<Block>{k + at, size}, s));
+    }
+    (*memory->system)(t + method.c[s].value() * h, z, k + s * size);
+  }
+  if constexpr (!method.first_same_as_last) {
+    for (int at = 0; at < size; at += width) {
+      store(z + at, advance(load<Block>(memory->y + at), h, method.b,
+                            StageInMemory<Block>{k + at, size}, stages));
+    }
+  }
+  Block squares{};
+  for (int i = 0; i < memory->error_blocks; ++i) {
+    const int at = i * width;
+    const Block before = load<Block>(memory->y + at);
+    const Block after = load<Block>(z + at);
+    const Block larger_one = larger(absolute(before), absolute(after));
+    const Block scale =
+        h / fma(load<Block>(memory->rtol + at), larger_one, load<Block>(memory->atol + at));
+    const Block start = method.first_same_as_last ? Block{} : Block(after - after);
+    const Block ratio = advance(start, scale, method.e, StageInMemory<Block>{k + at, size}, stages);
+    squares = i == 0 ? Block(ratio * ratio) : Block(squares + ratio * ratio);
+  }
+  const double squared_error = sum_of_lanes(squares) * (1.0 / memory->count);
+  return {squared_error, scaled_power(squared_error, -0.5 * exponent(method.info), gain)};
+}
+
+template <const auto& method, class Block>
+PENDCORE_INLINE void interpolant_in_memory(const GeneralMemory* memory, double h,
+                                           double* coefficients) {
+  using Method = std::remove_cvref_t<decltype(method)>;
+  constexpr int width = Lanes<Block>::width;
+  const int size = memory->blocks * width;
+  for (int at = 0; at < size; at += width) {
+    store(coefficients + at, load<Block>(memory->y + at));
+#pragma GCC unroll 16
+    for (int p = 0; p < Method::degree; ++p) {
+      Block sum{};
+#pragma GCC unroll 16
+      for (int s = 0; s < Method::stages; ++s) {
+        if (method.interpolant[s][p].numerator == 0) continue;
+        sum = fma(broadcast<Block>(method.interpolant[s][p].value()),
+                  load<Block>(memory->k + s * size + at), sum);
+      }
+      store(coefficients + (p + 1) * size + at, Block(h * sum));
+    }
+  }
+}
+
+/// Horner's scheme as in sample_interpolant, on rows of `dimension` numbers.
+template <int degree>
+PENDCORE_INLINE void sample_rows(const double* coefficients, TwoDouble start, double h,
+                                 const double* times, int count, double* states, int dimension) {
+  for (int k = 0; k < count; ++k) {
+    const double theta = ((times[k] - start.high) - start.low) / h;
+    for (int i = 0; i < dimension; ++i) {
+      double value = coefficients[degree * dimension + i];
+#pragma GCC unroll 16
+      for (int p = degree - 1; p >= 0; --p) {
+        value = fma(theta, value, coefficients[p * dimension + i]);
+      }
+      states[k * dimension + i] = value;
+    }
+  }
+}
+
+/// The numbers of a state stand close together for the loop: (n, n, quadratures). In memory each
+/// row is filled up to whole blocks.
+template <const auto& method, class Block>
+class GeneralRungeKutta final : public Stepper {
+  using Method = std::remove_cvref_t<decltype(method)>;
+  static constexpr int width = Lanes<Block>::width;
+  static constexpr int stages = Method::stages;
+  static constexpr int degree = Method::degree;
+
+ public:
+  GeneralRungeKutta(std::unique_ptr<GeneralSystem> system, int n)
+      : system_(std::move(system)),
+        n_(n),
+        row_(system_->row),
+        size_(2 * row_ + (system_->quadratures + width - 1) / width * width),
+        numbers_(static_cast<std::size_t>(size_) * (4 + stages + degree + 1)) {
+    memory_.system = system_.get();
+    memory_.blocks = size_ / width;
+    memory_.error_blocks = 2 * row_ / width;
+    memory_.count = 2.0 * n;
+    memory_.y = numbers_.data();
+    memory_.y_new = memory_.y + size_;
+    memory_.rtol = memory_.y_new + size_;
+    memory_.atol = memory_.rtol + size_;
+    memory_.k = memory_.atol + size_;
+    rows_ = memory_.k + static_cast<std::ptrdiff_t>(stages) * size_;
+    for (int i = 0; i < size_; ++i) memory_.atol[i] = 1.0;  // where there is no component
+  }
+
+  const MethodInfo& info() const override { return method.info; }
+  int dimension() const override { return 2 * n_ + system_->quadratures; }
+  int controlled() const override { return 2 * n_; }
+  int interpolant_degree() const override { return degree; }
+
+  void set_tolerances(const double* rtol, const double* atol) override {
+    read_rows(rtol, memory_.rtol);
+    read_rows(atol, memory_.atol);
+  }
+  void start(const double* y, const double* dydt) override {
+    read(y, memory_.y);
+    read(dydt, memory_.k);
+  }
+  void get_state(double* y) const override { write(memory_.y, y); }
+  void get_derivative(double* dydt) const override { write(memory_.k, dydt); }
+  void get_new_state(double* y) const override { write(memory_.y_new, y); }
+  void set_new_state(const double* y) override { read(y, memory_.y_new); }
+
+  void evaluate(double t, const double* y, double* dydt) override {
+    std::vector<double> state(size_);
+    std::vector<double> rate(size_);
+    read(y, state.data());
+    (*system_)(t, state.data(), rate.data());
+    write(rate.data(), dydt);
+    ++evaluations;
+  }
+  Attempt attempt(double t, double h, double gain) override {
+    evaluations += stages - 1;
+    return attempt_(&memory_, t, h, gain);
+  }
+  void accept(double t_new) override {
+    const std::size_t bytes = size_ * sizeof(double);
+    __builtin_memcpy(memory_.y, memory_.y_new, bytes);
+    if constexpr (method.first_same_as_last) {
+      __builtin_memcpy(memory_.k, memory_.k + static_cast<std::ptrdiff_t>(stages - 1) * size_,
+                       bytes);
+    } else {
+      (*system_)(t_new, memory_.y, memory_.k);
+      ++evaluations;
+    }
+  }
+  void interpolant(double h, double* coefficients) const override {
+    interpolant_(&memory_, h, rows_);
+    for (int p = 0; p <= degree; ++p) write(rows_ + p * size_, coefficients + p * dimension());
+  }
+  void sample(const double* coefficients, const TwoDouble& start, double h, const double* times,
+              int count, double* states) const override {
+    sample_(coefficients, start, h, times, count, states, dimension());
+  }
+  double stiffness(double h) const override {
+    if constexpr (method.info.stability == 0.0) {
+      return 0.0;
+    } else {
+      static_assert(method.first_same_as_last && stages >= 3 && method.c[stages - 2].value() == 1.0,
+                    "the test for stiffness needs two stages at the end of the step");
+      double rates = 0.0;
+      double states = 0.0;
+      for (int i = 0; i < memory_.error_blocks; ++i) {
+        const int at = i * width;
+        const Block before = advance(load<Block>(memory_.y + at), h, method.a[stages - 2],
+                                     StageInMemory<Block>{memory_.k + at, size_}, stages - 2);
+        const Block dk = load<Block>(memory_.k + (stages - 1) * size_ + at) -
+                         load<Block>(memory_.k + (stages - 2) * size_ + at);
+        const Block dy = load<Block>(memory_.y_new + at) - before;
+        rates += sum_of_lanes(Block(dk * dk));
+        states += sum_of_lanes(Block(dy * dy));
+      }
+      return states > 0.0 ? std::abs(h) * std::sqrt(rates / states) : 0.0;
+    }
+  }
+
+ private:
+  void read_rows(const double* from, double* to) const {
+    for (int i = 0; i < n_; ++i) {
+      to[i] = from[i];
+      to[row_ + i] = from[n_ + i];
+    }
+  }
+  void read(const double* from, double* to) const {
+    read_rows(from, to);
+    for (int i = 0; i < system_->quadratures; ++i) to[2 * row_ + i] = from[2 * n_ + i];
+  }
+  void write(const double* from, double* to) const {
+    for (int i = 0; i < n_; ++i) {
+      to[i] = from[i];
+      to[n_ + i] = from[row_ + i];
+    }
+    for (int i = 0; i < system_->quadratures; ++i) to[2 * n_ + i] = from[2 * row_ + i];
+  }
+
+  std::unique_ptr<GeneralSystem> system_;
+  int n_;
+  int row_;
+  int size_;
+  std::vector<double> numbers_;
+  double* rows_;  ///< of an interpolant
+  GeneralMemory memory_;
+  Attempt (*attempt_)(const GeneralMemory*, double, double,
+                      double) = fastest<&attempt_in_memory<method, Block>>();
+  void (*interpolant_)(const GeneralMemory*, double,
+                       double*) = fastest<&interpolant_in_memory<method, Block>>();
+  void (*sample_)(const double*, TwoDouble, double, const double*, int, double*,
+                  int) = fastest<&sample_rows<degree>>();
+};
+
+}  // namespace pendcore

@@ -1,0 +1,38 @@
+/// \file
+/// Where along an attempted step the law changes: the guards of Breaks, on the dense output.
+#pragma once
+
+#include "pendcore/arithmetic/two_double.hpp"
+#include "pendcore/integrate/breaks.hpp"
+#include "pendcore/integrate/stepper.hpp"
+
+namespace pendcore {
+
+/// The first guard that the attempted step would make negative, and where in the step; none: -1.
+struct Crossing {
+  int guard = -1;
+  double theta = 2.0;
+};
+
+class Guards {
+ public:
+  Guards(const Stepper& stepper, const Breaks& breaks);
+
+  /// In the attempted step of size h from time t.
+  Crossing first(const TwoDouble& t, double h);
+
+  /// By how much the step's end misses the zero of guard k, in units of the step.
+  double miss(int k, const TwoDouble& t, double h);
+
+ private:
+  double value(int k, const TwoDouble& t, double h, double theta);
+
+  const Stepper& stepper_;
+  const Breaks& breaks_;
+  int dimension_;
+  int degree_;
+  std::vector<double> rows_;  ///< the dense output of the step
+  std::vector<double> state_;
+};
+
+}  // namespace pendcore

@@ -1,0 +1,70 @@
+/// \file
+/// The modes of a scene's effects along a run: when they change, and to what.
+///
+/// Where dynamics and integration meet: the loop sees a Breaks (integrate/breaks.hpp), the laws see
+/// the mode that they are frozen to (effects/law.hpp). A locked joint is part of it: its angle and
+/// rate are set at the end of each step, so that no rounding lets them wander.
+///
+/// Dry friction: where the rate of a joint reaches zero, the joint goes on in the other direction
+/// if friction of that sign leaves it an acceleration that way; otherwise it sticks.
+#pragma once
+
+#include "pendcore/dynamics/equations_of_motion.hpp"
+#include "pendcore/integrate/breaks.hpp"
+
+namespace pendcore {
+
+class Switching final : public Breaks {
+ public:
+  Switching(const Scene& scene, const EquationsOfMotion& equations);
+
+  /// Whether the scene has anything for it to do.
+  static bool is_needed(const Scene& scene);
+
+  Status begin(double t, double* y, bool forward) override;
+  double next_time(double t) const override;
+  int guards() const override { return static_cast<int>(guards_.size()); }
+  double guard(int k, double t, const double* y) const override;
+  bool polynomial(int k, const double* rows, int degree, int dimension,
+                  double* coefficients) const override;
+  bool settles_every_step() const override { return has_locks_; }
+  bool settle(int k, double t, double* y) const override;
+  Status cross(int k, double t, const double* y) override;
+  std::vector<int> modes() const override { return modes_; }
+
+  /// In place of begin() for a run that goes on: the modes it was in, and the state it began with.
+  void restore(const std::vector<int>& modes, const double* start, bool forward);
+
+  /// What a run says that ended at rest, or where a table ends; empty if nothing.
+  const std::string& remark() const { return remark_; }
+
+ private:
+  struct Watch {
+    std::size_t effect;
+    std::size_t number;  ///< among the guards of the effect's mode
+    int joint;           ///< from 0
+    Guard guard;
+  };
+  void put_mode(std::size_t i, int mode);
+  void collect_guards();
+  void set_locks(const double* start);
+  /// The mode of dry friction number i where its joint has no rate: 1, -1, or 0 where it sticks.
+  int sliding_mode(std::size_t i, double t, const double* q, const double* qd);
+  bool rests(double t, const double* q, const double* qd);
+  double of_joint(const double* x, int joint) const {
+    return joint > 0 ? x[joint] - x[joint - 1] : x[0];
+  }
+
+  Scene scene_;
+  EquationsOfMotion equations_;
+  int n_;
+  bool forward_ = true;
+  bool has_locks_ = false;
+  std::vector<int> modes_;     ///< of each effect
+  std::vector<double> times_;  ///< that no step may cross, sorted
+  std::vector<Watch> guards_;
+  std::vector<double> lock_angle_;  ///< of each joint; NaN where there is no lock
+  std::string remark_;
+};
+
+}  // namespace pendcore

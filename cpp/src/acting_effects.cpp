@@ -1,0 +1,273 @@
+#include "pendcore/dynamics/acting_effects.hpp"
+
+#include <algorithm>
+
+#include "pendcore/dynamics/inertia.hpp"
+
+namespace pendcore {
+
+EffectsInForce::EffectsInForce(const Scene& scene)
+    : effects(compiled(scene).effects),
+      modes(scene.effects.size(), 0),
+      number_of_wave(scene.effects.size(), -1) {
+  for (const bool is_locked : locked_joints(scene)) locked.push_back(is_locked ? 1 : 0);
+  for (const Effect& effect : effects) {
+    if (const auto* user = std::get_if<CompiledUser>(&effect)) users.push_back(*user);
+    const auto* pivot = std::get_if<DrivenPivot>(&effect);
+    if (pivot == nullptr) continue;
+    auto law = std::make_shared<DrivenPivot::Law>();
+    auto swing = [this](const std::optional<Sinusoid>& wave, DrivenPivot::Law::Axis& axis) {
+      if (!wave) return;
+      const double w = wave->angular_frequency;
+      axis.gain = -wave->amplitude * w * w;
+      axis.swing = wave->amplitude * w;
+      axis.wave = add_wave(*wave);
+    };
+    swing(pivot->x, law->x);
+    swing(pivot->y, law->y);
+    pivots.push_back(law);
+  }
+}
+
+int EffectsInForce::add_wave(const Sinusoid& wave) {
+  angular_frequency.push_back(wave.angular_frequency);
+  phase.push_back(wave.phase);
+  return waves++;
+}
+
+void EffectsInForce::finish_waves() {
+  for (int k = 0; k < std::min(waves, 2); ++k) {
+    two_waves.angular_frequency[k] = angular_frequency[k];
+    two_waves.phase[k] = phase[k];
+  }
+  const std::size_t room = waves + 8;
+  angular_frequency.resize(room);
+  phase.resize(room);
+  wave_sine.assign(room, 0.0);
+  wave_cosine.assign(room, 0.0);
+}
+
+namespace {
+
+/// The number from 0 of the joint or link that an effect acts on.
+template <class Kind>
+int place_of(const Kind& effect) {
+  if constexpr (requires { effect.joint; }) {
+    return effect.joint - 1;
+  } else {
+    return effect.link - 1;
+  }
+}
+
+template <class Kind>
+double group_of(const Kind& effect) {
+  if constexpr (requires { effect.group(); }) {
+    return effect.group();
+  } else {
+    return 0.0;
+  }
+}
+
+template <class Kind>
+bool is_couple(const Kind& effect) {
+  if constexpr (requires { effect.couple(0); }) {
+    return effect.couple(0).has_value();
+  } else {
+    return false;
+  }
+}
+
+}  // namespace
+
+template <class Row>
+ActingEffects<Row>::ActingEffects(const Scene& scene)
+    : EffectsInForce(scene), places_(effects.size()) {
+  struct Law {
+    int kind, row;
+    double group;
+    unsigned taken;  // lanes
+    void* law;
+  };
+  std::vector<Law> laws;
+  std::size_t pivots_so_far = 0;
+  for (std::size_t i = 0; i < effects.size(); ++i) {
+    std::visit(
+        [&]<class Kind>(const Kind& effect) {
+          if constexpr (requires { effect.wave(); }) {
+            if (const auto wave = effect.wave()) number_of_wave[i] = add_wave(*wave);
+          }
+          if constexpr (std::is_same_v<Kind, DrivenPivot>) {
+            places_[i].law = pivots[pivots_so_far++].get();
+          }
+          if constexpr (requires { effect.couple(0); }) {
+            const int row = place_of(effect) / width;
+            const bool is_new =
+                std::ranges::find(couples, row, &Couples<Row>::row) == couples.end();
+            if (is_couple(effect) && is_new) couples.push_back({.row = row});
+          }
+          if constexpr (requires { typename Kind::template Law<Row>; }) {
+            if (is_couple(effect)) return;
+            using KindLaw = typename Kind::template Law<Row>;
+            const int place = place_of(effect);
+            const Law wanted{static_cast<int>(effects[i].index()), place / width, group_of(effect),
+                             1U << (place % width), nullptr};
+            auto found = std::ranges::find_if(laws, [&](const Law& law) {
+              return law.kind == wanted.kind && law.row == wanted.row &&
+                     law.group == wanted.group && (law.taken & wanted.taken) == 0;
+            });
+            if (found == laws.end()) {
+              struct alignas(sizeof(Row)) Aligned {  // see Couples
+                KindLaw law;
+              };
+              auto aligned = std::make_shared<Aligned>();
+              laws_.push_back(aligned);
+              laws.push_back(wanted);
+              found = laws.end() - 1;
+              found->law = &aligned->law;
+              found->taken = 0;
+            }
+            found->taken |= wanted.taken;
+            places_[i] = {found->law, place % width};
+            auto& law = *static_cast<KindLaw*>(found->law);
+            if constexpr (requires { effect.put(law, 0, 1.0); }) {
+              effect.put(law, place % width, scene.links[place].length);
+              has_forces = true;
+            } else {
+              effect.put(law, place % width);
+            }
+          }
+        },
+        effects[i]);
+  }
+  for (const Law& law : laws) entries.push_back({law.kind, law.row, law.law});
+  finish_waves();
+  if constexpr (width == 2) find_two_waves(scene);
+  for (std::size_t i = 0; i < effects.size(); ++i) {
+    std::visit(
+        [&](const auto& effect) {
+          if constexpr (requires { effect.has_modes(); }) {
+            has_modes |= effect.has_modes();
+            put_mode(i, effect.mode_at(0.0, 0.0, 0.0, true));
+          } else if (is_couple(effect)) {
+            put_mode(i, 0);
+          }
+        },
+        effects[i]);
+  }
+}
+
+template <class Row>
+void ActingEffects<Row>::put_mode(std::size_t i, int mode) {
+  modes[i] = mode;
+  std::visit(
+      [&]<class Kind>(const Kind& effect) {
+        if constexpr (std::is_same_v<Kind, DrivenPivot>) {
+          effect.put_mode(*static_cast<DrivenPivot::Law*>(places_[i].law), 0, mode);
+        }
+        if constexpr (requires { effect.couple(0); }) {
+          if (is_couple(effect)) {
+            sum_couples(place_of(effect));
+            return;
+          }
+        }
+        if constexpr (requires {
+                        typename Kind::template Law<Row>;
+                        effect.has_modes();
+                      }) {
+          using KindLaw = typename Kind::template Law<Row>;
+          effect.put_mode(*static_cast<KindLaw*>(places_[i].law), places_[i].lane, mode);
+        }
+      },
+      effects[i]);
+}
+
+/// The couples of all effects on one joint, added up into its lane.
+template <class Row>
+void ActingEffects<Row>::sum_couples(int joint) {
+  Couple sum;
+  std::erase_if(joint_waves, [&](const JointWave& wave) { return wave.joint == joint; });
+  for (std::size_t i = 0; i < effects.size(); ++i) {
+    std::visit(
+        [&](const auto& effect) {
+          if constexpr (requires { effect.couple(0); }) {
+            if (place_of(effect) != joint || !is_couple(effect)) return;
+            const Couple one = *effect.couple(modes[i]);
+            const double start = std::max(sum.start, one.start);
+            sum.held +=
+                sum.slope * (start - sum.start) + one.held + one.slope * (start - one.start);
+            sum.start = start;
+            sum.slope += one.slope;
+            sum.on_phi += one.on_phi;
+            sum.on_phid += one.on_phid;
+            sum.on_phid2 += one.on_phid2;
+            sum.on_phid3 += one.on_phid3;
+            if (one.gain != 0.0) joint_waves.push_back({joint, number_of_wave[i], one.gain});
+          }
+        },
+        effects[i]);
+  }
+  if constexpr (width == 2) {
+    two_waves.torque[0] = two_waves.torque[1] = Pair{};
+    for (const JointWave& one : joint_waves) {
+      if (one.wave >= 2) continue;
+      Pair& torque = two_waves.torque[one.wave];
+      torque[one.joint] += one.gain;
+      if (one.joint > 0) torque[one.joint - 1] -= one.gain;
+    }
+  }
+  Couples<Row>& row = *std::ranges::find(couples, joint / width, &Couples<Row>::row);
+  const int lane = joint % width;
+  set_lane(row.held, lane, sum.held);
+  set_lane(row.slope, lane, sum.slope);
+  set_lane(row.start, lane, sum.start);
+  set_lane(row.on_phi, lane, sum.on_phi);
+  set_lane(row.on_phid, lane, sum.on_phid);
+  set_lane(row.on_phid2, lane, sum.on_phid2);
+  set_lane(row.on_phid3, lane, sum.on_phid3);
+}
+
+/// What moves the pivot, of the first two waves; the motors' is found with the couples.
+template <class Row>
+void ActingEffects<Row>::find_two_waves(const Scene& scene) {
+  const Inertia inertia(scene);
+  for (int i = 0; i < 2; ++i) {
+    const double a = inertia.first_moment[i];
+    for (const auto& law : pivots) {
+      if (law->x.wave < 2) two_waves.on_sine[law->x.wave][i] += a * law->x.gain;
+      if (law->y.wave < 2) two_waves.on_cosine[law->y.wave][i] -= a * law->y.gain;
+    }
+  }
+}
+
+template class ActingEffects<double>;
+template class ActingEffects<Pair>;
+template class ActingEffects<Pack<4>>;
+
+template <class Row>
+Row of_users(const EffectsInForce& effects, double t, const Row& q, const Row& qd) {
+  constexpr int n = Lanes<Row>::width;
+  double angles[n];
+  double rates[n];
+  store(angles, q);
+  store(rates, qd);
+  Row sum{};
+  for (const CompiledUser& user : effects.users) {
+    double forces[n] = {};
+    user(t, n, angles, rates, forces);
+    sum += load<Row>(forces);
+  }
+  return sum;
+}
+
+template double of_users(const EffectsInForce&, double, const double&, const double&);
+template Pair of_users(const EffectsInForce&, double, const Pair&, const Pair&);
+
+std::shared_ptr<EffectsInForce> effects_in_force(const Scene& scene) {
+  switch (scene.links.size()) {
+    case 1: return std::make_shared<ActingEffects<double>>(scene);
+    case 2: return std::make_shared<ActingEffects<Pair>>(scene);
+    default: return std::make_shared<ActingEffects<Pack<4>>>(scene);
+  }
+}
+
+}  // namespace pendcore

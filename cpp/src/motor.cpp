@@ -1,0 +1,108 @@
+#include "pendcore/effects/motor.hpp"
+
+#include "pendcore/arithmetic/sine_cosine.hpp"
+
+namespace pendcore {
+namespace {
+
+double sign_of(int mode) { return static_cast<double>(mode); }
+
+}  // namespace
+
+void Motor::check(const std::string& where) const {
+  const int given =
+      constant.has_value() + sinusoid.has_value() + table.has_value() + pd.has_value();
+  if (given != 1) {
+    throw std::invalid_argument(where + (given == 0 ? "no law" : "more than one law") +
+                                " given: give one of constant, sinusoid, table and pd");
+  }
+}
+
+Motor Motor::compiled() const {
+  Motor motor = *this;
+  if (!table || !std::isfinite(limit)) return motor;
+  Table result;
+  for (std::size_t i = 0; i < table->t.size(); ++i) {
+    const double t = table->t[i];
+    const double torque = table->torque[i];
+    if (i > 0) {
+      const double t_before = table->t[i - 1];
+      const double before = table->torque[i - 1];
+      std::vector<double> meets;
+      for (const double edge : {-limit, limit}) {
+        if ((before - edge) * (torque - edge) < 0.0) {
+          meets.push_back(t_before + (t - t_before) * ((edge - before) / (torque - before)));
+        }
+      }
+      std::ranges::sort(meets);
+      for (const double meet : meets) {
+        if (!(meet > result.t.back() && meet < t)) continue;
+        result.t.push_back(meet);
+        const double share = (meet - t_before) / (t - t_before);
+        result.torque.push_back(clipped(before + (torque - before) * share));
+      }
+    }
+    result.t.push_back(t);
+    result.torque.push_back(clipped(torque));
+  }
+  motor.table = result;
+  return motor;
+}
+
+void Motor::break_times(std::vector<double>& times) const {
+  if (table) times.insert(times.end(), table->t.begin(), table->t.end());
+}
+
+int Motor::mode_at(double t, double phi, double phid, bool forward) const {
+  if (table) return piece_at(table->t, t, forward);
+  if (pd) {
+    const double torque = pd->kp * (pd->reference - phi) - pd->kd * phid;
+    return torque > limit ? 1 : torque < -limit ? -1 : 0;
+  }
+  if (!sinusoid || !(std::abs(sinusoid->amplitude) > limit)) return 0;
+  double sine, cosine;
+  sine_cosine(std::fma(sinusoid->angular_frequency, t, sinusoid->phase), sine, cosine);
+  const double torque = sinusoid->amplitude * sine;
+  return torque > limit ? 1 : torque < -limit ? -1 : 0;
+}
+
+std::vector<Guard> Motor::guards(int mode) const {
+  if (table || constant || !std::isfinite(limit)) return {};
+  Guard torque;  // the torque without the limit
+  if (pd) {
+    torque = {.offset = pd->kp * pd->reference, .on_phi = -pd->kp, .on_phid = -pd->kd};
+  } else if (sinusoid && std::abs(sinusoid->amplitude) > limit) {
+    torque = {.on_wave = sinusoid->amplitude};
+  } else {
+    return {};
+  }
+  auto guard = [&](double sign, double offset) {
+    return Guard{.offset = sign * torque.offset + offset,
+                 .on_phi = sign * torque.on_phi,
+                 .on_phid = sign * torque.on_phid,
+                 .on_wave = sign * torque.on_wave};
+  };
+  if (mode != 0) return {guard(sign_of(mode), -limit)};
+  return {guard(-1.0, limit), guard(1.0, limit)};
+}
+
+int Motor::next_mode(int mode, std::size_t guard) const {
+  if (mode != 0) return 0;
+  return guard == 0 ? 1 : -1;
+}
+
+std::optional<Couple> Motor::couple(int mode) const {
+  if (constant) return Couple{.held = clipped(*constant)};
+  if (table) {
+    const auto& [t, torque] = *table;
+    const int last = static_cast<int>(t.size()) - 1;
+    if (mode < 0 || mode >= last) return Couple{.held = std::nan("")};
+    const double rise = torque[mode + 1] - torque[mode];
+    return Couple{.held = torque[mode], .slope = rise / (t[mode + 1] - t[mode]), .start = t[mode]};
+  }
+  if (mode != 0) return Couple{.held = sign_of(mode) * limit};
+  if (pd) return Couple{.held = pd->kp * pd->reference, .on_phi = -pd->kp, .on_phid = -pd->kd};
+  return sinusoid ? Couple{.gain = sinusoid->amplitude} : Couple{};
+}
+
+}  // namespace pendcore

@@ -1,0 +1,36 @@
+#include "pendcore/effects/registry.hpp"
+
+namespace pendcore {
+
+void check_value(const std::string& where, const ParameterInfo& info, double value) {
+  if (holds(info.range, value)) return;
+  std::string range(text(info.range));
+  if (!info.unit.empty() && info.unit != "1") range += " (" + std::string(info.unit) + ")";
+  refuse(where + std::string(info.name), value, range);
+}
+
+namespace {
+
+template <std::size_t... kinds>
+bool assign_kind(std::string_view kind, Effect& effect, std::index_sequence<kinds...>) {
+  return ((std::variant_alternative_t<kinds, Effect>::info.kind == kind
+               ? (effect = std::variant_alternative_t<kinds, Effect>{}, true)
+               : false) ||
+          ...);
+}
+
+}  // namespace
+
+Effect effect_of_kind(std::string_view kind) {
+  Effect effect;
+  if (!assign_kind(kind, effect, std::make_index_sequence<std::variant_size_v<Effect>>{})) {
+    throw std::invalid_argument("kind = \"" + std::string(kind) + "\": there is no such effect");
+  }
+  return effect;
+}
+
+void check_effect(const std::string& where, const Effect& effect) {
+  std::visit([&](const auto& one) { check_parameters(where, one); }, effect);
+}
+
+}  // namespace pendcore

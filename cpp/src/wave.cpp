@@ -1,0 +1,62 @@
+#include "pendcore/effects/wave.hpp"
+
+#include <algorithm>
+
+namespace pendcore {
+
+void check_times(const std::string& where, const std::vector<double>& times) {
+  if (times.size() < 2) {
+    throw std::invalid_argument(where + "t: has " + std::to_string(times.size()) +
+                                " times: must have two or more (s)");
+  }
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    if (!(times[i] > times[i - 1])) {
+      refuse(where + "t[" + std::to_string(i) + "]", times[i],
+             "above the time before, " + text(times[i - 1]) + " (s)");
+    }
+  }
+}
+
+void check_count(const std::string& where, const std::vector<double>& values, std::size_t count) {
+  if (values.size() == count) return;
+  throw std::invalid_argument(where + ": has " + std::to_string(values.size()) +
+                              " values: must have " + std::to_string(count) +
+                              ", one for each time");
+}
+
+void Table::check(const std::string& where) const {
+  check_times(where, t);
+  check_count(where + "torque", torque, t.size());
+}
+
+void Spline::check(const std::string& where) const {
+  check_times(where, t);
+  check_count(where + "x", x, t.size());
+  check_count(where + "y", y, t.size());
+}
+
+/// The natural spline's tridiagonal system, eliminated forward and back.
+std::vector<double> Spline::second_derivatives(const std::vector<double>& values) const {
+  const std::size_t n = t.size();
+  std::vector<double> second(n, 0.0);
+  std::vector<double> ratio(n, 0.0);
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    const double before = t[i] - t[i - 1];
+    const double behind = t[i + 1] - t[i];
+    const double change =
+        (values[i + 1] - values[i]) / behind - (values[i] - values[i - 1]) / before;
+    const double pivot = 2.0 * (before + behind) - before * ratio[i - 1];
+    ratio[i] = behind / pivot;
+    second[i] = (6.0 * change - before * second[i - 1]) / pivot;
+  }
+  for (std::size_t i = n - 1; i-- > 1;) second[i] -= ratio[i] * second[i + 1];
+  return second;
+}
+
+int piece_at(const std::vector<double>& times, double t, bool forward) {
+  const auto after =
+      forward ? std::ranges::upper_bound(times, t) : std::ranges::lower_bound(times, t);
+  return static_cast<int>(after - times.begin()) - 1;
+}
+
+}  // namespace pendcore
