@@ -6,12 +6,15 @@
     scene = pc.Scene.textbook()                  # two rods of 1 kg and 1 m, g = 9.807 m/s^2
     scene = pc.Scene(links=[pc.Link(mass=1.0, length=1.0), pc.Link(mass=0.5, length=0.7)])
 
+    scene = scene.replace(effects=[pc.effects.ViscousJoint(joint=2, damping=0.1)])
+    print(scene.explain())                       # what is simulated, what is not, how fast it moves
+
     sol = pc.simulate(scene, q0=[np.pi / 4, np.pi / 3], qd0=[0, 0], t_span=(0, 5))
     print(sol)                                   # what came of it
     sol.t, sol.q, sol.qd                         # s, rad, rad/s: (n_t,), (n_t, n), (n_t, n)
     sol(2.5)                                     # the state at any time: q_1, q_2, qd_1, qd_2
     sol.reactions()                              # N: on each link, where it begins
-    sol.energy().total                           # J
+    sol.energy().total                           # J; with ledger=True, .ledger: where it went
     sol.plot()                                   # the angles over time, as in the textbook
     sol.save("run.npz")                          # and pc.load("run.npz")
 
@@ -22,19 +25,25 @@ joints count from 1.
 
 from __future__ import annotations
 
+from pendcore import effects
 from pendcore._core import __version__
 from pendcore.angles import angles_from_vertical, angles_to_vertical
 from pendcore.archive import load
 from pendcore.case import Case
 from pendcore.case_file import read_case
-from pendcore.scene import Link, Mobility, Scene
+from pendcore.energy import Energy, Ledger
+from pendcore.explanation import Explanation
+from pendcore.link import Link
+from pendcore.scene import Mobility, Scene
 from pendcore.simulate import simulate
-from pendcore.solution import Energy, Solution, Statistics
+from pendcore.solution import Solution, Statistics
 from pendcore.warning import PendcoreWarning
 
 __all__ = [
     "Case",
     "Energy",
+    "Explanation",
+    "Ledger",
     "Link",
     "Mobility",
     "PendcoreWarning",
@@ -44,6 +53,7 @@ __all__ = [
     "__version__",
     "angles_from_vertical",
     "angles_to_vertical",
+    "effects",
     "load",
     "read_case",
     "simulate",

@@ -19,7 +19,9 @@ import numpy as np
 from pendcore import _core
 from pendcore.case import Case
 from pendcore.case_file import case_from_text
-from pendcore.scene import Link, Scene
+from pendcore.effect_class import effect_of
+from pendcore.link import Link
+from pendcore.scene import Scene
 from pendcore.solution import Solution
 from pendcore.warning import PendcoreWarning
 
@@ -97,7 +99,8 @@ def _scene(state: dict[str, Any]) -> Scene:
     names = ("mass", "length", "center", "inertia")
     rows = state["links"].reshape(-1, 4).tolist()
     links = [Link(**dict(zip(names, row, strict=True))) for row in rows]
-    return Scene._unpickled(links, state["gravity"])
+    effects = [effect_of(kind, values) for kind, values in json.loads(state["effects"])]
+    return Scene._unpickled(links, state["gravity"], effects)
 
 
 def _plain(entry: Any) -> Any:

@@ -7,7 +7,8 @@ ValueError.
 from __future__ import annotations
 
 from numbers import Real
-from typing import TypeAlias
+from operator import index
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -18,11 +19,29 @@ Floats: TypeAlias = npt.NDArray[np.float64]
 def number(name: str, value: object, unit: str) -> float:
     """Return one real number as a float."""
     if isinstance(value, bool) or not isinstance(value, Real):
-        raise TypeError(f"{name} = {value!r}: must be a real number ({unit})")
+        raise TypeError(f"{name} = {value!r}: must be a real number{in_unit(unit)}")
     try:
         return float(value)
     except OverflowError:
         raise _too_large(name, unit) from None
+
+
+def whole_number(name: str, value: Any, most: int = 2**31 - 1) -> int:
+    """Return a whole number up to ``most`` in size as an int."""
+    try:
+        if isinstance(value, bool | np.bool):
+            raise TypeError
+        whole = index(value)
+    except TypeError:
+        raise TypeError(f"{name} = {value!r}: must be a whole number") from None
+    if abs(whole) > most:
+        raise ValueError(f"{name}: is too large: must be at most {most}")
+    return whole
+
+
+def in_unit(unit: str) -> str:
+    """Return how a message gives the unit, if there is one."""
+    return f" ({unit})" if unit not in ("", "1") else ""
 
 
 def finite_array(name: str, value: npt.ArrayLike, unit: str) -> Floats:
@@ -30,20 +49,31 @@ def finite_array(name: str, value: npt.ArrayLike, unit: str) -> Floats:
     try:
         array = np.asarray(value)
     except ValueError:
-        raise ValueError(f"{name}: rows of different lengths: must be an array ({unit})") from None
+        raise ValueError(
+            f"{name}: rows of different lengths: must be an array{in_unit(unit)}"
+        ) from None
     if array.dtype.kind == "O" and all(type(x) is int for x in array.flat):
         try:  # integers beyond 64 bits
             array = array.astype(np.float64)
         except OverflowError:
             raise _too_large(name, unit) from None
     if array.dtype.kind not in "iuf":
-        raise TypeError(f"{name}: holds {array.dtype}: must hold real numbers ({unit})")
+        raise TypeError(f"{name}: holds {array.dtype}: must hold real numbers{in_unit(unit)}")
     array = array.astype(np.float64, copy=False)
     if not np.isfinite(array).all():
         where = np.argwhere(~np.isfinite(array))[0]
         place = "".join(f"[{i}]" for i in where)
-        raise ValueError(f"{name}{place} = {array[tuple(where)]}: must be finite ({unit})")
+        raise ValueError(f"{name}{place} = {array[tuple(where)]}: must be finite{in_unit(unit)}")
     return array
+
+
+def numbers(name: str, value: Any, unit: str, count: int | None = None) -> tuple[float, ...]:
+    """Return finite numbers along one axis, as many as they are or ``count``."""
+    array = finite_array(name, value, unit)
+    if array.ndim != 1 or count not in (None, len(array)):
+        wanted = "(k,)" if count is None else f"({count},)"
+        raise ValueError(f"{name}: shape {array.shape}: must be {wanted}{in_unit(unit)}")
+    return tuple(array.tolist())
 
 
 def vector(name: str, value: npt.ArrayLike, count: int, unit: str) -> tuple[float, ...]:
@@ -67,4 +97,4 @@ def link_array(name: str, value: npt.ArrayLike, n: int, unit: str) -> Floats:
 
 
 def _too_large(name: str, unit: str) -> ValueError:
-    return ValueError(f"{name}: is too large: must be below 1.8e308 ({unit})")
+    return ValueError(f"{name}: is too large: must be below 1.8e308{in_unit(unit)}")

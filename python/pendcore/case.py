@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore.arguments import finite_array, vector
+from pendcore.effect_class import Effect, OwnEffect, Part
 from pendcore.scene import Scene
 from pendcore.simulate import simulate
 from pendcore.solution import Solution
@@ -119,12 +120,13 @@ class Case:
         Raises
         ------
         TypeError
-            If an option is a Python function, which TOML cannot hold.
+            If an option or an effect is a function, which TOML cannot hold.
         """
         t_start, t_end = self.t_span
         tables: list[tuple[str, dict[str, Any]]] = [
             ("", {"name": self.name, "gravity": self.scene.gravity}),
             *(("[[link]]\n", link.particulars()) for link in self.scene.links),
+            *(("[[effect]]\n", _effect_table(effect)) for effect in self.scene.effects),
             ("[start]\n", {"q": self.q0, "qd": self.qd0}),
             ("[run]\n", {"t_start": t_start, "t_end": t_end, **self.options}),
         ]
@@ -163,12 +165,21 @@ def _plain(value: Any) -> Any:
     return tuple(map(_plain, value)) if isinstance(value, list | tuple) else value
 
 
+def _effect_table(effect: Effect) -> dict[str, Any]:
+    if isinstance(effect, OwnEffect):
+        raise effect.cannot_be("written as TOML")
+    return {"kind": effect.kind, **effect.particulars()}
+
+
 def _lines(table: Mapping[str, Any]) -> Iterator[str]:
     for key, value in table.items():
         yield f"{key} = {_toml(key, value)}\n"
 
 
 def _toml(key: str, value: Any) -> str:
+    if isinstance(value, Part):
+        pairs = (f"{name} = {_toml(name, x)}" for name, x in value.particulars().items())
+        return f"{{{', '.join(pairs)}}}"
     if isinstance(value, tuple):
         return f"[{', '.join(_toml(key, x) for x in value)}]"
     if isinstance(value, bool):

@@ -10,6 +10,10 @@ A case::
     [[link]]
     mass = 1.0
     length = 1.0
+    [[effect]]                      # a table per effect; none is needed
+    kind = "viscous_joint"          # any of pendcore.effects.kinds(), and its parameters
+    joint = 1
+    damping = 0.1                   # N m s/rad
     [start]
     q = [0.7853981633974483, 1.0471975511965976]    # rad; or q_deg = [45, 60]
     qd = [0.0, 0.0]                 # rad/s; 0 if left out; one number holds for every link
@@ -25,22 +29,36 @@ import os
 import re
 from collections.abc import Sequence
 from dataclasses import fields
+from difflib import get_close_matches
 from math import radians
 from pathlib import Path
 from typing import Any
 
 from pendcore.arguments import vector
 from pendcore.case import RUN_DEFAULTS, Case
-from pendcore.scene import Link, Scene
+from pendcore.effect_class import KINDS, PARTS, Effect, OwnEffect, effect_of
+from pendcore.link import Link
+from pendcore.scene import Scene
 from pendcore.toml_text import Place, TomlText
 
 KEYS = {
-    "": ("name", "gravity", "link", "start", "run"),
+    "": ("name", "gravity", "link", "effect", "start", "run"),
     "link": tuple(f.name for f in fields(Link)),
+    "effect": ("kind",),
     "start": ("q", "q_deg", "qd"),
     "run": ("t_start", "t_end", *RUN_DEFAULTS),
 }
 """The known keys of every kind of table; "" stands for what is above all tables."""
+
+
+EFFECT_KEYS = {
+    kind: (*KEYS["effect"], *(parameter.name for parameter in cls.description.parameters))
+    for kind, cls in KINDS.items()
+    if not issubclass(cls, OwnEffect)
+}
+"""The known keys of an effect of every kind that a file can hold."""
+
+_ANYWHERE = KEYS | {"effect": tuple({key for keys in EFFECT_KEYS.values() for key in keys})}
 
 
 def read_case(source: str | os.PathLike[str]) -> Case:
@@ -84,11 +102,11 @@ def _text_of(path: Path) -> str:
 def case_from_text(content: str, name: str) -> Case:
     """Read a case from TOML that messages call ``name``; see `read_case`."""
     text = TomlText(content.removeprefix("\ufeff"), name)
-    text.check_keys((), KEYS)
+    text.check_keys((), _ANYWHERE)
     if "qd_deg" in text.table(("start",)):
         raise text.error(("start", "qd_deg"), "unknown key 'qd_deg' in [start]: give qd, in rad/s")
-    text.check_keys(("start",), KEYS)
-    text.check_keys(("run",), KEYS)
+    text.check_keys(("start",), _ANYWHERE)
+    text.check_keys(("run",), _ANYWHERE)
     scene = _scene(text)
     q0, qd0 = _start(text, len(scene.links))
     t_span, options = _run(text)
@@ -107,16 +125,58 @@ def _scene(text: TomlText) -> Scene:
         raise text.error(("link",), "links are needed: a table [[link]] for each")
     links = []
     for i, table in enumerate(tables):
-        text.check_keys(("link", i), KEYS)
+        text.check_keys(("link", i), _ANYWHERE)
         for key in ("mass", "length"):
             if key not in table:
                 raise text.error(("link", i), f"link {i + 1} needs {key}")
         links.append(Link(**{key: text.number(("link", i, key)) for key in table}))
     gravity = {"gravity": text.number(("gravity",))} if "gravity" in text.content else {}
+    effects = _effects(text)
     try:
-        return Scene(links=links, **gravity)
+        return Scene(links=links, effects=effects, **gravity)
     except ValueError as error:
         raise text.error(_place(str(error)), str(error)) from None
+
+
+def _effects(text: TomlText) -> list[Effect]:
+    tables = text.value(("effect",)) or []
+    if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
+        raise text.error(("effect",), "effects are tables [[effect]], one for each")
+    return [_effect(text, i, dict(table)) for i, table in enumerate(tables)]
+
+
+def _effect(text: TomlText, i: int, table: dict[str, Any]) -> Effect:
+    place = ("effect", i)
+    kind = table.pop("kind", None)
+    if kind is None:
+        raise text.error(place, f"effect {i + 1} needs kind: {', '.join(EFFECT_KEYS)}")
+    if not isinstance(kind, str) or kind not in EFFECT_KEYS:
+        raise text.error((*place, "kind"), f"kind = {kind!r}: {_remedy(kind)}")
+    text.check_keys(place, _ANYWHERE | {"effect": EFFECT_KEYS[kind]})
+    where = f"effect {i + 1} ({kind}): "
+    for parameter in KINDS[kind].description.parameters:
+        value = table.get(parameter.name)
+        if parameter.part and value is not None and not isinstance(value, dict):
+            keys = ", ".join(p.name for p in PARTS[parameter.part].description.parameters)
+            complaint = f"{where}{parameter.name} = {value!r}: must be a table with {keys}"
+            raise text.error((*place, parameter.name), complaint)
+    try:
+        return effect_of(kind, table, where)
+    except (ValueError, TypeError) as error:
+        raise text.error(_place(str(error)), str(error)) from None
+
+
+def _remedy(kind: object) -> str:
+    """Return what to write for a kind of effect that cannot stand in a file."""
+    known = ", ".join(EFFECT_KEYS)
+    if not isinstance(kind, str):
+        return f"must be one of {known}"
+    if kind in KINDS:
+        return "is a function, which a file cannot hold: add it to the scene in Python"
+    near = get_close_matches(kind, EFFECT_KEYS, n=1, cutoff=0.5)
+    return (
+        f"is no effect: did you mean {near[0]!r}?" if near else f"is no effect: known are {known}"
+    )
 
 
 def _start(text: TomlText, n: int) -> tuple[Sequence[float], Sequence[float] | float]:
@@ -157,6 +217,8 @@ def _place(message: str) -> Place:
     """Return where in the file stands what the message of a Scene or Case begins with."""
     if found := re.match(r"link (\d+): (\w+)", message):
         return ("link", int(found[1]) - 1, found[2])
+    if found := re.match(r"effect (\d+) \(\w+\): ([\w.]+)", message):
+        return ("effect", int(found[1]) - 1, *found[2].split("."))
     if found := re.match(r"\w+", message):
         known: dict[str, Place] = {"t_span": ("run",), "links": ("link", 0)}
         known |= {key: ("run", key) for key in KEYS["run"]}

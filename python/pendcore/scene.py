@@ -1,4 +1,4 @@
-"""What is simulated: links in a chain, hung on a fixed pivot, and gravity. SI units.
+"""What is simulated: links in a chain, gravity, and the effects that the scene has. SI units.
 
 x points right, **y points down**, the origin is the pivot. The angle ``q_i`` of link i is absolute,
 from +x towards +y: 0 is horizontal, pi/2 hangs straight down. Links and joints count from 1; joint
@@ -7,110 +7,23 @@ i is where link i begins.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 from pendcore import _core
-from pendcore.arguments import Floats, finite_array, link_array, number
-from pendcore.warning import PendcoreWarning
+from pendcore.arguments import Floats, finite_array, link_array, number, vector
+from pendcore.effects import Effect
+from pendcore.link import Link
+from pendcore.warning import warn
 
+if TYPE_CHECKING:
+    from pendcore.explanation import Explanation
 
-@dataclass(frozen=True, slots=True, init=False, repr=False)
-class Link:
-    """One rigid link of the chain; a uniform rod unless said otherwise.
-
-    Parameters
-    ----------
-    mass : float
-        kg; finite and >= 0, and > 0 for the last link.
-    length : float
-        From joint to joint, m; finite and > 0.
-    center : float, optional
-        Of mass, from the joint where the link begins, along the link, m. Default: the middle.
-    inertia : float, optional
-        Moment of inertia about the mass centre, kg m^2. Default: ``mass * length**2 / 12``, a
-        uniform rod's.
-
-    Raises
-    ------
-    TypeError
-        If a value is not a real number. Ranges are checked by the `Scene`, which can name the link.
-
-    Notes
-    -----
-    A link cannot be changed; ``link.replace(mass=2.0)`` makes another. A centre or inertia that is
-    a uniform rod's counts as left to the default: links that are equal behave the same.
-    """
-
-    # init=False makes dataclasses.replace() refuse: it would carry centre and inertia of a rod over
-    # to another mass or length. `replace` below does it right.
-    mass: float = field(init=False)
-    length: float = field(init=False)
-    center: float = field(init=False)
-    inertia: float = field(init=False)
-
-    def __init__(
-        self,
-        *,
-        mass: float,
-        length: float,
-        center: float | None = None,
-        inertia: float | None = None,
-    ) -> None:
-        mass, length = number("mass", mass, "kg"), number("length", length, "m")
-        center = length / 2 if center is None else number("center", center, "m")
-        if inertia is None:
-            inertia = mass * length * length / 12  # in this order, as in the core: the same bits
-        else:
-            inertia = number("inertia", inertia, "kg m^2")
-        object.__setattr__(self, "mass", mass)
-        object.__setattr__(self, "length", length)
-        object.__setattr__(self, "center", center)
-        object.__setattr__(self, "inertia", inertia)
-
-    @classmethod
-    def point_mass(cls, *, mass: float, length: float) -> Link:
-        """All the mass at the tip of a massless rod: the pendulum of many books.
-
-        Parameters
-        ----------
-        mass : float
-            kg.
-        length : float
-            m.
-        """
-        return cls(mass=mass, length=length, center=length, inertia=0.0)
-
-    def replace(self, **changes: float | None) -> Link:
-        """Return a link of other properties; what is as in a uniform rod stays as in one.
-
-        Parameters
-        ----------
-        **changes : float
-            Any of ``mass``, ``length``, ``center``, ``inertia``; for the last two None is a rod's.
-            A centre or inertia of its own stays what it is, in m and kg m^2.
-        """
-        return Link(**{**self.particulars(), **changes})  # type: ignore[arg-type]
-
-    __replace__ = replace  # copy.replace() of Python 3.13
-
-    def particulars(self) -> dict[str, float]:
-        """Return mass, length, and what is not as in a uniform rod: all it is made from."""
-        rod = Link(mass=self.mass, length=self.length)
-        values = {"mass": self.mass, "length": self.length}
-        if self.center != rod.center:
-            values["center"] = self.center
-        if self.inertia != rod.inertia:
-            values["inertia"] = self.inertia
-        return values
-
-    def __repr__(self) -> str:
-        return f"Link({', '.join(f'{name}={x!r}' for name, x in self.particulars().items())})"
+Member = TypeVar("Member")
 
 
 class Mobility(NamedTuple):
@@ -119,7 +32,7 @@ class Mobility(NamedTuple):
     Attributes
     ----------
     links : int
-        Moving links.
+        Moving links; those that a lock makes one are one.
     c5 : int
         Joints with one degree of freedom (hinges).
     c4 : int
@@ -134,16 +47,19 @@ class Mobility(NamedTuple):
     degrees_of_freedom: int
 
 
-@dataclass(frozen=True, slots=True, init=False)
+@dataclass(frozen=True, slots=True, init=False, repr=False)
 class Scene:
-    """A chain of links on a fixed pivot, ready to be simulated.
+    """A chain of links on a pivot, and what acts on it, ready to be simulated.
 
     Parameters
     ----------
     links : iterable of Link
-        From the pivot outwards. This version simulates one or two.
+        From the pivot outwards, one or more.
     gravity : float, default 9.807
         Downward, m/s^2; finite. 0 is allowed.
+    effects : iterable of pendcore.effects.Effect
+        What acts besides gravity, in any number and order. Nothing else is simulated:
+        `explain` says what is and what is not.
 
     Raises
     ------
@@ -163,24 +79,29 @@ class Scene:
 
     links: tuple[Link, ...]
     gravity: float = 9.807
-    _compiled: _core.Scene = field(init=False, repr=False, compare=False)
+    effects: tuple[Effect, ...] = ()
+    _compiled: _core.Scene = field(init=False, compare=False)
 
-    def __init__(self, *, links: Iterable[Link], gravity: float = 9.807) -> None:
-        self._compile(links, gravity)
+    def __init__(
+        self, *, links: Iterable[Link], gravity: float = 9.807, effects: Iterable[Effect] = ()
+    ) -> None:
+        self._compile(links, gravity, effects)
         self._warn()
 
-    def _compile(self, links: Iterable[Link], gravity: float) -> None:
-        links = _tuple_of_links(links)
+    def _compile(self, links: Iterable[Link], gravity: float, effects: Iterable[Effect]) -> None:
+        links = _tuple_of("link", Link, links, "pendcore.Link, from the pivot outwards")
+        effects = _tuple_of("effect", Effect, effects, "pendcore.effects")
         gravity = number("gravity", gravity, "m/s^2")
+        acting = [effect._as_pair() for effect in effects]
         rows = [(link.mass, link.length, link.center, link.inertia) for link in links]
         object.__setattr__(self, "links", links)
         object.__setattr__(self, "gravity", gravity)
-        object.__setattr__(self, "_compiled", _core.Scene(rows, gravity))
+        object.__setattr__(self, "effects", effects)
+        object.__setattr__(self, "_compiled", _core.Scene(rows, gravity, acting))
 
     def _warn(self) -> None:
-        """Blame what is implausible on the line that called the method which calls this."""
         for message in self._compiled.warnings:
-            warnings.warn(message, PendcoreWarning, stacklevel=3)
+            warn(message)
 
     @classmethod
     def textbook(cls) -> Scene:
@@ -188,23 +109,32 @@ class Scene:
         return cls(links=[Link(mass=1.0, length=1.0), Link(mass=1.0, length=1.0)])
 
     def replace(
-        self, *, links: Iterable[Link] | None = None, gravity: float | None = None
+        self,
+        *,
+        links: Iterable[Link] | None = None,
+        gravity: float | None = None,
+        effects: Iterable[Effect] | None = None,
     ) -> Scene:
-        """Return a scene with other links or another gravity; what is not given stays.
+        """Return a scene with other links, gravity or effects; what is not given stays.
 
         Parameters
         ----------
-        links, gravity
+        links, gravity, effects
             As in `Scene`.
         """
-        scene = Scene._unpickled(
-            self.links if links is None else links, self.gravity if gravity is None else gravity
+        return Scene(
+            links=self.links if links is None else links,
+            gravity=self.gravity if gravity is None else gravity,
+            effects=self.effects if effects is None else effects,
         )
-        scene._warn()
-        return scene
+
+    __replace__ = replace  # copy.replace() of Python 3.13
 
     def accelerations(self, t: npt.ArrayLike, q: npt.ArrayLike, qd: npt.ArrayLike) -> Floats:
         """Angular accelerations of the links: the right-hand side that is integrated.
+
+        What is smooth only in pieces, such as dry friction, is on the side that a forward run
+        would be on.
 
         Parameters
         ----------
@@ -254,24 +184,54 @@ class Scene:
         """Count the degrees of freedom as the textbook does, ``M = 3 n - 2 c5 - c4``."""
         return Mobility(*self._compiled.mobility())
 
+    def explain(self, t: float = 0.0, q: npt.ArrayLike | None = None) -> Explanation:
+        """Say what is simulated and what is not, what it costs, and how fast it moves.
+
+        Parameters
+        ----------
+        t : float, default 0
+            Time at which motors and pivot are looked at, s.
+        q : array_like, (n,), optional
+            Angles to look for equilibria from, besides hanging and upright, rad; of a joint that is
+            locked where it starts they are the start.
+
+        Returns
+        -------
+        Explanation
+            Print it, or take its fields; ``to_dict()`` for JSON.
+        """
+        from pendcore.explanation import explain
+
+        start = None if q is None else vector("q", q, len(self.links), "rad")
+        (time,) = vector("t", t, 1, "s")
+        return explain(self, time, start)
+
+    def __repr__(self) -> str:
+        effects = f", effects={self.effects!r}" if self.effects else ""
+        return f"Scene(links={self.links!r}, gravity={self.gravity!r}{effects})"
+
     @classmethod
-    def _unpickled(cls, links: Iterable[Link], gravity: float) -> Scene:
+    def _unpickled(
+        cls, links: Iterable[Link], gravity: float, effects: Iterable[Effect] = ()
+    ) -> Scene:
         scene = object.__new__(cls)
-        scene._compile(links, gravity)
+        scene._compile(links, gravity, effects)
         return scene
 
-    def __reduce__(self) -> tuple[object, tuple[tuple[Link, ...], float]]:
+    def __reduce__(self) -> tuple[object, tuple[object, ...]]:
         # The compiled scene is made anew; what is implausible was said when it was first made.
-        return type(self)._unpickled, (self.links, self.gravity)
+        return type(self)._unpickled, (self.links, self.gravity, self.effects)
 
 
-def _tuple_of_links(links: Iterable[Link]) -> tuple[Link, ...]:
-    remedy = "must be a list of pendcore.Link, from the pivot outwards"
+def _tuple_of(
+    noun: str, kind: type[Member], values: Iterable[Member], what: str
+) -> tuple[Member, ...]:
+    remedy = f"must be a list of {what}"
     try:
-        links = tuple(links)
+        values = tuple(values)
     except TypeError:
-        raise TypeError(f"links = {links!r}: {remedy}") from None
-    for i, link in enumerate(links, start=1):
-        if not isinstance(link, Link):
-            raise TypeError(f"link {i} = {link!r}: {remedy}")
-    return links
+        raise TypeError(f"{noun}s = {values!r}: {remedy}") from None
+    for i, value in enumerate(values, start=1):
+        if not isinstance(value, kind):
+            raise TypeError(f"{noun} {i} = {value!r}: {remedy}")
+    return values

@@ -11,6 +11,7 @@ from pendcore import _core
 from pendcore.progress import Progress, callback
 from pendcore.scene import Scene
 from pendcore.solution import Solution, solution_of
+from pendcore.warning import warn
 
 
 def simulate(
@@ -29,6 +30,7 @@ def simulate(
     step: float | None = None,
     max_steps: int = 10_000_000,
     time_limit: float | None = None,
+    ledger: bool = False,
     progress: Progress = None,
 ) -> Solution:
     """Solve the equations of motion of a scene from a start.
@@ -65,6 +67,9 @@ def simulate(
         The run ends with status ``max_steps`` after as many attempts.
     time_limit : float, optional
         s of the clock; the run then ends with status ``time_limit``.
+    ledger : bool
+        Whether ``sol.energy().ledger`` tells work and loss of every effect. They are integrated
+        beside the state, and change no bit of it.
     progress : None, bool or callable
         None: a bar after a second, on a terminal. A callable gets the fraction done, in 0...1.
 
@@ -77,8 +82,13 @@ def simulate(
     ------
     ValueError, TypeError
         If an argument is not what is asked for; the message names it.
-    KeyboardInterrupt, or any exception of ``progress``
+    KeyboardInterrupt, or any exception of ``progress`` or of an effect's function
         With the run so far as the attribute ``solution``.
+
+    Warns
+    -----
+    PendcoreWarning
+        If the start or the interval look wrong, such as angles in degrees.
 
     Notes
     -----
@@ -98,7 +108,7 @@ def simulate(
     report = callback(progress)
     run = _core.simulate(
         scene._compiled, q0, qd0, t_start, t_end, method, rtol, atol, t_eval, store,
-        first_step, max_step, step, max_steps, time_limit, report,
+        first_step, max_step, step, max_steps, time_limit, ledger, report, warn,
     )  # fmt: skip
     return solution_of(scene, run, report)
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -16,6 +15,7 @@ import numpy.typing as npt
 
 from pendcore import _core
 from pendcore.arguments import Floats, finite_array
+from pendcore.energy import Energy, Ledger
 from pendcore.progress import Progress, ProgressBar, callback
 from pendcore.scene import Scene
 
@@ -47,7 +47,7 @@ class Statistics(NamedTuple):
     limited_by_max_step : int
         Accepted steps of the size of ``max_step``, or of a fixed step.
     limited_by_break : int
-        Accepted steps that the end of the run cut short.
+        Accepted steps that the end of the run cut short, or a point where a law changes.
     min_step, max_step : float
         Sizes of the accepted steps, those cut short aside, s.
     stiff : bool
@@ -65,26 +65,6 @@ class Statistics(NamedTuple):
     min_step: float
     max_step: float
     stiff: bool
-
-
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Energy:
-    """Energies over time. The potential energy is zero at the pivot's height.
-
-    Attributes
-    ----------
-    kinetic, potential, total : ndarray, (n_t,)
-        J.
-    """
-
-    kinetic: Floats
-    potential: Floats
-    total: Floats
-
-    def __repr__(self) -> str:
-        n_t = len(self.total)
-        ends = f", total {self.total[0]:.6g} ... {self.total[-1]:.6g} J" if n_t else ""
-        return f"<Energy: kinetic, potential, total at {n_t} times{ends}>"
 
 
 class Solution:
@@ -190,12 +170,12 @@ class Solution:
         return self.scene.accelerations(self.t, self.q, self.qd)
 
     def positions(self) -> Floats:
-        """Pivot, joints and tip, m, (n_t, n+1, 2): x right, y down."""
-        return self.scene._compiled.positions(self.q)
+        """Pivot, joints and tip, m, (n_t, n+1, 2): x right, y down; a driven pivot moves."""
+        return self.scene._compiled.positions(self.t, self.q)
 
     def mass_centers(self) -> Floats:
-        """Mass centres of the links, m, (n_t, n, 2): x right, y down."""
-        return self.scene._compiled.mass_centers(self.q)
+        """Mass centres of the links, a payload excluded, m, (n_t, n, 2): x right, y down."""
+        return self.scene._compiled.mass_centers(self.t, self.q)
 
     def reactions(self) -> Floats:
         """Force on each link at the joint where it begins, N, (n_t, n, 2): x right, y down.
@@ -205,9 +185,18 @@ class Solution:
         return self.scene._compiled.reactions(self.t, self.q, self.qd)
 
     def energy(self) -> Energy:
-        """Kinetic, potential and total energy, J, each (n_t,)."""
-        kinetic, potential = self.scene._compiled.energy(self.q, self.qd)
-        return Energy(kinetic, potential, kinetic + potential)
+        """Kinetic, potential and total energy, J, each (n_t,), and the ledger if one was kept."""
+        kinetic, potential = self.scene._compiled.energy(self.t, self.q, self.qd)
+        total = kinetic + potential
+        asked = self._run.arguments
+        if not asked["ledger"]:
+            return Energy(kinetic, potential, total)
+        start = self.scene._compiled.energy(
+            np.array([asked["t_start"]]), asked["q0"][np.newaxis], asked["qd0"][np.newaxis]
+        )
+        with np.errstate(all="ignore"):  # a blow-up's energies may be infinite
+            gain = total - sum(start)
+            return Energy(kinetic, potential, total, Ledger(self._run.ledger, gain))
 
     def resume(
         self,
@@ -279,6 +268,13 @@ class Solution:
         from pendcore.views.export import to_xarray
 
         return to_xarray(self)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        # The scene first: it says best that it cannot be pickled, if it cannot.
+        return type(self), (self.scene, self._run, self.name)
+
+    def __deepcopy__(self, memo: object) -> Solution:
+        return Solution(self.scene, self._run, self.name)  # neither of the two ever changes
 
     def __repr__(self) -> str:
         from pendcore.views.table import text

@@ -9,7 +9,7 @@ import warnings
 from collections.abc import Sequence
 
 from pendcore import _core
-from pendcore.cli import plot, run
+from pendcore.cli import explain, plot, run
 from pendcore.cli.usage import UsageError
 from pendcore.warning import PendcoreWarning
 
@@ -18,6 +18,7 @@ examples:
   pendcore run                            the textbook's double pendulum, into out/textbook
   pendcore run swing.toml                 your own case, into out/swing
   pendcore run swing.toml --json | jq .energy
+  pendcore explain swing.toml             what it simulates, what not, how fast it moves
   pendcore plot out/swing/solution.npz -o swing.pdf
 
 exit status: 0 fine, 1 the run failed or was interrupted (what it has is written all the same),
@@ -73,7 +74,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"pendcore {_core.__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for command in (run, plot):
+    for command in (run, explain, plot):
         command.add_parser(commands)
     return parser
 

@@ -33,11 +33,15 @@ a case:
   [[link]]
   mass = 1.0
   length = 1.0
+  [[effect]]                       # none is needed; pendcore.effects has the kinds
+  kind = "viscous_joint"
+  joint = 2
+  damping = 0.05                   # N m s/rad
   [start]
   q_deg = [45, 60]                 # from the horizontal, downward; or q in rad
   [run]
   t_end = 5.0                      # s; also rtol, t_eval, ...: any keyword of pendcore.simulate()
-  # docs/case_files.md has every key
+  # docs/case_files.md has every key, docs/effects a page per effect
 """
 
 FILES = ("solution.npz", "summary.txt", "summary.json", "angles.png")

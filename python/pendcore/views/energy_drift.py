@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import pi
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from pendcore.effect_class import KINDS
+from pendcore.scene import Scene
 from pendcore.solution import Solution
 
 TOO_LARGE = "too large to trust this run: tighten rtol and atol (or the step)"
@@ -19,8 +22,9 @@ class EnergyDrift(NamedTuple):
     ----------
     start, end : float
         Total energy, J.
-    largest_drift : float
-        From the start, J.
+    largest_drift : float or None
+        From the start, J; where effects do work, of what the ledger leaves over. None without a
+        ledger then: nothing tells work from error.
     largest_kinetic : float
         J: the measure of the motion, as the zero of the potential energy is arbitrary. Where not
         every step was kept, what the total energy allows: what was kept may all be near rest.
@@ -28,14 +32,20 @@ class EnergyDrift(NamedTuple):
         The drift as a share of it; None where nothing moves.
     too_large : bool
         Beyond a thousandth (or not a number), so that the run is not what it says.
+    changed_by : list of str
+        The kinds of effects that do work, or lose energy.
+    ledger : bool
+        Whether a ledger tells how much.
     """
 
     start: float
     end: float
-    largest_drift: float
+    largest_drift: float | None
     largest_kinetic: float
     relative_drift: float | None
     too_large: bool
+    changed_by: list[str]
+    ledger: bool
 
 
 def has_every_step(solution: Solution) -> bool:
@@ -46,32 +56,78 @@ def has_every_step(solution: Solution) -> bool:
 
 def energy_drift(solution: Solution) -> EnergyDrift:
     """Compute it from what was kept."""
-    run = solution._run
-    start = np.concatenate([run.arguments["q0"], run.arguments["qd0"]])
+    run, asked = solution._run, solution._run.arguments
+    start = np.concatenate([asked["q0"], asked["qd0"]])
     states = np.vstack([start, run.states, run.y_reached])
+    times = np.concatenate([[asked["t_start"]], run.t, [run.t_reached]])
     n = states.shape[1] // 2
-    kinetic, potential = solution.scene._compiled.energy(states[:, :n], states[:, n:])
+    kinetic, potential = solution.scene._compiled.energy(times, states[:, :n], states[:, n:])
+    working = _kinds_that_do_work(solution.scene)
     with np.errstate(all="ignore"):  # a blow-up's energies may be infinite; that is told in words
         total = kinetic + potential
         drift, moving = float(np.abs(total - total[0]).max()), float(kinetic.max())
-    if not has_every_step(solution):
-        moving = max(moving, float(total[0]) - _lowest_potential(solution, n))
+    ends = float(total[0]), float(total[-1])
+    if working:
+        residual = _residual(solution)
+        if residual is None:
+            bad = not np.isfinite(ends[1])
+            return EnergyDrift(*ends, None, moving, None, bad, working, ledger=False)
+        drift = residual
+    elif not has_every_step(solution):
+        moving = max(moving, float(total[0]) - _lowest_potential(solution.scene))
     # The last bits of the potential energy are no drift, however slow the motion.
     allowed = 1e-3 * moving + 1e-13 * float(np.abs(potential).max())
     share = drift / moving if moving > 0 else None
-    return EnergyDrift(total[0], total[-1], drift, moving, share, not drift <= allowed)
+    too_large = not drift <= allowed
+    return EnergyDrift(*ends, drift, moving, share, too_large, working, asked["ledger"])
 
 
-def _lowest_potential(solution: Solution, n: int) -> float:
-    """Return that of every link hanging (or standing, where its weight pulls that way), J."""
-    one_hangs = np.eye(n) * (pi / 2)  # and the others are level, without potential
-    _, potential = solution.scene._compiled.energy(one_hangs, np.zeros((n, n)))
-    return -float(np.abs(potential).sum())
+def _kinds_that_do_work(scene: Scene) -> list[str]:
+    """Return the kinds of effects under which the total energy does not stay what it is."""
+    present = {effect.kind for effect in scene.effects if effect.description.account != "none"}
+    return [kind for kind in KINDS if kind in present]
 
 
-def text(drift: float | None, share: float | None) -> str:
-    """Return drift and share for people; neither is there if it is no number."""
-    if drift is None or not np.isfinite(drift):
+def _residual(solution: Solution) -> float | None:
+    """Return what the ledger leaves over at most, J."""
+    ledger = solution.energy().ledger
+    return None if ledger is None else float(np.abs(ledger.residual).max(initial=0.0))
+
+
+def _lowest_potential(scene: Scene) -> float:
+    """Return that of every link hanging (or standing, where its weight pulls that way), J.
+
+    What springs keep is not below zero; if it is, they push, and nothing is the lowest.
+    """
+    n = len(scene.links)
+    all_pull_down = all(link.center >= 0 for link in scene.links)
+    # Otherwise one link hangs at a time, and the others are level.
+    q = np.full((1, n), pi / 2) if all_pull_down else np.eye(n) * (pi / 2)
+    weightless = Scene._unpickled(scene.links, 0.0, scene.effects)
+    _, whole = scene._compiled.energy(np.zeros(len(q)), q, np.zeros_like(q))
+    _, springs = weightless._compiled.energy(np.zeros(len(q)), q, np.zeros_like(q))
+    return np.inf if springs.min() < 0 else -float(np.abs(whole - springs).sum())
+
+
+def text(drift: Mapping[str, Any]) -> str:
+    """Return drift and share for people, from the fields of an `EnergyDrift`.
+
+    What is not finite may have become None in JSON.
+    """
+    if is_untold(drift):
+        return f"not known (changed by {_listed(drift['changed_by'])}): run with ledger=True"
+    size, share = drift["largest_drift"], drift["relative_drift"]
+    if size is None or not np.isfinite(size):
         return "not a number"
     of_kinetic = "" if share is None else f", {share:.1e} of the largest kinetic energy"
-    return f"{drift:.1e} J{of_kinetic}"
+    return f"{size:.1e} J{of_kinetic}"
+
+
+def is_untold(drift: Mapping[str, Any]) -> bool:
+    """Whether effects change the energy and no ledger tells by how much."""
+    return bool(drift["changed_by"]) and not drift["ledger"]
+
+
+def _listed(kinds: list[str]) -> str:
+    *most, last = kinds
+    return f"{', '.join(most)} and {last}" if most else last

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Hashable
+from typing import TYPE_CHECKING, Any
 
+from pendcore.effect_class import OwnEffect
 from pendcore.solution import Solution
 
 if TYPE_CHECKING:
@@ -16,7 +18,8 @@ _HINT = 'needs {}: pip install "pendcore[export]"'
 def to_pandas(solution: Solution) -> pd.DataFrame:
     """Return a row per time, index ``time`` (s), columns q_1.. (rad) and qd_1.. (rad/s).
 
-    ``attrs`` holds ``units``, by column, and ``case``, the TOML of what was simulated.
+    ``attrs`` holds ``units``, by column, and ``case``, the TOML of what was simulated, but for
+    effects that are functions.
 
     Raises
     ------
@@ -32,14 +35,16 @@ def to_pandas(solution: Solution) -> pd.DataFrame:
     frame = pd.DataFrame(
         solution.y.T.copy(), columns=list(units), index=pd.Index(solution.t.copy(), name="time")
     )
-    frame.attrs = {"units": {"time": "s", **units}, "case": solution.case().to_toml()}
+    frame.attrs = {"units": {"time": "s", **units}}
+    frame.attrs |= _case(solution)
     return frame
 
 
 def to_xarray(solution: Solution) -> xr.Dataset:
     """Return ``q`` and ``qd`` over ``time`` and ``link``, each with ``attrs["units"]``.
 
-    The set's ``attrs["case"]`` is the TOML of what was simulated.
+    The set's ``attrs["case"]`` is the TOML of what was simulated, but for effects that are
+    functions.
 
     Raises
     ------
@@ -59,5 +64,12 @@ def to_xarray(solution: Solution) -> xr.Dataset:
             "qd": (("time", "link"), solution.qd.copy(), rate),
         },
         coords={"time": ("time", solution.t.copy(), {"units": "s"}), "link": list(links)},
-        attrs={"case": solution.case().to_toml()},
+        attrs=_case(solution),
     )
+
+
+def _case(solution: Solution) -> dict[Hashable, Any]:
+    """Return the case as TOML, which a scene with a function among its effects has not."""
+    if any(isinstance(effect, OwnEffect) for effect in solution.scene.effects):
+        return {}
+    return {"case": solution.case().to_toml()}

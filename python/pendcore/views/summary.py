@@ -11,14 +11,14 @@ from typing import Any
 import numpy as np
 
 from pendcore import _core
+from pendcore.effect_class import Effect, Part
+from pendcore.explanation.absence import absent
 from pendcore.solution import Solution
 from pendcore.views import energy_drift
 from pendcore.views.table import listed, outcome
 
-NOT_SIMULATED = (
-    "friction and damping in the joints, drag of the air, motors, springs, stops, a moving pivot, "
-    "bending of the links, play in the joints, motion out of the plane"
-)
+_MANY = 12
+"""Links that a table for people has a row each of."""
 
 
 def facts(solution: Solution) -> dict[str, Any]:
@@ -29,6 +29,7 @@ def facts(solution: Solution) -> dict[str, Any]:
         "name": case.name,
         "links": [asdict(link) for link in case.scene.links],
         "gravity": case.scene.gravity,
+        "effects": [_effect(effect) for effect in case.scene.effects],
         "mobility": case.scene.mobility()._asdict(),
         "start": {"t": case.t_span[0], "q": case.q0, "qd": case.qd0},
         "run": {"t_end": case.t_span[1]} | _run_options(solution),
@@ -38,9 +39,10 @@ def facts(solution: Solution) -> dict[str, Any]:
         "end": {"t": run.t_reached, "q": run.y_reached[:n], "qd": run.y_reached[n:]},
         "statistics": solution.stats._asdict(),
         "energy": energy_drift.energy_drift(solution)._asdict(),
+        "ledger": _ledger(solution),
         "kept": {"times": len(solution.t), "every_step": energy_drift.has_every_step(solution)},
         "largest_reactions": _largest_reactions(solution),
-        "not_simulated": NOT_SIMULATED,
+        "not_simulated": [absence._asdict() for absence in absent(case.scene)],
         "version": _core.__version__,
     }
     return _json(found)  # type: ignore[no-any-return]
@@ -54,6 +56,23 @@ def text(found: dict[str, Any]) -> str:
         ["What came of it", *_rows(_happened(found))],
     ]
     return "\n\n".join("\n".join(block) for block in blocks) + "\n"
+
+
+def _effect(effect: Effect) -> dict[str, Any]:
+    """Return kind and parameters, parts as their own."""
+    values = {
+        name: x.particulars() if isinstance(x, Part) else x
+        for name, x in effect.particulars().items()
+    }
+    return {"kind": effect.kind, **values, "text": repr(effect)}
+
+
+def _ledger(solution: Solution) -> dict[str, float] | None:
+    """Return its entries at the last of the kept times, if it was kept, J."""
+    ledger = solution.energy().ledger
+    if ledger is None or not len(solution.t):
+        return None
+    return {name: float(entry[-1]) for name, entry in ledger.items()}
 
 
 def _run_options(solution: Solution) -> dict[str, Any]:
@@ -75,15 +94,19 @@ def _largest_reactions(solution: Solution) -> list[dict[str, Any]]:
 
 def _link_table(found: dict[str, Any]) -> Iterator[str]:
     yield "  link    mass (kg)   length (m)   center (m)   inertia (kg m^2)"
-    for i, link in enumerate(found["links"], start=1):
+    for i, link in enumerate(found["links"][:_MANY], start=1):
         mass, length, center, inertia = link.values()
         yield f"  {i:4} {mass:12.6g} {length:12.6g} {center:12.6g} {inertia:18.6g}"
+    if len(found["links"]) > _MANY:
+        yield f"   ... {len(found['links']) - _MANY} more"
 
 
 def _asked(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
     start, run = found["start"], dict(found["run"])
     n, c5, c4, freedom = found["mobility"].values()
     yield "gravity", f"{found['gravity']:.6g} m/s^2, downward"
+    for i, effect in enumerate(found["effects"]):
+        yield "" if i else "effects", effect["text"]
     yield "mobility", f"M = 3 n - 2 c5 - c4 = 3*{n} - 2*{c5} - {c4} = {freedom}"
     yield "start", f"t = {start['t']:.6g} s, {_state(start, in_degrees=True)}"
     yield "end", f"t = {run.pop('t_end'):.6g} s"
@@ -91,7 +114,8 @@ def _asked(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
         "method",
         ", ".join([run.pop("method"), *(f"{key} {_brief(x)}" for key, x in run.items())]),
     )
-    yield "not simulated", found["not_simulated"]
+    words = [absence["kind"].replace("_", " ") for absence in found["not_simulated"]]
+    yield "not simulated", ", ".join(words)
 
 
 def _happened(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
@@ -101,13 +125,17 @@ def _happened(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
     yield "steps", f"{stats['accepted']} accepted, {stats['rejected']} rejected"
     yield "", f"{stats['min_step']:.3g} ... {stats['max_step']:.3g} s long"
     yield "work", f"{stats['nfev']} right-hand sides"
-    yield "energy drift", energy_drift.text(energy["largest_drift"], energy["relative_drift"])
+    yield "energy drift", energy_drift.text(energy)
+    for i, (name, value) in enumerate((found["ledger"] or {}).items()):
+        yield "" if i else "ledger", f"{name} {value:.6g} J"
     if energy["too_large"]:
         yield "", energy_drift.TOO_LARGE
-    for largest in found["largest_reactions"]:
+    for largest in found["largest_reactions"][:_MANY]:
         force = f"{_number(largest['force'])} N at t = {largest['t']:.6g} s"
         name = "largest reaction" if largest["joint"] == 1 else ""
         yield name, f"joint {largest['joint']}: {force}"
+    if len(found["largest_reactions"]) > _MANY:
+        yield "", f"... {len(found['largest_reactions']) - _MANY} more joints"
     if not found["kept"]["every_step"]:
         times = found["kept"]["times"]
         name = "" if times else "largest reaction"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from html import escape
 
@@ -45,6 +46,7 @@ def _rows(solution: Solution) -> list[tuple[str, str]]:
     rows = [
         ("status", outcome(solution.status, solution.message)),
         ("scene", f"{n} link{'s'[: n > 1]}, gravity {solution.scene.gravity:.6g} m/s^2"),
+        *([("effects", _effects(solution))] if solution.scene.effects else []),
         ("method", f"{solution.method}, {stats.accepted} steps, {stats.nfev} right-hand sides"),
     ]
     if len(t):
@@ -54,8 +56,13 @@ def _rows(solution: Solution) -> list[tuple[str, str]]:
             ("last qd", f"{listed(solution.qd[-1])} rad/s"),
         ]
     if len(t) <= _MANY:
-        drift = energy_drift.energy_drift(solution)
-        kept = energy_drift.text(drift.largest_drift, drift.relative_drift)
-        rows.append(("energy", f"drift {kept}"))
-        rows += [("", energy_drift.TOO_LARGE)] * drift.too_large
+        drift = energy_drift.energy_drift(solution)._asdict()
+        rows.append(("energy", "drift " + energy_drift.text(drift)))
+        rows += [("", energy_drift.TOO_LARGE)] * drift["too_large"]
     return rows
+
+
+def _effects(solution: Solution) -> str:
+    """Return the kinds, and how many of each there are."""
+    count = Counter(effect.kind for effect in solution.scene.effects)
+    return ", ".join(kind if k == 1 else f"{kind} ({k})" for kind, k in count.items())

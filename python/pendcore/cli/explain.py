@@ -1,0 +1,45 @@
+"""`pendcore explain`: what a case simulates and what not, what it costs, how fast it moves."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+from pendcore.case_file import read_case
+from pendcore.cli.usage import blamed_on_usage
+
+_EPILOG = """
+what is told:
+  the effects, and what each takes of a right-hand side: operations, and ns measured on the spot
+  degrees of freedom, counted as the textbook does and from the rank of the constraints
+  equilibria with their natural frequencies, the stiffest rate, a safe first step
+  what is not simulated
+
+example:
+  pendcore explain swing.toml --json | jq .first_step
+"""
+
+
+def add_parser(commands: Any) -> None:
+    """Add the sub-command and its arguments."""
+    parser = commands.add_parser(
+        "explain",
+        help="say what a case simulates, what it costs, how fast it moves",
+        description="Explain a case at its start, without running it.",
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("case", type=Path, metavar="CASE.toml", help="what to explain")
+    parser.add_argument("--json", action="store_true", help="print the same as JSON")
+    parser.set_defaults(execute=execute)
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Do it; return the exit status."""
+    with blamed_on_usage():
+        case = read_case(args.case)
+    told = case.scene.explain(t=case.t_span[0], q=case.q0)
+    print(json.dumps(told.to_dict(), indent=2) if args.json else told)
+    return 0

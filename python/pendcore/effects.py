@@ -1,0 +1,34 @@
+"""What acts on a chain besides gravity: a class for each effect that the core has.
+
+    import pendcore as pc
+
+    pc.effects.ViscousJoint(joint=1, damping=0.1)
+    pc.effects.Motor(joint=2, sinusoid=pc.effects.Sinusoid(amplitude=1.0, angular_frequency=6.0))
+    pc.effects.kinds()               # every kind, as in case files, with its class
+
+The classes are made from what the core says of each effect; effects.pyi shows them. docs/effects
+has a page on each.
+"""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from typing import NoReturn
+
+from pendcore.effect_class import KINDS, PARTS, Effect, Part
+
+globals().update(PARTS | {cls.__name__: cls for cls in KINDS.values()})
+
+
+def kinds() -> dict[str, type[Effect]]:
+    """Return the class of every kind of effect, the kind as in case files."""
+    return dict(KINDS)
+
+
+def __getattr__(name: str) -> NoReturn:
+    near = get_close_matches(name, __all__, n=1, cutoff=0.5)
+    remedy = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(__all__)}"
+    raise AttributeError(f"pendcore.effects has no {name!r}: {remedy}")
+
+
+__all__ = ["Effect", "Part", "kinds", *PARTS, *(cls.__name__ for cls in KINDS.values())]

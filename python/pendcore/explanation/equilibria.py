@@ -1,0 +1,187 @@
+"""Where a scene is in balance, and how it moves about there.
+
+With a chain's free angles z (what is locked turns together), the accelerations at rest are
+zdd = f(z, 0), t frozen. Newton's method finds f = 0; about it, with A = df/dz and B = df/dzd by
+central differences, the eigenvalues of
+
+    d/dt (dz, dzd) = ((0, 1), (A, B)) (dz, dzd)
+
+are the rates: a pair lambda = -zeta w +- i w sqrt(1 - zeta^2) is an oscillation of natural angular
+frequency w and damping ratio zeta; a real one grows or decays.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import pi
+from typing import NamedTuple
+
+import numpy as np
+
+from pendcore.arguments import Floats
+from pendcore.explanation.constraints import locks
+from pendcore.scene import Scene
+
+_STEP = 1e-5
+"""rad and rad/s, of the differences: where truncation and rounding are about as large."""
+_LONGEST = 0.5
+"""rad, of an iteration of Newton's method: it shall not leap to a distant equilibrium."""
+NOISE = 1e-5
+"""What the differences leave of a rate that is zero, as a share of the stiffest."""
+
+
+class Mode(NamedTuple):
+    """One way in which a scene moves about an equilibrium.
+
+    Attributes
+    ----------
+    rate : float
+        Real part of the eigenvalue, 1/s: it grows if positive, and decays if negative.
+    angular_frequency : float
+        Natural, rad/s; 0 where it does not oscillate.
+    frequency : float
+        The same in Hz.
+    damping_ratio : float or None
+        Of an oscillation; 0 if nothing damps it, negative if something feeds it.
+    """
+
+    rate: float
+    angular_frequency: float
+    frequency: float
+    damping_ratio: float | None
+
+
+class Equilibrium(NamedTuple):
+    """A pose in which the scene is in balance.
+
+    Attributes
+    ----------
+    name : str
+        ``"hanging"``, ``"upright"`` or ``"start"``, or from which of them it was found.
+    q : tuple of float, (n,)
+        rad.
+    stable : bool
+        Whether everything about it comes back or stays small. Where nothing grows and something
+        has no rate at all, as without gravity, it is not: a push goes on.
+    modes : tuple of Mode
+        The slowest first.
+    stiffest_rate : float
+        The largest eigenvalue in size, 1/s.
+    """
+
+    name: str
+    q: tuple[float, ...]
+    stable: bool
+    modes: tuple[Mode, ...]
+    stiffest_rate: float
+
+
+class FreeAngles:
+    """The angles that are left to a chain whose locked joints do not turn."""
+
+    def __init__(self, scene: Scene, t: float, pose: Floats) -> None:
+        self._scene, self._t = scene, t
+        locked, n = locks(scene), len(scene.links)
+        self._fixed = np.zeros(n)
+        """What each link is turned against the first of those that turn with it, or the ground."""
+        self.leaders: list[int] = []
+        self._turning = np.zeros((n, 0))
+        """(n, m): which links turn with each of the free angles."""
+        for i in range(n):
+            if i + 1 not in locked:
+                self.leaders.append(i)
+                self._turning = np.hstack([self._turning, np.zeros((n, 1))])
+                self._turning[i, -1] = 1.0
+                continue
+            before = pose[i - 1] if i else 0.0
+            angle = locked[i + 1]
+            self._fixed[i] = pose[i] - before if angle is None else angle
+            if i:
+                self._fixed[i] += self._fixed[i - 1]
+                self._turning[i] = self._turning[i - 1]
+
+    def q(self, z: Floats) -> Floats:
+        """Angles of all links, (..., n), from the free ones, (..., m)."""
+        return z @ self._turning.T + self._fixed
+
+    def accelerations(self, z: Floats, zd: Floats) -> Floats:
+        """Of the free angles, (..., m)."""
+        found = self._scene.accelerations(self._t, self.q(z), zd @ self._turning.T)
+        return found[..., self.leaders]
+
+    def linearised(self, z: Floats) -> tuple[Floats, Floats]:
+        """Derivatives of the accelerations at rest by angles and by rates, (m, m) each."""
+        m = len(self.leaders)
+        small, still = np.eye(m) * _STEP, np.zeros((m, m))
+        by_angle = self.accelerations(z + small, still) - self.accelerations(z - small, still)
+        at = np.broadcast_to(z, (m, m))
+        by_rate = self.accelerations(at, small) - self.accelerations(at, -small)
+        return by_angle.T / (2 * _STEP), by_rate.T / (2 * _STEP)
+
+    def balanced_near(self, z: Floats) -> Floats | None:
+        """Free angles near these at which nothing accelerates, by Newton's method."""
+        still = np.zeros_like(z)
+        for _ in range(100):
+            residual = self.accelerations(z, still)
+            slope, _ = self.linearised(z)
+            if not (np.isfinite(residual).all() and np.isfinite(slope).all()):
+                return None
+            step = np.linalg.lstsq(slope, -residual, rcond=1e-10)[0]
+            size = float(np.abs(step).max(initial=0.0))
+            z = z + step * min(1.0, _LONGEST / size if size else 1.0)
+            if size < 1e-10:
+                after = np.abs(self.accelerations(z, still)).max(initial=0.0)
+                return z if after <= 1e-7 * max(1.0, np.abs(slope).max(initial=0.0)) else None
+        return None
+
+
+def find_equilibria(
+    scene: Scene, t: float, start: tuple[float, ...] | None, remarks: list[str]
+) -> Iterator[Equilibrium]:
+    """Find those near hanging, upright and the start; put into the remarks what was not found."""
+    n = len(scene.links)
+    poses = {"hanging": np.full(n, pi / 2), "upright": np.full(n, -pi / 2)}
+    poses |= {} if start is None else {"start": np.array(start)}
+    smooth = [effect for effect in scene.effects if effect.description.account != "dry"]
+    if len(smooth) < len(scene.effects):
+        remarks.append(
+            "dry friction is left out of the equilibria: it can hold the scene near them"
+        )
+        scene = Scene._unpickled(scene.links, scene.gravity, smooth)
+    found: list[Floats] = []
+    for name, pose in poses.items():
+        free = FreeAngles(scene, t, pose)
+        z = pose[free.leaders]
+        balanced = free.balanced_near(z)
+        if balanced is None:
+            remarks.append(f"no equilibrium was found from {name} at t = {t:.6g} s")
+            continue
+        q = free.q(balanced)
+        if any(np.abs(np.sin((q - other) / 2)).max() < 1e-6 for other in found):
+            continue
+        found.append(q)
+        moved = np.abs(q - free.q(z)).max() > 1e-6
+        yield _described(f"found from {name}" if moved else name, free, balanced)
+
+
+def _described(name: str, free: FreeAngles, z: Floats) -> Equilibrium:
+    m = len(z)
+    by_angle, by_rate = free.linearised(z)
+    matrix = np.block([[np.zeros((m, m)), np.eye(m)], [by_angle, by_rate]])
+    rates = np.linalg.eigvals(matrix).astype(complex)
+    stiffest = float(np.abs(rates).max(initial=0.0))
+    modes = sorted((_mode(x) for x in rates if x.imag >= 0), key=_size)
+    noise = NOISE * stiffest
+    stable = all(mode.rate <= noise < _size(mode) for mode in modes)
+    return Equilibrium(name, tuple(free.q(z).tolist()), stable, tuple(modes), stiffest)
+
+
+def _mode(eigenvalue: complex) -> Mode:
+    w, rate = abs(eigenvalue), float(eigenvalue.real)
+    if eigenvalue.imag == 0:
+        return Mode(rate, 0.0, 0.0, None)
+    return Mode(rate, w, w / (2 * pi), -rate / w)
+
+
+def _size(mode: Mode) -> float:
+    return max(mode.angular_frequency, abs(mode.rate))

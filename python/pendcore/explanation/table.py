@@ -1,0 +1,112 @@
+"""An explanation as people read it, and as JSON holds it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import isfinite
+from textwrap import wrap
+from typing import Any
+
+from pendcore.explanation import STEPS_A_PERIOD, Explanation
+from pendcore.explanation.equilibria import NOISE, Equilibrium, Mode
+
+_WIDTH = 80
+_NAME = 58
+
+
+def text(told: Explanation) -> str:
+    """Return it as a table."""
+    n, at = len(told.scene.links), f"t = {told.t:.6g} s"
+    head = f"{n} link{'s'[: n > 1]}, gravity {told.scene.gravity:.6g} m/s^2, looked at at {at}"
+    blocks = [
+        [head],
+        ["What is simulated, and what of a right-hand side it takes", *_costs(told)],
+        ["Freedom", *_freedom(told)],
+        ["Equilibria", *_equilibria(told)],
+        ["How fast", *_rates(told)],
+        ["What is not simulated", *_absences(told)],
+    ]
+    if told.remarks:
+        blocks.append(["Remarks", *(line for remark in told.remarks for line in _bullet(remark))])
+    return "\n\n".join("\n".join(block) for block in blocks)
+
+
+def plain(value: Any) -> Any:
+    """JSON knows no tuples, and neither infinities nor NaN."""
+    if isinstance(value, dict):
+        return {key: plain(x) for key, x in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(x) for x in value]
+    return None if isinstance(value, float) and not isfinite(value) else value
+
+
+def _costs(told: Explanation) -> Iterator[str]:
+    yield f"  {'':{_NAME}} operations       ns"
+    names = ["links, gravity", *map(repr, told.scene.effects), "all together"]
+    for name, cost in zip(names, told.costs, strict=True):
+        *more, last = wrap(name, _NAME, subsequent_indent="    ", max_lines=4, placeholder=" ...")
+        operations = "" if cost.operations is None else cost.operations
+        yield from (f"  {line}" for line in more)
+        yield f"  {last:{_NAME}} {operations:>10} {cost.nanoseconds:8.1f}"
+    yield "  (measured just now: a difference of a ns or two is noise)"
+
+
+def _freedom(told: Explanation) -> Iterator[str]:
+    n, c5, c4, freedom = told.mobility
+    yield f"  the textbook's count       M = 3 n - 2 c5 - c4 = 3*{n} - 2*{c5} - {c4} = {freedom}"
+    if told.constraint_rank is not None:
+        whole = 3 * len(told.scene.links)
+        found = f"{whole} - {told.constraint_rank} = {told.degrees_of_freedom}"
+        yield f"  the constraints' Jacobian  3 n - rank = {found}"
+
+
+def _equilibria(told: Explanation) -> Iterator[str]:
+    for found in told.equilibria:
+        angles = ", ".join(f"{x:.6g}" for x in found.q[:4]) + ", ..." * (len(found.q) > 4)
+        yield f"  {found.name}, {_stability(found)}: q = ({angles}) rad"
+        shown = found.modes if len(found.modes) <= 8 else (*found.modes[:4], *found.modes[-4:])
+        for i, mode in enumerate(shown):
+            if i == 4 and len(found.modes) > 8:
+                yield f"    ... {len(found.modes) - 8} more"
+            yield f"    {_motion(mode)}"
+    if not told.equilibria:
+        yield "  none was found"
+
+
+def _stability(found: Equilibrium) -> str:
+    grows = max((mode.rate for mode in found.modes), default=0.0) > NOISE * found.stiffest_rate
+    return "stable" if found.stable else "unstable" if grows else "indifferent"
+
+
+def _motion(mode: Mode) -> str:
+    if mode.damping_ratio is not None:
+        ratio = 0.0 if abs(mode.damping_ratio) < 1e-9 else mode.damping_ratio
+        how = f"damping ratio {ratio:.3g}"
+        return f"{mode.angular_frequency:11.6g} rad/s = {mode.frequency:.6g} Hz, {how}"
+    word = "grows" if mode.rate > 0 else "decays" if mode.rate < 0 else "stays"
+    return f"{abs(mode.rate):11.6g} 1/s, {word} without oscillating"
+
+
+def _rates(told: Explanation) -> Iterator[str]:
+    if told.stiffest_rate is not None:
+        yield f"  stiffest rate   {told.stiffest_rate:.6g} 1/s, about the equilibria"
+    if told.fastest_drive:
+        yield f"  fastest drive   {told.fastest_drive:.6g} rad/s"
+    if told.first_step is None:
+        yield "  first step      nothing is known here to choose it by"
+    else:
+        share = f"1/{STEPS_A_PERIOD} of the fastest period"
+        yield f"  first step      {told.first_step:.3g} s, {share}: safe for a start at"
+        yield "                  rest near an equilibrium, at the default tolerances"
+
+
+def _absences(told: Explanation) -> Iterator[str]:
+    for absence in told.not_simulated:
+        name = absence.kind.replace("_", " ") if absence.available else "(no effect yet)"
+        first, *more = wrap(absence.sentence, _WIDTH - 22)
+        yield f"  {name:18}  {first}"
+        yield from (f"{'':22}{line}" for line in more)
+
+
+def _bullet(remark: str) -> list[str]:
+    return wrap(remark, _WIDTH, initial_indent="  ", subsequent_indent="  ")
