@@ -86,7 +86,7 @@ $(DONE)/test-requirements: pyproject.toml | $(DONE)/build-requirements
 	@touch $@
 
 $(DONE)/bench-requirements: pyproject.toml | $(DONE)/build-requirements
-	@sh setup/debian_packages.sh also benchmark boost
+	@sh setup/debian_packages.sh also benchmark boost valgrind
 	python setup/requirements.py bench | $(PIP_INSTALL) -r /dev/stdin
 	@touch $@
 

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import datetime
 import os
 import platform
+import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -40,4 +43,15 @@ def machine() -> dict[str, str | int | None]:
         "python": platform.python_version(),
         "numpy": np.__version__,
         "instruction set of pendcore": instruction_set(),
+    }
+
+
+def circumstances(begin: float, rounds: int, burst_seconds: float) -> dict[str, Any]:
+    """Say when and how a record was measured; `begin` is the performance counter's at its start."""
+    return {
+        "date": datetime.datetime.now(datetime.UTC).date().isoformat(),
+        "rounds": rounds,
+        "burst_seconds": burst_seconds,
+        "seconds_in_all": round(time.perf_counter() - begin, 1),
+        "machine": machine(),
     }

@@ -9,7 +9,7 @@ import random
 import statistics
 from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 from cases import Case
@@ -17,6 +17,11 @@ from contenders.contender import Run
 from trajectory_error import end_error, energy_error, position_error
 
 Key = TypeVar("Key", bound=Hashable)
+
+
+class Timed(Protocol):
+    def burst(self, seconds: float) -> list[float]:
+        """Call for about so long and list each call's seconds."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +34,7 @@ class Timing:
 
 
 def interleave(
-    runs: Mapping[Key, Run], rounds: Iterable[int], burst_seconds: float
+    runs: Mapping[Key, Timed], rounds: Iterable[int], burst_seconds: float
 ) -> dict[Key, Timing]:
     """Time all runs. `rounds` are the rounds' numbers, perhaps with a progress bar around them."""
     seconds: dict[Key, list[float]] = {key: [] for key in runs}

@@ -1,13 +1,14 @@
 // What a C++ contender of the comparison is. To add one: a .cpp file that defines a function
-// returning a Contender, its declaration here, and a line in the list of conversation.cpp.
+// returning a Contender, its declaration here, and a line in the list of solves.cpp.
 #pragma once
 
 #include <functional>
 #include <memory>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "conversation.hpp"
 
 namespace contenders {
 
@@ -28,10 +29,6 @@ class Run {
   virtual std::span<const double> states()
       const = 0;                        // row-major, times x 2n; empty if the solve failed
   virtual long long evaluations() = 0;  // right-hand sides of one solve
-};
-
-struct Unsupported : std::runtime_error {
-  using std::runtime_error::runtime_error;
 };
 
 // `label` names it in tables, `about` says version and settings. `prepare` builds all that can be

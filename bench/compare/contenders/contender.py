@@ -1,7 +1,7 @@
 """What a contender is: it prepares runs of a case at a tolerance, to be timed and looked at.
 
 To add one: a file beside this with a list `CONTENDERS`, and its name in the list of `__init__.py`.
-A C++ contender is a .cpp file and a line in `conversation.cpp`; `compiled.py` then finds it.
+A C++ contender is a .cpp file and a line in `solves.cpp`; `compiled.py` then finds it.
 """
 
 from __future__ import annotations

@@ -1,0 +1,97 @@
+"""A program of C++ contenders, spoken to line by line (conversation.hpp has the rules).
+
+So its bursts take their turns among the Python contenders' and those of other programs.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import threading
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from contenders.contender import Unsupported
+
+PROJECT = Path(__file__).parents[3]
+LONGEST_ANSWER = 120.0  # s
+
+
+def words(numbers: Iterable[Any]) -> str:
+    """Write numbers so that they read back as the same doubles."""
+    return " ".join(repr(float(number)) for number in numbers)
+
+
+def find_executable(name: str, variable: str) -> Path:
+    """Find the file in the folder, or of the name, that the environment's variable says.
+
+    Else the newest of that name under the project's build.
+    """
+    named = os.environ.get(variable)
+    if named and Path(named).is_dir():
+        found = [Path(named) / name]
+    else:
+        found = [Path(named)] if named else list(PROJECT.glob(f"build/**/{name}"))
+    found = [path for path in found if path.is_file()]
+    if not found:
+        raise ImportError(
+            f"{name}: not built; `make compare` builds it, or "
+            "`cmake --preset bench && cmake --build --preset bench`"
+        )
+    return max(found, key=lambda path: path.stat().st_mtime)
+
+
+class Conversation:
+    """A request is a line, the answer is a line: `ok ...`, `unsupported ...` or `error ...`."""
+
+    def __init__(self, path: Path) -> None:
+        self.name = path.name
+        # In a group of its own: a Ctrl-C is for us. It ends when nobody speaks to it any more.
+        self.process = subprocess.Popen(
+            [path],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+            bufsize=1,
+            process_group=0,
+        )
+
+    def ask(self, request: str) -> str:
+        if self.process.stdin is None or self.process.stdout is None:
+            raise RuntimeError("the conversation has no pipes")
+        self.process.stdin.write(request + "\n")
+        self.process.stdin.flush()
+        alarm = threading.Timer(LONGEST_ANSWER, self.process.kill)
+        alarm.start()
+        try:
+            line = self.process.stdout.readline()
+        finally:
+            alarm.cancel()
+        verdict, _, answer = line.rstrip("\n").partition(" ")
+        if verdict == "unsupported":
+            raise Unsupported(answer)
+        if verdict != "ok":
+            raise RuntimeError(
+                f"{self.name}: {request[:60]}: {answer or 'it ended, or took too long'}"
+            )
+        return answer
+
+    def close(self) -> None:
+        """End the program: it does by itself when there is no more to read."""
+        for pipe in (self.process.stdin, self.process.stdout):
+            if pipe is not None:
+                pipe.close()
+        try:
+            self.process.wait(LONGEST_ANSWER)
+        except BaseException:
+            self.process.kill()
+            raise
+
+    def described(self) -> list[tuple[str, str, str]]:
+        """List its contenders: name, label, and what version and settings they are."""
+        result = []
+        for name in self.ask("names").split():
+            label, _, about = self.ask(f"about {name}").partition(": ")
+            result.append((name, label, about))
+        return result

@@ -1,0 +1,66 @@
+// What a contender of forward dynamics is: it prepares calls that give the accelerations of a
+// scene. Each side is a program of its own, so that the linker mixes up no inline function of two
+// headers or of two builds: a .cpp file that defines forward_dynamics(), linked with
+// forward_dynamics.cpp.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "conversation.hpp"
+
+namespace contenders {
+
+// A chain of uniform rods (kg, m, m/s^2) with an effect (effect_parameters.hpp, or "none"), and
+// the states that the calls go through in turn, a power of two of them: q of the first state, q of
+// the second ..., absolute angles from +x towards +y, y down; qd likewise.
+struct Scene {
+  std::vector<double> masses, lengths;
+  double gravity = 0;
+  std::string effect;
+  std::vector<double> q, qd;
+
+  std::size_t n() const { return masses.size(); }
+  std::size_t states() const { return q.size() / n(); }
+};
+
+class Calls {
+ public:
+  virtual ~Calls() = default;
+  virtual void make(int count) = 0;                 // what is timed: each waits for the last one
+  virtual std::vector<double> accelerations() = 0;  // qdd (n) at the first state
+  virtual double right_hand_sides() { return 1; }   // that one call takes
+};
+
+struct ForwardDynamics {
+  std::string name, label, about;
+  std::function<std::unique_ptr<Calls>(const Scene&)> prepare;
+};
+
+std::vector<ForwardDynamics> forward_dynamics();
+
+// The state that comes next. It is never NaN that decides, but the processor has to wait for the
+// accelerations to know, as the next stage of a step has to.
+inline std::size_t next(std::size_t state, double acceleration, std::size_t states) {
+  const std::size_t is_nan = acceleration != acceleration ? 1 : 0;
+  return (state + 1 + is_nan) & (states - 1);
+}
+
+// Angles of the joints from those of the links, state by state, and back for one state.
+inline std::vector<double> at_joints(const std::vector<double>& of_links, std::size_t n) {
+  std::vector<double> result = of_links;
+  for (std::size_t i = 0; i < result.size(); ++i)
+    if (i % n > 0) result[i] -= of_links[i - 1];
+  return result;
+}
+inline std::vector<double> of_links(std::span<const double> at_joints) {
+  std::vector<double> result(at_joints.begin(), at_joints.end());
+  for (std::size_t i = 1; i < result.size(); ++i) result[i] += result[i - 1];
+  return result;
+}
+
+}  // namespace contenders

@@ -1,0 +1,84 @@
+"""The contenders of forward dynamics: programs that answer (forward_dynamics.cpp has the words)."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+
+import numpy as np
+from chain_scenes import Array, ChainScene
+
+from contenders.conversation import Conversation, find_executable, words
+
+PROGRAMS = tuple(
+    f"forward_dynamics_{side}"
+    for side in ("pendcore", "pinocchio_native", "pinocchio_v3", "mujoco")
+)
+
+
+def described(scene: ChainScene) -> str:
+    """Write the scene as the programs read it."""
+    n_states, n = scene.q.shape
+    return " ".join(
+        [
+            *(scene.effect, str(n), str(n_states), words(scene.masses), words(scene.lengths)),
+            *(repr(scene.gravity), words(scene.q.flat), words(scene.qd.flat)),
+        ]
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Calls:
+    """Calls of a scene's right-hand side, prepared."""
+
+    conversation: Conversation
+    number: str
+
+    def burst(self, seconds: float) -> list[float]:
+        """Call for about so long and list the seconds of a right-hand side, batch by batch."""
+        answer = self.conversation.ask(f"burst {self.number} {seconds}")
+        return [1e-9 * float(nanoseconds) for nanoseconds in answer.split()]
+
+    def bytes(self) -> int | None:
+        """Tell what the preparation holds of the heap, where that is known."""
+        return int(self.conversation.ask(f"bytes {self.number}")) or None
+
+    def accelerations(self) -> Array:
+        """Give qdd (n,) at the first of the scene's states."""
+        answer = self.conversation.ask(f"accelerations {self.number}")
+        return np.array(answer.split(), dtype=np.float64)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ForwardDynamics:
+    """`prepare` raises Unsupported for a scene that the contender does not carry."""
+
+    name: str
+    label: str
+    about: str
+    conversation: Conversation
+
+    def prepare(self, scene: ChainScene) -> Calls:
+        number = self.conversation.ask(f"prepare {self.name} {described(scene)}")
+        return Calls(self.conversation, number)
+
+
+@contextmanager
+def contenders() -> Iterator[list[ForwardDynamics]]:
+    """Start the programs that have been built; stderr says why others are left out."""
+    with ExitStack() as programs:
+        found = []
+        for program in PROGRAMS:
+            try:
+                conversation = Conversation(find_executable(program, "PENDCORE_FORWARD_DYNAMICS"))
+            except ImportError as absence:
+                print(f"left out: {absence}", file=sys.stderr)
+                continue
+            programs.callback(conversation.close)
+            found += [
+                ForwardDynamics(name=name, label=label, about=about, conversation=conversation)
+                for name, label, about in conversation.described()
+            ]
+        yield found

@@ -1,0 +1,89 @@
+// The program of the C++ contenders that solve cases; compiled.py speaks to it:
+//
+//   names                    the contenders
+//   about NAME               label: version and settings
+//   prepare NAME TOLERANCE n masses lengths gravity start n_t times      the number of the run
+//   outcome RUN              right-hand sides, then the states
+//   burst RUN SECONDS        nanoseconds of each call; a first of several only warms up
+#include <chrono>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "contender.hpp"
+
+namespace {
+
+using namespace contenders;
+
+const std::vector<Contender>& list() {
+  static const std::vector<Contender> all{
+      pendcore_core(),
+      odeint(),
+  };
+  return all;
+}
+
+Case read_case(std::istream& in) {
+  Case given;
+  const std::size_t n = read_count(in);
+  given.masses = read_numbers(in, n);
+  given.lengths = read_numbers(in, n);
+  given.gravity = read_number(in);
+  given.start = read_numbers(in, 2 * n);
+  given.times = read_numbers(in, read_count(in));
+  return given;
+}
+
+std::string outcome(Run& run) {
+  run.solve();
+  const std::string evaluations = std::to_string(run.evaluations());
+  const auto states = run.states();
+  return evaluations + words({states.begin(), states.end()});
+}
+
+std::string burst(Run& run, double seconds) {
+  using Clock = std::chrono::steady_clock;
+  std::vector<long long> taken;
+  const auto begin = Clock::now();
+  for (;;) {
+    const auto before = Clock::now();
+    run.solve();
+    const auto after = Clock::now();
+    taken.push_back(std::chrono::duration_cast<std::chrono::nanoseconds>(after - before).count());
+    if (std::chrono::duration<double>(after - begin).count() >= seconds) break;
+  }
+  std::string line;
+  for (std::size_t i = taken.size() > 1 ? 1 : 0; i < taken.size(); ++i)
+    line += std::to_string(taken[i]) + ' ';
+  return line;
+}
+
+std::string answer(std::istream& request, std::vector<std::unique_ptr<Run>>& runs) {
+  std::string word, name;
+  request >> word;
+  if (word == "names") return names(list());
+  if (word == "about") {
+    request >> name;
+    return about(list(), name);
+  }
+  if (word == "prepare") {
+    request >> name;
+    const double tolerance = read_number(request);
+    runs.push_back(find(list(), name).prepare(read_case(request), tolerance));
+    return std::to_string(runs.size() - 1);
+  }
+  if (word == "outcome") return outcome(*runs.at(read_count(request)));
+  if (word == "burst") {
+    Run& run = *runs.at(read_count(request));
+    return burst(run, read_number(request));
+  }
+  throw std::invalid_argument("no such request: " + word);
+}
+
+}  // namespace
+
+int main() {
+  std::vector<std::unique_ptr<Run>> runs;
+  return converse([&runs](std::istream& request) { return answer(request, runs); });
+}

@@ -1,0 +1,80 @@
+"""The comparison as a whole: each alone, its pages made of the record and of nothing else."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+PROJECT = Path(__file__).parents[1]
+sys.path.append(str(PROJECT / "bench" / "compare"))
+
+import chains  # noqa: E402
+import compare  # noqa: E402
+import effects  # noqa: E402
+from contenders.conversation import find_executable  # noqa: E402
+
+RECORDS = PROJECT / "docs" / "comparison"
+COMPARISONS = compare.comparisons("textbook")
+
+
+@pytest.mark.parametrize("name", COMPARISONS)
+def test_written_page_is_what_the_record_says(name: str) -> None:
+    comparison = COMPARISONS[name]
+    record = json.loads((RECORDS / f"{comparison.stem}.json").read_text(encoding="utf-8"))
+    page = (RECORDS / f"{comparison.stem}.md").read_text(encoding="utf-8")
+    assert comparison.page(record) == page
+
+
+@pytest.mark.parametrize("name", ["chains", "effects"])
+def test_another_figure_in_the_record_is_another_page(name: str, tmp_path: Path) -> None:
+    stem = COMPARISONS[name].stem
+    text = (RECORDS / f"{stem}.json").read_text(encoding="utf-8")
+    record = json.loads(text)
+    (first, *_) = record["contenders"]
+    first["about"] = "changed by a test"
+    (tmp_path / f"{stem}.json").write_text(json.dumps(record), encoding="utf-8")
+    assert compare.main(["--only", name, "--redraw", "--output", str(tmp_path)]) == 0
+    assert "changed by a test" in (tmp_path / f"{stem}.md").read_text(encoding="utf-8")
+    assert (tmp_path / f"{stem}.png").stat().st_size > 1000
+
+
+def test_ctrl_c_ends_it_and_leaves_nothing_half_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(**_: Any) -> dict[str, Any]:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(chains, "measure", interrupted)
+    assert compare.main(["--only", "chains", "--output", str(tmp_path)]) == 130
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.outside_build
+def test_quick_runs_of_chains_and_effects_measure_pendcore(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    try:
+        find_executable("forward_dynamics_pendcore", "PENDCORE_FORWARD_DYNAMICS")
+    except ImportError as absence:
+        pytest.skip(str(absence))
+    for module in (chains, effects):
+        monkeypatch.setattr(module, "BURST_SECONDS", 1e-4)
+    monkeypatch.setattr(chains, "QUICK_LENGTHS", (2, 10, 100, 1000))
+    for name in ("chains", "effects"):
+        assert compare.main(["--only", name, "--quick", "--output", str(tmp_path)]) == 0
+    links = json.loads((tmp_path / "chains.json").read_text(encoding="utf-8"))["contenders"]
+    (own,) = (one for one in links if one["name"] == "pendcore")
+    held = {point["n"]: point["bytes"] for point in own["points"]}
+    assert list(held) == [2, 10, 100, 1000]
+    assert all(point["minimum_ns"] > 0 for point in own["points"])
+    # No memory beyond O(n): ten times the links, ten times the bytes or less
+    # (None where no glibc tells).
+    assert held[1000] is None or held[1000] < 11 * held[100]
+    measured = json.loads((tmp_path / "effects.json").read_text(encoding="utf-8"))["effects"]
+    assert {one["name"] for one in measured if "pendcore" in one["sides"]} == {
+        effect.name for effect in (effects.BARE, *effects.EFFECTS) if effect.ours
+    }
