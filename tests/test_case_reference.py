@@ -7,10 +7,12 @@ from math import inf
 from pathlib import Path
 
 import pendcore as pc
+import pytest
 from pendcore.case import RUN_DEFAULTS
 from pendcore.case_file import KEYS
 
 REFERENCE = (Path(__file__).parents[1] / "docs/case_files.md").read_text()
+BLOCKS = re.findall(r"```toml\n(.*?)```", REFERENCE, re.DOTALL)
 
 
 def documented():
@@ -38,6 +40,12 @@ def test_the_reference_has_the_defaults_of_simulate():
 
 
 def test_the_case_of_the_reference_is_the_examples():
-    (text,) = re.findall(r"```toml\n(.*?)```", REFERENCE, re.DOTALL)
     example = Path(__file__).parents[1] / "examples/03_case_file.toml"
-    assert pc.read_case(text) == pc.read_case(example)
+    assert pc.read_case(BLOCKS[0]) == pc.read_case(example)
+
+
+@pytest.mark.parametrize("tables", BLOCKS[1:])
+def test_the_tables_that_the_reference_shows_can_be_added_to_a_case(tables):
+    before, start = BLOCKS[0].split("[start]")
+    added = pc.read_case(f"{before}{tables}[start]{start}").scene.effects
+    assert [effect.kind for effect in added] == re.findall(r'kind = "(\w+)"', tables)

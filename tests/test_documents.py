@@ -8,6 +8,8 @@ import sys
 from pathlib import Path
 
 import matplotlib as mpl
+import numpy as np
+import pendcore as pc
 import pytest
 
 ROOT = Path(__file__).parent.parent
@@ -25,14 +27,29 @@ def test_links_lead_somewhere(path):
             assert (path.parent / target).exists(), f"{path.name} links to {target}"
 
 
-def test_the_readmes_dozen_lines_run(tmp_path, monkeypatch):
+def test_the_readmes_lines_run(tmp_path, monkeypatch, capsys):
     mpl.use("Agg")
     monkeypatch.chdir(tmp_path)
-    (code,) = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+    dozen, chains = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
     names: dict[str, object] = {}
-    exec(code, names)
+    exec(dozen, names)
     assert names["longer"].t[-1] == 10.0
     assert (tmp_path / "run.npz").exists()
+    exec(chains, names)
+    assert names["run"].success
+    ledger = names["run"].energy().ledger
+    assert [*ledger] == ["viscous", "drag", "motor", "wind", "user", "residual"]
+    assert abs(ledger.residual).max() < 1e-6
+    assert "PD(kp=20.0" in capsys.readouterr().out
+
+
+def test_a_ledger_is_as_good_as_its_steps_and_trust_says_how_good(capsys):
+    (code,) = re.findall(r"```python\n(.*?)```", (ROOT / "docs/trust.md").read_text(), re.DOTALL)
+    exec(code, {"np": np, "pc": pc})
+    residuals = [float(line.split()[1]) for line in capsys.readouterr().out.splitlines()]
+    (told,) = re.findall(r"# (.*)$", code, re.MULTILINE)
+    for residual, order in zip(residuals, re.findall(r"([\de-]+) J", told), strict=True):
+        assert float(order) / 2 < residual < 2 * float(order)
 
 
 @pytest.mark.parametrize("document", excerpts.EXCERPTS)

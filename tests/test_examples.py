@@ -17,6 +17,11 @@ SAYS = {
     "01_textbook": ("q_1(5) = 1.083066", "q_2(5) = 0.538460"),
     "02_reactions": ("F_01 = [ 0.         -0.28571429]", "F_12 = [0.         0.07142857]"),
     "03_case_file": ("heavy hammer", "finished", "t_end = 20.0"),
+    "04_measured_rigs": (
+        "measured triple pendulum: within 0.0074 rad",
+        "swing 2: within 0.0243 rad",
+    ),
+    "05_own_effect": ("q_1(30) = -89.6420 deg", "work of the water 12.308263 J"),
 }
 PROJECT = """
 cmake_minimum_required(VERSION 3.25)

@@ -15,11 +15,12 @@ Number = Any  # a float or a number of mpmath: whatever the arithmetic at hand m
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Arithmetic:
-    """Numbers, their sine and cosine, and the solution of a linear system of them."""
+    """Numbers, functions of them, and the solution of a linear system."""
 
     number: Callable[[float | str], Number]
     sin: Callable[[Number], Number]
     cos: Callable[[Number], Number]
+    exp: Callable[[Number], Number]
     solve: Callable[[list[list[Number]], list[Number]], list[Number]]
 
 
@@ -27,7 +28,27 @@ def _solve_doubles(matrix: list[list[Number]], right: list[Number]) -> list[Numb
     return list(np.linalg.solve(np.array(matrix), np.array(right)).tolist())
 
 
-DOUBLE = Arithmetic(number=float, sin=math.sin, cos=math.cos, solve=_solve_doubles)
+DOUBLE = Arithmetic(number=float, sin=math.sin, cos=math.cos, exp=math.exp, solve=_solve_doubles)
+
+
+def _eliminate(matrix: list[list[Number]], right: list[Number]) -> list[Number]:
+    """Gaussian elimination with row pivoting, which passes over the many zeros."""
+    rows = [[*row, side] for row, side in zip(matrix, right, strict=True)]
+    n = len(rows)
+    for k in range(n):
+        pivot = max(range(k, n), key=lambda i: abs(rows[i][k]))
+        rows[k], rows[pivot] = rows[pivot], rows[k]
+        filled = [j for j in range(k, n + 1) if rows[k][j]]
+        for row in rows[k + 1 :]:
+            if row[k]:
+                share = row[k] / rows[k][k]
+                for j in filled:
+                    row[j] -= share * rows[k][j]
+    unknowns: list[Number] = [0] * n
+    for k in reversed(range(n)):
+        known = sum(rows[k][j] * unknowns[j] for j in range(k + 1, n) if rows[k][j])
+        unknowns[k] = (rows[k][n] - known) / rows[k][k]
+    return unknowns
 
 
 def multiple_precision(digits: int) -> Arithmetic:
@@ -35,7 +56,6 @@ def multiple_precision(digits: int) -> Arithmetic:
     context = mpmath.mp.clone()
     context.dps = digits
 
-    def solve(matrix: list[list[Number]], right: list[Number]) -> list[Number]:
-        return list(context.lu_solve(context.matrix(matrix), context.matrix(right)))
-
-    return Arithmetic(number=context.mpf, sin=context.sin, cos=context.cos, solve=solve)
+    return Arithmetic(
+        number=context.mpf, sin=context.sin, cos=context.cos, exp=context.exp, solve=_eliminate
+    )

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from reference.arithmetic import DOUBLE, Arithmetic, Number
+from reference.instant import Instant
 from reference.newton_euler import Body
 
 
@@ -16,6 +17,18 @@ class Energy(NamedTuple):
     potential: Number
 
 
+def energy_of_links(instant: Instant) -> Energy:
+    """Sum m v^2/2 + I w^2/2 and -m g y over the links."""
+    number = instant.arithmetic.number
+    kinetic = potential = number(0)
+    for link, body in enumerate(instant.bodies, start=1):
+        center = instant.mass_center(link)
+        mass, w = number(body.mass), number(instant.qd[link - 1])
+        kinetic += mass * (center.vx**2 + center.vy**2) / 2 + number(body.inertia) * w * w / 2
+        potential -= mass * number(instant.gravity) * center.y
+    return Energy(kinetic, potential)
+
+
 def mass_centers(
     bodies: Sequence[Body],
     q: Sequence[float],
@@ -23,23 +36,8 @@ def mass_centers(
     arithmetic: Arithmetic = DOUBLE,
 ) -> list[tuple[Number, Number, Number, Number]]:
     """Return position and velocity (x, y, vx, vy) of every mass centre, y downward."""
-    number = arithmetic.number
-    x = y = vx = vy = number(0)
-    centers = []
-    for body, angle, rate in zip(bodies, q, qd, strict=True):
-        cosine, sine = arithmetic.cos(number(angle)), arithmetic.sin(number(angle))
-        w, center, length = number(rate), number(body.center), number(body.length)
-        centers.append(
-            (
-                x + center * cosine,
-                y + center * sine,
-                vx - center * w * sine,
-                vy + center * w * cosine,
-            )
-        )
-        x, y = x + length * cosine, y + length * sine
-        vx, vy = vx - length * w * sine, vy + length * w * cosine
-    return centers
+    instant = Instant(bodies=bodies, gravity=0.0, q=q, qd=qd, arithmetic=arithmetic)
+    return [instant.mass_center(link) for link in range(1, len(bodies) + 1)]
 
 
 def energy(
@@ -49,15 +47,10 @@ def energy(
     qd: Sequence[float],
     arithmetic: Arithmetic = DOUBLE,
 ) -> Energy:
-    """Sum m v^2/2 + I w^2/2 and -m g y over the links."""
-    number = arithmetic.number
-    kinetic = potential = number(0)
-    centers = mass_centers(bodies, q, qd, arithmetic)
-    for body, rate, (_, y, vx, vy) in zip(bodies, qd, centers, strict=True):
-        mass, w = number(body.mass), number(rate)
-        kinetic += mass * (vx * vx + vy * vy) / 2 + number(body.inertia) * w * w / 2
-        potential -= mass * number(gravity) * y
-    return Energy(kinetic, potential)
+    """Sum m v^2/2 + I w^2/2 and -m g y over the links of a chain with a fixed pivot."""
+    return energy_of_links(
+        Instant(bodies=bodies, gravity=gravity, q=q, qd=qd, arithmetic=arithmetic)
+    )
 
 
 def angular_momentum(

@@ -2,13 +2,17 @@
 
 For every link i of the chain, as in the textbook's Eqs. (2.3) and (2.4), with y downward:
 
-    m_i a_Ci     = F_(i-1,i) - F_(i,i+1) + m_i g e_y
-    I_i alpha_i  = r_(Ci,P(i-1)) x F_(i-1,i) - r_(Ci,P(i)) x F_(i,i+1) + tau_i - tau_(i+1)
+    m_i a_Ci     = F_(i-1,i) - F_(i,i+1) + m_i g e_y + F_ext,i
+    I_i alpha_i  = r_(Ci,P(i-1)) x F_(i-1,i) - r_(Ci,P(i)) x F_(i,i+1) + tau_i - tau_(i+1) + T_ext,i
 
-F_(i-1,i) is the force on link i from link i-1 (the ground, for i = 1); beyond the tip it is zero.
+F_(i-1,i) is the force on link i from link i-1 (the ground, for i = 1); beyond the tip it is zero,
+or the force on a payload: a body of its own there, with equations of its own, welded on by an
+unknown force and an unknown couple. A locked joint has an unknown couple and one equation more,
+alpha_i = alpha_(i-1). A rotor takes the couple J (alpha_i - alpha_(i-1)) to turn.
+
 The mass-centre accelerations follow from the angles by differentiating the positions twice. That
-makes 3 n linear equations for the n angular accelerations and the 2 n force components. They are
-solved as they stand: nothing is eliminated by hand, so there is no algebra here to get wrong.
+makes a linear system for the angular accelerations and all that is unknown in the joints. It is
+solved as it stands: nothing is eliminated by hand, so there is no algebra here to get wrong.
 """
 
 from __future__ import annotations
@@ -16,9 +20,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from reference.arithmetic import DOUBLE, Arithmetic, Number
+import numpy as np
+from numpy.typing import NDArray
 
-Vector = tuple[Number, Number]
+from reference.arithmetic import DOUBLE, Arithmetic, Number
+from reference.loads import Loads, Sum, Vector
 
 
 class Body(NamedTuple):
@@ -44,6 +50,121 @@ class Motion(NamedTuple):
     """Force on each link at the joint nearer to the ground, N."""
     center_accelerations: list[Vector]
     """Accelerations of the mass centres, m/s^2."""
+    holding: dict[int, Number]
+    """Couple of each locked joint on the link beyond it, N m."""
+
+
+class Equations(NamedTuple):
+    """A linear system, and how large the terms are that its right side is added up from.
+
+    The unknowns are the n angular accelerations, the 2 n components of the joint forces, and what
+    holds payloads and locked joints.
+    """
+
+    matrix: list[list[Number]]
+    right: list[Sum]
+
+    def solve(self, arithmetic: Arithmetic) -> list[Number]:
+        """Solve the system."""
+        return arithmetic.solve(self.matrix, [side.value for side in self.right])
+
+    def sizes(self, unknowns: Sequence[Number]) -> NDArray[np.float64]:
+        """How far the unknowns change if every term changes by as much as itself.
+
+        That is |K^-1| (|K| |x| + size of the right side): Skeel's condition. Who computes with
+        terms that are off by a part in 10^12 is off by 10^-12 of these sizes.
+        """
+        matrix = np.array(self.matrix, dtype=float)
+        x = np.abs(np.array(unknowns, dtype=float))
+        terms = np.abs(matrix) @ x + [float(side.size) for side in self.right]
+        # Columns and rows of very different units are brought to one size before inverting.
+        columns = np.abs(matrix).max(axis=0)
+        rows = np.abs(matrix / columns).max(axis=1)
+        inverse = np.linalg.inv(matrix / columns / rows[:, np.newaxis])
+        return np.abs(inverse) @ (terms / rows) / columns
+
+
+def chain_equations(
+    bodies: Sequence[Body],
+    gravity: float,
+    q: Sequence[float],
+    qd: Sequence[float],
+    loads: Loads,
+    arithmetic: Arithmetic,
+) -> Equations:
+    """Write the equations of every link, payload and locked joint."""
+    number, zero, one = arithmetic.number, arithmetic.number(0), arithmetic.number(1)
+    links = [Body(*map(number, body)) for body in bodies]
+    n, g = len(links), number(gravity)
+    along = [(arithmetic.cos(number(angle)), arithmetic.sin(number(angle))) for angle in q]
+    across = [(-sine, cosine) for cosine, sine in along]
+    payload = 3 * n  # the first of three columns each: force and couple on it
+    lock = payload + 3 * len(loads.payloads)
+    unknowns = lock + len(loads.locked)
+    matrix: list[list[Number]] = []
+    right: list[Sum] = []
+
+    def blank() -> tuple[list[Number], Sum]:
+        matrix.append([zero] * unknowns)
+        right.append(Sum(zero, zero))
+        return matrix[-1], right[-1]
+
+    def inertial(row: list[Number], side: Sum, body: Body, last: int, axis: int) -> None:
+        """Mass times acceleration of a point on link ``last``, and the weight."""
+        for k in range(last + 1):
+            arm = links[k].length if k < last else body.center
+            row[k] += body.mass * arm * across[k][axis]
+            side.add(body.mass * arm * along[k][axis] * number(qd[k]) ** 2)
+        side.add(-body.mass * loads.pivot_acceleration[axis], body.mass * loads.pivot_size)
+        side.add(body.mass * g * axis)
+
+    for i, link in enumerate(links):
+        near = n + 2 * i  # the first column of the force on this link
+        beyond = [near + 2] if i + 1 < n else [payload + 3 * p for p in range(len(loads.payloads))]
+        for axis in (0, 1):
+            row, side = blank()
+            inertial(row, side, link, i, axis)
+            row[near + axis] = -one
+            for column in beyond:
+                row[column + axis] = one
+            side.add(loads.forces[i][axis].value, loads.forces[i][axis].size)
+
+        # The two arms from the mass centre: back to the nearer joint, on to the farther one.
+        back, on = -link.center, link.length - link.center
+        row, side = blank()
+        row[i] += link.inertia
+        row[near], row[near + 1] = back * along[i][1], -back * along[i][0]
+        for column in beyond:
+            row[column], row[column + 1] = -on * along[i][1], on * along[i][0]
+        if i + 1 == n:
+            for column in beyond:
+                row[column + 2] = one
+        side.add(loads.couples[i].value, loads.couples[i].size)
+        for joint, sign in ((i, one), (i + 1, -one)):
+            if joint == n:
+                continue
+            row[joint] += sign * loads.armatures[joint]
+            if joint > 0:
+                row[joint - 1] -= sign * loads.armatures[joint]
+            if joint + 1 in loads.locked:
+                row[lock + sorted(loads.locked).index(joint + 1)] = -sign
+
+    for p, (mass, inertia) in enumerate(loads.payloads):
+        column = payload + 3 * p
+        body = Body(number(mass), zero, links[-1].length, number(inertia))
+        for axis in (0, 1):
+            row, side = blank()
+            inertial(row, side, body, n - 1, axis)
+            row[column + axis] = -one
+        row, _ = blank()
+        row[n - 1], row[column + 2] = body.inertia, -one
+
+    for joint in sorted(loads.locked):
+        row, _ = blank()
+        row[joint - 1] = one
+        if joint > 1:
+            row[joint - 2] = -one
+    return Equations(matrix, right)
 
 
 def newton_euler(
@@ -53,6 +174,7 @@ def newton_euler(
     qd: Sequence[float],
     *,
     couples: Sequence[float] | None = None,
+    loads: Loads | None = None,
     arithmetic: Arithmetic = DOUBLE,
 ) -> Motion:
     """Solve the Newton-Euler equations of a chain.
@@ -67,6 +189,8 @@ def newton_euler(
         Absolute angles from +x towards +y, rad, and their rates, rad/s.
     couples
         Couple at each joint on the link beyond it (its opposite acts on the link before), N m.
+    loads
+        What acts besides; the couples are added to it.
     arithmetic
         Doubles or multiple precision.
 
@@ -75,57 +199,34 @@ def newton_euler(
     Motion
         Angular accelerations, joint forces and mass-centre accelerations.
     """
-    number, zero = arithmetic.number, arithmetic.number(0)
-    links = [Body(*map(number, body)) for body in bodies]
-    n, g = len(links), number(gravity)
-    rates = [number(w) for w in qd]
-    along = [(arithmetic.cos(number(angle)), arithmetic.sin(number(angle))) for angle in q]
-    across = [(-sine, cosine) for cosine, sine in along]
-    torques = [number(c) for c in (couples if couples is not None else [0] * n)] + [zero]
+    n, number = len(bodies), arithmetic.number
+    loads = Loads(n) if loads is None else loads
+    for joint, couple in enumerate(couples if couples is not None else (), start=1):
+        loads.couple_at_joint(joint, number(couple))
+    unknowns = chain_equations(bodies, gravity, q, qd, loads, arithmetic).solve(arithmetic)
+    return motion_of(unknowns, bodies, q, qd, loads, arithmetic)
 
-    def arm(i: int, k: int) -> Number:
-        """How far along link k the mass centre of link i lies."""
-        return links[k].length if k < i else links[i].center
 
-    def force(i: int, axis: int) -> int:
-        """The column of a component of the force on link i at its nearer joint."""
-        return n + 2 * i + axis
-
-    matrix: list[list[Number]] = []
-    right: list[Number] = []
-    for i, link in enumerate(links):
-        for axis in (0, 1):
-            row = [zero] * (3 * n)
-            for k in range(i + 1):
-                row[k] = link.mass * arm(i, k) * across[k][axis]
-            row[force(i, axis)] = -number(1)
-            if i + 1 < n:
-                row[force(i + 1, axis)] = number(1)
-            towards_axis = [arm(i, k) * along[k][axis] * rates[k] ** 2 for k in range(i + 1)]
-            weight = link.mass * g if axis == 1 else zero
-            matrix.append(row)
-            right.append(weight + link.mass * sum(towards_axis, zero))
-
-        # The two arms from the mass centre: back to the nearer joint, on to the farther one.
-        back, on = -link.center, link.length - link.center
-        row = [zero] * (3 * n)
-        row[i] = link.inertia
-        row[force(i, 0)], row[force(i, 1)] = back * along[i][1], -back * along[i][0]
-        if i + 1 < n:
-            row[force(i + 1, 0)], row[force(i + 1, 1)] = -on * along[i][1], on * along[i][0]
-        matrix.append(row)
-        right.append(torques[i] - torques[i + 1])
-
-    unknowns = arithmetic.solve(matrix, right)
-    accelerations = unknowns[:n]
-    reactions = [(unknowns[force(i, 0)], unknowns[force(i, 1)]) for i in range(n)]
-
-    def center_acceleration(i: int, axis: int) -> Number:
-        terms = (
-            arm(i, k) * (across[k][axis] * accelerations[k] - along[k][axis] * rates[k] ** 2)
-            for k in range(i + 1)
-        )
-        return sum(terms, zero)
-
-    centers = [(center_acceleration(i, 0), center_acceleration(i, 1)) for i in range(n)]
-    return Motion(accelerations, reactions, centers)
+def motion_of(
+    unknowns: Sequence[Number],
+    bodies: Sequence[Body],
+    q: Sequence[float],
+    qd: Sequence[float],
+    loads: Loads,
+    arithmetic: Arithmetic,
+) -> Motion:
+    """Name the unknowns, and differentiate the positions of the mass centres with them."""
+    n, number = len(bodies), arithmetic.number
+    held = sorted(loads.locked)
+    holding = dict(zip(held, unknowns[len(unknowns) - len(held) :], strict=True))
+    reactions = [(unknowns[n + 2 * i], unknowns[n + 2 * i + 1]) for i in range(n)]
+    centers = []
+    x, y = loads.pivot_acceleration
+    for body, angle, rate, turning in zip(bodies, q, qd, unknowns[:n], strict=True):
+        cosine, sine = arithmetic.cos(number(angle)), arithmetic.sin(number(angle))
+        w2 = number(rate) ** 2
+        per_metre = (-sine * turning - cosine * w2, cosine * turning - sine * w2)
+        center, length = number(body.center), number(body.length)
+        centers.append((x + center * per_metre[0], y + center * per_metre[1]))
+        x, y = x + length * per_metre[0], y + length * per_metre[1]
+    return Motion(list(unknowns[:n]), reactions, centers, holding)

@@ -1,0 +1,249 @@
+"""The pages in docs/effects, from the descriptions of the effects.
+
+docs/write_effects.py writes them. An example needs values that make sense together: EXAMPLES has
+them for the effects that are here; one without some is shown with values that its ranges allow.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import pendcore as pc
+from pendcore.effect_class import KINDS, Effect, OwnEffect
+from pendcore.effect_description import Description, Parameter
+from pendcore.energy import LOSSES
+
+EXAMPLES: dict[str, list[str]] = {
+    "viscous_joint": ["ViscousJoint(joint=2, damping=0.05)"],
+    "dry_joint_friction": [
+        "DryJointFriction(joint=1, coulomb=0.2, static=0.3, stribeck_velocity=0.05)"
+    ],
+    "rod_drag": [
+        "RodDrag(link=2, drag_coefficient=1.2, diameter=0.03, wind=(4.0, 0.0))",
+    ],
+    "torsional_spring": ["TorsionalSpring(joint=2, stiffness=30.0, rest_angle=0.5)"],
+    "motor": [
+        "Motor(joint=1, constant=2.0)",
+        "Motor(joint=1, sinusoid=Sinusoid(amplitude=3.0, angular_frequency=6.0))",
+        "Motor(joint=2, table=Table(t=(0.0, 0.5, 2.0), torque=(0.0, 1.5, -1.5)))",
+        "Motor(joint=2, pd=PD(kp=40.0, kd=2.0, reference=0.3), limit=8.0)",
+    ],
+    "rotor_inertia": ["RotorInertia(joint=1, armature=0.02)"],
+    "payload": ["Payload(mass=0.5, inertia=0.001)"],
+    "lock": ["Lock(joint=2)", "Lock(joint=2, angle=0.5)"],
+    "driven_pivot": [
+        "DrivenPivot(y=Sinusoid(amplitude=0.02, angular_frequency=90.0))",
+        "DrivenPivot(spline=Spline(t=(0.0, 1.0, 2.0), x=(0.0, 0.3, 0.0), y=(0.0, 0.0, 0.1)))",
+    ],
+    "user": ["User(function=lambda t, q, qd: -0.1 * qd)"],
+}
+
+BOOKED = {
+    "none": "Nothing: it does no work, or keeps it as energy that `sol.energy()` counts.",
+    "viscous": "`viscous`: what it takes out of the motion, J.",
+    "dry": "`dry`: what it takes out of the motion, J.",
+    "drag": "`drag`: what the rod loses, the integral of k |w|^3 along it, J, never negative. The "
+    "rest of what the air does is the `wind`'s, J: none without wind.",
+    "motor": "`motor`: the work that it does, torque times rate of the joint, J.",
+    "drive": "`drive`: the work of what drives the pivot, F_01 . v_0, J.",
+    "user": "`user`: the work that it does, Q . qd, J.",
+}
+
+COMPILED = """## In Python
+
+The function may come from C or C++, or be compiled by numba:
+
+```python
+import ctypes
+import pendcore as pc
+
+DOUBLES = ctypes.POINTER(ctypes.c_double)
+FORCES = ctypes.CFUNCTYPE(
+    None, ctypes.c_double, ctypes.c_int, DOUBLES, DOUBLES, DOUBLES, ctypes.c_void_p
+)
+
+
+@FORCES
+def damp(t, n, q, qd, Q, data):  # of numba: numba.cfunc(signature), at full speed
+    for i in range(n):
+        Q[i] -= 0.1 * qd[i]
+
+
+rod = pc.Link(mass=1.0, length=1.0)
+effect = pc.effects.CompiledUser(damp)  # or the address as an int; it keeps `damp` alive
+scene = pc.Scene(links=[rod, rod], effects=[effect])
+sol = pc.simulate(scene, q0=[0.5, 1.0], t_span=(0, 1), ledger=True)
+print(sol.energy().ledger)
+```
+
+`Q` comes zeroed and counts as generalised forces of the absolute angles, N m. `data` is handed on
+as it is: an address, or a NumPy array, whose memory it then is. Nothing checks the address: a wrong
+one ends the process.
+
+A function of C or C++ comes from a library of your own,
+`CompiledUser(ctypes.CDLL("./laws.so").damp)`:
+
+```cpp
+extern "C" void damp(double t, int n, const double* q, const double* qd, double* Q, void* data) {
+  for (int i = 0; i < n; ++i) Q[i] -= 0.1 * qd[i];
+}
+```
+
+    g++ -O2 -shared -fPIC laws.cpp -o laws.so
+
+## In C++
+
+`pendcore::CompiledUser::of(f)` makes an effect of anything that can be called with time, angles,
+rates and forces, the last three as `std::span`; `f` has to outlive the scene.
+[examples/05_own_effect.cpp](../../examples/05_own_effect.cpp) has one.
+"""
+
+
+def pages() -> dict[str, str]:
+    """Return the text of every page by its name."""
+    found = {f"{kind}.md": _page(cls) for kind, cls in KINDS.items()}
+    return {"README.md": _index(), **found}
+
+
+def kinds_table(folder: str = "effects/") -> str:
+    """Return a table of the kinds, their keys and their pages."""
+    rows = ["| kind | keys | |", "|---|---|---|"]
+    for kind, cls in KINDS.items():
+        if not issubclass(cls, OwnEffect):
+            keys = ", ".join(f"`{p.name}`" for p in cls.description.parameters)
+            rows.append(f"| [`{kind}`]({folder}{kind}.md) | {keys} | {cls.description.sentence} |")
+    return "\n".join(rows) + "\n"
+
+
+def examples(cls: type[Effect]) -> list[Effect]:
+    """Return effects to show: those above, or one of any values that are allowed."""
+    names = {name: getattr(pc.effects, name) for name in pc.effects.__all__}
+    kind = cls.description.kind
+    if kind in EXAMPLES:
+        return [eval(text, names) for text in EXAMPLES[kind]]
+    values = {p.name: _some(p) for p in cls.description.parameters if p.required}
+    more = [p for p in cls.description.parameters if p.optional]
+    while True:
+        try:
+            return [cls(**values)]
+        except ValueError:  # some of what may be left out is needed
+            optional = more.pop(0)
+            values[optional.name] = _some(optional)
+
+
+def _some(parameter: Parameter) -> Any:
+    """Return a value that a parameter may have."""
+    if parameter.part:
+        cls = getattr(pc.effects, parameter.part)
+        return cls(**{p.name: _some(p) for p in cls.description.parameters if p.required})
+    whole = {"int": 1, "pair": (1.0, 1.0), "floats": (1.0, 2.0)}
+    return whole.get(parameter.type, 1.0)
+
+
+def _page(cls: type[Effect]) -> str:
+    return "\n".join(_sections(cls.description, cls))
+
+
+def _sections(told: Description, cls: type[Effect]) -> Iterator[str]:
+    yield f"# {told.name}"
+    yield ""
+    yield f"<!-- Written by docs/write_effects.py from what the core says of `{told.kind}`. -->"
+    yield ""
+    yield told.sentence
+    yield ""
+    yield f"    {told.law}"
+    yield ""
+    yield f"Source: {told.source}. The symbols are those of [conventions.md](../conventions.md)."
+    yield ""
+    yield from _table(told)
+    for part in dict.fromkeys(p.part for p in told.parameters if p.part):
+        described = getattr(pc.effects, part).description
+        yield f"`{part}`: {described.sentence}"
+        yield ""
+        yield from _table(described)
+    if told.kind == "compiled_user":
+        yield COMPILED
+    else:
+        yield "## In Python"
+        yield ""
+        yield f"```python\n{_python(examples(cls)[0], cls)}```"
+        yield ""
+    if issubclass(cls, OwnEffect):
+        yield "## In a case file"
+        yield ""
+        yield "No file can hold a function: no case file, no saved run, no pickle."
+    else:
+        yield "## In a case file"
+        yield ""
+        tables = "\n".join(map(_toml, examples(cls)))
+        yield f"```toml\n{tables}```"
+    yield ""
+    yield "## In the ledger"
+    yield ""
+    yield BOOKED[told.account]
+    yield ""
+    yield "[All effects](README.md)"
+    yield ""
+
+
+def _table(told: Description) -> Iterator[str]:
+    yield "| parameter | symbol | unit | default | allowed | |"
+    yield "|---|---|---|---|---|---|"
+    for p in told.parameters:
+        default = "needed" if p.required else "none" if p.optional else f"`{p.default!r}`"
+        symbol = f"`{p.symbol}`" if p.symbol else ""
+        sentence = p.sentence.replace("|", "\\|")
+        yield f"| `{p.name}` | {symbol} | {p.unit} | {default} | {p.range} | {sentence} |"
+    yield ""
+
+
+def _python(effect: Effect, cls: type[Effect]) -> str:
+    shown = EXAMPLES[effect.kind][0] if isinstance(effect, OwnEffect) else repr(effect)
+    for name in pc.effects.__all__:
+        shown = shown.replace(f"{name}(", f"pc.effects.{name}(")
+    return f"""\
+import pendcore as pc
+
+rod = pc.Link(mass=1.0, length=1.0)
+effect = {shown}
+scene = pc.Scene(links=[rod, rod], effects=[effect])
+sol = pc.simulate(scene, q0=[0.5, 1.0], t_span=(0, 1), ledger=True)
+print(sol.energy().ledger)
+"""
+
+
+def _toml(effect: Effect) -> str:
+    """Return the table of an effect, as a case writes it."""
+    rod = pc.Link(mass=1.0, length=1.0)
+    whole = pc.Case(scene=pc.Scene(links=[rod, rod], effects=[effect]), q0=0, t_span=(0, 1))
+    text = whole.to_toml()
+    return text[text.index("[[effect]]") : text.index("\n[start]")]
+
+
+def _index() -> str:
+    losses = ", ".join(f"`{name}`" for name in sorted(LOSSES))
+    rows = ["| effect | kind | |", "|---|---|---|"]
+    for kind, cls in KINDS.items():
+        told = cls.description
+        rows.append(f"| [{told.name}]({kind}.md) | `{kind}` | {told.sentence} |")
+    table = "\n".join(rows)
+    return f"""\
+# Effects
+
+<!-- Written by docs/write_effects.py from the core's list of effects. -->
+
+A scene simulates gravity and the effects that it lists, and nothing else; an effect that it does
+not list costs nothing. Each may act on any joint or link, and there may be several of a kind. The
+torque `tau_j` at joint j acts on link j, and `-tau_j` on link j-1; `phi_j = q_j - q_(j-1)` is the
+angle of joint j, `w` its rate. `scene.explain()` says what a scene has and has not, and what each
+effect costs.
+
+{table}
+
+With `pc.simulate(..., ledger=True)`, `sol.energy().ledger` tells where the energy went: {losses}
+are losses, the other entries work done on the chain, and `residual` is what the balance leaves
+over.
+
+[add_an_effect.md](../add_an_effect.md) says how to add one to the core.
+"""

@@ -1,0 +1,39 @@
+"""Writes what is made from the descriptions of the effects: run it after adding one.
+
+    python docs/write_effects.py
+
+It writes python/pendcore/effects.pyi, the pages in docs/effects, and the table of kinds in
+docs/case_files.md. A test compares them with what it would write.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from effect_pages import kinds_table, pages
+from effect_stub import stub
+
+ROOT = Path(__file__).parents[1]
+BEGIN, END = "<!-- kinds: begin -->\n", "<!-- kinds: end -->"
+
+
+def with_kinds(text: str) -> str:
+    """Return the reference of case files with the table of kinds as it should be."""
+    before, rest = text.split(BEGIN)
+    return before + BEGIN + kinds_table() + END + rest.split(END)[1]
+
+
+def written() -> dict[Path, str]:
+    """Return every file and its text."""
+    files = {ROOT / "docs/effects" / name: text for name, text in pages().items()}
+    files[ROOT / "python/pendcore/effects.pyi"] = stub()
+    case_files = ROOT / "docs/case_files.md"
+    files[case_files] = with_kinds(case_files.read_text())
+    return files
+
+
+if __name__ == "__main__":
+    for path, text in written().items():
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(text)
+        print(path.relative_to(ROOT))

@@ -1,0 +1,94 @@
+"""A chain with the effects of a scene: its motion, its energy, and where the energy goes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from reference.arithmetic import DOUBLE, Arithmetic, Number
+from reference.conserved import Energy, energy_of_links
+from reference.effects.law import Law
+from reference.instant import AT_REST, Instant
+from reference.loads import Loads
+from reference.newton_euler import Body, Equations, Motion, chain_equations, motion_of
+
+# What the ledger books as lost; the other entries are work done on the chain.
+LOSSES = {"viscous", "dry", "drag"}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Rig:
+    """What a scene describes, as the reference takes it."""
+
+    bodies: Sequence[Body]
+    gravity: float
+    effects: Sequence[Law] = ()
+    arithmetic: Arithmetic = DOUBLE
+
+    def instant(self, t: Number, q: Sequence[Number], qd: Sequence[Number]) -> Instant:
+        """Where the chain is; the pivot is where it is driven to."""
+        pivots = [effect.pivot(t, self.arithmetic) for effect in self.effects]
+        driven = next((pivot for pivot in pivots if pivot is not None), AT_REST)
+        return Instant(
+            bodies=self.bodies,
+            gravity=self.gravity,
+            q=q,
+            qd=qd,
+            t=t,
+            pivot=driven,
+            arithmetic=self.arithmetic,
+        )
+
+    def loads(self, instant: Instant) -> Loads:
+        """Let every effect act."""
+        acceleration, size = instant.pivot.acceleration, instant.pivot.size
+        loads = Loads(len(self.bodies), pivot_acceleration=acceleration, pivot_size=size)
+        for effect in self.effects:
+            effect.act(instant, loads)
+        return loads
+
+    def equations(self, instant: Instant) -> Equations:
+        """Write the Newton-Euler equations with every load."""
+        q, qd = instant.q, instant.qd
+        loads = self.loads(instant)
+        return chain_equations(self.bodies, self.gravity, q, qd, loads, self.arithmetic)
+
+    def motion(self, t: Number, q: Sequence[Number], qd: Sequence[Number]) -> Motion:
+        """Solve the Newton-Euler equations with every load."""
+        instant = self.instant(t, q, qd)
+        unknowns = self.equations(instant).solve(self.arithmetic)
+        return motion_of(unknowns, self.bodies, q, qd, self.loads(instant), self.arithmetic)
+
+    def energy(self, t: Number, q: Sequence[Number], qd: Sequence[Number]) -> Energy:
+        """Energy of the links and of what the effects store."""
+        instant = self.instant(t, q, qd)
+        kinetic, potential = energy_of_links(instant)
+        for effect in self.effects:
+            kinetic += effect.kinetic(instant)
+            potential += effect.potential(instant)
+        return Energy(kinetic, potential)
+
+    def shares(self, t: Number, q: Sequence[Number], qd: Sequence[Number]) -> dict[str, Number]:
+        """Power of every entry of the ledger, W; losses count as positive."""
+        instant, motion = self.instant(t, q, qd), self.motion(t, q, qd)
+        shares: dict[str, Number] = {}
+        for effect in self.effects:
+            for entry, power in effect.shares(instant, motion).items():
+                shares[entry] = shares.get(entry, 0) + power
+        return shares
+
+    def mass_matrix(self, q: Sequence[Number]) -> list[list[Number]]:
+        """Return the second derivatives of the kinetic energy by the rates: M, kg m^2."""
+        n = len(self.bodies)
+
+        def kinetic(*turning: int) -> Number:
+            return self.energy(0, q, [turning.count(k) for k in range(n)]).kinetic
+
+        still, single = kinetic(), [kinetic(i) for i in range(n)]
+        # Twice the rate of one link is four times its own part: a second difference in each entry.
+        return [[kinetic(i, j) - single[i] - single[j] + still for j in range(n)] for i in range(n)]
+
+
+def balance(shares: dict[str, Number]) -> Number:
+    """Return how fast kinetic and potential energy grow together, from the ledger's entries."""
+    return sum(-power if entry in LOSSES else power for entry, power in shares.items())

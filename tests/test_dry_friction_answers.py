@@ -1,0 +1,118 @@
+"""Dry friction that slides, on one rod: where it stops, when it stops, and when it never starts.
+
+Without gravity unless a test says otherwise; J is the rod's moment of inertia about the pivot.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import mpmath  # type: ignore[import-untyped]
+import numpy as np
+import pendcore as pc
+import pytest
+
+M, L, G = 1.7, 0.6, 9.81
+J = M * L**2 / 3
+
+
+def rod(*effects: Any, gravity: float = 0.0) -> pc.Scene:
+    return pc.Scene(links=[pc.Link(mass=M, length=L)], gravity=gravity, effects=list(effects))
+
+
+def assert_rests(sol: pc.Solution) -> None:
+    assert sol.status == "at_rest"
+    assert sol.success
+    assert sol.qd[-1] == 0.0
+
+
+@pytest.mark.parametrize("w0", [3.0, -3.0, 1e-3, 1e4])
+@pytest.mark.parametrize("rtol", [1e-3, 1e-9, 1e-12])
+def test_constant_friction_stops_the_rod_after_its_momentum_over_the_friction(
+    w0: float, rtol: float
+) -> None:
+    friction = pc.effects.DryJointFriction(joint=1, coulomb=0.4)
+    stop = J * abs(w0) / 0.4
+    sol = pc.simulate(rod(friction), 0.2, w0, (0, 2 * stop), rtol=rtol)
+    assert_rests(sol)
+    assert sol.t[-1] == pytest.approx(stop, rel=1e-12)
+    assert sol.q[-1, 0] - 0.2 == pytest.approx(w0 * stop / 2, rel=1e-11)
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-9, 1e-12])
+@pytest.mark.parametrize(
+    ("static", "stribeck_velocity", "exponent"),
+    [(0.8, 0.1, 2.0), (2.0, 0.01, 2.0), (2.0, 0.5, 1.0), (1.0, 0.1, 0.5 + 1.0)],
+)
+def test_with_stribecks_law_it_stops_a_little_sooner(
+    static: float, stribeck_velocity: float, exponent: float, rtol: float
+) -> None:
+    """A step that strides over the last stretch, where friction rises, comes too late."""
+    w0, coulomb = 3.0, 0.4
+    friction = pc.effects.DryJointFriction(
+        joint=1,
+        coulomb=coulomb,
+        static=static,
+        stribeck_velocity=stribeck_velocity,
+        exponent=exponent,
+    )
+
+    def torque(w: Any) -> Any:
+        return coulomb + (static - coulomb) * mpmath.exp(-((w / stribeck_velocity) ** exponent))
+
+    # Dense where the friction changes; 10 Stribeck velocities on, the rest is a rational.
+    pieces = [0.0, *(stribeck_velocity * x for x in (0.25, 0.5, 1, 2, 4, 10, 20)), w0]
+    pieces = sorted(x for x in pieces if x <= w0)
+    stop = float(mpmath.quad(lambda w: J / torque(w), pieces))
+    sol = pc.simulate(rod(friction), 0.2, w0, (0, 10), rtol=rtol)
+    assert_rests(sol)
+    assert sol.t[-1] == pytest.approx(stop, rel=max(1e-11, 3 * rtol))
+
+
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("amplitude", [1.03, 1.08, 0.06, 0.7])
+def test_a_rod_on_a_spring_with_friction_swings_less_by_the_same_each_time(
+    amplitude: float, side: int
+) -> None:
+    """Turning points A, -(A - 2 tc/k), ...; at rest for good once k abs(A) <= tc."""
+    stiffness, coulomb, rest = 2.0, 0.1, 0.3
+    spring = pc.effects.TorsionalSpring(joint=1, stiffness=stiffness, rest_angle=rest)
+    friction = pc.effects.DryJointFriction(joint=1, coulomb=coulomb)
+    half = np.pi * np.sqrt(J / stiffness)
+    turns = [amplitude]
+    while stiffness * abs(turns[-1]) > coulomb:
+        turns.append(-(turns[-1] - np.sign(turns[-1]) * 2 * coulomb / stiffness))
+    scene = rod(spring, friction)
+    sol = pc.simulate(scene, rest + side * amplitude, 0, (0, 20), rtol=1e-12, atol=1e-14)
+    assert_rests(sol)
+    assert sol.t[-1] == pytest.approx(half * (len(turns) - 1), rel=1e-10)
+    at_turns = np.minimum(half * np.arange(len(turns)), sol.t[-1])
+    np.testing.assert_allclose(side * (sol(at_turns)[0] - rest), turns, atol=1e-10)
+    for turn in at_turns:
+        assert np.abs(sol.t - turn).min() < 1e-9  # a point that no step strides over
+
+
+@pytest.mark.parametrize("q", [0.0, 0.9, 2.5, -2.0])
+def test_friction_holds_a_rod_at_rest_if_and_only_if_it_can(q: float) -> None:
+    needed = abs(M * G * L / 2 * np.cos(q))
+    for share, holds in ((1 + 1e-9, True), (1 - 1e-9, False)):
+        friction = pc.effects.DryJointFriction(joint=1, coulomb=share * needed)
+        sol = pc.simulate(rod(friction, gravity=G), q, 0, (0, 1.0))
+        if holds:
+            assert_rests(sol)
+            assert sol.t[-1] == 0.0
+            assert sol.q[-1, 0] == q
+        else:
+            assert sol.status == "finished" or sol.t[-1] > 0.0
+            assert np.sign(sol.q[-1, 0] - q) == np.sign(np.cos(q))
+
+
+def test_static_friction_above_the_sliding_one_holds_and_once_broken_does_not() -> None:
+    torque = pc.effects.Motor(joint=1, constant=0.5)
+    friction = pc.effects.DryJointFriction(joint=1, coulomb=0.4, static=0.6, stribeck_velocity=0.01)
+    scene = rod(torque, friction)
+    assert_rests(pc.simulate(scene, 0.0, 0.0, (0, 1)))
+    slid = pc.simulate(scene, 0.0, 0.1, (0, 10), rtol=1e-10)
+    assert slid.status == "finished"
+    # In sliding 0.1 N m are left over; the Stribeck peak is passed from above within 0.01 rad/s.
+    assert slid.qd[-1, 0] == pytest.approx(0.1 + 0.1 * 10 / J, rel=1e-6)
