@@ -40,7 +40,7 @@ template <class Row>
 void print(double qd) {
   const MagneticBrake brake{.joint = 1, .peak = 0.3, .critical_rate = 2.0};
   MagneticBrake::Law<Row> law;
-  brake.put(law, 0);
+  brake.put(law, 0, 1.0);
   const RowAt<Row> at{.t = 0.0, .q = Constants<Row>::of(1.0), .qd = Constants<Row>::of(qd)};
   RowLoads<Row> loads;
   law.add(at, loads);

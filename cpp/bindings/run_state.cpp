@@ -58,6 +58,8 @@ class Reader {
   void operator()(const std::string& key, std::vector<int>& values) const {
     values.clear();
     for (const double x : numbers(key.c_str(), fields_[py::str(key)])) {
+      if (!(std::abs(x) <= 1e9))
+        throw py::value_error(key + ": is not what a solution keeps there");
       values.push_back(static_cast<int>(x));
     }
   }
@@ -191,7 +193,14 @@ std::string json_of_effects(const Scene& scene) {
 std::vector<Effect> effects_of_json(const std::string& json) {
   std::vector<Effect> effects;
   const py::object listed = py::module_::import("json").attr("loads")(json);
-  for (const py::handle effect : listed) effects.push_back(make_effect(effect));
+  for (const py::handle effect : listed) {
+    const auto kind = effect.cast<std::pair<std::string, py::object>>().first;
+    // A file that could name an address could have anything called.
+    if (kind == "user" || kind == CompiledUser::info.kind) {
+      throw py::value_error("effects: " + kind + ": a function cannot come from a file");
+    }
+    effects.push_back(make_effect(effect));
+  }
   return effects;
 }
 

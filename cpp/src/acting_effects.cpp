@@ -82,13 +82,13 @@ bool is_couple(const Kind& effect) {
 template <class Row>
 ActingEffects<Row>::ActingEffects(const Scene& scene)
     : EffectsInForce(scene), places_(effects.size()) {
-  struct Law {
+  struct Shared {  // a law that effects of one kind and group on one row share
     int kind, row;
     double group;
     unsigned taken;  // lanes
     void* law;
   };
-  std::vector<Law> laws;
+  std::vector<Shared> laws;
   std::size_t pivots_so_far = 0;
   for (std::size_t i = 0; i < effects.size(); ++i) {
     std::visit(
@@ -109,9 +109,9 @@ ActingEffects<Row>::ActingEffects(const Scene& scene)
             if (is_couple(effect)) return;
             using KindLaw = typename Kind::template Law<Row>;
             const int place = place_of(effect);
-            const Law wanted{static_cast<int>(effects[i].index()), place / width, group_of(effect),
-                             1U << (place % width), nullptr};
-            auto found = std::ranges::find_if(laws, [&](const Law& law) {
+            const Shared wanted{static_cast<int>(effects[i].index()), place / width,
+                                group_of(effect), 1U << (place % width), nullptr};
+            auto found = std::ranges::find_if(laws, [&](const Shared& law) {
               return law.kind == wanted.kind && law.row == wanted.row &&
                      law.group == wanted.group && (law.taken & wanted.taken) == 0;
             });
@@ -129,17 +129,13 @@ ActingEffects<Row>::ActingEffects(const Scene& scene)
             found->taken |= wanted.taken;
             places_[i] = {found->law, place % width};
             auto& law = *static_cast<KindLaw*>(found->law);
-            if constexpr (requires { effect.put(law, 0, 1.0); }) {
-              effect.put(law, place % width, scene.links[place].length);
-              has_forces = true;
-            } else {
-              effect.put(law, place % width);
-            }
+            effect.put(law, place % width, scene.links[place].length);
+            if constexpr (requires { Kind::adds_forces; }) has_forces |= Kind::adds_forces;
           }
         },
         effects[i]);
   }
-  for (const Law& law : laws) entries.push_back({law.kind, law.row, law.law});
+  for (const Shared& law : laws) entries.push_back({law.kind, law.row, law.law});
   finish_waves();
   if constexpr (width == 2) find_two_waves(scene);
   for (std::size_t i = 0; i < effects.size(); ++i) {

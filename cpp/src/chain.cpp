@@ -18,8 +18,9 @@ Chain::Chain(const Scene& scene, std::shared_ptr<ActingEffects<Pack<4>>> effects
 
   const std::size_t room = padded_ + 8;
   for (std::vector<double>* array :
-       {&length_, &mass_moment_, &q_, &qd_, &s_, &c_, &centripetal_, &center_, &cc_, &ss_, &sc_,
-        &cos_, &sin_, &couple_, &torque_, &fx_, &fy_, &vx_, &vy_}) {
+       {&length_, &mass_moment_, &q_,  &qd_, &s_,   &c_,   &centripetal_,
+        &center_, &cc_,          &ss_, &sc_, &cos_, &sin_, &couple_,
+        &torque_, &fx_,          &fy_, &vx_, &vy_,  &user_}) {
     array->assign(room, 0.0);
   }
   in(c_)[-1] = 1.0;

@@ -72,10 +72,8 @@ PivotMotion DrivenPivot::at(double t) const {
     }
   }
   if (!spline) return motion;
-  // At the last point itself the piece before it holds.
   const int last = static_cast<int>(spline->t.size()) - 2;
-  int piece = piece_at(spline->t, t, true);
-  if (piece == last + 1 && t == spline->t.back()) piece = last;
+  const int piece = piece_at(spline->t, t, true);
   for (int axis = 0; axis < 2; ++axis) {
     const std::vector<double>& values = axis == 0 ? spline->x : spline->y;
     const std::vector<double>& known = axis == 0 ? spline->xdd : spline->ydd;

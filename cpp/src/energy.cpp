@@ -5,15 +5,6 @@
 #include "pendcore/message.hpp"
 
 namespace pendcore {
-namespace {
-
-/// Of joint j, counted from 1: x_j - x_{j-1}.
-double relative(std::span<const double> x, int joint) {
-  return joint > 1 ? x[joint - 1] - x[joint - 2] : x[0];
-}
-
-}  // namespace
-
 double kinetic_energy(const Scene& scene, double t, std::span<const double> q,
                       std::span<const double> qd) {
   const std::size_t n = scene.links.size();
@@ -40,7 +31,7 @@ double kinetic_energy(const Scene& scene, double t, std::span<const double> q,
     twice += payload.inertia * qd[n - 1] * qd[n - 1];
   }
   for (const RotorInertia& rotor : effects_of<RotorInertia>(scene)) {
-    const double phid = relative(qd, rotor.joint);
+    const double phid = relative(qd.data(), rotor.joint);
     twice += rotor.armature * phid * phid;
   }
   return 0.5 * twice;
@@ -60,7 +51,7 @@ double potential_energy(const Scene& scene, double t, std::span<const double> q)
     std::visit(
         [&](const auto& one) {
           if constexpr (requires { one.potential(0.0); })
-            kept += one.potential(relative(q, one.joint));
+            kept += one.potential(relative(q.data(), one.joint));
         },
         effect);
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "pendcore/dynamics/chain_recursion.hpp"
+#include "pendcore/dynamics/kinematics.hpp"
 
 namespace pendcore {
 namespace {
@@ -76,9 +77,8 @@ void choose_modes(EffectsInForce& effects, double t, const double* q, const doub
             double phi = 0.0;
             double phid = 0.0;
             if constexpr (requires { effect.joint; }) {
-              const int j = effect.joint - 1;
-              phi = j > 0 ? q[j] - q[j - 1] : q[j];
-              phid = j > 0 ? qd[j] - qd[j - 1] : qd[j];
+              phi = relative(q, effect.joint);
+              phid = relative(qd, effect.joint);
             }
             effects.put_mode(i, effect.mode_at(t, phi, phid, forward));
           }

@@ -34,7 +34,7 @@ Inertia::Inertia(const Scene& scene) {
 }
 
 double Inertia::coupling(std::size_t i, std::size_t j) const {
-  return i == j ? diagonal[i] : length[std::min(i, j)] * first_moment[std::max(i, j)];
+  return length[std::min(i, j)] * first_moment[std::max(i, j)];
 }
 
 void mass_matrix(const Inertia& inertia, std::span<const double> q, std::span<double> matrix) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <new>
 #include <optional>
 
 #include "pendcore/integrate/guards.hpp"
@@ -91,168 +92,260 @@ void count_accepted(Statistics& statistics, double h, bool cut, bool at_max_step
   statistics.max_step = first ? size : std::max(statistics.max_step, size);
 }
 
+constexpr double rounding = std::numeric_limits<double>::epsilon();
+
+class Run {
+ public:
+  Run(Stepper& stepper, Position& position, Position& resumable, const Limits& limits,
+      Observer& observer, Breaks* breaks)
+      : stepper_(stepper),
+        position_(position),
+        resumable_(resumable),
+        limits_(limits),
+        observer_(observer),
+        breaks_(breaks),
+        method_(stepper.info()),
+        watch_(limits, position.t.high),
+        evaluations_before_(stepper.evaluations - position.statistics.nfev),
+        state_(stepper.dimension()),
+        rate_(stepper.dimension()) {
+    if (breaks != nullptr) guards_.emplace(stepper, *breaks);
+  }
+
+  Ending go() {
+    if (const int bad = bad_component(position_.dydt); bad >= 0) {
+      return end_with(Status::non_finite, bad);
+    }
+    try {
+      while (true) {
+        if (const auto status = step()) return end_with(*status, bad_);
+      }
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (...) {  // what a function of the user's throws
+      Ending ending = end_with(Status::callback_error);
+      ending.error = std::current_exception();
+      return ending;
+    }
+  }
+
+ private:
+  /// The time that the next step may not go beyond.
+  struct Target {
+    double t;
+    double left;    ///< until then
+    bool is_break;  ///< of the law's; otherwise the end of the interval
+    bool is_in_reach;
+  };
+
+  /// Tries one; a status if the run ends.
+  std::optional<Status> step() {
+    const double t = position_.t.high;
+    if (difference(limits_.t_end, position_.t) == 0.0) return Status::finished;
+    if (attempts_ == limits_.max_steps) return Status::max_steps;
+    if (const Status clock = watch_.look(t); clock != Status::finished) return clock;
+
+    const Target target = next_target();
+    double h = position_.h;
+    if (target.is_in_reach) {
+      h = target.left;
+      if (!target.is_break) end_in_sight();
+    } else if (std::abs(h) <= 10.0 * rounding * std::abs(t) || std::abs(h) < 1e-300) {
+      return trial_was_finite_ ? Status::step_too_small : Status::non_finite;
+    }
+
+    ++attempts_;
+    Attempt attempt = stepper_.attempt(t, h, position_.control.gain(method_));
+    look_for_bad_component(attempt, t + h);
+    if (!trial_was_finite_ || !(attempt.squared_error <= 1.0 || limits_.fixed_step)) {
+      if (limits_.fixed_step) {
+        ++position_.statistics.rejected;
+        return Status::non_finite;
+      }
+      reject(h * position_.control.reject(method_, attempt));
+      return {};
+    }
+
+    Crossing crossing;
+    if (guards_) crossing = guards_->first(h);
+    if (crossing.guard >= 0) {
+      if (crossing.theta * std::abs(h) <= 2.0 * rounding * std::abs(t))
+        return change_at_once(crossing);
+      const double whole = h;
+      h = crossing.theta * whole;
+      const bool is_located = locate(*guards_, crossing.guard, h, attempt);
+      if (!limits_.fixed_step) {
+        // What the whole step strode over, the shorter one may see: friction's peak at rest.
+        if (!is_located) {
+          reject(0.5 * crossing.theta * whole);
+          return {};
+        }
+        if (!(attempt.squared_error <= 1.0)) {
+          reject(h * position_.control.reject(method_, attempt));
+          return {};
+        }
+      }
+    }
+    crossings_at_once_ = 0;
+    return accept(target, crossing.guard, h, attempt);
+  }
+
+  Target next_target() const {
+    const double h = position_.h;
+    // The last step may be a hundredth longer (Hairer's rule), but not longer than max_step, the
+    // last bits of t aside: a step of those alone would not be one.
+    const double reach =
+        std::min(1.01 * std::abs(h), std::max(std::abs(h), limits_.max_step)) + last_bits();
+    Target target{limits_.t_end, difference(limits_.t_end, position_.t), false, false};
+    if (breaks_ != nullptr) {
+      const double next = breaks_->next_time(position_.t.high);
+      if ((limits_.t_end - next) * target.left > 0.0) {
+        target = {next, difference(next, position_.t), true, false};
+      }
+    }
+    target.is_in_reach = std::abs(target.left) <= reach;
+    return target;
+  }
+  double last_bits() const {
+    return 4.0 * rounding * std::max(std::abs(position_.t.high), std::abs(limits_.t_end));
+  }
+
+  void end_in_sight() {
+    if (!cut_before_) {
+      write_down(resumable_);
+      observer_.end_in_sight();
+    }
+    cut_before_ = true;
+  }
+
+  void look_for_bad_component(const Attempt& attempt, double t_new) {
+    trial_was_finite_ = true;
+    bad_ = -1;
+    if (std::isfinite(attempt.squared_error)) return;
+    // Beyond the square root of the largest double the norm overflows, and nothing is wrong.
+    bad_ = bad_component_of_trial(stepper_, t_new);
+    trial_was_finite_ = bad_ < 0 && !std::isnan(attempt.squared_error);
+  }
+
+  void reject(double h) {
+    ++position_.statistics.rejected;
+    position_.h = h;
+    position_.h_is_max_step = false;
+  }
+
+  /// The law changes where the step begins.
+  std::optional<Status> change_at_once(const Crossing& crossing) {
+    if (++crossings_at_once_ > 4 * breaks_->guards()) {
+      chatters_ = true;
+      return Status::step_too_small;
+    }
+    return change_law(crossing.guard);
+  }
+
+  /// Redoes the step to where the guard is zero, to the last bits of time: the state there comes
+  /// from the method, not from the interpolant. False where no such step is found.
+  bool locate(Guards& guards, int guard, double& h, Attempt& attempt) {
+    const double t = position_.t.high;
+    double before = std::numeric_limits<double>::infinity();
+    for (int polish = 0; polish < 10; ++polish) {
+      attempt = stepper_.attempt(t, h, position_.control.gain(method_));
+      const double correction = guards.miss(guard, position_.t, h) * h;
+      const double size = std::abs(correction);
+      if (!(size <= 0.5 * std::abs(h))) return false;
+      if (size <= 4.0 * rounding * std::max(std::abs(t), std::abs(h))) return true;
+      // The guard's own rounding can be more than that, where it crosses zero slowly.
+      if (size <= 1e-6 * std::abs(h) && size >= 0.5 * before) return true;
+      before = size;
+      h -= correction;
+    }
+    return false;
+  }
+
+  std::optional<Status> accept(const Target& target, int guard, double h, const Attempt& attempt) {
+    TwoDouble t_new = position_.t + h;
+    bool lands = target.is_in_reach;
+    if (guard >= 0) {
+      // A guard's zero within the last bits of the target is there too.
+      lands = lands && difference(target.t, t_new) * std::copysign(1.0, h) <= last_bits();
+    }
+    if (lands) t_new = {target.t, 0.0};
+    const bool law_changes = guard >= 0 || (lands && target.is_break);
+    count_accepted(position_.statistics, h, target.is_in_reach || law_changes,
+                   position_.h_is_max_step);
+    test_stiffness(stepper_, h, position_);
+    if (guard >= 0 || (breaks_ != nullptr && breaks_->settles_every_step())) {
+      stepper_.get_new_state(state_.data());
+      if (breaks_->settle(guard, t_new.high, state_.data())) stepper_.set_new_state(state_.data());
+    }
+    observer_.step_accepted(stepper_, position_.t, h, t_new.high);
+    stepper_.accept(t_new.high);
+    position_.t = t_new;
+    if (!law_changes) {
+      if (limits_.fixed_step) return {};
+      position_.h = h * position_.control.accept(method_, attempt);
+      position_.h_is_max_step = std::abs(position_.h) >= limits_.max_step;
+      if (position_.h_is_max_step) position_.h = std::copysign(limits_.max_step, h);
+      return {};
+    }
+    if (guard >= 0) {
+      if (const auto status = change_law(guard)) return status;
+    }
+    return lands && target.is_break ? change_law(-1) : std::nullopt;
+  }
+
+  /// At the state that the stepper stands at. The step that was to be tried is tried next.
+  std::optional<Status> change_law(int guard) {
+    const double t = position_.t.high;
+    stepper_.get_state(state_.data());
+    const Status status = breaks_->cross(guard, t, state_.data());
+    if (status != Status::finished) return status;
+    stepper_.evaluate(t, state_.data(), rate_.data());
+    stepper_.start(state_.data(), rate_.data());
+    position_.control = StepControl{};
+    return {};
+  }
+
+  void write_down(Position& target) const {
+    target = position_;
+    target.statistics.nfev = stepper_.evaluations - evaluations_before_;
+    stepper_.get_state(target.y.data());
+    stepper_.get_derivative(target.dydt.data());
+    if (breaks_ != nullptr) target.modes = breaks_->modes();
+  }
+  Ending end_with(Status status, int bad = -1) {
+    write_down(position_);
+    if (!cut_before_) resumable_ = position_;
+    return Ending{.status = status,
+                  .cut = cut_before_,
+                  .bad = status == Status::non_finite ? bad : -1,
+                  .chatters = chatters_};
+  }
+
+  Stepper& stepper_;
+  Position& position_;
+  Position& resumable_;
+  const Limits& limits_;
+  Observer& observer_;
+  Breaks* breaks_;
+  const MethodInfo& method_;
+  Watch watch_;
+  std::optional<Guards> guards_;
+  long long evaluations_before_;
+  long long attempts_ = 0;
+  bool cut_before_ = false;  ///< a step was cut to end at t_end: later ones depend on t_end
+  int crossings_at_once_ = 0;
+  bool chatters_ = false;
+  int bad_ = -1;  ///< component of the last trial, while trials are not finite
+  bool trial_was_finite_ = true;
+  std::vector<double> state_;
+  std::vector<double> rate_;
+};
+
 }  // namespace
 
 Ending integrate(Stepper& stepper, Position& position, Position& resumable, const Limits& limits,
                  Observer& observer, Breaks* breaks) {
-  const long long evaluations_before = stepper.evaluations - position.statistics.nfev;
-  auto write_down = [&](Position& target) {
-    target = position;
-    target.statistics.nfev = stepper.evaluations - evaluations_before;
-    stepper.get_state(target.y.data());
-    stepper.get_derivative(target.dydt.data());
-    if (breaks != nullptr) target.modes = breaks->modes();
-  };
-  bool cut_before = false;  // a step was cut to end at t_end: later ones depend on t_end
-  auto end_with = [&](Status status, int bad = -1) {
-    write_down(position);
-    if (!cut_before) resumable = position;
-    return Ending{status, cut_before, bad, nullptr};
-  };
-  std::optional<Guards> guards;
-  if (breaks != nullptr) guards.emplace(stepper, *breaks);
-  std::vector<double> state(stepper.dimension());
-  std::vector<double> rate(stepper.dimension());
-  int crossings_at_once = 0;
-  /// The law changes at the state that the stepper stands at.
-  auto change_law = [&](int guard) {
-    const double t = position.t.high;
-    stepper.get_state(state.data());
-    const Status status = breaks->cross(guard, t, state.data());
-    if (status != Status::finished) return status;
-    stepper.evaluate(t, state.data(), rate.data());
-    stepper.start(state.data(), rate.data());
-    position.control = StepControl{};
-    return status;
-  };
-
-  const MethodInfo& method = stepper.info();
-  Watch watch(limits, position.t.high);
-  int bad = -1;  // component of the last trial, while trials are not finite
-  bool trial_was_finite = true;
-  long long attempts = 0;
-  const double rounding = std::numeric_limits<double>::epsilon();
-
-  if (bad_component(position.dydt) >= 0) {
-    return end_with(Status::non_finite, bad_component(position.dydt));
-  }
-  try {
-    while (true) {
-      const double t = position.t.high;
-      double left = difference(limits.t_end, position.t);
-      if (left == 0.0) return end_with(Status::finished);
-      if (attempts == limits.max_steps) return end_with(Status::max_steps);
-      const Status clock = watch.look(t);
-      if (clock != Status::finished) return end_with(clock);
-
-      // The last step may be a hundredth longer (Hairer's rule), but not longer than max_step, the
-      // last bits of t aside: a step of those alone would not be one.
-      double h = position.h;
-      const double last_bits = 4.0 * rounding * std::max(std::abs(t), std::abs(limits.t_end));
-      const double reach =
-          std::min(1.01 * std::abs(h), std::max(std::abs(h), limits.max_step)) + last_bits;
-      double target = limits.t_end;
-      bool at_break = false;  // the target is a time of the law's, not the end
-      if (breaks != nullptr) {
-        const double next = breaks->next_time(t);
-        at_break = (limits.t_end - next) * left > 0.0;
-        if (at_break) {
-          target = next;
-          left = difference(next, position.t);
-        }
-      }
-      const bool cut = std::abs(left) <= reach;
-      if (cut && at_break) {
-        h = left;
-      } else if (cut) {
-        if (!cut_before) {
-          write_down(resumable);
-          observer.end_in_sight();
-        }
-        cut_before = true;
-        h = left;
-      } else if (std::abs(h) <= 10.0 * rounding * std::abs(t) || std::abs(h) < 1e-300) {
-        return end_with(trial_was_finite ? Status::step_too_small : Status::non_finite, bad);
-      }
-
-      ++attempts;
-      Attempt attempt = stepper.attempt(t, h, position.control.gain(method));
-      if (!std::isfinite(attempt.squared_error)) {
-        // Beyond the square root of the largest double the norm overflows, and nothing is wrong.
-        bad = bad_component_of_trial(stepper, t + h);
-        trial_was_finite = bad < 0 && !std::isnan(attempt.squared_error);
-      } else {
-        trial_was_finite = true;
-        bad = -1;
-      }
-      if (trial_was_finite && (attempt.squared_error <= 1.0 || limits.fixed_step)) {
-        Crossing crossing;
-        const double whole = h;
-        if (guards) {
-          crossing = guards->first(position.t, h);
-          const bool is_now = crossing.theta * std::abs(h) <= 2.0 * rounding * std::abs(t);
-          if (crossing.guard >= 0 && is_now) {
-            // The law changes where the step begins.
-            if (++crossings_at_once > 4 * breaks->guards()) return end_with(Status::step_too_small);
-            const Status status = change_law(crossing.guard);
-            if (status != Status::finished) return end_with(status);
-            continue;
-          }
-          crossings_at_once = 0;
-          if (crossing.guard >= 0) {
-            // Redone to the located time: the state comes from the method, not the interpolant.
-            h = crossing.theta * whole;
-            for (int polish = 0; polish < 6; ++polish) {
-              attempt = stepper.attempt(t, h, position.control.gain(method));
-              const double miss = guards->miss(crossing.guard, position.t, h);
-              if (!(std::abs(miss) <= 0.5)) break;
-              const double better = h - miss * h;
-              if (better == h || std::abs(miss * h) <= rounding * std::abs(t)) break;
-              h = better;
-            }
-            // What the whole step strode over, the shorter one may see: friction's peak at rest.
-            if (!(attempt.squared_error <= 1.0) && !limits.fixed_step) {
-              ++position.statistics.rejected;
-              position.h = h * position.control.reject(method, attempt);
-              position.h_is_max_step = false;
-              continue;
-            }
-          }
-        }
-        const bool breaks_here = crossing.guard >= 0 || (cut && at_break);
-        const TwoDouble t_new = cut && crossing.guard < 0 ? TwoDouble{target, 0.0} : position.t + h;
-        count_accepted(position.statistics, h, cut || breaks_here, position.h_is_max_step);
-        test_stiffness(stepper, h, position);
-        if (crossing.guard >= 0 || (breaks != nullptr && breaks->settles_every_step())) {
-          stepper.get_new_state(state.data());
-          if (breaks->settle(crossing.guard, t_new.high, state.data())) {
-            stepper.set_new_state(state.data());
-          }
-        }
-        observer.step_accepted(stepper, position.t, h, t_new.high);
-        stepper.accept(t_new.high);
-        position.t = t_new;
-        if (breaks_here) {
-          const Status status = change_law(crossing.guard);
-          if (status != Status::finished) return end_with(status);
-          position.h = std::copysign(std::max(std::abs(position.h), std::abs(whole)), whole);
-        } else if (!limits.fixed_step) {
-          position.h = h * position.control.accept(method, attempt);
-          position.h_is_max_step = std::abs(position.h) >= limits.max_step;
-          if (position.h_is_max_step) position.h = std::copysign(limits.max_step, h);
-        }
-      } else {
-        ++position.statistics.rejected;
-        if (limits.fixed_step) return end_with(Status::non_finite, bad);
-        position.h = h * position.control.reject(method, attempt);
-        position.h_is_max_step = false;
-      }
-    }
-  } catch (...) {  // what a function of the user's throws
-    Ending ending = end_with(Status::callback_error);
-    ending.error = std::current_exception();
-    return ending;
-  }
+  return Run(stepper, position, resumable, limits, observer, breaks).go();
 }
 
 }  // namespace pendcore

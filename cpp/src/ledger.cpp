@@ -7,26 +7,14 @@
 namespace pendcore {
 namespace {
 
-template <class Row>
-struct LoadsOfRow {
-  Row couples{}, moments{}, fx{}, fy{};
-  void couple(const Row& tau) { couples += tau; }
-  void generalised(const Row& Q) { moments += Q; }
-  void force(const Row& moment, const Row& x, const Row& y) {
-    moments += moment;
-    fx += x;
-    fy += y;
-  }
-};
-
 /// Calls visit(entry, at, loads) for each law of the effects, if its rows have that width.
 template <class Row, class Visit>
 bool visit_rows(const EffectsInForce& effects, double t, const LinkMemory& links, Visit& visit) {
   const auto* acting = dynamic_cast<const ActingEffects<Row>*>(&effects);
   if (acting == nullptr) return false;
   for (const auto& entry : acting->entries) {
-    const RowInArrays<Row> at(links.arrays(effects), t, entry.row);
-    LoadsOfRow<Row> loads;
+    const RowInArrays<Row> at(links.arrays(), t, entry.row);
+    RowLoads<Row> loads;
     ActingEffects<Row>::add(entry, at, loads);
     visit(entry, at, loads);
   }
@@ -46,6 +34,15 @@ Account account_of(int kind) {
   }(std::make_index_sequence<std::variant_size_v<Effect>>{});
 }
 
+bool has_wind(const Effect& effect) {
+  return std::visit(
+      [](const auto& one) {
+        if constexpr (requires { one.has_wind(); }) return one.has_wind();
+        return false;
+      },
+      effect);
+}
+
 template <class Powers>
 void book(Powers& power, Account account, double value) {
   power[static_cast<std::size_t>(account)] += is_loss(account) ? -value : value;
@@ -58,8 +55,7 @@ std::vector<Account> accounts_of(const Scene& scene) {
   for (const Effect& effect : scene.effects) {
     const Account account = info_of(effect).account;
     if (account != Account::none) found.push_back(account);
-    const auto* drag = std::get_if<RodDrag>(&effect);
-    if (drag != nullptr && drag->wind != std::array{0.0, 0.0}) found.push_back(Account::wind);
+    if (has_wind(effect)) found.push_back(Account::wind);
   }
   std::ranges::sort(found);
   found.erase(std::ranges::unique(found).begin(), found.end());
@@ -118,12 +114,13 @@ void Ledger::add_laws(double t, Powers& power) {
     force_y_ += sum_of_lanes(loads.fy);
     const Account account = account_of(entry.kind);
     double value = sum_of_lanes(all);
-    if (account == Account::drag) {
-      const auto* law = static_cast<const RodDrag::Law<Row>*>(entry.law);
-      const double lost = sum_of_lanes(law->dissipation(at));
-      book(power, Account::wind, value + lost);
-      value = -lost;
-    }
+    ActingEffects<Row>::visit(entry, [&](const auto& law) {
+      if constexpr (requires { law.dissipation(at); }) {
+        const double lost = sum_of_lanes(law.dissipation(at));
+        book(power, Account::wind, value + lost);
+        value = -lost;
+      }
+    });
     book(power, account, value);
   });
 }
@@ -135,9 +132,8 @@ void Ledger::add_couples(double t, Powers& power) const {
           if constexpr (requires { effect.couple(0); }) {
             const auto couple = effect.couple(effects_->modes[i]);
             if (!couple) return;
-            const int j = effect.joint;
-            const double phi = links_.q[j] - links_.q[j - 1];
-            const double phid = links_.qd[j] - links_.qd[j - 1];
+            const double phi = relative(&links_.q[1], effect.joint);
+            const double phid = relative(&links_.qd[1], effect.joint);
             const int wave = effects_->number_of_wave[i];
             const double sine = wave < 0 ? 0.0 : effects_->wave_sine[wave];
             book(power, Kind::info.account, couple->torque(t, phi, phid, sine) * phid);

@@ -7,6 +7,19 @@ namespace {
 
 double sign_of(int mode) { return static_cast<double>(mode); }
 
+/// In 0 <= x < 1, by Newton's method on the sine that the laws use: the same bits everywhere.
+double arc_sine(double x) {
+  double angle = x;
+  for (int i = 0; i < 60; ++i) {
+    double sine, cosine;
+    sine_cosine(angle, sine, cosine);
+    const double better = angle + (x - sine) / cosine;
+    if (better == angle) break;
+    angle = better;
+  }
+  return angle;
+}
+
 }  // namespace
 
 void Motor::check(const std::string& where) const {
@@ -49,8 +62,23 @@ Motor Motor::compiled() const {
   return motor;
 }
 
-void Motor::break_times(std::vector<double>& times) const {
-  if (table) times.insert(times.end(), table->t.begin(), table->t.end());
+double Motor::next_time(double t, bool forward) const {
+  if (table) return next_of(table->t, t, forward);
+  const double none = forward ? never : -never;
+  if (!sinusoid || !is_clipped()) return none;
+  const auto& [amplitude, frequency, phase] = *sinusoid;
+  if (frequency == 0.0) return none;
+  const double pi = 3.14159265358979323846;
+  const double edge = arc_sine(limit / std::abs(amplitude));
+  const double half_waves = std::floor(std::fma(frequency, t, phase) / pi);
+  double next = none;
+  for (int k = -2; k <= 2; ++k) {
+    for (const double side : {edge, -edge}) {
+      const double time = (std::fma(half_waves + k, pi, side) - phase) / frequency;
+      if (forward ? time > t && time < next : time < t && time > next) next = time;
+    }
+  }
+  return next;
 }
 
 int Motor::mode_at(double t, double phi, double phid, bool forward) const {
@@ -59,28 +87,22 @@ int Motor::mode_at(double t, double phi, double phid, bool forward) const {
     const double torque = pd->kp * (pd->reference - phi) - pd->kd * phid;
     return torque > limit ? 1 : torque < -limit ? -1 : 0;
   }
-  if (!sinusoid || !(std::abs(sinusoid->amplitude) > limit)) return 0;
+  if (!sinusoid || !is_clipped()) return 0;
+  // Halfway to where the mode changes next, as t may be such a time itself.
+  const double next = next_time(t, forward);
+  const double middle = std::isfinite(next) ? 0.5 * (t + next) : t;
   double sine, cosine;
-  sine_cosine(std::fma(sinusoid->angular_frequency, t, sinusoid->phase), sine, cosine);
+  sine_cosine(std::fma(sinusoid->angular_frequency, middle, sinusoid->phase), sine, cosine);
   const double torque = sinusoid->amplitude * sine;
   return torque > limit ? 1 : torque < -limit ? -1 : 0;
 }
 
 std::vector<Guard> Motor::guards(int mode) const {
-  if (table || constant || !std::isfinite(limit)) return {};
-  Guard torque;  // the torque without the limit
-  if (pd) {
-    torque = {.offset = pd->kp * pd->reference, .on_phi = -pd->kp, .on_phid = -pd->kd};
-  } else if (sinusoid && std::abs(sinusoid->amplitude) > limit) {
-    torque = {.on_wave = sinusoid->amplitude};
-  } else {
-    return {};
-  }
-  auto guard = [&](double sign, double offset) {
-    return Guard{.offset = sign * torque.offset + offset,
-                 .on_phi = sign * torque.on_phi,
-                 .on_phid = sign * torque.on_phid,
-                 .on_wave = sign * torque.on_wave};
+  if (!pd || !std::isfinite(limit)) return {};
+  auto guard = [&](double sign, double offset) {  // of the torque without the limit
+    return Guard{.offset = sign * pd->kp * pd->reference + offset,
+                 .on_phi = -sign * pd->kp,
+                 .on_phid = -sign * pd->kd};
   };
   if (mode != 0) return {guard(sign_of(mode), -limit)};
   return {guard(-1.0, limit), guard(1.0, limit)};

@@ -29,6 +29,15 @@ Effect effect_of_kind(std::string_view kind) {
   return effect;
 }
 
+std::optional<double> holding_torque(const Effect& effect) {
+  return std::visit(
+      [](const auto& one) -> std::optional<double> {
+        if constexpr (requires { one.holding_torque(); }) return one.holding_torque();
+        return std::nullopt;
+      },
+      effect);
+}
+
 void check_effect(const std::string& where, const Effect& effect) {
   std::visit([&](const auto& one) { check_parameters(where, one); }, effect);
 }

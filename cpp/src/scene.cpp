@@ -64,6 +64,12 @@ void check_effects(const Scene& scene) {
   }
 }
 
+bool has_rotor(const Scene& scene, std::size_t joint) {
+  return std::ranges::any_of(effects_of<RotorInertia>(scene), [&](const RotorInertia& one) {
+    return static_cast<std::size_t>(one.joint) == joint && one.armature > 0;
+  });
+}
+
 }  // namespace
 
 Link Link::uniform_rod(double mass, double length) {
@@ -85,23 +91,32 @@ void check(const Scene& scene) {
   for (std::size_t i = 0; i < n; ++i) check_link(scene.links[i], i, i + 1 == n);
 
   check_effects(scene);
+  // Straight or folded, a chain resists turning least: beta is the mass that the joint of link i
+  // feels across it then, D the inertia of link i about its joint (chain.hpp: D B_nn).
   double carried = 0.0;
-  for (const Payload& payload : effects_of<Payload>(scene)) carried += payload.mass;
+  double payload_inertia = 0.0;
+  for (const Payload& payload : effects_of<Payload>(scene)) {
+    carried += payload.mass;
+    payload_inertia += payload.inertia;
+  }
+  double beta = carried;
   for (std::size_t i = n; i-- > 0;) {
-    const Link& link = scene.links[i];
-    const double about_joint = link.inertia_about_joint() + link.length * link.length * carried;
+    const auto& [m, L, c, own_inertia] = scene.links[i];
+    const double I = own_inertia + (i + 1 == n ? payload_inertia : 0.0);
+    const double about_joint = I + m * c * c + L * L * carried;
     if (!(about_joint > 0 && std::isfinite(about_joint))) {
       refuse(link_name(i) + ": inertia about its joint, with what it carries,", about_joint,
              "finite and > 0 (kg m^2): give it an inertia, or move its mass centre off the joint");
     }
-    const bool next_is_a_point = i + 1 == n || scene.links[i + 1].inertia == 0;
-    if (link.inertia_about_joint() == 0 && next_is_a_point && i + 1 < n) {
+    const double D = I + m * c * c + L * L * beta;
+    if (!(D > 0) && !has_rotor(scene, i + 1)) {
       throw std::invalid_argument(
           link_name(i) +
           ": has neither mass nor inertia about its joint: the mass matrix is singular when it "
           "lines up with the next link: give one of the two an inertia");
     }
-    carried += link.mass;
+    beta = D > 0 ? ((m + beta) * I + m * beta * (L - c) * (L - c)) / D : m + beta;
+    carried += m;
   }
 }
 

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "pendcore/arithmetic/floating_point_environment.hpp"
+#include "pendcore/dynamics/kinematics.hpp"
 #include "pendcore/dynamics/ledger.hpp"
 #include "pendcore/integrate/first_step.hpp"
 #include "pendcore/integrate/methods.hpp"
@@ -87,6 +88,10 @@ std::string message_of(const Ending& ending, const Scene& scene, const Solution&
     return message + " (at t = " + text(solution.t_reached) + " s: " + remark + ")";
   }
   if (text(ending.status).success) return message;
+  if (ending.chatters) {
+    return "no step leads on: the law changes back and forth (at t = " + text(solution.t_reached) +
+           " s): dry friction that reverses at once, or two limits that meet";
+  }
   const bool forward = !(solution.t_end < solution.t0);
   const std::string table = ending.status == Status::non_finite
                                 ? table_that_ends(scene, solution.t_reached, forward)
@@ -105,34 +110,34 @@ std::string message_of(const Ending& ending, const Scene& scene, const Solution&
 /// What the effects of a scene ask of a start and of an interval.
 void check_run(const Scene& scene, const std::vector<double>& q0, const std::vector<double>& qd0,
                double t0, double t_end) {
-  auto of_joint = [](const std::vector<double>& x, int joint) {
-    return joint > 1 ? x[joint - 1] - x[joint - 2] : x[0];
-  };
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
     const std::string where = effect_name(scene, i);
-    if (std::holds_alternative<DryJointFriction>(scene.effects[i]) && t_end < t0) {
+    if (t_end < t0 && holding_torque(scene.effects[i])) {
       throw std::invalid_argument("t_span: runs backward: " + where +
                                   "with dry friction the past is not unique: run it forward");
     }
     const auto* lock = std::get_if<Lock>(&scene.effects[i]);
     if (lock == nullptr) continue;
     const std::string joint = std::to_string(lock->joint);
-    const double phi = of_joint(q0, lock->joint);
+    const double phi = relative(q0.data(), lock->joint);
     if (lock->angle && !(std::abs(phi - *lock->angle) <= 1e-9 * std::max(1.0, std::abs(phi)))) {
       refuse(
           "q0: angle of joint " + joint, phi,
           text(*lock->angle) + " rad, as " + where + "says: start there, or leave its angle out");
     }
-    const double rate = of_joint(qd0, lock->joint);
+    const double rate = relative(qd0.data(), lock->joint);
     if (!(std::abs(rate) <= 1e-12 * std::abs(qd0[lock->joint - 1]))) {
       refuse("qd0: rate of joint " + joint, rate, "0 (rad/s): " + where + "it is locked");
     }
   }
 }
 
+/// Of a solution that goes on: one that has no length yet has no direction either.
+enum class Before { nothing, a_start, steps };
+
 /// From the solution's resumable position to t_end.
 void run(const Scene& scene, Solution& solution, double t_end, const Limits& limits,
-         bool from_the_start) {
+         Before before) {
   const Options& options = solution.options;
   const EquationsOfMotion equations = equations_of_motion(scene);
   const auto stepper = make_stepper(scene, equations, options.method, options.ledger);
@@ -144,7 +149,7 @@ void run(const Scene& scene, Solution& solution, double t_end, const Limits& lim
   stepper->set_tolerances(rtol.data(), atol.data());
 
   Recorder recorder(solution, *stepper);
-  if (!from_the_start && solution.dense.degree != stepper->interpolant_degree()) {
+  if (before != Before::nothing && solution.dense.degree != stepper->interpolant_degree()) {
     throw std::invalid_argument("the dense output of this solution is not that of its method");
   }
   solution.dense.degree = stepper->interpolant_degree();
@@ -152,16 +157,18 @@ void run(const Scene& scene, Solution& solution, double t_end, const Limits& lim
   const double t = position.t.high;
   const bool forward = !(t_end < t);
   Status at_start = Status::finished;
-  if (switching && from_the_start) {
+  const bool begins = before == Before::nothing || (switching && before == Before::a_start);
+  if (switching && begins) {
     at_start = switching->begin(t, position.y.data(), forward);
     position.modes = switching->modes();
   } else if (switching) {
     switching->restore(position.modes, solution.start.data(), forward);
   }
-  if (from_the_start) {
+  if (begins) {
     stepper->evaluate(t, position.y.data(), position.dydt.data());
-    recorder.start(t, position.y);
+    position.statistics.nfev = 0;
   }
+  if (before == Before::nothing) recorder.start(t, position.y);
   stepper->start(position.y.data(), position.dydt.data());
   if (position.h == 0.0 && t != t_end) {
     const double direction = t_end < t ? -1.0 : 1.0;
@@ -173,7 +180,7 @@ void run(const Scene& scene, Solution& solution, double t_end, const Limits& lim
     position.h_is_max_step = options.step || size == options.max_step;
   }
   position.statistics.nfev += stepper->evaluations;
-  Ending ending{at_start, false, -1, nullptr};
+  Ending ending{.status = at_start, .cut = false};
   if (at_start == Status::finished) {
     ending = integrate(*stepper, position, solution.resumable, limits, recorder,
                        switching ? &*switching : nullptr);
@@ -265,7 +272,7 @@ Solution simulate(const Scene& scene, const std::vector<double>& q0, const std::
   start.y.resize(dimension);
   solution.start = start.y;
   start.dydt.resize(dimension);
-  run(scene, solution, t_end, limits_of(options, t_end), true);
+  run(scene, solution, t_end, limits_of(options, t_end), Before::nothing);
   return solution;
 }
 
@@ -282,6 +289,12 @@ Solution resume(const Scene& scene, const Solution& solution, double t_end,
   check(options);
 
   longer.t_end = t_end;
+  const bool has_length = solution.t_end != solution.t0;
+  if (!has_length) {
+    const auto middle = solution.start.begin() + solution.n;
+    check_run(scene, {solution.start.begin(), middle}, {middle, middle + solution.n}, solution.t0,
+              t_end);
+  }
   const auto dimension = static_cast<std::size_t>(longer.dimension);
   const auto degree = static_cast<std::size_t>(longer.dense.degree);
   longer.t.resize(longer.resumable_t);
@@ -292,7 +305,7 @@ Solution resume(const Scene& scene, const Solution& solution, double t_end,
   longer.dense.coefficients.resize(longer.resumable_steps * (degree + 1) * dimension);
   Limits limits = limits_of(options, t_end);
   limits.monitor = monitor;
-  run(scene, longer, t_end, limits, false);
+  run(scene, longer, t_end, limits, has_length ? Before::steps : Before::a_start);
   return longer;
 }
 

@@ -18,8 +18,7 @@ class SceneSystem final : public GeneralSystem {
         equations_(equations),
         n_(static_cast<int>(scene.links.size())) {
     if (quadratures > 0) {
-      const auto effects = equations.effects ? equations.effects : effects_in_force(scene);
-      ledger_ = std::make_unique<Ledger>(scene, effects);
+      ledger_ = std::make_unique<Ledger>(scene, equations.effects);
     }
   }
 

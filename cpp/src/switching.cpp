@@ -1,19 +1,11 @@
 #include "pendcore/switching.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
+#include "pendcore/dynamics/kinematics.hpp"
 #include "pendcore/message.hpp"
 
 namespace pendcore {
-namespace {
-
-const DryJointFriction* friction(const Effect& effect) {
-  return std::get_if<DryJointFriction>(&effect);
-}
-
-}  // namespace
 
 bool Switching::is_needed(const Scene& scene) {
   return std::ranges::any_of(scene.effects, [](const Effect& effect) {
@@ -28,31 +20,15 @@ bool Switching::is_needed(const Scene& scene) {
 }
 
 Switching::Switching(const Scene& scene, const EquationsOfMotion& equations)
-    : scene_(scene),
+    : scene_(compiled(scene)),
       equations_(equations),
       n_(static_cast<int>(scene.links.size())),
-      modes_(scene.effects.size(), 0),
-      lock_angle_(scene.links.size(), std::numeric_limits<double>::quiet_NaN()) {
-  scene_.effects = equations.effects->effects;  // compiled
-  for (const Effect& effect : scene_.effects) {
-    std::visit(
-        [&](const auto& one) {
-          if constexpr (requires { one.break_times(times_); }) one.break_times(times_);
-        },
-        effect);
-  }
-  std::ranges::sort(times_);
-}
-
-void Switching::put_mode(std::size_t i, int mode) {
-  modes_[i] = mode;
-  equations_.effects->put_mode(i, mode);
-}
+      lock_angle_(scene.links.size(), std::numeric_limits<double>::quiet_NaN()) {}
 
 void Switching::restore(const std::vector<int>& modes, const double* start, bool forward) {
   forward_ = forward;
-  for (std::size_t i = 0; i < modes_.size(); ++i) {
-    if (i < modes.size()) put_mode(i, modes[i]);
+  for (std::size_t i = 0; i < std::min(modes.size(), scene_.effects.size()); ++i) {
+    put_mode(i, modes[i]);
   }
   set_locks(start);
   collect_guards();
@@ -61,23 +37,45 @@ void Switching::restore(const std::vector<int>& modes, const double* start, bool
 void Switching::set_locks(const double* start) {
   for (const Lock& lock : effects_of<Lock>(scene_)) {
     has_locks_ = true;
-    lock_angle_[lock.joint - 1] = lock.angle.value_or(of_joint(start, lock.joint - 1));
+    lock_angle_[lock.joint - 1] = lock.angle.value_or(relative(start, lock.joint));
   }
+}
+
+int Switching::joint_of(std::size_t effect) const {
+  return std::visit(
+      [](const auto& one) {
+        if constexpr (requires { one.joint; }) return one.joint;
+        return 1;
+      },
+      scene_.effects[effect]);
 }
 
 void Switching::collect_guards() {
   guards_.clear();
   for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
+    if (is_locked(joint_of(i))) continue;
     std::visit(
-        [&]<class Kind>(const Kind& one) {
+        [&](const auto& one) {
           if constexpr (requires { one.has_modes(); }) {
             if (!one.has_modes()) return;
-            int joint = 0;
-            if constexpr (requires { one.joint; }) joint = one.joint - 1;
-            const std::vector<Guard> guards = one.guards(modes_[i]);
+            const std::vector<Guard> guards = one.guards(equations_.effects->modes[i]);
             for (std::size_t k = 0; k < guards.size(); ++k) {
-              guards_.push_back({.effect = i, .number = k, .joint = joint, .guard = guards[k]});
+              guards_.push_back(
+                  {.effect = i, .number = k, .joint = joint_of(i), .guard = guards[k]});
             }
+          }
+        },
+        scene_.effects[i]);
+  }
+}
+
+void Switching::choose_modes_from(double t, const double* q, const double* qd) {
+  choose_modes(*equations_.effects, t, q, qd, forward_);
+  for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
+    std::visit(
+        [&](const auto& one) {
+          if constexpr (requires { one.last_time(); }) {
+            if (forward_ ? t >= one.last_time() : t <= one.first_time()) put_mode(i, -1);
           }
         },
         scene_.effects[i]);
@@ -88,38 +86,15 @@ Status Switching::begin(double t, double* y, bool forward) {
   forward_ = forward;
   const double* const q = y;
   const double* const qd = y + n_;
-  for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
-    std::visit(
-        [&]<class Kind>(const Kind& one) {
-          if constexpr (requires { one.has_modes(); }) {
-            if (!one.has_modes()) return;
-            double phi = 0.0;
-            double phid = 0.0;
-            if constexpr (requires { one.joint; }) {
-              phi = of_joint(q, one.joint - 1);
-              phid = of_joint(qd, one.joint - 1);
-            }
-            put_mode(i, one.mode_at(t, phi, phid, forward));
-          }
-        },
-        scene_.effects[i]);
-  }
+  choose_modes_from(t, q, qd);
   set_locks(y);
   settle(-1, t, y);
-  bool any_friction = false;
-  for (const Effect& effect : scene_.effects) any_friction |= friction(effect) != nullptr;
-  if (any_friction && rests(t, q, qd)) {
-    remark_ = "dry friction holds every joint";
-    return Status::at_rest;
-  }
+  if (rests(t, q, qd)) return rest("dry friction holds every joint");
   for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
-    const DryJointFriction* one = friction(scene_.effects[i]);
-    if (one == nullptr || of_joint(qd, one->joint - 1) != 0.0) continue;
+    if (!holding_torque(scene_.effects[i]) || is_locked(joint_of(i))) continue;
+    if (relative(qd, joint_of(i)) != 0.0) continue;
     const int mode = sliding_mode(i, t, q, qd);
-    if (mode == 0) {
-      collect_guards();
-      return Status::at_rest;
-    }
+    if (mode == 0) return Status::at_rest;
     put_mode(i, mode);
   }
   collect_guards();
@@ -127,39 +102,36 @@ Status Switching::begin(double t, double* y, bool forward) {
 }
 
 double Switching::next_time(double t) const {
-  if (forward_) {
-    const auto next = std::ranges::upper_bound(times_, t);
-    return next == times_.end() ? never : *next;
+  const bool is_known = forward_ ? asked_ <= t && t < next_time_ : next_time_ < t && t <= asked_;
+  if (is_known) return next_time_;
+  asked_ = t;
+  next_time_ = forward_ ? never : -never;
+  for (const Effect& effect : scene_.effects) {
+    std::visit(
+        [&](const auto& one) {
+          if constexpr (requires { one.next_time(t, true); }) {
+            const double next = one.next_time(t, forward_);
+            next_time_ = forward_ ? std::min(next_time_, next) : std::max(next_time_, next);
+          }
+        },
+        effect);
   }
-  const auto next = std::ranges::lower_bound(times_, t);
-  return next == times_.begin() ? -never : *(next - 1);
+  return next_time_;
 }
 
-double Switching::guard(int k, double t, const double* y) const {
-  const Watch& watch = guards_[k];
-  const Guard& g = watch.guard;
-  double value =
-      g.offset + g.on_phi * of_joint(y, watch.joint) + g.on_phid * of_joint(y + n_, watch.joint);
-  if (g.on_wave != 0.0) {
-    const EffectsInForce& effects = *equations_.effects;
-    double sine, cosine;
-    sine_cosine(effects.wave_angles<double>(t, effects.number_of_wave[watch.effect]), sine, cosine);
-    value += g.on_wave * sine;
-  }
-  return value;
+double Switching::guard(int k, double /*t*/, const double* y) const {
+  const auto& [effect, number, joint, g] = guards_[k];
+  return g.offset + g.on_phi * relative(y, joint) + g.on_phid * relative(y + n_, joint);
 }
 
-bool Switching::polynomial(int k, const double* rows, int degree, int dimension,
+void Switching::polynomial(int k, const double* rows, int degree, int dimension,
                            double* coefficients) const {
-  const Guard& g = guards_[k].guard;
-  if (g.on_wave != 0.0) return false;
-  const int joint = guards_[k].joint;
+  const auto& [effect, number, joint, g] = guards_[k];
   for (int p = 0; p <= degree; ++p) {
     const double* const row = rows + static_cast<std::ptrdiff_t>(p) * dimension;
-    coefficients[p] = g.on_phi * of_joint(row, joint) + g.on_phid * of_joint(row + n_, joint);
+    coefficients[p] = g.on_phi * relative(row, joint) + g.on_phid * relative(row + n_, joint);
   }
   coefficients[0] += g.offset;
-  return true;
 }
 
 bool Switching::settle(int k, double /*t*/, double* y) const {
@@ -167,15 +139,14 @@ bool Switching::settle(int k, double /*t*/, double* y) const {
   double* const q = y;
   double* const qd = y + n_;
   if (k >= 0) {
-    // A guard on a rate alone: the rate is zero there.
-    const Watch& watch = guards_[k];
-    if (watch.guard.on_phi == 0.0 && watch.guard.on_wave == 0.0 && watch.guard.offset == 0.0) {
-      qd[watch.joint] = watch.joint > 0 ? qd[watch.joint - 1] : 0.0;
+    const auto& [effect, number, joint, g] = guards_[k];
+    if (g.on_phi == 0.0 && g.offset == 0.0) {  // on a rate alone: it is zero there
+      qd[joint - 1] = joint > 1 ? qd[joint - 2] : 0.0;
       changed = true;
     }
   }
   for (int j = 0; j < n_; ++j) {
-    if (std::isnan(lock_angle_[j])) continue;
+    if (!is_locked(j + 1)) continue;
     q[j] = j > 0 ? q[j - 1] + lock_angle_[j] : lock_angle_[j];
     qd[j] = j > 0 ? qd[j - 1] : 0.0;
     changed = true;
@@ -186,60 +157,75 @@ bool Switching::settle(int k, double /*t*/, double* y) const {
 Status Switching::cross(int k, double t, const double* y) {
   const double* const q = y;
   const double* const qd = y + n_;
-  if (k >= 0) {
-    const Watch watch = guards_[k];
-    const Effect& effect = scene_.effects[watch.effect];
-    int mode = std::visit(
-        [&](const auto& one) {
-          if constexpr (requires { one.has_modes(); }) {
-            return one.next_mode(modes_[watch.effect], watch.number);
-          } else {
-            return 0;
-          }
-        },
-        effect);
-    if (friction(effect) != nullptr) {
-      if (rests(t, q, qd)) {
-        remark_ = "dry friction holds every joint";
-        return Status::at_rest;
-      }
-      mode = sliding_mode(watch.effect, t, q, qd);
-      if (mode == 0) return Status::at_rest;
-    }
-    put_mode(watch.effect, mode);
-  } else {
+  if (k < 0) {
     for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
       std::visit(
           [&](const auto& one) {
-            if constexpr (requires {
-                            one.break_times(times_);
-                            one.mode_at(t, 0.0, 0.0, true);
-                          }) {
-              if (one.last_time() < never) put_mode(i, one.mode_at(t, 0.0, 0.0, forward_));
+            if constexpr (requires { one.next_time(t, true); }) {
+              if (!one.has_modes() || one.guards(equations_.effects->modes[i]).size() > 0) return;
+              put_mode(i, one.mode_at(t, 0.0, 0.0, forward_));
+              if constexpr (requires { one.last_time(); }) {
+                if (forward_ ? t >= one.last_time() : t <= one.first_time()) put_mode(i, -1);
+              }
             }
           },
           scene_.effects[i]);
     }
+    collect_guards();
+    return Status::finished;
   }
+  const Watch watch = guards_[k];
+  const Effect& effect = scene_.effects[watch.effect];
+  int mode = 0;
+  if (holding_torque(effect)) {
+    if (rests(t, q, qd)) return rest("dry friction holds every joint");
+    mode = sliding_mode(watch.effect, t, q, qd);
+    if (mode == 0) return Status::at_rest;
+  } else {
+    std::visit(
+        [&](const auto& one) {
+          if constexpr (requires { one.has_modes(); }) {
+            mode = one.next_mode(equations_.effects->modes[watch.effect], watch.number);
+          }
+        },
+        effect);
+  }
+  put_mode(watch.effect, mode);
   collect_guards();
   return Status::finished;
 }
 
 int Switching::sliding_mode(std::size_t i, double t, const double* q, const double* qd) {
-  const int before = modes_[i];
-  const int joint = friction(scene_.effects[i])->joint - 1;
+  const int before = equations_.effects->modes[i];
+  const int joint = joint_of(i);
   std::vector<double> qdd(n_);
   for (const int mode : {-before, before}) {
     put_mode(i, mode);
     accelerations_in_force(equations_, t, q, qd, qdd.data());
-    // Backward in time the rate that a step arrives at has the other sign; refused by check_run.
-    if (mode * of_joint(qdd.data(), joint) > 0.0) return mode;
+    if (mode * relative(qdd.data(), joint) > 0.0) return mode;
   }
   put_mode(i, before);
-  remark_ = "joint " + std::to_string(joint + 1) +
-            " comes to rest under dry friction while other links may still move: sticking is not "
-            "simulated";
+  rest("joint " + std::to_string(joint) +
+       " comes to rest under dry friction while other links may still move");
   return 0;
+}
+
+/// What is left to the next phase of the motion is told.
+Status Switching::rest(std::string remark) {
+  remark_ = std::move(remark);
+  const bool depends_on_time = std::ranges::any_of(scene_.effects, [](const Effect& effect) {
+    return std::visit(
+        [](const auto& one) {
+          if constexpr (requires { one.wave(); })
+            return one.wave() || one.next_time(0.0, true) < never;
+          return one.info.account == Account::drive || one.info.account == Account::user;
+        },
+        effect);
+  });
+  if (depends_on_time) remark_ += ", until what depends on time sets it free";
+  const bool goes_on = depends_on_time || remark_.starts_with("joint");
+  if (goes_on) remark_ += ": sticking is not simulated";
+  return Status::at_rest;
 }
 
 /// Nothing moves, and every joint can carry the torque that holds what is beyond it.
@@ -248,20 +234,24 @@ bool Switching::rests(double t, const double* q, const double* qd) {
     if (qd[i] != 0.0) return false;
   }
   std::vector<double> holds(n_, 0.0);
-  std::vector<int> before = modes_;
+  const std::vector<int> before = modes();
+  bool any_friction = false;
   for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
-    const Effect& effect = scene_.effects[i];
-    if (const auto* lock = std::get_if<Lock>(&effect)) holds[lock->joint - 1] = never;
-    if (const DryJointFriction* one = friction(effect)) {
-      holds[one->joint - 1] += one->static_.value_or(one->coulomb);
+    if (const auto torque = holding_torque(scene_.effects[i])) {
+      any_friction = true;
+      holds[joint_of(i) - 1] += *torque;
       put_mode(i, 0);
     }
   }
-  std::vector<double> qdd(n_);
-  accelerations_in_force(equations_, t, q, qd, qdd.data());
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    if (friction(scene_.effects[i]) != nullptr) put_mode(i, before[i]);
+  for (int j = 0; j < n_; ++j) {
+    if (is_locked(j + 1)) holds[j] = never;
   }
+  std::vector<double> qdd(n_);
+  if (any_friction) accelerations_in_force(equations_, t, q, qd, qdd.data());
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if (holding_torque(scene_.effects[i])) put_mode(i, before[i]);
+  }
+  if (!any_friction) return false;
   std::vector<double> matrix(static_cast<std::size_t>(n_) * n_);
   mass_matrix(Inertia(scene_), {q, static_cast<std::size_t>(n_)}, matrix);
   double torque = 0.0;

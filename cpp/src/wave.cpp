@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "pendcore/effects/law.hpp"
+
 namespace pendcore {
 
 void check_times(const std::string& where, const std::vector<double>& times) {
@@ -54,9 +56,21 @@ std::vector<double> Spline::second_derivatives(const std::vector<double>& values
 }
 
 int piece_at(const std::vector<double>& times, double t, bool forward) {
+  const int last = static_cast<int>(times.size()) - 2;
+  if (forward && t == times.back()) return last;
+  if (!forward && t == times.front()) return 0;
   const auto after =
       forward ? std::ranges::upper_bound(times, t) : std::ranges::lower_bound(times, t);
   return static_cast<int>(after - times.begin()) - 1;
+}
+
+double next_of(const std::vector<double>& times, double t, bool forward) {
+  if (forward) {
+    const auto next = std::ranges::upper_bound(times, t);
+    return next == times.end() ? never : *next;
+  }
+  const auto next = std::ranges::lower_bound(times, t);
+  return next == times.begin() ? -never : *(next - 1);
 }
 
 }  // namespace pendcore

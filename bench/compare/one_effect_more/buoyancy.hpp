@@ -30,6 +30,8 @@ struct Buoyancy {
                                     .required = true}),
   };
 
+  static constexpr bool adds_forces = true;
+
   template <class Row>
   struct Law {
     Row uplift{};

@@ -9,6 +9,9 @@
 /// if friction of that sign leaves it an acceleration that way; otherwise it sticks.
 #pragma once
 
+#include <cmath>
+#include <limits>
+
 #include "pendcore/dynamics/equations_of_motion.hpp"
 #include "pendcore/integrate/breaks.hpp"
 
@@ -25,12 +28,12 @@ class Switching final : public Breaks {
   double next_time(double t) const override;
   int guards() const override { return static_cast<int>(guards_.size()); }
   double guard(int k, double t, const double* y) const override;
-  bool polynomial(int k, const double* rows, int degree, int dimension,
+  void polynomial(int k, const double* rows, int degree, int dimension,
                   double* coefficients) const override;
   bool settles_every_step() const override { return has_locks_; }
   bool settle(int k, double t, double* y) const override;
   Status cross(int k, double t, const double* y) override;
-  std::vector<int> modes() const override { return modes_; }
+  std::vector<int> modes() const override { return equations_.effects->modes; }
 
   /// In place of begin() for a run that goes on: the modes it was in, and the state it began with.
   void restore(const std::vector<int>& modes, const double* start, bool forward);
@@ -42,26 +45,28 @@ class Switching final : public Breaks {
   struct Watch {
     std::size_t effect;
     std::size_t number;  ///< among the guards of the effect's mode
-    int joint;           ///< from 0
+    int joint;           ///< from 1
     Guard guard;
   };
-  void put_mode(std::size_t i, int mode);
+  void put_mode(std::size_t i, int mode) { equations_.effects->put_mode(i, mode); }
+  /// The modes that hold from time t on: those of the state, and none where a table has ended.
+  void choose_modes_from(double t, const double* q, const double* qd);
   void collect_guards();
   void set_locks(const double* start);
+  bool is_locked(int joint) const { return !std::isnan(lock_angle_[joint - 1]); }
+  int joint_of(std::size_t effect) const;
   /// The mode of dry friction number i where its joint has no rate: 1, -1, or 0 where it sticks.
   int sliding_mode(std::size_t i, double t, const double* q, const double* qd);
   bool rests(double t, const double* q, const double* qd);
-  double of_joint(const double* x, int joint) const {
-    return joint > 0 ? x[joint] - x[joint - 1] : x[0];
-  }
+  Status rest(std::string remark);
 
   Scene scene_;
   EquationsOfMotion equations_;
   int n_;
   bool forward_ = true;
   bool has_locks_ = false;
-  std::vector<int> modes_;     ///< of each effect
-  std::vector<double> times_;  ///< that no step may cross, sorted
+  mutable double next_time_ = 0.0;  ///< after the time asked for last
+  mutable double asked_ = std::numeric_limits<double>::quiet_NaN();
   std::vector<Watch> guards_;
   std::vector<double> lock_angle_;  ///< of each joint; NaN where there is no lock
   std::string remark_;

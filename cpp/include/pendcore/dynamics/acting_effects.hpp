@@ -93,10 +93,16 @@ class ActingEffects final : public EffectsInForce {
   explicit ActingEffects(const Scene& scene);
   void put_mode(std::size_t i, int mode) override;
 
+  /// Calls visit(law) for the law of an entry, of its own type.
+  template <class Visit>
+  PENDCORE_INLINE static void visit(const Entry& entry, Visit visit) {
+    visit_one_of(entry, visit, std::make_index_sequence<std::variant_size_v<Effect>>{});
+  }
+
   /// Adds what an entry does to the loads of its row.
   template <class At, class Loads>
   PENDCORE_INLINE static void add(const Entry& entry, const At& at, Loads& loads) {
-    add_one_of(entry, at, loads, std::make_index_sequence<std::variant_size_v<Effect>>{});
+    visit(entry, [&](const auto& law) __attribute__((always_inline)) { law.add(at, loads); });
   }
 
   std::vector<Couples<Row>> couples;  ///< of the rows that have some
@@ -119,17 +125,17 @@ class ActingEffects final : public EffectsInForce {
   void sum_couples(int joint);
   void find_two_waves(const Scene& scene);
 
-  template <class At, class Loads, std::size_t... kinds>
-  PENDCORE_INLINE static void add_one_of(const Entry& entry, const At& at, Loads& loads,
-                                         std::index_sequence<kinds...>) {
-    (add_if<kinds>(entry, at, loads), ...);
+  template <class Visit, std::size_t... kinds>
+  PENDCORE_INLINE static void visit_one_of(const Entry& entry, Visit& visit,
+                                           std::index_sequence<kinds...>) {
+    (visit_if<kinds>(entry, visit), ...);
   }
-  template <std::size_t kind, class At, class Loads>
-  PENDCORE_INLINE static void add_if(const Entry& entry, const At& at, Loads& loads) {
+  template <std::size_t kind, class Visit>
+  PENDCORE_INLINE static void visit_if(const Entry& entry, Visit& visit) {
     using Kind = std::variant_alternative_t<kind, Effect>;
     if constexpr (requires { typename Kind::template Law<Row>; }) {
       if (entry.kind == static_cast<int>(kind)) {
-        static_cast<const typename Kind::template Law<Row>*>(entry.law)->add(at, loads);
+        visit(*static_cast<const typename Kind::template Law<Row>*>(entry.law));
       }
     }
   }

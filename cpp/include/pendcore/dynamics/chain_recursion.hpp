@@ -78,8 +78,7 @@ PENDCORE_INLINE void Chain::collect_loads(double t) const {
       y = fma(speed, in(c_)[i], y);
     }
   }
-  const LinkArrays links{in(q_),      in(qd_), in(s_),  in(c_),
-                         in(length_), in(vx_), in(vy_), effects.wave_sine.data()};
+  const LinkArrays links{in(q_), in(qd_), in(s_), in(c_), in(length_), in(vx_), in(vy_)};
   auto loads_of = [&](int row) {
     return ChainLoads{couple + 4 * row, torque + 4 * row, fx + 4 * row, fy + 4 * row};
   };
@@ -94,9 +93,10 @@ PENDCORE_INLINE void Chain::collect_loads(double t) const {
     ActingEffects<Row>::add(entry, RowInArrays<Row>(links, t, entry.row), loads);
   }
   for (const CompiledUser& user : effects.users) {
-    for (int i = 0; i < n_; ++i) in(vx_)[i] = 0.0;
-    user(t, n_, in(q_), in(qd_), in(vx_));
-    for (int i = 0; i < n_; ++i) torque[i] += in(vx_)[i];
+    double* const Q = in(user_);
+    for (int i = 0; i < n_; ++i) Q[i] = 0.0;
+    user(t, n_, in(q_), in(qd_), Q);
+    for (int i = 0; i < n_; ++i) torque[i] += Q[i];
   }
   for (int i = 0; i < padded_; i += 4) {
     store(torque + i,
@@ -118,16 +118,16 @@ PENDCORE_INLINE void Chain::tip_to_base() const {
   double Buu = payload_mass_;
   double Bun = 0.0;
   double Bnn = payload_mass_;
-  double bu = 0.0;
-  double bn = 0.0;
+  double b_u = 0.0;
+  double b_n = 0.0;
 #pragma GCC unroll 3
   for (int i = n - 1; i >= 0; --i) {
     const Constants& k = links_[i];
     const double D = fma(k.LL, Bnn, k.Io);
     const double r = 1.0 / D;
     const double speed = in(centripetal_)[i];
-    const double pu = fma(-speed, Buu, bu);
-    const double pn = fma(-speed, Bun, bn);
+    const double pu = fma(-speed, Buu, b_u);
+    const double pn = fma(-speed, Bun, b_n);
     const double torque = loaded ? fma(-k.L, pn, in(torque_)[i]) : -k.L * pn;
     const double free = torque * r;
     const double wu = k.L * Bun;
@@ -142,7 +142,7 @@ PENDCORE_INLINE void Chain::tip_to_base() const {
     fn = fma(wn, free, fn);
     const double s = in(s_)[i];
     const double c = in(c_)[i];
-    response_at(i) = {free, r * fma(wu, c, -(wn * s)), r * fma(wu, s, wn * c), 0.0};
+    response_[i] = {free, r * fma(wu, c, -(wn * s)), r * fma(wu, s, wn * c), 0.0};
 
     // Into the frame of the link before. What waits for the division comes in last.
     const double mass = k.m + Buu;
@@ -156,8 +156,8 @@ PENDCORE_INLINE void Chain::tip_to_base() const {
     Bnn = fma(r, fma(-ss, uu, fma(both, un, cc * nn)), ss * mass);
     Bun = fma(r, fma(-sc, uu + nn, (cc - ss) * un), sc * mass);
     Buu = fma(r, fma(-cc, uu, fma(-both, un, ss * nn)), cc * mass);
-    bu = fma(fu, in(cos_)[i], -(fn * in(sin_)[i]));
-    bn = fma(fu, in(sin_)[i], fn * in(cos_)[i]);
+    b_u = fma(fu, in(cos_)[i], -(fn * in(sin_)[i]));
+    b_n = fma(fu, in(sin_)[i], fn * in(cos_)[i]);
   }
 }
 
@@ -166,7 +166,7 @@ PENDCORE_INLINE void Chain::base_to_tip(double ax, double ay, double* qdd) const
   const int n = size > 0 ? size : n_;
 #pragma GCC unroll 3
   for (int i = 0; i < n; ++i) {
-    const Response& k = response_at(i);
+    const Response& k = response_[i];
     const double s = in(s_)[i];
     const double c = in(c_)[i];
     const double L = in(length_)[i];
@@ -184,8 +184,8 @@ PENDCORE_INLINE void Chain::tip_to_base_coupled() const {
   double Buu = payload_mass_;
   double Bun = 0.0;
   double Bnn = payload_mass_;
-  double bu = 0.0;
-  double bn = 0.0;
+  double b_u = 0.0;
+  double b_n = 0.0;
   double beta_u = 0.0;  // force per angular acceleration of the link before
   double beta_n = 0.0;
   double kappa = 0.0;  // torque per angular acceleration
@@ -193,8 +193,8 @@ PENDCORE_INLINE void Chain::tip_to_base_coupled() const {
   for (int i = n_ - 1; i >= 0; --i) {
     const Constants& k = links_[i];
     const double speed = in(centripetal_)[i];
-    const double pu = fma(-speed, Buu, bu);
-    const double pn = fma(-speed, Bun, bn);
+    const double pu = fma(-speed, Buu, b_u);
+    const double pn = fma(-speed, Bun, b_n);
     const double D = fma(k.LL, Bnn, k.Io) + fma(2.0 * k.L, beta_n, kappa);
     const double J = rotor_[i];
     const bool is_locked = effects_->locked[i];
@@ -208,7 +208,7 @@ PENDCORE_INLINE void Chain::tip_to_base_coupled() const {
     const double fn = fma(wn, free, pn - in(fy_)[i]);
     const double s = in(s_)[i];
     const double c = in(c_)[i];
-    response_at(i) = {free, r * fma(wu, c, -(wn * s)), r * fma(wu, s, wn * c), share};
+    response_[i] = {free, r * fma(wu, c, -(wn * s)), r * fma(wu, s, wn * c), share};
 
     const double uu = fma(-r * wu, wu, k.m + Buu);
     const double un = fma(-r * wu, wn, Bun);
@@ -221,8 +221,8 @@ PENDCORE_INLINE void Chain::tip_to_base_coupled() const {
     Bnn = fma(ss, uu, fma(2.0 * sc, un, cc * nn));
     Bun = fma(sc, uu - nn, (cc - ss) * un);
     Buu = fma(cc, uu, fma(-2.0 * sc, un, ss * nn));
-    bu = fma(fu, cos, -(fn * sin));
-    bn = fma(fu, sin, fn * cos);
+    b_u = fma(fu, cos, -(fn * sin));
+    b_n = fma(fu, sin, fn * cos);
     beta_u = share * fma(wu, cos, -(wn * sin));
     beta_n = share * fma(wu, sin, wn * cos);
     kappa = share * D;
@@ -233,7 +233,7 @@ PENDCORE_INLINE void Chain::tip_to_base_coupled() const {
 PENDCORE_INLINE void Chain::base_to_tip_coupled(double ax, double ay, double* qdd) const {
   double before = 0.0;
   for (int i = 0; i < n_; ++i) {
-    const Response& k = response_at(i);
+    const Response& k = response_[i];
     const double s = in(s_)[i];
     const double c = in(c_)[i];
     const double L = in(length_)[i];

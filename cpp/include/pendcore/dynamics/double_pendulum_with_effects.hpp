@@ -65,11 +65,10 @@ struct DoublePendulumWithEffects {
     const V qd_other = other(qd);
 
     V pull = Constant::of(weight) * c;
-    RowAt<V> at{t, q, qd, s, c, Constant::of(length), nullptr, 0.0, 0.0};
+    RowAt<V> at{t, q, qd, s, c, Constant::of(length), 0.0, 0.0};
     RowLoads<V> loads;
     loads.couple(couples->torque(at));
     if constexpr (everything) {
-      at.waves = effects->wave_sine.data();
       for (const JointWave& one : effects->joint_waves) add_wave(one, loads);
       if (!effects->pivots.empty()) {
         double x, y;

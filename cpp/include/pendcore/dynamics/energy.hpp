@@ -1,9 +1,10 @@
 /// \file
-/// Kinetic and potential energy of the chain, summed link by link:
+/// Kinetic and potential energy of the chain at time t (s), summed link by link:
 ///
-///     T = sum_i (m_i v_{C_i}^2 + I_i qd_i^2) / 2,     V = -g sum_i m_i y_{C_i}
+///     T = sum_i (m_i v_{C_i}^2 + I_i qd_i^2)/2 + sum_j J_j phid_j^2/2     V = -g sum_i m_i y_{C_i}
 ///
-/// J; V = 0 at the height of the pivot. Angles (rad) and rates (rad/s) are (n). Cost: O(n). A span
+/// with a payload as one more body, velocities with that of a moving pivot, and in V what springs
+/// keep; J, V = 0 at the origin. Angles (rad) and rates (rad/s) are (n). Cost: O(n). A span
 /// of another size is refused with std::invalid_argument.
 #pragma once
 

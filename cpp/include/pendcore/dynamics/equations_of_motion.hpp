@@ -2,8 +2,8 @@
 /// Which form of the equations of motion a scene calls for.
 ///
 /// A scene is compiled once, into a kernel that holds what the scene has and nothing else: the
-/// closed form of one or two links, bare where no effect acts beyond constants of the mass matrix,
-/// with a list of effects otherwise; the recursion of a chain for more.
+/// closed form of one or two links, bare where the scene has no effect but a payload and a rotor in
+/// joint 1, with room for effects otherwise; the recursion of a chain for more.
 #pragma once
 
 #include <variant>
@@ -28,8 +28,10 @@ struct EquationsOfMotion {
 EquationsOfMotion equations_of_motion(const Scene& scene);
 
 /// qdd (rad/s^2) from the time (s), angles (rad) and rates (rad/s), (n) each; the same bits as in
-/// a run. Effects are in the modes that the state calls for. Cost: a right-hand side. Throws what a
-/// user's function throws. Equations with effects serve one thread at a time.
+/// a run. Effects are in the modes that the state calls for; a joint at rest under dry friction is
+/// taken as one that slides. Cost: a right-hand side. Throws what a user's function throws.
+/// Equations with effects serve one thread at a time, and so do their copies: they share modes and
+/// room for the computation.
 void accelerations(const EquationsOfMotion& equations, double t, const double* q, const double* qd,
                    double* qdd);
 

@@ -27,7 +27,7 @@ struct Inertia {
   double payload_inertia = 0.0;      ///< I_p
 
   explicit Inertia(const Scene& scene);
-  double coupling(std::size_t i, std::size_t j) const;  ///< A_ij, indices from 0
+  double coupling(std::size_t i, std::size_t j) const;  ///< A_ij, i != j, from 0
 };
 
 /// M_ij, that is A_ij cos(q_i - q_j) and the rotors, (n, n), kg m^2, from angles (rad), (n). A span

@@ -16,6 +16,11 @@
 
 namespace pendcore {
 
+/// Of joint j, counted from 1: x_j - x_{j-1}, as phi_j = q_j - q_{j-1}.
+inline double relative(const double* x, int joint) {
+  return joint > 1 ? x[joint - 1] - x[joint - 2] : x[0];
+}
+
 /// u_i, (n, 2).
 void directions(std::span<const double> q, std::span<double> u);
 

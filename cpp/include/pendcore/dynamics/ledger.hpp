@@ -25,9 +25,7 @@ class LinkMemory {
   explicit LinkMemory(const Scene& scene);
   void fill(const EffectsInForce& effects, double t, const double* q, const double* qd);
   /// Place 0 is link 1.
-  LinkArrays arrays(const EffectsInForce& effects) const {
-    return {&q[1], &qd[1], &s[1], &c[1], &length[1], &vx[1], &vy[1], effects.wave_sine.data()};
-  }
+  LinkArrays arrays() const { return {&q[1], &qd[1], &s[1], &c[1], &length[1], &vx[1], &vy[1]}; }
 
   std::vector<double> q, qd, s, c, length, vx, vy;  ///< link i at place i, zeros around them
 

@@ -14,7 +14,6 @@ struct RowAt {
   double t;
   V q, qd, s, c;
   V L;
-  const double* waves;
   double pivot_vx, pivot_vy;
 
   PENDCORE_INLINE V phi() const { return q - before(q); }
@@ -22,7 +21,6 @@ struct RowAt {
   PENDCORE_INLINE V length() const { return L; }
   PENDCORE_INLINE V vx() const { return Constants<V>::of(pivot_vx) - before(L * qd * s); }
   PENDCORE_INLINE V vy() const { return Constants<V>::of(pivot_vy) + before(L * qd * c); }
-  PENDCORE_INLINE double wave(int k) const { return waves[k]; }
 };
 
 template <class V>
@@ -51,7 +49,6 @@ struct RowLoads {
 /// Numbers over the links, zeros before and after them.
 struct LinkArrays {
   const double *q, *qd, *s, *c, *length, *vx, *vy;
-  const double* waves;
 };
 
 template <class Row>
@@ -77,7 +74,6 @@ struct RowInArrays {
   PENDCORE_INLINE Row length() const { return load<Row>(links.length + i); }
   PENDCORE_INLINE Row vx() const { return load<Row>(links.vx + i); }
   PENDCORE_INLINE Row vy() const { return load<Row>(links.vy + i); }
-  PENDCORE_INLINE double wave(int k) const { return links.waves[k]; }
 };
 
 }  // namespace pendcore

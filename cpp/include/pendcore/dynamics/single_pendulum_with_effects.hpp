@@ -32,7 +32,7 @@ struct SinglePendulumWithEffects {
     double s, c;
     sines(t, q, s, c);
     double pull = weight * c;
-    RowAt<double> at{t, q, qd, s, c, length, effects->wave_sine.data(), 0.0, 0.0};
+    RowAt<double> at{t, q, qd, s, c, length, 0.0, 0.0};
     if (!effects->pivots.empty()) {
       double x, y;
       effects->pivot_acceleration(t, x, y);

@@ -81,8 +81,9 @@ struct DrivenPivot {
   void put_mode(Law& law, int lane, int mode) const;
   DrivenPivot compiled() const;  ///< its spline with second derivatives
 
-  void break_times(std::vector<double>& times) const {
-    if (spline) times.insert(times.end(), spline->t.begin(), spline->t.end());
+  double next_time(double t, bool forward) const {
+    if (!spline) return forward ? never : -never;
+    return next_of(spline->t, t, forward);
   }
   double last_time() const { return spline ? spline->t.back() : never; }
   double first_time() const { return spline ? spline->t.front() : -never; }

@@ -89,7 +89,7 @@ struct DryJointFriction {
   double group() const { return exponent; }
 
   template <class Row>
-  void put(Law<Row>& law, int lane) const {
+  void put(Law<Row>& law, int lane, double /*length*/) const {
     set_lane(law.inverse_velocity, lane, 1.0 / stribeck_velocity);
     law.exponent = exponent;
   }
@@ -106,7 +106,8 @@ struct DryJointFriction {
     set_lane(law.peak, lane, mode * peak());
   }
 
-  static constexpr bool holds_at_rest = true;  ///< a reversal may end in rest
+  /// The largest torque with which it holds the joint at rest, N m.
+  double holding_torque() const { return static_.value_or(coulomb); }
 };
 
 }  // namespace pendcore

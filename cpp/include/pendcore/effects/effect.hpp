@@ -10,15 +10,22 @@
 ///
 ///     couple(mode)                  its torque on a joint, where that is a polynomial: see law.hpp
 ///     Law<Row>                      any other couples at joints, and forces along links
-///     put(law, lane)                its parameters into the lane of its joint or link
+///     put(law, lane, length)        its parameters into the lane of its joint or link
+///     put_mode(law, lane, mode)     the same of what a mode changes
+///     adds_forces                   true if its law calls loads.force
+///     dissipation(at)               of a law: the part of its power that is lost (has_wind() says
+///                                   whether there is another, the wind's)
+///     group()                       effects on one row share a law if this number is the same
 ///     wave()                        the sinusoid that drives it, if one does
 ///     has_modes(), mode_at(t, phi, phid, forward), guards(mode), next_mode(mode, guard)
 ///                                   where the law is smooth only in pieces: see law.hpp
-///     break_times(times)            times that no step may cross
+///     next_time(t, forward)         the next time at which a mode changes
 ///     first_time(), last_time()     where its tables begin and end
+///     holding_torque()              with which it can hold its joint at rest
 ///     compiled()                    the same effect, with what need be computed only once
 ///     potential(phi)                energy kept in the joint, J
 ///     check(where)                  what the ranges of single parameters do not say
+///     warnings()                    what is possible but hardly meant, a sentence each
 ///
 /// registry.hpp has the list of all effects, a line each. Nothing else names an effect that is a
 /// law; those that change the mass matrix, the joints or the pivot (payload, rotor, lock, driven
@@ -73,7 +80,7 @@ struct EffectInfo {
 };
 
 /// Allowed values of a number.
-enum class Range { any, not_negative, positive, at_least_one, any_but_nan };
+enum class Range { any, not_negative, positive, at_least_one, positive_or_infinite };
 
 constexpr std::string_view text(Range range) {
   switch (range) {
@@ -81,7 +88,7 @@ constexpr std::string_view text(Range range) {
     case Range::not_negative: return "finite and >= 0";
     case Range::positive: return "finite and > 0";
     case Range::at_least_one: return "finite and >= 1";
-    case Range::any_but_nan: return "> 0, inf for no limit";
+    case Range::positive_or_infinite: return "> 0, inf for no limit";
   }
   return "";
 }
@@ -92,7 +99,7 @@ inline bool holds(Range range, double x) {
     case Range::not_negative: return std::isfinite(x) && x >= 0;
     case Range::positive: return std::isfinite(x) && x > 0;
     case Range::at_least_one: return std::isfinite(x) && x >= 1;
-    case Range::any_but_nan: return x > 0;
+    case Range::positive_or_infinite: return x > 0;
   }
   return false;
 }

@@ -14,7 +14,6 @@
 ///     at.phi(), at.phid()     angle and rate of the joint, phi_j = q_j - q_{j-1}
 ///     at.length()             of the link, m
 ///     at.vx(), at.vy()        velocity of the joint where the link begins, m/s
-///     at.wave(k)              the sinusoid of number k at time t, without its amplitude
 ///
 /// and `loads` takes
 ///
@@ -35,12 +34,11 @@
 
 namespace pendcore {
 
-/// g = offset + on_phi phi + on_phid phid + on_wave sin(wave): positive while the mode holds.
+/// g = offset + on_phi phi + on_phid phid: positive while the mode holds.
 struct Guard {
   double offset = 0.0;
   double on_phi = 0.0;
   double on_phid = 0.0;
-  double on_wave = 0.0;
 };
 
 /// The torque of an effect whose law, in each of its modes, is a polynomial in time, angle and rate

@@ -3,7 +3,8 @@
 ///
 ///     phi_j = constant,   phid_j = phidd_j = 0
 ///
-/// The joint is eliminated from the equations, so that nothing can wander. Does no work.
+/// The joint is eliminated from the equations; its angle and rate are set anew at the end of each
+/// step, so that no rounding lets them wander. Does no work.
 #pragma once
 
 #include "pendcore/effects/effect.hpp"

@@ -6,7 +6,8 @@
 ///     table       tau linear between given points; the run ends where the table does
 ///     pd          tau = kp (reference - phi) - kd w
 ///
-/// Power: tau w. Modes: the piece of the table between two of its points; free or clipped.
+/// Power: tau w. Modes: the piece of the table between two of its points; free or clipped. Where a
+/// sinusoid is clipped is known beforehand: at omega t + phase = k pi +- asin(limit/|A|).
 #pragma once
 
 #include <algorithm>
@@ -57,25 +58,24 @@ struct Motor {
                                 .symbol = "",
                                 .unit = "N m",
                                 .sentence = "largest torque of either sign",
-                                .range = Range::any_but_nan}),
+                                .range = Range::positive_or_infinite}),
   };
   void check(const std::string& where) const;  ///< exactly one of the four laws
 
   std::optional<Couple> couple(int mode) const;
   std::optional<Sinusoid> wave() const { return sinusoid; }
 
-  bool has_modes() const {
-    return table || (limit < never && (pd || (sinusoid && std::abs(sinusoid->amplitude) > limit)));
-  }
+  bool has_modes() const { return table || (limit < never && pd) || is_clipped(); }
   int mode_at(double t, double phi, double phid, bool forward) const;
   std::vector<Guard> guards(int mode) const;
   int next_mode(int mode, std::size_t guard) const;
-  void break_times(std::vector<double>& times) const;
+  double next_time(double t, bool forward) const;
   double first_time() const { return table ? table->t.front() : -never; }
   double last_time() const { return table ? table->t.back() : never; }
   Motor compiled() const;  ///< its table clipped, with points where it meets the limit
 
  private:
+  bool is_clipped() const { return sinusoid && std::abs(sinusoid->amplitude) > limit; }
   double clipped(double torque) const { return std::max(-limit, std::min(torque, limit)); }
 };
 

@@ -34,6 +34,9 @@ inline const EffectInfo& info_of(const Effect& effect) {
                     effect);
 }
 
+/// The torque with which an effect can hold its joint at rest, N m, if it is one that can.
+std::optional<double> holding_torque(const Effect& effect);
+
 /// The effect of that kind as it is by default, for filling in; throws std::invalid_argument for
 /// an unknown kind.
 Effect effect_of_kind(std::string_view kind);

@@ -62,6 +62,9 @@ struct RodDrag {
                                  .sentence = "velocity of the air, x right and y down"}),
   };
 
+  static constexpr bool adds_forces = true;
+  bool has_wind() const { return wind[0] != 0.0 || wind[1] != 0.0; }
+
   /// w_0 and w_1 of a row of links.
   template <class At, class Row>
   PENDCORE_INLINE static void speeds(const At& at, const Row& wind_x, const Row& wind_y,

@@ -5,7 +5,8 @@
 ///
 /// of the absolute angles, Q (n), N m; Q comes zeroed, and is added to the equations. The address
 /// may be that of a C or C++ function, of one that numba compiled, or of a ctypes callback; the
-/// function must return the same for the same arguments. Power: Q . qd. In C++ anything that can be
+/// function must return the same for the same arguments. Power: Q . qd. Joint reactions take Q for
+/// couples: they know of no force that it may stand for. In C++ anything that can be
 /// called will do:
 ///
 ///     auto magnet = [&](double t, std::span<const double> q, std::span<const double> qd,
@@ -47,7 +48,8 @@ struct CompiledUser {
                                       .unit = "",
                                       .sentence = "handed to the function as it is"}),
   };
-  /// Calls f(t, q, qd, Q) with spans, (n) each; f is not copied. What it throws ends the run.
+  /// Calls f(t, q, qd, Q) with spans, (n) each; f is not copied. What it throws ends the run; what
+  /// it throws before the first step passes through simulate().
   template <class Function>
   static CompiledUser of(Function& f) {
     const UserFunction call = [](double t, int n, const double* q, const double* qd, double* Q,

@@ -123,8 +123,12 @@ struct Spline {
 };
 
 /// The piece k of t_0 < t_1 < ... that a run at time t is in: t_k <= t < t_{k+1} forward,
-/// t_k < t <= t_{k+1} backward; -1 before the first time and size - 1 after the last.
+/// t_k < t <= t_{k+1} backward, and the last (first) one where the times end. -1 before the first
+/// time and size - 1 after the last.
 int piece_at(const std::vector<double>& times, double t, bool forward);
+
+/// The first of t_0 < t_1 < ... after t, or before it; infinite if there is none.
+double next_of(const std::vector<double>& times, double t, bool forward);
 
 /// Throws unless there are two times or more, and they increase.
 void check_times(const std::string& where, const std::vector<double>& times);

@@ -25,9 +25,9 @@ class Breaks {
 
   virtual int guards() const = 0;
   virtual double guard(int k, double t, const double* y) const = 0;
-  /// A guard that is linear in the state is a polynomial along the dense output, (degree + 1) rows
-  /// of `dimension` numbers: its coefficients, or false.
-  virtual bool polynomial(int k, const double* rows, int degree, int dimension,
+  /// A guard is linear in the state, and so a polynomial along the dense output, (degree + 1) rows
+  /// of `dimension` numbers: its coefficients.
+  virtual void polynomial(int k, const double* rows, int degree, int dimension,
                           double* coefficients) const = 0;
 
   /// Whether settle() is wanted at the end of every step, not on guards alone.

@@ -133,6 +133,7 @@ class GeneralRungeKutta final : public Stepper {
   static constexpr int width = Lanes<Block>::width;
   static constexpr int stages = Method::stages;
   static constexpr int degree = Method::degree;
+  static_assert(degree <= 15, "as root.hpp has it");
 
  public:
   GeneralRungeKutta(std::unique_ptr<GeneralSystem> system, int n)

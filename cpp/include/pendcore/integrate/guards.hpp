@@ -18,21 +18,20 @@ class Guards {
  public:
   Guards(const Stepper& stepper, const Breaks& breaks);
 
-  /// In the attempted step of size h from time t.
-  Crossing first(const TwoDouble& t, double h);
+  /// In the attempted step of size h.
+  Crossing first(double h);
 
   /// By how much the step's end misses the zero of guard k, in units of the step.
   double miss(int k, const TwoDouble& t, double h);
 
  private:
-  double value(int k, const TwoDouble& t, double h, double theta);
-
   const Stepper& stepper_;
   const Breaks& breaks_;
   int dimension_;
   int degree_;
   std::vector<double> rows_;  ///< the dense output of the step
   std::vector<double> state_;
+  std::vector<double> polynomial_;  ///< of a guard, in theta
 };
 
 }  // namespace pendcore

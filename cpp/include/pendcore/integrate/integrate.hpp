@@ -61,6 +61,7 @@ struct Ending {
   bool cut;      ///< the last step, or one before it, was cut to end at t_end
   int bad = -1;  ///< of status non_finite: the component that is not finite, if it is known
   std::exception_ptr error = nullptr;  ///< of status callback_error
+  bool chatters = false;  ///< the law changes back and forth at one time: no step leads on
 };
 
 /// Takes steps from `position` (which moves along) until `limits` ends them. `resumable` becomes

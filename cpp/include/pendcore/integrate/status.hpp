@@ -28,7 +28,7 @@ struct StatusText {
 inline constexpr std::array<StatusText, 9> status_texts = {{
     {"finished", true, "reached the end of the interval"},
     {"event", true, "stopped at a terminal event"},
-    {"at_rest", true, "came to rest for good before the end of the interval"},
+    {"at_rest", true, "came to rest before the end of the interval"},
     {"max_steps", false,
      "the cap on steps was reached: raise max_steps, shorten the interval or loosen rtol and atol"},
     {"step_too_small", false,
