@@ -4,14 +4,30 @@ from __future__ import annotations
 
 import json
 import pickle
+from pathlib import Path
 
 import numpy as np
 import pendcore as pc
 import pytest
+from pendcore import _core
 
 SCENE = pc.Scene(
     links=[pc.Link(mass=1, length=0.8), pc.Link(mass=2, length=0.5, center=0.3, inertia=0.02)]
 )
+
+
+def empty_run() -> _core.Run:
+    return _core.Run.__new__(_core.Run)
+
+
+class Rebuilt:
+    """Pickles as a run of any state."""
+
+    def __init__(self, state: dict[str, object]) -> None:
+        self.state = state
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return empty_run, (), self.state
 
 
 @pytest.fixture(scope="module")
@@ -69,6 +85,32 @@ def test_a_file_that_is_no_solution_is_named(sol, tmp_path):
             pc.load(tmp_path / name)
     with pytest.raises(FileNotFoundError):
         pc.load(tmp_path / "nothing.npz")
+
+
+FUNCTIONS = {
+    "an address": ["compiled_user", {"address": 12345, "data": 0}],
+    "a name": ["user", "print"],
+    "a number": ["user", 12345],
+    "a dictionary": ["user", {"function": "print"}],
+}
+
+
+@pytest.mark.parametrize("function", FUNCTIONS.values(), ids=FUNCTIONS.keys())
+def test_a_function_never_comes_from_a_file(
+    sol: pc.Solution, function: list[object], tmp_path: Path
+) -> None:
+    """An address that a file chose would be called; a saved run has none."""
+    hostile = json.dumps([function])
+    state = sol._run.__getstate__() | {"effects": hostile}
+    with pytest.raises(ValueError, match=function[0]):
+        empty_run().__setstate__(state)
+    with pytest.raises(ValueError, match=function[0]):
+        pickle.loads(pickle.dumps(Rebuilt(state)))
+    sol.save(tmp_path / "run.npz")
+    with np.load(tmp_path / "run.npz") as file:
+        np.savez(tmp_path / "hostile.npz", **{**file, "run.effects": hostile})
+    with pytest.raises(ValueError, match=rf"hostile.npz: is not .*{function[0]}"):
+        pc.load(tmp_path / "hostile.npz")
 
 
 def test_what_else_is_in_a_file_is_left_alone(sol, tmp_path):

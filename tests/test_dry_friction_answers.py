@@ -26,6 +26,21 @@ def assert_rests(sol: pc.Solution) -> None:
     assert sol.qd[-1] == 0.0
 
 
+def time_to_stop(w0: float, friction: pc.effects.DryJointFriction) -> float:
+    """The integral of J dw/friction(w) from 0 to w0."""
+    coulomb = friction.coulomb
+    static = coulomb if friction.static is None else friction.static
+    velocity, exponent = friction.stribeck_velocity, friction.exponent
+
+    def torque(w: Any) -> Any:
+        return coulomb + (static - coulomb) * mpmath.exp(-((w / velocity) ** exponent))
+
+    # Dense where the friction changes; 40 Stribeck velocities on, the rest is constant.
+    pieces = [0.0, *(velocity * x for x in (0.25, 0.5, 1, 2, 4, 10, 20, 40)), w0]
+    pieces = sorted(x for x in pieces if x <= w0)
+    return float(mpmath.quad(lambda w: J / torque(w), pieces))
+
+
 @pytest.mark.parametrize("w0", [3.0, -3.0, 1e-3, 1e4])
 @pytest.mark.parametrize("rtol", [1e-3, 1e-9, 1e-12])
 def test_constant_friction_stops_the_rod_after_its_momentum_over_the_friction(
@@ -57,16 +72,51 @@ def test_with_stribecks_law_it_stops_a_little_sooner(
         exponent=exponent,
     )
 
-    def torque(w: Any) -> Any:
-        return coulomb + (static - coulomb) * mpmath.exp(-((w / stribeck_velocity) ** exponent))
-
-    # Dense where the friction changes; 10 Stribeck velocities on, the rest is a rational.
-    pieces = [0.0, *(stribeck_velocity * x for x in (0.25, 0.5, 1, 2, 4, 10, 20)), w0]
-    pieces = sorted(x for x in pieces if x <= w0)
-    stop = float(mpmath.quad(lambda w: J / torque(w), pieces))
+    stop = time_to_stop(w0, friction)
     sol = pc.simulate(rod(friction), 0.2, w0, (0, 10), rtol=rtol)
     assert_rests(sol)
     assert sol.t[-1] == pytest.approx(stop, rel=max(1e-11, 3 * rtol))
+
+
+NARROW_PEAKS = [
+    pc.effects.DryJointFriction(
+        joint=1, coulomb=coulomb, static=static, stribeck_velocity=velocity, exponent=exponent
+    )
+    for velocity in (1e-3, 1e-6)
+    for coulomb, static, exponent in [(0.1, 0.3, 2.0), (0.4, 2.0, 2.0), (0.1, 1.0, 1.0)]
+]
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-9, 1e-12])
+@pytest.mark.parametrize("friction", NARROW_PEAKS, ids=repr)
+def test_a_peak_of_friction_that_is_far_narrower_than_the_run_is_not_strided_over(
+    friction: pc.effects.DryJointFriction, rtol: float
+) -> None:
+    """Where friction is constant no step errs: what errs by rtol is the time under the peak alone.
+
+    Beyond 36^(1/exponent) Stribeck velocities the peak is below the last bit, exp(-36).
+    """
+    w0 = 1.0
+    stop = time_to_stop(w0, friction)
+    under_the_peak = time_to_stop(
+        friction.stribeck_velocity * 36 ** (1 / friction.exponent), friction
+    )
+    sol = pc.simulate(rod(friction), 0.2, w0, (0, 10), rtol=rtol, max_steps=10_000)
+    assert_rests(sol)
+    assert abs(sol.t[-1] - stop) <= 1e-10 * stop + rtol * under_the_peak
+
+
+def test_a_narrow_peak_of_friction_shortens_every_run_by_the_same_time() -> None:
+    """J w0/tc less the integral of J (1/tc - 1/friction(w)), which ends with the peak."""
+    coulomb, peak_ends = 0.1, 6e-3
+    friction = pc.effects.DryJointFriction(
+        joint=1, coulomb=coulomb, static=0.3, stribeck_velocity=1e-3
+    )
+    sooner = J * peak_ends / coulomb - time_to_stop(peak_ends, friction)
+    for w0 in np.random.default_rng(6).uniform(0.5, 20, 100):
+        sol = pc.simulate(rod(friction), 0.2, w0, (0, 100), max_steps=10_000)
+        assert_rests(sol)
+        assert sol.t[-1] == pytest.approx(J * w0 / coulomb - sooner, rel=1e-10)
 
 
 @pytest.mark.parametrize("side", [1, -1])

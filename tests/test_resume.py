@@ -32,6 +32,48 @@ def test_a_run_of_no_length_goes_on_either_way_and_keeps_its_start_once():
         point.resume(5, t_eval=[0, 1])
 
 
+PIECES = {
+    "table": pc.effects.Motor(joint=1, table=pc.effects.Table(t=[-1, 0, 1], torque=[1, 0, 2])),
+    "spline": pc.effects.DrivenPivot(
+        spline=pc.effects.Spline(t=[-1, 0, 1], x=[0, 0.3, 0], y=[0.2, 0, 0])
+    ),
+    "at its limit": pc.effects.Motor(
+        joint=1,
+        sinusoid=pc.effects.Sinusoid(amplitude=2, angular_frequency=3, phase=np.pi / 6),
+        limit=1.0,
+    ),
+}
+
+
+@pytest.mark.parametrize("effect", PIECES.values(), ids=PIECES.keys())
+@pytest.mark.parametrize("t_end", [-1.0, 1.0])
+def test_a_run_of_no_length_goes_on_as_one_made_that_way(
+    effect: pc.effects.Effect, t_end: float
+) -> None:
+    """At a time where a law changes, what holds is that of the side to which the run goes."""
+    scene = pc.Scene(links=BOOK.links, effects=[effect])
+    direct = pc.simulate(scene, Q0, 1.0, (0, t_end), max_steps=10_000)
+    resumed = pc.simulate(scene, Q0, 1.0, (0, 0)).resume(t_end, max_steps=10_000)
+    assert (resumed.status, resumed.t[-1]) == (direct.status, t_end) == ("finished", t_end)
+    assert np.array_equal(resumed.t, direct.t)
+    assert np.array_equal(resumed.y, direct.y)
+    times = np.linspace(0, t_end, 20)
+    assert np.array_equal(resumed(times), direct(times))
+
+
+@pytest.mark.parametrize("rate", [0.0, 1.0])
+def test_a_run_of_no_length_with_dry_friction_goes_forward_alone(rate: float) -> None:
+    friction = pc.effects.DryJointFriction(joint=1, coulomb=0.1)
+    scene = pc.Scene(links=[pc.Link(mass=1, length=1)], gravity=0, effects=[friction])
+    with pytest.raises(ValueError, match=r"backward.*dry_joint_friction.*run it forward"):
+        pc.simulate(scene, 0, rate, (0, -1))
+    point = pc.simulate(scene, 0, rate, (0, 0))
+    with pytest.raises(ValueError, match=r"backward.*dry_joint_friction.*run it forward"):
+        point.resume(-1)
+    direct = pc.simulate(scene, 0, rate, (0, 1))
+    assert np.array_equal(point.resume(1).y, direct.y)
+
+
 @pytest.mark.parametrize("store", ["dense", "steps", "end"])
 def test_a_run_that_was_not_sampled_is_not_sampled_on(store):
     with pytest.raises(ValueError, match=r"^t_eval: this run was not asked for times"):

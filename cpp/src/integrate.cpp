@@ -168,7 +168,7 @@ class Run {
 
     Crossing crossing;
     if (guards_) crossing = guards_->first(h);
-    if (crossing.guard >= 0) {
+    if (guards_ && crossing.guard >= 0) {
       if (crossing.theta * std::abs(h) <= 2.0 * rounding * std::abs(t))
         return change_at_once(crossing);
       const double whole = h;
