@@ -76,9 +76,11 @@ $(DONE)/build-requirements: pyproject.toml | $(DONE)/venv
 	python setup/requirements.py build | $(PIP_INSTALL) cmake ninja -r /dev/stdin
 	@touch $@
 
+# What is edited while it builds is newer than the stamp, and built the next time.
 $(DONE)/installed: $(SOURCES) $(DONE)/build-requirements
+	@touch $@.begun
 	$(PIP_INSTALL) --no-build-isolation .
-	@touch $@
+	@mv $@.begun $@
 
 $(DONE)/test-requirements: pyproject.toml | $(DONE)/build-requirements
 	@sh setup/debian_packages.sh doctest

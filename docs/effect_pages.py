@@ -11,7 +11,7 @@ from typing import Any
 
 import pendcore as pc
 from pendcore.effect_class import KINDS, Effect, OwnEffect
-from pendcore.effect_description import Description, Parameter
+from pendcore.effect_description import CAVEATS, Description, Parameter
 from pendcore.energy import LOSSES
 
 EXAMPLES: dict[str, list[str]] = {
@@ -78,8 +78,12 @@ print(sol.energy().ledger)
 ```
 
 `Q` comes zeroed and counts as generalised forces of the absolute angles, N m. `data` is handed on
-as it is: an address, or a NumPy array, whose memory it then is. Nothing checks the address: a wrong
-one ends the process.
+as it is: an address, or a NumPy array, whose memory it then is: C-contiguous float64, anything else
+is refused. Nothing checks the address: a wrong one ends the process.
+
+An exception in a ctypes callback that is written in Python never gets here: ctypes prints it and
+drops it, and the run goes on with the forces that were there so far, zero as a rule. A law in
+Python is better a [`User`](user.md), whose exception ends the run.
 
 A function of C or C++ comes from a library of your own,
 `CompiledUser(ctypes.CDLL("./laws.so").damp)`:
@@ -154,6 +158,10 @@ def _sections(told: Description, cls: type[Effect]) -> Iterator[str]:
     yield ""
     yield f"    {told.law}"
     yield ""
+    if told.account in CAVEATS:
+        more = "[trust.md](../trust.md#points-where-a-law-changes) has more."
+        yield f"**{CAVEATS[told.account]}** {more}"
+        yield ""
     yield f"Source: {told.source}. The symbols are those of [conventions.md](../conventions.md)."
     yield ""
     yield from _table(told)

@@ -20,8 +20,9 @@ from reference.random_rigs import between
 
 ROOT = Path(__file__).parents[1]
 PAGE = (ROOT / "docs/add_an_effect.md").read_text()
-HEADER, *LINES_OF_CPP = re.findall(r"```cpp\n(.*?)```", PAGE, re.DOTALL)
-LAW, *LINES_OF_PYTHON = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+STEPS, OTHER_LAWS = PAGE.split("## Other kinds of law")
+HEADER, *LINES_OF_CPP = re.findall(r"```cpp\n(.*?)```", STEPS, re.DOTALL)
+LAW, *LINES_OF_PYTHON = re.findall(r"```python\n(.*?)```", STEPS, re.DOTALL)
 PROJECT = """
 cmake_minimum_required(VERSION 3.25)
 project(effect LANGUAGES CXX)
@@ -40,7 +41,7 @@ template <class Row>
 void print(double qd) {
   const MagneticBrake brake{.joint = 1, .peak = 0.3, .critical_rate = 2.0};
   MagneticBrake::Law<Row> law;
-  brake.put(law, 0, 1.0);
+  brake.put(law, 0, LinkConstants{});
   const RowAt<Row> at{.t = 0.0, .q = Constants<Row>::of(1.0), .qd = Constants<Row>::of(qd)};
   RowLoads<Row> loads;
   law.add(at, loads);
@@ -102,14 +103,22 @@ def test_the_lines_to_add_stand_where_it_says() -> None:
     assert "SMOOTH" in (ROOT / "tests/test_ledger.py").read_text()
 
 
+ELSEWHERE = {
+    "BOOKED": "docs/effect_pages.py",
+    "LOSSES": "tests/reference/rig.py",
+    "SMOOTH": "tests/test_ledger.py",
+}
+
+
 def test_the_parts_of_the_contract_that_it_names_are_there() -> None:
     headers = "".join(p.read_text() for p in (ROOT / "cpp/include/pendcore/effects").glob("*.hpp"))
-    table = PAGE.split("## Other kinds of law")[1]
-    named = set(re.findall(r"`(\w+)[(`]", table)) - {"put"}
+    named = set(re.findall(r"`(\w+)[(`]", OTHER_LAWS)) - {"put"}
     assert {"couple", "potential", "warnings", "next_mode"} <= named
     for name in named:
-        assert re.search(rf"\b{name}\b", headers) or name == "BOOKED", name
-    for file in re.findall(r"`(\w+\.hpp)`", table):
+        assert re.search(rf"\b{name}\b", headers) or name in ELSEWHERE, name
+    for name, file in ELSEWHERE.items():
+        assert name in (ROOT / file).read_text()
+    for file in re.findall(r"`(\w+\.hpp)`", OTHER_LAWS):
         assert (ROOT / "cpp/include/pendcore/effects" / file).exists(), file
 
 

@@ -35,6 +35,7 @@ def test_the_readmes_lines_run(tmp_path, monkeypatch, capsys):
     exec(dozen, names)
     assert names["longer"].t[-1] == 10.0
     assert (tmp_path / "run.npz").exists()
+    names = {}  # each block stands for itself
     exec(chains, names)
     assert names["run"].success
     ledger = names["run"].energy().ledger

@@ -94,7 +94,9 @@ def test_a_peak_of_friction_that_is_far_narrower_than_the_run_is_not_strided_ove
 ) -> None:
     """Where friction is constant no step errs: what errs by rtol is the time under the peak alone.
 
-    Beyond 36^(1/exponent) Stribeck velocities the peak is below the last bit, exp(-36).
+    Beyond 36^(1/exponent) Stribeck velocities the peak is below the last bit, exp(-36). The step
+    that enters it begins at a rate that is hundreds of times less than the first, and may err by
+    rtol of that.
     """
     w0 = 1.0
     stop = time_to_stop(w0, friction)
@@ -103,7 +105,8 @@ def test_a_peak_of_friction_that_is_far_narrower_than_the_run_is_not_strided_ove
     )
     sol = pc.simulate(rod(friction), 0.2, w0, (0, 10), rtol=rtol, max_steps=10_000)
     assert_rests(sol)
-    assert abs(sol.t[-1] - stop) <= 1e-10 * stop + rtol * under_the_peak
+    entering = 1e-3 * rtol * stop
+    assert abs(sol.t[-1] - stop) <= max(1e-10 * stop, entering) + rtol * under_the_peak
 
 
 def test_a_narrow_peak_of_friction_shortens_every_run_by_the_same_time() -> None:

@@ -174,7 +174,11 @@ MISTAKES = {
         ValueError,
         r"Spline: y: has 1 value.*must have 2, one for each time",
     ),
-    "joint zero": (lambda: fx.ViscousJoint(0, 1), ValueError, r"ViscousJoint: joint = 0.*from 1"),
+    "joint zero": (
+        lambda: fx.ViscousJoint(0, 1),
+        ValueError,
+        r"ViscousJoint: joint = 0: .* 1 or more",
+    ),
     "joint huge": (lambda: fx.ViscousJoint(2**31, 1), ValueError, r"ViscousJoint: joint: is too l"),
     "no law": (lambda: fx.Motor(joint=1), ValueError, r"Motor: .*one of constant, sinusoid, table"),
     "two laws": (lambda: fx.Motor(1, constant=1, sinusoid=SINE), ValueError, r"Motor: .*one of"),
@@ -264,7 +268,7 @@ def test_a_scene_refuses_what_its_chain_has_no_place_for(effect, message):
         (5, r"effects = 5: must be a list"),
         ([fx.Lock(1), "drag"], r"effect 2 = 'drag': must be a list of pendcore\.effects"),
         ([SINE], r"effect 1 = Sinusoid\(.*: must be a list of pendcore\.effects"),
-        ([fx.Lock], r"effect 1 = <class 'pendcore\.effects\.Lock'>: must be"),
+        ([fx.Lock], r"effect 1 = Lock: must be a pendcore\.effects object.* got the class itself"),
     ],
 )
 def test_what_is_no_list_of_effects_is_refused(effects, message):

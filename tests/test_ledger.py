@@ -11,6 +11,7 @@ import pendcore as pc
 import pytest
 from described_scenes import scene_of
 from numpy.typing import NDArray
+from pendcore import _core
 from reference.effects import Described, law
 from reference.newton_euler import Body, uniform_rod
 from reference.random_rigs import address_of, polynomial
@@ -78,15 +79,8 @@ SLIDING: list[Described] = [
     ),
     ("dry_joint_friction", {"joint": 1, "coulomb": 0.003}),
 ]
-ENTRIES = {
-    "viscous": ["viscous"],
-    "drag": ["drag", "wind"],
-    "motor": ["motor"],
-    "drive": ["drive"],
-    "user": ["user"],
-    "dry": ["dry"],
-}
-EVERY_ENTRY = ["viscous", "dry", "drag", "motor", "drive", "wind", "impact", "user"]
+EVERY_ENTRY = set(_core.accounts())
+ENTRIES = {kind: [kind] for kind in SMOOTH if kind in EVERY_ENTRY} | {"drag": ["drag", "wind"]}
 
 
 def simulate(
@@ -132,7 +126,7 @@ def test_the_balance_closes_with_every_effect_on(locked: bool) -> None:
     assert sol.t[-1] == 5.0
     assert sol.stats.limited_by_break > 20
     ledger = sol.energy().ledger
-    assert sorted(entries(ledger)) == sorted(set(EVERY_ENTRY) - {"impact"})
+    assert sorted(entries(ledger)) == sorted(EVERY_ENTRY)
     assert exchanged(ledger) > 10
     assert_closes(sol)
 

@@ -38,6 +38,21 @@ SCENES = {
         [fx.Payload(1.0), fx.ViscousJoint(1, 0.1, damping3=-0.1)],
         r"effect 2 \(viscous_joint\): a negative damping coefficient feeds",
     ),
+    "a lock in degrees": (
+        [ROD],
+        [fx.Lock(1, angle=90)],
+        r"effect 1 \(lock\): angle = 90\.0 rad: that is 5156\.\d+ degrees: angles are in radians",
+    ),
+    "a spring in degrees": (
+        [ROD],
+        [fx.Payload(1.0), fx.TorsionalSpring(1, 1.0, rest_angle=-15)],
+        r"effect 2 \(torsional_spring\): rest_angle = -15\.0 rad: .* in radians",
+    ),
+    "a controller in degrees": (
+        [ROD],
+        [fx.Motor(1, pd=fx.PD(40, 2, reference=720))],
+        r"effect 1 \(motor\): pd\.reference = 720\.0 rad: .* in radians",
+    ),
 }
 RUNS = {
     "degrees": (
@@ -56,7 +71,7 @@ RUNS = {
     "a table that begins after the run": (
         [fx.Payload(1), fx.DrivenPivot(spline=SPLINE)],
         {"t_span": (0, 1)},
-        r"effect 2 \(driven_pivot\): its table goes from 0\.5 to 1\.0 s, the run from 0\.0",
+        r"effect 2 \(driven_pivot\): its spline goes from 0\.5 to 1\.0 s, the run from 0\.0",
     ),
 }
 
@@ -118,6 +133,15 @@ def test_what_may_well_be_meant_is_not_warned_of(effects, asked):
         warnings.simplefilter("error")
         given = {"q0": [0.5, 1.0], "t_span": (0, 1), **asked}
         assert pc.simulate(SCENE.replace(effects=effects), **given).success
+
+
+@pytest.mark.parametrize("angle", [0.0, 10.0, -10.0, 16.0, 725.0, 12.566370614359172])
+def test_angles_of_effects_that_may_well_be_meant_are_not_warned_of(angle):
+    pd = fx.PD(40, 2, reference=angle)
+    effects = [fx.Lock(1, angle=angle), fx.TorsionalSpring(2, 1.0, angle), fx.Motor(2, pd=pd)]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert len(SCENE.replace(effects=effects).effects) == 3
 
 
 def test_a_run_under_a_table_ends_where_that_does():

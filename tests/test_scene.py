@@ -167,3 +167,16 @@ def test_more_inertia_than_the_rod_could_have_is_warned_of_once_and_by_name():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert pickle.loads(pickle.dumps(scene)) == scene
+
+
+def test_a_lock_is_not_in_the_mass_matrix_and_what_locked_joints_need_is_said():
+    rod = pc.Link(mass=1.0, length=1.0)
+    free = pc.Scene(links=[rod, rod], effects=[pc.effects.Payload(0.5)])
+    locked = free.replace(effects=[*free.effects, pc.effects.Lock(2)])
+    q = [0.3, 1.1]
+    assert np.array_equal(locked.mass_matrix(q), free.mass_matrix(q))
+    assert not np.array_equal(free.mass_matrix(q), free.replace(effects=[]).mass_matrix(q))
+    qdd = locked.accelerations(0.0, q, [2.0, 2.0])
+    assert qdd[0] == qdd[1]
+    assert "Locks are not" in (pc.Scene.mass_matrix.__doc__ or "")
+    assert "its rate, ``qd_i - qd_{i-1}``, must be" in (pc.Scene.accelerations.__doc__ or "")

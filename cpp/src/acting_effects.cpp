@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "pendcore/dynamics/inertia.hpp"
+#include "pendcore/dynamics/row.hpp"
 
 namespace pendcore {
 
@@ -68,6 +69,25 @@ double group_of(const Kind& effect) {
   }
 }
 
+template <class Row>
+struct ForceProbe {
+  bool is_called = false;
+  void couple(const Row& /*tau*/) {}
+  void generalised(const Row& /*Q*/) {}
+  void force(const Row& /*moment*/, const Row& /*fx*/, const Row& /*fy*/) { is_called = true; }
+};
+
+template <class Row, class Law>
+bool calls_force(const Law& law) {
+  constexpr int room = 8;
+  const double zeros[3 * room]{};
+  const double* const z = zeros + room;
+  const RowInArrays<Row> at({z, z, z, z, z, z, z}, 0.0, 0);
+  ForceProbe<Row> probe;
+  law.add(at, probe);
+  return probe.is_called;
+}
+
 template <class Kind>
 bool is_couple(const Kind& effect) {
   if constexpr (requires { effect.couple(0); }) {
@@ -129,8 +149,9 @@ ActingEffects<Row>::ActingEffects(const Scene& scene)
             found->taken |= wanted.taken;
             places_[i] = {found->law, place % width};
             auto& law = *static_cast<KindLaw*>(found->law);
-            effect.put(law, place % width, scene.links[place].length);
-            if constexpr (requires { Kind::adds_forces; }) has_forces |= Kind::adds_forces;
+            const Link& link = scene.links[place];
+            effect.put(law, place % width, {link.mass, link.length, link.center, scene.gravity});
+            has_forces |= calls_force<Row>(law);
           }
         },
         effects[i]);

@@ -49,7 +49,7 @@ std::optional<int> operations_of(const Kind& effect) {
   }
   if constexpr (requires { typename Kind::template Law<double>; }) {
     typename Kind::template Law<double> law;
-    effect.put(law, 0, 1.0);
+    effect.put(law, 0, {.mass = 1.0, .length = 1.0, .center = 0.5, .gravity = 9.807});
     if constexpr (requires { effect.put_mode(law, 0, 1); }) {
       effect.put_mode(law, 0, effect.mode_at(0.0, 0.0, 0.0, true));
     }

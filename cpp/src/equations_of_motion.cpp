@@ -80,7 +80,11 @@ void choose_modes(EffectsInForce& effects, double t, const double* q, const doub
               phi = relative(q, effect.joint);
               phid = relative(qd, effect.joint);
             }
-            effects.put_mode(i, effect.mode_at(t, phi, phid, forward));
+            int mode = effect.mode_at(t, phi, phid, forward);
+            if constexpr (requires { effect.holding_torque(); }) {
+              if (effects.locked[effect.joint - 1] != 0) mode = 0;  // the lock holds it
+            }
+            effects.put_mode(i, mode);
           }
         },
         effects.effects[i]);

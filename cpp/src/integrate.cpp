@@ -157,7 +157,10 @@ class Run {
     ++attempts_;
     Attempt attempt = stepper_.attempt(t, h, position_.control.gain(method_));
     look_for_bad_component(attempt, t + h);
-    if (!trial_was_finite_ || !(attempt.squared_error <= 1.0 || limits_.fixed_step)) {
+    // A step of a few bits cannot be shortened, and its error is that of its times.
+    const bool is_shortest = target.is_in_reach && std::abs(h) <= 10.0 * last_bits();
+    const bool is_accepted = attempt.squared_error <= 1.0 || limits_.fixed_step || is_shortest;
+    if (!trial_was_finite_ || !is_accepted) {
       if (limits_.fixed_step) {
         ++position_.statistics.rejected;
         return Status::non_finite;
@@ -167,7 +170,7 @@ class Run {
     }
 
     Crossing crossing;
-    if (guards_) crossing = guards_->first(h);
+    if (guards_ && !is_shortest) crossing = guards_->first(h);
     if (guards_ && crossing.guard >= 0) {
       if (crossing.theta * std::abs(h) <= 2.0 * rounding * std::abs(t))
         return change_at_once(crossing);

@@ -70,6 +70,27 @@ bool has_rotor(const Scene& scene, std::size_t joint) {
   });
 }
 
+constexpr double pi = 3.14159265358979323846;
+
+/// A sentence for each angle among the parameters of an effect, or of its parts, that looks as if
+/// it were in degrees: a multiple of five from fifteen up to two turns. A phase may well be large:
+/// it moves a wave in time.
+template <class Struct>
+void warn_of_degrees(const std::string& where, const Struct& effect,
+                     std::vector<std::string>& warnings) {
+  for_each_parameter(effect, [&]<class Value>(const ParameterInfo& info, const Value& value) {
+    if constexpr (std::is_same_v<Value, double> || std::is_same_v<Value, std::optional<double>>) {
+      const double x = std::optional<double>(value).value_or(0.0);
+      if (info.unit != "rad" || info.name == "phase" || std::fmod(x, 5.0) != 0.0) return;
+      if (std::abs(x) < 15.0 || std::abs(x) > 720.0) return;
+      warnings.push_back(where + std::string(info.name) + " = " + text(x) + " rad: that is " +
+                         text(x * (180.0 / pi)) + " degrees: angles are in radians");
+    } else if constexpr (requires { value->parameters; }) {
+      if (value) warn_of_degrees(where + std::string(info.name) + ".", *value, warnings);
+    }
+  });
+}
+
 }  // namespace
 
 Link Link::uniform_rod(double mass, double length) {
@@ -181,6 +202,7 @@ std::vector<std::string> plausibility_warnings(const Scene& scene) {
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
     std::visit(
         [&](const auto& effect) {
+          warn_of_degrees(effect_name(scene, i), effect, warnings);
           if constexpr (requires { effect.warnings(); }) {
             for (const std::string& warning : effect.warnings()) {
               warnings.push_back(effect_name(scene, i) + warning);

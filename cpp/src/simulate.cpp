@@ -63,19 +63,31 @@ std::string component_name(int i, int n) {
   return i < n ? "q_" + std::to_string(i + 1) : "qd_" + std::to_string(i - n + 1);
 }
 
-/// The effect whose table or spline does not reach to time t, in the run's direction.
+/// "its table goes from 0 to 1 s"
+template <class Kind>
+std::string span_of(const Kind& effect) {
+  std::string what = "table";
+  if constexpr (requires { effect.spline; }) what = "spline";
+  return "its " + what + " goes from " + text(effect.first_time()) + " to " +
+         text(effect.last_time()) + " s";
+}
+
+/// What is told where a table or spline does not go on at time t, in the run's direction.
 std::string table_that_ends(const Scene& scene, double t, bool forward) {
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
-    const bool ends = std::visit(
+    std::string told;
+    std::visit(
         [&](const auto& effect) {
           if constexpr (requires { effect.last_time(); }) {
-            return forward ? !(effect.first_time() <= t && t < effect.last_time())
-                           : !(effect.first_time() < t && t <= effect.last_time());
+            const double first = effect.first_time();
+            const double last = effect.last_time();
+            if (forward ? first <= t && t < last : first < t && t <= last) return;
+            told = effect_name(scene, i) + span_of(effect) + ", and the run is at t = " + text(t) +
+                   " s: make it longer, or simulate less";
           }
-          return false;
         },
         scene.effects[i]);
-    if (ends) return effect_name(scene, i) + "its table does not go on from here";
+    if (!told.empty()) return told;
   }
   return {};
 }
@@ -84,7 +96,7 @@ std::string table_that_ends(const Scene& scene, double t, bool forward) {
 std::string message_of(const Ending& ending, const Scene& scene, const Solution& solution,
                        const std::string& remark) {
   std::string message(text(ending.status).sentence);
-  if (ending.status == Status::at_rest) {
+  if (ending.status == Status::at_rest || ending.status == Status::stuck) {
     return message + " (at t = " + text(solution.t_reached) + " s: " + remark + ")";
   }
   if (text(ending.status).success) return message;
@@ -93,11 +105,10 @@ std::string message_of(const Ending& ending, const Scene& scene, const Solution&
            " s): dry friction that reverses at once, or two limits that meet";
   }
   const bool forward = !(solution.t_end < solution.t0);
-  const std::string table = ending.status == Status::non_finite
-                                ? table_that_ends(scene, solution.t_reached, forward)
-                                : std::string();
-  if (!table.empty())
-    return message + " (at t = " + text(solution.t_reached) + " s, " + table + ")";
+  std::string table = ending.status == Status::non_finite
+                          ? table_that_ends(scene, solution.t_reached, forward)
+                          : std::string();
+  if (!table.empty()) return table;
   message += " (at t = " + text(solution.t_reached) + " s";
   if (ending.bad >= 0) message += ", " + component_name(ending.bad, solution.n);
   message += ')';
@@ -121,9 +132,10 @@ void check_run(const Scene& scene, const std::vector<double>& q0, const std::vec
     const std::string joint = std::to_string(lock->joint);
     const double phi = relative(q0.data(), lock->joint);
     if (lock->angle && !(std::abs(phi - *lock->angle) <= 1e-9 * std::max(1.0, std::abs(phi)))) {
+      const std::string name = where.substr(0, where.size() - 2);  // without ": "
       refuse(
           "q0: angle of joint " + joint, phi,
-          text(*lock->angle) + " rad, as " + where + "says: start there, or leave its angle out");
+          text(*lock->angle) + " rad, as " + name + " says: start there, or leave its angle out");
     }
     const double rate = relative(qd0.data(), lock->joint);
     if (!(std::abs(rate) <= 1e-12 * std::abs(qd0[lock->joint - 1]))) {
@@ -231,10 +243,9 @@ std::vector<std::string> run_warnings(const Scene& scene, const std::vector<doub
         [&](const auto& effect) {
           if constexpr (requires { effect.last_time(); }) {
             if (effect.first_time() <= first && last <= effect.last_time()) return;
-            warnings.push_back(effect_name(scene, i) + "its table goes from " +
-                               text(effect.first_time()) + " to " + text(effect.last_time()) +
-                               " s, the run from " + text(t0) + " to " + text(t_end) +
-                               " s: the run ends where the table does");
+            warnings.push_back(effect_name(scene, i) + span_of(effect) + ", the run from " +
+                               text(t0) + " to " + text(t_end) +
+                               " s: it ends where it leaves that span");
           }
         },
         scene.effects[i]);

@@ -89,12 +89,12 @@ Status Switching::begin(double t, double* y, bool forward) {
   choose_modes_from(t, q, qd);
   set_locks(y);
   settle(-1, t, y);
-  if (rests(t, q, qd)) return rest("dry friction holds every joint");
+  if (rests(t, q, qd)) return hold_every_joint();
   for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
     if (!holding_torque(scene_.effects[i]) || is_locked(joint_of(i))) continue;
     if (relative(qd, joint_of(i)) != 0.0) continue;
     const int mode = sliding_mode(i, t, q, qd);
-    if (mode == 0) return Status::at_rest;
+    if (mode == 0) return Status::stuck;
     put_mode(i, mode);
   }
   collect_guards();
@@ -178,9 +178,9 @@ Status Switching::cross(int k, double t, const double* y) {
   const Effect& effect = scene_.effects[watch.effect];
   int mode = 0;
   if (holding_torque(effect)) {
-    if (rests(t, q, qd)) return rest("dry friction holds every joint");
+    if (rests(t, q, qd)) return hold_every_joint();
     mode = sliding_mode(watch.effect, t, q, qd);
-    if (mode == 0) return Status::at_rest;
+    if (mode == 0) return Status::stuck;
   } else {
     std::visit(
         [&](const auto& one) {
@@ -205,27 +205,32 @@ int Switching::sliding_mode(std::size_t i, double t, const double* q, const doub
     if (mode * relative(qdd.data(), joint) > 0.0) return mode;
   }
   put_mode(i, before);
-  rest("joint " + std::to_string(joint) +
-       " comes to rest under dry friction while other links may still move");
+  remark_ = "joint " + std::to_string(joint);
   return 0;
 }
 
-/// What is left to the next phase of the motion is told.
-Status Switching::rest(std::string remark) {
-  remark_ = std::move(remark);
-  const bool depends_on_time = std::ranges::any_of(scene_.effects, [](const Effect& effect) {
+/// Whether what holds now holds for ever.
+bool Switching::is_for_good() const {
+  return std::ranges::none_of(scene_.effects, [](const Effect& effect) {
     return std::visit(
         [](const auto& one) {
-          if constexpr (requires { one.wave(); })
-            return one.wave() || one.next_time(0.0, true) < never;
+          if constexpr (requires { one.wave(); }) {
+            if (one.wave()) return true;
+          }
+          if constexpr (requires { one.next_time(0.0, true); }) {
+            if (one.has_modes() && one.last_time() < never) return true;
+          }
           return one.info.account == Account::drive || one.info.account == Account::user;
         },
         effect);
   });
-  if (depends_on_time) remark_ += ", until what depends on time sets it free";
-  const bool goes_on = depends_on_time || remark_.starts_with("joint");
-  if (goes_on) remark_ += ": sticking is not simulated";
-  return Status::at_rest;
+}
+
+Status Switching::hold_every_joint() {
+  const bool for_good = is_for_good();
+  remark_ = for_good ? "dry friction holds every joint"
+                     : "dry friction holds every joint, until what depends on time moves one";
+  return for_good ? Status::at_rest : Status::stuck;
 }
 
 /// Nothing moves, and every joint can carry the torque that holds what is beyond it.

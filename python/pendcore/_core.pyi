@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -21,6 +21,9 @@ class Scene:
     def n(self) -> int: ...
     @property
     def warnings(self) -> list[str]: ...
+    def run_warnings(
+        self, q0: Sequence[float], qd0: Sequence[float], t0: float, t_end: float
+    ) -> list[str]: ...
     def accelerations(
         self,
         t: npt.NDArray[np.float64],

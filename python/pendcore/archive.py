@@ -19,17 +19,21 @@ import numpy as np
 from pendcore import _core
 from pendcore.case import Case
 from pendcore.case_file import case_from_text
-from pendcore.effect_class import effect_of
+from pendcore.effect_class import OwnEffect, effect_of
 from pendcore.link import Link
 from pendcore.scene import Scene
 from pendcore.solution import Solution
 from pendcore.warning import PendcoreWarning
 
 _RUN = "run."
+_KEEP = ": keep the numbers, sol.to_pandas() or numpy.savez(path, t=sol.t, y=sol.y)"
 
 
 def save(solution: Solution, path: str | os.PathLike[str]) -> None:
     """Write a solution to the file ``path``, under just that name."""
+    for effect in solution.scene.effects:
+        if isinstance(effect, OwnEffect):
+            raise effect.cannot_be("saved", _KEEP)
     entries: dict[str, Any] = {
         "t": solution.t,
         "q": solution.q,

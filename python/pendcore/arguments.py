@@ -6,14 +6,46 @@ ValueError.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
+from difflib import get_close_matches
+from functools import wraps
+from inspect import signature
 from numbers import Real
 from operator import index
-from typing import Any, TypeAlias
+from typing import Any, ParamSpec, TypeAlias, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 Floats: TypeAlias = npt.NDArray[np.float64]
+Taken = ParamSpec("Taken")
+Given = TypeVar("Given")
+
+
+def did_you_mean(name: str, known: Iterable[str]) -> str:
+    """Return the remedy for a name that is not known."""
+    names = [*known]
+    near = get_close_matches(name, names, n=1, cutoff=0.5)
+    return f"did you mean {near[0]!r}?" if near else f"known are {', '.join(names)}"
+
+
+def known_keywords(function: Callable[Taken, Given]) -> Callable[Taken, Given]:
+    """Make a function refuse a keyword that it does not have with the nearest that it has."""
+    owner = function.__qualname__.removesuffix(".__init__")
+    known = [name for name in signature(function).parameters if name not in ("self", "cls")]
+
+    @wraps(function)
+    def called(*args: Taken.args, **named: Taken.kwargs) -> Given:
+        try:
+            return function(*args, **named)
+        except TypeError:  # looked at only then: a run of microseconds need not pay for it
+            for name in named:
+                if name not in known:
+                    remedy = did_you_mean(name, known)
+                    raise TypeError(f"{owner}: has no parameter {name!r}: {remedy}") from None
+            raise
+
+    return called
 
 
 def number(name: str, value: object, unit: str) -> float:

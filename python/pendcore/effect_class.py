@@ -9,7 +9,6 @@ import ctypes
 from _ctypes import CFuncPtr
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import MISSING, field, make_dataclass
-from difflib import get_close_matches
 from functools import partial
 from inspect import Parameter as Argument
 from inspect import Signature
@@ -18,7 +17,7 @@ from typing import Any, ClassVar, NoReturn, Self
 import numpy as np
 
 from pendcore import _core
-from pendcore.arguments import in_unit, number, numbers, whole_number
+from pendcore.arguments import did_you_mean, in_unit, number, numbers, whole_number
 from pendcore.effect_description import Description, Parameter, docstring, effects, parts
 
 
@@ -120,9 +119,10 @@ class OwnEffect(Effect):
         object.__setattr__(self, "_origins", dict(given))
         super()._fill(where, given)
 
-    def cannot_be(self, what: str) -> TypeError:
+    def cannot_be(self, what: str, remedy: str = "") -> TypeError:
         """Return the error that says why it cannot be pickled, written, saved."""
-        return TypeError(f"{self!r}: cannot be {what}: a function lives in one process alone")
+        reason = "a function lives in one process alone"
+        return TypeError(f"{self!r}: cannot be {what}: {reason}{remedy}")
 
     def particulars(self) -> dict[str, Any]:
         """Return the parameters as they were given."""
@@ -212,10 +212,8 @@ def _check_names(where: str, told: Description, given: Iterable[str]) -> None:
     names = [parameter.name for parameter in told.parameters]
     for name in given:
         if name not in names:
-            near = get_close_matches(name, names, n=1, cutoff=0.5)
-            remedy = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(names)}"
             owner = f"{where[:-1]} " if where.endswith(".") else where
-            raise TypeError(f"{owner}has no parameter {name!r}: {remedy}")
+            raise TypeError(f"{owner}has no parameter {name!r}: {did_you_mean(name, names)}")
     for p in told.parameters:
         if p.required and p.name not in given:
             raise TypeError(f"{where}{p.name} is missing: {p.sentence}{in_unit(p.unit)}")
@@ -247,6 +245,13 @@ def _address(name: str, value: Any, of_function: bool) -> int:
     if isinstance(value, CFuncPtr):
         value = ctypes.cast(value, ctypes.c_void_p).value or 0
     elif isinstance(value, np.ndarray) and not of_function:
+        if value.dtype != np.float64 or not value.flags.c_contiguous:
+            gaps = "" if value.flags.c_contiguous else ", not contiguous"
+            raise TypeError(
+                f"{name}: is an array of {value.dtype}{gaps}: must be a C-contiguous one of "
+                "float64, as np.ascontiguousarray(data, dtype=np.float64) makes it: its memory is "
+                "handed on as it is"
+            )
         value = value.ctypes.data
     else:
         value = getattr(value, "address", value)  # of numba's cfunc

@@ -90,6 +90,13 @@ class Description(NamedTuple):
     account: str = "none"
 
 
+CAVEATS = {
+    "dry": "Friction slides, and does not stick yet. Where it brings all to rest for good, a run "
+    'ends with status "at_rest"; where a joint sticks while others move, or while something '
+    'depends on time, with status "stuck".'
+}
+"""What those laws lack whose work the ledger books so."""
+
 USER = Description(
     name="User",
     kind="user",
@@ -170,6 +177,9 @@ def _lines(described: Description) -> Iterator[str]:
     if described.source:
         yield from ("", "Notes", "-----")
         yield from wrap(f"Source: {described.source}.", 92)
+    if described.account in CAVEATS:
+        yield ""
+        yield from wrap(CAVEATS[described.account], 92)
 
 
 def _meaning(parameter: Parameter) -> str:

@@ -12,9 +12,9 @@ has a page on each.
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from typing import NoReturn
 
+from pendcore.arguments import did_you_mean
 from pendcore.effect_class import KINDS, PARTS, Effect, Part
 
 globals().update(PARTS | {cls.__name__: cls for cls in KINDS.values()})
@@ -26,9 +26,7 @@ def kinds() -> dict[str, type[Effect]]:
 
 
 def __getattr__(name: str) -> NoReturn:
-    near = get_close_matches(name, __all__, n=1, cutoff=0.5)
-    remedy = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(__all__)}"
-    raise AttributeError(f"pendcore.effects has no {name!r}: {remedy}")
+    raise AttributeError(f"pendcore.effects has no {name!r}: {did_you_mean(name, __all__)}")
 
 
 __all__ = ["Effect", "Part", "kinds", *PARTS, *(cls.__name__ for cls in KINDS.values())]

@@ -39,7 +39,10 @@ class Ledger(Mapping[str, Floats]):
         object.__setattr__(self, "_entries", {**entries, "residual": residual})
 
     def __getitem__(self, name: str) -> Floats:
-        return self._entries[name]
+        try:
+            return self._entries[name]
+        except KeyError:
+            raise KeyError(self._has_no(name)) from None
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._entries)
@@ -51,9 +54,10 @@ class Ledger(Mapping[str, Floats]):
         try:
             return self._entries[name]
         except KeyError:
-            raise AttributeError(
-                f"the ledger has no entry {name!r}: it has {', '.join(self._entries)}"
-            ) from None
+            raise AttributeError(self._has_no(name)) from None
+
+    def _has_no(self, name: str) -> str:
+        return f"the ledger has no entry {name!r}: it has {', '.join(self._entries)}"
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"{name}: a ledger cannot be changed")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from pendcore.arguments import number
+from pendcore.arguments import known_keywords, number
 
 
 @dataclass(frozen=True, slots=True, init=False, repr=False)
@@ -41,6 +41,7 @@ class Link:
     center: float = field(init=False)
     inertia: float = field(init=False)
 
+    @known_keywords
     def __init__(
         self,
         *,
@@ -61,6 +62,7 @@ class Link:
         object.__setattr__(self, "inertia", inertia)
 
     @classmethod
+    @known_keywords
     def point_mass(cls, *, mass: float, length: float) -> Link:
         """All the mass at the tip of a massless rod: the pendulum of many books.
 

@@ -15,7 +15,14 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore import _core
-from pendcore.arguments import Floats, finite_array, link_array, number, vector
+from pendcore.arguments import (
+    Floats,
+    finite_array,
+    known_keywords,
+    link_array,
+    number,
+    vector,
+)
 from pendcore.effects import Effect
 from pendcore.link import Link
 from pendcore.warning import warn
@@ -82,6 +89,7 @@ class Scene:
     effects: tuple[Effect, ...] = ()
     _compiled: _core.Scene = field(init=False, compare=False)
 
+    @known_keywords
     def __init__(
         self, *, links: Iterable[Link], gravity: float = 9.807, effects: Iterable[Effect] = ()
     ) -> None:
@@ -108,6 +116,7 @@ class Scene:
         """Section 2.1 of the textbook: two uniform rods of 1 kg and 1 m, g = 9.807 m/s^2."""
         return cls(links=[Link(mass=1.0, length=1.0), Link(mass=1.0, length=1.0)])
 
+    @known_keywords
     def replace(
         self,
         *,
@@ -134,7 +143,8 @@ class Scene:
         """Angular accelerations of the links: the right-hand side that is integrated.
 
         What is smooth only in pieces, such as dry friction, is on the side that a forward run
-        would be on.
+        would be on. A joint that is locked does not turn: its rate, ``qd_i - qd_{i-1}``, must be
+        zero, for what follows from any other is not the scene's.
 
         Parameters
         ----------
@@ -166,6 +176,9 @@ class Scene:
     def mass_matrix(self, q: npt.ArrayLike) -> Floats:
         """Mass matrix of the equations of motion, symmetric and positive definite.
 
+        Payloads and rotors are in it. Locks are not: it is that of the chain with all its joints
+        free, whatever is locked.
+
         Parameters
         ----------
         q : array_like, (..., n)
@@ -184,6 +197,7 @@ class Scene:
         """Count the degrees of freedom as the textbook does, ``M = 3 n - 2 c5 - c4``."""
         return Mobility(*self._compiled.mobility())
 
+    @known_keywords
     def explain(self, t: float = 0.0, q: npt.ArrayLike | None = None) -> Explanation:
         """Say what is simulated and what is not, what it costs, and how fast it moves.
 
@@ -192,8 +206,9 @@ class Scene:
         t : float, default 0
             Time at which motors and pivot are looked at, s.
         q : array_like, (n,), optional
-            Angles to look for equilibria from, besides hanging and upright, rad; of a joint that is
-            locked where it starts they are the start.
+            Angles to look for equilibria from, besides hanging and upright, rad. A joint that is
+            locked where it starts is locked as it is here; without them, as it is in hanging and
+            in upright, and a remark says so.
 
         Returns
         -------
@@ -223,6 +238,12 @@ class Scene:
         return type(self)._unpickled, (self.links, self.gravity, self.effects)
 
 
+_OBJECT = {
+    "link": "pendcore.Link object, such as Link(mass=1.0, length=1.0)",
+    "effect": "pendcore.effects object, such as ViscousJoint(joint=1, damping=0.1)",
+}
+
+
 def _tuple_of(
     noun: str, kind: type[Member], values: Iterable[Member], what: str
 ) -> tuple[Member, ...]:
@@ -232,6 +253,10 @@ def _tuple_of(
     except TypeError:
         raise TypeError(f"{noun}s = {values!r}: {remedy}") from None
     for i, value in enumerate(values, start=1):
+        if isinstance(value, type) and issubclass(value, kind):
+            raise TypeError(
+                f"{noun} {i} = {value.__name__}: must be a {_OBJECT[noun]}; got the class itself"
+            )
         if not isinstance(value, kind):
             raise TypeError(f"{noun} {i} = {value!r}: {remedy}")
     return values

@@ -8,12 +8,14 @@ from math import inf
 import numpy.typing as npt
 
 from pendcore import _core
+from pendcore.arguments import known_keywords
 from pendcore.progress import Progress, callback
 from pendcore.scene import Scene
 from pendcore.solution import Solution, solution_of
 from pendcore.warning import warn
 
 
+@known_keywords
 def simulate(
     scene: Scene,
     q0: npt.ArrayLike | None = None,
@@ -52,7 +54,8 @@ def simulate(
         ``y = (q, qd)``.
     t_eval : array_like, (k,), optional
         Times of the result, s, one or more, within the run and in its order. They do not change
-        the steps.
+        the steps. Those that a run does not reach, such as those after it came to rest, are not
+        in the result.
     store : {"dense", "steps", "times", "end"}, optional
         What is kept: every step with its interpolant, every step, ``t_eval`` alone, the end alone;
         the last two in constant memory. Default: ``"times"`` with a ``t_eval``, else ``"dense"``.
@@ -77,6 +80,8 @@ def simulate(
     -------
     Solution
         What happened, also if the run could not be finished: see its ``status`` and ``message``.
+        A run ends before ``t_end`` where dry friction brings all to rest for good, with status
+        ``at_rest`` and success: the message says when, and all stays as it is from there on.
 
     Raises
     ------

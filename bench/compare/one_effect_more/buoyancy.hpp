@@ -30,8 +30,6 @@ struct Buoyancy {
                                     .required = true}),
   };
 
-  static constexpr bool adds_forces = true;
-
   template <class Row>
   struct Law {
     Row uplift{};
@@ -45,7 +43,7 @@ struct Buoyancy {
   };
 
   template <class Row>
-  void put(Law<Row>& law, int lane, double /*length*/) const {
+  void put(Law<Row>& law, int lane, const LinkConstants& /*on*/) const {
     set_lane(law.uplift, lane, uplift);
   }
 };

@@ -38,7 +38,7 @@ class Switching final : public Breaks {
   /// In place of begin() for a run that goes on: the modes it was in, and the state it began with.
   void restore(const std::vector<int>& modes, const double* start, bool forward);
 
-  /// What a run says that ended at rest, or where a table ends; empty if nothing.
+  /// What a run says that ended at rest or stuck; empty if nothing.
   const std::string& remark() const { return remark_; }
 
  private:
@@ -58,7 +58,8 @@ class Switching final : public Breaks {
   /// The mode of dry friction number i where its joint has no rate: 1, -1, or 0 where it sticks.
   int sliding_mode(std::size_t i, double t, const double* q, const double* qd);
   bool rests(double t, const double* q, const double* qd);
-  Status rest(std::string remark);
+  bool is_for_good() const;
+  Status hold_every_joint();
 
   Scene scene_;
   EquationsOfMotion equations_;

@@ -128,10 +128,13 @@ def explain(scene: Scene, t: float, start: tuple[float, ...] | None) -> Explanat
     rank = None
     if len(scene.links) > MANY:
         remarks.append(f"more than {MANY} links: no equilibria, frequencies and ranks are computed")
+    elif outside := outside_of_tables(scene, t):
+        remarks.append(f"t = {t:.6g} s is outside {outside}: no equilibria are computed there")
+        rank = constraint_rank(scene)
     else:
         equilibria = tuple(find_equilibria(scene, t, start, remarks))
         rank = constraint_rank(scene)
-    if equilibria and any(is_in_time(part) for part in parts(scene)):
+    if equilibria and changes_with_time(scene):
         remarks.append(
             f"equilibria are those of the instant t = {t:.6g} s, as if what changes with time "
             "stayed as it is then; what a fast drive does on average is not in them"
@@ -178,6 +181,19 @@ def parts(scene: Scene) -> Iterator[Part]:
                 yield value
 
 
-def is_in_time(part: Part) -> bool:
-    """Whether it changes with time: a table, a spline, a sinusoid."""
-    return {"t", "angular_frequency"} & {p.name for p in part.description.parameters} != set()
+def changes_with_time(scene: Scene) -> bool:
+    """Whether an effect has a table, a spline or a sinusoid."""
+    names = {p.name for part in parts(scene) for p in part.description.parameters}
+    return not names.isdisjoint({"t", "angular_frequency"})
+
+
+def outside_of_tables(scene: Scene, t: float) -> str:
+    """Return whose table or spline does not reach to a time, and where it is; empty if none."""
+    for i, effect in enumerate(scene.effects, start=1):
+        for parameter in effect.description.parameters:
+            value = getattr(effect, parameter.name)
+            times = getattr(value, "t", None) if isinstance(value, Part) else None
+            if times is not None and not times[0] <= t <= times[-1]:
+                where = f"{times[0]:.6g} to {times[-1]:.6g} s"
+                return f"the {parameter.name} of effect {i} ({effect.kind}), {where}"
+    return ""

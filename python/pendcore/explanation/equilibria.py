@@ -79,7 +79,8 @@ class Equilibrium(NamedTuple):
 class FreeAngles:
     """The angles that are left to a chain whose locked joints do not turn."""
 
-    def __init__(self, scene: Scene, t: float, pose: Floats) -> None:
+    def __init__(self, scene: Scene, t: float, start: Floats) -> None:
+        """A joint that is locked where it starts is locked as in ``start``, rad."""
         self._scene, self._t = scene, t
         locked, n = locks(scene), len(scene.links)
         self._fixed = np.zeros(n)
@@ -93,9 +94,9 @@ class FreeAngles:
                 self._turning = np.hstack([self._turning, np.zeros((n, 1))])
                 self._turning[i, -1] = 1.0
                 continue
-            before = pose[i - 1] if i else 0.0
+            before = start[i - 1] if i else 0.0
             angle = locked[i + 1]
-            self._fixed[i] = pose[i] - before if angle is None else angle
+            self._fixed[i] = start[i] - before if angle is None else angle
             if i:
                 self._fixed[i] += self._fixed[i - 1]
                 self._turning[i] = self._turning[i - 1]
@@ -138,7 +139,11 @@ class FreeAngles:
 def find_equilibria(
     scene: Scene, t: float, start: tuple[float, ...] | None, remarks: list[str]
 ) -> Iterator[Equilibrium]:
-    """Find those near hanging, upright and the start; put into the remarks what was not found."""
+    """Find those near hanging, upright and the start; put into the remarks what was not found.
+
+    Joints are locked at the angles that their locks give, else as in the start, and without one as
+    in the pose that is looked from.
+    """
     n = len(scene.links)
     poses = {"hanging": np.full(n, pi / 2), "upright": np.full(n, -pi / 2)}
     poses |= {} if start is None else {"start": np.array(start)}
@@ -148,9 +153,16 @@ def find_equilibria(
             "dry friction is left out of the equilibria: it can hold the scene near them"
         )
         scene = Scene._unpickled(scene.links, scene.gravity, smooth)
+    unknown = [str(joint) for joint, angle in locks(scene).items() if angle is None]
+    if start is None and unknown:
+        remarks.append(
+            f"joint{'s'[: len(unknown) > 1]} {', '.join(unknown)}: locked where the run starts, "
+            "and no start was given: hanging and upright are as if it started there; "
+            "explain(q=...) says where it does"
+        )
     found: list[Floats] = []
     for name, pose in poses.items():
-        free = FreeAngles(scene, t, pose)
+        free = FreeAngles(scene, t, pose if start is None else np.array(start))
         z = pose[free.leaders]
         balanced = free.balanced_near(z)
         if balanced is None:
@@ -160,7 +172,7 @@ def find_equilibria(
         if any(np.abs(np.sin((q - other) / 2)).max() < 1e-6 for other in found):
             continue
         found.append(q)
-        moved = np.abs(q - free.q(z)).max() > 1e-6
+        moved = np.abs(np.sin((q - pose) / 2)).max() > 1e-6
         yield _described(f"found from {name}" if moved else name, free, balanced)
 
 
@@ -173,14 +185,15 @@ def _described(name: str, free: FreeAngles, z: Floats) -> Equilibrium:
     modes = sorted((_mode(x) for x in rates if x.imag >= 0), key=_size)
     noise = NOISE * stiffest
     stable = all(mode.rate <= noise < _size(mode) for mode in modes)
-    return Equilibrium(name, tuple(free.q(z).tolist()), stable, tuple(modes), stiffest)
+    q = tuple((free.q(z) + 0.0).tolist())  # no -0.0
+    return Equilibrium(name, q, stable, tuple(modes), stiffest)
 
 
 def _mode(eigenvalue: complex) -> Mode:
-    w, rate = abs(eigenvalue), float(eigenvalue.real)
+    w, rate = float(abs(eigenvalue)), float(eigenvalue.real) + 0.0  # no -0.0
     if eigenvalue.imag == 0:
         return Mode(rate, 0.0, 0.0, None)
-    return Mode(rate, w, w / (2 * pi), -rate / w)
+    return Mode(rate, w, w / (2 * pi), 0.0 - rate / w)
 
 
 def _size(mode: Mode) -> float:

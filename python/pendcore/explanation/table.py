@@ -7,7 +7,7 @@ from math import isfinite
 from textwrap import wrap
 from typing import Any
 
-from pendcore.explanation import STEPS_A_PERIOD, Explanation
+from pendcore.explanation import STEPS_A_PERIOD, Explanation, changes_with_time
 from pendcore.explanation.equilibria import NOISE, Equilibrium, Mode
 
 _WIDTH = 80
@@ -22,7 +22,7 @@ def text(told: Explanation) -> str:
         [head],
         ["What is simulated, and what of a right-hand side it takes", *_costs(told)],
         ["Freedom", *_freedom(told)],
-        ["Equilibria", *_equilibria(told)],
+        ["Equilibria" + _frozen(told), *_equilibria(told)],
         ["How fast", *_rates(told)],
         ["What is not simulated", *_absences(told)],
     ]
@@ -58,6 +58,12 @@ def _freedom(told: Explanation) -> Iterator[str]:
         whole = 3 * len(told.scene.links)
         found = f"{whole} - {told.constraint_rank} = {told.degrees_of_freedom}"
         yield f"  the constraints' Jacobian  3 n - rank = {found}"
+
+
+def _frozen(told: Explanation) -> str:
+    """Where something changes with time, the heading says that here it does not."""
+    held = told.equilibria and changes_with_time(told.scene)
+    return f", with all drives held as they are at t = {told.t:.6g} s" if held else ""
 
 
 def _equilibria(told: Explanation) -> Iterator[str]:

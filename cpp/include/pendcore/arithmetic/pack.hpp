@@ -97,6 +97,13 @@ PENDCORE_INLINE void store(double* to, const Real& x) {
   __builtin_memcpy(to, &x, sizeof x);
 }
 
+/// Two packs of two as one of four, and back.
+PENDCORE_INLINE Pack<4> joined(const Pack<2>& low, const Pack<2>& high) {
+  return __builtin_shufflevector(low, high, 0, 1, 2, 3);
+}
+PENDCORE_INLINE Pack<2> low_half(const Pack<4>& x) { return __builtin_shufflevector(x, x, 0, 1); }
+PENDCORE_INLINE Pack<2> high_half(const Pack<4>& x) { return __builtin_shufflevector(x, x, 2, 3); }
+
 /// a b + c, rounded once: correctly rounded by definition, hence the same on every processor.
 template <class Real>
 PENDCORE_INLINE Real fma(const Real& a, const Real& b, const Real& c) {

@@ -49,8 +49,8 @@ struct Constants<Two<Real>> {
 /// phi_j = q_j - q_{j-1} is q - before(q), tau_j - tau_{j+1} is tau - after(tau).
 PENDCORE_INLINE double before(double) { return 0.0; }
 PENDCORE_INLINE double after(double) { return 0.0; }
-PENDCORE_INLINE Pair before(const Pair& x) { return Pair{0.0, x[0]}; }
-PENDCORE_INLINE Pair after(const Pair& x) { return Pair{x[1], 0.0}; }
+PENDCORE_INLINE Pair before(const Pair& x) { return __builtin_shufflevector(x, Pair{}, 2, 0); }
+PENDCORE_INLINE Pair after(const Pair& x) { return __builtin_shufflevector(x, Pair{}, 1, 2); }
 template <class Real>
 PENDCORE_INLINE Two<Real> before(const Two<Real>& x) {
   return {broadcast<Real>(0.0), x.first};

@@ -82,10 +82,12 @@ PENDCORE_INLINE void rotate(Integers quadrant, Real s, Real c, Real& sine_of_x, 
 /// No less than the largest of the lanes; NaN if one is.
 template <class Real>
 PENDCORE_INLINE double sum_of_sizes(const Real& x) {
-  double sum = __builtin_fabs(lane(x, 0));
-#pragma GCC unroll 8
-  for (int i = 1; i < Lanes<Real>::width; ++i) sum += __builtin_fabs(lane(x, i));
-  return sum;
+  if constexpr (Lanes<Real>::width == 4) {
+    const Real sizes = absolute(x);
+    return sum_of_lanes(Pack<2>(low_half(sizes) + high_half(sizes)));
+  } else {
+    return sum_of_lanes(absolute(x));
+  }
 }
 
 }  // namespace sine_cosine_detail

@@ -66,8 +66,7 @@ struct DoublePendulumWithEffects {
 
     V pull = Constant::of(weight) * c;
     RowAt<V> at{t, q, qd, s, c, Constant::of(length), 0.0, 0.0};
-    RowLoads<V> loads;
-    loads.couple(couples->torque(at));
+    RowLoads<V> loads{.couples = couples->torque(at)};
     if constexpr (everything) {
       for (const JointWave& one : effects->joint_waves) add_wave(one, loads);
       if (!effects->pivots.empty()) {
@@ -83,9 +82,11 @@ struct DoublePendulumWithEffects {
     } else if constexpr (parts == Parts::laws) {
       for (const auto& entry : effects->entries) ActingEffects<Pair>::add(entry, at, loads);
     }
-    V torque = loads.torque();
+    V torque = loads.torque_of_couples();
+    if constexpr (parts == Parts::laws || everything) torque = torque + loads.moments;
     if constexpr (parts == Parts::waves) {
       const TwoWaves& two = effects->two_waves;
+#pragma GCC unroll 2
       for (int k = 0; k < 2; ++k) {
         const V size = fma(Constant::of(two.on_sine[k]), s,
                            fma(Constant::of(two.on_cosine[k]), c, Constant::of(two.torque[k])));
@@ -114,13 +115,13 @@ struct DoublePendulumWithEffects {
     const TwoWaves& two = effects->two_waves;
     const Pair wave = fma(two.angular_frequency, Pair{t, t}, two.phase);
     Pack<4> sine, cosine;
-    sine_cosine(Pack<4>{q[0], q[1], wave[0], wave[1]}, sine, cosine);
-    s = Pair{sine[0], sine[1]};
-    c = Pair{cosine[0], cosine[1]};
-    const Pair wave_sine{sine[2], sine[3]};
+    sine_cosine(joined(q, wave), sine, cosine);
+    s = low_half(sine);
+    c = low_half(cosine);
+    const Pair wave_sine = high_half(sine);
     if constexpr (parts == Parts::everything) {
       store(&effects->wave_sine[0], wave_sine);
-      store(&effects->wave_cosine[0], Pair{cosine[2], cosine[3]});
+      store(&effects->wave_cosine[0], high_half(cosine));
       if (effects->waves > 2) [[unlikely]]
         effects->compute_waves(t, 2);
     }

@@ -45,7 +45,7 @@ struct SinglePendulumWithEffects {
       loads.couple(one.gain * effects->wave_sine[one.wave]);
     }
     for (const auto& entry : effects->entries) ActingEffects<double>::add(entry, at, loads);
-    double torque = loads.torque();
+    double torque = loads.torque_of_couples() + loads.moments;
     if (!effects->users.empty()) torque += of_users(*effects, t, q, qd);
     return effects->locked[0] ? 0.0 : fma(inverse_inertia, torque, pull);
   }

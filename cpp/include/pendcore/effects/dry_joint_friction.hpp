@@ -89,7 +89,7 @@ struct DryJointFriction {
   double group() const { return exponent; }
 
   template <class Row>
-  void put(Law<Row>& law, int lane, double /*length*/) const {
+  void put(Law<Row>& law, int lane, const LinkConstants& /*on*/) const {
     set_lane(law.inverse_velocity, lane, 1.0 / stribeck_velocity);
     law.exponent = exponent;
   }

@@ -10,9 +10,8 @@
 ///
 ///     couple(mode)                  its torque on a joint, where that is a polynomial: see law.hpp
 ///     Law<Row>                      any other couples at joints, and forces along links
-///     put(law, lane, length)        its parameters into the lane of its joint or link
+///     put(law, lane, on)            its parameters into the lane of its joint or link
 ///     put_mode(law, lane, mode)     the same of what a mode changes
-///     adds_forces                   true if its law calls loads.force
 ///     dissipation(at)               of a law: the part of its power that is lost (has_wind() says
 ///                                   whether there is another, the wind's)
 ///     group()                       effects on one row share a law if this number is the same
@@ -58,8 +57,8 @@ enum class Account {
   user,     ///< work
 };
 
-inline constexpr std::array<std::string_view, 8> account_names = {
-    "none", "viscous", "dry", "drag", "motor", "drive", "wind", "user"};
+inline constexpr auto account_names = std::to_array<std::string_view>(
+    {"none", "viscous", "dry", "drag", "motor", "drive", "wind", "user"});
 
 constexpr std::string_view account_name(Account account) {
   return account_names[static_cast<std::size_t>(account)];
@@ -150,7 +149,10 @@ template <class Struct>
 void check_parameters(const std::string& where, const Struct& effect) {
   for_each_parameter(effect, [&]<class Value>(const ParameterInfo& info, const Value& value) {
     if constexpr (std::is_same_v<Value, int>) {
-      if (value < 1) refuse(where + std::string(info.name), value, "a number from 1 on");
+      if (value < 1) {
+        throw std::invalid_argument(where + std::string(info.name) + " = " + std::to_string(value) +
+                                    ": must be a whole number, 1 or more");
+      }
     } else if constexpr (std::is_same_v<Value, double>) {
       check_value(where, info, value);
     } else if constexpr (std::is_same_v<Value, std::optional<double>>) {

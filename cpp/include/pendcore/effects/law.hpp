@@ -18,8 +18,8 @@
 /// and `loads` takes
 ///
 ///     loads.couple(tau)            tau_j on link j, and -tau_j on link j - 1
-///     loads.force(moment, fx, fy)  a force on each link (N), and its moment about the joint where
-///                                  the link begins (N m)
+///     loads.force(moment, fx, fy)  a force on each link (N; x right, y down), and its moment about
+///                                  the joint where the link begins (N m): x fy - y fx of its point
 ///     loads.generalised(Q)         N m, on the absolute angle of each link
 ///
 /// **Modes.** Where a law is smooth only in pieces it is frozen to one of them, its mode, while a
@@ -89,6 +89,12 @@ struct JointWave {
   int joint;  ///< from 0
   int wave;
   double gain;
+};
+
+/// The link on which an effect acts, or which begins with its joint, for constants of its law.
+struct LinkConstants {
+  double mass, length, center;
+  double gravity;  ///< of the scene
 };
 
 /// The end of time: no time of change.

@@ -62,7 +62,6 @@ struct RodDrag {
                                  .sentence = "velocity of the air, x right and y down"}),
   };
 
-  static constexpr bool adds_forces = true;
   bool has_wind() const { return wind[0] != 0.0 || wind[1] != 0.0; }
 
   /// w_0 and w_1 of a row of links.
@@ -122,10 +121,10 @@ struct RodDrag {
   };
 
   template <class Row>
-  void put(Law<Row>& law, int lane, double length) const {
+  void put(Law<Row>& law, int lane, const LinkConstants& on) const {
     const double k = 0.5 * air_density * drag_coefficient * diameter;
-    set_lane(law.minus_k, lane, -k * length / 3.0);
-    set_lane(law.minus_k_arm, lane, -k * length * length / 12.0);
+    set_lane(law.minus_k, lane, -k * on.length / 3.0);
+    set_lane(law.minus_k_arm, lane, -k * on.length * on.length / 12.0);
     set_lane(law.wind_x, lane, wind[0]);
     set_lane(law.wind_y, lane, wind[1]);
   }

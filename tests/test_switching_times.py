@@ -1,0 +1,232 @@
+"""Tables, splines and clipped waves: the times at which they change are stepped on, not over.
+
+One uniform rod of mass 3 and length 1 on a fixed pivot without gravity, unless a test says
+otherwise: its moment of inertia about the pivot is 1, so that torques are accelerations.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pendcore as pc
+import pytest
+from described_scenes import scene_of
+from numpy.typing import NDArray
+from pendcore import effects as fx
+from reference.arithmetic import multiple_precision
+from reference.effects import Described, law
+from reference.newton_euler import Body
+from reference.rig import Rig
+
+Array = NDArray[np.float64]
+
+FORTY = multiple_precision(40)
+
+
+def rod(*effects: Any, gravity: float = 0.0, links: int = 1) -> pc.Scene:
+    return pc.Scene(
+        links=[pc.Link(mass=3, length=1)] * links, gravity=gravity, effects=list(effects)
+    )
+
+
+# A sinusoid that is clipped ---------------------------------------------------------------------
+
+
+def impulse(angle: Any, amplitude: float) -> Any:
+    """Integrate amplitude sin(x), clipped to +-1, from x = 0 to an angle, in closed form.
+
+    It has the sine's symmetries: even, of period 2 pi, and even about pi. To pi/2 it is
+    amplitude (1 - cos x) up to the edge x = asin(1/amplitude), and grows by 1 from there.
+    """
+    x = np.abs(np.remainder(angle + np.pi, 2 * np.pi) - np.pi)
+    edge = np.arcsin(1 / amplitude)
+    up_to_edge = amplitude * (1 - np.cos(edge))
+
+    def rising(x: Any) -> Any:
+        return np.where(x < edge, amplitude * (1 - np.cos(x)), up_to_edge + x - edge)
+
+    return np.where(x < np.pi / 2, rising(x), 2 * rising(np.pi / 2) - rising(np.pi - x))
+
+
+def edges(amplitude: float, frequency: float, phase: float, t_end: float) -> Array:
+    """Times at which amplitude sin(frequency t + phase) meets +-1: sin x is +-1/amplitude."""
+    turns = np.arange(-3, frequency * t_end / np.pi + 3)
+    edge = np.arcsin(1 / amplitude)
+    times = (np.concatenate([np.pi * turns + edge, np.pi * turns - edge]) - phase) / frequency
+    return np.sort(times[(times > 0) & (times < t_end)])
+
+
+def clipped(amplitude: float, frequency: float, phase: float) -> pc.Scene:
+    wave = fx.Sinusoid(amplitude=amplitude, angular_frequency=frequency, phase=phase)
+    return rod(fx.Motor(joint=1, sinusoid=wave, limit=1.0))
+
+
+def test_the_impulse_of_a_clipped_sine_is_its_integral() -> None:
+    """The closed form above, by differences: its slope is the torque."""
+    x = np.linspace(-20, 20, 9973)
+    for amplitude in (1.001, 1.5, 40.0):
+        slope = (impulse(x + 1e-6, amplitude) - impulse(x - 1e-6, amplitude)) / 2e-6
+        np.testing.assert_allclose(slope, np.clip(amplitude * np.sin(x), -1, 1), atol=1e-4)
+
+
+@pytest.mark.parametrize("span", [(0.0, 10.0), (10.0, 0.0)], ids=["forward", "backward"])
+@pytest.mark.parametrize("rtol", [1e-3, 1e-6, 1e-9])
+def test_no_step_however_long_jumps_over_where_a_sinusoid_is_clipped(
+    rtol: float, span: tuple[float, float]
+) -> None:
+    """Where it is clipped a step of any length has no error, so that nothing but edges ends it.
+
+    On a sine, each step may err by rtol of the state, which is below 10, and two half periods err
+    in opposite directions.
+    """
+    random = np.random.default_rng(7)
+    for _ in range(60):
+        amplitude, frequency = 10 ** random.uniform(0.01, 2), 10 ** random.uniform(0.5, 2.5)
+        phase = random.uniform(-3, 3)
+        scene = clipped(amplitude, frequency, phase)
+        sol = pc.simulate(scene, 0, 0, span, rtol=rtol, first_step=0.45, max_steps=100_000)
+        assert sol.status == "finished"
+        first, last = impulse(frequency * np.array(span) + phase, amplitude) / frequency
+        assert abs(sol.qd[-1, 0] - (last - first)) < 10 * rtol
+        for edge in edges(amplitude, frequency, phase, 10.0):
+            assert np.abs(sol.t - edge).min() < 1e-10
+
+
+@pytest.mark.parametrize("rtol", [1e-3, 1e-6, 1e-9])
+def test_a_torque_that_is_nearly_always_at_its_limit_gives_triangles(rtol: float) -> None:
+    """A million sin(7 t) clipped to +-1 is a square wave, of half period T = pi/7.
+
+    The rate is a triangle from 0 to T and the angle grows by T^2/2 in each half period; what is
+    lost while the torque rises, twice 1e-6/7 s, is below the tolerance.
+    """
+    half = np.pi / 7
+    sol = pc.simulate(
+        clipped(1e6, 7.0, 0.0), 0, 0, (0, 20 * half), rtol=rtol, first_step=0.45, max_steps=10_000
+    )
+    np.testing.assert_allclose(sol(half * np.arange(21))[1], half * (np.arange(21) % 2), atol=1e-6)
+    assert sol.q[-1, 0] == pytest.approx(20 * half**2 / 2, rel=1e-5)
+    assert sol.stats.accepted < 400
+
+
+# Steps of one size ------------------------------------------------------------------------------
+
+
+def test_a_fixed_step_stays_fixed_where_it_lands_on_knots() -> None:
+    """Hairer's rule lets the step before a landing be a hundredth longer, and none after it."""
+    random = np.random.default_rng(8)
+    knots = np.cumsum([0.0, *random.uniform(0.003, 0.03, 1500)])
+    motor = fx.Motor(joint=1, table=fx.Table(t=knots, torque=np.sin(knots)))
+    sol = pc.simulate(rod(motor), 0, 0, (0, 12), step=0.01, max_steps=10_000)
+    assert sol.status == "finished"
+    steps = np.diff(sol.t)
+    assert len(steps) > 1000
+    assert steps.max() <= 0.0101 + 1e-14
+    assert sol.stats.max_step <= 0.0101
+    free = ~np.isin(sol.t[1:], [*knots, 12.0])
+    assert free.sum() > 500
+    np.testing.assert_allclose(steps[free], 0.01, rtol=1e-11)
+
+
+def test_a_fixed_step_stays_fixed_where_it_lands_on_edges_and_reversals() -> None:
+    """Here a step is cut where the law changes, and the next is whole again."""
+    wave = fx.Sinusoid(amplitude=2.0, angular_frequency=31.0)
+    effects = fx.Motor(joint=1, sinusoid=wave, limit=1.0), fx.ViscousJoint(1, 0.1, damping2=0.1)
+    sol = pc.simulate(rod(*effects), 0, 0, (0, 12), step=0.01, max_steps=10_000)
+    assert sol.status == "finished"
+    assert len(sol.t) > 1000
+    assert np.diff(sol.t).max() <= 0.0101 + 1e-14
+    assert sol.stats.max_step <= 0.0101
+
+
+def test_a_table_of_many_points_takes_one_step_each() -> None:
+    """Of six right-hand sides, as the last of a step is the first of the next, and one anew."""
+    t = np.arange(20_001.0)
+    motor = fx.Motor(joint=1, table=fx.Table(t=t, torque=np.sin(t)))
+    sol = pc.simulate(rod(motor), 0, 0, (0, t[-1]), rtol=1e-3, max_steps=100_000)
+    assert sol.status == "finished"
+    assert np.isin(t, sol.t).all()
+    assert sol.stats.accepted <= len(t) + 20  # the first, short ones
+    assert sol.stats.nfev <= 8 * len(t)
+
+
+# Views at such times ----------------------------------------------------------------------------
+
+SPLINE = {
+    "x": [0.0, 0.1, -0.2, 0.1, 0.1],
+    "y": [0.1, 0.0, 0.2, -0.1, 0.3],
+}
+
+
+def assert_near(computed: Any, exact: Any) -> None:
+    np.testing.assert_allclose(computed, np.array(exact, float), rtol=1e-12, atol=1e-10)
+
+
+def unexplained(sol: pc.Solution) -> float:
+    """What the ledger cannot account for at the end, J."""
+    ledger = sol.energy().ledger
+    assert ledger is not None
+    return float(ledger.residual[-1])
+
+
+@pytest.mark.parametrize("n", [1, 2, 3, 5])
+@pytest.mark.parametrize("start", [0.0, 5.0, -9.0], ids=["from 0", "after 0", "before 0"])
+def test_views_of_rods_in_the_wind_on_a_moving_pivot_are_those_of_the_reference(
+    start: float, n: int
+) -> None:
+    knots = [start + t for t in (0.0, 0.4, 1.1, 2.3, 3.0)]
+    bodies = [Body(1.0 + 0.1 * i, 0.5 + 0.1 * i, 0.3, 0.02) for i in range(n)]
+    rod_in_wind = {"drag_coefficient": 1.2, "diameter": 0.3, "wind": (3.0, 1.0)}
+    described: list[Described] = [("driven_pivot", {"spline": {"t": knots, **SPLINE}})]
+    described += [("rod_drag", {"link": link, **rod_in_wind}) for link in range(1, n + 1)]
+    scene = scene_of(bodies, 9.81, described)
+    times = [*knots, *np.random.default_rng(n).uniform(knots[0], knots[-1], 10)]
+    q, qd = np.linspace(0.3, 1.0, n), np.linspace(2.0, -3.0, n)
+    sol = pc.simulate(scene, q, qd, (knots[0], knots[-1]), t_eval=sorted(times), max_steps=10_000)
+    rig = Rig(
+        bodies=bodies, gravity=9.81, effects=[law(one) for one in described], arithmetic=FORTY
+    )
+    for i, t in enumerate(sol.t):
+        motion = rig.motion(t, sol.q[i], sol.qd[i])
+        energy = rig.energy(t, sol.q[i], sol.qd[i])
+        assert_near(sol.accelerations()[i], motion.accelerations)
+        assert_near(sol.reactions()[i], motion.reactions)
+        assert_near(sol.energy().kinetic[i], energy.kinetic)
+        assert_near(sol.energy().potential[i], energy.potential)
+
+
+@pytest.mark.parametrize("links", [1, 2, 3])
+@pytest.mark.parametrize("limit", [np.inf, 1.5])
+def test_at_its_last_time_a_table_acts_as_one_that_goes_on(limit: float, links: int) -> None:
+    t, torque = [0.0, 1.0, 2.0], [0.5, 2.0, -3.0]
+
+    def scene(t: list[float], torque: list[float]) -> pc.Scene:
+        motor = fx.Motor(joint=links, table=fx.Table(t=t, torque=torque), limit=limit)
+        return rod(motor, gravity=9.81, links=links)
+
+    ends, goes_on = scene(t, torque), scene([*t, 3.0], [*torque, 4.0])
+    sol = pc.simulate(ends, 0.3, 0, (0, 2), ledger=True, max_steps=10_000)
+    on = pc.simulate(goes_on, 0.3, 0, (0, 2), ledger=True, max_steps=10_000)
+    np.testing.assert_allclose(sol.accelerations()[-1], on.accelerations()[-1], rtol=1e-12)
+    np.testing.assert_allclose(sol.reactions()[-1], on.reactions()[-1], rtol=1e-12)
+    assert sol.energy().total[-1] == pytest.approx(on.energy().total[-1], rel=1e-12)
+    assert abs(unexplained(sol)) < 1e-6
+
+
+@pytest.mark.parametrize("links", [1, 2, 3])
+@pytest.mark.parametrize("span", [(0.0, 3.0), (3.0, 0.0)], ids=["its last time", "its first time"])
+def test_at_an_end_a_spline_moves_the_pivot_as_just_before(
+    span: tuple[float, float], links: int
+) -> None:
+    """A spline that goes on is another: the limit is taken from within, one bit of time away."""
+    spline = fx.Spline(t=[0.0, 0.4, 1.1, 2.3, 3.0], **SPLINE)
+    scene = rod(fx.DrivenPivot(spline=spline), gravity=9.81, links=links)
+    sol = pc.simulate(scene, 0.3, 0, span, ledger=True, max_steps=10_000)
+    assert sol.status == "finished"
+    just_before = np.nextafter(span[1], span[0])
+    near = pc.simulate(scene, sol.q[-1], sol.qd[-1], (just_before, just_before))
+    np.testing.assert_allclose(sol.accelerations()[-1], near.accelerations()[0], rtol=1e-12)
+    np.testing.assert_allclose(sol.reactions()[-1], near.reactions()[0], rtol=1e-12)
+    np.testing.assert_allclose(sol.positions()[-1], near.positions()[0], rtol=1e-12, atol=1e-15)
+    assert sol.energy().kinetic[-1] == pytest.approx(near.energy().kinetic[0], rel=1e-12)
+    assert abs(unexplained(sol)) < 1e-6
