@@ -117,9 +117,9 @@ class Run {
       return end_with(Status::non_finite, bad);
     }
     try {
-      while (true) {
-        if (const auto status = step()) return end_with(*status, bad_);
+      while (step()) {
       }
+      return end_with(status_, bad_);
     } catch (const std::bad_alloc&) {
       throw;
     } catch (...) {  // what a function of the user's throws
@@ -138,20 +138,26 @@ class Run {
     bool is_in_reach;
   };
 
-  /// Tries one; a status if the run ends.
-  std::optional<Status> step() {
-    const double t = position_.t.high;
-    if (difference(limits_.t_end, position_.t) == 0.0) return Status::finished;
-    if (attempts_ == limits_.max_steps) return Status::max_steps;
-    if (const Status clock = watch_.look(t); clock != Status::finished) return clock;
+  /// Each of these takes the run a little on, and returns whether it goes on: `end` says why not.
+  bool end(Status status) {
+    status_ = status;
+    return false;
+  }
 
-    const Target target = next_target();
+  bool step() {
+    const double t = position_.t.high;
+    const double left = difference(limits_.t_end, position_.t);
+    if (left == 0.0) return end(Status::finished);
+    if (attempts_ == limits_.max_steps) return end(Status::max_steps);
+    if (const Status clock = watch_.look(t); clock != Status::finished) return end(clock);
+
+    const Target target = next_target(left);
     double h = position_.h;
     if (target.is_in_reach) {
       h = target.left;
       if (!target.is_break) end_in_sight();
     } else if (std::abs(h) <= 10.0 * rounding * std::abs(t) || std::abs(h) < 1e-300) {
-      return trial_was_finite_ ? Status::step_too_small : Status::non_finite;
+      return end(trial_was_finite_ ? Status::step_too_small : Status::non_finite);
     }
 
     ++attempts_;
@@ -163,10 +169,9 @@ class Run {
     if (!trial_was_finite_ || !is_accepted) {
       if (limits_.fixed_step) {
         ++position_.statistics.rejected;
-        return Status::non_finite;
+        return end(Status::non_finite);
       }
-      reject(h * position_.control.reject(method_, attempt));
-      return {};
+      return reject(h * position_.control.reject(method_, attempt));
     }
 
     Crossing crossing;
@@ -179,13 +184,9 @@ class Run {
       const bool is_located = locate(*guards_, crossing.guard, h, attempt);
       if (!limits_.fixed_step) {
         // What the whole step strode over, the shorter one may see: friction's peak at rest.
-        if (!is_located) {
-          reject(0.5 * crossing.theta * whole);
-          return {};
-        }
+        if (!is_located) return reject(0.5 * crossing.theta * whole);
         if (!(attempt.squared_error <= 1.0)) {
-          reject(h * position_.control.reject(method_, attempt));
-          return {};
+          return reject(h * position_.control.reject(method_, attempt));
         }
       }
     }
@@ -193,16 +194,16 @@ class Run {
     return accept(target, crossing.guard, h, attempt);
   }
 
-  Target next_target() const {
+  Target next_target(double left) const {
     const double h = position_.h;
     // The last step may be a hundredth longer (Hairer's rule), but not longer than max_step, the
     // last bits of t aside: a step of those alone would not be one.
     const double reach =
         std::min(1.01 * std::abs(h), std::max(std::abs(h), limits_.max_step)) + last_bits();
-    Target target{limits_.t_end, difference(limits_.t_end, position_.t), false, false};
+    Target target{limits_.t_end, left, false, false};
     if (breaks_ != nullptr) {
       const double next = breaks_->next_time(position_.t.high);
-      if ((limits_.t_end - next) * target.left > 0.0) {
+      if ((limits_.t_end - next) * left > 0.0) {
         target = {next, difference(next, position_.t), true, false};
       }
     }
@@ -230,17 +231,18 @@ class Run {
     trial_was_finite_ = bad_ < 0 && !std::isnan(attempt.squared_error);
   }
 
-  void reject(double h) {
+  bool reject(double h) {
     ++position_.statistics.rejected;
     position_.h = h;
     position_.h_is_max_step = false;
+    return true;
   }
 
   /// The law changes where the step begins.
-  std::optional<Status> change_at_once(const Crossing& crossing) {
+  bool change_at_once(const Crossing& crossing) {
     if (++crossings_at_once_ > 4 * breaks_->guards()) {
       chatters_ = true;
-      return Status::step_too_small;
+      return end(Status::step_too_small);
     }
     return change_law(crossing.guard);
   }
@@ -264,7 +266,7 @@ class Run {
     return false;
   }
 
-  std::optional<Status> accept(const Target& target, int guard, double h, const Attempt& attempt) {
+  bool accept(const Target& target, int guard, double h, const Attempt& attempt) {
     TwoDouble t_new = position_.t + h;
     bool lands = target.is_in_reach;
     if (guard >= 0) {
@@ -284,28 +286,26 @@ class Run {
     stepper_.accept(t_new.high);
     position_.t = t_new;
     if (!law_changes) {
-      if (limits_.fixed_step) return {};
+      if (limits_.fixed_step) return true;
       position_.h = h * position_.control.accept(method_, attempt);
       position_.h_is_max_step = std::abs(position_.h) >= limits_.max_step;
       if (position_.h_is_max_step) position_.h = std::copysign(limits_.max_step, h);
-      return {};
+      return true;
     }
-    if (guard >= 0) {
-      if (const auto status = change_law(guard)) return status;
-    }
-    return lands && target.is_break ? change_law(-1) : std::nullopt;
+    if (guard >= 0 && !change_law(guard)) return false;
+    return lands && target.is_break ? change_law(-1) : true;
   }
 
   /// At the state that the stepper stands at. The step that was to be tried is tried next.
-  std::optional<Status> change_law(int guard) {
+  bool change_law(int guard) {
     const double t = position_.t.high;
     stepper_.get_state(state_.data());
     const Status status = breaks_->cross(guard, t, state_.data());
-    if (status != Status::finished) return status;
+    if (status != Status::finished) return end(status);
     stepper_.evaluate(t, state_.data(), rate_.data());
     stepper_.start(state_.data(), rate_.data());
     position_.control = StepControl{};
-    return {};
+    return true;
   }
 
   void write_down(Position& target) const {
@@ -334,6 +334,7 @@ class Run {
   Watch watch_;
   std::optional<Guards> guards_;
   long long evaluations_before_;
+  Status status_ = Status::finished;
   long long attempts_ = 0;
   bool cut_before_ = false;  ///< a step was cut to end at t_end: later ones depend on t_end
   int crossings_at_once_ = 0;
