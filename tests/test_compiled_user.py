@@ -8,14 +8,11 @@ from pathlib import Path
 import numpy as np
 import pendcore as pc
 import pytest
+from compiled_functions import DOUBLES, FORCES
 from pendcore import effects as fx
 
 ROD = pc.Link(mass=1, length=1)
 START = {"q0": [0.5, 1.0], "qd0": [1.0, -1.0], "t_span": (0, 2)}
-DOUBLES = ctypes.POINTER(ctypes.c_double)
-FORCES = ctypes.CFUNCTYPE(
-    None, ctypes.c_double, ctypes.c_int, DOUBLES, DOUBLES, DOUBLES, ctypes.c_void_p
-)
 
 
 def scene(*effects):

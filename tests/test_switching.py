@@ -11,24 +11,14 @@ A run that has lost its end would go on for ever: max_steps ends it.
 from __future__ import annotations
 
 import pickle
-from typing import Any
 
 import numpy as np
 import pendcore as pc
 import pytest
 from pendcore import effects as fx
+from unit_rods import rod, solve
 
 FAINT = fx.ViscousJoint(joint=1, damping=0.0, damping2=1e-30)
-
-
-def rod(*effects: Any, gravity: float = 0.0, links: int = 1) -> pc.Scene:
-    return pc.Scene(
-        links=[pc.Link(mass=3, length=1)] * links, gravity=gravity, effects=list(effects)
-    )
-
-
-def solve(scene: pc.Scene, q: Any, qd: Any, t_end: float, **options: Any) -> pc.Solution:
-    return pc.simulate(scene, q, qd, (0, t_end), max_steps=10_000, **options)
 
 
 def assert_sound(sol: pc.Solution, t_end: float) -> None:

@@ -13,17 +13,7 @@ import numpy as np
 import pendcore as pc
 import pytest
 from pendcore import effects as fx
-
-
-def rod(*effects: Any, gravity: float = 0.0, links: int = 1) -> pc.Scene:
-    return pc.Scene(
-        links=[pc.Link(mass=3, length=1)] * links, gravity=gravity, effects=list(effects)
-    )
-
-
-def solve(scene: pc.Scene, q: Any, qd: Any, t_end: float, **options: Any) -> pc.Solution:
-    """A run that has lost its end would go on for ever: max_steps ends it."""
-    return pc.simulate(scene, q, qd, (0, t_end), max_steps=10_000, **options)
+from unit_rods import rod, solve
 
 
 def assert_finished(sol: pc.Solution, t_end: float) -> None:

@@ -18,16 +18,11 @@ from reference.arithmetic import multiple_precision
 from reference.effects import Described, law
 from reference.newton_euler import Body
 from reference.rig import Rig
+from unit_rods import rod
 
 Array = NDArray[np.float64]
 
 FORTY = multiple_precision(40)
-
-
-def rod(*effects: Any, gravity: float = 0.0, links: int = 1) -> pc.Scene:
-    return pc.Scene(
-        links=[pc.Link(mass=3, length=1)] * links, gravity=gravity, effects=list(effects)
-    )
 
 
 # A sinusoid that is clipped ---------------------------------------------------------------------

@@ -24,10 +24,10 @@ Crossing Guards::first(double h) {
   return found;
 }
 
-double Guards::miss(int k, const TwoDouble& t, double h) {
+double Guards::miss(int k, double h) {
   stepper_.interpolant(h, rows_.data());
   stepper_.get_new_state(state_.data());
-  const double g = breaks_.guard(k, (t + h).high, state_.data());
+  const double g = breaks_.guard(k, state_.data());
   breaks_.polynomial(k, rows_.data(), degree_, dimension_, polynomial_.data());
   double slope = 0.0;
   for (int p = degree_; p > 0; --p) slope += p * polynomial_[p];

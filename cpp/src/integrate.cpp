@@ -254,7 +254,7 @@ class Run {
     double before = std::numeric_limits<double>::infinity();
     for (int polish = 0; polish < 10; ++polish) {
       attempt = stepper_.attempt(t, h, position_.control.gain(method_));
-      const double correction = guards.miss(guard, position_.t, h) * h;
+      const double correction = guards.miss(guard, h) * h;
       const double size = std::abs(correction);
       if (!(size <= 0.5 * std::abs(h))) return false;
       if (size <= 4.0 * rounding * std::max(std::abs(t), std::abs(h))) return true;
@@ -280,7 +280,7 @@ class Run {
     test_stiffness(stepper_, h, position_);
     if (guard >= 0 || (breaks_ != nullptr && breaks_->settles_every_step())) {
       stepper_.get_new_state(state_.data());
-      if (breaks_->settle(guard, t_new.high, state_.data())) stepper_.set_new_state(state_.data());
+      if (breaks_->settle(guard, state_.data())) stepper_.set_new_state(state_.data());
     }
     observer_.step_accepted(stepper_, position_.t, h, t_new.high);
     stepper_.accept(t_new.high);

@@ -169,11 +169,9 @@ void Ledger::add_drive(double t, const double* qdd, Powers& power) const {
     ax += link.length * along_x;
     ay += link.length * along_y;
   }
-  for (const Effect& effect : effects_->effects) {
-    const auto* payload = std::get_if<Payload>(&effect);
-    if (payload == nullptr) continue;
-    x += payload->mass * ax;
-    y += payload->mass * (ay - scene_.gravity);
+  for (const Payload& payload : effects_of<Payload>(scene_)) {
+    x += payload.mass * ax;
+    y += payload.mass * (ay - scene_.gravity);
   }
   book(power, Account::drive, x * links_.vx[1] + y * links_.vy[1]);
 }

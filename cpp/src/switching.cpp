@@ -6,6 +6,19 @@
 #include "pendcore/message.hpp"
 
 namespace pendcore {
+namespace {
+
+/// Whether what is given of an effect by points in time does not go on from time t.
+template <class Kind>
+bool has_ended(const Kind& effect, double t, bool forward) {
+  if constexpr (requires { effect.last_time(); }) {
+    return forward ? t >= effect.last_time() : t <= effect.first_time();
+  } else {
+    return false;
+  }
+}
+
+}  // namespace
 
 bool Switching::is_needed(const Scene& scene) {
   return std::ranges::any_of(scene.effects, [](const Effect& effect) {
@@ -72,13 +85,9 @@ void Switching::collect_guards() {
 void Switching::choose_modes_from(double t, const double* q, const double* qd) {
   choose_modes(*equations_.effects, t, q, qd, forward_);
   for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
-    std::visit(
-        [&](const auto& one) {
-          if constexpr (requires { one.last_time(); }) {
-            if (forward_ ? t >= one.last_time() : t <= one.first_time()) put_mode(i, -1);
-          }
-        },
-        scene_.effects[i]);
+    const bool ended =
+        std::visit([&](const auto& one) { return has_ended(one, t, forward_); }, scene_.effects[i]);
+    if (ended) put_mode(i, -1);
   }
 }
 
@@ -88,7 +97,7 @@ Status Switching::begin(double t, double* y, bool forward) {
   const double* const qd = y + n_;
   choose_modes_from(t, q, qd);
   set_locks(y);
-  settle(-1, t, y);
+  settle(-1, y);
   if (rests(t, q, qd)) return hold_every_joint();
   for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
     if (!holding_torque(scene_.effects[i]) || is_locked(joint_of(i))) continue;
@@ -119,7 +128,7 @@ double Switching::next_time(double t) const {
   return next_time_;
 }
 
-double Switching::guard(int k, double /*t*/, const double* y) const {
+double Switching::guard(int k, const double* y) const {
   const auto& [effect, number, joint, g] = guards_[k];
   return g.offset + g.on_phi * relative(y, joint) + g.on_phid * relative(y + n_, joint);
 }
@@ -134,7 +143,7 @@ void Switching::polynomial(int k, const double* rows, int degree, int dimension,
   coefficients[0] += g.offset;
 }
 
-bool Switching::settle(int k, double /*t*/, double* y) const {
+bool Switching::settle(int k, double* y) const {
   bool changed = false;
   double* const q = y;
   double* const qd = y + n_;
@@ -163,10 +172,7 @@ Status Switching::cross(int k, double t, const double* y) {
           [&](const auto& one) {
             if constexpr (requires { one.next_time(t, true); }) {
               if (!one.has_modes() || one.guards(equations_.effects->modes[i]).size() > 0) return;
-              put_mode(i, one.mode_at(t, 0.0, 0.0, forward_));
-              if constexpr (requires { one.last_time(); }) {
-                if (forward_ ? t >= one.last_time() : t <= one.first_time()) put_mode(i, -1);
-              }
+              put_mode(i, has_ended(one, t, forward_) ? -1 : one.mode_at(t, 0.0, 0.0, forward_));
             }
           },
           scene_.effects[i]);
@@ -217,8 +223,8 @@ bool Switching::is_for_good() const {
           if constexpr (requires { one.wave(); }) {
             if (one.wave()) return true;
           }
-          if constexpr (requires { one.next_time(0.0, true); }) {
-            if (one.has_modes() && one.last_time() < never) return true;
+          if constexpr (requires { one.last_time(); }) {
+            if (one.last_time() < never) return true;
           }
           return one.info.account == Account::drive || one.info.account == Account::user;
         },

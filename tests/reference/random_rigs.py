@@ -32,9 +32,10 @@ def between(low: float, high: float) -> st.SearchStrategy[float]:
 
 
 @st.composite
-def links(draw: st.DrawFn) -> Body:
-    """A link that a rod with a few lumps on it could be."""
-    mass, length = 10 ** draw(st.floats(-1, 1)), 10 ** draw(st.floats(-0.5, 0.5))
+def links(draw: st.DrawFn, mass_decades: float = 1.0, length_decades: float = 0.5) -> Body:
+    """A link that a rod with a few lumps on it could be, around 1 kg and 1 m."""
+    mass = 10 ** draw(st.floats(-mass_decades, mass_decades))
+    length = 10 ** draw(st.floats(-length_decades, length_decades))
     center = length * draw(st.floats(0.2, 0.8))
     return Body(mass, length, center, draw(st.floats(0.1, 0.9)) * mass * center * (length - center))
 

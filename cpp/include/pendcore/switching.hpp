@@ -27,11 +27,11 @@ class Switching final : public Breaks {
   Status begin(double t, double* y, bool forward) override;
   double next_time(double t) const override;
   int guards() const override { return static_cast<int>(guards_.size()); }
-  double guard(int k, double t, const double* y) const override;
+  double guard(int k, const double* y) const override;
   void polynomial(int k, const double* rows, int degree, int dimension,
                   double* coefficients) const override;
   bool settles_every_step() const override { return has_locks_; }
-  bool settle(int k, double t, double* y) const override;
+  bool settle(int k, double* y) const override;
   Status cross(int k, double t, const double* y) override;
   std::vector<int> modes() const override { return equations_.effects->modes; }
 

@@ -24,7 +24,7 @@ class Breaks {
   virtual double next_time(double t) const = 0;
 
   virtual int guards() const = 0;
-  virtual double guard(int k, double t, const double* y) const = 0;
+  virtual double guard(int k, const double* y) const = 0;
   /// A guard is linear in the state, and so a polynomial along the dense output, (degree + 1) rows
   /// of `dimension` numbers: its coefficients.
   virtual void polynomial(int k, const double* rows, int degree, int dimension,
@@ -34,7 +34,7 @@ class Breaks {
   virtual bool settles_every_step() const = 0;
   /// Adjusts the state at a step's end: what holds exactly there, as a guard's zero (k, or -1 if
   /// the step ends at none). Whether something was changed.
-  virtual bool settle(int k, double t, double* y) const = 0;
+  virtual bool settle(int k, double* y) const = 0;
 
   /// The law that follows on guard k, or on a time (-1). Status::finished: go on.
   virtual Status cross(int k, double t, const double* y) = 0;

@@ -2,7 +2,6 @@
 /// Where along an attempted step the law changes: the guards of Breaks, on the dense output.
 #pragma once
 
-#include "pendcore/arithmetic/two_double.hpp"
 #include "pendcore/integrate/breaks.hpp"
 #include "pendcore/integrate/stepper.hpp"
 
@@ -22,7 +21,7 @@ class Guards {
   Crossing first(double h);
 
   /// By how much the step's end misses the zero of guard k, in units of the step.
-  double miss(int k, const TwoDouble& t, double h);
+  double miss(int k, double h);
 
  private:
   const Stepper& stepper_;

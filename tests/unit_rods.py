@@ -1,0 +1,19 @@
+"""Rods of moment of inertia 1 about the pivot, so that torques are accelerations."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pendcore as pc
+
+
+def rod(*effects: Any, gravity: float = 0.0, links: int = 1) -> pc.Scene:
+    """Uniform rods of mass 3 and length 1, without gravity unless it is given."""
+    return pc.Scene(
+        links=[pc.Link(mass=3, length=1)] * links, gravity=gravity, effects=list(effects)
+    )
+
+
+def solve(scene: pc.Scene, q: Any, qd: Any, t_end: float, **options: Any) -> pc.Solution:
+    """A run that has lost its end would go on for ever: max_steps ends it."""
+    return pc.simulate(scene, q, qd, (0, t_end), max_steps=10_000, **options)
