@@ -23,9 +23,6 @@ class Writer {
   void operator()(const std::string& key, const std::vector<double>& values) {
     fields[py::str(key)] = copy(values, {static_cast<py::ssize_t>(values.size())});
   }
-  void operator()(const std::string& key, const std::vector<int>& values) {
-    fields[py::str(key)] = py::array_t<int>(static_cast<py::ssize_t>(values.size()), values.data());
-  }
   /// A number that was not given is a NaN.
   void operator()(const std::string& key, const std::optional<double>& value) {
     fields[py::str(key)] = value.value_or(std::numeric_limits<double>::quiet_NaN());
@@ -54,14 +51,6 @@ class Reader {
   }
   void operator()(const std::string& key, std::vector<double>& values) const {
     values = numbers(key.c_str(), fields_[py::str(key)]);
-  }
-  void operator()(const std::string& key, std::vector<int>& values) const {
-    values.clear();
-    for (const double x : numbers(key.c_str(), fields_[py::str(key)])) {
-      if (!(std::abs(x) <= 1e9))
-        throw py::value_error(key + ": is not what a solution keeps there");
-      values.push_back(static_cast<int>(x));
-    }
   }
   void operator()(const std::string& key, std::optional<double>& value) const {
     double number = 0.0;
@@ -151,7 +140,8 @@ void visit(Archive& io, AnySolution& s) {
   io("position_stiff_hits", p.stiff_hits);
   io("position_stiff_misses", p.stiff_misses);
   visit_statistics(io, "position_", p.statistics);
-  io("position_modes", p.modes);
+  io("position_stepper", p.stepper);
+  io("position_breaks", p.breaks);
   io("position_y", p.y);
   io("position_dydt", p.dydt);
 }

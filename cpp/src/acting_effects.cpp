@@ -11,7 +11,8 @@ EffectsInForce::EffectsInForce(const Scene& scene)
     : effects(compiled(scene).effects),
       modes(scene.effects.size(), 0),
       number_of_wave(scene.effects.size(), -1) {
-  for (const bool is_locked : locked_joints(scene)) locked.push_back(is_locked ? 1 : 0);
+  held.assign(scene.links.size(), 0);
+  for (const Lock& lock : effects_of<Lock>(scene)) hold(lock.joint - 1, true);
   for (const Effect& effect : effects) {
     if (const auto* user = std::get_if<CompiledUser>(&effect)) users.push_back(*user);
     const auto* pivot = std::get_if<DrivenPivot>(&effect);
@@ -28,6 +29,11 @@ EffectsInForce::EffectsInForce(const Scene& scene)
     swing(pivot->y, law->y);
     pivots.push_back(law);
   }
+}
+
+void EffectsInForce::hold(int joint, bool is_held) {
+  held[joint] = is_held ? 1 : 0;
+  any_held = std::ranges::find(held, 1) != held.end();
 }
 
 int EffectsInForce::add_wave(const Sinusoid& wave) {

@@ -10,9 +10,7 @@ Chain::Chain(const Scene& scene, std::shared_ptr<ActingEffects<Pack<4>>> effects
   const Inertia inertia(scene);
   payload_mass_ = inertia.payload_mass;
   rotor_ = inertia.rotor;
-  for (int i = 0; i < n_; ++i) {
-    coupled_ |= effects_->locked[i] != 0 || (i > 0 && rotor_[i] != 0.0);
-  }
+  for (int i = 1; i < n_; ++i) has_rotors_ |= rotor_[i] != 0.0;
   loaded_ = !effects_->couples.empty() || !effects_->entries.empty() || !effects_->users.empty() ||
             !effects_->pivots.empty();
 
@@ -43,7 +41,9 @@ Chain::Chain(const Scene& scene, std::shared_ptr<ActingEffects<Pack<4>>> effects
                       .turn = about_joint - m * link.center * L,
                       .across = I + m * apart * apart});
   }
-  if (!coupled_) links_[0].Io += rotor_[0];
+  // The first rotor turns against the ground: part of the link.
+  links_[0].Io += rotor_[0];
+  rotor_[0] = 0.0;
 }
 
 }  // namespace pendcore

@@ -48,15 +48,14 @@ EquationsOfMotion equations_of_motion(const Scene& scene) {
   if (n == 2) {
     auto effects = std::make_shared<ActingEffects<Pair>>(scene);
     const auto* in_force = effects.get();
-    const bool locked = std::ranges::any_of(effects->locked, [](char one) { return one != 0; });
     const bool has_spline =
         std::ranges::any_of(effects_of<DrivenPivot>(scene),
                             [](const DrivenPivot& one) { return one.spline.has_value(); });
-    if (effects->entries.empty() && effects->users.empty() && !locked && !has_spline &&
-        effects->waves > 0 && effects->waves <= 2) {
+    if (effects->entries.empty() && effects->users.empty() && !has_spline && effects->waves > 0 &&
+        effects->waves <= 2) {
       return {DoublePendulumWithEffects<Parts::waves>(scene, inertia, in_force), effects};
     }
-    if (effects->waves > 0 || !effects->pivots.empty() || !effects->users.empty() || locked) {
+    if (effects->waves > 0 || !effects->pivots.empty() || !effects->users.empty()) {
       return {DoublePendulumWithEffects<Parts::everything>(scene, inertia, in_force), effects};
     }
     if (!effects->entries.empty()) {
@@ -82,7 +81,7 @@ void choose_modes(EffectsInForce& effects, double t, const double* q, const doub
             }
             int mode = effect.mode_at(t, phi, phid, forward);
             if constexpr (requires { effect.holding_torque(); }) {
-              if (effects.locked[effect.joint - 1] != 0) mode = 0;  // the lock holds it
+              if (effects.held[effect.joint - 1] != 0) mode = 0;  // the lock holds it
             }
             effects.put_mode(i, mode);
           }

@@ -313,7 +313,8 @@ class Run {
     target.statistics.nfev = stepper_.evaluations - evaluations_before_;
     stepper_.get_state(target.y.data());
     stepper_.get_derivative(target.dydt.data());
-    if (breaks_ != nullptr) target.modes = breaks_->modes();
+    target.stepper = stepper_.memory();
+    if (breaks_ != nullptr) target.breaks = breaks_->memory();
   }
   Ending end_with(Status status, int bad = -1) {
     write_down(position_);

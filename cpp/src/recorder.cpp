@@ -21,8 +21,8 @@ void Recorder::start(double t, const std::vector<double>& y) {
   if (keeps_steps_ || asked_for) std::ranges::copy(y, append(t));
 }
 
-void Recorder::step_accepted(const Stepper& stepper, const TwoDouble& t_old, double h,
-                             double t_new) {
+double Recorder::step_accepted(const Stepper& stepper, const TwoDouble& t_old, double h,
+                               double t_new) {
   if (keeps_polynomials_) {
     DenseOutput& dense = solution_.dense;
     const std::size_t size = dense.coefficients.size();
@@ -36,6 +36,17 @@ void Recorder::step_accepted(const Stepper& stepper, const TwoDouble& t_old, dou
     stepper.get_new_state(append(t_new));
   } else {
     sample_step(stepper, t_old, h, t_new);
+  }
+  return 2.0;
+}
+
+/// Both states are kept, with the same time; of times asked for, the state after.
+void Recorder::state_jumped(double t, const double* /*before*/, const double* after) {
+  if (keeps_steps_) {
+    std::copy_n(after, dimension_, append(t));
+  } else if (!solution_.t.empty() && solution_.t.back() == t) {
+    std::copy_n(after, dimension_,
+                solution_.states.end() - static_cast<std::ptrdiff_t>(dimension_));
   }
 }
 

@@ -172,9 +172,9 @@ void run(const Scene& scene, Solution& solution, double t_end, const Limits& lim
   const bool begins = before == Before::nothing || (switching && before == Before::a_start);
   if (switching && begins) {
     at_start = switching->begin(t, position.y.data(), forward);
-    position.modes = switching->modes();
+    position.breaks = switching->memory();
   } else if (switching) {
-    switching->restore(position.modes, solution.start.data(), forward);
+    switching->restore(position.breaks, forward);
   }
   if (begins) {
     stepper->evaluate(t, position.y.data(), position.dydt.data());
@@ -182,6 +182,7 @@ void run(const Scene& scene, Solution& solution, double t_end, const Limits& lim
   }
   if (before == Before::nothing) recorder.start(t, position.y);
   stepper->start(position.y.data(), position.dydt.data());
+  if (!begins) stepper->restore(position.stepper);
   if (position.h == 0.0 && t != t_end) {
     const double direction = t_end < t ? -1.0 : 1.0;
     const double size = options.step         ? *options.step

@@ -1,6 +1,7 @@
 #include "pendcore/switching.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "pendcore/dynamics/kinematics.hpp"
 #include "pendcore/message.hpp"
@@ -38,12 +39,23 @@ Switching::Switching(const Scene& scene, const EquationsOfMotion& equations)
       n_(static_cast<int>(scene.links.size())),
       lock_angle_(scene.links.size(), std::numeric_limits<double>::quiet_NaN()) {}
 
-void Switching::restore(const std::vector<int>& modes, const double* start, bool forward) {
+std::vector<double> Switching::memory() const {
+  const std::vector<int>& modes = equations_.effects->modes;
+  std::vector<double> memory(modes.begin(), modes.end());
+  memory.insert(memory.end(), lock_angle_.begin(), lock_angle_.end());
+  return memory;
+}
+
+void Switching::restore(const std::vector<double>& memory, bool forward) {
   forward_ = forward;
-  for (std::size_t i = 0; i < std::min(modes.size(), scene_.effects.size()); ++i) {
-    put_mode(i, modes[i]);
+  const std::size_t effects = scene_.effects.size();
+  if (memory.size() != effects + n_) {
+    throw std::invalid_argument("the modes of this solution are not those of its scene");
   }
-  set_locks(start);
+  for (std::size_t i = 0; i < effects; ++i) put_mode(i, static_cast<int>(memory[i]));
+  std::copy(memory.begin() + static_cast<std::ptrdiff_t>(effects), memory.end(),
+            lock_angle_.begin());
+  has_locks_ = std::ranges::any_of(lock_angle_, [](double angle) { return !std::isnan(angle); });
   collect_guards();
 }
 
@@ -245,7 +257,7 @@ bool Switching::rests(double t, const double* q, const double* qd) {
     if (qd[i] != 0.0) return false;
   }
   std::vector<double> holds(n_, 0.0);
-  const std::vector<int> before = modes();
+  const std::vector<int> before = equations_.effects->modes;
   bool any_friction = false;
   for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
     if (const auto torque = holding_torque(scene_.effects[i])) {

@@ -13,8 +13,9 @@ class Recorder final : public Observer {
   Recorder(Solution& solution, const Stepper& stepper);
 
   void start(double t, const std::vector<double>& y);
-  void step_accepted(const Stepper& stepper, const TwoDouble& t_old, double h,
-                     double t_new) override;
+  double step_accepted(const Stepper& stepper, const TwoDouble& t_old, double h,
+                       double t_new) override;
+  void state_jumped(double t, const double* before, const double* after) override;
   void end_in_sight() override { count(); }
 
   /// What is kept so far is what an unstopped run has as well.

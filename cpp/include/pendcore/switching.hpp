@@ -33,10 +33,10 @@ class Switching final : public Breaks {
   bool settles_every_step() const override { return has_locks_; }
   bool settle(int k, double* y) const override;
   Status cross(int k, double t, const double* y) override;
-  std::vector<int> modes() const override { return equations_.effects->modes; }
+  std::vector<double> memory() const override;
 
-  /// In place of begin() for a run that goes on: the modes it was in, and the state it began with.
-  void restore(const std::vector<int>& modes, const double* start, bool forward);
+  /// In place of begin() for a run that goes on.
+  void restore(const std::vector<double>& memory, bool forward);
 
   /// What a run says that ended at rest or stuck; empty if nothing.
   const std::string& remark() const { return remark_; }

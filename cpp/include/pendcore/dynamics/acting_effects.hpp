@@ -31,6 +31,9 @@ class EffectsInForce {
   /// Freezes effect number i (from 0) to a mode.
   virtual void put_mode(std::size_t i, int mode) = 0;
 
+  /// Eliminates a joint (from 0), or sets it free.
+  void hold(int joint, bool is_held);
+
   /// Sine and cosine of the waves from number `known` on, at time t.
   PENDCORE_INLINE void compute_waves(double t, int known) const {
     for (int k = known; k < waves; k += 4) {
@@ -59,9 +62,10 @@ class EffectsInForce {
   std::vector<int> modes;           ///< of each effect
   std::vector<int> number_of_wave;  ///< of each effect that a wave drives
   std::vector<JointWave> joint_waves;
-  bool has_modes = false;    ///< some law is smooth only in pieces
-  std::vector<char> locked;  ///< of each joint
-  bool has_forces = false;   ///< some law adds forces, not couples alone
+  bool has_modes = false;   ///< some law is smooth only in pieces
+  bool has_forces = false;  ///< some law adds forces, not couples alone
+  std::vector<char> held;   ///< of each joint: it does not turn, and is eliminated
+  bool any_held = false;
   std::vector<std::shared_ptr<DrivenPivot::Law>> pivots;
   std::vector<CompiledUser> users;
 

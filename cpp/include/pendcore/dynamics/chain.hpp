@@ -18,10 +18,10 @@
 /// then turned into the frame of link i - 1. At the tip B = m_p. From the base to the tip,
 /// a_0 = (xdd_0, ydd_0 - g) and a_i = a_{i-1} + L (qdd n - qd^2 u).
 ///
-/// A rotor or a lock couples the turning of two links: then torque and angular acceleration join
+/// A rotor or a joint that is held couples the turning of two links: then torque and angular acceleration join
 /// force and acceleration (the terms beta, kappa and t), with J the rotor's inertia and r and s
 ///
-///     r = 1/(D + J), s = J r          locked: r = 0, s = 1
+///     r = 1/(D + J), s = J r          held: r = 0, s = 1
 ///     qdd_i = r (Q - L p_n - t - w . a) + s qdd_{i-1}
 ///
 /// Source: Featherstone, Rigid Body Dynamics Algorithms (2008), chapter 7, for the plane.
@@ -71,8 +71,8 @@ class Chain {
   int padded_;  ///< links, filled up to whole packs
   double gravity_;
   double payload_mass_;
-  bool coupled_ = false;  ///< a rotor beyond joint 1, or a lock
-  bool loaded_;           ///< effects other than constants
+  bool has_rotors_ = false;  ///< beyond joint 1
+  bool loaded_;              ///< effects other than constants
   std::shared_ptr<ActingEffects<Row>> effects_;
 
   struct Constants {

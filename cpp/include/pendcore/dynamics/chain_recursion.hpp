@@ -197,9 +197,9 @@ PENDCORE_INLINE void Chain::tip_to_base_coupled() const {
     const double pn = fma(-speed, Bun, b_n);
     const double D = fma(k.LL, Bnn, k.Io) + fma(2.0 * k.L, beta_n, kappa);
     const double J = rotor_[i];
-    const bool is_locked = effects_->locked[i];
-    const double r = is_locked ? 0.0 : 1.0 / (D + J);
-    const double share = is_locked ? 1.0 : J * r;
+    const bool is_held = effects_->held[i];
+    const double r = is_held ? 0.0 : 1.0 / (D + J);
+    const double share = is_held ? 1.0 : J * r;
     const double wu = fma(k.L, Bun, beta_u);
     const double wn = fma(k.L, Bnn, k.mc) + beta_n;
     const double torque = in(torque_)[i] - fma(k.L, pn, fma(-speed, beta_u, t));
@@ -256,7 +256,7 @@ PENDCORE_INLINE void Chain::accelerations(double t, const double* q, const doubl
     collect_loads(t);
   }
   ay -= gravity_;
-  if (coupled_) {
+  if (has_rotors_ || effects_->any_held) {
     tip_to_base_coupled();
     base_to_tip_coupled(ax, ay, qdd);
     return;

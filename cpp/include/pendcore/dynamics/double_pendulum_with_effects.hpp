@@ -7,7 +7,7 @@
 ///
 /// sigma = J_2/A is that of a rotor in joint 2; with it delta = 1 - rho rho' - sigma sigma' and
 /// epsilon = rho sigma' + rho' sigma (again no difference is taken). Q is what the list of effects
-/// adds up to. A locked joint is eliminated: both links turn alike, or the first stands.
+/// adds up to. A joint that is held is eliminated: both links turn alike, or the first stands.
 ///
 /// Cost: the bare equations, 10 operations, and what is in the list. Throws what a user's function
 /// throws.
@@ -24,7 +24,7 @@ enum class Parts {
   couples,     ///< rotors, and couples that need no list
   waves,       ///< and two waves at most, of motors and of the pivot
   laws,        ///< couples and the list of laws
-  everything,  ///< any number of waves, a moving pivot, locks, functions of the user's
+  everything,  ///< any number of waves, a moving pivot, functions of the user's
 };
 
 template <Parts parts>
@@ -100,10 +100,8 @@ struct DoublePendulumWithEffects {
     const V alone =
         fma(Constant::of(inverse_diagonal), torque, fma(-(rho * sine), qd_other * qd_other, pull));
     const V kappa = fma(rho, cosine, -Constant::of(rotor));
-    if constexpr (everything) {
-      if (effects->locked[0] | effects->locked[1]) [[unlikely]]
-        return with_locks(alone, kappa);
-    }
+    if (effects->any_held) [[unlikely]]
+      return with_joints_held(alone, kappa);
     const V determinant = fma(Constant::of(product) * sine, sine,
                               fma(Constant::of(epsilon), cosine, Constant::of(delta)));
     return fma(-kappa, other(alone), alone) * (1.0 / determinant);
@@ -141,13 +139,13 @@ struct DoublePendulumWithEffects {
     loads.couple(Constants<V>::of(torque));
   }
 
-  /// Joint 2 locked: (A_1 f_1 + A_2 f_2)/(A_1 + A_2 + 2 M_12) for both. Joint 1 locked: 0 and f_2.
+  /// Joint 2 held: (A_1 f_1 + A_2 f_2)/(A_1 + A_2 + 2 M_12) for both. Joint 1 held: 0 and f_2.
   template <class V>
-  PENDCORE_INLINE V with_locks(const V& alone, const V& kappa) const {
+  PENDCORE_INLINE V with_joints_held(const V& alone, const V& kappa) const {
     using Constant = Constants<V>;
     const V none = Constant::of(0.0);
-    if (effects->locked[0] && effects->locked[1]) return none;
-    if (effects->locked[0]) return other(after(alone));
+    if (effects->held[0] && effects->held[1]) return none;
+    if (effects->held[0]) return other(after(alone));
     const V a = Constant::of(diagonal);
     const V moments = a * alone;
     const V inertia = fma(a, kappa, a);

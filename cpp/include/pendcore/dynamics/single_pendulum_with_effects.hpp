@@ -1,6 +1,6 @@
 /// \file
 /// One link with effects: qdd = (a_1 (g cos q + xdd_0 sin q - ydd_0 cos q) + Q) / A_11, or 0 where
-/// its joint is locked.
+/// its joint is held.
 ///
 /// Cost: the bare equation, 4 operations, and what is in the list of effects.
 #pragma once
@@ -47,7 +47,7 @@ struct SinglePendulumWithEffects {
     for (const auto& entry : effects->entries) ActingEffects<double>::add(entry, at, loads);
     double torque = loads.torque_of_couples() + loads.moments;
     if (!effects->users.empty()) torque += of_users(*effects, t, q, qd);
-    return effects->locked[0] ? 0.0 : fma(inverse_inertia, torque, pull);
+    return effects->any_held ? 0.0 : fma(inverse_inertia, torque, pull);
   }
 
  private:

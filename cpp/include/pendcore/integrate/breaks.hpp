@@ -39,8 +39,8 @@ class Breaks {
   /// The law that follows on guard k, or on a time (-1). Status::finished: go on.
   virtual Status cross(int k, double t, const double* y) = 0;
 
-  /// Which laws are in force: a run that is resumed goes on with them.
-  virtual std::vector<int> modes() const = 0;
+  /// Which laws are in force, and all else that the next step depends on.
+  virtual std::vector<double> memory() const = 0;
 };
 
 }  // namespace pendcore

@@ -29,9 +29,10 @@ struct Position {
   int stiff_hits = 0;    ///< of Hairer's test for stiffness since it last forgot
   int stiff_misses = 0;  ///< since the last hit
   Statistics statistics;
-  std::vector<double> y;     ///< (dimension)
-  std::vector<double> dydt;  ///< (dimension)
-  std::vector<int> modes;    ///< of a right-hand side with breaks
+  std::vector<double> y;        ///< (dimension)
+  std::vector<double> dydt;     ///< (dimension)
+  std::vector<double> stepper;  ///< what the method keeps from step to step (Stepper::memory)
+  std::vector<double> breaks;   ///< and what Breaks does (Breaks::memory)
 };
 
 /// Is called about every 50 ms with the share of the interval that is done; false stops the run.
@@ -50,8 +51,11 @@ struct Limits {
 class Observer {
  public:
   virtual ~Observer() = default;
-  virtual void step_accepted(const Stepper& stepper, const TwoDouble& t_old, double h,
-                             double t_new) = 0;
+  /// Returns where in the step the run is to end, as a share of it: above 1, it goes on.
+  virtual double step_accepted(const Stepper& stepper, const TwoDouble& t_old, double h,
+                               double t_new) = 0;
+  /// At the end of that step, time t, the state jumped.
+  virtual void state_jumped(double t, const double* before, const double* after) = 0;
   /// The next step is the first that is cut to end at t_end. A run that goes on restarts here.
   virtual void end_in_sight() = 0;
 };

@@ -2,6 +2,8 @@
 /// What the integration loop sees of a method applied to a system: no tableau, no pendulum.
 #pragma once
 
+#include <vector>
+
 #include "pendcore/arithmetic/two_double.hpp"
 #include "pendcore/integrate/attempt.hpp"
 #include "pendcore/integrate/tableau.hpp"
@@ -47,6 +49,11 @@ class Stepper {
   /// An estimate of h |lambda|, lambda the eigenvalue of largest size, from the attempted step
   /// (Hairer and Wanner, volume II, IV.2).
   virtual double stiffness(double h) const = 0;
+
+  /// What the next step depends on beside y and dydt: nothing, of most methods.
+  virtual std::vector<double> memory() const { return {}; }
+  /// Goes on from there, in place of what start() left.
+  virtual void restore(const std::vector<double>& /*memory*/) {}
 
   long long evaluations = 0;  ///< right-hand sides so far
 };
