@@ -7,6 +7,7 @@ them for the effects that are here; one without some is shown with values that i
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import inf
 from typing import Any
 
 import pendcore as pc
@@ -31,6 +32,10 @@ EXAMPLES: dict[str, list[str]] = {
     ],
     "rotor_inertia": ["RotorInertia(joint=1, armature=0.02)"],
     "payload": ["Payload(mass=0.5, inertia=0.001)"],
+    "joint_stop": [
+        "JointStop(joint=2, range=(-2.5, 2.5), restitution=0.4)",
+        "JointStop(joint=1, range=(0.0, inf), restitution=0.8, capture_speed=0.001)",
+    ],
     "lock": ["Lock(joint=2)", "Lock(joint=2, angle=0.5)"],
     "driven_pivot": [
         "DrivenPivot(y=Sinusoid(amplitude=0.02, angular_frequency=90.0))",
@@ -43,6 +48,7 @@ BOOKED = {
     "none": "Nothing: it does no work, or keeps it as energy that `sol.energy()` counts.",
     "viscous": "`viscous`: what it takes out of the motion, J.",
     "dry": "`dry`: what it takes out of the motion, J.",
+    "impact": "`impact`: what impacts take out of the motion, J.",
     "drag": "`drag`: what the rod loses, the integral of k |w|^3 along it, J, never negative. The "
     "rest of what the air does is the `wind`'s, J: none without wind.",
     "motor": "`motor`: the work that it does, torque times rate of the joint, J.",
@@ -122,7 +128,7 @@ def kinds_table(folder: str = "effects/") -> str:
 
 def examples(cls: type[Effect]) -> list[Effect]:
     """Return effects to show: those above, or one of any values that are allowed."""
-    names = {name: getattr(pc.effects, name) for name in pc.effects.__all__}
+    names = {name: getattr(pc.effects, name) for name in pc.effects.__all__} | {"inf": inf}
     kind = cls.description.kind
     if kind in EXAMPLES:
         return [eval(text, names) for text in EXAMPLES[kind]]
@@ -141,7 +147,7 @@ def _some(parameter: Parameter) -> Any:
     if parameter.part:
         cls = getattr(pc.effects, parameter.part)
         return cls(**{p.name: _some(p) for p in cls.description.parameters if p.required})
-    whole = {"int": 1, "pair": (1.0, 1.0), "floats": (1.0, 2.0)}
+    whole = {"int": 1, "pair": (1.0, 2.0), "floats": (1.0, 2.0)}
     return whole.get(parameter.type, 1.0)
 
 

@@ -89,10 +89,10 @@ def test_a_stick_leans_in_the_wind_as_its_weight_lets_it() -> None:
 def test_dry_friction_stops_a_spinning_rod_when_and_where_it_must() -> None:
     sol = run("dry_friction_stop")
     assert sol.status == "at_rest"
-    assert sol.t[-1] == pytest.approx(4.0, abs=1e-12)
-    assert sol.q[-1, 0] == pytest.approx(12.0, abs=1e-11)
+    assert sol.t[-2] == pytest.approx(4.0, abs=1e-12)
+    assert sol.q[-2, 0] == pytest.approx(12.0, abs=1e-11)
     assert sol.qd[-1, 0] == 0.0
-    assert sol.qd[:, 0] == pytest.approx(6.0 - 1.5 * sol.t, abs=1e-11)
+    assert sol.qd[:, 0] == pytest.approx(np.maximum(6.0 - 1.5 * sol.t, 0.0), abs=1e-11)
 
 
 def test_ten_rods_swing_as_a_hanging_chain_does() -> None:

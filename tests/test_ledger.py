@@ -79,6 +79,7 @@ SLIDING: list[Described] = [
     ),
     ("dry_joint_friction", {"joint": 1, "coulomb": 0.003}),
 ]
+STRIKING: list[Described] = [("joint_stop", {"joint": 2, "range": (-1.5, 1.2), "restitution": 0.7})]
 EVERY_ENTRY = set(_core.accounts())
 ENTRIES = {kind: [kind] for kind in SMOOTH if kind in EVERY_ENTRY} | {"drag": ["drag", "wind"]}
 
@@ -120,7 +121,7 @@ def test_the_balance_closes_with_all_smooth_effects_on() -> None:
 @pytest.mark.parametrize("locked", [False, True])
 def test_the_balance_closes_with_every_effect_on(locked: bool) -> None:
     lock: list[Described] = [("lock", {"joint": 3})] if locked else []
-    every = [*ALL, *SLIDING, *lock]
+    every = [*ALL, *SLIDING, *STRIKING, *lock]
     assert {kind for kind, _ in every} == set(pc.effects.kinds()) - (set() if locked else {"lock"})
     sol = simulate(every, qd=[1.0, -2.0, -2.0] if locked else QD)
     assert sol.t[-1] == 5.0

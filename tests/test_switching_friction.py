@@ -104,13 +104,12 @@ SETS_FREE_LATER = {
 @pytest.mark.parametrize("w0", [0.0, 0.01])
 @pytest.mark.parametrize("effect", SETS_FREE_LATER.values(), ids=SETS_FREE_LATER.keys())
 def test_rest_that_will_not_last_is_not_said_to_be_for_good(effect: Any, w0: float) -> None:
-    """The torque grows from zero and exceeds friction later; that it slides again is not shown."""
+    """The torque grows from zero and exceeds friction later: the rod sticks, and slides again."""
     friction = fx.DryJointFriction(joint=1, coulomb=0.5)
     sol = solve(rod(friction, effect), np.pi / 2 - 1, w0, 8)
-    assert sol.status == "stuck"
-    assert not sol.success
-    assert "sticking is not simulated" in sol.message
-    assert "for good" not in sol.message
+    assert sol.status == "finished"
+    assert (sol.qd[:-1, 0] == 0.0).sum() > 1
+    assert abs(sol.qd[:, 0]).max() > 0.01
 
 
 def test_rest_that_lasts_is_told_without_a_reservation() -> None:
@@ -118,4 +117,4 @@ def test_rest_that_lasts_is_told_without_a_reservation() -> None:
     for effect in (fx.Motor(joint=1, constant=0.4), fx.TorsionalSpring(joint=1, stiffness=0.1)):
         sol = solve(rod(friction, effect), 0, 0.1, 8)
         assert sol.status == "at_rest"
-        assert "sticking" not in sol.message
+        assert "for good" in sol.message

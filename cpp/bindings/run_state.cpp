@@ -135,6 +135,7 @@ void visit(Archive& io, AnySolution& s) {
   io("position_t_low", p.t.low);
   io("position_h", p.h);
   io("position_h_is_max_step", p.h_is_max_step);
+  io("position_trial_was_finite", p.trial_was_finite);
   io("position_log2_error_before", p.control.log2_error_before);
   io("position_after_rejection", p.control.after_rejection);
   io("position_stiff_hits", p.stiff_hits);

@@ -34,12 +34,10 @@ bool is_bare(const Scene& scene) {
   });
 }
 
-}  // namespace
-
-EquationsOfMotion equations_of_motion(const Scene& scene) {
+EquationsOfMotion form_of_motion(const Scene& scene) {
   const Inertia inertia(scene);
   const std::size_t n = scene.links.size();
-  if (n == 1 && is_bare(scene)) return {SinglePendulum(inertia, scene.gravity), nullptr};
+  if (n == 1 && is_bare(scene)) return {SinglePendulum(inertia, scene.gravity)};
   if (n == 2 && is_bare(scene)) return {DoublePendulum(scene, inertia), nullptr};
   if (n == 1) {
     auto effects = std::make_shared<ActingEffects<double>>(scene);
@@ -67,6 +65,14 @@ EquationsOfMotion equations_of_motion(const Scene& scene) {
   return {std::make_shared<Chain>(scene, effects), effects};
 }
 
+}  // namespace
+
+EquationsOfMotion equations_of_motion(const Scene& scene) {
+  EquationsOfMotion equations = form_of_motion(scene);
+  if (equations.effects) equations.held_joints = std::make_shared<HeldJoints>(scene);
+  return equations;
+}
+
 void choose_modes(EffectsInForce& effects, double t, const double* q, const double* qd,
                   bool forward) {
   for (std::size_t i = 0; i < effects.effects.size(); ++i) {
@@ -79,11 +85,7 @@ void choose_modes(EffectsInForce& effects, double t, const double* q, const doub
               phi = relative(q, effect.joint);
               phid = relative(qd, effect.joint);
             }
-            int mode = effect.mode_at(t, phi, phid, forward);
-            if constexpr (requires { effect.holding_torque(); }) {
-              if (effects.held[effect.joint - 1] != 0) mode = 0;  // the lock holds it
-            }
-            effects.put_mode(i, mode);
+            effects.put_mode(i, effect.mode_at(t, phi, phid, forward));
           }
         },
         effects.effects[i]);
@@ -109,6 +111,9 @@ void accelerations(const EquationsOfMotion& equations, double t, const double* q
                    double* qdd) {
   if (equations.effects && equations.effects->has_modes) {
     choose_modes(*equations.effects, t, q, qd, true);
+  }
+  if (equations.held_joints && equations.held_joints->can_hold()) {
+    equations.held_joints->choose(equations, t, q, qd);
   }
   accelerations_in_force(equations, t, q, qd, qdd);
 }

@@ -1,36 +1,122 @@
 #include "pendcore/integrate/guards.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 #include "pendcore/integrate/root.hpp"
 
 namespace pendcore {
-Guards::Guards(const Stepper& stepper, const Breaks& breaks)
+namespace {
+
+constexpr int points = 9;
+
+/// sin^2(i pi / 16)
+constexpr std::array<double, points> nodes = {
+    0.0, 0.03806023374435663, 0.14644660940672624, 0.30865828381745514,
+    0.5, 0.6913417161825449,  0.8535533905932737,  0.9619397662556434,
+    1.0};
+
+/// Values at the nodes become the coefficients of the polynomial through them: Newton's divided
+/// differences, then powers of theta. Both are `stride` apart.
+void interpolate(double* values, int stride) {
+  for (int order = 1; order < points; ++order) {
+    for (int i = points - 1; i >= order; --i) {
+      values[i * stride] =
+          (values[i * stride] - values[(i - 1) * stride]) / (nodes[i] - nodes[i - order]);
+    }
+  }
+  for (int i = points - 2; i >= 0; --i) {
+    for (int k = i; k < points - 1; ++k) values[k * stride] -= nodes[i] * values[(k + 1) * stride];
+  }
+}
+
+double slope_at_end(const double* coefficients, int degree) {
+  double slope = 0.0;
+  for (int p = degree; p > 0; --p) slope += p * coefficients[p];
+  return slope;
+}
+
+}  // namespace
+
+Guards::Guards(const Stepper& stepper, Breaks& breaks)
     : stepper_(stepper),
       breaks_(breaks),
       dimension_(stepper.dimension()),
       degree_(stepper.interpolant_degree()),
       rows_(static_cast<std::size_t>(degree_ + 1) * dimension_),
       state_(dimension_),
-      polynomial_(degree_ + 1) {}
+      polynomial_(static_cast<std::size_t>(std::max(degree_ + 1, points))) {}
 
-Crossing Guards::first(double h) {
+void Guards::linear(int k) {
+  breaks_.polynomial(k, rows_.data(), degree_, dimension_, polynomial_.data());
+  if (breaks_.begins_at_zero(k)) polynomial_[0] = 0.0;
+}
+
+/// samples_ gets a polynomial for each guard that is not linear.
+void Guards::interpolate_others(double t, double h) {
+  const int others = breaks_.guards() - breaks_.linear_guards();
+  samples_.resize(static_cast<std::size_t>(points) * others);
+  for (int i = 0; i < points; ++i) {
+    for (int c = 0; c < dimension_; ++c) {
+      double value = rows_[static_cast<std::size_t>(degree_) * dimension_ + c];
+      for (int p = degree_ - 1; p >= 0; --p) {
+        value = std::fma(nodes[i], value, rows_[static_cast<std::size_t>(p) * dimension_ + c]);
+      }
+      state_[c] = value;
+    }
+    breaks_.other_guards(t + nodes[i] * h, state_.data(),
+                         samples_.data() + static_cast<std::ptrdiff_t>(i) * others);
+  }
+  for (int k = 0; k < others; ++k) interpolate(samples_.data() + k, others);
+}
+
+Crossing Guards::first(double t, double h) {
   Crossing found;
   if (breaks_.guards() == 0) return found;
   stepper_.interpolant(h, rows_.data());
-  for (int k = 0; k < breaks_.guards(); ++k) {
-    breaks_.polynomial(k, rows_.data(), degree_, dimension_, polynomial_.data());
+  const int linear_guards = breaks_.linear_guards();
+  for (int k = 0; k < linear_guards; ++k) {
+    linear(k);
     const double theta = first_negative(polynomial_.data(), degree_);
     if (theta < found.theta) found = {k, theta};
+  }
+  const int others = breaks_.guards() - linear_guards;
+  if (others == 0) return found;
+  interpolate_others(t, h);
+  for (int k = 0; k < others; ++k) {
+    for (int p = 0; p < points; ++p) polynomial_[p] = samples_[p * others + k];
+    const double theta = first_negative(polynomial_.data(), points - 1);
+    if (theta < found.theta) found = {linear_guards + k, theta};
   }
   return found;
 }
 
-double Guards::miss(int k, double h) {
+double Guards::miss(int k, double t, double h) {
   stepper_.interpolant(h, rows_.data());
-  stepper_.get_new_state(state_.data());
-  const double g = breaks_.guard(k, state_.data());
-  breaks_.polynomial(k, rows_.data(), degree_, dimension_, polynomial_.data());
+  double g = 0.0;
   double slope = 0.0;
-  for (int p = degree_; p > 0; --p) slope += p * polynomial_[p];
+  const int other = k - breaks_.linear_guards();
+  if (other < 0) {
+    linear(k);
+    slope = slope_at_end(polynomial_.data(), degree_);
+    if (breaks_.begins_at_zero(k)) {
+      // What the state has grown by, without the rounding of the state itself.
+      for (int p = degree_; p > 0; --p) g += polynomial_[p];
+    } else {
+      stepper_.get_new_state(state_.data());
+      g = breaks_.guard(k, state_.data());
+    }
+  } else {
+    interpolate_others(t, h);
+    const int others = breaks_.guards() - breaks_.linear_guards();
+    for (int p = 0; p < points; ++p) polynomial_[p] = samples_[p * others + other];
+    slope = slope_at_end(polynomial_.data(), points - 1);
+    std::vector<double> values(others);
+    stepper_.get_new_state(state_.data());
+    breaks_.other_guards(t + h, state_.data(), values.data());
+    g = values[other];
+  }
   return slope != 0.0 ? g / slope : 0.0;
 }
 

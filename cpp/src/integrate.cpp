@@ -1,54 +1,15 @@
 #include "pendcore/integrate/integrate.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <new>
 #include <optional>
 
+#include "pendcore/integrate/clock.hpp"
 #include "pendcore/integrate/guards.hpp"
 
 namespace pendcore {
 namespace {
-
-/// Looks at the clock seldom, yet often enough: the time limit is kept within a few milliseconds
-/// and the monitor is called about every 50.
-class Watch {
- public:
-  Watch(const Limits& limits, double t0) : limits_(limits), t0_(t0) {}
-
-  /// Status::finished means: go on.
-  Status look(double t) {
-    if (++steps_ < steps_between_looks_) return Status::finished;
-    steps_ = 0;
-    const Clock::time_point now = Clock::now();
-    const double since_look = seconds(now - last_look_);
-    last_look_ = now;
-    if (since_look < 0.5e-3) {
-      steps_between_looks_ = std::min(2 * steps_between_looks_, 1 << 20);
-    } else if (since_look > 2e-3) {
-      steps_between_looks_ = std::max(steps_between_looks_ / 2, 1);
-    }
-    if (seconds(now - start_) >= limits_.time_limit) return Status::time_limit;
-    if (limits_.monitor && seconds(now - last_call_) >= 0.05) {
-      last_call_ = now;
-      if (!limits_.monitor((t - t0_) / (limits_.t_end - t0_))) return Status::interrupted;
-    }
-    return Status::finished;
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  static double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
-
-  const Limits& limits_;
-  double t0_;
-  int steps_ = 0;
-  int steps_between_looks_ = 16;
-  Clock::time_point start_ = Clock::now();
-  Clock::time_point last_look_ = start_;
-  Clock::time_point last_call_ = start_;
-};
 
 /// The first component that is not finite, or -1.
 int bad_component(const std::vector<double>& y) {
@@ -105,7 +66,7 @@ class Run {
         observer_(observer),
         breaks_(breaks),
         method_(stepper.info()),
-        watch_(limits, position.t.high),
+        clock_(limits, position.t.high),
         evaluations_before_(stepper.evaluations - position.statistics.nfev),
         state_(stepper.dimension()),
         rate_(stepper.dimension()) {
@@ -149,15 +110,20 @@ class Run {
     const double left = difference(limits_.t_end, position_.t);
     if (left == 0.0) return end(Status::finished);
     if (attempts_ == limits_.max_steps) return end(Status::max_steps);
-    if (const Status clock = watch_.look(t); clock != Status::finished) return end(clock);
+    if (const Status clock = clock_.look(t); clock != Status::finished) return end(clock);
 
+    if (breaks_ != nullptr && breaks_->is_over()) return end(Status::non_finite);
+    if (breaks_ != nullptr && breaks_->rests()) return rest(left);
+    if (breaks_ != nullptr && std::abs(position_.h) > breaks_->longest_step()) {
+      position_.h = std::copysign(breaks_->longest_step(), position_.h);
+    }
     const Target target = next_target(left);
     double h = position_.h;
     if (target.is_in_reach) {
       h = target.left;
       if (!target.is_break) end_in_sight();
     } else if (std::abs(h) <= 10.0 * rounding * std::abs(t) || std::abs(h) < 1e-300) {
-      return end(trial_was_finite_ ? Status::step_too_small : Status::non_finite);
+      return end(position_.trial_was_finite ? Status::step_too_small : Status::non_finite);
     }
 
     ++attempts_;
@@ -166,7 +132,7 @@ class Run {
     // A step of a few bits cannot be shortened, and its error is that of its times.
     const bool is_shortest = target.is_in_reach && std::abs(h) <= 10.0 * last_bits();
     const bool is_accepted = attempt.squared_error <= 1.0 || limits_.fixed_step || is_shortest;
-    if (!trial_was_finite_ || !is_accepted) {
+    if (!position_.trial_was_finite || !is_accepted) {
       if (limits_.fixed_step) {
         ++position_.statistics.rejected;
         return end(Status::non_finite);
@@ -175,13 +141,17 @@ class Run {
     }
 
     Crossing crossing;
-    if (guards_ && !is_shortest) crossing = guards_->first(h);
+    if (guards_ && !is_shortest) crossing = guards_->first(t, h);
     if (guards_ && crossing.guard >= 0) {
       if (crossing.theta * std::abs(h) <= 2.0 * rounding * std::abs(t))
         return change_at_once(crossing);
       const double whole = h;
       h = crossing.theta * whole;
-      const bool is_located = locate(*guards_, crossing.guard, h, attempt);
+      const bool is_located = locate(*guards_, crossing.guard, whole, h, attempt);
+      if (limits_.fixed_step && !is_located) {
+        h = crossing.theta * whole;
+        attempt = stepper_.attempt(t, h, position_.control.gain(method_));
+      }
       if (!limits_.fixed_step) {
         // What the whole step strode over, the shorter one may see: friction's peak at rest.
         if (!is_located) return reject(0.5 * crossing.theta * whole);
@@ -192,6 +162,16 @@ class Run {
     }
     crossings_at_once_ = 0;
     return accept(target, crossing.guard, h, attempt);
+  }
+
+  /// Nothing moves any more: one step to the end.
+  bool rest(double left) {
+    end_in_sight();
+    stepper_.attempt(position_.t.high, left, 0.0);
+    observer_.step_accepted(stepper_, position_.t, left, limits_.t_end);
+    stepper_.accept(limits_.t_end);
+    position_.t = {limits_.t_end, 0.0};
+    return end(Status::at_rest);
   }
 
   Target next_target(double left) const {
@@ -223,12 +203,12 @@ class Run {
   }
 
   void look_for_bad_component(const Attempt& attempt, double t_new) {
-    trial_was_finite_ = true;
+    position_.trial_was_finite = true;
     bad_ = -1;
     if (std::isfinite(attempt.squared_error)) return;
     // Beyond the square root of the largest double the norm overflows, and nothing is wrong.
     bad_ = bad_component_of_trial(stepper_, t_new);
-    trial_was_finite_ = bad_ < 0 && !std::isnan(attempt.squared_error);
+    position_.trial_was_finite = bad_ < 0 && !std::isnan(attempt.squared_error);
   }
 
   bool reject(double h) {
@@ -240,7 +220,7 @@ class Run {
 
   /// The law changes where the step begins.
   bool change_at_once(const Crossing& crossing) {
-    if (++crossings_at_once_ > 4 * breaks_->guards()) {
+    if (++crossings_at_once_ > 100 + 4 * breaks_->guards()) {
       chatters_ = true;
       return end(Status::step_too_small);
     }
@@ -249,12 +229,12 @@ class Run {
 
   /// Redoes the step to where the guard is zero, to the last bits of time: the state there comes
   /// from the method, not from the interpolant. False where no such step is found.
-  bool locate(Guards& guards, int guard, double& h, Attempt& attempt) {
+  bool locate(Guards& guards, int guard, double whole, double& h, Attempt& attempt) {
     const double t = position_.t.high;
     double before = std::numeric_limits<double>::infinity();
     for (int polish = 0; polish < 10; ++polish) {
       attempt = stepper_.attempt(t, h, position_.control.gain(method_));
-      const double correction = guards.miss(guard, h) * h;
+      const double correction = guards.miss(guard, t, h) * h;
       const double size = std::abs(correction);
       if (!(size <= 0.5 * std::abs(h))) return false;
       if (size <= 4.0 * rounding * std::max(std::abs(t), std::abs(h))) return true;
@@ -262,6 +242,10 @@ class Run {
       if (size <= 1e-6 * std::abs(h) && size >= 0.5 * before) return true;
       before = size;
       h -= correction;
+      if (std::abs(h) > std::abs(whole)) {
+        if (std::abs(h) > std::abs(whole) + last_bits()) return false;
+        h = whole;
+      }
     }
     return false;
   }
@@ -286,6 +270,7 @@ class Run {
     stepper_.accept(t_new.high);
     position_.t = t_new;
     if (!law_changes) {
+      if (breaks_ != nullptr) breaks_->step_taken();
       if (limits_.fixed_step) return true;
       position_.h = h * position_.control.accept(method_, attempt);
       position_.h_is_max_step = std::abs(position_.h) >= limits_.max_step;
@@ -300,8 +285,10 @@ class Run {
   bool change_law(int guard) {
     const double t = position_.t.high;
     stepper_.get_state(state_.data());
-    const Status status = breaks_->cross(guard, t, state_.data());
-    if (status != Status::finished) return end(status);
+    const std::vector<double> before = state_;
+    if (breaks_->cross(guard, t, state_.data())) {
+      observer_.state_jumped(t, before.data(), state_.data());
+    }
     stepper_.evaluate(t, state_.data(), rate_.data());
     stepper_.start(state_.data(), rate_.data());
     position_.control = StepControl{};
@@ -332,7 +319,7 @@ class Run {
   Observer& observer_;
   Breaks* breaks_;
   const MethodInfo& method_;
-  Watch watch_;
+  Clock clock_;
   std::optional<Guards> guards_;
   long long evaluations_before_;
   Status status_ = Status::finished;
@@ -341,7 +328,6 @@ class Run {
   int crossings_at_once_ = 0;
   bool chatters_ = false;
   int bad_ = -1;  ///< component of the last trial, while trials are not finite
-  bool trial_was_finite_ = true;
   std::vector<double> state_;
   std::vector<double> rate_;
 };

@@ -96,8 +96,9 @@ std::string table_that_ends(const Scene& scene, double t, bool forward) {
 std::string message_of(const Ending& ending, const Scene& scene, const Solution& solution,
                        const std::string& remark) {
   std::string message(text(ending.status).sentence);
-  if (ending.status == Status::at_rest || ending.status == Status::stuck) {
-    return message + " (at t = " + text(solution.t_reached) + " s: " + remark + ")";
+  if (ending.status == Status::at_rest) {
+    const double since = solution.resumable.t.high;
+    return message + " (at t = " + text(since) + " s: " + remark + ")";
   }
   if (text(ending.status).success) return message;
   if (ending.chatters) {
@@ -118,6 +119,22 @@ std::string message_of(const Ending& ending, const Scene& scene, const Solution&
   return message;
 }
 
+void check_stop(const JointStop& stop, const std::string& where, const std::vector<double>& q0,
+                bool backward) {
+  const auto& [lower, upper] = stop.range;
+  const double phi = relative(q0.data(), stop.joint);
+  const double rounding = 1e-12 * std::max(1.0, std::abs(phi));
+  if (!(phi >= lower - rounding && phi <= upper + rounding)) {
+    refuse("q0: angle of joint " + std::to_string(stop.joint), phi,
+           text(lower) + " to " + text(upper) + " rad, as " + where + "range has it");
+  }
+  if (backward && stop.restitution < 1.0) {
+    throw std::invalid_argument(
+        "t_span: runs backward: " + where +
+        "with a restitution below 1 the past is not unique: run it forward");
+  }
+}
+
 /// What the effects of a scene ask of a start and of an interval.
 void check_run(const Scene& scene, const std::vector<double>& q0, const std::vector<double>& qd0,
                double t0, double t_end) {
@@ -126,6 +143,9 @@ void check_run(const Scene& scene, const std::vector<double>& q0, const std::vec
     if (t_end < t0 && holding_torque(scene.effects[i])) {
       throw std::invalid_argument("t_span: runs backward: " + where +
                                   "with dry friction the past is not unique: run it forward");
+    }
+    if (const auto* stop = std::get_if<JointStop>(&scene.effects[i])) {
+      check_stop(*stop, where, q0, t_end < t0);
     }
     const auto* lock = std::get_if<Lock>(&scene.effects[i]);
     if (lock == nullptr) continue;
@@ -144,6 +164,15 @@ void check_run(const Scene& scene, const std::vector<double>& q0, const std::vec
   }
 }
 
+/// The ledger has no say in the steps: that it overflowed is seen at the end.
+void see_whether_ledger_is_finite(const std::vector<double>& y, int n, Ending& ending) {
+  const bool is_finite =
+      std::all_of(y.begin() + 2 * n, y.end(), [](double x) { return std::isfinite(x); });
+  if (is_finite || !text(ending.status).success) return;
+  ending.status = Status::non_finite;
+  ending.bad = 2 * n;
+}
+
 /// Of a solution that goes on: one that has no length yet has no direction either.
 enum class Before { nothing, a_start, steps };
 
@@ -154,7 +183,7 @@ void run(const Scene& scene, Solution& solution, double t_end, const Limits& lim
   const EquationsOfMotion equations = equations_of_motion(scene);
   const auto stepper = make_stepper(scene, equations, options.method, options.ledger);
   std::optional<Switching> switching;
-  if (Switching::is_needed(scene)) switching.emplace(scene, equations);
+  if (Switching::is_needed(scene)) switching.emplace(scene, equations, solution.accounts);
   const std::size_t n = scene.links.size();
   const std::vector<double> rtol = relative_tolerances(options, n);
   const std::vector<double> atol = absolute_tolerances(options, n);
@@ -168,39 +197,47 @@ void run(const Scene& scene, Solution& solution, double t_end, const Limits& lim
   Position position = solution.resumable;
   const double t = position.t.high;
   const bool forward = !(t_end < t);
-  Status at_start = Status::finished;
-  const bool begins = before == Before::nothing || (switching && before == Before::a_start);
-  if (switching && begins) {
-    at_start = switching->begin(t, position.y.data(), forward);
-    position.breaks = switching->memory();
-  } else if (switching) {
-    switching->restore(position.breaks, forward);
+  const bool begins = before != Before::steps;
+  const std::vector<double> before_begin = position.y;
+  bool jumped = false;
+  Ending ending{.status = Status::finished, .cut = false};
+  if (!begins) {
+    if (switching) switching->restore(position.breaks, t, position.y.data(), forward);
+    stepper->start(position.y.data(), position.dydt.data());
+    stepper->restore(position.stepper);
   }
-  if (begins) {
-    stepper->evaluate(t, position.y.data(), position.dydt.data());
-    position.statistics.nfev = 0;
+  try {  // functions of the user's may throw
+    if (begins) {
+      jumped = switching && switching->begin(t, position.y.data(), forward);
+      stepper->evaluate(t, position.y.data(), position.dydt.data());
+      stepper->start(position.y.data(), position.dydt.data());
+    }
+    if (position.h == 0.0 && t != t_end) {
+      const double size = options.step ? *options.step
+                          : options.first_step
+                              ? std::min(*options.first_step, options.max_step)
+                              : first_step(*stepper, t, forward ? 1.0 : -1.0, options.max_step,
+                                           rtol.data(), atol.data());
+      position.h = forward ? size : -size;
+      position.h_is_max_step = options.step || size == options.max_step;
+    }
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (...) {
+    ending = {.status = Status::callback_error, .cut = false, .error = std::current_exception()};
   }
-  if (before == Before::nothing) recorder.start(t, position.y);
-  stepper->start(position.y.data(), position.dydt.data());
-  if (!begins) stepper->restore(position.stepper);
-  if (position.h == 0.0 && t != t_end) {
-    const double direction = t_end < t ? -1.0 : 1.0;
-    const double size = options.step         ? *options.step
-                        : options.first_step ? std::min(*options.first_step, options.max_step)
-                                             : first_step(*stepper, t, direction, options.max_step,
-                                                          rtol.data(), atol.data());
-    position.h = direction * size;
-    position.h_is_max_step = options.step || size == options.max_step;
-  }
-  position.statistics.nfev += stepper->evaluations;
-  Ending ending{.status = at_start, .cut = false};
-  if (at_start == Status::finished) {
+  if (switching) position.breaks = switching->memory();
+  if (before == Before::nothing) recorder.start(t, jumped ? before_begin : position.y);
+  if (jumped) recorder.state_jumped(t, before_begin.data(), position.y.data());
+  position.statistics.nfev = (begins ? 0 : position.statistics.nfev) + stepper->evaluations;
+  if (ending.error) {
+    solution.resumable = position;
+  } else {
     ending = integrate(*stepper, position, solution.resumable, limits, recorder,
                        switching ? &*switching : nullptr);
-  } else {
-    solution.resumable = position;
   }
   if (!ending.cut) recorder.count();
+  see_whether_ledger_is_finite(position.y, solution.n, ending);
   solution.status = ending.status;
   solution.statistics = position.statistics;
   solution.t_reached = position.t.high;
@@ -301,8 +338,9 @@ Solution resume(const Scene& scene, const Solution& solution, double t_end,
   check(options);
 
   longer.t_end = t_end;
-  const bool has_length = solution.t_end != solution.t0;
-  if (!has_length) {
+  // What has no step yet begins anew.
+  const bool has_begun = solution.resumable.h != 0.0;
+  if (!has_begun) {
     const auto middle = solution.start.begin() + solution.n;
     check_run(scene, {solution.start.begin(), middle}, {middle, middle + solution.n}, solution.t0,
               t_end);
@@ -317,7 +355,7 @@ Solution resume(const Scene& scene, const Solution& solution, double t_end,
   longer.dense.coefficients.resize(longer.resumable_steps * (degree + 1) * dimension);
   Limits limits = limits_of(options, t_end);
   limits.monitor = monitor;
-  run(scene, longer, t_end, limits, has_length ? Before::steps : Before::a_start);
+  run(scene, longer, t_end, limits, has_begun ? Before::steps : Before::a_start);
   return longer;
 }
 

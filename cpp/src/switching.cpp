@@ -9,6 +9,9 @@
 namespace pendcore {
 namespace {
 
+/// Changes at one time of which rounding may be the cause.
+constexpr int many_at_once = 8;
+
 /// Whether what is given of an effect by points in time does not go on from time t.
 template <class Kind>
 bool has_ended(const Kind& effect, double t, bool forward) {
@@ -19,13 +22,23 @@ bool has_ended(const Kind& effect, double t, bool forward) {
   }
 }
 
+/// The joint that an effect acts on, from 0.
+int joint_of(const Effect& effect) {
+  return std::visit(
+      [](const auto& one) {
+        if constexpr (requires { one.joint; }) return one.joint - 1;
+        return 0;
+      },
+      effect);
+}
+
 }  // namespace
 
 bool Switching::is_needed(const Scene& scene) {
   return std::ranges::any_of(scene.effects, [](const Effect& effect) {
     return std::visit(
         []<class Kind>(const Kind& one) {
-          if constexpr (std::is_same_v<Kind, Lock>) return true;
+          if constexpr (std::is_same_v<Kind, Lock> || std::is_same_v<Kind, JointStop>) return true;
           if constexpr (requires { one.has_modes(); }) return one.has_modes();
           return false;
         },
@@ -33,65 +46,27 @@ bool Switching::is_needed(const Scene& scene) {
   });
 }
 
-Switching::Switching(const Scene& scene, const EquationsOfMotion& equations)
+Switching::Switching(const Scene& scene, const EquationsOfMotion& equations,
+                     const std::vector<Account>& accounts)
     : scene_(compiled(scene)),
       equations_(equations),
+      accounts_(accounts),
       n_(static_cast<int>(scene.links.size())),
-      lock_angle_(scene.links.size(), std::numeric_limits<double>::quiet_NaN()) {}
+      joints_(*equations_.held_joints),
+      torque_(scene.links.size()) {}
 
-std::vector<double> Switching::memory() const {
-  const std::vector<int>& modes = equations_.effects->modes;
-  std::vector<double> memory(modes.begin(), modes.end());
-  memory.insert(memory.end(), lock_angle_.begin(), lock_angle_.end());
-  return memory;
-}
-
-void Switching::restore(const std::vector<double>& memory, bool forward) {
+bool Switching::begin(double t, double* y, bool forward) {
   forward_ = forward;
-  const std::size_t effects = scene_.effects.size();
-  if (memory.size() != effects + n_) {
-    throw std::invalid_argument("the modes of this solution are not those of its scene");
-  }
-  for (std::size_t i = 0; i < effects; ++i) put_mode(i, static_cast<int>(memory[i]));
-  std::copy(memory.begin() + static_cast<std::ptrdiff_t>(effects), memory.end(),
-            lock_angle_.begin());
-  has_locks_ = std::ranges::any_of(lock_angle_, [](double angle) { return !std::isnan(angle); });
-  collect_guards();
-}
-
-void Switching::set_locks(const double* start) {
+  choose_modes_from(t, y, y + n_);
   for (const Lock& lock : effects_of<Lock>(scene_)) {
-    has_locks_ = true;
-    lock_angle_[lock.joint - 1] = lock.angle.value_or(relative(start, lock.joint));
+    joints_.lock(lock.joint - 1, lock.angle.value_or(relative(y, lock.joint)), y);
   }
-}
-
-int Switching::joint_of(std::size_t effect) const {
-  return std::visit(
-      [](const auto& one) {
-        if constexpr (requires { one.joint; }) return one.joint;
-        return 1;
-      },
-      scene_.effects[effect]);
-}
-
-void Switching::collect_guards() {
-  guards_.clear();
-  for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
-    if (is_locked(joint_of(i))) continue;
-    std::visit(
-        [&](const auto& one) {
-          if constexpr (requires { one.has_modes(); }) {
-            if (!one.has_modes()) return;
-            const std::vector<Guard> guards = one.guards(equations_.effects->modes[i]);
-            for (std::size_t k = 0; k < guards.size(); ++k) {
-              guards_.push_back(
-                  {.effect = i, .number = k, .joint = joint_of(i), .guard = guards[k]});
-            }
-          }
-        },
-        scene_.effects[i]);
-  }
+  bool any_strikes = false;
+  for (int j = 0; j < n_; ++j) any_strikes |= joints_.strikes(j, y, y + n_);
+  const bool jumped = any_strikes && strike(t, y);
+  joints_.choose(equations_, t, y, y + n_);
+  collect_guards(y);
+  return jumped;
 }
 
 void Switching::choose_modes_from(double t, const double* q, const double* qd) {
@@ -100,26 +75,8 @@ void Switching::choose_modes_from(double t, const double* q, const double* qd) {
     const bool ended =
         std::visit([&](const auto& one) { return has_ended(one, t, forward_); }, scene_.effects[i]);
     if (ended) put_mode(i, -1);
+    is_over_ |= ended;
   }
-}
-
-Status Switching::begin(double t, double* y, bool forward) {
-  forward_ = forward;
-  const double* const q = y;
-  const double* const qd = y + n_;
-  choose_modes_from(t, q, qd);
-  set_locks(y);
-  settle(-1, y);
-  if (rests(t, q, qd)) return hold_every_joint();
-  for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
-    if (!holding_torque(scene_.effects[i]) || is_locked(joint_of(i))) continue;
-    if (relative(qd, joint_of(i)) != 0.0) continue;
-    const int mode = sliding_mode(i, t, q, qd);
-    if (mode == 0) return Status::stuck;
-    put_mode(i, mode);
-  }
-  collect_guards();
-  return Status::finished;
 }
 
 double Switching::next_time(double t) const {
@@ -140,14 +97,87 @@ double Switching::next_time(double t) const {
   return next_time_;
 }
 
+double Switching::longest_step() const { return longest_step_; }
+
+/// An eighth of the fastest wave, where a joint is held that it could set free.
+void Switching::set_longest_step() {
+  longest_step_ = never;
+  if (!joints_.any_held_for_now()) return;
+  const EffectsInForce& effects = *equations_.effects;
+  for (int k = 0; k < effects.waves; ++k) {
+    const double eighth = 0.785398163397448 / std::abs(effects.angular_frequency[k]);
+    longest_step_ = std::min(longest_step_, eighth);
+  }
+  if (!effects.users.empty()) {
+    longest_step_ = std::min(longest_step_, 0.01 / joints_.natural_speed());
+  }
+}
+
+void Switching::collect_guards(const double* y) {
+  any_held_ = equations_.effects->any_held;
+  guards_.clear();
+  for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
+    const int joint = joint_of(scene_.effects[i]);
+    std::visit(
+        [&](const auto& one) {
+          if constexpr (requires { one.has_modes(); }) {
+            if (!one.has_modes() || equations_.effects->held[joint] != 0) return;
+            const std::vector<Guard> guards = one.guards(equations_.effects->modes[i]);
+            for (std::size_t k = 0; k < guards.size(); ++k) {
+              guards_.push_back({i, k, joint, guards[k], Side::none, false});
+            }
+          }
+        },
+        scene_.effects[i]);
+  }
+  collect_stops(y);
+  held_guards_.clear();
+  for (int j = 0; j < n_; ++j) {
+    if (!joints_.is_held(j)) continue;
+    if (joints_.holds()[j].least > -never) held_guards_.push_back({j, false});
+    if (joints_.holds()[j].most < never) held_guards_.push_back({j, true});
+  }
+  for (Watch& watch : guards_) {
+    if (watch.stop == Side::none && watch.guard.on_phi == 0.0 && watch.guard.offset == 0.0) {
+      watch.begins_at_zero = relative(y + n_, watch.joint + 1) == 0.0;
+    }
+  }
+  set_longest_step();
+  see_whether_all_rests(y);
+}
+
+void Switching::collect_stops(const double* y) {
+  for (int j = 0; j < n_; ++j) {
+    const JointSupport& support = joints_.supports()[j];
+    if (equations_.effects->held[j] != 0) continue;
+    const Side touches = joints_.contact(j, y);
+    if (support.lower > -never) {
+      const Guard above{.offset = -support.lower, .on_phi = 1.0, .on_phid = 0.0};
+      guards_.push_back({0, 0, j, above, Side::lower, touches == Side::lower});
+    }
+    if (support.upper < never) {
+      const Guard below{.offset = support.upper, .on_phi = -1.0, .on_phid = 0.0};
+      guards_.push_back({0, 0, j, below, Side::upper, touches == Side::upper});
+    }
+  }
+}
+
+bool Switching::begins_at_zero(int k) const { return guards_[k].begins_at_zero; }
+
+void Switching::step_taken() {
+  for (Watch& watch : guards_) watch.begins_at_zero = false;
+}
+
 double Switching::guard(int k, const double* y) const {
-  const auto& [effect, number, joint, g] = guards_[k];
+  const Guard& g = guards_[k].guard;
+  const int joint = guards_[k].joint + 1;
   return g.offset + g.on_phi * relative(y, joint) + g.on_phid * relative(y + n_, joint);
 }
 
 void Switching::polynomial(int k, const double* rows, int degree, int dimension,
                            double* coefficients) const {
-  const auto& [effect, number, joint, g] = guards_[k];
+  const Guard& g = guards_[k].guard;
+  const int joint = guards_[k].joint + 1;
   for (int p = 0; p <= degree; ++p) {
     const double* const row = rows + static_cast<std::ptrdiff_t>(p) * dimension;
     coefficients[p] = g.on_phi * relative(row, joint) + g.on_phid * relative(row + n_, joint);
@@ -155,76 +185,126 @@ void Switching::polynomial(int k, const double* rows, int degree, int dimension,
   coefficients[0] += g.offset;
 }
 
+void Switching::other_guards(double t, const double* y, double* values) {
+  joints_.torques(equations_, t, y, y + n_, torque_.data());
+  for (const auto& [joint, is_most] : held_guards_) {
+    const Hold& hold = joints_.holds()[joint];
+    *values++ = is_most ? hold.most - torque_[joint] : torque_[joint] - hold.least;
+  }
+}
+
 bool Switching::settle(int k, double* y) const {
   bool changed = false;
   double* const q = y;
   double* const qd = y + n_;
-  if (k >= 0) {
-    const auto& [effect, number, joint, g] = guards_[k];
-    if (g.on_phi == 0.0 && g.offset == 0.0) {  // on a rate alone: it is zero there
-      qd[joint - 1] = joint > 1 ? qd[joint - 2] : 0.0;
+  if (k >= 0 && k < linear_guards()) {
+    const Watch& watch = guards_[k];
+    const int j = watch.joint;
+    if (watch.stop != Side::none) {
+      const JointSupport& support = joints_.supports()[j];
+      const double angle = watch.stop == Side::lower ? support.lower : support.upper;
+      q[j] = j > 0 ? q[j - 1] + angle : angle;
+      changed = true;
+    } else if (watch.guard.on_phi == 0.0 && watch.guard.offset == 0.0) {
+      qd[j] = j > 0 ? qd[j - 1] : 0.0;  // on a rate alone: it is zero there
       changed = true;
     }
   }
-  for (int j = 0; j < n_; ++j) {
-    if (!is_locked(j + 1)) continue;
-    q[j] = j > 0 ? q[j - 1] + lock_angle_[j] : lock_angle_[j];
-    qd[j] = j > 0 ? qd[j - 1] : 0.0;
-    changed = true;
-  }
-  return changed;
+  return joints_.settle(q, qd) || changed;
 }
 
-Status Switching::cross(int k, double t, const double* y) {
+void Switching::count_at_once(double t) {
+  changes_at_once_ = t == time_of_change_ ? changes_at_once_ + 1 : 0;
+  time_of_change_ = t;
+}
+
+bool Switching::cross(int k, double t, double* y) {
+  count_at_once(t);
+  if (k < 0) {
+    cross_time(t);
+    collect_guards(y);
+    return false;
+  }
   const double* const q = y;
   const double* const qd = y + n_;
-  if (k < 0) {
-    for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
-      std::visit(
-          [&](const auto& one) {
-            if constexpr (requires { one.next_time(t, true); }) {
-              if (!one.has_modes() || one.guards(equations_.effects->modes[i]).size() > 0) return;
-              put_mode(i, has_ended(one, t, forward_) ? -1 : one.mode_at(t, 0.0, 0.0, forward_));
-            }
-          },
-          scene_.effects[i]);
-    }
-    collect_guards();
-    return Status::finished;
-  }
-  const Watch watch = guards_[k];
-  const Effect& effect = scene_.effects[watch.effect];
-  int mode = 0;
-  if (holding_torque(effect)) {
-    if (rests(t, q, qd)) return hold_every_joint();
-    mode = sliding_mode(watch.effect, t, q, qd);
-    if (mode == 0) return Status::stuck;
+  bool jumped = false;
+  if (k >= linear_guards()) {
+    const auto [joint, is_most] = held_guards_[k - linear_guards()];
+    joints_.release(*equations_.effects, joint, is_most ? -1 : 1);
+  } else if (const Watch watch = guards_[k]; watch.stop != Side::none) {
+    settle(k, y);
+    jumped = joints_.strikes(watch.joint, q, qd) && strike(t, y);
+    const bool is_doubtful = changes_at_once_ > many_at_once;
+    if (!jumped) joints_.choose(equations_, t, q, qd, is_doubtful ? watch.joint : -1);
+  } else if (holding_torque(scene_.effects[watch.effect])) {
+    const bool is_doubtful = changes_at_once_ > many_at_once;
+    const double rate = qd[watch.joint];
+    settle(k, y);
+    joints_.choose(equations_, t, q, qd, is_doubtful ? watch.joint : -1);
+    // What goes on in the other direction may have begun to do so in a step too short to be cut.
+    if (!joints_.is_held(watch.joint)) y[n_ + watch.joint] = rate;
   } else {
     std::visit(
         [&](const auto& one) {
           if constexpr (requires { one.has_modes(); }) {
-            mode = one.next_mode(equations_.effects->modes[watch.effect], watch.number);
+            put_mode(watch.effect,
+                     one.next_mode(equations_.effects->modes[watch.effect], watch.number));
           }
         },
-        effect);
+        scene_.effects[watch.effect]);
   }
-  put_mode(watch.effect, mode);
-  collect_guards();
-  return Status::finished;
+  collect_guards(y);
+  return jumped;
 }
 
-int Switching::sliding_mode(std::size_t i, double t, const double* q, const double* qd) {
-  const int before = equations_.effects->modes[i];
-  const int joint = joint_of(i);
-  std::vector<double> qdd(n_);
-  for (const int mode : {-before, before}) {
-    put_mode(i, mode);
-    accelerations_in_force(equations_, t, q, qd, qdd.data());
-    if (mode * relative(qdd.data(), joint) > 0.0) return mode;
+void Switching::cross_time(double t) {
+  for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
+    std::visit(
+        [&](const auto& one) {
+          if constexpr (requires { one.next_time(t, true); }) {
+            if (!one.has_modes() || one.guards(equations_.effects->modes[i]).size() > 0) return;
+            const bool ended = has_ended(one, t, forward_);
+            put_mode(i, ended ? -1 : one.mode_at(t, 0.0, 0.0, forward_));
+            is_over_ |= ended;
+          }
+        },
+        scene_.effects[i]);
   }
-  put_mode(i, before);
-  remark_ = "joint " + std::to_string(joint);
-  return 0;
+}
+
+/// An impact, and what the joints do after it.
+bool Switching::strike(double t, double* y) {
+  double* const qd = y + n_;
+  const std::vector<double> before(qd, qd + n_);
+  Impact impact = joints_.strike(equations_, t, y, qd, changes_at_once_ > many_at_once);
+  joints_.choose(equations_, t, y, qd);
+  if (bounces_too_fast(t, y, qd)) {
+    std::ranges::copy(before, qd);
+    impact = joints_.strike(equations_, t, y, qd, true);
+    joints_.choose(equations_, t, y, qd);
+  }
+  book(Account::impact, impact.loss, y);
+  book(Account::drive, impact.work_of_drive, y);
+  return true;
+}
+
+/// Whether a joint that leaves a stop is back before time can resolve it.
+bool Switching::bounces_too_fast(double t, const double* q, const double* qd) {
+  std::vector<double> qdd(n_);
+  accelerations_in_force(equations_, t, q, qd, qdd.data());
+  const double shortest = 32.0 * std::numeric_limits<double>::epsilon() * std::abs(t);
+  for (int j = 0; j < n_; ++j) {
+    const auto side = static_cast<double>(joints_.contact(j, q));
+    const double away = -side * relative(qd, j + 1);
+    const double back = side * relative(qdd.data(), j + 1);
+    if (away > 0.0 && back > 0.0 && 2.0 * away < shortest * back) return true;
+  }
+  return false;
+}
+
+void Switching::book(Account account, double value, double* y) const {
+  const auto found = std::ranges::find(accounts_, account);
+  if (found != accounts_.end()) y[2 * n_ + (found - accounts_.begin())] += value;
 }
 
 /// Whether what holds now holds for ever.
@@ -244,45 +324,41 @@ bool Switching::is_for_good() const {
   });
 }
 
-Status Switching::hold_every_joint() {
-  const bool for_good = is_for_good();
-  remark_ = for_good ? "dry friction holds every joint"
-                     : "dry friction holds every joint, until what depends on time moves one";
-  return for_good ? Status::at_rest : Status::stuck;
+void Switching::see_whether_all_rests(const double* y) {
+  rests_ = joints_.any_held_for_now() && is_for_good();
+  for (int j = 0; j < n_; ++j) rests_ = rests_ && joints_.is_held(j) && y[n_ + j] == 0.0;
+  if (!rests_) return;
+  bool any_stop = false;
+  for (int j = 0; j < n_; ++j) any_stop |= joints_.contact(j, y) != Side::none;
+  remark_ = any_stop ? "friction and stops hold every joint" : "dry friction holds every joint";
 }
 
-/// Nothing moves, and every joint can carry the torque that holds what is beyond it.
-bool Switching::rests(double t, const double* q, const double* qd) {
-  for (int i = 0; i < n_; ++i) {
-    if (qd[i] != 0.0) return false;
+std::vector<double> Switching::memory() const {
+  const std::vector<int>& modes = equations_.effects->modes;
+  std::vector<double> memory(modes.begin(), modes.end());
+  const std::vector<double> holds = joints_.memory();
+  memory.insert(memory.end(), holds.begin(), holds.end());
+  for (const Watch& watch : guards_) memory.push_back(watch.begins_at_zero ? 1.0 : 0.0);
+  return memory;
+}
+
+void Switching::restore(const std::vector<double>& memory, double t, const double* y,
+                        bool forward) {
+  forward_ = forward;
+  const std::size_t effects = scene_.effects.size();
+  if (memory.size() < effects) {
+    throw std::invalid_argument("the modes of this solution are not those of its scene");
   }
-  std::vector<double> holds(n_, 0.0);
-  const std::vector<int> before = equations_.effects->modes;
-  bool any_friction = false;
-  for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
-    if (const auto torque = holding_torque(scene_.effects[i])) {
-      any_friction = true;
-      holds[joint_of(i) - 1] += *torque;
-      put_mode(i, 0);
-    }
+  for (std::size_t i = 0; i < effects; ++i) put_mode(i, static_cast<int>(memory[i]));
+  is_over_ = std::ranges::any_of(scene_.effects, [&](const Effect& effect) {
+    return std::visit([&](const auto& one) { return has_ended(one, t, forward_); }, effect);
+  });
+  std::size_t from = joints_.restore(*equations_.effects, memory, effects);
+  collect_guards(y);
+  if (memory.size() != from + guards_.size()) {
+    throw std::invalid_argument("the modes of this solution are not those of its scene");
   }
-  for (int j = 0; j < n_; ++j) {
-    if (is_locked(j + 1)) holds[j] = never;
-  }
-  std::vector<double> qdd(n_);
-  if (any_friction) accelerations_in_force(equations_, t, q, qd, qdd.data());
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    if (holding_torque(scene_.effects[i])) put_mode(i, before[i]);
-  }
-  if (!any_friction) return false;
-  std::vector<double> matrix(static_cast<std::size_t>(n_) * n_);
-  mass_matrix(Inertia(scene_), {q, static_cast<std::size_t>(n_)}, matrix);
-  double torque = 0.0;
-  for (int i = n_ - 1; i >= 0; --i) {
-    for (int j = 0; j < n_; ++j) torque += matrix[static_cast<std::size_t>(i) * n_ + j] * qdd[j];
-    if (!(std::abs(torque) <= holds[i])) return false;
-  }
-  return true;
+  for (Watch& watch : guards_) watch.begins_at_zero = memory[from++] != 0.0;
 }
 
 }  // namespace pendcore

@@ -78,6 +78,16 @@ def in_unit(unit: str) -> str:
 
 def finite_array(name: str, value: npt.ArrayLike, unit: str) -> Floats:
     """Return finite real numbers of any shape as an array of floats."""
+    array = real_array(name, value, unit)
+    if not np.isfinite(array).all():
+        where = np.argwhere(~np.isfinite(array))[0]
+        place = "".join(f"[{i}]" for i in where)
+        raise ValueError(f"{name}{place} = {array[tuple(where)]}: must be finite{in_unit(unit)}")
+    return array
+
+
+def real_array(name: str, value: npt.ArrayLike, unit: str) -> Floats:
+    """Return real numbers of any shape, infinite ones too, as an array of floats."""
     try:
         array = np.asarray(value)
     except ValueError:
@@ -91,17 +101,14 @@ def finite_array(name: str, value: npt.ArrayLike, unit: str) -> Floats:
             raise _too_large(name, unit) from None
     if array.dtype.kind not in "iuf":
         raise TypeError(f"{name}: holds {array.dtype}: must hold real numbers{in_unit(unit)}")
-    array = array.astype(np.float64, copy=False)
-    if not np.isfinite(array).all():
-        where = np.argwhere(~np.isfinite(array))[0]
-        place = "".join(f"[{i}]" for i in where)
-        raise ValueError(f"{name}{place} = {array[tuple(where)]}: must be finite{in_unit(unit)}")
-    return array
+    return array.astype(np.float64, copy=False)
 
 
-def numbers(name: str, value: Any, unit: str, count: int | None = None) -> tuple[float, ...]:
-    """Return finite numbers along one axis, as many as they are or ``count``."""
-    array = finite_array(name, value, unit)
+def numbers(
+    name: str, value: Any, unit: str, count: int | None = None, finite: bool = True
+) -> tuple[float, ...]:
+    """Return numbers along one axis, as many as they are or ``count``."""
+    array = finite_array(name, value, unit) if finite else real_array(name, value, unit)
     if array.ndim != 1 or count not in (None, len(array)):
         wanted = "(k,)" if count is None else f"({count},)"
         raise ValueError(f"{name}: shape {array.shape}: must be {wanted}{in_unit(unit)}")

@@ -232,7 +232,7 @@ def _plain(name: str, parameter: Parameter, value: Any) -> Any:
         "int": whole_number,
         "float": partial(number, unit=unit),
         "optional float": partial(number, unit=unit),
-        "pair": partial(numbers, unit=unit, count=2),
+        "pair": partial(numbers, unit=unit, count=2, finite="inf" not in parameter.range),
         "floats": partial(numbers, unit=unit),
         "address": partial(_address, of_function=parameter.required),
         "function": lambda _, function: function,

@@ -91,11 +91,13 @@ class Description(NamedTuple):
 
 
 CAVEATS = {
-    "dry": "Friction slides, and does not stick yet. Where it brings all to rest for good, a run "
-    'ends with status "at_rest"; where a joint sticks while others move, or while something '
-    'depends on time, with status "stuck".'
+    "dry": "A joint that friction brings to rest sticks: its rate is 0.0, exactly, until the "
+    "torque that holds it exceeds `static`. A run in which nothing can move any more has the "
+    'status "at_rest".',
+    "impact": "A joint at rest at a stop is held there until what holds it would have to pull. "
+    'A run in which nothing can move any more has the status "at_rest".',
 }
-"""What those laws lack whose work the ledger books so."""
+"""What is to be known of laws whose work the ledger books so."""
 
 USER = Description(
     name="User",

@@ -293,6 +293,35 @@ class Lock(Effect):
     @property
     def angle(self) -> float | None: ...
 
+class JointStop(Effect):
+    """Stops at the ends of the range of a joint, with restitution."""
+
+    kind: ClassVar[Literal["joint_stop"]]
+    __match_args__: Final = ("joint", "range", "restitution", "capture_speed")
+    def __init__(
+        self,
+        joint: int,
+        range: npt.ArrayLike,
+        restitution: float = ...,
+        capture_speed: float | None = ...,
+    ) -> None: ...
+    def replace(  # type: ignore[override]
+        self,
+        *,
+        joint: int = ...,
+        range: npt.ArrayLike = ...,
+        restitution: float = ...,
+        capture_speed: float | None = ...,
+    ) -> JointStop: ...
+    @property
+    def joint(self) -> int: ...
+    @property
+    def range(self) -> tuple[float, float]: ...
+    @property
+    def restitution(self) -> float: ...
+    @property
+    def capture_speed(self) -> float | None: ...
+
 class DrivenPivot(Effect):
     """A pivot that is moved: a sinusoid for each axis, or a spline."""
 

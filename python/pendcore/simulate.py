@@ -54,8 +54,7 @@ def simulate(
         ``y = (q, qd)``.
     t_eval : array_like, (k,), optional
         Times of the result, s, one or more, within the run and in its order. They do not change
-        the steps. Those that a run does not reach, such as those after it came to rest, are not
-        in the result.
+        the steps. Those that a run does not reach are not in the result.
     store : {"dense", "steps", "times", "end"}, optional
         What is kept: every step with its interpolant, every step, ``t_eval`` alone, the end alone;
         the last two in constant memory. Default: ``"times"`` with a ``t_eval``, else ``"dense"``.
@@ -80,8 +79,8 @@ def simulate(
     -------
     Solution
         What happened, also if the run could not be finished: see its ``status`` and ``message``.
-        A run ends before ``t_end`` where dry friction brings all to rest for good, with status
-        ``at_rest`` and success: the message says when, and all stays as it is from there on.
+        Where friction and stops bring all to rest for good, its status is ``at_rest``, a success:
+        the message says since when, and the last step goes from there to ``t_end``.
 
     Raises
     ------

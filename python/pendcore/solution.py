@@ -123,18 +123,11 @@ class Solution:
         Raises
         ------
         ValueError
-            If a time lies outside the run, or the run did not store its interpolants. A run that
-        came to rest ends there, and the message says so.
+            If a time lies outside the run, or the run did not store its interpolants.
         """
         times = finite_array("t", t, "s")
         if times.ndim > 1:
             raise ValueError(f"t: shape {times.shape}: must be a number or (k,) (s)")
-        rest = self._run.t_reached
-        if self.status == "at_rest" and self.store == "dense" and times.max(initial=rest) > rest:
-            raise ValueError(
-                f"t = {times.max()}: the run came to rest at t = {rest} s, and all stays as it is "
-                f"from there on: ask for the state at t = {rest}"
-            )
         states = self._run.evaluate(times.reshape(-1)).T
         return states[:, 0] if times.ndim == 0 else states
 

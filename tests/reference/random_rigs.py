@@ -142,6 +142,7 @@ def parameters(kind: str, joint: int) -> st.SearchStrategy[dict[str, Any]]:
         ),
         "rotor_inertia": fixed({**at, "armature": between(0, 2)}),
         "payload": fixed({"mass": between(0, 5)}, optional={"inertia": between(0, 1)}),
+        "joint_stop": fixed({**at, "range": st.tuples(between(-99, -50), between(50, 99))}),
         "lock": fixed(at, optional={"angle": between(-3, 3)}),
         "driven_pivot": fixed({"x": small_sinusoids, "y": small_sinusoids})
         | fixed({"x": small_sinusoids})

@@ -2,11 +2,14 @@
 /// The modes of a scene's effects along a run: when they change, and to what.
 ///
 /// Where dynamics and integration meet: the loop sees a Breaks (integrate/breaks.hpp), the laws see
-/// the mode that they are frozen to (effects/law.hpp). A locked joint is part of it: its angle and
-/// rate are set at the end of each step, so that no rounding lets them wander.
+/// the mode that they are frozen to (effects/law.hpp), and joints that are held are eliminated from
+/// the equations (dynamics/held_joints.hpp); their angles are set anew at the end of each step, so
+/// that no rounding lets them wander.
 ///
-/// Dry friction: where the rate of a joint reaches zero, the joint goes on in the other direction
-/// if friction of that sign leaves it an acceleration that way; otherwise it sticks.
+/// * The rate of a joint with dry friction reaches zero: it sticks, or goes on in the other
+///   direction, as all joints at rest decide together.
+/// * A joint reaches a stop: an impact, after which it bounces or stays.
+/// * The torque that holds a joint leaves its range: the joint is let go.
 #pragma once
 
 #include <cmath>
@@ -19,57 +22,84 @@ namespace pendcore {
 
 class Switching final : public Breaks {
  public:
-  Switching(const Scene& scene, const EquationsOfMotion& equations);
+  /// `accounts` are those of a ledger that the state has beside angles and rates, if it is kept.
+  Switching(const Scene& scene, const EquationsOfMotion& equations,
+            const std::vector<Account>& accounts);
 
   /// Whether the scene has anything for it to do.
   static bool is_needed(const Scene& scene);
 
-  Status begin(double t, double* y, bool forward) override;
+  bool begin(double t, double* y, bool forward) override;
   double next_time(double t) const override;
-  int guards() const override { return static_cast<int>(guards_.size()); }
-  double guard(int k, const double* y) const override;
+  double longest_step() const override;
+  int guards() const override { return linear_guards() + static_cast<int>(held_guards_.size()); }
+  int linear_guards() const override { return static_cast<int>(guards_.size()); }
+  bool begins_at_zero(int k) const override;
   void polynomial(int k, const double* rows, int degree, int dimension,
                   double* coefficients) const override;
-  bool settles_every_step() const override { return has_locks_; }
+  double guard(int k, const double* y) const override;
+  void other_guards(double t, const double* y, double* values) override;
+  bool settles_every_step() const override { return any_held_; }
   bool settle(int k, double* y) const override;
-  Status cross(int k, double t, const double* y) override;
+  void step_taken() override;
+  bool cross(int k, double t, double* y) override;
+  bool is_over() const override { return is_over_; }
+  bool rests() const override { return rests_; }
   std::vector<double> memory() const override;
 
   /// In place of begin() for a run that goes on.
-  void restore(const std::vector<double>& memory, bool forward);
+  void restore(const std::vector<double>& memory, double t, const double* y, bool forward);
 
-  /// What a run says that ended at rest or stuck; empty if nothing.
+  /// What a run says that ended at rest; empty if nothing.
   const std::string& remark() const { return remark_; }
 
  private:
+  /// What a guard is on: a mode of an effect, or a stop.
   struct Watch {
     std::size_t effect;
     std::size_t number;  ///< among the guards of the effect's mode
-    int joint;           ///< from 1
+    int joint;           ///< from 0
     Guard guard;
+    Side stop;
+    bool begins_at_zero;
+  };
+  /// The torque that holds a joint, on the side where its range ends.
+  struct HeldGuard {
+    int joint;
+    bool is_most;
   };
   void put_mode(std::size_t i, int mode) { equations_.effects->put_mode(i, mode); }
   /// The modes that hold from time t on: those of the state, and none where a table has ended.
   void choose_modes_from(double t, const double* q, const double* qd);
-  void collect_guards();
-  void set_locks(const double* start);
-  bool is_locked(int joint) const { return !std::isnan(lock_angle_[joint - 1]); }
-  int joint_of(std::size_t effect) const;
-  /// The mode of dry friction number i where its joint has no rate: 1, -1, or 0 where it sticks.
-  int sliding_mode(std::size_t i, double t, const double* q, const double* qd);
-  bool rests(double t, const double* q, const double* qd);
+  void cross_time(double t);
+  bool strike(double t, double* y);
+  bool bounces_too_fast(double t, const double* q, const double* qd);
+  void count_at_once(double t);
+  /// After modes and holds have changed.
+  void collect_guards(const double* y);
+  void collect_stops(const double* y);
+  void see_whether_all_rests(const double* y);
+  void set_longest_step();
   bool is_for_good() const;
-  Status hold_every_joint();
+  void book(Account account, double value, double* y) const;
 
   Scene scene_;
   EquationsOfMotion equations_;
+  std::vector<Account> accounts_;
   int n_;
+  HeldJoints& joints_;
   bool forward_ = true;
-  bool has_locks_ = false;
+  bool any_held_ = false;
+  bool is_over_ = false;  ///< a table or a spline has ended
+  bool rests_ = false;
+  double longest_step_ = never;
   mutable double next_time_ = 0.0;  ///< after the time asked for last
   mutable double asked_ = std::numeric_limits<double>::quiet_NaN();
   std::vector<Watch> guards_;
-  std::vector<double> lock_angle_;  ///< of each joint; NaN where there is no lock
+  std::vector<HeldGuard> held_guards_;
+  std::vector<double> torque_;  ///< that holds the joints
+  double time_of_change_ = std::numeric_limits<double>::quiet_NaN();
+  int changes_at_once_ = 0;
   std::string remark_;
 };
 

@@ -9,7 +9,6 @@ from pendcore.effect_class import KINDS, OwnEffect
 from pendcore.scene import Scene
 
 UNKNOWN = {
-    "joint_stop": "Stops in the joints, and impacts of any kind.",
     "bending": "Bending of the links: they are rigid.",
     "play": "Play in the joints: they are perfect hinges.",
     "third_dimension": "Motion out of the plane.",
@@ -35,23 +34,12 @@ class Absence(NamedTuple):
     available: bool
 
 
-STICKING = Absence(
-    "sticking",
-    "Sticking: a joint that dry friction holds while others move. Friction slides; a run ends "
-    "where a joint sticks.",
-    False,
-)
-"""What dry friction lacks."""
-
-
 def absent(scene: Scene) -> Iterator[Absence]:
     """Tell what a scene does not simulate."""
     present = {effect.kind for effect in scene.effects}
     for kind, cls in KINDS.items():
         if kind not in present and not issubclass(cls, OwnEffect):
             yield Absence(kind, cls.description.sentence, True)
-    if any(effect.description.account == "dry" for effect in scene.effects):
-        yield STICKING
     for word, sentence in UNKNOWN.items():
         if word not in KINDS:
             yield Absence(word, sentence, False)

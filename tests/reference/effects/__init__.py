@@ -7,6 +7,7 @@ from typing import Any
 from reference.effects.compiled_user import CompiledUser
 from reference.effects.driven_pivot import DrivenPivot
 from reference.effects.dry_joint_friction import DryJointFriction
+from reference.effects.joint_stop import JointStop
 from reference.effects.law import Law
 from reference.effects.lock import Lock
 from reference.effects.motor import Motor
@@ -21,6 +22,7 @@ LAWS: dict[str, type[Law]] = {
     "compiled_user": CompiledUser,
     "driven_pivot": DrivenPivot,
     "dry_joint_friction": DryJointFriction,
+    "joint_stop": JointStop,
     "lock": Lock,
     "motor": Motor,
     "payload": Payload,

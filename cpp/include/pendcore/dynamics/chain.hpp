@@ -18,8 +18,9 @@
 /// then turned into the frame of link i - 1. At the tip B = m_p. From the base to the tip,
 /// a_0 = (xdd_0, ydd_0 - g) and a_i = a_{i-1} + L (qdd n - qd^2 u).
 ///
-/// A rotor or a joint that is held couples the turning of two links: then torque and angular acceleration join
-/// force and acceleration (the terms beta, kappa and t), with J the rotor's inertia and r and s
+/// A rotor or a joint that is held couples the turning of two links: then torque and angular
+/// acceleration join force and acceleration (the terms beta, kappa and t), with J the rotor's
+/// inertia and r and s
 ///
 ///     r = 1/(D + J), s = J r          held: r = 0, s = 1
 ///     qdd_i = r (Q - L p_n - t - w . a) + s qdd_{i-1}

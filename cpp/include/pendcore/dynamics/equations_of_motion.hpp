@@ -10,6 +10,7 @@
 
 #include "pendcore/dynamics/chain.hpp"
 #include "pendcore/dynamics/double_pendulum_with_effects.hpp"
+#include "pendcore/dynamics/held_joints.hpp"
 #include "pendcore/dynamics/single_pendulum.hpp"
 #include "pendcore/dynamics/single_pendulum_with_effects.hpp"
 
@@ -21,15 +22,17 @@ struct EquationsOfMotion {
                DoublePendulumWithEffects<Parts::laws>, DoublePendulumWithEffects<Parts::everything>,
                std::shared_ptr<Chain>>
       form;
-  std::shared_ptr<EffectsInForce> effects;  ///< none for a bare form
+  std::shared_ptr<EffectsInForce> effects = nullptr;  ///< none for a bare form
+  std::shared_ptr<HeldJoints> held_joints = nullptr;  ///< likewise
 };
 
 /// Of a scene that check() passed.
 EquationsOfMotion equations_of_motion(const Scene& scene);
 
 /// qdd (rad/s^2) from the time (s), angles (rad) and rates (rad/s), (n) each; the same bits as in
-/// a run. Effects are in the modes that the state calls for; a joint at rest under dry friction is
-/// taken as one that slides. Cost: a right-hand side. Throws what a user's function throws.
+/// a run. Effects are in the modes that the state calls for, and joints at rest are held where
+/// friction and stops can hold them. Cost: a right-hand side, and where the scene has friction or
+/// stops a decision of HeldJoints. Throws what a user's function throws.
 /// Equations with effects serve one thread at a time, and so do their copies: they share modes and
 /// room for the computation.
 void accelerations(const EquationsOfMotion& equations, double t, const double* q, const double* qd,

@@ -27,8 +27,8 @@
 ///     warnings()                    what is possible but hardly meant, a sentence each
 ///
 /// registry.hpp has the list of all effects, a line each. Nothing else names an effect that is a
-/// law; those that change the mass matrix, the joints or the pivot (payload, rotor, lock, driven
-/// pivot) are part of the equations of motion, which do.
+/// law; those that change the mass matrix, the joints or the pivot (payload, rotor, lock, stop,
+/// driven pivot) are part of the equations of motion, which do.
 /// From `info` and `parameters` come the Python class, the TOML keys, the repr, the checks and
 /// their messages, the page of documentation, and the tests.
 #pragma once
@@ -51,6 +51,7 @@ enum class Account {
   viscous,  ///< loss
   dry,      ///< loss
   drag,     ///< loss; what the wind adds is booked as `wind`
+  impact,   ///< loss
   motor,    ///< work
   drive,    ///< work, of the moving pivot
   wind,     ///< work of moving air
@@ -58,7 +59,7 @@ enum class Account {
 };
 
 inline constexpr auto account_names = std::to_array<std::string_view>(
-    {"none", "viscous", "dry", "drag", "motor", "drive", "wind", "user"});
+    {"none", "viscous", "dry", "drag", "impact", "motor", "drive", "wind", "user"});
 
 constexpr std::string_view account_name(Account account) {
   return account_names[static_cast<std::size_t>(account)];
@@ -66,7 +67,8 @@ constexpr std::string_view account_name(Account account) {
 
 /// Whether what is booked is lost; otherwise it is work done on the chain.
 constexpr bool is_loss(Account account) {
-  return account == Account::viscous || account == Account::dry || account == Account::drag;
+  return account == Account::viscous || account == Account::dry || account == Account::drag ||
+         account == Account::impact;
 }
 
 struct EffectInfo {
@@ -79,7 +81,7 @@ struct EffectInfo {
 };
 
 /// Allowed values of a number.
-enum class Range { any, not_negative, positive, at_least_one, positive_or_infinite };
+enum class Range { any, not_negative, positive, at_least_one, positive_or_infinite, share, number };
 
 constexpr std::string_view text(Range range) {
   switch (range) {
@@ -88,6 +90,8 @@ constexpr std::string_view text(Range range) {
     case Range::positive: return "finite and > 0";
     case Range::at_least_one: return "finite and >= 1";
     case Range::positive_or_infinite: return "> 0, inf for no limit";
+    case Range::share: return "0 to 1";
+    case Range::number: return "a number, -inf or inf for none";
   }
   return "";
 }
@@ -99,6 +103,8 @@ inline bool holds(Range range, double x) {
     case Range::positive: return std::isfinite(x) && x > 0;
     case Range::at_least_one: return std::isfinite(x) && x >= 1;
     case Range::positive_or_infinite: return x > 0;
+    case Range::share: return x >= 0 && x <= 1;
+    case Range::number: return !std::isnan(x);
   }
   return false;
 }

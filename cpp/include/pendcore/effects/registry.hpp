@@ -6,6 +6,7 @@
 
 #include "pendcore/effects/driven_pivot.hpp"
 #include "pendcore/effects/dry_joint_friction.hpp"
+#include "pendcore/effects/joint_stop.hpp"
 #include "pendcore/effects/lock.hpp"
 #include "pendcore/effects/motor.hpp"
 #include "pendcore/effects/payload.hpp"
@@ -26,6 +27,7 @@ using Effect = std::variant<  //
     RotorInertia,             //
     Payload,                  //
     Lock,                     //
+    JointStop,                //
     DrivenPivot,              //
     CompiledUser>;
 

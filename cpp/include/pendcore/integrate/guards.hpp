@@ -1,5 +1,8 @@
 /// \file
 /// Where along an attempted step the law changes: the guards of Breaks, on the dense output.
+///
+/// A guard that is linear in the state is a polynomial there. Any other is taken at nine points of
+/// the step (Chebyshev's) and interpolated; where it is zero is then found from its own values.
 #pragma once
 
 #include "pendcore/integrate/breaks.hpp"
@@ -15,22 +18,26 @@ struct Crossing {
 
 class Guards {
  public:
-  Guards(const Stepper& stepper, const Breaks& breaks);
+  Guards(const Stepper& stepper, Breaks& breaks);
 
-  /// In the attempted step of size h.
-  Crossing first(double h);
+  /// In the attempted step of size h from time t.
+  Crossing first(double t, double h);
 
   /// By how much the step's end misses the zero of guard k, in units of the step.
-  double miss(int k, double h);
+  double miss(int k, double t, double h);
 
  private:
+  void linear(int k);
+  void interpolate_others(double t, double h);
+
   const Stepper& stepper_;
-  const Breaks& breaks_;
+  Breaks& breaks_;
   int dimension_;
   int degree_;
   std::vector<double> rows_;  ///< the dense output of the step
   std::vector<double> state_;
   std::vector<double> polynomial_;  ///< of a guard, in theta
+  std::vector<double> samples_;     ///< (points, others), and then the same as polynomials
 };
 
 }  // namespace pendcore

@@ -25,6 +25,7 @@ struct Position {
   TwoDouble t;
   double h = 0.0;  ///< s, the step to try next; its sign is the direction
   bool h_is_max_step = false;
+  bool trial_was_finite = true;  ///< of the last step that was tried
   StepControl control;
   int stiff_hits = 0;    ///< of Hairer's test for stiffness since it last forgot
   int stiff_misses = 0;  ///< since the last hit

@@ -17,7 +17,6 @@ enum class Status {
   time_limit,
   interrupted,
   callback_error,
-  stuck,
 };
 
 struct StatusText {
@@ -26,10 +25,10 @@ struct StatusText {
   std::string_view sentence;  ///< what happened, and what can be done about it
 };
 
-inline constexpr std::array<StatusText, 10> status_texts = {{
+inline constexpr std::array<StatusText, 9> status_texts = {{
     {"finished", true, "reached the end of the interval"},
     {"event", true, "stopped at a terminal event"},
-    {"at_rest", true, "came to rest for good before the end of the interval"},
+    {"at_rest", true, "came to rest for good, and stayed as it is to the end of the interval"},
     {"max_steps", false,
      "the cap on steps was reached: raise max_steps, shorten the interval or loosen rtol and atol"},
     {"step_too_small", false,
@@ -43,8 +42,6 @@ inline constexpr std::array<StatusText, 10> status_texts = {{
     {"time_limit", false, "the time limit was reached: raise time_limit, or resume the solution"},
     {"interrupted", false, "interrupted: what was computed so far is kept and can be resumed"},
     {"callback_error", false, "a function of the user's raised an exception"},
-    {"stuck", false,
-     "dry friction holds a joint from here on while the motion goes on: sticking is not simulated"},
 }};
 
 constexpr const StatusText& text(Status status) {

@@ -1,0 +1,43 @@
+/// \file
+/// Forces that hold only so far: of what the joints at rest could do, what they do.
+///
+///     w = a + W lambda,   lower <= lambda <= upper
+///     w_i = 0 where lambda_i is between its bounds, w_i >= 0 at the lower, w_i <= 0 at the upper
+///
+/// With W positive definite there is one answer, the least of 1/2 lambda.W lambda + a.lambda
+/// between the bounds. With a and w accelerations of joints and lambda the torques of friction and
+/// stops it says which joints stay at rest; with rates and impulses, how an impact ends.
+/// Source: Judice and Pires, Computers & Operations Research 21 (1994) 587: all that is wrong is
+/// changed at once, and one at a time (Murty 1974) where that leads in circles.
+#pragma once
+
+#include <vector>
+
+namespace pendcore {
+
+enum class Bound : signed char { lower = -1, between = 0, upper = 1 };
+
+struct ForcesBetweenBounds {
+  int size = 0;
+  std::vector<double> W;  ///< (size, size), symmetric, positive definite
+  std::vector<double> a, lower, upper;
+  std::vector<double> lambda, w;  ///< the answer
+  std::vector<Bound> at;          ///< and where each force is
+
+  void resize(int count);
+  void solve();
+
+ private:
+  void solve_between();
+  int wrong(int i) const;
+  std::vector<double> factor_;
+  std::vector<int> free_;
+};
+
+/// A = L L^T, in place of the lower half of A, (n, n) row-major; in one order of operations.
+void factor_cholesky(int n, double* a);
+/// x becomes L^-1 x, and L^-T x.
+void solve_lower(int n, const double* factor, double* x);
+void solve_upper(int n, const double* factor, double* x);
+
+}  // namespace pendcore

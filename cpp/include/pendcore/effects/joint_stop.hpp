@@ -1,0 +1,60 @@
+/// \file
+/// A stop at either end of the range of a joint:
+///
+///     lo <= phi <= hi;   at an impact phid+ = -e phid-, by an impulse in the joint
+///
+/// Slower than the capture speed the joint stays at the stop (e = 0) and is held there until the
+/// torque that holds it would pull. Loss at an impact of one stop: (1 - e^2) phid^2 over twice
+/// J M^-1 J^T; several at once: complementarity.hpp. Source: Brogliato, Nonsmooth Mechanics (2016),
+/// section 4.1 (Newton's law of restitution) and 5.2 (several contacts).
+#pragma once
+
+#include "pendcore/effects/effect.hpp"
+#include "pendcore/effects/law.hpp"
+
+namespace pendcore {
+
+struct JointStop {
+  int joint = 0;
+  std::array<double, 2> range = {-never, never};
+  double restitution = 0.0;
+  std::optional<double> capture_speed = {};
+
+  static constexpr EffectInfo info{
+      .name = "JointStop",
+      .kind = "joint_stop",
+      .sentence = "Stops at the ends of the range of a joint, with restitution.",
+      .law = "lo <= phi <= hi;  phid+ = -e phid- at an impact, 0 below the capture speed",
+      .source = "Brogliato, Nonsmooth Mechanics (2016), sections 4.1 and 5.2",
+      .account = Account::impact};
+  static constexpr auto parameters = std::tuple{
+      parameter(&JointStop::joint, joint_number),
+      parameter(&JointStop::range, {.name = "range",
+                                    .symbol = "(lo, hi)",
+                                    .unit = "rad",
+                                    .sentence = "angles of the joint where the stops are; -inf or "
+                                                "inf where there is none",
+                                    .range = Range::number,
+                                    .required = true}),
+      parameter(&JointStop::restitution,
+                {.name = "restitution",
+                 .symbol = "e",
+                 .unit = "1",
+                 .sentence = "share of the speed that an impact leaves",
+                 .range = Range::share}),
+      parameter(&JointStop::capture_speed,
+                {.name = "capture_speed",
+                 .symbol = "w_c",
+                 .unit = "rad/s",
+                 .sentence = "slower impacts do not bounce; left out: 1e-9 of the natural speed "
+                             "sqrt(torque / inertia) of the joint",
+                 .range = Range::not_negative}),
+  };
+  void check(const std::string& where) const {
+    if (range[0] < range[1] && (range[0] > -never || range[1] < never)) return;
+    throw std::invalid_argument(where + "range = (" + text(range[0]) + ", " + text(range[1]) +
+                                "): must be (lo, hi) with lo < hi, one of them finite (rad)");
+  }
+};
+
+}  // namespace pendcore
