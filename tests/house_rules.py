@@ -33,7 +33,13 @@ CPP_FLOW = {
 # The files that stand in no folder and where the two branches, dynamics and integrate, meet.
 CPP_FILES = dict.fromkeys(
     [
-        "event_finder", "options", "pendcore", "recorder", "simulate", "steppers", "switching",
+        "event_finder",
+        "options",
+        "pendcore",
+        "recorder",
+        "simulate",
+        "steppers",
+        "switching",
         "tip_line",
     ],
     "solution",

@@ -32,7 +32,7 @@ double largest_acceleration(const Scene& scene) {
 
 /// A bound on |p^(order)| over [0, 1] of link i's angle p.
 double bound(const double* rows, int degree, int dimension, int i, int order) {
-  double derivative[highest_degree + 1];
+  double derivative[highest_degree + 1] = {};
   double bernstein[highest_degree + 1];
   if (degree < order) return 0.0;
   for (int k = order; k <= degree; ++k) {

@@ -62,9 +62,7 @@ class Run:
     @property
     def found(
         self,
-    ) -> list[
-        tuple[int, float, int, npt.NDArray[np.float64], npt.NDArray[np.float64] | None]
-    ]: ...
+    ) -> list[tuple[int, float, int, npt.NDArray[np.float64], npt.NDArray[np.float64] | None]]: ...
     @property
     def t_reached(self) -> float: ...
     @property

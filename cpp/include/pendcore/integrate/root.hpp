@@ -1,5 +1,5 @@
 /// \file
-/// THE ROOT LOCATOR: where a function first turns negative in 0 < theta <= 1, or all its zeros there.
+/// THE ROOT LOCATOR: where a function first turns negative in 0 < theta <= 1, or all zeros there.
 ///
 /// A polynomial is isolated in Bernstein's form: with coefficients b_i on an interval, no sign
 /// change among them means no root, one means one root; halving the interval separates the rest, so
@@ -33,7 +33,7 @@ inline constexpr int highest_degree = 31;  ///< of a polynomial whose zeros are 
 /// least and the largest of them.
 void bernstein_form(const double* coefficients, int degree, double* bernstein);
 
-/// A zero in 0 < theta <= 1. Direction 1: rises through it; -1: falls; 0: touches it and turns back.
+/// A zero in 0 < theta <= 1. Direction 1: rises through it; -1: falls; 0: touches and turns back.
 struct Root {
   double theta;
   int direction;
