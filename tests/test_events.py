@@ -67,9 +67,7 @@ CLOCKS = {
 @pytest.mark.parametrize("zero", CLOCKS)
 @pytest.mark.parametrize("direction", [-1, 0, 1])
 @pytest.mark.parametrize("forward", [True, False])
-def test_a_zero_that_lies_just_there(
-    method: str, zero: str, direction: int, forward: bool
-) -> None:
+def test_a_zero_that_lies_just_there(method: str, zero: str, direction: int, forward: bool) -> None:
     """Zeros at t0 are none; at the end of a step, or of the run, they are, once, at that time."""
     sense = 1 if forward else -1
     at, found = CLOCKS[zero]
@@ -109,9 +107,7 @@ def test_a_rod_swings_with_the_period_of_elliptic_integrals() -> None:
     theta_0 = 2.5
     scene = pc.Scene(links=[pc.Link(mass=1.7, length=0.6)], gravity=9.81)
     wanted = [ev.LinkAngle(1, np.pi / 2), ev.RateZero(link=1), ev.TipLine((0.0, 0.0), (1.0, 0.0))]
-    sol = pc.simulate(
-        scene, np.pi / 2 - theta_0, 0, (0, 10), rtol=1e-13, atol=1e-15, events=wanted
-    )
+    sol = pc.simulate(scene, np.pi / 2 - theta_0, 0, (0, 10), rtol=1e-13, atol=1e-15, events=wanted)
     modulus = mpmath.sin(mpmath.mpf(theta_0) / 2)
     period = float(4 * mpmath.ellipk(modulus**2) * mpmath.sqrt(mpmath.mpf(2 * 0.6) / (3 * 9.81)))
     through, turns, line = (np.array(times(found)) for found in sol.events)
@@ -191,9 +187,7 @@ def test_simultaneous_events_are_all_found_and_the_first_that_was_asked_for_ends
     wanted = [here, here.replace(terminal=True, name="b"), here.replace(terminal=True, name="c")]
     sol = pc.simulate(rod(), 0.0, 0.5, (0, 1), step=1.0, events=[*wanted, here])
     assert [times(found) for found in sol.events] == [[0.5]] * 4
-    assert sol.message == (
-        "stopped at a terminal event (at t = 0.5 s: event 2 (link_angle, 'b'))"
-    )
+    assert sol.message == ("stopped at a terminal event (at t = 0.5 s: event 2 (link_angle, 'b'))")
 
 
 @pytest.mark.parametrize("count", [1, 2, 5])
