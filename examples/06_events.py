@@ -30,9 +30,7 @@ for degrees in (-55, -30, -10, 5, 20, 35, 50, 65):
     angles = pc.angles_to_vertical(np.array([found.q for found in sol.events[0]]))[:, 1]
     rates = np.array([found.qd[1] for found in sol.events[0]])
     axis.plot(np.degrees(angles), rates, ".", markersize=2)
-    print(
-        f"link 2 at {degrees:3} degrees: {len(rates)} points, rates up to {rates.max():.2f} rad/s"
-    )
+    print(f"link 2 at {degrees:3} degrees: {len(rates)} points, up to {rates.max():.2f} rad/s")
 axis.set(xlabel="angle of link 2 from the vertical (degrees)", ylabel="rate of link 2 (rad/s)")
 axis.grid(True)
 figure.savefig("section.png", dpi=150)

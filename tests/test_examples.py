@@ -23,7 +23,7 @@ SAYS = {
     ),
     "06_events": (
         "from 100 degrees: turns over at t = 6.543738 s",
-        "link 2 at  20 degrees: 468 points, rates up to 7.93 rad/s",
+        "link 2 at  20 degrees: 468 points, up to 7.93 rad/s",
     ),
     "05_own_effect": ("q_1(30) = -89.6420 deg", "work of the water 12.308263 J"),
 }
