@@ -171,6 +171,32 @@ def test_every_turn_of_a_spinning_rod_is_found() -> None:
         assert once == []
 
 
+def test_turns_are_found_backward_and_far_from_zero() -> None:
+    turns = ev.LinkAngle(1, 1.0 - 2e6 * np.pi, every_turn=True)
+    sol = pc.simulate(rod(), 1e6, 20.0, (0, -10), step=0.5, events=[turns])
+    first = np.ceil((1e6 - 200 - 1) / (2 * np.pi))
+    exact = (1e6 - (1 + 2 * np.pi * np.arange(first, first + 32)[::-1])) / -20
+    exact = exact[exact < 0]
+    assert times(sol.events[0]) == pytest.approx(exact, abs=1e-9)
+    assert {one.direction for one in sol.events[0]} == {-1}
+
+
+def test_more_turns_than_can_be_listed_are_an_error_that_says_so() -> None:
+    turns = [ev.LinkAngle(1, 0.0, every_turn=True)]
+    with pytest.raises(ValueError, match="more than a million turns in one step"):
+        pc.simulate(rod(), 0.5, 1e8, (0, 1), step=1.0, events=turns)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("store", ["dense", "steps", "end"])
+def test_a_run_may_end_in_its_first_step(method: str, store: str) -> None:
+    here = ev.LinkAngle(1, 0.25, terminal=True)
+    sol = pc.simulate(rod(), 0.0, 0.5, (0, 10), method=method, step=1.0, store=store, events=[here])
+    assert (sol.status, sol.t[-1], sol.q[-1, 0]) == ("event", 0.5, 0.25)
+    assert sol.stats.accepted == 1
+    assert len(sol.t) == (1 if store == "end" else 2)
+
+
 @pytest.mark.parametrize("sense", [1, -1])
 def test_events_a_hair_apart_come_in_their_order(sense: int) -> None:
     near = [ev.Function(lambda t, q, qd, at=at: t - sense * at) for at in (2e-8, 1e-8, 0.5 + 1e-8)]

@@ -169,6 +169,41 @@ def test_an_end_just_behind_an_event_cuts_its_step_and_is_a_view() -> None:
             longer = cut.resume(10.0)
             assert in_numbers(longer) == in_numbers(whole)
             assert np.array_equal(longer.y, whole.y)
+            stopping = [ev.LinkAngle(2, 1.2, direction=1, terminal=True)]
+            ended = run(t_end=found.t + gap, events=stopping)
+            while ended.status == "event" or ended.t[-1] < 10:
+                ended = ended.resume(10.0)
+            assert in_numbers(ended) == in_numbers(whole)[:1]
+            assert np.array_equal(ended.y, whole.y)
+
+
+def test_the_ledger_is_kept_to_the_event() -> None:
+    how = {"ledger": True, "rtol": 1e-8}
+    whole = run(MOVED, **how)
+    sol = run(MOVED, events=sections(terminal=2), **how)
+    assert sol.status == "event"
+    assert abs(sol.energy().ledger.residual[-1]) < 1e-6
+    while sol.status == "event":
+        sol = sol.resume(10.0)
+    assert np.array_equal(sol.energy().ledger.dry, whole.energy().ledger.dry)
+    assert np.array_equal(sol.y, whole.y)
+
+
+@pytest.mark.parametrize("store", STORES)
+def test_an_event_within_the_last_bit_of_the_start(store: str) -> None:
+    """At t = 1e9 s a double resolves 1e-7 s: the event comes before the next."""
+    rod = pc.Scene(links=BOOK.links[:1], gravity=0.0)
+    how = {**STORES[store], "events": [ev.LinkAngle(1, 1.0 + 1e-9, terminal=True)]}
+    if "t_eval" in how:
+        how["t_eval"] = 1e9 + how["t_eval"]
+    sol = pc.simulate(rod, 1.0, 1.0, (1e9, 1e9 + 10), **how)
+    assert sol.status == "event"
+    assert sol.events[0][0].t == sol._run.t_reached == 1e9
+    assert sol.events[0][0].q[0] == pytest.approx(1.0 + 1e-9, abs=1e-15)
+    longer = pickle.loads(pickle.dumps(sol)).resume(1e9 + 10)
+    free = pc.simulate(rod, 1.0, 1.0, (1e9, 1e9 + 10), **how | {"events": []})
+    assert np.array_equal(longer.t, free.t)
+    assert np.array_equal(longer.y, free.y)
 
 
 @pytest.mark.parametrize("cap", [1, 7, 40, 200])

@@ -55,12 +55,15 @@ template <class Visitor>
 void EventFinder::for_each_level(double value, bool every_turn, double low, double high,
                                  Visitor visit) const {
   if (!every_turn) return visit(value);
-  const double first = std::ceil((low - value) / turn - 1e-9);
-  const double last = std::floor((high - value) / turn + 1e-9);
-  if (!(last - first < 1e6)) {
+  const double from = (low - value) / turn;
+  const double to = (high - value) / turn;
+  const double margin = 1e-9 + 4.0 * rounding * (std::abs(from) + std::abs(to));
+  const double first = std::ceil(from - margin);
+  const double count = std::floor(to + margin) - first + 1.0;
+  if (!(count <= 1e6)) {
     throw std::domain_error("every_turn: more than a million turns in one step");
   }
-  for (double k = first; k <= last; ++k) visit(std::fma(k, turn, value));
+  for (int i = 0; i < static_cast<int>(count); ++i) visit(std::fma(first + i, turn, value));
 }
 
 void EventFinder::find_difference(const Step& step, const Difference& difference, double value,
@@ -82,7 +85,7 @@ void EventFinder::find_difference(const Step& step, const Difference& difference
   reach = std::max(reach, std::abs(end - start));
   for_each_level(value, every_turn, start - reach, start + reach, [&](double level) {
     polynomial_[0] = start - level;
-    const double noise = 4.0 * rounding * (size + std::abs(level));
+    const double noise = 8.0 * rounding * (size + std::abs(level));
     find_roots(polynomial_.data(), degree, end - level, noise, roots_);
   });
 }

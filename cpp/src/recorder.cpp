@@ -1,6 +1,7 @@
 #include "pendcore/recorder.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace pendcore {
 
@@ -13,6 +14,9 @@ Recorder::Recorder(Solution& solution, const Stepper& stepper, const Scene& scen
       dimension_(static_cast<std::size_t>(stepper.dimension())),
       polynomial_(static_cast<std::size_t>(stepper.interpolant_degree() + 1) * dimension_) {
   const std::vector<Event>& events = solution.options.events;
+  if (!events.empty() && stepper.interpolant_degree() > highest_degree) {
+    throw std::invalid_argument("events: the dense output of this method has too high a degree");
+  }
   if (!events.empty()) finder_.emplace(scene, events, solution.found, passed_events);
   solution_.t.reserve(solution_.options.t_eval.size());
   solution_.states.reserve(solution_.options.t_eval.size() * dimension_);

@@ -17,8 +17,10 @@ from dataclasses import dataclass, field, fields
 from math import inf
 from typing import Any, ClassVar, NoReturn, Self
 
+import numpy as np
+
 from pendcore import _core
-from pendcore.arguments import Floats, number, numbers, whole_number
+from pendcore.arguments import Floats, known_keywords, number, numbers, whole_number
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -47,6 +49,8 @@ class Event:
         where = f"{type(self).__name__}: "
         self._take(where)
         self._set("direction", whole_number(where + "direction", self.direction))
+        if isinstance(self.terminal, np.bool):
+            self._set("terminal", bool(self.terminal))
         if not isinstance(self.terminal, bool):
             self._set("terminal", whole_number(where + "terminal", self.terminal))
             if self.terminal < 1:
@@ -236,6 +240,9 @@ KINDS: dict[str, type[Event]] = {
     cls.kind: cls for cls in (JointAngle, LinkAngle, RateZero, TipLine, Function)
 }
 """The classes of events by their kind, as in case files."""
+
+for cls in KINDS.values():
+    cls.__init__ = known_keywords(cls.__init__)  # type: ignore[method-assign]
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)

@@ -27,7 +27,7 @@ double first_negative(const double* coefficients, int degree);
 /// The same of a function, from its values at `samples` points and a bisection between two.
 double first_negative(const std::function<double(double)>& f, int samples);
 
-inline constexpr int highest_degree = 31;  ///< of a polynomial whose zeros are asked for
+inline constexpr int highest_degree = 63;  ///< of a polynomial whose zeros are asked for
 
 /// The coefficients of Bernstein's form on [0, 1]: (degree + 1). The polynomial lies between the
 /// least and the largest of them.
@@ -96,7 +96,7 @@ void find_roots(const Function& f, double start, const std::vector<TurningPoint>
   }
 }
 
-/// The same of p(theta) = sum_k coefficients[k] theta^k, which is `end` at 1. Degree up to 31.
+/// The same of p(theta) = sum_k coefficients[k] theta^k, which is `end` at 1. Degree up to 63.
 void find_roots(const double* coefficients, int degree, double end, double noise,
                 std::vector<Root>& found);
 
