@@ -95,9 +95,13 @@ def test_an_exception_ends_the_run_and_passes_through(at: float) -> None:
     assert not sol.success
     assert sol.t[-1] <= max(at, 0.0)
     assert [round(one.t, 12) for one in sol.events[1]] == ([0.5] if at > 0 else [])
+    accepted = len(sol.t) - 1
+    assert sol.stats.accepted == accepted
     at = 5.0
-    longer = sol.resume(3.0)
-    assert np.array_equal(longer.y, run().y)
+    longer, whole = sol.resume(3.0), run()
+    assert np.array_equal(longer.t, whole.t)
+    assert np.array_equal(longer.y, whole.y)
+    assert longer.stats == whole.stats
     assert len(longer.events[1]) == 1
 
 

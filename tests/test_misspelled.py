@@ -38,8 +38,8 @@ MISSPELLED = {
         "simulate: has no parameter 'xyzzy': known are scene, q0, qd0, t_span, method, rtol",
     ),
     "event": (
-        lambda: pc.events.JointAngle(joint=1, valu=0.0),
-        "JointAngle: has no parameter 'valu': did you mean 'value'?",
+        lambda: pc.events.JointAngle(joint=1, val=0.0),
+        "JointAngle: has no parameter 'val': did you mean 'value'?",
     ),
     "explanation": (lambda: SCENE.explain(q0=1.0), "Scene.explain: has no parameter 'q0'"),
 }

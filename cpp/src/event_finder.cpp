@@ -36,7 +36,9 @@ EventFinder::EventFinder(const Scene& scene, const std::vector<Event>& events,
 }
 
 bool EventFinder::may_end() const {
-  return std::ranges::any_of(events_, [](const Event& event) { return event.terminal > 0; });
+  return std::ranges::any_of(events_, [](const Event& event) {
+    return event.terminal > 0 || std::holds_alternative<events::Function>(event.function);
+  });
 }
 
 EventFinder::Difference EventFinder::difference_of(const EventFunction& function) const {

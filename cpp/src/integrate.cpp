@@ -124,6 +124,7 @@ class Run {
     } catch (const std::bad_alloc&) {
       throw;
     } catch (...) {  // what a function of the user's throws
+      if (may_end_) restart_at_step_start();
       Ending ending = end_with(Status::callback_error);
       ending.error = std::current_exception();
       return ending;
@@ -280,14 +281,14 @@ class Run {
     }
     if (lands) t_new = {target.t, 0.0};
     const bool law_changes = guard >= 0 || (lands && target.is_break);
-    count_accepted(position_.statistics, h, target.is_in_reach || law_changes,
-                   position_.h_is_max_step);
     test_stiffness(stepper_, h, position_);
     if (guard >= 0 || (breaks_ != nullptr && breaks_->settles_every_step())) {
       stepper_.get_new_state(state_.data());
       if (breaks_->settle(guard, state_.data())) stepper_.set_new_state(state_.data());
     }
     const double end = observer_.step_accepted(stepper_, position_.t, h, t_new.high);
+    count_accepted(position_.statistics, h, target.is_in_reach || law_changes,
+                   position_.h_is_max_step);
     if (end < 1.0) return end_within_step(end, h, t_new.high);
     stepper_.accept(t_new.high);
     position_.t = t_new;
@@ -316,10 +317,13 @@ class Run {
   /// An event ended the run. A run that goes on takes the whole step again.
   bool has_ended() {
     if (!may_end_ || !observer_.has_ended()) return false;
-    if (!cut_before_) resumable_ = step_start_;
-    cut_before_ = true;
+    restart_at_step_start();
     status_ = Status::event;
     return true;
+  }
+  void restart_at_step_start() {
+    if (!cut_before_) resumable_ = step_start_;
+    cut_before_ = true;
   }
 
   /// At the state that the stepper stands at. The step that was to be tried is tried next.

@@ -83,10 +83,10 @@ Recorder::Kept Recorder::kept() const {
   return {solution_.t.size(), solution_.dense.h.size(), solution_.found.size()};
 }
 
-void Recorder::count() {
+void Recorder::count(bool before_last_step) {
   if (counted_) return;
   counted_ = true;
-  const auto [t, steps, found] = has_ended() ? at_step_start_ : kept();
+  const auto [t, steps, found] = before_last_step && may_end() ? at_step_start_ : kept();
   solution_.resumable_t = t;
   solution_.resumable_steps = steps;
   solution_.resumable_found = found;

@@ -205,7 +205,7 @@ void run(const Scene& scene, Solution& solution, double t_end, const Limits& lim
   } else {
     solution.resumable = position;
   }
-  if (!ending.cut || ending.status == Status::event) recorder.count();
+  recorder.count(ending.status == Status::event || ending.status == Status::callback_error);
   solution.status = ending.status;
   solution.statistics = position.statistics;
   solution.t_reached = position.t.high;

@@ -24,7 +24,7 @@ class EventFinder {
   EventFinder(const Scene& scene, const std::vector<Event>& events, std::vector<FoundEvent>& found,
               std::vector<long long> passed);
 
-  /// Whether an event may end the run.
+  /// Whether an event may end the run: a terminal one, or a function that may throw.
   bool may_end() const;
 
   /// Looks at an accepted step, with its dense output in `rows`. Returns the share of the step at

@@ -20,14 +20,14 @@ class Recorder final : public Observer {
   double step_accepted(const Stepper& stepper, const TwoDouble& t_old, double h,
                        double t_new) override;
   void state_jumped(double t, const double* before, const double* after) override;
-  void end_in_sight() override { count(); }
+  void end_in_sight() override { count(false); }
   bool may_end() const override { return finder_ && finder_->may_end(); }
   void step_begins() override { at_step_start_ = kept(); }
   bool has_ended() const override { return finder_ && finder_->ended_by() >= 0; }
 
-  /// What is kept so far is what an unstopped run has as well. If an event ended the run, that is
-  /// what was kept before its step.
-  void count();
+  /// What is kept so far is what an unstopped run has as well; of a run that takes its last step
+  /// again, what was kept before that. The first count holds.
+  void count(bool before_last_step);
 
   /// The event that ended the run; -1 if none did.
   int ended_by() const { return finder_ ? finder_->ended_by() : -1; }

@@ -59,7 +59,8 @@ class Observer {
   /// The next step is the first that is cut to end at t_end. A run that goes on restarts here.
   virtual void end_in_sight() = 0;
 
-  /// Whether it may end the run: each step then begins by writing down where, and step_begins().
+  /// Whether it may end the run, by an event or an exception: each step then begins by writing down
+  /// where, and step_begins(). A run that goes on takes the step again.
   virtual bool may_end() const { return false; }
   virtual void step_begins() {}
   /// Whether the run is to end where it stands: of a step, or of a jump.
