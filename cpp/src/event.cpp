@@ -36,11 +36,10 @@ void check_function(const std::string& where, const events::RateZero& event, int
 }
 
 void check_function(const std::string& where, const events::TipLine& event, int /*n*/) {
-  for (int axis = 0; axis < 2; ++axis) {
-    const std::string index = "[" + std::to_string(axis) + "]";
-    check_finite(where + "point" + index, event.point[axis], "m");
-    check_finite(where + "normal" + index, event.normal[axis], "1");
-  }
+  check_finite(where + "point[0]", event.point[0], "m");
+  check_finite(where + "point[1]", event.point[1], "m");
+  check_finite(where + "normal[0]", event.normal[0], "1");
+  check_finite(where + "normal[1]", event.normal[1], "1");
   if (event.normal[0] == 0.0 && event.normal[1] == 0.0) {
     throw std::invalid_argument(where + "normal = (0.0, 0.0): must point across the line");
   }

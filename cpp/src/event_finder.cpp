@@ -50,7 +50,8 @@ EventFinder::Difference EventFinder::difference_of(const EventFunction& function
   }
   if (const auto* angle = std::get_if<events::LinkAngle>(&function)) return {angle->link - 1, -1};
   const auto& rate = std::get<events::RateZero>(function);
-  return rate.joint ? of_joint(*rate.joint, n_) : Difference{n_ + *rate.link - 1, -1};
+  if (rate.joint) return of_joint(*rate.joint, n_);
+  return {n_ + rate.link.value_or(1) - 1, -1};
 }
 
 template <class Visitor>

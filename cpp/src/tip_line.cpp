@@ -19,9 +19,10 @@ double largest_acceleration(const Scene& scene) {
       sum += std::abs(axis->amplitude) * axis->angular_frequency * axis->angular_frequency;
     }
     if (!pivot.spline) continue;
-    for (const std::vector<double>& values : {pivot.spline->x, pivot.spline->y}) {
+    const Spline& spline = *pivot.spline;
+    for (const std::vector<double>* values : {&spline.x, &spline.y}) {
       double largest = 0.0;
-      for (const double second : pivot.spline->second_derivatives(values)) {
+      for (const double second : spline.second_derivatives(*values)) {
         largest = std::max(largest, std::abs(second));
       }
       sum += largest;
