@@ -10,6 +10,12 @@ namespace {
 
 constexpr double rounding = std::numeric_limits<double>::epsilon();
 
+double largest_size(const std::vector<double>& values) {
+  double largest = 0.0;
+  for (const double value : values) largest = std::max(largest, std::abs(value));
+  return largest;
+}
+
 /// No pivot that drives the scene accelerates more: A omega^2, and a spline at its points.
 double largest_acceleration(const Scene& scene) {
   double sum = 0.0;
@@ -18,14 +24,9 @@ double largest_acceleration(const Scene& scene) {
       if (!axis) continue;
       sum += std::abs(axis->amplitude) * axis->angular_frequency * axis->angular_frequency;
     }
-    if (!pivot.spline) continue;
-    const Spline& spline = *pivot.spline;
-    for (const std::vector<double>* values : {&spline.x, &spline.y}) {
-      double largest = 0.0;
-      for (const double second : spline.second_derivatives(*values)) {
-        largest = std::max(largest, std::abs(second));
-      }
-      sum += largest;
+    if (const std::optional<Spline>& spline = pivot.spline) {
+      sum += largest_size(spline->second_derivatives(spline->x));
+      sum += largest_size(spline->second_derivatives(spline->y));
     }
   }
   return sum;
