@@ -32,7 +32,17 @@ CPP_FLOW = {
 }
 # The files that stand in no folder and where the two branches, dynamics and integrate, meet.
 CPP_FILES = dict.fromkeys(
-    ["options", "recorder", "simulate", "steppers", "switching", "pendcore"], "solution"
+    [
+        "event_finder",
+        "options",
+        "pendcore",
+        "recorder",
+        "simulate",
+        "steppers",
+        "switching",
+        "tip_line",
+    ],
+    "solution",
 )
 
 # The same for Python: modules in the order of the flow; each may import those above it, with the
@@ -47,6 +57,7 @@ PYTHON_FLOW = [
     "effect_description",
     "effect_class",
     "effects",
+    "events",
     "link",
     "scene",
     "explanation",

@@ -9,7 +9,7 @@ from pathlib import Path
 import pendcore as pc
 import pytest
 from pendcore.case import RUN_DEFAULTS
-from pendcore.case_file import KEYS
+from pendcore.case_file import EVENT_KEYS, KEYS
 
 REFERENCE = (Path(__file__).parents[1] / "docs/case_files.md").read_text()
 BLOCKS = re.findall(r"```toml\n(.*?)```", REFERENCE, re.DOTALL)
@@ -26,6 +26,17 @@ def documented():
 def test_the_reference_has_every_key_and_no_other():
     found = [(kind, key) for kind, key, _ in documented()]
     assert found == [(kind, key) for kind, keys in KEYS.items() for key in keys]
+
+
+def test_the_reference_has_the_keys_of_every_event():
+    (rows,) = re.findall(r"^\| kind \| keys, and for each.*?\n\n", REFERENCE, re.M | re.DOTALL)
+    usual, *kinds = rows.strip().splitlines()
+    common = set(re.findall(r"`(\w+)`", usual))
+    found = {}
+    for row in kinds[1:]:
+        kind, *keys = re.findall(r"`(\w+)`", row)
+        found[kind] = {"kind", *keys} | common
+    assert found == {kind: set(keys) for kind, keys in EVENT_KEYS.items()}
 
 
 def test_the_reference_has_the_defaults_of_simulate():

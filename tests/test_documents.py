@@ -53,6 +53,15 @@ def test_a_ledger_is_as_good_as_its_steps_and_trust_says_how_good(capsys):
         assert float(order) / 2 < residual < 2 * float(order)
 
 
+def test_events_are_what_their_page_says(capsys):
+    (code,) = re.findall(r"```python\n(.*?)```", (ROOT / "docs/events.md").read_text(), re.DOTALL)
+    names: dict[str, object] = {}
+    exec(code, names)
+    (told,) = re.findall(r"# (stopped at .*)$", code, re.MULTILINE)
+    assert capsys.readouterr().out.startswith(told + "\n<Found: t = ")
+    assert names["longer"].status == "event"
+
+
 @pytest.mark.parametrize("document", excerpts.EXCERPTS)
 def test_quoted_figures_are_those_of_the_record(document):
     name, excerpt = excerpts.EXCERPTS[document]

@@ -21,6 +21,10 @@ SAYS = {
         "measured triple pendulum: within 0.0074 rad",
         "swing 2: within 0.0243 rad",
     ),
+    "06_events": (
+        "from 100 degrees: turns over at t = 6.543738 s",
+        "link 2 at  20 degrees: 468 points, up to 7.93 rad/s",
+    ),
     "05_own_effect": ("q_1(30) = -89.6420 deg", "work of the water 12.308263 J"),
 }
 PROJECT = """

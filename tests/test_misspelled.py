@@ -37,6 +37,10 @@ MISSPELLED = {
         lambda: pc.simulate(SCENE, 1.0, t_span=(0, 1), xyzzy=1),
         "simulate: has no parameter 'xyzzy': known are scene, q0, qd0, t_span, method, rtol",
     ),
+    "event": (
+        lambda: pc.events.JointAngle(joint=1, val=0.0),
+        "JointAngle: has no parameter 'val': did you mean 'value'?",
+    ),
     "explanation": (lambda: SCENE.explain(q0=1.0), "Scene.explain: has no parameter 'q0'"),
 }
 

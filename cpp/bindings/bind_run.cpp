@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "arguments.hpp"
+#include "bind_events.hpp"
 #include "python_monitor.hpp"
 #include "run_state.hpp"
 
@@ -25,6 +26,28 @@ py::object or_none(bool given, Number value) {
   return given ? py::cast(value) : py::none();
 }
 
+/// Every event that was asked for, as (kind, values).
+py::tuple event_pairs(const Run& run) {
+  py::list pairs;
+  for (std::size_t i = 0; i < run.solution.options.events.size(); ++i) {
+    const py::object f = i < run.event_functions.size() ? py::object(run.event_functions[i])
+                                                        : py::object(py::none());
+    pairs.append(kind_and_values(run.solution.options.events[i], f));
+  }
+  return py::tuple(pairs);
+}
+
+/// Every event that was found: (number from 0, t, direction, y, y_before or None).
+py::list found(const Run& run) {
+  py::list result;
+  for (const FoundEvent& one : run.solution.found) {
+    const py::object before =
+        one.y_before.empty() ? py::object(py::none()) : py::object(copy_flat(one.y_before));
+    result.append(py::make_tuple(one.event, one.t, one.direction, copy_flat(one.y), before));
+  }
+  return result;
+}
+
 /// The keywords of simulate() as they were given.
 py::dict arguments(const Run& run) {
   const Solution& s = run.solution;
@@ -45,6 +68,7 @@ py::dict arguments(const Run& run) {
   result["max_step"] = s.options.max_step;
   result["step"] = s.options.step;
   result["max_steps"] = s.options.max_steps;
+  result["events"] = event_pairs(run);
   result["ledger"] = s.options.ledger;
   result["time_limit"] = or_none(std::isfinite(s.options.time_limit), s.options.time_limit);
   return result;
@@ -59,7 +83,10 @@ Run resume_run(const Run& run, py::handle t_end, py::handle t_eval, py::handle m
   const long long most = whole_number("max_steps", max_steps);
   const double limit =
       optional_number("time_limit", time_limit).value_or(std::numeric_limits<double>::infinity());
-  Run longer{.scene = run.scene, .solution = {}, .python_scene = run.python_scene};
+  Run longer{.scene = run.scene,
+             .solution = {},
+             .python_scene = run.python_scene,
+             .event_functions = run.event_functions};
   {
     const py::gil_scoped_release without_lock;
     longer.solution = resume(run.scene, run.solution, end, times, most, limit, monitor);
@@ -110,6 +137,7 @@ void bind_run(py::module_& module) {
                                return columns(rows(self), 0, 2 * n);
                              })
       .def_property_readonly("ledger", &ledger)
+      .def_property_readonly("found", &found)
       .def_property_readonly("t_reached", [](const Run& run) { return run.solution.t_reached; })
       .def_property_readonly("y_reached",
                              [](const Run& run) {

@@ -1,4 +1,5 @@
 #include "arguments.hpp"
+#include "bind_events.hpp"
 #include "python_monitor.hpp"
 
 namespace pendcore::bindings {
@@ -25,8 +26,9 @@ std::string method_named(py::handle method) {
 Run simulate_run(const py::object& python_scene, py::handle q0, py::handle qd0, py::handle t0,
                  py::handle t_end, py::handle method, py::handle rtol, py::handle atol,
                  py::handle t_eval, py::handle store, py::handle first_step, py::handle max_step,
-                 py::handle step, py::handle max_steps, py::handle time_limit, py::handle ledger,
-                 py::handle progress, py::handle warn) {
+                 py::handle step, py::handle max_steps, py::handle time_limit,
+                 const py::sequence& events, py::handle ledger, py::handle progress,
+                 py::handle warn) {
   const auto& scene = python_scene.cast<const Scene&>();
   const std::size_t n = scene.links.size();
   const std::string one_a_link = "(" + std::to_string(n) + ",)";
@@ -48,6 +50,7 @@ Run simulate_run(const py::object& python_scene, py::handle q0, py::handle qd0, 
   options.step = optional_number("step", step);
   options.max_steps = whole_number("max_steps", max_steps);
   options.time_limit = optional_number("time_limit", time_limit).value_or(options.time_limit);
+  for (const py::handle event : events) options.events.push_back(make_event(event));
   options.ledger = truth("ledger", ledger);
   options.monitor = monitor;
   const std::vector<double> angles = numbers("q0", q0, one_a_link, n);
@@ -58,7 +61,10 @@ Run simulate_run(const py::object& python_scene, py::handle q0, py::handle qd0, 
   if (angles.size() == n && rates.size() == n) {
     for (const std::string& warning : run_warnings(scene, angles, rates, from, to)) warn(warning);
   }
-  Run run{.scene = scene, .solution = {}, .python_scene = python_scene};
+  Run run{.scene = scene,
+          .solution = {},
+          .python_scene = python_scene,
+          .event_functions = functions_of(events)};
   {
     const py::gil_scoped_release without_lock;
     run.solution = simulate(run.scene, angles, rates, from, to, options);
@@ -73,8 +79,8 @@ void bind_simulate(py::module_& module) {
   module.def("simulate", &simulate_run, py::arg("scene"), py::arg("q0"), py::arg("qd0"),
              py::arg("t0"), py::arg("t_end"), py::arg("method"), py::arg("rtol"), py::arg("atol"),
              py::arg("t_eval"), py::arg("store"), py::arg("first_step"), py::arg("max_step"),
-             py::arg("step"), py::arg("max_steps"), py::arg("time_limit"), py::arg("ledger"),
-             py::arg("progress"), py::arg("warn"));
+             py::arg("step"), py::arg("max_steps"), py::arg("time_limit"), py::arg("events"),
+             py::arg("ledger"), py::arg("progress"), py::arg("warn"));
 }
 
 }  // namespace pendcore::bindings

@@ -4,6 +4,7 @@
 namespace pendcore::bindings {
 
 void bind_effects(pybind11::module_& module);
+void bind_events(pybind11::module_& module);
 void bind_scene(pybind11::module_& module);
 void bind_run(pybind11::module_& module);
 void bind_simulate(pybind11::module_& module);
@@ -17,6 +18,7 @@ PYBIND11_MODULE(_core, module, pybind11::mod_gil_not_used()) {
   module.doc() = "The compiled core: scenes, runs and methods as numbers and arrays.";
   module.attr("__version__") = PENDCORE_VERSION;
   bind_effects(module);
+  bind_events(module);
   bind_scene(module);
   bind_run(module);
   bind_simulate(module);

@@ -7,9 +7,9 @@
 namespace pendcore::bindings {
 namespace {
 
-std::string name_of(py::handle function) {
+std::string name_of(const char* kind, py::handle function) {
   const py::object name = py::getattr(function, "__qualname__", py::repr(function));
-  return "User: " + py::str(name).cast<std::string>() + "(t, q, qd)";
+  return kind + py::str(name).cast<std::string>() + "(t, q, qd)";
 }
 
 void call(double t, int n, const double* q, const double* qd, double* forces, void* data) {
@@ -24,7 +24,7 @@ void call(double t, int n, const double* q, const double* qd, double* forces, vo
       return;
     }
   }
-  const std::string name = name_of(function);
+  const std::string name = name_of("User: ", function);
   const std::string wanted =
       "(" + std::to_string(n) + ",), the generalised forces of the absolute angles (N m)";
   const std::vector<double> values = numbers(name.c_str(), result, wanted);
@@ -42,6 +42,17 @@ CompiledUser effect_of_function(py::handle function) {
           .data = reinterpret_cast<std::uintptr_t>(function.ptr())};
 }
 
+std::function<double(double, std::span<const double>, std::span<const double>)> event_function(
+    py::handle function) {
+  return [function](double t, std::span<const double> q, std::span<const double> qd) {
+    const py::gil_scoped_acquire lock;
+    const auto n = static_cast<py::ssize_t>(q.size());
+    const py::object result = function(t, Array(n, q.data()), Array(n, qd.data()));
+    if (PyFloat_CheckExact(result.ptr()) != 0) return PyFloat_AS_DOUBLE(result.ptr());
+    return number(name_of("Function: ", function).c_str(), result);
+  };
+}
+
 py::object python_exception(const std::exception_ptr& error) {
   try {
     std::rethrow_exception(error);
@@ -51,6 +62,8 @@ py::object python_exception(const std::exception_ptr& error) {
     return value;
   } catch (const py::builtin_exception& raised) {
     raised.set_error();
+  } catch (const std::domain_error& raised) {
+    PyErr_SetString(PyExc_ValueError, raised.what());
   } catch (const std::exception& raised) {
     PyErr_SetString(PyExc_RuntimeError, raised.what());
   }

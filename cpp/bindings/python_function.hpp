@@ -7,6 +7,7 @@
 #include <exception>
 
 #include "pendcore/effects/user.hpp"
+#include "pendcore/integrate/event.hpp"
 
 namespace pendcore::bindings {
 
@@ -14,6 +15,11 @@ namespace py = pybind11;
 
 /// f(t, q, qd) -> Q as an effect. Whoever holds the effect keeps the function alive.
 CompiledUser effect_of_function(py::handle function);
+
+/// f(t, q, qd) -> a number as an event's function. Whoever holds the event keeps f alive: copies
+/// are made without Python's lock, and count no references.
+std::function<double(double, std::span<const double>, std::span<const double>)> event_function(
+    py::handle function);
 
 /// The exception, of Python or of the core, as Python has it.
 py::object python_exception(const std::exception_ptr& error);

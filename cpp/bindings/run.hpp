@@ -15,6 +15,7 @@ struct Run {
   Scene scene;
   Solution solution;
   py::object python_scene = py::none();  ///< keeps the functions among its effects alive
+  py::list event_functions{};            ///< of each event: its Python function, or None
   py::object error = py::none();
 };
 

@@ -6,6 +6,7 @@
 
 #include "arguments.hpp"
 #include "bind_effects.hpp"
+#include "event_state.hpp"
 #include "pendcore/integrate/methods.hpp"
 
 namespace pendcore::bindings {
@@ -130,6 +131,7 @@ void visit(Archive& io, AnySolution& s) {
   io("y_reached", s.y_reached);
   io("resumable_t", s.resumable_t);
   io("resumable_steps", s.resumable_steps);
+  io("resumable_found", s.resumable_found);
   auto& p = s.resumable;
   io("position_t", p.t.high);
   io("position_t_low", p.t.low);
@@ -220,6 +222,7 @@ py::dict get_state(const Run& run) {
   io("gravity", run.scene.gravity);
   io("effects", json_of_effects(run.scene));
   visit(io, run.solution);
+  put_events(io.fields, run.solution);
   return io.fields;
 }
 
@@ -244,6 +247,7 @@ Run set_state(const py::dict& state) {
   if (s.options.ledger) s.accounts = accounts_of(run.scene);
   s.dimension = 2 * s.n + static_cast<int>(s.accounts.size());
   check_parts(s);
+  take_events(state, s);
   return run;
 }
 

@@ -71,6 +71,7 @@ class Run {
         state_(stepper.dimension()),
         rate_(stepper.dimension()) {
     if (breaks != nullptr) guards_.emplace(stepper, *breaks);
+    may_end_ = observer.may_end();
   }
 
   Ending go() {
@@ -78,12 +79,13 @@ class Run {
       return end_with(Status::non_finite, bad);
     }
     try {
-      while (step()) {
+      while (step() && !has_ended()) {
       }
       return end_with(status_, bad_);
     } catch (const std::bad_alloc&) {
       throw;
     } catch (...) {  // what a function of the user's throws
+      if (may_end_) restart_at_step_start();
       Ending ending = end_with(Status::callback_error);
       ending.error = std::current_exception();
       return ending;
@@ -112,6 +114,10 @@ class Run {
     if (attempts_ == limits_.max_steps) return end(Status::max_steps);
     if (const Status clock = clock_.look(t); clock != Status::finished) return end(clock);
 
+    if (may_end_) {
+      write_down(step_start_);
+      observer_.step_begins();
+    }
     if (breaks_ != nullptr && breaks_->is_over()) return end(Status::non_finite);
     if (breaks_ != nullptr && breaks_->rests()) return rest(left);
     if (breaks_ != nullptr && std::abs(position_.h) > breaks_->longest_step()) {
@@ -259,14 +265,15 @@ class Run {
     }
     if (lands) t_new = {target.t, 0.0};
     const bool law_changes = guard >= 0 || (lands && target.is_break);
-    count_accepted(position_.statistics, h, target.is_in_reach || law_changes,
-                   position_.h_is_max_step);
     test_stiffness(stepper_, h, position_);
     if (guard >= 0 || (breaks_ != nullptr && breaks_->settles_every_step())) {
       stepper_.get_new_state(state_.data());
       if (breaks_->settle(guard, state_.data())) stepper_.set_new_state(state_.data());
     }
-    observer_.step_accepted(stepper_, position_.t, h, t_new.high);
+    const double end = observer_.step_accepted(stepper_, position_.t, h, t_new.high);
+    count_accepted(position_.statistics, h, target.is_in_reach || law_changes,
+                   position_.h_is_max_step);
+    if (end < 1.0) return end_within_step(end, h, t_new.high);
     stepper_.accept(t_new.high);
     position_.t = t_new;
     if (!law_changes) {
@@ -279,6 +286,29 @@ class Run {
     }
     if (guard >= 0 && !change_law(guard)) return false;
     return lands && target.is_break ? change_law(-1) : true;
+  }
+
+  /// An event lies within the step: what is left there is a view, and nothing goes on from it.
+  bool end_within_step(double theta, double h, double t_new) {
+    const std::size_t rows = stepper_.interpolant_degree() + 1;
+    std::vector<double> polynomial(rows * stepper_.dimension());
+    stepper_.interpolant(h, polynomial.data());
+    stepper_.sample(polynomial.data(), {}, 1.0, &theta, 1, state_.data());
+    stepper_.get_derivative(rate_.data());
+    stepper_.start(state_.data(), rate_.data());
+    position_.t = time_in_step(position_.t, h, theta, t_new);
+    return true;
+  }
+  /// An event ended the run. A run that goes on takes the whole step again.
+  bool has_ended() {
+    if (!may_end_ || !observer_.has_ended()) return false;
+    restart_at_step_start();
+    status_ = Status::event;
+    return true;
+  }
+  void restart_at_step_start() {
+    if (!cut_before_) resumable_ = step_start_;
+    cut_before_ = true;
   }
 
   /// At the state that the stepper stands at. The step that was to be tried is tried next.
@@ -321,6 +351,8 @@ class Run {
   const MethodInfo& method_;
   Clock clock_;
   std::optional<Guards> guards_;
+  bool may_end_ = false;
+  Position step_start_;  ///< of the step that is tried, if the observer may end the run
   long long evaluations_before_;
   Status status_ = Status::finished;
   long long attempts_ = 0;

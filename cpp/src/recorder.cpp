@@ -1,16 +1,23 @@
 #include "pendcore/recorder.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace pendcore {
 
-Recorder::Recorder(Solution& solution, const Stepper& stepper)
+Recorder::Recorder(Solution& solution, const Stepper& stepper, const Scene& scene,
+                   const std::vector<long long>& passed_events)
     : solution_(solution),
       keeps_polynomials_(solution.options.store == Store::dense),
       keeps_steps_(solution.options.store == Store::steps ||
                    (keeps_polynomials_ && solution.options.t_eval.empty())),
       dimension_(static_cast<std::size_t>(stepper.dimension())),
       polynomial_(static_cast<std::size_t>(stepper.interpolant_degree() + 1) * dimension_) {
+  const std::vector<Event>& events = solution.options.events;
+  if (!events.empty() && stepper.interpolant_degree() > highest_degree) {
+    throw std::invalid_argument("events: the dense output of this method has too high a degree");
+  }
+  if (!events.empty()) finder_.emplace(scene, events, solution.found, passed_events);
   solution_.t.reserve(solution_.options.t_eval.size());
   solution_.states.reserve(solution_.options.t_eval.size() * dimension_);
 }
@@ -23,7 +30,13 @@ void Recorder::start(double t, const std::vector<double>& y) {
 
 double Recorder::step_accepted(const Stepper& stepper, const TwoDouble& t_old, double h,
                                double t_new) {
-  if (keeps_polynomials_) {
+  double end = 2.0;
+  if (finder_) {
+    stepper.interpolant(h, polynomial_.data());
+    end = finder_->look(stepper, polynomial_.data(), t_old, h, t_new);
+  }
+  const double t_end = end < 1.0 ? time_in_step(t_old, h, end, t_new).high : t_new;
+  if (keeps_polynomials_ && t_end != t_old.high) {
     DenseOutput& dense = solution_.dense;
     const std::size_t size = dense.coefficients.size();
     dense.start.push_back(t_old.high);
@@ -32,16 +45,32 @@ double Recorder::step_accepted(const Stepper& stepper, const TwoDouble& t_old, d
     dense.coefficients.resize(size + polynomial_.size());
     stepper.interpolant(h, dense.coefficients.data() + size);
   }
-  if (keeps_steps_) {
+  if (end < 1.0) {
+    keep_clipped(stepper, t_old, h, end, t_end);
+  } else if (keeps_steps_) {
     stepper.get_new_state(append(t_new));
   } else {
     sample_step(stepper, t_old, h, t_new);
   }
-  return 2.0;
+  return end;
+}
+
+/// The step up to an event within it, at time t.
+void Recorder::keep_clipped(const Stepper& stepper, const TwoDouble& t_old, double h, double theta,
+                            double t) {
+  const std::vector<double>& samples = solution_.options.t_eval;
+  const bool is_new = solution_.t.empty() || solution_.t.back() != t;
+  bool is_kept = keeps_steps_;
+  if (!keeps_steps_) {
+    sample_step(stepper, t_old, h, t, false);
+    is_kept = solution_.t.size() < samples.size() && samples[solution_.t.size()] == t;
+  }
+  if (is_kept && is_new) stepper.sample(polynomial_.data(), {}, 1.0, &theta, 1, append(t));
 }
 
 /// Both states are kept, with the same time; of times asked for, the state after.
-void Recorder::state_jumped(double t, const double* /*before*/, const double* after) {
+void Recorder::state_jumped(double t, const double* before, const double* after) {
+  if (finder_) finder_->jump(t, before, after);
   if (keeps_steps_) {
     std::copy_n(after, dimension_, append(t));
   } else if (!solution_.t.empty() && solution_.t.back() == t) {
@@ -50,12 +79,21 @@ void Recorder::state_jumped(double t, const double* /*before*/, const double* af
   }
 }
 
-void Recorder::count() {
-  solution_.resumable_t = solution_.t.size();
-  solution_.resumable_steps = solution_.dense.h.size();
+Recorder::Kept Recorder::kept() const {
+  return {solution_.t.size(), solution_.dense.h.size(), solution_.found.size()};
 }
 
-void Recorder::sample_step(const Stepper& stepper, const TwoDouble& t_old, double h, double t_new) {
+void Recorder::count(bool before_last_step) {
+  if (counted_) return;
+  counted_ = true;
+  const auto [t, steps, found] = before_last_step && may_end() ? at_step_start_ : kept();
+  solution_.resumable_t = t;
+  solution_.resumable_steps = steps;
+  solution_.resumable_found = found;
+}
+
+void Recorder::sample_step(const Stepper& stepper, const TwoDouble& t_old, double h, double t_new,
+                           bool with_end) {
   const std::vector<double>& samples = solution_.options.t_eval;
   const std::size_t first = solution_.t.size();
   std::size_t end = first;
@@ -68,7 +106,8 @@ void Recorder::sample_step(const Stepper& stepper, const TwoDouble& t_old, doubl
     stepper.sample(polynomial_.data(), t_old, h, samples.data() + first,
                    static_cast<int>(end - first), solution_.states.data() + first * dimension_);
   }
-  if (end < samples.size() && samples[end] == t_new) stepper.get_new_state(append(t_new));
+  if (with_end && end < samples.size() && samples[end] == t_new)
+    stepper.get_new_state(append(t_new));
 }
 
 double* Recorder::append(double t) {

@@ -100,4 +100,92 @@ double first_negative(const std::function<double(double)>& f, int samples) {
   return none;
 }
 
+namespace {
+
+using LongForm = std::array<double, highest_degree + 1>;
+
+/// Takes the first half of the interval into `left`, and leaves the second in `right`.
+void halve(LongForm& left, LongForm& right, int degree) {
+  for (int i = 0; i <= degree; ++i) {
+    left[i] = right[0];
+    for (int k = 0; k < degree - i; ++k) right[k] = 0.5 * (right[k] + right[k + 1]);
+  }
+}
+
+/// Where the polynomial with derivative b on low .. high turns. Closer together than 2^-30 of the
+/// step, turning points differ by less than rounding: one stands for them.
+class TurningPoints {
+ public:
+  TurningPoints(const double* c, int degree, std::vector<TurningPoint>& found)
+      : c_(c), degree_(degree), found_(found) {}
+
+  void search(const LongForm& b, double low, double high, int depth) {
+    const int last = degree_ - 1;
+    int changes = 0;
+    int sign_before = 0;
+    for (int i = 0; i <= last; ++i) {
+      const int here = sign(b[i]);
+      changes += here != 0 && here == -sign_before;
+      if (here != 0) sign_before = here;
+    }
+    if (changes == 0) return;
+    if (changes == 1) {
+      return append(
+          pendcore::bisect([this](double theta) { return slope(theta); }, low, high, sign_before));
+    }
+    const double middle = 0.5 * (low + high);
+    if (depth == 30) return append(middle);
+    LongForm left{};
+    LongForm right = b;
+    halve(left, right, last);
+    search(left, low, middle, depth + 1);
+    if (right[0] == 0.0) append(middle);
+    search(right, middle, high, depth + 1);
+  }
+
+ private:
+  void append(double theta) { found_.push_back({theta, value(c_, degree_, theta)}); }
+  double slope(double theta) const {
+    double sum = degree_ * c_[degree_];
+    for (int k = degree_ - 1; k > 0; --k) sum = sum * theta + k * c_[k];
+    return sum;
+  }
+
+  const double* c_;
+  int degree_;
+  std::vector<TurningPoint>& found_;
+};
+
+}  // namespace
+
+void bernstein_form(const double* coefficients, int degree, double* bernstein) {
+  double binomial = 1.0;
+  for (int k = 0; k <= degree; ++k) {
+    bernstein[k] = coefficients[k] / binomial;
+    binomial = binomial * (degree - k) / (k + 1);
+  }
+  for (int k = 1; k <= degree; ++k) {
+    for (int i = degree; i >= k; --i) bernstein[i] += bernstein[i - 1];
+  }
+}
+
+void find_roots(const double* coefficients, int degree, double end, double noise,
+                std::vector<Root>& found) {
+  const double start = coefficients[0];
+  double reach = noise;  // a bound
+  for (int k = 1; k <= degree; ++k) reach += std::abs(coefficients[k]);
+  if (std::abs(start) > reach && sign(start) == sign(end)) return;
+  LongForm b{};
+  bernstein_form(coefficients, degree, b.data());
+  b[degree] = end;
+  const auto [least, largest] = std::minmax_element(b.begin(), b.begin() + degree + 1);
+  if (*least > noise || *largest < -noise) return;
+  LongForm slopes{};
+  for (int i = 0; i < degree; ++i) slopes[i] = b[i + 1] - b[i];
+  std::vector<TurningPoint> turning_points;
+  TurningPoints(coefficients, degree, turning_points).search(slopes, 0.0, 1.0, 0);
+  find_roots([=](double theta) { return value(coefficients, degree, theta); }, start,
+             turning_points, end, noise, found);
+}
+
 }  // namespace pendcore

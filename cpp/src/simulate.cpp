@@ -94,11 +94,16 @@ std::string table_that_ends(const Scene& scene, double t, bool forward) {
 
 /// What happened, and for a run that failed where, and whether it was stiff there.
 std::string message_of(const Ending& ending, const Scene& scene, const Solution& solution,
-                       const std::string& remark) {
+                       const std::string& remark, int ended_by) {
   std::string message(text(ending.status).sentence);
   if (ending.status == Status::at_rest) {
     const double since = solution.resumable.t.high;
     return message + " (at t = " + text(since) + " s: " + remark + ")";
+  }
+  if (ending.status == Status::event) {
+    const std::vector<Event>& events = solution.options.events;
+    return message + " (at t = " + text(solution.t_reached) +
+           " s: " + event_name(events[ended_by], ended_by) + ")";
   }
   if (text(ending.status).success) return message;
   if (ending.chatters) {
@@ -177,8 +182,8 @@ void see_whether_ledger_is_finite(const std::vector<double>& y, int n, Ending& e
 enum class Before { nothing, a_start, steps };
 
 /// From the solution's resumable position to t_end.
-void run(const Scene& scene, Solution& solution, double t_end, const Limits& limits,
-         Before before) {
+void run(const Scene& scene, Solution& solution, double t_end, const Limits& limits, Before before,
+         const std::vector<long long>& passed_events = {}) {
   const Options& options = solution.options;
   const EquationsOfMotion equations = equations_of_motion(scene);
   const auto stepper = make_stepper(scene, equations, options.method, options.ledger);
@@ -189,7 +194,7 @@ void run(const Scene& scene, Solution& solution, double t_end, const Limits& lim
   const std::vector<double> atol = absolute_tolerances(options, n);
   stepper->set_tolerances(rtol.data(), atol.data());
 
-  Recorder recorder(solution, *stepper);
+  Recorder recorder(solution, *stepper, scene, passed_events);
   if (before != Before::nothing && solution.dense.degree != stepper->interpolant_degree()) {
     throw std::invalid_argument("the dense output of this solution is not that of its method");
   }
@@ -236,13 +241,14 @@ void run(const Scene& scene, Solution& solution, double t_end, const Limits& lim
     ending = integrate(*stepper, position, solution.resumable, limits, recorder,
                        switching ? &*switching : nullptr);
   }
-  if (!ending.cut) recorder.count();
+  recorder.count(ending.status == Status::event || ending.status == Status::callback_error);
   see_whether_ledger_is_finite(position.y, solution.n, ending);
   solution.status = ending.status;
   solution.statistics = position.statistics;
   solution.t_reached = position.t.high;
   solution.y_reached = std::move(position.y);
-  solution.message = message_of(ending, scene, solution, switching ? switching->remark() : "");
+  solution.message = message_of(ending, scene, solution, switching ? switching->remark() : "",
+                                recorder.ended_by());
   solution.error = ending.error;
   if (options.store == Store::end) {
     solution.t = {solution.t_reached};
@@ -301,6 +307,10 @@ Solution simulate(const Scene& scene, const std::vector<double>& q0, const std::
   if (!std::isfinite(t0)) refuse("t_span[0]", t0, "finite (s)");
   if (!std::isfinite(t_end)) refuse("t_span[1]", t_end, "finite (s)");
   check(options);
+  for (std::size_t i = 0; i < options.events.size(); ++i) {
+    const Event& event = options.events[i];
+    check_event(event_name(event, i) + ": ", event, static_cast<int>(n));
+  }
   check_times(options.t_eval, t0, t_end);
 
   Solution solution;
@@ -345,6 +355,9 @@ Solution resume(const Scene& scene, const Solution& solution, double t_end,
     check_run(scene, {solution.start.begin(), middle}, {middle, middle + solution.n}, solution.t0,
               t_end);
   }
+  std::vector<long long> passed_events(options.events.size());
+  for (const FoundEvent& one : longer.found) ++passed_events[one.event];
+  longer.found.resize(longer.resumable_found);
   const auto dimension = static_cast<std::size_t>(longer.dimension);
   const auto degree = static_cast<std::size_t>(longer.dense.degree);
   longer.t.resize(longer.resumable_t);
@@ -355,7 +368,7 @@ Solution resume(const Scene& scene, const Solution& solution, double t_end,
   longer.dense.coefficients.resize(longer.resumable_steps * (degree + 1) * dimension);
   Limits limits = limits_of(options, t_end);
   limits.monitor = monitor;
-  run(scene, longer, t_end, limits, has_begun ? Before::steps : Before::a_start);
+  run(scene, longer, t_end, limits, has_begun ? Before::steps : Before::a_start, passed_events);
   return longer;
 }
 

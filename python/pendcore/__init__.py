@@ -15,6 +15,7 @@
     sol(2.5)                                     # the state at any time: q_1, q_2, qd_1, qd_2
     sol.reactions()                              # N: on each link, where it begins
     sol.energy().total                           # J; with ledger=True, .ledger: where it went
+    sol.events                                   # times and states at which what was asked for is
     sol.plot()                                   # the angles over time, as in the textbook
     sol.save("run.npz")                          # and pc.load("run.npz")
 
@@ -25,7 +26,7 @@ joints count from 1.
 
 from __future__ import annotations
 
-from pendcore import effects
+from pendcore import effects, events
 from pendcore._core import __version__
 from pendcore.angles import angles_from_vertical, angles_to_vertical
 from pendcore.archive import load
@@ -54,6 +55,7 @@ __all__ = [
     "angles_from_vertical",
     "angles_to_vertical",
     "effects",
+    "events",
     "load",
     "read_case",
     "simulate",

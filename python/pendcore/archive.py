@@ -20,6 +20,7 @@ from pendcore import _core
 from pendcore.case import Case
 from pendcore.case_file import case_from_text
 from pendcore.effect_class import OwnEffect, effect_of
+from pendcore.events import Function
 from pendcore.link import Link
 from pendcore.scene import Scene
 from pendcore.solution import Solution
@@ -34,6 +35,9 @@ def save(solution: Solution, path: str | os.PathLike[str]) -> None:
     for effect in solution.scene.effects:
         if isinstance(effect, OwnEffect):
             raise effect.cannot_be("saved", _KEEP)
+    for event in solution._events_asked_for():
+        if isinstance(event, Function):
+            raise event.cannot_be("saved", _KEEP)
     entries: dict[str, Any] = {
         "t": solution.t,
         "q": solution.q,

@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from pendcore.arguments import finite_array, vector
 from pendcore.effect_class import Effect, OwnEffect, Part
+from pendcore.events import Event, Function, events_asked_for
 from pendcore.scene import Scene
 from pendcore.simulate import simulate
 from pendcore.solution import Solution
@@ -75,6 +76,8 @@ class Case:
             if key not in RUN_DEFAULTS:
                 known = ", ".join(RUN_DEFAULTS)
                 raise TypeError(f"options: simulate() has no keyword {key!r}: known are {known}")
+        if "events" in given:
+            given["events"] = events_asked_for(given["events"])
         object.__setattr__(self, "scene", scene)
         object.__setattr__(self, "q0", vector("q0", q0, n, "rad"))
         object.__setattr__(self, "qd0", vector("qd0", qd0, n, "rad/s"))
@@ -98,6 +101,7 @@ class Case:
         asked = {key: _plain(value) for key, value in solution._run.arguments.items()}
         start = {key: asked.pop(key) for key in ("q0", "qd0")}
         t_span = (asked.pop("t_start"), asked.pop("t_end"))
+        asked["events"] = tuple(solution._events_asked_for())
         options = {key: value for key, value in asked.items() if value != RUN_DEFAULTS[key]}
         return cls(
             scene=solution.scene, **start, t_span=t_span, name=solution.name, options=options
@@ -120,15 +124,18 @@ class Case:
         Raises
         ------
         TypeError
-            If an option or an effect is a function, which TOML cannot hold.
+            If an option, an effect or an event is a function, which TOML cannot hold.
         """
         t_start, t_end = self.t_span
+        options = dict(self.options)
+        events = options.pop("events", ())
         tables: list[tuple[str, dict[str, Any]]] = [
             ("", {"name": self.name, "gravity": self.scene.gravity}),
             *(("[[link]]\n", link.particulars()) for link in self.scene.links),
             *(("[[effect]]\n", _effect_table(effect)) for effect in self.scene.effects),
+            *(("[[event]]\n", _event_table(event)) for event in events),
             ("[start]\n", {"q": self.q0, "qd": self.qd0}),
-            ("[run]\n", {"t_start": t_start, "t_end": t_end, **self.options}),
+            ("[run]\n", {"t_start": t_start, "t_end": t_end, **options}),
         ]
         return "\n".join(header + "".join(_lines(table)) for header, table in tables)
 
@@ -169,6 +176,12 @@ def _effect_table(effect: Effect) -> dict[str, Any]:
     if isinstance(effect, OwnEffect):
         raise effect.cannot_be("written as TOML")
     return {"kind": effect.kind, **effect.particulars()}
+
+
+def _event_table(event: Event) -> dict[str, Any]:
+    if isinstance(event, Function):
+        raise event.cannot_be("written as TOML")
+    return {"kind": event.kind, **event.particulars()}
 
 
 def _lines(table: Mapping[str, Any]) -> Iterator[str]:

@@ -14,6 +14,9 @@ A case::
     kind = "viscous_joint"          # any of pendcore.effects.kinds(), and its parameters
     joint = 1
     damping = 0.1                   # N m s/rad
+    [[event]]                       # a table per event to look for; none is needed
+    kind = "rate_zero"              # any of pendcore.events but Function, and its parameters
+    joint = 2
     [start]
     q = [0.7853981633974483, 1.0471975511965976]    # rad; or q_deg = [45, 60]
     qd = [0.0, 0.0]                 # rad/s; 0 if left out; one number holds for every link
@@ -27,8 +30,8 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Sequence
-from dataclasses import fields
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import MISSING, fields
 from difflib import get_close_matches
 from math import radians
 from pathlib import Path
@@ -37,16 +40,19 @@ from typing import Any
 from pendcore.arguments import vector
 from pendcore.case import RUN_DEFAULTS, Case
 from pendcore.effect_class import KINDS, PARTS, Effect, OwnEffect, effect_of
+from pendcore.events import KINDS as EVENT_KINDS
+from pendcore.events import Event, Function
 from pendcore.link import Link
 from pendcore.scene import Scene
 from pendcore.toml_text import Place, TomlText
 
 KEYS = {
-    "": ("name", "gravity", "link", "effect", "start", "run"),
+    "": ("name", "gravity", "link", "effect", "event", "start", "run"),
     "link": tuple(f.name for f in fields(Link)),
     "effect": ("kind",),
+    "event": ("kind",),
     "start": ("q", "q_deg", "qd"),
-    "run": ("t_start", "t_end", *RUN_DEFAULTS),
+    "run": ("t_start", "t_end", *(key for key in RUN_DEFAULTS if key != "events")),
 }
 """The known keys of every kind of table; "" stands for what is above all tables."""
 
@@ -58,7 +64,17 @@ EFFECT_KEYS = {
 }
 """The known keys of an effect of every kind that a file can hold."""
 
-_ANYWHERE = KEYS | {"effect": tuple({key for keys in EFFECT_KEYS.values() for key in keys})}
+EVENT_KEYS = {
+    kind: (*KEYS["event"], *(f.name for f in fields(cls)))
+    for kind, cls in EVENT_KINDS.items()
+    if cls is not Function
+}
+"""The same of an event."""
+
+_ANYWHERE = KEYS | {
+    "effect": tuple({key for keys in EFFECT_KEYS.values() for key in keys}),
+    "event": tuple({key for keys in EVENT_KEYS.values() for key in keys}),
+}
 
 
 def read_case(source: str | os.PathLike[str]) -> Case:
@@ -110,6 +126,8 @@ def case_from_text(content: str, name: str) -> Case:
     scene = _scene(text)
     q0, qd0 = _start(text, len(scene.links))
     t_span, options = _run(text)
+    if events := _events(text):
+        options["events"] = events
     title = text.value(("name",)) or ""
     if not isinstance(title, str):
         raise text.error(("name",), f"name = {title!r}: must be a string")
@@ -138,21 +156,20 @@ def _scene(text: TomlText) -> Scene:
         raise text.error(_place(str(error)), str(error)) from None
 
 
-def _effects(text: TomlText) -> list[Effect]:
-    tables = text.value(("effect",)) or []
+def _tables(text: TomlText, noun: str) -> list[dict[str, Any]]:
+    tables = text.value((noun,)) or []
     if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
-        raise text.error(("effect",), "effects are tables [[effect]], one for each")
-    return [_effect(text, i, dict(table)) for i, table in enumerate(tables)]
+        raise text.error((noun,), f"{noun}s are tables [[{noun}]], one for each")
+    return [dict(table) for table in tables]
+
+
+def _effects(text: TomlText) -> list[Effect]:
+    return [_effect(text, i, table) for i, table in enumerate(_tables(text, "effect"))]
 
 
 def _effect(text: TomlText, i: int, table: dict[str, Any]) -> Effect:
     place = ("effect", i)
-    kind = table.pop("kind", None)
-    if kind is None:
-        raise text.error(place, f"effect {i + 1} needs kind: {', '.join(EFFECT_KEYS)}")
-    if not isinstance(kind, str) or kind not in EFFECT_KEYS:
-        raise text.error((*place, "kind"), f"kind = {kind!r}: {_remedy(kind)}")
-    text.check_keys(place, _ANYWHERE | {"effect": EFFECT_KEYS[kind]})
+    kind = _kind(text, place, table, EFFECT_KEYS, KINDS)
     where = f"effect {i + 1} ({kind}): "
     for parameter in KINDS[kind].description.parameters:
         value = table.get(parameter.name)
@@ -166,17 +183,54 @@ def _effect(text: TomlText, i: int, table: dict[str, Any]) -> Effect:
         raise text.error(_place(str(error)), str(error)) from None
 
 
-def _remedy(kind: object) -> str:
-    """Return what to write for a kind of effect that cannot stand in a file."""
-    known = ", ".join(EFFECT_KEYS)
+def _events(text: TomlText) -> tuple[Event, ...]:
+    return tuple(_event(text, i, table) for i, table in enumerate(_tables(text, "event")))
+
+
+def _event(text: TomlText, i: int, table: dict[str, Any]) -> Event:
+    place = ("event", i)
+    kind = _kind(text, place, table, EVENT_KEYS, EVENT_KINDS)
+    for f in fields(EVENT_KINDS[kind]):
+        if f.default is MISSING and f.name not in table:
+            raise text.error(place, f"event {i + 1} ({kind}) needs {f.name}")
+    try:
+        return EVENT_KINDS[kind](**table)
+    except (ValueError, TypeError) as error:
+        complaint = str(error).partition(": ")[2] or str(error)
+        key = re.match(r"\w*", complaint)
+        at = (*place, key[0]) if key and key[0] in table else place
+        raise text.error(at, f"event {i + 1} ({kind}): {complaint}") from None
+
+
+def _kind(
+    text: TomlText,
+    place: tuple[str, int],
+    table: dict[str, Any],
+    keys: Mapping[str, Sequence[str]],
+    kinds: Collection[str],
+) -> str:
+    """Take the kind out of the table of an effect or event, and check its keys."""
+    noun, i = place
+    kind = table.pop("kind", None)
+    if kind is None:
+        raise text.error(place, f"{noun} {i + 1} needs kind: {', '.join(keys)}")
+    if not isinstance(kind, str) or kind not in keys:
+        raise text.error((*place, "kind"), f"kind = {kind!r}: {_remedy(noun, kind, keys, kinds)}")
+    text.check_keys(place, _ANYWHERE | {noun: keys[kind]})
+    return kind
+
+
+def _remedy(noun: str, kind: object, keys: Iterable[str], kinds: Collection[str]) -> str:
+    """Return what to write for a kind that cannot stand in a file."""
+    known = ", ".join(keys)
     if not isinstance(kind, str):
         return f"must be one of {known}"
-    if kind in KINDS:
-        return "is a function, which a file cannot hold: add it to the scene in Python"
-    near = get_close_matches(kind, EFFECT_KEYS, n=1, cutoff=0.5)
-    return (
-        f"is no effect: did you mean {near[0]!r}?" if near else f"is no effect: known are {known}"
-    )
+    if kind in kinds:
+        where = "to the scene" if noun == "effect" else "to events"
+        return f"is a function, which a file cannot hold: add it {where} in Python"
+    near = get_close_matches(kind, keys, n=1, cutoff=0.5)
+    remedy = f"did you mean {near[0]!r}?" if near else f"known are {known}"
+    return f"is no {noun}: {remedy}"
 
 
 def _start(text: TomlText, n: int) -> tuple[Sequence[float], Sequence[float] | float]:
@@ -219,6 +273,8 @@ def _place(message: str) -> Place:
         return ("link", int(found[1]) - 1, found[2])
     if found := re.match(r"effect (\d+) \(\w+\): ([\w.]+)", message):
         return ("effect", int(found[1]) - 1, *found[2].split("."))
+    if found := re.match(r"event (\d+) \([^:]*\): (\w+)", message):
+        return ("event", int(found[1]) - 1, found[2])
     if found := re.match(r"\w+", message):
         known: dict[str, Place] = {"t_span": ("run",), "links": ("link", 0)}
         known |= {key: ("run", key) for key in KEYS["run"]}

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from pendcore import _core
 from pendcore.arguments import known_keywords
+from pendcore.events import Event, events_asked_for
 from pendcore.progress import Progress, callback
 from pendcore.scene import Scene
 from pendcore.solution import Solution, solution_of
@@ -32,6 +33,7 @@ def simulate(
     step: float | None = None,
     max_steps: int = 10_000_000,
     time_limit: float | None = None,
+    events: Iterable[Event] = (),
     ledger: bool = False,
     progress: Progress = None,
 ) -> Solution:
@@ -69,6 +71,9 @@ def simulate(
         The run ends with status ``max_steps`` after as many attempts.
     time_limit : float, optional
         s of the clock; the run then ends with status ``time_limit``.
+    events : iterable of pendcore.events.Event
+        What to look for: ``sol.events`` has a list for each. They change no step; those that are
+        ``terminal`` end the run, with status ``event``.
     ledger : bool
         Whether ``sol.energy().ledger`` tells work and loss of every effect. They are integrated
         beside the state, and change no bit of it.
@@ -86,7 +91,7 @@ def simulate(
     ------
     ValueError, TypeError
         If an argument is not what is asked for; the message names it.
-    KeyboardInterrupt, or any exception of ``progress`` or of an effect's function
+    KeyboardInterrupt, or any exception of ``progress`` or of an effect's or event's function
         With the run so far as the attribute ``solution``.
 
     Warns
@@ -109,10 +114,11 @@ def simulate(
         t_start, t_end = t_span
     except (TypeError, ValueError):
         raise TypeError(f"t_span = {t_span!r}: must be (t_start, t_end), in s") from None
+    wanted = [event._as_pair() for event in events_asked_for(events)]
     report = callback(progress)
     run = _core.simulate(
         scene._compiled, q0, qd0, t_start, t_end, method, rtol, atol, t_eval, store,
-        first_step, max_step, step, max_steps, time_limit, ledger, report, warn,
+        first_step, max_step, step, max_steps, time_limit, wanted, ledger, report, warn,
     )  # fmt: skip
     return solution_of(scene, run, report)
 

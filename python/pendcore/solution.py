@@ -16,6 +16,7 @@ import numpy.typing as npt
 from pendcore import _core
 from pendcore.arguments import Floats, finite_array
 from pendcore.energy import Energy, Ledger
+from pendcore.events import Event, Found, event_of, found_events
 from pendcore.progress import Progress, ProgressBar, callback
 from pendcore.scene import Scene
 
@@ -80,12 +81,13 @@ class Solution:
         For people; of the case, if there was one. It may be set.
     """
 
-    __slots__ = ("_run", "name", "scene")
+    __slots__ = ("_events", "_run", "name", "scene")
 
     def __init__(self, scene: Scene, run: _core.Run, name: str = "") -> None:
         self.scene = scene
         self.name = name
         self._run = run
+        self._events: list[list[Found]] | None = None
 
     @property
     def t(self) -> Floats:
@@ -160,6 +162,20 @@ class Solution:
     def stats(self) -> Statistics:
         """What the run took: right-hand sides, steps, and what limited them."""
         return Statistics(**self._run.statistics)
+
+    @property
+    def events(self) -> list[list[Found]]:
+        """What was found of each event asked for, along the run: ``.t``, ``.q``, ``.qd``, ``.y``.
+
+        Their states are the method's interpolant at the very place in the step; ``sol(event.t)``
+        differs by the rounding of t. See `pendcore.events.Found`.
+        """
+        if self._events is None:
+            self._events = found_events(len(self._events_asked_for()), self._run.found)
+        return self._events
+
+    def _events_asked_for(self) -> list[Event]:
+        return [event_of(kind, values) for kind, values in self._run.arguments["events"]]
 
     def relative_angles(self) -> Floats:
         """Angles of the joints, phi_i = q_i - q_{i-1} with q_0 = 0, rad, (n_t, n)."""

@@ -38,6 +38,28 @@ long long count(const Scene& scene, Store store, double t_end, bool ledger) {
 
 }  // namespace
 
+TEST_CASE("events that are not found ask for no memory either") {
+  const std::vector<Event> events = {
+      {.function = events::LinkAngle{.link = 1, .value = 50.0}, .terminal = 1},
+      {.function = events::JointAngle{.joint = 2, .value = -50.0}},
+      {.function = events::TipLine{.point = {0.0, 2.5}, .normal = {0.3, 1.0}}},
+      {.function = events::Function{.f = [](double, std::span<const double> q,
+                                            auto) { return q[0] + 50.0; }}},
+  };
+  const std::vector<Link> links(3, Link::uniform_rod(1.0, 0.7));
+  const auto count_to = [&](double t_end) {
+    Options options;
+    options.store = Store::end;
+    options.events = events;
+    const long long before = allocations;
+    const Solution solution =
+        simulate({.links = links}, {0.7, 0.7, 0.7}, {0.1, 0.1, 0.1}, 0.0, t_end, options);
+    CHECK(solution.status == Status::finished);
+    return allocations - before;
+  };
+  CHECK(count_to(20.0) == count_to(2.0));
+}
+
 TEST_CASE("the number of allocations does not depend on the number of steps") {
   const std::vector<Effect> effects = {
       ViscousJoint{.joint = 1, .damping = 0.01},

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pendcore/integrate/event.hpp"
 #include "pendcore/integrate/integrate.hpp"
 
 namespace pendcore {
@@ -35,6 +36,7 @@ struct Options {
   Store store = Store::dense;
   std::vector<double> t_eval;        ///< s, the times asked for, strictly monotone along the run
   std::optional<double> first_step;  ///< s; chosen from the tolerances unless given
+  std::vector<Event> events;         ///< to look for; they change no step
   bool ledger = false;               ///< keep the work and the losses beside the state
   double max_step = std::numeric_limits<double>::infinity();    ///< s
   std::optional<double> step;                                   ///< s, a fixed step

@@ -1,31 +1,52 @@
 /// \file
-/// Keeps of the steps what the options ask for.
+/// Keeps of the steps what the options ask for, and the events that are found on them.
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "pendcore/event_finder.hpp"
 #include "pendcore/solution.hpp"
 
 namespace pendcore {
 
 class Recorder final : public Observer {
  public:
-  Recorder(Solution& solution, const Stepper& stepper);
+  /// Of each event, so many occurrences end the run no more: it ended there, and goes on.
+  Recorder(Solution& solution, const Stepper& stepper, const Scene& scene,
+           const std::vector<long long>& passed_events);
 
   void start(double t, const std::vector<double>& y);
   double step_accepted(const Stepper& stepper, const TwoDouble& t_old, double h,
                        double t_new) override;
   void state_jumped(double t, const double* before, const double* after) override;
-  void end_in_sight() override { count(); }
+  void end_in_sight() override { count(false); }
+  bool may_end() const override { return finder_ && finder_->may_end(); }
+  void step_begins() override { at_step_start_ = kept(); }
+  bool has_ended() const override { return finder_ && finder_->ended_by() >= 0; }
 
-  /// What is kept so far is what an unstopped run has as well.
-  void count();
+  /// What is kept so far is what an unstopped run has as well; of a run that takes its last step
+  /// again, what was kept before that. The first count holds.
+  void count(bool before_last_step);
+
+  /// The event that ended the run; -1 if none did.
+  int ended_by() const { return finder_ ? finder_->ended_by() : -1; }
 
  private:
-  void sample_step(const Stepper& stepper, const TwoDouble& t_old, double h, double t_new);
+  struct Kept {
+    std::size_t t, steps, found;
+  };
+  Kept kept() const;
+  void sample_step(const Stepper& stepper, const TwoDouble& t_old, double h, double t_new,
+                   bool with_end = true);
+  void keep_clipped(const Stepper& stepper, const TwoDouble& t_old, double h, double theta,
+                    double t);
   double* append(double t);  ///< room for the state at t
 
   Solution& solution_;
+  std::optional<EventFinder> finder_;
+  Kept at_step_start_{};
+  bool counted_ = false;
   bool keeps_polynomials_;
   bool keeps_steps_;
   std::size_t dimension_;

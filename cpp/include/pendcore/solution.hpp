@@ -38,12 +38,14 @@ struct Solution {
   std::vector<Account> accounts;  ///< the ledger's, if it is kept
   double t_reached = 0.0;         ///< s; before t_end if the run failed
   std::vector<double> y_reached;  ///< (dimension), the state there
+  std::vector<FoundEvent> found;  ///< of the events asked for, along the run
   std::exception_ptr error;       ///< what a function of the user's threw, if it ended the run
 
   /// Where a resumed run goes on: before the first step that the end of this one cut short.
   Position resumable;
   std::size_t resumable_t = 0;      ///< so many of `t` an unstopped run has as well,
   std::size_t resumable_steps = 0;  ///< and so many polynomials
+  std::size_t resumable_found = 0;  ///< and so many events
 
   /// States at m times within the run, (m, dimension) row-major, from the dense output; where two
   /// steps meet, the state itself. Throws std::invalid_argument outside the run or without dense

@@ -6,6 +6,7 @@ from collections.abc import Hashable
 from typing import TYPE_CHECKING, Any
 
 from pendcore.effect_class import OwnEffect
+from pendcore.events import Function
 from pendcore.solution import Solution
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ def to_pandas(solution: Solution) -> pd.DataFrame:
     """Return a row per time, index ``time`` (s), columns q_1.. (rad) and qd_1.. (rad/s).
 
     ``attrs`` holds ``units``, by column, and ``case``, the TOML of what was simulated, but for
-    effects that are functions.
+    effects or events that are functions.
 
     Raises
     ------
@@ -69,7 +70,8 @@ def to_xarray(solution: Solution) -> xr.Dataset:
 
 
 def _case(solution: Solution) -> dict[Hashable, Any]:
-    """Return the case as TOML, which a scene with a function among its effects has not."""
-    if any(isinstance(effect, OwnEffect) for effect in solution.scene.effects):
+    """Return the case as TOML, which one with a function among effects or events has not."""
+    acting = any(isinstance(effect, OwnEffect) for effect in solution.scene.effects)
+    if acting or any(isinstance(event, Function) for event in solution._events_asked_for()):
         return {}
     return {"case": solution.case().to_toml()}

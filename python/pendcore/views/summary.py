@@ -33,6 +33,7 @@ def facts(solution: Solution) -> dict[str, Any]:
         "mobility": case.scene.mobility()._asdict(),
         "start": {"t": case.t_span[0], "q": case.q0, "qd": case.qd0},
         "run": {"t_end": case.t_span[1]} | _run_options(solution),
+        "events": _events(solution),
         "status": solution.status,
         "message": solution.message,
         "success": solution.success,
@@ -67,6 +68,14 @@ def _effect(effect: Effect) -> dict[str, Any]:
     return {"kind": effect.kind, **values, "text": repr(effect)}
 
 
+def _events(solution: Solution) -> list[dict[str, Any]]:
+    """Return each event asked for, and when it was found."""
+    return [
+        {"kind": event.kind, "text": repr(event), "times": [one.t for one in found]}
+        for event, found in zip(solution._events_asked_for(), solution.events, strict=True)
+    ]
+
+
 def _ledger(solution: Solution) -> dict[str, float] | None:
     """Return its entries at the last of the kept times, if it was kept, J."""
     ledger = solution.energy().ledger
@@ -79,6 +88,7 @@ def _run_options(solution: Solution) -> dict[str, Any]:
     asked = solution._run.arguments
     always = {key: asked[key] for key in ("method", "rtol", "atol")}
     options = always | dict(solution.case().options)
+    options.pop("events", None)
     if "step" in options:  # a fixed step takes the place of the tolerances
         del options["rtol"], options["atol"]
     return options
@@ -122,6 +132,8 @@ def _happened(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
     stats, end, energy = found["statistics"], found["end"], found["energy"]
     yield "status", outcome(found["status"], found["message"])
     yield "end", f"t = {end['t']:.6g} s, {_state(end)}"
+    for i, event in enumerate(found["events"]):
+        yield "" if i else "events", f"{event['text']}: {_times(event['times'])}"
     yield "steps", f"{stats['accepted']} accepted, {stats['rejected']} rejected"
     yield "", f"{stats['min_step']:.3g} ... {stats['max_step']:.3g} s long"
     yield "work", f"{stats['nfev']} right-hand sides"
@@ -147,6 +159,13 @@ def _state(at: dict[str, Any], in_degrees: bool = False) -> str:
     if in_degrees:
         q += f" = ({listed([degrees(x) for x in at['q']])}) deg"
     return f"{q}, qd = ({listed(at['qd'])}) rad/s"
+
+
+def _times(times: list[float]) -> str:
+    if not times:
+        return "not found"
+    shown = [f"{t:.6g}" for t in times[:_MANY]] + ["..."] * (len(times) > _MANY)
+    return f"{len(times)} found, t = {', '.join(shown)} s"
 
 
 def _number(value: float | None) -> str:

@@ -59,7 +59,20 @@ class Observer {
   virtual void state_jumped(double t, const double* before, const double* after) = 0;
   /// The next step is the first that is cut to end at t_end. A run that goes on restarts here.
   virtual void end_in_sight() = 0;
+
+  /// Whether it may end the run, by an event or an exception: each step then begins by writing down
+  /// where, and step_begins(). A run that goes on takes the step again.
+  virtual bool may_end() const { return false; }
+  virtual void step_begins() {}
+  /// Whether the run is to end where it stands: of a step, or of a jump.
+  virtual bool has_ended() const { return false; }
 };
+
+/// The time at a share theta of a step of size h from t_old; never beyond its end.
+inline TwoDouble time_in_step(const TwoDouble& t_old, double h, double theta, double t_new) {
+  const TwoDouble t = t_old + theta * h;
+  return difference(t_new, t) * h < 0.0 ? TwoDouble{t_new, 0.0} : t;
+}
 
 struct Ending {
   Status status;

@@ -1,0 +1,26 @@
+/// \file
+/// Events as Python's numbers, and back: a pair (kind, values), values by their names.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include "pendcore/solution.hpp"
+
+namespace pendcore::bindings {
+
+namespace py = pybind11;
+
+/// The event of a pair. The kind "function" has a Python function as `f`, which whoever holds the
+/// event keeps alive.
+Event make_event(py::handle kind_and_values);
+
+/// The pair of an event; of a function, with `f`.
+py::tuple kind_and_values(const Event& event, const py::object& f);
+
+/// The same for a pickle or a file. TypeError for a function, of which there is nothing to keep.
+py::tuple saved_event(const Event& event, std::size_t i);
+
+/// Of each event: its Python function, or None.
+py::list functions_of(const py::sequence& events);
+
+}  // namespace pendcore::bindings

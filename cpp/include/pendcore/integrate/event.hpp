@@ -1,0 +1,95 @@
+/// \file
+/// EVENTS: zeros of a function of time and state, looked for along a run and never changing it.
+///
+///     JointAngle    phi_j - value                  phi_j = q_j - q_{j-1}
+///     LinkAngle     q_i - value
+///     RateZero      phid_j, or qd_i
+///     TipLine       normal . (tip(t) - point)      m, in units of the normal
+///     Function      f(t, q, qd)
+///
+/// Angles and rates: every sign change on the dense output is found, which is a polynomial; so it
+/// is for the tip's line, by bounds on its second derivative. A Function is sampled.
+///
+/// A zero at the start is no event: an event arms when its function leaves zero. A zero at the end
+/// of a step, and of the run, is one. After an event its function must leave zero. The sign at the
+/// end of a step is that of the state there; the time of an event is its share of the step.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace pendcore {
+
+namespace events {
+
+struct JointAngle {
+  int joint = 1;
+  double value = 0.0;       ///< rad
+  bool every_turn = false;  ///< whether value + 2 pi k counts for every k
+  static constexpr std::string_view kind = "joint_angle";
+};
+
+struct LinkAngle {
+  int link = 1;
+  double value = 0.0;
+  bool every_turn = false;
+  static constexpr std::string_view kind = "link_angle";
+};
+
+/// Of a joint or of a link, one of the two.
+struct RateZero {
+  std::optional<int> joint;
+  std::optional<int> link;
+  static constexpr std::string_view kind = "rate_zero";
+};
+
+struct TipLine {
+  std::array<double, 2> point = {};   ///< of the line, m; x right, y down
+  std::array<double, 2> normal = {};  ///< across the line
+  static constexpr std::string_view kind = "tip_line";
+};
+
+/// Sign changes between samples are found: so many in a step, and one at least every max_step. That
+/// is a distance of samples alone, never of steps.
+struct Function {
+  std::function<double(double t, std::span<const double> q, std::span<const double> qd)> f;
+  int samples = 8;
+  double max_step = std::numeric_limits<double>::infinity();  ///< s
+  static constexpr std::string_view kind = "function";
+};
+
+}  // namespace events
+
+using EventFunction = std::variant<events::JointAngle, events::LinkAngle, events::RateZero,
+                                   events::TipLine, events::Function>;
+
+struct Event {
+  EventFunction function;
+  int direction = 0;       ///< 1: where it rises; -1: where it falls; 0: both, and where it touches
+  long long terminal = 0;  ///< the run ends at every so many occurrences; 0: never
+  std::string name = {};
+};
+
+/// An event that was found.
+struct FoundEvent {
+  int event = 0;                 ///< which, in the order asked for
+  double t = 0.0;                ///< s
+  int direction = 0;             ///< 1: rises; -1: falls; 0: touches zero and turns back
+  std::vector<double> y;         ///< (2n); where the state jumps, that after
+  std::vector<double> y_before;  ///< (2n) where the state jumps, else empty
+};
+
+/// "event 2 (link_angle, 'bottom')"
+std::string event_name(const Event& event, std::size_t i);
+
+/// Throws std::invalid_argument, after `where`, for what is out of its range in a chain of n links.
+void check_event(const std::string& where, const Event& event, int n);
+
+}  // namespace pendcore

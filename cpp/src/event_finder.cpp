@@ -1,0 +1,257 @@
+#include "pendcore/event_finder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "pendcore/integrate/integrate.hpp"
+#include "pendcore/message.hpp"
+
+namespace pendcore {
+namespace {
+
+constexpr double rounding = std::numeric_limits<double>::epsilon();
+constexpr double turn = 6.283185307179586;
+
+}  // namespace
+
+EventFinder::EventFinder(const Scene& scene, const std::vector<Event>& events,
+                         std::vector<FoundEvent>& found, std::vector<long long> passed)
+    : events_(events),
+      found_(found),
+      passed_(std::move(passed)),
+      counts_(events.size()),
+      tip_line_of_(events.size(), -1),
+      n_(static_cast<int>(scene.links.size())),
+      node_y_(2 * scene.links.size(), std::nan("")),
+      node_values_(events.size()) {
+  passed_.resize(events.size());
+  for (const FoundEvent& one : found) ++counts_[one.event];
+  for (std::size_t k = 0; k < events.size(); ++k) {
+    if (const auto* line = std::get_if<events::TipLine>(&events[k].function)) {
+      tip_line_of_[k] = static_cast<int>(tip_lines_.size());
+      tip_lines_.emplace_back(scene, *line);
+    }
+  }
+}
+
+bool EventFinder::may_end() const {
+  return std::ranges::any_of(events_, [](const Event& event) {
+    return event.terminal > 0 || std::holds_alternative<events::Function>(event.function);
+  });
+}
+
+EventFinder::Difference EventFinder::difference_of(const EventFunction& function) const {
+  const auto of_joint = [](int joint, int first) {
+    return Difference{first + joint - 1, joint > 1 ? first + joint - 2 : -1};
+  };
+  if (const auto* angle = std::get_if<events::JointAngle>(&function)) {
+    return of_joint(angle->joint, 0);
+  }
+  if (const auto* angle = std::get_if<events::LinkAngle>(&function)) return {angle->link - 1, -1};
+  const auto& rate = std::get<events::RateZero>(function);
+  if (rate.joint) return of_joint(*rate.joint, n_);
+  return {n_ + rate.link.value_or(1) - 1, -1};
+}
+
+template <class Visitor>
+void EventFinder::for_each_level(double value, bool every_turn, double low, double high,
+                                 Visitor visit) const {
+  if (!every_turn) return visit(value);
+  const double from = (low - value) / turn;
+  const double to = (high - value) / turn;
+  const double margin = 1e-9 + 4.0 * rounding * (std::abs(from) + std::abs(to));
+  const double first = std::ceil(from - margin);
+  const double count = std::floor(to + margin) - first + 1.0;
+  if (!(count <= 1e6)) {
+    throw std::domain_error("every_turn: more than a million turns in one step");
+  }
+  for (int i = 0; i < static_cast<int>(count); ++i) visit(std::fma(first + i, turn, value));
+}
+
+void EventFinder::find_difference(const Step& step, const Difference& difference, double value,
+                                  bool every_turn) {
+  const int degree = step.stepper.interpolant_degree();
+  const int dimension = step.stepper.dimension();
+  polynomial_.resize(degree + 1);
+  double size = 0.0;
+  double reach = 0.0;
+  for (int p = 0; p <= degree; ++p) {
+    const double* const row = step.rows + static_cast<std::ptrdiff_t>(p) * dimension;
+    polynomial_[p] = difference.of(row);
+    size += std::abs(row[difference.plus]);
+    if (difference.minus >= 0) size += std::abs(row[difference.minus]);
+    if (p > 0) reach += std::abs(polynomial_[p]);
+  }
+  const double start = polynomial_[0];
+  const double end = difference.of(y_new_.data());
+  reach = std::max(reach, std::abs(end - start));
+  for_each_level(value, every_turn, start - reach, start + reach, [&](double level) {
+    polynomial_[0] = start - level;
+    const double noise = 8.0 * rounding * (size + std::abs(level));
+    find_roots(polynomial_.data(), degree, end - level, noise, roots_);
+  });
+}
+
+void EventFinder::find_tip_line(std::size_t k, const Step& step) {
+  double start, end;
+  node_values(k, step, start, end);
+  tip_lines_[tip_line_of_[k]].find(step.rows, step.stepper.interpolant_degree(),
+                                   step.stepper.dimension(), step.t_old.high, step.h, start, end,
+                                   roots_);
+}
+
+void EventFinder::find_function(std::size_t k, const events::Function& event, const Step& step) {
+  double start, end;
+  node_values(k, step, start, end);
+  const double spaced = std::ceil(std::abs(step.h) / event.max_step);
+  const int samples = static_cast<int>(std::clamp(spaced, double(event.samples), 1e6));
+  samples_.clear();
+  for (int i = 1; i < samples; ++i) {
+    const double theta = static_cast<double>(i) / samples;
+    samples_.push_back({theta, sampled(k, step, theta)});
+  }
+  find_roots([&](double theta) { return sampled(k, step, theta); }, start, samples_, end, 0.0,
+             roots_);
+}
+
+/// Of what costs more than a difference: at the start of a step it is that of the end before.
+void EventFinder::node_values(std::size_t k, const Step& step, double& start, double& end) {
+  const bool is_known =
+      node_t_ == step.t_old.high && std::equal(node_y_.begin(), node_y_.end(), step.rows);
+  start = is_known ? node_values_[k] : function_at(k, step.t_old.high, step.rows);
+  end = node_values_[k] = function_at(k, step.t_new, y_new_.data());
+}
+
+double EventFinder::sampled(std::size_t k, const Step& step, double theta) {
+  step.stepper.sample(step.rows, {}, 1.0, &theta, 1, y_.data());
+  return function_at(k, std::fma(theta, step.h, step.t_old.high), y_.data());
+}
+
+/// A TipLine or a Function, at a state.
+double EventFinder::function_at(std::size_t k, double t, const double* y) {
+  if (tip_line_of_[k] >= 0) return tip_lines_[tip_line_of_[k]].at(t, y);
+  const auto n = static_cast<std::size_t>(n_);
+  const double value =
+      std::get<events::Function>(events_[k].function).f(t, std::span(y, n), std::span(y + n, n));
+  if (!std::isnan(value)) return value;
+  throw std::domain_error(event_name(events_[k], k) + ": is NaN at t = " + text(t) +
+                          " s: must be a number");
+}
+
+void EventFinder::find(std::size_t k, const Step& step) {
+  roots_.clear();
+  const EventFunction& function = events_[k].function;
+  if (tip_line_of_[k] >= 0) {
+    find_tip_line(k, step);
+  } else if (const auto* own = std::get_if<events::Function>(&function)) {
+    find_function(k, *own, step);
+  } else {
+    const Difference difference = difference_of(function);
+    std::visit(
+        [&](const auto& one) {
+          if constexpr (requires { one.every_turn; }) {
+            find_difference(step, difference, one.value, one.every_turn);
+          } else {
+            find_difference(step, difference, 0.0, false);
+          }
+        },
+        function);
+  }
+  for (const Root& root : roots_) {
+    if (events_[k].direction != 0 && root.direction != events_[k].direction) continue;
+    candidates_.push_back({root.theta, root.direction, static_cast<int>(k)});
+  }
+}
+
+double EventFinder::look(const Stepper& stepper, const double* rows, const TwoDouble& t_old,
+                         double h, double t_new) {
+  y_new_.resize(stepper.dimension());
+  y_.resize(stepper.dimension());
+  stepper.get_new_state(y_new_.data());
+  const Step step{stepper, rows, t_old, h, t_new};
+  candidates_.clear();
+  at_the_end_.clear();
+  for (std::size_t k = 0; k < events_.size(); ++k) find(k, step);
+  node_t_ = t_new;
+  std::copy_n(y_new_.begin(), node_y_.size(), node_y_.begin());
+  std::ranges::sort(candidates_, [](const Candidate& a, const Candidate& b) {
+    return a.theta != b.theta ? a.theta < b.theta : a.event < b.event;
+  });
+  double stop = 2.0;
+  for (const Candidate& candidate : candidates_) {
+    if (candidate.theta > stop) break;  // what happens at the same time is found
+    if (candidate.theta == 1.0) {
+      at_the_end_.push_back(found_.size());
+      append(candidate, t_new, y_new_.data());
+    } else {
+      stepper.sample(rows, {}, 1.0, &candidate.theta, 1, y_.data());
+      append(candidate, time_in_step(t_old, h, candidate.theta, t_new).high, y_.data());
+    }
+    if (ended_by_ >= 0) stop = candidate.theta;
+  }
+  return stop;
+}
+
+void EventFinder::append(const Candidate& candidate, double t, const double* y) {
+  found_.push_back({.event = candidate.event,
+                    .t = t,
+                    .direction = candidate.direction,
+                    .y = std::vector<double>(y, y + 2 * static_cast<std::ptrdiff_t>(n_)),
+                    .y_before = {}});
+  const long long count = ++counts_[candidate.event];
+  const long long terminal = events_[candidate.event].terminal;
+  const bool ends = terminal > 0 && count % terminal == 0 && count > passed_[candidate.event];
+  if (ends && ended_by_ < 0) ended_by_ = candidate.event;
+}
+
+void EventFinder::jump(double t, const double* before, const double* after) {
+  const auto size = 2 * static_cast<std::ptrdiff_t>(n_);
+  for (const std::size_t i : at_the_end_) {
+    if (found_[i].y_before.empty()) found_[i].y_before.assign(before, before + size);
+    found_[i].y.assign(after, after + size);
+  }
+  for (std::size_t k = 0; k < events_.size(); ++k) {
+    const EventFunction& function = events_[k].function;
+    const bool is_difference =
+        tip_line_of_[k] < 0 && !std::holds_alternative<events::Function>(function);
+    if (!is_difference) {
+      const double value_before = function_at(k, t, before);
+      node_values_[k] = function_at(k, t, after);
+      cross(k, value_before, node_values_[k], t, before, after);
+      continue;
+    }
+    const Difference difference = difference_of(function);
+    const double low = difference.of(before);
+    const double high = difference.of(after);
+    double value = 0.0;
+    bool every_turn = false;
+    std::visit(
+        [&](const auto& one) {
+          if constexpr (requires { one.every_turn; }) {
+            value = one.value;
+            every_turn = one.every_turn;
+          }
+        },
+        function);
+    for_each_level(value, every_turn, std::min(low, high), std::max(low, high),
+                   [&](double level) { cross(k, low - level, high - level, t, before, after); });
+  }
+  node_t_ = t;
+  std::copy_n(after, node_y_.size(), node_y_.begin());
+}
+
+/// A change of sign by a jump is an event; one that begins at zero was found, or never armed.
+void EventFinder::cross(std::size_t k, double before, double after, double t,
+                        const double* y_before, const double* y_after) {
+  const int from = sign(before);
+  const int to = sign(after);
+  if (from == 0 || to == from) return;
+  const int direction = -from;
+  if (events_[k].direction != 0 && direction != events_[k].direction) return;
+  at_the_end_.push_back(found_.size());
+  append({1.0, direction, static_cast<int>(k)}, t, y_after);
+  found_.back().y_before.assign(y_before, y_before + 2 * static_cast<std::ptrdiff_t>(n_));
+}
+
+}  // namespace pendcore

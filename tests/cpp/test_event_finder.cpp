@@ -1,0 +1,125 @@
+// Events at a jump of the state, and at the start and the end of a step, seen from inside.
+#include <doctest/doctest.h>
+
+#include <vector>
+
+#include "pendcore/event_finder.hpp"
+#include "pendcore/simulate.hpp"
+
+using namespace pendcore;
+
+namespace {
+
+/// One step of 1 s of a rod that turns at 1 rad/s from q = 0, without gravity.
+struct Turning {
+  Scene scene{.links = {Link::uniform_rod(3.0, 1.0)}, .gravity = 0.0};
+  std::unique_ptr<Stepper> stepper = make_stepper(scene, "dopri5");
+  std::vector<double> rows;
+  double end[2] = {};
+
+  Turning() {
+    const double tolerance[] = {1e-6, 1e-6};
+    const double y[] = {0.0, 1.0};
+    const double dydt[] = {1.0, 0.0};
+    stepper->set_tolerances(tolerance, tolerance);
+    stepper->start(y, dydt);
+    stepper->attempt(0.0, 1.0, 1.0);
+    rows.resize(static_cast<std::size_t>(stepper->interpolant_degree() + 1) * 2);
+    stepper->interpolant(1.0, rows.data());
+    stepper->get_new_state(end);
+  }
+};
+
+using Times = std::vector<double>;
+
+}  // namespace
+
+TEST_CASE("a jump through zero is an event with the states on both sides") {
+  Turning turning;
+  const std::vector<Event> events = {
+      {.function = events::RateZero{.joint = {}, .link = 1}},
+      {.function = events::RateZero{.joint = 1, .link = {}}, .direction = 1},
+      {.function = events::LinkAngle{.link = 1, .value = turning.end[0]}},
+      {.function = events::LinkAngle{.link = 1, .value = 0.5}},
+      {.function = events::Function{.f = [](double, auto,
+                                            std::span<const double> qd) { return qd[0] - 0.25; }}},
+  };
+  std::vector<FoundEvent> found;
+  EventFinder finder(turning.scene, events, found, {});
+  CHECK(finder.look(*turning.stepper, turning.rows.data(), {0.0, 0.0}, 1.0, 1.0) > 1.0);
+  REQUIRE(found.size() == 2);  // angle 0.5 within the step, angle 1 at its end
+  CHECK(found[0].event == 3);
+  CHECK(found[1].event == 2);
+  CHECK(found[1].t == 1.0);
+  CHECK(found[1].y_before.empty());
+  const double before[] = {1.0, 1.0};
+  const double after[] = {1.0, -0.5};
+  finder.jump(1.0, before, after);
+  REQUIRE(found.size() == 4);
+  CHECK(found[0].y_before.empty());
+  for (const int i : {1, 2, 3}) {
+    CHECK(found[i].t == 1.0);
+    CHECK(found[i].y == Times{1.0, -0.5});
+    CHECK(found[i].y_before == Times{1.0, 1.0});
+  }
+  CHECK(found[2].event == 0);  // the rate falls: not event 1
+  CHECK(found[3].event == 4);
+  CHECK(found[2].direction == -1);
+}
+
+TEST_CASE("a jump into zero is one event, and one from zero none") {
+  Turning turning;
+  const std::vector<Event> events = {{.function = events::RateZero{.joint = 1, .link = {}}}};
+  std::vector<FoundEvent> found;
+  EventFinder finder(turning.scene, events, found, {});
+  finder.look(*turning.stepper, turning.rows.data(), {0.0, 0.0}, 1.0, 1.0);
+  CHECK(found.empty());
+  const double moves[] = {1.0, 1.0};
+  const double rests[] = {1.0, 0.0};
+  finder.jump(1.0, moves, rests);
+  REQUIRE(found.size() == 1);
+  finder.jump(1.0, rests, moves);
+  CHECK(found.size() == 1);
+}
+
+TEST_CASE("a jump may end the run, once") {
+  Turning turning;
+  const std::vector<Event> events = {
+      {.function = events::RateZero{.joint = 1, .link = {}}, .terminal = 1}};
+  const double before[] = {1.0, 1.0};
+  const double after[] = {1.0, -1.0};
+  for (const long long passed : {0, 1}) {
+    std::vector<FoundEvent> found;
+    EventFinder finder(turning.scene, events, found, {passed});
+    CHECK(finder.may_end());
+    finder.look(*turning.stepper, turning.rows.data(), {0.0, 0.0}, 1.0, 1.0);
+    finder.jump(1.0, before, after);
+    CHECK(finder.ended_by() == (passed == 0 ? 0 : -1));
+    CHECK(found.size() == 1);
+  }
+}
+
+TEST_CASE("after a jump a step begins with the value that the jump left") {
+  Turning turning;
+  int calls = 0;
+  const std::vector<Event> events = {{.function = events::Function{.f =
+                                                                       [&](double t, auto, auto) {
+                                                                         ++calls;
+                                                                         return t - 0.5;
+                                                                       },
+                                                                   .samples = 1}}};
+  std::vector<FoundEvent> found;
+  EventFinder finder(turning.scene, events, found, {});
+  finder.look(*turning.stepper, turning.rows.data(), {-1.0, 0.0}, 1.0, 0.0);
+  CHECK(calls == 2);
+  finder.look(*turning.stepper, turning.rows.data(), {0.0, 0.0}, 1.0, 1.0);
+  CHECK(found.size() == 1);
+  CHECK(found[0].t == 0.5);
+}
+
+TEST_CASE("events are refused by name where they are out of range") {
+  const Event event{.function = events::LinkAngle{.link = 3, .value = 0.0}, .name = "far"};
+  CHECK(event_name(event, 1) == "event 2 (link_angle, 'far')");
+  CHECK_THROWS_WITH_AS(check_event("here: ", event, 2), "here: link = 3: must be 1 to 2",
+                       std::invalid_argument);
+}

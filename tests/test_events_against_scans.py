@@ -1,0 +1,108 @@
+"""Every event against a scan that shares no code: NumPy's roots of the polynomials of the run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import pendcore as pc
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from numpy.polynomial import polynomial
+from numpy.typing import NDArray
+from pendcore import events as ev
+
+Array = NDArray[np.float64]
+
+CLEAR = 1e-6
+"""Nearer to each other, in shares of a step, roots are for one method and not for the other."""
+
+
+def pieces(sol: pc.Solution) -> Iterator[tuple[float, float, Array]]:
+    """Yield start, size and coefficients (degree + 1, dimension) of each step's polynomial."""
+    state = sol._run.__getstate__()
+    steps = len(state["dense_h"])
+    rows = state["dense_coefficients"].reshape(steps, state["dense_degree"] + 1, -1)
+    yield from zip(state["dense_start"], state["dense_h"], rows, strict=True)
+
+
+def crossings(sol: pc.Solution, weights: Array, value: float) -> list[tuple[float, int]]:
+    """Zeros of ``weights . y - value`` between the steps, with the direction along the run."""
+    found = []
+    for start, h, rows in pieces(sol):
+        p = rows @ weights
+        p[0] -= value
+        zeros = polynomial.polyroots(p)
+        near = zeros[(np.abs(zeros.imag) < CLEAR) & (np.abs(zeros.real - 0.5) < 0.5 + CLEAR)]
+        # What lies at an end, or nearly touches, is for other tests.
+        assume(np.all(np.abs(np.abs(near.real - 0.5) - 0.5) > CLEAR))
+        assume(np.all(np.diff(np.sort(near.real)) > CLEAR))
+        slopes = polynomial.polyval(near.real, polynomial.polyder(p))
+        found += sorted(zip(start + near.real * h, np.sign(slopes).astype(int), strict=True),
+                        key=lambda one: one[0] * np.sign(h))  # fmt: skip
+    return found
+
+
+angles = st.floats(-3.1, 3.1)
+rates = st.floats(-8, 8)
+
+
+@settings(max_examples=100)
+@given(
+    n=st.integers(1, 3), data=st.data(), t_end=st.sampled_from([3.0, -3.0]),
+    step=st.sampled_from([None, 0.1, 0.03]), friction=st.booleans(),
+)  # fmt: skip
+def test_angles_and_rates_are_found_where_a_scan_finds_them(
+    n: int, data: st.DataObject, t_end: float, step: float | None, friction: bool
+) -> None:
+    effects = [pc.effects.ViscousJoint(joint=1, damping=0.05)] if friction else []
+    links = [pc.Link(mass=1 + 0.3 * i, length=1 - 0.2 * i) for i in range(n)]
+    scene = pc.Scene(links=links, effects=effects)
+    q0, qd0 = (data.draw(st.lists(what, min_size=n, max_size=n)) for what in (angles, rates))
+    number, value = data.draw(st.integers(1, n)), data.draw(angles)
+    link, joint = np.eye(n)[number - 1], np.eye(n)[number - 1] - np.eye(n, k=1)[:, number - 1]
+    none = np.zeros(n)
+    watched: list[tuple[ev.Event, Array, float]] = [
+        (ev.LinkAngle(number, value), np.concatenate([link, none]), value),
+        (ev.JointAngle(number, value), np.concatenate([joint, none]), value),
+        (ev.RateZero(link=number), np.concatenate([none, link]), 0.0),
+        (ev.RateZero(joint=number), np.concatenate([none, joint]), 0.0),
+    ]
+    how = {"step": step} if step else {"rtol": 1e-5, "atol": 1e-8}
+    events = [event for event, _, _ in watched]
+    sol = pc.simulate(scene, q0, qd0, (0, t_end), events=events, **how)
+    assume(sol.success and np.abs(sol.qd).max() < 50)
+    for found, (_, weights, level) in zip(sol.events, watched, strict=True):
+        expected = crossings(sol, weights, level)
+        assert [one.direction for one in found] == [direction for _, direction in expected]
+        assert np.allclose([one.t for one in found], [t for t, _ in expected], rtol=0, atol=1e-9)
+        assert np.allclose([weights @ one.y for one in found], level, rtol=0, atol=1e-11)
+
+
+@settings(max_examples=40)
+@given(
+    q0=st.lists(angles, min_size=2, max_size=2), qd0=st.lists(rates, min_size=2, max_size=2),
+    point=st.tuples(st.floats(-2, 2), st.floats(-2, 2)), angle=angles,
+    step=st.sampled_from([0.1, 0.03]), sense=st.sampled_from([1, -1]),
+)  # fmt: skip
+def test_the_tip_crosses_where_a_dense_scan_of_it_changes_sign(
+    q0: list[float], qd0: list[float], point: tuple[float, float], angle: float, step: float,
+    sense: int,
+) -> None:  # fmt: skip
+    normal = (np.cos(angle), np.sin(angle))
+    line = ev.TipLine(point, normal)
+    book = pc.Scene.textbook()
+    sol = pc.simulate(book, q0, qd0, (0, 2 * sense), step=step, events=[line])
+    assume(sol.success and np.abs(sol.qd).max() < 50)  # so far the steps follow the motion
+    times = np.array([one.t for one in sol.events[0]])
+    theta = np.linspace(0, 1, 2001)
+    for start, h, rows in pieces(sol):
+        q = polynomial.polyval(theta, rows)[:2]
+        tip = np.cos(q).sum(axis=0), np.sin(q).sum(axis=0)
+        g = normal[0] * (tip[0] - point[0]) + normal[1] * (tip[1] - point[1])
+        assume(np.abs(g).min() > 1e-13)
+        here = (times - start) / h
+        between = np.histogram(here[(here >= 0) & (here <= 1)], theta)[0]
+        changes = np.diff(np.sign(g)) != 0
+        assert np.all(between[changes] % 2 == 1)
+        assert np.all(between[~changes] % 2 == 0)
