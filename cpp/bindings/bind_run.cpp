@@ -46,6 +46,7 @@ py::dict arguments(const Run& run) {
   result["step"] = s.options.step;
   result["max_steps"] = s.options.max_steps;
   result["ledger"] = s.options.ledger;
+  result["compensated"] = s.options.compensated;
   result["time_limit"] = or_none(std::isfinite(s.options.time_limit), s.options.time_limit);
   return result;
 }

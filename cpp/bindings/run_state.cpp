@@ -123,6 +123,7 @@ void visit(Archive& io, AnySolution& s) {
   io("max_steps", s.options.max_steps);
   io("time_limit", s.options.time_limit);
   io("ledger", s.options.ledger);
+  io("compensated", s.options.compensated);
   io("t_start", s.t0);
   io("t_end", s.t_end);
   io("start", s.start);

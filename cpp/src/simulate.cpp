@@ -152,7 +152,8 @@ void run(const Scene& scene, Solution& solution, double t_end, const Limits& lim
          Before before) {
   const Options& options = solution.options;
   const EquationsOfMotion equations = equations_of_motion(scene);
-  const auto stepper = make_stepper(scene, equations, options.method, options.ledger);
+  const auto stepper =
+      make_stepper(scene, equations, options.method, options.ledger, options.compensated);
   std::optional<Switching> switching;
   if (Switching::is_needed(scene)) switching.emplace(scene, equations);
   const std::size_t n = scene.links.size();

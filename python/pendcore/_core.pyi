@@ -108,6 +108,7 @@ def simulate(
     max_steps: int,
     time_limit: float | None,
     ledger: bool,
+    compensated: bool,
     progress: Callable[[float], object] | None,
     warn: Callable[[str], object],
 ) -> Run: ...
