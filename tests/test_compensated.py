@@ -98,7 +98,7 @@ def test_a_low_part_of_another_state_is_refused() -> None:
     state = begun._run.__getstate__() | {"position_stepper": [1e-20]}
     run = _core.Run.__new__(_core.Run)
     run.__setstate__(state)
-    with pytest.raises(ValueError, match="what rounding left over"):
+    with pytest.raises(ValueError, match=r"what rounding left over"):
         run.resume(2.0, None, 1000, None, None)
 
 
@@ -135,13 +135,13 @@ def test_methods_that_cannot_are_refused_by_name() -> None:
         if method["compensates"]:
             assert pc.simulate(BOOK, 0.8, 0, (0, 0.1), method=name, step=step, compensated=True)
         else:
-            with pytest.raises(ValueError, match=f'^compensated: method "{name}" cannot'):
+            with pytest.raises(ValueError, match=rf'^compensated: method "{name}" cannot'):
                 pc.simulate(BOOK, 0.8, 0, (0, 0.1), method=name, step=step, compensated=True)
 
 
 @pytest.mark.parametrize("wrong", [1, "yes", None, np.array([True])])
 def test_it_is_true_or_false(wrong: object) -> None:
-    with pytest.raises(TypeError, match="^compensated = "):
+    with pytest.raises(TypeError, match=r"^compensated = "):
         pc.simulate(BOOK, 0.8, 0, (0, 0.1), compensated=wrong)
 
 

@@ -123,6 +123,7 @@ class Run {
     } catch (const std::bad_alloc&) {
       throw;
     } catch (...) {  // what a function of the user's throws
+      cut_before_ = cut_before_ || law_is_changing_;
       Ending ending = end_with(Status::callback_error);
       ending.error = std::current_exception();
       return ending;
@@ -244,7 +245,18 @@ class Run {
       chatters_ = true;
       return end(Status::step_too_small);
     }
+    begin_change();
     return change_law(crossing.guard);
+  }
+
+  /// What a function of the user's may raise while the law that follows is looked for leaves that
+  /// half done: a run that goes on does so from before the step that ends there.
+  void begin_change() {
+    if (!cut_before_) {
+      write_down(resumable_);
+      observer_.end_in_sight();
+    }
+    law_is_changing_ = true;
   }
 
   /// Redoes the step to where the guard is zero, to the last bits of time: the state there comes
@@ -275,6 +287,7 @@ class Run {
     }
     if (lands) t_new = {target.t, 0.0};
     const bool law_changes = guard >= 0 || (lands && target.is_break);
+    if (law_changes) begin_change();
     count_accepted(position_.statistics, h, target.is_in_reach || law_changes,
                    position_.h_is_max_step);
     test_stiffness(stepper_, h, position_);
@@ -298,13 +311,18 @@ class Run {
 
   /// At the state that the stepper stands at. The step that was to be tried is tried next.
   bool change_law(int guard) {
+    law_is_changing_ = true;
     const double t = position_.t.high;
     stepper_.get_state(state_.data());
     const Status status = breaks_->cross(guard, t, state_.data());
-    if (status != Status::finished) return end(status);
+    if (status != Status::finished) {
+      law_is_changing_ = false;
+      return end(status);
+    }
     stepper_.evaluate(t, state_.data(), rate_.data());
     stepper_.start(state_.data(), rate_.data());
     position_.control = StepControl{};
+    law_is_changing_ = false;
     return true;
   }
 
@@ -338,6 +356,7 @@ class Run {
   Status status_ = Status::finished;
   long long attempts_ = 0;
   bool cut_before_ = false;  ///< a step was cut to end at t_end: later ones depend on t_end
+  bool law_is_changing_ = false;
   int crossings_at_once_ = 0;
   bool chatters_ = false;
   int bad_ = -1;  ///< component of the last trial, while trials are not finite

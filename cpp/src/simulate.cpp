@@ -36,7 +36,7 @@ void check_continuation(const Solution& solution, double t_end, const std::vecto
   // A run of no length has no direction yet: it takes that of what follows.
   const bool has_length = solution.t_end != solution.t0;
   const double span = (has_length ? solution.t_end : t_end) - solution.t0;
-  auto before = [span](double a, double b) { return (b - a) * span > 0.0; };
+  auto before = [span](double a, double b) { return span < 0.0 ? b < a : span > 0.0 && a < b; };
   if (!std::isfinite(t_end) || before(t_end, reached)) {
     refuse("t_end", t_end, "finite and at or beyond the end reached, " + text(reached) + " s");
   }
@@ -303,6 +303,7 @@ Solution resume(const Scene& scene, const Solution& solution, double t_end,
 
   longer.t_end = t_end;
   const bool has_length = solution.t_end != solution.t0;
+  if (has_length && solution.status == Status::at_rest) return longer;  // there is nothing to add
   if (!has_length) {
     const auto middle = solution.start.begin() + solution.n;
     check_run(scene, {solution.start.begin(), middle}, {middle, middle + solution.n}, solution.t0,
