@@ -79,6 +79,16 @@ def test_the_low_part_is_below_the_last_bit() -> None:
     assert (np.abs(low_part(sol)) <= 0.5 * np.spacing(np.abs(y))).all()
 
 
+def test_increments_below_the_last_bit_of_a_large_angle_are_not_lost() -> None:
+    how = {"step": 1e-3, "store": "end", "max_steps": 10**6}
+    rounded, carried = (
+        pc.simulate(FLOATING, 1e8, 1e-6, (0, 100), **how, compensated=c).q[-1, 0] - 1e8
+        for c in (False, True)
+    )
+    assert rounded == 0.0  # 1e-9 rad a step, where doubles are 1.5e-8 rad apart
+    assert carried == pytest.approx(1e-4, abs=np.spacing(1e8))
+
+
 @pytest.mark.parametrize("stop", [0.0, 1e-4, 3.21])
 @pytest.mark.parametrize("ledger", [False, True])
 def test_a_compensated_run_goes_on_as_if_it_had_never_stopped(stop: float, ledger: bool) -> None:

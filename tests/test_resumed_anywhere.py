@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import os
 import pickle
+import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import warnings
 from pathlib import Path
 from typing import Any
@@ -276,6 +278,36 @@ def test_whichever_call_of_a_users_function_raises_the_run_goes_on_the_same(ledg
         if found := [key for key in found if not key.endswith("nfev")]:
             broken[at] = found
     assert broken == {}
+
+
+def stopped(way: str, **how: Any) -> pc.Solution:
+    """Return a run that was stopped from outside, somewhere on its way."""
+
+    def raises(fraction: float) -> None:
+        raise LookupError("enough")
+
+    try:
+        if way == "Ctrl-C":
+            threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT)).start()
+        elif way == "progress":
+            how["progress"] = raises
+        else:
+            how["time_limit"] = 0.1
+        return pc.simulate(pc.Scene.textbook(), [0.8, 1.0], 0, (0, 3000.0), **how)
+    except (KeyboardInterrupt, LookupError) as stop:
+        return stop.solution  # type: ignore[union-attr]
+
+
+@pytest.mark.parametrize("way", ["Ctrl-C", "progress", "time_limit"])
+@pytest.mark.parametrize("compensated", [False, True])
+def test_a_run_that_was_stopped_from_outside_goes_on_the_same(way: str, compensated: bool) -> None:
+    how = {"max_step": 1e-3, "store": "end", "compensated": compensated}
+    begun = stopped(way, **how)
+    assert begun.status != "finished"
+    reached = float(begun.t[-1])
+    assert 0 < reached < 3000
+    whole = pc.simulate(pc.Scene.textbook(), [0.8, 1.0], 0, (0, reached + 1.0), **how)
+    assert differences(whole, pickle.loads(pickle.dumps(begun)).resume(reached + 1.0)) == []
 
 
 def test_another_process_with_other_instructions_goes_on_the_same(tmp_path: Path) -> None:

@@ -17,7 +17,7 @@ constexpr auto own_torque = [](double /*t*/, std::span<const double> /*q*/,
                                std::span<const double> qd,
                                std::span<double> Q) { Q[0] -= 0.01 * qd[0]; };
 
-/// Everything that a scene may hold of what a run keeps for itself: modes, cursors in tables, locks.
+/// Of all that a run keeps for itself: modes, places in tables, locks.
 std::vector<Scene> shared_scenes() {
   const std::vector<Link> links(3, Link::uniform_rod(1.0, 0.7));
   return {
