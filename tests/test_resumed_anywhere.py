@@ -213,7 +213,10 @@ def test_legs_end_in_the_bits_of_one_run(
         if whole.status == "stuck":  # what follows would need sticking, and is looked for again
             return
         broken = in_legs(scene, start, legs, sign, **how)
-    assert differences(whole, broken) == []
+    found = differences(whole, broken)
+    if not whole.success:  # it tried again, in vain, and that was counted
+        found = [key for key in found if not key.endswith(("nfev", "rejected"))]
+    assert found == []
 
 
 RUBBED = pc.Scene(

@@ -303,7 +303,9 @@ Solution resume(const Scene& scene, const Solution& solution, double t_end,
 
   longer.t_end = t_end;
   const bool has_length = solution.t_end != solution.t0;
-  if (has_length && solution.status == Status::at_rest) return longer;  // there is nothing to add
+  // At rest for good there is nothing to add, unless the end of that run cut the last step.
+  const bool is_uncut = solution.resumable.t.high == solution.t_reached;
+  if (has_length && is_uncut && solution.status == Status::at_rest) return longer;
   if (!has_length) {
     const auto middle = solution.start.begin() + solution.n;
     check_run(scene, {solution.start.begin(), middle}, {middle, middle + solution.n}, solution.t0,
