@@ -244,6 +244,26 @@ def test_one_attempt_a_leg_is_the_same_run(ledger: bool, rtol: float) -> None:
     assert differences(whole, sol) == []
 
 
+@pytest.mark.parametrize("t_end", [4.0, -2.0])
+@pytest.mark.parametrize("cut", [0.3, 0.9, 0.99])
+def test_a_ledger_does_not_go_on_without_the_spline_that_moves_the_pivot(
+    cut: float, t_end: float
+) -> None:
+    """All joints are locked, so that the drive's power alone knows that the spline has ended."""
+    spline = fx.Spline(t=[-1.0, 1.0, 3.5], x=[0.1, -0.1, 0.1], y=[0.0] * 3)
+    scene = pc.Scene(
+        links=[pc.Link(mass=1.0, length=0.6)], effects=[fx.DrivenPivot(spline=spline), fx.Lock(1)]
+    )
+    with pytest.warns(pc.PendcoreWarning, match="its spline goes from"):
+        whole = pc.simulate(scene, 1.0, 0.0, (0, t_end), ledger=True)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", pc.PendcoreWarning)
+        begun = pc.simulate(scene, 1.0, 0.0, (0, cut * t_end), ledger=True)
+    assert (whole.status, whole.t[-1]) == ("non_finite", 3.5 if t_end > 0 else -1.0)
+    assert np.isfinite(whole.energy().ledger.residual).all()
+    assert differences(whole, begun.resume(t_end)) == []
+
+
 class Raises:
     """A law that raises at one of its calls, once."""
 

@@ -323,7 +323,9 @@ class Run {
     stepper_.start(state_.data(), rate_.data());
     position_.control = StepControl{};
     law_is_changing_ = false;
-    return true;
+    // As where a run begins: the ledger's rates have no say in a step's error.
+    bad_ = bad_component(rate_);
+    return bad_ < 0 || end(Status::non_finite);
   }
 
   void write_down(Position& target) const {
