@@ -16,7 +16,8 @@ PIP_INSTALL := python -m pip install --quiet --disable-pip-version-check
 SOURCES := pyproject.toml CMakeLists.txt $(shell find cpp python ! -path '*__pycache__*')
 
 .DEFAULT_GOAL := help
-.PHONY: demo test compare bench build-bench lint tidy sanitize clean help
+.PHONY: demo test compare bench build-bench lint tidy sanitize threads long clean \
+    help
 
 demo: $(DONE)/installed  ## build, run the textbook's case, say where its figure and summary are
 	pendcore run -o out/textbook
@@ -59,6 +60,15 @@ sanitize: $(DONE)/installed $(DONE)/test-requirements  ## all tests under saniti
 	cmake --install build/sanitizer --prefix $(SANITIZED)/pendcore
 	PYTHONPATH=$(SANITIZED) LD_PRELOAD="$(PRELOAD)" ASAN_OPTIONS=detect_leaks=0 \
 	    pytest -m "not outside_build"
+
+threads: $(DONE)/build-requirements  ## threads that share a scene, under the thread sanitizer
+	@sh setup/debian_packages.sh doctest
+	cmake --preset thread-sanitizer
+	cmake --build --preset thread-sanitizer
+	ctest --preset thread-sanitizer
+
+long: $(DONE)/installed $(DONE)/test-requirements  ## ten million steps: docs/long_runs.md, written anew
+	python docs/long_runs.py
 
 clean:  ## remove all that was built, and the virtual environment
 	rm -rf build out .venv

@@ -37,6 +37,7 @@ runs = [
     pc.simulate(rod, -1.2, 0, (0, 30), rtol=1e-6),
     pc.simulate(floating, [0.3, 0.9], [3e-160, -1e-160], (0, 1e159)),
     pc.simulate(floating, [0.3, 0.9], [4e-310, -1e-310], (0, 1e-3), atol=0),
+    pc.simulate(book, [-1.4, -1.1], 0, (0, 30), max_step=1e-2, compensated=True),
     *(pc.simulate(book, [0.8, 1.0], 0, (0, 5), method=method["name"], step=0.01)
       for method in _core.methods()),
 ]

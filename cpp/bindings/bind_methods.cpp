@@ -46,6 +46,7 @@ py::dict describe(const MethodInfo& info) {
   result["error_order"] = info.error_order;
   result["interpolant_order"] = info.interpolant_order;
   result["beta"] = info.beta;
+  result["compensates"] = info.compensates;
   result["citation"] = string(info.citation);
   return result;
 }

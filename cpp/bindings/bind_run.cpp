@@ -70,6 +70,7 @@ py::dict arguments(const Run& run) {
   result["max_steps"] = s.options.max_steps;
   result["events"] = event_pairs(run);
   result["ledger"] = s.options.ledger;
+  result["compensated"] = s.options.compensated;
   result["time_limit"] = or_none(std::isfinite(s.options.time_limit), s.options.time_limit);
   return result;
 }

@@ -27,8 +27,8 @@ Run simulate_run(const py::object& python_scene, py::handle q0, py::handle qd0, 
                  py::handle t_end, py::handle method, py::handle rtol, py::handle atol,
                  py::handle t_eval, py::handle store, py::handle first_step, py::handle max_step,
                  py::handle step, py::handle max_steps, py::handle time_limit,
-                 const py::sequence& events, py::handle ledger, py::handle progress,
-                 py::handle warn) {
+                 const py::sequence& events, py::handle ledger, py::handle compensated,
+                 py::handle progress, py::handle warn) {
   const auto& scene = python_scene.cast<const Scene&>();
   const std::size_t n = scene.links.size();
   const std::string one_a_link = "(" + std::to_string(n) + ",)";
@@ -52,6 +52,7 @@ Run simulate_run(const py::object& python_scene, py::handle q0, py::handle qd0, 
   options.time_limit = optional_number("time_limit", time_limit).value_or(options.time_limit);
   for (const py::handle event : events) options.events.push_back(make_event(event));
   options.ledger = truth("ledger", ledger);
+  options.compensated = truth("compensated", compensated);
   options.monitor = monitor;
   const std::vector<double> angles = numbers("q0", q0, one_a_link, n);
   const std::vector<double> rates = numbers("qd0", qd0, one_a_link, n);
@@ -80,7 +81,7 @@ void bind_simulate(py::module_& module) {
              py::arg("t0"), py::arg("t_end"), py::arg("method"), py::arg("rtol"), py::arg("atol"),
              py::arg("t_eval"), py::arg("store"), py::arg("first_step"), py::arg("max_step"),
              py::arg("step"), py::arg("max_steps"), py::arg("time_limit"), py::arg("events"),
-             py::arg("ledger"), py::arg("progress"), py::arg("warn"));
+             py::arg("ledger"), py::arg("compensated"), py::arg("progress"), py::arg("warn"));
 }
 
 }  // namespace pendcore::bindings

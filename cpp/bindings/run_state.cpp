@@ -124,6 +124,7 @@ void visit(Archive& io, AnySolution& s) {
   io("max_steps", s.options.max_steps);
   io("time_limit", s.options.time_limit);
   io("ledger", s.options.ledger);
+  io("compensated", s.options.compensated);
   io("t_start", s.t0);
   io("t_end", s.t_end);
   io("start", s.start);
@@ -138,6 +139,7 @@ void visit(Archive& io, AnySolution& s) {
   io("position_h", p.h);
   io("position_h_is_max_step", p.h_is_max_step);
   io("position_trial_was_finite", p.trial_was_finite);
+  io("position_crossings_at_once", p.crossings_at_once);
   io("position_log2_error_before", p.control.log2_error_before);
   io("position_after_rejection", p.control.after_rejection);
   io("position_stiff_hits", p.stiff_hits);

@@ -95,8 +95,7 @@ HeldJoints::HeldJoints(const Scene& scene)
   can_hold_ = std::ranges::any_of(scene.effects, [](const Effect& effect) {
     return holding_torque(effect) || std::holds_alternative<JointStop>(effect);
   });
-  for (std::vector<double>* row :
-       {&sine_, &cosine_, &held_qdd_, &free_qdd_, &torque_, &size_}) {
+  for (std::vector<double>* row : {&sine_, &cosine_, &held_qdd_, &free_qdd_, &torque_, &size_}) {
     row->assign(scene.links.size(), 0.0);
   }
 }
@@ -193,8 +192,7 @@ void HeldJoints::choose(const EquationsOfMotion& equations, double t, const doub
   for (int j = 0; j < n_; ++j) {
     const JointSupport& support = supports_[j];
     const double rate = speed(qd, j);
-    const bool is_at_rest =
-        rate == 0.0 && (support.friction > 0.0 || contact(j, q) != Side::none);
+    const bool is_at_rest = rate == 0.0 && (support.friction > 0.0 || contact(j, q) != Side::none);
     any |= is_at_rest && !support.is_locked;
     if (support.is_locked || is_at_rest) rows_.push_back(j);
     if (!support.is_locked) holds_[j] = Hold{};
@@ -283,8 +281,8 @@ Impact HeldJoints::strike(const EquationsOfMotion& equations, double t, const do
     problem_.lower[r] = support.is_locked || !is_lower ? -never : 0.0;
     problem_.upper[r] = support.is_locked || is_lower ? never : 0.0;
     const double capture = is_lower ? support.capture_lower : support.capture_upper;
-    const bool bounces = !support.is_locked && !is_plastic && strikes(j, q, qd) &&
-                         std::abs(before[r]) >= capture;
+    const bool bounces =
+        !support.is_locked && !is_plastic && strikes(j, q, qd) && std::abs(before[r]) >= capture;
     const double e = is_lower ? support.restitution_lower : support.restitution_upper;
     stays[r] = bounces && e > 0.0 ? 0 : 1;
     if (bounces) problem_.a[r] += e * before[r];

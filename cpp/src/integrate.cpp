@@ -85,7 +85,11 @@ class Run {
     } catch (const std::bad_alloc&) {
       throw;
     } catch (...) {  // what a function of the user's throws
-      if (may_end_) restart_at_step_start();
+      if (may_end_) {
+        restart_at_step_start();
+      } else {
+        cut_before_ = cut_before_ || law_is_changing_;
+      }
       Ending ending = end_with(Status::callback_error);
       ending.error = std::current_exception();
       return ending;
@@ -166,7 +170,7 @@ class Run {
         }
       }
     }
-    crossings_at_once_ = 0;
+    position_.crossings_at_once = 0;
     return accept(target, crossing.guard, h, attempt);
   }
 
@@ -203,7 +207,7 @@ class Run {
   void end_in_sight() {
     if (!cut_before_) {
       write_down(resumable_);
-      observer_.end_in_sight();
+      observer_.restarts_here();
     }
     cut_before_ = true;
   }
@@ -226,11 +230,22 @@ class Run {
 
   /// The law changes where the step begins.
   bool change_at_once(const Crossing& crossing) {
-    if (++crossings_at_once_ > 100 + 4 * breaks_->guards()) {
+    if (++position_.crossings_at_once > 100 + 4 * breaks_->guards()) {
       chatters_ = true;
       return end(Status::step_too_small);
     }
+    begin_change();
     return change_law(crossing.guard);
+  }
+
+  /// What a function of the user's may raise while the law that follows is looked for leaves that
+  /// half done: a run that goes on does so from before the step that ends there.
+  void begin_change() {
+    if (!cut_before_) {
+      write_down(resumable_);
+      observer_.restarts_here();
+    }
+    law_is_changing_ = true;
   }
 
   /// Redoes the step to where the guard is zero, to the last bits of time: the state there comes
@@ -265,6 +280,7 @@ class Run {
     }
     if (lands) t_new = {target.t, 0.0};
     const bool law_changes = guard >= 0 || (lands && target.is_break);
+    if (law_changes) begin_change();
     test_stiffness(stepper_, h, position_);
     if (guard >= 0 || (breaks_ != nullptr && breaks_->settles_every_step())) {
       stepper_.get_new_state(state_.data());
@@ -307,12 +323,16 @@ class Run {
     return true;
   }
   void restart_at_step_start() {
-    if (!cut_before_) resumable_ = step_start_;
+    if (!cut_before_) {
+      resumable_ = step_start_;
+      observer_.restarts_at_step();
+    }
     cut_before_ = true;
   }
 
   /// At the state that the stepper stands at. The step that was to be tried is tried next.
   bool change_law(int guard) {
+    law_is_changing_ = true;
     const double t = position_.t.high;
     stepper_.get_state(state_.data());
     const std::vector<double> before = state_;
@@ -322,7 +342,10 @@ class Run {
     stepper_.evaluate(t, state_.data(), rate_.data());
     stepper_.start(state_.data(), rate_.data());
     position_.control = StepControl{};
-    return true;
+    law_is_changing_ = false;
+    // As where a run begins: the ledger's rates have no say in a step's error.
+    bad_ = bad_component(rate_);
+    return bad_ < 0 || end(Status::non_finite);
   }
 
   void write_down(Position& target) const {
@@ -357,7 +380,7 @@ class Run {
   Status status_ = Status::finished;
   long long attempts_ = 0;
   bool cut_before_ = false;  ///< a step was cut to end at t_end: later ones depend on t_end
-  int crossings_at_once_ = 0;
+  bool law_is_changing_ = false;
   bool chatters_ = false;
   int bad_ = -1;  ///< component of the last trial, while trials are not finite
   std::vector<double> state_;

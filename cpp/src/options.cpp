@@ -88,6 +88,10 @@ void check(const Options& options) {
     throw std::invalid_argument("step: method \"" + std::string(method.name) +
                                 "\" has no error estimate: give a fixed step (s)");
   }
+  if (options.compensated && !method.compensates) {
+    throw std::invalid_argument("compensated: method \"" + std::string(method.name) +
+                                "\" cannot carry on what rounding leaves over: must be False");
+  }
 }
 
 }  // namespace pendcore

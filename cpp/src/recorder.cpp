@@ -83,13 +83,10 @@ Recorder::Kept Recorder::kept() const {
   return {solution_.t.size(), solution_.dense.h.size(), solution_.found.size()};
 }
 
-void Recorder::count(bool before_last_step) {
-  if (counted_) return;
-  counted_ = true;
-  const auto [t, steps, found] = before_last_step && may_end() ? at_step_start_ : kept();
-  solution_.resumable_t = t;
-  solution_.resumable_steps = steps;
-  solution_.resumable_found = found;
+void Recorder::count(const Kept& kept) {
+  solution_.resumable_t = kept.t;
+  solution_.resumable_steps = kept.steps;
+  solution_.resumable_found = kept.found;
 }
 
 void Recorder::sample_step(const Stepper& stepper, const TwoDouble& t_old, double h, double t_new,

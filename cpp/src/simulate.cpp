@@ -36,7 +36,7 @@ void check_continuation(const Solution& solution, double t_end, const std::vecto
   // A run of no length has no direction yet: it takes that of what follows.
   const bool has_length = solution.t_end != solution.t0;
   const double span = (has_length ? solution.t_end : t_end) - solution.t0;
-  auto before = [span](double a, double b) { return (b - a) * span > 0.0; };
+  auto before = [span](double a, double b) { return span < 0.0 ? b < a : span > 0.0 && a < b; };
   if (!std::isfinite(t_end) || before(t_end, reached)) {
     refuse("t_end", t_end, "finite and at or beyond the end reached, " + text(reached) + " s");
   }
@@ -186,7 +186,8 @@ void run(const Scene& scene, Solution& solution, double t_end, const Limits& lim
          const std::vector<long long>& passed_events = {}) {
   const Options& options = solution.options;
   const EquationsOfMotion equations = equations_of_motion(scene);
-  const auto stepper = make_stepper(scene, equations, options.method, options.ledger);
+  const auto stepper =
+      make_stepper(scene, equations, options.method, options.ledger, options.compensated);
   std::optional<Switching> switching;
   if (Switching::is_needed(scene)) switching.emplace(scene, equations, solution.accounts);
   const std::size_t n = scene.links.size();
@@ -241,7 +242,7 @@ void run(const Scene& scene, Solution& solution, double t_end, const Limits& lim
     ending = integrate(*stepper, position, solution.resumable, limits, recorder,
                        switching ? &*switching : nullptr);
   }
-  recorder.count(ending.status == Status::event || ending.status == Status::callback_error);
+  if (!ending.cut) recorder.restarts_here();
   see_whether_ledger_is_finite(position.y, solution.n, ending);
   solution.status = ending.status;
   solution.statistics = position.statistics;

@@ -43,48 +43,55 @@ std::unique_ptr<Stepper> with_method(MethodList<tables...>, std::string_view nam
   return stepper;
 }
 
-template <class Block>
+template <class Block, bool compensated>
 std::unique_ptr<Stepper> general(const Scene& scene, const EquationsOfMotion& equations,
                                  std::string_view method, bool ledger) {
   constexpr int width = Lanes<Block>::width;
   const int n = static_cast<int>(scene.links.size());
   const int row = (n + width - 1) / width * width;
   return with_method(Methods{}, method, [&]<const auto & table>() -> std::unique_ptr<Stepper> {
-    return std::make_unique<GeneralRungeKutta<table, Block>>(
+    return std::make_unique<GeneralRungeKutta<table, Block, compensated>>(
         std::make_unique<SceneSystem>(scene, equations, row, ledger), n);
   });
 }
 
-}  // namespace
-
-std::unique_ptr<Stepper> make_stepper(const Scene& scene, const EquationsOfMotion& equations,
-                                      std::string_view method, bool ledger) {
-  const std::string_view name = find_method(method).name;
+template <bool compensated>
+std::unique_ptr<Stepper> stepper_for(const Scene& scene, const EquationsOfMotion& equations,
+                                     std::string_view name, bool ledger) {
   if (ledger && !accounts_of(scene).empty()) {
     switch (scene.links.size()) {
-      case 1: return general<double>(scene, equations, name, true);
-      case 2: return general<Pair>(scene, equations, name, true);
-      default: return general<Pack<4>>(scene, equations, name, true);
+      case 1: return general<double, compensated>(scene, equations, name, true);
+      case 2: return general<Pair, compensated>(scene, equations, name, true);
+      default: return general<Pack<4>, compensated>(scene, equations, name, true);
     }
   }
   return std::visit(
       [&]<class Form>(const Form& form) -> std::unique_ptr<Stepper> {
         if constexpr (std::is_same_v<Form, std::shared_ptr<Chain>>) {
-          return general<Pack<4>>(scene, equations, name, false);
+          return general<Pack<4>, compensated>(scene, equations, name, false);
         } else {
           using System = FirstOrder<Form>;
-          return with_method(Methods{}, name,
-                             [&]<const auto & table>() -> std::unique_ptr<Stepper> {
-                               return std::make_unique<ExplicitRungeKutta<table, System>>(
-                                   System{form}, equations.effects);
-                             });
+          return with_method(
+              Methods{}, name, [&]<const auto & table>() -> std::unique_ptr<Stepper> {
+                return std::make_unique<ExplicitRungeKutta<table, System, compensated>>(
+                    System{form}, equations.effects);
+              });
         }
       },
       equations.form);
 }
 
+}  // namespace
+
+std::unique_ptr<Stepper> make_stepper(const Scene& scene, const EquationsOfMotion& equations,
+                                      std::string_view method, bool ledger, bool compensated) {
+  const std::string_view name = find_method(method).name;
+  return compensated ? stepper_for<true>(scene, equations, name, ledger)
+                     : stepper_for<false>(scene, equations, name, ledger);
+}
+
 std::unique_ptr<Stepper> make_stepper(const Scene& scene, std::string_view method) {
-  return make_stepper(scene, equations_of_motion(scene), method, false);
+  return make_stepper(scene, equations_of_motion(scene), method, false, false);
 }
 
 }  // namespace pendcore

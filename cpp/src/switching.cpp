@@ -336,6 +336,8 @@ void Switching::see_whether_all_rests(const double* y) {
 std::vector<double> Switching::memory() const {
   const std::vector<int>& modes = equations_.effects->modes;
   std::vector<double> memory(modes.begin(), modes.end());
+  memory.push_back(time_of_change_);
+  memory.push_back(changes_at_once_);
   const std::vector<double> holds = joints_.memory();
   memory.insert(memory.end(), holds.begin(), holds.end());
   for (const Watch& watch : guards_) memory.push_back(watch.begins_at_zero ? 1.0 : 0.0);
@@ -346,14 +348,16 @@ void Switching::restore(const std::vector<double>& memory, double t, const doubl
                         bool forward) {
   forward_ = forward;
   const std::size_t effects = scene_.effects.size();
-  if (memory.size() < effects) {
+  if (memory.size() < effects + 2) {
     throw std::invalid_argument("the modes of this solution are not those of its scene");
   }
   for (std::size_t i = 0; i < effects; ++i) put_mode(i, static_cast<int>(memory[i]));
   is_over_ = std::ranges::any_of(scene_.effects, [&](const Effect& effect) {
     return std::visit([&](const auto& one) { return has_ended(one, t, forward_); }, effect);
   });
-  std::size_t from = joints_.restore(*equations_.effects, memory, effects);
+  std::size_t from = joints_.restore(*equations_.effects, memory, effects + 2);
+  time_of_change_ = memory[effects];
+  changes_at_once_ = static_cast<int>(memory[effects + 1]);
   collect_guards(y);
   if (memory.size() != from + guards_.size()) {
     throw std::invalid_argument("the modes of this solution are not those of its scene");

@@ -113,6 +113,7 @@ def simulate(
     time_limit: float | None,
     events: Sequence[tuple[str, dict[str, Any]]],
     ledger: bool,
+    compensated: bool,
     progress: Callable[[float], object] | None,
     warn: Callable[[str], object],
 ) -> Run: ...

@@ -35,6 +35,7 @@ def simulate(
     time_limit: float | None = None,
     events: Iterable[Event] = (),
     ledger: bool = False,
+    compensated: bool = False,
     progress: Progress = None,
 ) -> Solution:
     """Solve the equations of motion of a scene from a start.
@@ -77,6 +78,10 @@ def simulate(
     ledger : bool
         Whether ``sol.energy().ledger`` tells work and loss of every effect. They are integrated
         beside the state, and change no bit of it.
+    compensated : bool
+        For long runs at small steps: what the rounding of the state leaves over at each step is
+        carried on to the next, not lost (compensated summation). ``docs/long_runs.md`` says when it
+        pays.
     progress : None, bool or callable
         None: a bar after a second, on a terminal. A callable gets the fraction done, in 0...1.
 
@@ -118,7 +123,8 @@ def simulate(
     report = callback(progress)
     run = _core.simulate(
         scene._compiled, q0, qd0, t_start, t_end, method, rtol, atol, t_eval, store,
-        first_step, max_step, step, max_steps, time_limit, wanted, ledger, report, warn,
+        first_step, max_step, step, max_steps, time_limit, wanted, ledger, compensated, report,
+        warn,
     )  # fmt: skip
     return solution_of(scene, run, report)
 

@@ -23,11 +23,12 @@ using namespace pendcore;
 
 namespace {
 
-long long count(const Scene& scene, Store store, double t_end, bool ledger) {
+long long count(const Scene& scene, Store store, double t_end, bool ledger, bool compensated) {
   const std::size_t n = scene.links.size();
   Options options;
   options.store = store;
   options.ledger = ledger;
+  options.compensated = compensated;
   if (store == Store::times) options.t_eval = {0.5 * t_end, t_end};
   const long long before = allocations;
   const Solution solution = simulate(scene, std::vector<double>(n, 0.7),
@@ -72,13 +73,16 @@ TEST_CASE("the number of allocations does not depend on the number of steps") {
     const std::vector<Link> links(n, Link::uniform_rod(1.0, 1.0));
     scenes.push_back({.links = links});
     scenes.push_back({.links = links, .effects = effects});
+    if (n > 1) scenes.push_back({.links = links, .effects = {Lock{.joint = 2, .angle = 0.0}}});
   }
   for (const Scene& scene : scenes) {
     for (const Store store : {Store::end, Store::times}) {
       for (const bool ledger : {false, true}) {
-        const long long few = count(scene, store, 0.5, ledger);
-        CHECK(few > 0);
-        CHECK(count(scene, store, 20.0, ledger) == few);
+        for (const bool compensated : {false, true}) {
+          const long long few = count(scene, store, 0.5, ledger, compensated);
+          CHECK(few > 0);
+          CHECK(count(scene, store, 20.0, ledger, compensated) == few);
+        }
       }
     }
   }

@@ -58,7 +58,7 @@ class Nothing final : public Observer {
  public:
   double step_accepted(const Stepper&, const TwoDouble&, double, double) override { return 2.0; }
   void state_jumped(double, const double*, const double*) override {}
-  void end_in_sight() override {}
+  void restarts_here() override {}
 };
 
 struct Result {

@@ -58,5 +58,9 @@ int main() {
   tight.ledger = true;
   print("ledger", simulate(chain, {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7},
                            {4.0, -9.0, 1.0, 2.0, 3.0, 4.0, 5.0}, 0, 2, tight));
+  tight.compensated = true;
+  print("compensated", simulate(book, {-1.4, -1.1}, {0, 0}, 0, 60, tight));
+  print("compensated chain", simulate(chain, {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7},
+                                      {4.0, -9.0, 1.0, 2.0, 3.0, 4.0, 5.0}, 0, 2, tight));
   return 0;
 }

@@ -38,6 +38,7 @@ struct Options {
   std::optional<double> first_step;  ///< s; chosen from the tolerances unless given
   std::vector<Event> events;         ///< to look for; they change no step
   bool ledger = false;               ///< keep the work and the losses beside the state
+  bool compensated = false;          ///< carry on what the rounding of each step leaves over
   double max_step = std::numeric_limits<double>::infinity();    ///< s
   std::optional<double> step;                                   ///< s, a fixed step
   long long max_steps = 10'000'000;                             ///< attempted ones

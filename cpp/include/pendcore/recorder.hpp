@@ -20,14 +20,11 @@ class Recorder final : public Observer {
   double step_accepted(const Stepper& stepper, const TwoDouble& t_old, double h,
                        double t_new) override;
   void state_jumped(double t, const double* before, const double* after) override;
-  void end_in_sight() override { count(false); }
+  void restarts_here() override { count(kept()); }
+  void restarts_at_step() override { count(at_step_start_); }
   bool may_end() const override { return finder_ && finder_->may_end(); }
   void step_begins() override { at_step_start_ = kept(); }
   bool has_ended() const override { return finder_ && finder_->ended_by() >= 0; }
-
-  /// What is kept so far is what an unstopped run has as well; of a run that takes its last step
-  /// again, what was kept before that. The first count holds.
-  void count(bool before_last_step);
 
   /// The event that ended the run; -1 if none did.
   int ended_by() const { return finder_ ? finder_->ended_by() : -1; }
@@ -37,6 +34,7 @@ class Recorder final : public Observer {
     std::size_t t, steps, found;
   };
   Kept kept() const;
+  void count(const Kept& kept);  ///< so much an unstopped run has as well
   void sample_step(const Stepper& stepper, const TwoDouble& t_old, double h, double t_new,
                    bool with_end = true);
   void keep_clipped(const Stepper& stepper, const TwoDouble& t_old, double h, double theta,
@@ -46,7 +44,6 @@ class Recorder final : public Observer {
   Solution& solution_;
   std::optional<EventFinder> finder_;
   Kept at_step_start_{};
-  bool counted_ = false;
   bool keeps_polynomials_;
   bool keeps_steps_;
   std::size_t dimension_;

@@ -12,10 +12,11 @@
 namespace pendcore {
 
 /// The method applied to the equations of motion that the scene calls for, with the ledger's
-/// quadratures beside the state if it is kept. Throws std::invalid_argument for an unknown method.
+/// quadratures beside the state if it is kept, with compensated steps if they are asked for. Throws
+/// std::invalid_argument for an unknown method.
 std::unique_ptr<Stepper> make_stepper(const Scene& scene, std::string_view method);
 std::unique_ptr<Stepper> make_stepper(const Scene& scene, const EquationsOfMotion& equations,
-                                      std::string_view method, bool ledger);
+                                      std::string_view method, bool ledger, bool compensated);
 
 /// What is possible in a run but hardly meant, a sentence each: a start that looks like degrees, a
 /// table that ends before the run does.

@@ -15,10 +15,16 @@ struct TwoDouble {
   double low = 0.0;   ///< what the rounding left over
 };
 
+/// a + b - sum, exactly, where sum is a + b rounded.
+template <class Real>
+PENDCORE_INLINE Real left_over(const Real& a, const Real& b, const Real& sum) {
+  const Real b_part = sum - a;
+  return (a - (sum - b_part)) + (b - b_part);
+}
+
 PENDCORE_INLINE TwoDouble two_sum(double a, double b) {
   const double sum = a + b;
-  const double b_part = sum - a;
-  return {sum, (a - (sum - b_part)) + (b - b_part)};
+  return {sum, left_over(a, b, sum)};
 }
 
 PENDCORE_INLINE TwoDouble operator+(const TwoDouble& a, double b) {

@@ -43,8 +43,8 @@ struct JointSupport {
 
 /// How a joint is held.
 struct Hold {
-  double is_held = 0.0;  ///< or 1
-  double angle = 0.0;    ///< phi
+  double is_held = 0.0;            ///< or 1
+  double angle = 0.0;              ///< phi
   double least = 0.0, most = 0.0;  ///< the torques between which it stays held
 };
 
@@ -65,7 +65,7 @@ class HeldJoints {
   const std::vector<JointSupport>& supports() const { return supports_; }
   const std::vector<Hold>& holds() const { return holds_; }
   bool is_held(int joint) const { return holds_[joint].is_held != 0.0; }  ///< from 0
-  bool any_held_for_now() const;  ///< by other than a lock
+  bool any_held_for_now() const;                                          ///< by other than a lock
   double natural_speed() const { return natural_speed_; }  ///< rad/s, of the fastest joint
 
   /// A lock: at that angle from now on, in the state too.
@@ -119,10 +119,10 @@ class HeldJoints {
   bool can_hold_;
   std::vector<Hold> holds_;
   ForcesBetweenBounds problem_;
-  std::vector<int> rows_;            ///< the joints in it
-  std::vector<double> mass_;         ///< M, (n, n)
-  std::vector<double> factor_;       ///< of M
-  std::vector<double> response_;     ///< L^-1 J^T of each row
+  std::vector<int> rows_;         ///< the joints in it
+  std::vector<double> mass_;      ///< M, (n, n)
+  std::vector<double> factor_;    ///< of M
+  std::vector<double> response_;  ///< L^-1 J^T of each row
   std::vector<double> sine_, cosine_;
   std::vector<double> held_qdd_, free_qdd_, torque_, size_;
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "pendcore/integrate/step.hpp"
 #include "pendcore/integrate/stepper.hpp"
@@ -24,9 +25,9 @@ PENDCORE_INLINE void evaluate_system(const System* system, double t, const doubl
   for (int i = 0; i < System::blocks; ++i) store(dydt + i * width, rate[i]);
 }
 
-template <const auto& method, class System>
+template <const auto& method, class System, bool compensated = false>
 class ExplicitRungeKutta final : public Stepper {
-  using Memory = StepMemory<method, System>;
+  using Memory = StepMemory<method, System, compensated>;
   using Block = typename Memory::Block;
   static constexpr int blocks = Memory::blocks;
   static constexpr int width = Lanes<Block>::width;
@@ -47,6 +48,7 @@ class ExplicitRungeKutta final : public Stepper {
   }
 
   void start(const double* y, const double* dydt) override {
+    if constexpr (compensated) forget(y, memory_.y, memory_.low.before);
     read(y, memory_.y);
     read(dydt, memory_.k[0]);
   }
@@ -55,7 +57,10 @@ class ExplicitRungeKutta final : public Stepper {
   void get_derivative(double* dydt) const override { write(memory_.k[0], dydt); }
   void get_new_state(double* y) const override { write(memory_.y_new, y); }
 
-  void set_new_state(const double* y) override { read(y, memory_.y_new); }
+  void set_new_state(const double* y) override {
+    if constexpr (compensated) forget(y, memory_.y_new, memory_.low.after);
+    read(y, memory_.y_new);
+  }
 
   void evaluate(double t, const double* y, double* dydt) override {
     evaluate_(&memory_.system, t, y, dydt);
@@ -69,6 +74,9 @@ class ExplicitRungeKutta final : public Stepper {
 
   void accept(double t_new) override {
     for (int i = 0; i < blocks; ++i) memory_.y[i] = memory_.y_new[i];
+    if constexpr (compensated) {
+      for (int i = 0; i < blocks; ++i) memory_.low.before[i] = memory_.low.after[i];
+    }
     if constexpr (method.first_same_as_last) {
       for (int i = 0; i < blocks; ++i) memory_.k[0][i] = memory_.k[stages - 1][i];
     } else {
@@ -87,6 +95,20 @@ class ExplicitRungeKutta final : public Stepper {
   void sample(const double* coefficients, const TwoDouble& start, double h, const double* times,
               int count, double* states) const override {
     sample_(coefficients, start, h, times, count, states);
+  }
+
+  std::vector<double> memory() const override {
+    std::vector<double> low;
+    if constexpr (compensated) {
+      low.resize(dimension());
+      write(memory_.low.before, low.data());
+    }
+    return low;
+  }
+  void restore(const std::vector<double>& memory) override {
+    if constexpr (compensated) {
+      if (has_low_part(memory, dimension())) read(memory.data(), memory_.low.before);
+    }
   }
 
   /// |k_last - k_before| / |y_last - y_before|: both stages lie at the end of the step.
@@ -111,6 +133,14 @@ class ExplicitRungeKutta final : public Stepper {
   }
 
  private:
+  /// Of components that are given another value.
+  static void forget(const double* y, const Block* instead_of, Block* low) {
+    for (int i = 0; i < blocks; ++i) {
+      for (int j = 0; j < width; ++j) {
+        if (y[i * width + j] != lane(instead_of[i], j)) set_lane(low[i], j, 0.0);
+      }
+    }
+  }
   static void read(const double* from, Block* to) {
     for (int i = 0; i < blocks; ++i) to[i] = load<Block>(from + i * width);
   }
@@ -120,9 +150,10 @@ class ExplicitRungeKutta final : public Stepper {
 
   Memory memory_;
   std::shared_ptr<const void> owner_;
-  Attempt (*attempt_)(Memory*, double, double, double) = fastest<&attempt_step<method, System>>();
+  Attempt (*attempt_)(Memory*, double, double,
+                      double) = fastest<&attempt_step<method, System, compensated>>();
   void (*interpolant_)(const Memory*, double,
-                       double*) = fastest<&interpolant_of_step<method, System>>();
+                       double*) = fastest<&interpolant_of_step<method, System, compensated>>();
   void (*sample_)(const double*, TwoDouble, double, const double*, int,
                   double*) = fastest<&sample_interpolant<Block, blocks, Memory::degree>>();
   void (*evaluate_)(const System*, double, const double*,

@@ -37,6 +37,7 @@ struct GeneralMemory {
   int error_blocks;  ///< and of its part in the error norm
   double count;      ///< numbers in that part
   double *y, *y_new, *k, *rtol, *atol;
+  double *low, *low_new;  ///< of y and y_new, if the step is compensated
 };
 
 /// One block of the stages k, rows of `size` numbers.
@@ -47,7 +48,7 @@ struct StageInMemory {
   PENDCORE_INLINE Block operator()(int j) const { return load<Block>(k + j * size); }
 };
 
-template <const auto& method, class Block>
+template <const auto& method, class Block, bool compensated>
 PENDCORE_INLINE Attempt attempt_in_memory(const GeneralMemory* memory, double t, double h,
                                           double gain) {
   constexpr int width = Lanes<Block>::width;
@@ -56,15 +57,27 @@ PENDCORE_INLINE Attempt attempt_in_memory(const GeneralMemory* memory, double t,
   const int size = blocks * width;
   double* const z = memory->y_new;
   double* const k = memory->k;
+  constexpr int before_end = stages - (compensated && method.first_same_as_last ? 1 : 0);
 #pragma GCC unroll 16
-  for (int s = 1; s < stages; ++s) {
+  for (int s = 1; s < before_end; ++s) {
     for (int at = 0; at < size; at += width) {
       store(z + at, advance(load<Block>(memory->y + at), h, method.a[s],
                             StageInMemory<Block>{k + at, size}, s));
     }
     (*memory->system)(t + method.c[s].value() * h, z, k + s * size);
   }
-  if constexpr (!method.first_same_as_last) {
+  if constexpr (compensated) {
+    for (int at = 0; at < size; at += width) {
+      Block after;
+      store(z + at,
+            advance_compensated(load<Block>(memory->y + at), load<Block>(memory->low + at), h,
+                                method.b, StageInMemory<Block>{k + at, size}, before_end, after));
+      store(memory->low_new + at, after);
+    }
+    if constexpr (method.first_same_as_last) {
+      (*memory->system)(t + h, z, k + static_cast<std::ptrdiff_t>(stages - 1) * size);
+    }
+  } else if constexpr (!method.first_same_as_last) {
     for (int at = 0; at < size; at += width) {
       store(z + at, advance(load<Block>(memory->y + at), h, method.b,
                             StageInMemory<Block>{k + at, size}, stages));
@@ -127,12 +140,13 @@ PENDCORE_INLINE void sample_rows(const double* coefficients, TwoDouble start, do
 
 /// The numbers of a state stand close together for the loop: (n, n, quadratures). In memory each
 /// row is filled up to whole blocks.
-template <const auto& method, class Block>
+template <const auto& method, class Block, bool compensated = false>
 class GeneralRungeKutta final : public Stepper {
   using Method = std::remove_cvref_t<decltype(method)>;
   static constexpr int width = Lanes<Block>::width;
   static constexpr int stages = Method::stages;
   static constexpr int degree = Method::degree;
+  static constexpr int rows = 4 + stages + (compensated ? 2 : 0);
   static_assert(degree <= 15, "as root.hpp has it");
 
  public:
@@ -141,7 +155,7 @@ class GeneralRungeKutta final : public Stepper {
         n_(n),
         row_(system_->row),
         size_(2 * row_ + (system_->quadratures + width - 1) / width * width),
-        numbers_(static_cast<std::size_t>(size_) * (4 + stages + degree + 1)) {
+        numbers_(static_cast<std::size_t>(size_) * (rows + degree + 1)) {
     memory_.system = system_.get();
     memory_.blocks = size_ / width;
     memory_.error_blocks = 2 * row_ / width;
@@ -151,7 +165,9 @@ class GeneralRungeKutta final : public Stepper {
     memory_.rtol = memory_.y_new + size_;
     memory_.atol = memory_.rtol + size_;
     memory_.k = memory_.atol + size_;
-    rows_ = memory_.k + static_cast<std::ptrdiff_t>(stages) * size_;
+    memory_.low = compensated ? memory_.k + static_cast<std::ptrdiff_t>(stages) * size_ : nullptr;
+    memory_.low_new = compensated ? memory_.low + size_ : nullptr;
+    rows_ = numbers_.data() + static_cast<std::ptrdiff_t>(rows) * size_;
     for (int i = 0; i < size_; ++i) memory_.atol[i] = 1.0;  // where there is no component
   }
 
@@ -165,13 +181,17 @@ class GeneralRungeKutta final : public Stepper {
     read_rows(atol, memory_.atol);
   }
   void start(const double* y, const double* dydt) override {
+    if constexpr (compensated) forget(y, memory_.y, memory_.low);
     read(y, memory_.y);
     read(dydt, memory_.k);
   }
   void get_state(double* y) const override { write(memory_.y, y); }
   void get_derivative(double* dydt) const override { write(memory_.k, dydt); }
   void get_new_state(double* y) const override { write(memory_.y_new, y); }
-  void set_new_state(const double* y) override { read(y, memory_.y_new); }
+  void set_new_state(const double* y) override {
+    if constexpr (compensated) forget(y, memory_.y_new, memory_.low_new);
+    read(y, memory_.y_new);
+  }
 
   void evaluate(double t, const double* y, double* dydt) override {
     std::vector<double> state(size_);
@@ -188,6 +208,7 @@ class GeneralRungeKutta final : public Stepper {
   void accept(double t_new) override {
     const std::size_t bytes = size_ * sizeof(double);
     __builtin_memcpy(memory_.y, memory_.y_new, bytes);
+    if constexpr (compensated) __builtin_memcpy(memory_.low, memory_.low_new, bytes);
     if constexpr (method.first_same_as_last) {
       __builtin_memcpy(memory_.k, memory_.k + static_cast<std::ptrdiff_t>(stages - 1) * size_,
                        bytes);
@@ -203,6 +224,19 @@ class GeneralRungeKutta final : public Stepper {
   void sample(const double* coefficients, const TwoDouble& start, double h, const double* times,
               int count, double* states) const override {
     sample_(coefficients, start, h, times, count, states, dimension());
+  }
+  std::vector<double> memory() const override {
+    std::vector<double> low;
+    if constexpr (compensated) {
+      low.resize(dimension());
+      write(memory_.low, low.data());
+    }
+    return low;
+  }
+  void restore(const std::vector<double>& memory) override {
+    if constexpr (compensated) {
+      if (has_low_part(memory, dimension())) read(memory.data(), memory_.low);
+    }
   }
   double stiffness(double h) const override {
     if constexpr (method.info.stability == 0.0) {
@@ -227,6 +261,13 @@ class GeneralRungeKutta final : public Stepper {
   }
 
  private:
+  /// Of components that are given another value.
+  void forget(const double* y, const double* instead_of, double* low) const {
+    for (int i = 0; i < dimension(); ++i) {
+      const int at = i < n_ ? i : i < 2 * n_ ? row_ + i - n_ : 2 * (row_ - n_) + i;
+      if (y[i] != instead_of[at]) low[at] = 0.0;
+    }
+  }
   void read_rows(const double* from, double* to) const {
     for (int i = 0; i < n_; ++i) {
       to[i] = from[i];
@@ -253,7 +294,7 @@ class GeneralRungeKutta final : public Stepper {
   double* rows_;  ///< of an interpolant
   GeneralMemory memory_;
   Attempt (*attempt_)(const GeneralMemory*, double, double,
-                      double) = fastest<&attempt_in_memory<method, Block>>();
+                      double) = fastest<&attempt_in_memory<method, Block, compensated>>();
   void (*interpolant_)(const GeneralMemory*, double,
                        double*) = fastest<&interpolant_in_memory<method, Block>>();
   void (*sample_)(const double*, TwoDouble, double, const double*, int, double*,

@@ -26,6 +26,7 @@ struct Position {
   double h = 0.0;  ///< s, the step to try next; its sign is the direction
   bool h_is_max_step = false;
   bool trial_was_finite = true;  ///< of the last step that was tried
+  int crossings_at_once = 0;     ///< laws that changed since the last step
   StepControl control;
   int stiff_hits = 0;    ///< of Hairer's test for stiffness since it last forgot
   int stiff_misses = 0;  ///< since the last hit
@@ -57,13 +58,14 @@ class Observer {
                                double t_new) = 0;
   /// At the end of that step, time t, the state jumped.
   virtual void state_jumped(double t, const double* before, const double* after) = 0;
-  /// The next step is the first that is cut to end at t_end. A run that goes on restarts here.
-  virtual void end_in_sight() = 0;
+  /// Should the run end now, one that goes on restarts here: what comes may be cut or undone.
+  virtual void restarts_here() = 0;
 
   /// Whether it may end the run, by an event or an exception: each step then begins by writing down
-  /// where, and step_begins(). A run that goes on takes the step again.
+  /// where, and step_begins(). A run that goes on takes the step again: restarts_at_step().
   virtual bool may_end() const { return false; }
   virtual void step_begins() {}
+  virtual void restarts_at_step() {}
   /// Whether the run is to end where it stands: of a step, or of a jump.
   virtual bool has_ended() const { return false; }
 };

@@ -7,6 +7,10 @@
 ///
 /// A system is a type with `Block` (a double or a pack), `blocks` (how many make a state) and
 /// operator()(t, y, dydt) on blocks.
+///
+/// A `compensated` step carries on what the rounding of y_new leaves over (low_part.hpp): the
+/// increment h sum b_k k is formed on its own, on top of the low part of y, and its sum with y is
+/// split without error.
 #pragma once
 
 #include <type_traits>
@@ -15,16 +19,18 @@
 #include "pendcore/arithmetic/power.hpp"
 #include "pendcore/arithmetic/two_double.hpp"
 #include "pendcore/integrate/attempt.hpp"
+#include "pendcore/integrate/low_part.hpp"
 #include "pendcore/integrate/step_control.hpp"
 
 namespace pendcore {
 
-template <const auto& method, class System>
+template <const auto& method, class System, bool is_compensated = false>
 struct StepMemory {
   using Block = typename System::Block;
   static constexpr int blocks = System::blocks;
   static constexpr int stages = std::remove_cvref_t<decltype(method)>::stages;
   static constexpr int degree = std::remove_cvref_t<decltype(method)>::degree;
+  static constexpr bool compensated = is_compensated;
 
   System system;
   Block y[blocks] = {};
@@ -32,6 +38,7 @@ struct StepMemory {
   Block k[stages][blocks] = {};
   Block rtol[blocks] = {};
   Block atol[blocks] = {};
+  [[no_unique_address]] LowPart<Block, blocks, compensated> low = {};
 };
 
 /// start + h (sum of weights[j] k(j) over the first `count` stages); terms with weight zero are
@@ -66,11 +73,22 @@ struct StageBlock {
 template <class Block, int blocks>
 StageBlock(const Block (*)[blocks], int) -> StageBlock<Block, blocks>;
 
+/// y + (low + h sum b_k k), rounded; `after` becomes what that leaves over.
+template <class Block, class Weights, class Stage>
+PENDCORE_INLINE Block advance_compensated(const Block& y, const Block& low, double h,
+                                          const Weights& weights, const Stage& k, int count,
+                                          Block& after) {
+  const Block increment = advance(low, h, weights, k, count);
+  const Block sum = y + increment;
+  after = left_over(y, increment, sum);
+  return sum;
+}
+
 /// Tries a step of size h at time t, as Stepper::attempt says.
-template <const auto& method, class System>
-PENDCORE_INLINE Attempt attempt_step(StepMemory<method, System>* memory, double t, double h,
-                                     double gain) {
-  using Memory = StepMemory<method, System>;
+template <const auto& method, class System, bool compensated>
+PENDCORE_INLINE Attempt attempt_step(StepMemory<method, System, compensated>* memory, double t,
+                                     double h, double gain) {
+  using Memory = StepMemory<method, System, compensated>;
   using Block = typename Memory::Block;
   constexpr int blocks = Memory::blocks;
   constexpr int stages = Memory::stages;
@@ -85,13 +103,22 @@ PENDCORE_INLINE Attempt attempt_step(StepMemory<method, System>* memory, double 
     y[i] = memory->y[i];
     k[0][i] = memory->k[0][i];
   }
+  // Compensated, a stage at the new state comes on its own.
+  constexpr int before_end = stages - (compensated && method.first_same_as_last ? 1 : 0);
 #pragma GCC unroll 16
-  for (int s = 1; s < stages; ++s) {
+  for (int s = 1; s < before_end; ++s) {
 #pragma GCC unroll 16
     for (int i = 0; i < blocks; ++i) z[i] = advance(y[i], h, method.a[s], StageBlock(k, i), s);
     system(t + method.c[s].value() * h, z, k[s]);
   }
-  if constexpr (!method.first_same_as_last) {
+  if constexpr (compensated) {
+#pragma GCC unroll 16
+    for (int i = 0; i < blocks; ++i) {
+      z[i] = advance_compensated(y[i], memory->low.before[i], h, method.b, StageBlock(k, i),
+                                 before_end, memory->low.after[i]);
+    }
+    if constexpr (method.first_same_as_last) system(t + h, z, k[stages - 1]);
+  } else if constexpr (!method.first_same_as_last) {
 #pragma GCC unroll 16
     for (int i = 0; i < blocks; ++i) z[i] = advance(y[i], h, method.b, StageBlock(k, i), stages);
   }
@@ -121,10 +148,10 @@ PENDCORE_INLINE Attempt attempt_step(StepMemory<method, System>* memory, double 
 
 /// coefficient[p] = h sum_s P_sp k_s for p = 1 .. degree, and coefficient[0] = y: the dense output
 /// of the attempted step, (degree + 1) rows of a state each.
-template <const auto& method, class System>
-PENDCORE_INLINE void interpolant_of_step(const StepMemory<method, System>* memory, double h,
-                                         double* coefficients) {
-  using Memory = StepMemory<method, System>;
+template <const auto& method, class System, bool compensated>
+PENDCORE_INLINE void interpolant_of_step(const StepMemory<method, System, compensated>* memory,
+                                         double h, double* coefficients) {
+  using Memory = StepMemory<method, System, compensated>;
   using Block = typename Memory::Block;
   constexpr int blocks = Memory::blocks;
   constexpr int width = Lanes<Block>::width;

@@ -38,6 +38,7 @@ struct MethodInfo {
   double growth = 10.0;                       ///< and at most this multiple
   double stability =
       0.0;  ///< h |lambda| on the negative real axis that counts as stiff; 0: no test
+  bool compensates = true;  ///< its steps can carry on what their rounding leaves over
 };
 
 template <int stage_count, int interpolant_degree>

@@ -1,0 +1,189 @@
+"""What ten million steps do to the energy, with and without compensated steps.
+
+    make long
+
+It runs both, checks what docs/long_runs.md promises, and writes docs/long_runs.json, the figure
+docs/figures/long_runs.png and the tables of the page. tests/test_long_runs.py runs the same in a
+reduced form.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+import numpy.typing as npt
+import pendcore as pc
+from mpmath import cos, mp, mpf, sin
+
+ROOT = Path(__file__).parents[1]
+BOOK = pc.Scene.textbook()
+BEGIN, END = "<!-- long runs: begin -->\n", "<!-- long runs: end -->"
+STEP = 5e-4
+FINE = 1e-4
+"""s: at this one the method's own error stays below the rounding of the energies."""
+
+
+def energy(state: dict[str, Any]) -> mpf:
+    """Return the textbook's total energy in 40 digits, J, of where a run stands.
+
+    Two rods of 1 kg and 1 m, angles from the horizontal, downwards.
+    """
+    y = [mpf(float(x)) for x in state["position_y"]]
+    for i, low in enumerate(state["position_stepper"]):
+        y[i] += mpf(float(low))
+    q1, q2, w1, w2 = y
+    kinetic = w1**2 * 2 / 3 + w1 * w2 * cos(q1 - q2) / 2 + w2**2 / 6
+    return kinetic - mpf(BOOK.gravity) * (3 * sin(q1) + sin(q2)) / 2
+
+
+def drift(steps: int, compensated: bool) -> dict[str, Any]:
+    """Return the drift at every thousandth step of the textbook's case."""
+    times = np.arange(0, steps + 1, 1000) * STEP
+    sol = pc.simulate(
+        BOOK, [np.pi / 4, np.pi / 3], 0, (0, steps * STEP), t_eval=times, max_step=STEP,
+        first_step=STEP, max_steps=2 * steps, compensated=compensated,
+    )  # fmt: skip
+    found = sol.energy()
+    change = found.total - found.total[0]
+    return {
+        "steps": sol.stats.accepted,
+        "largest": float(np.abs(change).max()),
+        "of_total": float(np.abs(change).max() / abs(found.total[0])),
+        "of_kinetic": float(np.abs(change).max() / found.kinetic.max()),
+        "series": (change[:: max(1, len(change) // 500)] / abs(found.total[0])).tolist(),
+    }
+
+
+def walks(steps: list[int], starts: int, compensated: bool) -> npt.NDArray[np.float64]:
+    """Return the energy's drift after so many steps from random starts, J, (starts, len(steps)).
+
+    The energy is that of both parts of the state, in 40 digits.
+    """
+    rng = np.random.default_rng(2718)
+    rows = []
+    with mp.workdps(40):
+        for q0 in rng.uniform(np.pi / 2 - 0.9, np.pi / 2 + 0.9, (starts, 2)):
+            how = {"store": "end", "step": FINE, "compensated": compensated}
+            sol = pc.simulate(BOOK, q0, 0, (0, 0), **how)
+            begun = energy(sol._run.__getstate__())
+            row = []
+            for count in steps:
+                sol = sol.resume((count + 0.5) * FINE, max_steps=10**10)
+                state = sol._run.__getstate__()
+                assert state["position_accepted"] == count
+                row.append(float(energy(state) - begun))
+            rows.append(row)
+    return np.array(rows)
+
+
+def slope(steps: list[int], rms: npt.NDArray[np.float64]) -> float:
+    """Return the exponent of the growth of rms with the number of steps."""
+    return float(np.polyfit(np.log(steps), np.log(rms), 1)[0])
+
+
+def time_kept(steps: int) -> dict[str, Any]:
+    """Return how far the time of fixed steps is from their number times their size, s."""
+    sol = pc.simulate(BOOK, 0.3, 0, (0, 1.01 * steps * STEP), step=STEP, store="end",
+                      max_steps=steps)  # fmt: skip
+    state = sol._run.__getstate__()
+    exact = steps * Fraction(STEP)
+    plain = float(np.add.accumulate(np.full(steps, STEP))[-1])
+    return {
+        "steps": sol.stats.accepted,
+        "two_doubles": float(
+            abs(Fraction(state["position_t"]) + Fraction(state["position_t_low"]) - exact)
+        ),
+        "one_double": float(abs(Fraction(plain) - exact)),
+    }
+
+
+def record(steps: int, starts: int) -> dict[str, Any]:
+    """Run it all."""
+    counts = [round(x) for x in np.logspace(4, np.log10(steps), 2 * len(str(steps)) - 9)]
+    found: dict[str, Any] = {"steps": counts, "starts": starts, "time": time_kept(steps)}
+    for name, compensated in (("rounded", False), ("compensated", True)):
+        rms = np.sqrt((walks(counts, starts, compensated) ** 2).mean(axis=0))
+        found[name] = {
+            "drift": drift(steps, compensated),
+            "rms": rms.tolist(),
+            "slope": slope(counts, rms),
+        }
+    return found
+
+
+def tables(found: dict[str, Any]) -> str:
+    """Return the tables of the page."""
+    lines = ["| | rounded | compensated |", "|---|--:|--:|"]
+
+    def row(what: str, *keys: str, form: str = ".1e") -> None:
+        numbers = []
+        for name in ("rounded", "compensated"):
+            value = found[name]
+            for key in keys:
+                value = value[key]
+            numbers.append(f"{value:{form}}")
+        lines.append(f"| {what} | {numbers[0]} | {numbers[1]} |")
+
+    row("steps of 5e-4 s", "drift", "steps", form=",")
+    row("largest drift, share of the total energy", "drift", "of_total")
+    row("largest drift, share of the largest kinetic energy", "drift", "of_kinetic")
+    lines += ["", f"| rms drift of {found['starts']} starts, J, after steps of 1e-4 s | rounded |"]
+    lines[-1] += " compensated |"
+    lines.append("|--:|--:|--:|")
+    for i, count in enumerate(found["steps"]):
+        both = (found[name]["rms"][i] for name in ("rounded", "compensated"))
+        lines.append(f"| {count:,} | {' | '.join(f'{x:.1e}' for x in both)} |")
+    row("exponent of the growth", "slope", form=".2f")
+    kept = found["time"]
+    lines += ["", f"After {kept['steps']:,} fixed steps of 5e-4 s the time is off by"]
+    lines[-1] += f" {kept['two_doubles']:.0e} s; one double would be off by"
+    lines.append(f"{kept['one_double']:.0e} s.")
+    return "\n".join(lines) + "\n"
+
+
+def figure(found: dict[str, Any], path: Path) -> None:
+    """Draw the drift of the textbook's case, and the growth of the rms over the starts."""
+    mpl.use("Agg")
+    from matplotlib import pyplot as plt
+
+    axes: Any
+    sheet, axes = plt.subplots(1, 2, figsize=(9, 3.6), layout="constrained")
+    for name, color in (("rounded", "#b3541e"), ("compensated", "#1f6f8b")):
+        one = found[name]
+        times = np.linspace(0, one["drift"]["steps"] * STEP, len(one["drift"]["series"]))
+        axes[0].plot(times, np.array(one["drift"]["series"]) * 1e12, color=color, label=name, lw=1)
+        axes[1].loglog(found["steps"], one["rms"], "o-", color=color, label=name, ms=3)
+    first = found["compensated"]["rms"][0]
+    root = first * np.sqrt(np.array(found["steps"]) / found["steps"][0])
+    axes[1].loglog(found["steps"], root, ":", color="0.4", label="square root of the steps")
+    axes[0].set(xlabel="time (s)", ylabel="energy drift / |total energy| (1e-12)",
+                title=f"textbook's case, {found['rounded']['drift']['steps']:,} steps")  # fmt: skip
+    axes[1].set(xlabel="steps of 1e-4 s", ylabel="rms energy drift (J)",
+                title=f"{found['starts']} random starts")  # fmt: skip
+    for part in axes:
+        part.legend(frameon=False)
+        part.spines[["top", "right"]].set_visible(False)
+    sheet.savefig(path, dpi=110)
+
+
+def main() -> None:
+    found = record(10_000_000, 24)
+    (ROOT / "docs/long_runs.json").write_text(json.dumps(found, indent=1) + "\n")
+    page = ROOT / "docs/long_runs.md"
+    before, rest = page.read_text().split(BEGIN)
+    page.write_text(before + BEGIN + tables(found) + END + rest.split(END)[1])
+    figure(found, ROOT / "docs/figures/long_runs.png")
+    print(tables(found))
+    largest = found["compensated"]["drift"]["of_kinetic"]
+    if not largest < 1e-12:
+        sys.exit(f"compensated, the energy drifted by {largest:.1e}")
+
+
+if __name__ == "__main__":
+    main()

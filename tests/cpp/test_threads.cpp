@@ -1,0 +1,123 @@
+// Many threads share scenes and solutions: they simulate, resume, sample and evaluate all at once,
+// and each gets the bits of one that is alone. The preset thread-sanitizer also looks for races.
+#include <doctest/doctest.h>
+
+#include <atomic>
+#include <barrier>
+#include <limits>
+#include <thread>
+
+#include "pendcore/pendcore.hpp"
+
+using namespace pendcore;
+
+namespace {
+
+constexpr auto own_torque = [](double /*t*/, std::span<const double> /*q*/,
+                               std::span<const double> qd,
+                               std::span<double> Q) { Q[0] -= 0.01 * qd[0]; };
+
+/// Of all that a run keeps for itself: modes, places in tables, locks.
+std::vector<Scene> shared_scenes() {
+  const std::vector<Link> links(3, Link::uniform_rod(1.0, 0.7));
+  return {
+      Scene::textbook(),
+      {.links = {links[0]}, .effects = {DryJointFriction{.joint = 1, .coulomb = 0.3}}},
+      {.links = {links[0], links[1]},
+       .effects = {ViscousJoint{.joint = 1, .damping = 0.02},
+                   Motor{.joint = 2, .sinusoid = Sinusoid{2.0, 5.0, 0.0}, .limit = 1.5},
+                   DryJointFriction{.joint = 2, .coulomb = 0.01},
+                   RodDrag{.link = 2, .drag_coefficient = 1.2, .diameter = 0.03}}},
+      {.links = links,
+       .effects = {Motor{.joint = 1, .table = Table{{0.0, 0.3, 0.9, 9.0}, {0.0, 1.0, 0.5, 0.5}}},
+                   DrivenPivot{.spline = Spline{{0.0, 1.0, 9.0}, {0.0, 0.1, 0.0}, {0.1, 0.0, 0.2}}},
+                   CompiledUser::of(own_torque), Lock{.joint = 3}}},
+  };
+}
+
+Options options_of(bool ledger) {
+  Options options;
+  options.ledger = ledger;
+  options.compensated = ledger;
+  options.max_step = 0.05;
+  return options;
+}
+
+/// What is shared: a scene, and a run of it that stopped half-way.
+struct Shared {
+  Scene scene;
+  std::vector<double> q0, qd0;
+  bool ledger;
+  Solution begun;
+};
+
+Solution simulated(const Shared& shared, double t_end) {
+  return simulate(shared.scene, shared.q0, shared.qd0, 0.0, t_end, options_of(shared.ledger));
+}
+
+Solution resumed(const Shared& shared) {
+  return resume(shared.scene, shared.begun, 1.5, {}, 1'000'000,
+                std::numeric_limits<double>::infinity(), nullptr);
+}
+
+std::vector<Shared> everything() {
+  std::vector<Shared> all;
+  for (const Scene& scene : shared_scenes()) {
+    for (const bool ledger : {false, true}) {
+      const std::size_t n = scene.links.size();
+      all.push_back({scene, std::vector<double>(n, 0.7), std::vector<double>(n, 0.0), ledger, {}});
+      all.back().begun = simulated(all.back(), 0.8);
+    }
+  }
+  return all;
+}
+
+/// All that is computed from one of them, by one thread.
+std::vector<double> all_of(const Shared& shared) {
+  std::vector<double> found;
+  const auto keep = [&found](const std::vector<double>& x) {
+    found.insert(found.end(), x.begin(), x.end());
+  };
+  const Solution whole = simulated(shared, 1.5);
+  const Solution longer = resumed(shared);
+  for (const Solution* solution : {&whole, &longer, &shared.begun}) {
+    keep(solution->t);
+    keep(solution->states);
+    keep(solution->dense.coefficients);
+  }
+  const double reached = shared.begun.t_reached;
+  keep(shared.begun.at({0.0, 0.1 * reached, 0.7 * reached, reached}));
+  const std::size_t n = shared.scene.links.size();
+  for (std::size_t i = 0; i < whole.t.size(); i += 20) {
+    const double* const q = whole.states.data() + i * static_cast<std::size_t>(whole.dimension);
+    found.push_back(kinetic_energy(shared.scene, whole.t[i], {q, n}, {q + n, n}));
+    found.push_back(potential_energy(shared.scene, whole.t[i], {q, n}));
+  }
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("threads that share scenes and solutions compute what one alone does") {
+  const std::vector<Shared> all = everything();
+  std::vector<std::vector<double>> alone;
+  for (const Shared& shared : all) alone.push_back(all_of(shared));
+
+  constexpr int threads = 8;
+  std::atomic<int> different = 0;
+  std::barrier together(threads);
+  {
+    std::vector<std::jthread> pool;
+    for (int k = 0; k < threads; ++k) {
+      pool.emplace_back([&, k] {
+        together.arrive_and_wait();
+        for (std::size_t i = 0; i < 2 * all.size(); ++i) {
+          const std::size_t mine = (i + static_cast<std::size_t>(k)) % all.size();
+          if (all_of(all[mine]) != alone[mine]) ++different;
+        }
+      });
+    }
+  }
+  CHECK(different == 0);
+  for (std::size_t i = 0; i < all.size(); ++i) CHECK(alone[i].size() > 200);
+}
