@@ -1,0 +1,118 @@
+"""Chains of uniform rods as dense matrices in NumPy, with the laws of contact by trying out.
+
+Nothing here is shared with the core: the equations are those of docs/conventions.md, written down
+once more; which contact acts is found by trying all that could.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pendcore as pc
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DenseChain:
+    masses: Array
+    lengths: Array
+    gravity: float
+
+    @property
+    def n(self) -> int:
+        return len(self.masses)
+
+    @property
+    def links(self) -> list[pc.Link]:
+        pairs = zip(self.masses, self.lengths, strict=True)
+        return [pc.Link(mass=float(mass), length=float(length)) for mass, length in pairs]
+
+    @property
+    def moments(self) -> Array:
+        """a_i = m_i L_i/2 + L_i (m_{i+1} + ... + m_n)."""
+        beyond = np.append(np.cumsum(self.masses[::-1])[::-1][1:], 0.0)
+        return self.masses * self.lengths / 2 + self.lengths * beyond
+
+    @property
+    def couplings(self) -> Array:
+        """A_ij = L_min a_max; A_ii = m_i L_i^2/3 + L_i^2 S_i."""
+        a, lengths = self.moments, self.lengths
+        i, j = np.indices((self.n, self.n))
+        coupled = lengths[np.minimum(i, j)] * a[np.maximum(i, j)]
+        beyond = np.append(np.cumsum(self.masses[::-1])[::-1][1:], 0.0)
+        np.fill_diagonal(coupled, self.masses * lengths**2 / 3 + lengths**2 * beyond)
+        return coupled
+
+    def mass_matrix(self, q: Array) -> Array:
+        return self.couplings * np.cos(q[:, None] - q)
+
+    def forces(self, q: Array, qd: Array, torques: Array) -> Array:
+        """What M qdd equals under these torques at the joints, without what holds them."""
+        spun = (self.couplings * np.sin(q[:, None] - q)) @ qd**2
+        return self.moments * self.gravity * np.cos(q) - spun + joints(self.n).T @ torques
+
+
+def joints(n: int) -> Array:
+    """The matrix that makes relative angles of absolute ones."""
+    return np.eye(n) - np.eye(n, k=-1)
+
+
+def held_accelerations(
+    m: Array, forces: Array, limits: dict[int, float]
+) -> tuple[Array, frozenset[int]]:
+    """Accelerations, and the joints (from 0) that stick, of those at rest with these limits.
+
+    Tries every pattern of stick, slide forward, slide backward; the one without contradiction is
+    the answer. `forces` holds the friction of joints that slide already.
+    """
+    d = joints(len(m))
+    worst: list[tuple[float, Array, frozenset[int]]] = []
+    for signs in itertools.product((0, 1, -1), repeat=len(limits)):
+        pattern = dict(zip(limits, signs, strict=True))
+        stuck = [j for j, sign in pattern.items() if sign == 0]
+        slid = sum((-sign * limits[j] * d[j] for j, sign in pattern.items()), np.zeros(len(m)))
+        rows = d[stuck]
+        k = len(stuck)
+        saddle = np.block([[m, -rows.T], [rows, np.zeros((k, k))]])
+        found = np.linalg.solve(saddle, np.append(forces + slid, np.zeros(k)))
+        qdd, holding = found[: len(m)], found[len(m) :]
+        over = [abs(t) - limits[j] for j, t in zip(stuck, holding, strict=True)]
+        against = [-sign * (d[j] @ qdd) for j, sign in pattern.items() if sign]
+        worst.append((max([*over, *against, -np.inf]), qdd, frozenset(stuck)))
+    contradiction, qdd, stuck_set = min(worst, key=lambda one: one[0])
+    assert contradiction <= 1e-9, "no pattern is free of contradiction"
+    return qdd, stuck_set
+
+
+def rates_after_impact(
+    m: Array, qd: Array, normals: Array, restitution: Sequence[float]
+) -> tuple[Array, Array]:
+    """Rates and impulses after all of these contacts close at once; normals point outward.
+
+    The gap of contact c closes at the rate normals[c] . qd < 0. Tries every set of contacts that
+    act: 0 <= Lam against J v+ + e J v- >= 0.
+    """
+    wanted = -np.asarray(restitution) * (normals @ qd)
+    mobility = np.linalg.solve(m, normals.T)
+    best: tuple[float, Any, Any] = (np.inf, None, None)
+    contacts = range(len(normals))
+    for size in range(len(normals) + 1):
+        for acting in itertools.combinations(contacts, size):
+            chosen = list(acting)
+            impulses = np.zeros(len(normals))
+            delassus = normals[chosen] @ mobility[:, chosen]
+            short = wanted[chosen] - normals[chosen] @ qd
+            impulses[chosen] = np.linalg.solve(delassus, short)
+            after = qd + mobility @ impulses
+            slack = normals @ after - wanted
+            wrong = max(-impulses.min(), -slack.min())
+            if wrong < best[0]:
+                best = (wrong, after, impulses)
+    assert best[0] <= 1e-9, "no set of contacts is free of contradiction"
+    return best[1], best[2]

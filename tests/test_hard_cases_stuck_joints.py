@@ -1,0 +1,131 @@
+"""Several joints with dry friction: which of them stick, and what the others do meanwhile.
+
+The answer of dense_chain.py tries every pattern of stick and slip: the one without contradiction is
+the law (the convex problem of Coulomb friction has one solution). Testing each joint with all
+others locked is wrong in one random case of six.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pendcore as pc
+import pytest
+from dense_chain import DenseChain, held_accelerations, joints
+from pendcore import effects as fx
+
+pytestmark = pytest.mark.skipif(
+    "does not stick" in (fx.DryJointFriction.__doc__ or ""), reason="friction does not stick yet"
+)
+
+CASES = 2000
+
+
+def drawn(n: int, seed: int, *, at_rest: bool) -> dict[str, Any]:
+    """A chain with friction and a motor in every joint, at rest or with some joints sliding."""
+    random = np.random.default_rng([n, seed])
+    chain = DenseChain(
+        masses=random.uniform(0.2, 3, n), lengths=random.uniform(0.2, 2, n), gravity=9.81
+    )
+    size = chain.moments * chain.gravity
+    phid = np.zeros(n) if at_rest else random.choice([0.0, 0.0, 1.0, -2.0], n)
+    static = np.cumsum(size[::-1])[::-1] * random.uniform(0, 0.8, n)
+    return {
+        "chain": chain,
+        "q": random.uniform(-4, 4, n),
+        "qd": np.cumsum(phid),
+        "phid": phid,
+        "motors": size * random.uniform(-0.5, 0.5, n),
+        "static": static,
+        "coulomb": static * random.uniform(0.3, 1, n),
+    }
+
+
+def scene_of(case: dict[str, Any]) -> pc.Scene:
+    chain: DenseChain = case["chain"]
+    effects: list[Any] = []
+    for j in range(chain.n):
+        effects.append(fx.Motor(joint=j + 1, constant=float(case["motors"][j])))
+        friction = {name: float(case[name][j]) for name in ("coulomb", "static")}
+        effects.append(fx.DryJointFriction(joint=j + 1, stribeck_velocity=0.01, **friction))
+    return pc.Scene(links=chain.links, gravity=chain.gravity, effects=effects)
+
+
+def answer(case: dict[str, Any]) -> tuple[Any, frozenset[int]]:
+    chain: DenseChain = case["chain"]
+    phid = case["phid"]
+    at_rest = {j: float(case["static"][j]) for j in range(chain.n) if phid[j] == 0}
+    peak = (case["static"] - case["coulomb"]) * np.exp(-((phid / 0.01) ** 2))
+    sliding = -np.sign(phid) * (case["coulomb"] + peak)
+    forces = chain.forces(case["q"], case["qd"], case["motors"] + sliding)
+    return held_accelerations(chain.mass_matrix(case["q"]), forces, at_rest)
+
+
+@pytest.mark.parametrize("at_rest", [True, False], ids=["at rest", "some slide"])
+@pytest.mark.parametrize("n", [2, 3])
+def test_what_sticks_is_what_is_free_of_contradiction(n: int, at_rest: bool) -> None:
+    """Accelerations of 2000 random cases; those of joints that stick vanish exactly."""
+    patterns = set()
+    for seed in range(CASES if n == 2 else CASES // 2):
+        case = drawn(n, seed, at_rest=at_rest)
+        exact, stuck = answer(case)
+        found = scene_of(case).accelerations(0.0, case["q"], case["qd"])
+        scale = max(np.abs(exact).max(), 1.0)
+        np.testing.assert_allclose(found, exact, atol=1e-9 * scale, err_msg=f"seed {seed}")
+        before = np.append(0.0, found[:-1])
+        assert all(found[j] == before[j] for j in stuck), f"seed {seed}: {stuck} {found}"
+        patterns.add(stuck)
+    assert len(patterns) == 2**n  # each subset of the joints stuck is among them
+
+
+@pytest.mark.parametrize("n", [2, 3, 4])
+def test_a_run_from_rest_begins_as_the_law_says(n: int) -> None:
+    """A thousandth of a second on: joints that stick have not moved, the others by phidd t^2/2."""
+    rested = 0
+    for seed in range(60):
+        case = drawn(n, 10_000 + seed, at_rest=True)
+        exact, stuck = answer(case)
+        sol = pc.simulate(scene_of(case), case["q"], 0, (0, 1e-3), rtol=1e-10, atol=1e-16)
+        if len(stuck) == n:
+            assert (sol.status, sol.t[-1]) == ("at_rest", 0.0), f"seed {seed}"
+            rested += 1
+            continue
+        assert sol.status == "finished", f"seed {seed}: {sol.message}"
+        before = np.append(0.0, sol.qd[-1, :-1])
+        held = frozenset(j for j in range(n) if sol.qd[-1, j] == before[j])
+        assert held == stuck, f"seed {seed}"
+        slid = joints(n) @ exact
+        moved = joints(n) @ (sol.q[-1] - case["q"])
+        loose = [j for j in range(n) if j not in stuck and abs(slid[j]) > 0.1]
+        # friction falls as they speed up, with a peak of 0.01 rad/s: the signs must agree
+        assert (np.sign(moved[loose]) == np.sign(slid[loose])).all(), f"seed {seed}"
+    assert rested or n > 2
+
+
+def test_a_joint_that_is_stuck_may_let_go_because_another_moves() -> None:
+    """Link 2 swings freely about a held link 1: joint 1 lets go when the reaction's couple is ts.
+
+    Until then link 2 is a single pendulum, which presses on joint 1 with the couple of its forces.
+    """
+    chain = DenseChain(masses=np.array([1.0, 1.0]), lengths=np.array([1.0, 1.0]), gravity=9.81)
+    limit = 5.0
+    scene = pc.Scene(
+        links=chain.links, gravity=9.81, effects=[fx.DryJointFriction(joint=1, coulomb=limit)]
+    )
+    start = np.array([np.pi / 2, 0.3])
+    sol = pc.simulate(scene, start, 0, (0, 2.0), rtol=1e-12, atol=1e-14)
+    assert sol.success
+    first_free = int(np.argmax(sol.qd[:, 0] != 0))
+    assert first_free > 1
+    np.testing.assert_array_equal(sol.q[:first_free, 0], start[0])
+
+    def couple(q: Any, qd: Any) -> float:
+        """What must hold link 1, from its own line of M qdd = forces with qdd_1 = 0."""
+        m, f = chain.mass_matrix(q), chain.forces(q, qd, np.zeros(2))
+        return float(m[0, 1] * f[1] / m[1, 1] - f[0])
+
+    for row in range(first_free):
+        assert abs(couple(sol.q[row], sol.qd[row])) <= limit * (1 + 1e-9)
+    let_go = abs(couple(sol.q[first_free - 1], sol.qd[first_free - 1]))
+    assert let_go == pytest.approx(limit, rel=1e-9)
