@@ -1,8 +1,8 @@
 """Dry friction in one joint, solved event by event in many digits: nothing is shared with the core.
 
-One rod of inertia J without gravity under the torque bias + amplitude sin(frequency t), against
-friction coulomb in sliding and static at rest, equal: every phase is a closed form, and what ends it
-the root of a scalar function.
+One rod of moment of inertia 1 without gravity under the torque bias + amplitude sin(frequency t);
+friction is the same in sliding and at rest. Every phase is a closed form, and what ends it the root
+of a scalar function.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ DIGITS = 34
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Hum:
-    """The torque and the friction of it all; J = 1."""
+    """The torque, and the friction against it."""
 
     bias: Any = 0
     amplitude: Any
