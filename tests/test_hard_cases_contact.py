@@ -182,7 +182,7 @@ def test_friction_that_stops_the_rod_short_of_the_stop_leaves_it_there() -> None
 
 
 def test_friction_and_a_stop_hold_together_and_let_go_by_the_friction_alone() -> None:
-    """Pressed on by -2, turned to +2 from 1 s to 3 s: away once the torque exceeds friction, 0.5."""
+    """Pressed by -2, turned to +2 from 1 s to 3 s: free once the torque exceeds friction, 0.5."""
     table = fx.Motor(joint=1, table=fx.Table(t=[0, 1, 3, 4], torque=[-2, -2, 2, 2]))
     scene = rod(table, fx.DryJointFriction(joint=1, coulomb=0.5), stop(0, inf))
     sol = solve(scene, 0, 0, 3, **FINE)
