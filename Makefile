@@ -16,8 +16,8 @@ PIP_INSTALL := python -m pip install --quiet --disable-pip-version-check
 SOURCES := pyproject.toml CMakeLists.txt $(shell find cpp python ! -path '*__pycache__*')
 
 .DEFAULT_GOAL := help
-.PHONY: demo test compare bench build-bench lint tidy sanitize threads long clean \
-    help
+.PHONY: demo test compare hard-cases bench build-bench lint tidy sanitize threads long \
+    clean help
 
 demo: $(DONE)/installed  ## build, run the textbook's case, say where its figure and summary are
 	pendcore run -o out/textbook
@@ -32,6 +32,9 @@ test: $(DONE)/installed $(DONE)/test-requirements  ## build and run all tests
 
 compare: $(DONE)/installed build-bench  ## accuracy and speed beside other solvers
 	python bench/compare/compare.py
+
+hard-cases: $(DONE)/installed build-bench  ## what breaks simulators, here and in other programs
+	python bench/compare/compare_hard_cases.py
 
 bench: build-bench  ## what the parts of the core cost, in nanoseconds
 	build/bench/bench/pendcore_bench
@@ -74,7 +77,7 @@ clean:  ## remove all that was built, and the virtual environment
 	rm -rf build out .venv
 
 help:  ## this list
-	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' Makefile | expand -t 18
+	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 18
 
 $(DONE)/venv:
 	@sh setup/debian_packages.sh python compiler also eigen doctest

@@ -63,16 +63,14 @@ def joints(n: int) -> Array:
     return np.eye(n) - np.eye(n, k=-1)
 
 
-def held_accelerations(
-    m: Array, forces: Array, limits: dict[int, float]
-) -> tuple[Array, frozenset[int]]:
-    """Accelerations, and the joints (from 0) that stick, of those at rest with these limits.
+def held(m: Array, forces: Array, limits: dict[int, float]) -> tuple[Array, dict[int, int]]:
+    """Accelerations, and what the joints (from 0) at rest with these limits do.
 
-    Tries every pattern of stick, slide forward, slide backward; the one without contradiction is
-    the answer. `forces` holds the friction of joints that slide already.
+    0: it sticks; 1, -1: it begins to slide that way. Tries every pattern; the one without
+    contradiction is the answer. `forces` holds the friction of joints that slide already.
     """
     d = joints(len(m))
-    worst: list[tuple[float, Array, frozenset[int]]] = []
+    best: tuple[float, Any, Any] = (np.inf, None, None)
     for signs in itertools.product((0, 1, -1), repeat=len(limits)):
         pattern = dict(zip(limits, signs, strict=True))
         stuck = [j for j, sign in pattern.items() if sign == 0]
@@ -84,10 +82,19 @@ def held_accelerations(
         qdd, holding = found[: len(m)], found[len(m) :]
         over = [abs(t) - limits[j] for j, t in zip(stuck, holding, strict=True)]
         against = [-sign * (d[j] @ qdd) for j, sign in pattern.items() if sign]
-        worst.append((max([*over, *against, -np.inf]), qdd, frozenset(stuck)))
-    contradiction, qdd, stuck_set = min(worst, key=lambda one: one[0])
-    assert contradiction <= 1e-9, "no pattern is free of contradiction"
-    return qdd, stuck_set
+        contradiction = max([*over, *against, -np.inf])
+        if contradiction < best[0]:
+            best = (contradiction, qdd, pattern)
+    assert best[0] <= 1e-9, "no pattern is free of contradiction"
+    return best[1], best[2]
+
+
+def held_accelerations(
+    m: Array, forces: Array, limits: dict[int, float]
+) -> tuple[Array, frozenset[int]]:
+    """The same, with the joints that stick."""
+    qdd, pattern = held(m, forces, limits)
+    return qdd, frozenset(j for j, sign in pattern.items() if sign == 0)
 
 
 def rates_after_impact(

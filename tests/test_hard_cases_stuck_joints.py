@@ -7,12 +7,14 @@ others locked is wrong in one random case of six.
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 import numpy as np
 import pendcore as pc
 import pytest
 from dense_chain import DenseChain, held_accelerations, joints
+from hybrid_chain import HybridChain
 from pendcore import effects as fx
 
 pytestmark = pytest.mark.skipif(
@@ -129,3 +131,37 @@ def test_a_joint_that_is_stuck_may_let_go_because_another_moves() -> None:
         assert abs(couple(sol.q[row], sol.qd[row])) <= limit * (1 + 1e-9)
     let_go = abs(couple(sol.q[first_free - 1], sol.qd[first_free - 1]))
     assert let_go == pytest.approx(limit, rel=1e-9)
+
+
+RUNS = {
+    "slow": (np.array([5.0, 1.5]), 10.0, 1.0, 9.0),
+    "fast": (np.array([6.0, 4.0]), 18.0, 3.0, 3.0),
+    "three rods": (np.array([9.0, 3.0, 1.0]), 22.0, 2.0, 2.5),
+}
+
+
+@pytest.mark.parametrize("run", RUNS.values(), ids=RUNS.keys())
+def test_joints_that_stick_and_slide_in_turn_follow_the_solution_mode_by_mode(
+    run: tuple[Any, float, float, float],
+) -> None:
+    """Hanging rods under a motor in joint 1: every switch, and the states between."""
+    friction, amplitude, w, t_end = run
+    n = len(friction)
+    chain = DenseChain(masses=np.ones(n), lengths=np.ones(n), gravity=9.807)
+    motor = np.eye(n)[0] * amplitude
+    exact = HybridChain(chain=chain, friction=friction, torques=lambda t: motor * np.sin(w * t))
+    times = np.linspace(0, t_end, 46)[1:]
+    states = exact.run(np.full(n, np.pi / 2), times)
+    hum = fx.Sinusoid(amplitude=amplitude, angular_frequency=w)
+    effects: list[Any] = [fx.Motor(joint=1, sinusoid=hum)]
+    effects += [fx.DryJointFriction(joint=j + 1, coulomb=float(friction[j])) for j in range(n)]
+    scene = pc.Scene(links=chain.links, gravity=chain.gravity, effects=effects)
+    sol = pc.simulate(scene, np.pi / 2, t_span=(0, t_end), rtol=1e-12, atol=1e-14)
+    assert sol.status == "finished"
+    np.testing.assert_allclose(sol(times).T, states, atol=1e-9)
+    assert any(0 in mode for _, _, mode in exact.switches)
+    for time, _, _ in exact.switches:
+        assert np.abs(sol.t - time).min() < 1e-9
+    for (begin, _, mode), (end, _, _) in itertools.pairwise(exact.switches):
+        rates = joints(n) @ sol((begin + end) / 2)[n:]
+        assert tuple(np.sign(rates)) == mode  # 0 where it sticks: not small, nothing

@@ -1,0 +1,1 @@
+"""Hard cases, run by pendcore and its peers: a file per case, a function per contender."""

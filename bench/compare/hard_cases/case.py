@@ -1,0 +1,90 @@
+"""What a case asks, and what came of it in one program."""
+
+from __future__ import annotations
+
+import contextlib
+import multiprocessing
+import os
+import signal
+import tempfile
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from multiprocessing.connection import Connection
+
+LONGEST = 30.0  # s for one contender; whoever takes longer has not returned
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Outcome:
+    """`error` against the right answer, None where none was given; `said`: what happened, in words.
+
+    `trace`: curves for a figure, by name. `right` overrules what the error says: for cases that ask
+    what a program says.
+    """
+
+    error: float | None = None
+    said: str = ""
+    right: bool | None = None
+    trace: Mapping[str, list[float]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Contender:
+    """`program` is its column, `how` what its user wrote."""
+
+    program: str
+    how: str
+    run: Callable[[], Outcome]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HardCase:
+    """`unit` is that of the error; an error of at most `allowed` counts as right."""
+
+    name: str
+    title: str
+    scene: str
+    answer: str
+    unit: str
+    allowed: float
+    contenders: tuple[Contender, ...]
+    reference: Callable[[], Mapping[str, list[float]]] = dict
+
+
+class Absent(Exception):
+    """What the contender needs is not installed, not built, or not there yet."""
+
+
+def _report(run: Callable[[], Outcome], pipe: Connection) -> None:
+    os.setsid()  # what it starts is ended with it
+    os.chdir(tempfile.gettempdir())  # MuJoCo writes its warnings into a file where it runs
+    try:
+        pipe.send(run())
+    except (ImportError, Absent) as absence:
+        pipe.send(Absent(str(absence)))
+    except Exception as failure:  # what a program throws is what happened in it
+        pipe.send(Outcome(said=f"{type(failure).__name__}: {failure}"))
+
+
+def run_bounded(run: Callable[[], Outcome], seconds: float = LONGEST) -> Outcome:
+    """Run in a process of its own, which is ended when the time is over."""
+    context = multiprocessing.get_context("fork")
+    receiver, sender = context.Pipe(duplex=False)
+    process = context.Process(target=_report, args=(run, sender))
+    process.start()
+    sender.close()
+    try:
+        if not receiver.poll(seconds):
+            return Outcome(said=f"does not return (ended after {seconds:.0f} s)", right=False)
+        answer = receiver.recv()
+    except EOFError:
+        return Outcome(said="the process died", right=False)
+    finally:
+        with contextlib.suppress(ProcessLookupError, PermissionError):
+            os.killpg(process.pid or 0, signal.SIGKILL)
+        process.kill()
+        process.join()
+    if isinstance(answer, Absent):
+        raise answer
+    assert isinstance(answer, Outcome)
+    return answer

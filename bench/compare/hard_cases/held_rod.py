@@ -1,0 +1,87 @@
+"""A rod that friction holds at 30 degrees for a million seconds."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from hard_cases.case import Contender, HardCase, Outcome
+from hard_cases.odeint import odeint
+from hard_cases.rods import Array, mujoco_rods
+
+G, T_END = 9.81, 1e6
+START = np.pi / 6  # below the horizontal
+WEIGHT = 3 * G / 2
+FRICTION = float(2 * WEIGHT * np.cos(START))
+SOFT = 1e-6  # rad/s over which the sign is smoothed
+TUNED = 'solimpfriction="0.9999 0.9999 0.001" solreffriction="{} 1"'
+
+
+def moved(by: float, *, extrapolated_from: float = 0.0) -> Outcome:
+    words = f"moves by {by:.1e} rad" if by else "moves by exactly nothing"
+    if extrapolated_from:
+        words += f" (its rate after {extrapolated_from:.0f} s, times 1e6 s)"
+    return Outcome(error=abs(by), said=words)
+
+
+def pendcore() -> Outcome:
+    import pendcore as pc
+
+    friction = pc.effects.DryJointFriction(joint=1, coulomb=FRICTION)
+    scene = pc.Scene(links=[pc.Link(mass=3, length=1)], gravity=G, effects=[friction])
+    sol = pc.simulate(scene, START, t_span=(0, T_END))
+    held = moved(abs(sol.q[-1, 0] - START))
+    return Outcome(error=held.error, said=f"{held.said}; status `{sol.status}`")
+
+
+def smoothed(_: float, y: Array) -> list[float]:
+    return [y[1], WEIGHT * np.cos(y[0]) - FRICTION * np.tanh(y[1] / SOFT)]
+
+
+def scipy_smoothed() -> Outcome:
+    from scipy.integrate import solve_ivp
+
+    sol = solve_ivp(smoothed, (0, T_END), [START, 0], "Radau", rtol=1e-8, atol=1e-12)
+    return moved(sol.y[0, -1] - START)
+
+
+def scipy_events() -> Outcome:
+    """A flag of the user's own: where the torque is within friction and the rate zero, it rests."""
+    held = abs(WEIGHT * np.cos(START)) <= FRICTION
+    return moved(0.0) if held else Outcome(said="slides")
+
+
+def mujoco_creep(dt: float, joint: str, seconds: float = 10.0) -> Outcome:
+    import mujoco
+
+    model = mujoco_rods(dt=dt, gravity=G, joint=f'frictionloss="{FRICTION!r}" {joint}')
+    data = mujoco.MjData(model)
+    data.qpos[0] = np.pi / 2 - START
+    for _ in range(round(seconds / dt)):
+        mujoco.mj_step(model, data)
+    return moved(-float(data.qvel[0]) * T_END, extrapolated_from=seconds)
+
+
+CASE = HardCase(
+    name="held_rod",
+    title="A rod held by friction for 1e6 s",
+    scene="One rod at 30 degrees below the horizontal, friction of twice what its weight asks for.",
+    answer="It does not move at all.",
+    unit="rad",
+    allowed=0.0,
+    contenders=(
+        Contender(program="pendcore", how="`DryJointFriction`", run=pendcore),
+        Contender(program="scipy", how="sign smoothed over 1e-6 rad/s, Radau", run=scipy_smoothed),
+        Contender(program="scipy", how="a flag for rest, by hand", run=scipy_events),
+        Contender(program="mujoco", how="`frictionloss`, 2 ms", run=lambda: mujoco_creep(2e-3, "")),
+        Contender(
+            program="mujoco",
+            how="`frictionloss`, hardest constraint, 0.1 ms",
+            run=lambda: mujoco_creep(1e-4, TUNED.format(2e-4)),
+        ),
+        odeint(
+            "sign smoothed over 1e-6 rad/s, rosenbrock4",
+            "held_rod",
+            judge=lambda told: moved(told["q"][0] - START),
+        ),
+    ),
+)

@@ -1,0 +1,117 @@
+"""The cases that every release passes, and the tests of each; a test checks that they exist."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+HARD = "tests/test_hard_cases.py"
+STICK = "tests/test_hard_cases_stick.py"
+SLIP = "tests/test_hard_cases_stick_slip.py"
+JOINTS = "tests/test_hard_cases_stuck_joints.py"
+BOUNCES = "tests/test_hard_cases_bounces.py"
+CONTACT = "tests/test_hard_cases_contact.py"
+IMPACTS = "tests/test_hard_cases_impacts.py"
+MORE = "tests/test_hard_cases_forces.py"
+
+LISTED: dict[str, tuple[str, ...]] = {
+    "an interval of no length, and of 100 units in the last place": (
+        "tests/test_simulate.py::test_a_run_of_no_length_is_its_start",
+        f"{HARD}::test_a_hundred_units_in_the_last_place_are_one_step",
+    ),
+    "t0 so large that t + h = t": (f"{HARD}::test_a_time_too_large_for_its_step_is_said_plainly",),
+    "backward is the mirror of forward; there and back": (
+        f"{HARD}::test_backward_is_the_mirror_of_forward",
+        f"{HARD}::test_there_and_back_is_where_it_began",
+    ),
+    "at rest in both equilibria; upright, with the time of the fall": (
+        "tests/test_exact_answers.py::test_hanging_at_rest_it_stays",
+        f"{HARD}::test_upright_falls_when_theory_says",
+    ),
+    "at rest with all links horizontal": (
+        f"{HARD}::test_all_links_horizontal_at_rest_begins_to_fall_at_once",
+    ),
+    "a start that is not finite": (
+        "tests/test_bad_input.py::test_a_start_that_is_not_finite_is_named_with_its_place",
+    ),
+    "not a number in mid-run": (
+        "tests/test_own_effects.py::test_forces_that_are_no_numbers_end_the_run_and_say_when",
+    ),
+    "blow-up in finite time": (f"{MORE}::test_a_blow_up_ends_at_its_pole",),
+    "tolerances of 1e30, and below eps; atol 0 with a zero component": (
+        f"{HARD}::test_absurd_tolerances_end_in_a_solution",
+        f"{HARD}::test_no_absolute_tolerance_with_components_that_stay_zero",
+    ),
+    "ratios of mass and length of 1e+-12; a payload of 1e6 links": (
+        f"{HARD}::test_extreme_ratios_keep_their_energy",
+        f"{MORE}::test_a_payload_of_a_million_links_swings_as_a_pendulum_on_a_string",
+    ),
+    "a spin of 1e6 rad/s; angles of 1e8 rad; denormal states": (
+        f"{HARD}::test_a_spin_of_a_million_keeps_its_energy_and_momentum",
+        f"{HARD}::test_angles_of_a_hundred_million_turn_as_small_ones_do",
+        f"{HARD}::test_denormal_rates_are_not_lost",
+    ),
+    "no gravity; units of microns and of astronomy": (
+        "tests/test_exact_answers.py::test_without_gravity_energy_and_angular_momentum_stay",
+        f"{HARD}::test_the_units_do_not_matter",
+    ),
+    "stiff damping and a stiff PD: bounded work, flagged": (
+        f"{MORE}::test_a_stiff_damper_is_flagged_in_bounded_work",
+        f"{MORE}::test_a_stiff_servo_ends_at_the_limit_of_steps_or_gets_there",
+    ),
+    "a shaken pivot at the border of stability": (
+        "tests/test_kapitza.py::test_the_border_of_stability_is_where_floquet_says",
+    ),
+    "dry friction that holds a rod for 1e6 s": (
+        f"{STICK}::test_a_rod_held_at_30_degrees_is_at_rest_for_good",
+        f"{STICK}::test_a_rod_held_at_30_degrees_under_a_hum_moves_by_nothing_in_1e6_s",
+    ),
+    "stick and slip under drive, in one joint and in several": (
+        f"{SLIP}::test_under_a_sinusoidal_torque_each_slide_begins_and_ends_when_it_should",
+        f"{SLIP}::test_stick_and_slip_of_a_rod_that_a_spring_tows_slowly",
+        f"{JOINTS}::test_what_sticks_is_what_is_free_of_contradiction",
+        f"{JOINTS}::test_joints_that_stick_and_slide_in_turn_follow_the_solution_mode_by_mode",
+    ),
+    "accumulating bounces": (f"{BOUNCES}::test_accumulating_bounces_end_when_the_series_says",),
+    "impacts on chains, several stops at once": (
+        f"{IMPACTS}::test_an_impact_turns_the_joint_and_jerks_the_others_as_the_law_says",
+        f"{IMPACTS}::test_stops_hit_at_once_share_the_impulse_by_complementarity",
+    ),
+    "a stop that is never reached": (
+        f"{CONTACT}::test_a_stop_that_is_never_reached_changes_no_bit",
+    ),
+    "grazing contact": (
+        f"{CONTACT}::test_a_grazing_stop_is_hit_if_and_only_if_the_swing_reaches_it",
+    ),
+    "a chain of 1000 links": (f"{MORE}::test_a_chain_of_a_thousand_links_keeps_its_energy",),
+    "swings next to the separatrix": (
+        f"{HARD}::test_a_swing_next_to_the_separatrix_takes_the_time_of_the_elliptic_integral",
+    ),
+    "long energy drift": (f"{HARD}::test_energy_drifts_with_the_tolerance_alone",),
+    "inputs that are read-only, strided, of the wrong shape or type": (
+        "tests/test_simulate.py::test_the_same_start_in_any_form_gives_the_same_bits",
+        "tests/test_bad_input.py::test_a_start_of_the_wrong_shape_is_refused_with_the_right_one",
+        "tests/test_bad_input.py::test_what_is_no_real_number_is_refused",
+    ),
+    "Ctrl-C within 0.1 s": (f"{HARD}::test_ctrl_c_is_heard_within_a_tenth_of_a_second",),
+    "threads that share a scene; a fork": (
+        "tests/test_own_effects.py::test_threads_share_a_scene_with_a_function",
+        f"{HARD}::test_a_fork_may_simulate_too",
+    ),
+    "pickling of everything": (
+        "tests/test_solution.py::test_a_solution_comes_back_whole",
+        "tests/test_effect_round_trips.py::test_an_effect_comes_back_from_its_repr_and_from_pickle",
+        "tests/test_effect_round_trips.py::test_a_scene_comes_back_from_its_repr_and_from_pickle",
+    ),
+}
+
+
+def missing(root: Path) -> list[str]:
+    """Tests of the list that are not where it says."""
+    found = []
+    for tests in LISTED.values():
+        for test in tests:
+            file, _, name = test.partition("::")
+            path = root / file
+            if not path.exists() or f"def {name}(" not in path.read_text(encoding="utf-8"):
+                found.append(test)
+    return found

@@ -1,0 +1,27 @@
+"""Boost.odeint's side: contenders/hard_cases_odeint.cpp, called with the name of a case."""
+
+from __future__ import annotations
+
+import subprocess
+from collections.abc import Callable
+
+from contenders.conversation import find_executable
+
+from hard_cases.case import Contender, Outcome
+
+
+def ask(*request: str) -> dict[str, list[float]]:
+    """Lines of a name and numbers, by name."""
+    path = find_executable("hard_cases_odeint", "HARD_CASES_ODEINT")
+    done = subprocess.run([path, *request], capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise RuntimeError(done.stderr.strip() or f"ended with {done.returncode}")
+    lines = (line.split() for line in done.stdout.splitlines())
+    return {name: [float(number) for number in numbers] for name, *numbers in lines}
+
+
+def odeint(
+    how: str, *request: str, judge: Callable[[dict[str, list[float]]], Outcome]
+) -> Contender:
+    """Make the contender that asks, and judges what it hears."""
+    return Contender(program="odeint", how=how, run=lambda: judge(ask(*request)))

@@ -1,0 +1,181 @@
+"""The record of hard cases as a page, made of nothing but what the JSON holds."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from hard_cases.cases import PROGRAMS
+from hard_cases.listed import LISTED
+
+Record = dict[str, Any]
+
+PAGE = """# Hard cases
+
+Made by `make hard-cases`; the raw figures are in [hard_cases.json](hard_cases.json). Do not edit:
+run again.
+
+The same case, in pendcore and in three programs that one might take instead, each at its best: what
+its able user writes, in more ways than one where there is a choice. A case states its right answer
+from a closed form or from a solution that shares no code with any of them. What is asked is whether
+the answer is right; times are another page ([comparison](comparison/textbook.md)).
+
+![Angles of two joints over time, and how far each program is off][two joints]
+
+[two joints]: figures/hard_cases_two_joints.png
+
+## At a glance
+
+Of each program the way that does best; **bold** is right.
+
+{glance}
+{summary}
+
+## Case by case
+
+{sections}
+## Where pendcore loses
+
+{losses}
+
+## Who took part, and on what
+
+{machine}
+
+## What every release passes
+
+The list of cases that break simulators, and the test that each has. All of them run in `make test`.
+
+{listed}
+"""
+
+
+def table(header: list[str], rows: list[list[str]]) -> str:
+    lines = [header, ["---"] * len(header), *rows]
+    return "\n".join("| " + " | ".join(cells) + " |" for cells in lines) + "\n"
+
+
+def cell(text: str) -> str:
+    return " ".join(text.split()).replace("|", "\\|")
+
+
+def taking_part(case: Any, program: str) -> list[Any]:
+    return [one for one in case["contenders"] if one["program"] == program]
+
+
+def best(case: Any, program: str) -> Any | None:
+    """The contender that is right, else the one that is least wrong, else the first."""
+    found = taking_part(case, program)
+
+    def rank(one: Any) -> tuple[bool, float]:
+        return (not one["right"], float("inf") if one["error"] is None else one["error"])
+
+    return min(found, key=rank, default=None)
+
+
+def measured(case: Any, one: Any) -> str:
+    """Write the error with its unit, or what happened."""
+    if one["error"] is None or not case["unit"]:
+        return "said plainly" if one["right"] else cell(one["said"].split(":")[0].split(";")[0])
+    if one["error"] == 0:
+        return "exact"
+    return f"{one['error']:.0e} {case['unit']}".replace("e-0", "e-").replace("e+0", "e+")
+
+
+def glance(record: Record) -> str:
+    rows = []
+    for case in record["cases"]:
+        row = [f"[{case['title']}](#{anchor(case['title'])})"]
+        for program in PROGRAMS:
+            one = best(case, program)
+            text = "not there" if one is None else measured(case, one)
+            row.append(f"**{text}**" if one is not None and one["right"] else text)
+        rows.append(row)
+    return table(["case", *PROGRAMS.values()], rows)
+
+
+def anchor(title: str) -> str:
+    return "".join(c for c in title.lower().replace(" ", "-") if c.isalnum() or c == "-")
+
+
+def summary(record: Record) -> str:
+    """Count the cases that each program has right, and those that nobody else has."""
+    counts = []
+    for program, label in PROGRAMS.items():
+        found = [best(case, program) for case in record["cases"]]
+        right = sum(one is not None and one["right"] for one in found)
+        counts.append(f"{label} {right}")
+    alone = [
+        case["title"].lower()
+        for case in record["cases"]
+        if (own := best(case, "pendcore")) is not None
+        and own["right"]
+        and not any(
+            (one := best(case, program)) is not None and one["right"]
+            for program in PROGRAMS
+            if program != "pendcore"
+        )
+    ]
+    lines = [f"Right, of {len(record['cases'])} cases: {', '.join(counts)}."]
+    if alone:
+        lines.append(f"Right in pendcore alone: {'; '.join(alone)}.")
+    return "\n".join(lines)
+
+
+def section(case: Any) -> str:
+    rows = [
+        [
+            PROGRAMS[one["program"]],
+            cell(one["how"]),
+            cell(one["said"]),
+            "—" if one["error"] is None else measured(case, one),
+            "yes" if one["right"] else "no",
+        ]
+        for one in case["contenders"]
+    ]
+    header = ["program", "as its user wrote it", "what happens", "error", "right"]
+    bound = f" Right: within {case['allowed']:.0e} {case['unit']}." if case["allowed"] else ""
+    return (
+        f"### {case['title']}\n\n{case['scene']}\n\n**The answer:** {case['answer']}{bound}\n\n"
+        + table(header, rows)
+    )
+
+
+def losses(record: Record) -> list[str]:
+    """Name each case that pendcore has not right, and each where a peer is ten times closer."""
+    lines = []
+    for case in record["cases"]:
+        own = best(case, "pendcore")
+        if own is None:
+            lines.append(f"* {case['title']}: not there.")
+            continue
+        if not own["right"]:
+            lines.append(f"* {case['title']}: {cell(own['said'])}.")
+        for program, label in PROGRAMS.items():
+            one = best(case, program)
+            if program == "pendcore" or one is None or not one["right"]:
+                continue
+            if own["error"] and one["error"] is not None and one["error"] < own["error"] / 10:
+                lines.append(
+                    f"* {case['title']}: {measured(case, own)} here, {measured(case, one)} in "
+                    f"{label} ({cell(one['how'])})."
+                )
+    return lines or ["* Nowhere."]
+
+
+def page(record: Record) -> str:
+    """Make the whole page."""
+    machine = [*record["machine"].items(), *record["versions"].items(), ("date", record["date"])]
+    return PAGE.format(
+        glance=glance(record),
+        summary=summary(record),
+        sections="\n".join(section(case) for case in record["cases"]),
+        losses="\n".join(losses(record)),
+        machine="\n".join(f"* {name}: {value}" for name, value in machine),
+        listed=table(
+            ["case", "test"],
+            [
+                [case, ", ".join(f"`{test.removeprefix('tests/')}`" for test in tests)]
+                for case, tests in LISTED.items()
+            ],
+        ).rstrip(),
+    )

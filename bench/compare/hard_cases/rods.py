@@ -1,0 +1,63 @@
+"""The scenes in the peers' words: a rod of moment of inertia 1, and the textbook's two rods."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+
+UPRIGHT = -np.pi / 2
+
+ROD = """<mujoco>
+ <option timestep="{dt}" gravity="0 0 {down}" integrator="{integrator}" iterations="200"
+         tolerance="0"/>
+ <worldbody>
+  <body>
+   <joint name="joint" type="hinge" axis="0 1 0" {joint}/>
+   <inertial pos="0 0 {side}0.5" mass="{mass}" diaginertia="{inertia} {inertia} {thin}"/>
+   {tip}
+  </body>
+ </worldbody>
+ <actuator><motor joint="joint"/></actuator>
+</mujoco>"""
+
+SECOND = """<body pos="0 0 {side}1">
+    <joint name="second" type="hinge" axis="0 1 0" {joint}/>
+    <inertial pos="0 0 {side}0.5" mass="{mass}" diaginertia="{inertia} {inertia} {thin}"/>
+   </body>"""
+
+
+def mujoco_rods(
+    *,
+    dt: float,
+    links: int = 1,
+    mass: float = 3.0,
+    gravity: float = 0.0,
+    joint: str = "",
+    integrator: str = "implicitfast",
+    hanging: bool = True,
+) -> Any:
+    """Compile uniform rods of 1 m; the joints' angles are 0 where all hang, or all stand."""
+    import mujoco
+
+    known = {
+        "dt": repr(dt), "down": -gravity, "integrator": integrator, "joint": joint, "mass": mass,
+        "inertia": mass / 12, "thin": 1e-4, "side": "-" if hanging else "",
+    }  # fmt: skip
+    tip = SECOND.format(**known) if links == 2 else ""
+    return mujoco.MjModel.from_xml_string(ROD.format(tip=tip, **known))
+
+
+def textbook_rates(_: float, y: Array) -> Array:
+    """Rates of (q_1, q_2, qd_1, qd_2) of two rods of 1 kg and 1 m, g = 9.807."""
+    g, d = 9.807, y[0] - y[1]
+    a12, h = 0.5 * np.cos(d), 0.5 * np.sin(d)
+    r1 = 1.5 * g * np.cos(y[0]) - h * y[3] ** 2
+    r2 = 0.5 * g * np.cos(y[1]) + h * y[2] ** 2
+    determinant = 4 / 9 - a12**2
+    return np.array(
+        [y[2], y[3], (r1 / 3 - a12 * r2) / determinant, (4 / 3 * r2 - a12 * r1) / determinant]
+    )

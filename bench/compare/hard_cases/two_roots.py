@@ -1,0 +1,112 @@
+"""A swing that passes a mark just before it turns: two events in one step."""
+
+from __future__ import annotations
+
+import numpy as np
+from mpmath import asin, ellipf, ellipk, mp, mpf, pi, sin, sqrt
+
+from hard_cases.case import Absent, Contender, HardCase, Outcome
+from hard_cases.odeint import odeint
+from hard_cases.rods import Array, mujoco_rods
+
+G, AMPLITUDE, SWINGS = 9.81, 1.0, 50
+MARK = 0.99999  # rad from the vertical: passed 1.9 ms before and after the turn
+
+
+def reference() -> dict[str, list[float]]:
+    """The first passage, from rest at -AMPLITUDE; the others follow by the period."""
+    with mp.workdps(30):
+        k = sin(mpf(AMPLITUDE) / 2)
+        unit = sqrt(2 / (3 * mpf(G)))
+        quarter = ellipk(k**2) * unit
+        past = ellipf(asin(sin(mpf(MARK) / 2) / k), k**2) * unit
+        assert past < quarter < pi
+        first, second = quarter + past, 3 * quarter - past
+        times = [float(t + 4 * quarter * n) for n in range(SWINGS) for t in (first, second)]
+        return {"t": times, "end": [float(4 * quarter * SWINGS)]}
+
+
+def judged(times: list[float] | Array) -> Outcome:
+    known = np.array(reference()["t"])
+    found = np.sort(np.asarray(times, dtype=float))
+    words = f"{found.size} of {known.size} passages found"
+    if found.size == known.size:
+        off = float(np.abs(found - known).max())
+        return Outcome(error=off, said=f"{words}, to {off:.0e} s")
+    return Outcome(said=words, right=False)
+
+
+def pendcore(method: str) -> Outcome:
+    import pendcore as pc
+
+    if not hasattr(pc, "events"):
+        raise Absent("pendcore has no events yet")
+    scene = pc.Scene(links=[pc.Link(mass=3, length=1)], gravity=G)
+    mark = pc.events.JointAngle(joint=1, value=np.pi / 2 - MARK)
+    span = (0, reference()["end"][0])
+    sol = pc.simulate(scene, np.pi / 2 + AMPLITUDE, t_span=span, method=method, events=[mark])
+    return judged([event.t for event in sol.events[0]])
+
+
+def scipy(method: str, **how: float) -> Outcome:
+    from scipy.integrate import solve_ivp
+
+    sol = solve_ivp(
+        lambda _, y: [y[1], -1.5 * G * np.sin(y[0])],
+        (0, reference()["end"][0]),
+        [-AMPLITUDE, 0],
+        method,
+        events=lambda _, y: y[0] - MARK,
+        rtol=1e-9,
+        atol=1e-12,
+        **how,
+    )
+    return judged(sol.t_events[0])
+
+
+def mujoco(dt: float) -> Outcome:
+    import mujoco
+
+    model = mujoco_rods(dt=dt, gravity=G, integrator="RK4")
+    data = mujoco.MjData(model)
+    data.qpos[0] = -AMPLITUDE
+    before, found = -1.0, []
+    for _ in range(round(reference()["end"][0] / dt)):
+        mujoco.mj_step(model, data)
+        now = float(data.qpos[0]) - MARK
+        if before * now < 0:
+            found.append(data.time - dt * now / (now - before))
+        before = now
+    return judged(found)
+
+
+CASE = HardCase(
+    name="two_roots",
+    title="Two events in one step",
+    scene=(
+        f"One rod that swings by {AMPLITUDE} rad, {SWINGS} times, and a mark at {MARK} rad that it "
+        "passes 1.9 ms before and after each turn on one side."
+    ),
+    answer="Every passage, twice in each swing, at the times of the elliptic integral.",
+    unit="s",
+    allowed=1e-4,
+    contenders=(
+        Contender(program="pendcore", how="`JointAngle`, dopri5", run=lambda: pendcore("dopri5")),
+        Contender(program="scipy", how="events, RK45", run=lambda: scipy("RK45")),
+        Contender(program="scipy", how="events, DOP853", run=lambda: scipy("DOP853")),
+        Contender(
+            program="scipy",
+            how="events, RK45, max_step 2 ms",
+            run=lambda: scipy("RK45", max_step=2e-3),
+        ),
+        Contender(
+            program="mujoco", how="signs of successive steps, 2 ms, RK4", run=lambda: mujoco(2e-3)
+        ),
+        odeint(
+            "signs of successive steps, bisected on the dense output, dopri5",
+            "two_roots",
+            repr(reference()["end"][0]),
+            judge=lambda heard: judged(heard["t"]),
+        ),
+    ),
+)
