@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import pendcore as pc
 
 Array = npt.NDArray[np.float64]
 
@@ -27,11 +26,6 @@ class DenseChain:
     @property
     def n(self) -> int:
         return len(self.masses)
-
-    @property
-    def links(self) -> list[pc.Link]:
-        pairs = zip(self.masses, self.lengths, strict=True)
-        return [pc.Link(mass=float(mass), length=float(length)) for mass, length in pairs]
 
     @property
     def moments(self) -> Array:

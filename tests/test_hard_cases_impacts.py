@@ -9,6 +9,7 @@ import pendcore as pc
 import pytest
 from dense_chain import DenseChain, joints, rates_after_impact
 from pendcore import effects as fx
+from unit_rods import links
 
 pytestmark = pytest.mark.skipif(not hasattr(fx, "JointStop"), reason="there are no stops yet")
 
@@ -38,7 +39,7 @@ def test_an_impact_turns_the_joint_and_jerks_the_others_as_the_law_says(n: int, 
         chain, random = drawn_chain(n, seed)
         joint = int(random.integers(n)) + 1
         stop = fx.JointStop(joint=joint, range=(-0.3, 0.4), restitution=e, capture_speed=1e-3)
-        scene = pc.Scene(links=chain.links, gravity=chain.gravity, effects=[stop])
+        scene = pc.Scene(links=links(chain), gravity=chain.gravity, effects=[stop])
         phi = random.uniform(-1, 1, n)
         phi[joint - 1] = 0.1
         phid = random.uniform(-2, 2, n)
@@ -88,7 +89,7 @@ def test_stops_hit_at_once_share_the_impulse_by_complementarity(n: int) -> None:
             )
             for j in range(n)
         ]
-        scene = pc.Scene(links=chain.links, gravity=chain.gravity, effects=stops)
+        scene = pc.Scene(links=links(chain), gravity=chain.gravity, effects=stops)
         normals = -side[:, None] * joints(n)
         exact, impulses = (
             rates_after_impact(chain.mass_matrix(q), qd, normals, restitution)
@@ -112,7 +113,7 @@ def test_two_stops_that_are_reached_at_the_same_time_are_hit_at_the_same_time() 
     starts there.
     """
     chain = DenseChain(masses=np.ones(2), lengths=np.ones(2), gravity=0.0)
-    free = pc.Scene(links=chain.links, gravity=0.0)
+    free = pc.Scene(links=links(chain), gravity=0.0)
     start, rates = np.array([0.3, 0.9]), np.array([1.0, 2.5])
     reached = pc.simulate(free, start, rates, (0, 0.25), **FINE)
     q, qd = reached.q[-1], reached.qd[-1]
@@ -120,7 +121,7 @@ def test_two_stops_that_are_reached_at_the_same_time_are_hit_at_the_same_time() 
     stops = [
         fx.JointStop(joint=j + 1, range=(-inf, float(phi[j])), restitution=0.5) for j in range(2)
     ]
-    scene = pc.Scene(links=chain.links, gravity=0.0, effects=stops)
+    scene = pc.Scene(links=links(chain), gravity=0.0, effects=stops)
     normals = -joints(2)
     assert (normals @ qd < 0).all()
     exact, impulses = rates_after_impact(chain.mass_matrix(q), qd, normals, [0.5, 0.5])
@@ -152,7 +153,7 @@ def test_an_impact_sets_a_stuck_joint_free_and_friction_gives_no_impulse() -> No
         fx.DryJointFriction(joint=1, coulomb=50.0),
         fx.JointStop(joint=2, range=(-inf, 0.5), restitution=0.3),
     ]
-    scene = pc.Scene(links=chain.links, gravity=0.0, effects=effects)
+    scene = pc.Scene(links=links(chain), gravity=0.0, effects=effects)
     sol = pc.simulate(scene, [0.2, 0.3], [0.0, 2.0], (0, 1), **FINE)
     row = int(np.flatnonzero(np.diff(sol.t) == 0)[0])
     assert sol.qd[row, 0] == 0.0

@@ -16,6 +16,7 @@ import pytest
 from dense_chain import DenseChain, held_accelerations, joints
 from hybrid_chain import HybridChain
 from pendcore import effects as fx
+from unit_rods import links
 
 pytestmark = pytest.mark.skipif(
     "does not stick" in (fx.DryJointFriction.__doc__ or ""), reason="friction does not stick yet"
@@ -51,7 +52,7 @@ def scene_of(case: dict[str, Any]) -> pc.Scene:
         effects.append(fx.Motor(joint=j + 1, constant=float(case["motors"][j])))
         friction = {name: float(case[name][j]) for name in ("coulomb", "static")}
         effects.append(fx.DryJointFriction(joint=j + 1, stribeck_velocity=0.01, **friction))
-    return pc.Scene(links=chain.links, gravity=chain.gravity, effects=effects)
+    return pc.Scene(links=links(chain), gravity=chain.gravity, effects=effects)
 
 
 def answer(case: dict[str, Any]) -> tuple[Any, frozenset[int]]:
@@ -113,7 +114,7 @@ def test_a_joint_that_is_stuck_may_let_go_because_another_moves() -> None:
     chain = DenseChain(masses=np.array([1.0, 1.0]), lengths=np.array([1.0, 1.0]), gravity=9.81)
     limit = 5.0
     scene = pc.Scene(
-        links=chain.links, gravity=9.81, effects=[fx.DryJointFriction(joint=1, coulomb=limit)]
+        links=links(chain), gravity=9.81, effects=[fx.DryJointFriction(joint=1, coulomb=limit)]
     )
     start = np.array([np.pi / 2, 0.3])
     sol = pc.simulate(scene, start, 0, (0, 2.0), rtol=1e-12, atol=1e-14)
@@ -155,7 +156,7 @@ def test_joints_that_stick_and_slide_in_turn_follow_the_solution_mode_by_mode(
     hum = fx.Sinusoid(amplitude=amplitude, angular_frequency=w)
     effects: list[Any] = [fx.Motor(joint=1, sinusoid=hum)]
     effects += [fx.DryJointFriction(joint=j + 1, coulomb=float(friction[j])) for j in range(n)]
-    scene = pc.Scene(links=chain.links, gravity=chain.gravity, effects=effects)
+    scene = pc.Scene(links=links(chain), gravity=chain.gravity, effects=effects)
     sol = pc.simulate(scene, np.pi / 2, t_span=(0, t_end), rtol=1e-12, atol=1e-14)
     assert sol.status == "finished"
     np.testing.assert_allclose(sol(times).T, states, atol=1e-9)

@@ -1,10 +1,11 @@
-"""Rods of moment of inertia 1 about the pivot, so that torques are accelerations."""
+"""Uniform rods: of moment of inertia 1, so that torques are accelerations; or as they are drawn."""
 
 from __future__ import annotations
 
 from typing import Any
 
 import pendcore as pc
+from dense_chain import DenseChain
 
 
 def rod(*effects: Any, gravity: float = 0.0, links: int = 1) -> pc.Scene:
@@ -17,3 +18,9 @@ def rod(*effects: Any, gravity: float = 0.0, links: int = 1) -> pc.Scene:
 def solve(scene: pc.Scene, q: Any, qd: Any, t_end: float, **options: Any) -> pc.Solution:
     """A run that has lost its end would go on for ever: max_steps ends it."""
     return pc.simulate(scene, q, qd, (0, t_end), max_steps=10_000, **options)
+
+
+def links(chain: DenseChain) -> list[pc.Link]:
+    """The rods of a chain of dense_chain.py."""
+    pairs = zip(chain.masses, chain.lengths, strict=True)
+    return [pc.Link(mass=float(mass), length=float(length)) for mass, length in pairs]

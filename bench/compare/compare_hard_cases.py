@@ -16,6 +16,7 @@ import json
 import sys
 from collections.abc import Sequence
 from importlib import metadata
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -45,16 +46,17 @@ def measure(case: HardCase) -> Record:
         except Absent as absence:
             print(f"{case.name}: {one.program}: {absence}", file=sys.stderr)
             continue
+        error = None if outcome.error is None else float(outcome.error)
         right = outcome.right
         if right is None:
-            right = outcome.error is not None and outcome.error <= case.allowed
+            right = error is not None and error <= case.allowed
         contenders.append(
             {
                 "program": one.program,
                 "how": one.how,
-                "error": outcome.error,
+                "error": error if error is not None and isfinite(error) else None,
                 "said": outcome.said,
-                "right": right,
+                "right": bool(right),
                 "trace": rounded(outcome.trace),
             }
         )

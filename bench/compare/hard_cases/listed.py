@@ -11,6 +11,7 @@ JOINTS = "tests/test_hard_cases_stuck_joints.py"
 BOUNCES = "tests/test_hard_cases_bounces.py"
 CONTACT = "tests/test_hard_cases_contact.py"
 IMPACTS = "tests/test_hard_cases_impacts.py"
+EVENTS = "tests/test_hard_cases_events.py"
 MORE = "tests/test_hard_cases_forces.py"
 
 LISTED: dict[str, tuple[str, ...]] = {
@@ -81,6 +82,11 @@ LISTED: dict[str, tuple[str, ...]] = {
     ),
     "grazing contact": (
         f"{CONTACT}::test_a_grazing_stop_is_hit_if_and_only_if_the_swing_reaches_it",
+    ),
+    "two event roots in one step; an event at t0, at t_end, at a step's end": (
+        f"{EVENTS}::test_both_passages_of_a_mark_just_short_of_the_turn_are_found_in_every_swing",
+        f"{EVENTS}::test_a_mark_at_the_start_is_no_event_and_one_at_the_end_is_one",
+        f"{EVENTS}::test_a_mark_at_the_end_of_a_step_is_met_once",
     ),
     "a chain of 1000 links": (f"{MORE}::test_a_chain_of_a_thousand_links_keeps_its_energy",),
     "swings next to the separatrix": (
