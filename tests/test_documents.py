@@ -30,7 +30,8 @@ def test_links_lead_somewhere(path):
 def test_the_readmes_lines_run(tmp_path, monkeypatch, capsys):
     mpl.use("Agg")
     monkeypatch.chdir(tmp_path)
-    dozen, chains = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+    dozen, chains, rubbed = blocks
     names: dict[str, object] = {}
     exec(dozen, names)
     assert names["longer"].t[-1] == 10.0
@@ -42,6 +43,8 @@ def test_the_readmes_lines_run(tmp_path, monkeypatch, capsys):
     assert [*ledger] == ["viscous", "drag", "motor", "wind", "user", "residual"]
     assert abs(ledger.residual).max() < 1e-6
     assert "PD(kp=20.0" in capsys.readouterr().out
+    exec(rubbed, {})
+    assert capsys.readouterr().out == "[0. 0.]\n"
 
 
 def test_a_ledger_is_as_good_as_its_steps_and_trust_says_how_good(capsys):

@@ -58,14 +58,17 @@ def test_both_passages_of_a_mark_just_short_of_the_turn_are_found_in_every_swing
 
 @pytest.mark.parametrize("sign", [1, -1], ids=["forward", "backward"])
 def test_a_mark_at_the_start_is_no_event_and_one_at_the_end_is_one(sign: int) -> None:
-    """A rod that turns at 1 rad/s: its angle is the time, to the bit."""
-    marks = [pc.events.JointAngle(joint=1, value=value) for value in (0.0, sign * 1.0)]
+    """A rod that turns at 1 rad/s; the mark at the end is where the run gets to, to the bit."""
+    end = float(pc.simulate(rod(), 0, 1, (0, sign * 1.0)).q[-1, 0])
+    marks = [pc.events.JointAngle(joint=1, value=value) for value in (0.0, end)]
     sol = pc.simulate(rod(), 0, 1, (0, sign * 1.0), events=marks)
     assert times_of(sol, 0) == []
     assert times_of(sol, 1) == [sign * 1.0]
     again = pc.simulate(rod(), 0, 1, (0, sign * 2.0), events=marks)
     assert times_of(again, 0) == []
     assert times_of(again, 1) == pytest.approx([sign * 1.0], abs=1e-14)
+    went_on = sol.resume(sign * 2.0)
+    assert times_of(went_on, 1) == pytest.approx([sign * 1.0], abs=1e-14)
 
 
 @pytest.mark.parametrize("value", [0.25, 0.5, 0.75])

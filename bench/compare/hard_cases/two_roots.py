@@ -36,7 +36,7 @@ def judged(times: list[float] | Array) -> Outcome:
     return Outcome(said=words, right=False)
 
 
-def pendcore(method: str) -> Outcome:
+def pendcore(rtol: float) -> Outcome:
     import pendcore as pc
 
     if not hasattr(pc, "events"):
@@ -44,7 +44,7 @@ def pendcore(method: str) -> Outcome:
     scene = pc.Scene(links=[pc.Link(mass=3, length=1)], gravity=G)
     mark = pc.events.JointAngle(joint=1, value=np.pi / 2 - MARK)
     span = (0, reference()["end"][0])
-    sol = pc.simulate(scene, np.pi / 2 + AMPLITUDE, t_span=span, method=method, events=[mark])
+    sol = pc.simulate(scene, np.pi / 2 + AMPLITUDE, t_span=span, rtol=rtol, events=[mark])
     return judged([event.t for event in sol.events[0]])
 
 
@@ -91,7 +91,14 @@ CASE = HardCase(
     unit="s",
     allowed=1e-4,
     contenders=(
-        Contender(program="pendcore", how="`JointAngle`, dopri5", run=lambda: pendcore("dopri5")),
+        *(
+            Contender(
+                program="pendcore",
+                how=f"`JointAngle`, dopri5, rtol {rtol:.0e}".replace("e-0", "e-"),
+                run=lambda rtol=rtol: pendcore(rtol),
+            )
+            for rtol in (1e-9, 1e-12)
+        ),
         Contender(program="scipy", how="events, RK45", run=lambda: scipy("RK45")),
         Contender(program="scipy", how="events, DOP853", run=lambda: scipy("DOP853")),
         Contender(
