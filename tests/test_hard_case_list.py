@@ -41,7 +41,10 @@ def case(**outcomes: tuple[float | None, bool]) -> dict[str, Any]:
         "name": "one", "title": "One case", "scene": "a", "answer": "b", "unit": "rad",
         "allowed": 1e-9,
         "contenders": [
-            {"program": name, "how": "so", "said": "c", "error": error, "right": right}
+            {
+                "program": name, "how": "so", "own_loop": False, "said": "c", "error": error,
+                "right": right,
+            }
             for name, (error, right) in outcomes.items()
         ],
     }  # fmt: skip
@@ -52,6 +55,9 @@ def test_who_does_best_is_shown_and_who_is_right_is_bold() -> None:
     (row,) = [line for line in page.glance(record).splitlines() if "One case" in line]
     assert row.split(" | ")[1:] == ["**1e-12 rad**", "1e-3 rad", "c", "not there |"]
     assert "pendcore 1, SciPy 0" in page.summary(record)
+    record["cases"][0]["contenders"][0]["own_loop"] = True
+    assert "**1e-12 rad** (own loop)" in page.glance(record)
+    assert "pendcore 1 (1 by a loop of one's own)" in page.summary(record)
     assert "in pendcore alone: one case" in page.summary(record)
 
 
@@ -78,7 +84,7 @@ def absent() -> Outcome:
 
 
 def test_who_does_not_return_is_ended_and_who_fails_is_quoted() -> None:
-    ended = run_bounded(endless, 0.3)
+    ended = run_bounded(endless, 1)
     assert ended.said.startswith("does not return")
     assert ended.right is False
     assert run_bounded(wrong).said == "ArithmeticError: of the test"

@@ -54,6 +54,7 @@ def measure(case: HardCase) -> Record:
             {
                 "program": one.program,
                 "how": one.how,
+                "own_loop": one.own_loop,
                 "error": error if error is not None and isfinite(error) else None,
                 "said": outcome.said,
                 "right": bool(right),

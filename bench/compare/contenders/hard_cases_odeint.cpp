@@ -117,7 +117,7 @@ void stick_slip(const Numbers& numbers) {
                    [](double t, double) { return std::cos(2 * t); }};
   const double t_end = 20 * pi, rest = numbers.front();
   Stiff y(2, 0.0), shown(2);
-  auto stepper = ode::make_dense_output<ode::rosenbrock4<double>>(1e-12, 1e-9);
+  auto stepper = ode::make_dense_output<ode::rosenbrock4<double>>(1e-10, 1e-7);
   stepper.initialize(y, 0.0, 1e-6);
   Numbers q{0}, qd{0}, at_rest, end;
   std::size_t k = 2;
@@ -205,12 +205,12 @@ void late_start(const Numbers&) {
   tell("steps", {static_cast<double>(steps)});
 }
 
-// Number: the end.
+// Numbers: the end, the longest step.
 void two_roots(const Numbers& numbers) {
   const double g = 9.81, mark = 0.99999;
-  auto stepper = dense_dopri5<Two>(1e-12, 1e-9);
+  auto stepper = ode::make_dense_output(1e-12, 1e-9, numbers[1], ode::runge_kutta_dopri5<Two>());
   Two shown{};
-  stepper.initialize(Two{-1.0, 0.0}, 0.0, 0.01);
+  stepper.initialize(Two{-1.0, 0.0}, 0.0, 1e-3);
   Numbers found;
   double before = -1;
   while (stepper.current_time() < numbers[0]) {

@@ -5,13 +5,16 @@ from __future__ import annotations
 import contextlib
 import multiprocessing
 import os
+import resource
 import signal
 import tempfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
 
-LONGEST = 30.0  # s for one contender; whoever takes longer has not returned
+LONGEST = 60  # s of computing for one contender; whoever takes longer has not returned
+NO_RETURN = "does not return (ended after {} s of computing)"
+PATIENCE = 10  # times as long by the clock: the machine may be busy
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -30,11 +33,15 @@ class Outcome:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Contender:
-    """`program` is its column, `how` what its user wrote."""
+    """`program` is its column, `how` what its user wrote.
+
+    `own_loop`: modes and switches are the user's own program, not the library's.
+    """
 
     program: str
     how: str
     run: Callable[[], Outcome]
+    own_loop: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,30 +62,39 @@ class Absent(Exception):
     """What the contender needs is not installed, not built, or not there yet."""
 
 
-def _report(run: Callable[[], Outcome], pipe: Connection) -> None:
-    os.setsid()  # what it starts is ended with it
+class NoReturn(Exception):
+    """The time was over."""
+
+
+def _report(run: Callable[[], Outcome], pipe: Connection, seconds: int) -> None:
+    os.setsid()  # what it starts is ended with it, and has the same limit
+    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
     os.chdir(tempfile.gettempdir())  # MuJoCo writes its warnings into a file where it runs
     try:
         pipe.send(run())
+    except NoReturn:
+        os.kill(os.getpid(), signal.SIGXCPU)
     except (ImportError, Absent) as absence:
         pipe.send(Absent(str(absence)))
     except Exception as failure:  # what a program throws is what happened in it
         pipe.send(Outcome(said=f"{type(failure).__name__}: {failure}"))
 
 
-def run_bounded(run: Callable[[], Outcome], seconds: float = LONGEST) -> Outcome:
+def run_bounded(run: Callable[[], Outcome], seconds: int = LONGEST) -> Outcome:
     """Run in a process of its own, which is ended when the time is over."""
     context = multiprocessing.get_context("fork")
     receiver, sender = context.Pipe(duplex=False)
-    process = context.Process(target=_report, args=(run, sender))
+    process = context.Process(target=_report, args=(run, sender, seconds))
     process.start()
     sender.close()
     try:
-        if not receiver.poll(seconds):
-            return Outcome(said=f"does not return (ended after {seconds:.0f} s)", right=False)
+        if not receiver.poll(PATIENCE * seconds):
+            return Outcome(said=NO_RETURN.format(seconds), right=False)
         answer = receiver.recv()
     except EOFError:
-        return Outcome(said="the process died", right=False)
+        process.join()
+        late = process.exitcode in {-signal.SIGXCPU, -signal.SIGKILL}
+        return Outcome(said=NO_RETURN.format(seconds) if late else "dies", right=False)
     finally:
         with contextlib.suppress(ProcessLookupError, PermissionError):
             os.killpg(process.pid or 0, signal.SIGKILL)

@@ -37,17 +37,22 @@ def rests(reference: Any, joint: int) -> list[tuple[float, float]]:
 def draw_angles(axes: Axes, case: Any) -> None:
     known = case["reference"]
     own = next((one for one in case["contenders"] if one["program"] == "pendcore"), None)
-    for joint, style, shade in ((1, "-", "0.87"), (2, "--", "0.80")):
-        curve = own["trace"].get(f"phi_{joint}") if own else None
-        degrees = np.degrees(curve or known[f"phi_{joint}"])
-        axes.plot(
-            known["t"], degrees - (90 if joint == 1 else 0), color="k", linestyle=style,
-            label=f"joint {joint}",
-        )  # fmt: skip
-        y = {1: 0.93, 2: 0.0}[joint]
-        for begin, end in rests(known, joint):
-            axes.axvspan(begin, end, y, y + 0.07, color=shade, linewidth=0)
-    axes.set_ylabel("angle of the joint\n(from hanging) / deg")
+    for joint, style in ((1, "-"), (2, "--")):
+        name = f"phi_{joint}"
+        curve = own["trace"].get(name, known[name]) if own else known[name]
+        from_hanging = np.degrees(curve) - (90 if joint == 1 else 0)
+        axes.plot(known["t"], from_hanging, color="k", linestyle=style, label=f"joint {joint}")
+    axes.set(ylabel="angle, from hanging / deg", ylim=(-42, 42))
+    axes.legend(loc="upper left", frameon=False, fontsize=9)
+
+
+def draw_rests(axes: Axes, case: Any) -> None:
+    for joint in (1, 2):
+        spans = [(begin, end - begin) for begin, end in rests(case["reference"], joint)]
+        axes.broken_barh(spans, (-joint - 0.35, 0.7), color="0.55")
+    axes.set_yticks([-1, -2], ["joint 1 sticks", "joint 2 sticks"])
+    axes.set_ylim(-2.6, -0.4)
+    axes.tick_params(left=False)
 
 
 def draw_errors(axes: Axes, case: Any) -> None:
@@ -66,20 +71,18 @@ def draw_errors(axes: Axes, case: Any) -> None:
 
 def draw(record: dict[str, Any], path: Path) -> None:
     (case,) = (case for case in record["cases"] if case["name"] == "two_joints")
-    drawn, (angles, errors) = plt.subplots(
-        2, 1, figsize=(8.6, 6.4), sharex=True, layout="constrained", height_ratios=(1, 1.1)
+    drawn, (angles, sticks, errors) = plt.subplots(
+        3, 1, figsize=(8.6, 7), sharex=True, layout="constrained", height_ratios=(1, 0.2, 1.1)
     )
     draw_angles(angles, case)
+    draw_rests(sticks, case)
     draw_errors(errors, case)
-    for axes in (angles, errors):
+    for axes in (angles, sticks, errors):
         axes.margins(x=0)
         axes.grid(color="0.9", linewidth=0.6)
         axes.set_axisbelow(True)
-    angles.set_title(
-        "Two rods with dry friction under a slow motor (grey: joint 1, above, or 2 sticks)",
-        fontsize=11,
-    )
-    lines = [*angles.get_lines(), *errors.get_lines()]
+    angles.set_title("Two rods with dry friction in both joints under a slow motor", fontsize=11)
+    lines = errors.get_lines()
     drawn.legend(handles=lines, loc="outside lower center", ncols=2, frameon=False, fontsize=9)
     drawn.savefig(path, dpi=160)
     plt.close(drawn)

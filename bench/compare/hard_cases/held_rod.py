@@ -71,7 +71,7 @@ CASE = HardCase(
     contenders=(
         Contender(program="pendcore", how="`DryJointFriction`", run=pendcore),
         Contender(program="scipy", how="sign smoothed over 1e-6 rad/s, Radau", run=scipy_smoothed),
-        Contender(program="scipy", how="a flag for rest, by hand", run=scipy_events),
+        Contender(program="scipy", how="a flag for rest", run=scipy_events, own_loop=True),
         Contender(program="mujoco", how="`frictionloss`, 2 ms", run=lambda: mujoco_creep(2e-3, "")),
         Contender(
             program="mujoco",

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import signal
 import subprocess
 from collections.abc import Callable
 
 from contenders.conversation import find_executable
 
-from hard_cases.case import Contender, Outcome
+from hard_cases.case import Contender, NoReturn, Outcome
 
 
 def ask(*request: str) -> dict[str, list[float]]:
     """Lines of a name and numbers, by name."""
     path = find_executable("hard_cases_odeint", "HARD_CASES_ODEINT")
     done = subprocess.run([path, *request], capture_output=True, text=True, check=False)
+    if done.returncode in {-signal.SIGXCPU, -signal.SIGKILL}:
+        raise NoReturn
     if done.returncode:
         raise RuntimeError(done.stderr.strip() or f"ended with {done.returncode}")
     lines = (line.split() for line in done.stdout.splitlines())
@@ -21,7 +24,10 @@ def ask(*request: str) -> dict[str, list[float]]:
 
 
 def odeint(
-    how: str, *request: str, judge: Callable[[dict[str, list[float]]], Outcome]
+    how: str,
+    *request: str,
+    judge: Callable[[dict[str, list[float]]], Outcome],
+    own_loop: bool = False,
 ) -> Contender:
     """Make the contender that asks, and judges what it hears."""
-    return Contender(program="odeint", how=how, run=lambda: judge(ask(*request)))
+    return Contender(program="odeint", how=how, run=lambda: judge(ask(*request)), own_loop=own_loop)

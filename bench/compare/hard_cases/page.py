@@ -25,7 +25,8 @@ the answer is right; times are another page ([comparison](comparison/textbook.md
 
 ## At a glance
 
-Of each program the way that does best; **bold** is right.
+Of each program the way that does best; **bold** is right. *Own loop*: modes, switches or events are
+a program of the user's own, the library integrates between them.
 
 {glance}
 {summary}
@@ -88,7 +89,9 @@ def glance(record: Record) -> str:
         for program in PROGRAMS:
             one = best(case, program)
             text = "not there" if one is None else measured(case, one)
-            row.append(f"**{text}**" if one is not None and one["right"] else text)
+            if one is not None and one["right"]:
+                text = f"**{text}**" + (" (own loop)" if one["own_loop"] else "")
+            row.append(text)
         rows.append(row)
     return table(["case", *PROGRAMS.values()], rows)
 
@@ -102,8 +105,9 @@ def summary(record: Record) -> str:
     counts = []
     for program, label in PROGRAMS.items():
         found = [best(case, program) for case in record["cases"]]
-        right = sum(one is not None and one["right"] for one in found)
-        counts.append(f"{label} {right}")
+        right = [one for one in found if one is not None and one["right"]]
+        own = sum(one["own_loop"] for one in right)
+        counts.append(f"{label} {len(right)}" + (f" ({own} by a loop of one's own)" if own else ""))
     alone = [
         case["title"].lower()
         for case in record["cases"]

@@ -145,7 +145,10 @@ CASE = HardCase(
         Contender(program="pendcore", how="`DryJointFriction`, rtol 1e-11", run=pendcore),
         Contender(program="scipy", how="sign smoothed over 1e-4 rad/s, Radau", run=scipy_smoothed),
         Contender(
-            program="scipy", how="a loop over events by hand, 20 lines, RK45", run=scipy_events
+            program="scipy",
+            how="a loop over events, 20 lines, RK45",
+            run=scipy_events,
+            own_loop=True,
         ),
         Contender(
             program="mujoco",

@@ -106,14 +106,25 @@ CASE = HardCase(
             how="events, RK45, max_step 2 ms",
             run=lambda: scipy("RK45", max_step=2e-3),
         ),
-        Contender(
-            program="mujoco", how="signs of successive steps, 2 ms, RK4", run=lambda: mujoco(2e-3)
+        *(
+            Contender(
+                program="mujoco",
+                how=f"signs of successive steps, {1e3 * dt:g} ms, RK4",
+                run=lambda dt=dt: mujoco(dt),
+                own_loop=True,
+            )
+            for dt in (2e-3, 1e-4)
         ),
-        odeint(
-            "signs of successive steps, bisected on the dense output, dopri5",
-            "two_roots",
-            repr(reference()["end"][0]),
-            judge=lambda heard: judged(heard["t"]),
+        *(
+            odeint(
+                f"signs of successive steps, bisected on the dense output, dopri5{words}",
+                "two_roots",
+                repr(reference()["end"][0]),
+                repr(longest),
+                judge=lambda heard: judged(heard["t"]),
+                own_loop=True,
+            )
+            for longest, words in ((1e9, ""), (2e-3, ", steps of at most 2 ms"))
         ),
     ),
 )
