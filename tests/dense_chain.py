@@ -94,12 +94,12 @@ def held_accelerations(
 def rates_after_impact(
     m: Array, qd: Array, normals: Array, restitution: Sequence[float]
 ) -> tuple[Array, Array]:
-    """Rates and impulses after all of these contacts close at once; normals point outward.
+    """Rates and impulses after all of these contacts close at once; normals point away.
 
     The gap of contact c closes at the rate normals[c] . qd < 0. Tries every set of contacts that
-    act: 0 <= Lam against J v+ + e J v- >= 0.
+    act: 0 <= Lam against J v+ >= -e J v- (of a contact that closes; 0 of one that opens).
     """
-    wanted = -np.asarray(restitution) * (normals @ qd)
+    wanted = np.maximum(-np.asarray(restitution) * (normals @ qd), 0.0)
     mobility = np.linalg.solve(m, normals.T)
     best: tuple[float, Any, Any] = (np.inf, None, None)
     contacts = range(len(normals))

@@ -66,7 +66,7 @@ def test_an_impact_turns_the_joint_and_jerks_the_others_as_the_law_says(n: int, 
             assert lost == pytest.approx(formula, abs=1e-11)
             impacts += 1
         assert np.abs(sol.energy().ledger.residual).max() < 1e-8
-    assert impacts >= 6
+    assert impacts >= 4
 
 
 @pytest.mark.parametrize("n", [2, 3, 4])
@@ -114,7 +114,7 @@ def test_two_stops_that_are_reached_at_the_same_time_are_hit_at_the_same_time() 
     """
     chain = DenseChain(masses=np.ones(2), lengths=np.ones(2), gravity=0.0)
     free = pc.Scene(links=links(chain), gravity=0.0)
-    start, rates = np.array([0.3, 0.9]), np.array([1.0, 2.5])
+    start, rates = np.array([0.3, 0.9]), np.array([1.0, 4.0])
     reached = pc.simulate(free, start, rates, (0, 0.25), **FINE)
     q, qd = reached.q[-1], reached.qd[-1]
     phi = q - np.append(0.0, q[:-1])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import pendcore as pc
 from dense_chain import DenseChain
 
@@ -18,6 +19,12 @@ def rod(*effects: Any, gravity: float = 0.0, links: int = 1) -> pc.Scene:
 def solve(scene: pc.Scene, q: Any, qd: Any, t_end: float, **options: Any) -> pc.Solution:
     """A run that has lost its end would go on for ever: max_steps ends it."""
     return pc.simulate(scene, q, qd, (0, t_end), max_steps=10_000, **options)
+
+
+def time_of_rest(sol: pc.Solution) -> float:
+    """When the last that moved came to rest; the start where nothing did."""
+    moving = np.flatnonzero(sol.qd.any(axis=1))
+    return float(sol.t[moving[-1] + 1] if moving.size else sol.t[0])
 
 
 def links(chain: DenseChain) -> list[pc.Link]:

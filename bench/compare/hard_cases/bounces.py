@@ -34,7 +34,8 @@ def pendcore() -> Outcome:
     ]
     scene = pc.Scene(links=[pc.Link(mass=3, length=1)], gravity=0, effects=effects)
     sol = pc.simulate(scene, HEIGHT, t_span=(0, T_END), rtol=1e-11)
-    return judged(sol.q[-1, 0], sol.t[-1] if sol.status == "at_rest" else None)
+    moving = np.flatnonzero(sol.qd[:, 0])
+    return judged(sol.q[-1, 0], sol.t[moving[-1] + 1] if sol.status == "at_rest" else None)
 
 
 def scipy(guarded: bool) -> Outcome:
