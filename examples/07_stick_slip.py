@@ -16,7 +16,7 @@ scene = pc.Scene.textbook().replace(effects=[*rubbed, pc.effects.Motor(joint=1, 
 sol = pc.simulate(scene, q0=np.pi / 2, t_span=(0, 9), rtol=1e-11)
 
 phid = np.diff(sol.qd, axis=1, prepend=0.0)  # rates of the joints: exactly 0 where they stick
-rest = sol.t[(phid == 0).all(axis=1) & (sol.t > 1) & (sol.t < 7)]
+rest = sol.t[(phid == 0).all(axis=1) & (abs(sol.t - 5.8) < 0.5)]
 print(f"both joints rest from {rest[0]:.6f} s to {rest[-1]:.6f} s")
 phi = sol.relative_angles()[-1] - [np.pi / 2, 0]  # from hanging
 print(f"at 9 s: phi_1 = {phi[0]:.8f}, phi_2 = {phi[1]:.8f} rad")

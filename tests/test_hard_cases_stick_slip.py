@@ -69,7 +69,9 @@ def test_under_a_sinusoidal_torque_each_slide_begins_and_ends_when_it_should(
                 states = sol(inside)
                 np.testing.assert_array_equal(states[1], 0)  # not small: nothing
                 assert np.ptp(states[0]) == 0
-                assert states[0, 0] == pytest.approx(float(after.angle), abs=1e-10 * max(scale, 1e-3))
+                assert states[0, 0] == pytest.approx(
+                    float(after.angle), abs=1e-10 * max(scale, 1e-3)
+                )
 
 
 def test_what_the_motor_gives_is_what_friction_takes() -> None:
