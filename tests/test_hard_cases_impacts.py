@@ -13,7 +13,7 @@ from unit_rods import links
 
 pytestmark = pytest.mark.skipif(not hasattr(fx, "JointStop"), reason="there are no stops yet")
 
-FINE = {"rtol": 1e-12, "atol": 1e-14}
+FINE = {"rtol": 1e-12, "atol": 1e-14, "max_steps": 20_000}  # lest one goes on for ever
 inf = np.inf
 
 
