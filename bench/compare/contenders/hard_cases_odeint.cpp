@@ -110,38 +110,22 @@ void held_rod(const Numbers&) {
   tell("q", {y[0]});
 }
 
-// Numbers: a time in a rest, then the times to show.
+// Number: a time in a rest.
 void stick_slip(const Numbers& numbers) {
   const Rubbed rod{0.7, 1e-4, [](double t, double) { return 0.4 + 0.5 * std::sin(2 * t); },
                    [](double, double) { return 0.0; },
                    [](double t, double) { return std::cos(2 * t); }};
-  const double t_end = 20 * pi, rest = numbers.front();
-  Stiff y(2, 0.0), shown(2);
   auto stepper = ode::make_dense_output<ode::rosenbrock4<double>>(1e-10, 1e-7);
-  stepper.initialize(y, 0.0, 1e-6);
-  Numbers q{0}, qd{0}, at_rest, end;
-  std::size_t k = 2;
-  while (stepper.current_time() < t_end) {
-    stepper.do_step(with_jacobian(rod));
-    const double t = stepper.current_time();
-    for (; k < numbers.size() && numbers[k] <= t; ++k) {
-      stepper.calc_state(numbers[k], shown);
-      q.push_back(shown[0]);
-      qd.push_back(shown[1]);
-    }
-    if (at_rest.empty() && rest <= t) {
-      stepper.calc_state(rest, shown);
-      at_rest = {shown[1]};
-    }
-    if (t_end <= t) {
-      stepper.calc_state(t_end, shown);
-      end = {shown[0]};
-    }
-  }
-  tell("q", q);
-  tell("qd", qd);
-  tell("end", end);
-  tell("rest", at_rest);
+  stepper.initialize(Stiff(2, 0.0), 0.0, 1e-6);
+  Stiff shown(2);
+  const auto reach = [&](double t) {
+    while (stepper.current_time() < t) stepper.do_step(with_jacobian(rod));
+    stepper.calc_state(t, shown);
+  };
+  reach(numbers[0]);
+  tell("rest", {shown[1]});
+  reach(20 * pi);
+  tell("end", {shown[0]});
 }
 
 void bounces(const Numbers&) {
