@@ -45,13 +45,13 @@ class Reader {
   template <class Number>
   void operator()(const std::string& key, Number& value) const {
     try {
-      value = fields_[py::str(key)].template cast<Number>();
+      value = field(key).template cast<Number>();
     } catch (const py::cast_error&) {
       throw py::value_error(key + ": is not what a solution keeps there");
     }
   }
   void operator()(const std::string& key, std::vector<double>& values) const {
-    values = numbers(key.c_str(), fields_[py::str(key)]);
+    values = numbers(key.c_str(), field(key));
   }
   void operator()(const std::string& key, std::optional<double>& value) const {
     double number = 0.0;
@@ -82,6 +82,11 @@ class Reader {
   }
 
  private:
+  py::object field(const std::string& key) const {
+    if (!fields_.contains(key)) throw py::value_error(key + ": is missing from this solution");
+    return fields_[py::str(key)];
+  }
+
   const py::dict& fields_;
 };
 

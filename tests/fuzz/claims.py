@@ -26,6 +26,10 @@ def same(a: np.ndarray, b: np.ndarray) -> bool:
     return a.shape == b.shape and bool(np.array_equal(a, b, equal_nan=True))
 
 
+def _end(sol: pc.Solution) -> str:
+    return f"{sol.status} at {sol._run.t_reached!r}"
+
+
 def says_how_it_ended(drawn: Drawn, sol: pc.Solution, _: Choices) -> Iterator[str]:
     if sol.status not in SUCCESSES | FAILURES:
         yield f"status {sol.status!r} is none that this run could have"
@@ -90,8 +94,7 @@ def storing_changes_nothing(drawn: Drawn, sol: pc.Solution, choices: Choices) ->
     if (sol.status, sol._run.t_reached) != (other.status, other._run.t_reached):
         # A ledger that overflows ends a run: it cannot be kept in silence.
         if "the ledger" not in sol.message + other.message:
-            yield f"with {changes}: {other.status} at {other._run.t_reached}, not {sol.status} at "
-            f"{sol._run.t_reached}"
+            yield f"with {changes}: {_end(other)}, not {_end(sol)}"
     elif not same(sol._run.y_reached, other._run.y_reached):
         yield f"with {changes}: another end"
 
@@ -116,8 +119,7 @@ def resuming_changes_nothing(drawn: Drawn, sol: pc.Solution, choices: Choices) -
     if sol.status == "max_steps" or "time_limit" in (part.status, whole.status):
         return  # the whole one has been given more steps
     if (whole.status, whole._run.t_reached) != (sol.status, sol._run.t_reached):
-        yield f"resumed: {whole.status} at {whole._run.t_reached}, not {sol.status} at "
-        f"{sol._run.t_reached}"
+        yield f"resumed after {_end(part)}: {_end(whole)}, not {_end(sol)}"
     elif not same(whole.t, sol.t) or not same(whole.y, sol.y):
         yield "resumed: other states"
 
@@ -140,17 +142,16 @@ def views_do_not_fail(drawn: Drawn, sol: pc.Solution, choices: Choices) -> Itera
     )
     sizes = [x for link in drawn.scene.links for x in (link.length, link.mass)]
     ordinary = ordinary and all(1e-3 < size < 1e3 for size in sizes)
-    with np.errstate(all="ignore"):
-        energy = sol.energy()
-        found = {
-            "positions": sol.positions(),
-            "mass_centers": sol.mass_centers(),
-            "energy": energy.total,
-        }
-        if energy.ledger is not None:
-            found["ledger"] = energy.ledger.residual
-        if sol.status != "callback_error":
-            found |= {"accelerations": sol.accelerations(), "reactions": sol.reactions()}
+    energy = sol.energy()
+    found = {
+        "positions": sol.positions(),
+        "mass_centers": sol.mass_centers(),
+        "energy": energy.total,
+    }
+    if energy.ledger is not None:
+        found["ledger"] = energy.ledger.residual
+    if sol.status != "callback_error":
+        found |= {"accelerations": sol.accelerations(), "reactions": sol.reactions()}
     for name, values in found.items():
         if np.isnan(values).any() and ordinary and sol.status != "non_finite":
             yield f"{name} has a NaN"

@@ -14,7 +14,7 @@ import pendcore as pc
 from fuzz.choices import Choices, FromSeed, happens
 from fuzz.claims import ALWAYS, SOMETIMES, Claim
 from fuzz.drawn_run import TIME_LIMIT, Drawn, drawn
-from fuzz.own_functions import Forces
+from fuzz.own_functions import Forces, Raised
 
 
 @dataclass
@@ -60,9 +60,9 @@ def _judged(case: Drawn, claims: list[Claim], choices: Choices) -> Verdict:
             if not hasattr(refusal, "solution"):
                 return _refused(refusal)
             sol = refusal.solution
-        except Exception as raised:
+        except Raised as raised:
             if not hasattr(raised, "solution"):
-                raise
+                return Verdict("raised before the first step")
             sol = raised.solution
     except Exception as error:
         return Verdict("broke", [_told(error)])

@@ -165,7 +165,8 @@ def find_equilibria(
         free = FreeAngles(scene, t, pose if start is None else np.array(start))
         z = pose[free.leaders]
         balanced = free.balanced_near(z)
-        if balanced is None:
+        # Damping beyond all measure: an equilibrium, whose modes are no numbers.
+        if balanced is None or not all(np.isfinite(x).all() for x in free.linearised(balanced)):
             remarks.append(f"no equilibrium was found from {name} at t = {t:.6g} s")
             continue
         q = free.q(balanced)

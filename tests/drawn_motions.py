@@ -1,0 +1,91 @@
+"""Runs of ordinary scenes for hypothesis, short enough that rounding stays rounding.
+
+Chaos multiplies a difference of rounding by e every Lyapunov time; over a second of chains of about
+a metre that is a factor of a thousand or so. For wild ones there is `any_runs`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import Any
+
+import pendcore as pc
+from fuzz import drawn_run
+from fuzz.choices import FromHypothesis
+from fuzz.drawn_run import Drawn
+from fuzz.drawn_scene import SceneMaker
+from hypothesis import reject
+from hypothesis import strategies as st
+from pendcore.effect_class import KINDS
+from symmetries import with_effects
+
+SMOOTH = ("viscous_joint", "rod_drag", "torsional_spring", "motor", "rotor_inertia", "payload",
+          "lock", "driven_pivot")  # fmt: skip
+LOSSLESS = ("torsional_spring", "rotor_inertia", "payload", "lock")
+"""Effects that reversed time does not tell from themselves."""
+
+
+@st.composite
+def any_runs(draw: st.DrawFn) -> Drawn:
+    """Whatever the campaign runs; see `fuzz.drawn_run`."""
+    try:
+        return drawn_run.drawn(FromHypothesis(draw))
+    except ValueError:
+        reject()
+
+
+class Gentle(SceneMaker):
+    """Draws links of about a kilogram and a metre, and effects about as strong as their weight."""
+
+    def link(self) -> pc.Link:
+        real = self.choices.real
+        mass, length = real(0.5, 2), real(0.5, 2)
+        center = length * real(0.25, 0.75)
+        inertia = mass * center * (length - center) * real(0.25, 0.875)
+        return pc.Link(mass=mass, length=length, center=center, inertia=inertia)
+
+    def number(self, p: Any) -> float:
+        real = self.choices.real
+        if p.unit == "rad":
+            return real(-2, 2)
+        if p.name == "exponent":
+            return real(1, 3)
+        if p.name in ("angular_frequency", "stribeck_velocity"):
+            return real(0.1, 3)
+        if p.name in ("mass", "armature", "limit", "static"):
+            return real(0.5, 2)
+        if p.name in ("amplitude", "x", "y"):
+            return real(-0.3, 0.3)
+        if p.name == "torque" or p.name == "constant":
+            return real(-2, 2)
+        if p.name == "inertia":
+            return real(0, 0.1)
+        return real(0, 0.5)
+
+
+@st.composite
+def motions(
+    draw: st.DrawFn, kinds: Collection[str] = SMOOTH, links: int = 4, seconds: float = 1.0
+) -> Drawn:
+    """Return a run of an ordinary chain under effects of some kinds, one of each at most."""
+    choices = FromHypothesis(draw)
+    n = choices.integer(1, links)
+    times = (0.0, choices.real(0.1, seconds))
+    maker = Gentle(choices, "ordinary", n, *times)
+    known = [kind for kind in sorted(kinds) if kind in KINDS]
+    chosen = draw(st.lists(st.sampled_from(known), max_size=3, unique=True)) if known else []
+    effects = [effect for kind in chosen if (effect := maker.effect(kind)) is not None]
+    bare = pc.Scene(links=[maker.link() for _ in range(n)], gravity=choices.real(0, 10))
+    try:
+        scene = with_effects(bare, effects)
+    except ValueError:
+        reject()
+    q0 = [choices.real(-3, 3) for _ in range(n)]
+    qd0 = [choices.real(-2, 2) for _ in range(n)]
+    for effect in effects:
+        joint = getattr(effect, "joint", 1)
+        before = q0[joint - 2] if joint > 1 else 0.0
+        if effect.kind == "lock":
+            qd0[joint - 1] = qd0[joint - 2] if joint > 1 else 0.0
+            q0[joint - 1] = before + (effect.angle or 0.0)
+    return Drawn(scene, q0, qd0, times, {"rtol": 1e-10, "atol": 1e-12, "max_steps": 20_000})
