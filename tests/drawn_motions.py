@@ -34,6 +34,13 @@ def any_runs(draw: st.DrawFn) -> Drawn:
         reject()
 
 
+class Rounded(FromHypothesis):
+    """Numbers of six decimals: none is so small that a product with others vanishes."""
+
+    def real(self, low: float, high: float) -> float:
+        return round(super().real(low, high), 6)
+
+
 class Gentle(SceneMaker):
     """Draws links of about a kilogram and a metre, and effects about as strong as their weight."""
 
@@ -43,6 +50,21 @@ class Gentle(SceneMaker):
         center = length * real(0.25, 0.75)
         inertia = mass * center * (length - center) * real(0.25, 0.875)
         return pc.Link(mass=mass, length=length, center=center, inertia=inertia)
+
+    def of(self, cls: Any) -> Any:
+        """Return one with every parameter, or with one of those that exclude each other."""
+        parameters = cls.description.parameters
+        points = self.choices.integer(2, 6)
+        either = [p for p in parameters if p.optional]
+        one = self.choices.one_of(either) if either else None
+        values = {p.name: self.value(p, points) for p in parameters if p is one or not p.optional}
+        return cls(**values)
+
+    def times(self, points: int) -> list[float]:
+        """Return knots that enclose the run."""
+        gaps = [self.choices.real(0.25, 1) for _ in range(points - 1)]
+        scale = (self.last - self.first + 0.5) / sum(gaps)
+        return [self.first - 0.25 + scale * sum(gaps[:k]) for k in range(points)]
 
     def number(self, p: Any) -> float:
         real = self.choices.real
@@ -68,13 +90,13 @@ def motions(
     draw: st.DrawFn, kinds: Collection[str] = SMOOTH, links: int = 4, seconds: float = 1.0
 ) -> Drawn:
     """Return a run of an ordinary chain under effects of some kinds, one of each at most."""
-    choices = FromHypothesis(draw)
+    choices = Rounded(draw)
     n = choices.integer(1, links)
     times = (0.0, choices.real(0.1, seconds))
     maker = Gentle(choices, "ordinary", n, *times)
     known = [kind for kind in sorted(kinds) if kind in KINDS]
-    chosen = draw(st.lists(st.sampled_from(known), max_size=3, unique=True)) if known else []
-    effects = [effect for kind in chosen if (effect := maker.effect(kind)) is not None]
+    chosen = draw(st.sets(st.sampled_from(known), min_size=1, max_size=4)) if known else []
+    effects = [effect for kind in sorted(chosen) if (effect := maker.effect(kind)) is not None]
     bare = pc.Scene(links=[maker.link() for _ in range(n)], gravity=choices.real(0, 10))
     try:
         scene = with_effects(bare, effects)
