@@ -21,6 +21,8 @@ from symmetries import with_effects
 
 SMOOTH = ("viscous_joint", "rod_drag", "torsional_spring", "motor", "rotor_inertia", "payload",
           "lock", "driven_pivot")  # fmt: skip
+UNDAMPED = ("torsional_spring", "motor", "rotor_inertia", "payload", "lock", "driven_pivot")
+"""Smooth effects under which a difference does not grow backward, as it does under damping."""
 LOSSLESS = ("torsional_spring", "rotor_inertia", "payload", "lock")
 """Effects that reversed time does not tell from themselves."""
 
@@ -80,7 +82,7 @@ class Gentle(SceneMaker):
             return real(-0.3, 0.3)
         if p.name == "torque" or p.name == "constant":
             return real(-2, 2)
-        if p.name == "inertia":
+        if p.name in ("inertia", "kd"):
             return real(0, 0.1)
         return real(0, 0.5)
 

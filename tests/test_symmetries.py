@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 import pendcore as pc
 import pytest
-from drawn_motions import LOSSLESS, SMOOTH, motions
+from drawn_motions import LOSSLESS, SMOOTH, UNDAMPED, motions
 from fuzz.drawn_run import Drawn
 from hypothesis import given
 from hypothesis import strategies as st
@@ -138,7 +138,7 @@ def test_a_turn_more_in_every_angle_is_the_same_motion(method: str, run: Drawn) 
 
 
 @pytest.mark.parametrize("method", ADAPTIVE)
-@given(run=motions())
+@given(run=motions(UNDAMPED))
 def test_there_and_back_is_where_it_began(method: str, run: Drawn) -> None:
     n = len(run.q0)
     there = run.simulate(method=method)
