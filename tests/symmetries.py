@@ -185,9 +185,7 @@ def turned_once(drawn: Drawn) -> Drawn:
 
 def backward(drawn: Drawn) -> Drawn:
     """Return the run of a scene without losses in reversed time. Exact bits."""
-    return replace(
-        drawn, qd0=[-x for x in drawn.qd0], t_span=(-drawn.t_span[0], -drawn.t_span[1])
-    )
+    return replace(drawn, qd0=[-x for x in drawn.qd0], t_span=(-drawn.t_span[0], -drawn.t_span[1]))
 
 
 # Absence --------------------------------------------------------------------------------------
@@ -202,7 +200,7 @@ def without_strength(effect: Any) -> Any:
     """Return an effect that does nothing: what it could do is zero, and the rest as it is."""
 
     def change(where: str, p: Parameter, value: Any, unit: str) -> Any:
-        if p.name in STRENGTHS or where == "driven_pivot.spline" and p.name in "xy":
+        if p.name in STRENGTHS or (where == "driven_pivot.spline" and p.name in "xy"):
             return _each(value, lambda x: 0.0)
         if where == "dry_joint_friction" and p.name == "static":
             return 0.0

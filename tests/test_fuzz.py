@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pendcore as pc
 import pytest
-from fuzz import campaign, claims, watch
+from fuzz import campaign, claims
 from fuzz.choices import FromSeed
 from fuzz.drawn_run import Drawn, drawn
 from fuzz.shrinking import shrunk
@@ -44,7 +44,7 @@ def test_the_cases_are_of_every_kind(cases: list[Drawn]) -> None:
     assert kinds >= set(KINDS) - {"compiled_user"}
     assert {len(case.scene.links) for case in cases} == {1, 2, 3, 4, 5, 6}
     spans = np.array([case.t_span[1] - case.t_span[0] for case in cases])
-    assert (spans < 0).any() and (spans == 0).any() and (spans > 1e3).any()
+    assert all(some.any() for some in (spans < 0, spans == 0, spans > 1e3))
     assert any(0 < abs(x) < 1e-10 for x in spans)
 
 
@@ -70,7 +70,9 @@ for case in range(int(first), int(end), int(stride)):
 """
 
 
-@pytest.mark.parametrize(("kind", "outcome"), [("crash", "crash"), ("hang", "hang"), ("exit", "crash")])
+@pytest.mark.parametrize(
+    ("kind", "outcome"), [("crash", "crash"), ("hang", "hang"), ("exit", "crash")]
+)
 def test_a_worker_that_dies_or_hangs_names_its_case(
     kind: str, outcome: str, tmp_path: Path
 ) -> None:
@@ -129,9 +131,7 @@ def test_a_breach_is_seen(mistake: str) -> None:
     assert list(claim(case, Broken(sol, **changes), FromSeed("x")))
 
 
-@pytest.mark.parametrize(
-    "claim", [claims.storing_changes_nothing, claims.resuming_changes_nothing]
-)
+@pytest.mark.parametrize("claim", [claims.storing_changes_nothing, claims.resuming_changes_nothing])
 def test_another_trajectory_is_seen(claim: claims.Claim) -> None:
     """The second run is one of other tolerances: what it must not depend on changes it."""
     case = case_of(rtol=1e-6, time_limit=5.0)

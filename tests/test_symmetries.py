@@ -152,8 +152,6 @@ def test_there_and_back_is_where_it_began(method: str, run: Drawn) -> None:
 @given(run=motions(sorted(MIRRORED - {"lock"})))
 def test_effects_of_no_strength_are_as_good_as_absent(method: str, run: Drawn) -> None:
     idle = [without_strength(effect) for effect in run.scene.effects]
-    with_idle = Drawn(
-        with_effects(run.scene, idle), run.q0, run.qd0, run.t_span, run.options
-    )
+    with_idle = Drawn(with_effects(run.scene, idle), run.q0, run.qd0, run.t_span, run.options)
     bare = Drawn(with_effects(run.scene, []), run.q0, run.qd0, run.t_span, run.options)
     near(at_five_times(with_idle, method=method), at_five_times(bare, method=method))

@@ -110,9 +110,7 @@ def resuming_changes_nothing(drawn: Drawn, sol: pc.Solution, choices: Choices) -
         part = drawn.simulate(max_steps=choices.integer(1, max(taken, 1)))
     else:
         middle = start + choices.real(0, 1) * (end - start)
-        part = Drawn(
-            drawn.scene, drawn.q0, drawn.qd0, (start, middle), drawn.options
-        ).simulate()
+        part = Drawn(drawn.scene, drawn.q0, drawn.qd0, (start, middle), drawn.options).simulate()
     if part.status not in ("finished", "max_steps"):
         return
     whole = part.resume(end, max_steps=most, time_limit=drawn.options["time_limit"])

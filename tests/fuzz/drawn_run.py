@@ -30,9 +30,7 @@ class Drawn:
     options: dict[str, Any] = field(default_factory=dict)
 
     def simulate(self, **changes: Any) -> pc.Solution:
-        return pc.simulate(
-            self.scene, self.q0, self.qd0, self.t_span, **(self.options | changes)
-        )
+        return pc.simulate(self.scene, self.q0, self.qd0, self.t_span, **(self.options | changes))
 
     def __repr__(self) -> str:
         keywords = "".join(f"    {name}={value!r},\n" for name, value in self.options.items())

@@ -80,8 +80,8 @@ def _scenes(scene: pc.Scene) -> Iterator[Callable[[], pc.Scene]]:
         yield lambda i=i: scene.replace(effects=scene.effects[:i] + scene.effects[i + 1 :])
     if len(scene.links) > 1:
         yield lambda: scene.replace(links=scene.links[:-1])
+    rod = pc.Link(mass=1.0, length=1.0)
     for i, link in enumerate(scene.links):
-        rod = pc.Link(mass=1.0, length=1.0)
         if link != rod:
             yield lambda i=i: scene.replace(links=[*scene.links[:i], rod, *scene.links[i + 1 :]])
     for gravity in (9.807, 0.0):

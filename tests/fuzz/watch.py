@@ -6,7 +6,6 @@ import json
 import os
 import selectors
 import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Iterator
@@ -30,7 +29,7 @@ class Worker:
         self._start()
 
     def _start(self) -> None:
-        self.errors = tempfile.TemporaryFile()
+        self.errors = tempfile.TemporaryFile()  # noqa: SIM115  (closed by _ended)
         numbers = [str(x) for x in (self.next, self.end, self.stride)]
         paths = [str(Path(__file__).parents[1]), os.environ.get("PYTHONPATH", "")]
         self.process = subprocess.Popen(
@@ -84,12 +83,12 @@ class Worker:
         return self.process.returncode is not None
 
 
-def run(command: list[str], cases: range, workers: int, patience: float) -> Iterator[dict[str, Any]]:
+def run(
+    command: list[str], cases: range, workers: int, patience: float
+) -> Iterator[dict[str, Any]]:
     """Yield what becomes of every case, in the order in which they end."""
     first, end = cases.start, cases.stop
-    team = [
-        Worker(command, first + k, end, workers) for k in range(min(workers, len(cases)))
-    ]
+    team = [Worker(command, first + k, end, workers) for k in range(min(workers, len(cases)))]
     try:
         while team:
             with selectors.DefaultSelector() as selector:
