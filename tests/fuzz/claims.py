@@ -122,8 +122,51 @@ def resuming_changes_nothing(drawn: Drawn, sol: pc.Solution, choices: Choices) -
         yield "resumed: other states"
 
 
+def events_are_where_they_are_told(
+    drawn: Drawn, sol: pc.Solution, _: Choices
+) -> Iterator[str]:
+    asked = drawn.options.get("events", ())
+    if sol.status == "event" and not any(event.terminal for event in asked):
+        yield "ended at an event, and none is terminal"
+    if not asked:
+        return
+    start, end = drawn.t_span[0], sol._run.t_reached
+    direction = -1.0 if end < start else 1.0
+    for event, found in zip(asked, sol.events, strict=True):
+        times = np.array([one.t for one in found])
+        if len(times) and not (min(start, end) <= times.min() and times.max() <= max(start, end)):
+            yield f"{event!r}: found at {times.tolist()}, outside {start} to {end}"
+        if (np.diff(times) * direction < 0).any():
+            yield f"{event!r}: found at {times.tolist()}, in no order"
+        for one in found:
+            if not np.isfinite(one.y).all():
+                yield f"{event!r}: the state at t = {one.t} is not finite"
+            if event.direction and one.direction != event.direction:
+                yield f"{event!r}: found in direction {one.direction}"
+
+
+def watching_changes_nothing(drawn: Drawn, sol: pc.Solution, _: Choices) -> Iterator[str]:
+    asked = drawn.options.get("events", ())
+    if not asked or sol.status in ("time_limit", "callback_error"):
+        return
+    bare = {k: v for k, v in drawn.options.items() if k not in ("events", "t_eval", "store")}
+    bare["store"] = "steps"
+    seen = drawn.options | {"store": "steps"}
+    seen.pop("t_eval", None)
+    watched = Drawn(drawn.scene, drawn.q0, drawn.qd0, drawn.t_span, seen).simulate()
+    plain = Drawn(drawn.scene, drawn.q0, drawn.qd0, drawn.t_span, bare).simulate()
+    shared = len(watched.t) - (watched.status == "event")
+    if not same(watched.t[:shared], plain.t[:shared]):
+        yield "watched, the run takes other steps"
+    elif not same(watched.y[:, :shared], plain.y[:, :shared]):
+        yield "watched, the run has other states"
+    elif watched.status != "event" and watched.status != plain.status:
+        yield f"watched: {_end(watched)}, not {_end(plain)}"
+
+
 def comes_back_from_a_pickle(drawn: Drawn, sol: pc.Solution, _: Choices) -> Iterator[str]:
-    if any(isinstance(effect, OwnEffect) for effect in drawn.scene.effects):
+    own = [getattr(event, "f", None) for event in drawn.options.get("events", ())]
+    if any(own) or any(isinstance(effect, OwnEffect) for effect in drawn.scene.effects):
         return
     again = pickle.loads(pickle.dumps(sol))
     if again.status != sol.status or not same(again.y, sol.y) or again.scene != sol.scene:
@@ -162,11 +205,13 @@ ALWAYS: tuple[Claim, ...] = (
     times_run_one_way,
     is_finite,
     dense_output_meets_the_steps,
+    events_are_where_they_are_told,
 )
 """What is looked at in every case."""
 
 SOMETIMES: tuple[Claim, ...] = (
     storing_changes_nothing,
+    watching_changes_nothing,
     resuming_changes_nothing,
     comes_back_from_a_pickle,
     views_do_not_fail,

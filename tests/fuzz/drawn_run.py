@@ -10,7 +10,7 @@ import numpy as np
 import pendcore as pc
 from pendcore import _core
 
-from fuzz import drawn_scene
+from fuzz import drawn_events, drawn_scene
 from fuzz.choices import Choices, happens
 from fuzz.quantities import angle, regime, signed, size
 
@@ -115,6 +115,8 @@ def drawn(choices: Choices) -> Drawn:
     scene = drawn_scene.scene(choices, how, times)
     q0, qd0 = start(choices, how, scene)
     asked = options(choices, how, times)
+    if hasattr(pc, "events") and happens(choices, 40):
+        asked["events"] = drawn_events.events(choices, how, len(scene.links))
     if not all(abs(x) < inf for x in (*times, *q0, *qd0)):
         raise ValueError("the start is not finite")
     if any(hasattr(e, "coulomb") for e in scene.effects) and happens(choices, 95):

@@ -38,6 +38,31 @@ class Forces:
         return f"Forces({self.name!r}, {self.n})"
 
 
+class Watched:
+    """What a user's event is a function of, by its name; it prints as what makes it."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+
+    def __call__(self, t: float, q: Any, qd: Any) -> Any:
+        if self.name == "raises" and qd[0] > 1.0:
+            raise Raised(f"qd_1 = {qd[0]}")
+        if self.name == "is no number" and q[0] > 1.0:
+            return float("nan")
+        if self.name == "is no scalar" and qd[0] > 0.5:
+            return qd
+        if self.name == "is zero":
+            return 0.0
+        if self.name == "jumps":
+            return 1.0 if qd[0] > 0 else -1.0
+        return np.sin(q[-1])
+
+    def __repr__(self) -> str:
+        return f"Watched({self.name!r})"
+
+
+WATCHED = ("a sine", "a sine", "a sine", "jumps", "is zero", "raises", "is no number",
+           "is no scalar")  # fmt: skip
 NAMES = ("damps", "raises", "is no number", "is infinite", "has a wrong shape", "is no array",
          "jumps")  # fmt: skip
 

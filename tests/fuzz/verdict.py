@@ -14,7 +14,7 @@ import pendcore as pc
 from fuzz.choices import Choices, FromSeed, happens
 from fuzz.claims import ALWAYS, SOMETIMES, Claim
 from fuzz.drawn_run import TIME_LIMIT, Drawn, drawn
-from fuzz.own_functions import Forces, Raised
+from fuzz.own_functions import Forces, Raised, Watched
 
 
 @dataclass
@@ -82,7 +82,9 @@ def _held(claim: Claim, case: Drawn, sol: pc.Solution, choices: Choices) -> Iter
 
 
 def _has_own(case: Drawn) -> bool:
-    return any(isinstance(getattr(e, "function", None), Forces) for e in case.scene.effects)
+    own = [getattr(e, "function", None) for e in case.scene.effects]
+    own += [getattr(e, "f", None) for e in case.options.get("events", ())]
+    return any(isinstance(function, Forces | Watched) for function in own)
 
 
 def _refused(refusal: Exception) -> Verdict:
