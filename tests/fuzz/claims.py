@@ -122,9 +122,7 @@ def resuming_changes_nothing(drawn: Drawn, sol: pc.Solution, choices: Choices) -
         yield "resumed: other states"
 
 
-def events_are_where_they_are_told(
-    drawn: Drawn, sol: pc.Solution, _: Choices
-) -> Iterator[str]:
+def events_are_where_they_are_told(drawn: Drawn, sol: pc.Solution, _: Choices) -> Iterator[str]:
     asked = drawn.options.get("events", ())
     if sol.status == "event" and not any(event.terminal for event in asked):
         yield "ended at an event, and none is terminal"

@@ -1,4 +1,4 @@
-"""Random events: every kind, of any direction, terminal at times, functions that fail among them."""
+"""Random events: every kind and direction, terminal at times, functions that fail among them."""
 
 from __future__ import annotations
 

@@ -114,8 +114,8 @@ class FreeAngles:
         """Derivatives of the accelerations at rest by angles and by rates, (m, m) each."""
         m = len(self.leaders)
         small, still = np.eye(m) * _STEP, np.zeros((m, m))
-        by_angle = self.accelerations(z + small, still) - self.accelerations(z - small, still)
         at = np.broadcast_to(z, (m, m))
+        by_angle = self.accelerations(z + small, still) - self.accelerations(z - small, still)
         by_rate = self.accelerations(at, small) - self.accelerations(at, -small)
         return by_angle.T / (2 * _STEP), by_rate.T / (2 * _STEP)
 
