@@ -11,7 +11,7 @@ from typing import Any
 
 import pendcore as pc
 from fuzz import drawn_run
-from fuzz.choices import FromHypothesis
+from fuzz.choices import Choices, FromHypothesis, FromSeed
 from fuzz.drawn_run import Drawn
 from fuzz.drawn_scene import SceneMaker
 from hypothesis import reject
@@ -36,11 +36,16 @@ def any_runs(draw: st.DrawFn) -> Drawn:
         reject()
 
 
-class Rounded(FromHypothesis):
+class Rounded:
     """Numbers of six decimals: none is so small that a product with others vanishes."""
 
+    def __init__(self, choices: Choices) -> None:
+        self._choices = choices
+        self.integer = choices.integer
+        self.one_of = choices.one_of
+
     def real(self, low: float, high: float) -> float:
-        return round(super().real(low, high), 6)
+        return round(self._choices.real(low, high), 6)
 
 
 class Gentle(SceneMaker):
@@ -87,23 +92,19 @@ class Gentle(SceneMaker):
         return real(0, 0.5)
 
 
-@st.composite
-def motions(
-    draw: st.DrawFn, kinds: Collection[str] = SMOOTH, links: int = 4, seconds: float = 1.0
-) -> Drawn:
-    """Return a run of an ordinary chain under effects of some kinds, one of each at most."""
-    choices = Rounded(draw)
+def motion(choices: Choices, kinds: Collection[str], links: int = 4) -> Drawn:
+    """Return a run of an ordinary chain under effects of some kinds, one of each at most.
+
+    Raises ValueError where its parts do not agree.
+    """
     n = choices.integer(1, links)
-    times = (0.0, choices.real(0.1, seconds))
+    times = (0.0, choices.real(0.1, 1.0))
     maker = Gentle(choices, "ordinary", n, *times)
     known = [kind for kind in sorted(kinds) if kind in KINDS]
-    chosen = draw(st.sets(st.sampled_from(known), min_size=1, max_size=4)) if known else []
+    chosen = [known.pop(choices.integer(0, len(known) - 1)) for _ in range(_count(choices, known))]
     effects = [effect for kind in sorted(chosen) if (effect := maker.effect(kind)) is not None]
     bare = pc.Scene(links=[maker.link() for _ in range(n)], gravity=choices.real(0, 10))
-    try:
-        scene = with_effects(bare, effects)
-    except ValueError:
-        reject()
+    scene = with_effects(bare, effects)
     q0 = [choices.real(-3, 3) for _ in range(n)]
     qd0 = [choices.real(-2, 2) for _ in range(n)]
     for effect in effects:
@@ -113,3 +114,24 @@ def motions(
             qd0[joint - 1] = qd0[joint - 2] if joint > 1 else 0.0
             q0[joint - 1] = before + (effect.angle or 0.0)
     return Drawn(scene, q0, qd0, times, {"rtol": 1e-10, "atol": 1e-12, "max_steps": 20_000})
+
+
+def _count(choices: Choices, known: list[str]) -> int:
+    return choices.integer(1, min(4, len(known))) if known else 0
+
+
+@st.composite
+def motions(draw: st.DrawFn, kinds: Collection[str] = SMOOTH) -> Drawn:
+    """Return any of these motions."""
+    try:
+        return motion(Rounded(FromHypothesis(draw)), kinds)
+    except ValueError:
+        reject()
+
+
+def motion_of_seed(seed: str, kind: str) -> Drawn:
+    """Return a motion under an effect of a kind; the next seed's where its parts do not agree."""
+    try:
+        return motion(Rounded(FromSeed(seed)), [kind])
+    except ValueError:
+        return motion_of_seed(f"{seed}, once more", kind)
