@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pendcore as pc
 from pendcore import _core
+from pendcore.case import RUN_DEFAULTS
 
 from fuzz import drawn_events, drawn_scene
 from fuzz.choices import Choices, happens
@@ -105,6 +106,8 @@ def options(choices: Choices, regime: str, span: tuple[float, float]) -> dict[st
         given["t_eval"] = (times if span[0] <= span[1] else times[::-1]).tolist()
     if happens(choices, 30):
         given["ledger"] = True
+    if "compensated" in RUN_DEFAULTS and happens(choices, 25):
+        given["compensated"] = True
     return given
 
 
