@@ -67,6 +67,9 @@ class Gentle(SceneMaker):
         values = {p.name: self.value(p, points) for p in parameters if p is one or not p.optional}
         return cls(**values)
 
+    def bound(self, open_end: float) -> float:
+        return open_end if self.choices.integer(0, 3) == 3 else self.choices.real(-3, 3)
+
     def times(self, points: int) -> list[float]:
         """Return knots that enclose the run."""
         gaps = [self.choices.real(0.25, 1) for _ in range(points - 1)]
@@ -113,6 +116,9 @@ def motion(choices: Choices, kinds: Collection[str], links: int = 4) -> Drawn:
         if effect.kind == "lock":
             qd0[joint - 1] = qd0[joint - 2] if joint > 1 else 0.0
             q0[joint - 1] = before + (effect.angle or 0.0)
+        elif hasattr(effect, "range"):
+            low, high = (max(-4.0, min(4.0, bound)) for bound in effect.range)
+            q0[joint - 1] = before + 0.5 * (low + high)
     return Drawn(scene, q0, qd0, times, {"rtol": 1e-10, "atol": 1e-12, "max_steps": 20_000})
 
 

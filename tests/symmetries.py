@@ -204,6 +204,6 @@ def without_strength(effect: Any) -> Any:
             return _each(value, lambda x: 0.0)
         if where == "dry_joint_friction" and p.name == "static":
             return 0.0
-        return (-inf, inf) if (where, p.name) == ("joint_stop", "range") else value
+        return (-inf, 1e6) if (where, p.name) == ("joint_stop", "range") else value
 
     return changed(effect, change)
