@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import Any
 
+import numpy as np
 import pendcore as pc
 from fuzz import drawn_run
 from fuzz.choices import Choices, FromHypothesis, FromSeed
@@ -119,6 +120,11 @@ def motion(choices: Choices, kinds: Collection[str], links: int = 4) -> Drawn:
         elif hasattr(effect, "range"):
             low, high = (max(-4.0, min(4.0, bound)) for bound in effect.range)
             q0[joint - 1] = before + 0.5 * (low + high)
+    angles = np.diff(q0, prepend=0.0)
+    for effect in effects:  # a lock may have moved a joint that has a stop
+        low, high = getattr(effect, "range", (-np.inf, np.inf))
+        if not low <= angles[getattr(effect, "joint", 1) - 1] <= high:
+            raise ValueError("the start is beyond a stop")
     return Drawn(scene, q0, qd0, times, {"rtol": 1e-10, "atol": 1e-12, "max_steps": 20_000})
 
 
