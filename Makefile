@@ -16,8 +16,8 @@ PIP_INSTALL := python -m pip install --quiet --disable-pip-version-check
 SOURCES := pyproject.toml CMakeLists.txt $(shell find cpp python ! -path '*__pycache__*')
 
 .DEFAULT_GOAL := help
-.PHONY: demo test compare hard-cases bench build-bench lint tidy sanitize threads long \
-    clean help
+.PHONY: demo test compare hard-cases bench build-bench lint tidy sanitize threads long fuzz \
+    fuzz-readers clean help
 
 demo: $(DONE)/installed  ## build, run the textbook's case, say where its figure and summary are
 	pendcore run -o out/textbook
@@ -73,11 +73,23 @@ threads: $(DONE)/build-requirements  ## threads that share a scene, under the th
 long: $(DONE)/installed $(DONE)/test-requirements  ## ten million steps: docs/long_runs.md, written anew
 	python docs/long_runs.py
 
+CASES ?= 100000
+SEED ?= 1
+fuzz: $(DONE)/installed $(DONE)/test-requirements  ## random cases: no crash, no hang (CASES, SEED)
+	PYTHONPATH=tests python -m fuzz.campaign --cases $(CASES) --seed $(SEED)
+
+SECONDS_EACH ?= 60
+fuzz-readers: $(DONE)/installed $(DONE)/fuzz-requirements  ## damaged files and pickles, by coverage
+	for reader in case archive state scene; do \
+	    PYTHONPATH=tests python -m fuzz.guided $$reader out/fuzz/corpus -verbosity=0 \
+	        -max_total_time=$(SECONDS_EACH) -artifact_prefix=out/fuzz/ || exit 1; \
+	done
+
 clean:  ## remove all that was built, and the virtual environment
 	rm -rf build out .venv
 
 help:  ## this list
-	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 18
+	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 22
 
 $(DONE)/venv:
 	@sh setup/debian_packages.sh python compiler also eigen doctest
@@ -98,6 +110,10 @@ $(DONE)/installed: $(SOURCES) $(DONE)/build-requirements
 $(DONE)/test-requirements: pyproject.toml | $(DONE)/build-requirements
 	@sh setup/debian_packages.sh doctest
 	python setup/requirements.py test export | $(PIP_INSTALL) -r /dev/stdin
+	@touch $@
+
+$(DONE)/fuzz-requirements: pyproject.toml | $(DONE)/test-requirements
+	python setup/requirements.py fuzz | $(PIP_INSTALL) -r /dev/stdin
 	@touch $@
 
 $(DONE)/bench-requirements: pyproject.toml | $(DONE)/build-requirements

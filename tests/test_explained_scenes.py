@@ -100,3 +100,27 @@ def test_the_equilibria_print_as_plain_numbers():
         assert "-0.0," not in shown
         assert "-0.0)" not in shown
     assert rods(1).explain().equilibria[0].q == (pi / 2,)
+
+
+WILD = {
+    "a length below all measure": (pc.Link(mass=1.0, length=1e-310, inertia=1.0), []),
+    "damping beyond all measure": (pc.Link(mass=1.0, length=1.0), [fx.ViscousJoint(1, 1e308)]),
+    "gravity beyond all measure": (
+        pc.Link(mass=1e-20, length=1e154),
+        [fx.Motor(1, constant=1e300)],
+    ),
+    "a link of nothing": (
+        pc.Link(mass=2.7e271, length=3.1e-272, center=2.7e-272, inertia=3.5e-273),
+        [fx.ViscousJoint(1, 2e-308, damping2=1e200)],
+    ),
+}
+
+
+@pytest.mark.parametrize("case", WILD)
+@pytest.mark.filterwarnings("ignore::pendcore.PendcoreWarning")
+def test_what_overflows_is_explained_as_well(case: str) -> None:
+    """No warning of NumPy's, no error of its algebra: what is no number is left out."""
+    link, effects = WILD[case]
+    told = pc.Scene(links=[link], effects=effects).explain()
+    assert told.mobility.degrees_of_freedom == 1
+    assert repr(told)

@@ -1,5 +1,6 @@
 #include "run_state.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -45,13 +46,13 @@ class Reader {
   template <class Number>
   void operator()(const std::string& key, Number& value) const {
     try {
-      value = fields_[py::str(key)].template cast<Number>();
+      value = field(key).template cast<Number>();
     } catch (const py::cast_error&) {
       throw py::value_error(key + ": is not what a solution keeps there");
     }
   }
   void operator()(const std::string& key, std::vector<double>& values) const {
-    values = numbers(key.c_str(), fields_[py::str(key)]);
+    values = numbers(key.c_str(), field(key));
   }
   void operator()(const std::string& key, std::optional<double>& value) const {
     double number = 0.0;
@@ -82,6 +83,11 @@ class Reader {
   }
 
  private:
+  py::object field(const std::string& key) const {
+    if (!fields_.contains(key)) throw py::value_error(key + ": is missing from this solution");
+    return fields_[py::str(key)];
+  }
+
   const py::dict& fields_;
 };
 
@@ -176,6 +182,26 @@ bool polynomials_fit(const Solution& s) {
   return true;
 }
 
+/// Counts that a run could have: far below where adding to them overflows.
+bool counts_fit(const Statistics& s) {
+  const long long counts[] = {s.nfev,
+                              s.njev,
+                              s.nlu,
+                              s.accepted,
+                              s.rejected,
+                              s.limited_by_tolerance,
+                              s.limited_by_max_step,
+                              s.limited_by_break};
+  return std::ranges::all_of(counts, [](long long n) { return n >= 0 && n < 1LL << 60; });
+}
+
+bool position_fits(const Position& p) {
+  const auto few = [](int n) { return n >= 0 && n < 1'000'000; };
+  // The logarithm of a double is within 1100; NaN is not.
+  return counts_fit(p.statistics) && few(p.stiff_hits) && few(p.stiff_misses) &&
+         std::abs(p.control.log2_error_before) < 1100.0;
+}
+
 /// The effects as JSON, which has every number to the last bit.
 std::string json_of_effects(const Scene& scene) {
   py::list effects;
@@ -201,7 +227,8 @@ std::vector<Effect> effects_of_json(const std::string& json) {
 
 /// A damaged file must end in an error, never in memory that is not ours.
 void check_parts(const Solution& s) {
-  if (!arrays_fit(s) || !polynomials_fit(s)) {
+  if (!arrays_fit(s) || !polynomials_fit(s) || !counts_fit(s.statistics) ||
+      !position_fits(s.resumable)) {
     throw py::value_error("the parts of this solution do not fit together");
   }
 }

@@ -5,6 +5,14 @@
 # running. The last two flags change no value; they free sqrt of errno and let selects be blends.
 set(pendcore_arithmetic -ffp-contract=off -fno-fast-math -fno-math-errno -fno-trapping-math)
 
+# GCC 12 moves a double through an MMX register where it runs out of others, and leaves it so: after
+# that, every long double of the process is a NaN, and with it LAPACK.
+include(CheckCXXCompilerFlag)
+check_cxx_compiler_flag(-mno-mmx PENDCORE_KNOWS_MMX)
+if(PENDCORE_KNOWS_MMX)
+  list(APPEND pendcore_arithmetic -mno-mmx)
+endif()
+
 # The kernels say themselves what is unrolled; -O3 made their steps slower (GCC 12).
 set(pendcore_optimisation $<$<CONFIG:Release>:-O2>)
 

@@ -50,7 +50,7 @@ Guards::Guards(const Stepper& stepper, Breaks& breaks)
 
 void Guards::linear(int k) {
   breaks_.polynomial(k, rows_.data(), degree_, dimension_, polynomial_.data());
-  if (breaks_.begins_at_zero(k)) polynomial_[0] = 0.0;
+  for (int p = 0; p < breaks_.zeros_at_start(k); ++p) polynomial_[p] = 0.0;
 }
 
 /// samples_ gets a polynomial for each guard that is not linear.
@@ -100,7 +100,7 @@ double Guards::miss(int k, double t, double h) {
   if (other < 0) {
     linear(k);
     slope = slope_at_end(polynomial_.data(), degree_);
-    if (breaks_.begins_at_zero(k)) {
+    if (breaks_.zeros_at_start(k) > 0) {
       // What the state has grown by, without the rounding of the state itself.
       for (int p = degree_; p > 0; --p) g += polynomial_[p];
     } else {

@@ -146,7 +146,7 @@ Side HeldJoints::contact(int joint, const double* q) const {
 }
 
 bool HeldJoints::strikes(int joint, const double* q, const double* qd) const {
-  return static_cast<double>(contact(joint, q)) * speed(qd, joint) > 0.0;
+  return static_cast<double>(contact(joint, q)) * speed(qd, joint) * direction_ > 0.0;
 }
 
 void HeldJoints::fill_mass_matrix(const double* q) {
@@ -184,6 +184,11 @@ void HeldJoints::fill_responses() {
   }
 }
 
+void HeldJoints::solve() {
+  problem_.solve();
+  for (const double force : problem_.lambda) has_failed_ |= !std::isfinite(force);
+}
+
 void HeldJoints::choose(const EquationsOfMotion& equations, double t, const double* q,
                         const double* qd, int surely) {
   EffectsInForce& effects = *equations.effects;
@@ -192,7 +197,8 @@ void HeldJoints::choose(const EquationsOfMotion& equations, double t, const doub
   for (int j = 0; j < n_; ++j) {
     const JointSupport& support = supports_[j];
     const double rate = speed(qd, j);
-    const bool is_at_rest = rate == 0.0 && (support.friction > 0.0 || contact(j, q) != Side::none);
+    const bool is_at_rest =
+        rate == 0.0 && (!support.friction_effects.empty() || contact(j, q) != Side::none);
     any |= is_at_rest && !support.is_locked;
     if (support.is_locked || is_at_rest) rows_.push_back(j);
     if (!support.is_locked) holds_[j] = Hold{};
@@ -212,7 +218,7 @@ void HeldJoints::choose(const EquationsOfMotion& equations, double t, const doub
       problem_.lower[r] = is_locked || side == Side::upper ? -never : -supports_[j].friction;
       problem_.upper[r] = is_locked || side == Side::lower ? never : supports_[j].friction;
     }
-    problem_.solve();
+    solve();
   }
   for (int r = 0; r < static_cast<int>(rows_.size()); ++r) {
     const int j = rows_[r];
@@ -276,7 +282,7 @@ Impact HeldJoints::strike(const EquationsOfMotion& equations, double t, const do
     const int j = rows_[r];
     const JointSupport& support = supports_[j];
     const bool is_lower = contact(j, q) == Side::lower;
-    before[r] = speed(qd, j);
+    before[r] = direction_ * speed(qd, j);
     problem_.a[r] = before[r];
     problem_.lower[r] = support.is_locked || !is_lower ? -never : 0.0;
     problem_.upper[r] = support.is_locked || is_lower ? never : 0.0;
@@ -287,7 +293,7 @@ Impact HeldJoints::strike(const EquationsOfMotion& equations, double t, const do
     stays[r] = bounces && e > 0.0 ? 0 : 1;
     if (bounces) problem_.a[r] += e * before[r];
   }
-  problem_.solve();
+  solve();
 
   std::vector<double> change(n_, 0.0);
   for (int r = 0; r < problem_.size; ++r) {
@@ -295,12 +301,12 @@ Impact HeldJoints::strike(const EquationsOfMotion& equations, double t, const do
     for (int i = 0; i < n_; ++i) change[i] += problem_.lambda[r] * x[i];
   }
   solve_upper(n_, factor_.data(), change.data());
-  for (int i = 0; i < n_; ++i) qd[i] += change[i];
+  for (int i = 0; i < n_; ++i) qd[i] += direction_ * change[i];
   Impact impact;
   for (int r = 0; r < problem_.size; ++r) {
     const int j = rows_[r];
     if (stays[r] != 0 && problem_.at[r] == Bound::between) qd[j] = j > 0 ? qd[j - 1] : 0.0;
-    impact.loss -= 0.5 * problem_.lambda[r] * (before[r] + speed(qd, j));
+    impact.loss -= 0.5 * problem_.lambda[r] * (before[r] + direction_ * speed(qd, j));
   }
   EffectsInForce& effects = *equations.effects;
   if (!effects.pivots.empty()) {
@@ -308,7 +314,7 @@ Impact HeldJoints::strike(const EquationsOfMotion& equations, double t, const do
     effects.compute_waves(t, 0);
     effects.pivot_velocity(t, x, y);
     for (int i = 0; i < n_; ++i) {
-      const double moment = inertia_.first_moment[i] * change[i];
+      const double moment = direction_ * inertia_.first_moment[i] * change[i];
       impact.work_of_drive += moment * (y * cosine_[i] - x * sine_[i]);
     }
   }

@@ -338,6 +338,8 @@ class Run {
     const std::vector<double> before = state_;
     if (breaks_->cross(guard, t, state_.data())) {
       observer_.state_jumped(t, before.data(), state_.data());
+    } else if (state_ != before) {
+      observer_.state_settled(t, state_.data());
     }
     stepper_.evaluate(t, state_.data(), rate_.data());
     stepper_.start(state_.data(), rate_.data());

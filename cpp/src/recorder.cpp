@@ -73,10 +73,14 @@ void Recorder::state_jumped(double t, const double* before, const double* after)
   if (finder_) finder_->jump(t, before, after);
   if (keeps_steps_) {
     std::copy_n(after, dimension_, append(t));
-  } else if (!solution_.t.empty() && solution_.t.back() == t) {
-    std::copy_n(after, dimension_,
-                solution_.states.end() - static_cast<std::ptrdiff_t>(dimension_));
+  } else {
+    state_settled(t, after);
   }
+}
+
+void Recorder::state_settled(double t, const double* after) {
+  if (solution_.t.empty() || solution_.t.back() != t) return;
+  std::copy_n(after, dimension_, solution_.states.end() - static_cast<std::ptrdiff_t>(dimension_));
 }
 
 Recorder::Kept Recorder::kept() const {

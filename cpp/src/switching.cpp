@@ -1,6 +1,7 @@
 #include "pendcore/switching.hpp"
 
 #include <algorithm>
+#include <climits>
 #include <stdexcept>
 
 #include "pendcore/dynamics/kinematics.hpp"
@@ -16,10 +17,20 @@ constexpr int many_at_once = 8;
 template <class Kind>
 bool has_ended(const Kind& effect, double t, bool forward) {
   if constexpr (requires { effect.last_time(); }) {
-    return forward ? t >= effect.last_time() : t <= effect.first_time();
+    const double first = effect.first_time();
+    const double last = effect.last_time();
+    return forward ? t < first || t >= last : t <= first || t > last;
   } else {
     return false;
   }
+}
+
+/// A whole number of a memory, which may come from a damaged file.
+int whole(double x, int least, int most) {
+  if (!(x >= least && x <= most)) {
+    throw std::invalid_argument("the modes of this solution are not those of its scene");
+  }
+  return static_cast<int>(x);
 }
 
 /// The joint that an effect acts on, from 0.
@@ -57,6 +68,7 @@ Switching::Switching(const Scene& scene, const EquationsOfMotion& equations,
 
 bool Switching::begin(double t, double* y, bool forward) {
   forward_ = forward;
+  joints_.set_direction(forward);
   choose_modes_from(t, y, y + n_);
   for (const Lock& lock : effects_of<Lock>(scene_)) {
     joints_.lock(lock.joint - 1, lock.angle.value_or(relative(y, lock.joint)), y);
@@ -124,7 +136,7 @@ void Switching::collect_guards(const double* y) {
             if (!one.has_modes() || equations_.effects->held[joint] != 0) return;
             const std::vector<Guard> guards = one.guards(equations_.effects->modes[i]);
             for (std::size_t k = 0; k < guards.size(); ++k) {
-              guards_.push_back({i, k, joint, guards[k], Side::none, false});
+              guards_.push_back({i, k, joint, guards[k], Side::none, 0});
             }
           }
         },
@@ -138,8 +150,10 @@ void Switching::collect_guards(const double* y) {
     if (joints_.holds()[j].most < never) held_guards_.push_back({j, true});
   }
   for (Watch& watch : guards_) {
+    const int let_go = watch.joint == let_go_ ? 1 : 0;  // its acceleration is zero too
     if (watch.stop == Side::none && watch.guard.on_phi == 0.0 && watch.guard.offset == 0.0) {
-      watch.begins_at_zero = relative(y + n_, watch.joint + 1) == 0.0;
+      const bool is_zero = relative(y + n_, watch.joint + 1) == 0.0;
+      watch.zeros_at_start = is_zero ? 1 + let_go : 0;
     }
   }
   set_longest_step();
@@ -151,21 +165,22 @@ void Switching::collect_stops(const double* y) {
     const JointSupport& support = joints_.supports()[j];
     if (equations_.effects->held[j] != 0) continue;
     const Side touches = joints_.contact(j, y);
+    const int zeros = j == let_go_ ? 3 : 1;  // so are its rate and acceleration
     if (support.lower > -never) {
       const Guard above{.offset = -support.lower, .on_phi = 1.0, .on_phid = 0.0};
-      guards_.push_back({0, 0, j, above, Side::lower, touches == Side::lower});
+      guards_.push_back({0, 0, j, above, Side::lower, touches == Side::lower ? zeros : 0});
     }
     if (support.upper < never) {
       const Guard below{.offset = support.upper, .on_phi = -1.0, .on_phid = 0.0};
-      guards_.push_back({0, 0, j, below, Side::upper, touches == Side::upper});
+      guards_.push_back({0, 0, j, below, Side::upper, touches == Side::upper ? zeros : 0});
     }
   }
 }
 
-bool Switching::begins_at_zero(int k) const { return guards_[k].begins_at_zero; }
+int Switching::zeros_at_start(int k) const { return guards_[k].zeros_at_start; }
 
 void Switching::step_taken() {
-  for (Watch& watch : guards_) watch.begins_at_zero = false;
+  for (Watch& watch : guards_) watch.zeros_at_start = 0;
 }
 
 double Switching::guard(int k, const double* y) const {
@@ -231,6 +246,7 @@ bool Switching::cross(int k, double t, double* y) {
   if (k >= linear_guards()) {
     const auto [joint, is_most] = held_guards_[k - linear_guards()];
     joints_.release(*equations_.effects, joint, is_most ? -1 : 1);
+    let_go_ = joint;
   } else if (const Watch watch = guards_[k]; watch.stop != Side::none) {
     settle(k, y);
     jumped = joints_.strikes(watch.joint, q, qd) && strike(t, y);
@@ -254,6 +270,7 @@ bool Switching::cross(int k, double t, double* y) {
         scene_.effects[watch.effect]);
   }
   collect_guards(y);
+  let_go_ = -1;
   return jumped;
 }
 
@@ -283,6 +300,7 @@ bool Switching::strike(double t, double* y) {
     impact = joints_.strike(equations_, t, y, qd, true);
     joints_.choose(equations_, t, y, qd);
   }
+  if (joints_.has_failed()) std::ranges::copy(before, qd);
   book(Account::impact, impact.loss, y);
   book(Account::drive, impact.work_of_drive, y);
   return true;
@@ -340,29 +358,30 @@ std::vector<double> Switching::memory() const {
   memory.push_back(changes_at_once_);
   const std::vector<double> holds = joints_.memory();
   memory.insert(memory.end(), holds.begin(), holds.end());
-  for (const Watch& watch : guards_) memory.push_back(watch.begins_at_zero ? 1.0 : 0.0);
+  for (const Watch& watch : guards_) memory.push_back(watch.zeros_at_start);
   return memory;
 }
 
 void Switching::restore(const std::vector<double>& memory, double t, const double* y,
                         bool forward) {
   forward_ = forward;
+  joints_.set_direction(forward);
   const std::size_t effects = scene_.effects.size();
   if (memory.size() < effects + 2) {
     throw std::invalid_argument("the modes of this solution are not those of its scene");
   }
-  for (std::size_t i = 0; i < effects; ++i) put_mode(i, static_cast<int>(memory[i]));
+  for (std::size_t i = 0; i < effects; ++i) put_mode(i, whole(memory[i], -1, INT_MAX));
   is_over_ = std::ranges::any_of(scene_.effects, [&](const Effect& effect) {
     return std::visit([&](const auto& one) { return has_ended(one, t, forward_); }, effect);
   });
   std::size_t from = joints_.restore(*equations_.effects, memory, effects + 2);
   time_of_change_ = memory[effects];
-  changes_at_once_ = static_cast<int>(memory[effects + 1]);
+  changes_at_once_ = whole(memory[effects + 1], 0, INT_MAX);
   collect_guards(y);
   if (memory.size() != from + guards_.size()) {
     throw std::invalid_argument("the modes of this solution are not those of its scene");
   }
-  for (Watch& watch : guards_) watch.begins_at_zero = memory[from++] != 0.0;
+  for (Watch& watch : guards_) watch.zeros_at_start = whole(memory[from++], 0, 3);
 }
 
 }  // namespace pendcore

@@ -10,8 +10,9 @@ from __future__ import annotations
 from math import pi
 from typing import Any
 
-import numpy as np
 import numpy.typing as npt
+
+from pendcore.arguments import finite_array
 
 
 def angles_from_vertical(theta: npt.ArrayLike) -> Any:
@@ -32,7 +33,7 @@ def angles_from_vertical(theta: npt.ArrayLike) -> Any:
     For angles alone. Rates have no pi/2 in them: ``qd = -thetad``, so negate them, and never pass
     them through here.
     """
-    return pi / 2 - np.asarray(theta)
+    return pi / 2 - finite_array("theta", theta, "rad")
 
 
 def angles_to_vertical(q: npt.ArrayLike) -> Any:
@@ -53,4 +54,4 @@ def angles_to_vertical(q: npt.ArrayLike) -> Any:
     For angles alone. Rates have no pi/2 in them: ``thetad = -qd``, so negate them, and never pass
     them through here.
     """
-    return pi / 2 - np.asarray(q)
+    return pi / 2 - finite_array("q", q, "rad")

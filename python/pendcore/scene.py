@@ -166,7 +166,13 @@ class Scene:
         n = len(self.links)
         times = finite_array("t", t, "s")
         q, qd = link_array("q", q, n, "rad"), link_array("qd", qd, n, "rad/s")
-        lead = np.broadcast_shapes(times.shape, q.shape[:-1], qd.shape[:-1])
+        try:
+            lead = np.broadcast_shapes(times.shape, q.shape[:-1], qd.shape[:-1])
+        except ValueError:
+            raise ValueError(
+                f"t, q, qd: shapes {times.shape}, {q.shape}, {qd.shape}: must broadcast, the last "
+                "axis of q and qd aside"
+            ) from None
         return self._compiled.accelerations(
             np.broadcast_to(times, lead).reshape(-1),
             np.broadcast_to(q, (*lead, n)).reshape(-1, n),

@@ -203,14 +203,15 @@ class Solution:
     def energy(self) -> Energy:
         """Kinetic, potential and total energy, J, each (n_t,), and the ledger if one was kept."""
         kinetic, potential = self.scene._compiled.energy(self.t, self.q, self.qd)
-        total = kinetic + potential
+        with np.errstate(all="ignore"):  # a blow-up's energies may be infinite
+            total = kinetic + potential
         asked = self._run.arguments
         if not asked["ledger"]:
             return Energy(kinetic, potential, total)
         start = self.scene._compiled.energy(
             np.array([asked["t_start"]]), asked["q0"][np.newaxis], asked["qd0"][np.newaxis]
         )
-        with np.errstate(all="ignore"):  # a blow-up's energies may be infinite
+        with np.errstate(all="ignore"):
             gain = total - sum(start)
             return Energy(kinetic, potential, total, Ledger(self._run.ledger, gain))
 

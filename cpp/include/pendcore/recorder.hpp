@@ -20,6 +20,7 @@ class Recorder final : public Observer {
   double step_accepted(const Stepper& stepper, const TwoDouble& t_old, double h,
                        double t_new) override;
   void state_jumped(double t, const double* before, const double* after) override;
+  void state_settled(double t, const double* after) override;
   void restarts_here() override { count(kept()); }
   void restarts_at_step() override { count(at_step_start_); }
   bool may_end() const override { return finder_ && finder_->may_end(); }

@@ -34,7 +34,7 @@ class Switching final : public Breaks {
   double longest_step() const override;
   int guards() const override { return linear_guards() + static_cast<int>(held_guards_.size()); }
   int linear_guards() const override { return static_cast<int>(guards_.size()); }
-  bool begins_at_zero(int k) const override;
+  int zeros_at_start(int k) const override;
   void polynomial(int k, const double* rows, int degree, int dimension,
                   double* coefficients) const override;
   double guard(int k, const double* y) const override;
@@ -43,7 +43,7 @@ class Switching final : public Breaks {
   bool settle(int k, double* y) const override;
   void step_taken() override;
   bool cross(int k, double t, double* y) override;
-  bool is_over() const override { return is_over_; }
+  bool is_over() const override { return is_over_ || joints_.has_failed(); }
   bool rests() const override { return rests_; }
   std::vector<double> memory() const override;
 
@@ -61,7 +61,7 @@ class Switching final : public Breaks {
     int joint;           ///< from 0
     Guard guard;
     Side stop;
-    bool begins_at_zero;
+    int zeros_at_start;
   };
   /// The torque that holds a joint, on the side where its range ends.
   struct HeldGuard {
@@ -100,6 +100,7 @@ class Switching final : public Breaks {
   std::vector<double> torque_;  ///< that holds the joints
   double time_of_change_ = std::numeric_limits<double>::quiet_NaN();
   int changes_at_once_ = 0;
+  int let_go_ = -1;  ///< the joint that was held until now
   std::string remark_;
 };
 

@@ -7,6 +7,8 @@ from dataclasses import asdict, dataclass
 from math import pi
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from pendcore.effect_class import Part
 from pendcore.explanation.absence import Absence, absent
 from pendcore.explanation.constraints import constraint_rank
@@ -121,6 +123,7 @@ class Explanation:
         return text(self)
 
 
+@np.errstate(all="ignore")  # what overflows is told as not found
 def explain(scene: Scene, t: float, start: tuple[float, ...] | None) -> Explanation:
     """Find it all; see `Scene.explain`."""
     remarks: list[str] = []

@@ -48,7 +48,7 @@ def constraint_rank(scene: Scene) -> int:
     q = 0.3 + 0.7 * np.arange(len(scene.links), dtype=np.float64)
     jacobian = constraint_jacobian(scene, q)
     scale = np.ones(3 * len(scene.links))
-    scale[2::3] = [1.0 / link.length for link in scene.links]
+    scale[2::3] = [1.0 / max(link.length, 1e-300) for link in scene.links]
     return int(np.linalg.matrix_rank(jacobian * scale))
 
 

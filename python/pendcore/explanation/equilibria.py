@@ -114,8 +114,8 @@ class FreeAngles:
         """Derivatives of the accelerations at rest by angles and by rates, (m, m) each."""
         m = len(self.leaders)
         small, still = np.eye(m) * _STEP, np.zeros((m, m))
-        by_angle = self.accelerations(z + small, still) - self.accelerations(z - small, still)
         at = np.broadcast_to(z, (m, m))
+        by_angle = self.accelerations(z + small, still) - self.accelerations(z - small, still)
         by_rate = self.accelerations(at, small) - self.accelerations(at, -small)
         return by_angle.T / (2 * _STEP), by_rate.T / (2 * _STEP)
 
@@ -165,7 +165,8 @@ def find_equilibria(
         free = FreeAngles(scene, t, pose if start is None else np.array(start))
         z = pose[free.leaders]
         balanced = free.balanced_near(z)
-        if balanced is None:
+        # Damping beyond all measure: an equilibrium, whose modes are no numbers.
+        if balanced is None or not all(np.isfinite(x).all() for x in free.linearised(balanced)):
             remarks.append(f"no equilibrium was found from {name} at t = {t:.6g} s")
             continue
         q = free.q(balanced)

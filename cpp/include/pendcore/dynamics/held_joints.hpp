@@ -62,6 +62,12 @@ class HeldJoints {
   /// Whether the scene has friction or stops, that can hold a joint for a while.
   bool can_hold() const { return can_hold_; }
 
+  /// Which way time runs: what moves into a stop is another matter backward.
+  void set_direction(bool forward) { direction_ = forward ? 1.0 : -1.0; }
+
+  /// A decision or an impact had no finite answer: the mass matrix is singular to double precision.
+  bool has_failed() const { return has_failed_; }
+
   const std::vector<JointSupport>& supports() const { return supports_; }
   const std::vector<Hold>& holds() const { return holds_; }
   bool is_held(int joint) const { return holds_[joint].is_held != 0.0; }  ///< from 0
@@ -110,6 +116,7 @@ class HeldJoints {
   void set_free(EffectsInForce& effects);
   void fill_mass_matrix(const double* q);
   void fill_responses();
+  void solve();
   void set_slack(const EquationsOfMotion& equations, double t, const double* q, const double* qd);
 
   int n_;
@@ -117,6 +124,8 @@ class HeldJoints {
   std::vector<JointSupport> supports_;
   double natural_speed_;
   bool can_hold_;
+  double direction_ = 1.0;
+  bool has_failed_ = false;
   std::vector<Hold> holds_;
   ForcesBetweenBounds problem_;
   std::vector<int> rows_;         ///< the joints in it

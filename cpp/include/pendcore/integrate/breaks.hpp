@@ -27,8 +27,9 @@ class Breaks {
   /// Guards are numbered from 0; the first `linear_guards()` of them are linear in the state.
   virtual int guards() const = 0;
   virtual int linear_guards() const = 0;
-  /// The guard is zero where the next step begins, whatever rounding says.
-  virtual bool begins_at_zero(int k) const = 0;
+  /// How many of the guard, its slope, its curvature are zero where the next step begins, whatever
+  /// rounding says.
+  virtual int zeros_at_start(int k) const = 0;
   /// Of a linear guard: its coefficients along the dense output, a polynomial given by (degree + 1)
   /// rows of `dimension` numbers.
   virtual void polynomial(int k, const double* rows, int degree, int dimension,

@@ -58,6 +58,8 @@ class Observer {
                                double t_new) = 0;
   /// At the end of that step, time t, the state jumped.
   virtual void state_jumped(double t, const double* before, const double* after) = 0;
+  /// There, its last bits were set to what holds exactly.
+  virtual void state_settled(double /*t*/, const double* /*after*/) {}
   /// Should the run end now, one that goes on restarts here: what comes may be cut or undone.
   virtual void restarts_here() = 0;
 

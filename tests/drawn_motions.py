@@ -1,0 +1,149 @@
+"""Runs of ordinary scenes for hypothesis, short enough that rounding stays rounding.
+
+Chaos multiplies a difference of rounding by e every Lyapunov time; over a second of chains of about
+a metre that is a factor of a thousand or so. For wild ones there is `any_runs`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import Any
+
+import numpy as np
+import pendcore as pc
+from fuzz import drawn_run
+from fuzz.choices import Choices, FromHypothesis, FromSeed
+from fuzz.drawn_run import Drawn
+from fuzz.drawn_scene import SceneMaker
+from hypothesis import reject
+from hypothesis import strategies as st
+from pendcore.effect_class import KINDS
+from symmetries import with_effects
+
+SMOOTH = ("viscous_joint", "rod_drag", "torsional_spring", "motor", "rotor_inertia", "payload",
+          "lock", "driven_pivot")  # fmt: skip
+UNDAMPED = ("torsional_spring", "motor", "rotor_inertia", "payload", "lock", "driven_pivot")
+"""Smooth effects under which a difference does not grow backward, as it does under damping."""
+LOSSLESS = ("torsional_spring", "rotor_inertia", "payload", "lock")
+"""Effects that reversed time does not tell from themselves."""
+
+
+@st.composite
+def any_runs(draw: st.DrawFn) -> Drawn:
+    """Whatever the campaign runs; see `fuzz.drawn_run`."""
+    try:
+        return drawn_run.drawn(FromHypothesis(draw))
+    except ValueError:
+        reject()
+
+
+class Rounded:
+    """Numbers of six decimals: none is so small that a product with others vanishes."""
+
+    def __init__(self, choices: Choices) -> None:
+        self._choices = choices
+        self.integer = choices.integer
+        self.one_of = choices.one_of
+
+    def real(self, low: float, high: float) -> float:
+        return round(self._choices.real(low, high), 6)
+
+
+class Gentle(SceneMaker):
+    """Draws links of about a kilogram and a metre, and effects about as strong as their weight."""
+
+    def link(self) -> pc.Link:
+        real = self.choices.real
+        mass, length = real(0.5, 2), real(0.5, 2)
+        center = length * real(0.25, 0.75)
+        inertia = mass * center * (length - center) * real(0.25, 0.875)
+        return pc.Link(mass=mass, length=length, center=center, inertia=inertia)
+
+    def of(self, cls: Any) -> Any:
+        """Return one with every parameter, or with one of those that exclude each other."""
+        parameters = cls.description.parameters
+        points = self.choices.integer(2, 6)
+        either = [p for p in parameters if p.optional]
+        one = self.choices.one_of(either) if either else None
+        values = {p.name: self.value(p, points) for p in parameters if p is one or not p.optional}
+        return cls(**values)
+
+    def bound(self, open_end: float) -> float:
+        return open_end if self.choices.integer(0, 3) == 3 else self.choices.real(-3, 3)
+
+    def times(self, points: int) -> list[float]:
+        """Return knots that enclose the run."""
+        gaps = [self.choices.real(0.25, 1) for _ in range(points - 1)]
+        scale = (self.last - self.first + 0.5) / sum(gaps)
+        return [self.first - 0.25 + scale * sum(gaps[:k]) for k in range(points)]
+
+    def number(self, p: Any) -> float:
+        real = self.choices.real
+        if p.unit == "rad":
+            return real(-2, 2)
+        if p.name == "exponent":
+            return real(1, 3)
+        if p.name in ("angular_frequency", "stribeck_velocity"):
+            return real(0.1, 3)
+        if p.name in ("mass", "armature", "limit", "static"):
+            return real(0.5, 2)
+        if p.name in ("amplitude", "x", "y"):
+            return real(-0.3, 0.3)
+        if p.name == "torque" or p.name == "constant":
+            return real(-2, 2)
+        if p.name in ("inertia", "kd"):
+            return real(0, 0.1)
+        return real(0, 0.5)
+
+
+def motion(choices: Choices, kinds: Collection[str], links: int = 4) -> Drawn:
+    """Return a run of an ordinary chain under effects of some kinds, one of each at most.
+
+    Raises ValueError where its parts do not agree.
+    """
+    n = choices.integer(1, links)
+    times = (0.0, choices.real(0.1, 1.0))
+    maker = Gentle(choices, "ordinary", n, *times)
+    known = [kind for kind in sorted(kinds) if kind in KINDS]
+    chosen = [known.pop(choices.integer(0, len(known) - 1)) for _ in range(_count(choices, known))]
+    effects = [effect for kind in sorted(chosen) if (effect := maker.effect(kind)) is not None]
+    bare = pc.Scene(links=[maker.link() for _ in range(n)], gravity=choices.real(0, 10))
+    scene = with_effects(bare, effects)
+    q0 = [choices.real(-3, 3) for _ in range(n)]
+    qd0 = [choices.real(-2, 2) for _ in range(n)]
+    for effect in effects:
+        joint = getattr(effect, "joint", 1)
+        before = q0[joint - 2] if joint > 1 else 0.0
+        if effect.kind == "lock":
+            qd0[joint - 1] = qd0[joint - 2] if joint > 1 else 0.0
+            q0[joint - 1] = before + (effect.angle or 0.0)
+        elif hasattr(effect, "range"):
+            low, high = (max(-4.0, min(4.0, bound)) for bound in effect.range)
+            q0[joint - 1] = before + 0.5 * (low + high)
+    angles = np.diff(q0, prepend=0.0)
+    for effect in effects:  # a lock may have moved a joint that has a stop
+        low, high = getattr(effect, "range", (-np.inf, np.inf))
+        if not low <= angles[getattr(effect, "joint", 1) - 1] <= high:
+            raise ValueError("the start is beyond a stop")
+    return Drawn(scene, q0, qd0, times, {"rtol": 1e-10, "atol": 1e-12, "max_steps": 20_000})
+
+
+def _count(choices: Choices, known: list[str]) -> int:
+    return choices.integer(1, min(4, len(known))) if known else 0
+
+
+@st.composite
+def motions(draw: st.DrawFn, kinds: Collection[str] = SMOOTH) -> Drawn:
+    """Return any of these motions."""
+    try:
+        return motion(Rounded(FromHypothesis(draw)), kinds)
+    except ValueError:
+        reject()
+
+
+def motion_of_seed(seed: str, kind: str) -> Drawn:
+    """Return a motion under an effect of a kind; the next seed's where its parts do not agree."""
+    try:
+        return motion(Rounded(FromSeed(seed)), [kind])
+    except ValueError:
+        return motion_of_seed(f"{seed}, once more", kind)

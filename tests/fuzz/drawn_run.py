@@ -1,0 +1,129 @@
+"""A random case: a scene, a start, a span, and how it is run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import inf, ulp
+from typing import Any
+
+import numpy as np
+import pendcore as pc
+from pendcore import _core
+from pendcore.case import RUN_DEFAULTS
+
+from fuzz import drawn_events, drawn_scene
+from fuzz.choices import Choices, happens
+from fuzz.quantities import angle, regime, signed, size
+
+METHODS = tuple(method["name"] for method in _core.methods())
+TIME_LIMIT = 5.0
+"""s; what bounds a case is max_steps, and this where a step takes long."""
+
+
+@dataclass
+class Drawn:
+    """What `pc.simulate` is called with. It prints as Python that makes it again."""
+
+    scene: pc.Scene
+    q0: list[float]
+    qd0: list[float]
+    t_span: tuple[float, float]
+    options: dict[str, Any] = field(default_factory=dict)
+
+    def simulate(self, **changes: Any) -> pc.Solution:
+        return pc.simulate(self.scene, self.q0, self.qd0, self.t_span, **(self.options | changes))
+
+    def __repr__(self) -> str:
+        keywords = "".join(f"    {name}={value!r},\n" for name, value in self.options.items())
+        links = ",\n        ".join(repr(link) for link in self.scene.links)
+        effects = ",\n        ".join(repr(effect) for effect in self.scene.effects)
+        return (
+            f"simulate(\n    Scene(links=[\n        {links},\n    ], "
+            f"gravity={self.scene.gravity!r}, effects=[\n        {effects},\n    ]),\n"
+            f"    q0={self.q0!r},\n    qd0={self.qd0!r},\n    t_span={self.t_span!r},\n{keywords})"
+        )
+
+
+def span(choices: Choices, regime: str) -> tuple[float, float]:
+    """Return a start and an end: mostly seconds; of no length, of a few bits, far from 0."""
+    length = choices.real(0, 5)
+    start = choices.one_of((0.0, 0.0, 0.0, 1.0, -2.5))
+    kind = choices.one_of(("plain",) * 8 + ("none", "bits", "far", "sized"))
+    if kind == "none":
+        length = 0.0
+    elif kind == "far":
+        start = signed(choices, "extreme")
+    elif kind == "sized":
+        length = size(choices, regime)
+    if kind == "bits":
+        start = signed(choices, "ordinary")
+        length = choices.integer(1, 200) * ulp(start)
+    return start, start + choices.one_of((1.0, 1.0, -1.0)) * length
+
+
+def start(choices: Choices, regime: str, scene: pc.Scene) -> tuple[list[float], list[float]]:
+    """Return angles and rates that mostly agree with what locks and stops say."""
+    n = len(scene.links)
+    q = [angle(choices, regime) for _ in range(n)]
+    still = happens(choices, 25)
+    qd = [0.0 if still else signed(choices, regime) for _ in range(n)]
+    if happens(choices, 95):
+        for effect in sorted(scene.effects, key=lambda e: getattr(e, "joint", 0)):
+            joint = getattr(effect, "joint", 0)
+            before = q[joint - 2] if joint > 1 else 0.0
+            if effect.kind == "lock":
+                qd[joint - 1] = qd[joint - 2] if joint > 1 else 0.0
+                if effect.angle is not None:
+                    q[joint - 1] = before + effect.angle
+            elif hasattr(effect, "range"):
+                low, high = effect.range
+                low, high = max(low, -1e3), min(high, 1e3)
+                share = choices.one_of((0.5, 0.0, 1.0, choices.real(0, 1)))
+                q[joint - 1] = before + low + share * (high - low)
+    return q, qd
+
+
+def options(choices: Choices, regime: str, span: tuple[float, float]) -> dict[str, Any]:
+    """Return how it is run: never without a bound on the steps and on the time."""
+    length = abs(span[1] - span[0])
+    steps = choices.one_of((1000, 1000, 3000, 300, 10, 1))
+    given: dict[str, Any] = {"max_steps": steps, "time_limit": TIME_LIMIT}
+    if len(METHODS) > 1:
+        given["method"] = choices.one_of(METHODS)
+    if happens(choices, 60):
+        given["rtol"] = 10 ** choices.real(-13, -2)
+        given["atol"] = 10 ** choices.real(-16, -3)
+    elif happens(choices, 20):
+        given["rtol"] = choices.one_of((1e-300, 1e-17, 1.0, 1e30))
+        given["atol"] = choices.one_of((0.0, 1e-300, 1.0, 1e30))
+    kind = choices.one_of(("",) * 6 + ("first_step", "max_step", "step"))
+    if kind:
+        given[kind] = size(choices, regime) * choices.one_of((1e-2, 1e-3, length or 1.0))
+    given["store"] = choices.one_of(("dense", "dense", "steps", "end", "times"))
+    if given["store"] == "times" or (given["store"] == "dense" and happens(choices, 20)):
+        shares = sorted({choices.real(0, 1) for _ in range(choices.integer(1, 9))} | {1.0})
+        times = np.unique(np.array([span[0] + x * (span[1] - span[0]) for x in shares]))
+        given["t_eval"] = (times if span[0] <= span[1] else times[::-1]).tolist()
+    if happens(choices, 30):
+        given["ledger"] = True
+    if "compensated" in RUN_DEFAULTS and happens(choices, 25):
+        given["compensated"] = True
+    return given
+
+
+def drawn(choices: Choices) -> Drawn:
+    """Return any case; raises ValueError where its parts do not agree."""
+    how = regime(choices)
+    times = span(choices, how)
+    scene = drawn_scene.scene(choices, how, times)
+    q0, qd0 = start(choices, how, scene)
+    asked = options(choices, how, times)
+    if hasattr(pc, "events") and happens(choices, 40):
+        asked["events"] = drawn_events.events(choices, how, len(scene.links))
+    if not all(abs(x) < inf for x in (*times, *q0, *qd0)):
+        raise ValueError("the start is not finite")
+    if any(hasattr(e, "coulomb") for e in scene.effects) and happens(choices, 95):
+        times = (min(times), max(times))
+        if "t_eval" in asked:
+            asked["t_eval"] = sorted(asked["t_eval"])
+    return Drawn(scene, q0, qd0, times, asked)

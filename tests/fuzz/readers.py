@@ -1,0 +1,167 @@
+"""What reads: each takes choices, damages something whole, reads it, and uses what comes out.
+
+A reader either works or raises one of `REFUSALS` with a message; anything else is a finding.
+"""
+
+from __future__ import annotations
+
+import copyreg
+import tempfile
+import warnings
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pendcore as pc
+from pendcore import _core
+
+from fuzz import damage
+from fuzz.choices import Choices
+
+REFUSALS = (ValueError, TypeError, KeyError)
+EXAMPLES = Path(__file__).parents[2] / "examples"
+STEPS = {"max_steps": 200, "time_limit": 2.0}
+
+
+def whole_cases() -> list[str]:
+    """Return the case files that damage begins with: the project's examples."""
+    paths = sorted([*EXAMPLES.rglob("*.toml")])
+    return [path.read_text() for path in paths]
+
+
+@cache
+def whole_solutions() -> list[pc.Solution]:
+    """Return short solutions of every form: stored, sampled, with modes, cut short, backward."""
+    fx = pc.effects
+    rod = pc.Link(mass=1.0, length=1.0)
+    driven = [
+        fx.Motor(1, table=fx.Table([-1.0, 0.5, 2.0], [1.0, -1.0, 0.5])),
+        fx.DryJointFriction(2, coulomb=0.2, static=0.3),
+        fx.DrivenPivot(spline=fx.Spline([-1.0, 0.0, 2.0], [0.0, 0.1, 0.0], [0.1, 0.0, 0.1])),
+        fx.Motor(2, pd=fx.PD(3.0, 0.1, 0.5), limit=0.5),
+    ]
+    plain = pc.Scene(links=[rod, rod])
+    moved = pc.Scene(links=[rod, rod, rod], effects=driven)
+    locked = pc.Scene(links=[rod, rod], effects=[fx.Lock(2), fx.RodDrag(1, 1.0, 0.1)])
+    return [
+        pc.simulate(plain, [0.3, 1.0], 0, (0, 0.2)),
+        pc.simulate(plain, [0.3, 1.0], 0, (0.2, 0), store="steps", max_steps=5),
+        pc.simulate(plain, [0.3, 1.0], 0, (0, 0.2), t_eval=[0.0, 0.1, 0.2], ledger=True),
+        pc.simulate(moved, [0.3, 1.0, 0.5], [0, 1.0, 0], (0, 0.4), ledger=True),
+        pc.simulate(moved, [0.3, 1.0, 0.5], [0, 1.0, 0], (0, 1.0), max_steps=9),
+        pc.simulate(locked, [0.3, 1.0], [1.0, 1.0], (0, 0.3), rtol=[1e-6] * 4, max_step=0.01),
+        pc.simulate(plain, [0.3, 1.0], 0, (0, 0)),
+    ]
+
+
+@cache
+def whole_archives() -> list[bytes]:
+    """Return the same as npz files."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "run.npz")
+        found = []
+        for solution in whole_solutions():
+            solution.save(path)
+            found.append(path.read_bytes())
+    return found
+
+
+def use(solution: pc.Solution) -> None:
+    """Ask a solution for all that it has."""
+    solution.t, solution.y, solution.stats, solution.message, solution.success, solution.case()
+    repr(solution), solution.relative_angles(), solution.positions(), solution.reactions()
+    solution.energy()
+    reached = solution._run.t_reached
+    if solution.store == "dense":
+        solution(np.linspace(solution._run.arguments["t_start"], reached, 5))
+    # Whatever the file says: the run goes on for so many steps, if it goes on.
+    for end in (reached, reached + 0.5, reached - 0.5, solution._run.arguments["t_end"]):
+        try:
+            solution.resume(end, **STEPS)
+        except REFUSALS:
+            continue
+
+
+def read_case(text: str) -> None:
+    """Read a case, and run it shortly."""
+    case = pc.read_case(text + "\n")
+    repr(case), hash(case)
+    case = pc.Case(
+        scene=case.scene, q0=case.q0, qd0=case.qd0, t_span=case.t_span,
+        options=dict(case.options) | STEPS,
+    )  # fmt: skip
+    pc.read_case(case.to_toml())
+    use(case.simulate())
+
+
+def a_case(choices: Choices) -> None:
+    read_case(damage.text(choices, choices.one_of(whole_cases())))
+
+
+def read_archive(data: bytes) -> None:
+    """Load a file that holds these bytes."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "run.npz")
+        path.write_bytes(data)
+        use(pc.load(path))
+
+
+def an_archive(choices: Choices) -> None:
+    read_archive(damage.archive(choices, choices.one_of(whole_archives())))
+
+
+def a_state(choices: Choices) -> None:
+    solution = choices.one_of(whole_solutions())
+    run = _core.Run.__new__(_core.Run)
+    run.__setstate__(damage.state(choices, solution._run.__getstate__()))
+    use(pc.Solution(solution.scene, run))
+
+
+def a_scene(choices: Choices) -> None:
+    """Build a scene from what its pickle holds, some of it replaced."""
+    scene = choices.one_of(whole_solutions()).scene
+    build, (links, gravity, effects) = scene.__reduce__()
+    parts = [_a_part(choices, x) for x in (*links, *effects)]
+    links, effects = parts[: len(links)], parts[len(links) :]
+    if choices.integer(0, 5) == 0:
+        gravity = choices.one_of(damage.VALUES)
+    found = build(links, gravity, effects)
+    q0 = np.linspace(0.1, 0.3, len(found.links))
+    repr(found), use(pc.simulate(found, q0, 0, (0, 0.1), **STEPS))
+
+
+def _a_part(choices: Choices, whole: Any) -> Any:
+    if choices.integer(0, 2):
+        return whole
+    if isinstance(whole, pc.Link):
+        link = copyreg.__newobj__(pc.Link)
+        numbers = list(whole.__getstate__())
+        numbers[choices.integer(0, 3)] = choices.one_of(damage.VALUES)
+        link.__setstate__(numbers)
+        return link
+    build, (cls, values) = whole.__reduce__()
+    key = choices.one_of(sorted(values))
+    return build(cls, dict(values) | {key: damage.value(choices, values[key])})
+
+
+READERS: dict[str, Callable[[Choices], None]] = {
+    "case": a_case,
+    "archive": an_archive,
+    "state": a_state,
+    "scene": a_scene,
+}
+
+
+def finding(read: Callable[[], None]) -> str | None:
+    """Return what is wrong with how a reader took something damaged; None where it did well."""
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore", pc.PendcoreWarning)
+        try:
+            read()
+        except REFUSALS as refusal:
+            return None if len(str(refusal)) > 5 else f"{refusal!r} says nothing"
+        except Exception as error:
+            return f"{type(error).__name__}: {error}"
+    return None

@@ -1,0 +1,153 @@
+"""Arrays of any make are read for what they hold, left as they are, and not kept."""
+
+from __future__ import annotations
+
+import array
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pendcore as pc
+import pytest
+
+SCENE = pc.Scene.textbook()
+
+
+def read_only(x: np.ndarray) -> np.ndarray:
+    x = x.copy()
+    x.flags.writeable = False
+    return x
+
+
+class ArrayLike:
+    """What is no array, and can be read as one."""
+
+    def __init__(self, x: np.ndarray) -> None:
+        self._x = x
+
+    def __array__(self, dtype: Any = None, copy: Any = None) -> np.ndarray:
+        return self._x.copy()
+
+
+FORMS: dict[str, Callable[[np.ndarray], Any]] = {
+    "read-only": read_only,
+    "strided": lambda x: np.repeat(x, 3)[::3],
+    "reversed": lambda x: x[::-1].copy()[::-1],
+    "column of a table": lambda x: np.tile(x[:, None], (1, 3))[:, 1],
+    "repeated by a stride of zero": lambda x: np.broadcast_to(x[:1], x.shape),
+    "big-endian": lambda x: x.astype(">f8"),
+    "unaligned": lambda x: np.frombuffer(b"\0" + x.tobytes(), np.uint8)[1:].view(np.float64),
+    "long double": lambda x: x.astype(np.longdouble),
+    "single": lambda x: x.astype(np.float32),
+    "half": lambda x: x.astype(np.float16),
+    "memoryview": lambda x: memoryview(x.copy()),
+    "array.array": lambda x: array.array("d", x),
+    "array-like": ArrayLike,
+    "list of NumPy's numbers": list,
+    "tuple": lambda x: tuple(x.tolist()),
+}
+"""Numbers of few bits, so that they are the same in every form."""
+
+Ask = Callable[[Any], np.ndarray]
+
+
+def run_with(name: str) -> Ask:
+    def ask(values: Any) -> np.ndarray:
+        given = {"q0": [0.25, 1.0], "qd0": [0.5, -1.0], "t_span": (0, 4), "max_steps": 50}
+        sol = pc.simulate(SCENE, **(given | {name: values}))
+        return np.vstack([sol.t, sol.y])
+
+    return ask
+
+
+DENSE = pc.simulate(SCENE, [0.25, 1.0], [0.5, -1.0], (0, 2))
+TAKEN: dict[str, tuple[list[float], Ask]] = {
+    "q0": ([0.25, 1.0], run_with("q0")),
+    "qd0": ([0.5, -1.0], run_with("qd0")),
+    "rtol": ([2.0**-20] * 4, run_with("rtol")),
+    "atol": ([2.0**-12] * 4, run_with("atol")),
+    "t_eval": ([0.0, 0.125, 0.25], run_with("t_eval")),
+    "sol(t)": ([0.125, 1.5, 1.0], DENSE),
+    "accelerations": ([0.25, 1.0], lambda x: SCENE.accelerations(0.5, x, x)),
+    "mass_matrix": ([0.25, 1.0], SCENE.mass_matrix),
+    "angles_from_vertical": ([0.25, 1.0], pc.angles_from_vertical),
+    "table": (
+        [-0.5, 1.0, 2.5],
+        lambda x: np.array([pc.effects.Table(t=[0, 1, 2], torque=x).torque]),
+    ),
+    "wind": ([0.5, -1.0], lambda x: np.array([pc.effects.RodDrag(1, 1.0, 0.5, wind=x).wind])),
+}
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("taken", TAKEN)
+def test_an_array_of_any_make_is_read_for_what_it_holds(taken: str, form: str) -> None:
+    values, ask = TAKEN[taken]
+    if form == "repeated by a stride of zero":
+        if taken == "t_eval":
+            pytest.skip("times must differ")
+        values = [values[0]] * len(values)
+    given = FORMS[form](np.array(values))
+    assert np.array_equal(ask(given), ask(values))
+    assert np.array_equal(np.asarray(given, dtype=float), values)  # left as it was
+
+
+@pytest.mark.parametrize("order", ["C", "F"])
+def test_tables_of_states_are_read_in_either_order(order: Any) -> None:
+    q = np.arange(24.0).reshape(3, 4, 2)
+    rows = [[SCENE.accelerations(0.0, x, 2 * x) for x in y] for y in q]
+    found = SCENE.accelerations(0.0, np.asarray(q, order=order), np.asarray(2 * q, order=order))
+    assert np.array_equal(found, rows)
+    assert np.array_equal(SCENE.accelerations(0.0, q.swapaxes(0, 1), 2 * q.swapaxes(0, 1)),
+                          found.swapaxes(0, 1))  # fmt: skip
+    assert SCENE.accelerations(0.0, q[:0], q[:0]).shape == (0, 4, 2)
+    assert SCENE.mass_matrix(q[:, :0]).shape == (3, 0, 2, 2)
+
+
+def test_what_was_handed_over_may_be_changed_afterwards() -> None:
+    q0, times, rtol = np.array([0.25, 1.0]), np.array([0.5, 1.0]), np.full(4, 1e-6)
+    sol = pc.simulate(SCENE, q0, 0, (0, 1), t_eval=times, rtol=rtol)
+    before, case = sol.y.copy(), sol.case()
+    for x in (q0, times, rtol):
+        x[:] = 7.0
+    assert np.array_equal(sol.y, before)
+    assert sol.case() == case
+    longer = pc.simulate(SCENE, [0.25, 1.0], 0, (0, 2), t_eval=[0.5, 1.0], rtol=[1e-6] * 4)
+    assert np.array_equal(sol.resume(2).y, longer.y)
+
+
+@pytest.mark.parametrize("name", ["q0", "qd0", "rtol", "atol"])
+def test_a_huge_array_is_refused_by_its_size(name: str) -> None:
+    with pytest.raises(ValueError, match=f"^{name}: has 10000000 numbers: must have"):
+        run_with(name)(np.ones(10**7))
+
+
+NO_ARRAYS = {
+    "a generator": (x for x in (0.25, 1.0)),
+    "a set": {0.25, 1.0},
+    "records": np.array([(1.0, 2.0)], dtype=[("a", float), ("b", float)]),
+    "times of a clock": np.array([1, 2], "m8[s]"),
+    "a text without axes": np.array("x"),
+    "a list of itself": [],
+}
+NO_ARRAYS["a list of itself"].append(NO_ARRAYS["a list of itself"])
+
+
+@pytest.mark.parametrize("name", ["q0", "qd0", "rtol", "atol", "t_eval"])
+@pytest.mark.parametrize("value", NO_ARRAYS.values(), ids=NO_ARRAYS)
+def test_what_holds_no_numbers_is_refused_by_name(name: str, value: Any) -> None:
+    with pytest.raises((TypeError, ValueError), match=rf"^{name}\b"):
+        run_with(name)(value)
+
+
+def test_shapes_that_do_not_go_together_are_told() -> None:
+    with pytest.raises(ValueError, match=r"^t, q, qd: shapes \(3,\), \(2, 2\), \(2,\): must"):
+        SCENE.accelerations(np.zeros(3), np.zeros((2, 2)), [0, 0])
+
+
+def test_angles_of_few_bits_are_turned_in_many() -> None:
+    assert pc.angles_from_vertical(np.float16([0.25])).dtype == np.float64
+    with pytest.raises(TypeError, match=r"^theta: holds <U1: must hold real numbers \(rad\)"):
+        pc.angles_from_vertical(["1"])
+    with pytest.raises(ValueError, match=r"^q\[0\] = nan: must be finite \(rad\)"):
+        pc.angles_to_vertical([np.nan])

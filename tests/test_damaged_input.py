@@ -1,0 +1,64 @@
+"""Damaged case files, archives and pickled states are refused in words, or used: never a crash.
+
+The damage is the same in every run; `make fuzz-readers` goes on with it, guided by coverage.
+"""
+
+from __future__ import annotations
+
+import pendcore as pc
+import pytest
+from fuzz import damage
+from fuzz.choices import FromSeed
+from fuzz.readers import READERS, finding, read_archive, read_case, whole_archives, whole_cases
+
+TIMES = {"case": 200, "archive": 200, "state": 400, "scene": 200}
+
+
+@pytest.mark.parametrize("reader", READERS)
+def test_what_is_damaged_is_refused_in_words_or_used(reader: str) -> None:
+    for i in range(TIMES[reader]):
+        found = finding(lambda: READERS[reader](FromSeed(f"{reader}/{i}")))  # noqa: B023
+        assert found is None, f"{reader}/{i}: {found}"
+
+
+@pytest.mark.parametrize("i", range(len(whole_archives())))
+def test_what_is_whole_is_read_and_used(i: int) -> None:
+    read_archive(whole_archives()[i])
+
+
+@pytest.mark.filterwarnings("ignore::pendcore.PendcoreWarning")
+@pytest.mark.parametrize("i", range(len(whole_cases())))
+def test_examples_are_read_and_used(i: int) -> None:
+    read_case(whole_cases()[i])
+
+
+@pytest.mark.filterwarnings("ignore::pendcore.PendcoreWarning")
+@pytest.mark.parametrize("reader", READERS)
+def test_most_of_the_damage_is_damage(reader: str) -> None:
+    """What changes nothing tests nothing: some is refused, and some is not."""
+    refused = 0
+    for i in range(100):
+        try:
+            READERS[reader](FromSeed(f"{reader}/{i}"))
+        except (ValueError, TypeError, KeyError):
+            refused += 1
+    assert 10 < refused < 100
+
+
+def test_an_error_of_another_kind_is_a_finding() -> None:
+    def fails() -> None:
+        raise IndexError("list index out of range")
+
+    def in_no_words() -> None:
+        raise ValueError
+
+    assert "IndexError" in (finding(fails) or "")
+    assert "says nothing" in (finding(in_no_words) or "")
+    assert finding(lambda: None) is None
+
+
+def test_damage_is_the_same_for_the_same_seed() -> None:
+    whole = pc.Case.textbook().to_toml()
+    texts = {damage.text(FromSeed("a"), whole) for _ in range(3)}
+    assert len(texts) == 1
+    assert damage.text(FromSeed("b"), whole) not in texts
