@@ -29,7 +29,7 @@ TOLERANCE = 1e-12
 ROUNDING_OF_THE_REFERENCE = 1e-26  # and of its differences, where a law has a corner
 MANY = multiple_precision(80)
 OF_USERS = {"user", "compiled_user"}  # differentiated by differences
-KINDS = sorted(set(pc.effects.kinds()) - OF_USERS)
+KINDS = sorted(set(pc.effects.kinds()) - OF_USERS - {"joint_stop"})  # stops have no torque
 
 Drawn = tuple[list[Body], float, list[Described], State]
 

@@ -5,6 +5,12 @@
 # running. The last two flags change no value; they free sqrt of errno and let selects be blends.
 set(pendcore_arithmetic -ffp-contract=off -fno-fast-math -fno-math-errno -fno-trapping-math)
 
+# GCC 12 moves an odd double through a register of MMX, which is one of x87's: what the host
+# program computes with long doubles would be NaN from then on.
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|i[3-6]86")
+  list(APPEND pendcore_arithmetic -mno-mmx)
+endif()
+
 # The kernels say themselves what is unrolled; -O3 made their steps slower (GCC 12).
 set(pendcore_optimisation $<$<CONFIG:Release>:-O2>)
 

@@ -139,7 +139,9 @@ std::string remark_on_steps(const Scene& scene, const EquationsOfMotion& equatio
     }
   }
   const std::size_t n = scene.links.size();
-  if (statistics.limited_by_tolerance <= many_steps || scene.effects.empty() || n > many_links) {
+  const bool asks_users = equations.effects && !equations.effects->users.empty();
+  if (statistics.limited_by_tolerance <= many_steps || scene.effects.empty() || n > many_links ||
+      asks_users) {
     return remark;
   }
   const double* const y = position.y.data();
