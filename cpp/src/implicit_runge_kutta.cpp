@@ -239,6 +239,20 @@ bool ImplicitRungeKutta::iterate(double t, double h) {
   return false;
 }
 
+/// Z = h a q' of the angles, from the rates that were found: digits that T costs come back.
+void ImplicitRungeKutta::polish_angles(double h) {
+  for (int k = 0; k < 3; ++k) {
+    const Collocation::Row& row = method_.a[k];
+    for (int i = 0; i < n_; ++i) {
+      const double* const rate = &stages_[n_ + i];
+      stages_[k * size_ + i] =
+          h * (method_.c[k] * y_[n_ + i] +
+               (row[0] * rate[0] + row[1] * rate[size_] + row[2] * rate[2 * size_]));
+    }
+  }
+  for (int i = 0; i < n_; ++i) y_new_[i] = y_[i] + stages_[2 * size_ + i];
+}
+
 /// Z = h a P of the stages that were found: outside of the iteration and of the error.
 void ImplicitRungeKutta::integrate_quadratures(double t, double h) {
   for (int k = 0; k < 3; ++k) {
@@ -267,6 +281,7 @@ Attempt ImplicitRungeKutta::attempt(double t, double h, double /*gain*/) {
   factor(h);
   predict(h);
   if (!iterate(t, h)) return {std::numeric_limits<double>::quiet_NaN(), 0.0};
+  polish_angles(h);
   if (size_ > state_) integrate_quadratures(t, h);
 
   const Collocation::Row& slope = method_.interpolant[0];  // u'(t) = sum of slope Z / h

@@ -74,6 +74,7 @@ class ImplicitRungeKutta final : public Stepper {
   void predict(double h);
   bool iterate(double t, double h);
   bool is_rounding(double h) const;
+  void polish_angles(double h);
   void solve_real(double* x) const;
   void solve_complex(double* re, double* im) const;
   void integrate_quadratures(double t, double h);
