@@ -19,7 +19,8 @@ double small_power(double x, double p) { return approximate_exp2(p * approximate
 }  // namespace
 
 ImplicitRungeKutta::ImplicitRungeKutta(const Collocation& method,
-                                       std::unique_ptr<DifferentiableSystem> system)
+                                       std::unique_ptr<DifferentiableSystem> system,
+                                       bool compensated)
     : method_(method),
       system_(std::move(system)),
       n_(system_->row),
@@ -42,7 +43,9 @@ ImplicitRungeKutta::ImplicitRungeKutta(const Collocation& method,
       complex_(n_),
       real_side_(n_),
       complex_side_(n_),
-      polynomial_(stages_.size()) {}
+      polynomial_(stages_.size()),
+      low_(compensated ? size_ : 0),
+      low_new_(low_.size()) {}
 
 void ImplicitRungeKutta::set_tolerances(const double* rtol, const double* atol) {
   double smallest = std::numeric_limits<double>::infinity();
@@ -55,7 +58,15 @@ void ImplicitRungeKutta::set_tolerances(const double* rtol, const double* atol) 
   newton_tolerance_ = std::max(10.0 * rounding / smallest, std::min(0.03, std::sqrt(smallest)));
 }
 
+/// The low part of components that are given another value.
+void ImplicitRungeKutta::forget(const double* y, const Rows& instead_of, Rows& low) {
+  for (std::size_t i = 0; i < low.size(); ++i) {
+    if (y[i] != instead_of[i]) low[i] = 0.0;
+  }
+}
+
 void ImplicitRungeKutta::start(const double* y, const double* dydt) {
+  forget(y, y_, low_);
   std::copy_n(y, size_, y_.begin());
   std::copy_n(dydt, size_, dydt_.begin());
   has_jacobian_ = false;
@@ -66,7 +77,10 @@ void ImplicitRungeKutta::start(const double* y, const double* dydt) {
 void ImplicitRungeKutta::get_state(double* y) const { std::ranges::copy(y_, y); }
 void ImplicitRungeKutta::get_derivative(double* dydt) const { std::ranges::copy(dydt_, dydt); }
 void ImplicitRungeKutta::get_new_state(double* y) const { std::ranges::copy(y_new_, y); }
-void ImplicitRungeKutta::set_new_state(const double* y) { std::copy_n(y, size_, y_new_.begin()); }
+void ImplicitRungeKutta::set_new_state(const double* y) {
+  forget(y, y_new_, low_new_);
+  std::copy_n(y, size_, y_new_.begin());
+}
 void ImplicitRungeKutta::evaluate(double t, const double* y, double* dydt) {
   (*system_)(t, y, dydt);
   ++evaluations;
@@ -250,7 +264,16 @@ void ImplicitRungeKutta::polish_angles(double h) {
                (row[0] * rate[0] + row[1] * rate[size_] + row[2] * rate[2 * size_]));
     }
   }
-  for (int i = 0; i < n_; ++i) y_new_[i] = y_[i] + stages_[2 * size_ + i];
+}
+
+/// y + Z_3, with what the rounding left over if it is carried along.
+void ImplicitRungeKutta::advance() {
+  const double* const change = &stages_[2 * static_cast<std::size_t>(size_)];
+  for (int i = 0; i < size_; ++i) {
+    const double whole = low_.empty() ? change[i] : change[i] + low_[i];
+    y_new_[i] = y_[i] + whole;
+    if (!low_.empty()) low_new_[i] = left_over(y_[i], whole, y_new_[i]);
+  }
 }
 
 /// Z = h a P of the stages that were found: outside of the iteration and of the error.
@@ -265,7 +288,6 @@ void ImplicitRungeKutta::integrate_quadratures(double t, double h) {
       stages_[k * size_ + i] =
           h * (row[0] * rates_[i] + row[1] * rates_[size_ + i] + row[2] * rates_[2 * size_ + i]);
     }
-    y_new_[i] = y_[i] + stages_[2 * size_ + i];
   }
 }
 
@@ -283,6 +305,7 @@ Attempt ImplicitRungeKutta::attempt(double t, double h, double /*gain*/) {
   if (!iterate(t, h)) return {std::numeric_limits<double>::quiet_NaN(), 0.0};
   polish_angles(h);
   if (size_ > state_) integrate_quadratures(t, h);
+  advance();
 
   const Collocation::Row& slope = method_.interpolant[0];  // u'(t) = sum of slope Z / h
   auto filter = [&](const double* rate) {
@@ -330,6 +353,7 @@ void ImplicitRungeKutta::accept(double t_new) {
   is_retry_ = false;
   has_jacobian_ = false;
   y_ = y_new_;
+  low_ = low_new_;
   evaluate(t_new, y_.data(), dydt_.data());
 }
 
@@ -345,16 +369,19 @@ void ImplicitRungeKutta::sample(const double* coefficients, const TwoDouble& sta
 }
 
 std::vector<double> ImplicitRungeKutta::memory() const {
-  std::vector<double> memory = polynomial_;
+  std::vector<double> memory = low_;
+  memory.insert(memory.end(), polynomial_.begin(), polynomial_.end());
   memory.insert(memory.end(), {h_before_, log2_error_before_, contraction_, is_retry_ ? 1.0 : 0.0});
   return memory;
 }
 void ImplicitRungeKutta::restore(const std::vector<double>& memory) {
-  if (memory.size() != polynomial_.size() + 4) {
+  if (memory.size() != polynomial_.size() + 4 + low_.size()) {
     throw std::invalid_argument("what the method kept of its last step is not of this scene");
   }
-  std::copy_n(memory.begin(), polynomial_.size(), polynomial_.begin());
-  const double* const rest = &memory[polynomial_.size()];
+  std::copy_n(memory.begin(), low_.size(), low_.begin());
+  const double* const past = memory.data() + low_.size();
+  std::copy_n(past, polynomial_.size(), polynomial_.begin());
+  const double* const rest = past + polynomial_.size();
   h_before_ = rest[0];
   log2_error_before_ = rest[1];
   contraction_ = rest[2];

@@ -7,6 +7,7 @@
 
 #include "pendcore/integrate/clock.hpp"
 #include "pendcore/integrate/guards.hpp"
+#include "pendcore/integrate/stiffness.hpp"
 
 namespace pendcore {
 namespace {
@@ -24,23 +25,6 @@ int bad_component_of_trial(Stepper& stepper, double t_new) {
   stepper.get_new_state(y.data());
   stepper.evaluate(t_new, y.data(), dydt.data());
   return std::max(bad_component(y), bad_component(dydt));
-}
-
-/// Hairer's test, every thousandth accepted step and after each suspicious one: fifteen hits,
-/// not interrupted by six misses, and the problem is called stiff (Hairer and Wanner, IV.2).
-void test_stiffness(Stepper& stepper, double h, Position& position) {
-  const double boundary = stepper.info().stability;
-  if (boundary == 0.0) return;
-  if (position.statistics.accepted % 1000 != 0 && position.stiff_hits == 0) return;
-  if (stepper.stiffness(h) > boundary) {
-    position.stiff_misses = 0;
-    if (++position.stiff_hits != 15 || position.statistics.stiff) return;
-    position.statistics.stiff = true;
-    position.stiff_since = position.t.high + h;
-    stepper.stiffness_found();
-  } else if (++position.stiff_misses == 6) {
-    position.stiff_hits = 0;
-  }
 }
 
 void count_accepted(Statistics& statistics, double h, bool cut, bool at_max_step) {

@@ -45,22 +45,24 @@ class SceneSystem final : public DifferentiableSystem {
 
 /// Any form alike: what an implicit step costs is not in the form.
 std::unique_ptr<Stepper> implicit(const Collocation& method, const Scene& scene,
-                                  const EquationsOfMotion& equations, bool ledger) {
+                                  const EquationsOfMotion& equations, bool ledger,
+                                  bool compensated) {
   auto system =
       std::make_unique<SceneSystem>(scene, equations, static_cast<int>(scene.links.size()), ledger);
   system->differentiate(scene);
-  return std::make_unique<ImplicitRungeKutta>(method, std::move(system));
+  return std::make_unique<ImplicitRungeKutta>(method, std::move(system), compensated);
 }
 
 /// What a method of the list makes of a scene. `of_table` makes the stepper of an explicit one.
-template <const auto& table, class OfTable>
+template <const auto& table, bool compensated, class OfTable>
 std::unique_ptr<Stepper> stepper_of(const Scene& scene, const EquationsOfMotion& equations,
                                     bool ledger, const OfTable& of_table) {
   if constexpr (table.info.kind == MethodKind::implicit_one) {
-    return implicit(table, scene, equations, ledger);
+    return implicit(table, scene, equations, ledger, compensated);
   } else if constexpr (table.info.kind == MethodKind::automatic) {
-    return std::make_unique<AutomaticStepper>(of_table.template operator()<dormand_prince_5>(),
-                                              implicit(radau_5, scene, equations, ledger));
+    return std::make_unique<AutomaticStepper>(
+        of_table.template operator()<dormand_prince_5>(),
+        implicit(radau_5, scene, equations, ledger, compensated));
   } else {
     return of_table.template operator()<table>();
   }
@@ -84,7 +86,7 @@ std::unique_ptr<Stepper> general(const Scene& scene, const EquationsOfMotion& eq
         std::make_unique<SceneSystem>(scene, equations, row, ledger), n);
   };
   return with_method(Methods{}, method, [&]<const auto & table>() {
-    return stepper_of<table>(scene, equations, ledger, of_table);
+    return stepper_of<table, compensated>(scene, equations, ledger, of_table);
   });
 }
 
@@ -109,7 +111,7 @@ std::unique_ptr<Stepper> stepper_for(const Scene& scene, const EquationsOfMotion
                 System{form}, equations.effects);
           };
           return with_method(Methods{}, name, [&]<const auto & table>() {
-            return stepper_of<table>(scene, equations, false, of_table);
+            return stepper_of<table, compensated>(scene, equations, false, of_table);
           });
         }
       },

@@ -39,7 +39,8 @@ class DifferentiableSystem : public GeneralSystem {
 
 class ImplicitRungeKutta final : public Stepper {
  public:
-  ImplicitRungeKutta(const Collocation& method, std::unique_ptr<DifferentiableSystem> system);
+  ImplicitRungeKutta(const Collocation& method, std::unique_ptr<DifferentiableSystem> system,
+                     bool compensated = false);
 
   const MethodInfo& info() const override { return method_.info; }
   int dimension() const override { return size_; }
@@ -62,8 +63,8 @@ class ImplicitRungeKutta final : public Stepper {
               int count, double* states) const override;
   double stiffness(double /*h*/) const override { return 0.0; }  // no bound to stability
 
-  /// Of the accepted step: its polynomial and size, its error, the iteration's contraction; and
-  /// whether a step from here was tried already.
+  /// The low part of the state, if compensated. Of the accepted step, its polynomial and size, its
+  /// error, the iteration's contraction. Whether a step from here was tried already.
   std::vector<double> memory() const override;
   void restore(const std::vector<double>& memory) override;
 
@@ -75,6 +76,8 @@ class ImplicitRungeKutta final : public Stepper {
   bool iterate(double t, double h);
   bool is_rounding(double h) const;
   void polish_angles(double h);
+  void advance();
+  static void forget(const double* y, const Rows& instead_of, Rows& low);
   void solve_real(double* x) const;
   void solve_complex(double* re, double* im) const;
   void integrate_quadratures(double t, double h);
@@ -109,6 +112,7 @@ class ImplicitRungeKutta final : public Stepper {
   double log2_error_before_ = 0.0;
   double contraction_ = 1.0;
   bool is_retry_ = false;
+  Rows low_, low_new_;  ///< what the rounding of y and y_new left over, if compensated
 };
 
 }  // namespace pendcore
