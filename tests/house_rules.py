@@ -34,6 +34,7 @@ CPP_FLOW = {
 CPP_FILES = dict.fromkeys(
     [
         "event_finder",
+        "fast_mode",
         "options",
         "pendcore",
         "recorder",

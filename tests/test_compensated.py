@@ -19,6 +19,7 @@ BUSY = [
     fx.DrivenPivot(y=fx.Sinusoid(amplitude=0.05, angular_frequency=11.0)),
 ]
 METHODS = {method["name"]: method for method in _core.methods()}
+EXPLICIT = [m["name"] for m in _core.methods() if m["kind"] == "explicit"]
 COMPENSATED = [name for name, method in METHODS.items() if method["compensates"]]
 
 
@@ -68,8 +69,9 @@ def test_a_ledger_changes_no_bit_of_a_compensated_run(method: str, links: int) -
     rounded = pc.simulate(scene, 0.7, 1.0, (0, 5), **(how | {"compensated": False}))
     assert np.array_equal(bare.y, booked.y)
     assert not np.array_equal(bare.y, rounded.y)
-    assert np.array_equal(low_part(bare), low_part(booked)[: 2 * links])
-    assert len(low_part(rounded)) == 0
+    assert np.array_equal(low_part(bare)[: 2 * links], low_part(booked)[: 2 * links])
+    if method in EXPLICIT:  # no other keeps nothing else
+        assert len(low_part(rounded)) == 0
     assert np.count_nonzero(low_part(booked)) > links
 
 

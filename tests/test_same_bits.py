@@ -93,6 +93,25 @@ assert libm.fesetround(0x800) == 0
     assert hash_of_runs(upward, still) == hash_of_runs()
 
 
+@pytest.mark.parametrize("used", SETS)
+def test_the_long_doubles_of_the_host_program_are_left_alone(used):
+    """Registers of MMX are those of x87: a kernel that touches one leaves its stack full."""
+    script = """
+import numpy as np, pendcore as pc
+wave = pc.effects.Sinusoid(amplitude=1.0, angular_frequency=3.0)
+effects = [pc.effects.Motor(joint=1, sinusoid=wave), pc.effects.ViscousJoint(joint=2, damping=0.1),
+           pc.effects.RodDrag(link=2, drag_coefficient=1.2, diameter=0.05)]
+for n in (1, 2, 3):
+    for some in ([], effects[:1], effects[: n], effects[: n + 1]):
+        scene = pc.Scene(links=[pc.Link(mass=1, length=1)] * n, effects=some[: 2 * n - 1])
+        for method in ("dopri5", "radau5"):
+            pc.simulate(scene, 0.8, 0, (0, 0.1), method=method)
+        assert np.longdouble(2) * np.longdouble(3) == 6
+"""
+    environment = os.environ | {"PENDCORE_INSTRUCTION_SET": used}
+    subprocess.run([sys.executable, "-W", "ignore", "-c", script], env=environment, check=True)
+
+
 BEFORE_THERE_WERE_EFFECTS = """\
 textbook 6f14811f9c2ec637
 chaotic dd6e76177a42981b

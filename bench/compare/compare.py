@@ -1,12 +1,12 @@
 """Run pendcore beside its peers, interleaved in one run, and write what they take.
 
-Three comparisons: `solves` (what accuracy costs, on a case), `chains` (forward dynamics of n links)
-and `effects` (what each adds). Each writes into docs/comparison a .json (raw figures, machine,
-versions, flags), a .md (tables) and a .png. `make compare` builds what is needed and calls this; by
-hand:
+Four comparisons: `solves` (what accuracy costs, on a case), `chains` (forward dynamics of n links),
+`effects` (what each adds) and `stiff` (implicit steps). Each writes into docs/comparison a .json
+(raw figures, machine, versions, flags), a .md (tables) and a .png. `make compare` builds what is
+needed and calls this; by hand:
 
     python bench/compare/compare.py                  some minutes
-    python bench/compare/compare.py --only chains    one of the three
+    python bench/compare/compare.py --only chains    one of the four
     python bench/compare/compare.py --quick          half a minute, into out/comparison
     python bench/compare/compare.py --redraw         tables and figures from the JSON
 """
@@ -32,6 +32,9 @@ import excerpts
 import figure
 import page
 import solves
+import stiff
+import stiff_figure
+import stiff_page
 
 PROJECT = Path(__file__).parents[2]
 
@@ -72,6 +75,13 @@ def comparisons(case: str) -> dict[str, Comparison]:
             page=effects_page.page,
             draw=effects_figure.draw,
             summary=effects_page.summary,
+        ),
+        "stiff": Comparison(
+            stem="stiff",
+            measure=stiff.measure,
+            page=stiff_page.page,
+            draw=stiff_figure.draw,
+            summary=stiff_page.summary,
         ),
     }
 

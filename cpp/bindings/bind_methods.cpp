@@ -1,3 +1,5 @@
+#include <pybind11/stl.h>
+
 #include "arguments.hpp"
 #include "pendcore/integrate/methods.hpp"
 
@@ -16,6 +18,21 @@ py::list rows_of_fractions(const Table& table) {
   py::list rows;
   for (const auto& row : table) rows.append(fractions(row));
   return rows;
+}
+
+py::dict tableau(const Automatic& /*method*/) { return {}; }
+
+py::dict tableau(const Collocation& method) {
+  py::dict result;
+  result["c"] = method.c;
+  result["a"] = method.a;
+  result["real"] = method.real;
+  result["alpha"] = method.alpha;
+  result["beta"] = method.beta;
+  result["transformation"] = method.transformation;
+  result["inverse"] = method.inverse;
+  result["interpolant"] = method.interpolant;
+  return result;
 }
 
 template <class Method>
@@ -42,6 +59,8 @@ py::dict describe(const MethodInfo& info) {
   py::dict result;
   result["name"] = string(info.name);
   result["aliases"] = aliases;
+  constexpr std::string_view kinds[] = {"explicit", "implicit", "automatic"};
+  result["kind"] = string(kinds[static_cast<std::size_t>(info.kind)]);
   result["order"] = info.order;
   result["error_order"] = info.error_order;
   result["interpolant_order"] = info.interpolant_order;
@@ -67,7 +86,8 @@ void bind_methods(py::module_& module) {
       [](const std::string& method) { return tableau_named(Methods{}, find_method(method).name); },
       py::arg("method"),
       "The coefficients c, a, b, e (b minus the embedded method's) and interpolant (stage, power)\n"
-      "of a method, each a pair (numerator, denominator).");
+      "of a method, each a pair (numerator, denominator); of an implicit method, numbers;\n"
+      "of auto, none.");
 }
 
 }  // namespace pendcore::bindings

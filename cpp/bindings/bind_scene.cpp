@@ -73,6 +73,25 @@ Array acceleration_rows(const Scene& scene, const Array& t, const Array& q, cons
   return result;
 }
 
+/// The derivatives of the accelerations by the angles and by the rates, (m, n, n) each.
+py::tuple jacobian_rows(const Scene& scene, const Array& t, const Array& q, const Array& qd) {
+  const FloatingPointEnvironment ieee;
+  const Rows angles(scene, "q", q);
+  const Rows rates(scene, "qd", qd);
+  const EquationsOfMotion equations = equations_of_motion(scene);
+  const Jacobian jacobian(scene, equations);
+  const auto n = static_cast<py::ssize_t>(scene.links.size());
+  Array by_q({angles.count(), n, n});
+  Array by_qd({angles.count(), n, n});
+  for (py::ssize_t i = 0; i < angles.count(); ++i) {
+    const double* const at = angles[i].data();
+    const double* const turning = rates[i].data();
+    if (equations.effects) choose_modes(*equations.effects, t.at(i), at, turning, true);
+    jacobian(t.at(i), at, turning, by_q.mutable_data(i, 0, 0), by_qd.mutable_data(i, 0, 0));
+  }
+  return py::make_tuple(by_q, by_qd);
+}
+
 Array reaction_forces(const Scene& scene, const Array& t, const Array& q, const Array& qd) {
   const FloatingPointEnvironment ieee;
   const Array qdd = acceleration_rows(scene, t, q, qd);
@@ -99,6 +118,7 @@ void bind_scene(py::module_& module) {
       .def("run_warnings", &run_warnings, py::arg("q0"), py::arg("qd0"), py::arg("t0"),
            py::arg("t_end"))
       .def("accelerations", &acceleration_rows, py::arg("t"), py::arg("q"), py::arg("qd"))
+      .def("jacobian", &jacobian_rows, py::arg("t"), py::arg("q"), py::arg("qd"))
       .def("reactions", &reaction_forces, py::arg("t"), py::arg("q"), py::arg("qd"))
       .def(
           "mass_matrix",

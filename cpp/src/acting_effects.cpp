@@ -36,6 +36,35 @@ void EffectsInForce::hold(int joint, bool is_held) {
   any_held = std::ranges::find(held, 1) != held.end();
 }
 
+void EffectsInForce::call(const CompiledUser& user, double t, const Dual<double>* q,
+                          const Dual<double>* qd, Dual<double>* Q) const {
+  const std::size_t n = held.size();
+  user_room_.resize(3 * n);
+  double* const angles = user_room_.data();
+  double* const rates = angles + n;
+  double* const forces = rates + n;
+  double size = 1.0;  // of what changes
+  for (std::size_t i = 0; i < n; ++i) {
+    if (q[i].slope != 0.0) size = std::max(size, std::abs(q[i].value));
+    if (qd[i].slope != 0.0) size = std::max(size, std::abs(qd[i].value));
+  }
+  const double step = 0x1p-17 * size;  // the cube root of the rounding unit balances both errors
+  auto forces_at = [&](double along) {
+    for (std::size_t i = 0; i < n; ++i) {
+      angles[i] = q[i].value + along * q[i].slope;
+      rates[i] = qd[i].value + along * qd[i].slope;
+      forces[i] = 0.0;
+    }
+    call(user, t, angles, rates, forces);
+  };
+  forces_at(step);
+  for (std::size_t i = 0; i < n; ++i) Q[i].slope = forces[i];
+  forces_at(-step);
+  for (std::size_t i = 0; i < n; ++i) Q[i].slope = (Q[i].slope - forces[i]) / (2.0 * step);
+  forces_at(0.0);
+  for (std::size_t i = 0; i < n; ++i) Q[i].value = forces[i];
+}
+
 int EffectsInForce::add_wave(const Sinusoid& wave) {
   angular_frequency.push_back(wave.angular_frequency);
   phase.push_back(wave.phase);
@@ -268,15 +297,16 @@ template class ActingEffects<Pack<4>>;
 
 template <class Row>
 Row of_users(const EffectsInForce& effects, double t, const Row& q, const Row& qd) {
+  using Number = typename Lanes<Row>::Number;
   constexpr int n = Lanes<Row>::width;
-  double angles[n];
-  double rates[n];
+  Number angles[n];
+  Number rates[n];
   store(angles, q);
   store(rates, qd);
   Row sum{};
   for (const CompiledUser& user : effects.users) {
-    double forces[n] = {};
-    user(t, n, angles, rates, forces);
+    Number forces[n] = {};
+    effects.call(user, t, angles, rates, forces);
     sum += load<Row>(forces);
   }
   return sum;
@@ -284,6 +314,9 @@ Row of_users(const EffectsInForce& effects, double t, const Row& q, const Row& q
 
 template double of_users(const EffectsInForce&, double, const double&, const double&);
 template Pair of_users(const EffectsInForce&, double, const Pair&, const Pair&);
+template Dual<double> of_users(const EffectsInForce&, double, const Dual<double>&,
+                               const Dual<double>&);
+template Dual<Pair> of_users(const EffectsInForce&, double, const Dual<Pair>&, const Dual<Pair>&);
 
 std::shared_ptr<EffectsInForce> effects_in_force(const Scene& scene) {
   switch (scene.links.size()) {

@@ -2,7 +2,8 @@
 
 namespace pendcore {
 
-Chain::Chain(const Scene& scene, std::shared_ptr<ActingEffects<Pack<4>>> effects)
+template <class Number>
+ChainOf<Number>::ChainOf(const Scene& scene, std::shared_ptr<ActingEffects<Pack<4>>> effects)
     : n_(static_cast<int>(scene.links.size())),
       padded_((n_ + 3) / 4 * 4),
       gravity_(scene.gravity),
@@ -15,11 +16,11 @@ Chain::Chain(const Scene& scene, std::shared_ptr<ActingEffects<Pack<4>>> effects
             !effects_->pivots.empty();
 
   const std::size_t room = padded_ + 8;
-  for (std::vector<double>* array :
-       {&length_, &mass_moment_, &q_,  &qd_, &s_,   &c_,   &centripetal_,
-        &center_, &cc_,          &ss_, &sc_, &cos_, &sin_, &couple_,
-        &torque_, &fx_,          &fy_, &vx_, &vy_,  &user_}) {
-    array->assign(room, 0.0);
+  for (std::vector<double>* array : {&length_, &mass_moment_}) array->assign(room, 0.0);
+  for (std::vector<Number>* array :
+       {&q_, &qd_, &s_, &c_, &centripetal_, &center_, &cc_, &ss_, &sc_, &cos_, &sin_, &couple_,
+        &torque_, &fx_, &fy_, &vx_, &vy_, &user_}) {
+    array->assign(room, Number{});
   }
   in(c_)[-1] = 1.0;
   response_.resize(n_);
@@ -45,5 +46,8 @@ Chain::Chain(const Scene& scene, std::shared_ptr<ActingEffects<Pack<4>>> effects
   links_[0].Io += rotor_[0];
   rotor_[0] = 0.0;
 }
+
+template class ChainOf<double>;
+template class ChainOf<Dual<double>>;
 
 }  // namespace pendcore

@@ -7,6 +7,7 @@
 
 #include "pendcore/integrate/clock.hpp"
 #include "pendcore/integrate/guards.hpp"
+#include "pendcore/integrate/stiffness.hpp"
 
 namespace pendcore {
 namespace {
@@ -24,20 +25,6 @@ int bad_component_of_trial(Stepper& stepper, double t_new) {
   stepper.get_new_state(y.data());
   stepper.evaluate(t_new, y.data(), dydt.data());
   return std::max(bad_component(y), bad_component(dydt));
-}
-
-/// Hairer's test, every thousandth accepted step and after each suspicious one: fifteen hits,
-/// not interrupted by six misses, and the problem is called stiff (Hairer and Wanner, IV.2).
-void test_stiffness(const Stepper& stepper, double h, Position& position) {
-  const double boundary = stepper.info().stability;
-  if (boundary == 0.0) return;
-  if (position.statistics.accepted % 1000 != 0 && position.stiff_hits == 0) return;
-  if (stepper.stiffness(h) > boundary) {
-    position.stiff_misses = 0;
-    if (++position.stiff_hits == 15) position.statistics.stiff = true;
-  } else if (++position.stiff_misses == 6) {
-    position.stiff_hits = 0;
-  }
 }
 
 void count_accepted(Statistics& statistics, double h, bool cut, bool at_max_step) {
@@ -68,6 +55,8 @@ class Run {
         method_(stepper.info()),
         clock_(limits, position.t.high),
         evaluations_before_(stepper.evaluations - position.statistics.nfev),
+        jacobians_before_(stepper.jacobians - position.statistics.njev),
+        factorisations_before_(stepper.factorisations - position.statistics.nlu),
         state_(stepper.dimension()),
         rate_(stepper.dimension()) {
     if (breaks != nullptr) guards_.emplace(stepper, *breaks);
@@ -353,6 +342,8 @@ class Run {
   void write_down(Position& target) const {
     target = position_;
     target.statistics.nfev = stepper_.evaluations - evaluations_before_;
+    target.statistics.njev = stepper_.jacobians - jacobians_before_;
+    target.statistics.nlu = stepper_.factorisations - factorisations_before_;
     stepper_.get_state(target.y.data());
     stepper_.get_derivative(target.dydt.data());
     target.stepper = stepper_.memory();
@@ -379,6 +370,8 @@ class Run {
   bool may_end_ = false;
   Position step_start_;  ///< of the step that is tried, if the observer may end the run
   long long evaluations_before_;
+  long long jacobians_before_;
+  long long factorisations_before_;
   Status status_ = Status::finished;
   long long attempts_ = 0;
   bool cut_before_ = false;  ///< a step was cut to end at t_end: later ones depend on t_end

@@ -8,6 +8,7 @@
 #include "pendcore/arithmetic/floating_point_environment.hpp"
 #include "pendcore/dynamics/kinematics.hpp"
 #include "pendcore/dynamics/ledger.hpp"
+#include "pendcore/fast_mode.hpp"
 #include "pendcore/integrate/first_step.hpp"
 #include "pendcore/integrate/methods.hpp"
 #include "pendcore/message.hpp"
@@ -117,11 +118,7 @@ std::string message_of(const Ending& ending, const Scene& scene, const Solution&
   if (!table.empty()) return table;
   message += " (at t = " + text(solution.t_reached) + " s";
   if (ending.bad >= 0) message += ", " + component_name(ending.bad, solution.n);
-  message += ')';
-  if (solution.statistics.stiff) {
-    message += "; the steps are limited by stability, not by accuracy: the problem is stiff";
-  }
-  return message;
+  return message + ')';
 }
 
 void check_stop(const JointStop& stop, const std::string& where, const std::vector<double>& q0,
@@ -247,9 +244,11 @@ void run(const Scene& scene, Solution& solution, double t_end, const Limits& lim
   solution.status = ending.status;
   solution.statistics = position.statistics;
   solution.t_reached = position.t.high;
-  solution.y_reached = std::move(position.y);
+  solution.y_reached = position.y;
   solution.message = message_of(ending, scene, solution, switching ? switching->remark() : "",
                                 recorder.ended_by());
+  solution.message +=
+      remark_on_steps(scene, equations, position, find_method(options.method), solution.t0);
   solution.error = ending.error;
   if (options.store == Store::end) {
     solution.t = {solution.t_reached};

@@ -1,9 +1,11 @@
 // The explicit instantiations: every method in the list with every form of the equations of motion.
 // Compile time lives here only.
 #include "pendcore/dynamics/first_order.hpp"
+#include "pendcore/dynamics/jacobian.hpp"
 #include "pendcore/dynamics/ledger.hpp"
 #include "pendcore/integrate/explicit_runge_kutta.hpp"
 #include "pendcore/integrate/general_runge_kutta.hpp"
+#include "pendcore/integrate/implicit_runge_kutta.hpp"
 #include "pendcore/integrate/methods.hpp"
 #include "pendcore/simulate.hpp"
 
@@ -11,10 +13,10 @@ namespace pendcore {
 namespace {
 
 /// Any form of the equations, with the ledger beside it if it is kept.
-class SceneSystem final : public GeneralSystem {
+class SceneSystem final : public DifferentiableSystem {
  public:
   SceneSystem(const Scene& scene, const EquationsOfMotion& equations, int row_size, bool ledger)
-      : GeneralSystem(row_size, ledger ? static_cast<int>(accounts_of(scene).size()) : 0),
+      : DifferentiableSystem(row_size, ledger ? static_cast<int>(accounts_of(scene).size()) : 0),
         equations_(equations),
         n_(static_cast<int>(scene.links.size())) {
     if (quadratures > 0) {
@@ -29,12 +31,42 @@ class SceneSystem final : public GeneralSystem {
       ledger_->powers(t, y, y + row, dydt + row, dydt + static_cast<std::ptrdiff_t>(2) * row);
     }
   }
+  void differentiate(const Scene& scene) { jacobian_.emplace(scene, equations_); }
+  void jacobian(double t, const double* y, double* by_q, double* by_qd) const override {
+    (*jacobian_)(t, y, y + row, by_q, by_qd);
+  }
 
  private:
   EquationsOfMotion equations_;
   int n_;
   std::unique_ptr<Ledger> ledger_;
+  std::optional<Jacobian> jacobian_;
 };
+
+/// Any form alike: what an implicit step costs is not in the form.
+std::unique_ptr<Stepper> implicit(const Collocation& method, const Scene& scene,
+                                  const EquationsOfMotion& equations, bool ledger,
+                                  bool compensated) {
+  auto system =
+      std::make_unique<SceneSystem>(scene, equations, static_cast<int>(scene.links.size()), ledger);
+  system->differentiate(scene);
+  return std::make_unique<ImplicitRungeKutta>(method, std::move(system), compensated);
+}
+
+/// What a method of the list makes of a scene. `of_table` makes the stepper of an explicit one.
+template <const auto& table, bool compensated, class OfTable>
+std::unique_ptr<Stepper> stepper_of(const Scene& scene, const EquationsOfMotion& equations,
+                                    bool ledger, const OfTable& of_table) {
+  if constexpr (table.info.kind == MethodKind::implicit_one) {
+    return implicit(table, scene, equations, ledger, compensated);
+  } else if constexpr (table.info.kind == MethodKind::automatic) {
+    return std::make_unique<AutomaticStepper>(
+        of_table.template operator()<dormand_prince_5>(),
+        implicit(radau_5, scene, equations, ledger, compensated));
+  } else {
+    return of_table.template operator()<table>();
+  }
+}
 
 template <class Make, const auto&... tables>
 std::unique_ptr<Stepper> with_method(MethodList<tables...>, std::string_view name, Make make) {
@@ -49,9 +81,12 @@ std::unique_ptr<Stepper> general(const Scene& scene, const EquationsOfMotion& eq
   constexpr int width = Lanes<Block>::width;
   const int n = static_cast<int>(scene.links.size());
   const int row = (n + width - 1) / width * width;
-  return with_method(Methods{}, method, [&]<const auto & table>() -> std::unique_ptr<Stepper> {
+  auto of_table = [&]<const auto & table>() -> std::unique_ptr<Stepper> {
     return std::make_unique<GeneralRungeKutta<table, Block, compensated>>(
         std::make_unique<SceneSystem>(scene, equations, row, ledger), n);
+  };
+  return with_method(Methods{}, method, [&]<const auto & table>() {
+    return stepper_of<table, compensated>(scene, equations, ledger, of_table);
   });
 }
 
@@ -71,11 +106,13 @@ std::unique_ptr<Stepper> stepper_for(const Scene& scene, const EquationsOfMotion
           return general<Pack<4>, compensated>(scene, equations, name, false);
         } else {
           using System = FirstOrder<Form>;
-          return with_method(
-              Methods{}, name, [&]<const auto & table>() -> std::unique_ptr<Stepper> {
-                return std::make_unique<ExplicitRungeKutta<table, System, compensated>>(
-                    System{form}, equations.effects);
-              });
+          auto of_table = [&]<const auto & table>() -> std::unique_ptr<Stepper> {
+            return std::make_unique<ExplicitRungeKutta<table, System, compensated>>(
+                System{form}, equations.effects);
+          };
+          return with_method(Methods{}, name, [&]<const auto & table>() {
+            return stepper_of<table, compensated>(scene, equations, false, of_table);
+          });
         }
       },
       equations.form);

@@ -30,6 +30,12 @@ class Scene:
         q: npt.NDArray[np.float64],
         qd: npt.NDArray[np.float64],
     ) -> npt.NDArray[np.float64]: ...
+    def jacobian(
+        self,
+        t: npt.NDArray[np.float64],
+        q: npt.NDArray[np.float64],
+        qd: npt.NDArray[np.float64],
+    ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]: ...
     def mass_matrix(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]: ...
     def positions(
         self, t: npt.NDArray[np.float64], q: npt.NDArray[np.float64]

@@ -52,6 +52,9 @@ def simulate(
         Start and end, s. The end may lie before the start: the run then goes backward.
     method : str
         ``"dopri5"`` (also ``"RK45"``, ``"ode45"``): Dormand-Prince 5(4) with dense output.
+        ``"radau5"`` (also ``"Radau"``): Radau IIA of order 5, implicit, for stiff scenes: strong
+        damping, hard springs, stiff controllers. ``"auto"``: ``"dopri5"``, and ``"radau5"`` from
+        where the steps are found to be limited by stability.
     rtol, atol : float or (2n,)
         The error of a step is kept below ``atol + rtol abs(y)``, in root mean square over
         ``y = (q, qd)``.
@@ -67,7 +70,7 @@ def simulate(
         s, > 0.
     step : float, optional
         A fixed step, s, > 0, in place of the tolerances; not together with ``first_step`` or a
-        smaller ``max_step``.
+        smaller ``max_step``. An implicit method solves its equations to the tolerances.
     max_steps : int
         The run ends with status ``max_steps`` after as many attempts.
     time_limit : float, optional

@@ -5,45 +5,14 @@
 #include <cmath>
 #include <random>
 
+#include "pendcore/arithmetic/dual.hpp"
 #include "pendcore/dynamics/double_pendulum.hpp"
 #include "pendcore/dynamics/double_pendulum_with_effects.hpp"
 #include "pendcore/dynamics/single_pendulum.hpp"
 
 using namespace pendcore;
 
-/// value + slope epsilon, epsilon^2 = 0: as much of a dual number as the equations need.
-namespace dual {
-
-struct Dual {
-  double value;
-  double slope;
-};
-Dual operator-(const Dual& x) { return {-x.value, -x.slope}; }
-Dual operator*(const Dual& x, const Dual& y) {
-  return {x.value * y.value, x.value * y.slope + x.slope * y.value};
-}
-Dual operator/(double x, const Dual& y) {
-  return {x / y.value, -x * y.slope / (y.value * y.value)};
-}
-Dual fma(const Dual& a, const Dual& b, const Dual& c) {
-  const Dual product = a * b;
-  return {product.value + c.value, product.slope + c.slope};
-}
-void sine_cosine(const Dual& x, Dual& sine, Dual& cosine) {
-  sine = {std::sin(x.value), std::cos(x.value) * x.slope};
-  cosine = {std::cos(x.value), -std::sin(x.value) * x.slope};
-}
-
-}  // namespace dual
-
-template <>
-dual::Dual pendcore::broadcast<dual::Dual>(double x) {
-  return {x, 0.0};
-}
-
 namespace {
-
-using dual::Dual;
 
 const Scene uneven{.links = {Link::uniform_rod(2.5, 0.7), Link::point_mass(0.4, 1.6)},
                    .gravity = 9.81};
@@ -72,21 +41,32 @@ TEST_CASE("four trajectories in a pack have the bits of each alone") {
   }
 }
 
-TEST_CASE("dual numbers give the derivative of the right-hand side") {
-  const DoublePendulum pendulum(uneven, Inertia(uneven));
-  const Pair q{0.3, 1.9};
-  const Pair qd{2.0, -3.0};
-  const double h = 1e-6;
-  for (int j = 0; j < 4; ++j) {  // with respect to q_1, q_2, qd_1, qd_2
-    auto slope = [j](int k) { return j == k ? 1.0 : 0.0; };
-    const Two<Dual> exact = pendulum.accelerations(Two<Dual>{{q[0], slope(0)}, {q[1], slope(1)}},
-                                                   Two<Dual>{{qd[0], slope(2)}, {qd[1], slope(3)}});
-    const Pair dq{h * slope(0), h * slope(1)};
-    const Pair dqd{h * slope(2), h * slope(3)};
-    const Pair ahead = pendulum.accelerations(Pair(q + dq), Pair(qd + dqd));
-    const Pair behind = pendulum.accelerations(Pair(q - dq), Pair(qd - dqd));
-    CHECK(exact.first.slope == doctest::Approx((ahead[0] - behind[0]) / (2 * h)).epsilon(1e-8));
-    CHECK(exact.second.slope == doctest::Approx((ahead[1] - behind[1]) / (2 * h)).epsilon(1e-8));
+TEST_CASE("a dual number has the bits of its value, and the derivative beside it") {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution any(0.1, 3.0);
+  auto check = [&](auto f) {
+    const Pair x{any(random), any(random)};
+    const Pair along{any(random), -any(random)};
+    const double h = 1e-6;
+    const Dual<Pair> found = f(Dual<Pair>(x, along));
+    const Pair ahead = f(Pair(x + h * along));
+    const Pair behind = f(Pair(x - h * along));
+    for (int i = 0; i < 2; ++i) {
+      CHECK(found.value[i] == f(x)[i]);
+      CHECK(found.slope[i] == doctest::Approx((ahead[i] - behind[i]) / (2 * h)).epsilon(1e-7));
+    }
+  };
+  for (int round = 0; round < 20; ++round) {
+    check([](const auto& x) { return exponential(-(x * x)); });
+    check([](const auto& x) { return power(x, 1.0) + power(x, 2.0) - power(x, 2.7); });
+    check([](const auto& x) { return absolute(-x) * x - absolute(x); });
+    check([](const auto& x) { return 1.0 / (x * x); });
+    check([](const auto& x) { return fma(x, other(x), before(x) * after(x)); });
+    check([]<class V>(const V& x) {
+      V s, c;
+      sine_cosine(x, s, c);
+      return V(s * (c * c));
+    });
   }
 }
 

@@ -6,6 +6,7 @@
 #include "pendcore/dynamics/energy.hpp"
 #include "pendcore/dynamics/equations_of_motion.hpp"
 #include "pendcore/dynamics/inertia.hpp"
+#include "pendcore/dynamics/jacobian.hpp"
 #include "pendcore/dynamics/kinematics.hpp"
 #include "pendcore/dynamics/ledger.hpp"
 #include "pendcore/dynamics/reactions.hpp"

@@ -18,6 +18,7 @@ namespace pendcore {
 template <class Real>
 struct Lanes {
   static constexpr int width = 1;
+  using Number = double;  ///< what a lane holds
   using Integers = long long;
 };
 
@@ -47,14 +48,17 @@ using Pack = typename pack_detail::Vector<width>::Reals;
 template <>
 struct Lanes<Pack<2>> : pack_detail::Vector<2> {
   static constexpr int width = 2;
+  using Number = double;
 };
 template <>
 struct Lanes<Pack<4>> : pack_detail::Vector<4> {
   static constexpr int width = 4;
+  using Number = double;
 };
 template <>
 struct Lanes<Pack<8>> : pack_detail::Vector<8> {
   static constexpr int width = 8;
+  using Number = double;
 };
 
 /// The same number in every lane.

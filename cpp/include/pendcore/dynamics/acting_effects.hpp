@@ -8,6 +8,7 @@
 
 #include <memory>
 
+#include "pendcore/arithmetic/dual.hpp"
 #include "pendcore/arithmetic/sine_cosine.hpp"
 #include "pendcore/scene.hpp"
 
@@ -58,6 +59,15 @@ class EffectsInForce {
     for (const auto& law : pivots) law->add_velocity(t, wave_cosine.data(), x, y);
   }
 
+  /// What a function of the user's adds to Q (n), which comes zeroed.
+  PENDCORE_INLINE void call(const CompiledUser& user, double t, const double* q, const double* qd,
+                            double* Q) const {
+    user(t, static_cast<int>(held.size()), q, qd, Q);
+  }
+  /// With its change along the slopes, by central differences: it is a function of doubles.
+  void call(const CompiledUser& user, double t, const Dual<double>* q, const Dual<double>* qd,
+            Dual<double>* Q) const;
+
   std::vector<Effect> effects;      ///< compiled
   std::vector<int> modes;           ///< of each effect
   std::vector<int> number_of_wave;  ///< of each effect that a wave drives
@@ -80,6 +90,9 @@ class EffectsInForce {
   explicit EffectsInForce(const Scene& scene);
   int add_wave(const Sinusoid& wave);  ///< its number
   void finish_waves();
+
+ private:
+  mutable std::vector<double> user_room_;
 };
 
 /// For rows of that width.

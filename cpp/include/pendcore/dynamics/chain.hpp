@@ -37,36 +37,44 @@
 namespace pendcore {
 
 /// A chain as the recursion takes it, and room for one right-hand side: one thread at a time.
-class Chain {
+/// `Number` is what it computes with, a double or a dual number.
+template <class Number>
+class ChainOf {
  public:
-  Chain(const Scene& scene, std::shared_ptr<ActingEffects<Pack<4>>> effects);
+  ChainOf(const Scene& scene, std::shared_ptr<ActingEffects<Pack<4>>> effects);
 
   int links() const { return n_; }
 
   /// qdd (rad/s^2) from the time (s), angles (rad) and rates (rad/s), (n) each. Defined in
   /// chain_recursion.hpp.
-  PENDCORE_INLINE void accelerations(double t, const double* q, const double* qd,
-                                     double* qdd) const;
+  PENDCORE_INLINE void accelerations(double t, const Number* q, const Number* qd,
+                                     Number* qdd) const;
 
   const ActingEffects<Pack<4>>* effects() const { return effects_.get(); }
 
  private:
-  using Row = Pack<4>;
-  PENDCORE_INLINE void prepare(const double* q, const double* qd) const;
+  using Row = std::conditional_t<std::is_same_v<Number, double>, Pack<4>, Dual<Pack<4>>>;
+  PENDCORE_INLINE void prepare(const Number* q, const Number* qd) const;
   PENDCORE_INLINE void collect_loads(double t) const;
   /// `size` is the number of links where the compiler knows it, and 0 otherwise.
   template <int size>
-  PENDCORE_INLINE void recursion(double ax, double ay, double* qdd) const;
+  PENDCORE_INLINE void recursion(Number ax, Number ay, Number* qdd) const;
   template <bool loaded, int size>
   PENDCORE_INLINE void tip_to_base() const;
   template <int size>
-  PENDCORE_INLINE void base_to_tip(double ax, double ay, double* qdd) const;
+  PENDCORE_INLINE void base_to_tip(Number ax, Number ay, Number* qdd) const;
   PENDCORE_INLINE void tip_to_base_coupled() const;
-  PENDCORE_INLINE void base_to_tip_coupled(double ax, double ay, double* qdd) const;
+  PENDCORE_INLINE void base_to_tip_coupled(Number ax, Number ay, Number* qdd) const;
 
   /// Arrays over the links have a pack of zeros before and after them.
-  static double* in(std::vector<double>& a) { return a.data() + 4; }
-  static const double* in(const std::vector<double>& a) { return a.data() + 4; }
+  template <class Any>
+  static Any* in(std::vector<Any>& a) {
+    return a.data() + 4;
+  }
+  template <class Any>
+  static const Any* in(const std::vector<Any>& a) {
+    return a.data() + 4;
+  }
 
   int n_;
   int padded_;  ///< links, filled up to whole packs
@@ -74,7 +82,7 @@ class Chain {
   double payload_mass_;
   bool has_rotors_ = false;  ///< beyond joint 1
   bool loaded_;              ///< effects other than constants
-  std::shared_ptr<ActingEffects<Row>> effects_;
+  std::shared_ptr<ActingEffects<Pack<4>>> effects_;
 
   struct Constants {
     double m, L, mc, I, Io, LL, turn, across;  // turn: I_o - m c L, across: I + m (L - c)^2
@@ -83,15 +91,17 @@ class Chain {
   std::vector<double> length_, mass_moment_;  // L, m c
   std::vector<double> rotor_;                 // J
   // of one right-hand side
-  mutable std::vector<double> q_, qd_, s_, c_;
-  mutable std::vector<double> centripetal_;               // L qd^2
-  mutable std::vector<double> center_;                    // m c qd^2
-  mutable std::vector<double> cc_, ss_, sc_, cos_, sin_;  // of q_i - q_{i-1}
-  mutable std::vector<double> couple_, torque_, fx_, fy_, vx_, vy_, user_;
+  mutable std::vector<Number> q_, qd_, s_, c_;
+  mutable std::vector<Number> centripetal_;               // L qd^2
+  mutable std::vector<Number> center_;                    // m c qd^2
+  mutable std::vector<Number> cc_, ss_, sc_, cos_, sin_;  // of q_i - q_{i-1}
+  mutable std::vector<Number> couple_, torque_, fx_, fy_, vx_, vy_, user_;
   struct Response {
-    double free, x, y, from_before;  // qdd = free - (x, y) . a + from_before qdd_{i-1}
+    Number free, x, y, from_before;  // qdd = free - (x, y) . a + from_before qdd_{i-1}
   };
   mutable std::vector<Response> response_;
 };
+
+using Chain = ChainOf<double>;
 
 }  // namespace pendcore

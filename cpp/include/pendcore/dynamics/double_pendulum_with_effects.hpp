@@ -76,7 +76,7 @@ struct DoublePendulumWithEffects {
         if (effects->has_forces) effects->pivot_velocity(t, at.pivot_vx, at.pivot_vy);
       }
       if (!effects->entries.empty()) ActingEffects<Pair>::add_all(effects, &at, &loads);
-      if constexpr (std::is_same_v<V, Pair>) {
+      if constexpr (Lanes<V>::width == 2) {
         if (!effects->users.empty()) loads.generalised(of_users(*effects, t, q, qd));
       }
     } else if constexpr (parts == Parts::laws) {

@@ -3,7 +3,7 @@
 /// chain that is one row, one link or a pair, in registers; of any other in arrays.
 #pragma once
 
-#include "pendcore/arithmetic/pair.hpp"
+#include "pendcore/arithmetic/dual.hpp"
 
 namespace pendcore {
 
@@ -47,20 +47,25 @@ struct RowLoads {
 };
 
 /// Numbers over the links, zeros before and after them.
-struct LinkArrays {
-  const double *q, *qd, *s, *c, *length, *vx, *vy;
+template <class Number>
+struct ArraysOver {
+  const Number *q, *qd, *s, *c;
+  const double* length;
+  const Number *vx, *vy;
 };
+using LinkArrays = ArraysOver<double>;
 
 template <class Row>
 struct RowInArrays {
   using Value = Row;
+  using Links = ArraysOver<typename Lanes<Row>::Number>;
 
   Row q, qd, s, c;
   double t;
   int i;  ///< the first link of the row, from 0
-  LinkArrays links;
+  Links links;
 
-  PENDCORE_INLINE RowInArrays(const LinkArrays& arrays, double time, int row)
+  PENDCORE_INLINE RowInArrays(const Links& arrays, double time, int row)
       : q(load<Row>(arrays.q + row * Lanes<Row>::width)),
         qd(load<Row>(arrays.qd + row * Lanes<Row>::width)),
         s(load<Row>(arrays.s + row * Lanes<Row>::width)),

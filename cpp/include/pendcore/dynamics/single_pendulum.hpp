@@ -4,7 +4,7 @@
 /// The textbook's Eq. (2.1) without a second link, y downward. Cost: one cosine and one product.
 #pragma once
 
-#include "pendcore/arithmetic/sine_cosine.hpp"
+#include "pendcore/arithmetic/pair.hpp"
 #include "pendcore/dynamics/inertia.hpp"
 
 namespace pendcore {
@@ -21,7 +21,7 @@ struct SinglePendulum {
   PENDCORE_INLINE Real accelerations(const Real& q, const Real& /*qd*/) const {
     Real s, c;
     sine_cosine(q, s, c);
-    return weight * c;
+    return Constants<Real>::of(weight) * c;
   }
 };
 

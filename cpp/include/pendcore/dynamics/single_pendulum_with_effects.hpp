@@ -28,26 +28,27 @@ struct SinglePendulumWithEffects {
         weight(inertia.first_moment[0] * scene.gravity / inertia.diagonal[0]),
         effects(in_force) {}
 
-  PENDCORE_INLINE double accelerations(double t, double q, double qd) const {
-    double s, c;
+  template <class V>
+  PENDCORE_INLINE V accelerations(double t, const V& q, const V& qd) const {
+    V s, c;
     sines(t, q, s, c);
-    double pull = weight * c;
-    RowAt<double> at{t, q, qd, s, c, length, 0.0, 0.0};
+    V pull = weight * c;
+    RowAt<V> at{t, q, qd, s, c, length, 0.0, 0.0};
     if (!effects->pivots.empty()) {
       double x, y;
       effects->pivot_acceleration(t, x, y);
-      pull = fma(moment, x * s - y * c, pull);
+      pull = fma(V(moment), x * s - y * c, pull);
       if (effects->has_forces) effects->pivot_velocity(t, at.pivot_vx, at.pivot_vy);
     }
-    RowLoads<double> loads;
+    RowLoads<V> loads;
     for (const auto& one : effects->couples) loads.couple(one.torque(at));
     for (const JointWave& one : effects->joint_waves) {
       loads.couple(one.gain * effects->wave_sine[one.wave]);
     }
     for (const auto& entry : effects->entries) ActingEffects<double>::add(entry, at, loads);
-    double torque = loads.torque_of_couples() + loads.moments;
+    V torque = loads.torque_of_couples() + loads.moments;
     if (!effects->users.empty()) torque += of_users(*effects, t, q, qd);
-    return effects->any_held ? 0.0 : fma(inverse_inertia, torque, pull);
+    return effects->any_held ? V(0.0) : fma(V(inverse_inertia), torque, pull);
   }
 
  private:
@@ -68,6 +69,11 @@ struct SinglePendulumWithEffects {
     store(&effects->wave_sine[0], sine);
     store(&effects->wave_cosine[0], cosine);
     effects->compute_waves(t, 3);
+  }
+  template <class V>
+  PENDCORE_INLINE void sines(double t, const V& q, V& s, V& c) const {
+    effects->compute_waves(t, 0);
+    sine_cosine(q, s, c);
   }
 };
 

@@ -88,7 +88,7 @@ struct RodDrag {
       speeds(at, wind_x, wind_y, w0, w1);
       const V size0 = absolute(w0);
       const V size1 = absolute(w1);
-      const V size = size0 + size1 + Constants<V>::of(1e-300);  // D; at rest: not 0/0
+      const V size = size0 + size1 + Constants<V>::of(1e-100);  // D; at rest: not 0/0
       const V inverse = 1.0 / size;
       const V direction = (w0 + w1) * inverse;
       const V size_of_product = size0 * size1;

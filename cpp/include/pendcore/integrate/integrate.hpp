@@ -28,8 +28,9 @@ struct Position {
   bool trial_was_finite = true;  ///< of the last step that was tried
   int crossings_at_once = 0;     ///< laws that changed since the last step
   StepControl control;
-  int stiff_hits = 0;    ///< of Hairer's test for stiffness since it last forgot
-  int stiff_misses = 0;  ///< since the last hit
+  int stiff_hits = 0;        ///< of Hairer's test for stiffness since it last forgot
+  int stiff_misses = 0;      ///< since the last hit
+  double stiff_since = 0.0;  ///< s, if statistics.stiff
   Statistics statistics;
   std::vector<double> y;        ///< (dimension)
   std::vector<double> dydt;     ///< (dimension)

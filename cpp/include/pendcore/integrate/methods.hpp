@@ -3,7 +3,9 @@
 /// Python layer and the tests of order conditions, convergence, dense output and bits find it.
 #pragma once
 
+#include "pendcore/integrate/automatic.hpp"
 #include "pendcore/integrate/dormand_prince_5.hpp"
+#include "pendcore/integrate/radau_5.hpp"
 
 namespace pendcore {
 
@@ -12,7 +14,9 @@ struct MethodList {
   static constexpr std::array infos = {&tables.info...};
 };
 
-using Methods = MethodList<dormand_prince_5  // order 5(4): the textbook's ode45
+using Methods = MethodList<dormand_prince_5,  // order 5(4): the textbook's ode45
+                           radau_5,           // order 5, implicit: stiff scenes
+                           automatic          // the first, and the second once it is stiff
                            >;
 
 /// The method of that name or alias; throws std::invalid_argument that lists those there are.

@@ -47,7 +47,7 @@ struct StepControl {
   /// The factor for the retry of a rejected step; the smallest where the error is not finite.
   double reject(const MethodInfo& method, const Attempt& attempt) {
     after_rejection = true;
-    if (!std::isfinite(attempt.squared_error)) return method.shrink;
+    if (!std::isfinite(attempt.squared_error)) return method.retry;
     const double log2_error = 0.5 * approximate_log2(attempt.squared_error);
     const double log2_factor = method.log2_safety - exponent(method) * log2_error;
     return std::max(approximate_exp2(log2_factor), method.shrink);

@@ -50,12 +50,17 @@ class Stepper {
   /// (Hairer and Wanner, volume II, IV.2).
   virtual double stiffness(double h) const = 0;
 
+  /// Is told when the steps are found to be limited by stability.
+  virtual void stiffness_found() {}
+
   /// What the next step depends on beside y and dydt: nothing, of most methods.
   virtual std::vector<double> memory() const { return {}; }
   /// Goes on from there, in place of what start() left.
   virtual void restore(const std::vector<double>& /*memory*/) {}
 
-  long long evaluations = 0;  ///< right-hand sides so far
+  long long evaluations = 0;     ///< right-hand sides so far
+  long long jacobians = 0;       ///< and of an implicit method, derivatives of them
+  long long factorisations = 0;  ///< and matrices that were factored
 };
 
 }  // namespace pendcore

@@ -24,18 +24,23 @@ struct Fraction {
   }
 };
 
+/// What kind of table a method is: tableau.hpp, collocation.hpp, automatic.hpp.
+enum class MethodKind { explicit_one, implicit_one, automatic };
+
 /// What is said of a method, and how its steps are controlled.
 struct MethodInfo {
   std::string_view name;
   std::span<const std::string_view> aliases = {};
   std::string_view citation;
+  MethodKind kind = MethodKind::explicit_one;
   int order;              ///< of y_new
   int error_order;        ///< of the embedded method; 0: no error estimate, fixed steps only
   int interpolant_order;  ///< of y(t + theta h), uniformly in theta
   double beta = 0.0;      ///< weight of the previous error in the PI control
   double log2_safety = -0.15200309344504997;  ///< of 0.9: a step aims a tenth short
-  double shrink = 0.2;                        ///< a step is at least this share of the one before,
-  double growth = 10.0;                       ///< and at most this multiple
+  double shrink = 0.2;                        ///< a step is at least this share of the one before
+  double growth = 10.0;                       ///< and at most this multiple;
+  double retry = 0.2;  ///< where a step could not be computed, this share is tried next
   double stability =
       0.0;  ///< h |lambda| on the negative real axis that counts as stiff; 0: no test
   bool compensates = true;  ///< its steps can carry on what their rounding leaves over

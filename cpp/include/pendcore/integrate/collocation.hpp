@@ -1,0 +1,32 @@
+/// \file
+/// What an implicit collocation method of three stages is: a table.
+///
+///     Z_i = h sum_j a_ij f(t + c_i h, y + Z_j),     y_new = y + Z_3,  c_3 = 1
+///     y(t + theta h) = y + sum_p theta^p sum_i P_pi Z_i,  p = 1 .. 3
+///
+/// The matrix T takes the inverse of a to a real number and a complex one,
+///
+///     T^-1 a^-1 T = ((real, 0, 0), (0, alpha, -beta), (0, beta, alpha)),
+///
+/// so that the stages come from one real and one complex system of the size of the state.
+#pragma once
+
+#include "pendcore/integrate/tableau.hpp"
+
+namespace pendcore {
+
+struct Collocation {
+  using Row = std::array<double, 3>;
+  using Matrix = std::array<Row, 3>;
+  static constexpr int degree = 3;
+
+  MethodInfo info;
+  Row c;
+  Matrix a;
+  double real, alpha, beta;
+  Matrix transformation;  ///< T
+  Matrix inverse;         ///< of T
+  Matrix interpolant;     ///< P, a row for each power
+};
+
+}  // namespace pendcore

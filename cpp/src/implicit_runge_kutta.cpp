@@ -1,0 +1,391 @@
+#include "pendcore/integrate/implicit_runge_kutta.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace pendcore {
+namespace {
+
+constexpr int most_iterations = 20;  // a fixed step may be long
+constexpr int usual_iterations = 7;  // more than these make the next step shorter
+constexpr double rounding = std::numeric_limits<double>::epsilon();
+constexpr double log2_smallest_error = -6.643856189774724;  // of 1e-2
+
+/// x^p for x > 0, the same on every machine.
+double small_power(double x, double p) { return approximate_exp2(p * approximate_log2(x)); }
+
+}  // namespace
+
+ImplicitRungeKutta::ImplicitRungeKutta(const Collocation& method,
+                                       std::unique_ptr<DifferentiableSystem> system,
+                                       bool compensated)
+    : method_(method),
+      system_(std::move(system)),
+      n_(system_->row),
+      state_(2 * n_),
+      size_(state_ + system_->quadratures),
+      rtol_(state_),
+      atol_(state_),
+      y_(size_),
+      dydt_(size_),
+      y_new_(size_),
+      by_q_(static_cast<std::size_t>(n_) * n_),
+      by_qd_(by_q_.size()),
+      stages_(3 * static_cast<std::size_t>(size_)),
+      transformed_(3 * static_cast<std::size_t>(state_)),
+      rates_(stages_.size()),
+      increment_(transformed_.size()),
+      trial_(size_),
+      error_(size_),
+      real_(n_),
+      complex_(n_),
+      real_side_(n_),
+      complex_side_(n_),
+      polynomial_(stages_.size()),
+      low_(compensated ? size_ : 0),
+      low_new_(low_.size()) {}
+
+void ImplicitRungeKutta::set_tolerances(const double* rtol, const double* atol) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < state_; ++i) {
+    const double given = std::max(rtol[i], rounding);
+    rtol_[i] = 0.1 * small_power(given, 2.0 / 3.0);
+    atol_[i] = rtol_[i] * (atol[i] / given);
+    smallest = std::min(smallest, rtol_[i]);
+  }
+  newton_tolerance_ = std::max(10.0 * rounding / smallest, std::min(0.03, std::sqrt(smallest)));
+}
+
+/// The low part of components that are given another value.
+void ImplicitRungeKutta::forget(const double* y, const Rows& instead_of, Rows& low) {
+  for (std::size_t i = 0; i < low.size(); ++i) {
+    if (y[i] != instead_of[i]) low[i] = 0.0;
+  }
+}
+
+void ImplicitRungeKutta::start(const double* y, const double* dydt) {
+  forget(y, y_, low_);
+  std::copy_n(y, size_, y_.begin());
+  std::copy_n(dydt, size_, dydt_.begin());
+  has_jacobian_ = false;
+  h_before_ = 0.0;
+  contraction_ = 1.0;
+  is_retry_ = false;
+}
+void ImplicitRungeKutta::get_state(double* y) const { std::ranges::copy(y_, y); }
+void ImplicitRungeKutta::get_derivative(double* dydt) const { std::ranges::copy(dydt_, dydt); }
+void ImplicitRungeKutta::get_new_state(double* y) const { std::ranges::copy(y_new_, y); }
+void ImplicitRungeKutta::set_new_state(const double* y) {
+  forget(y, y_new_, low_new_);
+  std::copy_n(y, size_, y_new_.begin());
+}
+void ImplicitRungeKutta::evaluate(double t, const double* y, double* dydt) {
+  (*system_)(t, y, dydt);
+  ++evaluations;
+}
+
+/// Both matrices g^2 - g B - A.
+void ImplicitRungeKutta::factor(double h) {
+  g_ = method_.real / h;
+  complex_g_ = {method_.alpha / h, method_.beta / h};
+  const double re = complex_g_.re;
+  const double im = complex_g_.im;
+  double* const real = real_.matrix();
+  Complex* const complex = complex_.matrix();
+  for (int k = 0; k < n_ * n_; ++k) {
+    real[k] = -g_ * by_qd_[k] - by_q_[k];
+    complex[k] = {-re * by_qd_[k] - by_q_[k], -im * by_qd_[k]};
+  }
+  for (int k = 0; k < n_ * n_; k += n_ + 1) {
+    real[k] += g_ * g_;
+    complex[k].re += re * re - im * im;
+    complex[k].im += 2.0 * re * im;
+  }
+  real_.factor();
+  complex_.factor();
+  factorisations += 2;
+}
+
+/// (g - J)^-1 of (r, s), in place.
+void ImplicitRungeKutta::solve_real(double* x) const {
+  double* const s = x + n_;
+  for (int i = 0; i < n_; ++i) {
+    double sum = g_ * s[i];
+    for (int j = 0; j < n_; ++j) sum += by_q_[i * n_ + j] * x[j];
+    real_side_[i] = sum;
+  }
+  real_.solve(real_side_.data());
+  for (int i = 0; i < n_; ++i) {
+    s[i] = real_side_[i];
+    x[i] = (x[i] + s[i]) / g_;
+  }
+}
+void ImplicitRungeKutta::solve_complex(double* re, double* im) const {
+  const Complex g = complex_g_;
+  for (int i = 0; i < n_; ++i) {
+    Complex sum{g.re * re[n_ + i] - g.im * im[n_ + i], g.re * im[n_ + i] + g.im * re[n_ + i]};
+    for (int j = 0; j < n_; ++j) {
+      sum.re += by_q_[i * n_ + j] * re[j];
+      sum.im += by_q_[i * n_ + j] * im[j];
+    }
+    complex_side_[i] = sum;
+  }
+  complex_.solve(complex_side_.data());
+  const double scale = 1.0 / (g.re * g.re + g.im * g.im);
+  for (int i = 0; i < n_; ++i) {
+    const Complex y = complex_side_[i];
+    const double a = re[i] + y.re;
+    const double b = im[i] + y.im;
+    re[n_ + i] = y.re;
+    im[n_ + i] = y.im;
+    re[i] = (a * g.re + b * g.im) * scale;
+    im[i] = (b * g.re - a * g.im) * scale;
+  }
+}
+
+double ImplicitRungeKutta::scale(int i) const {
+  const double largest = std::max(std::abs(y_[i]), std::abs(y_new_[i]));
+  return atol_[i] + rtol_[i] * largest + 1e-300;  // 0/0 is no error
+}
+double ImplicitRungeKutta::squared_norm(const double* error) const {
+  double sum = 0.0;
+  for (int i = 0; i < state_; ++i) {
+    const double ratio = error[i] / scale(i);
+    sum += ratio * ratio;
+  }
+  return sum / state_;
+}
+
+/// The polynomial of the step before, continued: Z_i = u(1 + x) - u(1), x = c_i h/h_before.
+void ImplicitRungeKutta::predict(double h) {
+  for (int k = 0; k < 3; ++k) {
+    const double x = h_before_ == 0.0 ? 0.0 : method_.c[k] * (h / h_before_);
+    const double square = x * (2.0 + x);
+    const double cube = x * (3.0 + x * (3.0 + x));
+    for (int i = 0; i < state_; ++i) {
+      const double* const p = polynomial_.data() + i;
+      stages_[k * size_ + i] =
+          h_before_ == 0.0 ? 0.0 : x * p[0] + square * p[size_] + cube * p[2 * size_];
+    }
+  }
+  for (int k = 0; k < 3; ++k) {
+    const Collocation::Row& row = method_.inverse[k];
+    for (int i = 0; i < state_; ++i) {
+      transformed_[k * state_ + i] =
+          row[0] * stages_[i] + row[1] * stages_[size_ + i] + row[2] * stages_[2 * size_ + i];
+    }
+  }
+}
+
+/// Whether the last increment is no more than what the rates and states are rounded by.
+bool ImplicitRungeKutta::is_rounding(double h) const {
+  for (int i = 0; i < state_; ++i) {
+    double size = std::abs(y_[i]) + std::abs(y_new_[i]);
+    double increment = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      size += std::abs(h * rates_[k * size_ + i]);
+      increment = std::max(increment, std::abs(increment_[k * state_ + i]));
+    }
+    if (!(increment <= 16.0 * rounding * size)) return false;
+  }
+  return true;
+}
+
+/// Newton's iteration. False where it does not converge.
+bool ImplicitRungeKutta::iterate(double t, double h) {
+  double* const w = transformed_.data();
+  double* const d = increment_.data();
+  double factor = small_power(std::max(contraction_, rounding), 0.8);  // theta/(1 - theta)
+  contraction_of_attempt_ = contraction_;
+  double before = 0.0;
+  double ratio_before = 0.0;
+  for (iterations_ = 1; iterations_ <= most_iterations; ++iterations_) {
+    for (int k = 0; k < 3; ++k) {
+      for (int i = 0; i < state_; ++i) trial_[i] = y_[i] + stages_[k * size_ + i];
+      evaluate(t + method_.c[k] * h, trial_.data(), &rates_[static_cast<std::size_t>(k) * size_]);
+    }
+    const Complex g = complex_g_;
+    for (int i = 0; i < state_; ++i) {
+      double rate[3];
+      for (int k = 0; k < 3; ++k) {
+        const Collocation::Row& row = method_.inverse[k];
+        rate[k] = row[0] * rates_[i] + row[1] * rates_[size_ + i] + row[2] * rates_[2 * size_ + i];
+      }
+      const double re = w[state_ + i];
+      const double im = w[2 * state_ + i];
+      d[i] = rate[0] - g_ * w[i];
+      d[state_ + i] = rate[1] - (g.re * re - g.im * im);
+      d[2 * state_ + i] = rate[2] - (g.im * re + g.re * im);
+    }
+    solve_real(d);
+    solve_complex(d + state_, d + 2 * state_);
+    for (int k = 0; k < 3 * state_; ++k) w[k] += d[k];
+    for (int k = 0; k < 3; ++k) {
+      const Collocation::Row& row = method_.transformation[k];
+      for (int i = 0; i < state_; ++i) {
+        stages_[k * size_ + i] =
+            row[0] * w[i] + row[1] * w[state_ + i] + row[2] * w[2 * state_ + i];
+      }
+    }
+    for (int i = 0; i < state_; ++i) y_new_[i] = y_[i] + stages_[2 * size_ + i];
+
+    const double size = std::sqrt(
+        (squared_norm(d) + squared_norm(d + state_) + squared_norm(d + 2 * state_)) / 3.0);
+    if (!std::isfinite(size)) return false;
+    if (iterations_ > 1) {
+      const double ratio = size / before;
+      const double theta = iterations_ == 2 ? ratio : std::sqrt(ratio * ratio_before);
+      ratio_before = ratio;
+      if (!(theta < 0.99)) return size <= newton_tolerance_ || is_rounding(h);
+      factor = theta / (1.0 - theta);
+      double left = factor * size;
+      for (int k = iterations_; k < most_iterations; ++k) left *= theta;
+      if (left > newton_tolerance_) return is_rounding(h);
+    }
+    before = std::max(size, rounding);
+    if (factor * size <= newton_tolerance_) {
+      contraction_of_attempt_ = factor;
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Z = h a q' of the angles, from the rates that were found: digits that T costs come back.
+void ImplicitRungeKutta::polish_angles(double h) {
+  for (int k = 0; k < 3; ++k) {
+    const Collocation::Row& row = method_.a[k];
+    for (int i = 0; i < n_; ++i) {
+      const double* const rate = &stages_[n_ + i];
+      stages_[k * size_ + i] =
+          h * (method_.c[k] * y_[n_ + i] +
+               (row[0] * rate[0] + row[1] * rate[size_] + row[2] * rate[2 * size_]));
+    }
+  }
+}
+
+/// y + Z_3, with what the rounding left over if it is carried along.
+void ImplicitRungeKutta::advance() {
+  const double* const change = &stages_[2 * static_cast<std::size_t>(size_)];
+  for (int i = 0; i < size_; ++i) {
+    const double whole = low_.empty() ? change[i] : change[i] + low_[i];
+    y_new_[i] = y_[i] + whole;
+    if (!low_.empty()) low_new_[i] = left_over(y_[i], whole, y_new_[i]);
+  }
+}
+
+/// Z = h a P of the stages that were found: outside of the iteration and of the error.
+void ImplicitRungeKutta::integrate_quadratures(double t, double h) {
+  for (int k = 0; k < 3; ++k) {
+    for (int i = 0; i < state_; ++i) trial_[i] = y_[i] + stages_[k * size_ + i];
+    evaluate(t + method_.c[k] * h, trial_.data(), &rates_[static_cast<std::size_t>(k) * size_]);
+  }
+  for (int i = state_; i < size_; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const Collocation::Row& row = method_.a[k];
+      stages_[k * size_ + i] =
+          h * (row[0] * rates_[i] + row[1] * rates_[size_ + i] + row[2] * rates_[2 * size_ + i]);
+    }
+  }
+}
+
+Attempt ImplicitRungeKutta::attempt(double t, double h, double /*gain*/) {
+  if (!has_jacobian_) {
+    system_->jacobian(t, y_.data(), by_q_.data(), by_qd_.data());
+    has_jacobian_ = true;
+    if (!is_retry_) ++jacobians;  // one that was resumed has been counted
+  }
+  const bool is_careful = is_retry_ || h_before_ == 0.0;
+  is_retry_ = true;
+  h_ = h;
+  factor(h);
+  predict(h);
+  if (!iterate(t, h)) return {std::numeric_limits<double>::quiet_NaN(), 0.0};
+  polish_angles(h);
+  if (size_ > state_) integrate_quadratures(t, h);
+  advance();
+
+  const Collocation::Row& slope = method_.interpolant[0];  // u'(t) = sum of slope Z / h
+  auto filter = [&](const double* rate) {
+    for (int i = 0; i < state_; ++i) {
+      error_[i] = rate[i] - (slope[0] * stages_[i] + slope[1] * stages_[size_ + i] +
+                             slope[2] * stages_[2 * size_ + i]) /
+                                h;
+    }
+    solve_real(error_.data());
+    return squared_norm(error_.data());
+  };
+  squared_error_ = filter(dydt_.data());
+  if (is_careful && squared_error_ >= 1.0) {
+    // Filtered once more: a fast transient that is damped away is no error.
+    for (int i = 0; i < state_; ++i) trial_[i] = y_[i] + error_[i];
+    evaluate(t, trial_.data(), rates_.data());
+    squared_error_ = filter(rates_.data());
+  }
+
+  const double log2_error = 0.5 * approximate_log2(squared_error_);
+  const double safety = 0.9 * (1 + 2 * usual_iterations) / (iterations_ + 2 * usual_iterations);
+  double factor = approximate_exp2(approximate_log2(safety) - 0.25 * log2_error);
+  if (h_before_ != 0.0) {
+    const double log2_ratio = 0.25 * (log2_error_before_ - 2.0 * log2_error);
+    factor = std::min(factor, 0.9 * (h / h_before_) * approximate_exp2(log2_ratio));
+  }
+  return {squared_error_, factor};
+}
+
+void ImplicitRungeKutta::write_polynomial(double* rows) const {
+  for (int p = 0; p < 3; ++p) {
+    const Collocation::Row& row = method_.interpolant[p];
+    for (int i = 0; i < size_; ++i) {
+      rows[p * size_ + i] =
+          row[0] * stages_[i] + row[1] * stages_[size_ + i] + row[2] * stages_[2 * size_ + i];
+    }
+  }
+}
+
+void ImplicitRungeKutta::accept(double t_new) {
+  write_polynomial(polynomial_.data());
+  h_before_ = h_;
+  log2_error_before_ = std::max(0.5 * approximate_log2(squared_error_), log2_smallest_error);
+  contraction_ = contraction_of_attempt_;
+  is_retry_ = false;
+  has_jacobian_ = false;
+  y_ = y_new_;
+  low_ = low_new_;
+  evaluate(t_new, y_.data(), dydt_.data());
+}
+
+void ImplicitRungeKutta::interpolant(double /*h*/, double* coefficients) const {
+  std::ranges::copy(y_, coefficients);
+  write_polynomial(coefficients + size_);
+}
+
+void ImplicitRungeKutta::sample(const double* coefficients, const TwoDouble& start, double h,
+                                const double* times, int count, double* states) const {
+  static const auto sample_on_this_processor = fastest<&sample_rows<Collocation::degree>>();
+  sample_on_this_processor(coefficients, start, h, times, count, states, size_);
+}
+
+std::vector<double> ImplicitRungeKutta::memory() const {
+  std::vector<double> memory = low_;
+  memory.insert(memory.end(), polynomial_.begin(), polynomial_.end());
+  memory.insert(memory.end(), {h_before_, log2_error_before_, contraction_, is_retry_ ? 1.0 : 0.0});
+  return memory;
+}
+void ImplicitRungeKutta::restore(const std::vector<double>& memory) {
+  if (memory.size() != polynomial_.size() + 4 + low_.size()) {
+    throw std::invalid_argument("what the method kept of its last step is not of this scene");
+  }
+  std::copy_n(memory.begin(), low_.size(), low_.begin());
+  const double* const past = memory.data() + low_.size();
+  std::copy_n(past, polynomial_.size(), polynomial_.begin());
+  const double* const rest = past + polynomial_.size();
+  h_before_ = rest[0];
+  log2_error_before_ = rest[1];
+  contraction_ = rest[2];
+  is_retry_ = rest[3] != 0.0;
+}
+
+}  // namespace pendcore

@@ -1,0 +1,69 @@
+#include "pendcore/dynamics/jacobian.hpp"
+
+#include "pendcore/dynamics/chain_recursion.hpp"
+
+namespace pendcore {
+namespace {
+
+/// The accelerations and their change along the slopes of q and qd, (n) each.
+template <class Dynamics>
+PENDCORE_INLINE void of_links(const Dynamics* dynamics, double t, const Dual<double>* q,
+                              const Dual<double>* qd, Dual<double>* qdd) {
+  using Links = Dual<typename Dynamics::Links>;
+  const Links angles = load<Links>(q);
+  const Links rates = load<Links>(qd);
+  if constexpr (requires { dynamics->accelerations(t, angles, rates); }) {
+    store(qdd, dynamics->accelerations(t, angles, rates));
+  } else {
+    store(qdd, dynamics->accelerations(angles, rates));
+  }
+}
+
+PENDCORE_INLINE void of_chain(const ChainOf<Dual<double>>* chain, double t, const Dual<double>* q,
+                              const Dual<double>* qd, Dual<double>* qdd) {
+  chain->accelerations(t, q, qd, qdd);
+}
+
+}  // namespace
+
+Jacobian::Jacobian(const Scene& scene, const EquationsOfMotion& equations)
+    : n_(static_cast<int>(scene.links.size())), equations_(equations), q_(n_), qd_(n_), qdd_(n_) {
+  if (std::holds_alternative<std::shared_ptr<Chain>>(equations.form)) {
+    chain_ = std::make_shared<ChainOf<Dual<double>>>(
+        scene, std::dynamic_pointer_cast<ActingEffects<Pack<4>>>(equations.effects));
+  }
+}
+
+bool Jacobian::has_differences() const {
+  return equations_.effects && !equations_.effects->users.empty();
+}
+
+void Jacobian::operator()(double t, const double* q, const double* qd, double* by_q,
+                          double* by_qd) const {
+  for (int i = 0; i < n_; ++i) {
+    q_[i] = q[i];
+    qd_[i] = qd[i];
+  }
+  auto along = [&](Dual<double>& variable, double* column) {
+    variable.slope = 1.0;
+    std::visit(
+        [&]<class Form>(const Form& form) {
+          if constexpr (std::is_same_v<Form, std::shared_ptr<Chain>>) {
+            static const auto compute = fastest<&of_chain>();
+            compute(chain_.get(), t, q_.data(), qd_.data(), qdd_.data());
+          } else {
+            static const auto compute = fastest<&of_links<Form>>();
+            compute(&form, t, q_.data(), qd_.data(), qdd_.data());
+          }
+        },
+        equations_.form);
+    variable.slope = 0.0;
+    for (int i = 0; i < n_; ++i) column[i * n_] = qdd_[i].slope;
+  };
+  for (int j = 0; j < n_; ++j) {
+    along(q_[j], by_q + j);
+    along(qd_[j], by_qd + j);
+  }
+}
+
+}  // namespace pendcore

@@ -1,0 +1,60 @@
+// Gaussian elimination: the solution solves, whatever has to be exchanged.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <complex>
+#include <random>
+#include <vector>
+
+#include "pendcore/integrate/elimination.hpp"
+
+using namespace pendcore;
+
+TEST_CASE("real systems of any size are solved, with zeros on the diagonal as well") {
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution any(-1.0, 1.0);
+  for (int n = 1; n < 12; ++n) {
+    Elimination<double> system(n);
+    std::vector<double> matrix(n * n);
+    for (int k = 0; k < n * n; ++k) matrix[k] = any(random);
+    if (n > 1) {
+      for (int k = 0; k < n; ++k) matrix[k * n + k] = 0.0;
+    }
+    std::copy(matrix.begin(), matrix.end(), system.matrix());
+    system.factor();
+    std::vector<double> exact(n);
+    std::vector<double> x(n, 0.0);
+    for (double& one : exact) one = any(random);
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < n; ++j) x[i] += matrix[i * n + j] * exact[j];
+    }
+    system.solve(x.data());
+    for (int i = 0; i < n; ++i) CHECK(std::abs(x[i] - exact[i]) < 1e-12);
+  }
+}
+
+TEST_CASE("complex systems agree with the library's complex numbers") {
+  std::mt19937_64 random(12);
+  std::uniform_real_distribution any(-1.0, 1.0);
+  for (int n = 1; n < 12; ++n) {
+    Elimination<Complex> system(n);
+    std::vector<std::complex<double>> matrix(n * n);
+    std::vector<std::complex<double>> exact(n);
+    std::vector<Complex> x(n);
+    for (auto& one : matrix) one = {any(random), any(random)};
+    for (auto& one : exact) one = {any(random), any(random)};
+    for (int i = 0; i < n; ++i) {
+      std::complex<double> sum = 0.0;
+      for (int j = 0; j < n; ++j) {
+        system.matrix()[i * n + j] = {matrix[i * n + j].real(), matrix[i * n + j].imag()};
+        sum += matrix[i * n + j] * exact[j];
+      }
+      x[i] = {sum.real(), sum.imag()};
+    }
+    system.factor();
+    system.solve(x.data());
+    for (int i = 0; i < n; ++i) {
+      CHECK(std::abs(std::complex(x[i].re, x[i].im) - exact[i]) < 1e-12);
+    }
+  }
+}

@@ -1,0 +1,134 @@
+"""The derivatives of the accelerations, against the reference differentiated in many digits.
+
+The reference has no derivatives of its own: it is differentiated by central differences of 10^-30
+in eighty digits, which leaves fifty of them. An error is measured against the size of what the
+derivative is made of: the sum over the terms of each equation, sent through the magnitude of the
+inverse matrix (Skeel's condition, as in test_right_hand_side_of_effects.py), per unit of angle or
+rate.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pendcore as pc
+import pytest
+from described_scenes import scene_of
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+from reference.arithmetic import multiple_precision
+from reference.effects import Described, law
+from reference.newton_euler import Body
+from reference.random_rigs import State, effects, gravities, links, states
+from reference.rig import Rig
+
+TOLERANCE = 1e-12
+ROUNDING_OF_THE_REFERENCE = 1e-26  # and of its differences, where a law has a corner
+MANY = multiple_precision(80)
+OF_USERS = {"user", "compiled_user"}  # differentiated by differences
+KINDS = sorted(set(pc.effects.kinds()) - OF_USERS - {"joint_stop"})  # stops have no torque
+
+Drawn = tuple[list[Body], float, list[Described], State]
+
+
+@st.composite
+def scenes(draw: st.DrawFn, kinds: Sequence[str], n: int) -> Drawn:
+    described = [one for kind in kinds for one in draw(effects(kind, n))]
+    return (
+        [draw(links()) for _ in range(n)],
+        draw(gravities),
+        described,
+        draw(states(n, described)),
+    )
+
+
+def computed(drawn: Drawn) -> NDArray[np.float64]:
+    """Return d qdd / d (q, qd), (n, 2n)."""
+    bodies, gravity, described, (t, q, qd) = drawn
+    scene: Any = scene_of(bodies, gravity, described)
+    rows = np.array([t]), np.array([q]), np.array([qd])
+    return np.hstack([of_all[0] for of_all in scene._compiled.jacobian(*rows)])
+
+
+def exact_and_size(drawn: Drawn) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    bodies, gravity, described, (t, q, qd) = drawn
+    n, number = len(bodies), MANY.number
+    rig = Rig(
+        bodies=bodies,
+        gravity=gravity,
+        effects=[law(one) for one in described],
+        arithmetic=MANY,
+    )
+    state = [number(x) for x in (*q, *qd)]
+    step = number(10) ** -30
+    exact = np.zeros((n, 2 * n))
+
+    def accelerations(at: list[Any]) -> list[Any]:
+        return list(rig.motion(number(t), at[:n], at[n:]).accelerations)
+
+    for j in range(2 * n):
+        moved = [[x + sign * step * (i == j) for i, x in enumerate(state)] for sign in (1, -1)]
+        ahead, behind = map(accelerations, moved)
+        exact[:, j] = [float((a - b) / (2 * step)) for a, b in zip(ahead, behind, strict=True)]
+    equations = rig.equations(rig.instant(t, q, qd))
+    sizes = equations.sizes(equations.solve(MANY))[:n]
+    # Per radian, or per unit of the fastest rate; a force quadratic in the rates has a factor 2,
+    # and the inverse of the mass matrix changes by its condition.
+    per = np.array([1.0] * n + [1.0 / max(1e-3, *np.abs(qd))] * n)
+    gain = np.abs(rig_gain(rig, state, n))
+    return exact, gain * (np.outer(sizes, per) + np.abs(exact))
+
+
+def rig_gain(rig: Rig, state: list[Any], n: int) -> float:
+    """How much a relative change of the mass matrix is worth in that of its inverse."""
+    matrix = np.array(rig.mass_matrix(state[:n]), dtype=float)
+    size = np.sqrt(np.diag(matrix))
+    return float(np.linalg.cond(matrix / np.outer(size, size)))
+
+
+def check(drawn: Drawn, tolerance: float = TOLERANCE) -> None:
+    exact, size = exact_and_size(drawn)
+    assert np.all(np.abs(computed(drawn) - exact) <= tolerance * size + ROUNDING_OF_THE_REFERENCE)
+
+
+@pytest.mark.parametrize("n", [1, 2, 3, 10])
+@settings(max_examples=3, deadline=None)
+@given(data=st.data())
+def test_no_effect_at_all(n: int, data: st.DataObject) -> None:
+    check(data.draw(scenes([], n)))
+
+
+@pytest.mark.parametrize("n", [1, 2, 3])
+@pytest.mark.parametrize("kind", KINDS)
+@settings(max_examples=6, deadline=None)
+@given(data=st.data())
+def test_an_effect_alone(kind: str, n: int, data: st.DataObject) -> None:
+    check(data.draw(scenes([kind], n)))
+
+
+@pytest.mark.parametrize("but", ["lock", None])
+@pytest.mark.parametrize("n", [1, 2, 3])
+@settings(max_examples=12, deadline=None)
+@given(data=st.data())
+def test_all_effects_together(n: int, but: str | None, data: st.DataObject) -> None:
+    check(data.draw(scenes([kind for kind in KINDS if kind != but], n)))
+
+
+@pytest.mark.parametrize("but", ["lock", None])
+@settings(max_examples=2, deadline=None)
+@given(data=st.data())
+def test_all_effects_together_on_a_long_chain(but: str | None, data: st.DataObject) -> None:
+    check(data.draw(scenes([kind for kind in KINDS if kind != but], 10)))
+
+
+@pytest.mark.parametrize("n", [1, 2, 3])
+@settings(max_examples=6, deadline=None)
+@given(data=st.data())
+def test_functions_of_the_users_are_differentiated_by_differences(
+    n: int, data: st.DataObject
+) -> None:
+    # one that is compiled takes doubles alone, from the reference as well
+    check(data.draw(scenes(["user", "viscous_joint"], n)), 1e-9)
