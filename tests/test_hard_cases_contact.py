@@ -37,7 +37,10 @@ def test_contact_ends_where_the_torque_turns_away_from_the_stop(e: float, w: flo
     assert np.abs(sol.t - np.pi / w).min() < 1e-9 / w  # a triple root of the angle
     s = np.linspace(0.01, 0.79, 9) * np.pi
     np.testing.assert_allclose(
-        sol(np.pi / w + s / w), [(s - np.sin(s)) / w**2, (1 - np.cos(s)) / w], rtol=1e-9
+        sol(np.pi / w + s / w),
+        [(s - np.sin(s)) / w**2, (1 - np.cos(s)) / w],
+        rtol=1e-9,
+        atol=1e-13,  # the rounding of the dense output, where the angle is next to nothing
     )
 
 

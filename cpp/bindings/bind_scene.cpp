@@ -6,6 +6,7 @@
 #include "bind_effects.hpp"
 #include "pendcore/arithmetic/floating_point_environment.hpp"
 #include "pendcore/pendcore.hpp"
+#include "pendcore/start.hpp"
 
 namespace pendcore::bindings {
 namespace {

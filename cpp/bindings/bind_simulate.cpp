@@ -1,5 +1,6 @@
 #include "arguments.hpp"
 #include "bind_events.hpp"
+#include "pendcore/start.hpp"
 #include "python_monitor.hpp"
 
 namespace pendcore::bindings {

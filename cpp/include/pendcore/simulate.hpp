@@ -18,11 +18,6 @@ std::unique_ptr<Stepper> make_stepper(const Scene& scene, std::string_view metho
 std::unique_ptr<Stepper> make_stepper(const Scene& scene, const EquationsOfMotion& equations,
                                       std::string_view method, bool ledger, bool compensated);
 
-/// What is possible in a run but hardly meant, a sentence each: a start that looks like degrees, a
-/// table that ends before the run does.
-std::vector<std::string> run_warnings(const Scene& scene, const std::vector<double>& q0,
-                                      const std::vector<double>& qd0, double t0, double t_end);
-
 /// Simulates the scene from angles q0 (rad, n) and rates qd0 (rad/s, n) over t0 .. t_end (s), which
 /// may run backward. Throws std::invalid_argument for bad input, naming the argument; a run that
 /// fails returns what it has, with a status and a message that say why.

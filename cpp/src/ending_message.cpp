@@ -1,0 +1,64 @@
+#include "pendcore/ending_message.hpp"
+
+#include "pendcore/message.hpp"
+#include "pendcore/start.hpp"
+
+namespace pendcore {
+namespace {
+
+/// "q_2" for component 1 of a chain of two links, "qd_1" for component 2.
+std::string component_name(int i, int n) {
+  if (i >= 2 * n) return "the ledger";
+  return i < n ? "q_" + std::to_string(i + 1) : "qd_" + std::to_string(i - n + 1);
+}
+
+/// What is told where a table or spline does not go on at time t, in the run's direction.
+std::string table_that_ends(const Scene& scene, double t, bool forward) {
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    std::string told;
+    std::visit(
+        [&](const auto& effect) {
+          if constexpr (requires { effect.last_time(); }) {
+            const double first = effect.first_time();
+            const double last = effect.last_time();
+            if (forward ? first <= t && t < last : first < t && t <= last) return;
+            told = effect_name(scene, i) + span_of(scene.effects[i]) +
+                   ", and the run is at t = " + text(t) + " s: make it longer, or simulate less";
+          }
+        },
+        scene.effects[i]);
+    if (!told.empty()) return told;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string ending_message(const Ending& ending, const Scene& scene, const Solution& solution,
+                           const std::string& remark, int ended_by) {
+  std::string message(text(ending.status).sentence);
+  if (ending.status == Status::at_rest) {
+    const double since = solution.resumable.t.high;
+    return message + " (at t = " + text(since) + " s: " + remark + ")";
+  }
+  if (ending.status == Status::event) {
+    const std::vector<Event>& events = solution.options.events;
+    return message + " (at t = " + text(solution.t_reached) +
+           " s: " + event_name(events[ended_by], ended_by) + ")";
+  }
+  if (text(ending.status).success) return message;
+  if (ending.chatters) {
+    return "no step leads on: the law changes back and forth (at t = " + text(solution.t_reached) +
+           " s): dry friction that reverses at once, or two limits that meet";
+  }
+  const bool forward = !(solution.t_end < solution.t0);
+  std::string table = ending.status == Status::non_finite
+                          ? table_that_ends(scene, solution.t_reached, forward)
+                          : std::string();
+  if (!table.empty()) return table;
+  message += " (at t = " + text(solution.t_reached) + " s";
+  if (ending.bad >= 0) message += ", " + component_name(ending.bad, solution.n);
+  return message + ')';
+}
+
+}  // namespace pendcore

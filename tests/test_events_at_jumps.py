@@ -1,0 +1,105 @@
+"""Events where the state jumps, or stays: impacts, bounces, stick; both states, once each."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pendcore as pc
+import pytest
+from pendcore import effects as fx
+from pendcore import events as ev
+
+J = 1 / 3
+
+
+def rod(*effects: Any, gravity: float = 0.0) -> pc.Scene:
+    return pc.Scene(links=[pc.Link(mass=1.0, length=1.0)], gravity=gravity, effects=list(effects))
+
+
+BOUNCING = rod(
+    fx.Motor(joint=1, constant=-1.0), fx.JointStop(joint=1, range=(0.0, 3.0), restitution=0.5)
+)
+FIRST = np.sqrt(2 * 0.4 * J)  # falls from 0.4 with -1/J
+RATE = FIRST / J
+
+
+@pytest.mark.parametrize("store", ["steps", "dense"])
+def test_an_impact_turns_the_rate_at_once_and_both_states_are_told(store: str) -> None:
+    turn = ev.RateZero(joint=1, direction=1)
+    sol = pc.simulate(BOUNCING, 0.4, 0.0, (0, 0.9), events=[turn], store=store)
+    first = sol.events[0][0]
+    assert first.t == pytest.approx(FIRST, rel=1e-12)
+    np.testing.assert_allclose(first.y_before, [0.0, -RATE], atol=1e-12)
+    np.testing.assert_allclose(first.y_after, [0.0, RATE / 2], atol=1e-12)
+    np.testing.assert_array_equal(first.y, first.y_after)
+    twice = np.flatnonzero(np.diff(sol.t) == 0.0)
+    assert sol.t[twice[0]] == first.t
+    np.testing.assert_array_equal(sol.y[:, twice[0]], first.y_before)
+    np.testing.assert_array_equal(sol.y[:, twice[0] + 1], first.y_after)
+    if store == "dense":
+        np.testing.assert_array_equal(sol(first.t), first.y_after)
+
+
+def test_the_angle_touches_its_stop_once_an_impact() -> None:
+    touch = ev.JointAngle(joint=1, value=0.0)
+    sol = pc.simulate(BOUNCING, 0.4, 0.0, (0, 1.2), events=[touch])
+    times = [found.t for found in sol.events[0]]
+    flights = FIRST + 2 * FIRST * np.cumsum([0.0, 0.5, 0.25])
+    assert times[:3] == pytest.approx(flights[flights < 1.2], rel=1e-11)
+    assert len(times) == len(set(times))
+
+
+def test_a_terminal_event_at_an_impact_ends_there_and_goes_on_after_it() -> None:
+    end = ev.RateZero(joint=1, direction=1, terminal=True)
+    sol = pc.simulate(BOUNCING, 0.4, 0.0, (0, 1.2), events=[end])
+    assert sol.status == "event"
+    assert sol.t[-1] == pytest.approx(FIRST, rel=1e-12)
+    whole = pc.simulate(BOUNCING, 0.4, 0.0, (0, 1.2))
+    longer = sol
+    for _ in range(100):
+        if longer.status != "event":
+            break
+        longer = longer.resume(1.2)
+    assert longer.status == whole.status
+    np.testing.assert_array_equal(longer.t, whole.t)
+    np.testing.assert_array_equal(longer.y, whole.y)
+
+
+def test_entering_stick_is_one_rate_zero_in_a_run_that_goes_on() -> None:
+    """Friction 0.5 against sin(t): slides up from asin 0.5, sticks, slides down, and so on."""
+    scene = rod(
+        fx.DryJointFriction(joint=1, coulomb=0.5),
+        fx.Motor(joint=1, sinusoid=fx.Sinusoid(amplitude=1.0, angular_frequency=1.0)),
+    )
+    zero = ev.RateZero(joint=1)
+    sol = pc.simulate(scene, 0.0, 0.0, (0, 20), events=[zero], rtol=1e-11, atol=1e-13)
+    stops = sol.t[1:][(sol.qd[1:, 0] == 0.0) & (sol.qd[:-1, 0] != 0.0)]
+    assert len(stops) >= 5
+    assert [found.t for found in sol.events[0]] == [*stops]
+    for found in sol.events[0]:
+        assert found.qd[0] == 0.0
+
+
+def test_watching_changes_no_bit_of_a_run_with_impacts_and_stick() -> None:
+    scene = pc.Scene(
+        links=[pc.Link(mass=1.0, length=1.0)] * 2,
+        effects=[
+            fx.JointStop(joint=2, range=(-0.4, 0.5), restitution=0.7),
+            fx.DryJointFriction(joint=1, coulomb=0.4, static=0.7),
+        ],
+    )
+    watched = pc.simulate(
+        scene, [0.3, 0.2], 0.0, (0, 6),
+        events=[
+            ev.RateZero(joint=2),
+            ev.LinkAngle(link=2, value=1.2),
+            ev.TipLine(point=(0.3, 1.0), normal=(1.0, 0.2)),
+            ev.Function(lambda t, q, qd: float(qd[0] - 0.1)),
+        ],
+    )  # fmt: skip
+    alone = pc.simulate(scene, [0.3, 0.2], 0.0, (0, 6))
+    np.testing.assert_array_equal(watched.t, alone.t)
+    np.testing.assert_array_equal(watched.y, alone.y)
+    assert watched.stats == alone.stats
+    assert all(len(found) > 0 for found in watched.events)
