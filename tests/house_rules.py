@@ -34,13 +34,16 @@ CPP_FLOW = {
 CPP_FILES = dict.fromkeys(
     [
         "event_finder",
+        "ending_message",
         "fast_mode",
         "options",
         "pendcore",
         "recorder",
         "simulate",
         "steppers",
+        "start",
         "switching",
+        "switching_guards",
         "tip_line",
     ],
     "solution",

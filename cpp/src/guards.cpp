@@ -92,7 +92,7 @@ Crossing Guards::first(double t, double h) {
   return found;
 }
 
-double Guards::miss(int k, double t, double h) {
+Guards::Miss Guards::miss(int k, double t, double h) {
   stepper_.interpolant(h, rows_.data());
   double g = 0.0;
   double slope = 0.0;
@@ -103,6 +103,7 @@ double Guards::miss(int k, double t, double h) {
     if (breaks_.zeros_at_start(k) > 0) {
       // What the state has grown by, without the rounding of the state itself.
       for (int p = degree_; p > 0; --p) g += polynomial_[p];
+      return {slope != 0.0 ? g / slope : 0.0, 0.0};
     } else {
       stepper_.get_new_state(state_.data());
       g = breaks_.guard(k, state_.data());
@@ -117,7 +118,8 @@ double Guards::miss(int k, double t, double h) {
     breaks_.other_guards(t + h, state_.data(), values.data());
     g = values[other];
   }
-  return slope != 0.0 ? g / slope : 0.0;
+  if (slope == 0.0) return {0.0, 0.0};
+  return {g / slope, breaks_.rounding(k, state_.data()) / std::abs(slope)};
 }
 
 }  // namespace pendcore

@@ -87,6 +87,8 @@ std::vector<JointSupport> supports_of(const Scene& scene, const std::vector<doub
 HeldJoints::HeldJoints(const Scene& scene)
     : n_(static_cast<int>(scene.links.size())),
       inertia_(scene),
+      captured_(scene.links.size()),
+      bounced_(scene.links.size()),
       holds_(scene.links.size()),
       mass_(scene.links.size() * scene.links.size()) {
   const std::vector<double> natural = natural_speeds(scene, inertia_);
@@ -143,6 +145,11 @@ Side HeldJoints::contact(int joint, const double* q) const {
   if (is_at(support.lower, phi - support.lower)) return Side::lower;
   if (is_at(support.upper, support.upper - phi)) return Side::upper;
   return Side::none;
+}
+
+double HeldJoints::capture_speed(int joint, const double* q) const {
+  const JointSupport& support = supports_[joint];
+  return contact(joint, q) == Side::lower ? support.capture_lower : support.capture_upper;
 }
 
 bool HeldJoints::strikes(int joint, const double* q, const double* qd) const {
@@ -278,20 +285,22 @@ Impact HeldJoints::strike(const EquationsOfMotion& equations, double t, const do
   fill_responses();
   std::vector<double> before(rows_.size());
   std::vector<char> stays(rows_.size());
+  std::ranges::fill(bounced_, 0);
   for (int r = 0; r < problem_.size; ++r) {
     const int j = rows_[r];
     const JointSupport& support = supports_[j];
     const bool is_lower = contact(j, q) == Side::lower;
     before[r] = direction_ * speed(qd, j);
     problem_.a[r] = before[r];
-    problem_.lower[r] = support.is_locked || !is_lower ? -never : 0.0;
-    problem_.upper[r] = support.is_locked || is_lower ? never : 0.0;
-    const double capture = is_lower ? support.capture_lower : support.capture_upper;
-    const bool bounces =
-        !support.is_locked && !is_plastic && strikes(j, q, qd) && std::abs(before[r]) >= capture;
+    const bool must_stay = support.is_locked || is_captured(j);
+    problem_.lower[r] = must_stay || !is_lower ? -never : 0.0;
+    problem_.upper[r] = must_stay || is_lower ? never : 0.0;
+    const bool bounces = !must_stay && !is_plastic && strikes(j, q, qd) &&
+                         std::abs(before[r]) >= capture_speed(j, q);
     const double e = is_lower ? support.restitution_lower : support.restitution_upper;
     stays[r] = bounces && e > 0.0 ? 0 : 1;
     if (bounces) problem_.a[r] += e * before[r];
+    bounced_[j] = stays[r] == 0 ? 1 : 0;
   }
   solve();
 

@@ -142,7 +142,7 @@ class Run {
     Crossing crossing;
     if (guards_ && !is_shortest) crossing = guards_->first(t, h);
     if (guards_ && crossing.guard >= 0) {
-      if (crossing.theta * std::abs(h) <= 2.0 * rounding * std::abs(t))
+      if (crossing.theta * std::abs(h) <= 2.0 * rounding * std::max(std::abs(t), std::abs(h)))
         return change_at_once(crossing);
       const double whole = h;
       h = crossing.theta * whole;
@@ -244,11 +244,13 @@ class Run {
     double before = std::numeric_limits<double>::infinity();
     for (int polish = 0; polish < 10; ++polish) {
       attempt = stepper_.attempt(t, h, position_.control.gain(method_));
-      const double correction = guards.miss(guard, t, h) * h;
+      const Guards::Miss miss = guards.miss(guard, t, h);
+      const double correction = miss.share * h;
       const double size = std::abs(correction);
       if (!(size <= 0.5 * std::abs(h))) return false;
       if (size <= 4.0 * rounding * std::max(std::abs(t), std::abs(h))) return true;
       // The guard's own rounding can be more than that, where it crosses zero slowly.
+      if (size <= miss.rounding * std::abs(h)) return true;
       if (size <= 1e-6 * std::abs(h) && size >= 0.5 * before) return true;
       before = size;
       h -= correction;

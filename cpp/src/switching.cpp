@@ -10,9 +10,6 @@
 namespace pendcore {
 namespace {
 
-/// Changes at one time of which rounding may be the cause.
-constexpr int many_at_once = 8;
-
 /// Whether what is given of an effect by points in time does not go on from time t.
 template <class Kind>
 bool has_ended(const Kind& effect, double t, bool forward) {
@@ -31,16 +28,6 @@ int whole(double x, int least, int most) {
     throw std::invalid_argument("the modes of this solution are not those of its scene");
   }
   return static_cast<int>(x);
-}
-
-/// The joint that an effect acts on, from 0.
-int joint_of(const Effect& effect) {
-  return std::visit(
-      [](const auto& one) {
-        if constexpr (requires { one.joint; }) return one.joint - 1;
-        return 0;
-      },
-      effect);
 }
 
 }  // namespace
@@ -64,7 +51,12 @@ Switching::Switching(const Scene& scene, const EquationsOfMotion& equations,
       accounts_(accounts),
       n_(static_cast<int>(scene.links.size())),
       joints_(*equations_.held_joints),
-      torque_(scene.links.size()) {}
+      torque_(scene.links.size()) {
+  moment_ = 1e-7 / joints_.natural_speed();
+  for (int k = 0; k < equations_.effects->waves; ++k) {
+    moment_ = std::min(moment_, 1e-7 / std::abs(equations_.effects->angular_frequency[k]));
+  }
+}
 
 bool Switching::begin(double t, double* y, bool forward) {
   forward_ = forward;
@@ -125,109 +117,6 @@ void Switching::set_longest_step() {
   }
 }
 
-void Switching::collect_guards(const double* y) {
-  any_held_ = equations_.effects->any_held;
-  guards_.clear();
-  for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
-    const int joint = joint_of(scene_.effects[i]);
-    std::visit(
-        [&](const auto& one) {
-          if constexpr (requires { one.has_modes(); }) {
-            if (!one.has_modes() || equations_.effects->held[joint] != 0) return;
-            const std::vector<Guard> guards = one.guards(equations_.effects->modes[i]);
-            for (std::size_t k = 0; k < guards.size(); ++k) {
-              guards_.push_back({i, k, joint, guards[k], Side::none, 0});
-            }
-          }
-        },
-        scene_.effects[i]);
-  }
-  collect_stops(y);
-  held_guards_.clear();
-  for (int j = 0; j < n_; ++j) {
-    if (!joints_.is_held(j)) continue;
-    if (joints_.holds()[j].least > -never) held_guards_.push_back({j, false});
-    if (joints_.holds()[j].most < never) held_guards_.push_back({j, true});
-  }
-  for (Watch& watch : guards_) {
-    const int let_go = watch.joint == let_go_ ? 1 : 0;  // its acceleration is zero too
-    if (watch.stop == Side::none && watch.guard.on_phi == 0.0 && watch.guard.offset == 0.0) {
-      const bool is_zero = relative(y + n_, watch.joint + 1) == 0.0;
-      watch.zeros_at_start = is_zero ? 1 + let_go : 0;
-    }
-  }
-  set_longest_step();
-  see_whether_all_rests(y);
-}
-
-void Switching::collect_stops(const double* y) {
-  for (int j = 0; j < n_; ++j) {
-    const JointSupport& support = joints_.supports()[j];
-    if (equations_.effects->held[j] != 0) continue;
-    const Side touches = joints_.contact(j, y);
-    const int zeros = j == let_go_ ? 3 : 1;  // so are its rate and acceleration
-    if (support.lower > -never) {
-      const Guard above{.offset = -support.lower, .on_phi = 1.0, .on_phid = 0.0};
-      guards_.push_back({0, 0, j, above, Side::lower, touches == Side::lower ? zeros : 0});
-    }
-    if (support.upper < never) {
-      const Guard below{.offset = support.upper, .on_phi = -1.0, .on_phid = 0.0};
-      guards_.push_back({0, 0, j, below, Side::upper, touches == Side::upper ? zeros : 0});
-    }
-  }
-}
-
-int Switching::zeros_at_start(int k) const { return guards_[k].zeros_at_start; }
-
-void Switching::step_taken() {
-  for (Watch& watch : guards_) watch.zeros_at_start = 0;
-}
-
-double Switching::guard(int k, const double* y) const {
-  const Guard& g = guards_[k].guard;
-  const int joint = guards_[k].joint + 1;
-  return g.offset + g.on_phi * relative(y, joint) + g.on_phid * relative(y + n_, joint);
-}
-
-void Switching::polynomial(int k, const double* rows, int degree, int dimension,
-                           double* coefficients) const {
-  const Guard& g = guards_[k].guard;
-  const int joint = guards_[k].joint + 1;
-  for (int p = 0; p <= degree; ++p) {
-    const double* const row = rows + static_cast<std::ptrdiff_t>(p) * dimension;
-    coefficients[p] = g.on_phi * relative(row, joint) + g.on_phid * relative(row + n_, joint);
-  }
-  coefficients[0] += g.offset;
-}
-
-void Switching::other_guards(double t, const double* y, double* values) {
-  joints_.torques(equations_, t, y, y + n_, torque_.data());
-  for (const auto& [joint, is_most] : held_guards_) {
-    const Hold& hold = joints_.holds()[joint];
-    *values++ = is_most ? hold.most - torque_[joint] : torque_[joint] - hold.least;
-  }
-}
-
-bool Switching::settle(int k, double* y) const {
-  bool changed = false;
-  double* const q = y;
-  double* const qd = y + n_;
-  if (k >= 0 && k < linear_guards()) {
-    const Watch& watch = guards_[k];
-    const int j = watch.joint;
-    if (watch.stop != Side::none) {
-      const JointSupport& support = joints_.supports()[j];
-      const double angle = watch.stop == Side::lower ? support.lower : support.upper;
-      q[j] = j > 0 ? q[j - 1] + angle : angle;
-      changed = true;
-    } else if (watch.guard.on_phi == 0.0 && watch.guard.offset == 0.0) {
-      qd[j] = j > 0 ? qd[j - 1] : 0.0;  // on a rate alone: it is zero there
-      changed = true;
-    }
-  }
-  return joints_.settle(q, qd) || changed;
-}
-
 void Switching::count_at_once(double t) {
   changes_at_once_ = t == time_of_change_ ? changes_at_once_ + 1 : 0;
   time_of_change_ = t;
@@ -242,21 +131,22 @@ bool Switching::cross(int k, double t, double* y) {
   }
   const double* const q = y;
   const double* const qd = y + n_;
+  const bool is_doubtful = changes_at_once_ > many_at_once;
   bool jumped = false;
-  if (k >= linear_guards()) {
+  if (k >= linear_guards() && !is_doubtful) {
     const auto [joint, is_most] = held_guards_[k - linear_guards()];
     joints_.release(*equations_.effects, joint, is_most ? -1 : 1);
     let_go_ = joint;
+  } else if (k >= linear_guards()) {
+    choose(t, y, -1);
   } else if (const Watch watch = guards_[k]; watch.stop != Side::none) {
     settle(k, y);
     jumped = joints_.strikes(watch.joint, q, qd) && strike(t, y);
-    const bool is_doubtful = changes_at_once_ > many_at_once;
-    if (!jumped) joints_.choose(equations_, t, q, qd, is_doubtful ? watch.joint : -1);
+    if (!jumped) choose(t, y, watch.joint);
   } else if (holding_torque(scene_.effects[watch.effect])) {
-    const bool is_doubtful = changes_at_once_ > many_at_once;
     const double rate = qd[watch.joint];
     settle(k, y);
-    joints_.choose(equations_, t, q, qd, is_doubtful ? watch.joint : -1);
+    choose(t, y, watch.joint);
     // What goes on in the other direction may have begun to do so in a step too short to be cut.
     if (!joints_.is_held(watch.joint)) y[n_ + watch.joint] = rate;
   } else {
@@ -272,6 +162,15 @@ bool Switching::cross(int k, double t, double* y) {
   collect_guards(y);
   let_go_ = -1;
   return jumped;
+}
+
+/// Which joints are held. Where that goes back and forth at one time, no acceleration has a sign
+/// yet: it is decided by those of a moment later, and in the end for what changed last to be held.
+void Switching::choose(double t, const double* y, int joint) {
+  const bool is_doubtful = changes_at_once_ > many_at_once;
+  const bool is_hopeless = changes_at_once_ > 3 * many_at_once;
+  const double later = is_doubtful ? t + (forward_ ? moment_ : -moment_) : t;
+  joints_.choose(equations_, later, y, y + n_, is_hopeless ? joint : -1);
 }
 
 void Switching::cross_time(double t) {
@@ -293,11 +192,12 @@ void Switching::cross_time(double t) {
 bool Switching::strike(double t, double* y) {
   double* const qd = y + n_;
   const std::vector<double> before(qd, qd + n_);
+  joints_.forget_captures();
   Impact impact = joints_.strike(equations_, t, y, qd, changes_at_once_ > many_at_once);
   joints_.choose(equations_, t, y, qd);
-  if (bounces_too_fast(t, y, qd)) {
+  while (capture(t, y, qd)) {
     std::ranges::copy(before, qd);
-    impact = joints_.strike(equations_, t, y, qd, true);
+    impact = joints_.strike(equations_, t, y, qd, changes_at_once_ > many_at_once);
     joints_.choose(equations_, t, y, qd);
   }
   if (joints_.has_failed()) std::ranges::copy(before, qd);
@@ -306,8 +206,11 @@ bool Switching::strike(double t, double* y) {
   return true;
 }
 
-/// Whether a joint that leaves a stop is back before time can resolve it.
-bool Switching::bounces_too_fast(double t, const double* q, const double* qd) {
+/// Whether there are joints that leave a stop and are pushed back, and are there again before time
+/// can resolve it, or did not bounce there and are slower than the capture speed: they are left at
+/// the stop.
+bool Switching::capture(double t, const double* q, const double* qd) {
+  bool any = false;
   std::vector<double> qdd(n_);
   accelerations_in_force(equations_, t, q, qd, qdd.data());
   const double shortest = 32.0 * std::numeric_limits<double>::epsilon() * std::abs(t);
@@ -315,9 +218,13 @@ bool Switching::bounces_too_fast(double t, const double* q, const double* qd) {
     const auto side = static_cast<double>(joints_.contact(j, q));
     const double away = -side * relative(qd, j + 1);
     const double back = side * relative(qdd.data(), j + 1);
-    if (away > 0.0 && back > 0.0 && 2.0 * away < shortest * back) return true;
+    if (!(away > 0.0 && back > 0.0) || joints_.is_captured(j)) continue;
+    const bool is_slow = away < joints_.capture_speed(j, q) && !joints_.has_bounced(j);
+    if (!is_slow && 2.0 * away >= shortest * back) continue;
+    joints_.capture(j);
+    any = true;
   }
-  return false;
+  return any;
 }
 
 void Switching::book(Account account, double value, double* y) const {

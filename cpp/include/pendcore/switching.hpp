@@ -38,6 +38,7 @@ class Switching final : public Breaks {
   void polynomial(int k, const double* rows, int degree, int dimension,
                   double* coefficients) const override;
   double guard(int k, const double* y) const override;
+  double rounding(int k, const double* y) const override;
   void other_guards(double t, const double* y, double* values) override;
   bool settles_every_step() const override { return any_held_; }
   bool settle(int k, double* y) const override;
@@ -68,12 +69,17 @@ class Switching final : public Breaks {
     int joint;
     bool is_most;
   };
+  /// Changes at one time of which rounding may be the cause.
+  static constexpr int many_at_once = 8;
+  /// The joint that an effect acts on, from 0.
+  static int joint_of(const Effect& effect);
   void put_mode(std::size_t i, int mode) { equations_.effects->put_mode(i, mode); }
   /// The modes that hold from time t on: those of the state, and none where a table has ended.
   void choose_modes_from(double t, const double* q, const double* qd);
   void cross_time(double t);
+  void choose(double t, const double* y, int joint);
   bool strike(double t, double* y);
-  bool bounces_too_fast(double t, const double* q, const double* qd);
+  bool capture(double t, const double* q, const double* qd);
   void count_at_once(double t);
   /// After modes and holds have changed.
   void collect_guards(const double* y);
@@ -93,6 +99,7 @@ class Switching final : public Breaks {
   bool is_over_ = false;  ///< a table or a spline has ended
   bool rests_ = false;
   double longest_step_ = never;
+  double moment_;                   ///< s, short beside all that goes on
   mutable double next_time_ = 0.0;  ///< after the time asked for last
   mutable double asked_ = std::numeric_limits<double>::quiet_NaN();
   std::vector<Watch> guards_;

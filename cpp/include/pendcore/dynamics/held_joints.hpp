@@ -86,6 +86,9 @@ class HeldJoints {
   void torques(const EquationsOfMotion& equations, double t, const double* q, const double* qd,
                double* torque);
 
+  /// The size of what the torque of a joint was added up from, N m.
+  double torque_size(int joint) const { return size_[joint]; }
+
   /// Lets a joint go, to slide up or down its angle (1 or -1).
   void release(EffectsInForce& effects, int joint, int direction);
 
@@ -94,6 +97,13 @@ class HeldJoints {
 
   /// Whether a joint that touches a stop moves into it.
   bool strikes(int joint, const double* q, const double* qd) const;
+
+  /// Joints that the next impact leaves at their stops, whatever it takes.
+  void forget_captures() { captured_.assign(captured_.size(), 0); }
+  void capture(int joint) { captured_[joint] = 1; }
+  bool is_captured(int joint) const { return captured_[joint] != 0; }
+  double capture_speed(int joint, const double* q) const;
+  bool has_bounced(int joint) const { return bounced_[joint] != 0; }  ///< in the last impact
 
   /// All closed stops at once: `qd` becomes what it is after the impact. Without restitution if
   /// `is_plastic`.
@@ -126,6 +136,7 @@ class HeldJoints {
   bool can_hold_;
   double direction_ = 1.0;
   bool has_failed_ = false;
+  std::vector<char> captured_, bounced_;
   std::vector<Hold> holds_;
   ForcesBetweenBounds problem_;
   std::vector<int> rows_;         ///< the joints in it

@@ -35,6 +35,8 @@ class Breaks {
   virtual void polynomial(int k, const double* rows, int degree, int dimension,
                           double* coefficients) const = 0;
   virtual double guard(int k, const double* y) const = 0;
+  /// How far a guard's value can be off by the rounding of the state.
+  virtual double rounding(int k, const double* y) const = 0;
   /// The values of the others.
   virtual void other_guards(double t, const double* y, double* values) = 0;
 

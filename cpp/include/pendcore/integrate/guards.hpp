@@ -23,8 +23,12 @@ class Guards {
   /// In the attempted step of size h from time t.
   Crossing first(double t, double h);
 
-  /// By how much the step's end misses the zero of guard k, in units of the step.
-  double miss(int k, double t, double h);
+  /// By how much the step's end misses the zero of guard k, and how much of that may be rounding,
+  /// in units of the step.
+  struct Miss {
+    double share, rounding;
+  };
+  Miss miss(int k, double t, double h);
 
  private:
   void linear(int k);

@@ -1,0 +1,136 @@
+// The guards of Switching: which there are, and their values.
+#include <cmath>
+#include <limits>
+
+#include "pendcore/dynamics/kinematics.hpp"
+#include "pendcore/switching.hpp"
+
+namespace pendcore {
+
+int Switching::joint_of(const Effect& effect) {
+  return std::visit(
+      [](const auto& one) {
+        if constexpr (requires { one.joint; }) return one.joint - 1;
+        return 0;
+      },
+      effect);
+}
+
+void Switching::collect_guards(const double* y) {
+  any_held_ = equations_.effects->any_held;
+  guards_.clear();
+  for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
+    const int joint = joint_of(scene_.effects[i]);
+    std::visit(
+        [&](const auto& one) {
+          if constexpr (requires { one.has_modes(); }) {
+            if (!one.has_modes() || equations_.effects->held[joint] != 0) return;
+            const std::vector<Guard> guards = one.guards(equations_.effects->modes[i]);
+            for (std::size_t k = 0; k < guards.size(); ++k) {
+              guards_.push_back({i, k, joint, guards[k], Side::none, 0});
+            }
+          }
+        },
+        scene_.effects[i]);
+  }
+  collect_stops(y);
+  held_guards_.clear();
+  for (int j = 0; j < n_; ++j) {
+    if (!joints_.is_held(j)) continue;
+    if (joints_.holds()[j].least > -never) held_guards_.push_back({j, false});
+    if (joints_.holds()[j].most < never) held_guards_.push_back({j, true});
+  }
+  for (Watch& watch : guards_) {
+    const int let_go = watch.joint == let_go_ ? 1 : 0;  // its acceleration is zero too
+    if (watch.stop == Side::none && watch.guard.on_phi == 0.0 && watch.guard.offset == 0.0) {
+      const bool is_zero = relative(y + n_, watch.joint + 1) == 0.0;
+      watch.zeros_at_start = is_zero ? 1 + let_go : 0;
+    }
+  }
+  set_longest_step();
+  see_whether_all_rests(y);
+}
+
+void Switching::collect_stops(const double* y) {
+  for (int j = 0; j < n_; ++j) {
+    const JointSupport& support = joints_.supports()[j];
+    if (equations_.effects->held[j] != 0) continue;
+    const Side touches = joints_.contact(j, y);
+    // So are its rate and acceleration where it was held until now.
+    const bool is_doubtful = changes_at_once_ > many_at_once;
+    const bool is_still = relative(y + n_, j + 1) == 0.0;
+    const int zeros = is_still && (j == let_go_ || is_doubtful) ? 3 : 1;
+    if (support.lower > -never) {
+      const Guard above{.offset = -support.lower, .on_phi = 1.0, .on_phid = 0.0};
+      guards_.push_back({0, 0, j, above, Side::lower, touches == Side::lower ? zeros : 0});
+    }
+    if (support.upper < never) {
+      const Guard below{.offset = support.upper, .on_phi = -1.0, .on_phid = 0.0};
+      guards_.push_back({0, 0, j, below, Side::upper, touches == Side::upper ? zeros : 0});
+    }
+  }
+}
+
+int Switching::zeros_at_start(int k) const { return guards_[k].zeros_at_start; }
+
+void Switching::step_taken() {
+  for (Watch& watch : guards_) watch.zeros_at_start = 0;
+}
+
+double Switching::guard(int k, const double* y) const {
+  const Guard& g = guards_[k].guard;
+  const int joint = guards_[k].joint + 1;
+  return g.offset + g.on_phi * relative(y, joint) + g.on_phid * relative(y + n_, joint);
+}
+
+double Switching::rounding(int k, const double* y) const {
+  const double last_bits = 4.0 * std::numeric_limits<double>::epsilon();
+  if (k >= linear_guards())
+    return last_bits * joints_.torque_size(held_guards_[k - linear_guards()].joint);
+  const auto& [offset, on_phi, on_phid] = guards_[k].guard;
+  const int j = guards_[k].joint;
+  auto size = [j](const double* x) { return std::abs(x[j]) + (j > 0 ? std::abs(x[j - 1]) : 0.0); };
+  return last_bits *
+         (std::abs(offset) + std::abs(on_phi) * size(y) + std::abs(on_phid) * size(y + n_));
+}
+
+void Switching::polynomial(int k, const double* rows, int degree, int dimension,
+                           double* coefficients) const {
+  const Guard& g = guards_[k].guard;
+  const int joint = guards_[k].joint + 1;
+  for (int p = 0; p <= degree; ++p) {
+    const double* const row = rows + static_cast<std::ptrdiff_t>(p) * dimension;
+    coefficients[p] = g.on_phi * relative(row, joint) + g.on_phid * relative(row + n_, joint);
+  }
+  coefficients[0] += g.offset;
+}
+
+void Switching::other_guards(double t, const double* y, double* values) {
+  joints_.torques(equations_, t, y, y + n_, torque_.data());
+  for (const auto& [joint, is_most] : held_guards_) {
+    const Hold& hold = joints_.holds()[joint];
+    *values++ = is_most ? hold.most - torque_[joint] : torque_[joint] - hold.least;
+  }
+}
+
+bool Switching::settle(int k, double* y) const {
+  bool changed = false;
+  double* const q = y;
+  double* const qd = y + n_;
+  if (k >= 0 && k < linear_guards()) {
+    const Watch& watch = guards_[k];
+    const int j = watch.joint;
+    if (watch.stop != Side::none) {
+      const JointSupport& support = joints_.supports()[j];
+      const double angle = watch.stop == Side::lower ? support.lower : support.upper;
+      q[j] = j > 0 ? q[j - 1] + angle : angle;
+      changed = true;
+    } else if (watch.guard.on_phi == 0.0 && watch.guard.offset == 0.0) {
+      qd[j] = j > 0 ? qd[j - 1] : 0.0;  // on a rate alone: it is zero there
+      changed = true;
+    }
+  }
+  return joints_.settle(q, qd) || changed;
+}
+
+}  // namespace pendcore
