@@ -119,6 +119,7 @@ void Switching::set_longest_step() {
 
 void Switching::count_at_once(double t) {
   changes_at_once_ = t == time_of_change_ ? changes_at_once_ + 1 : 0;
+  if (changes_at_once_ == 0) let_go_ = -1;
   time_of_change_ = t;
 }
 
@@ -160,7 +161,6 @@ bool Switching::cross(int k, double t, double* y) {
         scene_.effects[watch.effect]);
   }
   collect_guards(y);
-  let_go_ = -1;
   return jumped;
 }
 
@@ -263,6 +263,7 @@ std::vector<double> Switching::memory() const {
   std::vector<double> memory(modes.begin(), modes.end());
   memory.push_back(time_of_change_);
   memory.push_back(changes_at_once_);
+  memory.push_back(let_go_);
   const std::vector<double> holds = joints_.memory();
   memory.insert(memory.end(), holds.begin(), holds.end());
   for (const Watch& watch : guards_) memory.push_back(watch.zeros_at_start);
@@ -274,16 +275,17 @@ void Switching::restore(const std::vector<double>& memory, double t, const doubl
   forward_ = forward;
   joints_.set_direction(forward);
   const std::size_t effects = scene_.effects.size();
-  if (memory.size() < effects + 2) {
+  if (memory.size() < effects + 3) {
     throw std::invalid_argument("the modes of this solution are not those of its scene");
   }
   for (std::size_t i = 0; i < effects; ++i) put_mode(i, whole(memory[i], -1, INT_MAX));
   is_over_ = std::ranges::any_of(scene_.effects, [&](const Effect& effect) {
     return std::visit([&](const auto& one) { return has_ended(one, t, forward_); }, effect);
   });
-  std::size_t from = joints_.restore(*equations_.effects, memory, effects + 2);
+  std::size_t from = joints_.restore(*equations_.effects, memory, effects + 3);
   time_of_change_ = memory[effects];
   changes_at_once_ = whole(memory[effects + 1], 0, INT_MAX);
+  let_go_ = whole(memory[effects + 2], -1, n_ - 1);
   collect_guards(y);
   if (memory.size() != from + guards_.size()) {
     throw std::invalid_argument("the modes of this solution are not those of its scene");

@@ -107,7 +107,7 @@ class Switching final : public Breaks {
   std::vector<double> torque_;  ///< that holds the joints
   double time_of_change_ = std::numeric_limits<double>::quiet_NaN();
   int changes_at_once_ = 0;
-  int let_go_ = -1;  ///< the joint that was held until now
+  int let_go_ = -1;  ///< the joint that was held until this time
   std::string remark_;
 };
 
