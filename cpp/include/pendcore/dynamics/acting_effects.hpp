@@ -72,12 +72,12 @@ class EffectsInForce {
   std::vector<int> modes;           ///< of each effect
   std::vector<int> number_of_wave;  ///< of each effect that a wave drives
   std::vector<JointWave> joint_waves;
-  bool has_modes = false;   ///< some law is smooth only in pieces
-  bool has_forces = false;  ///< some law adds forces, not couples alone
-  std::vector<char> held;   ///< of each joint: it does not turn, and is eliminated
-  bool any_held = false;
+  std::vector<char> held;  ///< of each joint: it does not turn, and is eliminated
   std::vector<std::shared_ptr<DrivenPivot::Law>> pivots;
   std::vector<CompiledUser> users;
+  bool has_modes = false;   ///< some law is smooth only in pieces
+  bool has_forces = false;  ///< some law adds forces, not couples alone
+  bool any_held = false;
 
   int waves = 0;
   TwoWaves two_waves;
