@@ -71,7 +71,7 @@ std::optional<FastMode> fast_mode(const Scene& scene, const EquationsOfMotion& e
   const double slow = far_faster * bound_of(links, t, q, qd);
   if (!(bound_of(whole) > slow)) return std::nullopt;  // as a rule: no eigenvalue is needed
   const Eigen::EigenSolver<Matrix> solver(whole);
-  const Eigen::VectorXcd values = solver.eigenvalues();
+  const Eigen::VectorXcd& values = solver.eigenvalues();
   const Eigen::MatrixXcd vectors = solver.eigenvectors();
   const Eigen::Index n = whole.rows() / 2;
   Eigen::Index first = 0;

@@ -31,7 +31,9 @@ class SceneSystem final : public DifferentiableSystem {
       ledger_->powers(t, y, y + row, dydt + row, dydt + static_cast<std::ptrdiff_t>(2) * row);
     }
   }
-  void differentiate(const Scene& scene) { jacobian_.emplace(scene, equations_); }
+  void differentiate(const Scene& scene) {
+    jacobian_ = std::make_unique<Jacobian>(scene, equations_);
+  }
   void jacobian(double t, const double* y, double* by_q, double* by_qd) const override {
     (*jacobian_)(t, y, y + row, by_q, by_qd);
   }
@@ -40,7 +42,7 @@ class SceneSystem final : public DifferentiableSystem {
   EquationsOfMotion equations_;
   int n_;
   std::unique_ptr<Ledger> ledger_;
-  std::optional<Jacobian> jacobian_;
+  std::unique_ptr<Jacobian> jacobian_;
 };
 
 /// Any form alike: what an implicit step costs is not in the form.
