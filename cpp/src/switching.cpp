@@ -201,6 +201,9 @@ bool Switching::strike(double t, double* y) {
     joints_.choose(equations_, t, y, qd);
   }
   if (joints_.has_failed()) std::ranges::copy(before, qd);
+  // Rates have jumped: every law that has sides is on another one.
+  choose_modes_from(t, y, qd);
+  joints_.choose(equations_, t, y, qd);
   book(Account::impact, impact.loss, y);
   book(Account::drive, impact.work_of_drive, y);
   return true;
