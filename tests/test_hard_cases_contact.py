@@ -10,8 +10,6 @@ import pytest
 from pendcore import effects as fx
 from unit_rods import rod, solve, time_of_rest
 
-pytestmark = pytest.mark.skipif(not hasattr(fx, "JointStop"), reason="there are no stops yet")
-
 FINE = {"rtol": 1e-12, "atol": 1e-14}
 BOOK = pc.Scene.textbook()
 inf = np.inf

@@ -11,8 +11,6 @@ import pytest
 from pendcore import _core
 from unit_rods import rod
 
-pytestmark = pytest.mark.skipif(not hasattr(pc, "events"), reason="there are no events yet")
-
 G = 9.81
 METHODS = [method["name"] for method in _core.methods() if method["error_order"]]
 
@@ -94,8 +92,6 @@ def test_a_swing_that_only_touches_the_mark_does_not_pass_it_twice_the_wrong_way
 
 def test_each_bounce_is_an_event_with_the_states_on_both_sides() -> None:
     """Rate zero through a jump: from -w to e w without a value between."""
-    if not hasattr(pc.effects, "JointStop"):
-        pytest.skip("there are no stops yet")
     stop = pc.effects.JointStop(joint=1, range=(0, np.inf), restitution=0.8, capture_speed=1e-3)
     scene = rod(pc.effects.Motor(joint=1, constant=-2.0), stop)
     bound = pc.events.JointAngle(joint=1, value=0.0)

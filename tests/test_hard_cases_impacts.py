@@ -11,8 +11,6 @@ from dense_chain import DenseChain, joints, rates_after_impact
 from pendcore import effects as fx
 from unit_rods import links
 
-pytestmark = pytest.mark.skipif(not hasattr(fx, "JointStop"), reason="there are no stops yet")
-
 FINE = {"rtol": 1e-12, "atol": 1e-14, "max_steps": 20_000}  # lest one goes on for ever
 inf = np.inf
 

@@ -38,9 +38,7 @@ def drawn(seed: int) -> tuple[pc.Scene, Any, Any]:
     if random.random() < 0.3:
         shake = fx.Sinusoid(0.1, angular_frequency=random.uniform(1, 9))
         found.append(fx.DrivenPivot(x=shake))
-    rods = [
-        pc.Link(mass=random.uniform(0.3, 3), length=random.uniform(0.3, 1.5)) for _ in range(n)
-    ]
+    rods = [pc.Link(mass=random.uniform(0.3, 3), length=random.uniform(0.3, 1.5)) for _ in range(n)]
     rates = random.choice([0, 1]) * random.uniform(-3, 3, n)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", pc.PendcoreWarning)

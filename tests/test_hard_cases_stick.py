@@ -14,10 +14,6 @@ import pytest
 from pendcore import effects as fx
 from unit_rods import rod, solve, time_of_rest
 
-pytestmark = pytest.mark.skipif(
-    "does not stick" in (fx.DryJointFriction.__doc__ or ""), reason="friction does not stick yet"
-)
-
 G = 9.81
 FINE = {"rtol": 1e-12, "atol": 1e-14}
 WEIGHT = 3 * G / 2  # torque of gravity on the horizontal rod

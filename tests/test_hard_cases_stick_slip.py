@@ -14,10 +14,6 @@ from pendcore import effects as fx
 from stick_slip import DIGITS, Hum, Slide, slides
 from unit_rods import rod, solve
 
-pytestmark = pytest.mark.skipif(
-    "does not stick" in (fx.DryJointFriction.__doc__ or ""), reason="friction does not stick yet"
-)
-
 FINE = {"rtol": 1e-12, "atol": 1e-14}
 HUMS = {
     "both ways": {"amplitude": 1.0, "friction": 0.7, "bias": 0.0},

@@ -18,10 +18,6 @@ from hybrid_chain import HybridChain
 from pendcore import effects as fx
 from unit_rods import links, time_of_rest
 
-pytestmark = pytest.mark.skipif(
-    "does not stick" in (fx.DryJointFriction.__doc__ or ""), reason="friction does not stick yet"
-)
-
 CASES = 2000
 
 

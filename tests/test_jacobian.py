@@ -9,7 +9,6 @@ rate.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -20,9 +19,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from reference.arithmetic import multiple_precision
-from reference.effects import Described, law
-from reference.newton_euler import Body
-from reference.random_rigs import State, effects, gravities, links, states
+from reference.effects import law
+from reference.random_rigs import DrawnRig, rigs
 from reference.rig import Rig
 
 TOLERANCE = 1e-12
@@ -31,21 +29,8 @@ MANY = multiple_precision(80)
 OF_USERS = {"user", "compiled_user"}  # differentiated by differences
 KINDS = sorted(set(pc.effects.kinds()) - OF_USERS - {"joint_stop"})  # stops have no torque
 
-Drawn = tuple[list[Body], float, list[Described], State]
 
-
-@st.composite
-def scenes(draw: st.DrawFn, kinds: Sequence[str], n: int) -> Drawn:
-    described = [one for kind in kinds for one in draw(effects(kind, n))]
-    return (
-        [draw(links()) for _ in range(n)],
-        draw(gravities),
-        described,
-        draw(states(n, described)),
-    )
-
-
-def computed(drawn: Drawn) -> NDArray[np.float64]:
+def computed(drawn: DrawnRig) -> NDArray[np.float64]:
     """Return d qdd / d (q, qd), (n, 2n)."""
     bodies, gravity, described, (t, q, qd) = drawn
     scene: Any = scene_of(bodies, gravity, described)
@@ -53,7 +38,7 @@ def computed(drawn: Drawn) -> NDArray[np.float64]:
     return np.hstack([of_all[0] for of_all in scene._compiled.jacobian(*rows)])
 
 
-def exact_and_size(drawn: Drawn) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def exact_and_size(drawn: DrawnRig) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     bodies, gravity, described, (t, q, qd) = drawn
     n, number = len(bodies), MANY.number
     rig = Rig(
@@ -89,7 +74,7 @@ def rig_gain(rig: Rig, state: list[Any], n: int) -> float:
     return float(np.linalg.cond(matrix / np.outer(size, size)))
 
 
-def check(drawn: Drawn, tolerance: float = TOLERANCE) -> None:
+def check(drawn: DrawnRig, tolerance: float = TOLERANCE) -> None:
     exact, size = exact_and_size(drawn)
     assert np.all(np.abs(computed(drawn) - exact) <= tolerance * size + ROUNDING_OF_THE_REFERENCE)
 
@@ -98,7 +83,7 @@ def check(drawn: Drawn, tolerance: float = TOLERANCE) -> None:
 @settings(max_examples=3, deadline=None)
 @given(data=st.data())
 def test_no_effect_at_all(n: int, data: st.DataObject) -> None:
-    check(data.draw(scenes([], n)))
+    check(data.draw(rigs([], st.just(n))))
 
 
 @pytest.mark.parametrize("n", [1, 2, 3])
@@ -106,7 +91,7 @@ def test_no_effect_at_all(n: int, data: st.DataObject) -> None:
 @settings(max_examples=6, deadline=None)
 @given(data=st.data())
 def test_an_effect_alone(kind: str, n: int, data: st.DataObject) -> None:
-    check(data.draw(scenes([kind], n)))
+    check(data.draw(rigs([kind], st.just(n))))
 
 
 @pytest.mark.parametrize("but", ["lock", None])
@@ -114,14 +99,14 @@ def test_an_effect_alone(kind: str, n: int, data: st.DataObject) -> None:
 @settings(max_examples=12, deadline=None)
 @given(data=st.data())
 def test_all_effects_together(n: int, but: str | None, data: st.DataObject) -> None:
-    check(data.draw(scenes([kind for kind in KINDS if kind != but], n)))
+    check(data.draw(rigs([kind for kind in KINDS if kind != but], st.just(n))))
 
 
 @pytest.mark.parametrize("but", ["lock", None])
 @settings(max_examples=2, deadline=None)
 @given(data=st.data())
 def test_all_effects_together_on_a_long_chain(but: str | None, data: st.DataObject) -> None:
-    check(data.draw(scenes([kind for kind in KINDS if kind != but], 10)))
+    check(data.draw(rigs([kind for kind in KINDS if kind != but], st.just(10))))
 
 
 @pytest.mark.parametrize("n", [1, 2, 3])
@@ -131,4 +116,4 @@ def test_functions_of_the_users_are_differentiated_by_differences(
     n: int, data: st.DataObject
 ) -> None:
     # one that is compiled takes doubles alone, from the reference as well
-    check(data.draw(scenes(["user", "viscous_joint"], n)), 1e-9)
+    check(data.draw(rigs(["user", "viscous_joint"], st.just(n))), 1e-9)

@@ -10,8 +10,6 @@ reference has forty digits; what its solution costs in doubles is nobody's error
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 import pendcore as pc
 import pytest
@@ -23,7 +21,7 @@ from reference.arithmetic import multiple_precision
 from reference.effects import LAWS, Described, law
 from reference.effects.torsional_spring import TorsionalSpring
 from reference.newton_euler import Body
-from reference.random_rigs import START, State, effects, gravities, links, states
+from reference.random_rigs import START, DrawnRig, rigs
 from reference.rig import Rig
 
 TOLERANCE = 1e-12
@@ -31,21 +29,6 @@ FORTY = multiple_precision(40)
 ROUNDING_OF_THE_REFERENCE = 1e-36
 KINDS = sorted(pc.effects.kinds())
 some = settings(max_examples=30, deadline=None)
-
-Drawn = tuple[list[Body], float, list[Described], State]
-
-
-@st.composite
-def scenes(draw: st.DrawFn, kinds: Sequence[str], sizes: st.SearchStrategy[int]) -> Drawn:
-    n = draw(sizes)
-    described = [one for kind in kinds for one in draw(effects(kind, n))]
-    return (
-        [draw(links()) for _ in range(n)],
-        draw(gravities),
-        described,
-        draw(states(n, described)),
-    )
-
 
 short, long = st.sampled_from([1, 2, 3]), st.integers(4, 10)
 
@@ -55,7 +38,7 @@ def assert_close(computed: ArrayLike, exact: object, scale: ArrayLike) -> None:
     assert np.all(error <= TOLERANCE * np.asarray(scale) + ROUNDING_OF_THE_REFERENCE)
 
 
-def check_instant(drawn: Drawn) -> None:
+def check_instant(drawn: DrawnRig) -> None:
     bodies, gravity, described, (t, q, qd) = drawn
     n, scene = len(bodies), scene_of(bodies, gravity, described)
     now = pc.simulate(scene, q, qd, t_span=(t, t), store="steps")
@@ -105,45 +88,45 @@ def test_every_kind_of_effect_has_a_law_in_the_reference() -> None:
 @some
 @given(data=st.data())
 def test_an_effect_alone(kind: str, data: st.DataObject) -> None:
-    check_instant(data.draw(scenes([kind], short)))
+    check_instant(data.draw(rigs([kind], short)))
 
 
 @pytest.mark.parametrize("kind", KINDS)
 @settings(max_examples=8, deadline=None)
 @given(data=st.data())
 def test_an_effect_alone_on_a_long_chain(kind: str, data: st.DataObject) -> None:
-    check_instant(data.draw(scenes([kind], long)))
+    check_instant(data.draw(rigs([kind], long)))
 
 
 @pytest.mark.parametrize("kind", KINDS)
 @some
 @given(data=st.data())
 def test_an_effect_on_a_moving_pivot(kind: str, data: st.DataObject) -> None:
-    check_instant(data.draw(scenes(sorted({kind, "driven_pivot"}), short)))
+    check_instant(data.draw(rigs(sorted({kind, "driven_pivot"}), short)))
 
 
 @pytest.mark.parametrize("but", ["lock", None])
 @settings(max_examples=60, deadline=None)
 @given(data=st.data())
 def test_all_effects_together(but: str | None, data: st.DataObject) -> None:
-    check_instant(data.draw(scenes([kind for kind in KINDS if kind != but], short)))
+    check_instant(data.draw(rigs([kind for kind in KINDS if kind != but], short)))
 
 
 @settings(max_examples=20, deadline=None)
-@given(scenes(KINDS, long))
-def test_all_effects_together_on_a_long_chain(drawn: Drawn) -> None:
+@given(rigs(KINDS, long))
+def test_all_effects_together_on_a_long_chain(drawn: DrawnRig) -> None:
     check_instant(drawn)
 
 
 @settings(max_examples=50, deadline=None)
-@given(scenes([], short | long))
-def test_no_effect_at_all(drawn: Drawn) -> None:
+@given(rigs([], short | long))
+def test_no_effect_at_all(drawn: DrawnRig) -> None:
     check_instant(drawn)
 
 
 @some
-@given(scenes(["rotor_inertia", "payload", "driven_pivot"], short | long))
-def test_the_mass_matrix_holds_rotors_and_the_payload(drawn: Drawn) -> None:
+@given(rigs(["rotor_inertia", "payload", "driven_pivot"], short | long))
+def test_the_mass_matrix_holds_rotors_and_the_payload(drawn: DrawnRig) -> None:
     bodies, gravity, described, (_, q, _) = drawn
     laws = [law(one) for one in described]
     exact = Rig(bodies=bodies, gravity=0.0, effects=laws, arithmetic=FORTY).mass_matrix(q)

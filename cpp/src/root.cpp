@@ -84,22 +84,6 @@ double first_negative(const double* coefficients, int degree) {
   return search(c, rest, bernstein(c, rest), 0.0, 1.0, 0);
 }
 
-double first_negative(const std::function<double(double)>& f, int samples) {
-  double low = 0.0;
-  for (int i = 1; i <= samples; ++i) {
-    double high = static_cast<double>(i) / samples;
-    if (f(high) < 0.0) {
-      while (true) {
-        const double middle = 0.5 * (low + high);
-        if (middle <= low || middle >= high) return high;
-        (f(middle) < 0.0 ? high : low) = middle;
-      }
-    }
-    low = high;
-  }
-  return none;
-}
-
 namespace {
 
 using LongForm = std::array<double, highest_degree + 1>;

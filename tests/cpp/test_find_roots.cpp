@@ -7,20 +7,11 @@
 #include <vector>
 
 #include "pendcore/integrate/root.hpp"
+#include "polynomials.hpp"
 
 using namespace pendcore;
 
 namespace {
-
-/// The coefficients of sign prod (theta - root).
-std::vector<double> with_roots(const std::vector<double>& roots, double sign) {
-  std::vector<double> c{sign};
-  for (const double root : roots) {
-    c.insert(c.begin(), 0.0);
-    for (std::size_t k = 0; k + 1 < c.size(); ++k) c[k] -= root * c[k + 1];
-  }
-  return c;
-}
 
 double at_one(const std::vector<double>& c) {
   double sum = 0.0;

@@ -6,20 +6,11 @@
 #include <vector>
 
 #include "pendcore/integrate/root.hpp"
+#include "polynomials.hpp"
 
 using namespace pendcore;
 
 namespace {
-
-/// The coefficients of prod (theta - root).
-std::vector<double> with_roots(const std::vector<double>& roots, double sign) {
-  std::vector<double> c{sign};
-  for (const double root : roots) {
-    c.insert(c.begin(), 0.0);
-    for (std::size_t k = 0; k + 1 < c.size(); ++k) c[k] -= root * c[k + 1];
-  }
-  return c;
-}
 
 double first(const std::vector<double>& c) {
   return first_negative(c.data(), static_cast<int>(c.size()) - 1);
@@ -80,10 +71,4 @@ TEST_CASE("random polynomials: as many samples see it") {
       }
     }
   }
-}
-
-TEST_CASE("a function is sampled and bisected") {
-  auto wave = [](double x) { return std::cos(4.0 * x); };
-  CHECK(first_negative(wave, 8) == doctest::Approx(M_PI / 8).epsilon(1e-15));
-  CHECK(first_negative([](double) { return 1.0; }, 8) > 1.0);
 }

@@ -118,7 +118,7 @@ def drawn(choices: Choices) -> Drawn:
     scene = drawn_scene.scene(choices, how, times)
     q0, qd0 = start(choices, how, scene)
     asked = options(choices, how, times)
-    if hasattr(pc, "events") and happens(choices, 40):
+    if happens(choices, 40):
         asked["events"] = drawn_events.events(choices, how, len(scene.links))
     if not all(abs(x) < inf for x in (*times, *q0, *qd0)):
         raise ValueError("the start is not finite")

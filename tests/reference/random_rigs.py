@@ -163,6 +163,23 @@ def effects(draw: st.DrawFn, kind: str, n: int) -> list[Described]:
     return [(kind, draw(parameters(kind, joint))) for joint in joints]
 
 
+DrawnRig = tuple[list[Body], float, list[Described], State]
+"""Links, gravity, effects and a state."""
+
+
+@st.composite
+def rigs(draw: st.DrawFn, kinds: Sequence[str], sizes: st.SearchStrategy[int]) -> DrawnRig:
+    """A chain with effects of each kind, at an instant."""
+    n = draw(sizes)
+    described = [one for kind in kinds for one in draw(effects(kind, n))]
+    return (
+        [draw(links()) for _ in range(n)],
+        draw(gravities),
+        described,
+        draw(states(n, described)),
+    )
+
+
 @st.composite
 def states(draw: st.DrawFn, n: int, effects: Sequence[Described]) -> State:
     """A state that the locks allow and in which dry friction slides."""

@@ -6,14 +6,13 @@ import numpy as np
 
 from hard_cases.case import Contender, HardCase, Outcome
 from hard_cases.odeint import odeint
-from hard_cases.rods import Array, mujoco_rods
+from hard_cases.rods import STIFF_FRICTION, Array, mujoco_rods
 
 G, T_END = 9.81, 1e6
 START = np.pi / 6  # below the horizontal
 WEIGHT = 3 * G / 2
 FRICTION = float(2 * WEIGHT * np.cos(START))
 SOFT = 1e-6  # rad/s over which the sign is smoothed
-TUNED = 'solimpfriction="0.9999 0.9999 0.001" solreffriction="{} 1"'
 
 
 def moved(by: float, *, extrapolated_from: float = 0.0) -> Outcome:
@@ -76,7 +75,7 @@ CASE = HardCase(
         Contender(
             program="mujoco",
             how="`frictionloss`, hardest constraint, 0.1 ms",
-            run=lambda: mujoco_creep(1e-4, TUNED.format(2e-4)),
+            run=lambda: mujoco_creep(1e-4, STIFF_FRICTION.format(2e-4)),
         ),
         odeint(
             "sign smoothed over 1e-6 rad/s, rosenbrock4",

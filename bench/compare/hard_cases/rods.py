@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -49,6 +50,24 @@ def mujoco_rods(
     }  # fmt: skip
     tip = SECOND.format(**known) if links == 2 else ""
     return mujoco.MjModel.from_xml_string(ROD.format(tip=tip, **known))
+
+
+STIFF_FRICTION = 'solimpfriction="0.9999 0.9999 0.001" solreffriction="{} 1"'
+"""MuJoCo's friction at its hardest; to be filled in: its time constant, s."""
+
+
+def driven_mujoco(model: Any, torque: Callable[[float], float], t_end: float) -> Array:
+    """Run under a torque in the first joint; rows of t, the joints' angles, and their rates."""
+    import mujoco
+
+    data = mujoco.MjData(model)
+    mujoco.set_mjcb_control(lambda _, d: d.ctrl.fill(torque(d.time)))
+    rows = [np.array([0.0, *data.qpos, *data.qvel])]
+    for _ in range(round(t_end / model.opt.timestep)):
+        mujoco.mj_step(model, data)
+        rows.append(np.array([data.time, *data.qpos, *data.qvel]))
+    mujoco.set_mjcb_control(None)
+    return np.transpose(rows)
 
 
 def textbook_rates(_: float, y: Array) -> Array:

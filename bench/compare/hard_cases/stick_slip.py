@@ -12,14 +12,13 @@ from stick_slip import DIGITS, Hum, slides
 
 from hard_cases.case import Contender, HardCase, Outcome
 from hard_cases.odeint import odeint
-from hard_cases.rods import Array, mujoco_rods
+from hard_cases.rods import STIFF_FRICTION, Array, driven_mujoco, mujoco_rods
 
 BIAS, AMPLITUDE, FREQUENCY, FRICTION = 0.4, 0.5, 2.0, 0.7
 STAIRS = 20
 TURN = 2 * np.pi / FREQUENCY
 T_END = STAIRS * TURN  # in a rest
 SOFT = 1e-4
-TUNED = 'solimpfriction="0.9999 0.9999 0.001" solreffriction="{} 1"'
 
 
 def torque(t: Any) -> Any:
@@ -104,17 +103,8 @@ def scipy_events() -> Outcome:
 
 
 def mujoco(dt: float, joint: str, integrator: str) -> Outcome:
-    import mujoco
-
     model = mujoco_rods(dt=dt, joint=f'frictionloss="{FRICTION}" {joint}', integrator=integrator)
-    data = mujoco.MjData(model)
-    mujoco.set_mjcb_control(lambda _, d: d.ctrl.fill(torque(d.time)))
-    rows = [(0.0, 0.0, 0.0)]
-    for _ in range(round(T_END / dt)):
-        mujoco.mj_step(model, data)
-        rows.append((data.time, data.qpos[0], data.qvel[0]))
-    mujoco.set_mjcb_control(None)
-    t, q, qd = np.transpose(rows)
+    t, q, qd = driven_mujoco(model, torque, T_END)
     return judged(q[-1], float(np.interp(resting(), t, qd)))
 
 
@@ -146,7 +136,7 @@ CASE = HardCase(
         Contender(
             program="mujoco",
             how="`frictionloss`, hardest constraint, 0.5 ms, RK4",
-            run=lambda: mujoco(5e-4, TUNED.format(1e-3), "RK4"),
+            run=lambda: mujoco(5e-4, STIFF_FRICTION.format(1e-3), "RK4"),
         ),
         odeint(
             "sign smoothed over 1e-4 rad/s, rosenbrock4",

@@ -16,7 +16,7 @@ from hybrid_chain import HybridChain
 
 from hard_cases.case import Contender, HardCase, Outcome
 from hard_cases.odeint import odeint
-from hard_cases.rods import Array, mujoco_rods
+from hard_cases.rods import STIFF_FRICTION, Array, driven_mujoco, mujoco_rods
 
 FRICTION = (5.0, 1.5)  # N m
 AMPLITUDE, FREQUENCY = 10.0, 1.0  # of the motor in joint 1
@@ -24,7 +24,6 @@ T_END = 9.0
 TIMES = np.linspace(0, T_END, 361)[1:]
 CHAIN = DenseChain(masses=np.ones(2), lengths=np.ones(2), gravity=9.807)
 SOFT = 1e-3
-TUNED = 'solimpfriction="0.9999 0.9999 0.001" solreffriction="{} 1"'
 
 
 @cache
@@ -94,21 +93,12 @@ def scipy_smoothed() -> Outcome:
 
 def mujoco(dt: float, tuned: str, integrator: str) -> Outcome:
     """Its angles are those of link 1 and of joint 2, from hanging, the other way round."""
-    import mujoco
-
     model = mujoco_rods(
         dt=dt, links=2, mass=1.0, gravity=9.807, joint=f'frictionloss="1" {tuned}',
         integrator=integrator,
     )  # fmt: skip
     model.dof_frictionloss[:] = FRICTION
-    data = mujoco.MjData(model)
-    mujoco.set_mjcb_control(lambda _, d: d.ctrl.fill(-AMPLITUDE * np.sin(FREQUENCY * d.time)))
-    rows = [(0.0, 0.0, 0.0, 0.0, 0.0)]
-    for _ in range(round(T_END / dt)):
-        mujoco.mj_step(model, data)
-        rows.append((data.time, *data.qpos, *data.qvel))
-    mujoco.set_mjcb_control(None)
-    known = np.array(rows).T
+    known = driven_mujoco(model, lambda t: -AMPLITUDE * float(np.sin(FREQUENCY * t)), T_END)
 
     def at(t: Any) -> Array:
         first, second, rate, second_rate = (-np.interp(t, known[0], one) for one in known[1:])
@@ -143,7 +133,7 @@ CASE = HardCase(
         Contender(
             program="mujoco",
             how="`frictionloss`, hardest constraint, 0.2 ms, RK4",
-            run=lambda: mujoco(2e-4, TUNED.format(4e-4), "RK4"),
+            run=lambda: mujoco(2e-4, STIFF_FRICTION.format(4e-4), "RK4"),
         ),
         odeint(
             "signs smoothed over 1e-3 rad/s, rosenbrock4",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from mpmath import asin, ellipf, ellipk, mp, mpf, pi, sin, sqrt
 
-from hard_cases.case import Absent, Contender, HardCase, Outcome
+from hard_cases.case import Contender, HardCase, Outcome
 from hard_cases.odeint import odeint
 from hard_cases.rods import Array, mujoco_rods
 
@@ -39,8 +39,6 @@ def judged(times: list[float] | Array) -> Outcome:
 def pendcore(rtol: float) -> Outcome:
     import pendcore as pc
 
-    if not hasattr(pc, "events"):
-        raise Absent("pendcore has no events yet")
     scene = pc.Scene(links=[pc.Link(mass=3, length=1)], gravity=G)
     mark = pc.events.JointAngle(joint=1, value=np.pi / 2 - MARK)
     span = (0, reference()["end"][0])

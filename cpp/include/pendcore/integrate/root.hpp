@@ -3,7 +3,7 @@
 ///
 /// A polynomial is isolated in Bernstein's form: with coefficients b_i on an interval, no sign
 /// change among them means no root, one means one root; halving the interval separates the rest, so
-/// that two roots close together are both seen. Any other function is sampled.
+/// that two roots close together are both seen.
 ///
 /// All zeros are found by a walk along turning points: between two of them in a row the function is
 /// monotone or has no zero. Those of a polynomial are the roots of its derivative. What lies within
@@ -13,7 +13,6 @@
 #pragma once
 
 #include <cmath>
-#include <functional>
 #include <vector>
 
 namespace pendcore {
@@ -23,9 +22,6 @@ namespace pendcore {
 /// has just been zero: a value at 0 that is below 1e-13 of the other coefficients counts as zero,
 /// and the polynomial turns negative where it does so next. Degree at most 15.
 double first_negative(const double* coefficients, int degree);
-
-/// The same of a function, from its values at `samples` points and a bisection between two.
-double first_negative(const std::function<double(double)>& f, int samples);
 
 inline constexpr int highest_degree = 63;  ///< of a polynomial whose zeros are asked for
 
