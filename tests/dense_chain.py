@@ -94,12 +94,28 @@ def held_accelerations(
 def rates_after_impact(
     m: Array, qd: Array, normals: Array, restitution: Sequence[float]
 ) -> tuple[Array, Array]:
-    """Rates and impulses after all of these contacts close at once; normals point away.
+    """Rates after all of these contacts close at once, and their impulses; normals point away.
 
-    The gap of contact c closes at the rate normals[c] . qd < 0. Tries every set of contacts that
-    act: 0 <= Lam against J v+ >= -e J v- (of a contact that closes; 0 of one that opens).
+    The gap of contact c closes at the rate normals[c] . qd < 0. As often as any gap does: an impact
+    of all that do not open.
     """
-    wanted = np.maximum(-np.asarray(restitution) * (normals @ qd), 0.0)
+    e, impulses = np.asarray(restitution), np.zeros(len(normals))
+    rounding = 1e-14 * np.abs(qd).max()
+    for _ in range(10_000):
+        gaps = normals @ qd
+        if (gaps >= -rounding).all():
+            return qd, impulses
+        taking_part = gaps <= rounding
+        qd, found = rates_after_one_impact(m, qd, normals[taking_part], e[taking_part])
+        impulses[taking_part] += found
+    raise AssertionError("impacts without end")
+
+
+def rates_after_one_impact(
+    m: Array, qd: Array, normals: Array, restitution: Array
+) -> tuple[Array, Array]:
+    """0 <= Lam against J v+ >= -e J v-: tries every set of contacts that act."""
+    wanted = -restitution * (normals @ qd)
     mobility = np.linalg.solve(m, normals.T)
     best: tuple[float, Any, Any] = (np.inf, None, None)
     contacts = range(len(normals))

@@ -1,5 +1,6 @@
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <span>
 
 #include "arguments.hpp"
@@ -127,10 +128,11 @@ void bind_scene(py::module_& module) {
             const FloatingPointEnvironment ieee;
             const Rows angles(scene, "q", q);
             const auto n = static_cast<py::ssize_t>(scene.links.size());
-            const Inertia inertia(scene);
+            JointForces forces(scene);
             Array result({angles.count(), n, n});
             for (py::ssize_t i = 0; i < angles.count(); ++i) {
-              mass_matrix(inertia, angles[i], row(result, i));
+              forces.set_mass_matrix(angles[i].data());
+              std::ranges::copy(forces.mass, row(result, i).begin());
             }
             return result;
           },

@@ -1,7 +1,6 @@
 #include "pendcore/dynamics/inertia.hpp"
 
 #include <algorithm>
-#include <Eigen/Core>
 
 #include "pendcore/dynamics/kinematics.hpp"
 #include "pendcore/message.hpp"
@@ -37,19 +36,18 @@ double Inertia::coupling(std::size_t i, std::size_t j) const {
   return length[std::min(i, j)] * first_moment[std::max(i, j)];
 }
 
-void mass_matrix(const Inertia& inertia, std::span<const double> q, std::span<double> matrix) {
+void mass_matrix(const Inertia& inertia, std::span<const double> sine,
+                 std::span<const double> cosine, std::span<double> matrix) {
   const std::size_t n = inertia.diagonal.size();
-  require_size("q", q, n);
+  require_size("sine", sine, n);
+  require_size("cosine", cosine, n);
   require_size("matrix", matrix, n * n);
-  Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor> u(n, 2);
-  directions(q, {u.data(), 2 * n});
-  Eigen::Map<Eigen::MatrixXd> a(matrix.data(), n, n);
-  a = u * u.transpose();  // cos(q_i - q_j)
   for (std::size_t i = 0; i < n; ++i) {
-    a(i, i) = inertia.diagonal[i];
+    matrix[i * n + i] = inertia.diagonal[i];
     for (std::size_t j = 0; j < i; ++j) {
+      const double of_difference = cosine[i] * cosine[j] + sine[i] * sine[j];
       const double of_rotor = j + 1 == i ? inertia.rotor[i] : 0.0;
-      a(i, j) = a(j, i) = inertia.coupling(i, j) * a(i, j) - of_rotor;
+      matrix[i * n + j] = matrix[j * n + i] = inertia.coupling(i, j) * of_difference - of_rotor;
     }
   }
 }

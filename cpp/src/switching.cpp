@@ -10,16 +10,19 @@
 namespace pendcore {
 namespace {
 
-/// Whether what is given of an effect by points in time does not go on from time t.
-template <class Kind>
-bool has_ended(const Kind& effect, double t, bool forward) {
-  if constexpr (requires { effect.last_time(); }) {
-    const double first = effect.first_time();
-    const double last = effect.last_time();
-    return forward ? t < first || t >= last : t <= first || t > last;
-  } else {
-    return false;
-  }
+/// Whether time t is not inside the table or spline of an effect, seen along the run.
+bool is_outside_table(const Effect& effect, double t, bool forward) {
+  return std::visit(
+      [=](const auto& one) {
+        if constexpr (requires { one.last_time(); }) {
+          const double first = one.first_time();
+          const double last = one.last_time();
+          return forward ? t < first || t >= last : t <= first || t > last;
+        } else {
+          return false;
+        }
+      },
+      effect);
 }
 
 /// A whole number of a memory, which may come from a damaged file.
@@ -65,21 +68,22 @@ bool Switching::begin(double t, double* y, bool forward) {
   for (const Lock& lock : effects_of<Lock>(scene_)) {
     joints_.lock(lock.joint - 1, lock.angle.value_or(relative(y, lock.joint)), y);
   }
-  bool any_strikes = false;
-  for (int j = 0; j < n_; ++j) any_strikes |= joints_.strikes(j, y, y + n_);
-  const bool jumped = any_strikes && strike(t, y);
-  joints_.choose(equations_, t, y, y + n_);
+  const bool strikes = joints_.any_strikes(y, y + n_);
+  if (strikes) {
+    strike(t, y);
+  } else {
+    joints_.choose(equations_, t, y, y + n_);
+  }
   collect_guards(y);
-  return jumped;
+  return strikes;
 }
 
 void Switching::choose_modes_from(double t, const double* q, const double* qd) {
   choose_modes(*equations_.effects, t, q, qd, forward_);
   for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
-    const bool ended =
-        std::visit([&](const auto& one) { return has_ended(one, t, forward_); }, scene_.effects[i]);
-    if (ended) put_mode(i, -1);
-    is_over_ |= ended;
+    if (!is_outside_table(scene_.effects[i], t, forward_)) continue;
+    put_mode(i, -1);
+    is_over_ = true;
   }
 }
 
@@ -100,8 +104,6 @@ double Switching::next_time(double t) const {
   }
   return next_time_;
 }
-
-double Switching::longest_step() const { return longest_step_; }
 
 /// An eighth of the fastest wave, where a joint is held that it could set free.
 void Switching::set_longest_step() {
@@ -142,8 +144,12 @@ bool Switching::cross(int k, double t, double* y) {
     choose(t, y, -1);
   } else if (const Watch watch = guards_[k]; watch.stop != Side::none) {
     settle(k, y);
-    jumped = joints_.strikes(watch.joint, q, qd) && strike(t, y);
-    if (!jumped) choose(t, y, watch.joint);
+    jumped = joints_.strikes(watch.joint, q, qd);
+    if (jumped) {
+      strike(t, y);
+    } else {
+      choose(t, y, watch.joint);
+    }
   } else if (holding_torque(scene_.effects[watch.effect])) {
     const double rate = qd[watch.joint];
     settle(k, y);
@@ -179,34 +185,31 @@ void Switching::cross_time(double t) {
         [&](const auto& one) {
           if constexpr (requires { one.next_time(t, true); }) {
             if (!one.has_modes() || one.guards(equations_.effects->modes[i]).size() > 0) return;
-            const bool ended = has_ended(one, t, forward_);
-            put_mode(i, ended ? -1 : one.mode_at(t, 0.0, 0.0, forward_));
-            is_over_ |= ended;
+            const bool is_outside = is_outside_table(scene_.effects[i], t, forward_);
+            put_mode(i, is_outside ? -1 : one.mode_at(t, 0.0, 0.0, forward_));
+            is_over_ |= is_outside;
           }
         },
         scene_.effects[i]);
   }
 }
 
-/// An impact, and what the joints do after it.
-bool Switching::strike(double t, double* y) {
+/// An impact, and what the joints do after it: rates have jumped, so that every law that has sides
+/// may be on another one.
+void Switching::strike(double t, double* y) {
   double* const qd = y + n_;
   const std::vector<double> before(qd, qd + n_);
   joints_.forget_captures();
-  Impact impact = joints_.strike(equations_, t, y, qd, changes_at_once_ > many_at_once);
-  joints_.choose(equations_, t, y, qd);
-  while (capture(t, y, qd)) {
+  Impact impact;
+  do {
     std::ranges::copy(before, qd);
     impact = joints_.strike(equations_, t, y, qd, changes_at_once_ > many_at_once);
+    choose_modes_from(t, y, qd);
     joints_.choose(equations_, t, y, qd);
-  }
+  } while (capture(t, y, qd));
   if (joints_.has_failed()) std::ranges::copy(before, qd);
-  // Rates have jumped: every law that has sides is on another one.
-  choose_modes_from(t, y, qd);
-  joints_.choose(equations_, t, y, qd);
   book(Account::impact, impact.loss, y);
   book(Account::drive, impact.work_of_drive, y);
-  return true;
 }
 
 /// Whether there are joints that leave a stop and are pushed back, and are there again before time
@@ -218,11 +221,13 @@ bool Switching::capture(double t, const double* q, const double* qd) {
   accelerations_in_force(equations_, t, q, qd, qdd.data());
   const double shortest = 32.0 * std::numeric_limits<double>::epsilon() * std::abs(t);
   for (int j = 0; j < n_; ++j) {
-    const auto side = static_cast<double>(joints_.contact(j, q));
+    const Side touched = joints_.contact(j, q);
+    const auto side = static_cast<double>(touched);
     const double away = -side * relative(qd, j + 1);
     const double back = side * relative(qdd.data(), j + 1);
     if (!(away > 0.0 && back > 0.0) || joints_.is_captured(j)) continue;
-    const bool is_slow = away < joints_.capture_speed(j, q) && !joints_.has_bounced(j);
+    const bool is_slow =
+        away < joints_.supports()[j].stop(touched).capture_speed && !joints_.has_bounced(j);
     if (!is_slow && 2.0 * away >= shortest * back) continue;
     joints_.capture(j);
     any = true;
@@ -282,9 +287,8 @@ void Switching::restore(const std::vector<double>& memory, double t, const doubl
     throw std::invalid_argument("the modes of this solution are not those of its scene");
   }
   for (std::size_t i = 0; i < effects; ++i) put_mode(i, whole(memory[i], -1, INT_MAX));
-  is_over_ = std::ranges::any_of(scene_.effects, [&](const Effect& effect) {
-    return std::visit([&](const auto& one) { return has_ended(one, t, forward_); }, effect);
-  });
+  is_over_ = std::ranges::any_of(
+      scene_.effects, [&](const Effect& one) { return is_outside_table(one, t, forward_); });
   std::size_t from = joints_.restore(*equations_.effects, memory, effects + 3);
   time_of_change_ = memory[effects];
   changes_at_once_ = whole(memory[effects + 1], 0, INT_MAX);

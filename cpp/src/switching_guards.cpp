@@ -60,18 +60,16 @@ void Switching::collect_stops(const double* y) {
     const bool is_doubtful = changes_at_once_ > many_at_once;
     const bool is_still = relative(y + n_, j + 1) == 0.0;
     const int zeros = is_still && (j == let_go_ || is_doubtful) ? 3 : 1;
-    if (support.lower > -never) {
-      const Guard above{.offset = -support.lower, .on_phi = 1.0, .on_phid = 0.0};
+    if (support.lower.angle > -never) {
+      const Guard above{.offset = -support.lower.angle, .on_phi = 1.0, .on_phid = 0.0};
       guards_.push_back({0, 0, j, above, Side::lower, touches == Side::lower ? zeros : 0});
     }
-    if (support.upper < never) {
-      const Guard below{.offset = support.upper, .on_phi = -1.0, .on_phid = 0.0};
+    if (support.upper.angle < never) {
+      const Guard below{.offset = support.upper.angle, .on_phi = -1.0, .on_phid = 0.0};
       guards_.push_back({0, 0, j, below, Side::upper, touches == Side::upper ? zeros : 0});
     }
   }
 }
-
-int Switching::zeros_at_start(int k) const { return guards_[k].zeros_at_start; }
 
 void Switching::step_taken() {
   for (Watch& watch : guards_) watch.zeros_at_start = 0;
@@ -121,12 +119,10 @@ bool Switching::settle(int k, double* y) const {
     const Watch& watch = guards_[k];
     const int j = watch.joint;
     if (watch.stop != Side::none) {
-      const JointSupport& support = joints_.supports()[j];
-      const double angle = watch.stop == Side::lower ? support.lower : support.upper;
-      q[j] = j > 0 ? q[j - 1] + angle : angle;
+      set_relative(q, j + 1, joints_.supports()[j].stop(watch.stop).angle);
       changed = true;
     } else if (watch.guard.on_phi == 0.0 && watch.guard.offset == 0.0) {
-      qd[j] = j > 0 ? qd[j - 1] : 0.0;  // on a rate alone: it is zero there
+      set_relative(qd, j + 1, 0.0);  // on a rate alone: it is zero there
       changed = true;
     }
   }

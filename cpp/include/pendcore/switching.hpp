@@ -31,10 +31,10 @@ class Switching final : public Breaks {
 
   bool begin(double t, double* y, bool forward) override;
   double next_time(double t) const override;
-  double longest_step() const override;
+  double longest_step() const override { return longest_step_; }
   int guards() const override { return linear_guards() + static_cast<int>(held_guards_.size()); }
   int linear_guards() const override { return static_cast<int>(guards_.size()); }
-  int zeros_at_start(int k) const override;
+  int zeros_at_start(int k) const override { return guards_[k].zeros_at_start; }
   void polynomial(int k, const double* rows, int degree, int dimension,
                   double* coefficients) const override;
   double guard(int k, const double* y) const override;
@@ -78,7 +78,7 @@ class Switching final : public Breaks {
   void choose_modes_from(double t, const double* q, const double* qd);
   void cross_time(double t);
   void choose(double t, const double* y, int joint);
-  bool strike(double t, double* y);
+  void strike(double t, double* y);
   bool capture(double t, const double* q, const double* qd);
   void count_at_once(double t);
   /// After modes and holds have changed.

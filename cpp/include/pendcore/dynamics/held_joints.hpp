@@ -3,7 +3,7 @@
 ///
 /// A joint at rest is held while the torque lambda that this takes stays within a range: +-t_s of
 /// friction, and what a stop can push without end. Which joints that are comes out of one problem
-/// over all that are at rest (complementarity.hpp), with phidd = J qdd, W = J M^-1 J^T,
+/// over all that are at rest (joint_forces.hpp),
 ///
 ///     phidd = a + W lambda,    a: what they would do if nothing held them
 ///
@@ -12,49 +12,28 @@
 ///
 ///     lambda_j = sum over i >= j of (M (qdd_held - qdd_free))_i
 ///
-/// An impact is the same problem in rates and impulses: over all closed stops 0 <= Lambda against
-/// phid+ + e phid- >= 0; friction gives no impulse.
-/// Source: mechanics of unilateral contacts, Brogliato, Nonsmooth Mechanics (2016), chapter 5.
-/// Cost of a decision: a right-hand side and O(n^3); of the torques: two and O(n^2).
+/// An impact is such a problem too: impact.hpp.
+/// Source: Brogliato, Nonsmooth Mechanics (2016), chapter 5.
+/// Cost of a decision or an impact: a right-hand side and O(n^3); of the torques: two and O(n^2).
 #pragma once
 
-#include "pendcore/dynamics/complementarity.hpp"
-#include "pendcore/dynamics/inertia.hpp"
-#include "pendcore/effects/law.hpp"
-#include "pendcore/scene.hpp"
+#include "pendcore/dynamics/impact.hpp"
+#include "pendcore/dynamics/joint_forces.hpp"
+#include "pendcore/dynamics/joint_support.hpp"
 
 namespace pendcore {
 
 struct EquationsOfMotion;
 class EffectsInForce;
 
-/// Which side of its range a joint touches.
-enum class Side : signed char { lower = -1, none = 0, upper = 1 };
-
-/// What can hold a joint, from the scene.
-struct JointSupport {
-  bool is_locked = false;
-  double friction = 0.0;  ///< t_s of all its dry friction, N m
-  std::vector<std::size_t> friction_effects;
-  double lower = -never, upper = never;  ///< of its range, rad
-  double restitution_lower = 0.0, restitution_upper = 0.0;
-  double capture_lower = 0.0, capture_upper = 0.0;  ///< rad/s
-};
-
 /// How a joint is held.
 struct Hold {
-  double is_held = 0.0;            ///< or 1
+  bool is_held = false;
   double angle = 0.0;              ///< phi
   double least = 0.0, most = 0.0;  ///< the torques between which it stays held
 };
 
-/// What an impact took, J.
-struct Impact {
-  double loss = 0.0;
-  double work_of_drive = 0.0;
-};
-
-/// Belongs to one run and one thread, as the effects whose joints it holds.
+/// Belongs to one run and one thread, as the effects whose joints it holds. Joints count from 0.
 class HeldJoints {
  public:
   explicit HeldJoints(const Scene& scene);
@@ -70,15 +49,15 @@ class HeldJoints {
 
   const std::vector<JointSupport>& supports() const { return supports_; }
   const std::vector<Hold>& holds() const { return holds_; }
-  bool is_held(int joint) const { return holds_[joint].is_held != 0.0; }  ///< from 0
-  bool any_held_for_now() const;                                          ///< by other than a lock
+  bool is_held(int joint) const { return holds_[joint].is_held; }
+  bool any_held_for_now() const;                           ///< by other than a lock
   double natural_speed() const { return natural_speed_; }  ///< rad/s, of the fastest joint
 
   /// A lock: at that angle from now on, in the state too.
   void lock(int joint, double angle, double* q);
 
-  /// At a state: which joints at rest are held, and which way the others slide. A joint of number
-  /// `surely` is held unless it can be moved by much more than rounding.
+  /// At a state: which joints at rest are held, and which way the others slide. Joint `surely`, if
+  /// at rest, is held whatever the problem says.
   void choose(const EquationsOfMotion& equations, double t, const double* q, const double* qd,
               int surely = -1);
 
@@ -97,16 +76,15 @@ class HeldJoints {
 
   /// Whether a joint that touches a stop moves into it.
   bool strikes(int joint, const double* q, const double* qd) const;
+  bool any_strikes(const double* q, const double* qd) const;
 
   /// Joints that the next impact leaves at their stops, whatever it takes.
   void forget_captures() { captured_.assign(captured_.size(), 0); }
   void capture(int joint) { captured_[joint] = 1; }
   bool is_captured(int joint) const { return captured_[joint] != 0; }
-  double capture_speed(int joint, const double* q) const;
   bool has_bounced(int joint) const { return bounced_[joint] != 0; }  ///< in the last impact
 
-  /// All closed stops at once: `qd` becomes what it is after the impact. Without restitution if
-  /// `is_plastic`.
+  /// `qd` becomes what it is after the impact. Without restitution if `is_plastic`.
   Impact strike(const EquationsOfMotion& equations, double t, const double* q, double* qd,
                 bool is_plastic);
 
@@ -118,19 +96,16 @@ class HeldJoints {
   std::size_t restore(EffectsInForce& effects, const std::vector<double>& memory, std::size_t from);
 
  private:
-  double speed(const double* qd, int joint) const {
-    return joint > 0 ? qd[joint] - qd[joint - 1] : qd[joint];
-  }
   void put_friction(EffectsInForce& effects, int joint, int mode);
   void hold(EffectsInForce& effects, int joint, double angle);
   void set_free(EffectsInForce& effects);
-  void fill_mass_matrix(const double* q);
-  void fill_responses();
   void solve();
   void set_slack(const EquationsOfMotion& equations, double t, const double* q, const double* qd);
+  double strike_once(const double* q, double* qd, bool is_plastic, bool all);
+  double work_of_drive(const EquationsOfMotion& equations, double t, const double* change) const;
 
   int n_;
-  Inertia inertia_;
+  JointForces forces_;
   std::vector<JointSupport> supports_;
   double natural_speed_;
   bool can_hold_;
@@ -138,12 +113,6 @@ class HeldJoints {
   bool has_failed_ = false;
   std::vector<char> captured_, bounced_;
   std::vector<Hold> holds_;
-  ForcesBetweenBounds problem_;
-  std::vector<int> rows_;         ///< the joints in it
-  std::vector<double> mass_;      ///< M, (n, n)
-  std::vector<double> factor_;    ///< of M
-  std::vector<double> response_;  ///< L^-1 J^T of each row
-  std::vector<double> sine_, cosine_;
   std::vector<double> held_qdd_, free_qdd_, torque_, size_;
 };
 

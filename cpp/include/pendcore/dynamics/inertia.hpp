@@ -30,8 +30,9 @@ struct Inertia {
   double coupling(std::size_t i, std::size_t j) const;  ///< A_ij, i != j, from 0
 };
 
-/// M_ij, that is A_ij cos(q_i - q_j) and the rotors, (n, n), kg m^2, from angles (rad), (n). A span
-/// of another size is refused with std::invalid_argument.
-void mass_matrix(const Inertia& inertia, std::span<const double> q, std::span<double> matrix);
+/// M_ij, that is A_ij cos(q_i - q_j) and the rotors, (n, n), kg m^2, from the sines and cosines of
+/// the angles, (n). A span of another size is refused with std::invalid_argument.
+void mass_matrix(const Inertia& inertia, std::span<const double> sine,
+                 std::span<const double> cosine, std::span<double> matrix);
 
 }  // namespace pendcore

@@ -21,6 +21,11 @@ inline double relative(const double* x, int joint) {
   return joint > 1 ? x[joint - 1] - x[joint - 2] : x[0];
 }
 
+/// Turns joint j, counted from 1, to x_j - x_{j-1} = value.
+inline void set_relative(double* x, int joint, double value) {
+  x[joint - 1] = joint > 1 ? x[joint - 2] + value : value;
+}
+
 /// u_i, (n, 2).
 void directions(std::span<const double> q, std::span<double> u);
 

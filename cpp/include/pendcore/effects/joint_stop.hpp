@@ -5,7 +5,7 @@
 ///
 /// Slower than the capture speed the joint stays at the stop (e = 0) and is held there until the
 /// torque that holds it would pull. Loss at an impact of one stop: (1 - e^2) phid^2 over twice
-/// J M^-1 J^T; several at once: complementarity.hpp. Source: Brogliato, Nonsmooth Mechanics (2016),
+/// J M^-1 J^T; several at once: impact.hpp. Source: Brogliato, Nonsmooth Mechanics (2016),
 /// section 4.1 (Newton's law of restitution) and 5.2 (several contacts).
 #pragma once
 

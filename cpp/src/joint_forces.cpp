@@ -1,0 +1,51 @@
+#include "pendcore/dynamics/joint_forces.hpp"
+
+#include <cstddef>
+
+#include "pendcore/arithmetic/sine_cosine.hpp"
+
+namespace pendcore {
+
+void JointForces::set_mass_matrix(const double* q) {
+  const std::size_t n = inertia.diagonal.size();
+  sine.resize(n);
+  cosine.resize(n);
+  mass.resize(n * n);
+  sine_cosine(q, static_cast<int>(n), sine.data(), cosine.data());
+  mass_matrix(inertia, sine, cosine, mass);
+}
+
+void JointForces::set_up() {
+  const int n = static_cast<int>(inertia.diagonal.size());
+  const int m = static_cast<int>(joints.size());
+  factor_ = mass;
+  factor_cholesky(n, factor_.data());
+  problem.resize(m);
+  response_.assign(joints.size() * inertia.diagonal.size(), 0.0);
+  for (int r = 0; r < m; ++r) {
+    double* const x = response_.data() + static_cast<std::ptrdiff_t>(r) * n;
+    x[joints[r]] = 1.0;
+    if (joints[r] > 0) x[joints[r] - 1] = -1.0;
+    solve_lower(n, factor_.data(), x);
+    for (int s = 0; s <= r; ++s) {
+      const double* const y = response_.data() + static_cast<std::ptrdiff_t>(s) * n;
+      double sum = 0.0;
+      for (int i = 0; i < n; ++i) sum += x[i] * y[i];
+      problem.W[static_cast<std::size_t>(r) * m + s] = sum;
+      problem.W[static_cast<std::size_t>(s) * m + r] = sum;
+    }
+  }
+}
+
+void JointForces::add_response(double* x) const {
+  const int n = static_cast<int>(inertia.diagonal.size());
+  std::vector<double> change(inertia.diagonal.size(), 0.0);
+  for (std::size_t r = 0; r < joints.size(); ++r) {
+    const double* const row = response_.data() + r * inertia.diagonal.size();
+    for (int i = 0; i < n; ++i) change[i] += problem.lambda[r] * row[i];
+  }
+  solve_upper(n, factor_.data(), change.data());
+  for (int i = 0; i < n; ++i) x[i] += change[i];
+}
+
+}  // namespace pendcore
