@@ -73,6 +73,7 @@ bool Switching::begin(double t, double* y, bool forward) {
     strike(t, y);
   } else {
     joints_.choose(equations_, t, y, y + n_);
+    choose_sides(t, y, y + n_);
   }
   collect_guards(y);
   return strikes;
@@ -84,6 +85,34 @@ void Switching::choose_modes_from(double t, const double* q, const double* qd) {
     if (!is_outside_table(scene_.effects[i], t, forward_)) continue;
     put_mode(i, -1);
     is_over_ = true;
+  }
+}
+
+/// A law that has its sides apart at the rate zero is on the one that a joint at rest sets out to.
+void Switching::choose_sides(double t, const double* q, const double* qd) {
+  std::vector<double> qdd;
+  for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
+    std::visit(
+        [&](const auto& one) {
+          if constexpr (requires {
+                          one.has_modes();
+                          one.joint;
+                        }) {
+            if (relative(qd, one.joint) != 0.0 || joints_.is_held(one.joint - 1)) return;
+            const int mode = equations_.effects->modes[i];
+            const std::vector<Guard> guards = one.guards(mode);
+            for (std::size_t k = 0; k < guards.size(); ++k) {
+              if (!guards[k].is_on_rate()) continue;
+              if (qdd.empty()) {
+                qdd.resize(n_);
+                accelerations_in_force(equations_, t, q, qd, qdd.data());
+              }
+              const double slope = guards[k].on_phid * relative(qdd.data(), one.joint);
+              if ((forward_ ? slope : -slope) < 0.0) put_mode(i, one.next_mode(mode, k));
+            }
+          }
+        },
+        scene_.effects[i]);
   }
 }
 
@@ -166,6 +195,7 @@ bool Switching::cross(int k, double t, double* y) {
         },
         scene_.effects[watch.effect]);
   }
+  choose_sides(t, q, qd);
   collect_guards(y);
   return jumped;
 }
@@ -206,6 +236,7 @@ void Switching::strike(double t, double* y) {
     impact = joints_.strike(equations_, t, y, qd, changes_at_once_ > many_at_once);
     choose_modes_from(t, y, qd);
     joints_.choose(equations_, t, y, qd);
+    choose_sides(t, y, qd);
   } while (capture(t, y, qd));
   if (joints_.has_failed()) std::ranges::copy(before, qd);
   book(Account::impact, impact.loss, y);

@@ -42,7 +42,7 @@ void Switching::collect_guards(const double* y) {
   }
   for (Watch& watch : guards_) {
     const int let_go = watch.joint == let_go_ ? 1 : 0;  // its acceleration is zero too
-    if (watch.stop == Side::none && watch.guard.on_phi == 0.0 && watch.guard.offset == 0.0) {
+    if (watch.stop == Side::none && watch.guard.is_on_rate()) {
       const bool is_zero = relative(y + n_, watch.joint + 1) == 0.0;
       watch.zeros_at_start = is_zero ? 1 + let_go : 0;
     }
@@ -121,7 +121,7 @@ bool Switching::settle(int k, double* y) const {
     if (watch.stop != Side::none) {
       set_relative(q, j + 1, joints_.supports()[j].stop(watch.stop).angle);
       changed = true;
-    } else if (watch.guard.on_phi == 0.0 && watch.guard.offset == 0.0) {
+    } else if (watch.guard.is_on_rate()) {
       set_relative(qd, j + 1, 0.0);  // on a rate alone: it is zero there
       changed = true;
     }

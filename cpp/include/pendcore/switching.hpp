@@ -76,6 +76,7 @@ class Switching final : public Breaks {
   void put_mode(std::size_t i, int mode) { equations_.effects->put_mode(i, mode); }
   /// The modes that hold from time t on: those of the state, and none where a table has ended.
   void choose_modes_from(double t, const double* q, const double* qd);
+  void choose_sides(double t, const double* q, const double* qd);
   void cross_time(double t);
   void choose(double t, const double* y, int joint);
   void strike(double t, double* y);

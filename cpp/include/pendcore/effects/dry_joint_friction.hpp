@@ -71,7 +71,7 @@ struct DryJointFriction {
 
   template <class Row>
   struct Law {
-    Row coulomb{};  // with the sign of w, as the peak
+    Row coulomb{};  // with the sign of w, as the others
     Row peak{};
     Row inverse_velocity{};
     double exponent = 2.0;
@@ -89,8 +89,7 @@ struct DryJointFriction {
   double group() const { return exponent; }
 
   template <class Row>
-  void put(Law<Row>& law, int lane, const LinkConstants& /*on*/) const {
-    set_lane(law.inverse_velocity, lane, 1.0 / stribeck_velocity);
+  void put(Law<Row>& law, int /*lane*/, const LinkConstants& /*on*/) const {
     law.exponent = exponent;
   }
 
@@ -104,6 +103,7 @@ struct DryJointFriction {
   void put_mode(Law<Row>& law, int lane, int mode) const {
     set_lane(law.coulomb, lane, mode * coulomb);
     set_lane(law.peak, lane, mode * peak());
+    set_lane(law.inverse_velocity, lane, mode / stribeck_velocity);
   }
 
   /// The largest torque with which it holds the joint at rest, N m.

@@ -39,6 +39,9 @@ struct Guard {
   double offset = 0.0;
   double on_phi = 0.0;
   double on_phid = 0.0;
+
+  /// Whether its zero is that of the rate.
+  bool is_on_rate() const { return on_phi == 0.0 && offset == 0.0; }
 };
 
 /// The torque of an effect whose law, in each of its modes, is a polynomial in time, angle and rate
