@@ -48,7 +48,7 @@ def at_equal_error(scene: dict[str, Any], labels: dict[str, str]) -> str:
             for own, kind in zip(mine, KINDS, strict=True):
                 other = time_at(curve(scene["points"][peer], kind), error)
                 ratio = own / other if own and other else None
-                cells += [number(other), f"**{number(ratio)}**"]
+                cells += [number(other), f"**{number(ratio)}**" if ratio else "—"]
         rows.append(cells)
     return table(header, rows)
 
