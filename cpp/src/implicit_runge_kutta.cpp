@@ -335,6 +335,14 @@ Attempt ImplicitRungeKutta::attempt(double t, double h, double /*gain*/) {
   return {squared_error_, factor};
 }
 
+/// Whatever its length: of one of some 1e-300 s the matrices are infinite.
+void ImplicitRungeKutta::stay() {
+  y_new_ = y_;
+  low_new_ = low_;
+  std::ranges::fill(stages_, 0.0);
+  squared_error_ = 0.0;
+}
+
 void ImplicitRungeKutta::write_polynomial(double* rows) const {
   for (int p = 0; p < 3; ++p) {
     const Collocation::Row& row = method_.interpolant[p];

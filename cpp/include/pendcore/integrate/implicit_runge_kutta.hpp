@@ -57,6 +57,7 @@ class ImplicitRungeKutta final : public Stepper {
 
   /// Where the iteration does not converge the error is NaN: the step is not accepted.
   Attempt attempt(double t, double h, double gain) override;
+  void stay() override;
   void accept(double t_new) override;
   void interpolant(double h, double* coefficients) const override;
   void sample(const double* coefficients, const TwoDouble& start, double h, const double* times,
