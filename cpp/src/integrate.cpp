@@ -7,6 +7,7 @@
 
 #include "pendcore/integrate/clock.hpp"
 #include "pendcore/integrate/guards.hpp"
+#include "pendcore/integrate/statistics.hpp"
 #include "pendcore/integrate/stiffness.hpp"
 
 namespace pendcore {
@@ -19,19 +20,6 @@ int bad_component_of_trial(Stepper& stepper, double t_new) {
   stepper.get_new_state(y.data());
   stepper.evaluate(t_new, y.data(), dydt.data());
   return std::max(bad_component(y), bad_component(dydt));
-}
-
-void count_accepted(Statistics& statistics, double h, bool cut, bool at_max_step) {
-  ++statistics.accepted;
-  ++(cut           ? statistics.limited_by_break
-     : at_max_step ? statistics.limited_by_max_step
-                   : statistics.limited_by_tolerance);
-  const long long uncut = statistics.accepted - statistics.limited_by_break;
-  if (cut && uncut > 0) return;
-  const double size = std::abs(h);
-  const bool first = uncut <= 1;
-  statistics.min_step = first ? size : std::min(statistics.min_step, size);
-  statistics.max_step = first ? size : std::max(statistics.max_step, size);
 }
 
 constexpr double rounding = std::numeric_limits<double>::epsilon();
