@@ -181,10 +181,40 @@ def test_turns_are_found_backward_and_far_from_zero() -> None:
     assert {one.direction for one in sol.events[0]} == {-1}
 
 
-def test_more_turns_than_can_be_listed_are_an_error_that_says_so() -> None:
+def test_turns_without_end_end_the_run_before_the_step_that_has_them_and_say_so() -> None:
+    """At 4e5 turns a step the third step has the millionth."""
+    turns = ev.LinkAngle(1, 0.0, every_turn=True, direction=-1)
+    rate = 4e5 * 2 * np.pi
+    sol = pc.simulate(rod(), 0.5, rate, (0, 4), step=1.0, events=[turns])
+    assert (sol.status, sol.success) == ("max_turns", False)
+    assert [*sol.t] == [0.0, 1.0, 2.0]
+    assert sol.stats.accepted == 2
+    assert sol.message.startswith("event 1 (link_angle): every_turn = true: ")
+    assert "more than a million turns, beyond one each (at t = 2.0 s)" in sol.message
+    longer, whole = sol.resume(4.0), pc.simulate(rod(), 0.5, rate, (0, 4), step=1.0)
+    assert longer.status == "finished"
+    np.testing.assert_array_equal(longer.y, whole.y)
+    assert longer.stats == whole.stats
+
+
+def test_a_turn_a_step_is_never_too_many() -> None:
+    turns = ev.LinkAngle(1, 1.0, every_turn=True, direction=-1)
+    sol = pc.simulate(rod(), 0.5, 6.0, (0, 1_100_000), step=1.0, store="end", events=[turns])
+    assert sol.status == "finished"
+
+
+def test_a_step_of_more_turns_than_numbers_ends_the_run() -> None:
     turns = [ev.LinkAngle(1, 0.0, every_turn=True)]
-    with pytest.raises(ValueError, match="more than a million turns in one step"):
-        pc.simulate(rod(), 0.5, 1e8, (0, 1), step=1.0, events=turns)
+    sol = pc.simulate(rod(), 0.5, 1e300, (0, 1), step=1.0, events=turns)
+    assert (sol.status, sol.t[-1], sol.events) == ("max_turns", 0.0, [[]])
+
+
+def test_an_event_before_time_can_tell_ends_the_run_where_the_step_began() -> None:
+    here = ev.LinkAngle(1, 1e-295, terminal=True)
+    sol = pc.simulate(rod(), 0.0, 1.0, (1, 2), events=[here])
+    assert (sol.status, [*sol.t], len(sol.events[0])) == ("event", [1.0], 1)
+    np.testing.assert_array_equal(sol(sol.t).T, sol.y.T)
+    assert sol.resume(2.0).status == "finished"
 
 
 @pytest.mark.parametrize("method", METHODS)

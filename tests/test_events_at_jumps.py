@@ -103,3 +103,39 @@ def test_watching_changes_no_bit_of_a_run_with_impacts_and_stick() -> None:
     np.testing.assert_array_equal(watched.y, alone.y)
     assert watched.stats == alone.stats
     assert all(len(found) > 0 for found in watched.events)
+
+
+def test_an_impact_that_changes_no_rate_is_no_jump() -> None:
+    """The pivot has accelerations beyond doubles: no impulse is found, and the rate stays."""
+    shaken = fx.DrivenPivot(y=fx.Sinusoid(amplitude=1e200, angular_frequency=1e120))
+    scene = rod(fx.JointStop(joint=1, range=(0.7, 2.5)), shaken)
+    sol = pc.simulate(scene, 0.7, -4.0, (0, 1), max_steps=1)
+    assert [*sol.t] == [0.0]
+    np.testing.assert_array_equal(sol.y[:, 0], [0.7, -4.0])
+
+
+class Broken(Exception):
+    pass
+
+
+def test_a_function_that_raises_at_an_impact_at_the_start_leaves_a_run_that_goes_on() -> None:
+    is_broken = True
+
+    def f(t: float, q: Any, qd: Any) -> float:
+        if is_broken:
+            raise Broken
+        return float(qd[0])
+
+    watched = {"t_span": (0, 0.9), "events": [ev.RateZero(joint=1), ev.Function(f)]}
+    with pytest.raises(Broken) as caught:
+        pc.simulate(BOUNCING, 0.0, -1.0, **watched)
+    sol = caught.value.solution  # type: ignore[attr-defined]
+    assert sol.status == "callback_error"
+    np.testing.assert_array_equal(sol.y, [[0.0], [-1.0]])
+    is_broken = False
+    longer, whole = sol.resume(0.9), pc.simulate(BOUNCING, 0.0, -1.0, **watched)
+    np.testing.assert_array_equal(longer.t, whole.t)
+    np.testing.assert_array_equal(longer.y, whole.y)
+    for one, other in zip(longer.events, whole.events, strict=True):
+        assert [found.t for found in one] == [found.t for found in other]
+        assert one[0].t == 0.0

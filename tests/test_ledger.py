@@ -12,6 +12,7 @@ import pytest
 from described_scenes import scene_of
 from numpy.typing import NDArray
 from pendcore import _core
+from pendcore import effects as fx
 from reference.effects import Described, law
 from reference.newton_euler import Body, uniform_rod
 from reference.random_rigs import address_of, polynomial
@@ -308,3 +309,20 @@ def test_a_backward_run_gives_back_what_the_forward_one_took() -> None:
     forth, again = there.energy().ledger, back.energy().ledger
     for name, entry in entries(forth).items():
         assert getattr(again, name)[-1] == pytest.approx(-entry[-1], rel=1e-7, abs=1e-9)
+
+
+def test_a_ledger_that_overflows_ends_the_run_and_is_named() -> None:
+    """In a step, in silence before; at an impact; at an impact at the start."""
+    shaken = fx.DrivenPivot(y=fx.Sinusoid(amplitude=1e-48, angular_frequency=1e150))
+    heavy, stop = pc.Link(mass=1e300, length=1.0), fx.JointStop(joint=1, range=(-1.0, 1.0))
+    for link, effect, q0, qd0, account in (
+        (pc.Link(mass=1.0, length=1.0), shaken, 0.0, 0.0, "drive"),
+        (heavy, stop, 0.0, 1e10, "impact"),
+        (heavy, stop, 1.0, 1e10, "impact"),
+    ):
+        scene = pc.Scene(links=[link], gravity=0.0, effects=[effect])
+        sol = pc.simulate(scene, q0, qd0, (0, 0.5), max_steps=300, ledger=True)
+        assert sol.status == "non_finite"
+        assert f"the ledger's {account} stopped being finite" in sol.message
+        assert np.isfinite(getattr(sol.energy().ledger, account)).all()
+        assert (np.diff(sol.t) > 0.0).all()

@@ -205,3 +205,14 @@ def test_chains_of_any_length_agree_with_dopri5(n: int) -> None:
         for m in ("radau5", "dopri5")
     )
     assert np.abs(one.y[:, -1] - other.y[:, -1]).max() < 1e-6
+
+
+def test_no_fixed_step_that_was_not_solved_is_taken() -> None:
+    """A step that is cut at a guard's zero is tried anew: it may fail where the whole did not."""
+    scene = two_rods(ViscousJoint(joint=2, damping=1e160, damping2=10.0))
+    for length in 10.0 ** np.arange(-14, -5):
+        for t in (0.0, -2.5):
+            sol = pc.simulate(
+                scene, [0.0, 0.3], [0.0, -1.1], (t, t + length), method="radau5", step=1e-4
+            )
+            assert np.isfinite(sol.y).all()

@@ -53,6 +53,16 @@ def test_a_run_at_rest_that_goes_on_is_at_rest():
     np.testing.assert_array_equal(longer.y, once.y)
 
 
+@pytest.mark.parametrize("method", ["dopri5", "radau5", "auto"])
+@pytest.mark.parametrize("t_end", [1e-320, 1e-160, 1e300])
+@pytest.mark.parametrize("options", [{}, {"ledger": True}, {"compensated": True}])
+def test_the_step_at_rest_may_have_any_length(method: str, t_end: float, options: dict[str, bool]):
+    sol = pc.simulate(RUBBED, 0.3, 0.0, (0, t_end), method=method, **options)
+    assert (sol.status, sol.t[-1]) == ("at_rest", t_end)
+    np.testing.assert_array_equal(sol.y[:, -1], [0.3, 0.0])
+    np.testing.assert_array_equal(sol(0.5 * t_end), [0.3, 0.0])
+
+
 def test_a_sign_of_the_users_own_never_gets_past_rest_as_the_documents_say():
     def law(t, q, qd):
         return -0.5 * (qd > 0) + 0.5 * (qd < 0)

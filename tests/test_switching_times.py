@@ -225,3 +225,17 @@ def test_at_an_end_a_spline_moves_the_pivot_as_just_before(
     np.testing.assert_allclose(sol.positions()[-1], near.positions()[0], rtol=1e-12, atol=1e-15)
     assert sol.energy().kinetic[-1] == pytest.approx(near.energy().kinetic[0], rel=1e-12)
     assert abs(unexplained(sol)) < 1e-6
+
+
+@pytest.mark.parametrize("options", [{}, {"ledger": True}, {"store": "end"}])
+def test_a_run_of_no_length_outside_a_table_says_so_whatever_is_kept(options: Any) -> None:
+    table = fx.Table(t=(1.0, 2.0), torque=(1.0, 2.0))
+    scene = pc.Scene(
+        links=[pc.Link(mass=1.0, length=1.0)], effects=[fx.Lock(1), fx.Motor(1, table=table)]
+    )
+    with pytest.warns(pc.PendcoreWarning, match="ends where it leaves that span"):
+        sol = pc.simulate(scene, 0.5, t_span=(0, 0), **options)
+    assert sol.status == "non_finite"
+    assert "its table goes from 1.0 to 2.0 s, and the run is at t = 0.0 s" in sol.message
+    assert pc.simulate(scene, 0.5, t_span=(1, 1), **options).status == "finished"
+    assert pc.simulate(scene, 0.5, t_span=(1, 2), **options).resume(2.0).status == "finished"

@@ -8,7 +8,6 @@ namespace {
 
 /// "q_2" for component 1 of a chain of two links, "qd_1" for component 2.
 std::string component_name(int i, int n) {
-  if (i >= 2 * n) return "the ledger";
   return i < n ? "q_" + std::to_string(i + 1) : "qd_" + std::to_string(i - n + 1);
 }
 
@@ -46,6 +45,14 @@ std::string ending_message(const Ending& ending, const Scene& scene, const Solut
     return message + " (at t = " + text(solution.t_reached) +
            " s: " + event_name(events[ended_by], ended_by) + ")";
   }
+  if (ending.status == Status::max_turns) {
+    return event_name(solution.options.events[ended_by], ended_by) +
+           ": every_turn = true: the steps of this run went through more than a million turns, "
+           "beyond one each (at t = " +
+           text(solution.t_reached) +
+           " s): leave every_turn out, or keep the steps below a turn by max_step; resume goes on "
+           "with another million";
+  }
   if (text(ending.status).success) return message;
   if (ending.chatters) {
     return "no step leads on: the law changes back and forth (at t = " + text(solution.t_reached) +
@@ -56,7 +63,13 @@ std::string ending_message(const Ending& ending, const Scene& scene, const Solut
                           ? table_that_ends(scene, solution.t_reached, forward)
                           : std::string();
   if (!table.empty()) return table;
-  message += " (at t = " + text(solution.t_reached) + " s";
+  const std::string at = " (at t = " + text(solution.t_reached) + " s";
+  if (ending.bad >= 2 * solution.n) {
+    const Account account = solution.accounts[ending.bad - 2 * solution.n];
+    return "the ledger's " + std::string(account_name(account)) +
+           " stopped being finite: without ledger=True the motion can go on" + at + ')';
+  }
+  message += at;
   if (ending.bad >= 0) message += ", " + component_name(ending.bad, solution.n);
   return message + ')';
 }

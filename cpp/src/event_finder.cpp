@@ -12,6 +12,7 @@ namespace {
 
 constexpr double rounding = std::numeric_limits<double>::epsilon();
 constexpr double turn = 6.283185307179586;
+constexpr double most_turns = 1e6;  // seconds of work, and what a list can hold
 
 }  // namespace
 
@@ -37,7 +38,13 @@ EventFinder::EventFinder(const Scene& scene, const std::vector<Event>& events,
 
 bool EventFinder::may_end() const {
   return std::ranges::any_of(events_, [](const Event& event) {
-    return event.terminal > 0 || std::holds_alternative<events::Function>(event.function);
+    if (event.terminal > 0) return true;
+    return std::visit(
+        [](const auto& one) {
+          if constexpr (requires { one.every_turn; }) return one.every_turn;
+          return std::is_same_v<decltype(one), const events::Function&>;
+        },
+        event.function);
   });
 }
 
@@ -45,52 +52,73 @@ EventFinder::Difference EventFinder::difference_of(const EventFunction& function
   const auto of_joint = [](int joint, int first) {
     return Difference{first + joint - 1, joint > 1 ? first + joint - 2 : -1};
   };
+  const auto at_levels = [](Difference difference, const auto& angle) {
+    difference.value = angle.value;
+    difference.every_turn = angle.every_turn;
+    return difference;
+  };
   if (const auto* angle = std::get_if<events::JointAngle>(&function)) {
-    return of_joint(angle->joint, 0);
+    return at_levels(of_joint(angle->joint, 0), *angle);
   }
-  if (const auto* angle = std::get_if<events::LinkAngle>(&function)) return {angle->link - 1, -1};
+  if (const auto* angle = std::get_if<events::LinkAngle>(&function)) {
+    return at_levels({angle->link - 1, -1}, *angle);
+  }
   const auto& rate = std::get<events::RateZero>(function);
   if (rate.joint) return of_joint(*rate.joint, n_);
   return {n_ + rate.link.value_or(1) - 1, -1};
 }
 
-template <class Visitor>
-void EventFinder::for_each_level(double value, bool every_turn, double low, double high,
-                                 Visitor visit) const {
-  if (!every_turn) return visit(value);
+double EventFinder::Levels::at(int i) const { return std::fma(first + i, turn, value); }
+
+EventFinder::Levels EventFinder::levels_between(const Difference& difference, double low,
+                                                double high) {
+  const double value = difference.value;
+  if (!difference.every_turn) return {value, 0.0, 1.0};
   const double from = (low - value) / turn;
   const double to = (high - value) / turn;
   const double margin = 1e-9 + 4.0 * rounding * (std::abs(from) + std::abs(to));
   const double first = std::ceil(from - margin);
-  const double count = std::floor(to + margin) - first + 1.0;
-  if (!(count <= 1e6)) {
-    throw std::domain_error("every_turn: more than a million turns in one step");
-  }
-  for (int i = 0; i < static_cast<int>(count); ++i) visit(std::fma(first + i, turn, value));
+  return {value, first, std::floor(to + margin) - first + 1.0};
 }
 
-void EventFinder::find_difference(const Step& step, const Difference& difference, double value,
-                                  bool every_turn) {
+/// Of the polynomial, as far as it comes.
+EventFinder::Levels EventFinder::levels_along(const Difference& difference, int degree, double end,
+                                              double noise) {
+  if (!difference.every_turn) return levels_between(difference, 0.0, 0.0);
+  bernstein_.resize(polynomial_.size());
+  bernstein_form(polynomial_.data(), degree, bernstein_.data());
+  const auto [least, most] = std::ranges::minmax(bernstein_);
+  return levels_between(difference, std::min(least, end) - noise, std::max(most, end) + noise);
+}
+
+void EventFinder::find_difference(std::size_t k, const Step& step) {
+  const Difference difference = difference_of(events_[k].function);
   const int degree = step.stepper.interpolant_degree();
   const int dimension = step.stepper.dimension();
   polynomial_.resize(degree + 1);
   double size = 0.0;
-  double reach = 0.0;
   for (int p = 0; p <= degree; ++p) {
     const double* const row = step.rows + static_cast<std::ptrdiff_t>(p) * dimension;
     polynomial_[p] = difference.of(row);
     size += std::abs(row[difference.plus]);
     if (difference.minus >= 0) size += std::abs(row[difference.minus]);
-    if (p > 0) reach += std::abs(polynomial_[p]);
   }
   const double start = polynomial_[0];
   const double end = difference.of(y_new_.data());
-  reach = std::max(reach, std::abs(end - start));
-  for_each_level(value, every_turn, start - reach, start + reach, [&](double level) {
+  const Levels levels = levels_along(difference, degree, end, 8.0 * rounding * size);
+  // A turn a step is bounded by the number of steps.
+  if (!(levels.count <= 1.0)) turns_ += levels.count - 1.0;
+  if (!(turns_ <= most_turns)) {
+    has_too_many_ = true;
+    ended_by_ = static_cast<int>(k);
+    return;
+  }
+  for (int i = 0; i < static_cast<int>(levels.count); ++i) {
+    const double level = levels.at(i);
     polynomial_[0] = start - level;
     const double noise = 8.0 * rounding * (size + std::abs(level));
     find_roots(polynomial_.data(), degree, end - level, noise, roots_);
-  });
+  }
 }
 
 void EventFinder::find_tip_line(std::size_t k, const Step& step) {
@@ -147,16 +175,7 @@ void EventFinder::find(std::size_t k, const Step& step) {
   } else if (const auto* own = std::get_if<events::Function>(&function)) {
     find_function(k, *own, step);
   } else {
-    const Difference difference = difference_of(function);
-    std::visit(
-        [&](const auto& one) {
-          if constexpr (requires { one.every_turn; }) {
-            find_difference(step, difference, one.value, one.every_turn);
-          } else {
-            find_difference(step, difference, 0.0, false);
-          }
-        },
-        function);
+    find_difference(k, step);
   }
   for (const Root& root : roots_) {
     if (events_[k].direction != 0 && root.direction != events_[k].direction) continue;
@@ -172,7 +191,8 @@ double EventFinder::look(const Stepper& stepper, const double* rows, const TwoDo
   const Step step{stepper, rows, t_old, h, t_new};
   candidates_.clear();
   at_the_end_.clear();
-  for (std::size_t k = 0; k < events_.size(); ++k) find(k, step);
+  for (std::size_t k = 0; k < events_.size() && !has_too_many_; ++k) find(k, step);
+  if (has_too_many_) return 0.0;
   node_t_ = t_new;
   std::copy_n(y_new_.begin(), node_y_.size(), node_y_.begin());
   std::ranges::sort(candidates_, [](const Candidate& a, const Candidate& b) {
@@ -224,18 +244,10 @@ void EventFinder::jump(double t, const double* before, const double* after) {
     const Difference difference = difference_of(function);
     const double low = difference.of(before);
     const double high = difference.of(after);
-    double value = 0.0;
-    bool every_turn = false;
-    std::visit(
-        [&](const auto& one) {
-          if constexpr (requires { one.every_turn; }) {
-            value = one.value;
-            every_turn = one.every_turn;
-          }
-        },
-        function);
-    for_each_level(value, every_turn, std::min(low, high), std::max(low, high),
-                   [&](double level) { cross(k, low - level, high - level, t, before, after); });
+    const Levels levels = levels_between(difference, std::min(low, high), std::max(low, high));
+    for (int i = 0; i < static_cast<int>(levels.count); ++i) {
+      cross(k, low - levels.at(i), high - levels.at(i), t, before, after);
+    }
   }
   node_t_ = t;
   std::copy_n(after, node_y_.size(), node_y_.begin());

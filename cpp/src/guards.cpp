@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "pendcore/integrate/root.hpp"
 
@@ -10,6 +11,7 @@ namespace pendcore {
 namespace {
 
 constexpr int points = 9;
+constexpr double rounding = std::numeric_limits<double>::epsilon();
 
 /// sin^2(i pi / 16)
 constexpr std::array<double, points> nodes = {
@@ -39,7 +41,7 @@ double slope_at_end(const double* coefficients, int degree) {
 
 }  // namespace
 
-Guards::Guards(const Stepper& stepper, Breaks& breaks)
+Guards::Guards(Stepper& stepper, Breaks& breaks)
     : stepper_(stepper),
       breaks_(breaks),
       dimension_(stepper.dimension()),
@@ -48,9 +50,18 @@ Guards::Guards(const Stepper& stepper, Breaks& breaks)
       state_(dimension_),
       polynomial_(static_cast<std::size_t>(std::max(degree_ + 1, points))) {}
 
-void Guards::linear(int k) {
-  breaks_.polynomial(k, rows_.data(), degree_, dimension_, polynomial_.data());
-  for (int p = 0; p < breaks_.zeros_at_start(k); ++p) polynomial_[p] = 0.0;
+/// polynomial_ becomes guard k, in theta; its degree is returned. One that is not linear has been
+/// interpolated.
+int Guards::along_step(int k) {
+  const int other = k - breaks_.linear_guards();
+  if (other < 0) {
+    breaks_.polynomial(k, rows_.data(), degree_, dimension_, polynomial_.data());
+    for (int p = 0; p < breaks_.zeros_at_start(k); ++p) polynomial_[p] = 0.0;
+    return degree_;
+  }
+  const int others = breaks_.guards() - breaks_.linear_guards();
+  for (int p = 0; p < points; ++p) polynomial_[p] = samples_[p * others + other];
+  return points - 1;
 }
 
 /// samples_ gets a polynomial for each guard that is not linear.
@@ -73,53 +84,65 @@ void Guards::interpolate_others(double t, double h) {
 
 Crossing Guards::first(double t, double h) {
   Crossing found;
-  if (breaks_.guards() == 0) return found;
+  const int guards = breaks_.guards();
+  if (guards == 0) return found;
   stepper_.interpolant(h, rows_.data());
-  const int linear_guards = breaks_.linear_guards();
-  for (int k = 0; k < linear_guards; ++k) {
-    linear(k);
-    const double theta = first_negative(polynomial_.data(), degree_);
+  if (guards > breaks_.linear_guards()) interpolate_others(t, h);
+  for (int k = 0; k < guards; ++k) {
+    const int degree = along_step(k);
+    const double theta = first_negative(polynomial_.data(), degree);
     if (theta < found.theta) found = {k, theta};
-  }
-  const int others = breaks_.guards() - linear_guards;
-  if (others == 0) return found;
-  interpolate_others(t, h);
-  for (int k = 0; k < others; ++k) {
-    for (int p = 0; p < points; ++p) polynomial_[p] = samples_[p * others + k];
-    const double theta = first_negative(polynomial_.data(), points - 1);
-    if (theta < found.theta) found = {linear_guards + k, theta};
   }
   return found;
 }
 
 Guards::Miss Guards::miss(int k, double t, double h) {
   stepper_.interpolant(h, rows_.data());
-  double g = 0.0;
-  double slope = 0.0;
   const int other = k - breaks_.linear_guards();
-  if (other < 0) {
-    linear(k);
-    slope = slope_at_end(polynomial_.data(), degree_);
-    if (breaks_.zeros_at_start(k) > 0) {
-      // What the state has grown by, without the rounding of the state itself.
-      for (int p = degree_; p > 0; --p) g += polynomial_[p];
-      return {slope != 0.0 ? g / slope : 0.0, 0.0};
-    } else {
-      stepper_.get_new_state(state_.data());
-      g = breaks_.guard(k, state_.data());
-    }
-  } else {
-    interpolate_others(t, h);
-    const int others = breaks_.guards() - breaks_.linear_guards();
-    for (int p = 0; p < points; ++p) polynomial_[p] = samples_[p * others + other];
-    slope = slope_at_end(polynomial_.data(), points - 1);
-    std::vector<double> values(others);
-    stepper_.get_new_state(state_.data());
-    breaks_.other_guards(t + h, state_.data(), values.data());
-    g = values[other];
-  }
+  if (other >= 0) interpolate_others(t, h);
+  const int degree = along_step(k);
+  const double slope = slope_at_end(polynomial_.data(), degree);
   if (slope == 0.0) return {0.0, 0.0};
+  double g = 0.0;
+  if (other < 0 && breaks_.zeros_at_start(k) > 0) {
+    // What the state has grown by, without the rounding of the state itself.
+    for (int p = degree; p > 0; --p) g += polynomial_[p];
+    return {g / slope, 0.0};
+  }
+  stepper_.get_new_state(state_.data());
+  if (other < 0) {
+    g = breaks_.guard(k, state_.data());
+  } else {
+    breaks_.other_guards(t + h, state_.data(), samples_.data());
+    g = samples_[other];
+  }
   return {g / slope, breaks_.rounding(k, state_.data()) / std::abs(slope)};
+}
+
+Guards::Located Guards::locate(const Crossing& crossing, double t, double whole, double gain,
+                               double last_bits) {
+  double h = crossing.theta * whole;
+  double before = std::numeric_limits<double>::infinity();
+  Attempt attempt{};
+  for (int polish = 0; polish < 10; ++polish) {
+    attempt = stepper_.attempt(t, h, gain);
+    const Miss miss = this->miss(crossing.guard, t, h);
+    const double correction = miss.share * h;
+    const double size = std::abs(correction);
+    if (!(size <= 0.5 * std::abs(h))) break;
+    const bool is_found =
+        size <= 4.0 * rounding * std::max(std::abs(t), std::abs(h)) ||
+        // The guard's own rounding can be more than that, where it crosses zero slowly.
+        size <= miss.rounding * std::abs(h) || (size <= 1e-6 * std::abs(h) && size >= 0.5 * before);
+    if (is_found) return {true, h, attempt};
+    before = size;
+    h -= correction;
+    if (std::abs(h) > std::abs(whole)) {
+      if (std::abs(h) > std::abs(whole) + last_bits) break;
+      h = whole;
+    }
+  }
+  return {false, h, attempt};
 }
 
 }  // namespace pendcore

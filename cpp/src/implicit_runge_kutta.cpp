@@ -31,18 +31,13 @@ ImplicitRungeKutta::ImplicitRungeKutta(const Collocation& method,
       y_(size_),
       dydt_(size_),
       y_new_(size_),
-      by_q_(static_cast<std::size_t>(n_) * n_),
-      by_qd_(by_q_.size()),
+      systems_(n_),
       stages_(3 * static_cast<std::size_t>(size_)),
       transformed_(3 * static_cast<std::size_t>(state_)),
       rates_(stages_.size()),
       increment_(transformed_.size()),
       trial_(size_),
       error_(size_),
-      real_(n_),
-      complex_(n_),
-      real_side_(n_),
-      complex_side_(n_),
       polynomial_(stages_.size()),
       low_(compensated ? size_ : 0),
       low_new_(low_.size()) {}
@@ -84,65 +79,6 @@ void ImplicitRungeKutta::set_new_state(const double* y) {
 void ImplicitRungeKutta::evaluate(double t, const double* y, double* dydt) {
   (*system_)(t, y, dydt);
   ++evaluations;
-}
-
-/// Both matrices g^2 - g B - A.
-void ImplicitRungeKutta::factor(double h) {
-  g_ = method_.real / h;
-  complex_g_ = {method_.alpha / h, method_.beta / h};
-  const double re = complex_g_.re;
-  const double im = complex_g_.im;
-  double* const real = real_.matrix();
-  Complex* const complex = complex_.matrix();
-  for (int k = 0; k < n_ * n_; ++k) {
-    real[k] = -g_ * by_qd_[k] - by_q_[k];
-    complex[k] = {-re * by_qd_[k] - by_q_[k], -im * by_qd_[k]};
-  }
-  for (int k = 0; k < n_ * n_; k += n_ + 1) {
-    real[k] += g_ * g_;
-    complex[k].re += re * re - im * im;
-    complex[k].im += 2.0 * re * im;
-  }
-  real_.factor();
-  complex_.factor();
-  factorisations += 2;
-}
-
-/// (g - J)^-1 of (r, s), in place.
-void ImplicitRungeKutta::solve_real(double* x) const {
-  double* const s = x + n_;
-  for (int i = 0; i < n_; ++i) {
-    double sum = g_ * s[i];
-    for (int j = 0; j < n_; ++j) sum += by_q_[i * n_ + j] * x[j];
-    real_side_[i] = sum;
-  }
-  real_.solve(real_side_.data());
-  for (int i = 0; i < n_; ++i) {
-    s[i] = real_side_[i];
-    x[i] = (x[i] + s[i]) / g_;
-  }
-}
-void ImplicitRungeKutta::solve_complex(double* re, double* im) const {
-  const Complex g = complex_g_;
-  for (int i = 0; i < n_; ++i) {
-    Complex sum{g.re * re[n_ + i] - g.im * im[n_ + i], g.re * im[n_ + i] + g.im * re[n_ + i]};
-    for (int j = 0; j < n_; ++j) {
-      sum.re += by_q_[i * n_ + j] * re[j];
-      sum.im += by_q_[i * n_ + j] * im[j];
-    }
-    complex_side_[i] = sum;
-  }
-  complex_.solve(complex_side_.data());
-  const double scale = 1.0 / (g.re * g.re + g.im * g.im);
-  for (int i = 0; i < n_; ++i) {
-    const Complex y = complex_side_[i];
-    const double a = re[i] + y.re;
-    const double b = im[i] + y.im;
-    re[n_ + i] = y.re;
-    im[n_ + i] = y.im;
-    re[i] = (a * g.re + b * g.im) * scale;
-    im[i] = (b * g.re - a * g.im) * scale;
-  }
 }
 
 double ImplicitRungeKutta::scale(int i) const {
@@ -206,7 +142,8 @@ bool ImplicitRungeKutta::iterate(double t, double h) {
       for (int i = 0; i < state_; ++i) trial_[i] = y_[i] + stages_[k * size_ + i];
       evaluate(t + method_.c[k] * h, trial_.data(), &rates_[static_cast<std::size_t>(k) * size_]);
     }
-    const Complex g = complex_g_;
+    const double real = systems_.real();
+    const Complex g = systems_.complex();
     for (int i = 0; i < state_; ++i) {
       double rate[3];
       for (int k = 0; k < 3; ++k) {
@@ -215,12 +152,12 @@ bool ImplicitRungeKutta::iterate(double t, double h) {
       }
       const double re = w[state_ + i];
       const double im = w[2 * state_ + i];
-      d[i] = rate[0] - g_ * w[i];
+      d[i] = rate[0] - real * w[i];
       d[state_ + i] = rate[1] - (g.re * re - g.im * im);
       d[2 * state_ + i] = rate[2] - (g.im * re + g.re * im);
     }
-    solve_real(d);
-    solve_complex(d + state_, d + 2 * state_);
+    systems_.solve_real(d);
+    systems_.solve_complex(d + state_, d + 2 * state_);
     for (int k = 0; k < 3 * state_; ++k) w[k] += d[k];
     for (int k = 0; k < 3; ++k) {
       const Collocation::Row& row = method_.transformation[k];
@@ -293,14 +230,15 @@ void ImplicitRungeKutta::integrate_quadratures(double t, double h) {
 
 Attempt ImplicitRungeKutta::attempt(double t, double h, double /*gain*/) {
   if (!has_jacobian_) {
-    system_->jacobian(t, y_.data(), by_q_.data(), by_qd_.data());
+    system_->jacobian(t, y_.data(), systems_.by_q(), systems_.by_qd());
     has_jacobian_ = true;
     if (!is_retry_) ++jacobians;  // one that was resumed has been counted
   }
   const bool is_careful = is_retry_ || h_before_ == 0.0;
   is_retry_ = true;
   h_ = h;
-  factor(h);
+  systems_.factor(method_, h);
+  factorisations += 2;
   predict(h);
   if (!iterate(t, h)) return {std::numeric_limits<double>::quiet_NaN(), 0.0};
   polish_angles(h);
@@ -314,7 +252,7 @@ Attempt ImplicitRungeKutta::attempt(double t, double h, double /*gain*/) {
                              slope[2] * stages_[2 * size_ + i]) /
                                 h;
     }
-    solve_real(error_.data());
+    systems_.solve_real(error_.data());
     return squared_norm(error_.data());
   };
   squared_error_ = filter(dydt_.data());
@@ -333,6 +271,14 @@ Attempt ImplicitRungeKutta::attempt(double t, double h, double /*gain*/) {
     factor = std::min(factor, 0.9 * (h / h_before_) * approximate_exp2(log2_ratio));
   }
   return {squared_error_, factor};
+}
+
+/// Whatever its length: of one of some 1e-300 s the matrices are infinite.
+void ImplicitRungeKutta::stay() {
+  y_new_ = y_;
+  low_new_ = low_;
+  std::ranges::fill(stages_, 0.0);
+  squared_error_ = 0.0;
 }
 
 void ImplicitRungeKutta::write_polynomial(double* rows) const {

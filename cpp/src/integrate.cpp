@@ -7,16 +7,11 @@
 
 #include "pendcore/integrate/clock.hpp"
 #include "pendcore/integrate/guards.hpp"
+#include "pendcore/integrate/statistics.hpp"
 #include "pendcore/integrate/stiffness.hpp"
 
 namespace pendcore {
 namespace {
-
-/// The first component that is not finite, or -1.
-int bad_component(const std::vector<double>& y) {
-  const auto bad = std::ranges::find_if(y, [](double x) { return !std::isfinite(x); });
-  return bad == y.end() ? -1 : static_cast<int>(bad - y.begin());
-}
 
 /// Of the attempted step: the component whose new value, or new rate, is not finite, or -1.
 int bad_component_of_trial(Stepper& stepper, double t_new) {
@@ -25,19 +20,6 @@ int bad_component_of_trial(Stepper& stepper, double t_new) {
   stepper.get_new_state(y.data());
   stepper.evaluate(t_new, y.data(), dydt.data());
   return std::max(bad_component(y), bad_component(dydt));
-}
-
-void count_accepted(Statistics& statistics, double h, bool cut, bool at_max_step) {
-  ++statistics.accepted;
-  ++(cut           ? statistics.limited_by_break
-     : at_max_step ? statistics.limited_by_max_step
-                   : statistics.limited_by_tolerance);
-  const long long uncut = statistics.accepted - statistics.limited_by_break;
-  if (cut && uncut > 0) return;
-  const double size = std::abs(h);
-  const bool first = uncut <= 1;
-  statistics.min_step = first ? size : std::min(statistics.min_step, size);
-  statistics.max_step = first ? size : std::max(statistics.max_step, size);
 }
 
 constexpr double rounding = std::numeric_limits<double>::epsilon();
@@ -60,10 +42,14 @@ class Run {
         state_(stepper.dimension()),
         rate_(stepper.dimension()) {
     if (breaks != nullptr) guards_.emplace(stepper, *breaks);
+    has_quadratures_ = stepper.controlled() < stepper.dimension();
     may_end_ = observer.may_end();
   }
 
   Ending go() {
+    // A law that is over where the run begins is so for a run of no length as well.
+    const bool begins = position_.h == 0.0;
+    if (begins && breaks_ != nullptr && breaks_->is_over()) return end_with(Status::non_finite);
     if (const int bad = bad_component(position_.dydt); bad >= 0) {
       return end_with(Status::non_finite, bad);
     }
@@ -120,7 +106,7 @@ class Run {
     double h = position_.h;
     if (target.is_in_reach) {
       h = target.left;
-      if (!target.is_break) end_in_sight();
+      if (!target.is_break) cut_for_the_end();
     } else if (std::abs(h) <= 10.0 * rounding * std::abs(t) || std::abs(h) < 1e-300) {
       return end(position_.trial_was_finite ? Status::step_too_small : Status::non_finite);
     }
@@ -144,16 +130,18 @@ class Run {
     if (guards_ && crossing.guard >= 0) {
       if (crossing.theta * std::abs(h) <= 2.0 * rounding * std::max(std::abs(t), std::abs(h)))
         return change_at_once(crossing);
-      const double whole = h;
-      h = crossing.theta * whole;
-      const bool is_located = locate(*guards_, crossing.guard, whole, h, attempt);
-      if (limits_.fixed_step && !is_located) {
-        h = crossing.theta * whole;
-        attempt = stepper_.attempt(t, h, position_.control.gain(method_));
-      }
-      if (!limits_.fixed_step) {
+      const double gain = position_.control.gain(method_);
+      const Guards::Located located = guards_->locate(crossing, t, h, gain, last_bits());
+      attempt = located.attempt;
+      if (limits_.fixed_step) {
+        h = located.is_found ? located.h : crossing.theta * h;
+        if (!located.is_found) attempt = stepper_.attempt(t, h, gain);
+        look_for_bad_component(attempt, t + h);
+        if (!position_.trial_was_finite) return end(Status::non_finite);
+      } else {
         // What the whole step strode over, the shorter one may see: friction's peak at rest.
-        if (!is_located) return reject(0.5 * crossing.theta * whole);
+        if (!located.is_found) return reject(0.5 * crossing.theta * h);
+        h = located.h;
         if (!(attempt.squared_error <= 1.0)) {
           return reject(h * position_.control.reject(method_, attempt));
         }
@@ -165,8 +153,8 @@ class Run {
 
   /// Nothing moves any more: one step to the end.
   bool rest(double left) {
-    end_in_sight();
-    stepper_.attempt(position_.t.high, left, 0.0);
+    cut_for_the_end();
+    stepper_.stay();
     observer_.step_accepted(stepper_, position_.t, left, limits_.t_end);
     stepper_.accept(limits_.t_end);
     position_.t = {limits_.t_end, 0.0};
@@ -193,11 +181,14 @@ class Run {
     return 4.0 * rounding * std::max(std::abs(position_.t.high), std::abs(limits_.t_end));
   }
 
-  void end_in_sight() {
-    if (!cut_before_) {
-      write_down(resumable_);
-      observer_.restarts_here();
-    }
+  /// A run that goes on does so from here, whatever is cut or left half done after it.
+  void keep_for_resuming() {
+    if (cut_before_) return;
+    write_down(resumable_);
+    observer_.restarts_here();
+  }
+  void cut_for_the_end() {
+    keep_for_resuming();
     cut_before_ = true;
   }
 
@@ -230,39 +221,20 @@ class Run {
   /// What a function of the user's may raise while the law that follows is looked for leaves that
   /// half done: a run that goes on does so from before the step that ends there.
   void begin_change() {
-    if (!cut_before_) {
-      write_down(resumable_);
-      observer_.restarts_here();
-    }
+    keep_for_resuming();
     law_is_changing_ = true;
   }
 
-  /// Redoes the step to where the guard is zero, to the last bits of time: the state there comes
-  /// from the method, not from the interpolant. False where no such step is found.
-  bool locate(Guards& guards, int guard, double whole, double& h, Attempt& attempt) {
-    const double t = position_.t.high;
-    double before = std::numeric_limits<double>::infinity();
-    for (int polish = 0; polish < 10; ++polish) {
-      attempt = stepper_.attempt(t, h, position_.control.gain(method_));
-      const Guards::Miss miss = guards.miss(guard, t, h);
-      const double correction = miss.share * h;
-      const double size = std::abs(correction);
-      if (!(size <= 0.5 * std::abs(h))) return false;
-      if (size <= 4.0 * rounding * std::max(std::abs(t), std::abs(h))) return true;
-      // The guard's own rounding can be more than that, where it crosses zero slowly.
-      if (size <= miss.rounding * std::abs(h)) return true;
-      if (size <= 1e-6 * std::abs(h) && size >= 0.5 * before) return true;
-      before = size;
-      h -= correction;
-      if (std::abs(h) > std::abs(whole)) {
-        if (std::abs(h) > std::abs(whole) + last_bits()) return false;
-        h = whole;
-      }
-    }
-    return false;
+  /// The quadratures have no say in the steps: they are not to overflow in silence.
+  bool quadratures_overflow() {
+    if (!has_quadratures_) return false;
+    stepper_.get_new_state(state_.data());
+    bad_ = bad_component(state_);
+    return bad_ >= 0;
   }
 
   bool accept(const Target& target, int guard, double h, const Attempt& attempt) {
+    if (quadratures_overflow()) return end(Status::non_finite);
     TwoDouble t_new = position_.t + h;
     bool lands = target.is_in_reach;
     if (guard >= 0) {
@@ -277,10 +249,14 @@ class Run {
       stepper_.get_new_state(state_.data());
       if (breaks_->settle(guard, state_.data())) stepper_.set_new_state(state_.data());
     }
-    const double end = observer_.step_accepted(stepper_, position_.t, h, t_new.high);
+    const double last = observer_.step_accepted(stepper_, position_.t, h, t_new.high);
+    if (last == 0.0) {
+      restart_at_step_start();
+      return end(Status::max_turns);
+    }
     count_accepted(position_.statistics, h, target.is_in_reach || law_changes,
                    position_.h_is_max_step);
-    if (end < 1.0) return end_within_step(end, h, t_new.high);
+    if (last < 1.0) return end_within_step(last, h, t_new.high);
     stepper_.accept(t_new.high);
     position_.t = t_new;
     if (!law_changes) {
@@ -297,13 +273,16 @@ class Run {
 
   /// An event lies within the step: what is left there is a view, and nothing goes on from it.
   bool end_within_step(double theta, double h, double t_new) {
+    const TwoDouble t = time_in_step(position_.t, h, theta, t_new);
+    // Within the last bits of its start no time has passed: there is one state at one time.
+    if (t.high == position_.t.high) return true;
     const std::size_t rows = stepper_.interpolant_degree() + 1;
     std::vector<double> polynomial(rows * stepper_.dimension());
     stepper_.interpolant(h, polynomial.data());
     stepper_.sample(polynomial.data(), {}, 1.0, &theta, 1, state_.data());
     stepper_.get_derivative(rate_.data());
     stepper_.start(state_.data(), rate_.data());
-    position_.t = time_in_step(position_.t, h, theta, t_new);
+    position_.t = t;
     return true;
   }
   /// An event ended the run. A run that goes on takes the whole step again.
@@ -327,7 +306,13 @@ class Run {
     const double t = position_.t.high;
     stepper_.get_state(state_.data());
     const std::vector<double> before = state_;
-    if (breaks_->cross(guard, t, state_.data())) {
+    const bool jumped = breaks_->cross(guard, t, state_.data());
+    bad_ = bad_component(state_);
+    if (bad_ >= 0) {  // the run ends with the state before
+      cut_before_ = true;
+      return end(Status::non_finite);
+    }
+    if (jumped) {
       observer_.state_jumped(t, before.data(), state_.data());
     } else if (state_ != before) {
       observer_.state_settled(t, state_.data());
@@ -379,12 +364,18 @@ class Run {
   bool cut_before_ = false;  ///< a step was cut to end at t_end: later ones depend on t_end
   bool law_is_changing_ = false;
   bool chatters_ = false;
+  bool has_quadratures_ = false;
   int bad_ = -1;  ///< component of the last trial, while trials are not finite
   std::vector<double> state_;
   std::vector<double> rate_;
 };
 
 }  // namespace
+
+int bad_component(const std::vector<double>& y) {
+  const auto bad = std::ranges::find_if(y, [](double x) { return !std::isfinite(x); });
+  return bad == y.end() ? -1 : static_cast<int>(bad - y.begin());
+}
 
 Ending integrate(Stepper& stepper, Position& position, Position& resumable, const Limits& limits,
                  Observer& observer, Breaks* breaks) {

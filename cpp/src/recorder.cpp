@@ -34,6 +34,7 @@ double Recorder::step_accepted(const Stepper& stepper, const TwoDouble& t_old, d
   if (finder_) {
     stepper.interpolant(h, polynomial_.data());
     end = finder_->look(stepper, polynomial_.data(), t_old, h, t_new);
+    if (end == 0.0) return end;
   }
   const double t_end = end < 1.0 ? time_in_step(t_old, h, end, t_new).high : t_new;
   if (keeps_polynomials_ && t_end != t_old.high) {
@@ -68,8 +69,10 @@ void Recorder::keep_clipped(const Stepper& stepper, const TwoDouble& t_old, doub
   if (is_kept && is_new) stepper.sample(polynomial_.data(), {}, 1.0, &theta, 1, append(t));
 }
 
-/// Both states are kept, with the same time; of times asked for, the state after.
+/// Both states are kept, with the same time; of times asked for, the state after. An impact that
+/// changes no rate is no jump.
 void Recorder::state_jumped(double t, const double* before, const double* after) {
+  if (std::equal(before, before + 2 * solution_.n, after)) return state_settled(t, after);
   if (finder_) finder_->jump(t, before, after);
   if (keeps_steps_) {
     std::copy_n(after, dimension_, append(t));

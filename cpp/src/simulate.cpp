@@ -46,17 +46,64 @@ void check_continuation(const Solution& solution, double t_end, const std::vecto
   }
 }
 
-/// The ledger has no say in the steps: that it overflowed is seen at the end.
-void see_whether_ledger_is_finite(const std::vector<double>& y, int n, Ending& ending) {
-  const bool is_finite =
-      std::all_of(y.begin() + 2 * n, y.end(), [](double x) { return std::isfinite(x); });
-  if (is_finite || !text(ending.status).success) return;
-  ending.status = Status::non_finite;
-  ending.bad = 2 * n;
-}
-
 /// Of a solution that goes on: one that has no length yet has no direction either.
 enum class Before { nothing, a_start, steps };
+
+/// The laws, the rates and the first step of a run that begins. Where a function of the user's
+/// raises, or an impact is not finite, nothing of that is kept: a run that goes on begins anew.
+struct Beginning {
+  const Options& options;
+  Stepper& stepper;
+  Switching* switching;
+  Recorder& recorder;
+  const std::vector<double>& rtol;
+  const std::vector<double>& atol;
+
+  Ending make(Position& position, double t_end) {
+    const Position start = position;
+    recorder.restarts_here();
+    Ending ending{.status = Status::finished, .cut = false};
+    try {
+      ending.bad = try_to(position, t_end);
+      if (ending.bad >= 0) ending.status = Status::non_finite;
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (...) {
+      ending.status = Status::callback_error;
+      ending.error = std::current_exception();
+    }
+    ending.cut = ending.status != Status::finished;
+    if (ending.cut) position = start;
+    return ending;
+  }
+
+ private:
+  /// The component that is not finite, or -1.
+  int try_to(Position& position, double t_end) {
+    const double t = position.t.high;
+    const double direction = t_end < t ? -1.0 : 1.0;
+    std::vector<double>& y = position.y;
+    const std::vector<double> before = y;
+    const bool jumped = switching != nullptr && switching->begin(t, y.data(), direction > 0.0);
+    if (const int bad = bad_component(y); bad >= 0) return bad;
+    stepper.evaluate(t, y.data(), position.dydt.data());
+    stepper.start(y.data(), position.dydt.data());
+    if (t != t_end) {
+      const double size = options.step         ? *options.step
+                          : options.first_step ? std::min(*options.first_step, options.max_step)
+                                               : first_step(stepper, t, direction, options.max_step,
+                                                            rtol.data(), atol.data());
+      position.h = direction * size;
+      position.h_is_max_step = options.step || size == options.max_step;
+    }
+    if (jumped) {
+      recorder.state_jumped(t, before.data(), y.data());
+    } else {
+      recorder.state_settled(t, y.data());
+    }
+    return -1;
+  }
+};
 
 /// From the solution's resumable position to t_end.
 void run(const Scene& scene, Solution& solution, double t_end, const Limits& limits, Before before,
@@ -78,49 +125,26 @@ void run(const Scene& scene, Solution& solution, double t_end, const Limits& lim
   }
   solution.dense.degree = stepper->interpolant_degree();
   Position position = solution.resumable;
-  const double t = position.t.high;
-  const bool forward = !(t_end < t);
-  const bool begins = before != Before::steps;
-  const std::vector<double> before_begin = position.y;
-  bool jumped = false;
+  if (before == Before::nothing) recorder.start(position.t.high, position.y);
+  Switching* const breaks = switching ? &*switching : nullptr;
   Ending ending{.status = Status::finished, .cut = false};
-  if (!begins) {
-    if (switching) switching->restore(position.breaks, t, position.y.data(), forward);
+  if (before == Before::steps) {
+    const double t = position.t.high;
+    if (switching) switching->restore(position.breaks, t, position.y.data(), !(t_end < t));
     stepper->start(position.y.data(), position.dydt.data());
     stepper->restore(position.stepper);
-  }
-  try {  // functions of the user's may throw
-    if (begins) {
-      jumped = switching && switching->begin(t, position.y.data(), forward);
-      stepper->evaluate(t, position.y.data(), position.dydt.data());
-      stepper->start(position.y.data(), position.dydt.data());
-    }
-    if (position.h == 0.0 && t != t_end) {
-      const double size = options.step ? *options.step
-                          : options.first_step
-                              ? std::min(*options.first_step, options.max_step)
-                              : first_step(*stepper, t, forward ? 1.0 : -1.0, options.max_step,
-                                           rtol.data(), atol.data());
-      position.h = forward ? size : -size;
-      position.h_is_max_step = options.step || size == options.max_step;
-    }
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (...) {
-    ending = {.status = Status::callback_error, .cut = false, .error = std::current_exception()};
-  }
-  if (switching) position.breaks = switching->memory();
-  if (before == Before::nothing) recorder.start(t, jumped ? before_begin : position.y);
-  if (jumped) recorder.state_jumped(t, before_begin.data(), position.y.data());
-  position.statistics.nfev = (begins ? 0 : position.statistics.nfev) + stepper->evaluations;
-  if (ending.error) {
-    solution.resumable = position;
+    position.statistics.nfev += stepper->evaluations;
   } else {
-    ending = integrate(*stepper, position, solution.resumable, limits, recorder,
-                       switching ? &*switching : nullptr);
+    ending = Beginning{options, *stepper, breaks, recorder, rtol, atol}.make(position, t_end);
+    position.statistics.nfev = stepper->evaluations;
+  }
+  if (ending.status == Status::finished) {
+    if (switching) position.breaks = switching->memory();
+    ending = integrate(*stepper, position, solution.resumable, limits, recorder, breaks);
+  } else {
+    solution.resumable = position;
   }
   if (!ending.cut) recorder.restarts_here();
-  see_whether_ledger_is_finite(position.y, solution.n, ending);
   solution.status = ending.status;
   solution.statistics = position.statistics;
   solution.t_reached = position.t.high;

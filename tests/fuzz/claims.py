@@ -18,7 +18,9 @@ from fuzz.drawn_run import Drawn
 Claim = Callable[[Drawn, pc.Solution, Choices], Iterator[str]]
 
 SUCCESSES = {"finished", "event", "at_rest"}
-FAILURES = {"max_steps", "step_too_small", "non_finite", "time_limit", "callback_error", "stuck"}
+FAILURES = {
+    "max_steps", "max_turns", "step_too_small", "non_finite", "time_limit", "callback_error"
+}  # fmt: skip
 
 
 def same(a: np.ndarray, b: np.ndarray) -> bool:
@@ -114,8 +116,8 @@ def resuming_changes_nothing(drawn: Drawn, sol: pc.Solution, choices: Choices) -
     if part.status not in ("finished", "max_steps"):
         return
     whole = part.resume(end, max_steps=most, time_limit=drawn.options["time_limit"])
-    if sol.status == "max_steps" or "time_limit" in (part.status, whole.status):
-        return  # the whole one has been given more steps
+    if sol.status in ("max_steps", "max_turns") or "time_limit" in (part.status, whole.status):
+        return  # the whole one has been given more steps, or turns
     if (whole.status, whole._run.t_reached) != (sol.status, sol._run.t_reached):
         yield f"resumed after {_end(part)}: {_end(whole)}, not {_end(sol)}"
     elif not same(whole.t, sol.t) or not same(whole.y, sol.y):
@@ -145,7 +147,7 @@ def events_are_where_they_are_told(drawn: Drawn, sol: pc.Solution, _: Choices) -
 
 def watching_changes_nothing(drawn: Drawn, sol: pc.Solution, _: Choices) -> Iterator[str]:
     asked = drawn.options.get("events", ())
-    if not asked or sol.status in ("time_limit", "callback_error"):
+    if not asked or sol.status in ("time_limit", "callback_error", "max_turns"):
         return
     bare = {k: v for k, v in drawn.options.items() if k not in ("events", "t_eval", "store")}
     bare["store"] = "steps"

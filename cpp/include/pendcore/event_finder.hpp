@@ -24,11 +24,11 @@ class EventFinder {
   EventFinder(const Scene& scene, const std::vector<Event>& events, std::vector<FoundEvent>& found,
               std::vector<long long> passed);
 
-  /// Whether an event may end the run: a terminal one, or a function that may throw.
+  /// Whether an event may end the run: a terminal one, a function that may throw, too many turns.
   bool may_end() const;
 
   /// Looks at an accepted step, with its dense output in `rows`. Returns the share of the step at
-  /// which the run ends; 2 if it goes on.
+  /// which the run ends; 2 if it goes on. 0: its turns are too many, and nothing was found in it.
   double look(const Stepper& stepper, const double* rows, const TwoDouble& t_old, double h,
               double t_new);
 
@@ -44,10 +44,13 @@ class EventFinder {
     int direction;
     int event;
   };
-  /// y[plus] - y[minus], the latter left out if negative: an angle or a rate.
+  /// y[plus] - y[minus], the latter left out if negative: an angle or a rate. It is looked at
+  /// where it is `value`, or that and every turn more.
   struct Difference {
     int plus;
     int minus;
+    double value = 0.0;
+    bool every_turn = false;
     double of(const double* y) const { return minus < 0 ? y[plus] : y[plus] - y[minus]; }
   };
   struct Step {
@@ -57,20 +60,22 @@ class EventFinder {
     double h;
     double t_new;
   };
+  /// value + (first + i) 2 pi for i = 0 ... count - 1
+  struct Levels {
+    double value, first, count;
+    double at(int i) const;
+  };
 
   Difference difference_of(const EventFunction& function) const;
   double function_at(std::size_t k, double t, const double* y);
   void find(std::size_t k, const Step& step);
-  void find_difference(const Step& step, const Difference& difference, double value,
-                       bool every_turn);
+  void find_difference(std::size_t k, const Step& step);
   void find_tip_line(std::size_t k, const Step& step);
   void find_function(std::size_t k, const events::Function& event, const Step& step);
   void node_values(std::size_t k, const Step& step, double& start, double& end);
   double sampled(std::size_t k, const Step& step, double theta);
-  /// Calls visit(level) for each level between low and high that counts: the value itself, or every
-  /// turn of it.
-  template <class Visitor>
-  void for_each_level(double value, bool every_turn, double low, double high, Visitor visit) const;
+  static Levels levels_between(const Difference& difference, double low, double high);
+  Levels levels_along(const Difference& difference, int degree, double end, double noise);
   void append(const Candidate& candidate, double t, const double* y);
   void cross(std::size_t k, double before, double after, double t, const double* y_before,
              const double* y_after);
@@ -83,11 +88,14 @@ class EventFinder {
   std::vector<int> tip_line_of_;  ///< of each event, its number among them, or -1
   int n_;
   int ended_by_ = -1;
+  double turns_ = 0.0;         ///< that steps went through, beyond one each
+  bool has_too_many_ = false;  ///< of them
   std::vector<Root> roots_;
   std::vector<TurningPoint> samples_;
   std::vector<Candidate> candidates_;
   std::vector<std::size_t> at_the_end_;  ///< those found at the end of the last step
   std::vector<double> polynomial_;
+  std::vector<double> bernstein_;
   std::vector<double> y_new_;
   std::vector<double> y_;
   // What was computed at the end of the last step, to be taken again at the start of the next.

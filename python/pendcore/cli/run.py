@@ -45,7 +45,7 @@ a case:
 """
 
 FILES = ("solution.npz", "summary.txt", "summary.json", "angles.png")
-_CAN_GO_ON = {"max_steps", "time_limit", "interrupted"}
+_CAN_GO_ON = {"max_steps", "max_turns", "time_limit", "interrupted"}
 
 
 def add_parser(commands: Any) -> None:

@@ -46,6 +46,7 @@ class AutomaticStepper final : public Stepper {
   void set_new_state(const double* y) override { now().set_new_state(y); }
   void evaluate(double t, const double* y, double* dydt) override;
   Attempt attempt(double t, double h, double gain) override;
+  void stay() override { now().stay(); }
   void accept(double t_new) override;
   void interpolant(double h, double* coefficients) const override;
   void sample(const double* coefficients, const TwoDouble& start, double h, const double* times,

@@ -72,6 +72,16 @@ class ExplicitRungeKutta final : public Stepper {
     return attempt_(&memory_, t, h, gain);
   }
 
+  void stay() override {
+    for (int i = 0; i < blocks; ++i) {
+      memory_.y_new[i] = memory_.y[i];
+      for (int s = 0; s < stages; ++s) memory_.k[s][i] = Block{};
+    }
+    if constexpr (compensated) {
+      for (int i = 0; i < blocks; ++i) memory_.low.after[i] = memory_.low.before[i];
+    }
+  }
+
   void accept(double t_new) override {
     for (int i = 0; i < blocks; ++i) memory_.y[i] = memory_.y_new[i];
     if constexpr (compensated) {

@@ -6,6 +6,7 @@
 /// count for nothing in the error norm. `Block` is the pack that the arrays are worked on with.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -204,6 +205,12 @@ class GeneralRungeKutta final : public Stepper {
   Attempt attempt(double t, double h, double gain) override {
     evaluations += stages - 1;
     return attempt_(&memory_, t, h, gain);
+  }
+  void stay() override {
+    const std::size_t bytes = size_ * sizeof(double);
+    __builtin_memcpy(memory_.y_new, memory_.y, bytes);
+    if constexpr (compensated) __builtin_memcpy(memory_.low_new, memory_.low, bytes);
+    std::fill_n(memory_.k, static_cast<std::ptrdiff_t>(stages) * size_, 0.0);
   }
   void accept(double t_new) override {
     const std::size_t bytes = size_ * sizeof(double);

@@ -18,23 +18,32 @@ struct Crossing {
 
 class Guards {
  public:
-  Guards(const Stepper& stepper, Breaks& breaks);
+  Guards(Stepper& stepper, Breaks& breaks);
 
   /// In the attempted step of size h from time t.
   Crossing first(double t, double h);
 
-  /// By how much the step's end misses the zero of guard k, and how much of that may be rounding,
+  /// The attempted step that ends where the guard is zero, to the last bits of time.
+  struct Located {
+    bool is_found;
+    double h;
+    Attempt attempt;
+  };
+  /// Redoes the step of size `whole` for it: the state there comes from the method, not from the
+  /// interpolant. `gain` is the control's; `last_bits` are those of time.
+  Located locate(const Crossing& crossing, double t, double whole, double gain, double last_bits);
+
+ private:
+  /// By how much the step's end misses the zero of a guard, and how much of that may be rounding,
   /// in units of the step.
   struct Miss {
     double share, rounding;
   };
   Miss miss(int k, double t, double h);
-
- private:
-  void linear(int k);
+  int along_step(int k);
   void interpolate_others(double t, double h);
 
-  const Stepper& stepper_;
+  Stepper& stepper_;
   Breaks& breaks_;
   int dimension_;
   int degree_;

@@ -7,9 +7,7 @@
 ///     (g - J) dW_1 = T^-1 F - g W_1,   g = real/h;    (g - J)(dW_2 + i dW_3) alike, g = (alpha +
 ///     i beta)/h
 ///
-/// and, as q' is part of the state, J = ((0, 1), (A, B)), into ones of half the size:
-///
-///     (g - J)(x, y) = (r, s):    (g^2 - g B - A) y = g s + A r,    x = (r + y)/g
+/// which are solved in half their size (newton_systems.hpp).
 ///
 /// The error is (g - J)^-1 (f(t, y) - u'(t)), g = real/h, with u the polynomial of the step: of
 /// order 3, and damped where J is. Tolerances are those of the step's own error, of order 5: the
@@ -25,8 +23,8 @@
 #include <memory>
 
 #include "pendcore/integrate/collocation.hpp"
-#include "pendcore/integrate/elimination.hpp"
 #include "pendcore/integrate/general_runge_kutta.hpp"
+#include "pendcore/integrate/newton_systems.hpp"
 
 namespace pendcore {
 
@@ -57,6 +55,7 @@ class ImplicitRungeKutta final : public Stepper {
 
   /// Where the iteration does not converge the error is NaN: the step is not accepted.
   Attempt attempt(double t, double h, double gain) override;
+  void stay() override;
   void accept(double t_new) override;
   void interpolant(double h, double* coefficients) const override;
   void sample(const double* coefficients, const TwoDouble& start, double h, const double* times,
@@ -71,15 +70,12 @@ class ImplicitRungeKutta final : public Stepper {
  private:
   using Rows = std::vector<double>;
 
-  void factor(double h);
   void predict(double h);
   bool iterate(double t, double h);
   bool is_rounding(double h) const;
   void polish_angles(double h);
   void advance();
   static void forget(const double* y, const Rows& instead_of, Rows& low);
-  void solve_real(double* x) const;
-  void solve_complex(double* re, double* im) const;
   void integrate_quadratures(double t, double h);
   double squared_norm(const double* error) const;
   double scale(int i) const;
@@ -93,15 +89,9 @@ class ImplicitRungeKutta final : public Stepper {
   Rows rtol_, atol_;
   double newton_tolerance_ = 0.0;
   Rows y_, dydt_, y_new_;
-  Rows by_q_, by_qd_;
   bool has_jacobian_ = false;
   Rows stages_, transformed_, rates_, increment_, trial_, error_;  ///< (3, size) or (size)
-  Elimination<double> real_;
-  Elimination<Complex> complex_;
-  double g_ = 0.0;  ///< of the systems that are factored
-  Complex complex_g_;
-  mutable Rows real_side_;
-  mutable std::vector<Complex> complex_side_;
+  NewtonSystems systems_;
   int iterations_ = 0;  ///< that the last attempt took
   double h_ = 0.0;      ///< and its size
   double squared_error_ = 0.0;

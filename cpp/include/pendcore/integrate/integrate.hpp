@@ -54,7 +54,8 @@ struct Limits {
 class Observer {
  public:
   virtual ~Observer() = default;
-  /// Returns where in the step the run is to end, as a share of it: above 1, it goes on.
+  /// Returns where in the step the run is to end, as a share of it: above 1, it goes on; at 0,
+  /// nothing was kept of the step, whose events take too many turns.
   virtual double step_accepted(const Stepper& stepper, const TwoDouble& t_old, double h,
                                double t_new) = 0;
   /// At the end of that step, time t, the state jumped.
@@ -86,6 +87,9 @@ struct Ending {
   std::exception_ptr error = nullptr;  ///< of status callback_error
   bool chatters = false;  ///< the law changes back and forth at one time: no step leads on
 };
+
+/// The first component that is not finite, or -1.
+int bad_component(const std::vector<double>& y);
 
 /// Takes steps from `position` (which moves along) until `limits` ends them. `resumable` becomes
 /// the last position that no cut step came before.

@@ -18,4 +18,7 @@ struct Statistics {
   bool stiff = false;                  ///< Hairer's test found the step limited by stability
 };
 
+/// One step more, of size h; one that was cut has no say in the smallest and the largest.
+void count_accepted(Statistics& statistics, double h, bool cut, bool at_max_step);
+
 }  // namespace pendcore

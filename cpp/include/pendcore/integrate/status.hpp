@@ -12,6 +12,7 @@ enum class Status {
   event,
   at_rest,
   max_steps,
+  max_turns,
   step_too_small,
   non_finite,
   time_limit,
@@ -25,12 +26,13 @@ struct StatusText {
   std::string_view sentence;  ///< what happened, and what can be done about it
 };
 
-inline constexpr std::array<StatusText, 9> status_texts = {{
+inline constexpr std::array<StatusText, 10> status_texts = {{
     {"finished", true, "reached the end of the interval"},
     {"event", true, "stopped at a terminal event"},
     {"at_rest", true, "came to rest for good, and stayed as it is to the end of the interval"},
     {"max_steps", false,
      "the cap on steps was reached: raise max_steps, shorten the interval or loosen rtol and atol"},
+    {"max_turns", false, "events with every_turn were looked for in too many turns"},
     {"step_too_small", false,
      "the step fell below what time can resolve: the motion blows up here (or rtol and atol are "
      "too "

@@ -34,6 +34,9 @@ class Stepper {
   /// Tries a step of size h from the state at time t; `gain` is the control's.
   virtual Attempt attempt(double t, double h, double gain) = 0;
 
+  /// In place of an attempt: a step in which nothing moves.
+  virtual void stay() = 0;
+
   /// Makes the attempted step the past: y becomes y_new.
   virtual void accept(double t_new) = 0;
 
