@@ -31,16 +31,12 @@ ImplicitRungeKutta::ImplicitRungeKutta(const Collocation& method,
       y_(size_),
       dydt_(size_),
       y_new_(size_),
-      by_q_(static_cast<std::size_t>(n_) * n_),
-      by_qd_(by_q_.size()),
       stages_(3 * static_cast<std::size_t>(size_)),
       transformed_(3 * static_cast<std::size_t>(state_)),
       rates_(stages_.size()),
       increment_(transformed_.size()),
       trial_(size_),
       error_(size_),
-      real_(n_),
-      complex_(n_),
       real_side_(n_),
       complex_side_(n_),
       polynomial_(stages_.size()),
@@ -66,6 +62,11 @@ void ImplicitRungeKutta::forget(const double* y, const Rows& instead_of, Rows& l
 }
 
 void ImplicitRungeKutta::start(const double* y, const double* dydt) {
+  // Only now: `auto` may never come to need it.
+  by_q_.resize(static_cast<std::size_t>(n_) * n_);
+  by_qd_.resize(by_q_.size());
+  real_.resize(n_);
+  complex_.resize(n_);
   forget(y, y_, low_);
   std::copy_n(y, size_, y_.begin());
   std::copy_n(dydt, size_, dydt_.begin());
