@@ -140,10 +140,19 @@ def test_a_driven_pivot_that_falls_takes_the_weight_away():
     assert scene.explain(t=pi / 4).stiffest_rate < 1e-3
 
 
-def test_dry_friction_is_left_out_of_the_equilibria_and_it_says_so():
-    told = rods(2, fx.DryJointFriction(1, 5.0)).explain()
+@pytest.mark.parametrize(
+    ("effect", "words"),
+    [
+        (fx.DryJointFriction(1, 5.0), "dry friction is left out"),
+        # It touches where the scene hangs, and upright lies beyond it.
+        (fx.JointStop(1, range=(0.0, pi / 2)), "stops are left out"),
+    ],
+)
+def test_what_holds_joints_is_left_out_of_the_equilibria_and_it_says_so(effect, words):
+    told = rods(2, effect).explain()
     assert told.equilibria == TEXTBOOK.explain().equilibria
-    assert any("dry friction is left out" in remark for remark in told.remarks)
+    (remark,) = told.remarks
+    assert words in remark
     assert "Remarks" in repr(told)
 
 

@@ -31,13 +31,13 @@ ImplicitRungeKutta::ImplicitRungeKutta(const Collocation& method,
       y_(size_),
       dydt_(size_),
       y_new_(size_),
-      systems_(n_),
       stages_(3 * static_cast<std::size_t>(size_)),
       transformed_(3 * static_cast<std::size_t>(state_)),
       rates_(stages_.size()),
       increment_(transformed_.size()),
       trial_(size_),
       error_(size_),
+      slope_(size_),
       polynomial_(stages_.size()),
       low_(compensated ? size_ : 0),
       low_new_(low_.size()) {}
@@ -61,6 +61,8 @@ void ImplicitRungeKutta::forget(const double* y, const Rows& instead_of, Rows& l
 }
 
 void ImplicitRungeKutta::start(const double* y, const double* dydt) {
+  // Only now: `auto` may never come to need it.
+  systems_.resize(n_);
   forget(y, y_, low_);
   std::copy_n(y, size_, y_.begin());
   std::copy_n(dydt, size_, dydt_.begin());
@@ -256,6 +258,7 @@ Attempt ImplicitRungeKutta::attempt(double t, double h, double /*gain*/) {
     return squared_norm(error_.data());
   };
   squared_error_ = filter(dydt_.data());
+  set_slope(h);
   if (is_careful && squared_error_ >= 1.0) {
     // Filtered once more: a fast transient that is damped away is no error.
     for (int i = 0; i < state_; ++i) trial_[i] = y_[i] + error_[i];
@@ -273,11 +276,33 @@ Attempt ImplicitRungeKutta::attempt(double t, double h, double /*gain*/) {
   return {squared_error_, factor};
 }
 
+/// h times the slope of the polynomial at its start: h f(t, y), so that sol(t) has no corners, but
+/// no further from the slope that the stages have than the error allows. What is stiff and has died
+/// out would make of the last bits of its state a slope that nothing in the step has.
+void ImplicitRungeKutta::set_slope(double h) {
+  const Collocation::Row& row = method_.interpolant[0];
+  bool all_are_exact = true;
+  for (int i = 0; i < size_; ++i) {
+    const double of_stages =
+        row[0] * stages_[i] + row[1] * stages_[size_ + i] + row[2] * stages_[2 * size_ + i];
+    const double exact = h * dydt_[i];
+    double filtered = 0.0;
+    bool is_exact = all_are_exact;
+    if (i < state_) {
+      filtered = method_.real * error_[i];
+      is_exact = std::abs(exact - of_stages) <= std::max(2.0 * std::abs(filtered), scale(i));
+      all_are_exact = all_are_exact && is_exact;
+    }
+    slope_[i] = is_exact ? exact : of_stages + filtered;
+  }
+}
+
 /// Whatever its length: of one of some 1e-300 s the matrices are infinite.
 void ImplicitRungeKutta::stay() {
   y_new_ = y_;
   low_new_ = low_;
   std::ranges::fill(stages_, 0.0);
+  std::ranges::fill(slope_, 0.0);
   squared_error_ = 0.0;
 }
 
@@ -305,7 +330,16 @@ void ImplicitRungeKutta::accept(double t_new) {
 
 void ImplicitRungeKutta::interpolant(double /*h*/, double* coefficients) const {
   std::ranges::copy(y_, coefficients);
-  write_polynomial(coefficients + size_);
+  double* const rows = coefficients + size_;
+  write_polynomial(rows);
+  for (int i = 0; i < size_; ++i) {
+    const double change = slope_[i] - rows[i];
+    rows[i] = slope_[i];
+    for (int p = 1; p < Collocation::degree; ++p) {
+      const double before = p < 3 ? rows[p * size_ + i] : 0.0;
+      rows[p * size_ + i] = before + method_.correction[p] * change;
+    }
+  }
 }
 
 void ImplicitRungeKutta::sample(const double* coefficients, const TwoDouble& start, double h,

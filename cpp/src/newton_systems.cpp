@@ -2,14 +2,15 @@
 
 namespace pendcore {
 
-NewtonSystems::NewtonSystems(int n)
-    : n_(n),
-      by_q_(static_cast<std::size_t>(n) * n),
-      by_qd_(by_q_.size()),
-      real_(n),
-      complex_(n),
-      real_side_(n),
-      complex_side_(n) {}
+void NewtonSystems::resize(int n) {
+  n_ = n;
+  by_q_.resize(static_cast<std::size_t>(n) * n);
+  by_qd_.resize(by_q_.size());
+  real_.resize(n);
+  complex_.resize(n);
+  real_side_.resize(n);
+  complex_side_.resize(n);
+}
 
 void NewtonSystems::factor(const Collocation& method, double h) {
   g_ = method.real / h;

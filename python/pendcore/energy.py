@@ -17,10 +17,12 @@ LOSSES = frozenset(name for name, is_loss in _core.accounts().items() if is_loss
 class Ledger(Mapping[str, Floats]):
     """Work and loss since the start, J, an entry for each kind that the scene has.
 
-    ``viscous``, ``dry`` and ``drag`` are losses, ``motor``, ``drive``, ``wind`` and ``user`` work
-    done on the chain. ``residual`` is what the balance leaves over, the error of the run::
+    ``viscous``, ``dry``, ``drag`` and ``impact`` are losses, ``motor``, ``drive``, ``wind`` and
+    ``user`` work done on the chain. ``residual`` is what the balance leaves over, the error of the
+    run::
 
-        [T + V](t) - [T + V](0) = motor + drive + wind + user - viscous - dry - drag + residual
+        [T + V](t) - [T + V](0) = motor + drive + wind + user
+                                  - viscous - dry - drag - impact + residual
 
     An entry is an attribute, ``ledger.viscous``, and an item, ``ledger["viscous"]``, (n_t,); one
     that the scene has no effect for is not there.

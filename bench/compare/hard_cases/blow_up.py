@@ -8,7 +8,7 @@ import numpy as np
 
 from hard_cases.case import Contender, HardCase, Outcome
 from hard_cases.odeint import odeint
-from hard_cases.rods import mujoco_rods
+from hard_cases.rods import mujoco_rods, watched_mujoco
 
 RATE = 1.0
 POLE = 1 / (2 * RATE**2)
@@ -58,6 +58,13 @@ def mujoco() -> Outcome:
     return told(float(data.time), words, says=False)
 
 
+def mujoco_watched() -> Outcome:
+    model = mujoco_rods(dt=1e-4, integrator="RK4")
+    with np.errstate(over="ignore"):
+        t, _, words = watched_mujoco(model, RATE, lambda data: data.qvel**3, T_END)
+    return told(t, words, says=words != "no warning")
+
+
 CASE = HardCase(
     name="blow_up",
     title="Blow-up in finite time",
@@ -74,6 +81,12 @@ CASE = HardCase(
             for method in ("RK45", "LSODA")
         ),
         Contender(program="mujoco", how="mjcb_passive, 1 ms, RK4", run=mujoco),
+        Contender(
+            program="mujoco",
+            how="the same, 0.1 ms, no autoreset, warnings looked at after each step",
+            run=mujoco_watched,
+            own_loop=True,
+        ),
         odeint(
             "controlled dopri5, integrate_adaptive",
             "blow_up",

@@ -6,7 +6,7 @@ import numpy as np
 
 from hard_cases.case import Contender, HardCase, Outcome
 from hard_cases.odeint import odeint
-from hard_cases.rods import Array, mujoco_rods
+from hard_cases.rods import Array, mujoco_rods, watched_mujoco
 
 RATE, EDGE, T_END = 1.0, 0.5, 2.0
 # q'' = 0 but for a couple that is not a number beyond the edge: it gets there at 0.5 s
@@ -59,6 +59,12 @@ def mujoco() -> Outcome:
     return told(float(data.time), float(data.qpos[0]), words, says=False)
 
 
+def mujoco_watched() -> Outcome:
+    model = mujoco_rods(dt=1e-3, integrator="RK4")
+    t, q, words = watched_mujoco(model, RATE, lambda data: couple(data.qpos), T_END)
+    return told(t, q, words, says=words != "no warning")
+
+
 CASE = HardCase(
     name="not_a_number",
     title="Not a number in mid-run",
@@ -78,6 +84,12 @@ CASE = HardCase(
             for method in ("RK45", "Radau", "LSODA")
         ),
         Contender(program="mujoco", how="mjcb_passive, 1 ms, RK4", run=mujoco),
+        Contender(
+            program="mujoco",
+            how="the same, no autoreset, warnings looked at after each step",
+            run=mujoco_watched,
+            own_loop=True,
+        ),
         odeint(
             "controlled dopri5, integrate_adaptive",
             "not_a_number",

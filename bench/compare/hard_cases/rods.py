@@ -70,6 +70,27 @@ def driven_mujoco(model: Any, torque: Callable[[float], float], t_end: float) ->
     return np.transpose(rows)
 
 
+def watched_mujoco(model: Any, rate: float, couple: Callable[[Any], Any], t_end: float) -> Any:
+    """Run from a rate under a couple until there is a warning: the last t and q, and what is said.
+
+    Its user has switched off that MuJoCo starts again, and asks after each step.
+    """
+    import mujoco
+
+    model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
+    data = mujoco.MjData(model)
+    data.qvel[0] = rate
+    mujoco.set_mjcb_passive(lambda _, d: d.qfrc_passive.__iadd__(couple(d)))
+    t, q, words = 0.0, 0.0, ""
+    while data.time < t_end and not words:
+        t, q = float(data.time), float(data.qpos[0])
+        mujoco.mj_step(model, data)
+        found = [k for k, warning in enumerate(data.warning) if warning.number]
+        words = f"warning `{mujoco.mjtWarning(found[0]).name}`" if found else ""
+    mujoco.set_mjcb_passive(None)
+    return t, q, words or "no warning"
+
+
 def textbook_rates(_: float, y: Array) -> Array:
     """Rates of (q_1, q_2, qd_1, qd_2) of two rods of 1 kg and 1 m, g = 9.807."""
     g, d = 9.807, y[0] - y[1]

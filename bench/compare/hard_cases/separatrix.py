@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from mpmath import ellipk, mp, mpf, sin, sqrt
 
@@ -21,11 +23,11 @@ def judged(angle: float) -> Outcome:
     return Outcome(error=off, said=f"{off:.1e} rad off after a period")
 
 
-def pendcore() -> Outcome:
+def pendcore(**how: Any) -> Outcome:
     import pendcore as pc
 
     scene = pc.Scene(links=[pc.Link(mass=1, length=1)], gravity=G)
-    sol = pc.simulate(scene, np.pi / 2 - AMPLITUDE, t_span=(0, PERIOD), rtol=1e-12, atol=1e-14)
+    sol = pc.simulate(scene, np.pi / 2 - AMPLITUDE, t_span=(0, PERIOD), **how)
     return judged(np.pi / 2 - sol.q[-1, 0])
 
 
@@ -59,12 +61,26 @@ CASE = HardCase(
     unit="rad",
     allowed=1e-7,
     contenders=(
-        Contender(program="pendcore", how="dopri5, rtol 1e-12, atol 1e-14", run=pendcore),
+        Contender(
+            program="pendcore",
+            how="dopri5, rtol 1e-12, atol 1e-14",
+            run=lambda: pendcore(rtol=1e-12, atol=1e-14),
+        ),
+        Contender(
+            program="pendcore",
+            how="dopri5, rtol 3e-14, atol 1e-16, compensated",
+            run=lambda: pendcore(rtol=3e-14, atol=1e-16, compensated=True),
+        ),
         Contender(program="scipy", how="DOP853, defaults", run=scipy),
         Contender(
             program="scipy",
             how="DOP853, rtol 1e-12, atol 1e-14",
             run=lambda: scipy(rtol=1e-12, atol=1e-14),
+        ),
+        Contender(
+            program="scipy",
+            how="DOP853, rtol 3e-14, atol 1e-16",
+            run=lambda: scipy(rtol=3e-14, atol=1e-16),
         ),
         Contender(program="mujoco", how="RK4, 0.1 ms", run=mujoco),
         odeint(

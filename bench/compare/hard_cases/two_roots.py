@@ -36,13 +36,13 @@ def judged(times: list[float] | Array) -> Outcome:
     return Outcome(said=words, right=False)
 
 
-def pendcore(rtol: float) -> Outcome:
+def pendcore(**how: float) -> Outcome:
     import pendcore as pc
 
     scene = pc.Scene(links=[pc.Link(mass=3, length=1)], gravity=G)
     mark = pc.events.JointAngle(joint=1, value=np.pi / 2 - MARK)
     span = (0, reference()["end"][0])
-    sol = pc.simulate(scene, np.pi / 2 + AMPLITUDE, t_span=span, rtol=rtol, events=[mark])
+    sol = pc.simulate(scene, np.pi / 2 + AMPLITUDE, t_span=span, events=[mark], **how)
     return judged([event.t for event in sol.events[0]])
 
 
@@ -93,9 +93,14 @@ CASE = HardCase(
             Contender(
                 program="pendcore",
                 how=f"`JointAngle`, dopri5, rtol {rtol:.0e}".replace("e-0", "e-"),
-                run=lambda rtol=rtol: pendcore(rtol),
+                run=lambda rtol=rtol: pendcore(rtol=rtol),
             )
             for rtol in (1e-9, 1e-12)
+        ),
+        Contender(
+            program="pendcore",
+            how="`JointAngle`, dopri5, rtol 1e-12, max_step 2 ms",
+            run=lambda: pendcore(rtol=1e-12, max_step=2e-3),
         ),
         Contender(program="scipy", how="events, RK45", run=lambda: scipy("RK45")),
         Contender(program="scipy", how="events, DOP853", run=lambda: scipy("DOP853")),

@@ -28,6 +28,12 @@ _LONGEST = 0.5
 """rad, of an iteration of Newton's method: it shall not leap to a distant equilibrium."""
 NOISE = 1e-5
 """What the differences leave of a rate that is zero, as a share of the stiffest."""
+_LEFT_OUT = {
+    "dry": "dry friction is left out of the equilibria: it can hold the scene near them",
+    "impact": "stops are left out of the equilibria: the scene can rest against them, and not "
+    "beyond them",
+}
+"""What has no slope about a state of rest, by the account that it is booked on."""
 
 
 class Mode(NamedTuple):
@@ -147,12 +153,10 @@ def find_equilibria(
     n = len(scene.links)
     poses = {"hanging": np.full(n, pi / 2), "upright": np.full(n, -pi / 2)}
     poses |= {} if start is None else {"start": np.array(start)}
-    smooth = [effect for effect in scene.effects if effect.description.account != "dry"]
-    if len(smooth) < len(scene.effects):
-        remarks.append(
-            "dry friction is left out of the equilibria: it can hold the scene near them"
-        )
-        scene = Scene._unpickled(scene.links, scene.gravity, smooth)
+    smooth = [one for one in scene.effects if one.description.account not in _LEFT_OUT]
+    present = {effect.description.account for effect in scene.effects}
+    remarks += [remark for account, remark in _LEFT_OUT.items() if account in present]
+    scene = Scene._unpickled(scene.links, scene.gravity, smooth)
     unknown = [str(joint) for joint, angle in locks(scene).items() if angle is None]
     if start is None and unknown:
         remarks.append(

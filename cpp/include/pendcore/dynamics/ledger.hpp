@@ -1,10 +1,12 @@
 /// \file
 /// The ledger: where the energy of a chain goes,
 ///
-///     [T + V](t) - [T + V](0) = W_motor + W_drive + W_wind + W_user - D_viscous - D_dry - D_drag
+///     [T + V](t) - [T + V](0) = W_motor + W_drive + W_wind + W_user
+///                               - D_viscous - D_dry - D_drag - D_impact
 ///
 /// A run that keeps it carries the shares as quadratures beside the state: their rates are the
-/// powers of the laws, tau_j phid_j, M_i qd_i, F_i . v_i, and F_01 . v_0 of a driven pivot.
+/// powers of the laws, tau_j phid_j, M_i qd_i, F_i . v_i, and F_01 . v_0 of a driven pivot. What
+/// impacts take is added where they are (held_joints.hpp), as is what the drive does in them.
 /// Cost: the laws once more, and their powers. What a rod loses to the air is the integral of
 /// k |w|^3; the rest of its power is the wind's.
 #pragma once

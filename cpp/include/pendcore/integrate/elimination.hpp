@@ -18,7 +18,13 @@ struct Complex {
 template <class Number>
 class Elimination {
  public:
-  explicit Elimination(int n) : n_(n), matrix_(static_cast<std::size_t>(n) * n), pivots_(n) {}
+  Elimination() = default;
+  explicit Elimination(int n) { resize(n); }
+  void resize(int n) {
+    n_ = n;
+    matrix_.resize(static_cast<std::size_t>(n) * n);
+    pivots_.resize(n);
+  }
 
   /// (n, n) row-major: filled in here, and then factored in place.
   Number* matrix() { return matrix_.data(); }
@@ -27,7 +33,7 @@ class Elimination {
   void solve(Number* x) const;
 
  private:
-  int n_;
+  int n_ = 0;
   std::vector<Number> matrix_;
   std::vector<int> pivots_;
 };

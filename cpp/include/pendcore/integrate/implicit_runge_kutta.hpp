@@ -79,6 +79,7 @@ class ImplicitRungeKutta final : public Stepper {
   void integrate_quadratures(double t, double h);
   double squared_norm(const double* error) const;
   double scale(int i) const;
+  void set_slope(double h);
   void write_polynomial(double* rows) const;
 
   const Collocation& method_;
@@ -91,6 +92,7 @@ class ImplicitRungeKutta final : public Stepper {
   Rows y_, dydt_, y_new_;
   bool has_jacobian_ = false;
   Rows stages_, transformed_, rates_, increment_, trial_, error_;  ///< (3, size) or (size)
+  Rows slope_;                                                     ///< h u'(t) of what is shown
   NewtonSystems systems_;
   int iterations_ = 0;  ///< that the last attempt took
   double h_ = 0.0;      ///< and its size

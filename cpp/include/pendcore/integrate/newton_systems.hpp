@@ -14,7 +14,7 @@ namespace pendcore {
 
 class NewtonSystems {
  public:
-  explicit NewtonSystems(int n);
+  void resize(int n);
 
   /// A and B, (n, n) each: filled in here.
   double* by_q() { return by_q_.data(); }
@@ -30,7 +30,7 @@ class NewtonSystems {
   void solve_complex(double* re, double* im);
 
  private:
-  int n_;
+  int n_ = 0;
   std::vector<double> by_q_, by_qd_;
   double g_ = 0.0;
   Complex complex_g_;

@@ -6,7 +6,7 @@
 ///     c = ((4 - sqrt 6)/10, (4 + sqrt 6)/10, 1),
 ///
 /// the last at the end of the step. Order 5, stiffly accurate, L-stable: what is damped
-/// faster than a step is long is gone after it. The polynomial through the stages is of order 3.
+/// faster than a step is long is gone after it. The polynomial is of order 4.
 ///
 /// Source: Hairer and Wanner, Solving Ordinary Differential Equations II (1996), IV.5 and IV.8, as
 /// the program RADAU5 has it. The numbers are derived in sixty digits by
@@ -26,7 +26,7 @@ inline constexpr Collocation radau_5 = {
              .kind = MethodKind::implicit_one,
              .order = 5,
              .error_order = 3,
-             .interpolant_order = 3,
+             .interpolant_order = 4,
              .growth = 8.0,
              .retry = 0.5},
     .c = {0.1550510257216822, 0.6449489742783178, 1.0},
@@ -45,6 +45,7 @@ inline constexpr Collocation radau_5 = {
     .interpolant = {{{10.048809399827416, -1.382142733160749, 0.3333333333333333},
                      {-25.62959144707664, 10.296258113743306, -2.6666666666666665},
                      {15.580782047249224, -8.914115380582556, 3.3333333333333335}}},
+    .correction = {1.0, -4.5, 6.0, -2.5},
 };
 
 }  // namespace pendcore
