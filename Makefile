@@ -12,6 +12,8 @@ export PATH := $(VIRTUAL_ENV)/bin:$(PATH)
 
 DONE := .venv/done
 PIP_INSTALL := python -m pip install --quiet --disable-pip-version-check
+# On all processors: who runs out of tests takes over half of what another has left.
+PYTEST := pytest -n auto --dist worksteal
 # Folders too: a file that is added or removed changes its folder.
 SOURCES := pyproject.toml CMakeLists.txt $(shell find cpp python ! -path '*__pycache__*')
 
@@ -28,7 +30,7 @@ test: $(DONE)/installed $(DONE)/test-requirements  ## build and run all tests
 	cmake --preset release
 	cmake --build --preset release
 	ctest --preset release
-	pytest
+	$(PYTEST)
 
 compare: $(DONE)/installed build-bench  ## accuracy and speed beside other solvers
 	python bench/compare/compare.py
@@ -37,7 +39,7 @@ hard-cases: $(DONE)/installed build-bench  ## what breaks simulators, here and i
 	python bench/compare/compare_hard_cases.py
 
 bench: build-bench  ## what the parts of the core cost, in nanoseconds
-	build/bench/bench/pendcore_bench
+	build/release/bench/pendcore_bench
 
 build-bench: $(DONE)/bench-requirements
 	cmake --preset bench
@@ -48,7 +50,7 @@ lint: $(DONE)/lint-requirements  ## formatting, style, types and spelling, as be
 
 tidy: $(DONE)/build-requirements $(DONE)/lint-requirements  ## clang-tidy over the core
 	cmake --preset tidy
-	cmake --build --preset tidy
+	run-clang-tidy.py -quiet -hide-progress -p build/tidy
 
 # Python itself is not built with the sanitizers, so their libraries are loaded before it; what it
 # never frees is not reported.
@@ -62,7 +64,7 @@ sanitize: $(DONE)/installed $(DONE)/test-requirements  ## all tests under saniti
 	rm -rf $(SANITIZED) && mkdir -p $(SANITIZED) && cp -r python/pendcore $(SANITIZED)
 	cmake --install build/sanitizer --prefix $(SANITIZED)/pendcore
 	PYTHONPATH=$(SANITIZED) LD_PRELOAD="$(PRELOAD)" ASAN_OPTIONS=detect_leaks=0 \
-	    pytest -m "not outside_build"
+	    $(PYTEST) -m "not outside_build"
 
 threads: $(DONE)/build-requirements  ## threads that share a scene, under the thread sanitizer
 	@sh setup/debian_packages.sh doctest
@@ -117,7 +119,7 @@ $(DONE)/fuzz-requirements: pyproject.toml | $(DONE)/test-requirements
 	@touch $@
 
 $(DONE)/bench-requirements: pyproject.toml | $(DONE)/build-requirements
-	@sh setup/debian_packages.sh also benchmark boost valgrind
+	@sh setup/debian_packages.sh doctest also benchmark boost valgrind
 	python setup/requirements.py bench | $(PIP_INSTALL) -r /dev/stdin
 	@touch $@
 

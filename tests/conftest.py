@@ -14,6 +14,12 @@ settings.register_profile("untimed", deadline=None)
 settings.load_profile("untimed")
 
 
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Among several processes what builds programs begins first, lest one end with it alone."""
+    if hasattr(config, "workerinput"):
+        items.sort(key=lambda item: item.get_closest_marker("outside_build") is None)
+
+
 @pytest.fixture(scope="session")
 def reference_case() -> Callable[[str], Trajectory]:
     """Read a case of tests/data/trajectories.json by its name."""

@@ -13,14 +13,15 @@ std::atomic<long long> allocations = 0;
 std::atomic<long long> bytes = 0;
 }  // namespace
 
-void* operator new(std::size_t size) {
+// Not inlined, lest GCC see a delete of what malloc gave.
+[[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocations;
   bytes += static_cast<long long>(size);
   if (void* memory = std::malloc(size)) return memory;
   throw std::bad_alloc();
 }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 using namespace pendcore;
 
@@ -118,7 +119,7 @@ TEST_CASE("a run that solves for no joint takes memory in proportion to its link
   for (const std::vector<Effect>& effects : every_kind) {
     for (const char* method : {"dopri5", "auto"}) {
       CAPTURE(method);
-      CHECK(asked_for(800, effects, method) < 2.5 * asked_for(400, effects, method));
+      CHECK(2 * asked_for(800, effects, method) < 5 * asked_for(400, effects, method));
     }
   }
 }
