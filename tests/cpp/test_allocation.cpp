@@ -95,7 +95,8 @@ TEST_CASE("the number of allocations does not depend on the number of steps") {
 }
 
 TEST_CASE("a run that solves for no joint takes memory in proportion to its links") {
-  const auto asked_for = [](std::size_t n, const std::vector<Effect>& effects, const char* method) {
+  const auto asked_for = [](std::size_t n, const std::vector<Effect>& effects,
+                            const std::string& method) {
     const Scene scene{.links = std::vector<Link>(n, Link::uniform_rod(1.0, 1.0)),
                       .effects = effects};
     Options options;
@@ -117,7 +118,7 @@ TEST_CASE("a run that solves for no joint takes memory in proportion to its link
       {DryJointFriction{.joint = 1, .coulomb = 0.01}},  // it slides
   };
   for (const std::vector<Effect>& effects : every_kind) {
-    for (const char* method : {"dopri5", "auto"}) {
+    for (const std::string method : {"dopri5", "auto"}) {
       CAPTURE(method);
       CHECK(2 * asked_for(800, effects, method) < 5 * asked_for(400, effects, method));
     }
