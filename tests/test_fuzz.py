@@ -11,7 +11,7 @@ import pytest
 from fuzz import campaign, claims
 from fuzz.choices import FromSeed
 from fuzz.drawn_run import Drawn, drawn
-from fuzz.shrinking import shrunk
+from fuzz.shrinking import breaches_alone, shrunk
 from fuzz.verdict import of_case, of_seed
 from pendcore.effect_class import KINDS
 
@@ -162,3 +162,11 @@ def test_a_failing_case_is_made_small(monkeypatch: pytest.MonkeyPatch) -> None:
     assert small.scene.links == (pc.Link(mass=1.0, length=1.0),)
     assert (small.q0, small.qd0) == ([0.0], [0.0])
     assert small.options == {"max_steps": 50, "time_limit": 5.0}
+
+
+def test_a_breach_that_is_told_at_length_is_told_in_short(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A pipe holds no more than 64 kB."""
+    monkeypatch.setattr("fuzz.verdict.ALWAYS", (lambda *_: ["long: " + 70_000 * "x"],))
+    (breach,) = breaches_alone(case_of(time_limit=5.0), "seed")
+    assert breach.endswith("xxx")
+    assert len(breach) < 1000

@@ -97,7 +97,7 @@ def report_of_case(seed: str, number: int, wanted: str = "") -> str:
     if chosen:
         case = shrunk(case, own, chosen[0])
         breaches = breaches_alone(case, own)
-    return "\n".join([f"---- case {number}", *(breach[:600] for breach in breaches), repr(case)])
+    return "\n".join([f"---- case {number}", *breaches, repr(case)])
 
 
 if __name__ == "__main__":
