@@ -20,6 +20,7 @@ NAMES = {
     "t": "transformation",
     "t_inverse": "inverse",
     "interpolant": "interpolant",
+    "correction": "correction",
 }
 
 

@@ -14,8 +14,9 @@ namespace pendcore::bindings {
 
 namespace py = pybind11;
 
-/// An array of doubles, contiguous, made from what is given if need be.
-using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
+/// An array of doubles, contiguous and at multiples of 8 bytes, made from what is given if need be.
+using Array = py::array_t<double, py::array::c_style | py::array::forcecast |
+                                      py::detail::npy_api::NPY_ARRAY_ALIGNED_>;
 
 inline py::str string(std::string_view text) { return {text.data(), text.size()}; }
 

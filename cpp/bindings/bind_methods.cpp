@@ -32,6 +32,7 @@ py::dict tableau(const Collocation& method) {
   result["transformation"] = method.transformation;
   result["inverse"] = method.inverse;
   result["interpolant"] = method.interpolant;
+  result["correction"] = method.correction;
   return result;
 }
 

@@ -42,6 +42,10 @@ def coefficients() -> dict[str, Any]:
     # A^-1 (u + i v) = (alpha + i beta)(u + i v): in the basis (u, -v), with w_2 + i w_3 as the
     # unknown, A^-1 multiplies by alpha + i beta.
     t = mp.matrix([[one[i], mp.re(other[i]), -mp.im(other[i])] for i in range(3)])
+    # The integral of (x - c_1)(x - c_2)(x - c_3), over its slope at 0.
+    sums, product = c[0] + c[1] + c[2], c[0] * c[1] * c[2]
+    pairs = c[0] * c[1] + (c[0] + c[1]) * c[2]
+    correction = [mp.mpf(1), -pairs / (2 * product), sums / (3 * product), -1 / (4 * product)]
     powers = mp.matrix([[x**p for p in (1, 2, 3)] for x in c])
     return {
         "c": c,
@@ -52,6 +56,7 @@ def coefficients() -> dict[str, Any]:
         "t": _rows(t),
         "t_inverse": _rows(t**-1),
         "interpolant": _rows(powers**-1),
+        "correction": correction,
     }
 
 
