@@ -36,6 +36,7 @@ CPP_FILES = dict.fromkeys(
         "event_finder",
         "ending_message",
         "fast_mode",
+        "not_finite",
         "options",
         "pendcore",
         "recorder",

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import pydoc
+import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pendcore as pc
 import pytest
+from pendcore import _core
 from pendcore import effects as fx
 
 ROOT = Path(__file__).parents[1]
@@ -73,3 +76,77 @@ def test_a_sign_of_the_users_own_never_gets_past_rest_as_the_documents_say():
     assert sol._run.t_reached < 1.4  # it came to rest at 4/3 s
     trust = " ".join((ROOT / "docs/trust.md").read_text().split())
     assert "never gets past rest" in trust
+
+
+METHODS = [method["name"] for method in _core.methods() if method["error_order"]]
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_run_that_is_not_finite_says_which_rate_and_whose_force(method: str):
+    def of_root(t: float, q: np.ndarray, qd: np.ndarray) -> np.ndarray:
+        return np.array([0.0, 0.0 * np.sqrt(max(0.5 - q[1], 0.0)) if q[1] <= 0.5 else np.nan])
+
+    drag = fx.ViscousJoint(joint=2, damping=0.1)
+    scene = pc.Scene(links=[ROD, ROD], gravity=0.0, effects=[drag, fx.User(of_root)])
+    sol = pc.simulate(scene, 0, [0.0, 1.0], (0, 3), method=method)
+    assert sol.status == "non_finite"
+    assert sol.q[-1, 1] == pytest.approx(0.5, abs=1e-9)
+    assert re.search(r"qd_[12], by effect 2 \(\w*user\)\)", sol.message)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("span", [(0, 1e-12), (1, 1 + 4e-16), (0, 1), (1, -1)])
+def test_the_right_hand_side_is_never_asked_outside_the_interval(
+    method: str, span: tuple[float, float]
+):
+    asked: list[float] = []
+
+    def note(t: float, q: np.ndarray, qd: np.ndarray) -> np.ndarray:
+        asked.append(t)
+        return np.zeros(1)
+
+    scene = pc.Scene(links=[ROD], effects=[fx.User(note)])
+    assert pc.simulate(scene, 0.3, 0.0, span, method=method).success
+    assert asked
+    assert min(span) <= min(asked)
+    assert max(asked) <= max(span)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_run_shorter_than_its_first_guess_goes_on_as_one_that_is_longer(method: str):
+    """The first step then depends on the end: what goes on begins anew."""
+    book, start = pc.Scene.textbook(), (np.pi / 4, np.pi / 3)
+    once = pc.simulate(book, start, 0, (0, 1), method=method)
+    short = pc.simulate(book, start, 0, (0, 1e-13), method=method)
+    longer = short.resume(2e-12).resume(1.0)
+    np.testing.assert_array_equal(longer.t, once.t)
+    np.testing.assert_array_equal(longer.y, once.y)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("first_step", [1e-300, 1e-160, 1e-7, 1e300])
+def test_any_first_step_leads_to_the_end(method: str, first_step: float):
+    book = pc.Scene.textbook()
+    exact = pc.simulate(book, [0.5, 0.6], 0, (0, 1), rtol=1e-12, atol=1e-13).q[-1]
+    sol = pc.simulate(book, [0.5, 0.6], 0, (0, 1), first_step=first_step, method=method)
+    assert sol.success
+    np.testing.assert_allclose(sol.q[-1], exact, atol=1e-5)
+
+
+def test_an_attempt_that_is_given_up_leaves_no_trace():
+    """Within a step of radau5 the clock is looked at, in the elimination of long chains."""
+    chain = pc.Scene(
+        links=[pc.Link(mass=1, length=0.1)] * 60,
+        effects=[fx.ViscousJoint(joint=60, damping=1e3)],
+    )
+    how: dict[str, Any] = {"method": "radau5", "rtol": 1e-4, "atol": 1e-4}
+    once = pc.simulate(chain, 0.3, 0, (0, 0.3), **how)
+    legs = pc.simulate(chain, 0.3, 0, (0, 0.3), time_limit=2e-3, **how)
+    stops = 0
+    while legs.status == "time_limit":
+        stops += 1
+        legs = legs.resume(0.3, time_limit=2e-3 * (1 + stops / 10))
+    assert stops > 0
+    np.testing.assert_array_equal(legs.t, once.t)
+    np.testing.assert_array_equal(legs.y, once.y)
+    assert legs.stats == once.stats

@@ -10,6 +10,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
+from functools import cache
 from typing import Any
 
 import numba
@@ -48,16 +49,18 @@ class StiffScene:
     def parameters(self) -> tuple[float, float, float]:
         return (self.k, self.b, self.rest)
 
-    def scene(self) -> pc.Scene:
-        rods = [pc.Link(mass=1.0, length=1.0)] * 2
-        effects: dict[str, Any] = {
-            "damper": pc.effects.ViscousJoint(joint=2, damping=self.b),
-            "spring": pc.effects.TorsionalSpring(joint=2, stiffness=self.k, rest_angle=self.rest),
-            "controller": pc.effects.Motor(
-                joint=2, pd=pc.effects.PD(kp=self.k, kd=self.b, reference=self.rest)
-            ),
-        }
-        return pc.Scene(links=rods, gravity=GRAVITY, effects=[effects[self.name]])
+
+@cache
+def scene_of(one: StiffScene) -> pc.Scene:
+    rods = [pc.Link(mass=1.0, length=1.0)] * 2
+    effects: dict[str, Any] = {
+        "damper": pc.effects.ViscousJoint(joint=2, damping=one.b),
+        "spring": pc.effects.TorsionalSpring(joint=2, stiffness=one.k, rest_angle=one.rest),
+        "controller": pc.effects.Motor(
+            joint=2, pd=pc.effects.PD(kp=one.k, kd=one.b, reference=one.rest)
+        ),
+    }
+    return pc.Scene(links=rods, gravity=GRAVITY, effects=[effects[one.name]])
 
 
 SCENES = (
@@ -77,7 +80,7 @@ Solve = Callable[[StiffScene, float], tuple[Array, int, str]]
 def by_pendcore(method: str) -> Solve:
     def solve(one: StiffScene, tolerance: float) -> tuple[Array, int, str]:
         sol = pc.simulate(
-            one.scene(), START[:2], START[2:], (TIMES[0], TIMES[-1]), method=method,
+            scene_of(one), START[:2], START[2:], (TIMES[0], TIMES[-1]), method=method,
             rtol=tolerance, atol=tolerance, t_eval=TIMES, max_steps=LONGEST,
         )  # fmt: skip
         return sol.q, sol.stats.accepted + sol.stats.rejected, sol.message

@@ -207,7 +207,7 @@ bool position_fits(const Position& p) {
 std::string json_of_effects(const Scene& scene) {
   py::list effects;
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
-    effects.append(kind_and_values(effect_name(scene, i), scene.effects[i]));
+    effects.append(kind_and_values(effect_name(scene, i) + ": ", scene.effects[i]));
   }
   return py::module_::import("json").attr("dumps")(effects).cast<std::string>();
 }

@@ -57,12 +57,17 @@ void EffectsInForce::call(const CompiledUser& user, double t, const Dual<double>
     }
     call(user, t, angles, rates, forces);
   };
+  forces_at(0.0);
+  for (std::size_t i = 0; i < n; ++i) Q[i].value = forces[i];
   forces_at(step);
   for (std::size_t i = 0; i < n; ++i) Q[i].slope = forces[i];
   forces_at(-step);
-  for (std::size_t i = 0; i < n; ++i) Q[i].slope = (Q[i].slope - forces[i]) / (2.0 * step);
-  forces_at(0.0);
-  for (std::size_t i = 0; i < n; ++i) Q[i].value = forces[i];
+  for (std::size_t i = 0; i < n; ++i) {
+    const double ahead = Q[i].slope;
+    Q[i].slope = (ahead - forces[i]) / (2.0 * step);
+    if (std::isfinite(Q[i].slope)) continue;  // else from the side that has numbers
+    Q[i].slope = (std::isfinite(ahead) ? ahead - Q[i].value : Q[i].value - forces[i]) / step;
+  }
 }
 
 int EffectsInForce::add_wave(const Sinusoid& wave) {

@@ -27,6 +27,7 @@ void AutomaticStepper::evaluate(double t, const double* y, double* dydt) {
 }
 
 Attempt AutomaticStepper::attempt(double t, double h, double gain) {
+  now().goes_on = goes_on;
   const Attempt attempt = now().attempt(t, h, gain);
   count();
   return attempt;

@@ -131,9 +131,8 @@ std::vector<Cost> costs(const Scene& scene) {
   const double links = contenders.front().nanoseconds();
   std::vector<Cost> result{{"links", links, std::nullopt}};
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
-    const std::string name = effect_name(scene, i);
     result.push_back(
-        {name.substr(0, name.size() - 2), contenders[i + 1].nanoseconds() - links,
+        {effect_name(scene, i), contenders[i + 1].nanoseconds() - links,
          std::visit([](const auto& one) { return operations_of(one); }, scene.effects[i])});
   }
   result.push_back({"all", contenders.back().nanoseconds(), std::nullopt});

@@ -37,9 +37,11 @@ void subtract(Complex& x, const Complex& y, const Complex& z) {
 }  // namespace
 
 template <class Number>
-void Elimination<Number>::factor() {
+bool Elimination<Number>::factor(const std::function<bool()>& goes_on) {
+  constexpr int between = 16;  // rows
   Number* const a = matrix_.data();
   for (int k = 0; k < n_; ++k) {
+    if (goes_on && k % between == between - 1 && !goes_on()) return false;
     int pivot = k;
     for (int i = k + 1; i < n_; ++i) {
       if (size(a[i * n_ + k]) > size(a[pivot * n_ + k])) pivot = i;
@@ -57,6 +59,7 @@ void Elimination<Number>::factor() {
       for (int j = k + 1; j < n_; ++j) subtract(a[i * n_ + j], share, a[k * n_ + j]);
     }
   }
+  return true;
 }
 
 template <class Number>

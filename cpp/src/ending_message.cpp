@@ -1,6 +1,7 @@
 #include "pendcore/ending_message.hpp"
 
 #include "pendcore/message.hpp"
+#include "pendcore/not_finite.hpp"
 #include "pendcore/start.hpp"
 
 namespace pendcore {
@@ -21,7 +22,7 @@ std::string table_that_ends(const Scene& scene, double t, bool forward) {
             const double first = effect.first_time();
             const double last = effect.last_time();
             if (forward ? first <= t && t < last : first < t && t <= last) return;
-            told = effect_name(scene, i) + span_of(scene.effects[i]) +
+            told = effect_name(scene, i) + ": " + span_of(scene.effects[i]) +
                    ", and the run is at t = " + text(t) + " s: make it longer, or simulate less";
           }
         },
@@ -34,7 +35,7 @@ std::string table_that_ends(const Scene& scene, double t, bool forward) {
 }  // namespace
 
 std::string ending_message(const Ending& ending, const Scene& scene, const Solution& solution,
-                           const std::string& remark, int ended_by) {
+                           const Position& position, const std::string& remark, int ended_by) {
   std::string message(text(ending.status).sentence);
   if (ending.status == Status::at_rest) {
     const double since = solution.resumable.t.high;
@@ -70,7 +71,11 @@ std::string ending_message(const Ending& ending, const Scene& scene, const Solut
            " stopped being finite: without ledger=True the motion can go on" + at + ')';
   }
   message += at;
-  if (ending.bad >= 0) message += ", " + component_name(ending.bad, solution.n);
+  if (ending.status != Status::non_finite) return message + ')';
+  NotFinite found = find_what_is_not_finite(scene, position);
+  if (found.component < 0) found.component = ending.bad;
+  if (found.component >= 0) message += ", " + component_name(found.component, solution.n);
+  if (found.effect >= 0) message += ", by " + effect_name(scene, found.effect);
   return message + ')';
 }
 

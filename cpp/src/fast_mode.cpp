@@ -134,8 +134,7 @@ std::string remark_on_steps(const Scene& scene, const EquationsOfMotion& equatio
   if (statistics.njev > 0) {
     for (std::size_t i = 0; i < scene.effects.size(); ++i) {
       if (!std::holds_alternative<CompiledUser>(scene.effects[i])) continue;
-      const std::string name = effect_name(scene, i);
-      remark += "; derivatives of " + name.substr(0, name.size() - 2) + " by differences";
+      remark += "; derivatives of " + effect_name(scene, i) + " by differences";
     }
   }
   const std::size_t n = scene.links.size();
@@ -151,10 +150,7 @@ std::string remark_on_steps(const Scene& scene, const EquationsOfMotion& equatio
   if (!mode || !(0.01 < h * mode->fastest && h * mode->fastest < 10.0)) return remark;
   remark += "; a fast mode set " + std::to_string(statistics.limited_by_tolerance) +
             " steps: " + measure_of(*mode) + ", in joint " + std::to_string(mode->joint);
-  if (mode->effect) {
-    const std::string name = effect_name(scene, *mode->effect);
-    remark += ", from " + name.substr(0, name.size() - 2);
-  }
+  if (mode->effect) remark += ", from " + effect_name(scene, *mode->effect);
   if (mode->damping_ratio < 0.5) {
     remark += ": as long as it swings, every method has to follow it; damp it, or lock the joint";
   }

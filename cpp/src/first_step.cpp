@@ -8,8 +8,8 @@
 
 namespace pendcore {
 
-double first_step(Stepper& stepper, double t, double direction, double max_step, const double* rtol,
-                  const double* atol) {
+FirstStep first_step(Stepper& stepper, double t, double t_end, double max_step, const double* rtol,
+                     const double* atol) {
   const int n = stepper.controlled();
   const int size = stepper.dimension();
   std::vector<double> memory(5 * size);
@@ -32,9 +32,13 @@ double first_step(Stepper& stepper, double t, double direction, double max_step,
                  ? 1e-6
                  : 0.01 * std::sqrt(state_squares / rate_squares);
   h = std::min(h, max_step);
+  const double direction = t_end < t ? -1.0 : 1.0;
+  const double left = std::abs(t_end - t);
+  const bool is_bounded = h > left;
+  h = std::min(h, left);
 
   for (int i = 0; i < n; ++i) euler[i] = y[i] + direction * h * rate[i];
-  stepper.evaluate(t + direction * h, euler, euler_rate);
+  stepper.evaluate(is_bounded ? t_end : t + direction * h, euler, euler_rate);
   double change_squares = 0.0;
   for (int i = 0; i < n; ++i) {
     const double change = (euler_rate[i] - rate[i]) / scale[i];
@@ -50,7 +54,7 @@ double first_step(Stepper& stepper, double t, double direction, double max_step,
   } else {
     by_order = approximate_exp2(approximate_log2(0.01 / steepest) / stepper.info().order);
   }
-  return std::min({100.0 * h, by_order, max_step});
+  return {std::min({100.0 * h, by_order, max_step}), is_bounded};
 }
 
 }  // namespace pendcore

@@ -234,13 +234,13 @@ Attempt ImplicitRungeKutta::attempt(double t, double h, double /*gain*/) {
   if (!has_jacobian_) {
     system_->jacobian(t, y_.data(), systems_.by_q(), systems_.by_qd());
     has_jacobian_ = true;
-    if (!is_retry_) ++jacobians;  // one that was resumed has been counted
   }
+  h_ = h;
+  if (!systems_.factor(method_, h, goes_on)) return {std::numeric_limits<double>::quiet_NaN(), 0.0};
+  factorisations += 2;
+  if (!is_retry_) ++jacobians;
   const bool is_careful = is_retry_ || h_before_ == 0.0;
   is_retry_ = true;
-  h_ = h;
-  systems_.factor(method_, h);
-  factorisations += 2;
   predict(h);
   if (!iterate(t, h)) return {std::numeric_limits<double>::quiet_NaN(), 0.0};
   polish_angles(h);

@@ -44,6 +44,11 @@ class Run {
     if (breaks != nullptr) guards_.emplace(stepper, *breaks);
     has_quadratures_ = stepper.controlled() < stepper.dimension();
     may_end_ = observer.may_end();
+    cut_before_ = limits.begins_anew;
+    stepper.goes_on = [this] {
+      stopped_ = clock_.look(position_.t.high);
+      return stopped_ == Status::finished;
+    };
   }
 
   Ending go() {
@@ -113,6 +118,7 @@ class Run {
 
     ++attempts_;
     Attempt attempt = stepper_.attempt(t, h, position_.control.gain(method_));
+    if (stopped_ != Status::finished) return end(stopped_);
     look_for_bad_component(attempt, t + h);
     // A step of a few bits cannot be shortened, and its error is that of its times.
     const bool is_shortest = target.is_in_reach && std::abs(h) <= 10.0 * last_bits();
@@ -132,6 +138,7 @@ class Run {
         return change_at_once(crossing);
       const double gain = position_.control.gain(method_);
       const Guards::Located located = guards_->locate(crossing, t, h, gain, last_bits());
+      if (stopped_ != Status::finished) return end(stopped_);
       attempt = located.attempt;
       if (limits_.fixed_step) {
         h = located.is_found ? located.h : crossing.theta * h;
@@ -360,6 +367,7 @@ class Run {
   long long jacobians_before_;
   long long factorisations_before_;
   Status status_ = Status::finished;
+  Status stopped_ = Status::finished;  ///< or why an attempt was given up
   long long attempts_ = 0;
   bool cut_before_ = false;  ///< a step was cut to end at t_end: later ones depend on t_end
   bool law_is_changing_ = false;

@@ -44,7 +44,7 @@ void check_effects(const Scene& scene) {
   const int n = static_cast<int>(scene.links.size());
   std::vector<bool> locked(n);
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
-    const std::string where = effect_name(scene, i);
+    const std::string where = effect_name(scene, i) + ": ";
     check_effect(where, scene.effects[i]);
     std::visit(
         [&]<class Kind>(const Kind& effect) {
@@ -143,7 +143,7 @@ void check(const Scene& scene) {
 
 std::string effect_name(const Scene& scene, std::size_t i) {
   return "effect " + std::to_string(i + 1) + " (" + std::string(info_of(scene.effects[i]).kind) +
-         "): ";
+         ")";
 }
 
 Scene compiled(Scene scene) {
@@ -202,10 +202,10 @@ std::vector<std::string> plausibility_warnings(const Scene& scene) {
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
     std::visit(
         [&](const auto& effect) {
-          warn_of_degrees(effect_name(scene, i), effect, warnings);
+          warn_of_degrees(effect_name(scene, i) + ": ", effect, warnings);
           if constexpr (requires { effect.warnings(); }) {
             for (const std::string& warning : effect.warnings()) {
-              warnings.push_back(effect_name(scene, i) + warning);
+              warnings.push_back(effect_name(scene, i) + ": " + warning);
             }
           }
         },

@@ -58,6 +58,7 @@ struct Beginning {
   Recorder& recorder;
   const std::vector<double>& rtol;
   const std::vector<double>& atol;
+  bool depends_on_end = false;  ///< the first step does: of a longer run it is another one
 
   Ending make(Position& position, double t_end) {
     const Position start = position;
@@ -89,10 +90,14 @@ struct Beginning {
     stepper.evaluate(t, y.data(), position.dydt.data());
     stepper.start(y.data(), position.dydt.data());
     if (t != t_end) {
-      const double size = options.step         ? *options.step
-                          : options.first_step ? std::min(*options.first_step, options.max_step)
-                                               : first_step(stepper, t, direction, options.max_step,
-                                                            rtol.data(), atol.data());
+      double size = options.step.value_or(
+          std::min(options.first_step.value_or(options.max_step), options.max_step));
+      if (!options.step && !options.first_step) {
+        const FirstStep first =
+            first_step(stepper, t, t_end, options.max_step, rtol.data(), atol.data());
+        size = first.h;
+        depends_on_end = first.is_bounded;
+      }
       position.h = direction * size;
       position.h_is_max_step = options.step || size == options.max_step;
     }
@@ -106,7 +111,7 @@ struct Beginning {
 };
 
 /// From the solution's resumable position to t_end.
-void run(const Scene& scene, Solution& solution, double t_end, const Limits& limits, Before before,
+void run(const Scene& scene, Solution& solution, double t_end, Limits limits, Before before,
          const std::vector<long long>& passed_events = {}) {
   const Options& options = solution.options;
   const EquationsOfMotion equations = equations_of_motion(scene);
@@ -135,7 +140,9 @@ void run(const Scene& scene, Solution& solution, double t_end, const Limits& lim
     stepper->restore(position.stepper);
     position.statistics.nfev += stepper->evaluations;
   } else {
-    ending = Beginning{options, *stepper, breaks, recorder, rtol, atol}.make(position, t_end);
+    Beginning beginning{options, *stepper, breaks, recorder, rtol, atol};
+    ending = beginning.make(position, t_end);
+    limits.begins_anew = beginning.depends_on_end;
     position.statistics.nfev = stepper->evaluations;
   }
   if (ending.status == Status::finished) {
@@ -149,8 +156,8 @@ void run(const Scene& scene, Solution& solution, double t_end, const Limits& lim
   solution.statistics = position.statistics;
   solution.t_reached = position.t.high;
   solution.y_reached = position.y;
-  solution.message = ending_message(ending, scene, solution, switching ? switching->remark() : "",
-                                    recorder.ended_by());
+  solution.message = ending_message(ending, scene, solution, position,
+                                    switching ? switching->remark() : "", recorder.ended_by());
   solution.message +=
       remark_on_steps(scene, equations, position, find_method(options.method), solution.t0);
   solution.error = ending.error;

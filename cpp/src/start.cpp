@@ -43,7 +43,7 @@ void check_stop(const JointStop& stop, const std::string& where, const std::vect
 void check_effects_at_start(const Scene& scene, const std::vector<double>& q0,
                             const std::vector<double>& qd0, double t0, double t_end) {
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
-    const std::string where = effect_name(scene, i);
+    const std::string where = effect_name(scene, i) + ": ";
     if (t_end < t0 && holding_torque(scene.effects[i])) {
       throw std::invalid_argument("t_span: runs backward: " + where +
                                   "with dry friction the past is not unique: run it forward");
@@ -114,7 +114,7 @@ std::vector<std::string> run_warnings(const Scene& scene, const std::vector<doub
         [&](const auto& effect) {
           if constexpr (requires { effect.last_time(); }) {
             if (effect.first_time() <= first && last <= effect.last_time()) return;
-            warnings.push_back(effect_name(scene, i) + span_of(scene.effects[i]) +
+            warnings.push_back(effect_name(scene, i) + ": " + span_of(scene.effects[i]) +
                                ", the run from " + text(t0) + " to " + text(t_end) +
                                " s: it ends where it leaves that span");
           }

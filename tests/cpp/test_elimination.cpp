@@ -58,3 +58,12 @@ TEST_CASE("complex systems agree with the library's complex numbers") {
     }
   }
 }
+
+TEST_CASE("an elimination that is told not to go on ends early") {
+  Elimination<double> system(200);
+  for (int k = 0; k < 200; ++k) system.matrix()[k * 200 + k] = 1.0;
+  int asked = 0;
+  CHECK(!system.factor([&] { return ++asked < 3; }));
+  CHECK(asked == 3);
+  CHECK(system.factor([] { return true; }));
+}

@@ -131,8 +131,9 @@ Result solve(const Request& request) {
   const double infinity = std::numeric_limits<double>::infinity();
   position.h =
       direction * (request.step > 0.0 ? request.step
-                                      : first_step(stepper, request.t0, direction, infinity,
-                                                   tolerances.data(), tolerances.data()));
+                                      : first_step(stepper, request.t0, request.t_end, infinity,
+                                                   tolerances.data(), tolerances.data())
+                                            .h);
   Nothing nothing;
   Position resumable;
   const Limits limits{.t_end = request.t_end,

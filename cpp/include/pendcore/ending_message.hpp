@@ -9,8 +9,8 @@
 namespace pendcore {
 
 /// What happened, with advice; of a run that failed, where. `remark` is what holds a scene at rest,
-/// `ended_by` the number of the event that ended the run, from 0.
+/// `ended_by` the number of the event that ended the run, from 0; `position` is where it stands.
 std::string ending_message(const Ending& ending, const Scene& scene, const Solution& solution,
-                           const std::string& remark, int ended_by);
+                           const Position& position, const std::string& remark, int ended_by);
 
 }  // namespace pendcore

@@ -61,7 +61,7 @@ auto effects_of(const Scene& scene) {
 /// asked of a scene at many times is answered sooner.
 Scene compiled(Scene scene);
 
-/// "effect 2 (viscous_joint): ": how messages begin.
+/// "effect 2 (viscous_joint)".
 std::string effect_name(const Scene& scene, std::size_t i);
 
 /// Where the pivot is, and how it moves: the sum of what drives it.

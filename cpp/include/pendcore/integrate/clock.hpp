@@ -23,7 +23,7 @@ class Clock {
   const Limits& limits_;
   double t0_;
   int steps_ = 0;
-  int steps_between_looks_ = 16;
+  int steps_between_looks_ = 1;
   Steady::time_point start_ = Steady::now();
   Steady::time_point last_look_ = start_;
   Steady::time_point last_call_ = start_;

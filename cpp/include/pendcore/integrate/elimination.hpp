@@ -3,9 +3,10 @@
 ///
 /// Complex numbers are written out in reals, and a pivot is chosen by |re| + |im|. Source: Golub
 /// and Van Loan, Matrix Computations, 3.4. Cost: n^3/3 multiplications of the number, and n^2 for
-/// each right side. Throws nothing and allocates once; a singular matrix gives what is not finite.
+/// each right side. Allocates once; a singular matrix gives what is not finite.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 namespace pendcore {
@@ -28,7 +29,8 @@ class Elimination {
 
   /// (n, n) row-major: filled in here, and then factored in place.
   Number* matrix() { return matrix_.data(); }
-  void factor();
+  /// Asks now and then whether to go on, if that is given; false where it was told not to.
+  bool factor(const std::function<bool()>& goes_on = nullptr);
   /// From a right side (n) to the solution, in place.
   void solve(Number* x) const;
 

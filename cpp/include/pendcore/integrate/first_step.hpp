@@ -10,8 +10,13 @@
 
 namespace pendcore {
 
-/// A positive step (s) from the stepper's state at time t; `direction` is 1 or -1.
-double first_step(Stepper& stepper, double t, double direction, double max_step, const double* rtol,
-                  const double* atol);
+struct FirstStep {
+  double h;         ///< s, positive
+  bool is_bounded;  ///< by the time that is left: the Euler step would have gone beyond
+};
+
+/// From the stepper's state at time t, to go on to t_end.
+FirstStep first_step(Stepper& stepper, double t, double t_end, double max_step, const double* rtol,
+                     const double* atol);
 
 }  // namespace pendcore

@@ -48,6 +48,7 @@ struct Limits {
   long long max_steps = std::numeric_limits<long long>::max();  ///< attempted, accepted or not
   double time_limit = std::numeric_limits<double>::infinity();  ///< s, of the clock on the wall
   Monitor monitor;
+  bool begins_anew = false;  ///< a run that goes on does so from the start, not from later
 };
 
 /// Is shown each accepted step before it becomes the past.

@@ -2,9 +2,9 @@
 /// The linear systems of an implicit method's iteration, of q'' = a(q, q'):
 ///
 ///     (g - J)(x, y) = (r, s),  J = ((0, 1), (A, B)):
-///     (g^2 - g B - A) y = g s + A r,    x = (r + y)/g
+///     (1 - h B - h^2 A) y = h (s + h A r),    x = h (r + y),    h = 1/g
 ///
-/// for a real g and a complex one. Cost: two eliminations of half the size of J.
+/// for a real h and a complex one. Cost: two eliminations of half the size of J.
 #pragma once
 
 #include "pendcore/integrate/collocation.hpp"
@@ -20,10 +20,11 @@ class NewtonSystems {
   double* by_q() { return by_q_.data(); }
   double* by_qd() { return by_qd_.data(); }
 
-  /// Makes both systems for a step of size h: g = real/h, and (alpha + i beta)/h.
-  void factor(const Collocation& method, double h);
-  double real() const { return g_; }
-  Complex complex() const { return complex_g_; }
+  /// Makes both systems for a step of size h: g = real/h, and (alpha + i beta)/h. Asks now and then
+  /// whether to go on; false where it was told not to.
+  bool factor(const Collocation& method, double h, const std::function<bool()>& goes_on);
+  double real() const { return g_; }              ///< g
+  Complex complex() const { return complex_g_; }  ///< g
 
   /// From (r, s) to (x, y), (2n) numbers, in place.
   void solve_real(double* x);
@@ -33,7 +34,8 @@ class NewtonSystems {
   int n_ = 0;
   std::vector<double> by_q_, by_qd_;
   double g_ = 0.0;
-  Complex complex_g_;
+  double h_ = 0.0;  ///< 1/g
+  Complex complex_g_, complex_h_;
   Elimination<double> real_;
   Elimination<Complex> complex_;
   std::vector<double> real_side_;

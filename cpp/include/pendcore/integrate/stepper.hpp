@@ -2,6 +2,7 @@
 /// What the integration loop sees of a method applied to a system: no tableau, no pendulum.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "pendcore/arithmetic/two_double.hpp"
@@ -30,6 +31,10 @@ class Stepper {
   virtual void get_new_state(double* y) const = 0;      ///< y at the end of the attempted step
   virtual void set_new_state(const double* y) = 0;      ///< puts another in its place
   virtual void evaluate(double t, const double* y, double* dydt) = 0;  ///< the right-hand side
+
+  /// Is asked now and then in an attempt that takes long; at false the attempt is given up, and
+  /// nothing that the next one depends on has changed.
+  std::function<bool()> goes_on;
 
   /// Tries a step of size h from the state at time t; `gain` is the control's.
   virtual Attempt attempt(double t, double h, double gain) = 0;

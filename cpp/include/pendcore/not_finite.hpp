@@ -1,0 +1,18 @@
+/// \file
+/// Where numbers stop being finite: which rate, and by whose force.
+#pragma once
+
+#include "pendcore/integrate/integrate.hpp"
+#include "pendcore/scene.hpp"
+
+namespace pendcore {
+
+struct NotFinite {
+  int component = -1;  ///< of (q, qd)
+  int effect = -1;     ///< of the scene, that gives no number by itself; -1: none does
+};
+
+/// Looks ahead along the slope at which a run has ended, at as much as its last steps tried.
+NotFinite find_what_is_not_finite(const Scene& scene, const Position& position);
+
+}  // namespace pendcore
