@@ -125,21 +125,6 @@ def test_dense_output_far_from_time_zero_is_as_good_as_near_it():
     assert np.abs(far(2.0**30 + times) - near(times)).max() < 1e-12
 
 
-@pytest.mark.parametrize("ratio", [1e-12, 1e-6, 1e6, 1e12])
-@pytest.mark.parametrize("what", ["mass", "length"])
-def test_extreme_ratios_keep_their_energy(what, ratio):
-    changed = {"mass": 1.0, "length": 1.0} | {what: ratio}
-    scene = pc.Scene(links=[pc.Link(mass=1.0, length=1.0), pc.Link(**changed)])
-    fastest = np.sqrt(
-        9.807 / min(1.0, changed["length"]) * max(1.0, ratio if what == "mass" else 1)
-    )
-    sol = pc.simulate(scene, [0.5, 1.2], 0, (0, 20 / fastest), rtol=1e-11, atol=1e-14)
-    energy = total_energy(sol)
-    kinetic = sol.energy().kinetic.max()
-    assert sol.success
-    assert np.ptp(energy) < 1e-8 * max(kinetic, 1e-3 * np.abs(energy).max())
-
-
 def test_a_spin_of_a_million_keeps_its_energy_and_momentum():
     sol = pc.simulate(FLOATING, [0.0, 1.0], [1e6, -2e6], (0, 1e-4), rtol=1e-12, atol=1e-9)
     energy = total_energy(sol)
