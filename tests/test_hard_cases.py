@@ -122,11 +122,29 @@ def test_all_links_horizontal_at_rest_begins_to_fall_at_once(method):
     assert sol.q[-1] == pytest.approx(expected, rel=1e-5)
 
 
-@pytest.mark.parametrize("tolerance", [1e30, 1e3, 1e-20])
-def test_absurd_tolerances_end_in_a_solution(tolerance):
-    sol = pc.simulate(BOOK, [0.8, 1.0], 0, (0, 0.1), rtol=tolerance, atol=tolerance)
-    assert sol.success
+@pytest.mark.parametrize("method", METHODS)
+def test_absurd_tolerances_end_in_a_solution(method):
+    how = {"method": method, "atol": 1e-20}
+    fine, finest, too_fine = (
+        pc.simulate(BOOK, [0.8, 1.0], 0, (0, 0.1), rtol=rtol, **how)
+        for rtol in (1e-13, 10 * np.finfo(float).eps, 1e-20)
+    )
+    np.testing.assert_allclose(too_fine.y[:, -1], fine.y[:, -1], rtol=0, atol=1e-13)
+    assert np.array_equal(too_fine.y, finest.y)  # doubles resolve no more
+    assert too_fine.stats.accepted > 1.5 * fine.stats.accepted
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("tolerance", [1e300, 1e30, 1e3])
+def test_tolerances_beyond_measure_end_as_the_status_says(tolerance, method):
+    """At the end or wherever the steps lead to; a tenth of a second is a single step."""
+    how = {"method": method, "rtol": tolerance, "atol": tolerance}
+    assert pc.simulate(BOOK, [0.8, 1.0], 0, (0, 0.1), **how).success
+    sol = pc.simulate(BOOK, [0.8, 1.0], 0, (0, 5), **how)
+    assert sol.status in {"finished", "step_too_small", "non_finite"}
+    assert sol.success == (sol.t[-1] == 5)
     assert np.isfinite(sol.y).all()
+    assert sol.stats.accepted < 100
 
 
 @pytest.mark.parametrize("step", [None, 10.0])
