@@ -1,12 +1,14 @@
-"""What several tests share: the multiple-precision trajectories, and a Ctrl-C that is heard."""
+"""What several tests share: the methods, the multiple-precision trajectories, a Ctrl-C heard."""
 
 from __future__ import annotations
 
 import signal
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 from hypothesis import settings
+from pendcore import _core
 from reference.trajectories import Trajectory, trajectory
 
 # A busy machine is no failure.
@@ -24,6 +26,18 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 def reference_case() -> Callable[[str], Trajectory]:
     """Read a case of tests/data/trajectories.json by its name."""
     return trajectory
+
+
+@pytest.fixture(params=[m["name"] for m in _core.methods() if m["error_order"]])
+def method(request: pytest.FixtureRequest) -> str:
+    """Run a test once with each method that chooses its own steps."""
+    return str(request.param)
+
+
+@pytest.fixture
+def fine(method: str) -> dict[str, Any]:
+    """Return options of a run whose errors are those of rounding or next to it."""
+    return {"method": method, "rtol": 1e-12, "atol": 1e-14}
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -7,6 +7,7 @@ a metre that is a factor of a thousand or so. For wild ones there is `any_runs`.
 from __future__ import annotations
 
 from collections.abc import Collection
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -139,6 +140,20 @@ def motions(draw: st.DrawFn, kinds: Collection[str] = SMOOTH) -> Drawn:
         return motion(Rounded(FromHypothesis(draw)), kinds)
     except ValueError:
         reject()
+
+
+@st.composite
+def stopped_motions(draw: st.DrawFn) -> Drawn:
+    """Return one of these motions with stops about the start, most of which are soon reached."""
+    run = draw(motions(sorted({*SMOOTH} - {"lock"})))
+    choices = Rounded(FromHypothesis(draw))
+    stops = []
+    for joint, phi in enumerate(np.diff(run.q0, prepend=0.0), start=1):
+        if joint == 1 or choices.integer(0, 1):
+            ends = (phi - choices.real(0.05, 1), phi + choices.real(0.05, 1))
+            e = choices.one_of((0.0, 0.5))
+            stops.append(pc.effects.JointStop(joint=joint, range=ends, restitution=e))
+    return replace(run, scene=with_effects(run.scene, [*run.scene.effects, *stops]))
 
 
 def motion_of_seed(seed: str, kind: str) -> Drawn:

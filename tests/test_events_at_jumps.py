@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
+import mpmath  # type: ignore[import-untyped]
 import numpy as np
 import pendcore as pc
 import pytest
 from pendcore import effects as fx
 from pendcore import events as ev
+from unit_rods import rod as unit_rod
 
 J = 1 / 3
 
@@ -66,19 +68,42 @@ def test_a_terminal_event_at_an_impact_ends_there_and_goes_on_after_it() -> None
     np.testing.assert_array_equal(longer.y, whole.y)
 
 
-def test_entering_stick_is_one_rate_zero_in_a_run_that_goes_on() -> None:
+@pytest.mark.parametrize("rtol", [1e-5, 1e-8, 1e-11, 1e-12])
+def test_entering_stick_is_one_rate_zero_in_a_run_that_goes_on(rtol: float, method: str) -> None:
     """Friction 0.5 against sin(t): slides up from asin 0.5, sticks, slides down, and so on."""
     scene = rod(
         fx.DryJointFriction(joint=1, coulomb=0.5),
         fx.Motor(joint=1, sinusoid=fx.Sinusoid(amplitude=1.0, angular_frequency=1.0)),
     )
     zero = ev.RateZero(joint=1)
-    sol = pc.simulate(scene, 0.0, 0.0, (0, 20), events=[zero], rtol=1e-11, atol=1e-13)
+    sol = pc.simulate(scene, 0.0, 0.0, (0, 20), events=[zero], method=method, rtol=rtol)
     stops = sol.t[1:][(sol.qd[1:, 0] == 0.0) & (sol.qd[:-1, 0] != 0.0)]
     assert len(stops) >= 5
     assert [found.t for found in sol.events[0]] == [*stops]
     for found in sol.events[0]:
         assert found.qd[0] == 0.0
+
+
+def test_leaving_a_contact_is_no_rate_zero_and_coming_into_it_is_one(fine: Any) -> None:
+    """Moment of inertia 1 under -(sin t + 0.2) at a plastic stop: off where sin t = -0.2."""
+    push = fx.Motor(joint=1, sinusoid=fx.Sinusoid(amplitude=-1.0, angular_frequency=1.0))
+    stop = fx.JointStop(joint=1, range=(0.0, np.inf))
+    scene = unit_rod(push, fx.Motor(joint=1, constant=-0.2), stop)
+    watched = [ev.RateZero(joint=1), ev.JointAngle(joint=1, value=0.0)]
+    off = np.pi + np.arcsin(0.2)
+
+    def rate(t: Any) -> Any:
+        return mpmath.cos(t) - mpmath.cos(off) - 0.2 * (t - off)
+
+    turns = [float(mpmath.findroot(rate, near)) for near in (7.9, 11.8, 12.9)]
+    back = float(mpmath.findroot(lambda t: mpmath.quad(rate, [off, t]), 14.2))
+    sol = pc.simulate(scene, 0.0, 0.0, (0, 20), events=watched, **fine)
+    assert sol.qd[-1, 0] > 0.1  # off again, one turn of the push after the first time
+    rests, touches = sol.events
+    assert [found.t for found in rests] == pytest.approx([*turns, back], abs=1e-10)
+    assert [found.direction for found in rests] == [-1, 1, -1, 1]
+    assert [found.t for found in touches] == [rests[-1].t]
+    assert touches[0].y_after.tolist() == [0.0, 0.0]
 
 
 def test_watching_changes_no_bit_of_a_run_with_impacts_and_stick() -> None:

@@ -11,8 +11,12 @@ from dense_chain import DenseChain, joints, rates_after_impact
 from pendcore import effects as fx
 from unit_rods import links
 
-FINE = {"rtol": 1e-12, "atol": 1e-14, "max_steps": 20_000}  # lest one goes on for ever
 inf = np.inf
+
+
+@pytest.fixture
+def fine(fine: Any) -> Any:
+    return fine | {"max_steps": 20_000}  # lest one goes on for ever
 
 
 def drawn_chain(n: int, seed: int) -> tuple[DenseChain, np.random.Generator]:
@@ -27,7 +31,9 @@ def kinetic(m: Any, qd: Any) -> float:
 
 @pytest.mark.parametrize("e", [0.0, 0.5, 1.0])
 @pytest.mark.parametrize("n", [1, 2, 3, 5])
-def test_an_impact_turns_the_joint_and_jerks_the_others_as_the_law_says(n: int, e: float) -> None:
+def test_an_impact_turns_the_joint_and_jerks_the_others_as_the_law_says(
+    n: int, e: float, fine: Any
+) -> None:
     """v+ = v- + M^-1 J^T Lam, and (1 - e^2) (J v-)^2 / (2 J M^-1 J^T) is lost, for each on the way.
 
     A joint's rate is turned to -e of itself; the tips of all others are jerked along.
@@ -42,7 +48,7 @@ def test_an_impact_turns_the_joint_and_jerks_the_others_as_the_law_says(n: int, 
         phi[joint - 1] = 0.1
         phid = random.uniform(-2, 2, n)
         phid[joint - 1] = 3.0
-        sol = pc.simulate(scene, np.cumsum(phi), np.cumsum(phid), (0, 0.6), ledger=True, **FINE)
+        sol = pc.simulate(scene, np.cumsum(phi), np.cumsum(phid), (0, 0.6), ledger=True, **fine)
         assert sol.success, sol.message
         row_j = joints(n)[joint - 1]
         angle = sol.relative_angles()[:, joint - 1]
@@ -68,7 +74,7 @@ def test_an_impact_turns_the_joint_and_jerks_the_others_as_the_law_says(n: int, 
 
 
 @pytest.mark.parametrize("n", [2, 3, 4])
-def test_stops_hit_at_once_share_the_impulse_by_complementarity(n: int) -> None:
+def test_stops_hit_at_once_share_the_impulse_by_complementarity(n: int, fine: Any) -> None:
     """Every joint at one of its bounds at the start, moving any way: those that must, act."""
     acted = set()
     for seed in range(80):
@@ -91,7 +97,7 @@ def test_stops_hit_at_once_share_the_impulse_by_complementarity(n: int) -> None:
         normals = -side[:, None] * joints(n)
         m = chain.mass_matrix(q)
         exact, impulses = rates_after_impact(m, qd, normals, restitution)
-        sol = pc.simulate(scene, q, qd, (0, 1e-5), ledger=True, **FINE)
+        sol = pc.simulate(scene, q, qd, (0, 1e-5), ledger=True, **fine)
         assert sol.success, f"seed {seed}: {sol.message}"
         lost = kinetic(m, qd) - kinetic(m, exact)
         assert lost >= -1e-12 * kinetic(m, qd)
@@ -103,39 +109,58 @@ def test_stops_hit_at_once_share_the_impulse_by_complementarity(n: int) -> None:
     assert len(acted) > n + 1
 
 
-def test_two_stops_that_are_reached_at_the_same_time_are_hit_at_the_same_time() -> None:
-    """The stops stand where a free run is after 0.05 s: whichever the last bits put first."""
-    chain = DenseChain(masses=np.ones(2), lengths=np.ones(2), gravity=0.0)
-    free = pc.Scene(links=links(chain), gravity=0.0)
-    start, rates = np.array([0.3, 0.9]), np.array([1.0, 4.0])
-    reached = pc.simulate(free, start, rates, (0, 0.05), **FINE)
+TWO = DenseChain(masses=np.ones(2), lengths=np.ones(2), gravity=0.0)
+
+
+def two_stops(apart: float, fine: Any) -> tuple[pc.Solution, Any, Any]:
+    """Two rods at whose stops a free run is after 0.05 s: the second's is so many rad further.
+
+    Returns the run that hits them, with the mass matrix and the rates there.
+    """
+    free = pc.Scene(links=links(TWO), gravity=0.0)
+    start, rates = [0.3, 0.9], [1.0, 4.0]
+    reached = pc.simulate(free, start, rates, (0, 0.05), **fine)
     q, qd = reached.q[-1], reached.qd[-1]
-    phi = q - np.append(0.0, q[:-1])
-    stops = [
-        fx.JointStop(joint=j + 1, range=(-inf, float(phi[j])), restitution=0.5) for j in range(2)
-    ]
-    scene = pc.Scene(links=links(chain), gravity=0.0, effects=stops)
-    normals = -joints(2)
-    assert (normals @ qd < 0).all()
-    exact, impulses = rates_after_impact(chain.mass_matrix(q), qd, normals, [0.5, 0.5])
-    assert (impulses > 0).all()
-    sol = pc.simulate(scene, start, rates, (0, 0.05 + 1e-9), **FINE)
+    phi = np.array([q[0], q[1] - q[0] + apart])
+    assert (joints(2) @ qd > 0).all()
+    stops = [fx.JointStop(joint=j + 1, range=(-inf, phi[j]), restitution=0.5) for j in range(2)]
+    sol = pc.simulate(free.replace(effects=stops), start, rates, (0, 0.05 + 1e-8), **fine)
     assert sol.success
-    assert (sol.relative_angles() <= phi + 1e-12).all()
-    loose = joints(2) @ sol.qd[-1]
-    assert (loose <= 1e-12).all()
-    at_once = np.abs(sol.qd[-1] - exact).max() < 1e-6
-    first, _ = rates_after_impact(chain.mass_matrix(q), qd, normals[:1], [0.5])
-    second, _ = rates_after_impact(chain.mass_matrix(q), qd, normals[1:], [0.5])
-    orders = [
-        rates_after_impact(chain.mass_matrix(q), first, normals[1:], [0.5])[0],
-        rates_after_impact(chain.mass_matrix(q), second, normals[:1], [0.5])[0],
-    ]
-    one_by_one = [np.abs(sol.qd[-1] - order).max() < 1e-6 for order in orders]
-    assert at_once or any(one_by_one) or len(np.flatnonzero(np.diff(sol.t) == 0)) > 2
+    assert (sol.relative_angles() <= phi + 1e-15).all()
+    return sol, TWO.mass_matrix(q), qd
 
 
-def test_an_impact_sets_a_stuck_joint_free_and_friction_gives_no_impulse() -> None:
+def test_two_stops_that_are_reached_at_the_same_time_are_hit_at_the_same_time(fine: Any) -> None:
+    sol, m, qd = two_stops(0.0, fine)
+    exact, impulses = rates_after_impact(m, qd, -joints(2), [0.5, 0.5])
+    assert (impulses > 0).all()
+    (row,) = np.flatnonzero(np.diff(sol.t) == 0)
+    assert sol.t[row] == pytest.approx(0.05, abs=1e-15)
+    np.testing.assert_allclose(sol.qd[row + 1], exact, atol=1e-10)
+
+
+@pytest.mark.parametrize("apart", [1e-9, -1e-9, 1e-13, -1e-13])
+def test_two_stops_that_are_reached_a_hair_apart_are_hit_in_their_order(
+    apart: float, fine: Any
+) -> None:
+    """Other than both at once, and to and fro: so near, the gaps are linear in time."""
+    sol, m, rates = two_stops(apart, fine)
+    gaps = np.array([0.0, apart]) - min(apart, 0.0)
+    hits = 0
+    while ((closing := joints(2) @ rates) > 0).any():
+        times = [
+            gap / speed if speed > 0 else inf for gap, speed in zip(gaps, closing, strict=True)
+        ]
+        hit = int(np.argmin(times))
+        gaps = gaps - times[hit] * closing
+        gaps[hit] = 0.0
+        rates, _ = rates_after_impact(m, rates, -joints(2)[[hit]], [0.5])
+        hits += 1
+    assert len(np.flatnonzero(np.diff(sol.t) == 0)) == hits > 3
+    np.testing.assert_allclose(sol.qd[-1], rates, atol=1e-7)  # some 1e-8 s later
+
+
+def test_an_impact_sets_a_stuck_joint_free_and_friction_gives_no_impulse(fine: Any) -> None:
     """Friction holds joint 1 until link 2 hits its stop: the impulse is that of a free joint 1.
 
     It slides from there, against its friction.
@@ -146,7 +171,7 @@ def test_an_impact_sets_a_stuck_joint_free_and_friction_gives_no_impulse() -> No
         fx.JointStop(joint=2, range=(-inf, 0.5), restitution=0.3),
     ]
     scene = pc.Scene(links=links(chain), gravity=0.0, effects=effects)
-    sol = pc.simulate(scene, [0.2, 0.3], [0.0, 2.0], (0, 1), **FINE)
+    sol = pc.simulate(scene, [0.2, 0.3], [0.0, 2.0], (0, 1), **fine)
     row = int(np.flatnonzero(np.diff(sol.t) == 0)[0])
     assert sol.qd[row, 0] == 0.0
     assert sol.q[row, 0] == 0.2
@@ -157,7 +182,7 @@ def test_an_impact_sets_a_stuck_joint_free_and_friction_gives_no_impulse() -> No
     assert sol.qd[-1, 0] == 0.0  # stopped again
 
 
-def test_the_drive_pays_its_share_of_an_impact_on_a_moving_pivot() -> None:
+def test_the_drive_pays_its_share_of_an_impact_on_a_moving_pivot(fine: Any) -> None:
     """The ledger closes over bounces under a driven pivot."""
     rod = pc.Link(mass=1, length=1)
     effects = [
@@ -166,7 +191,7 @@ def test_the_drive_pays_its_share_of_an_impact_on_a_moving_pivot() -> None:
         fx.JointStop(joint=2, range=(-0.5, 0.4), restitution=0.4),
     ]
     scene = pc.Scene(links=[rod, rod], gravity=9.81, effects=effects)
-    sol = pc.simulate(scene, [1.5, 1.6], 0, (0, 3), ledger=True, **FINE)
+    sol = pc.simulate(scene, [1.5, 1.6], 0, (0, 3), ledger=True, **fine)
     assert sol.success
     ledger = sol.energy().ledger
     assert ledger.impact[-1] > 0.1

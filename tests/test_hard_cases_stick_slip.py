@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 from typing import Any
 
@@ -14,7 +15,6 @@ from pendcore import effects as fx
 from stick_slip import DIGITS, Hum, Slide, slides
 from unit_rods import rod, solve
 
-FINE = {"rtol": 1e-12, "atol": 1e-14}
 HUMS = {
     "both ways": {"amplitude": 1.0, "friction": 0.7, "bias": 0.0},
     "both ways, nearly held": {"amplitude": 1.0, "friction": 0.999, "bias": 0.0},
@@ -26,6 +26,7 @@ HUMS = {
 CYCLES = 12
 
 
+@functools.cache
 def solved(frequency: float, **hum: float) -> tuple[Hum, list[Slide], float]:
     """The slides of so many turns of the torque, in many digits, and a time in a stick near it."""
     turns = CYCLES * 2 * np.pi / frequency
@@ -43,11 +44,11 @@ def scene_of(frequency: float, amplitude: float, friction: float, bias: float) -
 @pytest.mark.parametrize("frequency", [2.0, 0.01])
 @pytest.mark.parametrize("hum", HUMS.values(), ids=HUMS.keys())
 def test_under_a_sinusoidal_torque_each_slide_begins_and_ends_when_it_should(
-    hum: dict[str, float], frequency: float
+    hum: dict[str, float], frequency: float, fine: Any
 ) -> None:
     with mp.workdps(DIGITS):
         _, found, turns = solved(frequency, **hum)
-        sol = solve(scene_of(frequency, **hum), 0, 0, turns, **FINE)
+        sol = solve(scene_of(frequency, **hum), 0, 0, turns, **fine)
         assert sol.status == "finished"
         done = [slide for slide in found if slide.end < turns]
         scale = float(max(abs(slide.angle_at(slide.end)) for slide in done))
@@ -70,20 +71,22 @@ def test_under_a_sinusoidal_torque_each_slide_begins_and_ends_when_it_should(
                 )
 
 
-def test_what_the_motor_gives_is_what_friction_takes() -> None:
+def test_what_the_motor_gives_is_what_friction_takes(fine: Any) -> None:
     """Of the staircase, in the stick after the last slide; the work is the friction's path."""
     hum = HUMS["a staircase"]
     with mp.workdps(DIGITS):
         _, found, turns = solved(2.0, **hum)
         last = [slide for slide in found if slide.end < turns][-1]
-        sol = solve(scene_of(2.0, **hum), 0, 0, float(last.end) + 1e-3, ledger=True, **FINE)
+        sol = solve(scene_of(2.0, **hum), 0, 0, float(last.end) + 1e-3, ledger=True, **fine)
         path = float(last.angle_at(last.end))
     ledger = sol.energy().ledger
     assert ledger.dry[-1] == pytest.approx(hum["friction"] * path, rel=1e-10)
     assert ledger.motor[-1] == pytest.approx(hum["friction"] * path, rel=1e-10)
 
 
-def test_a_rod_towed_by_a_spring_touches_rest_in_passing_where_friction_is_constant() -> None:
+def test_a_rod_towed_by_a_spring_touches_rest_in_passing_where_friction_is_constant(
+    fine: Any,
+) -> None:
     """Towed at v from v t k = tc on: phi' = v (1 - cos ws), which touches zero and slides on."""
     k, v, coulomb = 4.0, 0.05, 0.3
     spring = fx.TorsionalSpring(joint=1, stiffness=k)
@@ -91,19 +94,20 @@ def test_a_rod_towed_by_a_spring_touches_rest_in_passing_where_friction_is_const
     scene = rod(spring, tow, fx.DryJointFriction(joint=1, coulomb=coulomb))
     begin, w = coulomb / (k * v), np.sqrt(k)
     end = begin + 7.3 * 2 * np.pi / w
-    sol = solve(scene, 0, 0, end, **FINE)
+    sol = solve(scene, 0, 0, end, **fine)
     s = np.linspace(0, end - begin, 200)
     np.testing.assert_allclose(sol(begin + s)[0], v * s - v / w * np.sin(w * s), atol=1e-9)
 
 
+@functools.cache
 def towed(static: float, coulomb: float, ws: float, k: float, v: float) -> Any:
-    """Stick and slip of a towed rod: each phase's begin, angle and end, by Taylor series."""
+    """Stick and slip of a towed rod: three phases' begin, angle and end, by Taylor series."""
 
     def friction(w: Any) -> Any:
         return coulomb + (static - coulomb) * mp.exp(-((w / ws) ** 2))
 
-    t, phi = mpf(0), mpf(0)
-    while True:
+    phases, phi = [], mpf(0)
+    while len(phases) < 3:
         begin = (static / k + phi) / v
 
         def rates(_: Any, y: Any) -> list[Any]:
@@ -119,12 +123,13 @@ def towed(static: float, coulomb: float, ws: float, k: float, v: float) -> Any:
         for _ in range(60):
             middle = (low + high) / 2
             low, high = (middle, high) if motion(middle)[1] > 0 else (low, middle)
-        t, after = begin + low, motion(low)[2]
-        yield begin, phi, t, after
+        after = motion(low)[2]
+        phases.append((begin, phi, begin + low, after))
         phi = after
+    return phases
 
 
-def test_stick_and_slip_of_a_rod_that_a_spring_tows_slowly() -> None:
+def test_stick_and_slip_of_a_rod_that_a_spring_tows_slowly(fine: Any) -> None:
     """The classic: static friction above the sliding one, a spring whose far end goes at v."""
     static, coulomb, ws, k, v = 0.5, 0.3, 0.2, 4.0, 0.02
     tow = fx.Motor(joint=1, table=fx.Table(t=[0, 100], torque=[0, 100 * k * v]))
@@ -132,10 +137,10 @@ def test_stick_and_slip_of_a_rod_that_a_spring_tows_slowly() -> None:
         joint=1, coulomb=coulomb, static=static, stribeck_velocity=ws, exponent=2
     )
     scene = rod(fx.TorsionalSpring(joint=1, stiffness=k), tow, friction)
-    sol = solve(scene, 0, 0, 30, **FINE)
+    sol = solve(scene, 0, 0, 30, **fine)
     assert sol.status == "finished"
     with mp.workdps(20):
-        for begin, held, end, after in itertools.islice(towed(static, coulomb, ws, k, v), 3):
+        for begin, held, end, after in towed(static, coulomb, ws, k, v):
             for switch in (float(begin), float(end)):
                 assert np.abs(sol.t - switch).min() < 1e-8
             assert sol(float(begin) - 1e-6)[1] == 0

@@ -13,6 +13,7 @@ CONTACT = "tests/test_hard_cases_contact.py"
 IMPACTS = "tests/test_hard_cases_impacts.py"
 EVENTS = "tests/test_hard_cases_events.py"
 MORE = "tests/test_hard_cases_forces.py"
+RATIOS = "tests/test_hard_cases_ratios.py"
 
 LISTED: dict[str, tuple[str, ...]] = {
     "an interval of no length, and of 100 units in the last place": (
@@ -40,10 +41,12 @@ LISTED: dict[str, tuple[str, ...]] = {
     "blow-up in finite time": (f"{MORE}::test_a_blow_up_ends_at_its_pole",),
     "tolerances of 1e30, and below eps; atol 0 with a zero component": (
         f"{HARD}::test_absurd_tolerances_end_in_a_solution",
+        f"{HARD}::test_tolerances_beyond_measure_end_as_the_status_says",
         f"{HARD}::test_no_absolute_tolerance_with_components_that_stay_zero",
     ),
     "ratios of mass and length of 1e+-12; a payload of 1e6 links": (
-        f"{HARD}::test_extreme_ratios_keep_their_energy",
+        f"{RATIOS}::test_extreme_ratios_of_mass_keep_energy_and_motion",
+        f"{RATIOS}::test_two_rods_of_which_one_is_next_to_a_point_swing_as_one",
         f"{MORE}::test_a_payload_of_a_million_links_swings_as_a_pendulum_on_a_string",
     ),
     "a spin of 1e6 rad/s; angles of 1e8 rad; denormal states": (
