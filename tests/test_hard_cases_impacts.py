@@ -143,7 +143,7 @@ def test_two_stops_that_are_reached_at_the_same_time_are_hit_at_the_same_time(fi
 def test_two_stops_that_are_reached_a_hair_apart_are_hit_in_their_order(
     apart: float, fine: Any
 ) -> None:
-    """Other than both at once, and to and fro: so near, the gaps are linear in time."""
+    """Other than both at once, and back and forth: so near, the gaps are linear in time."""
     sol, m, rates = two_stops(apart, fine)
     gaps = np.array([0.0, apart]) - min(apart, 0.0)
     hits = 0
