@@ -1,7 +1,9 @@
 #include "pendcore/dynamics/complementarity.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 namespace pendcore {
 namespace {
@@ -13,12 +15,16 @@ std::size_t place(int row, int column, int n) {
 
 }  // namespace
 
-void factor_cholesky(int n, double* a) {
+void factor_symmetric(int n, double* a) {
   for (int i = 0; i < n; ++i) {
-    for (int j = 0; j <= i; ++j) {
-      double sum = a[place(i, j, n)];
-      for (int k = 0; k < j; ++k) sum -= a[place(i, k, n)] * a[place(j, k, n)];
-      a[place(i, j, n)] = i == j ? std::sqrt(sum) : sum / a[place(j, j, n)];
+    double* const row = a + place(i, 0, n);
+    for (int j = 0; j < i; ++j) {  // L D for now
+      for (int k = 0; k < j; ++k) row[j] -= row[k] * a[place(j, k, n)];
+    }
+    for (int j = 0; j < i; ++j) {
+      const double of_both = row[j];
+      row[j] /= a[place(j, j, n)];
+      row[i] -= of_both * row[j];
     }
   }
 }
@@ -26,14 +32,13 @@ void factor_cholesky(int n, double* a) {
 void solve_lower(int n, const double* factor, double* x) {
   for (int i = 0; i < n; ++i) {
     for (int k = 0; k < i; ++k) x[i] -= factor[place(i, k, n)] * x[k];
-    x[i] /= factor[place(i, i, n)];
   }
 }
 
 void solve_upper(int n, const double* factor, double* x) {
   for (int i = n - 1; i >= 0; --i) {
-    for (int k = i + 1; k < n; ++k) x[i] -= factor[place(k, i, n)] * x[k];
     x[i] /= factor[place(i, i, n)];
+    for (int k = i + 1; k < n; ++k) x[i] -= factor[place(k, i, n)] * x[k];
   }
 }
 
@@ -61,7 +66,7 @@ void ForcesBetweenBounds::solve_between() {
     x[i] = -sum;
     for (int j = 0; j <= i; ++j) factor_[place(i, j, n)] = W[place(free_[i], free_[j], size)];
   }
-  factor_cholesky(n, factor_.data());
+  factor_symmetric(n, factor_.data());
   solve_lower(n, factor_.data(), x.data());
   solve_upper(n, factor_.data(), x.data());
   for (int i = 0; i < n; ++i) lambda[free_[i]] = x[i];
@@ -84,38 +89,70 @@ int ForcesBetweenBounds::wrong(int i) const {
   return 0;
 }
 
-void ForcesBetweenBounds::solve() {
-  auto change = [this](int i, int way) {
-    const bool was_between = at[i] == Bound::between;
-    at[i] = !was_between ? Bound::between : way < 0 ? Bound::lower : Bound::upper;
-  };
+bool ForcesBetweenBounds::solve() {
   int least = size + 1;
-  int blocks_left = 10;
-  const int most = 100 + 20 * size;
-  for (int round = 0; round < most; ++round) {
+  for (int blocks_left = 10; blocks_left > 0; --blocks_left) {
     solve_between();
     int count = 0;
-    int last = -1;
+    for (int i = 0; i < size; ++i) count += wrong(i) != 0 ? 1 : 0;
+    if (count == 0) return true;
+    if (count < least) blocks_left = 10;
+    least = std::min(least, count);
     for (int i = 0; i < size; ++i) {
-      if (wrong(i) == 0) continue;
-      ++count;
-      last = i;
-    }
-    if (count == 0) return;
-    if (count < least) {
-      least = count;
-      blocks_left = 10;
-    } else {
-      --blocks_left;
-    }
-    if (blocks_left < 0) {
-      change(last, wrong(last));
-      continue;
-    }
-    for (int i = 0; i < size; ++i) {
-      if (const int way = wrong(i); way != 0) change(i, way);
+      const int way = wrong(i);
+      if (way == 0) continue;
+      const bool was_between = at[i] == Bound::between;
+      at[i] = !was_between ? Bound::between : way < 0 ? Bound::lower : Bound::upper;
     }
   }
+  return descend();
+}
+
+/// From forces within the bounds downhill, until a bound is in the way or what is free is at its
+/// least; then the bound is let go that is wrong by most.
+bool ForcesBetweenBounds::descend() {
+  for (int i = 0; i < size; ++i) {
+    lambda[i] = std::clamp(lambda[i], lower[i], upper[i]);
+    at[i] = lambda[i] == lower[i]   ? Bound::lower
+            : lambda[i] == upper[i] ? Bound::upper
+                                    : Bound::between;
+  }
+  for (int round = 0; round < 100 + 20 * size; ++round) {
+    const std::vector<double> from = lambda;
+    solve_between();
+    double share = 1.0;
+    int first = -1;
+    for (int i = 0; i < size; ++i) {
+      const int way = at[i] == Bound::between ? wrong(i) : 0;
+      if (way == 0) continue;
+      const double bound = way < 0 ? lower[i] : upper[i];
+      const double until = (bound - from[i]) / (lambda[i] - from[i]);
+      if (first >= 0 && until >= share) continue;
+      share = until;
+      first = i;
+    }
+    if (first >= 0) {
+      for (int i = 0; i < size; ++i) lambda[i] = from[i] + share * (lambda[i] - from[i]);
+      at[first] =
+          lambda[first] - lower[first] < upper[first] - lambda[first] ? Bound::lower : Bound::upper;
+      lambda[first] = at[first] == Bound::lower ? lower[first] : upper[first];
+      continue;
+    }
+    int worst = -1;
+    for (int i = 0; i < size; ++i) {
+      if (wrong(i) == 0 || std::abs(w[i]) <= rounding(i)) continue;
+      if (worst < 0 || std::abs(w[i]) > std::abs(w[worst])) worst = i;
+    }
+    if (worst < 0) return true;
+    at[worst] = Bound::between;
+  }
+  return false;
+}
+
+double ForcesBetweenBounds::rounding(int i) const {
+  double sum = std::abs(a[i]);
+  for (int j = 0; j < size; ++j) sum += std::abs(W[place(i, j, size)] * lambda[j]);
+  return 64.0 * std::numeric_limits<double>::epsilon() * sum;
 }
 
 }  // namespace pendcore

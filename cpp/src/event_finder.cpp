@@ -28,6 +28,10 @@ EventFinder::EventFinder(const Scene& scene, const std::vector<Event>& events,
       node_values_(events.size()) {
   passed_.resize(events.size());
   for (const FoundEvent& one : found) ++counts_[one.event];
+  // A run that goes on may do so between two changes at one time.
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (found[i].t == found.back().t) at_the_end_.push_back(i);
+  }
   for (std::size_t k = 0; k < events.size(); ++k) {
     if (const auto* line = std::get_if<events::TipLine>(&events[k].function)) {
       tip_line_of_[k] = static_cast<int>(tip_lines_.size());
@@ -68,6 +72,12 @@ EventFinder::Difference EventFinder::difference_of(const EventFunction& function
   return {n_ + rate.link.value_or(1) - 1, -1};
 }
 
+double EventFinder::Difference::from(double level, const double* y) const {
+  const double x = of(y) - level;
+  const double size = std::abs(y[plus]) + (minus < 0 ? 0.0 : std::abs(y[minus])) + std::abs(level);
+  return std::abs(x) <= 4.0 * rounding * size ? 0.0 : x;
+}
+
 double EventFinder::Levels::at(int i) const { return std::fma(first + i, turn, value); }
 
 EventFinder::Levels EventFinder::levels_between(const Difference& difference, double low,
@@ -103,7 +113,6 @@ void EventFinder::find_difference(std::size_t k, const Step& step) {
     size += std::abs(row[difference.plus]);
     if (difference.minus >= 0) size += std::abs(row[difference.minus]);
   }
-  const double start = polynomial_[0];
   const double end = difference.of(y_new_.data());
   const Levels levels = levels_along(difference, degree, end, 8.0 * rounding * size);
   // A turn a step is bounded by the number of steps.
@@ -115,9 +124,9 @@ void EventFinder::find_difference(std::size_t k, const Step& step) {
   }
   for (int i = 0; i < static_cast<int>(levels.count); ++i) {
     const double level = levels.at(i);
-    polynomial_[0] = start - level;
+    polynomial_[0] = difference.from(level, step.rows);
     const double noise = 8.0 * rounding * (size + std::abs(level));
-    find_roots(polynomial_.data(), degree, end - level, noise, roots_);
+    find_roots(polynomial_.data(), degree, difference.from(level, y_new_.data()), noise, roots_);
   }
 }
 
@@ -228,6 +237,7 @@ void EventFinder::append(const Candidate& candidate, double t, const double* y) 
 void EventFinder::jump(double t, const double* before, const double* after) {
   const auto size = 2 * static_cast<std::ptrdiff_t>(n_);
   for (const std::size_t i : at_the_end_) {
+    if (found_[i].t != t) continue;
     if (found_[i].y_before.empty()) found_[i].y_before.assign(before, before + size);
     found_[i].y.assign(after, after + size);
   }
@@ -246,7 +256,8 @@ void EventFinder::jump(double t, const double* before, const double* after) {
     const double high = difference.of(after);
     const Levels levels = levels_between(difference, std::min(low, high), std::max(low, high));
     for (int i = 0; i < static_cast<int>(levels.count); ++i) {
-      cross(k, low - levels.at(i), high - levels.at(i), t, before, after);
+      const double level = levels.at(i);
+      cross(k, difference.from(level, before), difference.from(level, after), t, before, after);
     }
   }
   node_t_ = t;

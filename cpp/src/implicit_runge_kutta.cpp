@@ -237,12 +237,13 @@ Attempt ImplicitRungeKutta::attempt(double t, double h, double /*gain*/) {
   }
   h_ = h;
   if (!systems_.factor(method_, h, goes_on)) return {std::numeric_limits<double>::quiet_NaN(), 0.0};
-  factorisations += 2;
-  if (!is_retry_) ++jacobians;
-  const bool is_careful = is_retry_ || h_before_ == 0.0;
-  is_retry_ = true;
   predict(h);
-  if (!iterate(t, h)) return {std::numeric_limits<double>::quiet_NaN(), 0.0};
+  const bool converges = iterate(t, h);  // or a function of the user's raises: nothing was tried
+  const bool is_careful = is_retry_ || h_before_ == 0.0;
+  if (!is_retry_) ++jacobians;
+  factorisations += 2;
+  is_retry_ = true;
+  if (!converges) return {std::numeric_limits<double>::quiet_NaN(), 0.0};
   polish_angles(h);
   if (size_ > state_) integrate_quadratures(t, h);
   advance();

@@ -46,7 +46,7 @@ class Run {
     may_end_ = observer.may_end();
     cut_before_ = limits.begins_anew;
     stepper.goes_on = [this] {
-      stopped_ = clock_.look(position_.t.high);
+      if (can_stop_) stopped_ = clock_.look(position_.t.high);
       return stopped_ == Status::finished;
     };
   }
@@ -58,8 +58,9 @@ class Run {
     if (const int bad = bad_component(position_.dydt); bad >= 0) {
       return end_with(Status::non_finite, bad);
     }
+    if (may_end_) begin_step();
     try {
-      while (step() && !has_ended()) {
+      while (!has_ended() && step()) {
       }
       return end_with(status_, bad_);
     } catch (const std::bad_alloc&) {
@@ -91,6 +92,11 @@ class Run {
     return false;
   }
 
+  void begin_step() {
+    write_down(step_start_);
+    observer_.step_begins();
+  }
+
   bool step() {
     const double t = position_.t.high;
     const double left = difference(limits_.t_end, position_.t);
@@ -98,10 +104,7 @@ class Run {
     if (attempts_ == limits_.max_steps) return end(Status::max_steps);
     if (const Status clock = clock_.look(t); clock != Status::finished) return end(clock);
 
-    if (may_end_) {
-      write_down(step_start_);
-      observer_.step_begins();
-    }
+    if (may_end_) begin_step();
     if (breaks_ != nullptr && breaks_->is_over()) return end(Status::non_finite);
     if (breaks_ != nullptr && breaks_->rests()) return rest(left);
     if (breaks_ != nullptr && std::abs(position_.h) > breaks_->longest_step()) {
@@ -117,7 +120,9 @@ class Run {
     }
 
     ++attempts_;
+    can_stop_ = true;
     Attempt attempt = stepper_.attempt(t, h, position_.control.gain(method_));
+    can_stop_ = false;  // within a step that was tried already
     if (stopped_ != Status::finished) return end(stopped_);
     look_for_bad_component(attempt, t + h);
     // A step of a few bits cannot be shortened, and its error is that of its times.
@@ -138,7 +143,6 @@ class Run {
         return change_at_once(crossing);
       const double gain = position_.control.gain(method_);
       const Guards::Located located = guards_->locate(crossing, t, h, gain, last_bits());
-      if (stopped_ != Status::finished) return end(stopped_);
       attempt = located.attempt;
       if (limits_.fixed_step) {
         h = located.is_found ? located.h : crossing.theta * h;
@@ -162,7 +166,9 @@ class Run {
   bool rest(double left) {
     cut_for_the_end();
     stepper_.stay();
-    observer_.step_accepted(stepper_, position_.t, left, limits_.t_end);
+    const double last = observer_.step_accepted(stepper_, position_.t, left, limits_.t_end);
+    if (last == 0.0) return end(Status::max_turns);
+    if (last < 1.0) return end_within_step(last, left, limits_.t_end);
     stepper_.accept(limits_.t_end);
     position_.t = {limits_.t_end, 0.0};
     return end(Status::at_rest);
@@ -367,6 +373,7 @@ class Run {
   long long jacobians_before_;
   long long factorisations_before_;
   Status status_ = Status::finished;
+  bool can_stop_ = false;
   Status stopped_ = Status::finished;  ///< or why an attempt was given up
   long long attempts_ = 0;
   bool cut_before_ = false;  ///< a step was cut to end at t_end: later ones depend on t_end

@@ -19,7 +19,7 @@ void JointForces::set_up() {
   const int n = static_cast<int>(inertia.diagonal.size());
   const int m = static_cast<int>(joints.size());
   factor_ = mass;
-  factor_cholesky(n, factor_.data());
+  factor_symmetric(n, factor_.data());
   problem.resize(m);
   response_.assign(joints.size() * inertia.diagonal.size(), 0.0);
   for (int r = 0; r < m; ++r) {
@@ -30,7 +30,8 @@ void JointForces::set_up() {
     for (int s = 0; s <= r; ++s) {
       const double* const y = response_.data() + static_cast<std::ptrdiff_t>(s) * n;
       double sum = 0.0;
-      for (int i = 0; i < n; ++i) sum += x[i] * y[i];
+      for (int i = 0; i < n; ++i)
+        sum += x[i] * y[i] / factor_[static_cast<std::ptrdiff_t>(i) * (n + 1)];
       problem.W[static_cast<std::size_t>(r) * m + s] = sum;
       problem.W[static_cast<std::size_t>(s) * m + r] = sum;
     }

@@ -59,6 +59,18 @@ std::vector<JointSupport> joint_supports(const Scene& scene, const std::vector<d
           },
           effect);
     }
+    std::visit(
+        [&](const auto& one) {
+          if constexpr (requires { one.couple(0); }) {
+            JointSupport& joint = supports[one.joint - 1];
+            if (const auto couple = one.couple(0)) {
+              joint.stiffness += std::abs(couple->on_phi);
+              joint.damping += std::abs(couple->on_phid);
+              joint.torque += std::abs(couple->held) + std::abs(couple->gain);
+            }
+          }
+        },
+        effect);
     if (const auto* stop = std::get_if<JointStop>(&effect)) {
       JointSupport& joint = supports[stop->joint - 1];
       const double capture = stop->capture_speed.value_or(1e-9 * natural[stop->joint - 1]);

@@ -8,6 +8,7 @@ namespace pendcore {
 Recorder::Recorder(Solution& solution, const Stepper& stepper, const Scene& scene,
                    const std::vector<long long>& passed_events)
     : solution_(solution),
+      may_throw_(!effects_of<CompiledUser>(scene).empty()),
       keeps_polynomials_(solution.options.store == Store::dense),
       keeps_steps_(solution.options.store == Store::steps ||
                    (keeps_polynomials_ && solution.options.t_eval.empty())),

@@ -148,6 +148,14 @@ void Switching::set_longest_step() {
   }
 }
 
+/// Whether a joint that was let go has no acceleration yet: other changes at the same time may have
+/// given it one.
+bool Switching::is_at_its_border(int joint, double t, const double* y) const {
+  std::vector<double> qdd(n_);
+  accelerations_in_force(equations_, t, y, y + n_, qdd.data());
+  return joints_.is_rounding(joint, relative(qdd.data(), joint + 1));
+}
+
 void Switching::count_at_once(double t) {
   changes_at_once_ = t == time_of_change_ ? changes_at_once_ + 1 : 0;
   if (changes_at_once_ == 0) let_go_ = -1;
@@ -196,6 +204,7 @@ bool Switching::cross(int k, double t, double* y) {
         scene_.effects[watch.effect]);
   }
   choose_sides(t, q, qd);
+  if (let_go_ >= 0 && (jumped || !is_at_its_border(let_go_, t, y))) let_go_ = -1;
   collect_guards(y);
   return jumped;
 }

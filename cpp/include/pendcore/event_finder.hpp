@@ -52,6 +52,8 @@ class EventFinder {
     double value = 0.0;
     bool every_turn = false;
     double of(const double* y) const { return minus < 0 ? y[plus] : y[plus] - y[minus]; }
+    /// Less a level; within the rounding of the state it is there.
+    double from(double level, const double* y) const;
   };
   struct Step {
     const Stepper& stepper;

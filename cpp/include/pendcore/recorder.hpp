@@ -23,7 +23,7 @@ class Recorder final : public Observer {
   void state_settled(double t, const double* after) override;
   void restarts_here() override { count(kept()); }
   void restarts_at_step() override { count(at_step_start_); }
-  bool may_end() const override { return finder_ && finder_->may_end(); }
+  bool may_end() const override { return may_throw_ || (finder_ && finder_->may_end()); }
   void step_begins() override { at_step_start_ = kept(); }
   bool has_ended() const override { return finder_ && finder_->ended_by() >= 0; }
 
@@ -44,6 +44,7 @@ class Recorder final : public Observer {
 
   Solution& solution_;
   std::optional<EventFinder> finder_;
+  bool may_throw_;  ///< functions of the user's
   Kept at_step_start_{};
   bool keeps_polynomials_;
   bool keeps_steps_;

@@ -82,6 +82,7 @@ class Switching final : public Breaks {
   void strike(double t, double* y);
   bool capture(double t, const double* q, const double* qd);
   void count_at_once(double t);
+  bool is_at_its_border(int joint, double t, const double* y) const;
   /// After modes and holds have changed.
   void collect_guards(const double* y);
   void collect_stops(const double* y);

@@ -7,8 +7,9 @@
 /// With W positive definite there is one answer, the least of 1/2 lambda.W lambda + a.lambda
 /// between the bounds. With a and w accelerations of joints and lambda the torques of friction and
 /// stops it says which joints stay at rest; with rates and impulses, how an impact ends.
-/// Source: Judice and Pires, Computers & Operations Research 21 (1994) 587: all that is wrong is
-/// changed at once, and one at a time (Murty 1974) where that leads in circles.
+/// All that is wrong is changed at once (Judice and Pires, Computers & Operations Research 21 (1994)
+/// 587); where that leads in circles, one at a time and never uphill (active sets: Nocedal and
+/// Wright, Numerical Optimization (2006), section 16.5).
 #pragma once
 
 #include <vector>
@@ -25,18 +26,22 @@ struct ForcesBetweenBounds {
   std::vector<Bound> at;          ///< and where each force is
 
   void resize(int count);
-  void solve();
+  /// False where it has not found the answer.
+  bool solve();
 
  private:
   void solve_between();
   int wrong(int i) const;
+  bool descend();
+  double rounding(int i) const;  ///< of w
   std::vector<double> factor_;
   std::vector<int> free_;
 };
 
-/// A = L L^T, in place of the lower half of A, (n, n) row-major; in one order of operations.
-void factor_cholesky(int n, double* a);
-/// x becomes L^-1 x, and L^-T x.
+/// A = L D L^T, in place of the lower half of A, (n, n) row-major, D on the diagonal; in one order
+/// of operations, without square roots: in units twice as large each bit is the same.
+void factor_symmetric(int n, double* a);
+/// x becomes L^-1 x, and L^-T D^-1 x.
 void solve_lower(int n, const double* factor, double* x);
 void solve_upper(int n, const double* factor, double* x);
 

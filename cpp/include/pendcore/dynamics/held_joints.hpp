@@ -17,6 +17,9 @@
 /// Cost of a decision or an impact: a right-hand side and O(n^3); of the torques: two and O(n^2).
 #pragma once
 
+#include <cmath>
+#include <limits>
+
 #include "pendcore/dynamics/impact.hpp"
 #include "pendcore/dynamics/joint_forces.hpp"
 #include "pendcore/dynamics/joint_support.hpp"
@@ -67,6 +70,13 @@ class HeldJoints {
 
   /// The size of what the torque of a joint was added up from, N m.
   double torque_size(int joint) const { return size_[joint]; }
+
+  /// Whether an acceleration of a joint is no more than the rounding of its torque.
+  bool is_rounding(int joint, double phidd) const {
+    const double rounding = 1e4 * std::numeric_limits<double>::epsilon();
+    return forces_.inertia.diagonal[joint] * std::abs(phidd) <=
+           rounding * (size_[joint] + supports_[joint].friction);
+  }
 
   /// Lets a joint go, to slide up or down its angle (1 or -1).
   void release(EffectsInForce& effects, int joint, int direction);

@@ -28,7 +28,7 @@ struct JointForces {
   void add_response(double* x) const;
 
  private:
-  std::vector<double> factor_;    ///< L, M = L L^T
+  std::vector<double> factor_;    ///< M = L D L^T
   std::vector<double> response_;  ///< L^-1 J^T, a row for each joint
 };
 

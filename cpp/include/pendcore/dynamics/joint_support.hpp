@@ -25,6 +25,8 @@ struct JointSupport {
   double friction = 0.0;  ///< t_s of all its dry friction, N m
   std::vector<std::size_t> friction_effects;
   Stop lower{-never}, upper{never};
+  /// What its laws add up: of angles (N m/rad), rates (N m s/rad), and constants (N m).
+  double stiffness = 0.0, damping = 0.0, torque = 0.0;
 
   const Stop& stop(Side side) const { return side == Side::lower ? lower : upper; }
 };
