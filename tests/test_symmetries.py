@@ -8,7 +8,14 @@ from __future__ import annotations
 import numpy as np
 import pendcore as pc
 import pytest
-from drawn_motions import LOSSLESS, SMOOTH, UNDAMPED, motion_of_seed, motions
+from drawn_motions import (
+    LOSSLESS,
+    SMOOTH,
+    UNDAMPED,
+    motion_of_seed,
+    motions,
+    stopped_motions,
+)
 from fuzz.drawn_run import Drawn
 from hypothesis import given
 from hypothesis import strategies as st
@@ -105,7 +112,7 @@ def test_every_kind_of_effect_has_its_mirror_images(kind: str) -> None:
 
 
 @pytest.mark.parametrize("method", ADAPTIVE)
-@given(run=motions(LOSSLESS))
+@given(run=motions(LOSSLESS) | stopped_motions(LOSSLESS, (1.0,)))
 def test_without_losses_the_past_is_the_future_of_the_reversed_start(
     method: str, run: Drawn
 ) -> None:
