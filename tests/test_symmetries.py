@@ -17,7 +17,7 @@ from drawn_motions import (
     stopped_motions,
 )
 from fuzz.drawn_run import Drawn
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from pendcore import _core
@@ -82,6 +82,16 @@ def test_other_units_of_time_change_no_bit(method: str, run: Drawn, powers: list
     joule = kg * (m / s) ** 2
     for name, entry in one._run.ledger.items():
         assert np.array_equal(other._run.ledger[name], entry * joule), name
+
+
+@pytest.mark.parametrize("method", ADAPTIVE)
+@settings(max_examples=40)
+@given(run=stopped_motions(WITH_FRICTION), powers=powers)
+def test_other_units_change_no_bit_of_impacts_and_contact(
+    method: str, run: Drawn, powers: list[float]
+) -> None:
+    run.options |= {"first_step": 2.0**-10, "method": method}
+    same_steps(run.simulate(), in_units(run, Units(*powers)).simulate(), s=powers[2])
 
 
 @pytest.mark.parametrize("method", ADAPTIVE)
