@@ -143,15 +143,17 @@ def motions(draw: st.DrawFn, kinds: Collection[str] = SMOOTH) -> Drawn:
 
 
 @st.composite
-def stopped_motions(draw: st.DrawFn) -> Drawn:
+def stopped_motions(
+    draw: st.DrawFn, kinds: Collection[str] = SMOOTH, restitutions: tuple[float, ...] = (0.0, 0.5)
+) -> Drawn:
     """Return one of these motions with stops about the start, most of which are soon reached."""
-    run = draw(motions(sorted({*SMOOTH} - {"lock"})))
+    run = draw(motions(sorted({*kinds} - {"lock"})))
     choices = Rounded(FromHypothesis(draw))
     stops = []
     for joint, phi in enumerate(np.diff(run.q0, prepend=0.0), start=1):
         if joint == 1 or choices.integer(0, 1):
             ends = (phi - choices.real(0.05, 1), phi + choices.real(0.05, 1))
-            e = choices.one_of((0.0, 0.5))
+            e = choices.one_of(restitutions)
             stops.append(pc.effects.JointStop(joint=joint, range=ends, restitution=e))
     return replace(run, scene=with_effects(run.scene, [*run.scene.effects, *stops]))
 

@@ -6,13 +6,17 @@ from collections.abc import Iterator
 
 import numpy as np
 import pendcore as pc
+import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.polynomial import polynomial
 from numpy.typing import NDArray
+from pendcore import _core
 from pendcore import events as ev
 
 Array = NDArray[np.float64]
+METHODS = [m["name"] for m in _core.methods() if m["error_order"] and m["name"] != "auto"]
+"""Those that have an interpolant of their own."""
 
 CLEAR = 1e-6
 """Nearer to each other, in shares of a step, roots are for one method and not for the other."""
@@ -47,13 +51,14 @@ angles = st.floats(-3.1, 3.1)
 rates = st.floats(-8, 8)
 
 
-@settings(max_examples=100)
+@pytest.mark.parametrize("method", METHODS)
+@settings(max_examples=60)
 @given(
     n=st.integers(1, 3), data=st.data(), t_end=st.sampled_from([3.0, -3.0]),
     step=st.sampled_from([None, 0.1, 0.03]), friction=st.booleans(),
 )  # fmt: skip
 def test_angles_and_rates_are_found_where_a_scan_finds_them(
-    n: int, data: st.DataObject, t_end: float, step: float | None, friction: bool
+    method: str, n: int, data: st.DataObject, t_end: float, step: float | None, friction: bool
 ) -> None:
     effects = [pc.effects.ViscousJoint(joint=1, damping=0.05)] if friction else []
     links = [pc.Link(mass=1 + 0.3 * i, length=1 - 0.2 * i) for i in range(n)]
@@ -68,7 +73,7 @@ def test_angles_and_rates_are_found_where_a_scan_finds_them(
         (ev.RateZero(link=number), np.concatenate([none, link]), 0.0),
         (ev.RateZero(joint=number), np.concatenate([none, joint]), 0.0),
     ]
-    how = {"step": step} if step else {"rtol": 1e-5, "atol": 1e-8}
+    how = {"method": method} | ({"step": step} if step else {"rtol": 1e-5, "atol": 1e-8})
     events = [event for event, _, _ in watched]
     sol = pc.simulate(scene, q0, qd0, (0, t_end), events=events, **how)
     assume(sol.success and np.abs(sol.qd).max() < 50)
@@ -79,6 +84,7 @@ def test_angles_and_rates_are_found_where_a_scan_finds_them(
         assert np.allclose([weights @ one.y for one in found], level, rtol=0, atol=1e-11)
 
 
+@pytest.mark.parametrize("method", METHODS)
 @settings(max_examples=40)
 @given(
     q0=st.lists(angles, min_size=2, max_size=2), qd0=st.lists(rates, min_size=2, max_size=2),
@@ -86,13 +92,13 @@ def test_angles_and_rates_are_found_where_a_scan_finds_them(
     step=st.sampled_from([0.1, 0.03]), sense=st.sampled_from([1, -1]),
 )  # fmt: skip
 def test_the_tip_crosses_where_a_dense_scan_of_it_changes_sign(
-    q0: list[float], qd0: list[float], point: tuple[float, float], angle: float, step: float,
-    sense: int,
+    method: str, q0: list[float], qd0: list[float], point: tuple[float, float], angle: float,
+    step: float, sense: int,
 ) -> None:  # fmt: skip
     normal = (np.cos(angle), np.sin(angle))
     line = ev.TipLine(point, normal)
     book = pc.Scene.textbook()
-    sol = pc.simulate(book, q0, qd0, (0, 2 * sense), step=step, events=[line])
+    sol = pc.simulate(book, q0, qd0, (0, 2 * sense), method=method, step=step, events=[line])
     assume(sol.success and np.abs(sol.qd).max() < 50)  # so far the steps follow the motion
     times = np.array([one.t for one in sol.events[0]])
     theta = np.linspace(0, 1, 2001)

@@ -148,13 +148,14 @@ def test_tolerances_beyond_measure_end_as_the_status_says(tolerance, method):
 
 
 @pytest.mark.parametrize("step", [None, 10.0])
-def test_no_absolute_tolerance_with_components_that_stay_zero(step):
+@pytest.mark.parametrize("method", METHODS)
+def test_no_absolute_tolerance_with_components_that_stay_zero(method, step):
     floating = pc.Scene(links=ROD.links, gravity=0.0)
-    still = pc.simulate(floating, 0.0, 0.0, (0, 1000), atol=0, step=step)
+    still = pc.simulate(floating, 0.0, 0.0, (0, 1000), atol=0, step=step, method=method)
     assert still.success
     assert not still.y.any()
     assert still.stats.rejected == 0
-    moving = pc.simulate(floating, 0.0, 2.0, (0, 1000), atol=0, step=step)
+    moving = pc.simulate(floating, 0.0, 2.0, (0, 1000), atol=0, step=step, method=method)
     assert moving.q[-1, 0] == pytest.approx(2000.0, rel=1e-12)
 
 

@@ -54,48 +54,84 @@ def test_both_passages_of_a_mark_just_short_of_the_turn_are_found_in_every_swing
     np.testing.assert_array_equal(sol.y, without.y)
 
 
+def marks_at(sol: pc.Solution, row: int) -> list[pc.events.Event]:
+    """Angles and lines for the tip, where a rod is at a point of a run."""
+    angle, (x, y) = float(sol.q[row, 0]), sol.positions()[row, -1]
+    line = pc.events.TipLine((float(x), float(y)), (-0.18, 1.0))
+    return [pc.events.JointAngle(1, angle), pc.events.LinkAngle(1, angle), line]
+
+
 @pytest.mark.parametrize("sign", [1, -1], ids=["forward", "backward"])
-def test_a_mark_at_the_start_is_no_event_and_one_at_the_end_is_one(sign: int) -> None:
-    """A rod that turns at 1 rad/s; the mark at the end is where the run gets to, to the bit."""
-    end = float(pc.simulate(rod(), 0, 1, (0, sign * 1.0)).q[-1, 0])
-    marks = [pc.events.JointAngle(joint=1, value=value) for value in (0.0, end)]
-    sol = pc.simulate(rod(), 0, 1, (0, sign * 1.0), events=marks)
-    assert times_of(sol, 0) == []
-    assert times_of(sol, 1) == [sign * 1.0]
-    again = pc.simulate(rod(), 0, 1, (0, sign * 2.0), events=marks)
-    assert times_of(again, 0) == []
-    assert times_of(again, 1) == pytest.approx([sign * 1.0], abs=1e-14)
-    went_on = sol.resume(sign * 2.0)
-    assert times_of(went_on, 1) == pytest.approx([sign * 1.0], abs=1e-14)
+@pytest.mark.parametrize("method", METHODS)
+def test_a_mark_at_the_start_is_no_event_and_one_at_the_end_is_one(method: str, sign: int) -> None:
+    """A rod that turns at 1 rad/s; the marks at the end are where the run gets to, to the bit."""
+    free = pc.simulate(rod(), 0.2, 1, (0, sign * 1.0), method=method)
+    marks = marks_at(free, 0) + marks_at(free, -1)
+    how = {"method": method, "events": marks}
+    sol = pc.simulate(rod(), 0.2, 1, (0, sign * 1.0), **how)
+    assert [times_of(sol, k) for k in range(6)] == [[]] * 3 + [[sign * 1.0]] * 3
+    assert {event.direction for found in sol.events for event in found} == {sign}
+    once = [[]] * 3 + [pytest.approx([sign * 1.0], abs=1e-14)] * 3
+    again = pc.simulate(rod(), 0.2, 1, (0, sign * 1.5), **how)
+    assert [times_of(again, k) for k in range(6)] == once
+    went_on = sol.resume(sign * 1.5)
+    assert [times_of(went_on, k) for k in range(6)] == once
+
+
+ZEROS = [pc.events.RateZero(joint=1), pc.events.RateZero(link=1)]
+
+
+@pytest.mark.parametrize("sign", [1, -1], ids=["forward", "backward"])
+def test_a_rate_that_is_zero_at_the_start_is_no_event(sign: int, fine: Any) -> None:
+    """A rod let go at rest; its next rest is the other turn."""
+    quarter = passages(1.0, 0.0, 1)[0][0]
+    sol = pc.simulate(
+        rod(gravity=G), np.pi / 2 + 1, 0, (0, sign * 5 * quarter), **fine, events=ZEROS
+    )
+    for found in sol.events:
+        assert [event.t for event in found] == pytest.approx(
+            [2 * sign * quarter, 4 * sign * quarter]
+        )
+
+
+def test_a_rate_that_is_zero_at_the_end_is_an_event(fine: Any) -> None:
+    """Stopped by friction, to the bit, after 2 s; a step that ends there may be the last."""
+    scene = rod(pc.effects.DryJointFriction(joint=1, coulomb=0.5))
+    whole = pc.simulate(scene, 0, 1, (0, 3), **fine)
+    stopped = float(whole.t[np.flatnonzero(whole.qd[:, 0] == 0)[0]])
+    assert stopped == pytest.approx(2.0, abs=1e-12)
+    sol = pc.simulate(scene, 0, 1, (0, stopped), **fine, events=ZEROS)
+    assert [times_of(sol, k) for k in range(2)] == [[stopped]] * 2
+    assert sol.events[0][0].y.tolist() == sol.y[:, -1].tolist()
+    assert sol.qd[-1, 0] == 0.0
 
 
 @pytest.mark.parametrize("value", [0.25, 0.5, 0.75])
-def test_a_mark_at_the_end_of_a_step_is_met_once(value: float) -> None:
+@pytest.mark.parametrize("method", METHODS)
+def test_a_mark_at_the_end_of_a_step_is_met_once(method: str, value: float) -> None:
     marks: list[Any] = [
         pc.events.JointAngle(joint=1, value=value),
         pc.events.LinkAngle(link=1, value=value),
         pc.events.Function(lambda t, q, qd: q[0] - value),
     ]
-    sol = pc.simulate(rod(), 0, 1, (0, 1), step=0.25, events=marks)
+    sol = pc.simulate(rod(), 0, 1, (0, 1), method=method, step=0.25, events=marks)
     for number in range(3):
         assert times_of(sol, number) == pytest.approx([value], abs=1e-14)
 
 
-def test_a_swing_that_only_touches_the_mark_does_not_pass_it_twice_the_wrong_way() -> None:
+def test_a_swing_that_only_touches_the_mark_does_not_pass_it_twice_the_wrong_way(fine: Any) -> None:
     """A mark a hair beyond the turn is never passed."""
     mark = pc.events.JointAngle(joint=1, value=np.pi / 2 - (1 + 1e-9))
-    sol = pc.simulate(
-        rod(gravity=G), np.pi / 2 + 1, 0, (0, 20), rtol=1e-12, atol=1e-14, events=[mark]
-    )
+    sol = pc.simulate(rod(gravity=G), np.pi / 2 + 1, 0, (0, 20), **fine, events=[mark])
     assert times_of(sol) == []
 
 
-def test_each_bounce_is_an_event_with_the_states_on_both_sides() -> None:
+def test_each_bounce_is_an_event_with_the_states_on_both_sides(fine: Any) -> None:
     """Rate zero through a jump: from -w to e w without a value between."""
     stop = pc.effects.JointStop(joint=1, range=(0, np.inf), restitution=0.8, capture_speed=1e-3)
     scene = rod(pc.effects.Motor(joint=1, constant=-2.0), stop)
     bound = pc.events.JointAngle(joint=1, value=0.0)
-    sol = pc.simulate(scene, 0.4, 0, (0, 3.0), rtol=1e-11, events=[bound])
+    sol = pc.simulate(scene, 0.4, 0, (0, 3.0), **fine, events=[bound])
     first = np.sqrt(2 * 2.0 * 0.4)
     assert len(sol.events[0]) > 0
     for k, event in enumerate(sol.events[0]):

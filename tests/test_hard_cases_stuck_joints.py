@@ -79,6 +79,32 @@ def test_what_sticks_is_what_is_free_of_contradiction(n: int, at_rest: bool) -> 
     assert len(patterns) == 2**n  # each subset of the joints stuck is among them
 
 
+@pytest.mark.parametrize("n", [5, 10, 20, 40, 80])
+def test_any_number_of_joints_hold_as_much_as_they_can_and_no_more(n: int) -> None:
+    """At rest: a joint that does not turn holds within its static range, one that does at its end.
+
+    The torques of friction follow from the accelerations; more patterns than can be tried out.
+    """
+    patterns = set()
+    for seed in range(40):
+        case = drawn(n, 20_000 + seed, at_rest=True)
+        chain: DenseChain = case["chain"]
+        qdd = scene_of(case).accelerations(0.0, case["q"], case["qd"])
+        free = chain.forces(case["q"], case["qd"], case["motors"])
+        m = chain.mass_matrix(case["q"])
+        held = np.linalg.solve(joints(n).T, m @ qdd - free)
+        turns, most = joints(n) @ qdd, case["static"]
+        scale = np.abs(free).sum() + (np.abs(m) @ np.abs(qdd)).sum()  # of what is rounded
+        stuck = qdd == np.append(0.0, qdd[:-1])  # not small: the same as the link before
+        assert (np.abs(held) <= most + 1e-12 * scale).all(), f"seed {seed}"
+        np.testing.assert_allclose(
+            held[~stuck], -np.sign(turns[~stuck]) * most[~stuck], atol=1e-12 * scale
+        )
+        patterns.add(tuple(stuck))
+    assert len(patterns) > 10
+    assert max(map(sum, patterns)) > n / 3
+
+
 @pytest.mark.parametrize("n", [2, 3, 4])
 def test_a_run_from_rest_begins_as_the_law_says(n: int, method: str) -> None:
     """A microsecond on: joints that stick have not moved, the others as their accelerations say."""

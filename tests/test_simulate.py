@@ -106,8 +106,8 @@ def test_a_run_may_go_backward_and_comes_back_to_its_start():
     assert np.array_equal(back(5.0), there.y[:, -1])
 
 
-def test_a_run_of_no_length_is_its_start():
-    run = pc.simulate(pc.Scene.textbook(), Q0, 0.5, (2, 2))
+def test_a_run_of_no_length_is_its_start(method):
+    run = pc.simulate(pc.Scene.textbook(), Q0, 0.5, (2, 2), method=method)
     assert run.success
     assert np.array_equal(run.y[:, -1], [*Q0, 0.5, 0.5])
     assert np.array_equal(run(2.0), run.y[:, -1])
@@ -119,15 +119,21 @@ def test_a_fixed_step_is_kept_but_for_the_last():
     assert run.t[-1] == 5.0
 
 
-def test_steps_are_no_longer_than_max_step():
-    run = textbook(max_step=0.01)
-    assert np.diff(run.t).max() <= 0.01 * (1 + 1e-12)
-    assert run.stats.limited_by_max_step > 0
+@pytest.mark.parametrize("t_end", [5.0, -5.0])
+def test_steps_are_no_longer_than_max_step(t_end, method):
+    run = pc.simulate(
+        pc.Scene.textbook(), Q0, 0.0, (0.0, t_end), max_step=0.003, method=method, rtol=1e-6
+    )
+    assert run.t[-1] == t_end
+    assert np.abs(np.diff(run.t)).max() <= 0.003 * (1 + 1e-12)
+    assert run.stats.limited_by_max_step > 1000
+    assert (np.sign(np.diff(run.t)) == np.sign(t_end)).all()
 
 
-def test_the_first_step_is_as_asked():
-    run = textbook(first_step=1e-4)
-    assert run.t[1] == 1e-4
+@pytest.mark.parametrize("t_end", [5.0, -5.0])
+def test_the_first_step_is_as_asked(t_end, method):
+    run = pc.simulate(pc.Scene.textbook(), Q0, 0.0, (0.0, t_end), first_step=1e-4, method=method)
+    assert run.t[1] == np.copysign(1e-4, t_end)
 
 
 def test_a_capped_run_keeps_what_it_has():

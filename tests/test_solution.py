@@ -220,6 +220,24 @@ def test_a_solution_comes_back_whole(store, way, tmp_path):
     assert same(first.resume(2.0), again.resume(2.0))
 
 
+def test_what_a_solution_and_a_scene_tell_comes_back_from_pickle():
+    sol = pc.simulate(SCENE, 0.3, 0.0, (0, 1), ledger=True, events=[pc.events.LinkAngle(1, 0.5)])
+    energy = sol.energy()
+    told = [energy, energy.ledger, sol.stats, *sol.events, SCENE.explain(q=0.3), SCENE.mobility()]
+    for one in told:
+        again = pickle.loads(pickle.dumps(one))
+        assert type(again) is type(one)
+        assert repr(again) == repr(one)
+    assert [type(one).__name__ for one in told] == [
+        "Energy", "Ledger", "Statistics", "list", "Explanation", "Mobility"
+    ]  # fmt: skip
+    again = pickle.loads(pickle.dumps(energy))
+    assert np.array_equal(again.total, energy.total)
+    assert {**again.ledger}.keys() == {**energy.ledger}.keys()
+    for name, entry in energy.ledger.items():
+        assert np.array_equal(again.ledger[name], entry), name
+
+
 def test_pandas_gets_a_row_per_time_with_units(sol):
     pytest.importorskip("pandas")
     frame = sol.to_pandas()

@@ -8,9 +8,16 @@ from __future__ import annotations
 import numpy as np
 import pendcore as pc
 import pytest
-from drawn_motions import LOSSLESS, SMOOTH, UNDAMPED, motion_of_seed, motions
+from drawn_motions import (
+    LOSSLESS,
+    SMOOTH,
+    UNDAMPED,
+    motion_of_seed,
+    motions,
+    stopped_motions,
+)
 from fuzz.drawn_run import Drawn
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from pendcore import _core
@@ -78,6 +85,16 @@ def test_other_units_of_time_change_no_bit(method: str, run: Drawn, powers: list
 
 
 @pytest.mark.parametrize("method", ADAPTIVE)
+@settings(max_examples=40)
+@given(run=stopped_motions(WITH_FRICTION), powers=powers)
+def test_other_units_change_no_bit_of_impacts_and_contact(
+    method: str, run: Drawn, powers: list[float]
+) -> None:
+    run.options |= {"first_step": 2.0**-10, "method": method}
+    same_steps(run.simulate(), in_units(run, Units(*powers)).simulate(), s=powers[2])
+
+
+@pytest.mark.parametrize("method", ADAPTIVE)
 @given(run=motions(()))
 def test_four_times_the_gravity_is_half_the_time(method: str, run: Drawn) -> None:
     run.options |= {"first_step": 2.0**-10, "method": method}
@@ -105,7 +122,7 @@ def test_every_kind_of_effect_has_its_mirror_images(kind: str) -> None:
 
 
 @pytest.mark.parametrize("method", ADAPTIVE)
-@given(run=motions(LOSSLESS))
+@given(run=motions(LOSSLESS) | stopped_motions(LOSSLESS, (1.0,)))
 def test_without_losses_the_past_is_the_future_of_the_reversed_start(
     method: str, run: Drawn
 ) -> None:

@@ -1,0 +1,42 @@
+"""After `auto` has gone over to radau5: friction, stops and events, beside a joint that is locked.
+
+A damper of 1e5 N m s/rad in joint 2 turns by its load over that: what a lock would not.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pendcore as pc
+import pytest
+from pendcore import effects as fx
+from pendcore import events as ev
+
+WATCHED = [
+    ev.JointAngle(1, 1.5),
+    ev.RateZero(joint=1),
+    ev.TipLine((0.0, 0.0), (1.0, 0.0)),
+    ev.Function(lambda t, q, qd: q[0] - 1.4),
+]
+CONTACTS = {
+    "friction": fx.DryJointFriction(joint=1, coulomb=0.8),
+    "a stop": fx.JointStop(joint=1, range=(-9.0, 1.7)),
+}
+
+
+@pytest.mark.parametrize("contact", CONTACTS)
+def test_what_changes_after_the_change_of_method_is_found_as_under_a_lock(contact: str) -> None:
+    def run(joint_2: Any, **how: Any) -> pc.Solution:
+        scene = pc.Scene.textbook().replace(effects=[joint_2, CONTACTS[contact]])
+        return pc.simulate(scene, 0.5, 0, (0, 3), events=WATCHED, **how)
+
+    stiff = run(fx.ViscousJoint(joint=2, damping=1e5), method="auto", rtol=1e-8)
+    locked = run(fx.Lock(joint=2), rtol=1e-10)
+    assert stiff.stats.njev > 20  # it has gone over, and early
+    assert stiff.stats.accepted < 10_000
+    np.testing.assert_allclose(stiff.y[:, -1], locked.y[:, -1], atol=1e-4)
+    for found, expected in zip(stiff.events, locked.events, strict=True):
+        assert [one.t for one in found] == pytest.approx([one.t for one in expected], abs=1e-4)
+        assert [one.direction for one in found] == [one.direction for one in expected]
+        assert expected
