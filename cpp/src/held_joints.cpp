@@ -150,13 +150,13 @@ void HeldJoints::torques(const EquationsOfMotion& equations, double t, const dou
   for (int j = 0; j < n_; ++j) effects.hold(j, is_held(j));
   forces_.set_mass_matrix(q);
   double sum = 0.0;
-  double size = 0.0;  // with what cancels within the laws
+  double size = 0.0;  // with what cancels within the laws, an eighth: they take few operations
   for (int j = 0; j < n_; ++j) {
     const JointSupport& joint = supports_[j];
     const double before = j > 0 ? std::abs(q[j - 1]) : 0.0;
     const double rate_before = j > 0 ? std::abs(qd[j - 1]) : 0.0;
-    size += joint.stiffness * (std::abs(q[j]) + before) +
-            joint.damping * (std::abs(qd[j]) + rate_before) + joint.torque;
+    size += 0.125 * (joint.stiffness * (std::abs(q[j]) + before) +
+                     joint.damping * (std::abs(qd[j]) + rate_before) + joint.torque);
   }
   for (int i = n_ - 1; i >= 0; --i) {
     const double* const row = forces_.mass.data() + static_cast<std::ptrdiff_t>(i) * n_;

@@ -58,6 +58,11 @@ void Jacobian::operator()(double t, const double* q, const double* qd, double* b
         },
         equations_.form);
     variable.slope = 0.0;
+    // What is held turns with the link before, to the last bit.
+    for (int i = 0; i < n_; ++i) {
+      if (!equations_.effects || equations_.effects->held[i] == 0) continue;
+      qdd_[i].slope = i > 0 ? qdd_[i - 1].slope : 0.0;
+    }
     for (int i = 0; i < n_; ++i) column[i * n_] = qdd_[i].slope;
   };
   for (int j = 0; j < n_; ++j) {

@@ -7,9 +7,9 @@
 /// With W positive definite there is one answer, the least of 1/2 lambda.W lambda + a.lambda
 /// between the bounds. With a and w accelerations of joints and lambda the torques of friction and
 /// stops it says which joints stay at rest; with rates and impulses, how an impact ends.
-/// All that is wrong is changed at once (Judice and Pires, Computers & Operations Research 21 (1994)
-/// 587); where that leads in circles, one at a time and never uphill (active sets: Nocedal and
-/// Wright, Numerical Optimization (2006), section 16.5).
+/// All that is wrong is changed at once (Judice and Pires, Computers & Operations Research 21
+/// (1994) 587); where that leads in circles, one at a time and never uphill (active sets: Nocedal
+/// and Wright, Numerical Optimization (2006), section 16.5).
 #pragma once
 
 #include <vector>
