@@ -18,6 +18,8 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parents[1] / "bench" / "compare"))
 
 import count_instructions
+from chain_scenes import chain_scene
+from contenders.forward_dynamics import described
 from effects import EFFECTS, Effect
 
 pytestmark = pytest.mark.outside_build
@@ -82,6 +84,26 @@ def test_bare_scene_executes_no_instruction_for_one_effect_more_in_the_registry(
 
 def test_constants_of_the_mass_matrix_cost_nothing(programs: tuple[Path, Path]) -> None:
     assert in_step(programs[0], "none") == in_step(programs[0], "payload")
+
+
+def test_dry_friction_that_slides_costs_one_torque(programs: tuple[Path, Path]) -> None:
+    assert in_step(programs[0], "dry_joint_friction") == in_step(programs[0], "viscous_joint")
+
+
+def test_a_stop_that_is_never_reached_costs_a_run_no_more_than_to_watch_it(
+    programs: tuple[Path, Path],
+) -> None:
+    """The same steps: each has the torques' kernel, its polynomial, and bounds of one angle."""
+
+    def in_run(effect: str) -> float:
+        requests = [f"prepare pendcore_run {described(chain_scene(2, effect))}", "make 0 3"]
+        counts = [
+            count_instructions.executed(programs[0], [*requests, f"make 0 {runs}"])
+            for runs in (6, 0)
+        ]
+        return (counts[0] - counts[1]) / 6
+
+    assert in_run("joint_limit") <= 1.75 * in_run("none")
 
 
 @pytest.mark.parametrize("effect", ["viscous_joint", "torsional_spring", "rod_drag"])

@@ -27,6 +27,12 @@ from pendcore import _core
 book = pc.Scene.textbook()
 rod = pc.Scene(links=[pc.Link(mass=1.3, length=0.8)], gravity=9.80665)
 floating = pc.Scene(links=book.links, gravity=0.0)
+fx = pc.effects
+bouncing = pc.Scene(links=[pc.Link(mass=1.0, length=0.7)] * 2, effects=[
+    fx.JointStop(1, range=(-0.4, 1.9), restitution=0.7), fx.JointStop(2, range=(-0.5, 0.9)),
+    fx.DryJointFriction(2, coulomb=0.1, static=0.2)])
+damped = pc.Scene(links=bouncing.links, effects=[fx.ViscousJoint(2, damping=1e5)])
+events = [pc.events.LinkAngle(2, 1.5), pc.events.TipLine(point=(0.3, 0.9), normal=(1.0, 0.5))]
 """
 # Angles near and far, a chaotic start, denormal rates; everything that a run leaves behind.
 RUNS = """
@@ -40,6 +46,10 @@ runs = [
     pc.simulate(book, [-1.4, -1.1], 0, (0, 30), max_step=1e-2, compensated=True),
     *(pc.simulate(book, [0.8, 1.0], 0, (0, 5), method=method["name"], step=0.01)
       for method in _core.methods()),
+    *(pc.simulate(bouncing, [0.4, 0.8], [2, -3], (0, 4), events=events, method=method["name"])
+      for method in _core.methods() if method["error_order"]),
+    *(pc.simulate(damped, [0.8, 1.0], 0, (0, 1), events=events, method=method, compensated=True)
+      for method in ("radau5", "auto")),
 ]
 digest = hashlib.sha256()
 for sol in runs:
@@ -48,6 +58,8 @@ for sol in runs:
     for part in (sol.t, sol.y, dense, sol.accelerations(), sol.reactions(), sol.positions(),
                  energy.kinetic, energy.potential):
         digest.update(np.ascontiguousarray(part).tobytes())
+    for one in [one for found in sol.events or () for one in found]:
+        digest.update(np.array([one.t, *one.y]).tobytes())
 print(_core.instruction_set(), digest.hexdigest())
 """
 
@@ -122,6 +134,20 @@ tiny de5708259495634e
 """
 """What tests/cpp/trajectory_hash.cpp printed then: scenes without effects keep every bit."""
 
+SWITCHING_AND_STIFF = """\
+bouncing dopri5 3e92987355ca9988
+stick dopri5 d37b959739da680a
+bouncing radau5 bfb829777d7254d0
+stick radau5 0b5dc6616780d463
+damper radau5 f4142d41eb8fc2b4
+kept bouncing radau5 bb358f6fa5f825c2
+bouncing auto 3e92987355ca9988
+stick auto d37b959739da680a
+damper auto 24b17a0a4ab404db
+kept bouncing auto 911d3ae8be1241e1
+"""
+"""And of stops, stick, dampers and events now: who changes a method's steps changes these lines."""
+
 
 @pytest.mark.outside_build
 def test_every_optimisation_gives_the_same_bits(tmp_path):
@@ -141,9 +167,14 @@ def test_every_optimisation_gives_the_same_bits(tmp_path):
         for command in (configure, build):
             subprocess.run(command, capture_output=True, text=True, check=True)
         program = where / "tests/cpp/trajectory_hash"
-        printed[name] = subprocess.run([program], capture_output=True, check=True).stdout
-    assert printed["O1"].decode().startswith(BEFORE_THERE_WERE_EFFECTS)
-    assert printed["O1"] == printed["O3"] == printed["baseline"]
+        for used in SETS[: 1 if name == "baseline" else SETS.index(_core.instruction_set()) + 1]:
+            printed[name, used] = subprocess.run(
+                [program], env=os.environ | {"PENDCORE_INSTRUCTION_SET": used},
+                capture_output=True, text=True, check=True,
+            ).stdout  # fmt: skip
+    assert printed["O1", "baseline"].startswith(BEFORE_THERE_WERE_EFFECTS)
+    assert printed["O1", "baseline"].endswith(SWITCHING_AND_STIFF)
+    assert set(printed.values()) == {printed["O1", "baseline"]}
 
 
 def test_what_is_stored_or_sampled_changes_no_step():

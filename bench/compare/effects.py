@@ -34,7 +34,8 @@ class Effect:
 
     `ours`: pendcore has it; `same_law`: both sides must give the same accelerations, `felt`: and
     others than the bare scene. The last two are what pendcore promises at most, None where it
-    promises nothing.
+    promises nothing. Friction that slides is one torque more; a stop that is not reached has none,
+    but its scene is in the kernel of joint torques.
     """
 
     name: str
@@ -74,17 +75,12 @@ EFFECTS = (
         label="dry friction, sliding",
         theirs="frictionloss",
         same_law=False,
-        most_ns=None,
-        most_instructions=None,
     ),
     Effect(
         name="joint_limit",
         label="joint stop, never reached",
         theirs="joint limit",
-        ours=False,
         felt=False,
-        most_ns=None,
-        most_instructions=None,
     ),
     Effect(
         name="user",

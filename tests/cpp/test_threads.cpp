@@ -35,11 +35,25 @@ std::vector<Scene> shared_scenes() {
   };
 }
 
-Options options_of(bool ledger) {
+/// Of modes that change by themselves, and of what the implicit method keeps: to be run by each.
+std::vector<Scene> scenes_for_every_method() {
+  const std::vector<Link> links(2, Link::uniform_rod(1.0, 0.7));
+  return {
+      {.links = links,
+       .effects = {JointStop{.joint = 1, .range = {-0.5, 1.2}, .restitution = 0.7},
+                   JointStop{.joint = 2, .range = {-0.4, 0.3}},
+                   DryJointFriction{.joint = 2, .coulomb = 0.1, .static_ = 0.2}}},
+      {.links = links, .effects = {ViscousJoint{.joint = 2, .damping = 200.0}}},
+  };
+}
+
+Options options_of(const std::string& method, bool ledger) {
   Options options;
+  options.method = method;
   options.ledger = ledger;
   options.compensated = ledger;
   options.max_step = 0.05;
+  if (method != "dopri5") options.rtol = {1e-6};
   return options;
 }
 
@@ -47,12 +61,12 @@ Options options_of(bool ledger) {
 struct Shared {
   Scene scene;
   std::vector<double> q0, qd0;
-  bool ledger;
+  Options options;
   Solution begun;
 };
 
 Solution simulated(const Shared& shared, double t_end) {
-  return simulate(shared.scene, shared.q0, shared.qd0, 0.0, t_end, options_of(shared.ledger));
+  return simulate(shared.scene, shared.q0, shared.qd0, 0.0, t_end, shared.options);
 }
 
 Solution resumed(const Shared& shared) {
@@ -62,11 +76,20 @@ Solution resumed(const Shared& shared) {
 
 std::vector<Shared> everything() {
   std::vector<Shared> all;
-  for (const Scene& scene : shared_scenes()) {
-    for (const bool ledger : {false, true}) {
-      const std::size_t n = scene.links.size();
-      all.push_back({scene, std::vector<double>(n, 0.7), std::vector<double>(n, 0.0), ledger, {}});
-      all.back().begun = simulated(all.back(), 0.8);
+  const auto add = [&all](const Scene& scene, const Options& options) {
+    const std::size_t n = scene.links.size();
+    all.push_back({scene, std::vector<double>(n, 0.7), std::vector<double>(n, 0.0), options, {}});
+    all.back().begun = simulated(all.back(), 0.8);
+  };
+  for (const bool ledger : {false, true}) {
+    for (const Scene& scene : shared_scenes()) add(scene, options_of("dopri5", ledger));
+    for (const Scene& scene : scenes_for_every_method()) {
+      for (const char* method : {"dopri5", "radau5", "auto"}) {
+        Options options = options_of(method, ledger);
+        options.events = {{.function = events::LinkAngle{.link = 2, .value = 1.0}},
+                          {.function = events::TipLine{.point = {0.5, 0.8}, .normal = {1.0, 0.3}}}};
+        add(scene, options);
+      }
     }
   }
   return all;
@@ -84,6 +107,11 @@ std::vector<double> all_of(const Shared& shared) {
     keep(solution->t);
     keep(solution->states);
     keep(solution->dense.coefficients);
+    for (const FoundEvent& event : solution->found) {
+      found.push_back(event.t);
+      keep(event.y);
+      keep(event.y_before);
+    }
   }
   const double reached = shared.begun.t_reached;
   keep(shared.begun.at({0.0, 0.1 * reached, 0.7 * reached, reached}));
@@ -119,5 +147,12 @@ TEST_CASE("threads that share scenes and solutions compute what one alone does")
     }
   }
   CHECK(different == 0);
-  for (std::size_t i = 0; i < all.size(); ++i) CHECK(alone[i].size() > 200);
+  int watched = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    CHECK(alone[i].size() > 200);
+    if (all[i].options.events.empty()) continue;
+    CHECK(all[i].begun.found.size() > 1);
+    ++watched;
+  }
+  CHECK(watched == 12);
 }

@@ -1,4 +1,5 @@
-// A line for each of a few runs: its name and a hash of every bit of its times and states.
+// A line for each of a few runs: its name and a hash of every bit of its times and states, and of
+// the events that were found.
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
@@ -23,7 +24,43 @@ void print(const char* name, const Solution& solution) {
   std::uint64_t h = hash(0xcbf29ce484222325u, solution.t);
   h = hash(h, solution.states);
   h = hash(h, solution.dense.coefficients);
+  for (const FoundEvent& found : solution.found) {
+    h = hash(h, {found.t, static_cast<double>(found.event), static_cast<double>(found.direction)});
+    h = hash(hash(h, found.y), found.y_before);
+  }
   std::printf("%s %016" PRIx64 "\n", name, h);
+}
+
+/// Rods that bounce and rub, one that sticks and is torn loose, and dampers, watched.
+void print_switching_and_stiff_runs() {
+  const std::vector<Link> rods(2, Link::uniform_rod(1.0, 0.7));
+  const Scene bouncing{.links = rods,
+                       .effects = {JointStop{.joint = 1, .range = {-0.4, 1.9}, .restitution = 0.7},
+                                   JointStop{.joint = 2, .range = {-0.5, 0.9}},
+                                   DryJointFriction{.joint = 2, .coulomb = 0.1, .static_ = 0.2}}};
+  const Scene stick{.links = rods,
+                    .gravity = 0.0,
+                    .effects = {DryJointFriction{.joint = 1, .coulomb = 0.4, .static_ = 0.6},
+                                Motor{.joint = 1, .sinusoid = Sinusoid{1.0, 3.0, 0.0}},
+                                ViscousJoint{.joint = 2, .damping = 0.05}}};
+  const Scene damper{.links = rods, .effects = {ViscousJoint{.joint = 2, .damping = 1e5}}};
+  Options options;
+  options.rtol = {1e-7};
+  options.events = {{.function = events::LinkAngle{.link = 2, .value = 1.5}},
+                    {.function = events::TipLine{.point = {0.3, 0.9}, .normal = {1.0, 0.5}}},
+                    {.function = events::RateZero{.joint = 1, .link = {}}, .direction = -1}};
+  for (const char* method : {"dopri5", "radau5", "auto"}) {
+    options.method = method;
+    const auto name = [method](const char* scene) { return std::string(scene) + ' ' + method; };
+    print(name("bouncing").c_str(), simulate(bouncing, {0.4, 0.8}, {2.0, -3.0}, 0, 4, options));
+    print(name("stick").c_str(), simulate(stick, {0.4, 0.8}, {0.0, 0.5}, 0, 8, options));
+    if (options.method == "dopri5") continue;  // which the damper would keep for long
+    print(name("damper").c_str(), simulate(damper, {0.8, 1.0}, {0, 0}, 0, 2, options));
+    options.compensated = options.ledger = true;
+    print(name("kept bouncing").c_str(),
+          simulate(bouncing, {0.4, 0.8}, {2.0, -3.0}, 0, 4, options));
+    options.compensated = options.ledger = false;
+  }
 }
 
 }  // namespace
@@ -62,5 +99,6 @@ int main() {
   print("compensated", simulate(book, {-1.4, -1.1}, {0, 0}, 0, 60, tight));
   print("compensated chain", simulate(chain, {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7},
                                       {4.0, -9.0, 1.0, 2.0, 3.0, 4.0, 5.0}, 0, 2, tight));
+  print_switching_and_stiff_runs();
   return 0;
 }

@@ -26,9 +26,12 @@ STEPS = {"max_steps": 200, "time_limit": 2.0}
 
 
 def whole_cases() -> list[str]:
-    """Return the case files that damage begins with: the project's examples."""
+    """Return the case files that damage begins with: the project's examples, and hard cases."""
     paths = sorted([*EXAMPLES.rglob("*.toml")])
-    return [path.read_text() for path in paths]
+    return [
+        *(path.read_text() for path in paths),
+        *(solution.case().to_toml() for solution in _hard_solutions()),
+    ]
 
 
 @cache
@@ -53,6 +56,35 @@ def whole_solutions() -> list[pc.Solution]:
         pc.simulate(moved, [0.3, 1.0, 0.5], [0, 1.0, 0], (0, 1.0), max_steps=9),
         pc.simulate(locked, [0.3, 1.0], [1.0, 1.0], (0, 0.3), rtol=[1e-6] * 4, max_step=0.01),
         pc.simulate(plain, [0.3, 1.0], 0, (0, 0)),
+        *_hard_solutions(),
+    ]
+
+
+@cache
+def _hard_solutions() -> list[pc.Solution]:
+    """Return those that were watched, that bounced, by all methods, and compensated."""
+    fx, ev = pc.effects, pc.events
+    rods = [pc.Link(mass=1.0, length=1.0)] * 2
+    stops = [fx.JointStop(1, range=(0.0, 0.6), restitution=0.6), fx.JointStop(2, range=(-1, 0.8))]
+    bouncing = pc.Scene(links=rods, effects=[*stops, fx.DryJointFriction(1, coulomb=0.1)])
+    damped = pc.Scene(links=rods, effects=[*stops, fx.ViscousJoint(2, damping=1e3)])
+    watched = [
+        ev.LinkAngle(1, 0.5, name="half"),
+        ev.RateZero(joint=1, direction=-1),
+        ev.TipLine(point=(1.3, 1.3), normal=(1.0, -0.5)),
+    ]
+    till_the_second = [ev.JointAngle(1, 1.5, every_turn=True, terminal=2)]
+
+    def solution(scene: pc.Scene, **how: Any) -> pc.Solution:
+        return pc.simulate(scene, [0.3, 1.0], [2.0, 0.0], (0, 0.2), rtol=1e-4, **how)
+
+    return [
+        solution(bouncing, events=watched, ledger=True),
+        solution(bouncing, events=watched, method="radau5"),
+        solution(bouncing, compensated=True, store="steps"),
+        solution(damped, method="radau5", compensated=True),
+        solution(damped, method="auto", ledger=True),
+        pc.simulate(bouncing.replace(effects=[]), [0.3, 1], 0, (0, 9), events=till_the_second),
     ]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -29,6 +30,12 @@ def _solve_doubles(matrix: list[list[Number]], right: list[Number]) -> list[Numb
 
 
 DOUBLE = Arithmetic(number=float, sin=math.sin, cos=math.cos, exp=math.exp, solve=_solve_doubles)
+
+
+COMPLEX = Arithmetic(
+    number=complex, sin=cmath.sin, cos=cmath.cos, exp=cmath.exp, solve=_solve_doubles
+)
+"""Doubles with an imaginary part: f(x + i e) has e f'(x) for its own, without a difference."""
 
 
 def _eliminate(matrix: list[list[Number]], right: list[Number]) -> list[Number]:

@@ -55,6 +55,7 @@ std::vector<pendcore::Effect> effects_of(const std::string& name) {
   if (name == "rotor_inertia") return {RotorInertia{.joint = 2, .armature = armature}};
   if (name == "payload") return {Payload{.mass = payload_mass, .inertia = payload_inertia}};
   if (name == "driven_pivot") return {DrivenPivot{.x = shake}};
+  if (name == "joint_limit") return {JointStop{.joint = 2, .range = {-bound, bound}}};
   if (name == "user")
     return {CompiledUser{.address = reinterpret_cast<std::uintptr_t>(&damp_second_link)}};
   throw Unsupported("it has no " + name);
