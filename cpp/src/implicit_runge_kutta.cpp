@@ -192,8 +192,13 @@ bool ImplicitRungeKutta::iterate(double t, double h) {
   return false;
 }
 
-/// Z = h a q' of the angles, from the rates that were found: digits that T costs come back.
-void ImplicitRungeKutta::polish_angles(double h) {
+/// Z = h a q' of the angles, from the rates that were found: digits that T costs come back. A rate
+/// that nothing changes, of a joint that is held, stays as it is to the last bit.
+void ImplicitRungeKutta::polish(double h) {
+  for (int i = n_; i < state_; ++i) {
+    if (rates_[i] != 0.0 || rates_[size_ + i] != 0.0 || rates_[2 * size_ + i] != 0.0) continue;
+    for (int k = 0; k < 3; ++k) stages_[k * size_ + i] = 0.0;
+  }
   for (int k = 0; k < 3; ++k) {
     const Collocation::Row& row = method_.a[k];
     for (int i = 0; i < n_; ++i) {
@@ -244,7 +249,7 @@ Attempt ImplicitRungeKutta::attempt(double t, double h, double /*gain*/) {
   factorisations += 2;
   is_retry_ = true;
   if (!converges) return {std::numeric_limits<double>::quiet_NaN(), 0.0};
-  polish_angles(h);
+  polish(h);
   if (size_ > state_) integrate_quadratures(t, h);
   advance();
 

@@ -73,7 +73,7 @@ class ImplicitRungeKutta final : public Stepper {
   void predict(double h);
   bool iterate(double t, double h);
   bool is_rounding(double h) const;
-  void polish_angles(double h);
+  void polish(double h);
   void advance();
   static void forget(const double* y, const Rows& instead_of, Rows& low);
   void integrate_quadratures(double t, double h);
