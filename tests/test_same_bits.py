@@ -136,13 +136,13 @@ tiny de5708259495634e
 
 SWITCHING_AND_STIFF = """\
 bouncing dopri5 3e92987355ca9988
-stick dopri5 d37b959739da680a
+stick dopri5 a07f22ebd949bf12
 bouncing radau5 bfb829777d7254d0
-stick radau5 0b5dc6616780d463
+stick radau5 ca075a35a0f8ea97
 damper radau5 f4142d41eb8fc2b4
 kept bouncing radau5 bb358f6fa5f825c2
 bouncing auto 3e92987355ca9988
-stick auto d37b959739da680a
+stick auto a07f22ebd949bf12
 damper auto 24b17a0a4ab404db
 kept bouncing auto 911d3ae8be1241e1
 """
