@@ -88,8 +88,6 @@ def test_ten_lines_draw_the_readmes_hard_case(tmp_path, monkeypatch):
     assert (slow(np.linspace(5.55, 6.04, 50)) == slow(5.8)[:, None]).all()
 
 
-
-
 def test_a_ledger_is_as_good_as_its_steps_and_trust_says_how_good(capsys):
     (code,) = re.findall(r"```python\n(.*?)```", (ROOT / "docs/trust.md").read_text(), re.DOTALL)
     exec(code, {"np": np, "pc": pc})
