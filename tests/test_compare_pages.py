@@ -15,7 +15,9 @@ sys.path.append(str(PROJECT / "bench" / "compare"))
 import chains  # noqa: E402
 import compare  # noqa: E402
 import effects  # noqa: E402
+import stiff_page  # noqa: E402
 from contenders.conversation import find_executable  # noqa: E402
+from work_precision import time_at  # noqa: E402
 
 RECORDS = PROJECT / "docs" / "comparison"
 COMPARISONS = compare.comparisons("textbook")
@@ -27,6 +29,29 @@ def test_written_page_is_what_the_record_says(name: str) -> None:
     record = json.loads((RECORDS / f"{comparison.stem}.json").read_text(encoding="utf-8"))
     page = (RECORDS / f"{comparison.stem}.md").read_text(encoding="utf-8")
     assert comparison.page(record) == page
+
+
+def ratios_to_scipy(scene: dict[str, Any], kind: str) -> dict[float, list[float]]:
+    """Of radau5's steps or times, to each of SciPy's Radaus, at every error that both have."""
+    own = stiff_page.curve(scene["points"]["radau5"], kind)
+    found: dict[float, list[float]] = {}
+    for peer in stiff_page.PEERS:
+        other = stiff_page.curve(scene["points"][peer], kind)
+        for error in stiff_page.ERRORS:
+            both = time_at(own, error), time_at(other, error)
+            if both[0] and both[1]:
+                found.setdefault(error, []).append(both[0] / both[1])
+    return found
+
+
+@pytest.mark.parametrize(("kind", "most"), [("steps", 2.0), ("microseconds", 0.02)])
+def test_stiff_scenes_take_few_steps_and_a_fiftieth_of_scipys_time(kind: str, most: float) -> None:
+    record = json.loads((RECORDS / "stiff.json").read_text(encoding="utf-8"))
+    assert [scene["name"] for scene in record["scenes"]] == ["damper", "spring", "controller"]
+    for scene in record["scenes"]:
+        found = ratios_to_scipy(scene, kind)
+        assert set(found) >= {1e-3, 1e-4, 1e-5, 1e-6}, scene["name"]
+        assert all(ratio <= most for each in found.values() for ratio in each), scene["name"]
 
 
 @pytest.mark.parametrize("name", ["chains", "effects"])

@@ -6,8 +6,10 @@ import json
 import re
 import sys
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
+import matplotlib.image
 import numpy as np
 import pendcore as pc
 import pytest
@@ -43,8 +45,47 @@ def test_the_readmes_lines_run(tmp_path, monkeypatch, capsys):
     assert [*ledger] == ["viscous", "drag", "motor", "wind", "user", "residual"]
     assert abs(ledger.residual).max() < 1e-6
     assert "PD(kp=20.0" in capsys.readouterr().out
-    exec(rubbed, {})
-    assert capsys.readouterr().out == "[0. 0.]\n"
+    assert rubbed == hard_case()
+
+
+def hard_case() -> str:
+    """The README's lines that draw its hard case."""
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+    return next(block for block in blocks if "stick_slip.png" in block)
+
+
+def test_ten_lines_draw_the_readmes_hard_case(tmp_path, monkeypatch):
+    """The picture that stands there is theirs, and the grey in it is exact rest."""
+    mpl.use("Agg")
+    monkeypatch.chdir(tmp_path)
+    lines = [line for line in hard_case().splitlines() if line.strip()]
+    assert len(lines) <= 10
+    assert lines[-1].endswith('.savefig("stick_slip.png")')
+    names: dict[str, Any] = {}
+    exec(hard_case(), names)
+    drawn, kept = (
+        matplotlib.image.imread(path)
+        for path in (tmp_path / "stick_slip.png", ROOT / "docs/figures/stick_slip.png")
+    )
+    assert drawn.shape == kept.shape
+    assert np.abs(drawn - kept).mean() < 0.01  # what another font changes is less
+    # At first the motor of 10 sin t has to overcome 5 N m; later the second joint stops when
+    # tests/hybrid_chain.py says, and the first lets go when it no longer holds motor and weights.
+    slow = names["slow"]
+    resting = np.flatnonzero((slow.qd == 0).all(axis=1))
+    first, later = (
+        [i for i in resting if low <= slow.t[i] <= high] for low, high in ((0, 1), (5, 7))
+    )
+    assert first == [*range(first[-1] + 1)]
+    assert later == [*range(later[0], later[-1] + 1)]
+    assert slow.t[first[-1]] == pytest.approx(np.arcsin(0.5), abs=1e-12)
+    assert slow.t[later[0]] == pytest.approx(5.5431723449428, abs=1e-10)
+    q1, q2 = slow(5.8)[:2]
+    held = 5.0 - 9.807 * (1.5 * np.cos(q1) + 0.5 * np.cos(q2))
+    assert slow.t[later[-1]] == pytest.approx(2 * np.pi + np.arcsin(held / 10), abs=1e-10)
+    assert (slow.q[first] == np.pi / 2).all()
+    assert (slow.q[later] == (q1, q2)).all()
+    assert (slow(np.linspace(5.55, 6.04, 50)) == slow(5.8)[:, None]).all()
 
 
 def test_a_ledger_is_as_good_as_its_steps_and_trust_says_how_good(capsys):

@@ -36,6 +36,18 @@ def test_the_written_page_is_what_the_record_says() -> None:
     assert [case["name"] for case in record["cases"]] == [case.name for case in CASES]
 
 
+def test_the_record_is_of_the_contenders_that_there_are() -> None:
+    record = json.loads(RECORD.read_text(encoding="utf-8"))
+    recorded = {
+        (case["name"], one["program"], one["how"])
+        for case in record["cases"]
+        for one in case["contenders"]
+    }
+    assert recorded == {
+        (case.name, one.program, one.how) for case in CASES for one in case.contenders
+    }
+
+
 def case(**outcomes: tuple[float | None, bool]) -> dict[str, Any]:
     return {
         "name": "one", "title": "One case", "scene": "a", "answer": "b", "unit": "rad",
@@ -68,6 +80,8 @@ def test_losses_are_told() -> None:
     assert "* One case: c." in page.losses(wrong)
     assert page.losses(closer) == ["* One case: 1e-10 rad here, 1e-12 rad in SciPy (so)."]
     assert page.losses(even) == ["* Nowhere."]
+    said = {"cases": [case(pendcore=(None, True), scipy=(1e-12, True), mujoco=(None, True))]}
+    assert page.losses(said) == ["* One case: no answer here (c), 1e-12 rad in SciPy (so)."]
 
 
 def endless() -> Outcome:

@@ -145,7 +145,10 @@ def section(case: Any) -> str:
 
 
 def losses(record: Record) -> list[str]:
-    """Name each case that pendcore has not right, and each where a peer is ten times closer."""
+    """Name each case that pendcore has not right, and each where a peer has more to give.
+
+    That is an answer where pendcore has but words, or one that is ten times closer.
+    """
     lines = []
     for case in record["cases"]:
         own = best(case, "pendcore")
@@ -158,10 +161,16 @@ def losses(record: Record) -> list[str]:
             one = best(case, program)
             if program == "pendcore" or one is None or not one["right"]:
                 continue
-            if own["error"] and one["error"] is not None and one["error"] < own["error"] / 10:
+            if one["error"] is None:
+                continue
+            if own["error"] is None:
+                here = f"no answer here ({cell(own['said'])})" if own["right"] else ""
+            else:
+                here = f"{measured(case, own)} here" if one["error"] < own["error"] / 10 else ""
+            if here:
                 lines.append(
-                    f"* {case['title']}: {measured(case, own)} here, {measured(case, one)} in "
-                    f"{label} ({cell(one['how'])})."
+                    f"* {case['title']}: {here}, {measured(case, one)} in {label} "
+                    f"({cell(one['how'])})."
                 )
     return lines or ["* Nowhere."]
 
