@@ -7,13 +7,14 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import matplotlib.image
 import pytest
 
 ROOT = Path(__file__).parents[1]
 sys.path.append(str(ROOT / "bench" / "compare"))
 
 import compare_hard_cases  # noqa: E402
-from hard_cases import page  # noqa: E402
+from hard_cases import figures, page  # noqa: E402
 from hard_cases.case import Absent, Outcome, run_bounded  # noqa: E402
 from hard_cases.cases import CASES, PROGRAMS  # noqa: E402
 from hard_cases.listed import LISTED, missing  # noqa: E402
@@ -46,6 +47,19 @@ def test_the_record_is_of_the_contenders_that_there_are() -> None:
     assert recorded == {
         (case.name, one.program, one.how) for case in CASES for one in case.contenders
     }
+
+
+def test_the_figures_are_drawn_from_the_record_alone(tmp_path: Path) -> None:
+    record = json.loads(RECORD.read_text(encoding="utf-8"))
+    assert {case.name for case in CASES if case.figure} == set(figures.FIGURES)
+    figures.draw(record, tmp_path)
+    for name in figures.FIGURES:
+        file = f"hard_cases_{name}.png"
+        drawn, kept = (
+            matplotlib.image.imread(folder / file) for folder in (tmp_path, ROOT / "docs/figures")
+        )
+        assert drawn.shape == kept.shape
+        assert abs(drawn - kept).mean() < 0.01, name  # what another font changes is less
 
 
 def case(**outcomes: tuple[float | None, bool]) -> dict[str, Any]:

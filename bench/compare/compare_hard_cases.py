@@ -1,11 +1,11 @@
 """Run the hard cases in pendcore and its peers, and write what comes of them.
 
-Writes docs/hard_cases.json, docs/hard_cases.md and docs/figures/hard_cases_two_joints.png. `make
-hard-cases` builds what is needed and calls this; by hand:
+Writes docs/hard_cases.json, docs/hard_cases.md and its figures, docs/figures/hard_cases_*.png.
+`make hard-cases` builds what is needed and calls this; by hand:
 
     python bench/compare/compare_hard_cases.py                 some minutes
     python bench/compare/compare_hard_cases.py --only bounces  that case, the others as recorded
-    python bench/compare/compare_hard_cases.py --redraw        page and figure from the JSON
+    python bench/compare/compare_hard_cases.py --redraw        page and figures from the JSON
 """
 
 from __future__ import annotations
@@ -23,13 +23,14 @@ from typing import Any
 PROJECT = Path(__file__).parents[2]
 sys.path.append(str(PROJECT / "tests"))  # the references that share no code with the core
 
-from hard_cases import figure, page  # noqa: E402
+from hard_cases import figures, page  # noqa: E402
 from hard_cases.case import Absent, HardCase, run_bounded  # noqa: E402
 from hard_cases.cases import CASES  # noqa: E402
 from machine import machine  # noqa: E402
 from tqdm import tqdm  # noqa: E402
 
 Record = dict[str, Any]
+FACTS = ("name", "title", "scene", "answer", "unit", "figure")
 
 
 def rounded(curves: Any) -> dict[str, list[float]]:
@@ -61,7 +62,7 @@ def measure(case: HardCase) -> Record:
                 "trace": rounded(outcome.trace),
             }
         )
-    facts = {name: getattr(case, name) for name in ("name", "title", "scene", "answer", "unit")}
+    facts = {name: getattr(case, name) for name in FACTS}
     return {**facts, "allowed": case.allowed, "reference": known, "contenders": contenders}
 
 
@@ -121,9 +122,7 @@ def main(given: Sequence[str] | None = None) -> int:
     asked.output.mkdir(parents=True, exist_ok=True)
     raw.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
     raw.with_suffix(".md").write_text(page.page(record), encoding="utf-8")
-    if any(case["name"] == "two_joints" for case in record["cases"]):
-        (asked.output / "figures").mkdir(exist_ok=True)
-        figure.draw(record, asked.output / "figures" / "hard_cases_two_joints.png")
+    figures.draw(record, asked.output / "figures")
     print(page.glance(record))
     print(page.summary(record))
     return 0

@@ -46,7 +46,10 @@ class Contender:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HardCase:
-    """`unit` is that of the error; an error of at most `allowed` counts as right."""
+    """`unit` is that of the error; an error of at most `allowed` counts as right.
+
+    `figure` says what its picture shows, where there is one (figures.py).
+    """
 
     name: str
     title: str
@@ -56,6 +59,7 @@ class HardCase:
     allowed: float
     contenders: tuple[Contender, ...]
     reference: Callable[[], Mapping[str, list[float]]] = dict
+    figure: str = ""
 
 
 class Absent(Exception):

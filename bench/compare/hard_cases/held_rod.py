@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
+
 import numpy as np
 
 from hard_cases.case import Contender, HardCase, Outcome
@@ -15,11 +18,18 @@ FRICTION = float(2 * WEIGHT * np.cos(START))
 SOFT = 1e-6  # rad/s over which the sign is smoothed
 
 
-def moved(by: float, *, extrapolated_from: float = 0.0) -> Outcome:
+TRACED = np.geomspace(1e-2, T_END, 161)  # s, for the figure
+
+
+def moved(
+    by: float, *, extrapolated_from: float = 0.0, traced: Sequence[float] | Array = ()
+) -> Outcome:
+    """How far it has moved at the end, and at TRACED."""
     words = f"moves by {by:.1e} rad" if by else "moves by exactly nothing"
     if extrapolated_from:
         words += f" (its rate after {extrapolated_from:.0f} s, times 1e6 s)"
-    return Outcome(error=abs(by), said=words)
+    trace = {"moved": [abs(float(x)) for x in traced]} if len(traced) else {}
+    return Outcome(error=abs(by), said=words, trace=trace)
 
 
 def pendcore() -> Outcome:
@@ -28,8 +38,8 @@ def pendcore() -> Outcome:
     friction = pc.effects.DryJointFriction(joint=1, coulomb=FRICTION)
     scene = pc.Scene(links=[pc.Link(mass=3, length=1)], gravity=G, effects=[friction])
     sol = pc.simulate(scene, START, t_span=(0, T_END))
-    held = moved(abs(sol.q[-1, 0] - START))
-    return Outcome(error=held.error, said=f"{held.said}; status `{sol.status}`")
+    held = moved(abs(sol.q[-1, 0] - START), traced=sol(TRACED)[0] - START)
+    return replace(held, said=f"{held.said}; status `{sol.status}`")
 
 
 def smoothed(_: float, y: Array) -> list[float]:
@@ -39,8 +49,8 @@ def smoothed(_: float, y: Array) -> list[float]:
 def scipy_smoothed() -> Outcome:
     from scipy.integrate import solve_ivp
 
-    sol = solve_ivp(smoothed, (0, T_END), [START, 0], "Radau", rtol=1e-8, atol=1e-12)
-    return moved(sol.y[0, -1] - START)
+    sol = solve_ivp(smoothed, (0, T_END), [START, 0], "Radau", rtol=1e-8, atol=1e-12, t_eval=TRACED)
+    return moved(sol.y[0, -1] - START, traced=sol.y[0] - START)
 
 
 def scipy_events() -> Outcome:
@@ -55,9 +65,15 @@ def mujoco_creep(dt: float, joint: str, seconds: float = 10.0) -> Outcome:
     model = mujoco_rods(dt=dt, gravity=G, joint=f'frictionloss="{FRICTION!r}" {joint}')
     data = mujoco.MjData(model)
     data.qpos[0] = np.pi / 2 - START
+    times, angles = [0.0], [float(data.qpos[0])]
     for _ in range(round(seconds / dt)):
         mujoco.mj_step(model, data)
-    return moved(-float(data.qvel[0]) * T_END, extrapolated_from=seconds)
+        times.append(data.time)
+        angles.append(float(data.qpos[0]))
+    rate = float(data.qvel[0])
+    traced = np.interp(TRACED, times, angles) - angles[0]
+    traced += rate * np.maximum(TRACED - seconds, 0)
+    return moved(-rate * T_END, extrapolated_from=seconds, traced=traced)
 
 
 CASE = HardCase(
@@ -67,6 +83,8 @@ CASE = HardCase(
     answer="It does not move at all.",
     unit="rad",
     allowed=0.0,
+    reference=lambda: {"t": TRACED.tolist()},
+    figure="How far the rod has crept over the time, by each program",
     contenders=(
         Contender(program="pendcore", how="`DryJointFriction`", run=pendcore),
         Contender(program="scipy", how="sign smoothed over 1e-6 rad/s, Radau", run=scipy_smoothed),

@@ -19,10 +19,6 @@ its able user writes, in more ways than one where there is a choice. A case stat
 from a closed form or from a solution that shares no code with any of them. What is asked is whether
 the answer is right; times are another page ([comparison](comparison/textbook.md)).
 
-![Angles of two joints over time, and how far each program is off][two joints]
-
-[two joints]: figures/hard_cases_two_joints.png
-
 ## At a glance
 
 Of each program the way that does best; **bold** is right. *Own loop*: modes, switches or events are
@@ -138,9 +134,12 @@ def section(case: Any) -> str:
     ]
     header = ["program", "as its user wrote it", "what happens", "error", "right"]
     bound = f" Right: within {case['allowed']:.0e} {case['unit']}." if case["allowed"] else ""
+    figure = case.get("figure", "")
+    shown = f"\n![{figure}](figures/hard_cases_{case['name']}.png)\n" if figure else ""
     return (
         f"### {case['title']}\n\n{case['scene']}\n\n**The answer:** {case['answer']}{bound}\n\n"
         + table(header, rows)
+        + shown
     )
 
 

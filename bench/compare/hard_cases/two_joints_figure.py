@@ -2,26 +2,15 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
-
-import matplotlib
-
-matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
-from hard_cases.cases import PROGRAMS
+from hard_cases.styles import STYLES, dress, label
 
-# Colours differ in lightness too, dashes differ: the figure survives a grey printer.
-STYLES: dict[str, dict[str, Any]] = {
-    "pendcore": {"color": "#000000", "linestyle": "-", "linewidth": 2.0},
-    "scipy": {"color": "#8a8a8a", "linestyle": "-.", "linewidth": 1.4},
-    "mujoco": {"color": "#d1495b", "linestyle": "--", "linewidth": 1.4},
-    "odeint": {"color": "#6fa8d6", "linestyle": ":", "linewidth": 2.0},
-}
 LEAST = 1e-15  # an error of nothing is drawn here
 
 
@@ -62,16 +51,15 @@ def draw_errors(axes: Axes, case: Any) -> None:
             continue
         error = np.maximum(one["trace"]["error"], LEAST)
         axes.plot(
-            known["t"], error, label=f"{PROGRAMS[one['program']]}: {one['how'].replace('`', '')}",
+            known["t"], error, label=label(one),
             **STYLES[one["program"]] | ({"linewidth": 0.8} if "hardest" in one["how"] else {}),
         )  # fmt: skip
     axes.set(yscale="log", ylim=(LEAST / 2, 1), ylabel="largest error of an angle / rad")
     axes.set_xlabel("t / s")
 
 
-def draw(record: dict[str, Any], path: Path) -> None:
-    (case,) = (case for case in record["cases"] if case["name"] == "two_joints")
-    drawn, (angles, sticks, errors) = plt.subplots(
+def drawn(case: Any) -> Figure:
+    figure, (angles, sticks, errors) = plt.subplots(
         3, 1, figsize=(8.6, 7), sharex=True, layout="constrained", height_ratios=(1, 0.2, 1.1)
     )
     draw_angles(angles, case)
@@ -79,10 +67,8 @@ def draw(record: dict[str, Any], path: Path) -> None:
     draw_errors(errors, case)
     for axes in (angles, sticks, errors):
         axes.margins(x=0)
-        axes.grid(color="0.9", linewidth=0.6)
-        axes.set_axisbelow(True)
+        dress(axes)
     angles.set_title("Two rods with dry friction in both joints under a slow motor", fontsize=11)
     lines = errors.get_lines()
-    drawn.legend(handles=lines, loc="outside lower center", ncols=2, frameon=False, fontsize=9)
-    drawn.savefig(path, dpi=160)
-    plt.close(drawn)
+    figure.legend(handles=lines, loc="outside lower center", ncols=2, frameon=False, fontsize=9)
+    return figure
