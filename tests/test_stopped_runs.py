@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import pendcore as pc
 import pytest
-from pendcore import _core
 from pendcore import effects as fx
 
 ROOT = Path(__file__).parents[1]
@@ -56,7 +55,6 @@ def test_a_run_at_rest_that_goes_on_is_at_rest():
     np.testing.assert_array_equal(longer.y, once.y)
 
 
-@pytest.mark.parametrize("method", ["dopri5", "radau5", "auto"])
 @pytest.mark.parametrize("t_end", [1e-320, 1e-160, 1e300])
 @pytest.mark.parametrize("options", [{}, {"ledger": True}, {"compensated": True}])
 def test_the_step_at_rest_may_have_any_length(method: str, t_end: float, options: dict[str, bool]):
@@ -78,10 +76,6 @@ def test_a_sign_of_the_users_own_never_gets_past_rest_as_the_documents_say():
     assert "never gets past rest" in trust
 
 
-METHODS = [method["name"] for method in _core.methods() if method["error_order"]]
-
-
-@pytest.mark.parametrize("method", METHODS)
 def test_a_run_that_is_not_finite_says_which_rate_and_whose_force(method: str):
     def of_root(t: float, q: np.ndarray, qd: np.ndarray) -> np.ndarray:
         return np.array([0.0, 0.0 * np.sqrt(max(0.5 - q[1], 0.0)) if q[1] <= 0.5 else np.nan])
@@ -94,7 +88,6 @@ def test_a_run_that_is_not_finite_says_which_rate_and_whose_force(method: str):
     assert re.search(r"qd_[12], by effect 2 \(\w*user\)\)", sol.message)
 
 
-@pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("span", [(0, 1e-12), (1, 1 + 4e-16), (0, 1), (1, -1)])
 def test_the_right_hand_side_is_never_asked_outside_the_interval(
     method: str, span: tuple[float, float]
@@ -112,7 +105,6 @@ def test_the_right_hand_side_is_never_asked_outside_the_interval(
     assert max(asked) <= max(span)
 
 
-@pytest.mark.parametrize("method", METHODS)
 def test_a_run_shorter_than_its_first_guess_goes_on_as_one_that_is_longer(method: str):
     """The first step then depends on the end: what goes on begins anew."""
     book, start = pc.Scene.textbook(), (np.pi / 4, np.pi / 3)
@@ -123,7 +115,6 @@ def test_a_run_shorter_than_its_first_guess_goes_on_as_one_that_is_longer(method
     np.testing.assert_array_equal(longer.y, once.y)
 
 
-@pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("first_step", [1e-300, 1e-160, 1e-7, 1e300])
 def test_any_first_step_leads_to_the_end(method: str, first_step: float):
     book = pc.Scene.textbook()

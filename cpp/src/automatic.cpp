@@ -27,7 +27,7 @@ void AutomaticStepper::evaluate(double t, const double* y, double* dydt) {
 }
 
 Attempt AutomaticStepper::attempt(double t, double h, double gain) {
-  now().goes_on = goes_on;
+  if (has_changed_) implicit_->goes_on = goes_on;  // the explicit one never takes long
   const Attempt attempt = now().attempt(t, h, gain);
   count();
   return attempt;

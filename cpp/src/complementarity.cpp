@@ -122,6 +122,7 @@ bool ForcesBetweenBounds::descend() {
     solve_between();
     double share = 1.0;
     int first = -1;
+    Bound met = Bound::between;
     for (int i = 0; i < size; ++i) {
       const int way = at[i] == Bound::between ? wrong(i) : 0;
       if (way == 0) continue;
@@ -130,12 +131,12 @@ bool ForcesBetweenBounds::descend() {
       if (first >= 0 && until >= share) continue;
       share = until;
       first = i;
+      met = way < 0 ? Bound::lower : Bound::upper;
     }
     if (first >= 0) {
       for (int i = 0; i < size; ++i) lambda[i] = from[i] + share * (lambda[i] - from[i]);
-      at[first] =
-          lambda[first] - lower[first] < upper[first] - lambda[first] ? Bound::lower : Bound::upper;
-      lambda[first] = at[first] == Bound::lower ? lower[first] : upper[first];
+      at[first] = met;
+      lambda[first] = met == Bound::lower ? lower[first] : upper[first];
       continue;
     }
     int worst = -1;

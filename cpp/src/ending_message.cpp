@@ -15,19 +15,9 @@ std::string component_name(int i, int n) {
 /// What is told where a table or spline does not go on at time t, in the run's direction.
 std::string table_that_ends(const Scene& scene, double t, bool forward) {
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
-    std::string told;
-    std::visit(
-        [&](const auto& effect) {
-          if constexpr (requires { effect.last_time(); }) {
-            const double first = effect.first_time();
-            const double last = effect.last_time();
-            if (forward ? first <= t && t < last : first < t && t <= last) return;
-            told = effect_name(scene, i) + ": " + span_of(scene.effects[i]) +
-                   ", and the run is at t = " + text(t) + " s: make it longer, or simulate less";
-          }
-        },
-        scene.effects[i]);
-    if (!told.empty()) return told;
+    if (!is_outside_table(scene.effects[i], t, forward)) continue;
+    return effect_name(scene, i) + ": " + span_of(scene.effects[i]) +
+           ", and the run is at t = " + text(t) + " s: make it longer, or simulate less";
   }
   return {};
 }
@@ -72,7 +62,7 @@ std::string ending_message(const Ending& ending, const Scene& scene, const Solut
   }
   message += at;
   if (ending.status != Status::non_finite) return message + ')';
-  NotFinite found = find_what_is_not_finite(scene, position);
+  NotFinite found = find_what_is_not_finite(scene, position, solution.t_end);
   if (found.component < 0) found.component = ending.bad;
   if (found.component >= 0) message += ", " + component_name(found.component, solution.n);
   if (found.effect >= 0) message += ", by " + effect_name(scene, found.effect);

@@ -96,6 +96,18 @@ Crossing Guards::first(double t, double h) {
   return found;
 }
 
+bool Guards::falls_at_start(int k, double h, int halvings) {
+  if (k >= breaks_.linear_guards()) return true;
+  const int zeros = breaks_.zeros_at_start(k);
+  if (zeros == 0) return true;
+  if (zeros > 1) return halvings == 10;
+  std::vector<double> slope(2 * static_cast<std::size_t>(dimension_), 0.0);
+  stepper_.get_derivative(&slope[dimension_]);
+  std::array<double, 2> along{};
+  breaks_.polynomial(k, slope.data(), 1, dimension_, along.data());
+  return along[1] * h <= 0.0 || halvings == 50;
+}
+
 Guards::Miss Guards::miss(int k, double t, double h) {
   stepper_.interpolant(h, rows_.data());
   const int other = k - breaks_.linear_guards();

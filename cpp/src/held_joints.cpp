@@ -20,9 +20,8 @@ HeldJoints::HeldJoints(const Scene& scene)
       captured_(scene.links.size()),
       bounced_(scene.links.size()),
       holds_(scene.links.size()) {
-  const std::vector<double> natural = natural_speeds(scene, forces_.inertia);
-  natural_speed_ = std::ranges::max(natural);
-  supports_ = joint_supports(scene, natural);
+  supports_ = joint_supports(scene, forces_.inertia);
+  natural_speed_ = std::ranges::max(supports_, {}, &JointSupport::natural_speed).natural_speed;
   can_hold_ = std::ranges::any_of(scene.effects, [](const Effect& effect) {
     return holding_torque(effect) || std::holds_alternative<JointStop>(effect);
   });

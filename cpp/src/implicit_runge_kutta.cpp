@@ -241,25 +241,21 @@ Attempt ImplicitRungeKutta::attempt(double t, double h, double /*gain*/) {
     has_jacobian_ = true;
   }
   h_ = h;
-  if (!systems_.factor(method_, h, goes_on)) return {std::numeric_limits<double>::quiet_NaN(), 0.0};
+  constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
+  if (!systems_.factor(method_, h, goes_on)) return {undefined, 0.0};
   predict(h);
   const bool converges = iterate(t, h);  // or a function of the user's raises: nothing was tried
   const bool is_careful = is_retry_ || h_before_ == 0.0;
   if (!is_retry_) ++jacobians;
   factorisations += 2;
   is_retry_ = true;
-  if (!converges) return {std::numeric_limits<double>::quiet_NaN(), 0.0};
+  if (!converges) return {undefined, 0.0, !std::isfinite(squared_norm(y_new_.data()))};
   polish(h);
   if (size_ > state_) integrate_quadratures(t, h);
   advance();
 
-  const Collocation::Row& slope = method_.interpolant[0];  // u'(t) = sum of slope Z / h
   auto filter = [&](const double* rate) {
-    for (int i = 0; i < state_; ++i) {
-      error_[i] = rate[i] - (slope[0] * stages_[i] + slope[1] * stages_[size_ + i] +
-                             slope[2] * stages_[2 * size_ + i]) /
-                                h;
-    }
+    for (int i = 0; i < state_; ++i) error_[i] = rate[i] - power_of_stages(0, i) / h;
     systems_.solve_real(error_.data());
     return squared_norm(error_.data());
   };
@@ -286,11 +282,9 @@ Attempt ImplicitRungeKutta::attempt(double t, double h, double /*gain*/) {
 /// no further from the slope that the stages have than the error allows. What is stiff and has died
 /// out would make of the last bits of its state a slope that nothing in the step has.
 void ImplicitRungeKutta::set_slope(double h) {
-  const Collocation::Row& row = method_.interpolant[0];
   bool all_are_exact = true;
   for (int i = 0; i < size_; ++i) {
-    const double of_stages =
-        row[0] * stages_[i] + row[1] * stages_[size_ + i] + row[2] * stages_[2 * size_ + i];
+    const double of_stages = power_of_stages(0, i);
     const double exact = h * dydt_[i];
     double filtered = 0.0;
     bool is_exact = all_are_exact;
@@ -314,11 +308,7 @@ void ImplicitRungeKutta::stay() {
 
 void ImplicitRungeKutta::write_polynomial(double* rows) const {
   for (int p = 0; p < 3; ++p) {
-    const Collocation::Row& row = method_.interpolant[p];
-    for (int i = 0; i < size_; ++i) {
-      rows[p * size_ + i] =
-          row[0] * stages_[i] + row[1] * stages_[size_ + i] + row[2] * stages_[2 * size_ + i];
-    }
+    for (int i = 0; i < size_; ++i) rows[p * size_ + i] = power_of_stages(p, i);
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "pendcore/integrate/clock.hpp"
 #include "pendcore/integrate/guards.hpp"
+#include "pendcore/integrate/resume_point.hpp"
 #include "pendcore/integrate/statistics.hpp"
 #include "pendcore/integrate/stiffness.hpp"
 
@@ -30,21 +31,16 @@ class Run {
       Observer& observer, Breaks* breaks)
       : stepper_(stepper),
         position_(position),
-        resumable_(resumable),
         limits_(limits),
         observer_(observer),
         breaks_(breaks),
         method_(stepper.info()),
         clock_(limits, position.t.high),
-        evaluations_before_(stepper.evaluations - position.statistics.nfev),
-        jacobians_before_(stepper.jacobians - position.statistics.njev),
-        factorisations_before_(stepper.factorisations - position.statistics.nlu),
+        resume_(stepper, position, resumable, observer, breaks, limits.begins_anew),
         state_(stepper.dimension()),
         rate_(stepper.dimension()) {
     if (breaks != nullptr) guards_.emplace(stepper, *breaks);
     has_quadratures_ = stepper.controlled() < stepper.dimension();
-    may_end_ = observer.may_end();
-    cut_before_ = limits.begins_anew;
     stepper.goes_on = [this] {
       if (can_stop_) stopped_ = clock_.look(position_.t.high);
       return stopped_ == Status::finished;
@@ -58,7 +54,7 @@ class Run {
     if (const int bad = bad_component(position_.dydt); bad >= 0) {
       return end_with(Status::non_finite, bad);
     }
-    if (may_end_) begin_step();
+    resume_.step_begins();
     try {
       while (!has_ended() && step()) {
       }
@@ -66,11 +62,7 @@ class Run {
     } catch (const std::bad_alloc&) {
       throw;
     } catch (...) {  // what a function of the user's throws
-      if (may_end_) {
-        restart_at_step_start();
-      } else {
-        cut_before_ = cut_before_ || law_is_changing_;
-      }
+      resume_.interrupt();
       Ending ending = end_with(Status::callback_error);
       ending.error = std::current_exception();
       return ending;
@@ -92,11 +84,6 @@ class Run {
     return false;
   }
 
-  void begin_step() {
-    write_down(step_start_);
-    observer_.step_begins();
-  }
-
   bool step() {
     const double t = position_.t.high;
     const double left = difference(limits_.t_end, position_.t);
@@ -104,7 +91,7 @@ class Run {
     if (attempts_ == limits_.max_steps) return end(Status::max_steps);
     if (const Status clock = clock_.look(t); clock != Status::finished) return end(clock);
 
-    if (may_end_) begin_step();
+    resume_.step_begins();
     if (breaks_ != nullptr && breaks_->is_over()) return end(Status::non_finite);
     if (breaks_ != nullptr && breaks_->rests()) return rest(left);
     if (breaks_ != nullptr && std::abs(position_.h) > breaks_->longest_step()) {
@@ -114,7 +101,7 @@ class Run {
     double h = position_.h;
     if (target.is_in_reach) {
       h = target.left;
-      if (!target.is_break) cut_for_the_end();
+      if (!target.is_break) resume_.cut_from_here();
     } else if (std::abs(h) <= 10.0 * rounding * std::abs(t) || std::abs(h) < 1e-300) {
       return end(position_.trial_was_finite ? Status::step_too_small : Status::non_finite);
     }
@@ -131,40 +118,77 @@ class Run {
     if (!position_.trial_was_finite || !is_accepted) {
       if (limits_.fixed_step) {
         ++position_.statistics.rejected;
-        return end(Status::non_finite);
+        return end(attempt.converged ? Status::non_finite : Status::not_converged);
       }
       return reject(h * position_.control.reject(method_, attempt));
     }
 
     Crossing crossing;
     if (guards_ && !is_shortest) crossing = guards_->first(t, h);
-    if (guards_ && crossing.guard >= 0) {
-      if (crossing.theta * std::abs(h) <= 2.0 * rounding * std::max(std::abs(t), std::abs(h)))
+    for (int halvings = 0; is_at_start(crossing, t, h); ++halvings) {
+      if (std::abs(h) <= 10.0 * last_bits() ||
+          guards_->falls_at_start(crossing.guard, h, halvings)) {
         return change_at_once(crossing);
-      const double gain = position_.control.gain(method_);
-      const Guards::Located located = guards_->locate(crossing, t, h, gain, last_bits());
-      attempt = located.attempt;
-      if (limits_.fixed_step) {
-        h = located.is_found ? located.h : crossing.theta * h;
-        if (!located.is_found) attempt = stepper_.attempt(t, h, gain);
-        look_for_bad_component(attempt, t + h);
-        if (!position_.trial_was_finite) return end(Status::non_finite);
-      } else {
-        // What the whole step strode over, the shorter one may see: friction's peak at rest.
-        if (!located.is_found) return reject(0.5 * crossing.theta * h);
-        h = located.h;
-        if (!(attempt.squared_error <= 1.0)) {
-          return reject(h * position_.control.reject(method_, attempt));
-        }
       }
+      if (!halve(t, h, attempt)) return false;
+      if (!limits_.fixed_step && attempt.squared_error > 1.0) return reject(0.5 * h);
+      crossing = guards_->first(t, h);
+    }
+    if (crossing.guard >= 0) {
+      const Landing landing = limits_.fixed_step ? land_at_fixed_step(crossing, t, h, attempt)
+                                                 : land(crossing, t, h, attempt);
+      if (landing == Landing::tried_again) return true;
+      if (landing == Landing::ended) return false;
     }
     position_.crossings_at_once = 0;
     return accept(target, crossing.guard, h, attempt);
   }
 
+  static bool is_at_start(const Crossing& crossing, double t, double h) {
+    return crossing.guard >= 0 &&
+           crossing.theta * std::abs(h) <= 2.0 * rounding * std::max(std::abs(t), std::abs(h));
+  }
+  /// What the dense output of a step says of its start, that of a shorter one may not bear out.
+  bool halve(double t, double& h, Attempt& attempt) {
+    ++position_.statistics.rejected;
+    h *= 0.5;
+    attempt = stepper_.attempt(t, h, position_.control.gain(method_));
+    look_for_bad_component(attempt, t + h);
+    if (position_.trial_was_finite) return true;
+    return end(attempt.converged ? Status::non_finite : Status::not_converged);
+  }
+
+  /// A step that leads over the zero of a guard is taken again, to there.
+  enum class Landing { there, tried_again, ended };
+  Landing land(const Crossing& crossing, double t, double& h, Attempt& attempt) {
+    const double gain = position_.control.gain(method_);
+    const Guards::Located located = guards_->locate(crossing, t, h, gain, last_bits());
+    attempt = located.attempt;
+    // What the whole step strode over, the shorter one may see: friction's peak at rest.
+    double instead = 0.5 * crossing.theta * h;
+    if (located.is_found) {
+      h = located.h;
+      if (attempt.squared_error <= 1.0) return Landing::there;
+      instead = h * position_.control.reject(method_, attempt);
+    }
+    reject(instead);
+    return Landing::tried_again;
+  }
+  Landing land_at_fixed_step(const Crossing& crossing, double t, double& h, Attempt& attempt) {
+    const double gain = position_.control.gain(method_);
+    const Guards::Located located = guards_->locate(crossing, t, h, gain, last_bits());
+    h = located.is_found ? located.h : crossing.theta * h;
+    attempt = located.is_found ? located.attempt : stepper_.attempt(t, h, gain);
+    look_for_bad_component(attempt, t + h);
+    if (position_.trial_was_finite) return Landing::there;
+    end(attempt.converged ? Status::non_finite : Status::not_converged);
+    return Landing::ended;
+  }
+
   /// Nothing moves any more: one step to the end.
   bool rest(double left) {
-    cut_for_the_end();
+    resume_.cut_from_here();
+    position_.crossings_at_once = 0;
     stepper_.stay();
     const double last = observer_.step_accepted(stepper_, position_.t, left, limits_.t_end);
     if (last == 0.0) return end(Status::max_turns);
@@ -194,17 +218,6 @@ class Run {
     return 4.0 * rounding * std::max(std::abs(position_.t.high), std::abs(limits_.t_end));
   }
 
-  /// A run that goes on does so from here, whatever is cut or left half done after it.
-  void keep_for_resuming() {
-    if (cut_before_) return;
-    write_down(resumable_);
-    observer_.restarts_here();
-  }
-  void cut_for_the_end() {
-    keep_for_resuming();
-    cut_before_ = true;
-  }
-
   void look_for_bad_component(const Attempt& attempt, double t_new) {
     position_.trial_was_finite = true;
     bad_ = -1;
@@ -227,15 +240,8 @@ class Run {
       chatters_ = true;
       return end(Status::step_too_small);
     }
-    begin_change();
+    resume_.begin_change();
     return change_law(crossing.guard);
-  }
-
-  /// What a function of the user's may raise while the law that follows is looked for leaves that
-  /// half done: a run that goes on does so from before the step that ends there.
-  void begin_change() {
-    keep_for_resuming();
-    law_is_changing_ = true;
   }
 
   /// The quadratures have no say in the steps: they are not to overflow in silence.
@@ -249,14 +255,12 @@ class Run {
   bool accept(const Target& target, int guard, double h, const Attempt& attempt) {
     if (quadratures_overflow()) return end(Status::non_finite);
     TwoDouble t_new = position_.t + h;
-    bool lands = target.is_in_reach;
-    if (guard >= 0) {
-      // A guard's zero within the last bits of the target is there too.
-      lands = lands && difference(target.t, t_new) * std::copysign(1.0, h) <= last_bits();
-    }
+    // A guard's zero within the last bits of the target is there too.
+    const bool lands =
+        target.is_in_reach && difference(target.t, t_new) * std::copysign(1.0, h) <= last_bits();
     if (lands) t_new = {target.t, 0.0};
     const bool law_changes = guard >= 0 || (lands && target.is_break);
-    if (law_changes) begin_change();
+    if (law_changes) resume_.begin_change();
     test_stiffness(stepper_, h, position_);
     if (guard >= 0 || (breaks_ != nullptr && breaks_->settles_every_step())) {
       stepper_.get_new_state(state_.data());
@@ -264,7 +268,7 @@ class Run {
     }
     const double last = observer_.step_accepted(stepper_, position_.t, h, t_new.high);
     if (last == 0.0) {
-      restart_at_step_start();
+      resume_.restart_at_step_start();
       return end(Status::max_turns);
     }
     count_accepted(position_.statistics, h, target.is_in_reach || law_changes,
@@ -300,29 +304,22 @@ class Run {
   }
   /// An event ended the run. A run that goes on takes the whole step again.
   bool has_ended() {
-    if (!may_end_ || !observer_.has_ended()) return false;
-    restart_at_step_start();
+    if (!observer_.has_ended()) return false;
+    resume_.restart_at_step_start();
     status_ = Status::event;
     return true;
-  }
-  void restart_at_step_start() {
-    if (!cut_before_) {
-      resumable_ = step_start_;
-      observer_.restarts_at_step();
-    }
-    cut_before_ = true;
   }
 
   /// At the state that the stepper stands at. The step that was to be tried is tried next.
   bool change_law(int guard) {
-    law_is_changing_ = true;
+    resume_.change_goes_on();
     const double t = position_.t.high;
     stepper_.get_state(state_.data());
     const std::vector<double> before = state_;
     const bool jumped = breaks_->cross(guard, t, state_.data());
     bad_ = bad_component(state_);
     if (bad_ >= 0) {  // the run ends with the state before
-      cut_before_ = true;
+      resume_.cut();
       return end(Status::non_finite);
     }
     if (jumped) {
@@ -333,51 +330,33 @@ class Run {
     stepper_.evaluate(t, state_.data(), rate_.data());
     stepper_.start(state_.data(), rate_.data());
     position_.control = StepControl{};
-    law_is_changing_ = false;
+    resume_.end_change();
     // As where a run begins: the ledger's rates have no say in a step's error.
     bad_ = bad_component(rate_);
     return bad_ < 0 || end(Status::non_finite);
   }
 
-  void write_down(Position& target) const {
-    target = position_;
-    target.statistics.nfev = stepper_.evaluations - evaluations_before_;
-    target.statistics.njev = stepper_.jacobians - jacobians_before_;
-    target.statistics.nlu = stepper_.factorisations - factorisations_before_;
-    stepper_.get_state(target.y.data());
-    stepper_.get_derivative(target.dydt.data());
-    target.stepper = stepper_.memory();
-    if (breaks_ != nullptr) target.breaks = breaks_->memory();
-  }
   Ending end_with(Status status, int bad = -1) {
-    write_down(position_);
-    if (!cut_before_) resumable_ = position_;
+    resume_.end();
     return Ending{.status = status,
-                  .cut = cut_before_,
+                  .cut = resume_.is_cut(),
                   .bad = status == Status::non_finite ? bad : -1,
                   .chatters = chatters_};
   }
 
   Stepper& stepper_;
   Position& position_;
-  Position& resumable_;
   const Limits& limits_;
   Observer& observer_;
   Breaks* breaks_;
   const MethodInfo& method_;
   Clock clock_;
+  ResumePoint resume_;
   std::optional<Guards> guards_;
-  bool may_end_ = false;
-  Position step_start_;  ///< of the step that is tried, if the observer may end the run
-  long long evaluations_before_;
-  long long jacobians_before_;
-  long long factorisations_before_;
   Status status_ = Status::finished;
   bool can_stop_ = false;
   Status stopped_ = Status::finished;  ///< or why an attempt was given up
   long long attempts_ = 0;
-  bool cut_before_ = false;  ///< a step was cut to end at t_end: later ones depend on t_end
-  bool law_is_changing_ = false;
   bool chatters_ = false;
   bool has_quadratures_ = false;
   int bad_ = -1;  ///< component of the last trial, while trials are not finite

@@ -6,45 +6,53 @@
 namespace pendcore {
 namespace {
 
-/// The size of the torques that an effect can exert on a joint that it acts on, N m.
-double torque_scale(const Effect& effect) {
-  return std::visit(
-      [](const auto& one) {
-        double scale = 0.0;
+/// What the law of an effect adds up, in the joint that it acts on.
+void add_law(const Effect& effect, std::vector<JointSupport>& supports) {
+  std::visit(
+      [&](const auto& one) {
         if constexpr (requires { one.couple(0); }) {
-          if (const auto couple = one.couple(0)) {
-            scale = std::abs(couple->held) + std::abs(couple->on_phi) + std::abs(couple->gain);
-          }
+          const auto couple = one.couple(0);
+          if (!couple) return;
+          const double torque = std::abs(couple->held) + std::abs(couple->gain);
+          const double stiffness = std::abs(couple->on_phi);
+          const double damping = std::abs(couple->on_phid);
+          if (!std::isfinite(torque + stiffness + damping)) return;
+          JointSupport& joint = supports[one.joint - 1];
+          joint.torque += torque;
+          joint.stiffness += stiffness;
+          joint.damping += damping;
         }
-        return std::isfinite(scale) ? scale : 0.0;
       },
       effect);
 }
 
-}  // namespace
-
-std::vector<double> natural_speeds(const Scene& scene, const Inertia& inertia) {
-  const std::size_t n = scene.links.size();
-  std::vector<double> torque(n);
-  for (std::size_t j = 0; j < n; ++j) torque[j] = inertia.first_moment[j] * std::abs(scene.gravity);
-  for (const Effect& effect : scene.effects) {
-    std::visit(
-        [&](const auto& one) {
-          if constexpr (requires { one.joint; }) torque[one.joint - 1] += torque_scale(effect);
-        },
-        effect);
-  }
+void set_natural_speeds(const Scene& scene, const Inertia& inertia,
+                        std::vector<JointSupport>& supports) {
   double largest = 0.0;
-  for (std::size_t j = 0; j < n; ++j) {
-    torque[j] = std::sqrt(torque[j] / inertia.diagonal[j]);
-    largest = std::max(largest, torque[j]);
+  for (std::size_t j = 0; j < supports.size(); ++j) {
+    JointSupport& joint = supports[j];
+    const double weight = inertia.first_moment[j] * std::abs(scene.gravity);
+    joint.natural_speed =
+        std::sqrt((weight + joint.torque + joint.stiffness) / inertia.diagonal[j]);
+    largest = std::max(largest, joint.natural_speed);
   }
   if (largest == 0.0) largest = 1.0;  // nothing drives the joints: 1 rad/s
-  for (double& speed : torque) speed = speed > 0.0 ? speed : largest;
-  return torque;
+  for (JointSupport& joint : supports) {
+    if (joint.natural_speed == 0.0) joint.natural_speed = largest;
+  }
 }
 
-std::vector<JointSupport> joint_supports(const Scene& scene, const std::vector<double>& natural) {
+void add_stop(const JointStop& stop, std::vector<JointSupport>& supports) {
+  JointSupport& joint = supports[stop.joint - 1];
+  const double capture = stop.capture_speed.value_or(1e-9 * joint.natural_speed);
+  const auto [lower, upper] = stop.range;
+  if (lower > joint.lower.angle) joint.lower = {lower, stop.restitution, capture};
+  if (upper < joint.upper.angle) joint.upper = {upper, stop.restitution, capture};
+}
+
+}  // namespace
+
+std::vector<JointSupport> joint_supports(const Scene& scene, const Inertia& inertia) {
   std::vector<JointSupport> supports(scene.links.size());
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
     const Effect& effect = scene.effects[i];
@@ -59,26 +67,10 @@ std::vector<JointSupport> joint_supports(const Scene& scene, const std::vector<d
           },
           effect);
     }
-    std::visit(
-        [&](const auto& one) {
-          if constexpr (requires { one.couple(0); }) {
-            JointSupport& joint = supports[one.joint - 1];
-            if (const auto couple = one.couple(0)) {
-              joint.stiffness += std::abs(couple->on_phi);
-              joint.damping += std::abs(couple->on_phid);
-              joint.torque += std::abs(couple->held) + std::abs(couple->gain);
-            }
-          }
-        },
-        effect);
-    if (const auto* stop = std::get_if<JointStop>(&effect)) {
-      JointSupport& joint = supports[stop->joint - 1];
-      const double capture = stop->capture_speed.value_or(1e-9 * natural[stop->joint - 1]);
-      const auto [lower, upper] = stop->range;
-      if (lower > joint.lower.angle) joint.lower = {lower, stop->restitution, capture};
-      if (upper < joint.upper.angle) joint.upper = {upper, stop->restitution, capture};
-    }
+    add_law(effect, supports);
   }
+  set_natural_speeds(scene, inertia, supports);
+  for (const JointStop& stop : effects_of<JointStop>(scene)) add_stop(stop, supports);
   return supports;
 }
 

@@ -1,7 +1,5 @@
 #include "pendcore/not_finite.hpp"
 
-#include <algorithm>
-
 #include "pendcore/dynamics/equations_of_motion.hpp"
 
 namespace pendcore {
@@ -31,10 +29,11 @@ NotFinite look_at(const Scene& scene, double t, const std::vector<double>& y) {
 
 }  // namespace
 
-NotFinite find_what_is_not_finite(const Scene& scene, const Position& position) {
+NotFinite find_what_is_not_finite(const Scene& scene, const Position& position, double t_end) {
   const std::size_t n = scene.links.size();
   for (const double share : {0.0, 1.0, 4.0, 16.0, 64.0, 256.0}) {
     const double h = share * position.h;
+    if ((position.t.high + h - t_end) * h > 0.0) break;
     std::vector<double> y(2 * n);
     for (std::size_t i = 0; i < y.size(); ++i) y[i] = position.y[i] + h * position.dydt[i];
     try {

@@ -80,6 +80,20 @@ void check_start(const Scene& scene, const std::vector<double>& q0, const std::v
   check_effects_at_start(scene, q0, qd0, t0, t_end);
 }
 
+bool is_outside_table(const Effect& effect, double t, bool forward) {
+  return std::visit(
+      [=](const auto& one) {
+        if constexpr (requires { one.last_time(); }) {
+          const double first = one.first_time();
+          const double last = one.last_time();
+          return forward ? t < first || t >= last : t <= first || t > last;
+        } else {
+          return false;
+        }
+      },
+      effect);
+}
+
 std::string span_of(const Effect& effect) {
   return std::visit(
       [](const auto& one) -> std::string {

@@ -6,24 +6,10 @@
 
 #include "pendcore/dynamics/kinematics.hpp"
 #include "pendcore/message.hpp"
+#include "pendcore/start.hpp"
 
 namespace pendcore {
 namespace {
-
-/// Whether time t is not inside the table or spline of an effect, seen along the run.
-bool is_outside_table(const Effect& effect, double t, bool forward) {
-  return std::visit(
-      [=](const auto& one) {
-        if constexpr (requires { one.last_time(); }) {
-          const double first = one.first_time();
-          const double last = one.last_time();
-          return forward ? t < first || t >= last : t <= first || t > last;
-        } else {
-          return false;
-        }
-      },
-      effect);
-}
 
 /// A whole number of a memory, which may come from a damaged file.
 int whole(double x, int least, int most) {
@@ -88,8 +74,10 @@ void Switching::choose_modes_from(double t, const double* q, const double* qd) {
   }
 }
 
-/// A law that has its sides apart at the rate zero is on the one that a joint at rest sets out to.
+/// A law that has its sides apart at the rate zero is on the one that a joint at rest sets out to:
+/// that of its acceleration, or the one it was let go to while it has none.
 void Switching::choose_sides(double t, const double* q, const double* qd) {
+  const double later = a_moment_later(t);
   std::vector<double> qdd;
   for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
     std::visit(
@@ -105,9 +93,11 @@ void Switching::choose_sides(double t, const double* q, const double* qd) {
               if (!guards[k].is_on_rate()) continue;
               if (qdd.empty()) {
                 qdd.resize(n_);
-                accelerations_in_force(equations_, t, q, qd, qdd.data());
+                accelerations_in_force(equations_, later, q, qd, qdd.data());
               }
-              const double slope = guards[k].on_phid * relative(qdd.data(), one.joint);
+              const double phidd = relative(qdd.data(), one.joint);
+              const bool has_none = one.joint - 1 == let_go_ && joints_.is_rounding(let_go_, phidd);
+              const double slope = guards[k].on_phid * (has_none ? let_go_way_ : phidd);
               if ((forward_ ? slope : -slope) < 0.0) put_mode(i, one.next_mode(mode, k));
             }
           }
@@ -136,12 +126,12 @@ double Switching::next_time(double t) const {
 
 /// An eighth of the fastest wave, where a joint is held that it could set free.
 void Switching::set_longest_step() {
+  constexpr double eighth_turn = 0.785398163397448;
   longest_step_ = never;
   if (!joints_.any_held_for_now()) return;
   const EffectsInForce& effects = *equations_.effects;
   for (int k = 0; k < effects.waves; ++k) {
-    const double eighth = 0.785398163397448 / std::abs(effects.angular_frequency[k]);
-    longest_step_ = std::min(longest_step_, eighth);
+    longest_step_ = std::min(longest_step_, eighth_turn / std::abs(effects.angular_frequency[k]));
   }
   if (!effects.users.empty()) {
     longest_step_ = std::min(longest_step_, 0.01 / joints_.natural_speed());
@@ -175,8 +165,9 @@ bool Switching::cross(int k, double t, double* y) {
   bool jumped = false;
   if (k >= linear_guards() && !is_doubtful) {
     const auto [joint, is_most] = held_guards_[k - linear_guards()];
-    joints_.release(*equations_.effects, joint, is_most ? -1 : 1);
     let_go_ = joint;
+    let_go_way_ = is_most ? -1 : 1;
+    joints_.release(*equations_.effects, joint, let_go_way_);
   } else if (k >= linear_guards()) {
     choose(t, y, -1);
   } else if (const Watch watch = guards_[k]; watch.stop != Side::none) {
@@ -187,10 +178,12 @@ bool Switching::cross(int k, double t, double* y) {
     } else {
       choose(t, y, watch.joint);
     }
-  } else if (holding_torque(scene_.effects[watch.effect])) {
+  } else if (watch.guard.is_on_rate() &&
+             !joints_.supports()[watch.joint].friction_effects.empty()) {
     const double rate = qd[watch.joint];
     settle(k, y);
     choose(t, y, watch.joint);
+    choose_sides(t, q, qd);
     // What goes on in the other direction may have begun to do so in a step too short to be cut.
     if (!joints_.is_held(watch.joint)) y[n_ + watch.joint] = rate;
   } else {
@@ -209,13 +202,17 @@ bool Switching::cross(int k, double t, double* y) {
   return jumped;
 }
 
-/// Which joints are held. Where that goes back and forth at one time, no acceleration has a sign
-/// yet: it is decided by those of a moment later, and in the end for what changed last to be held.
+/// Where the law goes back and forth at one time, no acceleration has a sign yet: those of a moment
+/// later decide.
+double Switching::a_moment_later(double t) const {
+  if (changes_at_once_ <= many_at_once) return t;
+  return t + (forward_ ? moment_ : -moment_);
+}
+
+/// Which joints are held; in the end, what changed last.
 void Switching::choose(double t, const double* y, int joint) {
-  const bool is_doubtful = changes_at_once_ > many_at_once;
   const bool is_hopeless = changes_at_once_ > 3 * many_at_once;
-  const double later = is_doubtful ? t + (forward_ ? moment_ : -moment_) : t;
-  joints_.choose(equations_, later, y, y + n_, is_hopeless ? joint : -1);
+  joints_.choose(equations_, a_moment_later(t), y, y + n_, is_hopeless ? joint : -1);
 }
 
 void Switching::cross_time(double t) {
@@ -312,6 +309,7 @@ std::vector<double> Switching::memory() const {
   memory.push_back(time_of_change_);
   memory.push_back(changes_at_once_);
   memory.push_back(let_go_);
+  memory.push_back(let_go_way_);
   const std::vector<double> holds = joints_.memory();
   memory.insert(memory.end(), holds.begin(), holds.end());
   for (const Watch& watch : guards_) memory.push_back(watch.zeros_at_start);
@@ -323,16 +321,17 @@ void Switching::restore(const std::vector<double>& memory, double t, const doubl
   forward_ = forward;
   joints_.set_direction(forward);
   const std::size_t effects = scene_.effects.size();
-  if (memory.size() < effects + 3) {
+  if (memory.size() < effects + 4) {
     throw std::invalid_argument("the modes of this solution are not those of its scene");
   }
   for (std::size_t i = 0; i < effects; ++i) put_mode(i, whole(memory[i], -1, INT_MAX));
   is_over_ = std::ranges::any_of(
       scene_.effects, [&](const Effect& one) { return is_outside_table(one, t, forward_); });
-  std::size_t from = joints_.restore(*equations_.effects, memory, effects + 3);
+  std::size_t from = joints_.restore(*equations_.effects, memory, effects + 4);
   time_of_change_ = memory[effects];
   changes_at_once_ = whole(memory[effects + 1], 0, INT_MAX);
   let_go_ = whole(memory[effects + 2], -1, n_ - 1);
+  let_go_way_ = whole(memory[effects + 3], -1, 1);
   collect_guards(y);
   if (memory.size() != from + guards_.size()) {
     throw std::invalid_argument("the modes of this solution are not those of its scene");

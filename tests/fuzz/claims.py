@@ -19,7 +19,8 @@ Claim = Callable[[Drawn, pc.Solution, Choices], Iterator[str]]
 
 SUCCESSES = {"finished", "event", "at_rest"}
 FAILURES = {
-    "max_steps", "max_turns", "step_too_small", "non_finite", "time_limit", "callback_error"
+    "max_steps", "max_turns", "step_too_small", "not_converged", "non_finite", "time_limit",
+    "callback_error",
 }  # fmt: skip
 
 
@@ -37,6 +38,8 @@ def says_how_it_ended(drawn: Drawn, sol: pc.Solution, _: Choices) -> Iterator[st
         yield f"status {sol.status!r} is none that this run could have"
     if sol.success != (sol.status in SUCCESSES):
         yield f"success = {sol.success} with status {sol.status!r}"
+    if sol.message.startswith("no step leads on"):
+        yield f"the law chatters: {sol.message}"
     if len(sol.message) < 10:
         yield f"message {sol.message!r} says nothing"
     reached = sol._run.t_reached

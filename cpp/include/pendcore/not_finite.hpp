@@ -12,7 +12,8 @@ struct NotFinite {
   int effect = -1;     ///< of the scene, that gives no number by itself; -1: none does
 };
 
-/// Looks ahead along the slope at which a run has ended, at as much as its last steps tried.
-NotFinite find_what_is_not_finite(const Scene& scene, const Position& position);
+/// Looks ahead along the slope at which a run has ended, as far as its last steps tried, each
+/// longer than the next; not beyond t_end.
+NotFinite find_what_is_not_finite(const Scene& scene, const Position& position, double t_end);
 
 }  // namespace pendcore

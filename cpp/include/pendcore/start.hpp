@@ -21,6 +21,9 @@ void check_start(const Scene& scene, const std::vector<double>& q0, const std::v
 std::vector<std::string> run_warnings(const Scene& scene, const std::vector<double>& q0,
                                       const std::vector<double>& qd0, double t0, double t_end);
 
+/// Whether time t is not inside the table or spline of an effect, seen along the run.
+bool is_outside_table(const Effect& effect, double t, bool forward);
+
 /// "its table goes from 0 to 1 s"; empty for an effect that has none.
 std::string span_of(const Effect& effect);
 

@@ -78,6 +78,7 @@ class Switching final : public Breaks {
   void choose_modes_from(double t, const double* q, const double* qd);
   void choose_sides(double t, const double* q, const double* qd);
   void cross_time(double t);
+  double a_moment_later(double t) const;
   void choose(double t, const double* y, int joint);
   void strike(double t, double* y);
   bool capture(double t, const double* q, const double* qd);
@@ -109,7 +110,8 @@ class Switching final : public Breaks {
   std::vector<double> torque_;  ///< that holds the joints
   double time_of_change_ = std::numeric_limits<double>::quiet_NaN();
   int changes_at_once_ = 0;
-  int let_go_ = -1;  ///< the joint that was held until this time
+  int let_go_ = -1;     ///< the joint that was held until this time
+  int let_go_way_ = 0;  ///< up or down its angle
   std::string remark_;
 };
 

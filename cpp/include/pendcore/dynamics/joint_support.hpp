@@ -25,16 +25,14 @@ struct JointSupport {
   double friction = 0.0;  ///< t_s of all its dry friction, N m
   std::vector<std::size_t> friction_effects;
   Stop lower{-never}, upper{never};
+  double natural_speed = 0.0;  ///< sqrt(torque / inertia), rad/s: gravity, springs and motors
   /// What its laws add up: of angles (N m/rad), rates (N m s/rad), and constants (N m).
   double stiffness = 0.0, damping = 0.0, torque = 0.0;
 
   const Stop& stop(Side side) const { return side == Side::lower ? lower : upper; }
 };
 
-/// sqrt(torque / inertia) of each joint, rad/s, (n): gravity, springs and motors.
-std::vector<double> natural_speeds(const Scene& scene, const Inertia& inertia);
-
 /// Of each joint, (n). Where stops overlap, the narrowest range counts.
-std::vector<JointSupport> joint_supports(const Scene& scene, const std::vector<double>& natural);
+std::vector<JointSupport> joint_supports(const Scene& scene, const Inertia& inertia);
 
 }  // namespace pendcore

@@ -10,6 +10,7 @@ struct Attempt {
   double squared_error;
   /// 2^gain err^-exponent, what the control makes of it (step_control.hpp).
   double factor;
+  bool converged = true;  ///< the iteration of an implicit method
 };
 
 }  // namespace pendcore

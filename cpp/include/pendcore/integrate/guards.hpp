@@ -23,6 +23,11 @@ class Guards {
   /// In the attempted step of size h from time t.
   Crossing first(double t, double h);
 
+  /// Whether a guard that the dense output makes negative where the step begins is so: one that is
+  /// zero there and rises is not, and of one without a slope, a step that was halved ten times is
+  /// believed.
+  bool falls_at_start(int k, double h, int halvings);
+
   /// The attempted step that ends where the guard is zero, to the last bits of time.
   struct Located {
     bool is_found;

@@ -80,6 +80,11 @@ class ImplicitRungeKutta final : public Stepper {
   double squared_norm(const double* error) const;
   double scale(int i) const;
   void set_slope(double h);
+  /// Of component i of u, through the stages: the coefficient of theta^(p + 1).
+  double power_of_stages(int p, int i) const {
+    const Collocation::Row& row = method_.interpolant[p];
+    return row[0] * stages_[i] + row[1] * stages_[size_ + i] + row[2] * stages_[2 * size_ + i];
+  }
   void write_polynomial(double* rows) const;
 
   const Collocation& method_;

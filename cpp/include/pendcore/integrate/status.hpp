@@ -14,6 +14,7 @@ enum class Status {
   max_steps,
   max_turns,
   step_too_small,
+  not_converged,
   non_finite,
   time_limit,
   interrupted,
@@ -26,7 +27,7 @@ struct StatusText {
   std::string_view sentence;  ///< what happened, and what can be done about it
 };
 
-inline constexpr std::array<StatusText, 10> status_texts = {{
+inline constexpr std::array<StatusText, 11> status_texts = {{
     {"finished", true, "reached the end of the interval"},
     {"event", true, "stopped at a terminal event"},
     {"at_rest", true, "came to rest for good, and stayed as it is to the end of the interval"},
@@ -37,6 +38,9 @@ inline constexpr std::array<StatusText, 10> status_texts = {{
      "the step fell below what time can resolve: the motion blows up here (or rtol and atol are "
      "too "
      "loose to follow it), they are too tight, or t0 is so large that t + h = t"},
+    {"not_converged", false,
+     "the equations of a step could not be solved: a shorter step, or none, for one that the "
+     "method chooses"},
     {"non_finite", false,
      "the motion stopped being finite: check parameters and start, and that step, rtol and atol "
      "are "
