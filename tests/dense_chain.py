@@ -58,23 +58,38 @@ def joints(n: int) -> Array:
 
 
 def held(m: Array, forces: Array, limits: dict[int, float]) -> tuple[Array, dict[int, int]]:
-    """Accelerations, and what the joints (from 0) at rest with these limits do.
+    """Accelerations, and what the joints (from 0) at rest with these limits of friction do.
 
-    0: it sticks; 1, -1: it begins to slide that way. Tries every pattern; the one without
-    contradiction is the answer. `forces` holds the friction of joints that slide already.
+    0: it sticks; 1, -1: it begins to slide that way. `forces` holds the friction of joints that
+    slide already.
+    """
+    return resting(m, forces, {j: (-limit, limit) for j, limit in limits.items()})
+
+
+def resting(
+    m: Array, forces: Array, ranges: dict[int, tuple[float, float]]
+) -> tuple[Array, dict[int, int]]:
+    """The same, of joints whose supports can exert torques within these ranges.
+
+    Tries every pattern; the one without contradiction is the answer.
     """
     d = joints(len(m))
     best: tuple[float, Any, Any] = (np.inf, None, None)
-    for signs in itertools.product((0, 1, -1), repeat=len(limits)):
-        pattern = dict(zip(limits, signs, strict=True))
+    for signs in itertools.product((0, 1, -1), repeat=len(ranges)):
+        pattern = dict(zip(ranges, signs, strict=True))
+        # the support is at its least where the joint sets out upward, at its most downward
+        ends = [(j, ranges[j][0 if sign > 0 else 1]) for j, sign in pattern.items() if sign]
+        if not all(np.isfinite(torque) for _, torque in ends):
+            continue
         stuck = [j for j, sign in pattern.items() if sign == 0]
-        slid = sum((-sign * limits[j] * d[j] for j, sign in pattern.items()), np.zeros(len(m)))
         rows = d[stuck]
         k = len(stuck)
         saddle = np.block([[m, -rows.T], [rows, np.zeros((k, k))]])
+        slid = sum((torque * d[j] for j, torque in ends), np.zeros(len(m)))
         found = np.linalg.solve(saddle, np.append(forces + slid, np.zeros(k)))
         qdd, holding = found[: len(m)], found[len(m) :]
-        over = [abs(t) - limits[j] for j, t in zip(stuck, holding, strict=True)]
+        pairs = list(zip(stuck, holding, strict=True))
+        over = [max(ranges[j][0] - torque, torque - ranges[j][1]) for j, torque in pairs]
         against = [-sign * (d[j] @ qdd) for j, sign in pattern.items() if sign]
         contradiction = max([*over, *against, -np.inf])
         if contradiction < best[0]:

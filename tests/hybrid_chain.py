@@ -1,9 +1,10 @@
-"""Chains with dry friction, solved mode by mode in NumPy: nothing is shared with the core.
+"""Chains with dry friction and stops, solved mode by mode in NumPy: nothing of the core is here.
 
-A mode says of each joint whether it sticks (0) or which way it slides (1, -1). Within a mode the
-equations are smooth: Gragg's method, extrapolated to high order. A mode ends where the rate of a
-sliding joint, or what a sticking one has left to hold with, reaches zero, found by bisecting the
-step; the next one is free of contradiction among all patterns (dense_chain.py).
+A mode says of each joint whether it is held (0), by friction, a stop or both, or which way it
+turns (1, -1). Within a mode the equations are smooth: Gragg's method, extrapolated to high order. A
+mode ends where the rate of a joint that slides reaches zero, the angle of one that is free a stop,
+or what holds a joint the end of its range, found by bisecting the step; the next one is free of
+contradiction among all patterns (dense_chain.py). Impacts are plastic.
 """
 
 from __future__ import annotations
@@ -12,9 +13,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from dense_chain import Array, DenseChain, held, joints
+from dense_chain import Array, DenseChain, joints, rates_after_impact, resting
 
 STAGES = 6  # of the extrapolation: order 12
+TOUCHING = 1e-9  # rad; far above rounding, far below any gap that these runs leave
 
 
 def extrapolated_step(
@@ -38,15 +40,32 @@ def extrapolated_step(
 
 @dataclass(kw_only=True)
 class HybridChain:
-    """`friction` of each joint, in sliding and at rest; `torques(t)` of the motors."""
+    """`friction` of each joint, in sliding and at rest; `torques(t)` of the motors.
+
+    `stops`, if there are any, are the least and the largest angle of each joint, (n, 2).
+    """
 
     chain: DenseChain
     friction: Array
     torques: Callable[[float], Array]
+    stops: Array | None = None
     switches: list[tuple[float, Array, tuple[int, ...]]] = field(default_factory=list)
 
+    def gaps(self, y: Array) -> Array:
+        """The way to each stop, (n, 2)."""
+        if self.stops is None:
+            return np.full((self.chain.n, 2), np.inf)
+        phi = joints(self.chain.n) @ y[: self.chain.n]
+        return np.column_stack([phi - self.stops[:, 0], self.stops[:, 1] - phi])
+
+    def ranges(self, y: Array) -> Array:
+        """Between which torques a joint can be held, (n, 2): a stop pushes without bound."""
+        friction = np.column_stack([-self.friction, self.friction])
+        touches = self.gaps(y)[:, ::-1] < TOUCHING  # the lower stop pushes upward
+        return np.where(touches, [-np.inf, np.inf], friction)
+
     def solved(self, mode: Array, t: float, y: Array) -> tuple[Array, Array]:
-        """Accelerations in a mode, and the holding torque of each joint that sticks (else 0)."""
+        """Accelerations in a mode, and the holding torque of each joint that is held (else 0)."""
         n, d = self.chain.n, joints(self.chain.n)
         q, qd = y[:n], y[n:]
         forces = self.chain.forces(q, qd, self.torques(t) - mode * self.friction)
@@ -64,34 +83,52 @@ class HybridChain:
         """What is positive as long as the mode lasts, for each joint."""
         n = self.chain.n
         _, holding = self.solved(mode, t, y)
-        rates = mode * (joints(n) @ y[n:])
-        return np.where(mode == 0, self.friction - np.abs(holding), rates)
+        least, most = self.ranges(y).T
+        rates = np.where(self.friction > 0, mode * (joints(n) @ y[n:]), np.inf)
+        free = np.minimum(rates, self.gaps(y).min(axis=1))
+        return np.where(mode == 0, np.minimum(holding - least, most - holding), free)
+
+    def after_impact(self, y: Array) -> Array:
+        """The rates of the joints after a plastic impact on all stops that are touched."""
+        n, d = self.chain.n, joints(self.chain.n)
+        joint, upper = np.nonzero(self.gaps(y) < TOUCHING)
+        normals = d[joint] * (1 - 2 * upper[:, None])
+        m = self.chain.mass_matrix(y[:n])
+        qd, _ = rates_after_impact(m, y[n:], normals, np.zeros(len(joint)).tolist())
+        phid = d @ qd
+        phid[joint[np.abs(phid[joint]) < 1e-12]] = 0.0
+        return phid
 
     def next_mode(self, mode: Array, which: int, t: float, y: Array) -> tuple[Array, Array]:
-        """The mode after joint `which` has let go or come to rest, and the state it begins in."""
-        n, d = self.chain.n, joints(self.chain.n)
+        """The mode after joint `which` was let go, came to rest or struck, and its first state."""
+        n = self.chain.n
         after, y = mode.copy(), y.copy()
         if mode[which] == 0:
             after[which] = -np.sign(self.solved(mode, t, y)[1][which])
             return after, y
-        phid = d @ y[n:]
-        phid[(mode == 0) | (np.arange(n) == which)] = 0.0
+        if self.gaps(y)[which].min() < 0:
+            phid = self.after_impact(y)
+        else:
+            phid = joints(n) @ y[n:]
+            phid[(mode == 0) | (np.arange(n) == which)] = 0.0
         y[n:] = np.cumsum(phid)
-        resting = {int(j): float(self.friction[j]) for j in np.flatnonzero(phid == 0)}
-        sliding = np.where(phid == 0, 0, mode) * self.friction
-        forces = self.chain.forces(y[:n], y[n:], self.torques(t) - sliding)
-        for j, sign in held(self.chain.mass_matrix(y[:n]), forces, resting)[1].items():
-            after[j] = sign
-        return after, y
+        return self.mode_at(t, y, phid), y
+
+    def mode_at(self, t: float, y: Array, phid: Array) -> Array:
+        """The mode that begins at a state whose joints turn at these rates, some of them at 0."""
+        n = self.chain.n
+        at_rest = {int(j): tuple(self.ranges(y)[j]) for j in np.flatnonzero(phid == 0)}
+        mode = np.sign(phid)
+        forces = self.chain.forces(y[:n], y[n:], self.torques(t) - mode * self.friction)
+        for j, sign in resting(self.chain.mass_matrix(y[:n]), forces, at_rest)[1].items():
+            mode[j] = sign
+        return mode
 
     def run(self, q: Array, times: Array, h: float = 0.02) -> Array:
         """The states at these times, from rest at q at time 0; `switches` has what is between."""
         n = self.chain.n
         t, y, states = 0.0, np.append(q, np.zeros(n)), []
-        resting = {j: float(self.friction[j]) for j in range(n)}
-        forces = self.chain.forces(q, np.zeros(n), self.torques(0.0))
-        signs = held(self.chain.mass_matrix(q), forces, resting)[1]
-        mode = np.array([signs[j] for j in range(n)])
+        mode = self.mode_at(t, y, np.zeros(n))
         for time in times:
             while t < time:
                 t, y, mode = self.advance(mode, t, y, min(h, time - t))

@@ -52,6 +52,36 @@ def test_the_angle_touches_its_stop_once_an_impact() -> None:
     assert len(times) == len(set(times))
 
 
+@pytest.mark.parametrize("e", [0.0, 0.5, 1.0])
+@pytest.mark.parametrize("joint", [2, 3])
+def test_a_mark_at_the_very_angle_of_a_stop_is_met_once_an_impact(
+    joint: int, e: float, method: str
+) -> None:
+    """The angle of such a joint is a difference, whose last bits are not those of the stop's."""
+    impacts = 0
+    for k in range(12):
+        bound = 0.3 + 0.07 * k
+        scene = pc.Scene(
+            links=[pc.Link(mass=1.0, length=0.6)] * joint,
+            effects=[fx.JointStop(joint=joint, range=(-bound, bound), restitution=e)],
+        )
+        marks = [ev.JointAngle(joint, side * bound, direction=side) for side in (1, -1)]
+        rates = [0.0] * (joint - 1) + [3.0]
+        sol = pc.simulate(
+            scene, [0.3] * joint, rates, (0, 2), events=marks, method=method, rtol=1e-8
+        )
+        found = sorted((one.t, one.direction) for some in sol.events for one in some)
+        struck = np.flatnonzero(np.diff(sol.t) == 0)
+        turned = sol.q[struck, joint - 1] - sol.q[struck, joint - 2]
+        assert found == [*zip(sol.t[struck], np.sign(turned), strict=True)], f"bound {bound}"
+        for some in sol.events:
+            for one in some:
+                assert one.y_before is not None
+                assert (one.y_before[joint:] != one.y_after[joint:]).any()
+        impacts += len(struck)
+    assert impacts > 12
+
+
 def test_a_terminal_event_at_an_impact_ends_there_and_goes_on_after_it() -> None:
     end = ev.RateZero(joint=1, direction=1, terminal=True)
     sol = pc.simulate(BOUNCING, 0.4, 0.0, (0, 1.2), events=[end])
@@ -66,6 +96,51 @@ def test_a_terminal_event_at_an_impact_ends_there_and_goes_on_after_it() -> None
     assert longer.status == whole.status
     np.testing.assert_array_equal(longer.t, whole.t)
     np.testing.assert_array_equal(longer.y, whole.y)
+
+
+@pytest.mark.parametrize("apart", [1e-10, -1e-10])
+def test_a_run_cut_between_two_impacts_at_one_time_finds_what_the_whole_one_does(
+    apart: float, fine: Any
+) -> None:
+    """Both stops are reached within the last bits of t = 1e6 s: as one time, blow by blow."""
+    t0, start, rates = 1e6, [0.3, 0.9], [1.0, 4.0]
+    free = unit_rod(links=2)
+    (q1, q2), _ = np.split(pc.simulate(free, start, rates, (0, 0.05), **fine).y[:, -1], 2)
+    bounds = [q1, q2 - q1 + apart]
+    stops = [
+        fx.JointStop(joint=j, range=(-np.inf, bound), restitution=0.5)
+        for j, bound in enumerate(bounds, start=1)
+    ]
+    watched = [
+        *(ev.JointAngle(joint=j, value=bound) for j, bound in enumerate(bounds, start=1)),
+        *(ev.RateZero(joint=j) for j in (1, 2)),
+        ev.Function(lambda t, q, qd: float(q1 + 1e-3 * qd[0] - q[0] - 1e-3)),
+    ]
+
+    def run(t_end: float = t0 + 0.1, **how: Any) -> pc.Solution:
+        scene = free.replace(effects=stops)
+        return pc.simulate(scene, start, rates, (t0, t_end), events=watched, **fine, **how)
+
+    def told(sol: pc.Solution) -> list[Any]:
+        return [
+            (k, one.t, one.direction, *(y.tolist() for y in (one.y_before, one.y_after)))
+            for k, some in enumerate(sol.events)
+            for one in some
+            if one.y_before is not None
+        ]
+
+    whole = run()
+    struck = whole.t[:-1][np.diff(whole.t) == 0]
+    assert len(struck) > len(set(struck)) == 1
+    cut = [run(float(struck[0]))]
+    while not cut[1:] or cut[-1].status == "max_steps":
+        cut.append(run(max_steps=len(cut)))
+    between = [sol for sol in cut if np.count_nonzero(sol.t == struck[0]) == 2]
+    assert between
+    for sol in cut:
+        longer = sol.resume(t0 + 0.1, max_steps=10_000)
+        np.testing.assert_array_equal(longer.y, whole.y)
+        assert told(longer) == told(whole)
 
 
 @pytest.mark.parametrize("rtol", [1e-5, 1e-8, 1e-11, 1e-12])

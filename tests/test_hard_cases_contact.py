@@ -7,8 +7,10 @@ from typing import Any
 import numpy as np
 import pendcore as pc
 import pytest
+from dense_chain import DenseChain, joints
 from pendcore import effects as fx
-from unit_rods import rod, solve, time_of_rest
+from pendcore import events as ev
+from unit_rods import links, rod, solve, time_of_rest
 
 BOOK = pc.Scene.textbook()
 inf = np.inf
@@ -154,6 +156,37 @@ def test_a_grazing_stop_is_hit_if_and_only_if_the_swing_reaches_it(
     np.testing.assert_allclose(short(s)[0], -np.cos(s), atol=1.01 * ahead)
     lost = short.energy().ledger.impact[-1]
     assert lost == pytest.approx((1 - e**2) * (1 - (1 - miss) ** 2) / 2, rel=1e-4, abs=2e-12)
+
+
+@pytest.mark.parametrize("miss", [1e-6, 1e-9, 1e-11])
+@pytest.mark.parametrize("e", [0.0, 0.5, 1.0])
+def test_a_joint_of_a_chain_grazes_its_stop_if_and_only_if_its_swing_reaches_it(
+    e: float, miss: float, fine: Any
+) -> None:
+    """A miss short of its largest angle it is as fast as its acceleration there makes it."""
+    chain = DenseChain(masses=np.ones(2), lengths=np.ones(2), gravity=9.81)
+    free_scene = pc.Scene(links=links(chain), gravity=chain.gravity)
+    start = [1.0, 0.9]
+    turn = ev.RateZero(joint=2, direction=-1)
+    free = pc.simulate(free_scene, start, 0, (0, 2), events=[turn], **fine)
+    top = max(free.events[0], key=lambda found: found.q[1] - found.q[0])
+    angle = top.q[1] - top.q[0]
+
+    def run(bound: float) -> pc.Solution:
+        effects = [stop(-inf, bound, joint=2, restitution=e)]
+        return pc.simulate(free_scene.replace(effects=effects), start, 0, (0, 2), **fine)
+
+    np.testing.assert_array_equal(run(angle + miss).y, free.y)
+    short = run(angle - miss)
+    (struck,) = np.flatnonzero(np.diff(short.t) == 0)
+    forces = chain.forces(top.q, top.qd, np.zeros(2))
+    turning = joints(2) @ np.linalg.solve(chain.mass_matrix(top.q), forces)
+    speed = np.sqrt(-2 * turning[1] * miss)
+    before, after = joints(2)[1] @ short.qd[struck : struck + 2].T
+    assert before == pytest.approx(speed, rel=5e-3)
+    assert after == pytest.approx(-e * before, rel=1e-12)
+    assert top.t - short.t[struck] == pytest.approx(speed / -turning[1], rel=5e-3)
+    assert (short.q[:, 1] - short.q[:, 0]).max() <= angle - miss + 1e-15
 
 
 # Stop and friction in one joint -----------------------------------------------------------------

@@ -40,3 +40,29 @@ def test_what_changes_after_the_change_of_method_is_found_as_under_a_lock(contac
         assert [one.t for one in found] == pytest.approx([one.t for one in expected], abs=1e-4)
         assert [one.direction for one in found] == [one.direction for one in expected]
         assert expected
+
+
+@pytest.mark.parametrize("held_by", ["a stop", "friction"])
+@pytest.mark.parametrize("damping", [300.0, 3e3])
+def test_the_rate_of_a_joint_that_is_held_is_nothing_in_and_between_stiff_steps(
+    damping: float, held_by: str, method: str
+) -> None:
+    """Leaning on its stop, or stuck, while link 2 creeps through honey: no zero of the rate."""
+    hold: Any = fx.JointStop(joint=1, range=(-0.3, 1.1))
+    rate = 0.1
+    if held_by == "friction":
+        hold, rate = fx.DryJointFriction(joint=1, coulomb=9.0), 0.0
+    scene = pc.Scene(
+        links=[pc.Link(mass=1.0, length=0.6)] * 2,
+        effects=[hold, fx.ViscousJoint(joint=2, damping=damping)],
+    )
+    watched = [ev.RateZero(joint=1), ev.RateZero(link=1), ev.JointAngle(joint=1, value=1.1)]
+    sol = pc.simulate(
+        scene, [1.1, 1.6], [0, rate], (0, 1), method=method, rtol=1e-6, events=watched
+    )
+    assert sol.status == "finished"
+    assert abs(sol.qd[-1, 1]) > 1e-6
+    assert [list(found) for found in sol.events] == [[], [], []]
+    states = np.column_stack([sol.y, sol(np.linspace(0, 1, 1001))])
+    assert set(states[0]) == {1.1}
+    assert not states[2].any()
