@@ -108,6 +108,21 @@ bool Guards::falls_at_start(int k, double h, int halvings) {
   return along[1] * h <= 0.0 || halvings == 50;
 }
 
+bool Guards::strays(double theta) {
+  stepper_.get_state(state_.data());
+  for (int k = 0; k < breaks_.linear_guards(); ++k) {
+    if (breaks_.zeros_at_start(k) < 2) continue;
+    breaks_.polynomial(k, rows_.data(), degree_, dimension_, polynomial_.data());
+    const double least = -breaks_.rounding(k, state_.data());
+    for (double x = 0.5 * std::min(theta, 2.0); x > 1e-9; x *= 0.5) {
+      double value = polynomial_[degree_];
+      for (int p = degree_ - 1; p >= 0; --p) value = value * x + polynomial_[p];
+      if (value < least) return true;
+    }
+  }
+  return false;
+}
+
 Guards::Miss Guards::miss(int k, double t, double h) {
   stepper_.interpolant(h, rows_.data());
   const int other = k - breaks_.linear_guards();

@@ -116,73 +116,69 @@ class Run {
     const bool is_shortest = target.is_in_reach && std::abs(h) <= 10.0 * last_bits();
     const bool is_accepted = attempt.squared_error <= 1.0 || limits_.fixed_step || is_shortest;
     if (!position_.trial_was_finite || !is_accepted) {
-      if (limits_.fixed_step) {
-        ++position_.statistics.rejected;
-        return end(attempt.converged ? Status::non_finite : Status::not_converged);
-      }
-      return reject(h * position_.control.reject(method_, attempt));
+      return give_up(h * position_.control.reject(method_, attempt), attempt);
     }
 
     Crossing crossing;
-    if (guards_ && !is_shortest) crossing = guards_->first(t, h);
-    for (int halvings = 0; is_at_start(crossing, t, h); ++halvings) {
-      if (std::abs(h) <= 10.0 * last_bits() ||
-          guards_->falls_at_start(crossing.guard, h, halvings)) {
-        return change_at_once(crossing);
+    if (guards_ && !is_shortest) {
+      if (const auto ended = set_out(crossing, t, h, attempt)) return *ended;
+      if (crossing.guard >= 0) {
+        if (const auto ended = land(crossing, t, h, attempt)) return *ended;
       }
-      if (!halve(t, h, attempt)) return false;
-      if (!limits_.fixed_step && attempt.squared_error > 1.0) return reject(0.5 * h);
-      crossing = guards_->first(t, h);
-    }
-    if (crossing.guard >= 0) {
-      const Landing landing = limits_.fixed_step ? land_at_fixed_step(crossing, t, h, attempt)
-                                                 : land(crossing, t, h, attempt);
-      if (landing == Landing::tried_again) return true;
-      if (landing == Landing::ended) return false;
     }
     position_.crossings_at_once = 0;
     return accept(target, crossing.guard, h, attempt);
   }
 
-  static bool is_at_start(const Crossing& crossing, double t, double h) {
-    return crossing.guard >= 0 &&
-           crossing.theta * std::abs(h) <= 2.0 * rounding * std::max(std::abs(t), std::abs(h));
-  }
-  /// What the dense output of a step says of its start, that of a shorter one may not bear out.
-  bool halve(double t, double& h, Attempt& attempt) {
-    ++position_.statistics.rejected;
-    h *= 0.5;
+  /// Attempts the step again, at another length. Whether it stands.
+  bool stands_at(double t, double h, Attempt& attempt) {
     attempt = stepper_.attempt(t, h, position_.control.gain(method_));
     look_for_bad_component(attempt, t + h);
-    if (position_.trial_was_finite) return true;
+    return position_.trial_was_finite && (limits_.fixed_step || attempt.squared_error <= 1.0);
+  }
+  /// Of a step that does not stand: another of size h is tried, where steps are not all of one.
+  bool give_up(double h, const Attempt& attempt) {
+    if (!limits_.fixed_step) return reject(h);
+    ++position_.statistics.rejected;
     return end(attempt.converged ? Status::non_finite : Status::not_converged);
   }
 
-  /// A step that leads over the zero of a guard is taken again, to there.
-  enum class Landing { there, tried_again, ended };
-  Landing land(const Crossing& crossing, double t, double& h, Attempt& attempt) {
+  /// The step is halved until its dense output begins as the law has it: what a coarse one says of
+  /// its start, its own error may have made. Returns what step() does then, or nothing if the step
+  /// stands, up to `crossing`.
+  std::optional<bool> set_out(Crossing& crossing, double t, double& h, Attempt& attempt) {
+    for (int halvings = 0;; ++halvings) {
+      crossing = guards_->first(t, h);
+      const bool is_short = std::abs(h) <= 10.0 * last_bits();
+      const double bits_of_t = 2.0 * rounding * std::max(std::abs(t), std::abs(h));
+      if (crossing.guard >= 0 && crossing.theta * std::abs(h) <= bits_of_t) {
+        if (is_short || guards_->falls_at_start(crossing.guard, h, halvings)) {
+          return change_at_once(crossing);
+        }
+      } else if (is_short || halvings == 20 || !guards_->strays(crossing.theta)) {
+        return {};
+      }
+      ++position_.statistics.rejected;
+      h *= 0.5;
+      if (!stands_at(t, h, attempt)) return give_up(0.5 * h, attempt);
+    }
+  }
+
+  /// A step that leads over the zero of a guard is taken again, to there. Returns as set_out().
+  std::optional<bool> land(const Crossing& crossing, double t, double& h, Attempt& attempt) {
     const double gain = position_.control.gain(method_);
     const Guards::Located located = guards_->locate(crossing, t, h, gain, last_bits());
     attempt = located.attempt;
-    // What the whole step strode over, the shorter one may see: friction's peak at rest.
-    double instead = 0.5 * crossing.theta * h;
     if (located.is_found) {
       h = located.h;
-      if (attempt.squared_error <= 1.0) return Landing::there;
-      instead = h * position_.control.reject(method_, attempt);
+      if (limits_.fixed_step || attempt.squared_error <= 1.0) return {};
+      return reject(h * position_.control.reject(method_, attempt));
     }
-    reject(instead);
-    return Landing::tried_again;
-  }
-  Landing land_at_fixed_step(const Crossing& crossing, double t, double& h, Attempt& attempt) {
-    const double gain = position_.control.gain(method_);
-    const Guards::Located located = guards_->locate(crossing, t, h, gain, last_bits());
-    h = located.is_found ? located.h : crossing.theta * h;
-    attempt = located.is_found ? located.attempt : stepper_.attempt(t, h, gain);
-    look_for_bad_component(attempt, t + h);
-    if (position_.trial_was_finite) return Landing::there;
-    end(attempt.converged ? Status::non_finite : Status::not_converged);
-    return Landing::ended;
+    // What the whole step strode over, the shorter one may see: friction's peak at rest.
+    h *= crossing.theta;
+    if (!limits_.fixed_step) return reject(0.5 * h);
+    if (!stands_at(t, h, attempt)) return give_up(h, attempt);
+    return {};
   }
 
   /// Nothing moves any more: one step to the end.

@@ -203,10 +203,14 @@ bool Switching::cross(int k, double t, double* y) {
 }
 
 /// Where the law goes back and forth at one time, no acceleration has a sign yet: those of a moment
-/// later decide.
+/// later decide, as short a one as time resolves, and longer ones while that leads nowhere.
 double Switching::a_moment_later(double t) const {
   if (changes_at_once_ <= many_at_once) return t;
-  return t + (forward_ ? moment_ : -moment_);
+  double moment = 64.0 * std::numeric_limits<double>::epsilon() *
+                  std::max(std::abs(t), 1.0 / joints_.natural_speed());
+  for (int i = many_at_once; i < changes_at_once_ && moment < moment_; ++i) moment *= 4.0;
+  moment = std::min(moment, moment_);
+  return t + (forward_ ? moment : -moment);
 }
 
 /// Which joints are held; in the end, what changed last.

@@ -28,6 +28,10 @@ class Guards {
   /// believed.
   bool falls_at_start(int k, double h, int halvings);
 
+  /// Whether the dense output makes a guard negative that rises from zero without a slope, before
+  /// that share of the step: by its own error, more than by rounding.
+  bool strays(double theta);
+
   /// The attempted step that ends where the guard is zero, to the last bits of time.
   struct Located {
     bool is_found;
