@@ -181,6 +181,37 @@ def test_leaving_a_contact_is_no_rate_zero_and_coming_into_it_is_one(fine: Any) 
     assert touches[0].y_after.tolist() == [0.0, 0.0]
 
 
+@pytest.mark.parametrize("held_by", ["a stop", "friction"])
+@pytest.mark.parametrize("joint", [1, 2])
+def test_what_is_let_go_sets_out_one_way_at_ordinary_tolerances_too(
+    joint: int, held_by: str, method: str
+) -> None:
+    """A fine run says how often the joint turns; a mark at its stop is met once an impact."""
+    middle = np.pi / 2 if joint == 1 else 0.0
+    for bound in np.linspace(0.1, 0.9, 9):
+        ends = (middle - bound, middle + bound)
+        hold: Any = fx.JointStop(joint=joint, range=ends)
+        if held_by == "friction":
+            hold = fx.DryJointFriction(joint=joint, coulomb=4.0 + 2.0 * bound)
+        hum = fx.Sinusoid(amplitude=20.0, angular_frequency=2.0)
+        scene = unit_rod(hold, fx.Motor(joint=1, sinusoid=hum), gravity=9.81, links=2)
+        watched = [ev.RateZero(joint=joint), *(ev.JointAngle(joint=joint, value=x) for x in ends)]
+
+        def run(rtol: float, scene: Any = scene, watched: Any = watched) -> pc.Solution:
+            return pc.simulate(
+                scene, np.pi / 2, 0, (0, 2), events=watched, method=method, rtol=rtol
+            )
+
+        exact = [one.t for one in run(1e-12).events[0]]
+        for rtol in (1e-5, 1e-6, 1e-8):
+            sol = run(rtol)
+            assert len(sol.events[0]) == len(exact), f"bound {bound}, rtol {rtol}"
+            if held_by == "a stop":
+                struck = sol.t[:-1][np.diff(sol.t) == 0]
+                met = sorted(one.t for some in sol.events[1:] for one in some)
+                assert met == [*struck], f"bound {bound}, rtol {rtol}"
+
+
 def test_watching_changes_no_bit_of_a_run_with_impacts_and_stick() -> None:
     scene = pc.Scene(
         links=[pc.Link(mass=1.0, length=1.0)] * 2,

@@ -75,6 +75,24 @@ def test_a_narrow_pulse_of_a_table_knocks_a_stuck_rod_as_far_as_friction_lets_it
     assert not sol.y[:, sol.t < release - 1e-10].any()
 
 
+@pytest.mark.parametrize(
+    ("half", "impulse"), [(1e-3, 0.1), (1e-4, 0.01), (1e-6, 1), (3e-7, 1), (3e-8, 1)]
+)
+@pytest.mark.parametrize("at", [1.0, 10.0])
+def test_a_pulse_that_grows_within_the_last_bits_of_time_knocks_a_stuck_rod_as_far(
+    at: float, half: float, impulse: float, method: str
+) -> None:
+    """From one time to the next the torque changes by more than the rounding of its limit."""
+    scene = rod(pulse(at, half, impulse), fx.DryJointFriction(joint=1, coulomb=FRICTION))
+    sol = pc.simulate(scene, 0, 0, (0, 2 * at + 2), method=method)
+    assert sol.status == "finished"
+    assert sol.stats.accepted < 60
+    way, past = slide(half, impulse)
+    last_bits = 1e-9 + 8 * np.spacing(at) / half
+    assert sol.q[-1, 0] == pytest.approx(way, rel=last_bits)
+    assert time_of_rest(sol) == pytest.approx(at + past, abs=1e-9 + last_bits)
+
+
 @pytest.mark.parametrize("half", [0.05, 1e-3])
 def test_a_narrow_pulse_of_ones_own_knocks_a_stuck_rod_where_max_step_is_as_short(
     half: float, method: str
