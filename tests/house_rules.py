@@ -45,6 +45,7 @@ CPP_FILES = dict.fromkeys(
         "start",
         "switching",
         "switching_guards",
+        "switching_impacts",
         "tip_line",
     ],
     "solution",

@@ -16,7 +16,7 @@ from unit_rods import rod, solve
 def test_friction_stops_a_rod_with_quadratic_damping(
     method: str, ways: dict[str, float], order: int
 ) -> None:
-    """w' = -(1/2 + w^2) is zero at sqrt(2) atan(sqrt(2)), where both laws have two sides."""
+    """The rate, w' = -(1/2 + w^2), is zero at sqrt(2) atan(sqrt(2)), where both laws have two sides."""
     laws = fx.DryJointFriction(joint=1, coulomb=0.5), fx.ViscousJoint(joint=1, damping2=1.0,
                                                                       damping=0.0)  # fmt: skip
     exact = np.sqrt(2) * np.arctan(np.sqrt(2))

@@ -117,8 +117,7 @@ void bind_scene(py::module_& module) {
            py::keep_alive<1, 4>())  // the functions among the effects
       .def_property_readonly("n", [](const Scene& scene) { return scene.links.size(); })
       .def_property_readonly("warnings", &plausibility_warnings)
-      .def("run_warnings", &run_warnings, py::arg("q0"), py::arg("qd0"), py::arg("t0"),
-           py::arg("t_end"))
+      .def("run_warnings", &run_warnings, py::arg("q0"), py::arg("t0"), py::arg("t_end"))
       .def("accelerations", &acceleration_rows, py::arg("t"), py::arg("q"), py::arg("qd"))
       .def("jacobian", &jacobian_rows, py::arg("t"), py::arg("q"), py::arg("qd"))
       .def("reactions", &reaction_forces, py::arg("t"), py::arg("q"), py::arg("qd"))

@@ -61,7 +61,7 @@ Run simulate_run(const py::object& python_scene, py::handle q0, py::handle qd0, 
   const double to = number("t_span[1]", t_end);
 
   if (angles.size() == n && rates.size() == n) {
-    for (const std::string& warning : run_warnings(scene, angles, rates, from, to)) warn(warning);
+    for (const std::string& warning : run_warnings(scene, angles, from, to)) warn(warning);
   }
   Run run{.scene = scene,
           .solution = {},

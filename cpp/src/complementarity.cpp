@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
+
+#include "pendcore/arithmetic/epsilon.hpp"
 
 namespace pendcore {
 namespace {
@@ -153,7 +154,7 @@ bool ForcesBetweenBounds::descend() {
 double ForcesBetweenBounds::rounding(int i) const {
   double sum = std::abs(a[i]);
   for (int j = 0; j < size; ++j) sum += std::abs(W[place(i, j, size)] * lambda[j]);
-  return 64.0 * std::numeric_limits<double>::epsilon() * sum;
+  return 64.0 * epsilon * sum;
 }
 
 }  // namespace pendcore

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "pendcore/arithmetic/epsilon.hpp"
 #include "pendcore/integrate/integrate.hpp"
 #include "pendcore/message.hpp"
 
 namespace pendcore {
 namespace {
 
-constexpr double rounding = std::numeric_limits<double>::epsilon();
 constexpr double turn = 6.283185307179586;
 constexpr double most_turns = 1e6;  // seconds of work, and what a list can hold
 
@@ -75,7 +75,7 @@ EventFinder::Difference EventFinder::difference_of(const EventFunction& function
 double EventFinder::Difference::from(double level, const double* y) const {
   const double x = of(y) - level;
   const double size = std::abs(y[plus]) + (minus < 0 ? 0.0 : std::abs(y[minus])) + std::abs(level);
-  return std::abs(x) <= 4.0 * rounding * size ? 0.0 : x;
+  return std::abs(x) <= 4.0 * epsilon * size ? 0.0 : x;
 }
 
 double EventFinder::Levels::at(int i) const { return std::fma(first + i, turn, value); }
@@ -86,7 +86,7 @@ EventFinder::Levels EventFinder::levels_between(const Difference& difference, do
   if (!difference.every_turn) return {value, 0.0, 1.0};
   const double from = (low - value) / turn;
   const double to = (high - value) / turn;
-  const double margin = 1e-9 + 4.0 * rounding * (std::abs(from) + std::abs(to));
+  const double margin = 1e-9 + 4.0 * epsilon * (std::abs(from) + std::abs(to));
   const double first = std::ceil(from - margin);
   return {value, first, std::floor(to + margin) - first + 1.0};
 }
@@ -114,7 +114,7 @@ void EventFinder::find_difference(std::size_t k, const Step& step) {
     if (difference.minus >= 0) size += std::abs(row[difference.minus]);
   }
   const double end = difference.of(y_new_.data());
-  const Levels levels = levels_along(difference, degree, end, 8.0 * rounding * size);
+  const Levels levels = levels_along(difference, degree, end, 8.0 * epsilon * size);
   // A turn a step is bounded by the number of steps.
   if (!(levels.count <= 1.0)) turns_ += levels.count - 1.0;
   if (!(turns_ <= most_turns)) {
@@ -125,7 +125,7 @@ void EventFinder::find_difference(std::size_t k, const Step& step) {
   for (int i = 0; i < static_cast<int>(levels.count); ++i) {
     const double level = levels.at(i);
     polynomial_[0] = difference.from(level, step.rows);
-    const double noise = 8.0 * rounding * (size + std::abs(level));
+    const double noise = 8.0 * epsilon * (size + std::abs(level));
     find_roots(polynomial_.data(), degree, difference.from(level, y_new_.data()), noise, roots_);
   }
 }

@@ -5,13 +5,13 @@
 #include <cmath>
 #include <limits>
 
+#include "pendcore/arithmetic/epsilon.hpp"
 #include "pendcore/integrate/root.hpp"
 
 namespace pendcore {
 namespace {
 
 constexpr int points = 9;
-constexpr double rounding = std::numeric_limits<double>::epsilon();
 
 /// sin^2(i pi / 16)
 constexpr std::array<double, points> nodes = {
@@ -111,8 +111,9 @@ bool Guards::falls_at_start(int k, double h, int halvings) {
 bool Guards::strays(double theta) {
   stepper_.get_state(state_.data());
   for (int k = 0; k < breaks_.linear_guards(); ++k) {
-    if (breaks_.zeros_at_start(k) < 2) continue;
+    if (breaks_.zeros_at_start(k) < 3) continue;
     breaks_.polynomial(k, rows_.data(), degree_, dimension_, polynomial_.data());
+    polynomial_[0] = polynomial_[1] = 0.0;
     const double least = -breaks_.rounding(k, state_.data());
     for (double x = 0.5 * std::min(theta, 2.0); x > 1e-9; x *= 0.5) {
       double value = polynomial_[degree_];
@@ -158,7 +159,7 @@ Guards::Located Guards::locate(const Crossing& crossing, double t, double whole,
     const double size = std::abs(correction);
     if (!(size <= 0.5 * std::abs(h))) break;
     const bool is_found =
-        size <= 4.0 * rounding * std::max(std::abs(t), std::abs(h)) ||
+        size <= 4.0 * epsilon * std::max(std::abs(t), std::abs(h)) ||
         // The guard's own rounding can be more than that, where it crosses zero slowly.
         size <= miss.rounding * std::abs(h) || (size <= 1e-6 * std::abs(h) && size >= 0.5 * before);
     if (is_found) return {true, h, attempt};

@@ -2,18 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
+#include "pendcore/arithmetic/epsilon.hpp"
 #include "pendcore/dynamics/equations_of_motion.hpp"
 #include "pendcore/dynamics/kinematics.hpp"
 
 namespace pendcore {
-namespace {
-
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
-
-}  // namespace
-
 HeldJoints::HeldJoints(const Scene& scene)
     : n_(static_cast<int>(scene.links.size())),
       forces_(scene),
@@ -191,16 +185,13 @@ std::vector<double> HeldJoints::memory() const {
 
 std::size_t HeldJoints::restore(EffectsInForce& effects, const std::vector<double>& memory,
                                 std::size_t from) {
-  const std::size_t end = from + 4 * holds_.size();
-  if (memory.size() < end) {
-    throw std::invalid_argument("the modes of this solution are not those of its scene");
-  }
   for (int j = 0; j < n_; ++j) {
-    const double* const at = memory.data() + from + static_cast<std::size_t>(4 * j);
+    const double* const at = memory.data() + from;
+    from += numbers_in_memory;
     holds_[j] = {.is_held = at[0] != 0.0, .angle = at[1], .least = at[2], .most = at[3]};
     effects.hold(j, is_held(j));
   }
-  return end;
+  return from;
 }
 
 }  // namespace pendcore

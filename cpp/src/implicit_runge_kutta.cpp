@@ -5,12 +5,13 @@
 #include <limits>
 #include <stdexcept>
 
+#include "pendcore/arithmetic/epsilon.hpp"
+
 namespace pendcore {
 namespace {
 
 constexpr int most_iterations = 20;  // a fixed step may be long
 constexpr int usual_iterations = 7;  // more than these make the next step shorter
-constexpr double rounding = std::numeric_limits<double>::epsilon();
 constexpr double log2_smallest_error = -6.643856189774724;  // of 1e-2
 
 /// x^p for x > 0, the same on every machine.
@@ -45,12 +46,12 @@ ImplicitRungeKutta::ImplicitRungeKutta(const Collocation& method,
 void ImplicitRungeKutta::set_tolerances(const double* rtol, const double* atol) {
   double smallest = std::numeric_limits<double>::infinity();
   for (int i = 0; i < state_; ++i) {
-    const double given = std::max(rtol[i], rounding);
+    const double given = std::max(rtol[i], epsilon);
     rtol_[i] = 0.1 * small_power(given, 2.0 / 3.0);
     atol_[i] = rtol_[i] * (atol[i] / given);
     smallest = std::min(smallest, rtol_[i]);
   }
-  newton_tolerance_ = std::max(10.0 * rounding / smallest, std::min(0.03, std::sqrt(smallest)));
+  newton_tolerance_ = std::max(10.0 * epsilon / smallest, std::min(0.03, std::sqrt(smallest)));
 }
 
 /// The low part of components that are given another value.
@@ -126,7 +127,7 @@ bool ImplicitRungeKutta::is_rounding(double h) const {
       size += std::abs(h * rates_[k * size_ + i]);
       increment = std::max(increment, std::abs(increment_[k * state_ + i]));
     }
-    if (!(increment <= 16.0 * rounding * size)) return false;
+    if (!(increment <= 16.0 * epsilon * size)) return false;
   }
   return true;
 }
@@ -135,7 +136,7 @@ bool ImplicitRungeKutta::is_rounding(double h) const {
 bool ImplicitRungeKutta::iterate(double t, double h) {
   double* const w = transformed_.data();
   double* const d = increment_.data();
-  double factor = small_power(std::max(contraction_, rounding), 0.8);  // theta/(1 - theta)
+  double factor = small_power(std::max(contraction_, epsilon), 0.8);  // theta/(1 - theta)
   contraction_of_attempt_ = contraction_;
   double before = 0.0;
   double ratio_before = 0.0;
@@ -183,7 +184,7 @@ bool ImplicitRungeKutta::iterate(double t, double h) {
       for (int k = iterations_; k < most_iterations; ++k) left *= theta;
       if (left > newton_tolerance_) return is_rounding(h);
     }
-    before = std::max(size, rounding);
+    before = std::max(size, epsilon);
     if (factor * size <= newton_tolerance_) {
       contraction_of_attempt_ = factor;
       return true;

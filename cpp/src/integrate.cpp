@@ -5,6 +5,7 @@
 #include <new>
 #include <optional>
 
+#include "pendcore/arithmetic/epsilon.hpp"
 #include "pendcore/integrate/clock.hpp"
 #include "pendcore/integrate/guards.hpp"
 #include "pendcore/integrate/resume_point.hpp"
@@ -22,8 +23,6 @@ int bad_component_of_trial(Stepper& stepper, double t_new) {
   stepper.evaluate(t_new, y.data(), dydt.data());
   return std::max(bad_component(y), bad_component(dydt));
 }
-
-constexpr double rounding = std::numeric_limits<double>::epsilon();
 
 class Run {
  public:
@@ -102,7 +101,7 @@ class Run {
     if (target.is_in_reach) {
       h = target.left;
       if (!target.is_break) resume_.cut_from_here();
-    } else if (std::abs(h) <= 10.0 * rounding * std::abs(t) || std::abs(h) < 1e-300) {
+    } else if (std::abs(h) <= 10.0 * epsilon * std::abs(t) || std::abs(h) < 1e-300) {
       return end(position_.trial_was_finite ? Status::step_too_small : Status::non_finite);
     }
 
@@ -150,7 +149,7 @@ class Run {
     for (int halvings = 0;; ++halvings) {
       crossing = guards_->first(t, h);
       const bool is_short = std::abs(h) <= 10.0 * last_bits();
-      const double bits_of_t = 2.0 * rounding * std::max(std::abs(t), std::abs(h));
+      const double bits_of_t = 2.0 * epsilon * std::max(std::abs(t), std::abs(h));
       if (crossing.guard >= 0 && crossing.theta * std::abs(h) <= bits_of_t) {
         if (is_short || guards_->falls_at_start(crossing.guard, h, halvings)) {
           return change_at_once(crossing);
@@ -158,7 +157,6 @@ class Run {
       } else if (is_short || halvings == 20 || !guards_->strays(crossing.theta)) {
         return {};
       }
-      ++position_.statistics.rejected;
       h *= 0.5;
       if (!stands_at(t, h, attempt)) return give_up(0.5 * h, attempt);
     }
@@ -211,7 +209,7 @@ class Run {
     return target;
   }
   double last_bits() const {
-    return 4.0 * rounding * std::max(std::abs(position_.t.high), std::abs(limits_.t_end));
+    return 4.0 * epsilon * std::max(std::abs(position_.t.high), std::abs(limits_.t_end));
   }
 
   void look_for_bad_component(const Attempt& attempt, double t_new) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "pendcore/arithmetic/epsilon.hpp"
 #include "pendcore/integrate/methods.hpp"
 #include "pendcore/message.hpp"
 
@@ -33,7 +34,7 @@ std::vector<double> tolerances(const char* name, const std::vector<double>& give
 }  // namespace
 
 std::vector<double> relative_tolerances(const Options& options, std::size_t n) {
-  const double least = 10 * std::numeric_limits<double>::epsilon();
+  const double least = 10 * epsilon;
   return tolerances("rtol", options.rtol, 2 * n, false, least);
 }
 

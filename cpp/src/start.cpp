@@ -108,8 +108,8 @@ std::string span_of(const Effect& effect) {
       effect);
 }
 
-std::vector<std::string> run_warnings(const Scene& scene, const std::vector<double>& q0,
-                                      const std::vector<double>& /*qd0*/, double t0, double t_end) {
+std::vector<std::string> run_warnings(const Scene& scene, const std::vector<double>& q0, double t0,
+                                      double t_end) {
   std::vector<std::string> warnings;
   // Who writes degrees writes multiples of five, and hardly beyond two turns; in radians such
   // numbers are next to none but 0, 5 and 10.

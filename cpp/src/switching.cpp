@@ -4,6 +4,7 @@
 #include <climits>
 #include <stdexcept>
 
+#include "pendcore/arithmetic/epsilon.hpp"
 #include "pendcore/dynamics/kinematics.hpp"
 #include "pendcore/message.hpp"
 #include "pendcore/start.hpp"
@@ -11,11 +12,13 @@
 namespace pendcore {
 namespace {
 
+void require(bool fits) {
+  if (!fits) throw std::invalid_argument("the modes of this solution are not those of its scene");
+}
+
 /// A whole number of a memory, which may come from a damaged file.
 int whole(double x, int least, int most) {
-  if (!(x >= least && x <= most)) {
-    throw std::invalid_argument("the modes of this solution are not those of its scene");
-  }
+  require(x >= least && x <= most);
   return static_cast<int>(x);
 }
 
@@ -86,6 +89,7 @@ void Switching::choose_sides(double t, const double* q, const double* qd) {
                           one.has_modes();
                           one.joint;
                         }) {
+            if (holding_torque(scene_.effects[i])) return;  // as choose() has decided
             if (relative(qd, one.joint) != 0.0 || joints_.is_held(one.joint - 1)) return;
             const int mode = equations_.effects->modes[i];
             const std::vector<Guard> guards = one.guards(mode);
@@ -96,8 +100,8 @@ void Switching::choose_sides(double t, const double* q, const double* qd) {
                 accelerations_in_force(equations_, later, q, qd, qdd.data());
               }
               const double phidd = relative(qdd.data(), one.joint);
-              const bool has_none = one.joint - 1 == let_go_ && joints_.is_rounding(let_go_, phidd);
-              const double slope = guards[k].on_phid * (has_none ? let_go_way_ : phidd);
+              const double way = one.joint - 1 == let_go_ ? let_go_way_ : phidd;
+              const double slope = guards[k].on_phid * way;
               if ((forward_ ? slope : -slope) < 0.0) put_mode(i, one.next_mode(mode, k));
             }
           }
@@ -138,12 +142,22 @@ void Switching::set_longest_step() {
   }
 }
 
-/// Whether a joint that was let go has no acceleration yet: other changes at the same time may have
-/// given it one.
+/// Whether a joint that was let go has no acceleration yet, but for the last bits of its torque and
+/// of time: other changes at the same time may have given it one.
 bool Switching::is_at_its_border(int joint, double t, const double* y) const {
   std::vector<double> qdd(n_);
-  accelerations_in_force(equations_, t, y, y + n_, qdd.data());
-  return joints_.is_rounding(joint, relative(qdd.data(), joint + 1));
+  auto phidd = [&](double when) {
+    accelerations_in_force(equations_, when, y, y + n_, qdd.data());
+    return relative(qdd.data(), joint + 1);
+  };
+  const double now = phidd(t);
+  if (joints_.is_rounding(joint, now)) return true;
+  const double soon = t + (forward_ ? 1.0 : -1.0) * shortest_moment(t);
+  return now * let_go_way_ < 0.0 && phidd(soon) * let_go_way_ > 0.0;
+}
+
+void Switching::see_what_was_let_go(double t, const double* y) {
+  if (let_go_ >= 0 && !is_at_its_border(let_go_, t, y)) let_go_ = -1;
 }
 
 void Switching::count_at_once(double t) {
@@ -156,6 +170,7 @@ bool Switching::cross(int k, double t, double* y) {
   count_at_once(t);
   if (k < 0) {
     cross_time(t);
+    see_what_was_let_go(t, y);
     collect_guards(y);
     return false;
   }
@@ -196,18 +211,22 @@ bool Switching::cross(int k, double t, double* y) {
         },
         scene_.effects[watch.effect]);
   }
+  if (jumped) let_go_ = -1;
+  see_what_was_let_go(t, y);
   choose_sides(t, q, qd);
-  if (let_go_ >= 0 && (jumped || !is_at_its_border(let_go_, t, y))) let_go_ = -1;
   collect_guards(y);
   return jumped;
+}
+
+double Switching::shortest_moment(double t) const {
+  return 64.0 * epsilon * std::max(std::abs(t), 1.0 / joints_.natural_speed());
 }
 
 /// Where the law goes back and forth at one time, no acceleration has a sign yet: those of a moment
 /// later decide, as short a one as time resolves, and longer ones while that leads nowhere.
 double Switching::a_moment_later(double t) const {
   if (changes_at_once_ <= many_at_once) return t;
-  double moment = 64.0 * std::numeric_limits<double>::epsilon() *
-                  std::max(std::abs(t), 1.0 / joints_.natural_speed());
+  double moment = shortest_moment(t);
   for (int i = many_at_once; i < changes_at_once_ && moment < moment_; ++i) moment *= 4.0;
   moment = std::min(moment, moment_);
   return t + (forward_ ? moment : -moment);
@@ -232,53 +251,6 @@ void Switching::cross_time(double t) {
         },
         scene_.effects[i]);
   }
-}
-
-/// An impact, and what the joints do after it: rates have jumped, so that every law that has sides
-/// may be on another one.
-void Switching::strike(double t, double* y) {
-  double* const qd = y + n_;
-  const std::vector<double> before(qd, qd + n_);
-  joints_.forget_captures();
-  Impact impact;
-  do {
-    std::ranges::copy(before, qd);
-    impact = joints_.strike(equations_, t, y, qd, changes_at_once_ > many_at_once);
-    choose_modes_from(t, y, qd);
-    joints_.choose(equations_, t, y, qd);
-    choose_sides(t, y, qd);
-  } while (capture(t, y, qd));
-  if (joints_.has_failed()) std::ranges::copy(before, qd);
-  book(Account::impact, impact.loss, y);
-  book(Account::drive, impact.work_of_drive, y);
-}
-
-/// Whether there are joints that leave a stop and are pushed back, and are there again before time
-/// can resolve it, or did not bounce there and are slower than the capture speed: they are left at
-/// the stop.
-bool Switching::capture(double t, const double* q, const double* qd) {
-  bool any = false;
-  std::vector<double> qdd(n_);
-  accelerations_in_force(equations_, t, q, qd, qdd.data());
-  const double shortest = 32.0 * std::numeric_limits<double>::epsilon() * std::abs(t);
-  for (int j = 0; j < n_; ++j) {
-    const Side touched = joints_.contact(j, q);
-    const auto side = static_cast<double>(touched);
-    const double away = -side * relative(qd, j + 1);
-    const double back = side * relative(qdd.data(), j + 1);
-    if (!(away > 0.0 && back > 0.0) || joints_.is_captured(j)) continue;
-    const bool is_slow =
-        away < joints_.supports()[j].stop(touched).capture_speed && !joints_.has_bounced(j);
-    if (!is_slow && 2.0 * away >= shortest * back) continue;
-    joints_.capture(j);
-    any = true;
-  }
-  return any;
-}
-
-void Switching::book(Account account, double value, double* y) const {
-  const auto found = std::ranges::find(accounts_, account);
-  if (found != accounts_.end()) y[2 * n_ + (found - accounts_.begin())] += value;
 }
 
 /// Whether what holds now holds for ever.
@@ -325,9 +297,7 @@ void Switching::restore(const std::vector<double>& memory, double t, const doubl
   forward_ = forward;
   joints_.set_direction(forward);
   const std::size_t effects = scene_.effects.size();
-  if (memory.size() < effects + 4) {
-    throw std::invalid_argument("the modes of this solution are not those of its scene");
-  }
+  require(memory.size() >= effects + 4 + HeldJoints::numbers_in_memory * scene_.links.size());
   for (std::size_t i = 0; i < effects; ++i) put_mode(i, whole(memory[i], -1, INT_MAX));
   is_over_ = std::ranges::any_of(
       scene_.effects, [&](const Effect& one) { return is_outside_table(one, t, forward_); });
@@ -337,9 +307,7 @@ void Switching::restore(const std::vector<double>& memory, double t, const doubl
   let_go_ = whole(memory[effects + 2], -1, n_ - 1);
   let_go_way_ = whole(memory[effects + 3], -1, 1);
   collect_guards(y);
-  if (memory.size() != from + guards_.size()) {
-    throw std::invalid_argument("the modes of this solution are not those of its scene");
-  }
+  require(memory.size() == from + guards_.size());
   for (Watch& watch : guards_) watch.zeros_at_start = whole(memory[from++], 0, 3);
 }
 

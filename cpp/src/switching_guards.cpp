@@ -1,29 +1,23 @@
 // The guards of Switching: which there are, and their values.
 #include <cmath>
-#include <limits>
 
+#include "pendcore/arithmetic/epsilon.hpp"
 #include "pendcore/dynamics/kinematics.hpp"
 #include "pendcore/switching.hpp"
 
 namespace pendcore {
 
-int Switching::joint_of(const Effect& effect) {
-  return std::visit(
-      [](const auto& one) {
-        if constexpr (requires { one.joint; }) return one.joint - 1;
-        return 0;
-      },
-      effect);
-}
-
 void Switching::collect_guards(const double* y) {
   any_held_ = equations_.effects->any_held;
   guards_.clear();
   for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
-    const int joint = joint_of(scene_.effects[i]);
     std::visit(
         [&](const auto& one) {
-          if constexpr (requires { one.has_modes(); }) {
+          if constexpr (requires {
+                          one.has_modes();
+                          one.joint;
+                        }) {
+            const int joint = one.joint - 1;
             if (!one.has_modes() || equations_.effects->held[joint] != 0) return;
             const std::vector<Guard> guards = one.guards(equations_.effects->modes[i]);
             for (std::size_t k = 0; k < guards.size(); ++k) {
@@ -82,7 +76,7 @@ double Switching::guard(int k, const double* y) const {
 }
 
 double Switching::rounding(int k, const double* y) const {
-  const double last_bits = 4.0 * std::numeric_limits<double>::epsilon();
+  const double last_bits = 4.0 * epsilon;
   if (k >= linear_guards())
     return last_bits * joints_.torque_size(held_guards_[k - linear_guards()].joint);
   const auto& [offset, on_phi, on_phid] = guards_[k].guard;

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pendcore/arithmetic/epsilon.hpp"
 #include "pendcore/arithmetic/sine_cosine.hpp"
 
 namespace pendcore {
 namespace {
-
-constexpr double rounding = std::numeric_limits<double>::epsilon();
 
 double largest_size(const std::vector<double>& values) {
   double largest = 0.0;
@@ -112,7 +111,7 @@ void TipLine::bound_curvature() {
   const PivotMotion pivot = pivot_motion(scene_, t_);
   lengths += std::abs(pivot.position[0]) + std::abs(pivot.position[1]);
   curvature_ *= size_of_normal_;
-  noise_ = 4.0 * rounding * size_of_normal_ * lengths;
+  noise_ = 4.0 * epsilon * size_of_normal_ * lengths;
 }
 
 void TipLine::search(double low, double high, int depth) {

@@ -18,8 +18,8 @@ void check_start(const Scene& scene, const std::vector<double>& q0, const std::v
 
 /// What is possible in a run but hardly meant, a sentence each: a start that looks like degrees, a
 /// table that ends before the run does.
-std::vector<std::string> run_warnings(const Scene& scene, const std::vector<double>& q0,
-                                      const std::vector<double>& qd0, double t0, double t_end);
+std::vector<std::string> run_warnings(const Scene& scene, const std::vector<double>& q0, double t0,
+                                      double t_end);
 
 /// Whether time t is not inside the table or spline of an effect, seen along the run.
 bool is_outside_table(const Effect& effect, double t, bool forward);

@@ -71,19 +71,19 @@ class Switching final : public Breaks {
   };
   /// Changes at one time of which rounding may be the cause.
   static constexpr int many_at_once = 8;
-  /// The joint that an effect acts on, from 0.
-  static int joint_of(const Effect& effect);
   void put_mode(std::size_t i, int mode) { equations_.effects->put_mode(i, mode); }
   /// The modes that hold from time t on: those of the state, and none where a table has ended.
   void choose_modes_from(double t, const double* q, const double* qd);
   void choose_sides(double t, const double* q, const double* qd);
   void cross_time(double t);
+  double shortest_moment(double t) const;  ///< s, that time resolves
   double a_moment_later(double t) const;
   void choose(double t, const double* y, int joint);
   void strike(double t, double* y);
   bool capture(double t, const double* q, const double* qd);
   void count_at_once(double t);
   bool is_at_its_border(int joint, double t, const double* y) const;
+  void see_what_was_let_go(double t, const double* y);
   /// After modes and holds have changed.
   void collect_guards(const double* y);
   void collect_stops(const double* y);

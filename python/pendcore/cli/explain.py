@@ -41,7 +41,7 @@ def execute(args: argparse.Namespace) -> int:
     """Do it; return the exit status."""
     with blamed_on_usage():
         case = read_case(args.case)
-    for message in case.scene._compiled.run_warnings(case.q0, case.qd0, *case.t_span):
+    for message in case.scene._compiled.run_warnings(case.q0, *case.t_span):
         warn(message)
     told = case.scene.explain(t=case.t_span[0], q=case.q0)
     print(json.dumps(told.to_dict(), indent=2) if args.json else told)

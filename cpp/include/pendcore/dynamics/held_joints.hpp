@@ -18,8 +18,8 @@
 #pragma once
 
 #include <cmath>
-#include <limits>
 
+#include "pendcore/arithmetic/epsilon.hpp"
 #include "pendcore/dynamics/impact.hpp"
 #include "pendcore/dynamics/joint_forces.hpp"
 #include "pendcore/dynamics/joint_support.hpp"
@@ -73,7 +73,7 @@ class HeldJoints {
 
   /// Whether an acceleration of a joint is no more than the rounding of its torque.
   bool is_rounding(int joint, double phidd) const {
-    const double rounding = 1e4 * std::numeric_limits<double>::epsilon();
+    const double rounding = 1e4 * epsilon;
     return forces_.inertia.diagonal[joint] * std::abs(phidd) <=
            rounding * (size_[joint] + supports_[joint].friction);
   }
@@ -101,8 +101,9 @@ class HeldJoints {
   /// Puts held joints exactly where they are held. Whether that changed something.
   bool settle(double* q, double* qd) const;
 
+  static constexpr std::size_t numbers_in_memory = 4;  ///< of each joint
   std::vector<double> memory() const;
-  /// Throws std::invalid_argument for what is not such a memory; returns how much was read.
+  /// From that number of a memory on; returns how far was read.
   std::size_t restore(EffectsInForce& effects, const std::vector<double>& memory, std::size_t from);
 
  private:

@@ -28,8 +28,8 @@ class Guards {
   /// believed.
   bool falls_at_start(int k, double h, int halvings);
 
-  /// Whether the dense output makes a guard negative that rises from zero without a slope, before
-  /// that share of the step: by its own error, more than by rounding.
+  /// Whether the dense output makes a guard negative that rises from zero with no curvature yet,
+  /// before that share of the step: by its own error, more than by rounding.
   bool strays(double theta);
 
   /// The attempted step that ends where the guard is zero, to the last bits of time.
