@@ -77,8 +77,8 @@ long: $(DONE)/installed $(DONE)/test-requirements  ## ten million steps: docs/lo
 
 CASES ?= 100000
 SEED ?= 1
-fuzz: $(DONE)/installed $(DONE)/test-requirements  ## random cases: no crash, no hang (CASES, SEED)
-	PYTHONPATH=tests python -m fuzz.campaign --cases $(CASES) --seed $(SEED)
+fuzz: $(DONE)/installed $(DONE)/test-requirements  ## random cases (CASES, SEED); 100,000 and more write docs/fuzz.md
+	PYTHONPATH=tests python -m fuzz.campaign --cases $(CASES) --seed $(SEED) --page docs/fuzz.md
 
 SECONDS_EACH ?= 60
 fuzz-readers: $(DONE)/installed $(DONE)/fuzz-requirements  ## damaged files and pickles, by coverage

@@ -10,7 +10,7 @@ import pendcore as pc
 import pytest
 from fuzz import campaign, claims
 from fuzz.choices import FromSeed
-from fuzz.drawn_run import Drawn, drawn
+from fuzz.drawn_run import TIME_LIMIT, Drawn, drawn
 from fuzz.shrinking import breaches_alone, shrunk
 from fuzz.verdict import of_case, of_seed
 from pendcore.effect_class import KINDS
@@ -33,9 +33,10 @@ def cases() -> list[Drawn]:
 
 def test_random_cases_end_in_time_and_keep_every_claim() -> None:
     """The whole of it: a hundred thousand by `make fuzz`."""
-    outcomes, failed = campaign.run(SEED, range(CASES))
-    assert outcomes.total() == CASES
-    assert not failed, campaign.report_of("", outcomes, failed, SEED, 0)
+    told = campaign.run(SEED, range(CASES))
+    assert told.outcomes.total() == CASES
+    assert not told.failed, campaign.report_of("", told, SEED, 0)
+    assert 0 < told.longest[0] < 4 * TIME_LIMIT
 
 
 def test_the_cases_are_of_every_kind(cases: list[Drawn]) -> None:
@@ -79,9 +80,9 @@ def test_a_worker_that_dies_or_hangs_names_its_case(
     script = tmp_path / "worker.py"
     script.write_text(WORKER)
     worker = [sys.executable, str(script), kind]
-    outcomes, failed = campaign.run("seed", range(3, 11), 2, worker, patience=1.5)
-    assert outcomes == {"finished": 7, outcome: 1}
-    assert [verdict["case"] for verdict in failed] == [5]
+    told = campaign.run("seed", range(3, 11), 2, worker, patience=1.5)
+    assert told.outcomes == {"finished": 7, outcome: 1}
+    assert [verdict["case"] for verdict in told.failed] == [5]
 
 
 class Broken:

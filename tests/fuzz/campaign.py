@@ -10,16 +10,18 @@ where it breaks a claim of `fuzz.claims`. The report says what became of them; e
 from __future__ import annotations
 
 import argparse
+import datetime
 import sys
 import time
 from collections import Counter
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import pendcore as pc
 from tqdm import tqdm
 
-from fuzz import watch
+from fuzz import kept, watch
 from fuzz.choices import FromSeed
 from fuzz.drawn_run import drawn
 from fuzz.shrinking import breaches_alone, kind, shrunk
@@ -28,6 +30,15 @@ from fuzz.worker import seed_of
 WORKER = [sys.executable, "-m", "fuzz.worker"]
 SHOWN = 3
 """Cases of one kind of failure that are made small."""
+
+
+@dataclass
+class Told:
+    """How often each outcome was, what failed, and the longest case: its seconds and number."""
+
+    outcomes: Counter[str] = field(default_factory=Counter)
+    failed: list[dict[str, Any]] = field(default_factory=list)
+    longest: tuple[float, int] = (0.0, 0)
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -39,43 +50,64 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--only", type=int, help="number of one case, to be shown and made small")
     parser.add_argument("--output", type=Path, default=Path("out/fuzz/report.txt"))
+    parser.add_argument(
+        "--page", type=Path, help=f"Markdown that a campaign of {kept.FULL} or more is kept in"
+    )
     asked = parser.parse_args(arguments)
     if asked.only is not None:
         print(report_of_case(asked.seed, asked.only))
         return 0
     started = time.monotonic()
-    outcomes, failed = run(asked.seed, range(asked.first, asked.first + asked.cases), asked.workers)
+    told = run(asked.seed, range(asked.first, asked.first + asked.cases), asked.workers)
+    seconds = time.monotonic() - started
     head = f"{asked.cases} cases from {asked.first}, seed {asked.seed!r}, pendcore {pc.__version__}"
-    report = report_of(head, outcomes, failed, asked.seed, time.monotonic() - started)
+    report = report_of(head, told, asked.seed, seconds)
     asked.output.parent.mkdir(parents=True, exist_ok=True)
     asked.output.write_text(report)
+    if asked.page:
+        kept.write(record_of(asked, told, seconds), asked.page)
     print(report)
-    return 1 if failed else 0
+    return 1 if told.failed else 0
+
+
+def record_of(asked: argparse.Namespace, told: Told, seconds: float) -> kept.Record:
+    """Return what is kept of a campaign."""
+    return {
+        "seed": asked.seed,
+        "first": asked.first,
+        "cases": told.outcomes.total(),
+        "failed": len(told.failed),
+        "failures": sorted(verdict["case"] for verdict in told.failed)[:100],
+        "outcomes": dict(told.outcomes.most_common()),
+        "longest": dict(zip(("seconds", "case"), told.longest, strict=True)),
+        "seconds": seconds,
+        "workers": asked.workers,
+        "pendcore": pc.__version__,
+        "date": datetime.datetime.now(datetime.UTC).date().isoformat(),
+    }
 
 
 def run(
     seed: str, cases: range, workers: int = 1, worker: list[str] = WORKER,
     patience: float = watch.HANGS_AFTER,
-) -> tuple[Counter[str], list[dict[str, Any]]]:  # fmt: skip
-    """Return how often each outcome was, and the cases that failed."""
-    outcomes: Counter[str] = Counter()
-    failed = []
+) -> Told:  # fmt: skip
+    """Return what became of the cases."""
+    found = Told()
     told = watch.run([*worker, seed], cases, workers, patience)
     for verdict in tqdm(told, total=len(cases), unit="case", disable=None):
-        outcomes[verdict["outcome"]] += 1
+        found.outcomes[verdict["outcome"]] += 1
+        found.longest = max(found.longest, (verdict["seconds"], verdict["case"]))
         if verdict["breaches"]:
-            failed.append(verdict)
-    return outcomes, failed
+            found.failed.append(verdict)
+    return found
 
 
-def report_of(
-    head: str, outcomes: Counter[str], failed: list[dict[str, Any]], seed: str, seconds: float
-) -> str:
+def report_of(head: str, told: Told, seed: str, seconds: float) -> str:
     """Return what became of all, and the first failures of each kind made small."""
-    lines = [f"{head}: {len(failed)} failed, {seconds:.0f} s", ""]
-    lines += [f"{count:8d}  {outcome}" for outcome, count in outcomes.most_common()]
+    lines = [f"{head}: {len(told.failed)} failed, {seconds:.0f} s", ""]
+    lines += [f"{count:8d}  {outcome}" for outcome, count in told.outcomes.most_common()]
     kinds: dict[str, list[dict[str, Any]]] = {}
-    for verdict in sorted(failed, key=lambda verdict: verdict["case"]):
+    for verdict in sorted(told.failed, key=lambda verdict: verdict["case"]):
         for one in {kind(breach) for breach in verdict["breaches"]}:
             kinds.setdefault(one, []).append(verdict)
     for one, verdicts in kinds.items():
