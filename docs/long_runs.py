@@ -141,8 +141,10 @@ def tables(found: dict[str, Any]) -> str:
         lines.append(f"| {count:,} | {' | '.join(f'{x:.1e}' for x in both)} |")
     row("exponent of the growth", "slope", form=".2f")
     kept = found["time"]
-    lines += ["", f"After {kept['steps']:,} fixed steps of 5e-4 s the time is off by"]
-    lines[-1] += f" {kept['two_doubles']:.0e} s; one double would be off by"
+    off = kept["two_doubles"]
+    time = f"off by {off:.0e} s" if off else "exact to the last bit"
+    lines += ["", f"After {kept['steps']:,} fixed steps of 5e-4 s the time is"]
+    lines[-1] += f" {time}; one double would be off by"
     lines.append(f"{kept['one_double']:.0e} s.")
     return "\n".join(lines) + "\n"
 

@@ -141,3 +141,21 @@ def test_an_attempt_that_is_given_up_leaves_no_trace():
     np.testing.assert_array_equal(legs.t, once.t)
     np.testing.assert_array_equal(legs.y, once.y)
     assert legs.stats == once.stats
+
+
+@pytest.mark.parametrize("step", [0.3, 50.0])
+def test_a_fixed_step_whose_equations_are_not_solved_says_so(step: float) -> None:
+    start = (2.0, 2.5), (0.0, 8.0)
+    sol = pc.simulate(pc.Scene.textbook(), *start, (0, 100), method="radau5", step=step)
+    assert (sol.status, sol.success) == ("not_converged", False)
+    assert "a shorter step" in sol.message
+    assert np.isfinite(sol.y).all()
+
+
+def test_a_law_that_gives_no_number_is_not_called_an_equation_without_solution() -> None:
+    def undefined(t: float, q: np.ndarray, qd: np.ndarray) -> np.ndarray:
+        return np.full(2, np.nan if t > 0.5 else 0.0)
+
+    scene = pc.Scene(links=pc.Scene.textbook().links, effects=[fx.User(undefined)])
+    sol = pc.simulate(scene, (1.0, 1.0), None, (0, 1), method="radau5", step=0.01)
+    assert sol.status == "non_finite"

@@ -16,9 +16,9 @@ from unit_rods import rod, solve
 def test_friction_stops_a_rod_with_quadratic_damping(
     method: str, ways: dict[str, float], order: int
 ) -> None:
-    """The rate, w' = -(1/2 + w^2), is zero at sqrt(2) atan(sqrt(2)), where both laws have two sides."""
-    laws = fx.DryJointFriction(joint=1, coulomb=0.5), fx.ViscousJoint(joint=1, damping2=1.0,
-                                                                      damping=0.0)  # fmt: skip
+    """At sqrt(2) atan(sqrt(2)), from w' = -(1/2 + w^2): there both laws have two sides."""
+    damping = fx.ViscousJoint(joint=1, damping=0.0, damping2=1.0)
+    laws = fx.DryJointFriction(joint=1, coulomb=0.5), damping
     exact = np.sqrt(2) * np.arctan(np.sqrt(2))
     event = pc.events.RateZero(joint=1)
     sol = solve(rod(*laws[::order]), 0, 1, 3, method=method, events=[event], **ways)

@@ -13,6 +13,11 @@ CONTACT = "tests/test_hard_cases_contact.py"
 IMPACTS = "tests/test_hard_cases_impacts.py"
 EVENTS = "tests/test_hard_cases_events.py"
 MORE = "tests/test_hard_cases_forces.py"
+CHAINS = "tests/test_hard_cases_contact_of_chains.py"
+COUNTS = "tests/test_hard_cases_counts.py"
+PULSES = "tests/test_hard_cases_pulses.py"
+TIMES = "tests/test_hard_cases_times.py"
+AT_ONCE = "tests/test_switching_at_once.py"
 RATIOS = "tests/test_hard_cases_ratios.py"
 
 LISTED: dict[str, tuple[str, ...]] = {
@@ -82,6 +87,25 @@ LISTED: dict[str, tuple[str, ...]] = {
     ),
     "a stop that is never reached": (
         f"{CONTACT}::test_a_stop_that_is_never_reached_changes_no_bit",
+    ),
+    "lasting contact in chains, beside stick": (
+        f"{CHAINS}::test_lasting_contact_begins_and_ends_as_in_the_solution_mode_by_mode",
+    ),
+    "bounces over 1e4 s, crossings over 5000 s": (
+        f"{COUNTS}::test_over_ten_thousand_seconds_no_bounce_is_missed_and_nothing_gets_through",
+        f"{COUNTS}::test_over_five_thousand_seconds_every_crossing_is_found_once",
+    ),
+    "pulses that are narrower than the steps, also onto what is stuck": (
+        f"{PULSES}::test_a_narrow_pulse_of_a_table_gives_a_turning_rod_its_impulse",
+        f"{PULSES}::test_a_narrow_pulse_of_a_table_knocks_a_stuck_rod_as_far_as_friction_lets_it",
+    ),
+    "laws that change at one time, in steps too coarse to tell": (
+        f"{AT_ONCE}::test_friction_stops_a_rod_with_quadratic_damping",
+        f"{AT_ONCE}::test_laws_that_meet_lead_on",
+    ),
+    "spans of a few units in the last place, time scales from 1e-100 s to 1e100 s": (
+        f"{TIMES}::test_a_span_of_a_few_units_in_the_last_place_ends_where_it_should",
+        f"{TIMES}::test_an_oscillation_of_any_frequency_is_followed_over_ten_radians",
     ),
     "grazing contact": (
         f"{CONTACT}::test_a_grazing_stop_is_hit_if_and_only_if_the_swing_reaches_it",
