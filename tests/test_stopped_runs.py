@@ -157,5 +157,5 @@ def test_a_law_that_gives_no_number_is_not_called_an_equation_without_solution()
         return np.full(2, np.nan if t > 0.5 else 0.0)
 
     scene = pc.Scene(links=pc.Scene.textbook().links, effects=[fx.User(undefined)])
-    sol = pc.simulate(scene, (1.0, 1.0), None, (0, 1), method="radau5", step=0.01)
+    sol = pc.simulate(scene, (1.0, 1.0), (0.0, 0.0), (0, 1), method="radau5", step=0.01)
     assert sol.status == "non_finite"
