@@ -47,7 +47,8 @@ std::string ending_message(const Ending& ending, const Scene& scene, const Solut
   if (text(ending.status).success) return message;
   if (ending.chatters) {
     return "no step leads on: the law changes back and forth (at t = " + text(solution.t_reached) +
-           " s): dry friction that reverses at once, or two limits that meet: set one a little apart, "
+           " s): dry friction that reverses at once, or two limits that meet: set one a little "
+           "apart, "
            "or give the joint some damping";
   }
   const bool forward = !(solution.t_end < solution.t0);

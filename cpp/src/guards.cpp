@@ -96,16 +96,36 @@ Crossing Guards::first(double t, double h) {
   return found;
 }
 
-bool Guards::falls_at_start(int k, double h, int halvings) {
-  if (k >= breaks_.linear_guards()) return true;
-  const int zeros = breaks_.zeros_at_start(k);
-  if (zeros == 0) return true;
-  if (zeros > 1) return halvings == 10;
-  std::vector<double> slope(2 * static_cast<std::size_t>(dimension_), 0.0);
-  stepper_.get_derivative(&slope[dimension_]);
-  std::array<double, 2> along{};
-  breaks_.polynomial(k, slope.data(), 1, dimension_, along.data());
-  return along[1] * h <= 0.0 || halvings == 50;
+/// Of state_.
+double Guards::value_at(int k, double t) {
+  const int other = k - breaks_.linear_guards();
+  if (other < 0) return breaks_.guard(k, state_.data());
+  samples_.resize(static_cast<std::size_t>(points) * (breaks_.guards() - breaks_.linear_guards()));
+  breaks_.other_guards(t, state_.data(), samples_.data());
+  return samples_[other];
+}
+
+bool Guards::falls_at_start(int k, double t, double h, int halvings) {
+  if (halvings == 50) return true;
+  stepper_.get_state(state_.data());
+  const int zeros = k < breaks_.linear_guards() ? breaks_.zeros_at_start(k) : 0;
+  if (zeros == 0) {
+    const double value = value_at(k, t);  // and first of all, as it knows what it is rounded by
+    return value <= breaks_.rounding(k, state_.data());
+  }
+  // Slope and curvature: a guard on a rate has no second derivative that is known.
+  const int n = stepper_.controlled() / 2;
+  std::vector<double> rows(3 * static_cast<std::size_t>(dimension_), 0.0);
+  double* const rates = &rows[dimension_];
+  stepper_.get_derivative(rates);
+  std::copy_n(rates + n, n, &rows[2 * static_cast<std::size_t>(dimension_)]);
+  std::array<double, 3> along{};
+  breaks_.polynomial(k, rows.data(), 2, dimension_, along.data());
+  for (int order = zeros; order <= 2; ++order) {
+    const double rise = order == 1 ? along[1] * h : along[2];
+    if (rise != 0.0) return rise < 0.0;
+  }
+  return halvings == 10;
 }
 
 bool Guards::strays(double theta) {
@@ -138,12 +158,7 @@ Guards::Miss Guards::miss(int k, double t, double h) {
     return {g / slope, 0.0};
   }
   stepper_.get_new_state(state_.data());
-  if (other < 0) {
-    g = breaks_.guard(k, state_.data());
-  } else {
-    breaks_.other_guards(t + h, state_.data(), samples_.data());
-    g = samples_[other];
-  }
+  g = value_at(k, t + h);
   return {g / slope, breaks_.rounding(k, state_.data()) / std::abs(slope)};
 }
 

@@ -151,7 +151,7 @@ class Run {
       const bool is_short = std::abs(h) <= 10.0 * last_bits();
       const double bits_of_t = 2.0 * epsilon * std::max(std::abs(t), std::abs(h));
       if (crossing.guard >= 0 && crossing.theta * std::abs(h) <= bits_of_t) {
-        if (is_short || guards_->falls_at_start(crossing.guard, h, halvings)) {
+        if (is_short || guards_->falls_at_start(crossing.guard, t, h, halvings)) {
           return change_at_once(crossing);
         }
       } else if (is_short || halvings == 20 || !guards_->strays(crossing.theta)) {

@@ -146,14 +146,18 @@ void Switching::set_longest_step() {
 /// of time: other changes at the same time may have given it one.
 bool Switching::is_at_its_border(int joint, double t, const double* y) const {
   std::vector<double> qdd(n_);
-  auto phidd = [&](double when) {
-    accelerations_in_force(equations_, when, y, y + n_, qdd.data());
-    return relative(qdd.data(), joint + 1);
-  };
-  const double now = phidd(t);
+  accelerations_in_force(equations_, t, y, y + n_, qdd.data());
+  const double now = relative(qdd.data(), joint + 1);
   if (joints_.is_rounding(joint, now)) return true;
-  const double soon = t + (forward_ ? 1.0 : -1.0) * shortest_moment(t);
-  return now * let_go_way_ < 0.0 && phidd(soon) * let_go_way_ > 0.0;
+  if (now * let_go_way_ > 0.0) return false;
+  const double moment = (forward_ ? 1.0 : -1.0) * shortest_moment(t);
+  std::vector<double> soon(y, y + 2 * static_cast<std::ptrdiff_t>(n_));
+  for (int i = 0; i < n_; ++i) {
+    soon[i] += moment * y[n_ + i];
+    soon[n_ + i] += moment * qdd[i];
+  }
+  accelerations_in_force(equations_, t + moment, soon.data(), soon.data() + n_, qdd.data());
+  return relative(qdd.data(), joint + 1) * let_go_way_ > 0.0;
 }
 
 void Switching::see_what_was_let_go(double t, const double* y) {

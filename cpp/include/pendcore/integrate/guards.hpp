@@ -24,9 +24,9 @@ class Guards {
   Crossing first(double t, double h);
 
   /// Whether a guard that the dense output makes negative where the step begins is so: one that is
-  /// zero there and rises is not, and of one without a slope, a step that was halved ten times is
-  /// believed.
-  bool falls_at_start(int k, double h, int halvings);
+  /// positive there, or rises from zero, is not. Where that is not known, a step that was halved ten
+  /// times is believed.
+  bool falls_at_start(int k, double t, double h, int halvings);
 
   /// Whether the dense output makes a guard negative that rises from zero with no curvature yet,
   /// before that share of the step: by its own error, more than by rounding.
@@ -50,6 +50,7 @@ class Guards {
   };
   Miss miss(int k, double t, double h);
   int along_step(int k);
+  double value_at(int k, double t);
   void interpolate_others(double t, double h);
 
   Stepper& stepper_;
