@@ -32,9 +32,12 @@ def test_a_drift_between_what_was_kept_is_called_out():
     assert "too large to trust this run" in repr(run)
 
 
-def test_the_energy_of_many_times_is_not_computed_for_a_repr():
+def test_of_many_times_a_repr_looks_at_some():
     run = pc.simulate(SCENE, 0.3, t_span=(0, 1), t_eval=np.linspace(0, 1, 4001))
-    assert "energy" not in repr(run)
+    assert "(of one time in 2)" in repr(run)
+    kept = np.linspace(0, 5, 10_001)
+    loose = pc.simulate(pc.Scene.textbook(), 1, 0, (0, 5), step=0.3, t_eval=kept)
+    assert "too large to trust this run" in repr(loose)
 
 
 def test_a_run_of_which_only_moments_of_rest_were_kept_is_not_blamed():

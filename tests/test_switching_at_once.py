@@ -83,4 +83,61 @@ def test_laws_that_meet_lead_on(method: str, step: float | None, block: int) -> 
     for seed in range(10 * block, 10 * block + 10):
         scene, q0, qd0 = drawn_chain(np.random.default_rng(seed))
         sol = pc.simulate(scene, q0, qd0, (0, 3), method=method, max_steps=100_000, **ways)
-        assert sol.success or sol.status == "not_converged", (seed, sol.message)
+        may_fail = method == "radau5" and step is not None  # its equations, in so long a step
+        assert sol.success or (may_fail and sol.status == "not_converged"), (seed, sol.message)
+
+
+@pytest.mark.parametrize("rtol", [1e-5, 1e-8])
+@pytest.mark.parametrize("start", [0.3, 7.0, 13.7, 1e4])
+def test_two_joints_are_let_go_at_one_time(method: str, rtol: float, start: float) -> None:
+    """Alike in both joints, sin(t - start) leaves the range of the friction pi/6 after the start."""
+    hum = fx.Sinusoid(1.0, angular_frequency=1.0, phase=-start)
+    effects: list[Any] = []
+    for j in (1, 2):
+        effects += [fx.DryJointFriction(joint=j, coulomb=0.5), fx.Motor(joint=j, sinusoid=hum)]
+    run = pc.simulate(rod(*effects, links=2), 0, 0, (start, start + 2), method=method, rtol=rtol)
+    assert run.status == "finished", run.message
+    moving = run.t[(run.qd != 0).any(axis=1)]
+    assert moving[0] > start + np.pi / 6
+    at_release = run.t[np.searchsorted(run.t, start + np.pi / 6 - 1e-9)]
+    assert at_release == pytest.approx(start + np.pi / 6, abs=1e-9)
+
+
+def test_a_pulse_is_seen_however_far_away_the_end_is(method: str) -> None:
+    """1e3 N m at the top of 2e-6 s give an impulse of 1e-3, which friction takes in 0.1 s."""
+    table = fx.Table(t=[-1, 1.0, 1.000001, 1.000002, 1e11], torque=[0, 0, 1e3, 0, 0])
+    scene = rod(fx.Motor(joint=1, table=table), fx.DryJointFriction(joint=1, coulomb=0.01))
+    ends = [pc.simulate(scene, 0, 0, (0, t), method=method).q[-1, 0] for t in (10.0, 1e9)]
+    assert ends[0] == pytest.approx(0.001**2 / (2 * 0.01), rel=1e-3)
+    assert ends[1] == ends[0]
+
+
+@pytest.mark.parametrize("step", [1 / 64, 1 / 128])
+def test_coarse_steps_pump_no_energy_into_a_joint_at_its_stop(step: float, method: str) -> None:
+    links = [pc.Link(mass=1, length=1), pc.Link(mass=1.75, length=0.307)]
+    effects = [
+        fx.JointStop(joint=2, range=(-1.6, -0.11228775226469723), restitution=0.3),
+        fx.ViscousJoint(joint=2, damping=0.1, damping2=0.1),
+        fx.DryJointFriction(joint=2, coulomb=0.029, static=0.0436),
+    ]
+    scene = pc.Scene(links=links, effects=effects)
+    start = [-0.15020579195563455, -1.115133372329371]
+    sol = pc.simulate(scene, start, 0, (0, 3), method=method, step=step, max_steps=3000)
+    assert sol.success, sol.message
+    assert np.count_nonzero(np.diff(sol.t) == 0) < 30
+    assert np.diff(sol.energy().total).max() < 1e-3
+
+
+def test_a_joint_that_is_held_passes_no_mark_beside_its_angle() -> None:
+    """Its links turn, and the last bits of their difference go to and fro."""
+    at = 0.2138899652813533
+    scene = pc.Scene(
+        links=[pc.Link(mass=1, length=1)] * 2,
+        effects=[fx.DryJointFriction(joint=2, coulomb=50.0)],
+    )
+    marks = [pc.events.JointAngle(joint=2, value=at + k * 1e-16) for k in range(-30, 31)]
+    q1 = 0.34787724978537016
+    sol = pc.simulate(scene, [q1, q1 + at], [1.0, 1.0], (0, 3), events=marks)
+    assert sol.success
+    assert (sol.qd[:, 0] == sol.qd[:, 1]).all()
+    assert [found for found in sol.events if found] == []

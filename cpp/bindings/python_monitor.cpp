@@ -15,16 +15,26 @@ bool PythonMonitor::operator()(double fraction) {
     Py_XDECREF(result);
     if (result != nullptr) return true;
   }
+  keep_error();
+  return false;
+}
+
+void PythonMonitor::keep_error() const {
   const py::error_already_set error;
   *error_ = error.value();
   if (error.trace()) PyException_SetTraceback(error_->ptr(), error.trace().ptr());
-  return false;
 }
 
 void PythonMonitor::close(Run& run) const {
   Solution& solution = run.solution;
   if (solution.error) *error_ = python_exception(std::exchange(solution.error, nullptr));
-  if (!*error_) return;
+  if (!*error_) {
+    // Ctrl-C after the core has looked for it last: the run is whole, and is not lost.
+    if (PyErr_CheckSignals() == 0) return;
+    keep_error();
+    run.error = *error_;
+    return;
+  }
   run.error = *error_;
   const bool stopped = PyErr_GivenExceptionMatches(run.error.ptr(), PyExc_KeyboardInterrupt) != 0;
   const std::size_t sentence = text(solution.status).sentence.size();

@@ -20,6 +20,8 @@ class PythonMonitor {
   void close(Run& run) const;
 
  private:
+  void keep_error() const;
+
   py::handle progress_;
   std::shared_ptr<py::object> error_ = std::make_shared<py::object>();  // shared by copies
 };

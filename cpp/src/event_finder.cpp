@@ -107,12 +107,20 @@ void EventFinder::find_difference(std::size_t k, const Step& step) {
   const int dimension = step.stepper.dimension();
   polynomial_.resize(degree + 1);
   double size = 0.0;
+  double moved = 0.0;
+  double moved_with_its_links = 0.0;
   for (int p = 0; p <= degree; ++p) {
     const double* const row = step.rows + static_cast<std::ptrdiff_t>(p) * dimension;
     polynomial_[p] = difference.of(row);
-    size += std::abs(row[difference.plus]);
-    if (difference.minus >= 0) size += std::abs(row[difference.minus]);
+    double size_of_row = std::abs(row[difference.plus]);
+    if (difference.minus >= 0) size_of_row += std::abs(row[difference.minus]);
+    size += size_of_row;
+    if (p == 0) continue;
+    moved += std::abs(polynomial_[p]);
+    moved_with_its_links = std::max(moved_with_its_links, size_of_row);
   }
+  // A joint that is held passes nothing, whatever the last bits of its links' angles do.
+  if (moved <= 64.0 * epsilon * moved_with_its_links) return;
   const double end = difference.of(y_new_.data());
   const Levels levels = levels_along(difference, degree, end, 8.0 * epsilon * size);
   // A turn a step is bounded by the number of steps.

@@ -177,8 +177,10 @@ bool HeldJoints::settle(double* q, double* qd) const {
 
 std::vector<double> HeldJoints::memory() const {
   std::vector<double> memory;
-  for (const Hold& hold : holds_) {
-    memory.insert(memory.end(), {hold.is_held ? 1.0 : 0.0, hold.angle, hold.least, hold.most});
+  for (int j = 0; j < n_; ++j) {
+    const Hold& hold = holds_[j];
+    memory.insert(memory.end(),
+                  {hold.is_held ? 1.0 : 0.0, hold.angle, hold.least, hold.most, size_[j]});
   }
   return memory;
 }
@@ -189,6 +191,7 @@ std::size_t HeldJoints::restore(EffectsInForce& effects, const std::vector<doubl
     const double* const at = memory.data() + from;
     from += numbers_in_memory;
     holds_[j] = {.is_held = at[0] != 0.0, .angle = at[1], .least = at[2], .most = at[3]};
+    size_[j] = at[4];
     effects.hold(j, is_held(j));
   }
   return from;

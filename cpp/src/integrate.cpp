@@ -24,6 +24,8 @@ int bad_component_of_trial(Stepper& stepper, double t_new) {
   return std::max(bad_component(y), bad_component(dydt));
 }
 
+constexpr double few = 10.0;  // of the last bits of time: a step of no more resolves nothing
+
 class Run {
  public:
   Run(Stepper& stepper, Position& position, Position& resumable, const Limits& limits,
@@ -101,7 +103,7 @@ class Run {
     if (target.is_in_reach) {
       h = target.left;
       if (!target.is_break) resume_.cut_from_here();
-    } else if (std::abs(h) <= 10.0 * epsilon * std::abs(t) || std::abs(h) < 1e-300) {
+    } else if (std::abs(h) <= few * epsilon * std::abs(t) || std::abs(h) < 1e-300) {
       return end(position_.trial_was_finite ? Status::step_too_small : Status::non_finite);
     }
 
@@ -112,7 +114,7 @@ class Run {
     if (stopped_ != Status::finished) return end(stopped_);
     look_for_bad_component(attempt, t + h);
     // A step of a few bits cannot be shortened, and its error is that of its times.
-    const bool is_shortest = target.is_in_reach && std::abs(h) <= 10.0 * last_bits();
+    const bool is_shortest = target.is_in_reach && std::abs(h) <= few * last_bits(target.t);
     const bool is_accepted = attempt.squared_error <= 1.0 || limits_.fixed_step || is_shortest;
     if (!position_.trial_was_finite || !is_accepted) {
       return give_up(h * position_.control.reject(method_, attempt), attempt);
@@ -120,20 +122,26 @@ class Run {
 
     Crossing crossing;
     if (guards_ && !is_shortest) {
-      if (const auto ended = set_out(crossing, t, h, attempt)) return *ended;
-      if (crossing.guard >= 0) {
-        if (const auto ended = land(crossing, t, h, attempt)) return *ended;
-      }
+      const Step found = follow_guards(crossing, t, h, attempt);
+      if (found != Step::stands) return found == Step::goes_on;
     }
     position_.crossings_at_once = 0;
     return accept(target, crossing.guard, h, attempt);
   }
 
-  /// Attempts the step again, at another length. Whether it stands.
-  bool stands_at(double t, double h, Attempt& attempt) {
-    attempt = stepper_.attempt(t, h, position_.control.gain(method_));
-    look_for_bad_component(attempt, t + h);
-    return position_.trial_was_finite && (limits_.fixed_step || attempt.squared_error <= 1.0);
+  /// Attempts the step again, at another length. Whether it stands; a part of a fixed step may
+  /// become as short as it takes.
+  bool stands_at(double t, double& h, Attempt& attempt) {
+    while (true) {
+      attempt = stepper_.attempt(t, h, position_.control.gain(method_));
+      look_for_bad_component(attempt, t + h);
+      if (!limits_.fixed_step) {
+        return position_.trial_was_finite && attempt.squared_error <= 1.0;
+      }
+      if (position_.trial_was_finite) return true;
+      if (std::abs(h) <= few * last_bits(t)) return false;
+      h *= 0.5;
+    }
   }
   /// Of a step that does not stand: another of size h is tried, where steps are not all of one.
   bool give_up(double h, const Attempt& attempt) {
@@ -142,41 +150,54 @@ class Run {
     return end(attempt.converged ? Status::non_finite : Status::not_converged);
   }
 
-  /// The step is halved until its dense output begins as the law has it: what a coarse one says of
-  /// its start, its own error may have made. Returns what step() does then, or nothing if the step
-  /// stands, up to `crossing`.
-  std::optional<bool> set_out(Crossing& crossing, double t, double& h, Attempt& attempt) {
-    for (int halvings = 0;; ++halvings) {
-      crossing = guards_->first(t, h);
-      const bool is_short = std::abs(h) <= 10.0 * last_bits();
-      const double bits_of_t = 2.0 * epsilon * std::max(std::abs(t), std::abs(h));
-      if (crossing.guard >= 0 && crossing.theta * std::abs(h) <= bits_of_t) {
-        if (is_short || guards_->falls_at_start(crossing.guard, t, h, halvings)) {
-          return change_at_once(crossing);
-        }
-      } else if (is_short || halvings == 20 || !guards_->strays(crossing.theta)) {
-        return {};
+  /// What became of a step: it is to be accepted, or the run goes on from its start, or ends.
+  enum class Step { stands, goes_on, ends };
+  static Step of(bool goes_on) { return goes_on ? Step::goes_on : Step::ends; }
+
+  /// Shortens the step so that it ends where the first guard is zero, `crossing`, or where no guard
+  /// is. One that coarse steps do not locate, shorter ones do.
+  Step follow_guards(Crossing& crossing, double t, double& h, Attempt& attempt) {
+    while (true) {
+      const Step found = set_out(crossing, t, h, attempt);
+      if (found != Step::stands || crossing.guard < 0) return found;
+      const double last = few * last_bits(t + h);
+      const Guards::Located located =
+          guards_->locate(crossing, t, h, position_.control.gain(method_), last_bits(t + h));
+      if (located.is_found && (limits_.fixed_step || located.attempt.squared_error <= 1.0)) {
+        h = located.h;
+        attempt = located.attempt;
+        look_for_bad_component(attempt, t + h);
+        if (position_.trial_was_finite) return Step::stands;
+      } else if (located.is_found) {
+        return of(reject(located.h * position_.control.reject(method_, located.attempt)));
       }
-      h *= 0.5;
-      if (!stands_at(t, h, attempt)) return give_up(0.5 * h, attempt);
+      // What the whole step strode over, the shorter one may see: friction's peak at rest.
+      // Where the dense output of a fixed step puts it says little: a tenth is short enough.
+      h *= std::max(0.5 * crossing.theta, limits_.fixed_step ? 0.1 : 0.0);
+      if (std::abs(h) <= last) return of(change_at_once(crossing));
+      if (!limits_.fixed_step) return of(reject(h));
+      if (!stands_at(t, h, attempt)) return of(give_up(h, attempt));
     }
   }
 
-  /// A step that leads over the zero of a guard is taken again, to there. Returns as set_out().
-  std::optional<bool> land(const Crossing& crossing, double t, double& h, Attempt& attempt) {
-    const double gain = position_.control.gain(method_);
-    const Guards::Located located = guards_->locate(crossing, t, h, gain, last_bits());
-    attempt = located.attempt;
-    if (located.is_found) {
-      h = located.h;
-      if (limits_.fixed_step || attempt.squared_error <= 1.0) return {};
-      return reject(h * position_.control.reject(method_, attempt));
+  /// The step is halved until its dense output begins as the law has it: what a coarse one says of
+  /// its start, its own error may have made.
+  Step set_out(Crossing& crossing, double t, double& h, Attempt& attempt) {
+    constexpr int most_halvings = 20;
+    for (int halvings = 0;; ++halvings) {
+      crossing = guards_->first(t, h);
+      const bool is_short = std::abs(h) <= few * last_bits(t);
+      const double at_start = epsilon * std::max(few * std::abs(t), 2.0 * std::abs(h));
+      if (crossing.guard >= 0 && crossing.theta * std::abs(h) <= at_start) {
+        if (is_short || guards_->falls_at_start(crossing.guard, t, h, halvings)) {
+          return of(change_at_once(crossing));
+        }
+      } else if (is_short || halvings == most_halvings || !guards_->strays(crossing.theta)) {
+        return Step::stands;
+      }
+      h *= 0.5;
+      if (!stands_at(t, h, attempt)) return of(give_up(0.5 * h, attempt));
     }
-    // What the whole step strode over, the shorter one may see: friction's peak at rest.
-    h *= crossing.theta;
-    if (!limits_.fixed_step) return reject(0.5 * h);
-    if (!stands_at(t, h, attempt)) return give_up(h, attempt);
-    return {};
   }
 
   /// Nothing moves any more: one step to the end.
@@ -196,8 +217,7 @@ class Run {
     const double h = position_.h;
     // The last step may be a hundredth longer (Hairer's rule), but not longer than max_step, the
     // last bits of t aside: a step of those alone would not be one.
-    const double reach =
-        std::min(1.01 * std::abs(h), std::max(std::abs(h), limits_.max_step)) + last_bits();
+    const double reach = std::min(1.01 * std::abs(h), std::max(std::abs(h), limits_.max_step));
     Target target{limits_.t_end, left, false, false};
     if (breaks_ != nullptr) {
       const double next = breaks_->next_time(position_.t.high);
@@ -205,11 +225,12 @@ class Run {
         target = {next, difference(next, position_.t), true, false};
       }
     }
-    target.is_in_reach = std::abs(target.left) <= reach;
+    target.is_in_reach = std::abs(target.left) <= reach + last_bits(target.t);
     return target;
   }
-  double last_bits() const {
-    return 4.0 * epsilon * std::max(std::abs(position_.t.high), std::abs(limits_.t_end));
+  /// Of time, from here to there.
+  double last_bits(double there) const {
+    return 4.0 * epsilon * std::max(std::abs(position_.t.high), std::abs(there));
   }
 
   void look_for_bad_component(const Attempt& attempt, double t_new) {
@@ -250,8 +271,8 @@ class Run {
     if (quadratures_overflow()) return end(Status::non_finite);
     TwoDouble t_new = position_.t + h;
     // A guard's zero within the last bits of the target is there too.
-    const bool lands =
-        target.is_in_reach && difference(target.t, t_new) * std::copysign(1.0, h) <= last_bits();
+    const bool lands = target.is_in_reach &&
+                       difference(target.t, t_new) * std::copysign(1.0, h) <= last_bits(target.t);
     if (lands) t_new = {target.t, 0.0};
     const bool law_changes = guard >= 0 || (lands && target.is_break);
     if (law_changes) resume_.begin_change();

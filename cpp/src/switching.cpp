@@ -43,7 +43,8 @@ Switching::Switching(const Scene& scene, const EquationsOfMotion& equations,
       accounts_(accounts),
       n_(static_cast<int>(scene.links.size())),
       joints_(*equations_.held_joints),
-      torque_(scene.links.size()) {
+      torque_(scene.links.size()),
+      let_go_(scene.links.size()) {
   moment_ = 1e-7 / joints_.natural_speed();
   for (int k = 0; k < equations_.effects->waves; ++k) {
     moment_ = std::min(moment_, 1e-7 / std::abs(equations_.effects->angular_frequency[k]));
@@ -100,7 +101,8 @@ void Switching::choose_sides(double t, const double* q, const double* qd) {
                 accelerations_in_force(equations_, later, q, qd, qdd.data());
               }
               const double phidd = relative(qdd.data(), one.joint);
-              const double way = one.joint - 1 == let_go_ ? let_go_way_ : phidd;
+              const int let_go = let_go_[one.joint - 1];
+              const double way = let_go != 0 ? let_go : phidd;
               const double slope = guards[k].on_phid * way;
               if ((forward_ ? slope : -slope) < 0.0) put_mode(i, one.next_mode(mode, k));
             }
@@ -149,7 +151,7 @@ bool Switching::is_at_its_border(int joint, double t, const double* y) const {
   accelerations_in_force(equations_, t, y, y + n_, qdd.data());
   const double now = relative(qdd.data(), joint + 1);
   if (joints_.is_rounding(joint, now)) return true;
-  if (now * let_go_way_ > 0.0) return false;
+  if (now * let_go_[joint] > 0.0) return false;
   const double moment = (forward_ ? 1.0 : -1.0) * shortest_moment(t);
   std::vector<double> soon(y, y + 2 * static_cast<std::ptrdiff_t>(n_));
   for (int i = 0; i < n_; ++i) {
@@ -157,16 +159,18 @@ bool Switching::is_at_its_border(int joint, double t, const double* y) const {
     soon[n_ + i] += moment * qdd[i];
   }
   accelerations_in_force(equations_, t + moment, soon.data(), soon.data() + n_, qdd.data());
-  return relative(qdd.data(), joint + 1) * let_go_way_ > 0.0;
+  return relative(qdd.data(), joint + 1) * let_go_[joint] > 0.0;
 }
 
 void Switching::see_what_was_let_go(double t, const double* y) {
-  if (let_go_ >= 0 && !is_at_its_border(let_go_, t, y)) let_go_ = -1;
+  for (int j = 0; j < n_; ++j) {
+    if (let_go_[j] != 0 && !is_at_its_border(j, t, y)) let_go_[j] = 0;
+  }
 }
 
 void Switching::count_at_once(double t) {
   changes_at_once_ = t == time_of_change_ ? changes_at_once_ + 1 : 0;
-  if (changes_at_once_ == 0) let_go_ = -1;
+  if (changes_at_once_ == 0) std::ranges::fill(let_go_, 0);
   time_of_change_ = t;
 }
 
@@ -184,18 +188,18 @@ bool Switching::cross(int k, double t, double* y) {
   bool jumped = false;
   if (k >= linear_guards() && !is_doubtful) {
     const auto [joint, is_most] = held_guards_[k - linear_guards()];
-    let_go_ = joint;
-    let_go_way_ = is_most ? -1 : 1;
-    joints_.release(*equations_.effects, joint, let_go_way_);
+    let_go_[joint] = is_most ? -1 : 1;
+    joints_.release(*equations_.effects, joint, let_go_[joint]);
   } else if (k >= linear_guards()) {
     choose(t, y, -1);
   } else if (const Watch watch = guards_[k]; watch.stop != Side::none) {
     settle(k, y);
-    jumped = joints_.strikes(watch.joint, q, qd);
-    if (jumped) {
-      strike(t, y);
-    } else {
+    if (relative(qd, watch.joint + 1) == 0.0) {
       choose(t, y, watch.joint);
+    } else {  // or it was leaving, and is back too soon to be told: captured
+      const std::vector<double> before(qd, qd + n_);
+      strike(t, y);
+      jumped = !std::equal(before.begin(), before.end(), qd);
     }
   } else if (watch.guard.is_on_rate() &&
              !joints_.supports()[watch.joint].friction_effects.empty()) {
@@ -215,7 +219,9 @@ bool Switching::cross(int k, double t, double* y) {
         },
         scene_.effects[watch.effect]);
   }
-  if (jumped) let_go_ = -1;
+  for (int j = 0; j < n_; ++j) {
+    if (jumped || joints_.is_held(j)) let_go_[j] = 0;
+  }
   see_what_was_let_go(t, y);
   choose_sides(t, q, qd);
   collect_guards(y);
@@ -288,8 +294,7 @@ std::vector<double> Switching::memory() const {
   std::vector<double> memory(modes.begin(), modes.end());
   memory.push_back(time_of_change_);
   memory.push_back(changes_at_once_);
-  memory.push_back(let_go_);
-  memory.push_back(let_go_way_);
+  memory.insert(memory.end(), let_go_.begin(), let_go_.end());
   const std::vector<double> holds = joints_.memory();
   memory.insert(memory.end(), holds.begin(), holds.end());
   for (const Watch& watch : guards_) memory.push_back(watch.zeros_at_start);
@@ -301,15 +306,15 @@ void Switching::restore(const std::vector<double>& memory, double t, const doubl
   forward_ = forward;
   joints_.set_direction(forward);
   const std::size_t effects = scene_.effects.size();
-  require(memory.size() >= effects + 4 + HeldJoints::numbers_in_memory * scene_.links.size());
+  const std::size_t joints = scene_.links.size();
+  require(memory.size() >= effects + 2 + (1 + HeldJoints::numbers_in_memory) * joints);
   for (std::size_t i = 0; i < effects; ++i) put_mode(i, whole(memory[i], -1, INT_MAX));
   is_over_ = std::ranges::any_of(
       scene_.effects, [&](const Effect& one) { return is_outside_table(one, t, forward_); });
-  std::size_t from = joints_.restore(*equations_.effects, memory, effects + 4);
+  std::size_t from = joints_.restore(*equations_.effects, memory, effects + 2 + joints);
   time_of_change_ = memory[effects];
   changes_at_once_ = whole(memory[effects + 1], 0, INT_MAX);
-  let_go_ = whole(memory[effects + 2], -1, n_ - 1);
-  let_go_way_ = whole(memory[effects + 3], -1, 1);
+  for (std::size_t j = 0; j < joints; ++j) let_go_[j] = whole(memory[effects + 2 + j], -1, 1);
   collect_guards(y);
   require(memory.size() == from + guards_.size());
   for (Watch& watch : guards_) watch.zeros_at_start = whole(memory[from++], 0, 3);

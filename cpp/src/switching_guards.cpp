@@ -35,7 +35,7 @@ void Switching::collect_guards(const double* y) {
     if (joints_.holds()[j].most < never) held_guards_.push_back({j, true});
   }
   for (Watch& watch : guards_) {
-    const int let_go = watch.joint == let_go_ ? 1 : 0;  // its acceleration is zero too
+    const int let_go = let_go_[watch.joint] != 0 ? 1 : 0;  // its acceleration is zero too
     if (watch.stop == Side::none && watch.guard.is_on_rate()) {
       const bool is_zero = relative(y + n_, watch.joint + 1) == 0.0;
       watch.zeros_at_start = is_zero ? 1 + let_go : 0;
@@ -53,7 +53,7 @@ void Switching::collect_stops(const double* y) {
     // So are its rate and acceleration where it was held until now.
     const bool is_doubtful = changes_at_once_ > many_at_once;
     const bool is_still = relative(y + n_, j + 1) == 0.0;
-    const int zeros = is_still && (j == let_go_ || is_doubtful) ? 3 : 1;
+    const int zeros = is_still && (let_go_[j] != 0 || is_doubtful) ? 3 : 1;
     if (support.lower.angle > -never) {
       const Guard above{.offset = -support.lower.angle, .on_phi = 1.0, .on_phid = 0.0};
       guards_.push_back({0, 0, j, above, Side::lower, touches == Side::lower ? zeros : 0});
@@ -106,9 +106,9 @@ void Switching::other_guards(double t, const double* y, double* values) {
 }
 
 bool Switching::settle(int k, double* y) const {
-  bool changed = false;
   double* const q = y;
   double* const qd = y + n_;
+  bool changed = joints_.settle(q, qd);
   if (k >= 0 && k < linear_guards()) {
     const Watch& watch = guards_[k];
     const int j = watch.joint;
@@ -120,7 +120,8 @@ bool Switching::settle(int k, double* y) const {
       changed = true;
     }
   }
-  return joints_.settle(q, qd) || changed;
+  // Joints beyond it that are held go with it.
+  return (changed && joints_.settle(q, qd)) || changed;
 }
 
 }  // namespace pendcore

@@ -110,8 +110,9 @@ class Switching final : public Breaks {
   std::vector<double> torque_;  ///< that holds the joints
   double time_of_change_ = std::numeric_limits<double>::quiet_NaN();
   int changes_at_once_ = 0;
-  int let_go_ = -1;     ///< the joint that was held until this time
-  int let_go_way_ = 0;  ///< up or down its angle
+  /// Of each joint that was held until this time: whether its rate is to go up (1) or down (-1)
+  /// from zero; 0 of all others. Joints that can be let go are held forward in time alone.
+  std::vector<int> let_go_;
   std::string remark_;
 };
 

@@ -55,10 +55,11 @@ def _rows(solution: Solution) -> list[tuple[str, str]]:
             ("last q", f"{listed(solution.q[-1])} rad"),
             ("last qd", f"{listed(solution.qd[-1])} rad/s"),
         ]
-    if len(t) <= _MANY:
-        drift = energy_drift.energy_drift(solution)._asdict()
-        rows.append(("energy", "drift " + energy_drift.text(drift)))
-        rows += [("", energy_drift.TOO_LARGE)] * drift["too_large"]
+    every = -(-len(t) // _MANY) or 1
+    drift = energy_drift.energy_drift(solution, every)._asdict()
+    of_some = f" (of one time in {every})" if every > 1 else ""
+    rows.append(("energy", "drift " + energy_drift.text(drift) + of_some))
+    rows += [("", energy_drift.TOO_LARGE)] * drift["too_large"]
     return rows
 
 

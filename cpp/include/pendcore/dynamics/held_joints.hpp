@@ -101,7 +101,7 @@ class HeldJoints {
   /// Puts held joints exactly where they are held. Whether that changed something.
   bool settle(double* q, double* qd) const;
 
-  static constexpr std::size_t numbers_in_memory = 4;  ///< of each joint
+  static constexpr std::size_t numbers_in_memory = 5;  ///< of each joint
   std::vector<double> memory() const;
   /// From that number of a memory on; returns how far was read.
   std::size_t restore(EffectsInForce& effects, const std::vector<double>& memory, std::size_t from);

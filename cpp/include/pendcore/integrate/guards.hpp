@@ -24,8 +24,8 @@ class Guards {
   Crossing first(double t, double h);
 
   /// Whether a guard that the dense output makes negative where the step begins is so: one that is
-  /// positive there, or rises from zero, is not. Where that is not known, a step that was halved ten
-  /// times is believed.
+  /// positive there, or rises from zero, is not. Where that is not known, a step that was halved
+  /// ten times is believed.
   bool falls_at_start(int k, double t, double h, int halvings);
 
   /// Whether the dense output makes a guard negative that rises from zero with no curvature yet,
