@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import functools
 import os
 import pickle
@@ -266,6 +267,20 @@ def seconds_until_ctrl_c_is_heard() -> float:
     assert 0 < partial.t[-1] < 1e9
     assert partial.resume(partial.t[-1] + 1).success
     return heard - asked
+
+
+def test_ctrl_c_as_a_run_ends_does_not_lose_it():
+    """Runs that get longer, until the core looks up once: nobody looks again before the end."""
+    interrupt = ctypes.pythonapi.PyErr_SetInterrupt
+    interrupt.argtypes, interrupt.restype = [ctypes.c_double], None  # called with a fraction
+    for t_end in 10 * 1.2 ** np.arange(40):
+        try:
+            pc.simulate(BOOK, [0.8, 1.0], 0, (0, t_end), store="end", step=5e-4, progress=interrupt)
+        except KeyboardInterrupt as caught:
+            assert caught.solution.t[-1] > 0
+            assert caught.solution.resume(t_end).success
+            return
+    pytest.fail("the core never looked up")
 
 
 def test_ctrl_c_is_heard_within_a_tenth_of_a_second():
