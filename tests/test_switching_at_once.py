@@ -90,7 +90,7 @@ def test_laws_that_meet_lead_on(method: str, step: float | None, block: int) -> 
 @pytest.mark.parametrize("rtol", [1e-5, 1e-8])
 @pytest.mark.parametrize("start", [0.3, 7.0, 13.7, 1e4])
 def test_two_joints_are_let_go_at_one_time(method: str, rtol: float, start: float) -> None:
-    """Alike in both joints, sin(t - start) leaves the range of the friction pi/6 after the start."""
+    """Alike in both, sin(t - start) leaves the range of the friction pi/6 after the start."""
     hum = fx.Sinusoid(1.0, angular_frequency=1.0, phase=-start)
     effects: list[Any] = []
     for j in (1, 2):
@@ -129,7 +129,7 @@ def test_coarse_steps_pump_no_energy_into_a_joint_at_its_stop(step: float, metho
 
 
 def test_a_joint_that_is_held_passes_no_mark_beside_its_angle() -> None:
-    """Its links turn, and the last bits of their difference go to and fro."""
+    """Its links turn, and the last bits of their difference change."""
     at = 0.2138899652813533
     scene = pc.Scene(
         links=[pc.Link(mass=1, length=1)] * 2,

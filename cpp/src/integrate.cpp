@@ -21,6 +21,8 @@ int bad_component_of_trial(Stepper& stepper, double t_new) {
   std::vector<double> dydt(stepper.dimension());
   stepper.get_new_state(y.data());
   stepper.evaluate(t_new, y.data(), dydt.data());
+  y.resize(stepper.controlled());  // quadratures have no say in the steps
+  dydt.resize(stepper.controlled());
   return std::max(bad_component(y), bad_component(dydt));
 }
 
