@@ -32,6 +32,9 @@ a program of the user's own, the library integrates between them.
 {sections}
 ## Where pendcore loses
 
+Cases that it has not right, and those where another program's right answer is ten times closer, or
+there where pendcore has but words.
+
 {losses}
 
 ## Who took part, and on what
