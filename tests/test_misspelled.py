@@ -33,6 +33,14 @@ MISSPELLED = {
         lambda: pc.simulate(SCENE, q0=1.0, tspan=(0, 1)),
         "simulate: has no parameter 'tspan': did you mean 't_span'?",
     ),
+    "run, the end alone": (
+        lambda: pc.simulate(SCENE, q0=1.0, tend=3),
+        "simulate: has no parameter 'tend': did you mean 't_span'?",
+    ),
+    "run, the end alone, in other words": (
+        lambda: pc.simulate(SCENE, q0=1.0, tmax=3),
+        "simulate: has no parameter 'tmax': did you mean 't_span'?",
+    ),
     "run, nothing near": (
         lambda: pc.simulate(SCENE, 1.0, t_span=(0, 1), xyzzy=1),
         "simulate: has no parameter 'xyzzy': known are scene, q0, qd0, t_span, method, rtol",

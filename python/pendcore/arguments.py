@@ -21,10 +21,16 @@ Floats: TypeAlias = npt.NDArray[np.float64]
 Taken = ParamSpec("Taken")
 Given = TypeVar("Given")
 
+OTHER_NAMES = {"t_span": ("t_end", "t_max", "t_stop", "t_final", "duration")}
+"""What other programs call a parameter whose own name is spelled otherwise; `_` may be missing."""
+
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
     """Return the remedy for a name that is not known."""
     names = [*known]
+    for meant, others in OTHER_NAMES.items():
+        if meant in names and name.replace("_", "") in [x.replace("_", "") for x in others]:
+            return f"did you mean {meant!r}?"
     near = get_close_matches(name, names, n=1, cutoff=0.5)
     return f"did you mean {near[0]!r}?" if near else f"known are {', '.join(names)}"
 
