@@ -1,7 +1,8 @@
 """The pages in docs/effects, from the descriptions of the effects.
 
-docs/write_effects.py writes them. An example needs values that make sense together: EXAMPLES has
-them for the effects that are here; one without some is shown with values that its ranges allow.
+docs/write_effects.py writes them; what they have beyond is in effect_sections.py. An example needs
+values that make sense together: EXAMPLES has them for the effects that are here; one without some
+is shown with values that its ranges allow.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from math import inf
 from typing import Any
 
 import pendcore as pc
+from effect_sections import COMPILED, MORE
 from pendcore.effect_class import KINDS, Effect, OwnEffect
 from pendcore.effect_description import CAVEATS, Description, Parameter
 from pendcore.energy import LOSSES
@@ -55,59 +57,6 @@ BOOKED = {
     "drive": "`drive`: the work of what drives the pivot, F_01 . v_0, J.",
     "user": "`user`: the work that it does, Q . qd, J.",
 }
-
-COMPILED = """## In Python
-
-The function may come from C or C++, or be compiled by numba:
-
-```python
-import ctypes
-import pendcore as pc
-
-DOUBLES = ctypes.POINTER(ctypes.c_double)
-FORCES = ctypes.CFUNCTYPE(
-    None, ctypes.c_double, ctypes.c_int, DOUBLES, DOUBLES, DOUBLES, ctypes.c_void_p
-)
-
-
-@FORCES
-def damp(t, n, q, qd, Q, data):  # of numba: numba.cfunc(signature), at full speed
-    for i in range(n):
-        Q[i] -= 0.1 * qd[i]
-
-
-rod = pc.Link(mass=1.0, length=1.0)
-effect = pc.effects.CompiledUser(damp)  # or the address as an int; it keeps `damp` alive
-scene = pc.Scene(links=[rod, rod], effects=[effect])
-sol = pc.simulate(scene, q0=[0.5, 1.0], t_span=(0, 1), ledger=True)
-print(sol.energy().ledger)
-```
-
-`Q` comes zeroed and counts as generalised forces of the absolute angles, N m. `data` is handed on
-as it is: an address, or a NumPy array, whose memory it then is: C-contiguous float64, anything else
-is refused. Nothing checks the address: a wrong one ends the process.
-
-An exception in a ctypes callback that is written in Python never gets here: ctypes prints it and
-drops it, and the run goes on with the forces that were there so far, zero as a rule. A law in
-Python is better a [`User`](user.md), whose exception ends the run.
-
-A function of C or C++ comes from a library of your own,
-`CompiledUser(ctypes.CDLL("./laws.so").damp)`:
-
-```cpp
-extern "C" void damp(double t, int n, const double* q, const double* qd, double* Q, void* data) {
-  for (int i = 0; i < n; ++i) Q[i] -= 0.1 * qd[i];
-}
-```
-
-    g++ -O2 -shared -fPIC laws.cpp -o laws.so
-
-## In C++
-
-`pendcore::CompiledUser::of(f)` makes an effect of anything that can be called with time, angles,
-rates and forces, the last three as `std::span`; `f` has to outlive the scene.
-[examples/05_own_effect.cpp](../../examples/05_own_effect.cpp) has one.
-"""
 
 
 def pages() -> dict[str, str]:
@@ -183,6 +132,8 @@ def _sections(told: Description, cls: type[Effect]) -> Iterator[str]:
         yield ""
         yield f"```python\n{_python(examples(cls)[0], cls)}```"
         yield ""
+    if told.kind in MORE:
+        yield MORE[told.kind]
     if issubclass(cls, OwnEffect):
         yield "## In a case file"
         yield ""

@@ -11,7 +11,6 @@ from typing import Any
 import matplotlib as mpl
 import matplotlib.image
 import numpy as np
-import pendcore as pc
 import pytest
 
 ROOT = Path(__file__).parent.parent
@@ -27,6 +26,17 @@ def test_links_lead_somewhere(path):
     for target in re.findall(r"\]\(([^)#]+)[^)]*\)", path.read_text()):
         if not target.startswith("https://"):
             assert (path.parent / target).exists(), f"{path.name} links to {target}"
+
+
+@pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: str(path.relative_to(ROOT)))
+def test_a_page_imports_what_its_lines_use(path):
+    """What stands there can be pasted, from the top."""
+    above = ""
+    for code in re.findall(r"```python\n(.*?)```", path.read_text(), re.DOTALL):
+        above += code
+        for name, module in (("np", "numpy"), ("pc", "pendcore")):
+            if re.search(rf"\b{name}\.", code):
+                assert f"import {module} as {name}\n" in above
 
 
 def test_the_readmes_lines_run(tmp_path, monkeypatch, capsys):
@@ -90,7 +100,7 @@ def test_ten_lines_draw_the_readmes_hard_case(tmp_path, monkeypatch):
 
 def test_a_ledger_is_as_good_as_its_steps_and_trust_says_how_good(capsys):
     (code,) = re.findall(r"```python\n(.*?)```", (ROOT / "docs/trust.md").read_text(), re.DOTALL)
-    exec(code, {"np": np, "pc": pc})
+    exec(code, {})
     residuals = [float(line.split()[1]) for line in capsys.readouterr().out.splitlines()]
     (told,) = re.findall(r"# (.*)$", code, re.MULTILINE)
     for residual, order in zip(residuals, re.findall(r"([\de-]+) J", told), strict=True):

@@ -6,7 +6,9 @@ import ast
 import re
 import sys
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pendcore as pc
 import pytest
 
@@ -32,16 +34,43 @@ def test_every_effect_has_a_page_and_nothing_else_has():
     assert there == {path.name for path in PAGES.values()} | {"README.md"}
 
 
+def run(kind: str) -> dict[str, Any]:
+    """Run what a page shows, from top to bottom, and return its names."""
+    names: dict[str, Any] = {}
+    for code in re.findall(r"```python\n(.*?)```", PAGES[kind].read_text(), re.DOTALL):
+        exec(code, names)
+    return names
+
+
 @pytest.mark.parametrize("kind", PAGES)
 def test_the_example_of_a_page_runs_and_books_what_it_says(kind, capsys):
-    (code,) = re.findall(r"```python\n(.*?)```", PAGES[kind].read_text(), re.DOTALL)
-    names: dict[str, object] = {}
-    exec(code, names)
+    names = run(kind)
     account = pc.effects.kinds()[kind].description.account
     booked = {*names["sol"].energy().ledger} - {"residual", "wind"}
     assert booked == {account} - {"none"}
     assert "residual" in capsys.readouterr().out
     assert names["sol"].success
+
+
+def test_a_spring_towed_by_a_function_is_the_spring_while_its_end_is_held():
+    names = run("torsional_spring")
+    (towed,), q, qd = names["towed"].effects, np.array([0.5, 1.3]), np.zeros(2)
+    free = pc.Scene(links=names["scene"].links)
+    spring = pc.effects.TorsionalSpring(joint=2, stiffness=30.0, rest_angle=0.2 * 3.0)
+    without, held = (
+        scene.accelerations(3.0, q, qd) for scene in (free, free.replace(effects=[spring]))
+    )
+    forces = free.mass_matrix(q) @ (held - without)
+    assert towed.function(3.0, q, qd) == pytest.approx(forces, rel=1e-12)
+
+
+def test_impacts_are_counted_as_their_page_says():
+    names = run("joint_stop")
+    sol, k = names["sol"], names["k"]
+    phi, rates = (np.diff(x, axis=1)[:, 0] for x in (sol.q, sol.qd))
+    assert len(k) >= 3
+    assert (abs(phi[k]) == 2.5).all()
+    assert rates[k + 1] == pytest.approx(-0.4 * rates[k], rel=1e-12)
 
 
 @pytest.mark.parametrize("kind", PAGES)

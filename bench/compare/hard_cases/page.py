@@ -138,7 +138,9 @@ def section(case: Any) -> str:
     header = ["program", "as its user wrote it", "what happens", "error", "right"]
     bound = f" Right: within {case['allowed']:.0e} {case['unit']}." if case["allowed"] else ""
     figure = case.get("figure", "")
-    shown = f"\n![{figure}](figures/hard_cases_{case['name']}.png)\n" if figure else ""
+    shown = (
+        f"\n![{figure}](figures/hard_cases_{case['name']}.png)\n\n*{figure}.*\n" if figure else ""
+    )
     return (
         f"### {case['title']}\n\n{case['scene']}\n\n**The answer:** {case['answer']}{bound}\n\n"
         + table(header, rows)

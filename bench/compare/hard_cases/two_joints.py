@@ -124,7 +124,10 @@ CASE = HardCase(
     unit="rad",
     allowed=1e-8,
     reference=reference,
-    figure="Angles of two joints over time, when each sticks, and how far each program is off",
+    figure=(
+        "Angles of two joints over time, when each sticks, and how far each program is off; the "
+        "curves of SciPy and Boost.odeint, which solve the same smoothed law, coincide"
+    ),
     contenders=(
         Contender(program="pendcore", how="`DryJointFriction`, rtol 1e-11", run=pendcore),
         Contender(program="scipy", how="signs smoothed over 1e-3 rad/s, Radau", run=scipy_smoothed),

@@ -1,0 +1,99 @@
+"""What pages in docs/effects have beyond what the core says of their effects."""
+
+from __future__ import annotations
+
+COMPILED = """## In Python
+
+The function may come from C or C++, or be compiled by numba:
+
+```python
+import ctypes
+import pendcore as pc
+
+DOUBLES = ctypes.POINTER(ctypes.c_double)
+FORCES = ctypes.CFUNCTYPE(
+    None, ctypes.c_double, ctypes.c_int, DOUBLES, DOUBLES, DOUBLES, ctypes.c_void_p
+)
+
+
+@FORCES
+def damp(t, n, q, qd, Q, data):  # of numba: numba.cfunc(signature), at full speed
+    for i in range(n):
+        Q[i] -= 0.1 * qd[i]
+
+
+rod = pc.Link(mass=1.0, length=1.0)
+effect = pc.effects.CompiledUser(damp)  # or the address as an int; it keeps `damp` alive
+scene = pc.Scene(links=[rod, rod], effects=[effect])
+sol = pc.simulate(scene, q0=[0.5, 1.0], t_span=(0, 1), ledger=True)
+print(sol.energy().ledger)
+```
+
+`Q` comes zeroed and counts as generalised forces of the absolute angles, N m. `data` is handed on
+as it is: an address, or a NumPy array, whose memory it then is: C-contiguous float64, anything else
+is refused. Nothing checks the address: a wrong one ends the process.
+
+An exception in a ctypes callback that is written in Python never gets here: ctypes prints it and
+drops it, and the run goes on with the forces that were there so far, zero as a rule. A law in
+Python is better a [`User`](user.md), whose exception ends the run.
+
+A function of C or C++ comes from a library of your own,
+`CompiledUser(ctypes.CDLL("./laws.so").damp)`:
+
+```cpp
+extern "C" void damp(double t, int n, const double* q, const double* qd, double* Q, void* data) {
+  for (int i = 0; i < n; ++i) Q[i] -= 0.1 * qd[i];
+}
+```
+
+    g++ -O2 -shared -fPIC laws.cpp -o laws.so
+
+## In C++
+
+`pendcore::CompiledUser::of(f)` makes an effect of anything that can be called with time, angles,
+rates and forces, the last three as `std::span`; `f` has to outlive the scene.
+[examples/05_own_effect.cpp](../../examples/05_own_effect.cpp) has one.
+"""
+
+MOVING_END = """## A moving end
+
+The rest angle does not change in time. A spring whose far end moves, to tow a joint or to shake it,
+is a [function of your own](user.md). It gives forces of the **absolute** angles: a torque `tau` in
+joint j is `tau` on link j and `-tau` on link j-1.
+
+```python
+import numpy as np
+
+
+def tow(t, q, qd):
+    tau = -30.0 * (q[1] - q[0] - 0.2 * t)  # in joint 2; the end moves at 0.2 rad/s
+    return np.array([-tau, tau])
+
+
+towed = scene.replace(effects=[pc.effects.User(tow)])
+run = pc.simulate(towed, q0=[0.5, 0.5], t_span=(0, 1), ledger=True)
+print(run.energy().ledger.user[-1])  # the work of the spring on the rods, J
+```
+
+What such a spring keeps is not in `sol.energy()`; its work is all in the ledger's `user`.
+"""
+
+IMPACTS = """## Counting impacts
+
+At an impact `sol.t` holds the time twice, with the state before and after:
+
+```python
+import numpy as np
+
+sol = pc.simulate(scene, q0=[0.5, 2.9], qd0=[0, 12], t_span=(0, 3), ledger=True)
+k = np.flatnonzero(np.diff(sol.t) == 0)
+print(sol.t[k], sol.qd[k], sol.qd[k + 1])  # times, rates before, rates after
+```
+
+These are the impacts of all stops, where the steps are kept: not with `t_eval` or `store="end"`.
+An event counts something else. A `JointAngle` at the stop has the impacts that a zero of the angle
+leads into, which the shortest bounces lack; a `RateZero` has the turns between bounces too.
+"""
+
+MORE = {"torsional_spring": MOVING_END, "joint_stop": IMPACTS}
+"""What a page has beyond what the core says: it goes on from the page's example."""
