@@ -135,7 +135,9 @@ bool Guards::strays(double theta) {
     breaks_.polynomial(k, rows_.data(), degree_, dimension_, polynomial_.data());
     polynomial_[0] = polynomial_[1] = 0.0;
     const double least = -breaks_.rounding(k, state_.data());
-    for (double x = 0.5 * std::min(theta, 2.0); x > 1e-9; x *= 0.5) {
+    double x = std::min(theta, 2.0);
+    for (int halvings = 0; halvings < 30; ++halvings) {
+      x *= 0.5;
       double value = polynomial_[degree_];
       for (int p = degree_ - 1; p >= 0; --p) value = value * x + polynomial_[p];
       if (value < least) return true;

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <new>
-#include <optional>
 
 #include "pendcore/arithmetic/epsilon.hpp"
 #include "pendcore/integrate/clock.hpp"
@@ -42,7 +42,7 @@ class Run {
         resume_(stepper, position, resumable, observer, breaks, limits.begins_anew),
         state_(stepper.dimension()),
         rate_(stepper.dimension()) {
-    if (breaks != nullptr) guards_.emplace(stepper, *breaks);
+    if (breaks != nullptr) guards_ = std::make_unique<Guards>(stepper, *breaks);
     has_quadratures_ = stepper.controlled() < stepper.dimension();
     stepper.goes_on = [this] {
       if (can_stop_) stopped_ = clock_.look(position_.t.high);
@@ -369,7 +369,7 @@ class Run {
   const MethodInfo& method_;
   Clock clock_;
   ResumePoint resume_;
-  std::optional<Guards> guards_;
+  std::unique_ptr<Guards> guards_;  ///< null where nothing breaks
   Status status_ = Status::finished;
   bool can_stop_ = false;
   Status stopped_ = Status::finished;  ///< or why an attempt was given up
