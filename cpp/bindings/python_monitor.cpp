@@ -28,14 +28,12 @@ void PythonMonitor::keep_error() const {
 void PythonMonitor::close(Run& run) const {
   Solution& solution = run.solution;
   if (solution.error) *error_ = python_exception(std::exchange(solution.error, nullptr));
-  if (!*error_) {
-    // Ctrl-C after the core has looked for it last: the run is whole, and is not lost.
-    if (PyErr_CheckSignals() == 0) return;
-    keep_error();
-    run.error = *error_;
-    return;
-  }
+  // Ctrl-C after the core has looked for it last: the run is whole, and is not lost.
+  const bool is_whole = !*error_;
+  if (is_whole && PyErr_CheckSignals() == 0) return;
+  if (is_whole) keep_error();
   run.error = *error_;
+  if (is_whole) return;
   const bool stopped = PyErr_GivenExceptionMatches(run.error.ptr(), PyExc_KeyboardInterrupt) != 0;
   const std::size_t sentence = text(solution.status).sentence.size();
   solution.status = stopped ? Status::interrupted : Status::callback_error;

@@ -12,6 +12,12 @@ namespace pendcore {
 namespace {
 
 constexpr int points = 9;
+/// Halvings after which a step is believed about a guard's start: that the slope and the curvature
+/// do not tell, and that its value does not.
+constexpr int halvings_without_sign = 10;
+constexpr int most_halvings = 50;
+/// How often the share of a step is halved in looking for where a polynomial strays.
+constexpr int shares = 30;
 
 /// sin^2(i pi / 16)
 constexpr std::array<double, points> nodes = {
@@ -106,7 +112,7 @@ double Guards::value_at(int k, double t) {
 }
 
 bool Guards::falls_at_start(int k, double t, double h, int halvings) {
-  if (halvings == 50) return true;
+  if (halvings == most_halvings) return true;
   stepper_.get_state(state_.data());
   const int zeros = k < breaks_.linear_guards() ? breaks_.zeros_at_start(k) : 0;
   if (zeros == 0) {
@@ -125,7 +131,7 @@ bool Guards::falls_at_start(int k, double t, double h, int halvings) {
     const double rise = order == 1 ? along[1] * h : along[2];
     if (rise != 0.0) return rise < 0.0;
   }
-  return halvings == 10;
+  return halvings == halvings_without_sign;
 }
 
 bool Guards::strays(double theta) {
@@ -136,7 +142,7 @@ bool Guards::strays(double theta) {
     polynomial_[0] = polynomial_[1] = 0.0;
     const double least = -breaks_.rounding(k, state_.data());
     double x = std::min(theta, 2.0);
-    for (int halvings = 0; halvings < 30; ++halvings) {
+    for (int halvings = 0; halvings < shares; ++halvings) {
       x *= 0.5;
       double value = polynomial_[degree_];
       for (int p = degree_ - 1; p >= 0; --p) value = value * x + polynomial_[p];

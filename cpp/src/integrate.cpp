@@ -2,31 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <new>
 
 #include "pendcore/arithmetic/epsilon.hpp"
 #include "pendcore/integrate/clock.hpp"
-#include "pendcore/integrate/guards.hpp"
 #include "pendcore/integrate/resume_point.hpp"
 #include "pendcore/integrate/statistics.hpp"
 #include "pendcore/integrate/stiffness.hpp"
+#include "pendcore/integrate/trial.hpp"
 
 namespace pendcore {
 namespace {
-
-/// Of the attempted step: the component whose new value, or new rate, is not finite, or -1.
-int bad_component_of_trial(Stepper& stepper, double t_new) {
-  std::vector<double> y(stepper.dimension());
-  std::vector<double> dydt(stepper.dimension());
-  stepper.get_new_state(y.data());
-  stepper.evaluate(t_new, y.data(), dydt.data());
-  y.resize(stepper.controlled());  // quadratures have no say in the steps
-  dydt.resize(stepper.controlled());
-  return std::max(bad_component(y), bad_component(dydt));
-}
-
-constexpr double few = 10.0;  // of the last bits of time: a step of no more resolves nothing
 
 class Run {
  public:
@@ -37,12 +23,11 @@ class Run {
         limits_(limits),
         observer_(observer),
         breaks_(breaks),
-        method_(stepper.info()),
         clock_(limits, position.t.high),
         resume_(stepper, position, resumable, observer, breaks, limits.begins_anew),
+        trial_(stepper, position, limits.fixed_step, breaks),
         state_(stepper.dimension()),
         rate_(stepper.dimension()) {
-    if (breaks != nullptr) guards_ = std::make_unique<Guards>(stepper, *breaks);
     has_quadratures_ = stepper.controlled() < stepper.dimension();
     stepper.goes_on = [this] {
       if (can_stop_) stopped_ = clock_.look(position_.t.high);
@@ -61,7 +46,7 @@ class Run {
     try {
       while (!has_ended() && step()) {
       }
-      return end_with(status_, bad_);
+      return end_with(status_, bad_ >= 0 ? bad_ : trial_.bad());
     } catch (const std::bad_alloc&) {
       throw;
     } catch (...) {  // what a function of the user's throws
@@ -111,95 +96,24 @@ class Run {
 
     ++attempts_;
     can_stop_ = true;
-    Attempt attempt = stepper_.attempt(t, h, position_.control.gain(method_));
+    trial_.attempt(h);
     can_stop_ = false;  // within a step that was tried already
     if (stopped_ != Status::finished) return end(stopped_);
-    look_for_bad_component(attempt, t + h);
-    // A step of a few bits cannot be shortened, and its error is that of its times.
-    const bool is_shortest = target.is_in_reach && std::abs(h) <= few * last_bits(target.t);
-    const bool is_accepted = attempt.squared_error <= 1.0 || limits_.fixed_step || is_shortest;
-    if (!position_.trial_was_finite || !is_accepted) {
-      return give_up(h * position_.control.reject(method_, attempt), attempt);
-    }
-
-    Crossing crossing;
-    if (guards_ && !is_shortest) {
-      const Step found = follow_guards(crossing, t, h, attempt);
-      if (found != Step::stands) return found == Step::goes_on;
+    const bool is_shortest = target.is_in_reach && std::abs(h) <= few * last_bits(t, target.t);
+    switch (trial_.judge(is_shortest)) {
+      case Trial::Verdict::stands: break;
+      case Trial::Verdict::is_tried_again:
+        ++position_.statistics.rejected;
+        position_.h = trial_.h();
+        position_.h_is_max_step = false;
+        return true;
+      case Trial::Verdict::changes_at_start: return change_at_once(trial_.guard());
+      case Trial::Verdict::fails:
+        ++position_.statistics.rejected;
+        return end(trial_.result().converged ? Status::non_finite : Status::not_converged);
     }
     position_.crossings_at_once = 0;
-    return accept(target, crossing.guard, h, attempt);
-  }
-
-  /// Attempts the step again, at another length. Whether it stands; a part of a fixed step may
-  /// become as short as it takes.
-  bool stands_at(double t, double& h, Attempt& attempt) {
-    while (true) {
-      attempt = stepper_.attempt(t, h, position_.control.gain(method_));
-      look_for_bad_component(attempt, t + h);
-      if (!limits_.fixed_step) {
-        return position_.trial_was_finite && attempt.squared_error <= 1.0;
-      }
-      if (position_.trial_was_finite) return true;
-      if (std::abs(h) <= few * last_bits(t)) return false;
-      h *= 0.5;
-    }
-  }
-  /// Of a step that does not stand: another of size h is tried, where steps are not all of one.
-  bool give_up(double h, const Attempt& attempt) {
-    if (!limits_.fixed_step) return reject(h);
-    ++position_.statistics.rejected;
-    return end(attempt.converged ? Status::non_finite : Status::not_converged);
-  }
-
-  /// What became of a step: it is to be accepted, or the run goes on from its start, or ends.
-  enum class Step { stands, goes_on, ends };
-  static Step of(bool goes_on) { return goes_on ? Step::goes_on : Step::ends; }
-
-  /// Shortens the step so that it ends where the first guard is zero, `crossing`, or where no guard
-  /// is. One that coarse steps do not locate, shorter ones do.
-  Step follow_guards(Crossing& crossing, double t, double& h, Attempt& attempt) {
-    while (true) {
-      const Step found = set_out(crossing, t, h, attempt);
-      if (found != Step::stands || crossing.guard < 0) return found;
-      const double last = few * last_bits(t + h);
-      const Guards::Located located =
-          guards_->locate(crossing, t, h, position_.control.gain(method_), last_bits(t + h));
-      if (located.is_found && (limits_.fixed_step || located.attempt.squared_error <= 1.0)) {
-        h = located.h;
-        attempt = located.attempt;
-        look_for_bad_component(attempt, t + h);
-        if (position_.trial_was_finite) return Step::stands;
-      } else if (located.is_found) {
-        return of(reject(located.h * position_.control.reject(method_, located.attempt)));
-      }
-      // What the whole step strode over, the shorter one may see: friction's peak at rest.
-      // Where the dense output of a fixed step puts it says little: a tenth is short enough.
-      h *= std::max(0.5 * crossing.theta, limits_.fixed_step ? 0.1 : 0.0);
-      if (std::abs(h) <= last) return of(change_at_once(crossing));
-      if (!limits_.fixed_step) return of(reject(h));
-      if (!stands_at(t, h, attempt)) return of(give_up(h, attempt));
-    }
-  }
-
-  /// The step is halved until its dense output begins as the law has it: what a coarse one says of
-  /// its start, its own error may have made.
-  Step set_out(Crossing& crossing, double t, double& h, Attempt& attempt) {
-    constexpr int most_halvings = 20;
-    for (int halvings = 0;; ++halvings) {
-      crossing = guards_->first(t, h);
-      const bool is_short = std::abs(h) <= few * last_bits(t);
-      const double at_start = epsilon * std::max(few * std::abs(t), 2.0 * std::abs(h));
-      if (crossing.guard >= 0 && crossing.theta * std::abs(h) <= at_start) {
-        if (is_short || guards_->falls_at_start(crossing.guard, t, h, halvings)) {
-          return of(change_at_once(crossing));
-        }
-      } else if (is_short || halvings == most_halvings || !guards_->strays(crossing.theta)) {
-        return Step::stands;
-      }
-      h *= 0.5;
-      if (!stands_at(t, h, attempt)) return of(give_up(0.5 * h, attempt));
-    }
+    return accept(target, trial_.guard(), trial_.h(), trial_.result());
   }
 
   /// Nothing moves any more: one step to the end.
@@ -227,38 +141,17 @@ class Run {
         target = {next, difference(next, position_.t), true, false};
       }
     }
-    target.is_in_reach = std::abs(target.left) <= reach + last_bits(target.t);
+    target.is_in_reach = std::abs(target.left) <= reach + last_bits(position_.t.high, target.t);
     return target;
   }
-  /// Of time, from here to there.
-  double last_bits(double there) const {
-    return 4.0 * epsilon * std::max(std::abs(position_.t.high), std::abs(there));
-  }
-
-  void look_for_bad_component(const Attempt& attempt, double t_new) {
-    position_.trial_was_finite = true;
-    bad_ = -1;
-    if (std::isfinite(attempt.squared_error)) return;
-    // Beyond the square root of the largest double the norm overflows, and nothing is wrong.
-    bad_ = bad_component_of_trial(stepper_, t_new);
-    position_.trial_was_finite = bad_ < 0 && !std::isnan(attempt.squared_error);
-  }
-
-  bool reject(double h) {
-    ++position_.statistics.rejected;
-    position_.h = h;
-    position_.h_is_max_step = false;
-    return true;
-  }
-
   /// The law changes where the step begins.
-  bool change_at_once(const Crossing& crossing) {
+  bool change_at_once(int guard) {
+    resume_.begin_change();
     if (++position_.crossings_at_once > 100 + 4 * breaks_->guards()) {
       chatters_ = true;
       return end(Status::step_too_small);
     }
-    resume_.begin_change();
-    return change_law(crossing.guard);
+    return change_law(guard);
   }
 
   /// The quadratures have no say in the steps: they are not to overflow in silence.
@@ -273,8 +166,8 @@ class Run {
     if (quadratures_overflow()) return end(Status::non_finite);
     TwoDouble t_new = position_.t + h;
     // A guard's zero within the last bits of the target is there too.
-    const bool lands = target.is_in_reach &&
-                       difference(target.t, t_new) * std::copysign(1.0, h) <= last_bits(target.t);
+    const bool lands = target.is_in_reach && difference(target.t, t_new) * std::copysign(1.0, h) <=
+                                                 last_bits(position_.t.high, target.t);
     if (lands) t_new = {target.t, 0.0};
     const bool law_changes = guard >= 0 || (lands && target.is_break);
     if (law_changes) resume_.begin_change();
@@ -288,15 +181,15 @@ class Run {
       resume_.restart_at_step_start();
       return end(Status::max_turns);
     }
-    count_accepted(position_.statistics, h, target.is_in_reach || law_changes,
-                   position_.h_is_max_step);
+    const bool is_cut = target.is_in_reach || h != position_.h || law_changes;
+    count_accepted(position_.statistics, h, is_cut, position_.h_is_max_step);
     if (last < 1.0) return end_within_step(last, h, t_new.high);
     stepper_.accept(t_new.high);
     position_.t = t_new;
     if (!law_changes) {
       if (breaks_ != nullptr) breaks_->step_taken();
       if (limits_.fixed_step) return true;
-      position_.h = h * position_.control.accept(method_, attempt);
+      position_.h = h * position_.control.accept(stepper_.info(), attempt);
       position_.h_is_max_step = std::abs(position_.h) >= limits_.max_step;
       if (position_.h_is_max_step) position_.h = std::copysign(limits_.max_step, h);
       return true;
@@ -366,10 +259,9 @@ class Run {
   const Limits& limits_;
   Observer& observer_;
   Breaks* breaks_;
-  const MethodInfo& method_;
   Clock clock_;
   ResumePoint resume_;
-  std::unique_ptr<Guards> guards_;  ///< null where nothing breaks
+  Trial trial_;
   Status status_ = Status::finished;
   bool can_stop_ = false;
   Status stopped_ = Status::finished;  ///< or why an attempt was given up

@@ -182,50 +182,71 @@ bool Switching::cross(int k, double t, double* y) {
     collect_guards(y);
     return false;
   }
-  const double* const q = y;
-  const double* const qd = y + n_;
-  const bool is_doubtful = changes_at_once_ > many_at_once;
   bool jumped = false;
-  if (k >= linear_guards() && !is_doubtful) {
-    const auto [joint, is_most] = held_guards_[k - linear_guards()];
-    let_go_[joint] = is_most ? -1 : 1;
-    joints_.release(*equations_.effects, joint, let_go_[joint]);
-  } else if (k >= linear_guards()) {
-    choose(t, y, -1);
-  } else if (const Watch watch = guards_[k]; watch.stop != Side::none) {
-    settle(k, y);
-    if (relative(qd, watch.joint + 1) == 0.0) {
-      choose(t, y, watch.joint);
-    } else {  // or it was leaving, and is back too soon to be told: captured
-      const std::vector<double> before(qd, qd + n_);
-      strike(t, y);
-      jumped = !std::equal(before.begin(), before.end(), qd);
-    }
-  } else if (watch.guard.is_on_rate() &&
-             !joints_.supports()[watch.joint].friction_effects.empty()) {
-    const double rate = qd[watch.joint];
-    settle(k, y);
-    choose(t, y, watch.joint);
-    choose_sides(t, q, qd);
-    // What goes on in the other direction may have begun to do so in a step too short to be cut.
-    if (!joints_.is_held(watch.joint)) y[n_ + watch.joint] = rate;
+  if (k >= linear_guards()) {
+    let_go(held_guards_[k - linear_guards()], t, y);
+  } else if (guards_[k].stop != Side::none) {
+    jumped = reach_stop(k, t, y);
+  } else if (is_of_friction(guards_[k])) {
+    come_to_rest(k, t, y);
   } else {
-    std::visit(
-        [&](const auto& one) {
-          if constexpr (requires { one.has_modes(); }) {
-            put_mode(watch.effect,
-                     one.next_mode(equations_.effects->modes[watch.effect], watch.number));
-          }
-        },
-        scene_.effects[watch.effect]);
+    change_side(guards_[k]);
   }
   for (int j = 0; j < n_; ++j) {
     if (jumped || joints_.is_held(j)) let_go_[j] = 0;
   }
   see_what_was_let_go(t, y);
-  choose_sides(t, q, qd);
+  choose_sides(t, y, y + n_);
   collect_guards(y);
   return jumped;
+}
+
+void Switching::let_go(const HeldGuard& guard, double t, const double* y) {
+  if (changes_at_once_ > many_at_once) return choose(t, y, -1);
+  let_go_[guard.joint] = guard.is_most ? -1 : 1;
+  joints_.release(*equations_.effects, guard.joint, let_go_[guard.joint]);
+}
+
+/// Whether the state jumped.
+bool Switching::reach_stop(int k, double t, double* y) {
+  settle(k, y);
+  const int joint = guards_[k].joint;
+  const double* const qd = y + n_;
+  if (relative(qd, joint + 1) == 0.0) {
+    choose(t, y, joint);
+    return false;
+  }
+  // Or it was leaving, and is back too soon to be told: captured.
+  const std::vector<double> before(qd, qd + n_);
+  strike(t, y);
+  return !std::equal(before.begin(), before.end(), qd);
+}
+
+bool Switching::is_of_friction(const Watch& watch) const {
+  return watch.guard.is_on_rate() && !joints_.supports()[watch.joint].friction_effects.empty();
+}
+
+void Switching::come_to_rest(int k, double t, double* y) {
+  const int joint = guards_[k].joint;
+  double& rate = y[n_ + joint];
+  const double rate_before = rate;
+  settle(k, y);
+  choose(t, y, joint);
+  choose_sides(t, y, y + n_);  // while the rate is zero: laws beside the friction choose by that
+  // What goes on in the other direction may have begun to do so in a step too short to be cut.
+  if (!joints_.is_held(joint)) rate = rate_before;
+}
+
+/// A law that has its sides apart is on the next.
+void Switching::change_side(const Watch& watch) {
+  std::visit(
+      [&](const auto& one) {
+        if constexpr (requires { one.has_modes(); }) {
+          const int mode = equations_.effects->modes[watch.effect];
+          put_mode(watch.effect, one.next_mode(mode, watch.number));
+        }
+      },
+      scene_.effects[watch.effect]);
 }
 
 double Switching::shortest_moment(double t) const {
@@ -236,9 +257,11 @@ double Switching::shortest_moment(double t) const {
 /// later decide, as short a one as time resolves, and longer ones while that leads nowhere.
 double Switching::a_moment_later(double t) const {
   if (changes_at_once_ <= many_at_once) return t;
-  double moment = shortest_moment(t);
-  for (int i = many_at_once; i < changes_at_once_ && moment < moment_; ++i) moment *= 4.0;
-  moment = std::min(moment, moment_);
+  const double shortest = shortest_moment(t);
+  const double longest = std::max(moment_, shortest);
+  double moment = shortest;
+  for (int i = many_at_once; i < changes_at_once_ && moment < longest; ++i) moment *= 4.0;
+  moment = std::min(moment, longest);
   return t + (forward_ ? moment : -moment);
 }
 

@@ -75,7 +75,13 @@ class Switching final : public Breaks {
   /// The modes that hold from time t on: those of the state, and none where a table has ended.
   void choose_modes_from(double t, const double* q, const double* qd);
   void choose_sides(double t, const double* q, const double* qd);
+  /// What cross() does on a time, and on each kind of guard.
   void cross_time(double t);
+  void let_go(const HeldGuard& guard, double t, const double* y);
+  bool reach_stop(int k, double t, double* y);
+  void come_to_rest(int k, double t, double* y);
+  void change_side(const Watch& watch);
+  bool is_of_friction(const Watch& watch) const;
   double shortest_moment(double t) const;  ///< s, that time resolves
   double a_moment_later(double t) const;
   void choose(double t, const double* y, int joint);

@@ -1,0 +1,65 @@
+/// \file
+/// A step as it is tried: shortened, where the law changes along it, to the time at which it does.
+///
+/// The law is frozen while the method tries a step, and Guards says where along it that was not
+/// allowed. The step is then taken again to that time, so that the state there comes from the
+/// method, not from the dense output. What a step says of guards that coarse steps cannot tell, a
+/// shorter one is asked.
+#pragma once
+
+#include <memory>
+
+#include "pendcore/integrate/guards.hpp"
+#include "pendcore/integrate/integrate.hpp"
+
+namespace pendcore {
+
+/// How far apart doubles are about there, and a little more: times within that are the same.
+double last_bits(double t, double t_new);
+/// Of these: a step of no more resolves nothing.
+inline constexpr double few = 10.0;
+
+class Trial {
+ public:
+  /// What is to become of the step.
+  enum class Verdict {
+    stands,            ///< of size h(); at its end the law changes if guard() is not -1
+    is_tried_again,    ///< from its start, of size h()
+    changes_at_start,  ///< guard() is negative as soon as the step begins
+    fails              ///< and no other size is to be tried
+  };
+
+  /// Steps of `position`, whose `trial_was_finite` it keeps; `breaks` may be null.
+  Trial(Stepper& stepper, Position& position, bool fixed_step, Breaks* breaks);
+
+  /// The method's attempt at a step of size h.
+  void attempt(double h);
+  /// What follows from it. The shortest of all steps cannot be shortened, and its error is that of
+  /// its times.
+  Verdict judge(bool is_shortest);
+
+  double h() const { return h_; }
+  int guard() const { return crossing_.guard; }
+  const Attempt& result() const { return attempt_; }
+  /// The component whose new value or rate is not finite, or -1.
+  int bad() const { return bad_; }
+
+ private:
+  Verdict follow_guards();
+  Verdict set_out();
+  bool take_again();
+  Verdict give_up(double h);
+  void look_for_bad_component();
+
+  Stepper& stepper_;
+  Position& position_;
+  bool fixed_step_;
+  std::unique_ptr<Guards> guards_;  ///< null where nothing breaks
+  double t_ = 0.0;
+  double h_ = 0.0;
+  Attempt attempt_{};
+  Crossing crossing_;
+  int bad_ = -1;
+};
+
+}  // namespace pendcore
