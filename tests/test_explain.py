@@ -122,6 +122,17 @@ def test_a_pose_that_nothing_holds_is_neither_stable_nor_unstable():
     assert "hanging, stable: q" in repr(rods(1, fx.Lock(1), gravity=0.0).explain())  # all is held
 
 
+@pytest.mark.parametrize("b", [10.0, 1e6, 1e12])
+@pytest.mark.parametrize(("name", "sign"), [("upright", 1), ("hanging", -1)])
+def test_a_rod_in_honey_falls_slowly_and_is_still_told_to_fall(b, name, sign):
+    inertia, torque = 1 / 3, sign * G / 2  # J lambda^2 + b lambda = +-m g L / 2
+    slow = 2 * torque / (b + sqrt(b * b + 4 * inertia * torque))
+    found = named(rods(1, fx.ViscousJoint(1, b), gravity=G), name)
+    assert found.stability == ("unstable" if sign > 0 else "stable")
+    assert found.modes[0].rate == pytest.approx(slow, rel=1e-9)
+    assert found.modes[1].rate == pytest.approx(-torque / (inertia * slow), rel=1e-9)
+
+
 def test_what_changes_with_time_is_told_to_be_looked_at_for_an_instant():
     for drive in (
         fx.DrivenPivot(y=fx.Sinusoid(0.01, 350.0)),

@@ -97,6 +97,13 @@ def test_a_fast_mode_that_sets_the_steps_is_named(effect: Any, name: str, method
     assert damped == pytest.approx(ratio, rel=6e-3, abs=2e-3)
 
 
+def test_a_fast_mode_is_told_in_the_joint_of_its_effect() -> None:
+    # The free second link turns the other way: its joint turns more.
+    spring = pc.effects.TorsionalSpring(1, stiffness=1e6)
+    sol = pc.simulate(two_rods(spring), [0.01, 0.0], 0, (0, 1), max_steps=5_000)
+    assert "in joint 1, from effect 1 (torsional_spring)" in sol.message
+
+
 def test_a_pendulum_has_no_fast_mode_however_long_it_runs() -> None:
     sol = pc.simulate(BOOK, START, 0, (0, 100))
     assert sol.stats.accepted > 2000

@@ -117,6 +117,14 @@ std::optional<FastMode> fast_mode(const Scene& scene, const EquationsOfMotion& e
       mode.effect = static_cast<int>(i);
     }
   }
+  // The joint that turns most may be the next one, which the same torque moves.
+  if (mode.effect) {
+    std::visit(
+        [&]<class Kind>(const Kind& one) {
+          if constexpr (requires { one.joint; }) mode.joint = one.joint;
+        },
+        scene.effects[*mode.effect]);
+  }
   return mode;
 }
 

@@ -116,7 +116,7 @@ def numbers(
     """Return numbers along one axis, as many as they are or ``count``."""
     array = finite_array(name, value, unit) if finite else real_array(name, value, unit)
     if array.ndim != 1 or count not in (None, len(array)):
-        wanted = "(k,)" if count is None else f"({count},)"
+        wanted = "(k,)" if count is None else f"({count},), {count} numbers"
         raise ValueError(f"{name}: shape {array.shape}: must be {wanted}{in_unit(unit)}")
     return tuple(array.tolist())
 

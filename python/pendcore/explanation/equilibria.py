@@ -7,16 +7,22 @@ central differences, the eigenvalues of
     d/dt (dz, dzd) = ((0, 1), (A, B)) (dz, dzd)
 
 are the rates: a pair lambda = -zeta w +- i w sqrt(1 - zeta^2) is an oscillation of natural angular
-frequency w and damping ratio zeta; a real one grows or decays.
+frequency w and damping ratio zeta; a real one grows or decays. Those that are slow beside the
+fastest, as the fall of a rod in honey is beside its damping, come from the inverse of that matrix,
+
+    ((-A^-1 B, A^-1), (1, 0)),
+
+whose largest eigenvalues their reciprocals are.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from math import pi
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from pendcore.arguments import Floats
 from pendcore.explanation.constraints import locks
@@ -26,14 +32,21 @@ _STEP = 1e-5
 """rad and rad/s, of the differences: where truncation and rounding are about as large."""
 _LONGEST = 0.5
 """rad, of an iteration of Newton's method: it shall not leap to a distant equilibrium."""
-NOISE = 1e-5
-"""What the differences leave of a rate that is zero, as a share of the stiffest."""
+_NOISE = 1e-5
+"""What the differences leave of a growth that is zero, as a share of the mode's own size."""
+_SLOW = 1e-3
+"""Of the stiffest rate: what is below comes from the inverse."""
+_SINGULAR = 1e-12
+"""Least singular value of A, as a share of the largest, of what nothing turns back."""
 _LEFT_OUT = {
     "dry": "dry friction is left out of the equilibria: it can hold the scene near them",
     "impact": "stops are left out of the equilibria: the scene can rest against them, and not "
     "beyond them",
 }
 """What has no slope about a state of rest, by the account that it is booked on."""
+
+
+Complexes = npt.NDArray[np.complex128]
 
 
 class Mode(NamedTuple):
@@ -66,9 +79,9 @@ class Equilibrium(NamedTuple):
         ``"hanging"``, ``"upright"`` or ``"start"``, or from which of them it was found.
     q : tuple of float, (n,)
         rad.
-    stable : bool
-        Whether everything about it comes back or stays small. Where nothing grows and something
-        has no rate at all, as without gravity, it is not: a push goes on.
+    stability : {"stable", "unstable", "indifferent"}
+        Stable where everything about it comes back or stays small; indifferent where nothing
+        grows and something has no rate at all, as without gravity: a push goes on.
     modes : tuple of Mode
         The slowest first.
     stiffest_rate : float
@@ -77,9 +90,13 @@ class Equilibrium(NamedTuple):
 
     name: str
     q: tuple[float, ...]
-    stable: bool
+    stability: Literal["stable", "unstable", "indifferent"]
     modes: tuple[Mode, ...]
     stiffest_rate: float
+
+    @property
+    def stable(self) -> bool:
+        return self.stability == "stable"
 
 
 class FreeAngles:
@@ -182,16 +199,40 @@ def find_equilibria(
 
 
 def _described(name: str, free: FreeAngles, z: Floats) -> Equilibrium:
-    m = len(z)
-    by_angle, by_rate = free.linearised(z)
-    matrix = np.block([[np.zeros((m, m)), np.eye(m)], [by_angle, by_rate]])
-    rates = np.linalg.eigvals(matrix).astype(complex)
-    stiffest = float(np.abs(rates).max(initial=0.0))
+    rates, turns_back = _rates_about(*free.linearised(z))
     modes = sorted((_mode(x) for x in rates if x.imag >= 0), key=_size)
-    noise = NOISE * stiffest
-    stable = all(mode.rate <= noise < _size(mode) for mode in modes)
+    grows = any(mode.rate > _NOISE * _size(mode) for mode in modes)
     q = tuple((free.q(z) + 0.0).tolist())  # no -0.0
-    return Equilibrium(name, q, stable, tuple(modes), stiffest)
+    return Equilibrium(
+        name,
+        q,
+        "unstable" if grows else "stable" if turns_back else "indifferent",
+        tuple(modes),
+        float(np.abs(rates).max(initial=0.0)),
+    )
+
+
+def _rates_about(by_angle: Floats, by_rate: Floats) -> tuple[Complexes, bool]:
+    """Return the eigenvalues, and whether a small turn of every kind meets a torque."""
+    m = len(by_angle)
+    unit, zero = np.eye(m), np.zeros((m, m))
+    rates = _by_size(np.linalg.eigvals(np.block([[zero, unit], [by_angle, by_rate]])))
+    sizes = np.linalg.svd(by_angle, compute_uv=False)
+    if m and sizes[-1] <= _SINGULAR * sizes[0]:
+        rates[np.abs(rates) <= _NOISE * np.abs(rates[-1])] = 0.0
+        return rates, False
+    with np.errstate(over="ignore", invalid="ignore"):
+        inverse = np.linalg.inv(by_angle)
+        of_inverse = np.block([[-inverse @ by_rate, inverse], [unit, zero]])
+    if not np.isfinite(of_inverse).all():
+        return rates, True
+    slow = np.linalg.eigvals(of_inverse)
+    is_slow = np.abs(rates) < _SLOW * np.abs(rates).max(initial=0.0)
+    return np.where(is_slow, _by_size(1.0 / slow), rates), True
+
+
+def _by_size(rates: Complexes) -> Complexes:
+    return rates[np.argsort(np.abs(rates), kind="stable")].astype(complex)
 
 
 def _mode(eigenvalue: complex) -> Mode:

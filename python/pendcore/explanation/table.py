@@ -8,7 +8,7 @@ from textwrap import wrap
 from typing import Any
 
 from pendcore.explanation import STEPS_A_PERIOD, Explanation, changes_with_time
-from pendcore.explanation.equilibria import NOISE, Equilibrium, Mode
+from pendcore.explanation.equilibria import Mode
 
 _WIDTH = 80
 _NAME = 58
@@ -69,7 +69,7 @@ def _frozen(told: Explanation) -> str:
 def _equilibria(told: Explanation) -> Iterator[str]:
     for found in told.equilibria:
         angles = ", ".join(f"{x:.6g}" for x in found.q[:4]) + ", ..." * (len(found.q) > 4)
-        yield f"  {found.name}, {_stability(found)}: q = ({angles}) rad"
+        yield f"  {found.name}, {found.stability}: q = ({angles}) rad"
         shown = found.modes if len(found.modes) <= 8 else (*found.modes[:4], *found.modes[-4:])
         for i, mode in enumerate(shown):
             if i == 4 and len(found.modes) > 8:
@@ -77,11 +77,6 @@ def _equilibria(told: Explanation) -> Iterator[str]:
             yield f"    {_motion(mode)}"
     if not told.equilibria:
         yield "  none was found"
-
-
-def _stability(found: Equilibrium) -> str:
-    grows = max((mode.rate for mode in found.modes), default=0.0) > NOISE * found.stiffest_rate
-    return "stable" if found.stable else "unstable" if grows else "indifferent"
 
 
 def _motion(mode: Mode) -> str:
