@@ -27,6 +27,10 @@ std::string table_that_ends(const Scene& scene, double t, bool forward) {
 std::string ending_message(const Ending& ending, const Scene& scene, const Solution& solution,
                            const Position& position, const std::string& remark, int ended_by) {
   std::string message(text(ending.status).sentence);
+  const Statistics& statistics = position.statistics;
+  const bool wants_another_method = statistics.stiff && statistics.njev == 0;
+  // What helps there is told with the stiffness: a method, not more steps.
+  if (ending.status == Status::max_steps && wants_another_method) message.resize(message.find(':'));
   if (ending.status == Status::at_rest) {
     const double since = solution.resumable.t.high;
     return message + " (at t = " + text(since) + " s: " + remark + ")";
