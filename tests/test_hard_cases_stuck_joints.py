@@ -7,15 +7,13 @@ others locked is wrong in one random case of six.
 
 from __future__ import annotations
 
-import functools
-import itertools
 from typing import Any
 
 import numpy as np
 import pendcore as pc
 import pytest
 from dense_chain import DenseChain, held_accelerations, joints
-from hybrid_chain import HybridChain
+from driven_chains import DrivenChain, Motor, assert_follows_mode_by_mode, mode_by_mode
 from pendcore import effects as fx
 from unit_rods import links, time_of_rest
 
@@ -160,21 +158,10 @@ def test_a_joint_that_is_stuck_may_let_go_because_another_moves(fine: Any) -> No
 
 
 RUNS = {
-    "slow": (np.array([5.0, 1.5]), 10.0, 1.0, 6.2),
-    "fast": (np.array([6.0, 4.0]), 18.0, 3.0, 3.0),
-    "three rods": (np.array([9.0, 3.0, 1.0]), 22.0, 2.0, 2.5),
+    "slow": DrivenChain(friction=(5.0, 1.5), motor=Motor(1, 10.0, 1.0), t_end=6.2),
+    "fast": DrivenChain(friction=(6.0, 4.0), motor=Motor(1, 18.0, 3.0), t_end=3.0),
+    "three rods": DrivenChain(friction=(9.0, 3.0, 1.0), motor=Motor(1, 22.0, 2.0), t_end=2.5),
 }
-
-
-@functools.cache
-def mode_by_mode(run: str) -> tuple[HybridChain, Any, Any]:
-    friction, amplitude, w, t_end = RUNS[run]
-    n = len(friction)
-    chain = DenseChain(masses=np.ones(n), lengths=np.ones(n), gravity=9.807)
-    motor = np.eye(n)[0] * amplitude
-    exact = HybridChain(chain=chain, friction=friction, torques=lambda t: motor * np.sin(w * t))
-    times = np.linspace(0, t_end, 12)[1:]
-    return exact, times, exact.run(np.full(n, np.pi / 2), times, h=0.04)
 
 
 @pytest.mark.parametrize("run", RUNS)
@@ -182,19 +169,5 @@ def test_joints_that_stick_and_slide_in_turn_follow_the_solution_mode_by_mode(
     run: str, fine: Any
 ) -> None:
     """Hanging rods under a motor in joint 1: every switch, and the states between."""
-    friction, amplitude, w, t_end = RUNS[run]
-    n = len(friction)
-    exact, times, states = mode_by_mode(run)
-    hum = fx.Sinusoid(amplitude=amplitude, angular_frequency=w)
-    effects: list[Any] = [fx.Motor(joint=1, sinusoid=hum)]
-    effects += [fx.DryJointFriction(joint=j + 1, coulomb=float(friction[j])) for j in range(n)]
-    scene = pc.Scene(links=links(exact.chain), gravity=exact.chain.gravity, effects=effects)
-    sol = pc.simulate(scene, np.pi / 2, t_span=(0, t_end), **fine)
-    assert sol.status == "finished"
-    np.testing.assert_allclose(sol(times).T, states, atol=1e-9)
-    assert any(0 in mode for _, _, mode in exact.switches)
-    for time, _, _ in exact.switches:
-        assert np.abs(sol.t - time).min() < 1e-9
-    for (begin, _, mode), (end, _, _) in itertools.pairwise(exact.switches):
-        rates = joints(n) @ sol((begin + end) / 2)[n:]
-        assert tuple(np.sign(rates)) == mode  # 0 where it sticks: not small, nothing
+    assert any(0 in mode for _, _, mode in mode_by_mode(RUNS[run]).exact.switches)
+    assert_follows_mode_by_mode(RUNS[run].simulate(**fine), RUNS[run])

@@ -74,14 +74,23 @@ class Equations(NamedTuple):
         That is |K^-1| (|K| |x| + size of the right side): Skeel's condition. Who computes with
         terms that are off by a part in 10^12 is off by 10^-12 of these sizes.
         """
-        matrix = np.array(self.matrix, dtype=float)
         x = np.abs(np.array(unknowns, dtype=float))
-        terms = np.abs(matrix) @ x + [float(side.size) for side in self.right]
+        return self.reach(magnitudes(self.matrix) @ x + [float(side.size) for side in self.right])
+
+    def reach(self, terms: NDArray[np.float64]) -> NDArray[np.float64]:
+        """How far the unknowns change if the lines change by so much, whatever the signs."""
+        matrix = magnitudes(self.matrix)
         # Columns and rows of very different units are brought to one size before inverting.
-        columns = np.abs(matrix).max(axis=0)
-        rows = np.abs(matrix / columns).max(axis=1)
-        inverse = np.linalg.inv(matrix / columns / rows[:, np.newaxis])
+        columns = matrix.max(axis=0)
+        rows = (matrix / columns).max(axis=1)
+        signed = np.array(self.matrix, dtype=float)
+        inverse = np.linalg.inv(signed / columns / rows[:, np.newaxis])
         return np.abs(inverse) @ (terms / rows) / columns
+
+
+def magnitudes(numbers: Sequence[Sequence[Number]]) -> NDArray[np.float64]:
+    """The magnitudes of a matrix of any numbers."""
+    return np.abs(np.array(numbers, dtype=float))
 
 
 def chain_equations(
