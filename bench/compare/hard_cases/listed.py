@@ -9,6 +9,7 @@ STICK = "tests/test_hard_cases_stick.py"
 SLIP = "tests/test_hard_cases_stick_slip.py"
 JOINTS = "tests/test_hard_cases_stuck_joints.py"
 BOUNCES = "tests/test_hard_cases_bounces.py"
+BOUNCING = "tests/test_hard_cases_bounces_of_chains.py"
 CONTACT = "tests/test_hard_cases_contact.py"
 IMPACTS = "tests/test_hard_cases_impacts.py"
 EVENTS = "tests/test_hard_cases_events.py"
@@ -80,7 +81,12 @@ LISTED: dict[str, tuple[str, ...]] = {
         f"{JOINTS}::test_what_sticks_is_what_is_free_of_contradiction",
         f"{JOINTS}::test_joints_that_stick_and_slide_in_turn_follow_the_solution_mode_by_mode",
     ),
-    "accumulating bounces": (f"{BOUNCES}::test_accumulating_bounces_end_when_the_series_says",),
+    "accumulating bounces, of one rod and of chains": (
+        f"{BOUNCES}::test_accumulating_bounces_end_when_the_series_says",
+        f"{BOUNCING}::test_bounces_of_chains_are_all_there_down_to_the_capture_speed",
+        f"{BOUNCING}::test_bounces_of_chains_end_when_the_series_says",
+        f"{BOUNCING}::test_chains_that_have_bounced_lean_and_are_let_go_as_bounce_by_bounce",
+    ),
     "impacts on chains, several stops at once": (
         f"{IMPACTS}::test_an_impact_turns_the_joint_and_jerks_the_others_as_the_law_says",
         f"{IMPACTS}::test_stops_hit_at_once_share_the_impulse_by_complementarity",
