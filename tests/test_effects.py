@@ -156,7 +156,7 @@ MISTAKES = {
     "no pair": (
         lambda: fx.RodDrag(1, 1, 1, wind=3.0),
         ValueError,
-        r"RodDrag: wind: shape \(\): must be \(2,\) \(m/s\)",
+        r"RodDrag: wind: shape \(\): must be \(2,\), 2 numbers \(m/s\)",
     ),
     "no list": (
         lambda: fx.Table(t=[[0, 1]], torque=[1, 2]),

@@ -17,22 +17,21 @@ std::size_t place(int row, int column, int n) {
 }  // namespace
 
 void factor_symmetric(int n, double* a) {
-  for (int i = 0; i < n; ++i) {
-    double* const row = a + place(i, 0, n);
-    for (int j = 0; j < i; ++j) {  // L D for now
-      for (int k = 0; k < j; ++k) row[j] -= row[k] * a[place(j, k, n)];
-    }
-    for (int j = 0; j < i; ++j) {
-      const double of_both = row[j];
-      row[j] /= a[place(j, j, n)];
-      row[i] -= of_both * row[j];
+  std::vector<double> column(n);
+  for (int k = 0; k < n; ++k) {
+    for (int i = k + 1; i < n; ++i) column[i] = a[place(i, k, n)] / a[place(k, k, n)];
+    for (int i = k + 1; i < n; ++i) {  // what is left of A, row by row
+      double* const row = a + place(i, 0, n);
+      const double of_both = row[k];  // L D
+      for (int j = k + 1; j <= i; ++j) row[j] -= of_both * column[j];
+      row[k] = column[i];
     }
   }
 }
 
-void solve_lower(int n, const double* factor, double* x) {
-  for (int i = 0; i < n; ++i) {
-    for (int k = 0; k < i; ++k) x[i] -= factor[place(i, k, n)] * x[k];
+void solve_lower(int n, const double* factor, double* x, int first) {
+  for (int i = first; i < n; ++i) {
+    for (int k = first; k < i; ++k) x[i] -= factor[place(i, k, n)] * x[k];
   }
 }
 
@@ -53,6 +52,7 @@ void ForcesBetweenBounds::resize(int count) {
 
 /// lambda where it is between the bounds, so that w = 0 there; and all w.
 void ForcesBetweenBounds::solve_between() {
+  if (look) look();
   free_.clear();
   for (int i = 0; i < size; ++i) {
     if (at[i] == Bound::between) free_.push_back(i);
@@ -109,46 +109,60 @@ bool ForcesBetweenBounds::solve() {
   return descend();
 }
 
-/// From forces within the bounds downhill, until a bound is in the way or what is free is at its
-/// least; then the bound is let go that is wrong by most.
+/// From forces within the bounds downhill: towards what would be the least without the bounds that
+/// are not in the way, along them where they are met, half as far until it goes down enough.
 bool ForcesBetweenBounds::descend() {
-  for (int i = 0; i < size; ++i) {
-    lambda[i] = std::clamp(lambda[i], lower[i], upper[i]);
-    at[i] = lambda[i] == lower[i]   ? Bound::lower
-            : lambda[i] == upper[i] ? Bound::upper
-                                    : Bound::between;
-  }
-  for (int round = 0; round < 100 + 20 * size; ++round) {
-    const std::vector<double> from = lambda;
+  for (int i = 0; i < size; ++i) lambda[i] = std::clamp(lambda[i], lower[i], upper[i]);
+  std::vector<double> from(lambda);
+  std::vector<double> slope(lambda.size());
+  for (int round = 0; round < 100 + size; ++round) {
+    from = lambda;
+    slope_at(from, slope);
+    bool is_least = true;
+    for (int i = 0; i < size; ++i) {
+      const bool stays_lower = from[i] == lower[i] && slope[i] >= 0.0;
+      const bool stays_upper = from[i] == upper[i] && slope[i] <= 0.0;
+      at[i] = stays_lower ? Bound::lower : stays_upper ? Bound::upper : Bound::between;
+      const bool is_flat = at[i] != Bound::between || std::abs(slope[i]) <= rounding(i);
+      is_least = is_least && is_flat;
+    }
+    if (is_least) {
+      w = slope;
+      return true;
+    }
     solve_between();
-    double share = 1.0;
-    int first = -1;
-    Bound met = Bound::between;
-    for (int i = 0; i < size; ++i) {
-      const int way = at[i] == Bound::between ? wrong(i) : 0;
-      if (way == 0) continue;
-      const double bound = way < 0 ? lower[i] : upper[i];
-      const double until = (bound - from[i]) / (lambda[i] - from[i]);
-      if (first >= 0 && until >= share) continue;
-      share = until;
-      first = i;
-      met = way < 0 ? Bound::lower : Bound::upper;
+    const std::vector<double> to = lambda;
+    for (double share = 1.0; share > epsilon; share *= 0.5) {
+      for (int i = 0; i < size; ++i) {
+        lambda[i] = std::clamp(from[i] + share * (to[i] - from[i]), lower[i], upper[i]);
+      }
+      if (goes_down(from, slope)) break;
     }
-    if (first >= 0) {
-      for (int i = 0; i < size; ++i) lambda[i] = from[i] + share * (lambda[i] - from[i]);
-      at[first] = met;
-      lambda[first] = met == Bound::lower ? lower[first] : upper[first];
-      continue;
-    }
-    int worst = -1;
-    for (int i = 0; i < size; ++i) {
-      if (wrong(i) == 0 || std::abs(w[i]) <= rounding(i)) continue;
-      if (worst < 0 || std::abs(w[i]) > std::abs(w[worst])) worst = i;
-    }
-    if (worst < 0) return true;
-    at[worst] = Bound::between;
+    if (lambda == from) return true;  // no lower by any double
   }
   return false;
+}
+/// W x + a, the slope of 1/2 x.W x + a.x
+void ForcesBetweenBounds::slope_at(const std::vector<double>& x, std::vector<double>& slope) const {
+  for (int i = 0; i < size; ++i) {
+    slope[i] = a[i];
+    for (int j = 0; j < size; ++j) slope[i] += W[place(i, j, size)] * x[j];
+  }
+}
+
+/// Whether lambda is lower than `from`, by a tenth at least of what the slope there promises.
+bool ForcesBetweenBounds::goes_down(const std::vector<double>& from,
+                                    const std::vector<double>& slope) const {
+  double promised = 0.0;
+  double curved = 0.0;
+  for (int i = 0; i < size; ++i) {
+    const double change = lambda[i] - from[i];
+    promised += slope[i] * change;
+    double along = 0.0;
+    for (int j = 0; j < size; ++j) along += W[place(i, j, size)] * (lambda[j] - from[j]);
+    curved += 0.5 * change * along;
+  }
+  return promised < 0.0 && promised + curved <= 0.1 * promised;
 }
 
 double ForcesBetweenBounds::rounding(int i) const {

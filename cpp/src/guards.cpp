@@ -111,6 +111,20 @@ double Guards::value_at(int k, double t) {
   return samples_[other];
 }
 
+/// A linear guard's value, slope and curvature (half the second derivative) where the step begins,
+/// as the law has them: 1, 1/s, 1/s^2. A guard on a rate has no second derivative that is known.
+std::array<double, 3> Guards::start_of(int k) {
+  const int n = stepper_.controlled() / 2;
+  std::vector<double> rows(3 * static_cast<std::size_t>(dimension_), 0.0);
+  double* const rates = &rows[dimension_];
+  stepper_.get_derivative(rates);
+  for (int i = 0; i < n; ++i)
+    rows[2 * static_cast<std::size_t>(dimension_) + i] = 0.5 * rates[n + i];
+  std::array<double, 3> along{};
+  breaks_.polynomial(k, rows.data(), 2, dimension_, along.data());
+  return along;
+}
+
 bool Guards::falls_at_start(int k, double t, double h, int halvings) {
   if (halvings == most_halvings) return true;
   stepper_.get_state(state_.data());
@@ -119,14 +133,7 @@ bool Guards::falls_at_start(int k, double t, double h, int halvings) {
     const double value = value_at(k, t);  // and first of all, as it knows what it is rounded by
     return value <= breaks_.rounding(k, state_.data());
   }
-  // Slope and curvature: a guard on a rate has no second derivative that is known.
-  const int n = stepper_.controlled() / 2;
-  std::vector<double> rows(3 * static_cast<std::size_t>(dimension_), 0.0);
-  double* const rates = &rows[dimension_];
-  stepper_.get_derivative(rates);
-  std::copy_n(rates + n, n, &rows[2 * static_cast<std::size_t>(dimension_)]);
-  std::array<double, 3> along{};
-  breaks_.polynomial(k, rows.data(), 2, dimension_, along.data());
+  const std::array<double, 3> along = start_of(k);
   for (int order = zeros; order <= 2; ++order) {
     const double rise = order == 1 ? along[1] * h : along[2];
     if (rise != 0.0) return rise < 0.0;
@@ -134,7 +141,23 @@ bool Guards::falls_at_start(int k, double t, double h, int halvings) {
   return halvings == halvings_without_sign;
 }
 
-bool Guards::strays(double theta) {
+bool Guards::strays(const Crossing& crossing, double h) {
+  return is_of_error(crossing, h) || goes_below(crossing.theta);
+}
+
+/// With the slope and the curvature that the law has, the guard is zero later by half, or not.
+bool Guards::is_of_error(const Crossing& crossing, double h) {
+  const int k = crossing.guard;
+  if (k < 0 || k >= breaks_.linear_guards() || breaks_.zeros_at_start(k) == 0) return false;
+  const int degree = along_step(k);
+  const std::array<double, 3> along = start_of(k);
+  if (breaks_.zeros_at_start(k) < 2) polynomial_[1] = along[1] * h;
+  const bool has_curvature = breaks_.zeros_at_start(k) < 3 && along[2] != 0.0;
+  if (has_curvature) polynomial_[2] = along[2] * h * h;
+  return first_negative(polynomial_.data(), degree) > 2.0 * crossing.theta;
+}
+
+bool Guards::goes_below(double theta) {
   stepper_.get_state(state_.data());
   for (int k = 0; k < breaks_.linear_guards(); ++k) {
     if (breaks_.zeros_at_start(k) < 3) continue;

@@ -109,7 +109,11 @@ void HeldJoints::choose(const EquationsOfMotion& equations, double t, const doub
   }
   for (int r = 0; r < static_cast<int>(joints.size()); ++r) {
     const int j = joints[r];
-    const double angle = supports_[j].is_locked ? holds_[j].angle : relative(q, j + 1);
+    // At a stop exactly there: its last bits may be of angles that were larger.
+    const Side side = contact(j, q);
+    const double angle = supports_[j].is_locked ? holds_[j].angle
+                         : side != Side::none   ? supports_[j].stop(side).angle
+                                                : relative(q, j + 1);
     if (supports_[j].is_locked || problem.at[r] == Bound::between || j == surely) {
       hold(effects, j, angle);
     } else {

@@ -49,6 +49,9 @@ class Run {
       return end_with(status_, bad_ >= 0 ? bad_ : trial_.bad());
     } catch (const std::bad_alloc&) {
       throw;
+    } catch (const Stopped& stopped) {
+      resume_.interrupt();
+      return end_with(stopped.status);
     } catch (...) {  // what a function of the user's throws
       resume_.interrupt();
       Ending ending = end_with(Status::callback_error);

@@ -1,5 +1,6 @@
 #include "pendcore/dynamics/joint_forces.hpp"
 
+#include <algorithm>
 #include <cstddef>
 
 #include "pendcore/arithmetic/sine_cosine.hpp"
@@ -23,15 +24,18 @@ void JointForces::set_up() {
   problem.resize(m);
   response_.assign(joints.size() * inertia.diagonal.size(), 0.0);
   for (int r = 0; r < m; ++r) {
+    if (problem.look) problem.look();
     double* const x = response_.data() + static_cast<std::ptrdiff_t>(r) * n;
     x[joints[r]] = 1.0;
     if (joints[r] > 0) x[joints[r] - 1] = -1.0;
-    solve_lower(n, factor_.data(), x);
+    const int first = std::max(joints[r] - 1, 0);  // those before are zero
+    solve_lower(n, factor_.data(), x, first);
     for (int s = 0; s <= r; ++s) {
       const double* const y = response_.data() + static_cast<std::ptrdiff_t>(s) * n;
       double sum = 0.0;
-      for (int i = 0; i < n; ++i)
+      for (int i = first; i < n; ++i) {
         sum += x[i] * y[i] / factor_[static_cast<std::ptrdiff_t>(i) * (n + 1)];
+      }
       problem.W[static_cast<std::size_t>(r) * m + s] = sum;
       problem.W[static_cast<std::size_t>(s) * m + r] = sum;
     }

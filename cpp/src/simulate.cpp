@@ -9,6 +9,7 @@
 #include "pendcore/dynamics/ledger.hpp"
 #include "pendcore/ending_message.hpp"
 #include "pendcore/fast_mode.hpp"
+#include "pendcore/integrate/clock.hpp"
 #include "pendcore/integrate/first_step.hpp"
 #include "pendcore/integrate/methods.hpp"
 #include "pendcore/message.hpp"
@@ -69,6 +70,8 @@ struct Beginning {
       if (ending.bad >= 0) ending.status = Status::non_finite;
     } catch (const std::bad_alloc&) {
       throw;
+    } catch (const Stopped& stopped) {
+      ending.status = stopped.status;
     } catch (...) {
       ending.status = Status::callback_error;
       ending.error = std::current_exception();
@@ -132,6 +135,13 @@ void run(const Scene& scene, Solution& solution, double t_end, Limits limits, Be
   Position position = solution.resumable;
   if (before == Before::nothing) recorder.start(position.t.high, position.y);
   Switching* const breaks = switching ? &*switching : nullptr;
+  Clock clock(limits, position.t.high);
+  if (switching) {  // which joints hold is no step, and takes long in a long chain
+    switching->look_up_in_long_work([&clock, &position] {
+      const Status status = clock.look(position.t.high);
+      if (status != Status::finished) throw Stopped{status};
+    });
+  }
   Ending ending{.status = Status::finished, .cut = false};
   if (before == Before::steps) {
     const double t = position.t.high;

@@ -44,12 +44,7 @@ Switching::Switching(const Scene& scene, const EquationsOfMotion& equations,
       n_(static_cast<int>(scene.links.size())),
       joints_(*equations_.held_joints),
       torque_(scene.links.size()),
-      let_go_(scene.links.size()) {
-  moment_ = 1e-7 / joints_.natural_speed();
-  for (int k = 0; k < equations_.effects->waves; ++k) {
-    moment_ = std::min(moment_, 1e-7 / std::abs(equations_.effects->angular_frequency[k]));
-  }
-}
+      let_go_(scene.links.size()) {}
 
 bool Switching::begin(double t, double* y, bool forward) {
   forward_ = forward;
@@ -81,7 +76,6 @@ void Switching::choose_modes_from(double t, const double* q, const double* qd) {
 /// A law that has its sides apart at the rate zero is on the one that a joint at rest sets out to:
 /// that of its acceleration, or the one it was let go to while it has none.
 void Switching::choose_sides(double t, const double* q, const double* qd) {
-  const double later = a_moment_later(t);
   std::vector<double> qdd;
   for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
     std::visit(
@@ -98,7 +92,7 @@ void Switching::choose_sides(double t, const double* q, const double* qd) {
               if (!guards[k].is_on_rate()) continue;
               if (qdd.empty()) {
                 qdd.resize(n_);
-                accelerations_in_force(equations_, later, q, qd, qdd.data());
+                accelerations_in_force(equations_, t, q, qd, qdd.data());
               }
               const double phidd = relative(qdd.data(), one.joint);
               const int let_go = let_go_[one.joint - 1];
@@ -211,8 +205,11 @@ void Switching::let_go(const HeldGuard& guard, double t, const double* y) {
 bool Switching::reach_stop(int k, double t, double* y) {
   settle(k, y);
   const int joint = guards_[k].joint;
-  const double* const qd = y + n_;
-  if (relative(qd, joint + 1) == 0.0) {
+  double* const qd = y + n_;
+  if (std::abs(relative(qd, joint + 1)) <= epsilon * joints_.supports()[joint].natural_speed) {
+    // No impact: it would set joints in motion that friction holds, at a rate below all rounding.
+    set_relative(qd, joint + 1, 0.0);
+    joints_.settle(y, qd);
     choose(t, y, joint);
     return false;
   }
@@ -227,14 +224,8 @@ bool Switching::is_of_friction(const Watch& watch) const {
 }
 
 void Switching::come_to_rest(int k, double t, double* y) {
-  const int joint = guards_[k].joint;
-  double& rate = y[n_ + joint];
-  const double rate_before = rate;
   settle(k, y);
-  choose(t, y, joint);
-  choose_sides(t, y, y + n_);  // while the rate is zero: laws beside the friction choose by that
-  // What goes on in the other direction may have begun to do so in a step too short to be cut.
-  if (!joints_.is_held(joint)) rate = rate_before;
+  choose(t, y, guards_[k].joint);
 }
 
 /// A law that has its sides apart is on the next.
@@ -253,22 +244,10 @@ double Switching::shortest_moment(double t) const {
   return 64.0 * epsilon * std::max(std::abs(t), 1.0 / joints_.natural_speed());
 }
 
-/// Where the law goes back and forth at one time, no acceleration has a sign yet: those of a moment
-/// later decide, as short a one as time resolves, and longer ones while that leads nowhere.
-double Switching::a_moment_later(double t) const {
-  if (changes_at_once_ <= many_at_once) return t;
-  const double shortest = shortest_moment(t);
-  const double longest = std::max(moment_, shortest);
-  double moment = shortest;
-  for (int i = many_at_once; i < changes_at_once_ && moment < longest; ++i) moment *= 4.0;
-  moment = std::min(moment, longest);
-  return t + (forward_ ? moment : -moment);
-}
-
 /// Which joints are held; in the end, what changed last.
 void Switching::choose(double t, const double* y, int joint) {
   const bool is_hopeless = changes_at_once_ > 3 * many_at_once;
-  joints_.choose(equations_, a_moment_later(t), y, y + n_, is_hopeless ? joint : -1);
+  joints_.choose(equations_, t, y, y + n_, is_hopeless ? joint : -1);
 }
 
 void Switching::cross_time(double t) {

@@ -71,7 +71,7 @@ Trial::Verdict Trial::follow_guards() {
     }
     // What the whole step strode over, the shorter one may see: friction's peak at rest.
     h_ *= std::max(0.5 * crossing_.theta, fixed_step_ ? least_share_of_fixed : 0.0);
-    if (std::abs(h_) <= few * bits) return Verdict::changes_at_start;
+    if (std::abs(h_) <= few * last_bits(t_, t_ + h_)) return Verdict::changes_at_start;
     if (!fixed_step_) return Verdict::is_tried_again;
     if (!take_again()) return give_up(h_);
   }
@@ -88,7 +88,7 @@ Trial::Verdict Trial::set_out() {
       if (is_short || guards_->falls_at_start(crossing_.guard, t_, h_, halvings)) {
         return Verdict::changes_at_start;
       }
-    } else if (is_short || halvings == most_halvings || !guards_->strays(crossing_.theta)) {
+    } else if (is_short || halvings == most_halvings || !guards_->strays(crossing_, h_)) {
       return Verdict::stands;
     }
     h_ *= 0.5;

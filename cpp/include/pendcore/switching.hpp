@@ -13,6 +13,7 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "pendcore/dynamics/equations_of_motion.hpp"
@@ -51,6 +52,11 @@ class Switching final : public Breaks {
   /// In place of begin() for a run that goes on.
   void restore(const std::vector<double>& memory, double t, const double* y, bool forward);
 
+  /// `look` is called now and then where it works long on which joints hold, and may throw.
+  void look_up_in_long_work(const std::function<void()>& look) {
+    joints_.look_up_in_long_work(look);
+  }
+
   /// What a run says that ended at rest; empty if nothing.
   const std::string& remark() const { return remark_; }
 
@@ -83,7 +89,6 @@ class Switching final : public Breaks {
   void change_side(const Watch& watch);
   bool is_of_friction(const Watch& watch) const;
   double shortest_moment(double t) const;  ///< s, that time resolves
-  double a_moment_later(double t) const;
   void choose(double t, const double* y, int joint);
   void strike(double t, double* y);
   bool capture(double t, const double* q, const double* qd);
@@ -108,7 +113,6 @@ class Switching final : public Breaks {
   bool is_over_ = false;  ///< a table or a spline has ended
   bool rests_ = false;
   double longest_step_ = never;
-  double moment_;                   ///< s, short beside all that goes on
   mutable double next_time_ = 0.0;  ///< after the time asked for last
   mutable double asked_ = std::numeric_limits<double>::quiet_NaN();
   std::vector<Watch> guards_;

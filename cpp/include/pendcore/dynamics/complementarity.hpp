@@ -8,10 +8,11 @@
 /// between the bounds. With a and w accelerations of joints and lambda the torques of friction and
 /// stops it says which joints stay at rest; with rates and impulses, how an impact ends.
 /// All that is wrong is changed at once (Judice and Pires, Computers & Operations Research 21
-/// (1994) 587); where that leads in circles, one at a time and never uphill (active sets: Nocedal
-/// and Wright, Numerical Optimization (2006), section 16.5).
+/// (1994) 587); where that leads in circles, always downhill between the bounds (Bertsekas, SIAM
+/// J. Control and Optimization 20 (1982) 221: Newton's method with projections).
 #pragma once
 
+#include <functional>
 #include <vector>
 
 namespace pendcore {
@@ -25,6 +26,9 @@ struct ForcesBetweenBounds {
   std::vector<double> lambda, w;  ///< the answer
   std::vector<Bound> at;          ///< and where each force is
 
+  /// Is called now and then in what takes long, and may throw.
+  std::function<void()> look;
+
   void resize(int count);
   /// False where it has not found the answer.
   bool solve();
@@ -33,6 +37,8 @@ struct ForcesBetweenBounds {
   void solve_between();
   int wrong(int i) const;
   bool descend();
+  void slope_at(const std::vector<double>& x, std::vector<double>& slope) const;
+  bool goes_down(const std::vector<double>& from, const std::vector<double>& slope) const;
   double rounding(int i) const;  ///< of w
   std::vector<double> factor_;
   std::vector<int> free_;
@@ -41,8 +47,8 @@ struct ForcesBetweenBounds {
 /// A = L D L^T, in place of the lower half of A, (n, n) row-major, D on the diagonal; in one order
 /// of operations, without square roots: in units twice as large each bit is the same.
 void factor_symmetric(int n, double* a);
-/// x becomes L^-1 x, and L^-T D^-1 x.
-void solve_lower(int n, const double* factor, double* x);
+/// x becomes L^-1 x, and L^-T D^-1 x; x is zero before `first`.
+void solve_lower(int n, const double* factor, double* x, int first = 0);
 void solve_upper(int n, const double* factor, double* x);
 
 }  // namespace pendcore

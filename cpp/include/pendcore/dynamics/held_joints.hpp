@@ -18,6 +18,7 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 
 #include "pendcore/arithmetic/epsilon.hpp"
 #include "pendcore/dynamics/impact.hpp"
@@ -40,6 +41,8 @@ struct Hold {
 class HeldJoints {
  public:
   explicit HeldJoints(const Scene& scene);
+
+  void look_up_in_long_work(const std::function<void()>& look) { forces_.problem.look = look; }
 
   /// Whether the scene has friction or stops, that can hold a joint for a while.
   bool can_hold() const { return can_hold_; }

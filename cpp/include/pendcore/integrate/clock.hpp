@@ -8,6 +8,11 @@
 
 namespace pendcore {
 
+/// Is thrown out of work that is not done in steps: why the run is to end.
+struct Stopped {
+  Status status;
+};
+
 /// Looks at the clock seldom, yet often enough: the time limit is kept within a few milliseconds
 /// and the monitor is called about every 50.
 class Clock {

@@ -5,6 +5,9 @@
 /// the step (Chebyshev's) and interpolated; where it is zero is then found from its own values.
 #pragma once
 
+#include <array>
+#include <vector>
+
 #include "pendcore/integrate/breaks.hpp"
 #include "pendcore/integrate/stepper.hpp"
 
@@ -28,9 +31,9 @@ class Guards {
   /// ten times is believed.
   bool falls_at_start(int k, double t, double h, int halvings);
 
-  /// Whether the dense output makes a guard negative that rises from zero with no curvature yet,
-  /// before that share of the step: by its own error, more than by rounding.
-  bool strays(double theta);
+  /// Whether a guard that begins at zero is made negative by the error of the dense output: before
+  /// the crossing, more than by rounding, or at the crossing itself.
+  bool strays(const Crossing& crossing, double h);
 
   /// The attempted step that ends where the guard is zero, to the last bits of time.
   struct Located {
@@ -50,6 +53,9 @@ class Guards {
   };
   Miss miss(int k, double t, double h);
   int along_step(int k);
+  std::array<double, 3> start_of(int k);
+  bool is_of_error(const Crossing& crossing, double h);
+  bool goes_below(double theta);
   double value_at(int k, double t);
   void interpolate_others(double t, double h);
 
