@@ -49,11 +49,11 @@ def time_to_stop(w0: float, friction: pc.effects.DryJointFriction) -> float:
 @pytest.mark.parametrize("w0", [3.0, -3.0, 1e-3, 1e4])
 @pytest.mark.parametrize("rtol", [1e-3, 1e-9, 1e-12])
 def test_constant_friction_stops_the_rod_after_its_momentum_over_the_friction(
-    w0: float, rtol: float
+    w0: float, rtol: float, method: str
 ) -> None:
     friction = pc.effects.DryJointFriction(joint=1, coulomb=0.4)
     stop = J * abs(w0) / 0.4
-    sol = pc.simulate(rod(friction), 0.2, w0, (0, 2 * stop), rtol=rtol)
+    sol = pc.simulate(rod(friction), 0.2, w0, (0, 2 * stop), rtol=rtol, method=method)
     assert_rests(sol)
     assert time_of_rest(sol) == pytest.approx(stop, rel=1e-12)
     assert sol.q[-1, 0] - 0.2 == pytest.approx(w0 * stop / 2, rel=1e-11)
@@ -65,9 +65,12 @@ def test_constant_friction_stops_the_rod_after_its_momentum_over_the_friction(
     [(0.8, 0.1, 2.0), (2.0, 0.01, 2.0), (2.0, 0.5, 1.0), (1.0, 0.1, 0.5 + 1.0)],
 )
 def test_with_stribecks_law_it_stops_a_little_sooner(
-    static: float, stribeck_velocity: float, exponent: float, rtol: float
+    static: float, stribeck_velocity: float, exponent: float, rtol: float, method: str
 ) -> None:
-    """A step that strides over the last stretch, where friction rises, comes too late."""
+    """A step that strides over the last stretch, where friction rises, comes too late.
+
+    At the finest tolerances it stops within 1e-10 with every method.
+    """
     w0, coulomb = 3.0, 0.4
     friction = pc.effects.DryJointFriction(
         joint=1,
@@ -78,9 +81,13 @@ def test_with_stribecks_law_it_stops_a_little_sooner(
     )
 
     stop = time_to_stop(w0, friction)
-    sol = pc.simulate(rod(friction), 0.2, w0, (0, 10), rtol=rtol)
+    sol = pc.simulate(rod(friction), 0.2, w0, (0, 10), rtol=rtol, atol=1e-2 * rtol, method=method)
     assert_rests(sol)
-    assert time_of_rest(sol) == pytest.approx(stop, rel=max(1e-11, 3 * rtol))
+    # What radau5 keeps below its tolerance is an estimate of order 3, and its error is of order 5:
+    # the tolerance is made such that the error falls as rtol, times what the law's sharpness makes
+    # of it. That is 33 at the exponent 1.5, and below 3 in the other three.
+    share = 100 if method == "radau5" else 3
+    assert time_of_rest(sol) == pytest.approx(stop, rel=max(1e-11, share * rtol))
 
 
 NARROW_PEAKS = [
@@ -92,45 +99,69 @@ NARROW_PEAKS = [
 ]
 
 
+def own_tolerance(method: str, rtol: float) -> float:
+    """What a method keeps the estimate of its error below, per rate.
+
+    Of a smooth law radau5 has an error that is far less than its estimate, and aims at rtol by
+    this. Who enters a peak of friction meets a corner, where both are of one size.
+    """
+    return 0.1 * rtol ** (2 / 3) if method == "radau5" else rtol
+
+
+@pytest.mark.parametrize("atol", [1e-12, None], ids=["atol=1e-12", "atol=rtol/100"])
 @pytest.mark.parametrize("rtol", [1e-6, 1e-9, 1e-12])
 @pytest.mark.parametrize("friction", NARROW_PEAKS, ids=repr)
 def test_a_peak_of_friction_that_is_far_narrower_than_the_run_is_not_strided_over(
-    friction: pc.effects.DryJointFriction, rtol: float
+    friction: pc.effects.DryJointFriction, rtol: float, atol: float | None, method: str
 ) -> None:
     """Where friction is constant no step errs: what errs by rtol is the time under the peak alone.
 
     Beyond 36^(1/exponent) Stribeck velocities the peak is below the last bit, exp(-36). The step
     that enters it begins at a rate that is hundreds of times less than the first, and may err by
-    rtol of that.
+    rtol of that. Beside it each step under the peak may err by atol: that is for ten of them.
     """
+    atol = 1e-2 * rtol if atol is None else atol
     w0 = 1.0
     stop = time_to_stop(w0, friction)
     under_the_peak = time_to_stop(
         friction.stribeck_velocity * 36 ** (1 / friction.exponent), friction
     )
-    sol = pc.simulate(rod(friction), 0.2, w0, (0, 10), rtol=rtol, max_steps=10_000)
+    sol = pc.simulate(
+        rod(friction), 0.2, w0, (0, 10), rtol=rtol, atol=atol, method=method, max_steps=10_000
+    )
     assert_rests(sol)
-    entering = 1e-3 * rtol * stop
-    assert abs(time_of_rest(sol) - stop) <= max(1e-10 * stop, entering) + rtol * under_the_peak
+    # The rate falls by 1 rad/s in the time to stop: an error of one is that share of the other.
+    of_rates = (1e-3 + 10 * atol / rtol) * stop
+    allowed = own_tolerance(method, rtol) * (of_rates + under_the_peak)
+    assert abs(time_of_rest(sol) - stop) <= allowed
 
 
-def test_a_narrow_peak_of_friction_shortens_every_run_by_the_same_time() -> None:
-    """J w0/tc less the integral of J (1/tc - 1/friction(w)), which ends with the peak."""
+@pytest.mark.parametrize("rtol", [1e-9, 1e-12])
+def test_a_narrow_peak_of_friction_shortens_every_run_by_the_same_time(
+    rtol: float, method: str
+) -> None:
+    """J w0/tc less the integral of J (1/tc - 1/friction(w)), which ends with the peak.
+
+    The step that enters the peak begins at a tenth of the first rate or below, and may err by the
+    tolerance of that.
+    """
+    allowed = max(1e-12, 0.1 * own_tolerance(method, rtol))
     coulomb, peak_ends = 0.1, 6e-3
     friction = pc.effects.DryJointFriction(
         joint=1, coulomb=coulomb, static=0.3, stribeck_velocity=1e-3
     )
     sooner = J * peak_ends / coulomb - time_to_stop(peak_ends, friction)
     for w0 in np.random.default_rng(6).uniform(0.5, 20, 100):
-        sol = pc.simulate(rod(friction), 0.2, w0, (0, 100), max_steps=10_000)
+        how = {"method": method, "rtol": rtol, "atol": 1e-2 * rtol, "max_steps": 10_000}
+        sol = pc.simulate(rod(friction), 0.2, w0, (0, 100), **how)
         assert_rests(sol)
-        assert time_of_rest(sol) == pytest.approx(J * w0 / coulomb - sooner, rel=1e-10)
+        assert time_of_rest(sol) == pytest.approx(J * w0 / coulomb - sooner, rel=allowed)
 
 
 @pytest.mark.parametrize("side", [1, -1])
 @pytest.mark.parametrize("amplitude", [1.03, 1.08, 0.06, 0.7])
 def test_a_rod_on_a_spring_with_friction_swings_less_by_the_same_each_time(
-    amplitude: float, side: int
+    amplitude: float, side: int, fine: Any
 ) -> None:
     """Turning points A, -(A - 2 tc/k), ...; at rest for good once k abs(A) <= tc."""
     stiffness, coulomb, rest = 2.0, 0.1, 0.3
@@ -141,7 +172,7 @@ def test_a_rod_on_a_spring_with_friction_swings_less_by_the_same_each_time(
     while stiffness * abs(turns[-1]) > coulomb:
         turns.append(-(turns[-1] - np.sign(turns[-1]) * 2 * coulomb / stiffness))
     scene = rod(spring, friction)
-    sol = pc.simulate(scene, rest + side * amplitude, 0, (0, 20), rtol=1e-12, atol=1e-14)
+    sol = pc.simulate(scene, rest + side * amplitude, 0, (0, 20), **fine)
     assert_rests(sol)
     assert time_of_rest(sol) == pytest.approx(half * (len(turns) - 1), rel=1e-10)
     at_turns = half * np.arange(len(turns))
@@ -151,11 +182,11 @@ def test_a_rod_on_a_spring_with_friction_swings_less_by_the_same_each_time(
 
 
 @pytest.mark.parametrize("q", [0.0, 0.9, 2.5, -2.0])
-def test_friction_holds_a_rod_at_rest_if_and_only_if_it_can(q: float) -> None:
+def test_friction_holds_a_rod_at_rest_if_and_only_if_it_can(q: float, method: str) -> None:
     needed = abs(M * G * L / 2 * np.cos(q))
     for share, holds in ((1 + 1e-9, True), (1 - 1e-9, False)):
         friction = pc.effects.DryJointFriction(joint=1, coulomb=share * needed)
-        sol = pc.simulate(rod(friction, gravity=G), q, 0, (0, 1.0))
+        sol = pc.simulate(rod(friction, gravity=G), q, 0, (0, 1.0), method=method)
         if holds:
             assert_rests(sol)
             assert time_of_rest(sol) == 0.0
@@ -165,12 +196,14 @@ def test_friction_holds_a_rod_at_rest_if_and_only_if_it_can(q: float) -> None:
             assert np.sign(sol.q[-1, 0] - q) == np.sign(np.cos(q))
 
 
-def test_static_friction_above_the_sliding_one_holds_and_once_broken_does_not() -> None:
+def test_static_friction_above_the_sliding_one_holds_and_once_broken_does_not(
+    method: str,
+) -> None:
     torque = pc.effects.Motor(joint=1, constant=0.5)
     friction = pc.effects.DryJointFriction(joint=1, coulomb=0.4, static=0.6, stribeck_velocity=0.01)
     scene = rod(torque, friction)
-    assert_rests(pc.simulate(scene, 0.0, 0.0, (0, 1)))
-    slid = pc.simulate(scene, 0.0, 0.1, (0, 10), rtol=1e-10)
+    assert_rests(pc.simulate(scene, 0.0, 0.0, (0, 1), method=method))
+    slid = pc.simulate(scene, 0.0, 0.1, (0, 10), rtol=1e-10, method=method)
     assert slid.status == "finished"
     # In sliding 0.1 N m are left over; the Stribeck peak is passed from above within 0.01 rad/s.
     assert slid.qd[-1, 0] == pytest.approx(0.1 + 0.1 * 10 / J, rel=1e-6)

@@ -5,6 +5,8 @@ Two equal uniform rods of mass M and length L hang on a fixed pivot, unless a te
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import mpmath  # type: ignore[import-untyped]
 import numpy as np
 import pendcore as pc
@@ -14,6 +16,8 @@ from reference.conserved import angular_momentum, energy
 from reference.newton_euler import newton_euler, uniform_rod
 
 Array = NDArray[np.float64]
+
+ROOT = Path(__file__).parents[1]
 
 M, L, G = 1.7, 0.6, 9.81
 RIGHT, DOWN, UPRIGHT, LEFT = 0.0, np.pi / 2, -np.pi / 2, np.pi
@@ -90,6 +94,38 @@ def test_hanging_at_rest_each_joint_carries_what_hangs_below() -> None:
 def test_hanging_at_rest_it_stays() -> None:
     sol = solve(TWO, [DOWN, DOWN], 0.0, 10.0)
     assert np.abs(sol.q - DOWN).max() < 1e-13  # pi/2 is not a double: it swings by its rounding
+
+
+@pytest.mark.parametrize("tolerance", [1e-12, 1e-13])
+def test_upright_at_rest_it_falls_from_where_the_start_rounds_to(tolerance: float) -> None:
+    """-pi/2 is not a double: the next one is 6e-17 rad off, and 37 times 1/sqrt(3g/2L) from 1 rad.
+
+    The first steps round the angle to 2e-16 rad: that alone is a factor of e or so, 0.2 s.
+    """
+    with mpmath.mp.workdps(40):
+        off = mpmath.mpf(UPRIGHT) + mpmath.pi / 2
+        k = mpmath.cos(off / 2)
+        to_go = mpmath.ellipk(k**2) - mpmath.ellipf(
+            mpmath.asin(mpmath.cos((off + 1) / 2) / k), k**2
+        )
+        theory = float(to_go * mpmath.sqrt(2 * mpmath.mpf(L) / (3 * mpmath.mpf(G))))
+    marks = [pc.events.LinkAngle(1, UPRIGHT + side, terminal=True) for side in (1, -1)]
+    how = {"rtol": tolerance, "atol": 1e-3 * tolerance, "events": marks}
+    sol = pc.simulate(ONE, UPRIGHT, 0.0, (0.0, 40.0), **how)
+    assert sol.status == "event"
+    assert sol.t[-1] == pytest.approx(theory, abs=0.5)
+
+
+def test_upright_at_rest_it_stands_in_steps_too_short_for_any_push() -> None:
+    """Each step would move it by less than half of its last bit; carried on, the pushes add up."""
+    how = {"rtol": 1e-13, "atol": 1e-20, "max_steps": 100_000}
+    sol = pc.simulate(ONE, UPRIGHT, 0.0, (0.0, 20.0), **how)
+    assert sol.success
+    assert set(sol.q[:, 0]) == {UPRIGHT}
+    carried = pc.simulate(ONE, UPRIGHT, 0.0, (0.0, 20.0), **how, compensated=True)
+    assert np.abs(carried.q - UPRIGHT).max() > 1
+    known_limits = " ".join((ROOT / "docs/trust.md").read_text().split())
+    assert "it stands for ever" in known_limits
 
 
 @pytest.mark.parametrize("seed", range(20))

@@ -79,6 +79,7 @@ def test_a_mark_at_the_start_is_no_event_and_one_at_the_end_is_one(method: str, 
 
 
 ZEROS = [pc.events.RateZero(joint=1), pc.events.RateZero(link=1)]
+TURNED_BACK = rod(pc.effects.Motor(joint=1, constant=-2.0))
 
 
 @pytest.mark.parametrize("sign", [1, -1], ids=["forward", "backward"])
@@ -106,17 +107,28 @@ def test_a_rate_that_is_zero_at_the_end_is_an_event(fine: Any) -> None:
     assert sol.qd[-1, 0] == 0.0
 
 
+@pytest.mark.parametrize("sign", [1, -1], ids=["forward", "backward"])
 @pytest.mark.parametrize("value", [0.25, 0.5, 0.75])
 @pytest.mark.parametrize("method", METHODS)
-def test_a_mark_at_the_end_of_a_step_is_met_once(method: str, value: float) -> None:
+def test_a_mark_at_the_end_of_a_step_is_met_once(method: str, value: float, sign: int) -> None:
+    """At 1 rad/s; under a couple the rate is zero there: in the last bits before or after it."""
+    point = (float(np.cos(value)), float(np.sin(value)))
     marks: list[Any] = [
         pc.events.JointAngle(joint=1, value=value),
         pc.events.LinkAngle(link=1, value=value),
+        pc.events.TipLine(point, (-0.18, 1.0)),
+        pc.events.TipLine(point, (0.3, -0.2)),
         pc.events.Function(lambda t, q, qd: q[0] - value),
     ]
-    sol = pc.simulate(rod(), 0, 1, (0, 1), method=method, step=0.25, events=marks)
-    for number in range(3):
-        assert times_of(sol, number) == pytest.approx([value], abs=1e-14)
+    how = {"t_span": (0, sign), "method": method, "step": 0.25}
+    runs = [
+        (pc.simulate(rod(), 0, sign, events=marks, **how), [1, 1, 1, -1, 1]),
+        (pc.simulate(TURNED_BACK, 0, sign * 2 * value, events=ZEROS, **how), [-sign] * 2),
+    ]
+    for sol, directions in runs:
+        for found, direction in zip(sol.events, directions, strict=True):
+            assert [one.t for one in found] == pytest.approx([sign * value], abs=1e-14)
+            assert found[0].direction == direction
 
 
 def test_a_swing_that_only_touches_the_mark_does_not_pass_it_twice_the_wrong_way(fine: Any) -> None:

@@ -133,6 +133,31 @@ def test_a_step_between_the_knots_shows_the_order_of_the_interpolant_itself(meth
     assert slopes[-1] == pytest.approx(method["interpolant_order"] + 1, abs=0.2)
 
 
+def test_the_slope_of_the_dense_output_has_the_order_of_the_interpolant(method):
+    """Within one step, of the rates and of what the equations say; at its ends there is no error.
+
+    The slope is that of the polynomial through nine points of the step.
+    """
+    points = (1 - np.cos(np.pi * np.arange(9) / 8)) / 2
+    between = [0.15, 0.35, 0.55, 0.85]
+    worst = []
+    for h in (0.04, 0.02, 0.01):
+        how = {"method": method["name"], "rtol": 1e-13, "atol": 1e-16, "step": h}
+        run = pc.simulate(BOOK, START, [1.0, -0.5], (0.0, 1.5 * h), **how)
+        step = np.polynomial.chebyshev.Chebyshev.fit
+        curves = [step(points, curve, 8).deriv() for curve in run(points * h)]
+        slopes = np.array([curve([0.0, *between, 1.0]) / h for curve in curves])
+        for column, state in ((0, run.y[:, 0]), (-1, run.y[:, 1])):
+            q, qd = np.split(state, 2)
+            expected = [*qd, *BOOK.accelerations(0, q, qd)]
+            np.testing.assert_allclose(slopes[:, column], expected, atol=1e-10)
+        fine = {"rtol": 1e-13, "atol": 1e-15, "t_eval": np.multiply(between, h)}
+        exact = pc.simulate(BOOK, START, [1.0, -0.5], (0.0, h), **fine)
+        expected = np.hstack([exact.qd, exact.accelerations()]).T
+        worst.append(np.abs(slopes[:, 1:-1] - expected).max())
+    assert -np.diff(np.log2(worst))[-1] == pytest.approx(method["interpolant_order"], abs=0.2)
+
+
 def test_the_dense_output_is_continuous_and_meets_the_steps(method):
     run = pc.simulate(BOOK, START, 0, (0.0, 5.0), method=method["name"], step=0.01)
     assert np.array_equal(run(run.t), run.y)

@@ -90,6 +90,11 @@ double infinite_from_one(double t, double) { return t < 1.0 ? 1.0 : HUGE_VAL; }
 double undefined(double, double) { return std::nan(""); }
 double undefined_over_half(double, double y) { return y + 0.0 * std::sqrt(0.5 - y); }
 
+// Of Hull, Enright, Fellen & Sedgwick 1972, class A, from t = 0 to 20; `growing` is A3.
+double detest_a1(double, double y) { return -y; }                    // y = exp(-t)
+double detest_a2(double, double y) { return -0.5 * y * y * y; }      // y = 1/sqrt(1 + t)
+double detest_a4(double, double y) { return y / 4 * (1 - y / 20); }  // y = 20/(1 + 19 exp(-t/4))
+
 class Nothing final : public Observer {
  public:
   double step_accepted(const Stepper&, const TwoDouble&, double, double) override { return 2.0; }
@@ -169,6 +174,24 @@ TEST_CASE("the error falls with the order of the method, time-dependent rates in
     const double order = std::log2(error(coarse) / error(coarse / 8)) / 3;
     CHECK(order > method.info.order - 0.25);
     CHECK(order < method.info.order + 0.6);
+  });
+}
+
+TEST_CASE("class A of DETEST ends within ten tolerances of its closed forms") {
+  for_each_method(methods, []<const auto & method>() {
+    if (method.info.error_order == 0) return;
+    CAPTURE(method.info.name);
+    for (const double tolerance : {1e-3, 1e-6, 1e-9, 1e-12}) {
+      CAPTURE(tolerance);
+      const Request request{.t_end = 20.0, .tolerance = tolerance};
+      auto check = [&](double found, double exact) {
+        CHECK(std::abs(found - exact) <= 10 * tolerance * std::max(1.0, exact));
+      };
+      check(solve<method, detest_a1>(request).y, std::exp(-20.0));
+      check(solve<method, detest_a2>(request).y, 1 / std::sqrt(21.0));
+      check(solve<method, growing>(request).y, std::exp(std::sin(20.0)));
+      check(solve<method, detest_a4>(request).y, 20 / (1 + 19 * std::exp(-5.0)));
+    }
   });
 }
 

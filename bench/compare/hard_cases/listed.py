@@ -20,6 +20,7 @@ PULSES = "tests/test_hard_cases_pulses.py"
 TIMES = "tests/test_hard_cases_times.py"
 AT_ONCE = "tests/test_switching_at_once.py"
 RATIOS = "tests/test_hard_cases_ratios.py"
+LONG = "tests/test_long_runs.py"
 
 LISTED: dict[str, tuple[str, ...]] = {
     "an interval of no length, and of 100 units in the last place": (
@@ -42,7 +43,8 @@ LISTED: dict[str, tuple[str, ...]] = {
         "tests/test_bad_input.py::test_a_start_that_is_not_finite_is_named_with_its_place",
     ),
     "not a number in mid-run": (
-        "tests/test_own_effects.py::test_forces_that_are_no_numbers_end_the_run_and_say_when",
+        f"{MORE}::test_what_is_no_number_beyond_a_time_or_an_angle_ends_there",
+        "tests/test_stopped_runs.py::test_a_run_that_is_not_finite_says_which_rate_and_whose_force",
     ),
     "blow-up in finite time": (f"{MORE}::test_a_blow_up_ends_at_its_pole",),
     "tolerances of 1e30, and below eps; atol 0 with a zero component": (
@@ -125,7 +127,12 @@ LISTED: dict[str, tuple[str, ...]] = {
     "swings next to the separatrix": (
         f"{HARD}::test_a_swing_next_to_the_separatrix_takes_the_time_of_the_elliptic_integral",
     ),
-    "long energy drift": (f"{HARD}::test_energy_drifts_with_the_tolerance_alone",),
+    "long energy drift": (
+        f"{LONG}::test_over_half_a_million_steps_the_energy_keeps_to_the_methods_own_error",
+        f"{LONG}::test_roundings_that_are_carried_on_walk_a_hundred_times_less_far",
+        f"{LONG}::test_the_full_form_kept_what_the_page_promises",
+        f"{HARD}::test_energy_drifts_with_the_tolerance_alone",
+    ),
     "inputs that are read-only, strided, of the wrong shape or type": (
         "tests/test_simulate.py::test_the_same_start_in_any_form_gives_the_same_bits",
         "tests/test_bad_input.py::test_a_start_of_the_wrong_shape_is_refused_with_the_right_one",
@@ -133,11 +140,16 @@ LISTED: dict[str, tuple[str, ...]] = {
     ),
     "Ctrl-C within 0.1 s": (f"{HARD}::test_ctrl_c_is_heard_within_a_tenth_of_a_second",),
     "threads that share a scene; a fork": (
+        "tests/test_threads.py::"
+        "test_threads_on_one_scene_and_one_solution_compute_what_one_alone_does",
         "tests/test_own_effects.py::test_threads_share_a_scene_with_a_function",
         f"{HARD}::test_a_fork_may_simulate_too",
     ),
     "pickling of everything": (
         "tests/test_solution.py::test_a_solution_comes_back_whole",
+        "tests/test_solution.py::test_what_a_solution_and_a_scene_tell_comes_back_from_pickle",
+        "tests/test_event_classes.py::test_an_event_comes_back_from_its_repr_pickle_copy_and_toml",
+        "tests/test_energy.py::test_a_run_with_a_ledger_comes_back_whole",
         "tests/test_effect_round_trips.py::test_an_effect_comes_back_from_its_repr_and_from_pickle",
         "tests/test_effect_round_trips.py::test_a_scene_comes_back_from_its_repr_and_from_pickle",
     ),
