@@ -14,6 +14,9 @@ DONE := .venv/done
 PIP_INSTALL := python -m pip install --quiet --disable-pip-version-check
 # On all processors: who runs out of tests takes over half of what another has left.
 PYTEST := pytest -n auto --dist worksteal
+# Where pip builds. The C++ tests and the benchmarks join it there: they are of the very core that is
+# installed, which is compiled once for all of them.
+BUILT := build/installed
 # Folders too: a file that is added or removed changes its folder.
 SOURCES := pyproject.toml CMakeLists.txt $(shell find cpp python ! -path '*__pycache__*')
 
@@ -27,23 +30,23 @@ demo: $(DONE)/installed  ## build, run the textbook's case, say where its figure
 	@echo "summary: out/textbook/summary.txt"
 
 test: $(DONE)/installed $(DONE)/test-requirements  ## build and run all tests
-	cmake --preset release
-	cmake --build --preset release
-	ctest --preset release
+	cmake -B $(BUILT) -DPENDCORE_TESTS=ON
+	cmake --build $(BUILT) --target pendcore_tests pendcore_threads trajectory_hash
+	ctest --test-dir $(BUILT) --output-on-failure --no-tests=error
 	$(PYTEST)
 
-compare: $(DONE)/installed build-bench  ## accuracy and speed beside other solvers
+compare: build-bench  ## accuracy and speed beside other solvers
 	python bench/compare/compare.py
 
-hard-cases: $(DONE)/installed build-bench  ## what breaks simulators, here and in other programs
+hard-cases: build-bench  ## what breaks simulators, here and in other programs
 	python bench/compare/compare_hard_cases.py
 
 bench: build-bench  ## what the parts of the core cost, in nanoseconds
-	build/release/bench/pendcore_bench
+	$(BUILT)/bench/pendcore_bench
 
-build-bench: $(DONE)/bench-requirements
-	cmake --preset bench
-	cmake --build --preset bench
+build-bench: $(DONE)/installed $(DONE)/bench-requirements
+	cmake -B $(BUILT) -DPENDCORE_BENCH=ON
+	cmake --build $(BUILT) --target bench/all
 
 lint: $(DONE)/lint-requirements  ## formatting, style, types and spelling, as before a commit
 	pre-commit run --all-files
@@ -52,8 +55,9 @@ tidy: $(DONE)/build-requirements $(DONE)/lint-requirements  ## clang-tidy over t
 	cmake --preset tidy
 	run-clang-tidy.py -quiet -hide-progress -p build/tidy
 
-# Python itself is not built with the sanitizers, so their libraries are loaded before it; what it
-# never frees is not reported.
+# What sanitizers look for lies in the code, not in how often it runs: what is slow for other reasons
+# is marked, and left to `make test`. Python itself is not built with the sanitizers, so their
+# libraries are loaded before it; what it never frees is not reported.
 SANITIZED := $(CURDIR)/build/sanitizer/site
 PRELOAD = $(shell g++ -print-file-name=libasan.so) $(shell g++ -print-file-name=libstdc++.so)
 
@@ -64,7 +68,7 @@ sanitize: $(DONE)/installed $(DONE)/test-requirements  ## all tests under saniti
 	rm -rf $(SANITIZED) && mkdir -p $(SANITIZED) && cp -r python/pendcore $(SANITIZED)
 	cmake --install build/sanitizer --prefix $(SANITIZED)/pendcore
 	PYTHONPATH=$(SANITIZED) LD_PRELOAD="$(PRELOAD)" ASAN_OPTIONS=detect_leaks=0 \
-	    $(PYTEST) -m "not outside_build"
+	    $(PYTEST) -m "not outside_build and not unsanitized"
 
 threads: $(DONE)/build-requirements  ## threads that share a scene, under the thread sanitizer
 	@sh setup/debian_packages.sh doctest
@@ -106,7 +110,7 @@ $(DONE)/build-requirements: pyproject.toml | $(DONE)/venv
 # What is edited while it builds is newer than the stamp, and built the next time.
 $(DONE)/installed: $(SOURCES) $(DONE)/build-requirements
 	@touch $@.begun
-	$(PIP_INSTALL) --no-build-isolation .
+	$(PIP_INSTALL) --no-build-isolation -C build-dir=$(BUILT) .
 	@mv $@.begun $@
 
 $(DONE)/test-requirements: pyproject.toml | $(DONE)/build-requirements

@@ -8,6 +8,8 @@ import pytest
 from mpmath import log, mp
 from reference import minimax
 
+pytestmark = pytest.mark.unsanitized
+
 CPP = Path(__file__).parent.parent / "cpp"
 SINE_COSINE = CPP / "include/pendcore/arithmetic/sine_cosine.hpp"
 POWER = CPP / "include/pendcore/arithmetic/power.hpp"

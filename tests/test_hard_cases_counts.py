@@ -17,6 +17,8 @@ from pendcore import effects as fx
 from pendcore import events as ev
 from unit_rods import rod
 
+pytestmark = pytest.mark.unsanitized
+
 GRAVITY = 2 / 3
 BOTTOM = np.pi / 2
 

@@ -6,7 +6,7 @@ import numpy as np
 import pendcore as pc
 import pytest
 from pendcore import effects as fx
-from test_hard_cases_many_contacts import drawn
+from test_hard_cases_many_contacts import assert_within_its_stops, drawn
 
 
 def resting(seed: int) -> tuple[pc.Scene, np.ndarray]:
@@ -29,15 +29,6 @@ def resting(seed: int) -> tuple[pc.Scene, np.ndarray]:
     return pc.Scene(links=rods, effects=effects, gravity=0), np.cumsum(phi)
 
 
-def assert_within_stops(scene: pc.Scene, sol: pc.Solution) -> None:
-    phi = sol.relative_angles()
-    for effect in scene.effects:
-        if effect.kind == "joint_stop":
-            low, high = effect.range
-            assert phi[:, effect.joint - 1].min() >= low - 1e-12
-            assert phi[:, effect.joint - 1].max() <= high + 1e-12
-
-
 # 4, 815 and 2576: an impact at 1e-29 rad/s set joints in motion that friction held.
 @pytest.mark.parametrize("seeds", [range(100), range(100, 200), [392, 815, 1656, 2576]], ids=str)
 def test_chains_that_rest_at_their_stops_get_going(seeds, method):
@@ -45,7 +36,7 @@ def test_chains_that_rest_at_their_stops_get_going(seeds, method):
         scene, q0 = resting(seed)
         sol = pc.simulate(scene, q0, 0, (0, 1), method=method, max_steps=20_000)
         assert sol.success, (seed, sol.message)
-        assert_within_stops(scene, sol)
+        assert_within_its_stops(sol)
 
 
 def test_a_dense_output_that_begins_with_its_own_error_is_not_taken_for_an_impact(method):
@@ -69,4 +60,4 @@ def test_chains_of_many_contacts_that_went_back_and_forth_get_to_their_end(seed,
     scene, q0, qd0 = drawn(seed)
     sol = pc.simulate(scene, q0, qd0, (0, 3), method=method, max_steps=50_000)
     assert sol.success, sol.message
-    assert_within_stops(scene, sol)
+    assert_within_its_stops(sol)

@@ -43,6 +43,7 @@ HUMS = {
 }
 
 
+@pytest.mark.unsanitized
 @pytest.mark.parametrize("hum", HUMS.values(), ids=HUMS.keys())
 def test_a_rod_held_at_30_degrees_under_a_hum_moves_by_nothing_in_1e6_s(
     hum: Any, method: str

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.unsanitized
 DOCS = Path(__file__).parents[1] / "docs"
 sys.path.append(str(DOCS))
 import long_runs  # noqa: E402

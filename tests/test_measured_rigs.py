@@ -124,6 +124,7 @@ def changed(scene: pc.Scene, gravity: float, damping: float) -> pc.Scene:
     return pc.Scene(links=scene.links, gravity=gravity * scene.gravity, effects=effects)
 
 
+@pytest.mark.unsanitized
 @pytest.mark.parametrize("name", TO_BE_FITTED)
 @pytest.mark.parametrize(
     ("gravity", "damping"),

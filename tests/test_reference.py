@@ -14,6 +14,8 @@ from reference.newton_euler import Body, newton_euler, uniform_rod
 from reference.order_conditions import holds, order_of, trees
 from reference.trajectories import names, trajectory
 
+pytestmark = pytest.mark.unsanitized
+
 BODIES = [
     Body(1.3, 0.8, 0.5, 0.02),
     Body(0.2, 1.7, 0.1, 0.3),

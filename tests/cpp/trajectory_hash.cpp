@@ -1,5 +1,7 @@
 // A line for each of a few runs: its name and a hash of every bit of its times and states, and of
-// the events that were found.
+// the events that were found. trajectory_hash.txt has them all. Up to `tiny` they are from before
+// there were effects: scenes without keep every bit. Who changes a method's steps or an effect's
+// law changes lines of it, and says so in CHANGELOG.md.
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>

@@ -35,10 +35,7 @@ def find_executable(name: str, variable: str) -> Path:
         found = [Path(named)] if named else list(PROJECT.glob(f"build/**/{name}"))
     found = [path for path in found if path.is_file()]
     if not found:
-        raise ImportError(
-            f"{name}: not built; `make compare` builds it, or "
-            "`cmake --preset bench && cmake --build --preset bench`"
-        )
+        raise ImportError(f"{name}: not built; `make build-bench` builds it")
     return max(found, key=lambda path: path.stat().st_mtime)
 
 

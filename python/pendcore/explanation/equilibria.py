@@ -231,7 +231,7 @@ def _rates_about(by_angle: Floats, by_rate: Floats) -> tuple[Complexes, bool]:
     return np.where(is_slow, _by_size(1.0 / slow), rates), True
 
 
-def _by_size(rates: Complexes) -> Complexes:
+def _by_size(rates: Floats | Complexes) -> Complexes:
     return rates[np.argsort(np.abs(rates), kind="stable")].astype(complex)
 
 
