@@ -35,7 +35,7 @@ EXAMPLES: dict[str, list[str]] = {
     "rotor_inertia": ["RotorInertia(joint=1, armature=0.02)"],
     "payload": ["Payload(mass=0.5, inertia=0.001)"],
     "joint_stop": [
-        "JointStop(joint=2, range=(-2.5, 2.5), restitution=0.4)",
+        "JointStop(joint=2, range=(-0.5, 0.8), restitution=0.4)",
         "JointStop(joint=1, range=(0.0, inf), restitution=0.8, capture_speed=0.001)",
     ],
     "lock": ["Lock(joint=2)", "Lock(joint=2, angle=0.5)"],

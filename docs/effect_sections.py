@@ -85,7 +85,7 @@ At an impact `sol.t` holds the time twice, with the state before and after:
 ```python
 import numpy as np
 
-sol = pc.simulate(scene, q0=[0.5, 2.9], qd0=[0, 12], t_span=(0, 3), ledger=True)
+sol = pc.simulate(scene, q0=[0.5, 0.9], qd0=[0, 12], t_span=(0, 3), ledger=True)
 k = np.flatnonzero(np.diff(sol.t) == 0)
 print(sol.t[k], sol.qd[k], sol.qd[k + 1])  # times, rates before, rates after
 ```

@@ -147,7 +147,7 @@ def test_shapes_that_do_not_go_together_are_told() -> None:
 
 def test_angles_of_few_bits_are_turned_in_many() -> None:
     assert pc.angles_from_vertical(np.float16([0.25])).dtype == np.float64
-    with pytest.raises(TypeError, match=r"^theta: holds <U1: must hold real numbers \(rad\)"):
+    with pytest.raises(TypeError, match=r"^theta: holds text: must hold real numbers \(rad\)"):
         pc.angles_from_vertical(["1"])
     with pytest.raises(ValueError, match=r"^q\[0\] = nan: must be finite \(rad\)"):
         pc.angles_to_vertical([np.nan])

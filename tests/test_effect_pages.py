@@ -69,7 +69,7 @@ def test_impacts_are_counted_as_their_page_says():
     sol, k = names["sol"], names["k"]
     phi, rates = (np.diff(x, axis=1)[:, 0] for x in (sol.q, sol.qd))
     assert len(k) >= 3
-    assert (abs(phi[k]) == 2.5).all()
+    assert np.minimum(abs(phi[k] + 0.5), abs(phi[k] - 0.8)).max() < 1e-15
     assert rates[k + 1] == pytest.approx(-0.4 * rates[k], rel=1e-12)
 
 

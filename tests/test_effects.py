@@ -196,7 +196,7 @@ MISTAKES = {
     ),
     "truth": (lambda: fx.ViscousJoint(1, True), TypeError, r"ViscousJoint: damping = True: must"),
     "none": (lambda: fx.ViscousJoint(1, None), TypeError, r"ViscousJoint: damping = None: must"),
-    "texts": (lambda: fx.Table([0, 1], ["a", "b"]), TypeError, r"Table: torque: holds <U1: must"),
+    "texts": (lambda: fx.Table([0, 1], ["a", "b"]), TypeError, r"Table: torque: holds text: must"),
     "too large": (lambda: fx.ViscousJoint(1, 10**400), ValueError, r"ViscousJoint: damping: is to"),
     "no part": (
         lambda: fx.Motor(1, sinusoid=5),
@@ -259,6 +259,14 @@ def test_a_mistake_is_told_with_class_parameter_value_and_remedy(mistake):
 def test_a_scene_refuses_what_its_chain_has_no_place_for(effect, message):
     with pytest.raises(ValueError, match=f"^{message}"):
         pc.Scene(links=[ROD, ROD], effects=[fx.Lock(1), effect])
+
+
+def test_a_scene_refuses_stops_that_leave_a_joint_no_angle():
+    stops = [fx.JointStop(1, range=(-1, 0)), fx.JointStop(1, range=(0.5, 1))]
+    message = r"effect 2 \(joint_stop\): range: the stops of joint 1 leave it no angle"
+    with pytest.raises(ValueError, match=f"^{message}"):
+        pc.Scene(links=[ROD, ROD], effects=stops)
+    assert pc.Scene(links=[ROD], effects=[stops[0], fx.JointStop(1, range=(0, 1))])
 
 
 @pytest.mark.parametrize(

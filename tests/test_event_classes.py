@@ -116,7 +116,7 @@ BAD: dict[str, Any] = {
     "must be a list of pendcore.events: put it in brackets": lambda: any_run(KEPT[0]),
     "events = 3: must be a list of pendcore.events": lambda: any_run(3),
     "event 1 = <class 'pendcore.events.LinkAngle'>: must": lambda: any_run([any_.LinkAngle]),
-    "event 1 = 1: must be a list of pendcore.events": lambda: any_case(1),
+    "event 1 = 1: must be one of pendcore.events": lambda: any_case(1),
 }
 
 

@@ -123,7 +123,7 @@ def test_a_stop_that_is_never_reached_changes_no_bit(links: int, method: str) ->
     rods = [pc.Link(mass=1, length=1)] * links
     bare = pc.Scene(links=rods, gravity=9.807)
     stopped = bare.replace(
-        effects=[stop(-50.0, 50.0, joint=j + 1, restitution=0.5) for j in range(links)]
+        effects=[stop(-51.0, 51.0, joint=j + 1, restitution=0.5) for j in range(links)]
     )
     start = np.linspace(0.3, 1.2, links)
     free = pc.simulate(bare, start, 0.1, (0, 3), method=method)

@@ -43,6 +43,11 @@ SCENES = {
         [fx.Lock(1, angle=90)],
         r"effect 1 \(lock\): angle = 90\.0 rad: that is 5156\.\d+ degrees: angles are in radians",
     ),
+    "a stop in degrees": (
+        [ROD],
+        [fx.JointStop(1, range=(0.0, 90.0))],
+        r"effect 1 \(joint_stop\): range = 90\.0 rad: .* in radians",
+    ),
     "a spring in degrees": (
         [ROD],
         [fx.Payload(1.0), fx.TorsionalSpring(1, 1.0, rest_angle=-15)],

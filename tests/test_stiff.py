@@ -105,6 +105,15 @@ def test_a_fast_mode_is_told_in_the_joint_of_its_effect() -> None:
     assert "in joint 1, from effect 1 (torsional_spring)" in sol.message
 
 
+def test_a_law_of_the_users_that_jumps_is_told_what_has_the_jump() -> None:
+    def rub(t: float, q: Any, qd: Any) -> Any:
+        return -0.5 * np.sign(qd)
+
+    sol = pc.simulate(two_rods(pc.effects.User(rub)), [1.5, 1.4], 0, (0, 20), max_steps=10_000)
+    assert sol.status == "max_steps"
+    assert "DryJointFriction" in sol.message
+
+
 def test_a_pendulum_has_no_fast_mode_however_long_it_runs() -> None:
     sol = pc.simulate(BOOK, START, 0, (0, 100))
     assert sol.stats.accepted > 2000

@@ -22,6 +22,11 @@ std::string table_that_ends(const Scene& scene, double t, bool forward) {
   return {};
 }
 
+/// Where a user's law jumps, every step across it is rejected.
+bool jumps_under_users(const Scene& scene, const Statistics& statistics) {
+  return !effects_of<CompiledUser>(scene).empty() && statistics.rejected > statistics.accepted;
+}
+
 }  // namespace
 
 std::string ending_message(const Ending& ending, const Scene& scene, const Solution& solution,
@@ -67,6 +72,12 @@ std::string ending_message(const Ending& ending, const Scene& scene, const Solut
            " stopped being finite: without ledger=True the motion can go on" + at + ')';
   }
   message += at;
+  if (ending.status == Status::max_steps && jumps_under_users(scene, statistics)) {
+    message +=
+        "; most steps were rejected: a law of yours that jumps, as sign(w) does, is no "
+        "friction that rests: DryJointFriction is";
+    return message + ')';
+  }
   if (ending.status != Status::non_finite) return message + ')';
   NotFinite found = find_what_is_not_finite(scene, position, solution.t_end);
   if (found.component < 0) found.component = ending.bad;

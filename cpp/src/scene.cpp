@@ -43,6 +43,7 @@ void check_place(const std::string& where, const char* what, int number, int n) 
 void check_effects(const Scene& scene) {
   const int n = static_cast<int>(scene.links.size());
   std::vector<bool> locked(n);
+  std::vector<std::array<double, 2>> ranges(n, {-never, never});  // that stops leave
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
     const std::string where = effect_name(scene, i) + ": ";
     check_effect(where, scene.effects[i]);
@@ -52,6 +53,15 @@ void check_effects(const Scene& scene) {
             check_place(where, "joint", effect.joint, n);
           }
           if constexpr (requires { effect.link; }) check_place(where, "link", effect.link, n);
+          if constexpr (std::is_same_v<Kind, JointStop>) {
+            std::array<double, 2>& left = ranges[effect.joint - 1];
+            left = {std::max(left[0], effect.range[0]), std::min(left[1], effect.range[1])};
+            if (left[0] > left[1]) {
+              throw std::invalid_argument(where + "range: the stops of joint " +
+                                          std::to_string(effect.joint) +
+                                          " leave it no angle: their ranges must overlap");
+            }
+          }
           if constexpr (std::is_same_v<Kind, Lock>) {
             if (locked[effect.joint - 1]) {
               throw std::invalid_argument(where + "joint " + std::to_string(effect.joint) +
@@ -72,19 +82,25 @@ bool has_rotor(const Scene& scene, std::size_t joint) {
 
 constexpr double pi = 3.14159265358979323846;
 
-/// A sentence for each angle among the parameters of an effect, or of its parts, that looks as if
-/// it were in degrees: a multiple of five from fifteen up to two turns. A phase may well be large:
-/// it moves a wave in time.
+/// A sentence for an angle that looks as if it were in degrees: a multiple of five from fifteen up
+/// to two turns. A phase may well be large: it moves a wave in time.
+void warn_of_degrees(const std::string& where, const ParameterInfo& info, double x,
+                     std::vector<std::string>& warnings) {
+  if (info.unit != "rad" || info.name == "phase" || std::fmod(x, 5.0) != 0.0) return;
+  if (std::abs(x) < 15.0 || std::abs(x) > 720.0) return;
+  warnings.push_back(where + std::string(info.name) + " = " + text(x) + " rad: that is " +
+                     text(x * (180.0 / pi)) + " degrees: angles are in radians");
+}
+
+/// The same of each angle among the parameters of an effect, or of its parts.
 template <class Struct>
 void warn_of_degrees(const std::string& where, const Struct& effect,
                      std::vector<std::string>& warnings) {
   for_each_parameter(effect, [&]<class Value>(const ParameterInfo& info, const Value& value) {
     if constexpr (std::is_same_v<Value, double> || std::is_same_v<Value, std::optional<double>>) {
-      const double x = std::optional<double>(value).value_or(0.0);
-      if (info.unit != "rad" || info.name == "phase" || std::fmod(x, 5.0) != 0.0) return;
-      if (std::abs(x) < 15.0 || std::abs(x) > 720.0) return;
-      warnings.push_back(where + std::string(info.name) + " = " + text(x) + " rad: that is " +
-                         text(x * (180.0 / pi)) + " degrees: angles are in radians");
+      warn_of_degrees(where, info, std::optional<double>(value).value_or(0.0), warnings);
+    } else if constexpr (std::is_same_v<Value, std::array<double, 2>>) {
+      for (const double x : value) warn_of_degrees(where, info, x, warnings);
     } else if constexpr (requires { value->parameters; }) {
       if (value) warn_of_degrees(where + std::string(info.name) + ".", *value, warnings);
     }

@@ -106,7 +106,8 @@ def real_array(name: str, value: npt.ArrayLike, unit: str) -> Floats:
         except OverflowError:
             raise _too_large(name, unit) from None
     if array.dtype.kind not in "iuf":
-        raise TypeError(f"{name}: holds {array.dtype}: must hold real numbers{in_unit(unit)}")
+        held = {"U": "text", "O": "objects", "b": "truth values"}.get(array.dtype.kind, array.dtype)
+        raise TypeError(f"{name}: holds {held}: must hold real numbers{in_unit(unit)}")
     return array.astype(np.float64, copy=False)
 
 

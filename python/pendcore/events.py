@@ -304,7 +304,9 @@ def events_asked_for(events: Iterable[Event]) -> tuple[Event, ...]:
         raise TypeError(f"events = {events!r}: {remedy}") from None
     for i, event in enumerate(events, start=1):
         if not isinstance(event, Event):
-            raise TypeError(f"event {i} = {event!r}: {remedy}")
+            raise TypeError(
+                f"event {i} = {event!r}: must be one of pendcore.events, as RateZero(1)"
+            )
     return events
 
 

@@ -49,7 +49,8 @@ def simulate(
     qd0 : array_like, (n,), default 0
         Angular rates at the start, rad/s. A scalar holds for every link.
     t_span : (float, float)
-        Start and end, s. The end may lie before the start: the run then goes backward.
+        Start and end, s. The end may lie before the start: the run then goes
+        backward (refused with dry friction or inelastic stops, whose past is not unique).
     method : str
         ``"dopri5"`` (also ``"RK45"``, ``"ode45"``): Dormand-Prince 5(4) with dense output.
         ``"radau5"`` (also ``"Radau"``): Radau IIA of order 5, implicit, for stiff scenes: strong
