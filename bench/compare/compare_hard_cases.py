@@ -30,7 +30,7 @@ from machine import machine  # noqa: E402
 from tqdm import tqdm  # noqa: E402
 
 Record = dict[str, Any]
-FACTS = ("name", "title", "scene", "answer", "unit", "figure")
+FACTS = ("name", "title", "scene", "answer", "unit", "figure", "loop_not_run")
 
 
 def rounded(curves: Any) -> dict[str, list[float]]:

@@ -19,8 +19,11 @@
 #include <utility>
 #include <vector>
 
+#include "hard_cases_odeint.hpp"
+
 namespace {
 
+using namespace hard_cases;
 namespace ode = boost::numeric::odeint;
 namespace ublas = boost::numeric::ublas;
 
@@ -28,23 +31,11 @@ using Two = std::array<double, 2>;
 using Four = std::array<double, 4>;
 using Stiff = ublas::vector<double>;
 using Matrix = ublas::matrix<double>;
-using Numbers = std::vector<double>;
 constexpr double pi = 3.14159265358979323846;
-
-void tell(const char* name, const Numbers& numbers) {
-  std::printf("%s", name);
-  for (const double number : numbers) std::printf(" %.17g", number);
-  std::printf("\n");
-}
 
 template <class State>
 auto dense_dopri5(double atol, double rtol) {
   return ode::make_dense_output(atol, rtol, ode::runge_kutta_dopri5<State>());
-}
-
-template <class State>
-auto controlled_dopri5(double atol, double rtol) {
-  return ode::make_controlled(atol, rtol, ode::runge_kutta_dopri5<State>());
 }
 
 // The time in [low, high] where the sign of `value` changes.
@@ -55,20 +46,6 @@ double bisect(double low, double high, const std::function<double(double)>& valu
     ((value(middle) > 0) == above ? low : high) = middle;
   }
   return high;
-}
-
-// Rates of two rods of 1 kg and 1 m, with couples at the joints.
-template <class State>
-void textbook(const State& y, State& f, double first = 0, double second = 0) {
-  constexpr double g = 9.807;
-  const double d = y[0] - y[1], a12 = 0.5 * std::cos(d), h = 0.5 * std::sin(d);
-  const double r1 = 1.5 * g * std::cos(y[0]) - h * y[3] * y[3] + first - second;
-  const double r2 = 0.5 * g * std::cos(y[1]) + h * y[2] * y[2] + second;
-  const double determinant = 4.0 / 9 - a12 * a12;
-  f[0] = y[2];
-  f[1] = y[3];
-  f[2] = (r1 / 3 - a12 * r2) / determinant;
-  f[3] = (4.0 / 3 * r2 - a12 * r1) / determinant;
 }
 
 // One rod under a torque, friction with a smoothed sign; its Jacobian.
@@ -298,11 +275,21 @@ void separatrix(const Numbers& numbers) {
   tell("q", {y[0]});
 }
 
-const std::map<std::string, void (*)(const Numbers&)> cases{
-    {"held_rod", held_rod},         {"stick_slip", stick_slip}, {"bounces", bounces},
-    {"not_a_number", not_a_number}, {"blow_up", blow_up},       {"late_start", late_start},
-    {"two_roots", two_roots},       {"upright", upright},       {"stiff_damper", stiff_damper},
-    {"separatrix", separatrix},     {"two_joints", two_joints}};
+const std::map<std::string, void (*)(const Numbers&)> cases{{"held_rod", held_rod},
+                                                            {"stick_slip", stick_slip},
+                                                            {"bounces", bounces},
+                                                            {"not_a_number", not_a_number},
+                                                            {"blow_up", blow_up},
+                                                            {"late_start", late_start},
+                                                            {"two_roots", two_roots},
+                                                            {"upright", upright},
+                                                            {"stiff_damper", stiff_damper},
+                                                            {"separatrix", separatrix},
+                                                            {"two_joints", two_joints},
+                                                            {"payload", payload},
+                                                            {"chain", chain},
+                                                            {"drift", drift},
+                                                            {"shaken", shaken}};
 
 }  // namespace
 

@@ -48,7 +48,8 @@ class Contender:
 class HardCase:
     """`unit` is that of the error; an error of at most `allowed` counts as right.
 
-    `figure` says what its picture shows, where there is one (figures.py).
+    `figure` says what its picture shows, where there is one (figures.py). `loop_not_run` names the
+    programs around which one could write a loop that would be right, and none is run here.
     """
 
     name: str
@@ -60,6 +61,7 @@ class HardCase:
     contenders: tuple[Contender, ...]
     reference: Callable[[], Mapping[str, list[float]]] = dict
     figure: str = ""
+    loop_not_run: tuple[str, ...] = ()
 
 
 class Absent(Exception):

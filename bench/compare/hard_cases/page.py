@@ -22,7 +22,8 @@ the answer is right; times are another page ([comparison](comparison/textbook.md
 ## At a glance
 
 Of each program the way that does best; **bold** is right. *Own loop*: modes, switches or events are
-a program of the user's own, the library integrates between them.
+a program of the user's own, the library integrates between them. *Own loop: not run*: such a
+program might be right and is not among those that were run; the case says why.
 
 {glance}
 {summary}
@@ -81,6 +82,15 @@ def measured(case: Any, one: Any) -> str:
     return f"{one['error']:.0e} {case['unit']}".replace("e-0", "e-").replace("e+0", "e+")
 
 
+def loops_not_run(case: Any) -> list[str]:
+    """Name the programs that are not right here, and might be in a loop that was not run."""
+    return [
+        program
+        for program in case.get("loop_not_run", ())
+        if (one := best(case, program)) is None or not one["right"]
+    ]
+
+
 def glance(record: Record) -> str:
     rows = []
     for case in record["cases"]:
@@ -90,6 +100,8 @@ def glance(record: Record) -> str:
             text = "not there" if one is None else measured(case, one)
             if one is not None and one["right"]:
                 text = f"**{text}**" + (" (own loop)" if one["own_loop"] else "")
+            if program in loops_not_run(case):
+                text += " (own loop: not run)"
             row.append(text)
         rows.append(row)
     return table(["case", *PROGRAMS.values()], rows)
@@ -97,6 +109,12 @@ def glance(record: Record) -> str:
 
 def anchor(title: str) -> str:
     return "".join(c for c in title.lower().replace(" ", "-") if c.isalnum() or c == "-")
+
+
+def unasked(case: Any) -> str:
+    """Say of whom no loop of one's own was run."""
+    programs = " and ".join(PROGRAMS[program] for program in loops_not_run(case))
+    return f" (no loop of one's own was run around {programs})" if programs else ""
 
 
 def summary(record: Record) -> str:
@@ -108,7 +126,7 @@ def summary(record: Record) -> str:
         own = sum(one["own_loop"] for one in right)
         counts.append(f"{label} {len(right)}" + (f" ({own} by a loop of one's own)" if own else ""))
     alone = [
-        case["title"].lower()
+        case["title"].lower() + unasked(case)
         for case in record["cases"]
         if (own := best(case, "pendcore")) is not None
         and own["right"]

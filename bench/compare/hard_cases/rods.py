@@ -28,7 +28,11 @@ ROD = """<mujoco>
 SECOND = """<body pos="0 0 {side}1">
     <joint name="second" type="hinge" axis="0 1 0" {joint}/>
     <inertial pos="0 0 {side}0.5" mass="{mass}" diaginertia="{inertia} {inertia} {thin}"/>
+    {load}
    </body>"""
+
+LOAD = """<body pos="0 0 {side}1"><inertial pos="0 0 0" mass="{payload}"
+     diaginertia="1e-9 1e-9 1e-9"/></body>"""
 
 
 def mujoco_rods(
@@ -40,14 +44,20 @@ def mujoco_rods(
     joint: str = "",
     integrator: str = "implicitfast",
     hanging: bool = True,
+    payload: float = 0.0,
 ) -> Any:
-    """Compile uniform rods of 1 m; the joints' angles are 0 where all hang, or all stand."""
+    """Compile uniform rods of 1 m; the joints' angles are 0 where all hang, or all stand.
+
+    `payload` is a point mass at the second one's tip.
+    """
     import mujoco
 
     known = {
         "dt": repr(dt), "down": -gravity, "integrator": integrator, "joint": joint, "mass": mass,
         "inertia": mass / 12, "thin": 1e-4, "side": "-" if hanging else "",
+        "payload": payload,
     }  # fmt: skip
+    known["load"] = LOAD.format(**known) if payload else ""
     tip = SECOND.format(**known) if links == 2 else ""
     return mujoco.MjModel.from_xml_string(ROD.format(tip=tip, **known))
 

@@ -123,6 +123,7 @@ CASE = HardCase(
     ),
     unit="rad",
     allowed=1e-8,
+    loop_not_run=("scipy", "odeint"),
     reference=reference,
     figure=(
         "Angles of two joints over time, when each sticks, and how far each program is off; the "
