@@ -87,6 +87,19 @@ def test_who_does_best_is_shown_and_who_is_right_is_bold() -> None:
     assert "in pendcore alone: one case" in page.summary(record)
 
 
+def test_whose_loop_was_not_run_is_told_in_the_table() -> None:
+    one = case(pendcore=(1e-12, True), scipy=(1e-3, False)) | {"loop_not_run": ["scipy", "odeint"]}
+    record = {"cases": [one]}
+    (row,) = [line for line in page.glance(record).splitlines() if "One case" in line]
+    assert row.split(" | ")[2:] == [
+        "1e-3 rad (own loop: not run)", "not there", "not there (own loop: not run) |"
+    ]  # fmt: skip
+    unasked = "one case (no loop of one's own was run around SciPy and Boost.odeint)."
+    assert f"in pendcore alone: {unasked}" in page.summary(record)
+    one["contenders"][1]["right"] = True
+    assert "**1e-3 rad** |" in page.glance(record)
+
+
 def test_losses_are_told() -> None:
     wrong = {"cases": [case(pendcore=(1e-3, False), scipy=(1e-12, True))]}
     closer = {"cases": [case(pendcore=(1e-10, True), scipy=(1e-12, True))]}

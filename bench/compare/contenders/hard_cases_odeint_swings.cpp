@@ -94,7 +94,7 @@ void payload(const Numbers& numbers) {
          ((4.0 / 3 + p) * r2 - a * c * r1) / determinant};
   };
   Four y{numbers[1], numbers[2], 0, 0};
-  const auto steps = ode::integrate_adaptive(controlled_fehlberg78<Four>(1e-14, 1e-10), rates, y,
+  const auto steps = ode::integrate_adaptive(controlled_fehlberg78<Four>(1e-15, 1e-12), rates, y,
                                              0.0, numbers[3], 1e-5);
   tell("q", {y[0], y[1]});
   tell("steps", {static_cast<double>(steps)});
@@ -111,19 +111,19 @@ void chain(const Numbers& numbers) {
   tell("steps", {static_cast<double>(steps)});
 }
 
-// Numbers: 5 or 8 for the order, the start's angles, the times to tell the states at.
+// Numbers: 5 or 8 for the order, the tolerances, the start's angles, the times to tell the states at.
 void drift(const Numbers& numbers) {
   const auto rates = [](const Four& x, Four& f, double) { textbook(x, f); };
-  const std::vector<double> times(numbers.begin() + 3, numbers.end());
-  Four y{numbers[1], numbers[2], 0, 0};
+  const std::vector<double> times(numbers.begin() + 5, numbers.end());
+  Four y{numbers[3], numbers[4], 0, 0};
   Numbers states;
   const auto kept = [&](const Four& x, double) { states.insert(states.end(), x.begin(), x.end()); };
   if (numbers[0] == 5)
-    ode::integrate_times(controlled_dopri5<Four>(1e-14, 1e-12), rates, y, times.begin(),
+    ode::integrate_times(controlled_dopri5<Four>(numbers[2], numbers[1]), rates, y, times.begin(),
                          times.end(), 1e-3, kept);
   else
-    ode::integrate_times(controlled_fehlberg78<Four>(1e-14, 1e-12), rates, y, times.begin(),
-                         times.end(), 1e-3, kept);
+    ode::integrate_times(controlled_fehlberg78<Four>(numbers[2], numbers[1]), rates, y,
+                         times.begin(), times.end(), 1e-3, kept);
   tell("states", states);
 }
 

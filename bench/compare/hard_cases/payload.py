@@ -146,19 +146,19 @@ CASE = HardCase(
         Contender(program="pendcore", how="dopri5, defaults", run=pendcore),
         Contender(
             program="pendcore",
-            how="dopri5, rtol 1e-13, atol 1e-15",
-            run=lambda: pendcore(rtol=1e-13, atol=1e-15),
+            how="dopri5, rtol 1e-12, atol 1e-15",
+            run=lambda: pendcore(rtol=1e-12, atol=1e-15),
         ),
         Contender(
             program="pendcore",
-            how="radau5, rtol 1e-13, atol 1e-15",
-            run=lambda: pendcore(method="radau5", rtol=1e-13, atol=1e-15),
+            how="radau5, rtol 1e-12, atol 1e-15",
+            run=lambda: pendcore(method="radau5", rtol=1e-12, atol=1e-15),
         ),
         Contender(program="scipy", how="Radau, defaults", run=lambda: scipy("Radau")),
         Contender(
             program="scipy",
-            how="DOP853, rtol 1e-10, atol 1e-14",
-            run=lambda: scipy("DOP853", rtol=1e-10, atol=1e-14),
+            how="DOP853, rtol 1e-12, atol 1e-15",
+            run=lambda: scipy("DOP853", rtol=1e-12, atol=1e-15),
         ),
         *(
             Contender(
@@ -174,7 +174,7 @@ CASE = HardCase(
             )
         ),
         odeint(
-            "controlled fehlberg78, rtol 1e-10, atol 1e-14",
+            "controlled fehlberg78, rtol 1e-12, atol 1e-15",
             "payload",
             *(repr(x) for x in (RATIO, *START, PERIOD)),
             judge=lambda heard: judged(heard["q"], f"{heard['steps'][0]:.0f} steps"),
