@@ -1,6 +1,7 @@
 // Boost.odeint on the hard cases, as its able user would write them: dopri5 with dense output or
-// integrate_adaptive, rosenbrock4 where it is stiff. Called with the name of a case and numbers;
-// prints lines of a name and numbers. bench/compare/hard_cases/ says what each case is about.
+// integrate_adaptive, fehlberg78 where much is asked, rosenbrock4 where it is stiff. Called with
+// the name of a case and numbers; prints lines of a name and numbers. bench/compare/hard_cases/
+// says what each case is about.
 // C++17: Boost 1.74's ublas, which rosenbrock4 needs, uses what C++20 has taken away.
 #include <algorithm>
 #include <array>

@@ -111,7 +111,8 @@ void chain(const Numbers& numbers) {
   tell("steps", {static_cast<double>(steps)});
 }
 
-// Numbers: 5 or 8 for the order, the tolerances, the start's angles, the times to tell the states at.
+// Numbers: 5 or 8 for the order, the tolerances, the start's angles, the times to tell the states
+// at.
 void drift(const Numbers& numbers) {
   const auto rates = [](const Four& x, Four& f, double) { textbook(x, f); };
   const std::vector<double> times(numbers.begin() + 5, numbers.end());
