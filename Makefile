@@ -110,7 +110,7 @@ $(DONE)/build-requirements: pyproject.toml | $(DONE)/venv
 # What is edited while it builds is newer than the stamp, and built the next time.
 $(DONE)/installed: $(SOURCES) $(DONE)/build-requirements
 	@touch $@.begun
-	$(PIP_INSTALL) --no-build-isolation -C build-dir=$(BUILT) .
+	$(PIP_INSTALL) --no-build-isolation --config-settings build-dir=$(BUILT) .
 	@mv $@.begun $@
 
 $(DONE)/test-requirements: pyproject.toml | $(DONE)/build-requirements
