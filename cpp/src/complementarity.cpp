@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "pendcore/arithmetic/epsilon.hpp"
 
@@ -112,6 +113,7 @@ bool ForcesBetweenBounds::solve() {
 /// From forces within the bounds downhill: towards what would be the least without the bounds that
 /// are not in the way, along them where they are met, half as far until it goes down enough.
 bool ForcesBetweenBounds::descend() {
+  constexpr int most_halvings = 52;  // as far as a double can tell
   for (int i = 0; i < size; ++i) lambda[i] = std::clamp(lambda[i], lower[i], upper[i]);
   std::vector<double> from(lambda);
   std::vector<double> slope(lambda.size());
@@ -127,21 +129,28 @@ bool ForcesBetweenBounds::descend() {
       is_least = is_least && is_flat;
     }
     if (is_least) {
-      w = slope;
+      w = std::move(slope);
       return true;
     }
     solve_between();
     const std::vector<double> to = lambda;
-    for (double share = 1.0; share > epsilon; share *= 0.5) {
+    double share = 1.0;
+    bool is_lower = false;
+    for (int halvings = 0; halvings <= most_halvings && !is_lower; ++halvings, share *= 0.5) {
       for (int i = 0; i < size; ++i) {
         lambda[i] = std::clamp(from[i] + share * (to[i] - from[i]), lower[i], upper[i]);
       }
-      if (goes_down(from, slope)) break;
+      is_lower = goes_down(from, slope);
     }
-    if (lambda == from) return true;  // no lower by any double
+    if (!is_lower) {  // by what doubles can tell it is the least
+      lambda = std::move(from);
+      w = std::move(slope);
+      return true;
+    }
   }
   return false;
 }
+
 /// W x + a, the slope of 1/2 x.W x + a.x
 void ForcesBetweenBounds::slope_at(const std::vector<double>& x, std::vector<double>& slope) const {
   for (int i = 0; i < size; ++i) {

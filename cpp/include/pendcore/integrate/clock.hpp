@@ -3,13 +3,15 @@
 #pragma once
 
 #include <chrono>
+#include <exception>
 
 #include "pendcore/integrate/integrate.hpp"
 
 namespace pendcore {
 
 /// Is thrown out of work that is not done in steps: why the run is to end.
-struct Stopped {
+struct Stopped : std::exception {
+  explicit Stopped(Status why) : status(why) {}
   Status status;
 };
 
