@@ -130,8 +130,12 @@ for n in (1, 2, 3):
 @pytest.mark.parametrize(
     ("flags", "options", "sets"),
     [
-        # the warnings of the baseline alone no other build shows
-        ("-O1 -DPENDCORE_BASELINE_ONLY", ["-DPENDCORE_WARNINGS_AS_ERRORS=ON"], SETS[:1]),
+        # Warnings of the baseline alone no other build shows; one is wrong at -O1 (GCC 12).
+        (
+            "-O1 -Wno-maybe-uninitialized -DPENDCORE_BASELINE_ONLY",
+            ["-DPENDCORE_WARNINGS_AS_ERRORS=ON"],
+            SETS[:1],
+        ),
         ("-O3", [], SETS),
     ],
     ids=["O1, the baseline alone", "O3"],
