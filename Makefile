@@ -21,8 +21,8 @@ BUILT := build/installed
 SOURCES := pyproject.toml CMakeLists.txt $(shell find cpp python ! -path '*__pycache__*')
 
 .DEFAULT_GOAL := help
-.PHONY: demo test compare hard-cases bench build-bench lint tidy sanitize threads long fuzz \
-    fuzz-readers clean help
+.PHONY: demo test compare hard-cases bench build-bench lint tidy sanitize threads long horizon \
+    asked-errors default-method fuzz fuzz-readers clean help
 
 demo: $(DONE)/installed  ## build, run the textbook's case, say where its figure and summary are
 	pendcore run -o out/textbook
@@ -79,6 +79,16 @@ threads: $(DONE)/build-requirements  ## threads that share a scene, under the th
 long: $(DONE)/installed $(DONE)/test-requirements  ## ten million steps: docs/long_runs.md, written anew
 	python docs/long_runs.py
 
+horizon: $(DONE)/installed $(DONE)/test-requirements  ## how long runs are right: docs/horizon.md, written anew
+	python docs/horizon.py
+
+asked-errors: $(DONE)/installed $(DONE)/test-requirements  ## docs/accuracy_cost.md: what simulate(error=) keeps and costs
+	python docs/series_work.py
+	python docs/asked_errors.py
+
+default-method: $(DONE)/installed $(DONE)/test-requirements  ## docs/accuracy_cost.md: what simulate takes by default, and why
+	python docs/default_method.py
+
 CASES ?= 100000
 SEED ?= 1
 fuzz: $(DONE)/installed $(DONE)/test-requirements  ## random cases (CASES, SEED); 100,000 and more write docs/fuzz.md
@@ -123,7 +133,7 @@ $(DONE)/fuzz-requirements: pyproject.toml | $(DONE)/test-requirements
 	@touch $@
 
 $(DONE)/bench-requirements: pyproject.toml | $(DONE)/build-requirements
-	@sh setup/debian_packages.sh doctest also benchmark boost valgrind
+	@sh setup/debian_packages.sh doctest also benchmark boost sundials valgrind
 	python setup/requirements.py bench | $(PIP_INSTALL) -r /dev/stdin
 	@touch $@
 

@@ -3,8 +3,8 @@
 # nothing is missing it does nothing and asks for no right. What stands after `also` the step can do
 # without, but asking once for everything is kinder.
 #
-#   setup/debian_packages.sh [python] [compiler] [eigen] [doctest] [benchmark] [boost] [valgrind]
-#                            [also ...]
+#   setup/debian_packages.sh [python] [compiler] [eigen] [doctest] [benchmark] [boost] [sundials]
+#                            [valgrind] [also ...]
 set -eu
 
 python=${PYTHON:-python3}
@@ -44,6 +44,7 @@ for thing in "$@"; do
         doctest) [ -e /usr/include/doctest/doctest.h ] || miss doctest-dev ;;
         benchmark) [ -e /usr/include/benchmark/benchmark.h ] || miss libbenchmark-dev ;;
         boost) [ -e /usr/include/boost/numeric/odeint.hpp ] || miss libboost-dev ;;
+        sundials) [ -e /usr/include/arkode/arkode_erkstep.h ] || miss libsundials-dev ;;
         valgrind) command -v valgrind >/dev/null || miss valgrind ;;
         *) stop "debian_packages.sh: no '$thing' is known" ;;
     esac

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+from carried import is_refusal_of_series
 from hypothesis import settings
 from pendcore import _core
 from reference.trajectories import Trajectory, trajectory
@@ -20,6 +21,17 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     """Among several processes what builds programs begins first, lest one end with it alone."""
     if hasattr(config, "workerinput"):
         items.sort(key=lambda item: item.get_closest_marker("outside_build") is None)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> Any:
+    """Skip, of tests that run with each method, scenes that Taylor series refuse."""
+    try:
+        return (yield)
+    except ValueError as refusal:
+        if is_refusal_of_series(refusal) and "taylor" in pyfuncitem.name:
+            pytest.skip(str(refusal))
+        raise
 
 
 @pytest.fixture(scope="session")

@@ -33,15 +33,19 @@ CPP_FLOW = {
 # The files that stand in no folder and where the two branches, dynamics and integrate, meet.
 CPP_FILES = dict.fromkeys(
     [
+        "defect",
         "event_finder",
+        "lyapunov",
         "ending_message",
         "fast_mode",
+        "method_choice",
         "not_finite",
         "options",
         "pendcore",
         "recorder",
         "simulate",
         "steppers",
+        "taylor_steppers",
         "start",
         "switching",
         "switching_guards",
@@ -68,8 +72,13 @@ PYTHON_FLOW = [
     "scene",
     "explanation",
     "energy",
+    "defect",
+    "statistics",
     "solution",
+    "accuracy",
+    "horizon",
     "simulate",
+    "cost",
     "case",
     "case_file",
     "archive",
@@ -78,7 +87,12 @@ PYTHON_FLOW = [
 ]
 # The methods of a solution (plot, save, ...) and of a scene (explain) call what comes later, but
 # only when they are called.
-LATE_IMPORTS = {"scene": {"explanation"}, "solution": {"case", "archive", "views"}}
+LATE_IMPORTS = {
+    "scene": {"explanation"},
+    "solution": {"accuracy", "horizon", "case", "archive", "views"},
+    "horizon": {"views"},
+    "cost": {"views"},
+}
 NOT_FOR_VIEWS = {"simulate", "archive", "case", "case_file", "toml_text"}
 
 FORBIDDEN_NAMES = {"util", "utils", "helper", "helpers", "common", "misc", "impl"}

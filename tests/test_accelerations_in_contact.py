@@ -30,7 +30,7 @@ def test_accelerations_in_contact_are_the_slopes_of_the_rates(restitution, metho
     still = sol.qd[:, 1] == sol.qd[:, 0]
     pairs = still[:-1] & still[1:] & (np.diff(sol.t) > 1e-3) & (np.abs(phi[:-1] - 0.2) < 1e-9)
     held = np.flatnonzero(pairs)
-    assert held.size > 20
+    assert held.size > 10
     assert np.abs(phi[held + 1] - 0.2).max() < 2 * np.spacing(4.0)  # the angles' own rounding
     for k in held:
         t = 0.5 * (sol.t[k] + sol.t[k + 1])

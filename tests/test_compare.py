@@ -13,11 +13,10 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "bench" / "compare"))
 
 import tables
 from cases import Case, one_step, read_case
-from contenders.contender import Outcome, PythonRun
-from contenders.equations import fill, rates
+from contenders.contender import Outcome, PythonRun, fixed_steps, tolerances
 from measure import achieved, interleave
 from trajectory_error import end_error, energy_error, position_error
-from work_precision import envelope, ratios_at, time_at
+from work_precision import envelope, reached_at, time_at
 
 LENGTHS = np.array([1.0, 3.0])
 POWER_LAW = [(10.0**-k, 5.0 * 10 ** (0.2 * k)) for k in range(1, 13)]  # time = 5 error^-1/5
@@ -59,21 +58,6 @@ def test_energy_error_of_a_lost_fall_is_the_height_over_the_length() -> None:
     assert energy_error(q, qd, np.array([2.0]), np.array([3.0]), 9.8) == pytest.approx(0.5)
 
 
-@pytest.mark.parametrize("seed", range(5))
-def test_right_hand_sides_of_the_peers_solve_the_equations_of_motion(seed: int) -> None:
-    y = np.random.default_rng(seed).uniform(-4, 4, 4)
-    (q1, q2), w = y[:2], y[2:]
-    cosine, sine = 0.5 * math.cos(q1 - q2), 0.5 * math.sin(q1 - q2)
-    mass_matrix = np.array([[4 / 3, cosine], [cosine, 1 / 3]])
-    torques = 9.807 * np.array([1.5, 0.5]) * np.cos([q1, q2])
-    torques += [-sine * w[1] ** 2, sine * w[0] ** 2]
-    expected = [*w, *np.linalg.solve(mass_matrix, torques)]
-    filled = np.empty(4)
-    fill(filled, y)
-    np.testing.assert_allclose(filled, expected, rtol=1e-12)
-    np.testing.assert_allclose(rates(0.0, y), expected, rtol=1e-12)
-
-
 def test_interpolation_is_exact_on_a_power_law() -> None:
     for error in (1e-1, 3e-4, 1e-7, 1e-12):
         assert time_at(POWER_LAW, error) == pytest.approx(5.0 * error**-0.2, rel=1e-12)
@@ -94,17 +78,23 @@ def test_looser_errors_cost_the_loosest_point_and_tighter_ones_are_out_of_reach(
     assert time_at([], 1e-3) is None
 
 
-def test_ratio_at_equal_error_ignores_how_tolerances_map_to_errors() -> None:
-    shifted = [(error * 0.3, 2 * 5.0 * (error * 0.3) ** -0.2) for error, _ in POWER_LAW]
-    ratios = ratios_at(POWER_LAW, shifted, [1e-2, 1e-5, 1e-13])
-    assert ratios[1e-2] == pytest.approx(0.5)
-    assert ratios[1e-5] == pytest.approx(0.5)
-    assert ratios[1e-13] is None
+def test_smallest_error_is_that_of_the_best_point() -> None:
+    assert reached_at(POWER_LAW) == 1e-12
+    assert reached_at([]) is None
 
 
-def test_worst_ratio_is_the_largest() -> None:
-    assert tables.worst({1e-2: 0.5, 1e-3: 0.7, 1e-4: None, 1e-5: 0.6}) == (0.7, 1e-3)
-    assert tables.worst({1e-2: None}) is None
+def test_tolerances_hold_the_whole_decades_exactly() -> None:
+    listed = tolerances(13, 4)
+    assert listed[::4] == [float(f"1e-{k}") for k in range(1, 14)]
+    assert len(listed) == 49
+    assert listed == sorted(listed, reverse=True)
+
+
+def test_fixed_steps_go_from_the_longest_to_the_shortest() -> None:
+    steps = fixed_steps(0.1, 1e-4, 8)
+    assert steps[0] == 0.1
+    assert steps[8] == pytest.approx(1e-2)
+    assert steps[-1] == pytest.approx(1e-4)
 
 
 @pytest.mark.parametrize(
@@ -144,6 +134,18 @@ def test_timing_keeps_the_least_and_the_median_of_all_rounds() -> None:
     runs = {"a": Turn("a", [], [3.0, 1.0, 2.0, 9.0, 8.0])}
     timing = interleave(runs, range(5), 0.0)["a"]
     assert (timing.minimum, timing.median, timing.calls) == (1.0, 3.0, 5)
+
+
+def test_slow_runs_have_fewer_turns_spread_over_all_rounds() -> None:
+    turns: list[str] = []
+    costs = {"quick": 0.001, "slow": 0.1, "endless": 2.0}
+    runs = {name: Turn(name, turns, [cost] * 30) for name, cost in costs.items()}
+    found = interleave(runs, range(30), 0.0, seconds_a_run=1.0)
+    calls = {name: timing.calls for name, timing in found.items()}
+    assert calls == {"quick": 30, "slow": 10, "endless": 3}
+    late = turns[-14:]  # of the last ten rounds
+    assert late.count("slow") in (3, 4)
+    assert "endless" in late
 
 
 def test_first_call_of_a_burst_warms_up_unless_it_is_the_only_one() -> None:

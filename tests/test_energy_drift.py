@@ -36,7 +36,8 @@ def test_of_many_times_a_repr_looks_at_some():
     run = pc.simulate(SCENE, 0.3, t_span=(0, 1), t_eval=np.linspace(0, 1, 4001))
     assert "(of one time in 2)" in repr(run)
     kept = np.linspace(0, 5, 10_001)
-    loose = pc.simulate(pc.Scene.textbook(), 1, 0, (0, 5), step=0.3, t_eval=kept)
+    how = {"method": "dopri5", "step": 0.3, "t_eval": kept}
+    loose = pc.simulate(pc.Scene.textbook(), 1, 0, (0, 5), **how)
     assert "too large to trust this run" in repr(loose)
 
 

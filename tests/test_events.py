@@ -11,6 +11,7 @@ import pendcore as pc
 import pytest
 from pendcore import _core
 from pendcore import events as ev
+from reference.rounding import of_dense_output, of_new_state
 from unit_rods import rod
 
 METHODS = [method["name"] for method in _core.methods()]
@@ -18,6 +19,11 @@ BOOK = pc.Scene.textbook()
 
 # A torque of 2 N m turns the rod by the parabola q = w t + t^2, which every method has exactly.
 TURNED = rod(pc.effects.Motor(joint=1, constant=2.0))
+
+
+# Of a step that moves by one; and of a dense output, whose weights in dop853 are some hundreds.
+STEPS = dict.fromkeys(["dop853", "dop853-radau5"], of_new_state("dop853"))
+WITHIN_STEPS = dict.fromkeys(STEPS, of_dense_output("dop853"))
 
 
 def times(found: list[ev.Found]) -> list[float]:
@@ -45,13 +51,16 @@ def test_roots_in_one_step_or_at_its_ends_are_found_once_each(
     sol = parabola(*span, step, method, *wanted)
     first, second, rate, own, joint = sol.events
     exact = [1.0, 0.5] if backward else [0.5, 1.0]
+    fastest, there = 2.5, 0.5
+    rounding = STEPS.get(method, 0.0) * 2.0 + WITHIN_STEPS.get(method, 0.0) * step
+    last_bits = max(4e-15, rounding * fastest / there)
     for found in (first, second, own):
-        assert times(found) == pytest.approx(exact, abs=4e-15)
+        assert times(found) == pytest.approx(exact, abs=last_bits)
         assert [one.direction for one in found] == [-1, 1]
         for one in found:
             assert one.q[0] == pytest.approx(-0.5, abs=2e-15)
-            assert one.qd[0] == pytest.approx(2 * one.t - 1.5, abs=2e-15)
-    assert times(rate) == times(joint) == pytest.approx([0.75], abs=1e-15)
+            assert one.qd[0] == pytest.approx(2 * one.t - 1.5, abs=max(2e-15, 2 * rounding))
+    assert times(rate) == times(joint) == pytest.approx([0.75], abs=max(1e-15, rounding))
     assert rate[0].direction == (-1 if backward else 1)
 
 
@@ -146,7 +155,7 @@ def test_sections_are_where_the_multiple_precision_references_are(
             wanted.append(ev.LinkAngle(i, q, direction=int(np.sign(qd))))
             expected.append((case.t[k], case.q[k], case.qd[k]))
     sol = pc.simulate(
-        scene, case.q0, case.qd0, (0, case.t[-1]), rtol=1e-13, atol=1e-14, events=wanted
+        scene, case.q0, case.qd0, (0, case.t[-1]), rtol=1e-14, atol=1e-15, events=wanted
     )
     assert len(expected) > 20
     for found, (t, q, qd) in zip(sol.events, expected, strict=True):
@@ -222,7 +231,8 @@ def test_an_event_before_time_can_tell_ends_the_run_where_the_step_began() -> No
 def test_a_run_may_end_in_its_first_step(method: str, store: str) -> None:
     here = ev.LinkAngle(1, 0.25, terminal=True)
     sol = pc.simulate(rod(), 0.0, 0.5, (0, 10), method=method, step=1.0, store=store, events=[here])
-    assert (sol.status, sol.t[-1], sol.q[-1, 0]) == ("event", 0.5, 0.25)
+    assert (sol.status, sol.q[-1, 0]) == ("event", 0.25)
+    assert sol.t[-1] == pytest.approx(0.5, rel=0, abs=WITHIN_STEPS.get(method, 0.0))
     assert sol.stats.accepted == 1
     assert len(sol.t) == (1 if store == "end" else 2)
 
@@ -241,7 +251,8 @@ def test_events_a_hair_apart_come_in_their_order(sense: int) -> None:
 def test_simultaneous_events_are_all_found_and_the_first_that_was_asked_for_ends_the_run() -> None:
     here = ev.LinkAngle(1, 0.25)
     wanted = [here, here.replace(terminal=True, name="b"), here.replace(terminal=True, name="c")]
-    sol = pc.simulate(rod(), 0.0, 0.5, (0, 1), step=1.0, events=[*wanted, here])
+    how = {"method": "dopri5", "step": 1.0}
+    sol = pc.simulate(rod(), 0.0, 0.5, (0, 1), **how, events=[*wanted, here])
     assert [times(found) for found in sol.events] == [[0.5]] * 4
     assert sol.message == ("stopped at a terminal event (at t = 0.5 s: event 2 (link_angle, 'b'))")
 

@@ -25,6 +25,11 @@ SAYS = {
         "from 100 degrees: turns over at t = 6.543738 s",
         "link 2 at  20 degrees: 468 points, up to 7.93 rad/s",
     ),
+    "08_accuracy": (
+        "asked 1.0e-08, achieved",
+        "refused: error = 1e-16: not reached",
+        "for 1e-08 of the length over 10 s take",
+    ),
     "05_own_effect": ("q_1(30) = -89.6420 deg", "work of the water 12.308263 J"),
     "07_stick_slip": (  # tests/hybrid_chain.py says the same
         "both joints rest from 5.543172 s to 6.047550 s",

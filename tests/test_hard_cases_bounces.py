@@ -12,7 +12,10 @@ import numpy as np
 import pendcore as pc
 import pytest
 from pendcore import effects as fx
+from reference.rounding import U, of_new_state
 from unit_rods import rod, solve, time_of_rest
+
+FIRST = {method["name"]: method["first"] for method in pc._core.methods()}
 
 inf = np.inf
 
@@ -129,7 +132,13 @@ def test_elastic_bounces_keep_the_energy_and_their_beat(fine: Any) -> None:
     assert len(jumps(sol)) in {bounces, bounces + 1}
     assert np.abs(sol.energy().ledger.impact).max() < 1e-12
     apex = sol(first / torque * 2 * bounces)
-    np.testing.assert_allclose(apex, [height, 0], atol=1e-10)
+    # every bounce is rounded alike, and all later ones are that much shorter
+    method = FIRST[fine["method"]]  # nothing is stiff here
+    is_derived = method in {"dop853", "taylor"}
+    scale = bounces**2 * (2 * first / torque) * torque
+    # of a step: its sum; the state at both ends, what the sum is scaled by, and the impact
+    within = (of_new_state(method) + 4 * U) * scale if is_derived else 1e-10
+    np.testing.assert_allclose(apex, [height, 0], atol=within)
 
 
 def test_an_elastic_stop_at_the_bottom_halves_the_period_of_a_pendulum(fine: Any) -> None:

@@ -8,6 +8,7 @@ import mpmath  # type: ignore[import-untyped]
 import numpy as np
 import pendcore as pc
 import pytest
+from pendcore import _core
 from pendcore import effects as fx
 from unit_rods import rod
 
@@ -82,7 +83,8 @@ def test_a_stiff_damper_is_flagged_in_bounded_work(damping: float) -> None:
     """Joint 2 damped by up to 1e8 times a second: flagged within 10,000 steps."""
     scene = BOOK.replace(effects=[fx.ViscousJoint(joint=2, damping=damping)])
     start = [np.pi / 4, np.pi / 3]
-    sol = pc.simulate(scene, start, t_span=(0, 5), max_steps=10_000, store="steps")
+    how = {"max_steps": 10_000, "store": "steps"}
+    sol = pc.simulate(scene, start, t_span=(0, 5), method="dopri5", **how)
     assert sol.status == "max_steps"
     assert sol.stats.stiff
     # joint 2 has hardly moved by then: phid decays within 1e-2/damping s
@@ -131,3 +133,27 @@ def test_a_chain_of_a_thousand_links_keeps_its_energy() -> None:
     assert np.cos(w * t_end) < 0.94
     np.testing.assert_allclose(moved[: n // 2], shape[: n // 2] * np.cos(w * t_end), atol=1e-7)
     np.testing.assert_allclose(moved, shape * np.cos(w * t_end), atol=3e-4)
+
+
+@pytest.mark.parametrize("method", [method["name"] for method in _core.methods()])
+@pytest.mark.parametrize("links", [1, 2, 3])
+@pytest.mark.parametrize("rtol", [1e-9, 1.0, 1e30])
+def test_what_a_fixed_step_keeps_is_finite_between_its_ends_as_well(
+    method: str, links: int, rtol: float
+) -> None:
+    """Rods under a damper far too strong for the step: the motion grows until it overflows."""
+    rng = np.random.default_rng(8)
+    ends = set()
+    for damping in 10 ** rng.uniform(0.5, 3, 60):
+        scene = pc.Scene(
+            links=[pc.Link(mass=1, length=0.5)] * links,
+            effects=[fx.ViscousJoint(joint=1, damping=damping)],
+        )
+        sol = pc.simulate(
+            scene, 0.4, 1.0, (0, 30), method=method, step=0.3, rtol=rtol, atol=rtol,
+            t_eval=np.linspace(0, 30, 301),
+        )  # fmt: skip
+        ends.add(sol.status)
+        assert np.isfinite(sol.y).all(), (sol.status, sol.message)
+    if method != "radau5":
+        assert "non_finite" in ends

@@ -25,10 +25,13 @@ def pulse(at: float, half: float, impulse: float = 1.0) -> fx.Motor:
 def test_a_narrow_pulse_of_a_table_gives_a_turning_rod_its_impulse(
     at: float, half: float, method: str
 ) -> None:
-    sol = pc.simulate(rod(pulse(at, half)), 0, 0.1, (0, 2 * at), method=method)
+    last_bits = 1e-13 + 4 * np.spacing(at) / half  # of the times within the pulse
+    # a finer tolerance asks for what these leave open
+    sol = pc.simulate(
+        rod(pulse(at, half)), 0, 0.1, (0, 2 * at), method=method, rtol=max(1e-9, last_bits)
+    )
     assert sol.status == "finished"
     assert sol.stats.accepted < 30
-    last_bits = 1e-13 + 4 * np.spacing(at) / half  # of the times within the pulse
     assert sol.qd[-1, 0] == pytest.approx(1.1, rel=last_bits)
     assert sol.q[-1, 0] == pytest.approx(0.1 * 2 * at + at, rel=last_bits)
 
@@ -64,7 +67,7 @@ def test_a_narrow_pulse_of_a_table_knocks_a_stuck_rod_as_far_as_friction_lets_it
     at: float, half: float, impulse: float, method: str
 ) -> None:
     scene = rod(pulse(at, half, impulse), fx.DryJointFriction(joint=1, coulomb=FRICTION))
-    how = {"method": method, "rtol": 1e-12, "atol": 1e-14}
+    how = {"method": method, "rtol": max(1e-12, 4 * np.spacing(at) / half), "atol": 1e-14}
     sol = pc.simulate(scene, 0, 0, (0, 2 * at), **how)
     assert sol.status == "finished"
     assert sol.stats.accepted < 60
@@ -84,11 +87,11 @@ def test_a_pulse_that_grows_within_the_last_bits_of_time_knocks_a_stuck_rod_as_f
 ) -> None:
     """From one time to the next the torque changes by more than the rounding of its limit."""
     scene = rod(pulse(at, half, impulse), fx.DryJointFriction(joint=1, coulomb=FRICTION))
-    sol = pc.simulate(scene, 0, 0, (0, 2 * at + 2), method=method)
+    last_bits = 1e-9 + 8 * np.spacing(at) / half
+    sol = pc.simulate(scene, 0, 0, (0, 2 * at + 2), method=method, rtol=last_bits)
     assert sol.status == "finished"
     assert sol.stats.accepted < 60
     way, past = slide(half, impulse)
-    last_bits = 1e-9 + 8 * np.spacing(at) / half
     assert sol.q[-1, 0] == pytest.approx(way, rel=last_bits)
     assert time_of_rest(sol) == pytest.approx(at + past, abs=1e-9 + last_bits)
 

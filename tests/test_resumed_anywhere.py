@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 import pendcore as pc
 import pytest
+from carried import carried as method_for
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from pendcore import _core
@@ -216,6 +217,7 @@ def test_legs_end_in_the_bits_of_one_run(
     one_way = {"dry_joint_friction", "joint_stop"}
     sign = -1.0 if backward and not one_way & {e.kind for e in scene.effects} else 1.0
     start = ([angle] * n, rates)
+    how["method"] = method_for(how["method"], scene)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", pc.PendcoreWarning)  # a backward run leaves its table
         whole = in_legs(scene, start, [], sign, **how)

@@ -21,20 +21,32 @@ Array = npt.NDArray[np.float64]
 class Case:
     """Masses (n,) in kg, lengths (n,) in m, gravity in m/s^2; rad, rad/s and s.
 
-    `start` (2n,) is q_1..q_n, qd_1..qd_n; `reference` (n_t, 2n) are the states at `times` (n_t,).
+    In joint j acts -stiffness (phi - rest) - damping dphi/dt, in N m: a spring and a damper, or a
+    controller's motor. `start` (2n,) is q_1..q_n, qd_1..qd_n; `reference` (n_t, 2n) are the states
+    at `times` (n_t,), known to `uncertainty` of the total length.
     """
 
     name: str
     masses: tuple[float, ...]
     lengths: tuple[float, ...]
     gravity: float
+    damping: tuple[float, ...]
+    stiffness: tuple[float, ...]
+    rest: tuple[float, ...]
+    controller: bool = False
     start: Array
     times: Array
     reference: Array
+    uncertainty: float
 
     @property
     def n(self) -> int:
         return len(self.masses)
+
+    @property
+    def bare(self) -> bool:
+        """Whether no torque acts in any joint: the energy is then kept."""
+        return not any(self.damping) and not any(self.stiffness)
 
 
 def read_case(name: str, path: Path = REFERENCES) -> Case:
@@ -43,18 +55,19 @@ def read_case(name: str, path: Path = REFERENCES) -> Case:
     if name not in known:
         raise ValueError(f"case {name!r}: not in {path.name}, which has {', '.join(known)}")
     data = known[name]
-    if data["viscous_joint"]:
-        raise ValueError(
-            f"case {name!r}: has viscous joints, which the contenders do not carry yet"
-        )
+    none = (0.0,) * len(data["masses"])
     return Case(
         name=name,
         masses=tuple(data["masses"]),
         lengths=tuple(data["lengths"]),
         gravity=data["g"],
+        damping=tuple(data["viscous_joint"] or none),
+        stiffness=none,
+        rest=none,
         start=np.array([*data["q0"], *data["qd0"]], dtype=np.float64),
         times=np.array(data["t"], dtype=np.float64),
         reference=np.column_stack([np.array(data["q"], float), np.array(data["qd"], float)]),
+        uncertainty=data["disagreement"],
     )
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from tables import Record, entrants, number, pair, table
+from equal_error import Record
+from tables import entrants, number, pair, table
 
 CORE = "pendcore"
 PEERS = {"pinocchio": "Pinocchio's ABA", "mujoco": "MuJoCo"}

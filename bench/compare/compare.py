@@ -1,14 +1,14 @@
 """Run pendcore beside its peers, interleaved in one run, and write what they take.
 
-Four comparisons: `solves` (what accuracy costs, on a case), `chains` (forward dynamics of n links),
-`effects` (what each adds) and `stiff` (implicit steps). Each writes into docs/comparison a .json
-(raw figures, machine, versions, flags), a .md (tables) and a .png. `make compare` builds what is
-needed and calls this; by hand:
+Solves of five cases (what accuracy costs), `stiff` (implicit steps), `chains` (forward dynamics of
+n links) and `effects` (what each adds). Each writes into docs/comparison a .json (raw figures,
+machine, versions, flags), a .md (tables) and a .png; README.md there is of all solves together.
+`make compare` builds what is needed and calls this; by hand:
 
-    python bench/compare/compare.py                  some minutes
-    python bench/compare/compare.py --only chains    one of the four
-    python bench/compare/compare.py --quick          half a minute, into out/comparison
-    python bench/compare/compare.py --redraw         tables and figures from the JSON
+    python bench/compare/compare.py                        twenty minutes
+    python bench/compare/compare.py --only chains stiff    some of them
+    python bench/compare/compare.py --quick                a few minutes, into out/comparison
+    python bench/compare/compare.py --redraw               tables and figures from the JSON
 """
 
 from __future__ import annotations
@@ -18,7 +18,6 @@ import json
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -30,11 +29,13 @@ import effects_figure
 import effects_page
 import excerpts
 import figure
+import overview
 import page
 import solves
 import stiff
 import stiff_figure
 import stiff_page
+from cases import read_case
 
 PROJECT = Path(__file__).parents[2]
 
@@ -52,46 +53,39 @@ class Comparison:
     summary: Callable[[Record], str]
 
 
-def comparisons(case: str) -> dict[str, Comparison]:
-    """List all, by name."""
-    return {
-        "solves": Comparison(
-            stem=case,
-            measure=partial(solves.measure, case),
-            page=page.page,
-            draw=figure.draw,
-            summary=page.summary,
-        ),
-        "chains": Comparison(
-            stem="chains",
-            measure=chains.measure,
-            page=chains_page.page,
-            draw=chains_figure.draw,
-            summary=chains_page.summary,
-        ),
-        "effects": Comparison(
-            stem="effects",
-            measure=effects.measure,
-            page=effects_page.page,
-            draw=effects_figure.draw,
-            summary=effects_page.summary,
-        ),
-        "stiff": Comparison(
-            stem="stiff",
-            measure=stiff.measure,
-            page=stiff_page.page,
-            draw=stiff_figure.draw,
-            summary=stiff_page.summary,
-        ),
-    }
+def of_solves(case: str) -> Comparison:
+    def measure(*, quick: bool, rounds: int) -> Record:
+        return solves.measure(read_case(case), quick=quick, rounds=rounds)
+
+    return Comparison(
+        stem=case, measure=measure, page=page.page, draw=figure.draw, summary=page.summary
+    )
+
+
+def of_pages(stem: str, measuring: Any, pages: Any, figures: Any) -> Comparison:
+    """Of modules that measure, write and draw under these names."""
+    return Comparison(
+        stem=stem,
+        measure=measuring.measure,
+        page=pages.page,
+        draw=figures.draw,
+        summary=pages.summary,
+    )
+
+
+COMPARISONS = {
+    **{case: of_solves(case) for case in page.ABOUT},
+    "stiff": of_pages("stiff", stiff, stiff_page, stiff_figure),
+    "chains": of_pages("chains", chains, chains_page, chains_figure),
+    "effects": of_pages("effects", effects, effects_page, effects_figure),
+}
 
 
 def arguments(given: Sequence[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawTextHelpFormatter
     )
-    parser.add_argument("--only", choices=comparisons(""), help="one comparison (default all)")
-    parser.add_argument("--case", default="textbook", help="name in tests/data/trajectories.json")
+    parser.add_argument("--only", choices=COMPARISONS, nargs="+", help="some (default all)")
     parser.add_argument(
         "--rounds", type=int, default=30, help="rounds of the interleaving (default 30)"
     )
@@ -117,18 +111,32 @@ def run(comparison: Comparison, folder: Path, asked: argparse.Namespace) -> Reco
     return record
 
 
+def write_overview(folder: Path) -> None:
+    """Write the page on all solves whose records are there."""
+    stems = [*page.ABOUT, "stiff"]
+    records = {stem: folder / f"{stem}.json" for stem in stems}
+    known = {
+        stem: json.loads(path.read_text(encoding="utf-8"))
+        for stem, path in records.items()
+        if path.exists()
+    }
+    if known:
+        (folder / "README.md").write_text(overview.page(known), encoding="utf-8")
+
+
 def main(given: Sequence[str] | None = None) -> int:
     asked = arguments(given)
     folder = asked.output or PROJECT / ("out/comparison" if asked.quick else "docs/comparison")
-    known = comparisons(asked.case)
     try:
-        for name in [asked.only] if asked.only else known:
-            record = run(known[name], folder, asked)
-            if (name, asked.case, folder) == ("solves", "textbook", PROJECT / "docs/comparison"):
+        for name in asked.only or COMPARISONS:
+            record = run(COMPARISONS[name], folder, asked)
+            if (name, folder) == ("textbook", PROJECT / "docs/comparison"):
                 excerpts.write(PROJECT, record)
     except KeyboardInterrupt:
         print("stopped; what was not finished was not written", file=sys.stderr)
         return 130
+    finally:
+        write_overview(folder)
     return 0
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from tables import Record, table
+from equal_error import Record
+from tables import table
 
 CORE, PEER = "pendcore", "mujoco_forward"
 STEP = "pendcore_step"

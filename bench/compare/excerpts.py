@@ -7,60 +7,40 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tables import (
-    CORE,
-    CORE_PEERS,
-    DECADES,
-    PYTHON,
-    PYTHON_PEERS,
-    Record,
-    at_tolerance,
-    curve,
-    entrants,
-    number,
-    per_evaluation,
-    table,
-)
-from work_precision import ratios_at
+from equal_error import SIDES, Record, compare
+from tables import at_tolerance, entrants, number, per_evaluation, power, short, table
+
+CORE, PYTHON = "pendcore_dopri5_cpp", "pendcore_dopri5"
+ERRORS = (1e-3, 1e-6, 1e-9, 1e-12)
 
 
 def figures(record: Record) -> str:
-    """Sum up accuracy and speed: a row a tolerance, then a sentence a peer."""
-    known = entrants(record)
-    core, python = known[CORE], known[PYTHON]
-    header = ["rtol = atol", "largest position error", "right-hand sides", "C++", "`pc.simulate`"]
+    """Sum up accuracy and speed: a row an achieved error, then the cost of a call."""
+    header = ["largest position error", "C++", "best peer", "`pc.simulate`", "best peer"]
+    sides = [SIDES[0], SIDES[-1]]
     rows = []
-    for tolerance in (1e-3, 1e-6, 1e-9, 1e-12):
-        point = at_tolerance(core, tolerance)
-        rows.append(
-            [f"{tolerance:.0e}", f"{point['error']:.0e} of the length", str(point["evaluations"])]
-            + [f"{number(at_tolerance(who, tolerance)['minimum_us'])} us" for who in (core, python)]
-        )
-    lines = [table(header, rows)]
-    for peer in CORE_PEERS:
-        ratios = ratios_at(curve(core), curve(known[peer]), DECADES).values()
-        found = [ratio for ratio in ratios if ratio is not None]
-        lines.append(
-            f"* C++ against {known[peer]['label']}, at equal achieved error from 1e-2 to 1e-11: "
-            f"{min(found):.2f} to {max(found):.2f} of its time."
-        )
-    for peer in PYTHON_PEERS:
-        own, other = (at_tolerance(who, 1e-6)["minimum_us"] for who in (python, known[peer]))
-        lines.append(
-            f"* `pc.simulate` against {known[peer]['label']}, at rtol 1e-6: "
-            f"1/{other / own:.1f} of its time."
-        )
-    each = per_evaluation(at_tolerance(core, 1e-9))
-    call = python["one_step"]["minimum_us"]
-    lines.append(
-        f"* A right-hand side, all in: {number(each)} ns. A call of one step from Python: "
-        f"{number(call)} us."
+    for error in ERRORS:
+        cells = [f"{power(error)} of the length"]
+        for side in sides:
+            found = compare(record, side, [error])
+            for best in (found[0].own, found[0].peer) if found else (None, None):
+                cells.append(f"{number(best[0])} us, {short(best[1])}" if best else "—")
+        rows.append([cell.replace("pendcore ", "") for cell in cells])
+    known = entrants(record)
+    call, core = (known[who]["one_step"]["minimum_us"] for who in (PYTHON, CORE))
+    each = per_evaluation(at_tolerance(known[CORE], 1e-9))
+    last = (
+        f"* A right-hand side, all in: {number(each)} ns. A call of one step: {number(core)} us in "
+        f"C++, {number(call)} us from Python."
     )
-    return "\n".join(lines) + f"\n\nOn one core of {record['machine']['processor']}.\n"
+    on = f"On one core of {record['machine']['processor']}, with " + str(
+        record["machine"]["instruction set of pendcore"]
+    )
+    return f"{table(header, rows)}\n{last}\n\n{on}.\n"
 
 
 def tolerances(record: Record) -> str:
-    """Tabulate what a tolerance brings."""
+    """Tabulate what a tolerance brings with dopri5."""
     core = entrants(record)[CORE]
     rows = []
     for decade in range(3, 14, 2):

@@ -1,56 +1,47 @@
-"""The record as a page, made of nothing but what the JSON holds."""
+"""A record of solves as a page, made of nothing but what the JSON holds."""
 
 from __future__ import annotations
 
+import re
+
+from equal_error import SIDES, Contender, Record, Side, compare, on
 from tables import (
-    CORE,
-    CORE_PEERS,
-    DECADES,
-    PYTHON,
-    PYTHON_PEERS,
     SHOWN_TOLERANCES,
-    Record,
-    at_tolerance,
-    curve,
-    entrants,
-    equal_error,
+    best_against_best,
     equal_tolerance,
+    everybody,
     fixed_cost,
     number,
     power,
+    short,
 )
-from work_precision import ratios_at
 
 PAGE = """# What accuracy costs: {case}
 
 Made by `make compare`; the raw figures are in [{case}.json]({case}.json). Do not edit: run again.
+[All cases](README.md) has what to choose, how this was measured, and why pendcore loses where it
+does.
+
+{about}
 
 ![Work against precision]({case}.png)
 
-**Error** is the largest distance, over the case's fixed times, between computed and reference
-joints and tip, divided by the total length; the reference is in multiple precision. **Time** is the
-least over {rounds} rounds in which every contender at every tolerance had its turn, in an order
-drawn anew; medians beside it. It is the call that produced the error, the states at all times in
-hand at its end; what can be built beforehand is not in it. Tolerances are rtol = atol. Between
-tolerances, log time is interpolated over log error, on the points that no other beats in both (the
-lines of the figure; its markers are the decades of tolerance). A ratio is pendcore's time over the
-peer's, of minima and, in parentheses, of medians: below 1 pendcore is quicker. Times are in
-microseconds.
+Above, the time of a solve at an achieved error: a line a contender, a marker a decade of tolerance
+(of heyoka and rk4: every third setting), a cross where tighter settings failed or were not run.
+Below, the time of pendcore's best method over that of the best peer: shaded where the peer is the
+quicker one. SciPy with right-hand sides in Python is in the tables alone.
 
-## At equal achieved error, in C++
+{sides}
+## Each contender at equal achieved error
 
-{core}
-## At equal achieved error, called from Python
-
-{python}
+{everybody}
 ## At equal tolerance
 
 The energy's error is its largest drift, as a share of what the whole mass gains falling the whole
-length. A right-hand side's nanoseconds are the whole call's time, divided by their number.
+length. A right-hand side's nanoseconds are the whole call's time, divided by their number. heyoka
+is tried with a tolerance for each order, pendcore's rk4 with fixed steps: they are not here.
 
 {tolerances}
-{shares}
-
 ## Fixed cost of a call
 
 An interval that one step covers.
@@ -60,97 +51,117 @@ An interval that one step covers.
 
 {losses}
 
-## Runs that failed
+## Runs that failed or were not made
 
 {failures}
 
 ## Who took part, and on what
 
 {contenders}
-
+{absent}
 {machine}
 """
 
+ABOUT = {
+    "textbook": "The double pendulum of the textbook's section 2.1 from its start, 5 s.",
+    "textbook_long": "The textbook's double pendulum for 60 s.",
+    "high_energy": (
+        "The textbook's rods, thrown: a chaotic motion, 10 s. A rounding error of 1e-16 grows to "
+        "about 1e-8 on the way, so much smaller errors are beyond double precision, but for luck."
+    ),
+    "damped_textbook": "The textbook's start with viscous dampers in both joints, 10 s.",
+    "three_links": "Three unit rods, 5 s.",
+}
 
-def shares(record: Record) -> list[str]:
-    """Say what part of each Python peer's time `pc.simulate` takes at rtol = atol = 1e-6."""
-    known = entrants(record)
-    if PYTHON not in known:
-        return ["* nobody: pendcore was not installed."]
-    own = at_tolerance(known[PYTHON], 1e-6)
-    lines = []
-    for name in PYTHON_PEERS:
-        peer = at_tolerance(known[name], 1e-6) if name in known else {}
-        if own and peer:
-            share = own["minimum_us"] / peer["minimum_us"]
-            median = own["median_us"] / peer["median_us"]
-            compared = f"{share:.4f} = 1/{1 / share:.1f} of its time (medians: 1/{1 / median:.1f})"
-            lines.append(f"* {known[name]['label']}: {compared}")
-    return lines
+
+def title(side: Side) -> str:
+    return f"## Best against best, {side.title}"
 
 
 def losses(record: Record) -> list[str]:
-    """Name each peer that is quicker at some decade of achieved error, or gets further."""
-    known, lines, compared = entrants(record), [], False
-    for own, peers in ((CORE, CORE_PEERS), (PYTHON, PYTHON_PEERS)):
-        for name in peers:
-            ours, theirs = (curve(known[side]) if side in known else [] for side in (own, name))
-            if not ours or not theirs:
-                continue
-            compared = True
-            ratios = ratios_at(ours, theirs, DECADES)
-            slower = [
-                power(error) for error, ratio in ratios.items() if ratio is not None and ratio > 1
-            ]
-            pair = f"{known[own]['label']} against {known[name]['label']}"
-            if slower:
-                lines.append(f"* {pair}: slower at {', '.join(slower)}.")
-            mine, other = (known[side]["one_step"]["minimum_us"] for side in (own, name))
-            if mine > other:
-                cost = f"{number(mine)} us against {number(other)} us"
-                lines.append(f"* {pair}: a call of one step costs more, {cost}.")
-            best, peers_best = min(ours)[0], min(theirs)[0]
-            if peers_best < best / 2:
-                lines.append(
-                    f"* {pair}: the peer gets down to {peers_best:.0e}, pendcore to {best:.0e}."
-                )
-    nowhere = "Nowhere among these contenders, from 1e-2 to 1e-11." if compared else "Not measured."
-    return lines or [f"* {nowhere}"]
+    """Name, for each side, the errors where the best peer is quicker, and who gets further."""
+    lines = []
+    for side in SIDES:
+        slower = [
+            f"{power(at.error)} ({short(at.peer[1])}: x {number(at.ratio)})"
+            for at in compare(record, side)
+            if at.peer and at.ratio is not None and at.ratio > 1
+        ]
+        alone = [
+            f"{power(at.error)} ({short(at.peer[1])})"
+            for at in compare(record, side)
+            if at.peer and not at.own
+        ]
+        if slower:
+            lines.append(f"* {side.title}: slower than the best peer at {', '.join(slower)}.")
+        if alone:
+            lines.append(f"* {side.title}: does not get to {', '.join(alone)}.")
+    return lines + dearer_calls(record)
+
+
+def dearer_calls(record: Record) -> list[str]:
+    """Name the peers whose call of one step costs less than pendcore's cheapest."""
+    lines = []
+    for side in SIDES:
+        ours, peers = (
+            [(one["one_step"]["minimum_us"], one["label"]) for one in listed if one["one_step"]]
+            for listed in (on(record, side.ours, ours=True), on(record, side.peers, ours=False))
+        )
+        if not ours:
+            continue
+        least, _ = min(ours)
+        cheaper = [f"{short(who)} {number(time)} us" for time, who in peers if time < least]
+        if cheaper:
+            lines.append(
+                f"* {side.title}: a call of one step costs {number(least)} us or more, and less "
+                f"with {', '.join(cheaper)}."
+            )
+    return lines
 
 
 def failures(record: Record) -> list[str]:
-    """Name each contender that failed somewhere, with its first reason."""
+    """Name each contender that failed somewhere, and why, but for the time at which it did."""
     lines = []
     for contender in record["contenders"]:
-        failed = [point for point in contender["points"] if "failure" in point]
-        if failed:
-            where = ", ".join(power(point["tolerance"]) for point in failed)
-            lines.append(f"* {contender['label']} at {where}: {failed[0]['failure']}.")
+        reasons: dict[str, list[str]] = {}
+        for point in contender["points"]:
+            if "failure" in point:
+                reason = re.sub(r" \(at t = [^)]*\)", "", point["failure"])
+                reasons.setdefault(reason, []).append(power(point["setting"]))
+        for reason, where in reasons.items():
+            span = where[0] if len(where) == 1 else f"{where[0]} to {where[-1]}"
+            lines.append(f"* {contender['label']} at {span}: {reason.rstrip('.')}.")
     return lines or ["* None."]
+
+
+def waiting(contender: Contender) -> str:
+    """Say how long it compiles: between what the quickest and the slowest setting take."""
+    if contender["compile_seconds"] is None:
+        return ""
+    least, most = (number(seconds, 2) for seconds in contender["compile_seconds"])
+    span = least if least == most else f"{least} to {most}"
+    return f"; compiles for {span} s, which is in no figure here"
+
+
+def contenders(record: Record) -> list[str]:
+    return [f"* {one['label']}: {one['about']}{waiting(one)}" for one in record["contenders"]]
+
+
+def absent(record: Record) -> str:
+    """Say who is missing, and why."""
+    lines = [f"* not here: {who}: {reason}" for who, reason in record["absent"].items()]
+    return "\n".join(["", *lines, ""]) if lines else ""
+
+
+def machine(record: Record) -> str:
+    facts = [*record["machine"].items(), ("date", record["date"])]
+    return "\n".join(f"* {name}: {value}" for name, value in facts)
 
 
 def summary(record: Record) -> str:
     """Make the few lines for the terminal."""
-    return "\n".join(
-        [
-            equal_error(record, CORE, CORE_PEERS),
-            "pc.simulate at rtol = atol = 1e-6 takes, against",
-            *shares(record),
-            "",
-            "Where pendcore loses:",
-            *losses(record),
-        ]
-    )
-
-
-def contenders(record: Record) -> list[str]:
-    """Say of each contender what it was and how long it compiles."""
-    lines = []
-    for contender in record["contenders"]:
-        seconds = contender["compile_seconds"]
-        waiting = "" if seconds is None else f"; compiles for {number(seconds, 2)} s once a process"
-        lines.append(f"* {contender['label']}: {contender['about']}{waiting}")
-    return lines
+    tables = [f"{side.title}:\n{best_against_best(record, side)}" for side in SIDES]
+    return "\n".join([*tables, "Where pendcore loses:", *(losses(record) or ["* nowhere"])])
 
 
 def page(record: Record) -> str:
@@ -159,17 +170,23 @@ def page(record: Record) -> str:
         f"rtol = atol = {power(tolerance)}:\n\n{equal_tolerance(record, tolerance)}"
         for tolerance in SHOWN_TOLERANCES
     ]
-    machine = [*record["machine"].items(), ("date", record["date"])]
+    sides = [f"{title(side)}\n\n{best_against_best(record, side)}" for side in SIDES]
+    every = [
+        f"{side.title}:\n\n{everybody(record, side.ours)}"
+        for side in SIDES
+        if on(record, side.ours, ours=True) or on(record, side.ours, ours=False)
+    ]
+    known = f"The reference is good to {record['uncertainty']:.0e} of the length"
     return PAGE.format(
         case=record["case"],
-        rounds=record["rounds"],
-        core=equal_error(record, CORE, CORE_PEERS),
-        python=equal_error(record, PYTHON, PYTHON_PEERS),
+        about=f"{ABOUT[record['case']]} {known}; {record['times']} times are compared.",
+        sides="\n".join(sides),
+        everybody="\n".join(every),
         tolerances="\n".join(tolerances),
-        shares="\n".join(["At rtol = atol = 1e-6 `pc.simulate` takes, against\n", *shares(record)]),
         fixed=fixed_cost(record),
-        losses="\n".join(losses(record)),
+        losses="\n".join(losses(record) or ["* Nowhere among these contenders, 1e-2 to 1e-13."]),
         failures="\n".join(failures(record)),
         contenders="\n".join(contenders(record)),
-        machine="\n".join(f"* {name}: {value}" for name, value in machine),
+        absent=absent(record),
+        machine=machine(record),
     )

@@ -2,42 +2,90 @@
 
 from __future__ import annotations
 
-import sys
 import time
+from collections.abc import Callable
 from typing import Any
 
 import contenders
-from cases import Case, one_step, read_case
+from cases import Case, one_step
+from contenders.compiled import end_conversations
 from contenders.contender import Contender, Run, Unsupported
 from machine import circumstances
 from measure import Timing, achieved, interleave
 from tqdm import tqdm
 
-ONE_STEP_TOLERANCE = 1e-6
+ONE_STEP_SETTINGS = {"tolerance": 1e-6, "step": 1e-4}
 BURST_SECONDS = 1e-3
+SECONDS_A_RUN = 0.6  # at least 30 calls of what takes less than 20 ms
+LONGEST = 0.5  # s; what takes longer at a setting is not tried with tighter ones
+PER_DECADE = 4
 
-Key = tuple[str, float | None]  # contender and tolerance; None for the call of one step
-
-
-def ladder(per_decade: int) -> list[float]:
-    """List tolerances from 1e-1 to 1e-13, the whole decades exact."""
-    finer = [10.0 ** -(part / per_decade) for part in range(per_decade)]
-    return [float(f"1e-{decade}") * share for decade in range(1, 13) for share in finer] + [1e-13]
+Key = tuple[str, float | None]  # contender and setting; None for the call of one step
+Record = dict[str, Any]
 
 
-def prepare(entrants: list[Contender], case: Case, tolerances: list[float]) -> dict[Key, Run]:
-    """Prepare all runs of the contenders that carry the case; the others are named on stderr."""
-    runs: dict[Key, Run] = {}
-    for contender in entrants:
-        try:
-            runs |= {(contender.name, tol): contender.prepare(case, tol) for tol in tolerances}
-            runs[contender.name, None] = contender.prepare(one_step(case), ONE_STEP_TOLERANCE)
-        except Unsupported as reason:
-            print(f"{contender.label}: left out: {reason}", file=sys.stderr)
-    return runs
+FOR_STIFF_SCENES = ("-radau5", "cyrk_nbsolve2_lsoda", "cyrk_nbsolve2_radau", "cyrk_nbsolve2_bdf")
 
 
-def microseconds(timing: Timing) -> dict[str, float | int]:
+def for_any_scene(name: str) -> bool:
+    return not any(part in name for part in FOR_STIFF_SCENES)
+
+
+class Look:
+    """A first look at a contender: what it achieves at each setting, and runs to be timed.
+
+    Where no setting succeeds there are none.
+    """
+
+    def __init__(self, contender: Contender, case: Case, settings: list[float]) -> None:
+        self.contender = contender
+        self.points: list[Record] = []
+        self.runs: dict[Key, Run] = {}
+        given_up = ""
+        for setting in settings:
+            point: Record = {"setting": setting}
+            if given_up:
+                self.points.append({**point, "failure": given_up})
+                continue
+            run = contender.prepare(case, setting)
+            begin = time.perf_counter()
+            self.points.append(point | achieved(run, case))
+            if time.perf_counter() - begin > LONGEST:
+                given_up = "not run: it would take too long"
+            if "failure" not in self.points[-1]:
+                self.runs[contender.name, setting] = run
+        if self.runs:
+            short = contender.prepare(one_step(case), ONE_STEP_SETTINGS[contender.setting])
+            self.short_evaluations = short.outcome().evaluations
+            self.runs[contender.name, None] = short
+
+    def record(self, timings: dict[Key, Timing]) -> Record:
+        """Tell the contender and its points, as JSON holds them."""
+        who = self.contender
+        compiling = [run.compile_seconds for run in self.runs.values() if run.compile_seconds]
+        return {
+            "name": who.name,
+            "label": who.label,
+            "about": who.about,
+            "ours": who.ours,
+            "sides": list(who.sides),
+            "setting": who.setting,
+            "compile_seconds": [min(compiling), max(compiling)] if compiling else None,
+            "one_step": {
+                "evaluations": self.short_evaluations,
+                **microseconds(timings[who.name, None]),
+            }
+            if self.runs
+            else None,
+            "points": [
+                point if "failure" in point else point | microseconds(timings[who.name, setting])
+                for point in self.points
+                for setting in [point["setting"]]
+            ],
+        }
+
+
+def microseconds(timing: Timing) -> Record:
     return {
         "minimum_us": 1e6 * timing.minimum,
         "median_us": 1e6 * timing.median,
@@ -45,40 +93,41 @@ def microseconds(timing: Timing) -> dict[str, float | int]:
     }
 
 
-def measure(name: str, *, quick: bool, rounds: int) -> dict[str, Any]:
-    """Measure all there is, and say on what: the record, as JSON holds it."""
+def measure(
+    case: Case,
+    *,
+    quick: bool,
+    rounds: int,
+    takes_part: Callable[[str], bool] = for_any_scene,
+    tightest: float = 0.0,
+) -> Record:
+    """Measure all there is, and say on what: the record, as JSON holds it.
+
+    `takes_part` chooses contenders by name; settings below the `tightest` are not tried.
+    """
     begin = time.perf_counter()
-    case, tolerances = read_case(name), ladder(1 if quick else 4)
-    entrants = contenders.installed()
-    runs = prepare(entrants, case, tolerances)
-    points = {key: achieved(run, case) for key, run in runs.items() if key[1] is not None}
-    bar = tqdm(range(rounds), desc="rounds", unit="round", disable=None)
-    timed = {key: run for key, run in runs.items() if "failure" not in points.get(key, {})}
-    timings = interleave(timed, bar, BURST_SECONDS)
+    entrants, absent = contenders.installed()
+    looks: list[Look] = []
+    try:
+        bar = tqdm([who for who in entrants if takes_part(who.name)], leave=False, disable=None)
+        for who in bar:
+            bar.set_description(f"{case.name}: {who.label}")
+            each = who.settings(1 if quick or who.slow else PER_DECADE)
+            try:
+                looks.append(Look(who, case, [one for one in each if one > 0.9 * tightest]))
+            except Unsupported as reason:
+                absent[who.label] = str(reason)
+        runs = {key: run for look in looks for key, run in look.runs.items()}
+        turns = tqdm(range(rounds), desc=f"{case.name}: rounds", unit="round", disable=None)
+        timings = interleave(runs, turns, BURST_SECONDS, SECONDS_A_RUN)
+    finally:
+        end_conversations()
     return {
         "case": case.name,
         **circumstances(begin, rounds, BURST_SECONDS),
-        "contenders": [
-            {
-                "name": contender.name,
-                "label": contender.label,
-                "about": contender.about,
-                "compile_seconds": contender.compile_seconds,
-                "one_step": {
-                    "evaluations": runs[contender.name, None].outcome().evaluations,
-                    **microseconds(timings[contender.name, None]),
-                },
-                "points": [
-                    {"tolerance": tol, **points[contender.name, tol]}
-                    | (
-                        microseconds(timings[key])
-                        if (key := (contender.name, tol)) in timings
-                        else {}
-                    )
-                    for tol in tolerances
-                ],
-            }
-            for contender in entrants
-            if (contender.name, None) in runs
-        ],
+        "uncertainty": case.uncertainty,
+        "duration": float(case.times[-1] - case.times[0]),
+        "times": len(case.times),
+        "absent": absent,
+        "contenders": [look.record(timings) for look in looks],
     }

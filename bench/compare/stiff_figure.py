@@ -10,40 +10,41 @@ import matplotlib
 matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt
-from matplotlib.lines import Line2D
-from stiff_page import curve
-
-COLORS = {
-    "radau5": "#000000",
-    "auto": "#888888",
-    "dopri5": "#d1495b",
-    "scipy_numba": "#6fa8d6",
-    "scipy_python": "#2a6f97",
-}
+from equal_error import Record
+from figure import LEFT_OUT, draw_contender
+from matplotlib.ticker import LogLocator, NullFormatter
 
 
-def draw(record: dict[str, Any], path: Path) -> None:
-    """Draw a panel a scene; a run that did not finish has no point."""
+def draw(record: Record, path: Path) -> None:
+    """Draw a panel a scene; where tighter settings failed or were not run a line has a cross."""
     scenes = record["scenes"]
-    figure, panels = plt.subplots(
-        1, len(scenes), figsize=(4 * len(scenes), 3.8), sharey=True, layout="constrained"
+    drawn, panels = plt.subplots(
+        1, len(scenes), figsize=(4.4 * len(scenes), 5.4), sharey=True, layout="constrained"
     )
     for panel, scene in zip(panels, scenes, strict=True):
-        for contender in record["contenders"]:
-            name = contender["name"]
-            points = curve(scene["points"][name], "microseconds")
-            if points:
-                errors, times = zip(*points, strict=True)
-                panel.loglog(errors, times, "o-", ms=3, color=COLORS[name])
+        for contender in scene["contenders"]:
+            if "compiled_v3" not in contender["sides"] and not all(
+                word in contender["name"] for word in LEFT_OUT
+            ):
+                draw_contender(panel, contender, by_language=True)
+        panel.set(xscale="log", yscale="log", xlim=(1e-1, 1e-9))
         panel.set_title(scene["label"], fontsize=9)
         panel.set_xlabel("largest position error / length")
-        panel.invert_xaxis()
-        panel.grid(alpha=0.3)
-    panels[0].set_ylabel("microseconds a call")
-    labels = {one["name"]: one["label"] for one in record["contenders"]}
-    lines = [
-        Line2D([], [], color=COLORS[name], marker="o", ms=3, label=labels[name]) for name in labels
-    ]
-    figure.legend(handles=lines, loc="outside lower center", ncols=len(lines), fontsize=8)
-    figure.savefig(path, dpi=150)
-    plt.close(figure)
+        panel.xaxis.set_major_locator(LogLocator(base=100, numticks=20))
+        panel.xaxis.set_minor_formatter(NullFormatter())
+        panel.grid(color="0.88", linewidth=0.6)
+    panels[0].set_ylabel("time of a solve / \N{MICRO SIGN}s")
+    by_label: dict[Any, Any] = {}
+    for panel in panels:
+        handles, labels = panel.get_legend_handles_labels()
+        by_label |= dict(zip(labels, handles, strict=True))
+    drawn.legend(
+        list(by_label.values()),
+        list(by_label),
+        loc="outside lower center",
+        ncols=5,
+        fontsize=8,
+        frameon=False,
+    )
+    drawn.savefig(path, dpi=150)
+    plt.close(drawn)

@@ -1,29 +1,19 @@
-"""The record's figures as markdown tables."""
+"""A record of solves as markdown tables."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
-from work_precision import Point, ratios_at, time_at
+from equal_error import DECADES, Contender, Record, Side, compare, curve
+from work_precision import reached_at, time_at
 
-DECADES = [10.0**-k for k in range(2, 12)]
-CORE, PYTHON = "pendcore_cpp", "pendcore_python"
-CORE_PEERS = ("odeint",)
-PYTHON_PEERS = ("cyrk_pysolve", "cyrk_nbsolve2", "scipy_numba", "scipy_python")
 SHOWN_TOLERANCES = (1e-6, 1e-9)
-
 KINDS = ("minimum_us", "median_us")
-
-Record = dict[str, Any]
 
 
 def entrants(record: Record) -> dict[str, Any]:
     return {contender["name"]: contender for contender in record["contenders"]}
-
-
-def curve(contender: Any, kind: str = "minimum_us") -> list[Point]:
-    """List (error, microseconds) of every tolerance that succeeded."""
-    return [(p["error"], p[kind]) for p in contender["points"] if "failure" not in p]
 
 
 def number(value: float | None, digits: int = 3) -> str:
@@ -48,40 +38,56 @@ def pair(of_minima: float | None, of_medians: float | None) -> str:
     return f"**{number(of_minima)}** ({number(of_medians)})"
 
 
-def worst(ratios: dict[float, float | None]) -> tuple[float, float] | None:
-    """Find (ratio, error) where pendcore does worst."""
-    known = [(ratio, error) for error, ratio in ratios.items() if ratio is not None]
-    return max(known, default=None)
+def short(label: str) -> str:
+    """Leave out what every label on a side has in common."""
+    for end in (" (x86-64-v3)", ", C++", ", Python"):
+        label = label.removesuffix(end)
+    return label
 
 
-def equal_error(record: Record, own: str, peers: tuple[str, ...]) -> str:
-    """Tabulate times and their ratios at each decade of achieved error; the worst ratio last.
+def best_against_best(record: Record, side: Side, errors: Iterable[float] = DECADES) -> str:
+    """Tabulate, a row a decade of achieved error, the best of both sides and whether it is enough.
 
     Ratios are of minima, and of medians in parentheses.
     """
-    known = entrants(record)
-    present = [known[peer] for peer in peers if peer in known]
-    if own not in known or not present:
-        return "Not measured: one of the two sides was not installed.\n"
-    ours = {kind: curve(known[own], kind) for kind in KINDS}
-    header = ["achieved error", known[own]["label"]]
-    rows = [[power(error), number(time_at(ours["minimum_us"], error))] for error in DECADES]
-    last = ["worst ratio", ""]
-    for peer in present:
-        header += [peer["label"], "ratio"]
-        ratios = [ratios_at(ours[kind], curve(peer, kind), DECADES) for kind in KINDS]
-        for row, error in zip(rows, DECADES, strict=True):
-            row.append(number(time_at(curve(peer), error)))
-            row.append(pair(*(by_kind[error] for by_kind in ratios)))
-        poorest = [worst(by_kind) for by_kind in ratios]
-        last += ["", pair(*(found[0] if found else None for found in poorest))]
-    return table(header, [*rows, last])
+    compared = compare(record, side, errors)
+    if not compared:
+        return "Not measured: one of the two sides was not there.\n"
+    header = ["achieved error", "best of pendcore", "us", "best peer", "us", "ratio", "goal"]
+    rows = []
+    for at in compared:
+        own, peer = at.own or (None, "—"), at.peer or (None, "—")
+        if at.ratio is None:
+            found = "pendcore alone" if at.own else "peer alone" if at.peer else "nobody"
+        else:
+            found = pair(at.ratio, at.of_medians)
+        goal = f"{at.bar} {'reached' if at.reached else 'missed'}" if at.own or at.peer else "—"
+        names = [short(who) for _, who in (own, peer)]
+        rows.append(
+            [power(at.error), names[0], number(own[0]), names[1], number(peer[0]), found, goal]
+        )
+    return table(header, rows)
 
 
-def at_tolerance(contender: Any, tolerance: float) -> dict[str, Any]:
+def everybody(record: Record, side: str) -> str:
+    """Tabulate every contender's time at each decade of achieved error."""
+    present = [one for one in record["contenders"] if side in one["sides"]]
+    if not present:
+        return "Not measured.\n"
+    header = ["us at an error of", *map(power, DECADES), "smallest error"]
+    rows = [
+        [short(one["label"])]
+        + [number(time_at(curve(one), error)) for error in DECADES]
+        + [power(reached) if (reached := reached_at(curve(one))) else "—"]
+        for one in present
+    ]
+    return table(header, rows)
+
+
+def at_tolerance(contender: Contender, tolerance: float) -> dict[str, Any]:
     """Pick the contender's point at rtol = atol = tolerance; empty where there is none."""
     for point in contender["points"]:
-        if abs(point["tolerance"] / tolerance - 1) < 1e-9 and "failure" not in point:
+        if abs(point["setting"] / tolerance - 1) < 1e-9 and "failure" not in point:
             return dict(point)
     return {}
 
@@ -93,18 +99,20 @@ def per_evaluation(point: dict[str, Any]) -> float | None:
 
 
 def equal_tolerance(record: Record, tolerance: float) -> str:
-    """Tabulate every contender at the same tolerance."""
+    """Tabulate at the same tolerance every contender that has been tried with it."""
     header = ["contender", "error", "at the end", "of energy", "right-hand sides"]
     header += ["us", "median us", "ns a right-hand side"]
     rows = []
     for contender in record["contenders"]:
         point = at_tolerance(contender, tolerance)
-        errors = [point.get(kind) for kind in ("error", "end_error", "energy_error")]
+        if contender["setting"] != "tolerance" or not point:
+            continue
+        errors = [point[kind] for kind in ("error", "end_error", "energy_error")]
         rows.append(
             [contender["label"]]
-            + ["failed" if error is None else f"{error:.1e}" for error in errors]
-            + [str(point.get("evaluations") or "—")]
-            + [number(point.get(kind)) for kind in KINDS]
+            + ["—" if error is None else f"{error:.1e}" for error in errors]
+            + [str(point["evaluations"] or "—")]
+            + [number(point[kind]) for kind in KINDS]
             + [number(per_evaluation(point))]
         )
     return table(header, rows)
@@ -115,6 +123,8 @@ def fixed_cost(record: Record) -> str:
     rows = []
     for contender in record["contenders"]:
         call = contender["one_step"]
+        if call is None:
+            continue
         times = [number(call[kind]) for kind in KINDS]
         rows.append([contender["label"], str(call["evaluations"] or "—"), *times])
     return table(["contender", "right-hand sides", "us", "median us"], rows)

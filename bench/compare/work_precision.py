@@ -7,7 +7,7 @@ other point beats in both; between them, log time is linear in log error.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from itertools import pairwise
 
 Point = tuple[float, float]
@@ -42,12 +42,6 @@ def time_at(points: Iterable[Point], error: float) -> float | None:
     raise AssertionError("unreachable: the error lies within the curve")
 
 
-def ratios_at(
-    ours: Sequence[Point], theirs: Sequence[Point], errors: Iterable[float]
-) -> dict[float, float | None]:
-    """Divide our time by theirs at each error; None where one of the two does not get there."""
-    result: dict[float, float | None] = {}
-    for error in errors:
-        mine, other = time_at(ours, error), time_at(theirs, error)
-        result[error] = None if mine is None or other is None else mine / other
-    return result
+def reached_at(points: Iterable[Point]) -> float | None:
+    """Find the smallest error of all; None where there is no point."""
+    return min((error for error, _ in points), default=None)

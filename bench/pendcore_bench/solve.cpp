@@ -1,4 +1,5 @@
 // The textbook's case, 0 to 5 s, at rtol = atol = 10^-digits: the end only, 101 times, dense.
+// "a call" is a right-hand side; of taylor, a series.
 #include <benchmark/benchmark.h>
 #include <cmath>
 #include <pendcore/simulate.hpp>
@@ -10,10 +11,11 @@ namespace {
 
 using namespace pendcore;
 
-void solve(benchmark::State& state, Store store) {
+void solve(benchmark::State& state, const char* method, Store store) {
   const Scene scene = Scene::textbook();
   const std::vector<double> q0{M_PI / 4, M_PI / 3}, qd0{0.0, 0.0};
   Options options;
+  options.method = method;
   options.rtol = options.atol = {std::pow(10.0, -static_cast<double>(state.range(0)))};
   options.store = store;
   for (int i = 0; store == Store::times && i <= 100; ++i) options.t_eval.push_back(0.05 * i);
@@ -27,8 +29,13 @@ void solve(benchmark::State& state, Store store) {
   set_calls(state, static_cast<double>(statistics.nfev));
 }
 
-BENCHMARK_CAPTURE(solve, end, Store::end)->DenseRange(3, 12, 3)->ArgName("digits");
-BENCHMARK_CAPTURE(solve, times, Store::times)->DenseRange(3, 12, 3)->ArgName("digits");
-BENCHMARK_CAPTURE(solve, dense, Store::dense)->DenseRange(3, 12, 3)->ArgName("digits");
+void digits(benchmark::internal::Benchmark* one) { one->DenseRange(3, 12, 3)->ArgName("digits"); }
+
+BENCHMARK_CAPTURE(solve, dopri5_end, "dopri5", Store::end)->Apply(digits);
+BENCHMARK_CAPTURE(solve, dopri5_times, "dopri5", Store::times)->Apply(digits);
+BENCHMARK_CAPTURE(solve, dopri5_dense, "dopri5", Store::dense)->Apply(digits);
+BENCHMARK_CAPTURE(solve, taylor_end, "taylor", Store::end)->Apply(digits);
+BENCHMARK_CAPTURE(solve, taylor_times, "taylor", Store::times)->Apply(digits);
+BENCHMARK_CAPTURE(solve, taylor_dense, "taylor", Store::dense)->Apply(digits);
 
 }  // namespace

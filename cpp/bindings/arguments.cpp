@@ -25,6 +25,7 @@ double plain_number(const char* name, py::handle value) {
 
 /// Any array-like of real numbers, or an empty optional where it is something else.
 std::optional<Array> real_array(py::handle value) {
+  if (Array::check_(value)) return py::reinterpret_borrow<Array>(value);
   if (py::isinstance<py::str>(value) || py::isinstance<py::bytes>(value)) return std::nullopt;
   const py::array any = py::array::ensure(value);
   if (!any) {
@@ -95,7 +96,7 @@ std::vector<double> numbers(const char* name, py::handle value, const std::strin
 py::array view(const std::vector<double>& numbers, std::vector<py::ssize_t> shape,
                py::handle owner) {
   Array array(std::move(shape), numbers.data(), owner);
-  array.attr("flags").attr("writeable") = false;
+  py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
   return array;
 }
 

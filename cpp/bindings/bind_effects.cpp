@@ -126,6 +126,7 @@ py::list effect_descriptors() {
     row["law"] = string(Kind::info.law);
     row["source"] = string(Kind::info.source);
     row["account"] = string(account_name(Kind::info.account));
+    row["bounds_joint"] = Kind::info.bounds_joint;
     row["parameters"] = parameters_of(effect);
     result.append(row);
   });

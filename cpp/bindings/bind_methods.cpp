@@ -8,9 +8,11 @@ namespace {
 
 template <class Row>
 py::list fractions(const Row& row) {
-  py::list pairs;
-  for (const Fraction& f : row) pairs.append(py::make_tuple(f.numerator, f.denominator));
-  return pairs;
+  py::list numbers;
+  for (const Fraction& f : row) {
+    numbers.append(py::make_tuple(f.numerator, f.denominator, f.root));
+  }
+  return numbers;
 }
 
 template <class Table>
@@ -20,7 +22,11 @@ py::list rows_of_fractions(const Table& table) {
   return rows;
 }
 
-py::dict tableau(const Automatic& /*method*/) { return {}; }
+template <const auto& first, const auto& second>
+py::dict tableau(const MethodPair<first, second>& /*method*/) {
+  return {};
+}
+py::dict tableau(const TaylorSeries& /*method*/) { return {}; }
 
 py::dict tableau(const Collocation& method) {
   py::dict result;
@@ -43,7 +49,15 @@ py::dict tableau(const Method& method) {
   result["a"] = rows_of_fractions(method.a);
   result["b"] = fractions(method.b);
   result["e"] = fractions(method.e);
-  result["interpolant"] = rows_of_fractions(method.interpolant);
+  result["d"] = fractions(method.d);
+  result["functions"] = rows_of_fractions(method.interpolant);
+  py::list basis;
+  for (const auto& row : method.basis) {
+    py::list powers;
+    for (const int weight : row) powers.append(py::make_tuple(weight, 1, 0));
+    basis.append(powers);
+  }
+  result["basis"] = basis;
   return result;
 }
 
@@ -60,8 +74,11 @@ py::dict describe(const MethodInfo& info) {
   py::dict result;
   result["name"] = string(info.name);
   result["aliases"] = aliases;
-  constexpr std::string_view kinds[] = {"explicit", "implicit", "automatic"};
+  constexpr std::string_view kinds[] = {"explicit", "implicit", "taylor", "pair"};
   result["kind"] = string(kinds[static_cast<std::size_t>(info.kind)]);
+  result["first"] = string(info.first());
+  result["second"] = string(info.second_of_pair);
+  result["dense_output_is_series"] = info.dense_output_is_series;
   result["order"] = info.order;
   result["error_order"] = info.error_order;
   result["interpolant_order"] = info.interpolant_order;
@@ -86,9 +103,10 @@ void bind_methods(py::module_& module) {
       "tableau",
       [](const std::string& method) { return tableau_named(Methods{}, find_method(method).name); },
       py::arg("method"),
-      "The coefficients c, a, b, e (b minus the embedded method's) and interpolant (stage, power)\n"
-      "of a method, each a pair (numerator, denominator); of an implicit method, numbers;\n"
-      "of auto, none.");
+      "The coefficients c, a, b, e, d of a method, and its dense output's functions (function,\n"
+      "stage) and their basis (function, power), each a number (numerator, denominator, root of\n"
+      "6): (numerator + root sqrt(6)) / denominator. Of an implicit one, numbers; of pairs and "
+      "series, none.");
 }
 
 }  // namespace pendcore::bindings

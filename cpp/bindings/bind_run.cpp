@@ -123,6 +123,18 @@ py::array evaluate(const Run& run, const Array& t) {
   return columns(copy(states, {t.size(), run.solution.dimension}), 0, 2 * run.solution.n);
 }
 
+/// Of steps first .. end - 1: (torques, distances of the angles, the curve's angles at the end).
+py::tuple defect_of_steps(const Run& run, std::size_t first, std::size_t end, const Array& angles) {
+  const Solution& s = run.solution;
+  std::vector<double> q(angles.data(), angles.data() + angles.size());
+  if (end > s.dense.h.size() || first > end || !(q.empty() || q.size() == std::size_t(s.n))) {
+    throw py::value_error("defect: no such steps, or no such angles");
+  }
+  const Defect found = defect(run.scene, s, first, end, q);
+  const auto steps = static_cast<py::ssize_t>(end - first);
+  return py::make_tuple(copy(found.torque, {steps, s.n}), copy_flat(found.apart), copy_flat(q));
+}
+
 }  // namespace
 
 void bind_run(py::module_& module) {
@@ -134,8 +146,9 @@ void bind_run(py::module_& module) {
                              })
       .def_property_readonly("states",
                              [](const py::object& self) {
-                               const int n = self.cast<const Run&>().solution.n;
-                               return columns(rows(self), 0, 2 * n);
+                               const Solution& s = self.cast<const Run&>().solution;
+                               const py::array all = rows(self);
+                               return s.dimension == 2 * s.n ? all : columns(all, 0, 2 * s.n);
                              })
       .def_property_readonly("ledger", &ledger)
       .def_property_readonly("found", &found)
@@ -158,6 +171,14 @@ void bind_run(py::module_& module) {
       .def_property_readonly("arguments", &arguments)
       .def_readonly("error", &Run::error)
       .def("evaluate", &evaluate, py::arg("t"))
+      .def_property_readonly("step_starts",
+                             [](py::object self) {
+                               const Solution& s = self.cast<const Run&>().solution;
+                               return view(s.dense.start, {size(s.dense.start)}, self);
+                             })
+      .def_property_readonly("dense_degree",
+                             [](const Run& run) { return run.solution.dense.degree; })
+      .def("defect", &defect_of_steps, py::arg("first"), py::arg("end"), py::arg("angles"))
       .def("resume", &resume_run, py::arg("t_end"), py::arg("t_eval"), py::arg("max_steps"),
            py::arg("time_limit"), py::arg("progress"))
       .def(py::pickle(&get_state, &set_state));

@@ -1,16 +1,17 @@
-#include "arguments.hpp"
+#include <algorithm>
+
 #include "bind_events.hpp"
-#include "pendcore/start.hpp"
 #include "python_monitor.hpp"
+#include "start.hpp"
 
 namespace pendcore::bindings {
 namespace {
 
 Store store_named(py::handle store, bool has_times) {
   if (store.is_none()) return has_times ? Store::times : Store::dense;
-  for (std::size_t i = 0; i < store_names.size(); ++i) {
-    if (py::str(store).cast<std::string>() == store_names[i]) return static_cast<Store>(i);
-  }
+  const auto name = py::str(store).cast<std::string>();
+  const auto* const found = std::ranges::find(store_names, name);
+  if (found != store_names.end()) return static_cast<Store>(found - store_names.begin());
   throw py::value_error("store = " + py::repr(store).cast<std::string>() +
                         ": must be \"dense\", \"steps\", \"times\" or \"end\"");
 }
@@ -32,7 +33,6 @@ Run simulate_run(const py::object& python_scene, py::handle q0, py::handle qd0, 
                  py::handle progress, py::handle warn) {
   const auto& scene = python_scene.cast<const Scene&>();
   const std::size_t n = scene.links.size();
-  const std::string one_a_link = "(" + std::to_string(n) + ",)";
   const std::string one_a_component = "a number or (" + std::to_string(2 * n) + ",)";
   PythonMonitor monitor(progress);
   Options options;
@@ -55,21 +55,14 @@ Run simulate_run(const py::object& python_scene, py::handle q0, py::handle qd0, 
   options.ledger = truth("ledger", ledger);
   options.compensated = truth("compensated", compensated);
   options.monitor = monitor;
-  const std::vector<double> angles = numbers("q0", q0, one_a_link, n);
-  const std::vector<double> rates = numbers("qd0", qd0, one_a_link, n);
-  const double from = number("t_span[0]", t0);
-  const double to = number("t_span[1]", t_end);
-
-  if (angles.size() == n && rates.size() == n) {
-    for (const std::string& warning : run_warnings(scene, angles, from, to)) warn(warning);
-  }
+  const Start start = start_of(scene, q0, qd0, t0, t_end, warn);
   Run run{.scene = scene,
           .solution = {},
           .python_scene = python_scene,
           .event_functions = functions_of(events)};
   {
     const py::gil_scoped_release without_lock;
-    run.solution = simulate(run.scene, angles, rates, from, to, options);
+    run.solution = simulate(run.scene, start.q0, start.qd0, start.t0, start.t_end, options);
   }
   monitor.close(run);
   return run;

@@ -27,17 +27,23 @@ void PythonMonitor::keep_error() const {
 
 void PythonMonitor::close(Run& run) const {
   Solution& solution = run.solution;
-  if (solution.error) *error_ = python_exception(std::exchange(solution.error, nullptr));
-  // Ctrl-C after the core has looked for it last: the run is whole, and is not lost.
-  const bool is_whole = !*error_;
-  if (is_whole && PyErr_CheckSignals() == 0) return;
-  if (is_whole) keep_error();
-  run.error = *error_;
-  if (is_whole) return;
-  const bool stopped = PyErr_GivenExceptionMatches(run.error.ptr(), PyExc_KeyboardInterrupt) != 0;
-  const std::size_t sentence = text(solution.status).sentence.size();
-  solution.status = stopped ? Status::interrupted : Status::callback_error;
-  solution.message.replace(0, sentence, text(solution.status).sentence);
+  run.error = close(solution.status, solution.message, solution.error);
+}
+
+py::object PythonMonitor::close(Status& status, std::string& message,
+                                std::exception_ptr& error) const {
+  if (error) *error_ = python_exception(std::exchange(error, nullptr));
+  if (!*error_) {
+    // Ctrl-C after the core has looked for it last: the run is whole, and is not lost.
+    if (PyErr_CheckSignals() == 0) return py::none();
+    keep_error();
+    return *error_;
+  }
+  const bool stopped = PyErr_GivenExceptionMatches(error_->ptr(), PyExc_KeyboardInterrupt) != 0;
+  const std::size_t sentence = text(status).sentence.size();
+  status = stopped ? Status::interrupted : Status::callback_error;
+  message.replace(0, sentence, text(status).sentence);
+  return *error_;
 }
 
 }  // namespace pendcore::bindings

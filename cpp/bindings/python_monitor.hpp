@@ -18,6 +18,8 @@ class PythonMonitor {
 
   /// Puts the exception, and the status that it means, into the run.
   void close(Run& run) const;
+  /// The exception, or None; the status that it means, and its sentence, become the run's.
+  py::object close(Status& status, std::string& message, std::exception_ptr& error) const;
 
  private:
   void keep_error() const;

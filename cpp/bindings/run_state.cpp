@@ -272,7 +272,9 @@ Run set_state(const py::dict& state) {
   check(run.scene);
   visit(io, run.solution);
   Solution& s = run.solution;
-  s.options.method = find_method(s.options.method).name;
+  // Runs kept before "auto" was a rule have it as an alias of this pair.
+  const std::string_view method = s.options.method;
+  s.options.method = method == automatic ? dopri5_radau5.info.name : find_method(method).name;
   s.n = static_cast<int>(run.scene.links.size());
   if (s.options.ledger) s.accounts = accounts_of(run.scene);
   s.dimension = 2 * s.n + static_cast<int>(s.accounts.size());

@@ -2,8 +2,8 @@
 # unit, which takes half the time; kernels and what takes longest stay alone. No two things in a
 # group may have one name; clang-tidy reads every source by itself.
 set(together_scene driven_pivot energy ledger motor reactions registry scene wave)
-set(together_run automatic ending_message first_step methods not_finite options recorder simulate
-    solution start stiffness)
+set(together_run dominant_eigenvalue ending_message first_step method_choice method_pair methods
+    not_finite options recorder simulate solution start stiffness)
 set(together_joints complementarity held_joints joint_forces switching switching_guards)
 set(together_events event event_finder root)
 

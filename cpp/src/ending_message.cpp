@@ -1,5 +1,6 @@
 #include "pendcore/ending_message.hpp"
 
+#include "pendcore/integrate/methods.hpp"
 #include "pendcore/message.hpp"
 #include "pendcore/not_finite.hpp"
 #include "pendcore/start.hpp"
@@ -83,6 +84,10 @@ std::string ending_message(const Ending& ending, const Scene& scene, const Solut
   if (found.component < 0) found.component = ending.bad;
   if (found.component >= 0) message += ", " + component_name(found.component, solution.n);
   if (found.effect >= 0) message += ", by " + effect_name(scene, found.effect);
+  if (solution.options.step &&
+      find_method(solution.options.method).kind != MethodKind::implicit_one) {
+    message += "; where the fixed step is too long, a shorter one helps, or method=\"radau5\"";
+  }
   return message + ')';
 }
 

@@ -129,14 +129,19 @@ std::optional<FastMode> fast_mode(const Scene& scene, const EquationsOfMotion& e
 }
 
 std::string remark_on_steps(const Scene& scene, const EquationsOfMotion& equations,
-                            const Position& position, const MethodInfo& method, double t0) {
+                            const Position& position, const MethodInfo& method,
+                            const MethodInfo& in_force, double t0) {
   std::string remark;
   const Statistics& statistics = position.statistics;
-  if (statistics.stiff && method.kind == MethodKind::automatic) {
-    remark += "; stiff: went on with radau5 from t = " + text(position.stiff_since) + " s";
+  const std::string since = text(position.stiff_since) + " s";
+  if (statistics.stiff && in_force.name == method.second_of_pair) {
+    remark += "; stiff: went on with " + std::string(in_force.name) + " from t = " + since;
+  } else if (statistics.stiff && method.kind == MethodKind::pair) {
+    remark += "; stiff at t = " + since + ", but " + std::string(method.second_of_pair) +
+              " does not pay: its steps can hardly be longer for their accuracy";
   } else if (statistics.stiff) {
-    remark += "; from t = " + text(position.stiff_since) +
-              " s on the steps are limited by stability, not by accuracy: the problem is stiff: "
+    remark += "; from t = " + since +
+              " on the steps are limited by stability, not by accuracy: the problem is stiff: "
               "method=\"radau5\" takes longer ones, and \"auto\" changes over by itself";
   }
   if (statistics.njev > 0) {

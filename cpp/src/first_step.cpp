@@ -10,6 +10,9 @@ namespace pendcore {
 
 FirstStep first_step(Stepper& stepper, double t, double t_end, double max_step, const double* rtol,
                      const double* atol) {
+  if (const double own = stepper.own_first_step(t); own > 0.0) {
+    return {std::min(own, max_step), false};
+  }
   const int n = stepper.controlled();
   const int size = stepper.dimension();
   std::vector<double> memory(5 * size);

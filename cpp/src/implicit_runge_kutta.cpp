@@ -62,7 +62,7 @@ void ImplicitRungeKutta::forget(const double* y, const Rows& instead_of, Rows& l
 }
 
 void ImplicitRungeKutta::start(const double* y, const double* dydt) {
-  // Only now: `auto` may never come to need it.
+  // Only now: a pair may never come to need it.
   systems_.resize(n_);
   forget(y, y_, low_);
   std::copy_n(y, size_, y_.begin());
@@ -325,7 +325,7 @@ void ImplicitRungeKutta::accept(double t_new) {
   evaluate(t_new, y_.data(), dydt_.data());
 }
 
-void ImplicitRungeKutta::interpolant(double /*h*/, double* coefficients) const {
+void ImplicitRungeKutta::interpolant(double /*h*/, double* coefficients) {
   std::ranges::copy(y_, coefficients);
   double* const rows = coefficients + size_;
   write_polynomial(rows);

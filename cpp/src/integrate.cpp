@@ -90,11 +90,16 @@ class Run {
     }
     const Target target = next_target(left);
     double h = position_.h;
+    const bool is_too_small = std::abs(h) <= few * epsilon * std::abs(t) || std::abs(h) < 1e-300;
+    // Where the target is the next time that there is, a step there may be tried, once.
+    if (is_too_small && (!target.is_in_reach || position_.control.after_rejection)) {
+      const bool is_coarse = position_.trial_was_finite || was_stretched_;
+      return end(is_coarse ? Status::step_too_small : Status::non_finite);
+    }
+    was_stretched_ = target.is_in_reach && std::abs(target.left) > 1.01 * std::abs(h);
     if (target.is_in_reach) {
       h = target.left;
       if (!target.is_break) resume_.cut_from_here();
-    } else if (std::abs(h) <= few * epsilon * std::abs(t) || std::abs(h) < 1e-300) {
-      return end(position_.trial_was_finite ? Status::step_too_small : Status::non_finite);
     }
 
     ++attempts_;
@@ -103,7 +108,7 @@ class Run {
     can_stop_ = false;  // within a step that was tried already
     if (stopped_ != Status::finished) return end(stopped_);
     const bool is_shortest = target.is_in_reach && std::abs(h) <= few * last_bits(t, target.t);
-    switch (trial_.judge(is_shortest)) {
+    switch (trial_.judge(is_shortest, is_shortest && !is_too_small)) {
       case Trial::Verdict::stands: break;
       case Trial::Verdict::is_tried_again:
         ++position_.statistics.rejected;
@@ -270,6 +275,7 @@ class Run {
   Status stopped_ = Status::finished;  ///< or why an attempt was given up
   long long attempts_ = 0;
   bool chatters_ = false;
+  bool was_stretched_ = false;  ///< the last attempt, to a target that lies beyond its step
   bool has_quadratures_ = false;
   int bad_ = -1;  ///< component of the last trial, while trials are not finite
   std::vector<double> state_;

@@ -44,6 +44,14 @@ std::vector<double> absolute_tolerances(const Options& options, std::size_t n) {
 
 void check_times(const std::vector<double>& times, double t0, double t_end) {
   const double direction = t_end < t0 ? -1.0 : 1.0;
+  if (times.empty()) return;
+  // In order, and both ends within the run: so are all. What is wrong is looked for after that.
+  bool is_right =
+      (times.front() - t0) * direction >= 0.0 && (t_end - times.back()) * direction >= 0.0;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    is_right &= (times[i] - times[i - 1]) * direction > 0.0;
+  }
+  if (is_right) return;
   for (std::size_t i = 0; i < times.size(); ++i) {
     if (!((times[i] - t0) * direction >= 0.0 && (t_end - times[i]) * direction >= 0.0)) {
       refuse("t_eval[" + std::to_string(i) + "]", times[i],
@@ -84,10 +92,11 @@ void check(const Options& options) {
     throw std::invalid_argument(
         "store: keeps no times of t_eval: must be \"times\" or \"dense\" with it");
   }
-  const MethodInfo& method = find_method(options.method);
+  if (options.method == automatic) return;  // whatever it comes to be takes all that follows
+  const MethodInfo& method = find_method(options.method, automatic);
   if (method.error_order == 0 && !options.step) {
-    throw std::invalid_argument("step: method \"" + std::string(method.name) +
-                                "\" has no error estimate: give a fixed step (s)");
+    throw std::invalid_argument("step: none given: method \"" + std::string(method.name) +
+                                "\" estimates no error and takes fixed steps: give one, > 0 (s)");
   }
   if (options.compensated && !method.compensates) {
     throw std::invalid_argument("compensated: method \"" + std::string(method.name) +

@@ -29,23 +29,21 @@ void Recorder::start(double t, const std::vector<double>& y) {
   if (keeps_steps_ || asked_for) std::ranges::copy(y, append(t));
 }
 
-double Recorder::step_accepted(const Stepper& stepper, const TwoDouble& t_old, double h,
-                               double t_new) {
+double Recorder::step_accepted(Stepper& stepper, const TwoDouble& t_old, double h, double t_new) {
   double end = 2.0;
+  // Before anything is kept: it may ask for right-hand sides, and one of the user's may raise.
+  if (finder_ || keeps_polynomials_) stepper.interpolant(h, polynomial_.data());
   if (finder_) {
-    stepper.interpolant(h, polynomial_.data());
     end = finder_->look(stepper, polynomial_.data(), t_old, h, t_new);
     if (end == 0.0) return end;
   }
   const double t_end = end < 1.0 ? time_in_step(t_old, h, end, t_new).high : t_new;
   if (keeps_polynomials_ && t_end != t_old.high) {
     DenseOutput& dense = solution_.dense;
-    const std::size_t size = dense.coefficients.size();
     dense.start.push_back(t_old.high);
     dense.start_low.push_back(t_old.low);
     dense.h.push_back(h);
-    dense.coefficients.resize(size + polynomial_.size());
-    stepper.interpolant(h, dense.coefficients.data() + size);
+    dense.coefficients.insert(dense.coefficients.end(), polynomial_.begin(), polynomial_.end());
   }
   if (end < 1.0) {
     keep_clipped(stepper, t_old, h, end, t_end);
@@ -58,7 +56,7 @@ double Recorder::step_accepted(const Stepper& stepper, const TwoDouble& t_old, d
 }
 
 /// The step up to an event within it, at time t.
-void Recorder::keep_clipped(const Stepper& stepper, const TwoDouble& t_old, double h, double theta,
+void Recorder::keep_clipped(Stepper& stepper, const TwoDouble& t_old, double h, double theta,
                             double t) {
   const std::vector<double>& samples = solution_.options.t_eval;
   const bool is_new = solution_.t.empty() || solution_.t.back() != t;
@@ -97,15 +95,14 @@ void Recorder::count(const Kept& kept) {
   solution_.resumable_found = kept.found;
 }
 
-void Recorder::sample_step(const Stepper& stepper, const TwoDouble& t_old, double h, double t_new,
+void Recorder::sample_step(Stepper& stepper, const TwoDouble& t_old, double h, double t_new,
                            bool with_end) {
   const std::vector<double>& samples = solution_.options.t_eval;
   const std::size_t first = solution_.t.size();
   std::size_t end = first;
   while (end < samples.size() && (samples[end] - t_new) * h < 0.0) ++end;
   if (end > first) {
-    solution_.t.insert(solution_.t.end(), samples.begin() + static_cast<std::ptrdiff_t>(first),
-                       samples.begin() + static_cast<std::ptrdiff_t>(end));
+    for (std::size_t k = first; k < end; ++k) solution_.t.push_back(samples[k]);
     solution_.states.resize(end * dimension_);
     stepper.interpolant(h, polynomial_.data());
     stepper.sample(polynomial_.data(), t_old, h, samples.data() + first,

@@ -8,7 +8,11 @@ namespace pendcore {
 namespace {
 
 constexpr double none = 2.0;
-using Bernstein = std::array<double, 16>;
+/// Room for a degree below that: most polynomials need the smaller one.
+template <std::size_t room>
+using Bernstein = std::array<double, room>;
+constexpr std::size_t small = 16;
+constexpr std::size_t large = 36;
 
 double value(const double* c, int degree, double theta) {
   double sum = c[degree];
@@ -17,9 +21,9 @@ double value(const double* c, int degree, double theta) {
 }
 
 /// 1/C(degree, k)
-constexpr std::array<Bernstein, 16> inverse_binomials = [] {
-  std::array<Bernstein, 16> table{};
-  for (int degree = 0; degree < 16; ++degree) {
+constexpr std::array<Bernstein<large>, large> inverse_binomials = [] {
+  std::array<Bernstein<large>, large> table{};
+  for (int degree = 0; degree < static_cast<int>(large); ++degree) {
     double binomial = 1.0;
     for (int k = 0; k <= degree; ++k) {
       table[degree][k] = 1.0 / binomial;
@@ -30,8 +34,9 @@ constexpr std::array<Bernstein, 16> inverse_binomials = [] {
 }();
 
 /// The coefficients on [0, 1]: b_i = sum_{k <= i} C(i, k)/C(degree, k) c_k, by Pascal's triangle.
-Bernstein bernstein(const double* c, int degree) {
-  Bernstein b{};
+template <std::size_t room>
+Bernstein<room> bernstein(const double* c, int degree) {
+  Bernstein<room> b{};
   for (int k = 0; k <= degree; ++k) b[k] = inverse_binomials[degree][k] * c[k];
   for (int k = 1; k <= degree; ++k) {
     for (int i = degree; i >= k; --i) b[i] += b[i - 1];
@@ -48,7 +53,9 @@ double bisect(const double* c, int degree, double low, double high) {
   }
 }
 
-double search(const double* c, int degree, const Bernstein& b, double low, double high, int depth) {
+template <std::size_t room>
+double search(const double* c, int degree, const Bernstein<room>& b, double low, double high,
+              int depth) {
   bool any_negative = false;
   for (int i = 0; i <= degree; ++i) any_negative |= b[i] < 0.0;
   if (!any_negative) return none;
@@ -58,8 +65,8 @@ double search(const double* c, int degree, const Bernstein& b, double low, doubl
   if (changes == 1 && b[0] >= 0.0) return bisect(c, degree, low, high);
   if (depth == 50) return value(c, degree, high) < 0.0 ? high : none;  // touches zero, no more
   // de Casteljau: both halves
-  Bernstein left{};
-  Bernstein right = b;
+  Bernstein<room> left{};
+  Bernstein<room> right = b;
   for (int i = 0; i <= degree; ++i) {
     left[i] = right[0];
     for (int k = 0; k < degree - i; ++k) right[k] = 0.5 * (right[k] + right[k + 1]);
@@ -81,7 +88,9 @@ double first_negative(const double* coefficients, int degree) {
   const double* const c = from_zero ? coefficients + 1 : coefficients;  // p/theta has p's signs
   const int rest = from_zero ? degree - 1 : degree;
   if (!(largest > 0.0)) return coefficients[0] < 0.0 ? 0.0 : none;
-  return search(c, rest, bernstein(c, rest), 0.0, 1.0, 0);
+  return rest < static_cast<int>(small)
+             ? search<small>(c, rest, bernstein<small>(c, rest), 0.0, 1.0, 0)
+             : search<large>(c, rest, bernstein<large>(c, rest), 0.0, 1.0, 0);
 }
 
 namespace {

@@ -41,6 +41,7 @@ void check_place(const std::string& where, const char* what, int number, int n) 
 }
 
 void check_effects(const Scene& scene) {
+  if (scene.effects.empty()) return;
   const int n = static_cast<int>(scene.links.size());
   std::vector<bool> locked(n);
   std::vector<std::array<double, 2>> ranges(n, {-never, never});  // that stops leave
@@ -228,6 +229,12 @@ std::vector<std::string> plausibility_warnings(const Scene& scene) {
         scene.effects[i]);
   }
   return warnings;
+}
+
+std::optional<std::size_t> without_series(const Scene& scene) {
+  const auto found = std::ranges::find_if_not(scene.effects, has_series);
+  if (found == scene.effects.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - scene.effects.begin());
 }
 
 Mobility mobility(const Scene& scene) {

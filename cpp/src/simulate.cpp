@@ -13,6 +13,7 @@
 #include "pendcore/integrate/first_step.hpp"
 #include "pendcore/integrate/methods.hpp"
 #include "pendcore/message.hpp"
+#include "pendcore/method_choice.hpp"
 #include "pendcore/recorder.hpp"
 #include "pendcore/start.hpp"
 #include "pendcore/switching.hpp"
@@ -61,8 +62,8 @@ struct Beginning {
   const std::vector<double>& atol;
   bool depends_on_end = false;  ///< the first step does: of a longer run it is another one
 
+  /// `position` is of no use where the ending is cut.
   Ending make(Position& position, double t_end) {
-    const Position start = position;
     recorder.restarts_here();
     Ending ending{.status = Status::finished, .cut = false};
     try {
@@ -77,7 +78,6 @@ struct Beginning {
       ending.error = std::current_exception();
     }
     ending.cut = ending.status != Status::finished;
-    if (ending.cut) position = start;
     return ending;
   }
 
@@ -87,8 +87,12 @@ struct Beginning {
     const double t = position.t.high;
     const double direction = t_end < t ? -1.0 : 1.0;
     std::vector<double>& y = position.y;
-    const std::vector<double> before = y;
-    const bool jumped = switching != nullptr && switching->begin(t, y.data(), direction > 0.0);
+    std::vector<double> before;
+    bool jumped = false;
+    if (switching != nullptr) {
+      before = y;
+      jumped = switching->begin(t, y.data(), direction > 0.0);
+    }
     if (const int bad = bad_component(y); bad >= 0) return bad;
     stepper.evaluate(t, y.data(), position.dydt.data());
     stepper.start(y.data(), position.dydt.data());
@@ -152,6 +156,7 @@ void run(const Scene& scene, Solution& solution, double t_end, Limits limits, Be
   } else {
     Beginning beginning{options, *stepper, breaks, recorder, rtol, atol};
     ending = beginning.make(position, t_end);
+    if (ending.cut) position = solution.resumable;  // the start
     limits.begins_anew = beginning.depends_on_end;
     position.statistics.nfev = stepper->evaluations;
   }
@@ -168,8 +173,8 @@ void run(const Scene& scene, Solution& solution, double t_end, Limits limits, Be
   solution.y_reached = position.y;
   solution.message = ending_message(ending, scene, solution, position,
                                     switching ? switching->remark() : "", recorder.ended_by());
-  solution.message +=
-      remark_on_steps(scene, equations, position, find_method(options.method), solution.t0);
+  solution.message += remark_on_steps(scene, equations, position, find_method(options.method),
+                                      stepper->info(), solution.t0);
   solution.error = ending.error;
   if (options.store == Store::end) {
     solution.t = {solution.t_reached};
@@ -203,7 +208,7 @@ Solution simulate(const Scene& scene, const std::vector<double>& q0, const std::
 
   Solution solution;
   solution.options = options;
-  solution.options.method = find_method(options.method).name;
+  solution.options.method = chosen_method(scene, options);
   solution.options.monitor = nullptr;
   solution.t0 = t0;
   solution.t_end = t_end;

@@ -6,6 +6,8 @@
 
 #include "pendcore/arithmetic/floating_point_environment.hpp"
 #include "pendcore/arithmetic/pack.hpp"
+#include "pendcore/integrate/methods.hpp"
+#include "pendcore/integrate/taylor_step.hpp"
 #include "pendcore/message.hpp"
 
 namespace pendcore {
@@ -29,6 +31,9 @@ std::vector<double> Solution::at(const std::vector<double>& times) const {
         "t: this solution keeps no dense output: simulate with store=\"dense\"");
   }
   static const auto sample = fastest<&sample_polynomial>();
+  static const auto sample_of_series = fastest<&sample_series>();
+  // As the run itself: of a pair, all steps are evaluated as those of its first.
+  const bool is_series = find_method(options.method).dense_output_is_series;
   const double direction = t_reached < t0 ? -1.0 : 1.0;
   const std::size_t row = static_cast<std::size_t>((dense.degree + 1) * dimension);
   std::vector<double> result(times.size() * static_cast<std::size_t>(dimension));
@@ -48,6 +53,9 @@ std::vector<double> Solution::at(const std::vector<double>& times) const {
       const double theta = ((time - dense.start[step]) - dense.start_low[step]) / dense.h[step];
       if (time == dense.start[step]) {
         std::copy_n(coefficients, dimension, y);
+      } else if (is_series) {
+        sample_of_series(coefficients, {dense.start[step], dense.start_low[step]}, dense.h[step],
+                         &time, 1, y, dimension, dense.degree);
       } else {
         sample(coefficients, dense.degree, dimension, theta, y);
       }

@@ -77,6 +77,9 @@ void check_start(const Scene& scene, const std::vector<double>& q0, const std::v
   check_numbers("qd0", qd0, n, "finite (rad/s)");
   if (!std::isfinite(t0)) refuse("t_span[0]", t0, "finite (s)");
   if (!std::isfinite(t_end)) refuse("t_span[1]", t_end, "finite (s)");
+  if (!std::isfinite(t_end - t0)) {
+    refuse("t_span[1]", t_end, "less than 1.8e308 s from t_span[0] = " + text(t0));
+  }
   check_effects_at_start(scene, q0, qd0, t0, t_end);
 }
 

@@ -59,12 +59,19 @@ std::unique_ptr<Stepper> implicit(const Collocation& method, const Scene& scene,
 template <const auto& table, bool compensated, class OfTable>
 std::unique_ptr<Stepper> stepper_of(const Scene& scene, const EquationsOfMotion& equations,
                                     bool ledger, const OfTable& of_table) {
-  if constexpr (table.info.kind == MethodKind::implicit_one) {
+  if constexpr (table.info.kind == MethodKind::taylor_one) {
+    auto system = std::make_shared<SceneSystem>(scene, equations,
+                                                static_cast<int>(scene.links.size()), ledger);
+    auto rates = [system](double t, const double* y, double* dydt) { (*system)(t, y, dydt); };
+    return make_taylor_stepper(scene, equations, rates, system->quadratures, compensated);
+  } else if constexpr (table.info.kind == MethodKind::implicit_one) {
     return implicit(table, scene, equations, ledger, compensated);
-  } else if constexpr (table.info.kind == MethodKind::automatic) {
-    return std::make_unique<AutomaticStepper>(
-        of_table.template operator()<dormand_prince_5>(),
-        implicit(radau_5, scene, equations, ledger, compensated));
+  } else if constexpr (table.info.kind == MethodKind::pair) {
+    return std::make_unique<PairStepper>(
+        stepper_of<table.first, compensated>(scene, equations, ledger, of_table),
+        [&scene, equations, ledger] {
+          return implicit(table.second, scene, equations, ledger, compensated);
+        });
   } else {
     return of_table.template operator()<table>();
   }

@@ -41,10 +41,10 @@ void Trial::attempt(double h) {
   attempt_ = stepper_.attempt(t_, h_, position_.control.gain(stepper_.info()));
 }
 
-Trial::Verdict Trial::judge(bool is_shortest) {
+Trial::Verdict Trial::judge(bool is_shortest, bool at_any_error) {
   crossing_ = {};
   look_for_bad_component();
-  const bool is_accepted = attempt_.squared_error <= 1.0 || fixed_step_ || is_shortest;
+  const bool is_accepted = attempt_.squared_error <= 1.0 || fixed_step_ || at_any_error;
   if (!position_.trial_was_finite || !is_accepted) {
     return give_up(h_ * position_.control.reject(stepper_.info(), attempt_));
   }
@@ -117,12 +117,34 @@ Trial::Verdict Trial::give_up(double h) {
 }
 
 void Trial::look_for_bad_component() {
-  position_.trial_was_finite = true;
+  const double error = attempt_.squared_error;
   bad_ = -1;
-  if (std::isfinite(attempt_.squared_error)) return;
   // Beyond the square root of the largest double the norm overflows, and nothing is wrong.
-  bad_ = bad_component_of(stepper_, t_ + h_);
-  position_.trial_was_finite = bad_ < 0 && !std::isnan(attempt_.squared_error);
+  if (!std::isfinite(error)) bad_ = bad_component_of(stepper_, t_ + h_);
+  // A fixed step is taken whatever its error.
+  if (bad_ < 0 && fixed_step_ && is_far_off()) bad_ = bad_component_between();
+  position_.trial_was_finite = bad_ < 0 && !std::isnan(error);
+}
+
+/// Rates enter by their squares: four stages on, such numbers may overflow.
+bool Trial::is_far_off() {
+  constexpr double far = 1e15;
+  new_state_.resize(stepper_.dimension());
+  stepper_.get_new_state(new_state_.data());
+  return std::ranges::any_of(new_state_, [](double x) { return std::abs(x) > far; });
+}
+
+/// Of the dense output, which may have stages of its own.
+int Trial::bad_component_between() {
+  const int size = stepper_.dimension();
+  polynomial_.resize(static_cast<std::size_t>(stepper_.interpolant_degree() + 1) * size);
+  stepper_.interpolant(h_, polynomial_.data());
+  for (std::size_t i = 0; i < polynomial_.size(); ++i) {
+    const int component = static_cast<int>(i) % size;
+    const bool has_a_say = component < stepper_.controlled();  // quadratures have none
+    if (has_a_say && !std::isfinite(polynomial_[i])) return component;
+  }
+  return -1;
 }
 
 }  // namespace pendcore

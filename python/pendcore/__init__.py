@@ -28,35 +28,52 @@ from __future__ import annotations
 
 from pendcore import effects, events
 from pendcore._core import __version__
+from pendcore.accuracy.report import Accuracy, AccuracyError
 from pendcore.angles import angles_from_vertical, angles_to_vertical
 from pendcore.archive import load
 from pendcore.case import Case
 from pendcore.case_file import read_case
+from pendcore.cost import AccuracyCost, accuracy_cost
+from pendcore.defect import Defect
 from pendcore.energy import Energy, Ledger
 from pendcore.explanation import Explanation
+from pendcore.horizon.error_estimate import ErrorEstimate
+from pendcore.horizon.lyapunov import LyapunovExponents, lyapunov
+from pendcore.horizon.work import HorizonWork, horizon_work
 from pendcore.link import Link
 from pendcore.scene import Mobility, Scene
 from pendcore.simulate import simulate
-from pendcore.solution import Solution, Statistics
+from pendcore.solution import Solution
+from pendcore.statistics import Statistics
 from pendcore.warning import PendcoreWarning
 
 __all__ = [
+    "Accuracy",
+    "AccuracyCost",
+    "AccuracyError",
     "Case",
+    "Defect",
     "Energy",
+    "ErrorEstimate",
     "Explanation",
+    "HorizonWork",
     "Ledger",
     "Link",
+    "LyapunovExponents",
     "Mobility",
     "PendcoreWarning",
     "Scene",
     "Solution",
     "Statistics",
     "__version__",
+    "accuracy_cost",
     "angles_from_vertical",
     "angles_to_vertical",
     "effects",
     "events",
+    "horizon_work",
     "load",
+    "lyapunov",
     "read_case",
     "simulate",
 ]

@@ -88,6 +88,13 @@ class Run:
     @property
     def error(self) -> BaseException | None: ...
     def evaluate(self, t: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]: ...
+    @property
+    def step_starts(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def dense_degree(self) -> int: ...
+    def defect(
+        self, first: int, end: int, angles: npt.NDArray[np.float64]
+    ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], npt.NDArray[np.float64]]: ...
     def resume(
         self,
         t_end: float,
@@ -121,6 +128,22 @@ def simulate(
     progress: Callable[[float], object] | None,
     warn: Callable[[str], object],
 ) -> Run: ...
+def lyapunov(
+    scene: Scene,
+    q0: npt.ArrayLike,
+    qd0: npt.ArrayLike,
+    t0: float,
+    t_end: float,
+    count: int | None,
+    rtol: float,
+    atol: float,
+    t_eval: npt.ArrayLike,
+    max_step: float,
+    max_steps: int,
+    time_limit: float | None,
+    progress: Callable[[float], object] | None,
+    warn: Callable[[str], object],
+) -> dict[str, Any]: ...
 def effect_descriptors() -> list[dict[str, Any]]: ...
 def part_descriptors() -> list[dict[str, Any]]: ...
 def accounts() -> dict[str, bool]: ...

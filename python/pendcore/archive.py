@@ -1,8 +1,8 @@
 """Solutions on disk: NumPy's npz, readable without pendcore, and without pickle.
 
 Entries: ``t``, ``q``, ``qd``, ``y`` (as in `Solution`), ``case`` (TOML), ``statistics`` (JSON),
-``version``, and ``run.*``, from which the whole object comes back: interpolants, and what is needed
-to resume.
+``version``, ``accuracy`` (JSON, where an error was asked for), and ``run.*``, from which the whole
+object comes back: interpolants, and what is needed to resume.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from pendcore import _core
+from pendcore.accuracy.report import Accuracy
 from pendcore.case import Case
 from pendcore.case_file import case_from_text
 from pendcore.effect_class import OwnEffect, effect_of
@@ -47,6 +48,8 @@ def save(solution: Solution, path: str | os.PathLike[str]) -> None:
         "statistics": json.dumps(solution.stats._asdict()),
         "version": _core.__version__,
     }
+    if solution.accuracy is not None:
+        entries["accuracy"] = json.dumps(solution.accuracy.to_dict())
     state = {_RUN + key: value for key, value in solution._run.__getstate__().items()}
     with Path(path).open("wb") as file:
         np.savez(file, **entries, **state)
@@ -88,9 +91,11 @@ def _loaded(file: BinaryIO) -> Solution:
         state = {
             key.removeprefix(_RUN): _plain(entries[key]) for key in entries if key.startswith(_RUN)
         }
+        told = json.loads(str(entries["accuracy"])) if "accuracy" in entries else None
     run = _core.Run.__new__(_core.Run)
     run.__setstate__(state)
-    solution = Solution(_scene(state), run, case.name)
+    accuracy = None if told is None else Accuracy.from_dict(told)
+    solution = Solution(_scene(state), run, case.name, accuracy)
     if solution.case() != case:
         raise ValueError("its case is not that of its run")
     return solution

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable
 from difflib import get_close_matches
 from functools import wraps
 from inspect import signature
+from math import inf
 from numbers import Real
 from operator import index
 from typing import Any, ParamSpec, TypeAlias, TypeVar
@@ -75,6 +76,46 @@ def whole_number(name: str, value: Any, most: int = 2**31 - 1) -> int:
     if abs(whole) > most:
         raise ValueError(f"{name}: is too large: must be at most {most}")
     return whole
+
+
+def two_times(t_span: Any) -> tuple[Any, Any]:
+    """Return what is given as the start and the end of a run; the core checks them as times."""
+    if t_span is None:
+        raise TypeError("t_span is missing: give (t_start, t_end), in s")
+    try:
+        t_start, t_end = t_span
+    except (TypeError, ValueError):
+        raise _no_time_span(t_span) from None
+    return t_start, t_end
+
+
+def time_span(t_span: Any) -> tuple[float, float]:
+    """Return the start and the end of a run, finite, as two floats."""
+    given = two_times(t_span)
+    try:
+        t_start, t_end = (number("t_span", t, "s") for t in given)
+    except TypeError:
+        raise _no_time_span(t_span) from None
+    for i, t in enumerate((t_start, t_end)):
+        if not np.isfinite(t):
+            raise ValueError(f"t_span[{i}] = {t}: must be finite (s)")
+    if not np.isfinite(length := t_end - t_start):
+        raise ValueError(f"t_span = {t_span!r}: is {length} s long: must be below 1.8e308 (s)")
+    return t_start, t_end
+
+
+def _no_time_span(t_span: object) -> TypeError:
+    return TypeError(f"t_span = {t_span!r}: must be (t_start, t_end), in s")
+
+
+def time_limit_of(time_limit: object) -> float:
+    """Return how long something may take, s of the clock; inf for None."""
+    if time_limit is None:
+        return inf
+    limit = number("time_limit", time_limit, "s")
+    if not limit > 0:
+        raise ValueError(f"time_limit = {limit}: must be > 0 (s)")
+    return limit
 
 
 def in_unit(unit: str) -> str:

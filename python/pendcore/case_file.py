@@ -23,7 +23,7 @@ A case::
     [run]
     t_start = 0.0                   # s; 0 if left out
     t_end = 5.0                     # s
-    method = "dopri5"               # this and any other keyword of pendcore.simulate
+    method = "dop853"               # this and any other keyword of pendcore.simulate
 """
 
 from __future__ import annotations

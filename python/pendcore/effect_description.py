@@ -79,6 +79,8 @@ class Description(NamedTuple):
         The equation, and where it comes from.
     account : str
         Where the ledger books its work; ``"none"`` where there is none.
+    bounds_joint : bool
+        Whether a start next to one that it allows may be none that it allows.
     """
 
     name: str
@@ -88,6 +90,7 @@ class Description(NamedTuple):
     law: str = ""
     source: str = ""
     account: str = "none"
+    bounds_joint: bool = False
 
 
 CAVEATS = {
@@ -133,6 +136,11 @@ def effects() -> tuple[Description, ...]:
 def parts() -> tuple[Description, ...]:
     """Return the kinds of what parameters of effects hold that have parameters of their own."""
     return tuple(map(_description, _core.part_descriptors()))
+
+
+def account_of(kind: str) -> str:
+    """Return where the ledger books the work of a kind of effects."""
+    return next(described.account for described in effects() if described.kind == kind)
 
 
 def _description(told: dict[str, Any]) -> Description:

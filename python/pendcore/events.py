@@ -295,6 +295,8 @@ def event_of(kind: str, values: Mapping[str, Any]) -> Event:
 
 def events_asked_for(events: Iterable[Event]) -> tuple[Event, ...]:
     """Return what was given to look for, or say what is none."""
+    if type(events) is tuple and not events:
+        return ()
     remedy = "must be a list of pendcore.events"
     if isinstance(events, Event):
         raise TypeError(f"events = {events!r}: {remedy}: put it in brackets")

@@ -26,13 +26,16 @@ class ProgressBar:
     _since: float | None = None
     _bar: tqdm[Any] | None = None
 
+    def __init__(self, what: str = "simulating") -> None:
+        self.what = what
+
     def __call__(self, fraction: float) -> None:
         if self._since is None:
             self._since = monotonic() if self.wanted() else inf
         if monotonic() - self._since < self.patience:
             return
         if self._bar is None:
-            self._bar = _new_bar()
+            self._bar = _new_bar(self.what)
         self._bar.update(100 * fraction - self._bar.n)
 
     def wanted(self) -> bool:
@@ -55,19 +58,19 @@ class ImmediateBar(ProgressBar):
         return True
 
 
-def _new_bar() -> tqdm[Any]:
+def _new_bar(what: str) -> tqdm[Any]:
     from tqdm import tqdm  # slow to import: a short run does not owe that
 
     layout = "{desc} {percentage:3.0f} % |{bar}| {elapsed}, {remaining} to go"
-    return tqdm(total=100, desc="simulating", bar_format=layout, file=sys.stderr)
+    return tqdm(total=100, desc=what, bar_format=layout, file=sys.stderr)
 
 
-def callback(progress: Progress) -> Callable[[float], object] | None:
-    """Return what the core is to call, or None."""
+def callback(progress: Progress, what: str = "simulating") -> Callable[[float], object] | None:
+    """Return what the core is to call, or None; a bar says what is done."""
     if progress is None:
-        return ProgressBar()
+        return ProgressBar(what)
     if progress is True:
-        return ImmediateBar()
+        return ImmediateBar(what)
     if progress is False:
         return None
     if not callable(progress):
@@ -75,3 +78,9 @@ def callback(progress: Progress) -> Callable[[float], object] | None:
             f"progress = {progress!r}: must be None, True, False, or a function of a fraction"
         )
     return progress
+
+
+def close(report: Callable[[float], object] | None) -> None:
+    """End the bar, where what was called is one of ours."""
+    if isinstance(report, ProgressBar):
+        report.close()

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import cache
+from inspect import signature
 from math import inf
 
+import numpy as np
 import numpy.typing as npt
 
 from pendcore import _core
-from pendcore.arguments import known_keywords
+from pendcore.accuracy.asked_error import run_to_error
+from pendcore.accuracy.run import Start
+from pendcore.arguments import known_keywords, number, two_times
 from pendcore.events import Event, events_asked_for
 from pendcore.progress import Progress, callback
 from pendcore.scene import Scene
@@ -23,7 +28,7 @@ def simulate(
     qd0: npt.ArrayLike = 0.0,
     t_span: Iterable[float] | None = None,
     *,
-    method: str = "dopri5",
+    method: str = "auto",
     rtol: npt.ArrayLike = 1e-9,
     atol: npt.ArrayLike = 1e-12,
     t_eval: npt.ArrayLike | None = None,
@@ -36,6 +41,7 @@ def simulate(
     events: Iterable[Event] = (),
     ledger: bool = False,
     compensated: bool = False,
+    error: float | None = None,
     progress: Progress = None,
 ) -> Solution:
     """Solve the equations of motion of a scene from a start.
@@ -52,13 +58,23 @@ def simulate(
         Start and end, s. The end may lie before the start: the run then goes
         backward (refused with dry friction or inelastic stops, whose past is not unique).
     method : str
+        ``"auto"``: chosen by scene and tolerances; ``sol.method`` tells what it came to be.
+        In fixed steps ``"dopri5"``. Else ``"taylor-radau5"`` for two links or more whose effects
+        have Taylor series; else ``"dop853-radau5"``, or where ``max(rtol, atol)`` is 1e-6 or more
+        in all components ``"dopri5-radau5"``. Each of these pairs is its first method, to the last
+        bit, and ``"radau5"`` from where stability is found to limit the steps and that one takes
+        ten times longer ones.
         ``"dopri5"`` (also ``"RK45"``, ``"ode45"``): Dormand-Prince 5(4) with dense output.
+        ``"dop853"`` (also ``"DOP853"``): Dormand-Prince 8(5,3) with dense output of order 7, for
+        tight tolerances. ``"taylor"``: Taylor series of an order that the tolerances choose, the
+        quickest from some 1e-6 down and right to the rounding limit; refuses scenes with rod drag,
+        Stribeck friction or functions of your own. ``"rk4"``: the classical method of order 4, in
+        fixed steps of ``step``.
         ``"radau5"`` (also ``"Radau"``): Radau IIA of order 5, implicit, for stiff scenes: strong
-        damping, hard springs, stiff controllers. ``"auto"``: ``"dopri5"``, and ``"radau5"`` from
-        where the steps are found to be limited by stability.
+        damping, hard springs, stiff controllers.
     rtol, atol : float or (2n,)
         The error of a step is kept below ``atol + rtol abs(y)``, in root mean square over
-        ``y = (q, qd)``.
+        ``y = (q, qd)``. A Taylor series estimates none: its last coefficients choose the step.
     t_eval : array_like, (k,), optional
         Times of the result, s, one or more, within the run and in its order. They do not change
         the steps. Those that a run does not reach are not in the result.
@@ -66,7 +82,7 @@ def simulate(
         What is kept: every step with its interpolant, every step, ``t_eval`` alone, the end alone;
         the last two in constant memory. Default: ``"times"`` with a ``t_eval``, else ``"dense"``.
     first_step : float, optional
-        s, > 0. Default: chosen from the start (Hairer's rule).
+        s, > 0. Default: chosen from the start by Hairer's rule, or by the first Taylor series.
     max_step : float
         s, > 0.
     step : float, optional
@@ -86,6 +102,12 @@ def simulate(
         For long runs at small steps: what the rounding of the state leaves over at each step is
         carried on to the next, not lost (compensated summation). ``docs/long_runs.md`` says when it
         pays.
+    error : float, optional
+        The largest error of the positions to keep, as a share of the total length, in place of
+        ``method``, ``rtol``, ``atol`` and ``step``: they are chosen, and the run is verified by an
+        independent one. ``sol.accuracy`` tells what was reached and what it took. The error is the
+        distance of a joint or the tip from where it ought to be, the largest over the times that
+        are kept, or 101 of a dense run. ``docs/accuracy_cost.md`` has more.
     progress : None, bool or callable
         None: a bar after a second, on a terminal. A callable gets the fraction done, in 0...1.
 
@@ -100,8 +122,12 @@ def simulate(
     ------
     ValueError, TypeError
         If an argument is not what is asked for; the message names it.
+    AccuracyError
+        If ``error`` is less than double precision can keep on this scene, or could not be verified.
+        Its attribute ``solution`` has the most accurate run.
     KeyboardInterrupt, or any exception of ``progress`` or of an effect's or event's function
-        With the run so far as the attribute ``solution``.
+        With the run so far as the attribute ``solution``; of an ``error`` the best run so far, and
+        its ``accuracy`` says that it is not verified.
 
     Warns
     -----
@@ -110,20 +136,26 @@ def simulate(
 
     Notes
     -----
-    The step control is that of Hairer, Norsett and Wanner, *Solving Ordinary Differential Equations
-    I*, II.4. The same arguments give the same bits on every x86-64 machine, whatever is stored.
+    The step control of Runge-Kutta methods is that of Hairer, Norsett and Wanner, *Solving Ordinary
+    Differential Equations I*, II.4; a Taylor series sets its steps by its coefficients. The same
+    arguments give the same bits on every x86-64 machine, whatever is stored.
     """
     if not isinstance(scene, Scene):
         raise _no_scene(scene)
     if q0 is None:
         raise TypeError("q0 is missing: give the angles at the start, one per link, in rad")
-    if t_span is None:
-        raise TypeError("t_span is missing: give (t_start, t_end), in s")
-    try:
-        t_start, t_end = t_span
-    except (TypeError, ValueError):
-        raise TypeError(f"t_span = {t_span!r}: must be (t_start, t_end), in s") from None
+    t_start, t_end = two_times(t_span)
     wanted = [event._as_pair() for event in events_asked_for(events)]
+    if error is not None:
+        _check_error(error, method=method, rtol=rtol, atol=atol, step=step)
+        return run_to_error(
+            Start(scene, q0, qd0, t_start, t_end), float(error),
+            {
+                "t_eval": t_eval, "store": store, "first_step": first_step, "max_step": max_step,
+                "max_steps": max_steps, "time_limit": time_limit, "wanted": wanted,
+                "ledger": ledger, "compensated": compensated, "progress": progress,
+            },
+        )  # fmt: skip
     report = callback(progress)
     run = _core.simulate(
         scene._compiled, q0, qd0, t_start, t_end, method, rtol, atol, t_eval, store,
@@ -131,6 +163,21 @@ def simulate(
         warn,
     )  # fmt: skip
     return solution_of(scene, run, report)
+
+
+def _check_error(error: float, **chosen: object) -> None:
+    if not 0 < number("error", error, "") < 1:
+        raise ValueError(f"error = {error!r}: must be > 0 and < 1, a share of the total length")
+    for name, value in chosen.items():
+        if not np.array_equal(value, _default(name)):  # type: ignore[arg-type]
+            raise ValueError(
+                f"{name} = {value!r}: is chosen for the error: leave one of the two out"
+            )
+
+
+@cache
+def _default(name: str) -> object:
+    return signature(simulate).parameters[name].default
 
 
 def _no_scene(value: object) -> TypeError:

@@ -8,64 +8,29 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from pendcore import _core
-from pendcore.arguments import Floats, finite_array
+from pendcore.arguments import Floats, finite_array, time_limit_of
+from pendcore.defect import Defect, defect
 from pendcore.energy import Energy, Ledger
 from pendcore.events import Event, Found, event_of, found_events
-from pendcore.progress import Progress, ProgressBar, callback
+from pendcore.progress import Progress, callback, close
 from pendcore.scene import Scene
+from pendcore.statistics import Statistics
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
     from matplotlib.lines import Line2D
 
+    from pendcore.accuracy.report import Accuracy
     from pendcore.case import Case
-
-
-class Statistics(NamedTuple):
-    """What a run took.
-
-    Attributes
-    ----------
-    nfev : int
-        Right-hand sides.
-    njev : int
-        Jacobians.
-    nlu : int
-        Factorisations.
-    accepted : int
-        Steps that were kept.
-    rejected : int
-        Steps that were tried again, shorter.
-    limited_by_tolerance : int
-        Accepted steps of the size that accuracy allowed.
-    limited_by_max_step : int
-        Accepted steps of the size of ``max_step``, or of a fixed step.
-    limited_by_break : int
-        Accepted steps that the end of the run cut short, or a point where a law changes.
-    min_step, max_step : float
-        Sizes of the accepted steps, those cut short aside, s.
-    stiff : bool
-        Whether stability rather than accuracy limited the steps.
-    """
-
-    nfev: int
-    njev: int
-    nlu: int
-    accepted: int
-    rejected: int
-    limited_by_tolerance: int
-    limited_by_max_step: int
-    limited_by_break: int
-    min_step: float
-    max_step: float
-    stiff: bool
+    from pendcore.horizon.error_estimate import ErrorEstimate
+    from pendcore.horizon.lyapunov import LyapunovExponents
 
 
 class Solution:
@@ -81,13 +46,17 @@ class Solution:
         For people; of the case, if there was one. It may be set.
     """
 
-    __slots__ = ("_events", "_run", "name", "scene")
+    __slots__ = ("_accuracy", "_error", "_events", "_run", "name", "scene")
 
-    def __init__(self, scene: Scene, run: _core.Run, name: str = "") -> None:
+    def __init__(
+        self, scene: Scene, run: _core.Run, name: str = "", accuracy: Accuracy | None = None
+    ) -> None:
         self.scene = scene
         self.name = name
         self._run = run
         self._events: list[list[Found]] | None = None
+        self._error: ErrorEstimate | None = None
+        self._accuracy = accuracy
 
     @property
     def t(self) -> Floats:
@@ -164,6 +133,15 @@ class Solution:
         return Statistics(**self._run.statistics)
 
     @property
+    def accuracy(self) -> Accuracy | None:
+        """What ``simulate(error=...)`` asked for, reached and paid; else None.
+
+        Its ``asked`` and ``achieved`` are shares of the total length, ``paid`` are the runs. It is
+        of this run: one that was resumed, or run again from its `case`, has none.
+        """
+        return self._accuracy
+
+    @property
     def events(self) -> list[list[Found]]:
         """What was found of each event asked for, along the run: ``.t``, ``.q``, ``.qd``, ``.y``.
 
@@ -215,6 +193,94 @@ class Solution:
             gain = total - sum(start)
             return Energy(kinetic, potential, total, Ledger(self._run.ledger, gain))
 
+    def defect(self, *, progress: Progress = None) -> Defect:
+        """Return the spurious torques: what motors would have to add to make the curve exact.
+
+        The rates of ``sol(t)``, and the angles that their integral gives, obey the equations of
+        motion of the scene with these torques at the joints. A number to hold against what a model
+        leaves out: bearing friction, air, a motor's ripple. It tells nothing of how far a chaotic
+        motion has moved away from the one that was meant.
+
+        Parameters
+        ----------
+        progress : None, bool or callable
+            As in `simulate`.
+
+        Returns
+        -------
+        Defect
+            ``largest`` (N m), ``share`` (of m g L), and the torques at each joint in each step.
+
+        Raises
+        ------
+        ValueError
+            If the run did not store its interpolants: ``store="dense"``.
+        """
+        return defect(self.scene, self._run, progress)
+
+    def error(self, *, time_limit: float | None = None, progress: Progress = None) -> ErrorEstimate:
+        """Estimate the error over time from two independent second runs, made when first asked for.
+
+        They are of another method, at tolerances a hundredth and a thousandth of this run's, and
+        go on until they have nothing to do with it any more. Of a default run that has changed over
+        to ``"radau5"`` both are ``"radau5"``, which made most of it: only their tolerances and
+        starts are others. Run it with another method where that is too little.
+
+        Parameters
+        ----------
+        time_limit : float, optional
+            s of the clock, > 0, after which the estimate ends where it is.
+        progress
+            As in `simulate`.
+
+        Returns
+        -------
+        pendcore.horizon.error_estimate.ErrorEstimate
+            ``.t`` (n_t,), s, ``.angle`` (n_t,), rad, ``.position`` (n_t,), a share of the total
+            length.
+
+        Raises
+        ------
+        KeyboardInterrupt, or any exception of ``progress`` or of an effect's function
+            With what was found so far as the attribute ``estimate``, if there was anything.
+        """
+        from pendcore.horizon.error_estimate import error_estimate
+
+        time_limit_of(time_limit)  # also where it is known already
+        if self._error is None:
+            found = error_estimate(self, time_limit=time_limit, progress=progress)
+            if not found.is_complete:
+                return found  # another time there may be more time
+            self._error = found
+        return self._error
+
+    def valid_until(self, limit: float = 0.1, *, of: str = "angle") -> float:
+        """Return how far to trust the run: the time at which its `error` passes a limit, s.
+
+        On the safe side; the end of the run where it does not. See `ErrorEstimate.valid_until`.
+
+        Parameters
+        ----------
+        limit : float
+            rad; with ``of="position"`` a share of the total length.
+        of : {"angle", "position"}
+            Of the links, or of joints and tip.
+        """
+        return self.error().valid_until(limit, of=of)
+
+    def lyapunov(
+        self,
+        *,
+        count: int | None = None,
+        transient: float = 0.0,
+        t_eval: npt.ArrayLike | None = None,
+        progress: Progress = None,
+    ) -> LyapunovExponents:
+        """Compute the Lyapunov exponents of this very run, 1/s; see `pendcore.lyapunov`."""
+        from pendcore.horizon.lyapunov import lyapunov_of
+
+        return lyapunov_of(self, count, transient, t_eval, progress)
+
     def resume(
         self,
         t_end: float,
@@ -234,7 +300,10 @@ class Solution:
             More times to keep, s: at or beyond where this run ended, and beyond those it was asked
             for. Only for a run that had a ``t_eval``.
         max_steps, time_limit, progress
-            As in `simulate`, for the continuation.
+            As in `simulate`, for the continuation. It begins before the first attempt that the
+            earlier ``t_end`` cut short, as what came after that depends on it. If such an attempt
+            was rejected, a ``max_steps`` of a few may begin there again and again and never get
+            on: give more of them, or a later ``t_end``.
 
         Returns
         -------
@@ -263,16 +332,22 @@ class Solution:
         save(self, path)
 
     def plot(
-        self, ax: Any = None, *, label: str | None = None, **line_properties: Any
+        self,
+        ax: Any = None,
+        *,
+        label: str | None = None,
+        horizon: float | None = None,
+        **line_properties: Any,
     ) -> list[Line2D]:
         """Draw the angles over time, as in the textbook; see `pendcore.views.plot.plot`.
 
-        ``ax`` is one axes, or one for each link; ``label`` names the solution in the legend; the
-        rest are properties of matplotlib's ``Line2D``. The lines are returned.
+        ``ax`` is one axes, or one for each link; ``label`` names the solution in the legend; what
+        is past `valid_until` (``horizon``), rad, is shaded; the rest are properties of matplotlib's
+        ``Line2D``. The lines are returned.
         """
         from pendcore.views.plot import plot
 
-        return plot(self, ax, label=label, **line_properties)
+        return plot(self, ax, label=label, horizon=horizon, **line_properties)
 
     def to_pandas(self) -> pd.DataFrame:
         """Return a table with a row per time and the columns q_1.., qd_1..; units in ``attrs``."""
@@ -288,10 +363,11 @@ class Solution:
 
     def __reduce__(self) -> tuple[object, ...]:
         # The scene first: it says best that it cannot be pickled, if it cannot.
-        return type(self), (self.scene, self._run, self.name)
+        return type(self), (self.scene, self._run, self.name, self._accuracy)
 
     def __deepcopy__(self, memo: object) -> Solution:
-        return Solution(self.scene, self._run, self.name)  # neither of the two ever changes
+        # None of them ever changes.
+        return Solution(self.scene, self._run, self.name, self._accuracy)
 
     def __repr__(self) -> str:
         from pendcore.views.table import text
@@ -309,8 +385,7 @@ def solution_of(
 ) -> Solution:
     """Wrap a run; if it was broken off by an exception, raise that with the run so far."""
     solution = Solution(scene, run, name)
-    if isinstance(report, ProgressBar):
-        report.close()
+    close(report)
     error = run.error
     if error is not None:
         error.solution = solution  # type: ignore[attr-defined]

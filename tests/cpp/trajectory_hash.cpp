@@ -33,6 +33,25 @@ void print(const char* name, const Solution& solution) {
   std::printf("%s %016" PRIx64 "\n", name, h);
 }
 
+/// What tables beside the first one make of closed forms, and of any number of links.
+void print_explicit_runs() {
+  const Scene chain{.links = std::vector<Link>(7, Link::uniform_rod(0.4, 0.3))};
+  for (const std::string_view method : {"dop853", "rk4"}) {
+    Options options;
+    options.method = method;
+    options.rtol = {1e-11};
+    if (method == "rk4") options.step = 0.01;
+    const auto name = [method](std::string scene) { return (scene += ' ') += method; };
+    print(name("textbook").c_str(),
+          simulate(Scene::textbook(), {-1.4, -1.1}, {0, 0}, 0, 60, options));
+    print(name("chain").c_str(),
+          simulate(chain, std::vector(7, 0.5), std::vector(7, -2.0), 0, 5, options));
+    options.compensated = true;
+    print(name("compensated").c_str(),
+          simulate(Scene::textbook(), {-1.4, -1.1}, {0, 0}, 0, 60, options));
+  }
+}
+
 /// Rods that bounce and rub, one that sticks and is torn loose, and dampers, watched.
 void print_switching_and_stiff_runs() {
   const std::vector<Link> rods(2, Link::uniform_rod(1.0, 0.7));
@@ -51,18 +70,35 @@ void print_switching_and_stiff_runs() {
   options.events = {{.function = events::LinkAngle{.link = 2, .value = 1.5}},
                     {.function = events::TipLine{.point = {0.3, 0.9}, .normal = {1.0, 0.5}}},
                     {.function = events::RateZero{.joint = 1, .link = {}}, .direction = -1}};
-  for (const char* method : {"dopri5", "radau5", "auto"}) {
+  for (const std::string_view method : {"dopri5", "radau5", "dopri5-radau5", "dop853", "rk4"}) {
     options.method = method;
-    const auto name = [method](const char* scene) { return std::string(scene) + ' ' + method; };
+    if (method == "rk4") options.step = 0.01;
+    const auto name = [method](std::string scene) { return (scene += ' ') += method; };
     print(name("bouncing").c_str(), simulate(bouncing, {0.4, 0.8}, {2.0, -3.0}, 0, 4, options));
     print(name("stick").c_str(), simulate(stick, {0.4, 0.8}, {0.0, 0.5}, 0, 8, options));
-    if (options.method == "dopri5") continue;  // which the damper would keep for long
-    print(name("damper").c_str(), simulate(damper, {0.8, 1.0}, {0, 0}, 0, 2, options));
+    if (method == "dopri5") continue;
+    if (method == "radau5" || method == "dopri5-radau5") {  // the damper would keep others for long
+      print(name("damper").c_str(), simulate(damper, {0.8, 1.0}, {0, 0}, 0, 2, options));
+    }
     options.compensated = options.ledger = true;
     print(name("kept bouncing").c_str(),
           simulate(bouncing, {0.4, 0.8}, {2.0, -3.0}, 0, 4, options));
     options.compensated = options.ledger = false;
   }
+}
+
+/// What a run is that names no method: each branch of the rule, and where it turns out to be stiff.
+void print_runs_without_a_method() {
+  const std::vector<Link> rods(2, Link::uniform_rod(1.0, 0.7));
+  print("default textbook", simulate(Scene::textbook(), {-1.4, -1.1}, {0, 0}, 0, 60));
+  const Scene drag{.links = rods,
+                   .effects = {RodDrag{.link = 2, .drag_coefficient = 1.2, .diameter = 0.03}}};
+  print("default drag", simulate(drag, {0.3, 0.9}, {4.0, -9.0}, 0, 4));
+  Options loose;
+  loose.rtol = {1e-4};
+  print("default loose drag", simulate(drag, {0.3, 0.9}, {4.0, -9.0}, 0, 4, loose));
+  const Scene damper{.links = rods, .effects = {ViscousJoint{.joint = 2, .damping = 1e5}}};
+  print("default damper", simulate(damper, {0.8, 1.0}, {0, 0}, 0, 2));
 }
 
 }  // namespace
@@ -71,15 +107,17 @@ int main() {
   const Scene book = Scene::textbook();
   const Scene rod{.links = {Link::uniform_rod(1.3, 0.8)}, .gravity = 9.80665};
   Scene uneven{.links = {Link::uniform_rod(2.5, 0.7), Link::point_mass(0.4, 1.6)}, .gravity = 9.81};
-  Options tight;
+  Options plain;
+  plain.method = "dopri5";
+  Options tight = plain;
   tight.rtol = {1e-12};
-  print("textbook", simulate(book, {0.25 * M_PI, M_PI / 3}, {0, 0}, 0, 60));
+  print("textbook", simulate(book, {0.25 * M_PI, M_PI / 3}, {0, 0}, 0, 60, plain));
   print("chaotic", simulate(book, {-1.4, -1.1}, {0, 0}, 0, 60, tight));
-  print("backward", simulate(uneven, {2.8, -0.4}, {1.5, -2.0}, 0, -20));
-  print("rod", simulate(rod, {-1.2}, {0}, 0, 60));
-  print("far", simulate(book, {3e8, -2e7}, {30, -70}, 0, 5));
-  print("tiny",
-        simulate({.links = book.links, .gravity = 0.0}, {0.3, 0.9}, {3e-160, -1e-160}, 0, 1e159));
+  print("backward", simulate(uneven, {2.8, -0.4}, {1.5, -2.0}, 0, -20, plain));
+  print("rod", simulate(rod, {-1.2}, {0}, 0, 60, plain));
+  print("far", simulate(book, {3e8, -2e7}, {30, -70}, 0, 5, plain));
+  print("tiny", simulate({.links = book.links, .gravity = 0.0}, {0.3, 0.9}, {3e-160, -1e-160}, 0,
+                         1e159, plain));
 
   const Scene busy{
       .links = {Link::uniform_rod(1.0, 1.0), Link::uniform_rod(0.6, 0.7)},
@@ -90,9 +128,10 @@ int main() {
                   DryJointFriction{.joint = 2, .coulomb = 0.01, .static_ = 0.02, .exponent = 1.3},
                   RotorInertia{.joint = 2, .armature = 0.01},
                   DrivenPivot{.y = Sinusoid{0.05, 11.0, 0.0}}}};
-  print("effects", simulate(busy, {0.3, 0.9}, {4.0, -9.0}, 0, 4));
+  print("effects", simulate(busy, {0.3, 0.9}, {4.0, -9.0}, 0, 4, plain));
   Scene chain{.links = std::vector<Link>(7, Link::uniform_rod(0.4, 0.3))};
-  print("chain", simulate(chain, {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7}, std::vector(7, 0.0), 0, 5));
+  print("chain",
+        simulate(chain, {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7}, std::vector(7, 0.0), 0, 5, plain));
   chain.effects = busy.effects;
   tight.ledger = true;
   print("ledger", simulate(chain, {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7},
@@ -102,5 +141,7 @@ int main() {
   print("compensated chain", simulate(chain, {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7},
                                       {4.0, -9.0, 1.0, 2.0, 3.0, 4.0, 5.0}, 0, 2, tight));
   print_switching_and_stiff_runs();
+  print_explicit_runs();
+  print_runs_without_a_method();
   return 0;
 }

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pendcore as pc
+from carried import carried
 from pendcore import _core
 from pendcore.case import RUN_DEFAULTS
 
@@ -31,7 +32,10 @@ class Drawn:
     options: dict[str, Any] = field(default_factory=dict)
 
     def simulate(self, **changes: Any) -> pc.Solution:
-        return pc.simulate(self.scene, self.q0, self.qd0, self.t_span, **(self.options | changes))
+        options = self.options | changes
+        if "method" in options:
+            options["method"] = carried(options["method"], self.scene)
+        return pc.simulate(self.scene, self.q0, self.qd0, self.t_span, **options)
 
     def __repr__(self) -> str:
         keywords = "".join(f"    {name}={value!r},\n" for name, value in self.options.items())

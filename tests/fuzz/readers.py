@@ -81,9 +81,9 @@ def _hard_solutions() -> list[pc.Solution]:
     return [
         solution(bouncing, events=watched, ledger=True),
         solution(bouncing, events=watched, method="radau5"),
-        solution(bouncing, compensated=True, store="steps"),
+        solution(bouncing, method="dopri5", compensated=True, store="steps"),
         solution(damped, method="radau5", compensated=True),
-        solution(damped, method="auto", ledger=True),
+        solution(damped, method="dopri5-radau5", ledger=True),
         pc.simulate(bouncing.replace(effects=[]), [0.3, 1], 0, (0, 9), events=till_the_second),
     ]
 

@@ -11,9 +11,11 @@ from fractions import Fraction
 from functools import cache
 from itertools import combinations_with_replacement
 from math import prod
+from typing import Any
+
+from reference.quadratic_field import Number
 
 Tree = tuple["Tree", ...]
-Row = Sequence[Fraction]
 
 
 @cache
@@ -46,25 +48,45 @@ def density(tree: Tree) -> int:
     return order(tree) * prod(density(branch) for branch in tree)
 
 
-def stage_weights(a: Sequence[Row], tree: Tree) -> list[Fraction]:
-    """Return Phi_i(t) of every stage i of a method with the matrix ``a`` (rows may be short)."""
-    weights = [Fraction(1)] * len(a)
-    for branch in tree:
-        inner = stage_weights(a, branch)
-        for i, row in enumerate(a):
-            weights[i] *= sum((x * y for x, y in zip(row, inner, strict=False)), Fraction(0))
-    return weights
+class StageWeights:
+    """Phi_i(t) of every stage i of a method, for whatever tree is asked for.
+
+    Those of the trees that hang from others are found once.
+
+    Parameters
+    ----------
+    a
+        The matrix of the method; rows may be short. Of any numbers that add and multiply.
+    """
+
+    def __init__(self, a: Sequence[Sequence[Any]]) -> None:
+        self._a = a
+        self._found: dict[Tree, list[Any]] = {(): [Fraction(1)] * len(a)}
+
+    def __call__(self, tree: Tree) -> list[Any]:
+        """Return one number a stage."""
+        if tree not in self._found:
+            *others, branch = tree
+            self._found[tree] = [
+                weight * sum((x * y for x, y in zip(row, self(branch), strict=False) if x and y), 0)
+                for weight, row in zip(self(tuple(others)), self._a, strict=True)
+            ]
+        return self._found[tree]
 
 
-def holds(a: Sequence[Row], b: Row, tree: Tree, theta: Fraction = Fraction(1)) -> bool:
-    """Tell whether the weights ``b`` at ``theta`` of a step satisfy the condition of a tree."""
-    total = sum((x * y for x, y in zip(b, stage_weights(a, tree), strict=True)), Fraction(0))
-    return total == theta ** order(tree) / density(tree)
+def misses(weights: StageWeights, b: Sequence[Any], tree: Tree, theta: Number = 1) -> Any:
+    """Return by how much ``b`` misses the condition of a tree, at ``theta`` of a step.
+
+    Weights that are not given are zero: of stages that the dense output alone asks for.
+    """
+    total = sum((x * y for x, y in zip(b, weights(tree), strict=False) if x), Fraction(0))
+    return total - Fraction(1, density(tree)) * theta ** order(tree)
 
 
-def order_of(a: Sequence[Row], b: Row, at_most: int = 8) -> int:
+def order_of(a: Sequence[Sequence[Any]], b: Sequence[Any], at_most: int = 9) -> int:
     """Return the order of a method, counted up to ``at_most``."""
+    weights = StageWeights(a)
     for p in range(1, at_most + 1):
-        if not all(holds(a, b, tree) for tree in trees(p)):
+        if any(misses(weights, b, tree) for tree in trees(p)):
             return p - 1
     return at_most

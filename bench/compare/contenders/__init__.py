@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 import importlib
-import sys
 
+from contenders.compiled import PROGRAMS, of_program
 from contenders.contender import Contender
 
-MODULES = ("compiled", "pendcore_python", "cyrk", "scipy_rk45")
+MODULES = ("heyoka_taylor", "pendcore_python", "cyrk", "scipy_solvers")
 
 
-def installed() -> list[Contender]:
-    """Find the contenders whose packages or programs are here; stderr says why others are not."""
+def installed() -> tuple[list[Contender], dict[str, str]]:
+    """Find the contenders whose packages or programs are here, and why others are not."""
     found: list[Contender] = []
+    absent: dict[str, str] = {}
+    for program in PROGRAMS:
+        try:
+            found += of_program(program)
+        except (ImportError, OSError) as absence:
+            absent[program] = str(absence)
     for module in MODULES:
         try:
             found += importlib.import_module(f"contenders.{module}").CONTENDERS
         except ImportError as absence:
-            print(f"{module}: left out: {absence}", file=sys.stderr)
-    return found
+            absent[module] = str(absence)
+    return found, absent

@@ -1,15 +1,40 @@
-"""The C++ contenders that solve cases: a program that answers (solves.cpp has the words)."""
+"""The C++ contenders that solve cases: programs that answer (solves.cpp has the words).
+
+pendcore's runs twice where the processor has AVX-512: as it is, and held back to x86-64-v3.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import atexit
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from functools import partial
+from pathlib import Path
 
 import numpy as np
 from cases import Case
 
-from contenders.contender import Contender, Outcome, Run
+from contenders.contender import COMPILED, COMPILED_V3, Contender, Outcome, Run
 from contenders.conversation import Conversation, find_executable, words
+from contenders.pendcore_methods import FIXED, settings_of
+
+PROGRAMS = ("solves_pendcore", "solves_odeint", "solves_sundials")
+OURS = "solves_pendcore"
+
+
+open_conversations: list[Conversation] = []
+
+
+def begin_conversation(path: Path, environment: dict[str, str] | None = None) -> Conversation:
+    open_conversations.append(Conversation(path, environment))
+    return open_conversations[-1]
+
+
+@atexit.register
+def end_conversations() -> None:
+    """End all programs; their contenders answer no more."""
+    while open_conversations:
+        open_conversations.pop().close()
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,33 +42,72 @@ class CompiledRun:
     conversation: Conversation
     number: str
     width: int
+    compile_seconds: float | None = None
 
     def burst(self, seconds: float) -> list[float]:
         answer = self.conversation.ask(f"burst {self.number} {seconds}")
         return [1e-9 * float(nanoseconds) for nanoseconds in answer.split()]
 
     def outcome(self) -> Outcome:
-        evaluations, *states = self.conversation.ask(f"outcome {self.number}").split()
-        return Outcome(np.array(states, dtype=np.float64).reshape(-1, self.width), int(evaluations))
+        answer = self.conversation.ask(f"outcome {self.number}")
+        if answer.startswith("failed "):
+            raise RuntimeError(answer.removeprefix("failed "))
+        evaluations, steps, *states = answer.split()
+        counted = [int(count) if int(count) >= 0 else None for count in (evaluations, steps)]
+        found = np.array(states, dtype=np.float64).reshape(-1, self.width)
+        return Outcome(found, evaluations=counted[0], steps=counted[1])
 
 
-def prepare(conversation: Conversation, name: str, case: Case, tolerance: float) -> Run:
+def prepare(conversation: Conversation, name: str, case: Case, setting: float) -> Run:
     described = " ".join(
         [
             *(str(case.n), words(case.masses), words(case.lengths), repr(case.gravity)),
-            *(words(case.start), str(len(case.times)), words(case.times)),
+            *(words(case.damping), words(case.stiffness), words(case.rest)),
+            *(str(int(case.controller)), words(case.start)),
+            *(str(len(case.times)), words(case.times)),
         ]
     )
-    number = conversation.ask(f"prepare {name} {tolerance!r} {described}")
+    number = conversation.ask(f"prepare {name} {setting!r} {described}")
     return CompiledRun(conversation, number, 2 * case.n)
 
 
-def contenders() -> list[Contender]:
-    conversation = Conversation(find_executable("pendcore_contenders", "PENDCORE_CONTENDERS"))
-    return [
-        Contender(name=name, label=label, about=about, prepare=partial(prepare, conversation, name))
-        for name, label, about in conversation.described()
+def spoken_to(conversation: Conversation) -> Iterator[Contender]:
+    for name, label, about in conversation.described():
+        yield Contender(
+            name=name,
+            label=label,
+            about=about,
+            sides=(COMPILED,),
+            prepare=partial(prepare, conversation, name),
+        )
+
+
+def of_program(program: str) -> list[Contender]:
+    """List the program's contenders; ImportError where it is not built."""
+    path = find_executable(program, program.upper())
+    peers = list(spoken_to(begin_conversation(path)))
+    if program != OURS:
+        return peers
+    own = [as_own(contender) for contender in peers]
+    if not any("x86-64-v4" in contender.about for contender in own):
+        return own
+    narrower = begin_conversation(path, {"PENDCORE_INSTRUCTION_SET": "x86-64-v3"})
+    return own + [
+        replace(
+            as_own(contender),
+            name=f"{contender.name}_v3",
+            label=f"{contender.label} (x86-64-v3)",
+            sides=(COMPILED_V3,),
+        )
+        for contender in spoken_to(narrower)
     ]
 
 
-CONTENDERS = contenders()
+def as_own(contender: Contender) -> Contender:
+    method = contender.name.removeprefix("pendcore_").removesuffix("_cpp")
+    return replace(
+        contender,
+        ours=True,
+        setting="step" if method == FIXED else "tolerance",
+        settings=settings_of(method),
+    )

@@ -1,7 +1,7 @@
-"""What a contender is: it prepares runs of a case at a tolerance, to be timed and looked at.
+"""What a contender is: it prepares runs of a case at a setting, to be timed and looked at.
 
 To add one: a file beside this with a list `CONTENDERS`, and its name in the list of `__init__.py`.
-A C++ contender is a .cpp file and a line in `solves.cpp`; `compiled.py` then finds it.
+A C++ contender is a .cpp file and a line in `compiled.py`.
 """
 
 from __future__ import annotations
@@ -15,38 +15,70 @@ from typing import Generic, Protocol, TypeVar
 from cases import Array, Case
 
 Answer = TypeVar("Answer")
+COMPILED, COMPILED_V3, PYTHON = "compiled", "compiled_v3", "python"
 
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """States (n_t, 2n) at the case's times, and the right-hand sides they took (None: unknown)."""
+    """States (n_t, 2n) at the case's times, and what they took: None where nobody counts.
+
+    `said` is what the contender remarks on a run that it finished.
+    """
 
     states: Array
-    evaluations: int | None
+    evaluations: int | None = None
+    steps: int | None = None
+    said: str = ""
 
 
 class Run(Protocol):
-    """A case at a tolerance, everything built that can be built beforehand."""
+    """A case at a setting, everything built that can be built beforehand.
+
+    `compile_seconds` is what a user waits for it in each process; None where nothing is compiled.
+    """
+
+    @property
+    def compile_seconds(self) -> float | None: ...
 
     def burst(self, seconds: float) -> list[float]:
         """Call for about so long and list each call's seconds; a first of several only warms up."""
 
-    def outcome(self) -> Outcome: ...
+    def outcome(self) -> Outcome:
+        """Solve and look; RuntimeError, with a reason, where there are no states."""
+
+
+def tolerances(finest: int, per_decade: int) -> list[float]:
+    """List tolerances from 1e-1 to 1e-`finest`, the whole decades exact."""
+    finer = [10.0 ** -(part / per_decade) for part in range(per_decade)]
+    whole = [float(f"1e-{decade}") for decade in range(1, finest)]
+    return [decade * share for decade in whole for share in finer] + [float(f"1e-{finest}")]
+
+
+def fixed_steps(longest: float, shortest: float, per_decade: int) -> list[float]:
+    """List steps, in s, for a method that does not choose its own."""
+    steps = [longest]
+    while steps[-1] > shortest:
+        steps.append(longest * 10.0 ** -(len(steps) / per_decade))
+    return steps
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Contender:
     """`about` says version and settings; `prepare` raises Unsupported for a case it cannot carry.
 
-    `compile_seconds` is what a user waits, once a process, before the first solve; None where
-    nothing is compiled then.
+    `sides` are those on which it takes part: its time is that of compiled code, or has a call from
+    Python in it. `settings` are tolerances or steps, from the loosest; `slow` contenders get few.
     """
 
     name: str
     label: str
     about: str
     prepare: Callable[[Case, float], Run]
-    compile_seconds: float | None = None
+    sides: tuple[str, ...] = (PYTHON,)
+    ours: bool = False
+    setting: str = "tolerance"
+    settings: Callable[[int], list[float]] = lambda per_decade: tolerances(13, per_decade)
+    slow: bool = False
 
 
 class Unsupported(Exception):
@@ -65,6 +97,7 @@ class PythonRun(Generic[Answer]):
 
     solve: Callable[[], Answer]
     read: Callable[[Answer], Outcome]
+    compile_seconds: float | None = None
 
     def burst(self, seconds: float) -> list[float]:
         solve, clock, taken = self.solve, time.perf_counter, []

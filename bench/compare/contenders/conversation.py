@@ -8,7 +8,7 @@ from __future__ import annotations
 import os
 import subprocess
 import threading
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -42,11 +42,13 @@ def find_executable(name: str, variable: str) -> Path:
 class Conversation:
     """A request is a line, the answer is a line: `ok ...`, `unsupported ...` or `error ...`."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, environment: Mapping[str, str] | None = None) -> None:
+        """Start the program; `environment` is added to this process's."""
         self.name = path.name
         # In a group of its own: a Ctrl-C is for us. It ends when nobody speaks to it any more.
         self.process = subprocess.Popen(
             [path],
+            env={**os.environ, **(environment or {})},
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,

@@ -1,4 +1,4 @@
-"""CyRK's RK45, by two of its doors.
+"""CyRK, by two of its doors.
 
 pysolve_ivp calls a function that numba compiled and that fills its output. nbsolve2_ivp, newer and
 called experimental, is itself called from compiled code with the address of a compiled function:
@@ -7,6 +7,8 @@ no Python runs during a solve.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import CyRK
@@ -16,39 +18,28 @@ from cases import Array, Case
 from CyRK import PySolver, cyjit, nbsolve2_ivp, pysolve_ivp
 
 from contenders.contender import Contender, Outcome, PythonRun, compiled
-from contenders.equations import fill, require_unit_rods
+from contenders.equations import fill
 
+# Of nine methods those that are best somewhere; the last three are for stiff scenes.
+BY_ADDRESS = ("RK45", "DOP853", "Vern7", "LSODA", "RADAU", "BDF")
+BY_FUNCTION = ("RK45", "DOP853")
 TYPES = numba.void(numba.float64[::1], numba.float64, numba.float64[::1])
-fill_any = numba.njit(fill)
-fill_arrays, pysolve_seconds = compiled(
-    lambda: numba.njit(TYPES)(lambda out, t, y: fill_any(out, y))  # the order that CyRK asks for
-)
-address, address_seconds = compiled(
-    lambda: cyjit(lambda out, t, y, parameters: fill_any(out, y)).address
-)
+known: dict[tuple[str, str], Any] = {}
 
 
-def solve_by_address(
-    t0: float, t_end: float, start: Array, times: Array, tolerance: float
-) -> Array:
-    answer = nbsolve2_ivp(address, (t0, t_end), start, t_eval=times, rtol=tolerance, atol=tolerance)
-    states = np.empty((times.size, start.size))
-    if answer.success:
-        states[:] = answer.y.T
-    else:
-        states[:] = np.nan
-    answer.free()
-    return states
+def once(kind: str, case: Case, build: Callable[[], Any]) -> Any:
+    """Build for the case what does not depend on the tolerance, and count the seconds."""
+    if (kind, case.name) not in known:
+        known[kind, case.name] = compiled(build)
+    return known[kind, case.name]
 
 
-compiled_solve: Any = numba.njit(solve_by_address)
-_, nbsolve_seconds = compiled(
-    lambda: compiled_solve(0.0, 1.0, np.array([1.0, 1.0, 0.0, 0.0]), np.array([0.0, 1.0]), 1e-3)
-)
+def prepare_pysolve(method: str, case: Case, tolerance: float) -> PythonRun[Any]:
+    def build() -> Any:
+        of_case = numba.njit(fill(case, numba.njit))
+        return numba.njit(TYPES)(lambda out, t, y: of_case(out, y))  # the order that CyRK asks for
 
-
-def prepare_pysolve(case: Case, tolerance: float) -> PythonRun[Any]:
-    require_unit_rods(case)
+    filled, seconds = once("arrays", case, build)
     span = (float(case.times[0]), float(case.times[-1]))
     storage = PySolver()
     evaluations = 0
@@ -56,14 +47,14 @@ def prepare_pysolve(case: Case, tolerance: float) -> PythonRun[Any]:
     def counted(out: Array, t: float, y: Array) -> None:
         nonlocal evaluations
         evaluations += 1
-        fill_arrays(out, t, y)
+        filled(out, t, y)
 
-    def solve(rates: Any = fill_arrays, reuse: Any = storage) -> Any:
+    def solve(rates: Any = filled, reuse: Any = storage) -> Any:
         return pysolve_ivp(
             rates,
             span,
             case.start,
-            method="RK45",
+            method=method,
             t_eval=case.times,
             rtol=tolerance,
             atol=tolerance,
@@ -74,37 +65,70 @@ def prepare_pysolve(case: Case, tolerance: float) -> PythonRun[Any]:
     def read(states: Array) -> Outcome:
         nonlocal evaluations
         evaluations = 0
+        found = states.T.copy()
         solve(counted, PySolver())
-        return Outcome(states.T.copy(), evaluations)
+        return Outcome(found, evaluations)
 
-    return PythonRun(solve, read)
+    return PythonRun(solve, read, seconds)
 
 
-def prepare_nbsolve(case: Case, tolerance: float) -> PythonRun[Any]:
-    require_unit_rods(case)
+def solve_by_address(
+    address: int, method: str, t0: float, t_end: float, start: Array, times: Array, tolerance: float
+) -> Array:
+    answer = nbsolve2_ivp(
+        address, (t0, t_end), start, method=method, t_eval=times, rtol=tolerance, atol=tolerance
+    )
+    states = np.empty((times.size, start.size))
+    if answer.success:
+        states[:] = answer.y.T
+    else:
+        states[:] = np.nan
+    answer.free()
+    return states
+
+
+compiled_solve: Any = numba.njit(solve_by_address)
+
+
+def prepare_nbsolve(method: str, case: Case, tolerance: float) -> PythonRun[Any]:
     t0, t_end = float(case.times[0]), float(case.times[-1])
+
+    def build() -> Any:
+        of_case = numba.njit(fill(case, numba.njit))
+        address = cyjit(lambda out, t, y, parameters: of_case(out, y)).address
+        compiled_solve(address, "RK45", 0.0, 1e-3, case.start, np.array([0.0, 1e-3]), 1e-3)
+        return address
+
+    address, seconds = once("address", case, build)
     return PythonRun(
-        solve=lambda: compiled_solve(t0, t_end, case.start, case.times, tolerance),
-        read=lambda states: Outcome(states, None),
+        lambda: compiled_solve(address, method, t0, t_end, case.start, case.times, tolerance),
+        lambda states: Outcome(states),
+        seconds,
     )
 
 
 VERSION, NUMBA = f"CyRK {CyRK.__version__}", f"numba {numba.__version__}"
 CONTENDERS = [
     Contender(
-        name="cyrk_pysolve",
-        label="CyRK pysolve_ivp",
-        about=f"{VERSION} pysolve_ivp, method RK45, right-hand side compiled by {NUMBA} with types "
-        "given and written into the output; storage reused",
-        prepare=prepare_pysolve,
-        compile_seconds=pysolve_seconds,
-    ),
-    Contender(
-        name="cyrk_nbsolve2",
-        label="CyRK nbsolve2_ivp",
-        about=f"{VERSION} nbsolve2_ivp (experimental), method RK45, called from code compiled by "
-        f"{NUMBA} with the address of a compiled right-hand side",
-        prepare=prepare_nbsolve,
-        compile_seconds=address_seconds + nbsolve_seconds,
-    ),
+        name=f"cyrk_{door}_{method.lower()}",
+        label=f"CyRK {door} {method}",
+        about=f"{VERSION} {door}_ivp, method {method}, {how}",
+        prepare=partial(prepare, method),
+    )
+    for door, methods, prepare, how in (
+        (
+            "nbsolve2",
+            BY_ADDRESS,
+            prepare_nbsolve,
+            f"called from code compiled by {NUMBA} with the address of a compiled right-hand side",
+        ),
+        (
+            "pysolve",
+            BY_FUNCTION,
+            prepare_pysolve,
+            f"right-hand side compiled by {NUMBA} with types given and written into the output; "
+            "storage reused",
+        ),
+    )
+    for method in methods
 ]

@@ -1,10 +1,11 @@
-// Boost.odeint's dopri5 with dense output, at its best: the state a std::array of fixed size, the
-// constants of the textbook's case literal (quicker than parameters), a loop of do_step and
-// calc_state (quicker than integrate_times, which takes the last step apart), a first step that
-// suits the tolerance, results written in place, no allocation.
+// Boost.odeint at its best: states of fixed size, a closed form with its constants in place, loops
+// of single steps (quicker than integrate_times, which takes the last step apart), a first step
+// that suits the tolerance, results written in place, no allocation.
 #include <array>
+#include <boost/numeric/odeint/stepper/controlled_runge_kutta.hpp>
 #include <boost/numeric/odeint/stepper/generation.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
+#include <boost/numeric/odeint/stepper/runge_kutta_fehlberg78.hpp>
 #include <boost/version.hpp>
 #include <cmath>
 #include <cstddef>
@@ -12,81 +13,120 @@
 #include <vector>
 
 #include "contender.hpp"
+#include "unit_rods.hpp"
 
 namespace contenders {
 namespace {
 
-using State = std::array<double, 4>;
 namespace ode = boost::numeric::odeint;
 
+template <class Rods>
+using StateOf = std::array<double, Rods::size>;
+
+template <class Rods>
 struct Rates {
-  void operator()(const State& y, State& f, double /*t*/) const {
-    constexpr double g = 9.807;
-    const double d = y[0] - y[1], a12 = 0.5 * std::cos(d), h = 0.5 * std::sin(d);
-    const double r1 = 1.5 * g * std::cos(y[0]) - h * y[3] * y[3];
-    const double r2 = 0.5 * g * std::cos(y[1]) + h * y[2] * y[2];
-    const double determinant = 4.0 / 9 - a12 * a12;
-    f = {y[2], y[3], (r1 / 3 - a12 * r2) / determinant, (4.0 / 3 * r2 - a12 * r1) / determinant};
+  Rods rods;
+  void operator()(const StateOf<Rods>& y, StateOf<Rods>& f, double /*t*/) const {
+    rods(y.data(), f.data());
   }
 };
 
-struct CountedRates : Rates {
+template <class Rods>
+struct CountedRates : Rates<Rods> {
   long long count = 0;
-  void operator()(const State& y, State& f, double t) {
+  void operator()(const StateOf<Rods>& y, StateOf<Rods>& f, double t) {
     ++count;
-    Rates::operator()(y, f, t);
+    Rates<Rods>::operator()(y, f, t);
   }
 };
 
-template <class System>
-void integrate(System& rates, State y, const std::vector<double>& times, double tolerance,
-               State* out) {
-  auto stepper = ode::make_dense_output(tolerance, tolerance, ode::runge_kutta_dopri5<State>());
-  stepper.initialize(y, times.front(), 0.5 * std::pow(tolerance, 0.2));
-  *out++ = y;
-  for (std::size_t k = 1; k < times.size();) {
-    stepper.do_step(std::ref(rates));
-    for (; k < times.size() && times[k] <= stepper.current_time(); ++k)
-      stepper.calc_state(times[k], *out++);
+struct Dopri5 {
+  template <class System, class State>
+  static void integrate(System& rates, State y, const std::vector<double>& times, double tolerance,
+                        State* out) {
+    auto stepper = ode::make_dense_output(tolerance, tolerance, ode::runge_kutta_dopri5<State>());
+    stepper.initialize(y, times.front(), 0.5 * std::pow(tolerance, 0.2));
+    *out++ = y;
+    for (std::size_t k = 1; k < times.size();) {
+      stepper.do_step(std::ref(rates));
+      for (; k < times.size() && times[k] <= stepper.current_time(); ++k)
+        stepper.calc_state(times[k], *out++);
+    }
   }
-}
+};
 
+// It has no dense output: a step that would pass a time ends there, and the one after it is as long
+// as the control wished before.
+struct Fehlberg78 {
+  template <class System, class State>
+  static void integrate(System& rates, State y, const std::vector<double>& times, double tolerance,
+                        State* out) {
+    auto stepper = ode::make_controlled(tolerance, tolerance, ode::runge_kutta_fehlberg78<State>());
+    double now = times.front(), wished = 0.5 * std::pow(tolerance, 0.125);
+    *out++ = y;
+    for (std::size_t k = 1; k < times.size(); ++k) {
+      while (now < times[k]) {
+        const double left = times[k] - now;
+        const bool last = wished >= left * (1 - 1e-12);
+        double step = last ? left : wished;
+        if (stepper.try_step(std::ref(rates), y, now, step) != ode::success)
+          wished = step;
+        else if (!last)
+          wished = step;
+        else {
+          now = times[k];
+          wished = std::max(wished, step);
+        }
+      }
+      *out++ = y;
+    }
+  }
+};
+
+template <class Method, class Rods>
 class OdeintRun : public Run {
  public:
-  OdeintRun(const Case& given, double tolerance)
-      : times_(given.times), tolerance_(tolerance), out_(given.times.size()) {
-    const std::vector<double> unit{1.0, 1.0};
-    if (given.masses != unit || given.lengths != unit || given.gravity != 9.807)
-      throw Unsupported("its right-hand side is written for two rods of 1 kg and 1 m");
-    for (std::size_t i = 0; i < 4; ++i) start_[i] = given.start[i];
+  OdeintRun(const Rods& rods, const Case& given, double tolerance)
+      : rates_{rods}, times_(given.times), tolerance_(tolerance), out_(given.times.size()) {
+    std::copy_n(given.start.begin(), Rods::size, start_.begin());
   }
-  void solve() override {
-    Rates rates;
-    integrate(rates, start_, times_, tolerance_, out_.data());
+  void solve() override { Method::integrate(rates_, start_, times_, tolerance_, out_.data()); }
+  std::span<const double> states() const override {
+    return {out_.front().data(), Rods::size * out_.size()};
   }
-  std::span<const double> states() const override { return {out_.front().data(), 4 * out_.size()}; }
-  long long evaluations() override {
-    CountedRates rates;
-    integrate(rates, start_, times_, tolerance_, out_.data());
-    return rates.count;
+  Counts counts() override {
+    CountedRates<Rods> rates{rates_};
+    Method::integrate(rates, start_, times_, tolerance_, out_.data());
+    return {.evaluations = rates.count};
   }
 
  private:
-  State start_{};
+  Rates<Rods> rates_;
+  StateOf<Rods> start_{};
   std::vector<double> times_;
   double tolerance_;
-  std::vector<State> out_;
+  std::vector<StateOf<Rods>> out_;
 };
+
+template <class Method>
+Contender odeint(const std::string& name, const std::string& method, const std::string& output) {
+  return {"odeint_" + name, "Boost.odeint " + method + ", C++",
+          "Boost.odeint " BOOST_LIB_VERSION ", " + output + ", " CONTENDER_BUILD,
+          [](const Case& given, double tolerance) {
+            return with_rods(given, [&](const auto& rods) -> std::unique_ptr<Run> {
+              return std::make_unique<OdeintRun<Method, std::decay_t<decltype(rods)>>>(rods, given,
+                                                                                       tolerance);
+            });
+          }};
+}
 
 }  // namespace
 
-Contender odeint() {
-  return {"odeint", "Boost.odeint dopri5, C++",
-          "Boost.odeint " BOOST_LIB_VERSION
-          ", runge_kutta_dopri5 with dense output, " CONTENDER_BUILD,
-          [](const Case& given, double tolerance) {
-            return std::make_unique<OdeintRun>(given, tolerance);
-          }};
+std::vector<Contender> contenders() {
+  return {odeint<Dopri5>("dopri5", "dopri5", "runge_kutta_dopri5 with dense output"),
+          odeint<Fehlberg78>("rkf78", "RKF78",
+                             "runge_kutta_fehlberg78, which has no dense output: steps end at the "
+                             "times asked for")};
 }
 
 }  // namespace contenders

@@ -1,6 +1,7 @@
 // pendcore's own core as a C++ user calls it: pendcore::simulate, states at the given times, result
 // object included.
 #include <cstddef>
+#include <pendcore/integrate/methods.hpp>
 #include <pendcore/pendcore.hpp>
 #include <utility>
 #include <vector>
@@ -10,21 +11,41 @@
 namespace contenders {
 namespace {
 
+pendcore::Scene scene_of(const Case& given) {
+  pendcore::Scene scene;
+  scene.gravity = given.gravity;
+  for (std::size_t i = 0; i < given.masses.size(); ++i) {
+    scene.links.push_back(pendcore::Link::uniform_rod(given.masses[i], given.lengths[i]));
+    const int joint = static_cast<int>(i) + 1;
+    const double k = given.stiffness[i], b = given.damping[i], rest = given.rest[i];
+    if (given.controller && (k != 0 || b != 0)) {
+      const pendcore::PD pd{.kp = k, .kd = b, .reference = rest};
+      scene.effects.emplace_back(pendcore::Motor{.joint = joint, .pd = pd});
+      continue;
+    }
+    if (k != 0)
+      scene.effects.emplace_back(
+          pendcore::TorsionalSpring{.joint = joint, .stiffness = k, .rest_angle = rest});
+    if (b != 0) scene.effects.emplace_back(pendcore::ViscousJoint{.joint = joint, .damping = b});
+  }
+  return scene;
+}
+
 class CoreRun : public Run {
  public:
-  CoreRun(const Case& given, double tolerance)
-      : t0_(given.times.front()), t_end_(given.times.back()) {
-    const std::size_t n = given.masses.size();
-    for (std::size_t i = 0; i < n; ++i)
-      scene_.links.push_back(pendcore::Link::uniform_rod(given.masses[i], given.lengths[i]));
-    scene_.gravity = given.gravity;
-    const auto middle = given.start.begin() + static_cast<std::ptrdiff_t>(n);
+  CoreRun(const Case& given, const char* method, double setting)
+      : scene_(scene_of(given)), t0_(given.times.front()), t_end_(given.times.back()) {
+    const auto middle = given.start.begin() + static_cast<std::ptrdiff_t>(given.masses.size());
     q0_.assign(given.start.begin(), middle);
     qd0_.assign(middle, given.start.end());
-    options_.method = "dopri5";
-    options_.rtol = options_.atol = {tolerance};
+    options_.method = method;
+    if (options_.method == "rk4")
+      options_.step = setting;
+    else
+      options_.rtol = options_.atol = {setting};
     options_.t_eval = given.times;
     options_.store = pendcore::Store::times;
+    options_.max_steps = 2'000'000;
   }
   void solve() override {
     solution_ = pendcore::simulate(scene_, q0_, qd0_, t0_, t_end_, options_);
@@ -33,7 +54,11 @@ class CoreRun : public Run {
     if (solution_.status != pendcore::Status::finished) return {};
     return solution_.states;
   }
-  long long evaluations() override { return solution_.statistics.nfev; }
+  Counts counts() override {
+    const auto& counted = solution_.statistics;
+    return {.evaluations = counted.nfev, .steps = counted.accepted + counted.rejected};
+  }
+  std::string failure() const override { return solution_.message; }
 
  private:
   pendcore::Scene scene_;
@@ -43,14 +68,22 @@ class CoreRun : public Run {
   pendcore::Solution solution_;
 };
 
+Contender core(const std::string& method) {
+  return {"pendcore_" + method + "_cpp", "pendcore " + method + ", C++",
+          "pendcore::simulate, method " + method + ", " + name(pendcore::instruction_set()) +
+              ", " CONTENDER_BUILD,
+          [method](const Case& given, double setting) {
+            return std::make_unique<CoreRun>(given, method.c_str(), setting);
+          }};
+}
+
 }  // namespace
 
-Contender pendcore_core() {
-  return {"pendcore_cpp", "pendcore dopri5, C++",
-          "pendcore::simulate, method dopri5, " CONTENDER_BUILD,
-          [](const Case& given, double tolerance) {
-            return std::make_unique<CoreRun>(given, tolerance);
-          }};
+std::vector<Contender> contenders() {
+  std::vector<Contender> all;
+  for (const pendcore::MethodInfo* known : pendcore::Methods::infos)
+    all.push_back(core(std::string(known->name)));
+  return all;
 }
 
 }  // namespace contenders

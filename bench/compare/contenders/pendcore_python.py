@@ -2,35 +2,71 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import pendcore as pc
 from cases import Case
+from pendcore import _core
 
 from contenders.contender import Contender, Outcome, PythonRun
+from contenders.pendcore_methods import FIXED, settings_of
 
 
-def prepare(case: Case, tolerance: float) -> PythonRun[pc.Solution]:
-    links = [
-        pc.Link(mass=m, length=length) for m, length in zip(case.masses, case.lengths, strict=True)
-    ]
-    scene = pc.Scene(links=links, gravity=case.gravity)
-    q0, qd0 = case.start[: case.n].copy(), case.start[case.n :].copy()
-    span = (float(case.times[0]), float(case.times[-1]))
+def scene_of(case: Case) -> pc.Scene:
+    effects: list[Any] = []
+    for j, (k, b, rest) in enumerate(zip(case.stiffness, case.damping, case.rest, strict=True), 1):
+        if case.controller and (k or b):
+            pd = pc.effects.PD(kp=k, kd=b, reference=rest)
+            effects.append(pc.effects.Motor(joint=j, pd=pd))
+            continue
+        if k:
+            effects.append(pc.effects.TorsionalSpring(joint=j, stiffness=k, rest_angle=rest))
+        if b:
+            effects.append(pc.effects.ViscousJoint(joint=j, damping=b))
+    rods = zip(case.masses, case.lengths, strict=True)
+    links = [pc.Link(mass=mass, length=length) for mass, length in rods]
+    return pc.Scene(links=links, gravity=case.gravity, effects=effects)
 
-    def solve() -> pc.Solution:
-        solution = pc.simulate(
-            scene, q0, qd0, span, method="dopri5", rtol=tolerance, atol=tolerance, t_eval=case.times
-        )
-        solution.y  # noqa: B018  the states in hand, as every contender's call ends
-        return solution
 
-    return PythonRun(solve, read=lambda solution: Outcome(solution.y.T, solution.stats.nfev))
+def preparing(method: str) -> Callable[[Case, float], PythonRun[pc.Solution]]:
+    def prepare(case: Case, setting: float) -> PythonRun[pc.Solution]:
+        scene = scene_of(case)
+        q0, qd0 = case.start[: case.n].copy(), case.start[case.n :].copy()
+        span = (float(case.times[0]), float(case.times[-1]))
+        how: dict[str, Any] = {"step": setting}
+        if method != FIXED:
+            how = {"rtol": setting, "atol": setting}
+
+        def solve() -> pc.Solution:
+            solution = pc.simulate(
+                scene, q0, qd0, span, method=method, t_eval=case.times, max_steps=2_000_000, **how
+            )
+            solution.y  # noqa: B018  the states in hand, as every contender's call ends
+            return solution
+
+        return PythonRun(solve, read)
+
+    return prepare
+
+
+def read(solution: pc.Solution) -> Outcome:
+    stats = solution.stats
+    if not solution.success:
+        raise RuntimeError(solution.message)
+    said = solution.message if stats.stiff else ""
+    return Outcome(solution.y.T, stats.nfev, stats.accepted + stats.rejected, said)
 
 
 CONTENDERS = [
     Contender(
-        name="pendcore_python",
-        label="pendcore dopri5, Python",
-        about=f"pendcore {pc.__version__} simulate, method dopri5",
-        prepare=prepare,
+        name=f"pendcore_{method}",
+        label=f"pendcore {method}, Python",
+        about=f"pendcore {pc.__version__} simulate, method {method}",
+        prepare=preparing(method),
+        ours=True,
+        setting="step" if method == FIXED else "tolerance",
+        settings=settings_of(method),
     )
+    for method in (known["name"] for known in _core.methods())
 ]

@@ -1,9 +1,10 @@
-// The program of the C++ contenders that solve cases; compiled.py speaks to it:
+// A program of C++ contenders that solve cases; compiled.py speaks to it:
 //
 //   names                    the contenders
 //   about NAME               label: version and settings
-//   prepare NAME TOLERANCE n masses lengths gravity start n_t times      the number of the run
-//   outcome RUN              right-hand sides, then the states
+//   prepare NAME SETTING n masses lengths gravity damping stiffness rest controller start n_t times
+//                            the number of the run
+//   outcome RUN              right-hand sides, steps, then the states; or failed and why
 //   burst RUN SECONDS        nanoseconds of each call; a first of several only warms up
 #include <chrono>
 #include <cstddef>
@@ -17,10 +18,7 @@ namespace {
 using namespace contenders;
 
 const std::vector<Contender>& list() {
-  static const std::vector<Contender> all{
-      pendcore_core(),
-      odeint(),
-  };
+  static const std::vector<Contender> all = contenders::contenders();
   return all;
 }
 
@@ -30,6 +28,10 @@ Case read_case(std::istream& in) {
   given.masses = read_numbers(in, n);
   given.lengths = read_numbers(in, n);
   given.gravity = read_number(in);
+  given.damping = read_numbers(in, n);
+  given.stiffness = read_numbers(in, n);
+  given.rest = read_numbers(in, n);
+  given.controller = read_number(in) != 0;
   given.start = read_numbers(in, 2 * n);
   given.times = read_numbers(in, read_count(in));
   return given;
@@ -37,9 +39,11 @@ Case read_case(std::istream& in) {
 
 std::string outcome(Run& run) {
   run.solve();
-  const std::string evaluations = std::to_string(run.evaluations());
   const auto states = run.states();
-  return evaluations + words({states.begin(), states.end()});
+  if (states.empty()) return "failed " + run.failure();
+  const std::string found = words({states.begin(), states.end()});
+  const Counts counted = run.counts();
+  return std::to_string(counted.evaluations) + ' ' + std::to_string(counted.steps) + found;
 }
 
 std::string burst(Run& run, double seconds) {
@@ -69,8 +73,8 @@ std::string answer(std::istream& request, std::vector<std::unique_ptr<Run>>& run
   }
   if (word == "prepare") {
     request >> name;
-    const double tolerance = read_number(request);
-    runs.push_back(find(list(), name).prepare(read_case(request), tolerance));
+    const double setting = read_number(request);
+    runs.push_back(find(list(), name).prepare(read_case(request), setting));
     return std::to_string(runs.size() - 1);
   }
   if (word == "outcome") return outcome(*runs.at(read_count(request)));

@@ -9,7 +9,7 @@ import numpy as np
 
 from hard_cases.case import Contender, HardCase, Outcome
 from hard_cases.odeint import odeint
-from hard_cases.rods import Array, mujoco_rods
+from hard_cases.rods import Array, mujoco_rods, mujoco_steps
 
 G = 9.807
 START = (np.pi / 4, np.pi / 3)
@@ -95,14 +95,7 @@ CASE = HardCase(
             how="DOP853, rtol 3e-14, atol 1e-16",
             run=lambda: scipy("DOP853", rtol=3e-14, atol=1e-16),
         ),
-        *(
-            Contender(
-                program="mujoco",
-                how=f"{integrator}, {1e3 * dt:g} ms",
-                run=lambda dt=dt, integrator=integrator: mujoco(dt, integrator),
-            )
-            for integrator, dt in (("implicitfast", 2e-3), ("RK4", 2e-3), ("RK4", 5e-4))
-        ),
+        *mujoco_steps(mujoco, ("implicitfast", 2e-3), ("RK4", 2e-3), ("RK4", 5e-4)),
         *(
             odeint(
                 f"controlled {name}, rtol {rtol:g}, atol {atol:g}",

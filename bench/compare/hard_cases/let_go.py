@@ -15,7 +15,7 @@ from hybrid_chain import extrapolated_step
 
 from hard_cases.case import Contender, HardCase, Outcome
 from hard_cases.odeint import odeint
-from hard_cases.rods import Array
+from hard_cases.rods import Array, mujoco_steps
 
 G = 9.81
 LINKS = 100
@@ -149,14 +149,7 @@ CASE = HardCase(
             how="a dense matrix, DOP853, rtol 1e-9, atol 1e-12",
             run=lambda: scipy(rtol=1e-9, atol=1e-12),
         ),
-        *(
-            Contender(
-                program="mujoco",
-                how=f"{integrator}, {1e3 * dt:g} ms",
-                run=lambda dt=dt, integrator=integrator: mujoco(dt, integrator),
-            )
-            for integrator, dt in (("RK4", 2e-3), ("implicitfast", 2e-3), ("RK4", 5e-5))
-        ),
+        *mujoco_steps(mujoco, ("RK4", 2e-3), ("implicitfast", 2e-3), ("RK4", 5e-5)),
         odeint(
             "a dense matrix, controlled fehlberg78, rtol 1e-9, atol 1e-12",
             "chain",

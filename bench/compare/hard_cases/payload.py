@@ -18,7 +18,7 @@ from mpmath import mp, mpf, sqrt
 
 from hard_cases.case import Contender, HardCase, Outcome
 from hard_cases.odeint import odeint
-from hard_cases.rods import Array, mujoco_rods
+from hard_cases.rods import Array, mujoco_rods, mujoco_steps
 
 G = 9.807
 RATIO = 1e6
@@ -160,18 +160,8 @@ CASE = HardCase(
             how="DOP853, rtol 1e-12, atol 1e-15",
             run=lambda: scipy("DOP853", rtol=1e-12, atol=1e-15),
         ),
-        *(
-            Contender(
-                program="mujoco",
-                how=f"{integrator}, {1e3 * dt:g} ms",
-                run=lambda dt=dt, integrator=integrator: mujoco(dt, integrator),
-            )
-            for integrator, dt in (
-                ("RK4", 2e-3),
-                ("implicitfast", 2e-3),
-                ("implicitfast", 2e-5),
-                ("RK4", 5e-6),
-            )
+        *mujoco_steps(
+            mujoco, ("RK4", 2e-3), ("implicitfast", 2e-3), ("implicitfast", 2e-5), ("RK4", 5e-6)
         ),
         odeint(
             "controlled fehlberg78, rtol 1e-12, atol 1e-15",

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+
+from hard_cases.case import Contender, Outcome
 
 Array = npt.NDArray[np.float64]
 
@@ -64,6 +67,20 @@ def mujoco_rods(
 
 STIFF_FRICTION = 'solimpfriction="0.9999 0.9999 0.001" solreffriction="{} 1"'
 """MuJoCo's friction at its hardest; to be filled in: its time constant, s."""
+
+
+def mujoco_steps(
+    run: Callable[[float, str], Outcome], *ways: tuple[str, float]
+) -> tuple[Contender, ...]:
+    """Return MuJoCo with each integrator and step, s, that is given: ``run(step, integrator)``."""
+    return tuple(
+        Contender(
+            program="mujoco",
+            how=f"{integrator}, {1e3 * dt:g} ms",
+            run=partial(run, dt, integrator),
+        )
+        for integrator, dt in ways
+    )
 
 
 def driven_mujoco(model: Any, torque: Callable[[float], float], t_end: float) -> Array:

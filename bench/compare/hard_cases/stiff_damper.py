@@ -107,7 +107,7 @@ CASE = HardCase(
         ),
         *(
             Contender(program="pendcore", how=method, run=lambda method=method: pendcore(method))
-            for method in ("radau5", "auto")
+            for method in ("radau5", "dopri5-radau5")
         ),
         *(
             Contender(program="scipy", how=method, run=lambda method=method: scipy(method))

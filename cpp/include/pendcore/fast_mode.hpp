@@ -34,8 +34,9 @@ std::optional<FastMode> fast_mode(const Scene& scene, const EquationsOfMotion& e
 
 /// What a run's message is to say of its steps, "; ..." or nothing: that they were limited by
 /// stability, since when, and what to do; which mode set them, if one did for long; that a run
-/// changed its method; whose derivatives are differences.
+/// changed its method, to the one in force, or did not; whose derivatives are differences.
 std::string remark_on_steps(const Scene& scene, const EquationsOfMotion& equations,
-                            const Position& position, const MethodInfo& method, double t0);
+                            const Position& position, const MethodInfo& method,
+                            const MethodInfo& in_force, double t0);
 
 }  // namespace pendcore

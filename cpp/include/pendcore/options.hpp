@@ -28,9 +28,12 @@ constexpr std::string_view store_name(Store store) {
   return store_names[static_cast<std::size_t>(store)];
 }
 
+/// Of a run that names no method: method_choice.hpp has the rule.
+inline constexpr std::string_view automatic = "auto";
+
 /// Kept with the solution, so that it can be resumed.
 struct Options {
-  std::string method = "dopri5";
+  std::string method{automatic};
   std::vector<double> rtol = {1e-9};   ///< 1 number, or one for each of the 2n components
   std::vector<double> atol = {1e-12};  ///< likewise; rad and rad/s
   Store store = Store::dense;

@@ -17,8 +17,7 @@ class Recorder final : public Observer {
            const std::vector<long long>& passed_events);
 
   void start(double t, const std::vector<double>& y);
-  double step_accepted(const Stepper& stepper, const TwoDouble& t_old, double h,
-                       double t_new) override;
+  double step_accepted(Stepper& stepper, const TwoDouble& t_old, double h, double t_new) override;
   void state_jumped(double t, const double* before, const double* after) override;
   void state_settled(double t, const double* after) override;
   void restarts_here() override { count(kept()); }
@@ -36,10 +35,9 @@ class Recorder final : public Observer {
   };
   Kept kept() const;
   void count(const Kept& kept);  ///< so much an unstopped run has as well
-  void sample_step(const Stepper& stepper, const TwoDouble& t_old, double h, double t_new,
+  void sample_step(Stepper& stepper, const TwoDouble& t_old, double h, double t_new,
                    bool with_end = true);
-  void keep_clipped(const Stepper& stepper, const TwoDouble& t_old, double h, double theta,
-                    double t);
+  void keep_clipped(Stepper& stepper, const TwoDouble& t_old, double h, double theta, double t);
   double* append(double t);  ///< room for the state at t
 
   Solution& solution_;

@@ -16,6 +16,7 @@
 /// The state is y = (q_1 .. q_n, qd_1 .. qd_n), rad and rad/s: 2n numbers.
 #pragma once
 
+#include <optional>
 #include <ranges>
 #include <string>
 #include <vector>
@@ -66,6 +67,9 @@ std::string effect_name(const Scene& scene, std::size_t i);
 
 /// Where the pivot is, and how it moves: the sum of what drives it.
 PivotMotion pivot_motion(const Scene& scene, double t);
+
+/// The number of the first effect that has no Taylor series, from 0 on.
+std::optional<std::size_t> without_series(const Scene& scene);
 
 /// Of each joint: whether a Lock holds it.
 std::vector<bool> locked_joints(const Scene& scene);

@@ -13,10 +13,16 @@ namespace pendcore {
 
 /// The method applied to the equations of motion that the scene calls for, with the ledger's
 /// quadratures beside the state if it is kept, with compensated steps if they are asked for. Throws
-/// std::invalid_argument for an unknown method.
+/// std::invalid_argument for an unknown method. With a pair of methods the scene is to outlive the
+/// stepper.
 std::unique_ptr<Stepper> make_stepper(const Scene& scene, std::string_view method);
 std::unique_ptr<Stepper> make_stepper(const Scene& scene, const EquationsOfMotion& equations,
                                       std::string_view method, bool ledger, bool compensated);
+
+/// The Taylor series of those equations; `rates` is their right-hand side, with that of so many
+/// quadratures. Throws std::invalid_argument for a scene with an effect that has no series.
+std::unique_ptr<Stepper> make_taylor_stepper(const Scene& scene, const EquationsOfMotion& equations,
+                                             Rates rates, int quadratures, bool compensated);
 
 /// Simulates the scene from angles q0 (rad, n) and rates qd0 (rad/s, n) over t0 .. t_end (s), which
 /// may run backward. Throws std::invalid_argument for bad input, naming the argument; a run that

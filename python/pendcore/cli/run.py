@@ -5,15 +5,15 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
+from pendcore.accuracy.report import AccuracyError
 from pendcore.archive import save
 from pendcore.case import Case
-from pendcore.case_file import read_case, with_line
-from pendcore.cli.usage import UsageError, blamed_on_usage, written
+from pendcore.case_file import with_line
+from pendcore.cli.case_and_folder import add_case_and_folder, case_of, folder_of
+from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder, written
 from pendcore.solution import Solution
 from pendcore.views.plot import save_figure
 from pendcore.views.summary import facts, text
@@ -57,9 +57,13 @@ def add_parser(commands: Any) -> None:
         epilog=_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("case", nargs="?", type=Path, metavar="CASE.toml", help="what to simulate")
+    add_case_and_folder(parser)
     parser.add_argument(
-        "-o", "--out", type=Path, metavar="FOLDER", help="default: out/ and the name of the case"
+        "--error",
+        type=float,
+        metavar="E",
+        help="largest position error / total length to keep: method and tolerances are chosen, and "
+        "the run is verified",
     )
     parser.add_argument("--json", action="store_true", help="print the summary as JSON")
     parser.set_defaults(execute=execute)
@@ -68,48 +72,47 @@ def add_parser(commands: Any) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Do it; return the exit status."""
     with blamed_on_usage():
-        case = Case.textbook() if args.case is None else read_case(args.case)
-    folder = args.out or Path("out", args.case.stem if args.case else "textbook")
-    with _ready(folder):
-        solution = _simulated(case, args.case)
+        case = case_of(args)
+        case = case if args.error is None else _with_error(case, args.error)
+    folder = folder_of(args)
+    with new_folder(folder):
+        solution, complaint = _simulated(case, args.case)
     found = facts(solution)
     where = written(folder, [folder / name for name in FILES])
     _write(folder, solution, found)
     print(where, file=sys.stderr)
     if not solution.success:
-        print(f"the run is not complete: {solution.message}", file=sys.stderr)
+        complaint = f"the run is not complete: {solution.message}"
+    if complaint:
+        print(complaint, file=sys.stderr)
     if solution.status in _CAN_GO_ON:
         t_end = found["run"]["t_end"]
         file = str(folder / "solution.npz")
         print(f"to go on, in Python: pc.load({file!r}).resume({t_end!r})", file=sys.stderr)
     print(json.dumps(found, indent=2) if args.json else text(found), end="\n" * args.json)
-    return 0 if solution.success else 1
+    return 1 if complaint else 0
 
 
-@contextmanager
-def _ready(folder: Path) -> Iterator[None]:
-    """Make the folder before a run may take hours, and leave none behind if nothing comes of it."""
-    new = [path for path in (folder, *folder.parents) if not path.exists()]
-    with blamed_on_usage():
-        folder.mkdir(parents=True, exist_ok=True)
+def _simulated(case: Case, file: Path | None) -> tuple[Solution, str]:
+    """Return the run, and what is to be said against it."""
     try:
-        yield
-    except BaseException:
-        with suppress(OSError):
-            for path in new:
-                path.rmdir()
-        raise
-
-
-def _simulated(case: Case, file: Path | None) -> Solution:
-    try:
-        return case.simulate()
+        return case.simulate(), ""
     except (ValueError, TypeError) as error:
         raise UsageError(with_line(file, str(error)) if file else str(error)) from None
-    except KeyboardInterrupt as stop:
+    except (KeyboardInterrupt, AccuracyError) as stop:
         if isinstance(so_far := getattr(stop, "solution", None), Solution):
-            return so_far
+            return so_far, str(stop) or "interrupted"
         raise
+
+
+def _with_error(case: Case, error: float) -> Case:
+    """Return the case with an error asked for, in place of method and tolerances."""
+    chosen = ("method", "rtol", "atol", "step", "error")
+    kept = {key: value for key, value in case.options.items() if key not in chosen}
+    return Case(
+        scene=case.scene, q0=case.q0, qd0=case.qd0, t_span=case.t_span, name=case.name,
+        options=kept | {"error": error},
+    )  # fmt: skip
 
 
 def _write(folder: Path, solution: Solution, found: dict[str, Any]) -> None:

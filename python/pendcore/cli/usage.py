@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 
@@ -26,3 +26,18 @@ def written(to: Path, files: Iterable[Path]) -> str:
     """Return where files are about to be written, and whether earlier ones give way."""
     gone = any(file.exists() for file in files)
     return f"written to {to}" + (", earlier files replaced" if gone else "")
+
+
+@contextmanager
+def new_folder(folder: Path) -> Iterator[None]:
+    """Make the folder before a run may take hours, and leave none behind if nothing comes of it."""
+    new = [path for path in (folder, *folder.parents) if not path.exists()]
+    with blamed_on_usage():
+        folder.mkdir(parents=True, exist_ok=True)
+    try:
+        yield
+    except BaseException:
+        with suppress(OSError):
+            for path in new:
+                path.rmdir()
+        raise

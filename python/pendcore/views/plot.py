@@ -11,6 +11,7 @@ import numpy as np
 
 from pendcore.arguments import Floats
 from pendcore.solution import Solution
+from pendcore.views.horizon import shade_past
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -26,7 +27,12 @@ _LEAST_SPAN = 0.1
 
 
 def plot(
-    solution: Solution, ax: Any = None, *, label: str | None = None, **line_properties: Any
+    solution: Solution,
+    ax: Any = None,
+    *,
+    label: str | None = None,
+    horizon: float | None = None,
+    **line_properties: Any,
 ) -> list[Line2D]:
     """Draw the absolute angles in degrees over time, one axes each.
 
@@ -40,6 +46,9 @@ def plot(
         Where curves are drawn already, the next ones are dashed.
     label : str, optional
         Name of this solution in the legend.
+    horizon : float, optional
+        rad. What lies past the time at which the estimated error passes it is shaded
+        (`Solution.valid_until`: that takes further runs, when it is first asked for).
     **line_properties
         Of matplotlib's ``Line2D``, such as ``color``, ``linestyle`` or ``linewidth``.
 
@@ -83,6 +92,8 @@ def plot(
         _dress(axis)
         if label is not None or len(axes) < n:
             axis.legend()
+    if horizon is not None:
+        shade_past(axes, solution, horizon)
     return lines
 
 

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from pendcore import _core
+from pendcore.accuracy.report import Accuracy
 from pendcore.effect_class import Effect, Part
 from pendcore.explanation.absence import absent
 from pendcore.solution import Solution
@@ -39,6 +40,7 @@ def facts(solution: Solution) -> dict[str, Any]:
         "success": solution.success,
         "end": {"t": run.t_reached, "q": run.y_reached[:n], "qd": run.y_reached[n:]},
         "statistics": solution.stats._asdict(),
+        "accuracy": None if solution.accuracy is None else solution.accuracy.to_dict(),
         "energy": energy_drift.energy_drift(solution)._asdict(),
         "ledger": _ledger(solution),
         "kept": {"times": len(solution.t), "every_step": energy_drift.has_every_step(solution)},
@@ -137,6 +139,8 @@ def _happened(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
     yield "steps", f"{stats['accepted']} accepted, {stats['rejected']} rejected"
     yield "", f"{stats['min_step']:.3g} ... {stats['max_step']:.3g} s long"
     yield "work", f"{stats['nfev']} right-hand sides"
+    if found["accuracy"] is not None:
+        yield "accuracy", str(Accuracy.from_dict(found["accuracy"]))
     yield "energy drift", energy_drift.text(energy)
     for i, (name, value) in enumerate((found["ledger"] or {}).items()):
         yield "" if i else "ledger", f"{name} {value:.6g} J"

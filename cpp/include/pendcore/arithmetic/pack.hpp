@@ -143,5 +143,14 @@ PENDCORE_INLINE double sum_of_lanes(const Real& x) {
   for (int i = 1; i < Lanes<Real>::width; ++i) sum += lane(x, i);
   return sum;
 }
+/// Of a pack of four, halves first: what is waited for is shorter.
+template <class Real>
+PENDCORE_INLINE double sum_by_halves(const Real& x) {
+  if constexpr (Lanes<Real>::width == 4) {
+    return sum_of_lanes(Pack<2>(low_half(x) + high_half(x)));
+  } else {
+    return sum_of_lanes(x);
+  }
+}
 
 }  // namespace pendcore

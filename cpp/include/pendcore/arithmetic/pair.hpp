@@ -7,6 +7,8 @@
 /// holds many trajectories, a dual number) it is two of them.
 #pragma once
 
+#include <bit>
+
 #include "pendcore/arithmetic/pack.hpp"
 #include "pendcore/arithmetic/sine_cosine.hpp"
 
@@ -25,6 +27,24 @@ PENDCORE_INLINE Pair other(const Pair& x) { return Pair{x[1], x[0]}; }
 template <class Real>
 PENDCORE_INLINE Two<Real> other(const Two<Real>& x) {
   return {x.second, x.first};
+}
+
+/// Two pairs beside each other: (x_1, x_2, y_1, y_2).
+using Pairs = Pack<4>;
+
+PENDCORE_INLINE Pairs other(const Pairs& x) { return __builtin_shufflevector(x, x, 1, 0, 3, 2); }
+PENDCORE_INLINE Pairs twice(const Pair& x) { return joined(x, x); }
+PENDCORE_INLINE Pairs halves_swapped(const Pairs& x) {
+  return __builtin_shufflevector(x, x, 2, 3, 0, 1);
+}
+/// x + y in both halves.
+PENDCORE_INLINE Pairs halves_added(const Pairs& x) { return x + halves_swapped(x); }
+/// (-y, x): vectors in the plane, a quarter turn on.
+PENDCORE_INLINE Pairs turned(const Pairs& x) {
+  using Integers = Lanes<Pairs>::Integers;
+  constexpr long long minus = 1LL << 63;
+  return std::bit_cast<Pairs>(std::bit_cast<Integers>(halves_swapped(x)) ^
+                              Integers{minus, minus, 0, 0});
 }
 
 /// Constants as the number type that is computed with: one for all, or a row of them.

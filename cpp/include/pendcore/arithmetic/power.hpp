@@ -65,6 +65,22 @@ PENDCORE_INLINE double approximate_exp2(double x) {
   return std::bit_cast<double>(std::bit_cast<std::int64_t>(low + high * (f2 * f2)) + exponent);
 }
 
+/// log2(x) within 0.05, for x > 0 that is neither denormal nor infinite: the mantissa in a line.
+PENDCORE_INLINE double coarse_log2(double x) {
+  constexpr double middle = 1023.0 - 0.043;
+  return static_cast<double>(std::bit_cast<std::int64_t>(x)) * 0x1p-52 - middle;
+}
+
+/// 2^x within 1 %, for |x| <= 1000.
+PENDCORE_INLINE double coarse_exp2(double x) {
+  constexpr double to_integer = 0x1.8p52;
+  const double shifted = x + to_integer;
+  const double f = x - (shifted - to_integer);
+  const double of_fraction = fma(fma(0.2426, f, 0.6951), f, 1.0);
+  const std::int64_t exponent = std::bit_cast<std::int64_t>(shifted) << 52;
+  return std::bit_cast<double>(std::bit_cast<std::int64_t>(of_fraction) + exponent);
+}
+
 /// 2^gain x^power within a relative 1e-9, for |power| <= 0.25: what the next step waits for, hence
 /// short. The exponent of x goes through exp2 while the mantissa's small power, 2^w with
 /// w = power log2(1 + u), is summed.

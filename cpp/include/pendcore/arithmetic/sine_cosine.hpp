@@ -79,17 +79,6 @@ PENDCORE_INLINE void rotate(Integers quadrant, Real s, Real c, Real& sine_of_x, 
   cosine_of_x = std::bit_cast<Real>(std::bit_cast<Integers>(cosine_size) ^ cosine_sign);
 }
 
-/// No less than the largest of the lanes; NaN if one is.
-template <class Real>
-PENDCORE_INLINE double sum_of_sizes(const Real& x) {
-  if constexpr (Lanes<Real>::width == 4) {
-    const Real sizes = absolute(x);
-    return sum_of_lanes(Pack<2>(low_half(sizes) + high_half(sizes)));
-  } else {
-    return sum_of_lanes(absolute(x));
-  }
-}
-
 }  // namespace sine_cosine_detail
 
 /// Sine and cosine of x (rad), lane by lane.
@@ -116,7 +105,7 @@ PENDCORE_INLINE void sine_cosine(const Real& x, Real& sine_of_x, Real& cosine_of
   detail::rotate(std::bit_cast<Integers>(shifted), s, c, sine_of_x, cosine_of_x);
 
   // As a rule one comparison does for all lanes.
-  if (detail::sum_of_sizes(x) <= detail::largest) [[likely]]
+  if (sum_by_halves(absolute(x)) <= detail::largest) [[likely]]
     return;
   for (int i = 0; i < Lanes<Real>::width; ++i) {
     if (!(__builtin_fabs(lane(x, i)) <= detail::largest)) {

@@ -12,6 +12,10 @@ struct FirstOrder {
   using Block = typename Dynamics::Links;  ///< what one instruction works on
   static constexpr int blocks = 2;         ///< q and qd
 
+  /// Bare equations, which know no time, have no effects in them.
+  static constexpr bool is_short =
+      requires(const Dynamics& bare, const Block& y) { bare.accelerations(y, y); };
+
   Dynamics dynamics;
 
   /// The derivative dydt (rad/s, rad/s^2) of the state y (rad, rad/s) at time t (s).

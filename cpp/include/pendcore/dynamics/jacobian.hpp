@@ -26,10 +26,18 @@ class Jacobian {
   /// by_q and by_qd, (n, n) row-major, from the time (s), angles (rad) and rates (rad/s), (n) each.
   void operator()(double t, const double* q, const double* qd, double* by_q, double* by_qd) const;
 
+  /// Along one direction alone: qdd at (q, qd), and its change (n) per unit of a small change
+  /// (dq, dqd) of the state, by_q dq + by_qd dqd. Cost: two to three right-hand sides.
+  void along(double t, const double* q, const double* qd, const double* dq, const double* dqd,
+             double* qdd, double* change) const;
+
   /// Whether functions of the user's have a part in it.
   bool has_differences() const;
 
  private:
+  /// Into qdd_, from q_ and qd_.
+  void compute(double t) const;
+
   int n_;
   EquationsOfMotion equations_;
   std::shared_ptr<ChainOf<Dual<double>>> chain_;  ///< of the form's links, if it is a chain

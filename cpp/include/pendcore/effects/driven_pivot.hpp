@@ -32,7 +32,8 @@ struct DrivenPivot {
       .sentence = "A pivot that is moved: a sinusoid for each axis, or a spline.",
       .law = "x_0 = A_x sin(omega_x t + phase_x),  y_0 likewise;  or natural cubic splines",
       .source = "d'Alembert's principle",
-      .account = Account::drive};
+      .account = Account::drive,
+      .has_series = true};
   static constexpr auto parameters = std::tuple{
       parameter(&DrivenPivot::x,
                 {.name = "x", .symbol = "x_0", .unit = "m", .sentence = "motion to the right"}),

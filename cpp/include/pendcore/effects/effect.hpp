@@ -3,7 +3,8 @@
 ///
 /// An effect is a plain struct of parameters. Its file opens with the law; the struct has
 ///
-///     info         its name, a sentence, the source, and where the ledger books its work
+///     info         its name, a sentence, the source, where the ledger books its work, and what
+///                  else others must know of its kind
 ///     parameters   a tuple of `parameter(&Struct::field, {...})`: symbol, unit, range, a sentence
 ///
 /// and, of what follows, the parts that the effect has:
@@ -78,6 +79,10 @@ struct EffectInfo {
   std::string_view law;       ///< the equation, in plain text
   std::string_view source;    ///< where the law comes from
   Account account = Account::none;
+  bool bounds_joint = false;  ///< a start next to one that it allows may be none that it allows
+  /// Of one that is part of the equations of motion: whether their Taylor series hold it. Of those
+  /// that are laws, couples have a series and no others.
+  bool has_series = false;
 };
 
 /// Allowed values of a number.

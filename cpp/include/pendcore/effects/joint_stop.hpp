@@ -26,7 +26,9 @@ struct JointStop {
       .sentence = "Stops at the ends of the range of a joint, with restitution.",
       .law = "lo <= phi <= hi;  phid+ = -e phid- at an impact, 0 below the capture speed",
       .source = "Brogliato, Nonsmooth Mechanics (2016), sections 4.1 and 5.2",
-      .account = Account::impact};
+      .account = Account::impact,
+      .bounds_joint = true,
+      .has_series = true};
   static constexpr auto parameters = std::tuple{
       parameter(&JointStop::joint, joint_number),
       parameter(&JointStop::range, {.name = "range",

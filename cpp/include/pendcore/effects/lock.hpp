@@ -20,7 +20,9 @@ struct Lock {
       .kind = "lock",
       .sentence = "A joint locked at an angle: one degree of freedom less.",
       .law = "phi = constant",
-      .source = "the textbook's mobility, 3 n - 2 c5 - c4, with two links made one"};
+      .source = "the textbook's mobility, 3 n - 2 c5 - c4, with two links made one",
+      .bounds_joint = true,
+      .has_series = true};
   static constexpr auto parameters = std::tuple{
       parameter(&Lock::joint, joint_number),
       parameter(&Lock::angle, {.name = "angle",

@@ -18,7 +18,8 @@ struct Payload {
                                    .kind = "payload",
                                    .sentence = "A rigid body at the tip, fixed to the last link.",
                                    .law = "S_i += m_p,  A_nn += m_p L_n^2 + I_p",
-                                   .source = "the parallel axis theorem"};
+                                   .source = "the parallel axis theorem",
+                                   .has_series = true};
   static constexpr auto parameters = std::tuple{
       parameter(&Payload::mass, {.name = "mass",
                                  .symbol = "m_p",

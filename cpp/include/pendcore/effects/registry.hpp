@@ -31,6 +31,19 @@ using Effect = std::variant<  //
     DrivenPivot,              //
     CompiledUser>;
 
+/// Whether the recurrences of the equations' Taylor series hold what the effect does.
+inline bool has_series(const Effect& effect) {
+  return std::visit(
+      []<class Kind>(const Kind& one) {
+        if constexpr (requires { one.couple(0); }) {
+          return one.couple(0).has_value();
+        } else {
+          return Kind::info.has_series;
+        }
+      },
+      effect);
+}
+
 inline const EffectInfo& info_of(const Effect& effect) {
   return std::visit([]<class Kind>(const Kind&) -> const EffectInfo& { return Kind::info; },
                     effect);

@@ -19,7 +19,8 @@ struct RotorInertia {
       .kind = "rotor_inertia",
       .sentence = "The inertia of a rotor that turns with a joint.",
       .law = "T += J phid^2 / 2",
-      .source = "Featherstone, Rigid Body Dynamics Algorithms (2008), section 9.6"};
+      .source = "Featherstone, Rigid Body Dynamics Algorithms (2008), section 9.6",
+      .has_series = true};
   static constexpr auto parameters = std::tuple{
       parameter(&RotorInertia::joint, joint_number),
       parameter(&RotorInertia::armature, {.name = "armature",

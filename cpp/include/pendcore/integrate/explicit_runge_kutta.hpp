@@ -69,14 +69,17 @@ class ExplicitRungeKutta final : public Stepper {
 
   Attempt attempt(double t, double h, double gain) override {
     evaluations += stages - 1;
+    t_ = t;
+    has_dense_stages_ = Memory::all_stages == stages;
     return attempt_(&memory_, t, h, gain);
   }
 
   void stay() override {
     for (int i = 0; i < blocks; ++i) {
       memory_.y_new[i] = memory_.y[i];
-      for (int s = 0; s < stages; ++s) memory_.k[s][i] = Block{};
+      for (int s = 0; s < Memory::all_stages; ++s) memory_.k[s][i] = Block{};
     }
+    has_dense_stages_ = true;
     if constexpr (compensated) {
       for (int i = 0; i < blocks; ++i) memory_.low.after[i] = memory_.low.before[i];
     }
@@ -98,8 +101,13 @@ class ExplicitRungeKutta final : public Stepper {
     }
   }
 
-  void interpolant(double h, double* coefficients) const override {
-    interpolant_(&memory_, h, coefficients);
+  void interpolant(double h, double* coefficients) override {
+    if (!has_dense_stages_) {
+      evaluations += Memory::all_stages - stages;
+      dense_stages_(&memory_, t_, h);
+      has_dense_stages_ = true;
+    }
+    interpolant_(memory_.y, memory_.k, h, coefficients);
   }
 
   void sample(const double* coefficients, const TwoDouble& start, double h, const double* times,
@@ -122,7 +130,7 @@ class ExplicitRungeKutta final : public Stepper {
   }
 
   /// |k_last - k_before| / |y_last - y_before|: both stages lie at the end of the step.
-  double stiffness(double h) const override {
+  double stiffness(double h) override {
     if constexpr (method.info.stability == 0.0) {
       return 0.0;
     } else {
@@ -160,10 +168,14 @@ class ExplicitRungeKutta final : public Stepper {
 
   Memory memory_;
   std::shared_ptr<const void> owner_;
+  double t_ = 0.0;  ///< of the attempt
+  bool has_dense_stages_ = false;
   Attempt (*attempt_)(Memory*, double, double,
                       double) = fastest<&attempt_step<method, System, compensated>>();
-  void (*interpolant_)(const Memory*, double,
-                       double*) = fastest<&interpolant_of_step<method, System, compensated>>();
+  void (*dense_stages_)(Memory*, double,
+                        double) = fastest<&dense_stages_of_step<method, System, compensated>>();
+  void (*interpolant_)(const Block*, const Block (*)[blocks], double,
+                       double*) = fastest<&interpolant_of_step<method, Block, blocks>>();
   void (*sample_)(const double*, TwoDouble, double, const double*, int,
                   double*) = fastest<&sample_interpolant<Block, blocks, Memory::degree>>();
   void (*evaluate_)(const System*, double, const double*,

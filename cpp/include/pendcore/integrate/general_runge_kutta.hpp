@@ -49,6 +49,32 @@ struct StageInMemory {
   PENDCORE_INLINE Block operator()(int j) const { return load<Block>(k + j * size); }
 };
 
+/// Stages first .. end - 1, as in step.hpp.
+template <const auto& method, class Block, int first, int end>
+PENDCORE_INLINE void stages_in_memory(const GeneralMemory* memory, double t, double h, double* z) {
+  constexpr int width = Lanes<Block>::width;
+  const int size = memory->blocks * width;
+  const auto block = [=](int at) { return StageInMemory<Block>{memory->k + at, size}; };
+  if constexpr (method.written_out) {
+#pragma GCC unroll 16
+    for (int s = first; s < end; ++s) {
+      for (int at = 0; at < size; at += width) {
+        store(z + at, advance(load<Block>(memory->y + at), h, method.a[s], block(at), s));
+      }
+      (*memory->system)(t + method.c[s].value() * h, z, memory->k + s * size);
+    }
+  } else {
+    static constexpr auto rows = rows_of(method);
+#pragma GCC unroll 1
+    for (int s = first; s < end; ++s) {
+      for (int at = 0; at < size; at += width) {
+        store(z + at, advance(load<Block>(memory->y + at), h, rows[s], block(at)));
+      }
+      (*memory->system)(t + rows[s].node * h, z, memory->k + s * size);
+    }
+  }
+}
+
 template <const auto& method, class Block, bool compensated>
 PENDCORE_INLINE Attempt attempt_in_memory(const GeneralMemory* memory, double t, double h,
                                           double gain) {
@@ -59,14 +85,7 @@ PENDCORE_INLINE Attempt attempt_in_memory(const GeneralMemory* memory, double t,
   double* const z = memory->y_new;
   double* const k = memory->k;
   constexpr int before_end = stages - (compensated && method.first_same_as_last ? 1 : 0);
-#pragma GCC unroll 16
-  for (int s = 1; s < before_end; ++s) {
-    for (int at = 0; at < size; at += width) {
-      store(z + at, advance(load<Block>(memory->y + at), h, method.a[s],
-                            StageInMemory<Block>{k + at, size}, s));
-    }
-    (*memory->system)(t + method.c[s].value() * h, z, k + s * size);
-  }
+  stages_in_memory<method, Block, 1, before_end>(memory, t, h, z);
   if constexpr (compensated) {
     for (int at = 0; at < size; at += width) {
       Block after;
@@ -84,7 +103,7 @@ PENDCORE_INLINE Attempt attempt_in_memory(const GeneralMemory* memory, double t,
                             StageInMemory<Block>{k + at, size}, stages));
     }
   }
-  Block squares{};
+  SquaredErrors<method, Block> squares;
   for (int i = 0; i < memory->error_blocks; ++i) {
     const int at = i * width;
     const Block before = load<Block>(memory->y + at);
@@ -92,12 +111,21 @@ PENDCORE_INLINE Attempt attempt_in_memory(const GeneralMemory* memory, double t,
     const Block larger_one = larger(absolute(before), absolute(after));
     const Block scale =
         h / fma(load<Block>(memory->rtol + at), larger_one, load<Block>(memory->atol + at));
-    const Block start = method.first_same_as_last ? Block{} : Block(after - after);
-    const Block ratio = advance(start, scale, method.e, StageInMemory<Block>{k + at, size}, stages);
-    squares = i == 0 ? Block(ratio * ratio) : Block(squares + ratio * ratio);
+    squares.add(after, scale, StageInMemory<Block>{k + at, size}, i == 0);
   }
-  const double squared_error = sum_of_lanes(squares) * (1.0 / memory->count);
+  const double squared_error = squares.mean(1.0 / memory->count);
   return {squared_error, scaled_power(squared_error, -0.5 * exponent(method.info), gain)};
+}
+
+/// The stages of the attempted step, from time t, that the dense output alone asks for; `z` is room
+/// for a state.
+template <const auto& method, class Block>
+PENDCORE_INLINE void dense_stages_in_memory(const GeneralMemory* memory, double t, double h,
+                                            double* z) {
+  using Method = std::remove_cvref_t<decltype(method)>;
+  if constexpr (Method::all_stages > Method::stages) {
+    stages_in_memory<method, Block, Method::stages, Method::all_stages>(memory, t, h, z);
+  }
 }
 
 template <const auto& method, class Block>
@@ -108,16 +136,11 @@ PENDCORE_INLINE void interpolant_in_memory(const GeneralMemory* memory, double h
   const int size = memory->blocks * width;
   for (int at = 0; at < size; at += width) {
     store(coefficients + at, load<Block>(memory->y + at));
+    Block powers[Method::degree];
+    interpolant_of_block<method>(h, StageInMemory<Block>{memory->k + at, size}, powers);
 #pragma GCC unroll 16
     for (int p = 0; p < Method::degree; ++p) {
-      Block sum{};
-#pragma GCC unroll 16
-      for (int s = 0; s < Method::stages; ++s) {
-        if (method.interpolant[s][p].numerator == 0) continue;
-        sum = fma(broadcast<Block>(method.interpolant[s][p].value()),
-                  load<Block>(memory->k + s * size + at), sum);
-      }
-      store(coefficients + (p + 1) * size + at, Block(h * sum));
+      store(coefficients + (p + 1) * size + at, powers[p]);
     }
   }
 }
@@ -146,8 +169,9 @@ class GeneralRungeKutta final : public Stepper {
   using Method = std::remove_cvref_t<decltype(method)>;
   static constexpr int width = Lanes<Block>::width;
   static constexpr int stages = Method::stages;
+  static constexpr int all_stages = Method::all_stages;
   static constexpr int degree = Method::degree;
-  static constexpr int rows = 4 + stages + (compensated ? 2 : 0);
+  static constexpr int rows = 4 + all_stages + (compensated ? 2 : 0);
   static_assert(degree <= 15, "as root.hpp has it");
 
  public:
@@ -166,7 +190,8 @@ class GeneralRungeKutta final : public Stepper {
     memory_.rtol = memory_.y_new + size_;
     memory_.atol = memory_.rtol + size_;
     memory_.k = memory_.atol + size_;
-    memory_.low = compensated ? memory_.k + static_cast<std::ptrdiff_t>(stages) * size_ : nullptr;
+    memory_.low =
+        compensated ? memory_.k + static_cast<std::ptrdiff_t>(all_stages) * size_ : nullptr;
     memory_.low_new = compensated ? memory_.low + size_ : nullptr;
     rows_ = numbers_.data() + static_cast<std::ptrdiff_t>(rows) * size_;
     for (int i = 0; i < size_; ++i) memory_.atol[i] = 1.0;  // where there is no component
@@ -204,13 +229,16 @@ class GeneralRungeKutta final : public Stepper {
   }
   Attempt attempt(double t, double h, double gain) override {
     evaluations += stages - 1;
+    t_ = t;
+    has_dense_stages_ = all_stages == stages;
     return attempt_(&memory_, t, h, gain);
   }
   void stay() override {
     const std::size_t bytes = size_ * sizeof(double);
     __builtin_memcpy(memory_.y_new, memory_.y, bytes);
     if constexpr (compensated) __builtin_memcpy(memory_.low_new, memory_.low, bytes);
-    std::fill_n(memory_.k, static_cast<std::ptrdiff_t>(stages) * size_, 0.0);
+    std::fill_n(memory_.k, static_cast<std::ptrdiff_t>(all_stages) * size_, 0.0);
+    has_dense_stages_ = true;
   }
   void accept(double t_new) override {
     const std::size_t bytes = size_ * sizeof(double);
@@ -224,7 +252,12 @@ class GeneralRungeKutta final : public Stepper {
       ++evaluations;
     }
   }
-  void interpolant(double h, double* coefficients) const override {
+  void interpolant(double h, double* coefficients) override {
+    if (!has_dense_stages_) {
+      evaluations += all_stages - stages;
+      dense_stages_(&memory_, t_, h, rows_);
+      has_dense_stages_ = true;
+    }
     interpolant_(&memory_, h, rows_);
     for (int p = 0; p <= degree; ++p) write(rows_ + p * size_, coefficients + p * dimension());
   }
@@ -245,7 +278,7 @@ class GeneralRungeKutta final : public Stepper {
       if (has_low_part(memory, dimension())) read(memory.data(), memory_.low);
     }
   }
-  double stiffness(double h) const override {
+  double stiffness(double h) override {
     if constexpr (method.info.stability == 0.0) {
       return 0.0;
     } else {
@@ -300,8 +333,12 @@ class GeneralRungeKutta final : public Stepper {
   std::vector<double> numbers_;
   double* rows_;  ///< of an interpolant
   GeneralMemory memory_;
+  double t_ = 0.0;  ///< of the attempt
+  bool has_dense_stages_ = false;
   Attempt (*attempt_)(const GeneralMemory*, double, double,
                       double) = fastest<&attempt_in_memory<method, Block, compensated>>();
+  void (*dense_stages_)(const GeneralMemory*, double, double,
+                        double*) = fastest<&dense_stages_in_memory<method, Block>>();
   void (*interpolant_)(const GeneralMemory*, double,
                        double*) = fastest<&interpolant_in_memory<method, Block>>();
   void (*sample_)(const double*, TwoDouble, double, const double*, int, double*,

@@ -57,10 +57,10 @@ class ImplicitRungeKutta final : public Stepper {
   Attempt attempt(double t, double h, double gain) override;
   void stay() override;
   void accept(double t_new) override;
-  void interpolant(double h, double* coefficients) const override;
+  void interpolant(double h, double* coefficients) override;
   void sample(const double* coefficients, const TwoDouble& start, double h, const double* times,
               int count, double* states) const override;
-  double stiffness(double /*h*/) const override { return 0.0; }  // no bound to stability
+  double stiffness(double /*h*/) override { return 0.0; }  // no bound to stability
 
   /// The low part of the state, if compensated. Of the accepted step, its polynomial and size, its
   /// error, the iteration's contraction. Whether a step from here was tried already.

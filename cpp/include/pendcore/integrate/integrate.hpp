@@ -30,7 +30,7 @@ struct Position {
   StepControl control;
   int stiff_hits = 0;        ///< of Hairer's test for stiffness since it last forgot
   int stiff_misses = 0;      ///< since the last hit
-  double stiff_since = 0.0;  ///< s, if statistics.stiff
+  double stiff_since = 0.0;  ///< s, if statistics.stiff; of a pair, when it was told last
   Statistics statistics;
   std::vector<double> y;        ///< (dimension)
   std::vector<double> dydt;     ///< (dimension)
@@ -57,7 +57,7 @@ class Observer {
   virtual ~Observer() = default;
   /// Returns where in the step the run is to end, as a share of it: above 1, it goes on; at 0,
   /// nothing was kept of the step, whose events take too many turns.
-  virtual double step_accepted(const Stepper& stepper, const TwoDouble& t_old, double h,
+  virtual double step_accepted(Stepper& stepper, const TwoDouble& t_old, double h,
                                double t_new) = 0;
   /// At the end of that step, time t, the state jumped.
   virtual void state_jumped(double t, const double* before, const double* after) = 0;

@@ -3,9 +3,12 @@
 /// Python layer and the tests of order conditions, convergence, dense output and bits find it.
 #pragma once
 
-#include "pendcore/integrate/automatic.hpp"
 #include "pendcore/integrate/dormand_prince_5.hpp"
+#include "pendcore/integrate/dormand_prince_8.hpp"
+#include "pendcore/integrate/method_pair.hpp"
 #include "pendcore/integrate/radau_5.hpp"
+#include "pendcore/integrate/runge_kutta_4.hpp"
+#include "pendcore/integrate/taylor.hpp"
 
 namespace pendcore {
 
@@ -15,11 +18,17 @@ struct MethodList {
 };
 
 using Methods = MethodList<dormand_prince_5,  // order 5(4): the textbook's ode45
+                           dormand_prince_8,  // order 8(5,3): tight tolerances
+                           taylor,            // order by the tolerance: to the rounding limit
+                           runge_kutta_4,     // order 4, fixed steps: the yardstick
                            radau_5,           // order 5, implicit: stiff scenes
-                           automatic          // the first, and the second once it is stiff
+                           dopri5_radau5,     // the first, and the second once it is stiff
+                           dop853_radau5,     // the same, for tight tolerances
+                           taylor_radau5      // the same, where there is a series
                            >;
 
-/// The method of that name or alias; throws std::invalid_argument that lists those there are.
-const MethodInfo& find_method(std::string_view name);
+/// The method of that name or alias; throws std::invalid_argument that lists those there are, after
+/// what else the caller takes. "auto" is a rule and no method: method_choice.hpp.
+const MethodInfo& find_method(std::string_view name, std::string_view or_else = {});
 
 }  // namespace pendcore

@@ -20,7 +20,7 @@ namespace pendcore {
 /// The least theta in (0, 1] from which p(theta) = sum_k coefficients[k] theta^k is negative, to
 /// the last bits; above 1 if there is none. What is called begins where the function is positive or
 /// has just been zero: a value at 0 that is below 1e-13 of the other coefficients counts as zero,
-/// and the polynomial turns negative where it does so next. Degree at most 15.
+/// and the polynomial turns negative where it does so next. Degree at most 35.
 double first_negative(const double* coefficients, int degree);
 
 inline constexpr int highest_degree = 63;  ///< of a polynomial whose zeros are asked for

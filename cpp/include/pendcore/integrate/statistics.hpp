@@ -15,7 +15,7 @@ struct Statistics {
   long long limited_by_break = 0;      ///< accepted steps cut by the end or by a break point
   double min_step = 0.0;               ///< s, the smallest accepted step, not cut (unless all are)
   double max_step = 0.0;               ///< s, the largest, likewise
-  bool stiff = false;                  ///< Hairer's test found the step limited by stability
+  bool stiff = false;                  ///< the steps were found limited by stability: stiffness.hpp
 };
 
 /// One step more, of size h; one that was cut has no say in the smallest and the largest.

@@ -13,6 +13,8 @@
 /// split without error.
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <type_traits>
 
 #include "pendcore/arithmetic/pack.hpp"
@@ -21,6 +23,7 @@
 #include "pendcore/integrate/attempt.hpp"
 #include "pendcore/integrate/low_part.hpp"
 #include "pendcore/integrate/step_control.hpp"
+#include "pendcore/integrate/tableau.hpp"
 
 namespace pendcore {
 
@@ -29,13 +32,14 @@ struct StepMemory {
   using Block = typename System::Block;
   static constexpr int blocks = System::blocks;
   static constexpr int stages = std::remove_cvref_t<decltype(method)>::stages;
+  static constexpr int all_stages = std::remove_cvref_t<decltype(method)>::all_stages;
   static constexpr int degree = std::remove_cvref_t<decltype(method)>::degree;
   static constexpr bool compensated = is_compensated;
 
   System system;
   Block y[blocks] = {};
   Block y_new[blocks] = {};
-  Block k[stages][blocks] = {};
+  Block k[all_stages][blocks] = {};
   Block rtol[blocks] = {};
   Block atol[blocks] = {};
   [[no_unique_address]] LowPart<Block, blocks, compensated> low = {};
@@ -48,19 +52,34 @@ template <class Block, class Scale, class Weights, class Stage>
 PENDCORE_INLINE Block advance(const Block& start, const Scale& h, const Weights& weights,
                               const Stage& k, int count) {
   int last = count - 1;
-  while (last >= 0 && weights[last].numerator == 0) --last;
+  while (last >= 0 && weights[last].is_zero()) --last;
   if (last < 0) return start;
   Block sum{};
   bool empty = true;
 #pragma GCC unroll 16
   for (int j = 0; j < last; ++j) {
-    if (weights[j].numerator == 0) continue;
+    if (weights[j].is_zero()) continue;
     const Block weight = broadcast<Block>(weights[j].value());
     sum = empty ? Block(weight * k(j)) : fma(weight, k(j), sum);
     empty = false;
   }
   const Block known = empty ? start : fma(h, sum, start);
   return fma(h * weights[last].value(), k(last), known);
+}
+
+/// The same sum, to the bit, with weights that are read as a loop goes.
+template <class Block, class Stage>
+PENDCORE_INLINE Block advance(const Block& start, double h, const StageRow& row, const Stage& k) {
+  if (row.count == 0) return start;
+  Block sum{};
+  if (row.count > 1) sum = broadcast<Block>(row.weight[0]) * k(row.stage[0]);
+#pragma GCC unroll 1
+  for (int i = 1; i < row.count - 1; ++i) {
+    sum = fma(broadcast<Block>(row.weight[i]), k(row.stage[i]), sum);
+  }
+  const int last = row.count - 1;
+  const Block known = row.count > 1 ? fma(broadcast<Block>(h), sum, start) : start;
+  return fma(broadcast<Block>(h * row.weight[last]), k(row.stage[last]), known);
 }
 
 /// One block of the stages k.
@@ -84,6 +103,75 @@ PENDCORE_INLINE Block advance_compensated(const Block& y, const Block& low, doub
   return sum;
 }
 
+/// The squares of the error over the components, in units of what the tolerances allow.
+template <const auto& method, class Block>
+class SquaredErrors {
+  using Method = std::remove_cvref_t<decltype(method)>;
+  static constexpr bool has_second =
+      std::ranges::any_of(method.d, [](const Fraction& weight) { return !weight.is_zero(); });
+
+ public:
+  /// Those of one block; `scale` is h over what is allowed.
+  template <class Stage>
+  PENDCORE_INLINE void add(const Block& y_new, const Block& scale, const Stage& k, bool is_first) {
+    // Without a stage at the new state, or an estimate that has it in, nothing else says that they
+    // are finite: 0, or NaN.
+    Block start{};
+    if constexpr (!method.first_same_as_last) start = y_new - y_new;
+    if constexpr (method.first_same_as_last && method.info.error_order == 0) {
+      start = k(Method::stages - 1) - k(Method::stages - 1);
+    }
+    const Block ratio = advance(start, scale, method.e, k, Method::stages);
+    squares_ = is_first ? Block(ratio * ratio) : Block(squares_ + ratio * ratio);
+    if constexpr (has_second) {
+      const Block other = advance(Block{}, scale, method.d, k, Method::stages);
+      others_ = is_first ? Block(other * other) : Block(others_ + other * other);
+    }
+  }
+  PENDCORE_INLINE double mean(double share) const {
+    const double sum = sum_of_lanes(squares_) * share;
+    if constexpr (!has_second) return sum;
+    const double others = sum_of_lanes(others_) * share;
+    const double both = sum + 0.01 * others;
+    return both > 0.0 && both < std::numeric_limits<double>::infinity() ? sum * (sum / both) : both;
+  }
+
+ private:
+  Block squares_{};
+  std::conditional_t<has_second, Block, char> others_{};  // never read without
+};
+
+/// Whether the stages are compiled one after the other, each with its copy of the right-hand side:
+/// the fastest step. Otherwise they are a loop around one, which compiles in a fifth of the time.
+template <const auto& method, class System>
+constexpr bool is_written_out = [] {
+  if constexpr (requires { System::is_short; }) return method.written_out || System::is_short;
+  return method.written_out;
+}();
+
+/// Stages first .. end - 1, into k, which has those before; z becomes the last one's state.
+template <const auto& method, int first, int end, class System, class Block, int blocks>
+PENDCORE_INLINE void evaluate_stages(const System& system, double t, double h,
+                                     const Block (&y)[blocks], Block (*k)[blocks],
+                                     Block (&z)[blocks]) {
+  if constexpr (is_written_out<method, System>) {
+#pragma GCC unroll 16
+    for (int s = first; s < end; ++s) {
+#pragma GCC unroll 16
+      for (int i = 0; i < blocks; ++i) z[i] = advance(y[i], h, method.a[s], StageBlock(k, i), s);
+      system(t + method.c[s].value() * h, z, k[s]);
+    }
+  } else {
+    static constexpr auto rows = rows_of(method);
+#pragma GCC unroll 1
+    for (int s = first; s < end; ++s) {
+#pragma GCC unroll 16
+      for (int i = 0; i < blocks; ++i) z[i] = advance(y[i], h, rows[s], StageBlock(k, i));
+      system(t + rows[s].node * h, z, k[s]);
+    }
+  }
+}
+
 /// Tries a step of size h at time t, as Stepper::attempt says.
 template <const auto& method, class System, bool compensated>
 PENDCORE_INLINE Attempt attempt_step(StepMemory<method, System, compensated>* memory, double t,
@@ -93,11 +181,13 @@ PENDCORE_INLINE Attempt attempt_step(StepMemory<method, System, compensated>* me
   constexpr int blocks = Memory::blocks;
   constexpr int stages = Memory::stages;
 
-  // Local copies stay in registers; memory is written once, at the end.
+  // Local copies stay in registers; memory is written once, at the end. Stages of a loop do not.
   const System system = memory->system;
   Block y[blocks];
   Block z[blocks];
-  Block k[stages][blocks];
+  constexpr bool in_registers = is_written_out<method, System>;
+  Block local[in_registers ? stages : 1][blocks];
+  Block(*const k)[blocks] = in_registers ? local : memory->k;
 #pragma GCC unroll 16
   for (int i = 0; i < blocks; ++i) {
     y[i] = memory->y[i];
@@ -105,12 +195,7 @@ PENDCORE_INLINE Attempt attempt_step(StepMemory<method, System, compensated>* me
   }
   // Compensated, a stage at the new state comes on its own.
   constexpr int before_end = stages - (compensated && method.first_same_as_last ? 1 : 0);
-#pragma GCC unroll 16
-  for (int s = 1; s < before_end; ++s) {
-#pragma GCC unroll 16
-    for (int i = 0; i < blocks; ++i) z[i] = advance(y[i], h, method.a[s], StageBlock(k, i), s);
-    system(t + method.c[s].value() * h, z, k[s]);
-  }
+  evaluate_stages<method, 1, before_end>(system, t, h, y, k, z);
   if constexpr (compensated) {
 #pragma GCC unroll 16
     for (int i = 0; i < blocks; ++i) {
@@ -124,49 +209,85 @@ PENDCORE_INLINE Attempt attempt_step(StepMemory<method, System, compensated>* me
   }
 
   // The scales wait for y_new only, so their division is done before the last stage is.
-  Block squares[blocks];
+  SquaredErrors<method, Block> squares;
 #pragma GCC unroll 16
   for (int i = 0; i < blocks; ++i) {
     const Block size = larger(absolute(y[i]), absolute(z[i]));
     const Block scale = h / fma(memory->rtol[i], size, memory->atol[i]);
-    // Without a stage at the new state nothing else says that it is finite: 0, or NaN.
-    const Block start = method.first_same_as_last ? Block{} : z[i] - z[i];
-    const Block ratio = advance(start, scale, method.e, StageBlock(k, i), stages);
-    squares[i] = ratio * ratio;
+    squares.add(z[i], scale, StageBlock(k, i), i == 0);
   }
-#pragma GCC unroll 16
-  for (int i = 1; i < blocks; ++i) squares[0] += squares[i];
 #pragma GCC unroll 16
   for (int i = 0; i < blocks; ++i) {
     memory->y_new[i] = z[i];
+    if constexpr (in_registers) {
 #pragma GCC unroll 16
-    for (int s = 1; s < stages; ++s) memory->k[s][i] = k[s][i];
+      for (int s = 1; s < stages; ++s) memory->k[s][i] = k[s][i];
+    }
   }
-  const double squared_error = sum_of_lanes(squares[0]) * (1.0 / (blocks * Lanes<Block>::width));
+  const double squared_error = squares.mean(1.0 / (blocks * Lanes<Block>::width));
   return {squared_error, scaled_power(squared_error, -0.5 * exponent(method.info), gain)};
 }
 
-/// coefficient[p] = h sum_s P_sp k_s for p = 1 .. degree, and coefficient[0] = y: the dense output
-/// of the attempted step, (degree + 1) rows of a state each.
+/// The stages of the attempted step, from time t, that the dense output alone asks for.
 template <const auto& method, class System, bool compensated>
-PENDCORE_INLINE void interpolant_of_step(const StepMemory<method, System, compensated>* memory,
-                                         double h, double* coefficients) {
+PENDCORE_INLINE void dense_stages_of_step(StepMemory<method, System, compensated>* memory, double t,
+                                          double h) {
   using Memory = StepMemory<method, System, compensated>;
-  using Block = typename Memory::Block;
-  constexpr int blocks = Memory::blocks;
+  if constexpr (Memory::all_stages > Memory::stages) {
+    typename Memory::Block z[Memory::blocks];
+    evaluate_stages<method, Memory::stages, Memory::all_stages>(memory->system, t, h, memory->y,
+                                                                memory->k, z);
+  }
+}
+
+/// Of one block of the state: the coefficients of theta, theta^2, ... of the dense output, from its
+/// stages.
+template <const auto& method, class Stage, class Block>
+PENDCORE_INLINE void interpolant_of_block(double h, const Stage& k, Block* powers) {
+  using Method = std::remove_cvref_t<decltype(method)>;
+  Block functions[Method::degree];
+#pragma GCC unroll 16
+  for (int i = 0; i < Method::degree; ++i) {
+    Block sum{};
+#pragma GCC unroll 16
+    for (int s = 0; s < Method::all_stages; ++s) {
+      if (method.interpolant[i][s].is_zero()) continue;
+      sum = fma(broadcast<Block>(method.interpolant[i][s].value()), k(s), sum);
+    }
+    functions[i] = h * sum;
+  }
+#pragma GCC unroll 16
+  for (int p = 0; p < Method::degree; ++p) {
+    powers[p] = Block{};
+    bool empty = true;
+#pragma GCC unroll 16
+    for (int i = 0; i < Method::degree; ++i) {
+      const int weight = method.basis[i][p];
+      if (weight == 0) continue;
+      const bool is_alone = empty && weight == 1;
+      powers[p] = is_alone
+                      ? functions[i]
+                      : fma(broadcast<Block>(static_cast<double>(weight)), functions[i], powers[p]);
+      empty = false;
+    }
+  }
+}
+
+/// coefficient[p] theta^p for p = 1 .. degree, and coefficient[0] = y: the dense output of a step
+/// from y with the stages k, (degree + 1) rows of a state each. Of any system.
+template <const auto& method, class Block, int blocks>
+PENDCORE_INLINE void interpolant_of_step(const Block* y, const Block (*k)[blocks], double h,
+                                         double* coefficients) {
+  constexpr int degree = std::remove_cvref_t<decltype(method)>::degree;
   constexpr int width = Lanes<Block>::width;
 #pragma GCC unroll 16
   for (int i = 0; i < blocks; ++i) {
-    store(coefficients + i * width, memory->y[i]);
+    store(coefficients + i * width, y[i]);
+    Block powers[degree];
+    interpolant_of_block<method>(h, StageBlock(k, i), powers);
 #pragma GCC unroll 16
-    for (int p = 0; p < Memory::degree; ++p) {
-      Block sum{};
-#pragma GCC unroll 16
-      for (int s = 0; s < Memory::stages; ++s) {
-        if (method.interpolant[s][p].numerator == 0) continue;
-        sum = fma(broadcast<Block>(method.interpolant[s][p].value()), memory->k[s][i], sum);
-      }
-      store(coefficients + ((p + 1) * blocks + i) * width, Block(h * sum));
+    for (int p = 0; p < degree; ++p) {
+      store(coefficients + ((p + 1) * blocks + i) * width, powers[p]);
     }
   }
 }

@@ -11,6 +11,9 @@
 
 namespace pendcore {
 
+/// A right-hand side on plain numbers, with the rates of quadratures after it.
+using Rates = std::function<void(double t, const double* y, double* dydt)>;
+
 class Stepper {
  public:
   virtual ~Stepper() = default;
@@ -36,6 +39,9 @@ class Stepper {
   /// nothing that the next one depends on has changed.
   std::function<bool()> goes_on;
 
+  /// With which a run, from the state at time t, begins: s, of a method that knows; 0 of others.
+  virtual double own_first_step(double /*t*/) { return 0.0; }
+
   /// Tries a step of size h from the state at time t; `gain` is the control's.
   virtual Attempt attempt(double t, double h, double gain) = 0;
 
@@ -47,7 +53,7 @@ class Stepper {
 
   /// Of the attempted step: the dense output, (degree + 1, dimension) row-major,
   /// y(t + theta h) = sum_p theta^p coefficient[p].
-  virtual void interpolant(double h, double* coefficients) const = 0;
+  virtual void interpolant(double h, double* coefficients) = 0;
 
   /// The values of such a polynomial, of a step of size h from `start`, at `count` times:
   /// (count, dimension) row-major.
@@ -55,11 +61,12 @@ class Stepper {
                       const double* times, int count, double* states) const = 0;
 
   /// An estimate of h |lambda|, lambda the eigenvalue of largest size, from the attempted step
-  /// (Hairer and Wanner, volume II, IV.2).
-  virtual double stiffness(double h) const = 0;
+  /// (Hairer and Wanner, volume II, IV.2); of a series, over its order.
+  virtual double stiffness(double h) = 0;
 
-  /// Is told when the steps are found to be limited by stability.
-  virtual void stiffness_found() {}
+  /// Is told when the steps are found to be limited by stability, and whether their size is given:
+  /// fixed, or the longest allowed. Returns whether it is to be told again of as many hits more.
+  virtual bool stiffness_found(bool /*size_is_given*/) { return false; }
 
   /// What the next step depends on beside y and dydt: nothing, of most methods.
   virtual std::vector<double> memory() const { return {}; }

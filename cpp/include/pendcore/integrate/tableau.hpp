@@ -3,10 +3,19 @@
 ///
 ///     k_s = f(t + c_s h, y + h sum_j a_sj k_j),     y_new = y + h sum_s b_s k_s
 ///     err = h sum_s e_s k_s                          the difference to the embedded method
-///     y(t + theta h) = y + h sum_s k_s sum_p P_sp theta^p,  p = 1 .. degree, 0 <= theta <= 1
+///     y(t + theta h) = y + h sum_i f_i(theta) sum_s D_is k_s,    0 <= theta <= 1
 ///
-/// Coefficients are exact fractions, rounded to doubles once, by the compiler. The order conditions
-/// of b, of b - e and of the interpolant are tested in exact fractions, for every method there is.
+/// with polynomials f_i(theta) = sum_p F_ip theta^p, p = 1 .. degree: powers of theta, unless the
+/// table says otherwise. The dense output may ask for stages of its own, after those of the step.
+///
+/// A second embedded method makes err less trusting where the first is good by chance (Hairer,
+/// Norsett and Wanner, II.10): with the norms of both, |e| of order p and |d| of order q,
+///
+///     |err| = |e|^2 / sqrt(|e|^2 + 0.01 |d|^2)       of order 2 p - q
+///
+/// Coefficients are exact, (numerator + root sqrt(6)) / denominator, and rounded once, by the
+/// compiler. The order conditions of b, of b - e and of the interpolant are tested exactly, for
+/// every method there is.
 #pragma once
 
 #include <array>
@@ -15,17 +24,26 @@
 
 namespace pendcore {
 
+/// A number of Q(sqrt(6)).
 struct Fraction {
   long long numerator = 0;
   long long denominator = 1;
-  /// Numerator and denominator are below 2^53: the quotient is rounded once.
+  long long root = 0;  ///< of 6
+  /// Rounded once; where more than one operation is needed, in extended precision before that.
   constexpr double value() const {
-    return static_cast<double>(numerator) / static_cast<double>(denominator);
+    constexpr long long exact = 1LL << 53;
+    if (root == 0 && -exact < numerator && numerator < exact && denominator < exact) {
+      return static_cast<double>(numerator) / static_cast<double>(denominator);
+    }
+    constexpr long double sqrt_6 = 2.449489742783178098197284074705891392L;
+    const long double sum = static_cast<long double>(numerator) + sqrt_6 * root;
+    return static_cast<double>(sum / static_cast<long double>(denominator));
   }
+  constexpr bool is_zero() const { return numerator == 0 && root == 0; }
 };
 
-/// What kind of table a method is: tableau.hpp, collocation.hpp, automatic.hpp.
-enum class MethodKind { explicit_one, implicit_one, automatic };
+/// What kind of table a method is: tableau.hpp, collocation.hpp, taylor.hpp, method_pair.hpp.
+enum class MethodKind { explicit_one, implicit_one, taylor_one, pair };
 
 /// What is said of a method, and how its steps are controlled.
 struct MethodInfo {
@@ -34,31 +52,75 @@ struct MethodInfo {
   std::string_view citation;
   MethodKind kind = MethodKind::explicit_one;
   int order;              ///< of y_new
-  int error_order;        ///< of the embedded method; 0: no error estimate, fixed steps only
+  int error_order;        ///< of the error estimate; 0: there is none, fixed steps only
   int interpolant_order;  ///< of y(t + theta h), uniformly in theta
   double beta = 0.0;      ///< weight of the previous error in the PI control
   double log2_safety = -0.15200309344504997;  ///< of 0.9: a step aims a tenth short
   double shrink = 0.2;                        ///< a step is at least this share of the one before
   double growth = 10.0;                       ///< and at most this multiple;
   double retry = 0.2;  ///< where a step could not be computed, this share is tried next
-  double stability =
-      0.0;  ///< h |lambda| on the negative real axis that counts as stiff; 0: no test
-  bool compensates = true;  ///< its steps can carry on what their rounding leaves over
+  /// h |lambda| on the negative real axis that counts as stiff; of a series, over its order. 0: no
+  /// test
+  double stability = 0.0;
+  bool compensates = true;              ///< its steps can carry on what their rounding leaves over
+  bool dense_output_is_series = false;  ///< in powers of theta of the solution itself
+  std::string_view first_of_pair = {};  ///< with which a pair begins; else empty
+  std::string_view second_of_pair = {};
+
+  /// The method that a run begins with: of one that is no pair, itself.
+  constexpr std::string_view first() const { return first_of_pair.empty() ? name : first_of_pair; }
 };
 
-template <int stage_count, int interpolant_degree>
+/// Rows of an identity: powers of theta.
+template <int degree>
+constexpr std::array<std::array<int, degree>, degree> powers() {
+  std::array<std::array<int, degree>, degree> rows{};
+  for (int i = 0; i < degree; ++i) rows[i][i] = 1;
+  return rows;
+}
+
+template <int stage_count, int interpolant_degree, int dense_stage_count = 0>
 struct Tableau {
   static constexpr int stages = stage_count;
+  static constexpr int dense_stages = dense_stage_count;  ///< more, for the dense output alone
+  static constexpr int all_stages = stage_count + dense_stage_count;
   static constexpr int degree = interpolant_degree;
   using Row = std::array<Fraction, stage_count>;
+  using LongRow = std::array<Fraction, all_stages>;
 
   MethodInfo info;
-  bool first_same_as_last;  ///< the last stage is the first of the next step
-  Row c;
-  std::array<Row, stage_count> a;
+  bool first_same_as_last;   ///< the last stage is the first of the next step
+  bool written_out = false;  ///< stage by stage for all equations, not the short ones alone
+  LongRow c;
+  std::array<LongRow, all_stages> a;
   Row b;
-  Row e;  ///< b minus the weights of the embedded method
-  std::array<std::array<Fraction, interpolant_degree>, stage_count> interpolant;  ///< P
+  Row e;       ///< b minus the weights of the embedded method
+  Row d = {};  ///< and of the second, if there is one
+  std::array<LongRow, interpolant_degree> interpolant;  ///< D
+  std::array<std::array<int, interpolant_degree>, interpolant_degree> basis =
+      powers<interpolant_degree>();  ///< F
 };
+
+/// A stage as a loop over them reads it: c_s, and the weights a_sj that are not zero.
+struct StageRow {
+  double node = 0.0;
+  int count = 0;
+  std::array<int, 15> stage{};
+  std::array<double, 15> weight{};
+};
+template <class Method>
+constexpr auto rows_of(const Method& method) {
+  static_assert(Method::all_stages <= 16, "a row has room for fifteen weights");
+  std::array<StageRow, Method::all_stages> rows{};
+  for (int s = 0; s < Method::all_stages; ++s) {
+    rows[s].node = method.c[s].value();
+    for (int j = 0; j < s; ++j) {
+      if (method.a[s][j].is_zero()) continue;
+      rows[s].stage[rows[s].count] = j;
+      rows[s].weight[rows[s].count++] = method.a[s][j].value();
+    }
+  }
+  return rows;
+}
 
 }  // namespace pendcore

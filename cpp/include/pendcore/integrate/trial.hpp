@@ -8,6 +8,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "pendcore/integrate/guards.hpp"
 #include "pendcore/integrate/integrate.hpp"
@@ -34,9 +35,9 @@ class Trial {
 
   /// The method's attempt at a step of size h.
   void attempt(double h);
-  /// What follows from it. The shortest of all steps cannot be shortened, and its error is that of
-  /// its times.
-  Verdict judge(bool is_shortest);
+  /// What follows from it. The shortest of all steps cannot be shortened; where longer ones are
+  /// what the error calls for, that of this one is that of its times, and it stands `at_any_error`.
+  Verdict judge(bool is_shortest, bool at_any_error);
 
   double h() const { return h_; }
   int guard() const { return crossing_.guard; }
@@ -50,6 +51,8 @@ class Trial {
   bool take_again();
   Verdict give_up(double h);
   void look_for_bad_component();
+  bool is_far_off();
+  int bad_component_between();
 
   Stepper& stepper_;
   Position& position_;
@@ -60,6 +63,8 @@ class Trial {
   Attempt attempt_{};
   Crossing crossing_;
   int bad_ = -1;
+  std::vector<double> new_state_;
+  std::vector<double> polynomial_;  ///< of a fixed step
 };
 
 }  // namespace pendcore

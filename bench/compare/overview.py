@@ -1,0 +1,268 @@
+"""The page on all solves: what to choose, how it was measured, where pendcore loses, and why."""
+
+from __future__ import annotations
+
+import statistics
+from collections.abc import Mapping
+
+import stiff_page
+from equal_error import DECADES, SIDES, Comparison, Record, Side, compare
+from tables import number, power, short, table
+
+PAGE = """# What accuracy costs, beside other solvers
+
+Made by `make compare` of the records beside it. Do not edit: run again. The pages of the cases have
+every contender's figures: {cases}. Other questions have pages of their own: [effects](effects.md)
+(what each costs), [chains](chains.md) (forward dynamics of n links).
+
+## What to choose
+
+{choice}
+* **Stiff scenes** (strong damping, hard springs, stiff controllers): `radau5`, or the default,
+  which changes over to it.
+* **Fixed steps** (`rk4`) are the yardstick: what many users write by hand. Nothing in it tells how
+  wrong it is.
+* **Chaotic motions** lose a digit every second or so: a tolerance that is enough for 5 s is not for
+  10. `high_energy` is such a motion; it loses eight digits on its way, and at about 1e-8 double
+  precision ends: who gets further there has luck with its roundings.
+
+## Best against best
+
+The time of pendcore's best method as a share of the best peer's at the same achieved error, below 1
+where pendcore is quicker. The goal on the textbook's case is 0.5, and 0.6 in C++ at errors above
+1e-5, where the best peer has the same coefficients. A dash: nobody gets there.
+
+{tables}
+{narrow}
+
+## Where pendcore loses, and why
+
+{losses}
+
+## What bounds the rest
+
+* **From Python** a solve of the textbook's case takes {own_call} more than in C++ (the median over
+  `dopri5` and `taylor` at all settings): arguments are checked, a result object is made and handed
+  over. Where the C++ side keeps the goal and this one does not, that is why.
+* **In C++** it is `taylor` from some 1e-4 on. Counted in `dynamics/series.hpp`, order k of its
+  series is 2 (k - 3) + 30 products of rows of four numbers: k + 12 cycles of a processor with two
+  multipliers. An order waits for the one before it 9 cycles (two products, a change of places), for
+  the one before that 44 (two sums, both halves of a row, the two by two system), so 22 an order.
+  Neither is what it takes: `make bench` (`series/order`) has some 35 cycles an order at order 12
+  and 56 at 28, for one order's instructions, 140 by callgrind at order 18, fill half the window
+  in which a processor looks for something else to do. Tried without gain: orders written out one
+  by one (the same time, a minute more of compiling), four sums in place of two, instructions put
+  in another order by the compiler, higher orders in longer steps.
+* Around the series a step owes its size (two logarithms, a power) and the new state (a polynomial),
+  a fifth of its time (`make bench`, `step/latency/taylor` beside `series`), and then the loop and
+  the samples. At 1e-2 it meets `dopri5`, whose steps wait for six right-hand sides one by one.
+
+## How it was measured
+
+* **Error** is the largest distance, over fixed times of the case, between computed and reference
+  joints and tip, divided by the total length. References are in multiple precision, of a program
+  that takes no part (the stiff scenes': SciPy's, far tighter than anything compared).
+* **Time** is that of the call which made the error, the states at all times in hand at its end.
+  What can be built beforehand is not in it; compiling is listed apart. All contenders take turns
+  at all settings, in an order drawn anew in each of 30 rounds; the least counts, and medians stand
+  beside it. What takes longer than 20 ms a call has fewer turns, three at least, and what takes
+  half a second is not tried at tighter settings. Settings are tolerances, rtol = atol, four a
+  decade, or steps. Between them, log time is interpolated over log error, on the points that no
+  other beats in both.
+* **Peers at their best**, by experiment: closed forms of two and of three unit rods with literal
+  constants, where pendcore takes any masses and lengths; Boost.odeint compiled with -O3
+  -march=native, its loop written out; SUNDIALS with its memory made once; heyoka with fast_math and
+  a form of the equations that saves it a fifth; CyRK with the address of compiled code; SciPy with
+  its right-hand sides in Python and compiled by numba. pendcore checks its arguments and makes a
+  result object in every call, and is compiled so that its bits are the same on every processor.
+* **heyoka** is called from Python in both columns: {heyoka} of its time is the call's own cost.
+
+{machines}
+"""
+
+SHOWN_SIDES = (SIDES[0], SIDES[-1])
+NAMES = {
+    "textbook": "textbook, 5 s",
+    "textbook_long": "textbook, 60 s",
+    "high_energy": "high energy",
+    "damped_textbook": "damped",
+    "three_links": "three links",
+}
+
+
+def spans(compared: list[Comparison]) -> list[tuple[str, list[float]]]:
+    """List pendcore's methods with the errors at which each is its best, loosest first."""
+    found: dict[str, list[float]] = {}
+    for at in compared:
+        if at.own:
+            found.setdefault(short(at.own[1]).removeprefix("pendcore "), []).append(at.error)
+    return list(found.items())
+
+
+def span(errors: list[float]) -> str:
+    if len(errors) == 1:
+        return f"at {power(errors[0])}"
+    return f"from {power(max(errors))} to {power(min(errors))}"
+
+
+def choice(records: Mapping[str, Record]) -> str:
+    """Say for each case which method is the quickest at which achieved errors."""
+    lines = ["* The quickest of pendcore's methods, by the error that is wanted (C++):"]
+    for case, name in NAMES.items():
+        if case in records:
+            listed = [f"`{who}` {span(at)}" for who, at in spans(compare(records[case], SIDES[0]))]
+            lines.append(f"  * {name}: {', '.join(listed) or 'not measured'}.")
+    return "\n".join(lines)
+
+
+def cell(at: Comparison) -> str:
+    if at.ratio is not None:
+        who = short(at.peer[1] if at.peer else "").split()[0]
+        return f"{number(at.ratio, 2)} ({who})"
+    return "alone" if at.own else "peer alone" if at.peer else "—"
+
+
+def ratios(records: Mapping[str, Record], side: Side) -> str:
+    """Tabulate the ratios of all cases on a side, a column a case."""
+    known = {case: compare(records[case], side) for case in NAMES if case in records}
+    known = {case: compared for case, compared in known.items() if compared}
+    if not known:
+        return "Not measured.\n"
+    header = ["achieved error", *(NAMES[case] for case in known)]
+    rows = [
+        [power(error), *(cell(compared[k]) for compared in known.values())]
+        for k, error in enumerate(DECADES)
+    ]
+    return table(header, rows)
+
+
+def narrow(records: Mapping[str, Record]) -> str:
+    """Say what pendcore loses without AVX-512, and where the figures with it are from."""
+    found = []
+    for record in records.values():
+        for wide, held_back in zip(*(compare(record, side) for side in SIDES[:2]), strict=False):
+            if wide.own and held_back.own:
+                found.append(held_back.own[0] / wide.own[0])
+    if not found:
+        return "pendcore's best times use no AVX-512 here, or were measured with one set alone."
+    return (
+        "pendcore chose its kernels for x86-64-v4 (AVX-512). Held back to x86-64-v3 its best\n"
+        f"method takes {min(found):.2f} to {max(found):.2f} times as long; the pages of the cases "
+        "have the\ntables. The peers keep the processor's own instructions in both."
+    )
+
+
+def lost(records: Mapping[str, Record]) -> dict[str, list[str]]:
+    """List where a peer is quicker, by its program: sentences with case, side and errors."""
+    found: dict[str, dict[str, list[Comparison]]] = {}
+    for case, record in records.items():
+        sections = record["scenes"] if case == "stiff" else [record]
+        for each in sections:
+            errors = stiff_page.ERRORS if case == "stiff" else DECADES
+            for side in SHOWN_SIDES:
+                for at in compare(each, side, errors):
+                    if at.peer and (at.own is None or (at.ratio is not None and at.ratio > 1)):
+                        who = short(at.peer[1]).split()[0]
+                        where = (
+                            f"[{each.get('label', NAMES.get(case, case))}]({case}.md) {side.title}"
+                        )
+                        found.setdefault(who, {}).setdefault(where, []).append(at)
+    return {
+        who: [
+            f"  * {where}: {span([at.error for at in places])}{worst(places)}"
+            for where, places in of_who.items()
+        ]
+        for who, of_who in found.items()
+    }
+
+
+def worst(places: list[Comparison]) -> str:
+    known = [at.ratio for at in places if at.ratio is not None]
+    most = f", at most {number(max(known))} times its time" if known else ""
+    alone = [power(at.error) for at in places if at.own is None]
+    return most + (f", of which pendcore does not reach {', '.join(alone)}" if alone else "") + "."
+
+
+REASONS = {
+    "heyoka": (
+        "It compiles the equations of one scene, masses and lengths as constants, at one order, "
+        "into straight machine code for Taylor series: no loop, no branch, nothing of what another "
+        "scene may have. That takes {compiling}, as long as thousands of its solves, and again for "
+        "another scene or tolerance. Where pendcore answers with a Runge-Kutta method, heyoka has "
+        "the higher order as well."
+    ),
+    "Boost.odeint": (
+        "Its right-hand side is written by hand for rods of 1 kg and 1 m. For three links pendcore "
+        "has no closed form: any masses, lengths and effects go through the recursion for n links."
+    ),
+    "CyRK": (
+        "The closed form for unit rods, compiled, is called without Python on the way; a call of "
+        "pendcore's costs a few microseconds more, for checks and its result object."
+    ),
+    "CVODE": "A multistep method needs fewer right-hand sides and factors its Jacobian seldom.",
+    "SciPy": "Its methods are the same; a stiff scene may suit another order better.",
+}
+
+
+def losses(records: Mapping[str, Record]) -> str:
+    """List who is quicker where, with the reason below each."""
+    lines = []
+    for who, places in lost(records).items():
+        why = REASONS.get(who, "").format(compiling=compiling(records))
+        lines += [f"* **{who}**. {why}".rstrip(), *places]
+    return "\n".join(lines) or "* Nowhere among these contenders at the errors above."
+
+
+def of_heyoka(records: Mapping[str, Record]) -> list[Record]:
+    return [
+        one for record in records.values() for one in record.get("contenders", ())
+        if one["name"] == "heyoka"
+    ]  # fmt: skip
+
+
+def compiling(records: Mapping[str, Record]) -> str:
+    seconds = [s for one in of_heyoka(records) for s in one["compile_seconds"] or ()]
+    return f"{number(min(seconds), 1)} to {number(max(seconds), 2)} s" if seconds else "a second"
+
+
+def call(records: Mapping[str, Record]) -> str:
+    """Say what heyoka's call of one step takes: an upper bound of what Python costs it."""
+    taken = [one["one_step"]["minimum_us"] for one in of_heyoka(records) if one["one_step"]]
+    return f"at most {number(max(taken), 2)} us" if taken else "a few us"
+
+
+def own_call(records: Mapping[str, Record]) -> str:
+    """Say by how much a solve from Python takes longer than the same in C++, in the median."""
+    contenders = records.get("textbook", {}).get("contenders", ())
+    least = {
+        (one["name"], point["setting"]): point["minimum_us"]
+        for one in contenders
+        for point in one["points"]
+        if "minimum_us" in point
+    }
+    more = [
+        python - least[f"{name}_cpp", setting]
+        for (name, setting), python in least.items()
+        if name in ("pendcore_dopri5", "pendcore_taylor") and (f"{name}_cpp", setting) in least
+    ]
+    return f"{number(statistics.median(more), 2)} us" if more else "a few us"
+
+
+def page(records: Mapping[str, Record]) -> str:
+    """Make the whole page of the records that are there, by stem."""
+    machines = {
+        f"* {stem}: {record['machine']['processor']}, {record['date']}, pendcore on "
+        f"{record['machine']['instruction set of pendcore']}"
+        for stem, record in records.items()
+    }
+    shown = [f"{side.title}:\n\n{ratios(records, side)}" for side in SHOWN_SIDES]
+    return PAGE.format(
+        cases=", ".join(f"[{stem}]({stem}.md)" for stem in records),
+        choice=choice(records),
+        tables="\n".join(shown),
+        narrow=narrow({case: records[case] for case in NAMES if case in records}),
+        losses=losses(records),
+        heyoka=call(records),
+        own_call=own_call(records),
+        machines="\n".join(sorted(machines)),
+    )

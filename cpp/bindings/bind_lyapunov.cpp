@@ -1,0 +1,59 @@
+#include <algorithm>
+
+#include "pendcore/lyapunov.hpp"
+#include "python_monitor.hpp"
+#include "run_state.hpp"
+#include "start.hpp"
+
+namespace pendcore::bindings {
+namespace {
+
+py::dict exponents(const Scene& scene, py::handle q0, py::handle qd0, py::handle t0,
+                   py::handle t_end, py::handle count, py::handle rtol, py::handle atol,
+                   py::handle t_eval, py::handle max_step, py::handle max_steps,
+                   py::handle time_limit, py::handle progress, py::handle warn) {
+  PythonMonitor monitor(progress);
+  LyapunovOptions options;
+  if (!count.is_none()) {
+    // 0 is the core's word for all.
+    const long long given = whole_number("count", count);
+    options.count = static_cast<int>(std::clamp<long long>(given == 0 ? -1 : given, -1, 1 << 20));
+  }
+  options.rtol = number("rtol", rtol);
+  options.atol = number("atol", atol);
+  options.t_eval = numbers("t_eval", t_eval);
+  options.max_step = number("max_step", max_step);
+  options.max_steps = whole_number("max_steps", max_steps);
+  options.time_limit = optional_number("time_limit", time_limit).value_or(options.time_limit);
+  options.monitor = monitor;
+  const Start start = start_of(scene, q0, qd0, t0, t_end, warn);
+  TangentGrowth found;
+  {
+    const py::gil_scoped_release without_lock;
+    found = lyapunov(scene, start.q0, start.qd0, start.t0, start.t_end, options);
+  }
+  const py::object error = monitor.close(found.status, found.message, found.error);
+  const auto rows = static_cast<py::ssize_t>(found.t.size());
+  const auto numbers_of_state = static_cast<py::ssize_t>(2 * scene.links.size());
+  py::dict result;
+  result["t"] = copy(found.t, {rows});
+  result["growth"] = copy(found.growth, {rows, found.count});
+  result["states"] = copy(found.states, {rows, numbers_of_state});
+  result["t_reached"] = found.t_reached;
+  result["status"] = text(found.status).name;
+  result["message"] = found.message;
+  result["statistics"] = statistics(found.statistics);
+  result["error"] = error;
+  return result;
+}
+
+}  // namespace
+
+void bind_lyapunov(py::module_& module) {
+  module.def("lyapunov", &exponents, py::arg("scene"), py::arg("q0"), py::arg("qd0"), py::arg("t0"),
+             py::arg("t_end"), py::arg("count"), py::arg("rtol"), py::arg("atol"),
+             py::arg("t_eval"), py::arg("max_step"), py::arg("max_steps"), py::arg("time_limit"),
+             py::arg("progress"), py::arg("warn"));
+}
+
+}  // namespace pendcore::bindings

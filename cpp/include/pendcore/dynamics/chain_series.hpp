@@ -1,0 +1,100 @@
+/// \file
+/// The equations of a chain of n links, with smooth effects, as recurrences of Taylor series.
+///
+/// As in series.hpp, u_i lies along link i, n_i across it, and u_i' = qd_i n_i. With a_i the
+/// acceleration of joint i less gravity and F_{i+1} the force at the next joint, both sums of u'',
+///
+///     a_{i+1} = a_i + L u_i'',    F_i = m a_i + m c u_i'' + F_{i+1},    F_{n+1} = m_p a_{n+1}
+///     I_o qdd_i + n_i . H_i = tau_i,   H_i = m c a_i + L F_{i+1}
+///
+/// the only products are qd_i n_i and n_i . H_i. Order k of the last line holds the newest
+/// alpha = (k + 1) qd_{k+1} along n_0 alone,  u''_k = alpha n_0 + beta, so that every order is the
+/// same linear system, that of a chain at rest at the angles q_0: chain.hpp's recursion from the
+/// tip to the base and back, whose factors are computed once for the whole series,
+///
+///     F = B a + b + beta_F alpha_before         (B, w, r, s: chain.hpp, here along x and y)
+///     alpha = r (tau - L n . p - t - w . a) + s alpha_before,    p = b + L B beta
+///
+/// Torques of effects are those that have a Couple (effects/law.hpp), polynomials of time, angle
+/// and rate, and waves. Source: series.hpp's. Cost: four sums of products a link and order, and
+/// some 40 operations; a sine and cosine, a division and some 60 operations a link and series.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "pendcore/arithmetic/order_of_series.hpp"
+#include "pendcore/dynamics/acting_effects.hpp"
+
+namespace pendcore {
+
+/// One series at a time, and one thread: it has the room for it. `Row` is that of its effects.
+template <class Row>
+class ChainSeries {
+ public:
+  using Block = Row;
+  static constexpr int blocks = 0;  ///< known at run time only
+  static constexpr bool depends_on_time = true;
+  static constexpr int width = Lanes<Row>::width;
+
+  /// `effects` may be null: a chain without any.
+  ChainSeries(const Scene& scene, std::shared_ptr<const ActingEffects<Row>> effects);
+
+  int links() const { return n_; }
+  int row() const { return row_; }
+  void set_order(int order);
+
+  /// Rows 1 .. order of `coefficients`, (q, qd) filled up to whole blocks each, in units of sigma.
+  PENDCORE_INLINE void expand(double t, const double* y, double sigma, int order,
+                              double* coefficients) const;
+
+ private:
+  /// Of one link, for all orders.
+  struct Link {
+    double m, L, mc, I, Io, LL, turn, across, rotor;  // as in chain.hpp
+  };
+  /// Of one link in its place, for the orders of one series.
+  struct Factors {
+    double nx, ny;         ///< across the link
+    double Bxx, Bxy, Byy;  ///< of the links beyond
+    double fx, fy;         ///< beta_F of the joint beyond
+    double wx, wy, r, s;
+  };
+  /// What one order takes from the tip to the base.
+  struct Passing {
+    double bx, by, t, free;
+  };
+
+  PENDCORE_INLINE void factor() const;
+  PENDCORE_INLINE void start_waves(double t) const;
+  PENDCORE_INLINE void advance_waves(double sigma, int k) const;
+  PENDCORE_INLINE void pivot_acceleration(double t, double sigma, int k, double& x,
+                                          double& y) const;
+  PENDCORE_INLINE void add_couples(double t, double sigma, int k) const;
+  PENDCORE_INLINE void solve(double ax, double ay) const;
+
+  /// Of a group of links, a quantity's series: a row for each order.
+  PENDCORE_INLINE double* of(int quantity, int group) const {
+    return series_.data() + (static_cast<std::size_t>(group) * quantities + quantity) * room_;
+  }
+  enum : int { cosine_of, sine_of, rate_of, hx_of, hy_of, relative_of, square_of, quantities };
+
+  int n_;
+  int row_;
+  int groups_;
+  double gravity_;
+  double payload_mass_;
+  bool has_rotors_ = false;
+  std::shared_ptr<const ActingEffects<Row>> effects_;
+  std::vector<Link> links_;
+  // of one series
+  std::size_t room_ = 0;
+  mutable std::vector<double> series_;
+  mutable std::vector<Factors> factors_;
+  mutable std::vector<Passing> passing_;
+  mutable std::vector<double> beta_x_, beta_y_, torque_, alpha_, hx_, hy_;
+  mutable std::vector<double> couple_, angle_, speed_;  ///< with room before and after
+  mutable std::vector<double> wave_sine_, wave_cosine_;
+};
+
+}  // namespace pendcore

@@ -1,0 +1,163 @@
+"""What `simulate` takes when it is told neither method nor tolerance, and what that is taken from.
+
+    make default-method
+
+Two tables of docs/accuracy_cost.md, with docs/default_method.json beside it: errors and times of
+the default at several tolerances on 200 random regular scenes, beside dopri5; and times of the
+methods at the same achieved error on chains. Times are ratios of calls in turns, Python included.
+"""
+
+from __future__ import annotations
+
+import json
+import random
+import sys
+from collections.abc import Callable, Iterable
+from math import inf
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+import pendcore as pc
+from pendcore.accuracy.position_error import distances, time_grid
+
+ROOT = Path(__file__).parents[1]
+sys.path.append(str(ROOT / "tests"))
+from regular_scenes import EXACT, REGULAR, growth, scene_and_start  # noqa: E402
+
+SCENES = range(1200, 1400)
+"""Seeds that had no part in choosing anything: those of accuracy/forecast.py are others."""
+ROUNDS = 7
+DEFAULT = "the default"
+WAYS: dict[str, dict[str, Any]] = {
+    **{
+        f"{DEFAULT}, rtol 1e-{k}": {"rtol": 10.0**-k, "atol": 10.0 ** -(k + 3)}
+        for k in range(6, 13)
+    },
+    "`dopri5`, rtol 1e-9": {"method": "dopri5", "rtol": 1e-9, "atol": 1e-12},
+}
+YARDSTICK = f"{DEFAULT}, rtol 1e-9"
+SPANS = {1: 10.0, 2: 10.0, 3: 3.0, 4: 3.0, 6: 2.0, 10: 2.0, 30: 1.0, 100: 0.4}  # links: s
+METHODS = ("dopri5", "dop853", "taylor")
+ERRORS = (1e-4, 1e-6, 1e-8, 1e-10)
+BEGIN, END = "<!-- default {}: begin -->\n", "<!-- default {}: end -->"
+
+
+def timed(
+    ways: dict[str, dict[str, Any]], rounds: int, arguments: tuple[Any, ...]
+) -> tuple[dict[str, pc.Solution], dict[str, float]]:
+    """Run each way in turns; return the last solutions and the shortest times, s."""
+    solutions: dict[str, pc.Solution] = {}
+    seconds = dict.fromkeys(ways, inf)
+    times = time_grid(*arguments[3])
+    for number in range(rounds):
+        for name in random.Random(number).sample([*ways], len(ways)):
+            begin = perf_counter()
+            solutions[name] = pc.simulate(*arguments, t_eval=times, progress=False, **ways[name])
+            seconds[name] = min(seconds[name], perf_counter() - begin)
+    return solutions, seconds
+
+
+def exact(arguments: tuple[Any, ...]) -> Callable[[pc.Solution], float]:
+    """Return what measures an error, against a method that is not the solution's own."""
+    times = time_grid(*arguments[3])
+    known = {
+        method: pc.simulate(*arguments, t_eval=times, method=method, **EXACT).q
+        for method in METHODS[1:]
+    }
+
+    def error(solution: pc.Solution) -> float:
+        other = "dop853" if solution.method.startswith("taylor") else "taylor"
+        return float(distances(solution.scene, solution.q, known[other]).max())
+
+    return error
+
+
+def of_scene(seed: int) -> dict[str, Any]:
+    """Draw a regular scene; return errors and times of each way, and what the rule took."""
+    rng = np.random.default_rng(seed)
+    while growth(*(arguments := scene_and_start(rng))) >= REGULAR:
+        pass
+    error = exact(arguments)
+    solutions, seconds = timed(WAYS, ROUNDS, arguments)
+    return {
+        "links": len(arguments[0].links),
+        "method": solutions[YARDSTICK].method,
+        "error": {name: error(solution) for name, solution in solutions.items()},
+        "time": {name: one / seconds[YARDSTICK] for name, one in seconds.items()},
+    }
+
+
+def of_chain(n: int) -> dict[str, Any]:
+    """Return the least time of each method at each error, over that of dop853, with one damper."""
+    links = [pc.Link(mass=1.0, length=1.0)] * n
+    scene = pc.Scene(links=links, effects=[pc.effects.ViscousJoint(joint=1, damping=0.01)])
+    arguments = (scene, np.linspace(0.6, 1.0, n), 0.0, (0.0, SPANS[n]))
+    error = exact(arguments)
+    ways = {
+        f"{method} {k}": {"method": method, "rtol": 10.0 ** (-k / 2), "atol": 10.0 ** (-k / 2 - 3)}
+        for method in METHODS
+        for k in range(4, 26)
+    }
+    solutions, seconds = timed(ways, ROUNDS, arguments)
+    errors = {name: error(solution) for name, solution in solutions.items()}
+
+    def least(method: str, wanted: float) -> float:
+        names = [name for name in ways if name.split()[0] == method and errors[name] <= wanted]
+        return min(seconds[name] for name in names)
+
+    return {
+        "links": n,
+        "time": {
+            method: [least(method, e) / least("dop853", e) for e in ERRORS]
+            for method in ("taylor", "dopri5")
+        },
+    }
+
+
+def table_of_scenes(found: list[dict[str, Any]]) -> str:
+    lines = [
+        "| of 200 scenes | error, median | 97 % | all | time, median | 97 % |",
+        "|---|--:|--:|--:|--:|--:|",
+    ]
+    for name in WAYS:
+        errors = np.percentile([one["error"][name] for one in found], [50, 97, 100])
+        times = np.percentile([one["time"][name] for one in found], [50, 97])
+        cells = [*(f"{x:.0e}" for x in errors), *(f"{x:.2f}" for x in times)]
+        lines.append(f"| {name} | {' | '.join(cells)} |")
+    return "\n".join(lines) + "\n"
+
+
+def table_of_chains(found: list[dict[str, Any]]) -> str:
+    heads = [f"{method}, {e:.0e}" for method in ("taylor", "dopri5") for e in ERRORS]
+    lines = [f"| links | {' | '.join(heads)} |", "|--:|" + "--:|" * len(heads)]
+    for one in found:
+        cells = [f"{x:.2f}" for method in one["time"].values() for x in method]
+        lines.append(f"| {one['links']} | {' | '.join(cells)} |")
+    return "\n".join(lines) + "\n"
+
+
+def with_progress(items: Iterable[int], unit: str) -> Iterable[int]:
+    from tqdm import tqdm
+
+    return tqdm(items, unit=unit, disable=not sys.stderr.isatty())
+
+
+def main() -> None:
+    scenes = [of_scene(seed) for seed in with_progress(SCENES, "scene")]
+    chains = [of_chain(n) for n in with_progress(SPANS, "chain")]
+    record = {"scenes": scenes, "chains": chains}
+    (ROOT / "docs/default_method.json").write_text(json.dumps(record, indent=1) + "\n")
+    page = ROOT / "docs/accuracy_cost.md"
+    text = page.read_text()
+    for name, table in (("scenes", table_of_scenes(scenes)), ("chains", table_of_chains(chains))):
+        before, _, rest = text.partition(BEGIN.format(name))
+        end = END.format(name)
+        text = before + BEGIN.format(name) + table + end + rest.partition(end)[2]
+        print(table)
+    page.write_text(text)
+
+
+if __name__ == "__main__":
+    main()

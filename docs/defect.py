@@ -1,0 +1,47 @@
+"""Draws docs/figures/defect.png: what torque is missing over time, of a few methods."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import matplotlib as mpl
+
+mpl.use("Agg")
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pendcore as pc
+
+RUNS = [
+    ("dopri5", 1e-6, "-", "0.65"),
+    ("dopri5", 1e-9, "-", "0.35"),
+    ("dop853", 1e-9, "--", "tab:orange"),
+    ("taylor", 1e-13, ":", "tab:blue"),
+]
+
+
+def draw() -> plt.Figure:
+    """Each step's largest torque at any joint, in a step plot; the textbook's case."""
+    scene = pc.Scene.textbook()
+    figure, axes = plt.subplots(figsize=(7, 4), layout="constrained")
+    for method, rtol, style, color in RUNS:
+        sol = pc.simulate(
+            scene, [np.pi / 4, np.pi / 3], 0, (0, 5), method=method, rtol=rtol, atol=rtol
+        )
+        found = sol.defect()
+        edges = np.append(found.t, sol.t[-1])
+        label = f"{method}, rtol = atol = {rtol:.0e}"
+        axes.stairs(
+            found.torque.max(axis=1), edges, baseline=None, ls=style, color=color, label=label
+        )
+    axes.set(yscale="log", xlim=(0, 5), xlabel="t / s", ylabel="torque that is missing / (N m)")
+    weight = found.weight
+    share = axes.secondary_yaxis("right", functions=(lambda x: x / weight, lambda x: x * weight))
+    share.set_ylabel("share of m g L")
+    axes.grid(alpha=0.3)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18), ncols=2, frameon=False)
+    return figure
+
+
+if __name__ == "__main__":
+    draw().savefig(Path(__file__).parent / "figures" / "defect.png", dpi=150)

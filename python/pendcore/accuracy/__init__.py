@@ -1,0 +1,1 @@
+"""What accuracy costs: errors against independent runs, and the method and tolerance for one."""

@@ -1,0 +1,143 @@
+"""One run of a scene, as `simulate` makes it but in silence: warnings were given at the first."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from math import inf
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from pendcore import _core
+from pendcore.progress import Progress, callback
+from pendcore.scene import Scene
+from pendcore.solution import Solution, solution_of
+
+
+def silent(message: str) -> None:
+    """Say nothing."""
+
+
+class Start(NamedTuple):
+    """What is run: a scene, its angles (rad) and rates (rad/s), (n,) each, and when (s)."""
+
+    scene: Scene
+    q0: npt.ArrayLike
+    qd0: npt.ArrayLike
+    t_start: float
+    t_end: float
+
+
+class Choice(NamedTuple):
+    """How it is run.
+
+    Attributes
+    ----------
+    method : str
+    rtol, atol : float or (2n,)
+        As in `simulate`; atol in rad and rad/s.
+    compensated : bool
+        Whether what rounding leaves over is carried on.
+    """
+
+    method: str
+    rtol: npt.ArrayLike
+    atol: npt.ArrayLike
+    compensated: bool = False
+
+
+def atol_beside(rtol: float) -> float:
+    """Return the absolute tolerance, rad and rad/s, of runs of which rtol alone is chosen."""
+    return float(f"{rtol / 1000:g}")
+
+
+def run(
+    start: Start,
+    choice: Choice,
+    t_eval: npt.ArrayLike | None = None,
+    *,
+    store: str | None = None,
+    first_step: float | None = None,
+    max_step: float = inf,
+    step: float | None = None,
+    max_steps: int = 10_000_000,
+    time_limit: float | None = None,
+    wanted: Sequence[tuple[str, dict[str, Any]]] = (),
+    ledger: bool = False,
+    progress: Progress = False,
+    warn: Callable[[str], object] = silent,
+) -> Solution:
+    """Run; the keywords are those of `simulate`, and ``wanted`` are the core's events."""
+    report = callback(progress)
+    made = _core.simulate(
+        start.scene._compiled, start.q0, start.qd0, start.t_start, start.t_end,
+        choice.method, choice.rtol, choice.atol, t_eval, store,
+        first_step, max_step, step, max_steps, time_limit, wanted, ledger, choice.compensated,
+        report, warn,
+    )  # fmt: skip
+    return solution_of(start.scene, made, report)
+
+
+def start_of(solution: Solution) -> Start:
+    """Return what a solution ran, as far as it came."""
+    asked = solution._run.arguments
+    end = solution._run.t_reached
+    return Start(solution.scene, asked["q0"], asked["qd0"], asked["t_start"], end)
+
+
+def known_methods() -> dict[str, dict[str, Any]]:
+    """Return the methods of the core by their names."""
+    return {method["name"]: method for method in _core.methods()}
+
+
+def methods_named(methods: str | Iterable[str]) -> list[str]:
+    """Return methods to compare by their own names, each once.
+
+    ``"auto"`` is refused: it may be one method at one tolerance, and another at the next.
+    """
+    names = {alias: name for name, m in known_methods().items() for alias in (name, *m["aliases"])}
+    try:
+        listed = [methods] if isinstance(methods, str) else list(methods)
+    except TypeError:
+        raise TypeError(f"methods = {methods!r}: must be names of methods, or one") from None
+    if not listed:
+        raise ValueError("methods: is empty: must name a method, or be left out")
+    for method in listed:
+        if method not in names:
+            what = "is a rule that chooses one" if method == "auto" else "is none"
+            raise ValueError(f"methods: {method!r} {what}: known are {', '.join(names)}")
+    return [*dict.fromkeys(names[method] for method in listed)]
+
+
+def methods_of(method: str) -> set[str]:
+    """Return a method's name and, of a pair, those of its two."""
+    known = known_methods()[method]
+    return {method, known["first"], known["second"]} - {""}
+
+
+def pair_of(first: str) -> str:
+    """Return the pair that begins with a method."""
+    pairs = [one for one in _core.methods() if one["kind"] == "pair"]
+    return str(next(pair["name"] for pair in pairs if pair["first"] == first))
+
+
+def carries(method: str, start: Start, step: float | None = None) -> bool:
+    """Whether a method can carry a scene from its start: found by a run of no length.
+
+    ``step`` is for methods that need a fixed one, s.
+    """
+    if method not in known_methods():
+        return False
+    try:
+        run(start._replace(t_end=start.t_start), Choice(method, 1e-6, 1e-9), store="end", step=step)
+    except ValueError:
+        return False
+    return True
+
+
+def tightened(choice: Choice, factor: float, tightest: float) -> Choice:
+    """Divide both tolerances by a factor, or by as much as leaves rtol at the tightest."""
+    rtol, atol = np.asarray(choice.rtol), np.asarray(choice.atol)
+    factor = max(1.0, min(factor, float(rtol.min()) / tightest))
+    return choice._replace(rtol=rtol / factor, atol=atol / factor)

@@ -1,0 +1,104 @@
+"""`pendcore cost`: measure what accuracy costs on a case; write table, figure and JSON."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from typing import Any
+
+from pendcore.case import Case
+from pendcore.cli.case_and_folder import add_case_and_folder, case_of, folder_of
+from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder, written
+from pendcore.cost import AccuracyCost, accuracy_cost
+from pendcore.cost.sweep import REPEATS, TIME_LIMIT
+from pendcore.cost.table import text
+from pendcore.views.accuracy_cost import save_figure
+
+_EPILOG = """
+what is written into the folder:
+  cost.txt    error, time and right-hand sides of every method at every tolerance; what to take
+  cost.png    time against error, a line a method
+  cost.json   the same numbers for programs
+
+example:
+  pendcore cost swing.toml --error 1e-9
+"""
+
+FILES = ("cost.txt", "cost.png", "cost.json")
+
+
+def add_parser(commands: Any) -> None:
+    """Add the sub-command and its arguments."""
+    parser = commands.add_parser(
+        "cost",
+        help="measure what accuracy costs on a case: errors and times of every method",
+        description="Sweep methods and tolerances on a case; without one, the textbook's.",
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    add_case_and_folder(parser)
+    parser.add_argument(
+        "--error",
+        type=float,
+        default=1e-6,
+        metavar="E",
+        help="what to recommend for: largest position error / total length; default: %(default)s",
+    )
+    parser.add_argument(
+        "--methods", metavar="A,B,...", help="default: all that can carry the case", default=None
+    )
+    parser.add_argument(
+        "--time-limit",
+        type=float,
+        default=TIME_LIMIT,
+        metavar="S",
+        help="seconds that it may take; default: %(default)s",
+    )
+    parser.add_argument(
+        "--repeats",
+        type=int,
+        default=REPEATS,
+        metavar="N",
+        help="timed calls of each, as far as the time allows; default: %(default)s",
+    )
+    parser.add_argument("--json", action="store_true", help="print the numbers as JSON")
+    parser.set_defaults(execute=execute)
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Do it; return the exit status."""
+    if not args.error > 0:
+        raise UsageError(f"--error = {args.error!r}: must be > 0, a share of the total length")
+    with blamed_on_usage():
+        case = case_of(args)
+    folder = folder_of(args)
+    with new_folder(folder):
+        cost, whole = _measured(case, args)
+    where = written(folder, [folder / name for name in FILES])
+    table = text(cost, args.error)
+    (folder / "cost.txt").write_text(table, encoding="utf-8")
+    cost.to_json(folder / "cost.json")
+    save_figure(cost, folder / "cost.png")
+    print(where, file=sys.stderr)
+    if not whole:
+        print("interrupted: this is what was measured until then", file=sys.stderr)
+    print(json.dumps(cost.to_dict(), indent=2) if args.json else table, end="\n" * args.json)
+    return 0 if whole else 1
+
+
+def _measured(case: Case, args: argparse.Namespace) -> tuple[AccuracyCost, bool]:
+    """Return what was measured, and whether it was all."""
+    options = {key: case.options[key] for key in ("max_step",) if key in case.options}
+    try:
+        return accuracy_cost(
+            case.scene, case.q0, case.qd0, case.t_span,
+            methods=None if args.methods is None else args.methods.split(","),
+            repeats=args.repeats, time_limit=args.time_limit, name=case.name, **options,
+        ), True  # fmt: skip
+    except (ValueError, TypeError) as error:
+        raise UsageError(str(error)) from None
+    except KeyboardInterrupt as stop:
+        if isinstance(so_far := getattr(stop, "accuracy_cost", None), AccuracyCost):
+            return so_far, False
+        raise

@@ -1,0 +1,162 @@
+"""What a sweep found: points of error and time, what they are measured against, the best."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from math import inf, isfinite
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pendcore.arguments import number
+from pendcore.cost.point import Point, front, seconds_at
+from pendcore.cost.table import duration, text
+
+if TYPE_CHECKING:
+    from matplotlib.lines import Line2D
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class AccuracyCost:
+    """What accuracy costs on a scene. Print it, `plot` it, ask it for the `best`.
+
+    Errors are the largest distance of a joint or the tip from the reference over a fixed grid of
+    times, as a share of the total length.
+
+    Attributes
+    ----------
+    name : str
+        What was run, for people.
+    t_span : (float, float)
+        Start and end of what was measured, s.
+    asked_t_span : (float, float)
+        Start and end of what was asked for, s; beyond ``t_span`` double precision cannot follow.
+    times : int
+        How many times the grid has.
+    points : tuple of Point
+        What each method did at each tolerance, failures among them.
+    uncertainty : float
+        Of the reference: smaller errors cannot be told apart.
+    references : (str, str)
+        How the two runs were made whose distance this is.
+    timed : str
+        What was timed, and how.
+    remarks : tuple of str
+        What one should know: a span that was cut, a time that was up.
+    machine : str
+        On which processor.
+    version : str
+        Of pendcore.
+    """
+
+    name: str
+    t_span: tuple[float, float]
+    asked_t_span: tuple[float, float]
+    times: int
+    points: tuple[Point, ...]
+    uncertainty: float
+    references: tuple[str, str]
+    timed: str
+    remarks: tuple[str, ...]
+    machine: str
+    version: str
+
+    def pareto(self) -> list[Point]:
+        """Return the points that no other beats in both error and time, the cheapest first."""
+        return front(self.points, self.uncertainty)
+
+    def best(self, error: float) -> Point:
+        """Return the cheapest point that keeps an error, the uncertainty added.
+
+        Parameters
+        ----------
+        error : float
+            As a share of the total length.
+
+        Raises
+        ------
+        ValueError
+            If none does; the message says what was reached.
+        """
+        asked = _asked(error)
+        kept = [p for p in self.points if p.error + self.uncertainty <= asked]
+        if not kept:
+            reached = min((p.error for p in self.points), default=inf) + self.uncertainty
+            if reached == inf:
+                raise ValueError(f"error = {asked!r}: no run got to the end; the table says why")
+            raise ValueError(
+                f"error = {asked!r}: nothing measured here reaches it; the best was {reached:.1e}, "
+                f"uncertain by {self.uncertainty:.1e} of the length"
+            )
+        return min(kept, key=lambda p: p.seconds)
+
+    def sentence(self, error: float = 1e-6) -> str:
+        """Return in words what to take for an error, and what ten times the accuracy costs."""
+        error = _asked(error)
+        try:
+            best = self.best(error)
+        except ValueError as reason:
+            return str(reason)
+        length = abs(self.t_span[1] - self.t_span[0])
+        advice = (
+            f"for {error:.3g} of the length over {length:.3g} s take {best.method} at "
+            f"{best.setting}: {duration(best.seconds)}"
+        )
+        curve = self.pareto()
+        here = seconds_at(error, curve, self.uncertainty)
+        there = seconds_at(error / 10, curve, self.uncertainty)
+        if here is None or there is None:
+            return f"{advice}; ten times the accuracy was not reached"
+        if there < 1.05 * here:
+            return f"{advice}; ten times the accuracy costs hardly more"
+        return f"{advice}; ten times the accuracy costs {there / here:.2g} times the time"
+
+    def plot(self, ax: Any = None, *, y: str = "time", **line_properties: Any) -> list[Line2D]:
+        """Draw the work-precision diagram; see `pendcore.views.accuracy_cost.plot`.
+
+        ``ax`` is a matplotlib axes; ``y`` is ``"time"`` or ``"nfev"``; the rest are properties of
+        matplotlib's ``Line2D``. The lines are returned, one per method.
+        """
+        from pendcore.views.accuracy_cost import plot
+
+        return plot(self, ax, y=y, **line_properties)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return everything as JSON can hold it: infinite numbers become None."""
+        best = [(p.method, p.rtol, p.step) for p in self.pareto()]
+        points = [{**asdict(p), "pareto": (p.method, p.rtol, p.step) in best} for p in self.points]
+        plain: dict[str, Any] = _plain(asdict(self) | {"points": points})
+        return plain
+
+    def to_json(self, path: str | os.PathLike[str] | None = None) -> str:
+        """Return the same as JSON text, and write it to a file if one is named."""
+        written = json.dumps(self.to_dict(), indent=2)
+        if path is not None:
+            Path(path).write_text(written + "\n", encoding="utf-8")
+        return written
+
+    def __iter__(self) -> Iterator[Point]:
+        return iter(self.points)
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    def __repr__(self) -> str:
+        return text(self)
+
+
+def _asked(error: float) -> float:
+    asked = number("error", error, "")
+    if not asked > 0:
+        raise ValueError(f"error = {asked!r}: must be > 0, a share of the total length")
+    return asked
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _plain(x) for key, x in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(x) for x in value]
+    return None if isinstance(value, float) and not isfinite(value) else value

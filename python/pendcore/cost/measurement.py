@@ -1,0 +1,288 @@
+"""How a sweep is measured: a reference, one run of each contender, then rounds of timed calls."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from math import inf
+from statistics import median
+from time import monotonic, perf_counter
+
+import numpy as np
+
+from pendcore import _core
+from pendcore.accuracy.run import Choice, Start, carries, known_methods, pair_of, run
+from pendcore.arguments import Floats
+from pendcore.cost.accuracy_cost import AccuracyCost
+from pendcore.cost.machine import processor
+from pendcore.cost.point import Point
+from pendcore.cost.reference import KNOWN, Reference, TooFarError, known_until, reference
+from pendcore.simulate import simulate
+from pendcore.solution import Solution
+
+# Of the time limit: the reference may have a third, single runs a third, the rest is for repeats.
+SHARE = 1 / 3
+PILOT_SHARE = 1 / 200
+"""And a loose run: where that takes longer, tight ones would not get to the end."""
+SHORTER = 0.6
+"""By what factor the span is cut again where the references did not get so far."""
+PILOT = Choice(pair_of("dopri5"), 1e-6, 1e-9)
+
+
+@dataclass(slots=True, kw_only=True)
+class Contender:
+    """A method at a tolerance or with a fixed step, and what was measured of it."""
+
+    method: str
+    rtol: float | None = None
+    atol: float | None = None
+    step: float | None = None
+    error: float = inf
+    nfev: int = 0
+    accepted: int = 0
+    failure: str = ""
+    seconds: list[float] = field(default_factory=list)
+
+    def point(self) -> Point:
+        """Return it as it is kept."""
+        fine = not self.failure
+        return Point(
+            method=self.method, rtol=self.rtol, atol=self.atol, step=self.step,
+            error=self.error if fine else inf,
+            seconds=min(self.seconds) if fine else inf,
+            median=median(self.seconds) if fine else inf,
+            repeats=len(self.seconds), nfev=self.nfev, accepted=self.accepted,
+            failure=self.failure,
+        )  # fmt: skip
+
+
+@dataclass(slots=True, kw_only=True)
+class Measurement:
+    """The whole of it; it can be left at any time, and `result` tells what there is."""
+
+    start: Start
+    name: str
+    methods: list[str] | None
+    tolerances: list[tuple[float, float]]
+    steps: list[float] | None
+    max_step: float
+    points: int
+    repeats: int
+    time_limit: float
+    report: Callable[[float], object] = lambda fraction: None
+    reference: Reference | None = None
+    contenders: list[Contender] = field(default_factory=list)
+    remarks: list[str] = field(default_factory=list)
+    began: float = field(default_factory=monotonic)
+    asked_t_span: tuple[float, float] = (0.0, 0.0)
+    cut: str = ""
+
+    def measure(self) -> None:
+        """Do all of it."""
+        self.asked_t_span = (self.start.t_start, self.start.t_end)
+        self.report(0.0)
+        pilot = run(
+            self.start, PILOT, store="end", max_step=self.max_step,
+            time_limit=max(PILOT_SHARE * self.time_limit, 1e-3),
+        )  # fmt: skip
+        if pilot.status == "time_limit":
+            self._cut(pilot._run.t_reached, self._too_little())
+        stiff = pilot.stats.stiff
+        self._find_reference(stiff)
+        self.report(0.2)
+        self._try_each(stiff)
+        self._repeat()
+        self.report(1.0)
+
+    def result(self) -> AccuracyCost:
+        """Return what was measured."""
+        assert self.reference is not None
+        tried = [c.point() for c in self.contenders if c.seconds or c.failure]
+        order = list(known_methods())
+        tried.sort(key=lambda p: (order.index(p.method), -(p.rtol or 0.0), -(p.step or 0.0)))
+        return AccuracyCost(
+            name=self.name,
+            t_span=(self.start.t_start, self.start.t_end),
+            asked_t_span=self.asked_t_span,
+            times=len(self.reference.times),
+            points=tuple(tried),
+            uncertainty=self.reference.uncertainty,
+            references=self.reference.texts(),
+            timed=self._timed(tried),
+            remarks=tuple(self.remarks),
+            machine=f"{processor()}, instruction set {_core.instruction_set()}",
+            version=_core.__version__,
+        )
+
+    def _timed(self, tried: list[Point]) -> str:
+        counts = [p.repeats for p in tried if not p.failure] or [0]
+        calls = f"{min(counts)}" if min(counts) == max(counts) else f"{min(counts)}-{max(counts)}"
+        return (
+            f"of pendcore.simulate(..., t_eval={len(self._times())} times), the call that has the "
+            f"error, from Python: the least, and the median, of {calls} calls in turns"
+        )
+
+    def _left(self, share: float = 1.0) -> float:
+        """Return what is left of a share of the time since the beginning, s."""
+        return max(self.began + share * self.time_limit - monotonic(), 1e-3)
+
+    def _times(self) -> Floats:
+        assert self.reference is not None
+        return self.reference.times
+
+    def _find_reference(self, stiff: bool) -> None:
+        """Run it, and again over the shorter span where the whole one cannot be followed."""
+        for _ in range(3):
+            found = self._reference(stiff)
+            end, known = float(found.times[-1]), known_until(found)
+            if known < 2:
+                self.remarks.append("the two references part at once: no error here means a thing")
+                break
+            if known < len(found.times):
+                self.cut = ""  # of the two reasons, the one that more time would not mend
+                why = f"double precision follows this motion to {KNOWN:.0e} of the length"
+                self._cut(float(found.times[known - 1]), why)
+            elif end != self.start.t_end:
+                stopped = found.second
+                is_late = stopped.status == "time_limit"
+                why = f"{stopped.method} got no farther: {stopped.message}"
+                self._cut(end, self._too_little() if is_late else why)
+            else:
+                break
+            found = found.first_times(known)  # if this was the last attempt
+        self.reference = found
+        if self.cut:
+            self.remarks.append(
+                f"{self.cut}: until {self.start.t_end:.6g} s, not to {self.asked_t_span[1]:.6g} s; "
+                "errors and times are up to there"
+            )
+        if {found.first.method, found.second.method} == {"radau5", pair_of("dopri5")}:
+            self.remarks.append(
+                "both references are radau5 where the scene is stiff: what its table may get wrong "
+                "shows in neither"
+            )
+
+    def _reference(self, stiff: bool) -> Reference:
+        """Return the reference over as much of the span as the time allows."""
+        while True:
+            try:
+                return reference(
+                    self.start, stiff=stiff, points=self.points, max_step=self.max_step,
+                    time_limit=SHARE * self._left(),
+                )  # fmt: skip
+            except TooFarError as reason:
+                begin = self.start.t_start
+                if reason.reached == begin or self._left() < self.time_limit / 3:
+                    raise
+                self._cut(begin + SHORTER * (reason.reached - begin), self._too_little())
+
+    def _cut(self, t_end: float, why: str) -> None:
+        """Measure a shorter span; what first made it shorter is told."""
+        self.start = self.start._replace(t_end=t_end)
+        self.cut = self.cut or why
+
+    def _too_little(self) -> str:
+        return f"a time_limit of {self.time_limit:.3g} s is too little for more of this span"
+
+    def _try_each(self, stiff: bool) -> None:
+        """Run each contender once, the loosest of all methods first."""
+        assert self.reference is not None
+        rows = [[*self._contenders_of(method)] for method in self._methods(stiff)]
+        allowed = max(self._left(2 * SHARE), self._left() / 2) / max(len(rows), 1)
+        left = [allowed] * len(rows)
+        longest = max((len(row) for row in rows), default=0)
+        for k in range(longest):
+            for i, row in enumerate(rows):
+                if k < len(row) and left[i] > 0:
+                    self._try(row[k], left[i])
+                    self.contenders.append(row[k])
+                    left[i] -= sum(row[k].seconds)
+                    if self.steps is None and self._is_short_enough(row[: k + 1], allowed):
+                        left[i] = 0.0
+            self.report(0.2 + 0.3 * (k + 1) / longest)
+
+    def _is_short_enough(self, row: list[Contender], allowed: float) -> bool:
+        """Whether to halve a fixed step no more: nothing was gained by it, or too dear."""
+        assert self.reference is not None
+        one, before = row[-1], row[-2].error if len(row) > 1 else inf
+        gained = one.error > 2 * self.reference.uncertainty
+        gained &= one.error < before / 2 or before > KNOWN  # beyond are steps that are unstable
+        dear = sum(one.seconds) > allowed / self.repeats
+        return one.step is not None and (dear or not gained)
+
+    def _try(self, one: Contender, limit: float) -> None:
+        assert self.reference is not None
+        solution, seconds = self._call(one, time_limit=limit)
+        one.nfev, one.accepted = solution.stats.nfev, solution.stats.accepted
+        one.seconds.append(seconds)
+        one.error = self.reference.error_of(solution)
+        if not solution.success:
+            too_long = f"took more than {limit:.2g} s"
+            one.failure = too_long if solution.status == "time_limit" else solution.message
+        elif one.error == inf:
+            one.failure = "did not get to the end with finite angles"
+
+    def _repeat(self) -> None:
+        """Time all in rounds, each round in an order drawn anew, until the time is up."""
+        fine = [one for one in self.contenders if not one.failure]
+        for number in range(1, self.repeats):
+            random.Random(number).shuffle(fine)
+            for one in fine:
+                if self._left() <= max(one.seconds[-1], 1e-3):
+                    continue
+                one.seconds.append(self._call(one)[1])
+            self.report(0.5 + 0.5 * number / self.repeats)
+            if self._left() <= 1e-3:
+                break
+        if any(len(one.seconds) < self.repeats for one in fine):
+            self.remarks.append(
+                f"the time was up before all had {self.repeats} timed calls: a larger time_limit "
+                f"than {self.time_limit:.3g} s has more"
+            )
+
+    def _call(self, one: Contender, time_limit: float | None = None) -> tuple[Solution, float]:
+        """Do what is timed."""
+        start, times = self.start, self._times()
+        options = (
+            {"rtol": one.rtol, "atol": one.atol, "max_step": self.max_step}
+            if one.step is None
+            else {"step": one.step}
+        )
+        span = (start.t_start, start.t_end)
+        begin = perf_counter()
+        solution = simulate(
+            start.scene, start.q0, start.qd0, span, method=one.method, t_eval=times,
+            time_limit=time_limit, progress=False, **options,
+        )  # fmt: skip
+        return solution, perf_counter() - begin
+
+    def _methods(self, stiff: bool) -> list[str]:
+        if self.methods is not None:
+            return self.methods
+        known = [m for m, about in known_methods().items() if about["kind"] != "pair" or stiff]
+        return [method for method in known if carries(method, self.start, self._first_step(method))]
+
+    def _first_step(self, method: str) -> float | None:
+        return None if has_error_estimate(method) else 1e-3
+
+    def _contenders_of(self, method: str) -> Iterator[Contender]:
+        if has_error_estimate(method):
+            for rtol, atol in self.tolerances:
+                yield Contender(method=method, rtol=rtol, atol=atol)
+        else:
+            for step in self.steps or self._halved_steps():
+                yield Contender(method=method, step=step)
+
+    def _halved_steps(self) -> list[float]:
+        """Return steps from twice those of a loose run on, halved down to a ten thousandth."""
+        loose = run(self.start, Choice("dopri5", 1e-3, 1e-6), store="end", max_step=self.max_step,
+                    time_limit=0.1 * self._left())  # fmt: skip
+        span = abs(self.start.t_end - self.start.t_start)
+        longest = span / max(1.0, np.ceil(loose.stats.accepted / 2))
+        return [float(longest / 2**k) for k in range(14)]
+
+
+def has_error_estimate(method: str) -> bool:
+    """Whether a method chooses its steps from tolerances."""
+    return bool(known_methods()[method]["error_order"])

@@ -1,0 +1,83 @@
+"""A point of a work-precision diagram, and the front of those that no other beats.
+
+Between the points of the front, log time is taken to be linear in log error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from math import inf, log
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Point:
+    """What one method does at one tolerance, or with one fixed step.
+
+    Attributes
+    ----------
+    method : str
+    rtol, atol : float or None
+        None where the step is fixed.
+    step : float or None
+        Fixed step, s.
+    error : float
+        Largest distance of a joint or the tip from the reference, as a share of the total length;
+        infinite if the run failed.
+    seconds, median : float
+        The least and the median time of a call, s; infinite if it failed.
+    repeats : int
+        How many calls were timed.
+    nfev : int
+        Right-hand sides; of ``taylor``, series.
+    accepted : int
+        Steps.
+    failure : str
+        Why there is no error; empty if there is one.
+    """
+
+    method: str
+    rtol: float | None
+    atol: float | None
+    step: float | None
+    error: float
+    seconds: float
+    median: float
+    repeats: int
+    nfev: int
+    accepted: int
+    failure: str = ""
+
+    @property
+    def setting(self) -> str:
+        """How the method is called, for people."""
+        if self.step is not None:
+            return f"step {self.step:.3g} s"
+        return f"rtol {self.rtol:.3g}"
+
+
+def front(points: Iterable[Point], uncertainty: float) -> list[Point]:
+    """Return the points that no other beats in both error and time, the cheapest first.
+
+    Errors below the uncertainty of the reference count as that: they are not told apart.
+    """
+    kept: list[Point] = []
+    for point in sorted(points, key=lambda p: (max(p.error, uncertainty), p.seconds)):
+        if point.error < inf and point.seconds < (kept[-1].seconds if kept else inf):
+            kept.append(point)
+    return kept[::-1]
+
+
+def seconds_at(error: float, points: Sequence[Point], uncertainty: float) -> float | None:
+    """Return the time at which the front reaches an error, s; None beyond its best."""
+    curve = [(max(p.error, uncertainty), p.seconds) for p in points]
+    if not curve or error < curve[-1][0]:
+        return None
+    if error >= curve[0][0]:
+        return curve[0][1]
+    for (loose, cheap), (tight, dear) in pairwise(curve):
+        if tight <= error:
+            share = log(loose / error) / log(loose / tight)
+            return float(cheap * (dear / cheap) ** share)
+    raise AssertionError("unreachable: the error lies within the curve")

@@ -1,0 +1,140 @@
+"""What computed motions are compared with: the most accurate runs of two methods.
+
+Neither is exact. Their distance from each other is what is known of the error of either, and errors
+that are not above it cannot be told apart. A method is compared with the other method's run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import inf
+from time import monotonic
+from typing import NamedTuple
+
+import numpy as np
+
+from pendcore.accuracy.position_error import angles_at, distances, reached, time_grid
+from pendcore.accuracy.run import (
+    Choice,
+    Start,
+    atol_beside,
+    carries,
+    methods_of,
+    pair_of,
+    run,
+)
+from pendcore.accuracy.second_run import MOST_ACCURATE, TIGHTEST
+from pendcore.arguments import Floats
+from pendcore.solution import Solution
+
+# Where the scene is stiff, an implicit method first.
+REFEREES_IF_STIFF = ("radau5", "dop853", pair_of("dopri5"))
+TIGHTEST_IMPLICIT = 1e-13
+"""Below, the equations of a step are not solved any better."""
+TOO_UNCERTAIN = 1e-6
+"""Beyond, the span is cut to where the two agree to `KNOWN`."""
+KNOWN = 1e-8
+
+
+class TooFarError(ValueError):
+    """No two methods got anywhere.
+
+    Attributes
+    ----------
+    reached : float
+        s; how far one of the two came, and the other farther.
+    """
+
+    def __init__(self, message: str, reached: float) -> None:
+        super().__init__(message)
+        self.reached = reached
+
+
+class Reference(NamedTuple):
+    """Two runs, the times on which they are compared (n_t,), s, and how far apart they are."""
+
+    first: Solution
+    second: Solution
+    times: Floats
+    apart: Floats
+
+    @property
+    def uncertainty(self) -> float:
+        """The largest distance of the two, as a share of the total length."""
+        return float(self.apart.max())
+
+    def error_of(self, solution: Solution) -> float:
+        """Return the largest distance of a run from the one of the two that is not its like."""
+        kin = methods_of(solution.method)
+        other = self.second if self.first.method in kin else self.first
+        if not (solution.success and reached(solution, self.times[-1:]).all()):
+            return inf
+        q = angles_at(solution, self.times)
+        error = float(distances(solution.scene, q, other.q[: len(self.times)]).max())
+        return error if error == error else inf
+
+    def first_times(self, count: int) -> Reference:
+        """Return it on the first of the times alone."""
+        return self._replace(times=self.times[:count], apart=self.apart[:count])
+
+    def texts(self) -> tuple[str, str]:
+        """Return how the two were made, for people."""
+        return _text(self.first), _text(self.second)
+
+
+def reference(
+    start: Start, *, stiff: bool, points: int, max_step: float = inf, time_limit: float
+) -> Reference:
+    """Run two methods as accurately as doubles allow, each in its share of the time.
+
+    Raises
+    ------
+    TooFarError
+        If no two methods get beyond the first of the times; it says why.
+    """
+    times = time_grid(start.t_start, start.t_end, points)
+    runs: list[Solution] = []
+    until = monotonic() + time_limit
+    for choice in _choices(start, stiff):
+        left = max(until - monotonic(), 1e-3) / 2
+        runs.append(run(start, choice, times, max_step=max_step, time_limit=left))
+        whole = [made for made in runs if made.success]
+        if len(whole) == 2:
+            return _compared(whole, times)
+    farthest = sorted(runs, key=lambda made: abs(made._run.t_reached - start.t_end))[:2]
+    count = min(len(made.t) for made in farthest)
+    if count < 2:
+        second = farthest[-1]
+        remedy = ": or shorten t_span" if second.status == "time_limit" else ""
+        raise TooFarError(
+            f"no reference: within {time_limit:.3g} s no two methods got beyond the first of the "
+            f"{points} times ({second.method}: {second.message}){remedy}",
+            second._run.t_reached,
+        )
+    return _compared(farthest, times[:count])
+
+
+def known_until(found: Reference) -> int:
+    """Return how many of the times are known well enough: all, or those up to a horizon."""
+    if found.uncertainty <= TOO_UNCERTAIN:
+        return len(found.times)
+    return int(np.argmax(~(found.apart <= KNOWN)))
+
+
+def _choices(start: Start, stiff: bool) -> Iterator[Choice]:
+    for method in REFEREES_IF_STIFF if stiff else MOST_ACCURATE:
+        if carries(method, start):
+            rtol = TIGHTEST_IMPLICIT if "radau5" in methods_of(method) else TIGHTEST
+            yield Choice(method, rtol, atol_beside(rtol), compensated=True)
+
+
+def _compared(runs: list[Solution], times: Floats) -> Reference:
+    first, second = runs
+    count = len(times)
+    apart = distances(first.scene, first.q[:count], second.q[:count])
+    return Reference(first, second, times, np.where(np.isnan(apart), inf, apart))
+
+
+def _text(solution: Solution) -> str:
+    asked = solution._run.arguments
+    return f"{solution.method} at rtol {float(asked['rtol']):.0e}, compensated"

@@ -1,0 +1,150 @@
+"""Methods and tolerances swept on a scene of the user's own: errors, times, right-hand sides."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterable
+from math import inf
+
+import numpy as np
+import numpy.typing as npt
+
+from pendcore.accuracy.position_error import POINTS
+from pendcore.accuracy.run import Start, atol_beside, methods_named
+from pendcore.arguments import (
+    finite_array,
+    known_keywords,
+    number,
+    time_limit_of,
+    time_span,
+    vector,
+    whole_number,
+)
+from pendcore.cost.accuracy_cost import AccuracyCost
+from pendcore.cost.measurement import Measurement
+from pendcore.progress import Progress, callback, close
+from pendcore.scene import Scene
+from pendcore.warning import PendcoreWarning, warn
+
+RTOL = tuple(float(f"1e-{k}") for k in range(2, 15))
+"""The tolerances that are tried unless others are given."""
+TIME_LIMIT = 20.0
+"""s."""
+REPEATS = 30
+
+
+@known_keywords
+def accuracy_cost(
+    scene: Scene,
+    q0: npt.ArrayLike,
+    qd0: npt.ArrayLike = 0.0,
+    t_span: Iterable[float] = (),
+    *,
+    methods: str | Iterable[str] | None = None,
+    rtol: npt.ArrayLike = RTOL,
+    atol: float | None = None,
+    step: npt.ArrayLike | None = None,
+    max_step: float = inf,
+    points: int = POINTS,
+    repeats: int = REPEATS,
+    time_limit: float = TIME_LIMIT,
+    name: str = "",
+    progress: Progress = None,
+) -> AccuracyCost:
+    """Measure what accuracy costs on a scene: every method at every tolerance, error and time.
+
+    Parameters
+    ----------
+    scene, q0, qd0, t_span
+        What is run, as in `simulate`. Where double precision cannot follow a chaotic motion to the
+        end, the span is cut to where it can, and ``remarks`` says so.
+    methods : str or iterable of str, optional
+        As in `simulate`, but not ``"auto"``, which is a rule. Default: all that can carry the
+        scene, and where it is stiff the pairs that change over.
+    rtol : array_like, (k,), default 1e-2, 1e-3, ..., 1e-14
+        Tolerances.
+    atol : float, optional
+        rad and rad/s. Default: a thousandth of each rtol, as in the defaults of `simulate`.
+    step : array_like, (k,), optional
+        Steps of methods without an error estimate (``"rk4"``), s. Default: halved from the longest
+        that the scene allows until one run takes too long.
+    max_step : float
+        s, > 0, of every run.
+    points : int
+        >= 2. Times, evenly spaced, on which errors are measured. All runs have them as ``t_eval``.
+    repeats : int
+        >= 1. How many calls of each are timed, as far as the time allows; in rounds, so that
+        whatever slows the machine slows all alike.
+    time_limit : float
+        s, > 0, that all of it may take. A run that alone would take too long is told as a failure;
+        where even a loose one takes more than a two-hundredth of it, the span is cut, and
+        ``remarks`` says so.
+    name : str
+        For people.
+    progress
+        As in `simulate`.
+
+    Returns
+    -------
+    AccuracyCost
+        Points, table (``print``), figure (``plot``), JSON (``to_json``), and the ``best`` choice.
+
+    Raises
+    ------
+    ValueError, TypeError
+        If an argument is not what is asked for, or no two methods get through the scene.
+    KeyboardInterrupt, or any exception of ``progress`` or of an effect's function
+        With what was measured so far, if anything, as the attribute ``accuracy_cost``.
+    """
+    if not isinstance(scene, Scene):
+        raise TypeError(f"scene = {scene!r}: must be a pendcore.Scene")
+    n = len(scene.links)
+    span = time_span(t_span)
+    if span[0] == span[1]:
+        raise ValueError(f"t_span = {t_span!r}: must be two different times (s)")
+    angles, rates = vector("q0", q0, n, "rad"), vector("qd0", qd0, n, "rad/s")
+    start = Start(scene, angles, rates, *span)
+    tolerances = _positive("rtol", rtol, "")
+    absolute = None if atol is None else number("atol", atol, "")
+    measurement = Measurement(
+        start=start,
+        name=name,
+        methods=None if methods is None else methods_named(methods),
+        tolerances=[(r, atol_beside(r) if absolute is None else absolute) for r in tolerances],
+        steps=None if step is None else _positive("step", step, "s"),
+        max_step=max_step,
+        points=_at_least(2, "points", points),
+        repeats=_at_least(1, "repeats", repeats),
+        time_limit=time_limit_of(time_limit),
+    )
+    report = callback(progress, "measuring")
+    if report is not None:
+        measurement.report = report
+    for message in scene._compiled.run_warnings(angles, start.t_start, start.t_end):
+        warn(message)
+    try:
+        with warnings.catch_warnings():  # given above
+            warnings.simplefilter("ignore", PendcoreWarning)
+            measurement.measure()
+    except BaseException as stop:
+        if measurement.reference is not None:
+            measurement.remarks.append("it was interrupted: this is what was measured until then")
+            stop.accuracy_cost = measurement.result()  # type: ignore[attr-defined]
+        raise
+    finally:
+        close(report)
+    return measurement.result()
+
+
+def _at_least(least: int, name: str, value: int) -> int:
+    whole = whole_number(name, value)
+    if whole < least:
+        raise ValueError(f"{name} = {whole}: must be >= {least}")
+    return whole
+
+
+def _positive(name: str, values: npt.ArrayLike, unit: str) -> list[float]:
+    array = np.atleast_1d(finite_array(name, values, unit))
+    if array.ndim != 1 or not array.size or not (array > 0).all():
+        raise ValueError(f"{name} = {values!r}: must be numbers > 0, (k,)")
+    return sorted(array.tolist(), reverse=True)

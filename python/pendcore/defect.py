@@ -1,0 +1,117 @@
+"""How far a run is from an exact motion, in the unit of an engineer: N m at a joint."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pendcore import _core
+from pendcore.arguments import Floats
+from pendcore.progress import callback, close
+
+if TYPE_CHECKING:
+    from pendcore.progress import Progress
+    from pendcore.scene import Scene
+
+STEPS_AT_ONCE = 2000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Defect:
+    """The torques that would make a computed curve an exact motion.
+
+    The curve is made of the rates of the dense output, and of their integral from the first angles
+    on. With motors in the joints that add these torques, it would obey the equations of motion
+    exactly. Where a joint is held (lock, friction, stop), what holds it takes any torque: 0.
+
+    Attributes
+    ----------
+    t : ndarray, (n_steps,)
+        Where each step begins, s.
+    torque : ndarray, (n_steps, n)
+        The largest torque at each joint within each step, N m, >= 0.
+    apart : ndarray, (n_steps,)
+        How far the curve's angles come from those of ``sol(t)``, rad.
+    weight : float
+        m g L, N m: the links' masses times gravity times the length of all; 0 without gravity.
+    order : int
+        Of the torque, in the size of the steps: that of the dense output. Of a pair of methods that
+        has changed over, that of its second.
+    is_bound : bool
+        Whether the method's order is higher: other curves through the same steps need less torque.
+    """
+
+    t: Floats
+    torque: Floats
+    apart: Floats
+    weight: float
+    order: int
+    is_bound: bool
+
+    @property
+    def largest(self) -> float:
+        """The largest torque at any joint, N m."""
+        return float(self.torque.max(initial=0.0))
+
+    @property
+    def share(self) -> float:
+        """The largest torque in units of m g L; inf without gravity, where any is large."""
+        if self.weight == 0.0:
+            return 0.0 if self.largest == 0.0 else float("inf")
+        return self.largest / self.weight
+
+    @property
+    def joint(self) -> int:
+        """The joint of the largest torque, from 1."""
+        return int(self.torque.max(axis=0, initial=0.0).argmax()) + 1
+
+    def __str__(self) -> str:
+        at_most = "at most " if self.is_bound else ""
+        share = f", {self.share:.1e} of m g L" if self.weight else ""
+        torque = f"{at_most}{self.largest:.1e} N m more at joint {self.joint}{share}"
+        apart = f"{self.apart.max(initial=0.0):.0e} rad"
+        return f"an exact motion with {torque}; its angles are within {apart} of sol(t)"
+
+
+def defect(scene: Scene, run: _core.Run, progress: Progress = None) -> Defect:
+    """See `pendcore.Solution.defect`."""
+    report = callback(progress, "looking for torques")
+    n = len(scene.links)
+    starts = run.step_starts
+    torque = np.empty((len(starts), n))
+    apart = np.empty(len(starts))
+    angles = np.empty(0)
+    try:
+        for first in range(0, max(len(starts), 1), STEPS_AT_ONCE):
+            some = slice(first, min(first + STEPS_AT_ONCE, len(starts)))
+            torque[some], apart[some], angles = run.defect(some.start, some.stop, angles)
+            if report is not None:
+                report(some.stop / max(len(starts), 1))
+    finally:
+        close(report)
+    method = _method_of_dense_output(run)
+    is_series = method["dense_output_is_series"]  # whose order the tolerances choose
+    return Defect(
+        t=starts,
+        torque=torque,
+        apart=apart,
+        weight=_weight(scene),
+        order=run.dense_degree if is_series else method["interpolant_order"],
+        is_bound=not is_series and method["interpolant_order"] < method["order"],
+    )
+
+
+def _method_of_dense_output(run: _core.Run) -> dict[str, Any]:
+    """Return the method whose interpolant it is; of a pair, the later one that took steps."""
+    methods = {one["name"]: one for one in _core.methods()}
+    asked = methods[run.method]
+    has_changed = asked["second"] and f"went on with {asked['second']}" in run.message
+    return methods[asked["second"] if has_changed else asked["first"] or run.method]
+
+
+def _weight(scene: Scene) -> float:
+    masses = sum(link.mass for link in scene.links)
+    lengths = sum(link.length for link in scene.links)
+    return float(abs(scene.gravity) * masses * lengths)

@@ -1,0 +1,244 @@
+"""Lyapunov exponents: how fast motions that begin close together part."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from math import inf, nan
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from pendcore import _core
+from pendcore.arguments import Floats, known_keywords, number, numbers, time_span
+from pendcore.progress import Progress, callback, close
+from pendcore.scene import Scene
+from pendcore.solution import Solution
+from pendcore.statistics import Statistics
+from pendcore.warning import warn
+
+if TYPE_CHECKING:
+    from matplotlib.lines import Line2D
+
+TIMES = 201
+"""Of the result, unless they are given."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class LyapunovExponents:
+    """What `lyapunov` found; k exponents at n_t times.
+
+    Attributes
+    ----------
+    t : ndarray, (n_t,)
+        s.
+    growth : ndarray, (n_t, k)
+        ln of how many times longer the k changes of the state have become since ``since``, without
+        a unit: of the first one, of the area of the first two over that, and so on.
+    since : float
+        s, from which growth counts.
+    q, qd : ndarray, (n_t, n)
+        The motion, rad and rad/s.
+    status, message : str
+        How the run ended, as of a `Solution`.
+    success : bool
+        Whether it got to the end.
+    stats : Statistics
+        What it took; ``nfev`` counts right-hand sides with all k changes.
+    """
+
+    t: Floats
+    growth: Floats
+    since: float
+    q: Floats
+    qd: Floats
+    status: str
+    message: str
+    success: bool
+    stats: Statistics
+
+    @property
+    def finite_time(self) -> Floats:
+        """Finite-time exponents from ``since`` to each of the times, 1/s, (n_t, k); NaN at it."""
+        with np.errstate(invalid="ignore", divide="ignore"):
+            rates: Floats = self.growth / np.abs(self.t - self.since)[:, np.newaxis]
+        rates[self.t == self.since] = np.nan
+        return rates
+
+    @property
+    def exponents(self) -> Floats:
+        """Over all the time, 1/s, (k,), the largest first."""
+        if len(self.t) == 0:
+            return np.full(self.growth.shape[1], np.nan)
+        return np.sort(self.finite_time[-1])[::-1]
+
+    @property
+    def largest(self) -> float:
+        """The largest exponent, 1/s: above 0 in a chaotic motion, the longer the run the surer.
+
+        NaN where there is none: of a scene whose joints are all locked, or before time has passed.
+        """
+        return float(self.exponents[0]) if self.exponents.size else nan
+
+    @property
+    def time(self) -> float:
+        """The Lyapunov time, 1/largest, s, in which an error grows by e; inf if none grows."""
+        return 1 / self.largest if self.largest > 0 else inf
+
+    @property
+    def seconds_a_digit(self) -> float:
+        """ln(10)/largest, s: so much longer is right a run that is right to one more digit."""
+        return float(np.log(10)) * self.time
+
+    def plot(self, ax: Any = None, **line_properties: Any) -> list[Line2D]:
+        """Draw the finite-time exponents over time; see `pendcore.views.horizon`.
+
+        ``ax`` is an axes of matplotlib's; the rest are properties of its ``Line2D``.
+        """
+        from pendcore.views.horizon import plot_exponents
+
+        return plot_exponents(self, ax, **line_properties)
+
+
+@known_keywords
+def lyapunov(
+    scene: Scene,
+    q0: npt.ArrayLike | None = None,
+    qd0: npt.ArrayLike = 0.0,
+    t_span: Iterable[float] | None = None,
+    *,
+    count: int | None = None,
+    transient: float = 0.0,
+    rtol: float = 1e-9,
+    atol: float = 1e-12,
+    t_eval: npt.ArrayLike | None = None,
+    max_step: float = inf,
+    max_steps: int = 10_000_000,
+    time_limit: float | None = None,
+    progress: Progress = None,
+) -> LyapunovExponents:
+    """Compute the Lyapunov exponents of a motion, as they are in finite time.
+
+    Parameters
+    ----------
+    scene : Scene
+        What moves. Without dry friction and stops: the motion must not jump.
+    q0, qd0 : array_like, (n,)
+        Absolute angles and rates at the start, rad and rad/s.
+    t_span : (float, float)
+        Start and end, s. Backward in time, what shrinks forward grows.
+    count : int, optional
+        How many of the exponents, the largest. Default: the whole spectrum, 2n less 2 for each
+        locked joint, so none where all are. One is up to 2n times as fast.
+    transient : float
+        s; this long the changes turn into their directions before growth counts. For the
+        exponents of the attractor or the chaotic sea; 0 for those of this very run.
+    rtol, atol : float
+        As in `simulate`; the changes are integrated to a relative ``rtol`` too.
+    t_eval : array_like, (k,), optional
+        Times of the result, s; that from which growth counts comes before them. Default: 201 times,
+        evenly.
+    max_step, max_steps, time_limit, progress
+        As in `simulate`.
+
+    Returns
+    -------
+    LyapunovExponents
+        With ``.exponents`` (k,), 1/s, ``.largest``, ``.finite_time`` (n_t, k) over ``.t``; also of
+        a run that could not be finished: see its ``status``.
+
+    Raises
+    ------
+    ValueError, TypeError
+        If an argument is not what is asked for; the message names it. For dry friction and stops.
+    KeyboardInterrupt, or any exception of ``progress`` or of an effect's function
+        With what was found so far as the attribute ``exponents``.
+
+    Notes
+    -----
+    The variational equations are integrated beside the motion, by dop853 with exact derivatives of
+    the right-hand side (of a user's function, by differences), and made orthonormal after each step
+    (Benettin, Galgani, Giorgilli & Strelcyn, *Meccanica* 15 (1980), 9-20). Lengths are those of
+    (dq, dqd) in rad and rad/s: over a long time they do not matter. The first change is one of q_1,
+    the second of q_2, and so on; then those of the rates.
+    """
+    if not isinstance(scene, Scene):
+        raise TypeError(f"scene = {scene!r}: must be a pendcore.Scene")
+    if q0 is None:
+        raise TypeError("q0 is missing: give the angles at the start, one per link, in rad")
+    t_start, t_end = time_span(t_span)
+    since = t_start + np.copysign(number("transient", transient, "s"), t_end - t_start)
+    if not 0 <= transient <= abs(t_end - t_start):
+        raise ValueError(
+            f"transient = {transient}: must be 0 to {abs(t_end - t_start)} (s), within t_span"
+        )
+    times = _times(t_eval, since, t_end)
+    report = callback(progress, "following neighbours")
+    found = _core.lyapunov(
+        scene._compiled, q0, qd0, t_start, t_end, count, rtol, atol, [*times],
+        max_step, max_steps, time_limit, report, warn,
+    )  # fmt: skip
+    close(report)
+    result = _exponents(found, since, len(scene.links))
+    if found["error"] is not None:
+        found["error"].exponents = result
+        raise found["error"]
+    return result
+
+
+def lyapunov_of(
+    solution: Solution,
+    count: int | None,
+    transient: float,
+    t_eval: npt.ArrayLike | None,
+    progress: Progress,
+) -> LyapunovExponents:
+    """Of the motion that a solution computed, as far as it came, at its tolerances."""
+    asked = solution._run.arguments
+    return lyapunov(
+        solution.scene,
+        asked["q0"],
+        asked["qd0"],
+        (asked["t_start"], solution._run.t_reached),
+        count=count,
+        transient=transient,
+        rtol=float(np.min(asked["rtol"])),
+        atol=float(np.min(asked["atol"])),
+        t_eval=t_eval,
+        max_step=asked["max_step"],
+        progress=progress,
+    )
+
+
+def _times(t_eval: npt.ArrayLike | None, since: float, t_end: float) -> Floats:
+    """Return the times to keep; the first is that from which growth counts."""
+    if t_eval is None:
+        even = np.linspace(since, t_end, TIMES)
+        even[-1] = t_end
+        distinct: Floats = even[np.append(True, np.diff(even) != 0)]
+        return distinct
+    given = np.array(numbers("t_eval", t_eval, "s"))
+    along = np.sign(t_end - since) * given
+    inside = len(given) > 0 and (np.diff(along) > 0).all()
+    if not (inside and min(since, t_end) <= given.min() <= given.max() <= max(since, t_end)):
+        way = "rise" if since <= t_end else "fall"
+        raise ValueError(f"t_eval: must {way} from {since} s to the end, {t_end} s")
+    return given if given[0] == since else np.append(since, given)
+
+
+def _exponents(found: dict[str, Any], since: float, n: int) -> LyapunovExponents:
+    growth = found["growth"]
+    if len(growth):
+        growth = growth - growth[0]
+    return LyapunovExponents(
+        t=found["t"],
+        growth=growth,
+        since=since,
+        q=found["states"][:, :n],
+        qd=found["states"][:, n:],
+        status=found["status"],
+        message=found["message"],
+        success=found["status"] == "finished",
+        stats=Statistics(**found["statistics"]),
+    )

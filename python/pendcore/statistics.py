@@ -1,0 +1,45 @@
+"""What a run took."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Statistics(NamedTuple):
+    """What a run took.
+
+    Attributes
+    ----------
+    nfev : int
+        Right-hand sides.
+    njev : int
+        Jacobians.
+    nlu : int
+        Factorisations.
+    accepted : int
+        Steps that were kept.
+    rejected : int
+        Steps that were tried again, shorter.
+    limited_by_tolerance : int
+        Accepted steps of the size that accuracy allowed.
+    limited_by_max_step : int
+        Accepted steps of the size of ``max_step``, or of a fixed step.
+    limited_by_break : int
+        Accepted steps that the end of the run cut short, or a point where a law changes.
+    min_step, max_step : float
+        Sizes of the accepted steps, those cut short aside, s.
+    stiff : bool
+        Whether stability rather than accuracy limited the steps.
+    """
+
+    nfev: int
+    njev: int
+    nlu: int
+    accepted: int
+    rejected: int
+    limited_by_tolerance: int
+    limited_by_max_step: int
+    limited_by_break: int
+    min_step: float
+    max_step: float
+    stiff: bool

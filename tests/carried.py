@@ -1,0 +1,26 @@
+"""Which scenes a method can carry: Taylor series need an equation that has one."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pendcore as pc
+
+WITHOUT_SERIES = ("rod_drag", "user", "compiled_user")
+
+
+def carried(method: str, scene: pc.Scene) -> str:
+    """Return the method, or where it refuses the scene, ``dop853`` in place of ``taylor``."""
+    return method.replace("taylor", "dop853") if any(map(_refused, scene.effects)) else method
+
+
+def is_refusal_of_series(error: ValueError) -> bool:
+    """Whether that is what taylor says of an effect that it has no series of, and no other."""
+    kinds = (*WITHOUT_SERIES, "dry_joint_friction")
+    return any(f"({kind}) has no Taylor series" in str(error) for kind in kinds)
+
+
+def _refused(effect: Any) -> bool:
+    if effect.kind == "dry_joint_friction":
+        return effect.static is not None and effect.static > effect.coulomb
+    return effect.kind in WITHOUT_SERIES

@@ -1,0 +1,288 @@
+"""What `pc.accuracy_cost` and `pendcore cost` say of errors, times and choices is so."""
+
+from __future__ import annotations
+
+import json
+import math
+import pickle
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pendcore as pc
+import pytest
+from pendcore.accuracy.position_error import distances, position_error, time_grid
+from pendcore.accuracy.run import Start
+from pendcore.accuracy.second_run import second_run
+from pendcore.cli import main
+from pendcore.cost.point import Point, front, seconds_at
+from pendcore.cost.reference import reference
+
+BOOK = pc.Scene.textbook()
+START = ([np.pi / 4, np.pi / 3], 0, (0, 5))
+E = pc.effects
+PAIRS = tuple(one["name"] for one in pc._core.methods() if one["kind"] == "pair")
+QUICK = {"repeats": 2, "rtol": [1e-3, 1e-6, 1e-9]}
+
+
+@pytest.fixture(autouse=True)
+def no_figure_left_over():
+    yield
+    plt.close("all")
+
+
+@pytest.fixture(scope="module")
+def book():
+    return pc.accuracy_cost(BOOK, *START, repeats=3, name="the book's")
+
+
+def tips(q, lengths):
+    return np.cumsum(np.asarray(lengths) * np.exp(1j * np.asarray(q)), axis=-1)
+
+
+def test_distances_are_those_of_joints_and_tip():
+    rng = np.random.default_rng(1)
+    lengths = [0.3, 2.0, 1.1]
+    scene = pc.Scene(links=[pc.Link(mass=1, length=x) for x in lengths])
+    q, r = rng.normal(size=(2, 50, 3))
+    expected = abs(tips(q, lengths) - tips(r, lengths)).max(axis=-1) / sum(lengths)
+    assert distances(scene, q, r) == pytest.approx(expected, rel=1e-13)
+    assert distances(scene, q, q + 2 * np.pi).max() < 1e-14
+    tiny = distances(scene, q[:, :], q + 1e-17 * np.array([1, 0, 0]) * 2.0**20)
+    assert (tiny >= 0).all()
+    assert math.isnan(distances(scene, [math.nan, 0, 0], [0, 0, 0]))
+
+
+def test_a_grid_has_both_ends_and_no_time_twice():
+    for start, end in ((0.0, 5.0), (5.0, 0.1), (1.0, 1.0 + 5e-15), (1.0, 1.0)):
+        t = time_grid(start, end)
+        assert (t[0], t[-1]) == (start, end)
+        assert len(set(t)) == len(t) <= 101
+
+
+@pytest.mark.parametrize("rtol", [1e-4, 1e-8, 1e-11])
+def test_a_second_run_tells_the_error_of_the_first(method, rtol, reference_case):
+    known = reference_case("textbook")
+    first = pc.simulate(BOOK, *START, method=method, rtol=rtol, atol=rtol / 1000)
+    second = second_run(first, known.t)
+    assert second.method != method
+    true = abs(tips(first(known.t)[:2].T, [1, 1]) - tips(known.q, [1, 1])).max() / 2
+    assert position_error(first, second, known.t) == pytest.approx(true, rel=0.1)
+
+
+def test_the_errors_are_those_against_multiple_precision(book, reference_case):
+    known = reference_case("textbook")
+    assert book.times == len(known.t)
+    for point in book:
+        chosen = {"rtol": point.rtol, "atol": point.atol} if point.rtol else {"step": point.step}
+        sol = pc.simulate(BOOK, *START, method=point.method, t_eval=known.t, **chosen)
+        true = abs(tips(sol.q, [1, 1]) - tips(known.q, [1, 1])).max() / 2
+        assert abs(point.error - true) <= 1.5 * book.uncertainty
+        assert (point.nfev, point.accepted) == (sol.stats.nfev, sol.stats.accepted)
+    assert 1e-16 < book.uncertainty < 1e-13
+
+
+def test_no_method_is_its_own_reference():
+    start = Start(BOOK, *START[:2], *START[2])
+    found = reference(start, stiff=False, points=101, time_limit=10)
+    assert found.first.method != found.second.method
+    for solution in (found.first, found.second):
+        assert found.error_of(solution) == found.uncertainty > 0
+
+
+def test_every_method_is_there_at_every_tolerance(book):
+    methods = {p.method for p in book}
+    assert {"dopri5", "dop853", "rk4", "radau5"} <= methods
+    assert "dopri5-radau5" not in methods  # it is dopri5 here, to the last bit
+    for method in methods - {"rk4"}:
+        assert [p.rtol for p in book if p.method == method] == [10.0**-k for k in range(2, 15)]
+    steps = [p.step for p in book if p.method == "rk4"]
+    assert np.allclose(np.divide(steps[:-1], steps[1:]), 2)
+    assert all(p.repeats == 3 and 0 < p.seconds <= p.median < 1 for p in book)
+
+
+def point(error, seconds):
+    return Point(
+        method="m", rtol=error, atol=0.0, step=None, error=error, seconds=seconds, median=seconds,
+        repeats=1, nfev=1, accepted=1, failure="" if error < math.inf else "failed",
+    )  # fmt: skip
+
+
+def test_the_front_is_what_no_other_beats():
+    rng = np.random.default_rng(2)
+    points = [point(*x) for x in 10.0 ** -rng.uniform(0, 9, (60, 2))] + [point(math.inf, 1e-20)]
+    found = front(points, 1e-8)
+    for p in points[:-1]:
+        clipped = max(p.error, 1e-8)
+        beaten = [
+            x
+            for x in points[:-1]
+            if (max(x.error, 1e-8) <= clipped and x.seconds < p.seconds)
+            or (max(x.error, 1e-8) < clipped and x.seconds <= p.seconds)
+        ]
+        assert (p in found) == (not beaten)
+    assert [p.seconds for p in found] == sorted(p.seconds for p in found)
+
+
+def test_between_the_points_log_time_is_linear_in_log_error():
+    curve = [point(1e-2, 1.0), point(1e-4, 100.0)]
+    assert seconds_at(1e-3, curve, 0.0) == pytest.approx(10.0)
+    assert seconds_at(1e-1, curve, 0.0) == 1.0
+    assert seconds_at(1e-5, curve, 0.0) is None
+
+
+def test_the_best_is_the_cheapest_that_keeps_the_error(book):
+    for error in (1e-3, 1e-6, 1e-10):
+        kept = [p for p in book if p.error + book.uncertainty <= error]
+        assert book.best(error) == min(kept, key=lambda p: p.seconds)
+    with pytest.raises(ValueError, match=r"error = 1e-17: nothing measured here reaches it"):
+        book.best(1e-17)
+    best = book.best(1e-6)
+    for part in ("for 1e-06 of the length over 5 s take", best.method, best.setting, "ten times"):
+        assert part in book.sentence(1e-6)
+    assert "nothing measured" in book.sentence(1e-17)
+
+
+def test_it_prints_pickles_and_becomes_json(book, tmp_path):
+    assert pickle.loads(pickle.dumps(book)) == book
+    with pytest.raises(AttributeError):
+        book.name = "other"
+    table = str(book)
+    for part in ("What accuracy costs: the book's, 0 ... 5 s", "uncertainty", "rtol 1e-09", "*"):
+        assert part in table
+    text = book.to_json(tmp_path / "cost.json")
+
+    def refuse(name):
+        raise AssertionError(f"{name} is no JSON")
+
+    for written in (text, (tmp_path / "cost.json").read_text()):
+        kept = json.loads(written, parse_constant=refuse)
+        assert len(kept["points"]) == len(book)
+        front = [(p["method"], p["rtol"], p["step"]) for p in kept["points"] if p["pareto"]]
+        assert sorted(front, key=str) == sorted(
+            [(p.method, p.rtol, p.step) for p in book.pareto()], key=str
+        )
+
+
+@pytest.mark.parametrize("y", ["time", "nfev"])
+def test_the_figure_has_a_line_a_method_units_and_a_legend_beside_the_data(book, y):
+    figure, ax = plt.subplots(layout="constrained", figsize=(8, 5))
+    lines = book.plot(ax=ax, y=y)
+    assert [line.get_label() for line in lines] == [*dict.fromkeys(p.method for p in book)]
+    for line in lines:
+        ours = [p for p in book if p.method == line.get_label()]
+        assert line.get_xdata().tolist() == [p.error for p in ours]
+        factor = 1e6 if y == "time" else 1
+        height = [factor * p.seconds if y == "time" else p.nfev for p in ours]
+        assert line.get_ydata() == pytest.approx(height)
+    assert (ax.get_xscale(), ax.get_yscale()) == ("log", "log")
+    assert "total length" in ax.get_xlabel()
+    counted = "right-hand sides (of taylor: series)"
+    assert ax.get_ylabel() == ("time of a run (\N{MICRO SIGN}s)" if y == "time" else counted)
+    figure.canvas.draw()
+    legend = ax.get_legend().get_window_extent()
+    assert not legend.overlaps(ax.get_window_extent())
+    assert figure.bbox.x1 >= legend.x1
+    (known,) = [p for p in ax.patches if p.get_width()]
+    assert known.get_bbox().x1 == pytest.approx(book.uncertainty)
+
+
+def test_the_figures_lines_differ_without_colour():
+    from pendcore.views.accuracy_cost import STYLES
+
+    looks = {(str(style["linestyle"]), style["marker"]) for style in STYLES.values()}
+    assert len(looks) == len(STYLES)
+
+
+@pytest.mark.parametrize(
+    ("options", "error"), [({"y": "cost"}, ValueError), ({"ax": 3}, TypeError)]
+)
+def test_the_figure_refuses_what_it_cannot_draw(book, options, error):
+    with pytest.raises(error, match=next(iter(options))):
+        book.plot(**options)
+
+
+def test_a_chaotic_span_is_cut_to_what_can_be_followed():
+    found = pc.accuracy_cost(BOOK, [-1.5, -1.4], 0, (0, 100), **QUICK, methods=["dopri5"])
+    assert found.asked_t_span == (0, 100)
+    assert 10 < found.t_span[1] < 30
+    assert found.uncertainty <= 1e-6
+    assert "double precision follows this motion" in found.remarks[0]
+    assert found.remarks[0] in " ".join(str(found).split())
+
+
+@pytest.mark.parametrize(
+    "effects",
+    [
+        [E.DryJointFriction(joint=1, coulomb=2.0), E.DryJointFriction(joint=2, coulomb=1.0)],
+        [E.JointStop(joint=2, range=(-0.5, 0.5), restitution=0.5)],
+    ],
+    ids=["rubbed", "stopped"],
+)
+def test_scenes_in_pieces_are_measured_too(effects):
+    found = pc.accuracy_cost(BOOK.replace(effects=effects), [0.7, 1.0], 0, (0, 3), **QUICK)
+    assert found.best(1e-5).error < 1e-5
+    assert found.t_span == (0, 3)
+
+
+def test_a_stiff_scene_is_measured_and_what_takes_too_long_says_so():
+    scene = BOOK.replace(effects=[E.ViscousJoint(joint=2, damping=1e7)])
+    found = pc.accuracy_cost(scene, [0.7, 1.0], 0, (0, 5), **QUICK, time_limit=2.0)
+    failed = {p.method: p for p in found if p.failure}
+    assert "took more than" in failed["dopri5"].failure
+    assert failed["dopri5"].error == math.inf
+    assert len([p for p in found if p.method == "dopri5"]) == 1  # the tighter ones take longer
+    assert found.best(1e-5).method in ("radau5", *PAIRS)
+    assert {"radau5", *PAIRS} <= {p.method for p in found if not p.failure}
+    assert any("both references are radau5" in remark for remark in found.remarks)
+    assert json.loads(found.to_json())["points"][0]["error"] is None
+
+
+def test_interrupted_it_hands_over_what_it_has(book):
+    def report(fraction):
+        if fraction > limit:
+            raise KeyboardInterrupt
+
+    limit = 0.45
+    with pytest.raises(KeyboardInterrupt) as caught:
+        pc.accuracy_cost(BOOK, *START, progress=report, repeats=3)
+    found = caught.value.accuracy_cost
+    assert 0 < len(found) < len(book)
+    assert "interrupted" in found.remarks[-1]
+    limit = -1.0
+    with pytest.raises(KeyboardInterrupt) as caught:
+        pc.accuracy_cost(BOOK, *START, progress=report)
+    assert not hasattr(caught.value, "accuracy_cost")
+
+
+def test_progress_only_grows():
+    seen = []
+    pc.accuracy_cost(BOOK, *START, **QUICK, methods="dopri5", progress=seen.append)
+    assert seen == sorted(seen)
+    assert (seen[0], seen[-1]) == (0.0, 1.0)
+
+
+def test_what_looks_wrong_is_said_once():
+    with pytest.warns(pc.PendcoreWarning) as caught:
+        pc.accuracy_cost(BOOK, [45, 60], 0, (0, 1), **QUICK, methods="dopri5")
+    assert len(caught) == 1
+
+
+def test_the_command_writes_table_figure_and_json(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "swing.toml").write_text(pc.Case.textbook().to_toml())
+    few = ["--methods", "dopri5,DOP853", "--repeats", "2"]
+    assert main(["cost", "swing.toml", *few, "--error", "1e-4"]) == 0
+    printed = capsys.readouterr().out
+    assert (tmp_path / "out/swing/cost.txt").read_text() == printed
+    assert "for 0.0001 of the length over 5 s take" in " ".join(printed.split())
+    assert (tmp_path / "out/swing/cost.png").stat().st_size > 10_000
+    assert main(["cost", "-o", "here", *few, "--json"]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert printed == json.loads((tmp_path / "here/cost.json").read_text())
+    assert {p["method"] for p in printed["points"]} == {"dopri5", "dop853"}
+    assert main(["cost", "--methods", "euler"]) == 2
+    assert "euler" in capsys.readouterr().err
+    for error in ("0", "-1", "nan"):
+        assert main(["cost", "--error", error]) == 2
+        assert "--error = " in capsys.readouterr().err
+    assert not (tmp_path / "out/textbook").exists()

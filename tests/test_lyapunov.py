@@ -1,0 +1,306 @@
+"""Lyapunov exponents: closed forms, what they must add up to, and neighbours in many digits."""
+
+from __future__ import annotations
+
+import pickle
+from collections.abc import Callable
+
+import numpy as np
+import pendcore as pc
+import pytest
+from chaotic_starts import EACH, T_END, ChaoticStart, chaotic_starts
+from numpy.typing import NDArray
+
+E = pc.effects
+GRAVITY = 9.807
+FAST, SLOW = (np.sqrt(GRAVITY * (3 + sign * 6 / np.sqrt(7))) for sign in (1, -1))
+"""Rates of growth of two equal rods of 1 m that stand upright; hanging, frequencies."""
+
+
+def rods(n: int, *effects: pc.effects.Effect, gravity: float = GRAVITY) -> pc.Scene:
+    return pc.Scene(
+        links=[pc.Link(mass=1.0, length=1.0)] * n, gravity=gravity, effects=list(effects)
+    )
+
+
+def growth_of(linear: NDArray[np.float64], t: float) -> NDArray[np.float64]:
+    """The ln |R_ii| of exp(linear t) = Q R, which is what the exponents sum up."""
+    values, vectors = np.linalg.eig(linear)
+    flow = (vectors * np.exp(values * t)) @ np.linalg.inv(vectors)
+    return np.log(np.abs(np.diagonal(np.linalg.qr(flow.real)[1])))
+
+
+def linearised(stiffness: NDArray[np.float64]) -> NDArray[np.float64]:
+    n = len(stiffness)
+    return np.block([[np.zeros((n, n)), np.eye(n)], [stiffness, np.zeros((n, n))]])
+
+
+# M = ((4/3, 1/2), (1/2, 1/3)) and V = -g (3/2 sin q_1 + 1/2 sin q_2) near q = -pi/2
+STANDING = linearised(
+    np.linalg.solve([[4 / 3, 1 / 2], [1 / 2, 1 / 3]], GRAVITY * np.diag([3 / 2, 1 / 2]))
+)
+
+
+def test_upright_the_exponents_are_the_roots_of_the_textbook() -> None:
+    found = pc.lyapunov(rods(2), -np.pi / 2, t_span=(0, 2.0), transient=1.5)
+    assert found.exponents == pytest.approx([FAST, SLOW, -SLOW, -FAST], rel=2e-3)
+    roots = np.sort(np.linalg.eigvals(STANDING))[::-1]
+    assert roots == pytest.approx([FAST, SLOW, -SLOW, -FAST], rel=1e-12)
+
+
+@pytest.mark.parametrize(("angle", "sign"), [(-np.pi / 2, 1), (np.pi / 2, -1)])
+def test_at_an_equilibrium_the_growth_is_that_of_the_matrix_exponential(
+    angle: float, sign: int
+) -> None:
+    found = pc.lyapunov(rods(2), angle, t_span=(0, 0.8), t_eval=[0.2, 0.5, 0.8], rtol=1e-11)
+    linear = STANDING.copy()
+    linear[2:] *= sign
+    for t, growth in zip(found.t[1:], found.growth[1:], strict=True):
+        assert growth == pytest.approx(growth_of(linear, t), abs=1e-8)
+
+
+def test_a_single_pendulum_is_not_chaotic() -> None:
+    found = pc.lyapunov(rods(1), 0.3, t_span=(0, 1000))
+    t = found.t[1:]
+    # Neighbours of another period part in proportion to time: ln(1 + c t)/t, and no more.
+    assert (np.abs(found.finite_time[1:, 0]) <= np.log(1 + 10 * t) / t).all()
+    assert found.exponents.sum() == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_small_oscillation_grows_by_nothing() -> None:
+    found = pc.lyapunov(rods(2), [np.pi / 2 + 1e-6, np.pi / 2 - 1e-6], t_span=(0, 200))
+    # A change of angle becomes one of rate, FAST times as large in rad/s, and so back.
+    assert np.abs(found.growth).max() < np.log(2 * FAST)
+    assert np.abs(found.exponents).max() < 0.02
+
+
+@pytest.mark.parametrize("n", [2, 3])
+def test_without_losses_the_spectrum_is_symmetric_and_adds_up_to_nothing(n: int) -> None:
+    scene = rods(n)
+    found = pc.lyapunov(scene, np.linspace(-2.0, -1.0, n), t_span=(0, 150))
+    assert found.largest > 0.5
+    # Liouville: det Phi = det M(start)/det M(end) in angles and rates, as momenta are M qd.
+    _, log_det = np.linalg.slogdet(scene.mass_matrix(found.q))
+    assert found.growth.sum(axis=1) == pytest.approx(log_det[0] - log_det, abs=1e-6)
+    pairs = found.exponents + found.exponents[::-1]
+    assert np.abs(pairs).max() < 8 / 150  # finite time: a number over t
+    assert np.abs(found.exponents[n - 1 : n + 1]).max() < 12 / 150  # along the flow and across
+
+
+def test_with_damping_a_single_pendulum_loses_b_over_j() -> None:
+    scene = rods(1, E.ViscousJoint(joint=1, damping=0.2))
+    found = pc.lyapunov(scene, 0.3, t_span=(0, 30), rtol=1e-11)
+    assert found.growth.sum(axis=1) == pytest.approx(-0.2 / (1 / 3) * found.t, abs=1e-8)
+
+
+def test_with_damping_the_exponents_add_up_to_it() -> None:
+    scene = rods(2, E.ViscousJoint(joint=1, damping=0.05), E.ViscousJoint(joint=2, damping=0.03))
+    times = np.linspace(0, 10, 4001)
+    found = pc.lyapunov(scene, [-2.0, -1.0], t_span=(0, 10), t_eval=times, rtol=1e-11)
+    damping = np.array([[0.08, -0.03], [-0.03, 0.03]])  # tau = -b phid, on absolute angles
+    mass = scene.mass_matrix(found.q)
+    loss = np.trace(np.linalg.solve(mass, np.broadcast_to(damping, mass.shape)), axis1=1, axis2=2)
+    h = times[1]
+    simpson = h / 3 * (loss[0] + 4 * loss[1::2].sum() + 2 * loss[2:-1:2].sum() + loss[-1])
+    _, log_det = np.linalg.slogdet(mass)
+    assert found.growth[-1].sum() == pytest.approx(log_det[0] - log_det[-1] - simpson, abs=1e-8)
+
+
+def growth(case: ChaoticStart, moved: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Along the run that begins at q0 and qd0 + moved, at each half second; tight tolerances."""
+    q0, qd0 = np.split(np.array([*case.q0, *case.qd0]) + moved, 2)
+    times = np.arange(1, len(case.growth) + 1) / 2
+    return pc.lyapunov(
+        case.scene, q0, qd0, (0, T_END), count=1, t_eval=times, rtol=1e-14, atol=1e-16
+    ).growth[1:, 0]
+
+
+def spread_of_roundings(case: ChaoticStart) -> NDArray[np.float64]:
+    """How far the roundings of the run's steps, a random walk, move its growth at those times.
+
+    A component is rounded by up to EPS/2 of its size, and what a change of it at the start does is
+    measured. One at a later time s has e^growth(s) less to grow by.
+    """
+    small = 1e-12
+    changes = small * np.eye(2 * len(case.q0))
+    slopes = [np.abs(growth(case, one) - growth(case, -one)) / (2 * small) for one in changes]
+    at_most = np.maximum.accumulate(slopes, axis=1)
+    run = pc.simulate(
+        case.scene, case.q0, case.qd0, (0, T_END), method="dop853", rtol=1e-14, atol=1e-16
+    )
+    of_components = np.finfo(float).eps / 2 / np.sqrt(3) * np.abs(run.y).max(axis=1)
+    of_a_step = np.linalg.norm(of_components[:, np.newaxis] * at_most, axis=0)
+    left = np.exp(-np.array([0.0, *case.growth[:-1]]))
+    steps = run.stats.accepted / len(left)
+    spread: NDArray[np.float64] = of_a_step * np.sqrt(steps * np.cumsum(left**2))
+    return spread
+
+
+@pytest.mark.parametrize("case", chaotic_starts(), ids=lambda case: str(case.q0))
+def test_a_neighbour_in_many_digits_parts_at_that_rate(case: ChaoticStart) -> None:
+    """To the twelve decimals of the record, and what rounding makes of the run itself."""
+    assert len(case.growth) == 2 * T_END
+    assert EACH % 2 == 0
+    exact = np.array(case.growth)
+    known = np.maximum.accumulate(exact) < 20
+    assert known.sum() > 6
+    off = np.abs(growth(case, np.zeros(2 * len(case.q0))) - exact)
+    allowed = 0.51e-12 + 3 * spread_of_roundings(case)
+    assert (off < allowed)[known].all()
+
+
+def differences(scene: pc.Scene, q0: list[float], t: float) -> float:
+    """The ln of how much longer a change of q_1 has become, from two runs."""
+    small = 1e-6
+    ends = [
+        pc.simulate(scene, [q0[0] + change, *q0[1:]], 0, (0, t), rtol=1e-12, atol=1e-14).y[:, -1]
+        for change in (small, -small)
+    ]
+    return float(np.log(np.linalg.norm(ends[0] - ends[1]) / (2 * small)))
+
+
+def spring(t: float, q: NDArray[np.float64], qd: NDArray[np.float64]) -> list[float]:
+    return [-2.0 * np.sin(q[0]), -0.1 * qd[1] ** 3]
+
+
+SMOOTH: dict[str, Callable[[], list[pc.effects.Effect]]] = {
+    "springs": lambda: [E.TorsionalSpring(joint=2, stiffness=3.0), E.RotorInertia(1, 0.2)],
+    "drag": lambda: [E.RodDrag(link=2, drag_coefficient=1.2, diameter=0.3, wind=(2.0, 0.0))],
+    "three damping terms": lambda: [E.ViscousJoint(1, 0.1, damping2=0.2, damping3=0.1)],
+    "clipped": lambda: [E.Motor(joint=2, pd=E.PD(kp=30.0, kd=1.0, reference=0.5), limit=4.0)],
+    "table": lambda: [E.Motor(joint=1, table=E.Table([0.0, 0.7, 2.0], [0.0, 5.0, -3.0]))],
+    "driven": lambda: [E.DrivenPivot(y=E.Sinusoid(amplitude=0.1, angular_frequency=9.0))],
+    "spline": lambda: [
+        E.DrivenPivot(spline=E.Spline([0.0, 1.0, 2.0], [0.0, 0.1, 0.0], [0.0, 0.1, 0.3]))
+    ],
+    "payload": lambda: [E.Payload(mass=0.5, inertia=0.02)],
+    "user": lambda: [E.User(spring)],
+}
+
+
+@pytest.mark.parametrize("name", SMOOTH)
+@pytest.mark.parametrize("n", [2, 3])
+def test_under_effects_neighbours_part_at_that_rate(name: str, n: int) -> None:
+    if (name, n) == ("user", 3):
+        pytest.skip("its law is of two links")
+    scene, q0 = rods(n, *SMOOTH[name]()), [0.3, 1.1, 0.7][:n]
+    found = pc.lyapunov(scene, q0, t_span=(0, 2.0), rtol=1e-11)
+    assert found.growth[-1, 0] == pytest.approx(differences(scene, q0, 2.0), abs=2e-5)
+    alone = pc.lyapunov(scene, q0, t_span=(0, 2.0), rtol=1e-11, count=1)
+    assert alone.growth.shape == (201, 1)
+    assert alone.growth[-1, 0] == pytest.approx(found.growth[-1, 0], abs=1e-7)
+
+
+def test_what_is_locked_has_no_exponents() -> None:
+    locked = pc.lyapunov(rods(2, E.Lock(joint=2)), 0.3, t_span=(0, 20))
+    one = pc.Scene(links=[pc.Link(mass=2.0, length=2.0)], gravity=GRAVITY)
+    assert locked.growth == pytest.approx(pc.lyapunov(one, 0.3, t_span=(0, 20)).growth, abs=1e-7)
+    held = rods(2, E.Lock(joint=1))
+    assert pc.lyapunov(held, [0.2, 0.3], t_span=(0, 1)).exponents.shape == (2,)
+    still = rods(2, E.Lock(joint=1), E.Lock(joint=2))
+    none = pc.lyapunov(still, [0.2, 0.3], t_span=(0, 1))
+    assert none.exponents.shape == (0,)
+    assert np.isnan(none.largest)
+    assert none.time == none.seconds_a_digit == np.inf
+    with pytest.raises(ValueError, match="count: must be left out: nothing of the scene can move"):
+        pc.lyapunov(still, [0.2, 0.3], t_span=(0, 1), count=1)
+
+
+@pytest.mark.parametrize(
+    ("effect", "name"),
+    [
+        (E.DryJointFriction(joint=2, coulomb=0.1), "dry_joint_friction"),
+        (E.JointStop(joint=2, range=(-1.0, 1.0)), "joint_stop"),
+    ],
+)
+def test_effects_that_jump_are_refused_by_name(effect: pc.effects.Effect, name: str) -> None:
+    scene = rods(2, E.ViscousJoint(joint=1, damping=0.1), effect)
+    with pytest.raises(ValueError, match=rf"effect 2 \({name}\): jumps.*dry friction and stops"):
+        pc.lyapunov(scene, [1.0, 1.0], t_span=(0, 1))
+
+
+def test_backward_the_spectrum_changes_its_sign() -> None:
+    there = pc.lyapunov(rods(2), [-2.0, -1.0], t_span=(0, 5), count=4)
+    back = pc.lyapunov(rods(2), there.q[-1], there.qd[-1], (5, 0))
+    assert back.q[-1] == pytest.approx([-2.0, -1.0], abs=1e-5)
+    assert back.growth[-1].sum() == pytest.approx(-there.growth[-1].sum(), abs=1e-5)
+    assert back.growth[-1, 0] > 1.0
+
+
+def test_growth_counts_from_the_end_of_the_transient() -> None:
+    times = [2.0, 3.0, 5.0]
+    whole = pc.lyapunov(rods(2), [-2.0, -1.0], t_span=(0, 5), t_eval=times)
+    later = pc.lyapunov(rods(2), [-2.0, -1.0], t_span=(0, 5), transient=2.0, t_eval=times[1:])
+    assert whole.t.tolist() == [0.0, *times]
+    assert later.t.tolist() == times
+    assert later.growth == pytest.approx(whole.growth[1:] - whole.growth[1], abs=1e-12)
+    assert later.exponents == pytest.approx(np.sort(later.growth[-1] / 3)[::-1], rel=1e-14)
+    assert np.isnan(later.finite_time[0]).all()
+
+
+def test_of_a_solution() -> None:
+    sol = pc.simulate(rods(2), [-2.0, -1.0], 0, (0, 10), method="dop853")
+    found = sol.lyapunov(count=2)
+    assert found.growth == pytest.approx(
+        pc.lyapunov(sol.scene, [-2.0, -1.0], 0, (0, 10), count=2).growth, abs=1e-12
+    )
+    assert found.q[20] == pytest.approx(sol(found.t[20])[:2], abs=1e-6)
+    assert found.time == 1 / found.largest
+    assert found.seconds_a_digit == pytest.approx(np.log(10) / found.largest)
+    assert pickle.loads(pickle.dumps(found)).growth.tolist() == found.growth.tolist()
+
+
+@pytest.mark.parametrize(
+    ("bad", "message"),
+    [
+        ({"count": 0}, "count: must be 1 to 4, twice the degrees of freedom"),
+        ({"count": 5}, "count: must be 1 to 4"),
+        ({"count": 1.5}, r"count = 1.5: must be a whole number"),
+        ({"rtol": -1.0}, "rtol = -1.0: must be finite and > 0"),
+        ({"transient": 11.0}, r"transient = 11.0: must be 0 to 10.0 \(s\)"),
+        ({"t_eval": [3.0, 2.0]}, "t_eval: must rise from 0.0 s to the end"),
+        ({"t_eval": [3.0, 12.0]}, "t_eval: must rise from 0.0 s to the end"),
+        ({"coumt": 1}, "did you mean 'count'"),
+        ({"t_span": (0,)}, r"t_span = \(0,\): must be \(t_start, t_end\), in s"),
+        ({"t_span": (0, np.nan)}, r"t_span\[1\] = nan: must be finite \(s\)"),
+        ({"t_span": (-np.inf, 0)}, r"t_span\[0\] = -inf: must be finite \(s\)"),
+        ({"t_span": (-1.7e308, 1.7e308)}, "t_span = .*: is inf s long: must be below"),
+        ({"t_span": np.zeros((1, 2))}, "t_span = array.*must be"),
+        ({"time_limit": np.nan}, r"time_limit = nan: must be > 0 \(s\)"),
+    ],
+)
+def test_bad_arguments_are_named(bad: dict[str, object], message: str) -> None:
+    arguments: dict[str, object] = {"t_span": (0, 10), **bad}
+    with pytest.raises((ValueError, TypeError), match=message):
+        pc.lyapunov(rods(2), [1.0, 1.0], **arguments)  # type: ignore[arg-type]
+
+
+def test_what_was_found_so_far_is_not_lost() -> None:
+    class Enough(Exception):
+        pass
+
+    def stop(fraction: float) -> None:
+        if fraction > 0.05:
+            raise Enough
+
+    times = np.linspace(0, 3000, 30001)
+    with pytest.raises(Enough) as raised:
+        pc.lyapunov(rods(2), [-2.0, -1.0], t_span=(0, 3000), t_eval=times, progress=stop)
+    so_far: pc.LyapunovExponents = raised.value.exponents  # type: ignore[attr-defined]
+    assert so_far.status == "callback_error"
+    assert 100 < len(so_far.t) == len(so_far.growth) < len(times)
+    assert so_far.largest > 0.3
+    limited = pc.lyapunov(rods(2), [-2.0, -1.0], t_span=(0, 3000), max_steps=1000)
+    assert (limited.status, limited.success) == ("max_steps", False)
+    assert limited.stats.accepted + limited.stats.rejected == 1000
+
+
+def test_the_finite_time_exponents_are_drawn() -> None:
+    import matplotlib.pyplot as plt
+
+    found = pc.lyapunov(rods(2), [-2.0, -1.0], t_span=(0, 5))
+    lines = found.plot()
+    assert len(lines) == 4
+    assert lines[0].get_ydata()[-1] == found.finite_time[-1, 0]
+    assert lines[0].axes.get_ylabel() == "finite-time Lyapunov exponents (1/s)"
+    plt.close("all")
