@@ -200,7 +200,37 @@ def test_a_run_that_fails_is_returned_as_ever():
     scene = pc.Scene.textbook().replace(effects=[E.User(lambda t, q, qd: [np.nan, 0.0])])
     sol = pc.simulate(scene, *START, error=1e-3)
     assert sol.status == "non_finite"
-    assert sol.accuracy is None
+    assert "not verified: the run ended early" in str(sol.accuracy)
+
+
+def test_a_run_that_the_cap_on_steps_ends_is_labelled():
+    sol = pc.simulate(BOOK, *START, error=1e-6, max_steps=30)
+    assert sol.status == "max_steps"
+    assert not sol.accuracy.reached
+    assert "not verified: the run ended early" in str(sol.accuracy)
+
+
+@pytest.mark.parametrize("max_step", [0.1, 0.02, 0.01])
+def test_steps_that_are_not_set_by_the_tolerance_are_verified_by_other_steps(max_step):
+    """A tighter run of the same method in the same steps would say that there is no error."""
+    start = ([-0.6, -0.4], 0, (0, 5))
+    times = np.linspace(0, 5, 101)
+    sol = pc.simulate(BOOK, *start, t_eval=times, error=1e-6, max_step=max_step)
+    truth = pc.simulate(BOOK, *start, t_eval=times, method="dop853", rtol=1e-13, atol=1e-15)
+    apart = np.linalg.norm(sol.positions() - truth.positions(), axis=-1).max() / 2
+    assert sol.accuracy.reached
+    assert apart <= 3e-6
+    assert apart <= 3 * sol.accuracy.achieved
+
+
+def test_a_short_span_is_verified_by_other_steps():
+    sol = pc.simulate(BOOK, *START[:2], (0, 0.02), error=1e-10)
+    assert sol.accuracy.achieved > 0
+
+
+def test_a_step_of_ones_own_that_is_too_long_is_named():
+    with pytest.raises(pc.AccuracyError, match=r"first_step set the steps.*leave it out"):
+        pc.simulate(BOOK, *START[:2], (0, 0.02), error=1e-10, first_step=0.02)
 
 
 @pytest.mark.parametrize("times", [[3.0, 4.0], [0.2, 4.0]], ids=str)

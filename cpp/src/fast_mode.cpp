@@ -130,7 +130,7 @@ std::optional<FastMode> fast_mode(const Scene& scene, const EquationsOfMotion& e
 
 std::string remark_on_steps(const Scene& scene, const EquationsOfMotion& equations,
                             const Position& position, const MethodInfo& method,
-                            const MethodInfo& in_force, double t0) {
+                            const MethodInfo& in_force, bool fixed_step, double t0) {
   std::string remark;
   const Statistics& statistics = position.statistics;
   const std::string since = text(position.stiff_since) + " s";
@@ -142,7 +142,8 @@ std::string remark_on_steps(const Scene& scene, const EquationsOfMotion& equatio
   } else if (statistics.stiff) {
     remark += "; from t = " + since +
               " on the steps are limited by stability, not by accuracy: the problem is stiff: "
-              "method=\"radau5\" takes longer ones, and \"auto\" changes over by itself";
+              "method=\"radau5\" takes longer ones, and " +
+              (fixed_step ? "\"dopri5-radau5\"" : "\"auto\"") + " changes over by itself";
   }
   if (statistics.njev > 0) {
     for (std::size_t i = 0; i < scene.effects.size(); ++i) {

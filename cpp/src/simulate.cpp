@@ -174,7 +174,7 @@ void run(const Scene& scene, Solution& solution, double t_end, Limits limits, Be
   solution.message = ending_message(ending, scene, solution, position,
                                     switching ? switching->remark() : "", recorder.ended_by());
   solution.message += remark_on_steps(scene, equations, position, find_method(options.method),
-                                      stepper->info(), solution.t0);
+                                      stepper->info(), options.step.has_value(), solution.t0);
   solution.error = ending.error;
   if (options.store == Store::end) {
     solution.t = {solution.t_reached};

@@ -37,6 +37,6 @@ std::optional<FastMode> fast_mode(const Scene& scene, const EquationsOfMotion& e
 /// changed its method, to the one in force, or did not; whose derivatives are differences.
 std::string remark_on_steps(const Scene& scene, const EquationsOfMotion& equations,
                             const Position& position, const MethodInfo& method,
-                            const MethodInfo& in_force, double t0);
+                            const MethodInfo& in_force, bool fixed_step, double t0);
 
 }  // namespace pendcore

@@ -122,7 +122,9 @@ class _Search:
         trusted = True
         for _ in range(MOST_ROUNDS):
             if not made.solution.success:
-                return made.solution
+                return self.unverified(
+                    made.solution, f"the run ended early: {made.solution.message}"
+                )
             if verifying is None:
                 verifying = self.verification(made)
             judged = made, verifying
@@ -284,6 +286,8 @@ class _Search:
         )
         if made.rtol > TIGHTEST:
             why = "the error does not follow the tolerances: is a law of your own not smooth?"
+            if given := self.purse.given_steps():
+                why = f"{given} set the steps, not the tolerances: leave it out"
         elif found.achieved > HOPELESS:
             why = "neighbouring motions part too fast for double precision (chaos)"
         else:

@@ -24,6 +24,13 @@ TIGHTER = 4.0
 
 Of another method too: what it reaches at a tolerance is known within a decade.
 """
+SHORTER = 0.6
+"""How long the steps of the same method are at most, where the tolerance does not set them.
+
+The error of order five and more is then a twelfth.
+"""
+FEW_STEPS = 8
+"""So many steps it may take until they are as long as the tolerance lets them be."""
 # How much of what is left on the bar a run of each purpose moves it.
 _ADVANCE = {"choose": 0.05, "run": 0.4, "verify": 0.9}
 
@@ -91,7 +98,21 @@ class Purse:
         start = self.start._replace(t_end=made.solution._run.t_reached)
         steps = 10 * self.options["max_steps"]
         options = {"t_eval": self._kept_times(made), "max_steps": steps}
+        if method == made.method:
+            options["max_step"] = self._other_steps(made)
         return self._make("verify", start, method, rtol, options)
+
+    def _other_steps(self, made: Made) -> float:
+        """Return a max_step, s, with which a tighter run of the same method takes other steps.
+
+        It does so by itself where tolerances set most steps, but not where max_step does, or points
+        at which laws change, or where a short run is over before its steps have grown.
+        """
+        stats = made.stats
+        if stats.accepted >= FEW_STEPS and 2 * stats.limited_by_tolerance > stats.accepted:
+            return float(self.options["max_step"])
+        span = abs(made.solution._run.t_reached - self.start.t_start)
+        return SHORTER * span / stats.accepted if span else inf
 
     def comparable(self, made: Made, other: Made) -> bool:
         """Whether the other run says something of the one: it is tighter, and has its times."""
@@ -130,6 +151,13 @@ class Purse:
     def is_dense(self) -> bool:
         """Whether what is asked for is a run that can be compared at any time."""
         return self.options["t_eval"] is None and self.options["store"] in (None, "dense")
+
+    def given_steps(self) -> str:
+        """Return the names of what was asked for and sets steps, if anything was."""
+        given = (
+            name for name in ("first_step", "max_step") if self.options[name] not in (None, inf)
+        )
+        return " and ".join(given)
 
     def seconds(self) -> float:
         """Return the time since the beginning, s."""
