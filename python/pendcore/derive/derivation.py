@@ -9,7 +9,7 @@ from sympy import Expr, Integer, Matrix, Symbol
 
 from pendcore.derive.chain import Chain, Vector
 from pendcore.derive.energy import Energy
-from pendcore.derive.laws import law_of
+from pendcore.derive.laws import laws_of
 from pendcore.derive.motion import Motion
 from pendcore.derive.narration import steps
 from pendcore.derive.newton_euler import NewtonEuler
@@ -54,7 +54,7 @@ class Derivation:
         self.scene = scene
         self.n = len(scene.links)
         self.symbols = Notation(scene)
-        laws = [law_of(effect, self.symbols) for effect in scene.effects]
+        laws = laws_of(scene.effects, self.symbols)
         moved = [pivot for law in laws if (pivot := law.pivot()) is not None]
         x, y = (sum((pivot[k] for pivot in moved), Integer(0)) for k in (0, 1))
         self.chain = Chain(self.symbols, (x, y))

@@ -10,6 +10,15 @@ from pendcore.derive.chain import Chain, Vector
 from pendcore.derive.notation import Notation
 
 
+class NotSmooth(Exception):
+    """The effect has no law that is smooth: the reason, and what to do instead."""
+
+    def __init__(self, reason: str, remedy: str) -> None:
+        super().__init__(f"{reason}: {remedy}")
+        self.reason = reason
+        self.remedy = remedy
+
+
 class LinkLoad(NamedTuple):
     """A force on a link, and its moment.
 
