@@ -8,11 +8,22 @@ keeps every derivative an ordinary partial one; LaTeX shows them with dots.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
-import sympy
 from sympy import Expr, Rational, Symbol
-from sympy.printing.latex import latex as sympy_latex
 
+from pendcore.derive.writing import (
+    ACCELERATION,
+    ANGLE,
+    CONSTANT,
+    GRAVITY,
+    LENGTH,
+    MASS,
+    RATE,
+    UNKNOWN,
+    Latex,
+    Text,
+)
 from pendcore.scene import Scene
 
 
@@ -62,6 +73,7 @@ class Notation:
         self.n = n = len(scene.links)
         self.latex_names: dict[Symbol, str] = {}
         self._parameters: list[Parameter] = []
+        self._ranks: dict[Symbol, tuple[int, int]] = {}
         self.t = self.symbol("t", "t")
         links = range(1, n + 1)
         self.q = tuple(self.symbol(f"q{i}", f"q_{{{i}}}") for i in links)
@@ -92,6 +104,14 @@ class Notation:
                 inertias.append(Rational(1, 12) * mass * length**2)
         self.centers, self.inertias = tuple(centers), tuple(inertias)
         self.gravity = self.parameter("g", "g", scene.gravity, "m/s^2", "acceleration of gravity")
+        self._ranks |= {self.t: (ANGLE, 0), self.gravity: (GRAVITY, 0)}
+        for kind, row in (
+            (ANGLE, self.q), (RATE, self.qd), (ACCELERATION, self.qdd),
+            (MASS, self.masses), (MASS, self.inertias),
+            (LENGTH, self.lengths), (LENGTH, self.centers),
+        ):  # fmt: skip
+            for link, symbol in enumerate(row, start=1):
+                self._ranks[symbol] = (kind, link)
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
@@ -120,16 +140,17 @@ class Notation:
             name, latex = f"{name}__{count}", f"{{{latex}}}^{{({count})}}"
         symbol = self.symbol(name, latex)
         self._parameters.append(Parameter(symbol, float(value), unit, meaning))
+        self._ranks.setdefault(symbol, (CONSTANT, 0))
         return symbol
 
-    def latex(self, expression: Expr) -> str:
-        """Write an expression in LaTeX, functions of a single symbol without brackets."""
-        return str(
-            sympy_latex(
-                expression, symbol_names=self.latex_names, fold_func_brackets=True, mul_symbol=r"\,"
-            )
-        )
+    def rank(self, symbol: Symbol) -> tuple[int, int]:
+        """Return the kind of a symbol and its link: what orders factors and terms."""
+        return self._ranks.get(symbol, (UNKNOWN, 0))
 
-    def text(self, expression: Expr) -> str:
-        """Write an expression in a line of text."""
-        return str(sympy.sstr(expression))
+    def latex(self, expression: Any) -> str:
+        """Write an expression in LaTeX."""
+        return Latex(self.rank, self.latex_names).write(expression)
+
+    def text(self, expression: Any) -> str:
+        """Write an expression in a line of text that Python and SymPy read."""
+        return Text(self.rank, self.latex_names).write(expression)

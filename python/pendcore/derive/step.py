@@ -47,11 +47,16 @@ class Equation:
 
     def __str__(self) -> str:
         number = f"    ({self.number})" if self.number else ""
-        return f"{self.lhs} = {self.rhs}{number}"
+        return f"{self._text(self.lhs)} = {self._text(self.rhs)}{number}"
 
     def latex(self) -> str:
         """Return both sides in LaTeX, without the number: ``lhs &= rhs``."""
         return f"{self.side_latex(self.lhs)} &= {self.side_latex(self.rhs)}"
+
+    def _text(self, side: Any) -> str:
+        if isinstance(side, Formula) or self.notation is None:
+            return str(side)
+        return self.notation.text(side)
 
     def side_latex(self, side: Any) -> str:
         """Return one side in LaTeX."""
