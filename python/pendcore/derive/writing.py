@@ -72,9 +72,15 @@ class Language:
     def quotient(self, over: list[str], under: list[str], rest: list[str]) -> str:
         raise NotImplementedError
 
+    def terms(self, expression: Expr) -> list[Expr]:
+        """Return the terms of a sum in the order in which they are written."""
+        if not expression.is_Add:
+            return [expression]
+        return sorted(expression.args, key=self._place_in_sum)
+
     def _sum(self, expression: Expr) -> str:
         written = ""
-        for term in sorted(expression.args, key=self._place_in_sum):
+        for term in self.terms(expression):
             negative, text = self._term(term)
             if written:
                 written += f" {'-' if negative else '+'} {text}"

@@ -7,13 +7,12 @@ expression itself: a term that is wider than a line is opened, and the sum in it
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
-from sympy import Add, Expr, Mul, fraction
+from sympy import Expr, Mul, fraction
 
-Write = Callable[[Expr], str]
-"""How an expression is written in LaTeX."""
+from pendcore.derive.notation import Notation
 
 LINE = 35.0
 """Width of a line of a page, in the letter m's of its font."""
@@ -56,7 +55,7 @@ def _width(tokens: Iterator[tuple[Any, ...]], *, one: bool = False) -> float:
     return total
 
 
-def rows(left: str, right: Expr | str, write: Write, room: float = LINE) -> list[str]:
+def rows(left: str, right: Expr | str, notation: Notation, room: float = LINE) -> list[str]:
     """Return left = right as rows of LaTeX's ``aligned``, as many as it takes.
 
     Parameters
@@ -65,14 +64,14 @@ def rows(left: str, right: Expr | str, write: Write, room: float = LINE) -> list
         LaTeX of the left side.
     right : sympy.Expr or str
         The right side; LaTeX is taken as it is, on one row.
-    write : callable
-        How an expression is written in LaTeX.
+    notation : Notation
+        How an expression is written in LaTeX, and in which order.
     room : float
         Width of a line, in the letter m's of its font.
     """
-    pieces = [right] if isinstance(right, str) else _pieces(right, write, room - 4.0)
+    pieces = [right] if isinstance(right, str) else _pieces(right, notation, room - 4.0)
     if not isinstance(right, str):
-        whole = write(right)
+        whole = notation.latex(right)
         if width(whole) + width(left) + 1.4 <= room:
             pieces = [whole]
     indent = width(left) + 1.5
@@ -98,10 +97,11 @@ def aligned(lines: list[str]) -> str:
     return f"\\begin{{aligned}}\n{body}\n\\end{{aligned}}"
 
 
-def _pieces(expression: Expr, write: Write, room: float, depth: int = 0) -> list[str]:
+def _pieces(expression: Expr, notation: Notation, room: float, depth: int = 0) -> list[str]:
     """Return what must stay together, in order; signs stand at the beginning."""
+    write = notation.latex
     if expression.is_Add:
-        return _pieces_of_sum(expression, write, room, depth)
+        return _pieces_of_sum(expression, notation, room, depth)
     if width(write(expression)) <= room:
         return [write(expression)]
     negative = expression.could_extract_minus_sign()
@@ -117,27 +117,19 @@ def _pieces(expression: Expr, write: Write, room: float, depth: int = 0) -> list
         text = write(rest)
         before += rf"\left({text}\right)" if rest.is_Add else text
     opened, closed = (r"\Bigl[", r"\Bigr]") if depth % 2 == 0 else (r"\bigl(", r"\bigr)")
-    inner = _pieces_of_sum(longest, write, room - 1.0, depth + 1)
+    inner = _pieces_of_sum(longest, notation, room - 1.0, depth + 1)
     inner[0] = f"{before} {opened} {inner[0]}"
     inner[-1] = f"{inner[-1]} {closed}"
     return inner
 
 
-def _pieces_of_sum(total: Expr, write: Write, room: float, depth: int) -> list[str]:
+def _pieces_of_sum(total: Expr, notation: Notation, room: float, depth: int) -> list[str]:
     pieces: list[str] = []
-    for term in terms(total, write):
-        own = _pieces(term, write, room, depth)
+    for term in notation.terms(total):
+        own = _pieces(term, notation, room, depth)
         if pieces and not own[0].startswith("-"):
             own[0] = f"+ {own[0]}"
         elif pieces:
             own[0] = f"- {own[0][1:].lstrip()}"
         pieces += own
     return pieces
-
-
-def terms(total: Expr, write: Write) -> list[Expr]:
-    """Return the terms of a sum in an order that reads well: positive ones do not matter, names do.
-
-    It is the order in which the whole sum would be written.
-    """
-    return list(total.as_ordered_terms()) if isinstance(total, Add) else [total]

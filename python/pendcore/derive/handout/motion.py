@@ -109,9 +109,9 @@ def energy_check(
     """Yield the energies in symbols, and how well the run kept them."""
     yield Heading(2, "Check by the energy")
     yield Paragraph("Kinetic and potential energy, the latter zero at the height of the origin, are")
-    write, lines = derivation.symbols.latex, []
+    lines: list[str] = []
     for name, value in (("T", derivation.kinetic_energy), ("V", derivation.potential_energy)):
-        lines += line_breaks.rows(name, value, write)
+        lines += line_breaks.rows(name, value, derivation.symbols)
     yield Displayed(line_breaks.aligned(lines))
     works = solution.energy().ledger is not None
     zero = derivation.energy_rate() == 0

@@ -13,7 +13,7 @@ from pendcore.case import Case
 from pendcore.derive.derivation import Derivation
 from pendcore.derive.handout import line_breaks
 from pendcore.derive.handout.document import Block, Displayed, Heading, Paragraph, Table
-from pendcore.derive.handout.quantities import DIGITS, number, quantity, unit
+from pendcore.derive.handout.quantities import number, quantity, unit
 
 
 def numbers_put_in(derivation: Derivation) -> Iterator[Block]:
@@ -49,12 +49,8 @@ def _numeric(derivation: Derivation, symbol: Any, value: Expr, name: str) -> lis
     put_in = sympy.expand(value.xreplace(derivation.values))
     if put_in.is_number:
         return [f"{write(symbol)} &= {quantity(float(put_in), name)}"]
-    rounded = put_in.xreplace({x: Float(f"{float(x):.{DIGITS}g}", DIGITS) for x in put_in.atoms(Float)})
-
-    def short(expression: Expr) -> str:
-        return str(derivation.symbols.latex(_without_zeros(expression)))
-
-    rows = line_breaks.rows(write(symbol), rounded, short)
+    rounded = _rounded(put_in)
+    rows = line_breaks.rows(write(symbol), rounded, derivation.symbols)
     if rounded.is_Add:
         before, after = rows[0].split("&= ", 1)
         if len(rows) == 1:
@@ -66,15 +62,14 @@ def _numeric(derivation: Derivation, symbol: Any, value: Expr, name: str) -> lis
     return rows
 
 
-def _without_zeros(expression: Expr) -> Expr:
-    """Write 0.5 and not 0.500000: whole numbers as such, others as short as they are."""
-    shorter = {}
+def _rounded(expression: Expr) -> Expr:
+    """Put six digits for every number, as names: 0.5 is written so, and stands before its term."""
+    short: dict[Expr, Expr] = {}
     for x in expression.atoms(Float):
-        text = f"{float(x):.{DIGITS}g}"
-        if "e" in text:
-            continue
-        shorter[x] = sympy.Integer(text) if "." not in text else sympy.Symbol(text, real=True)
-    return expression.xreplace(shorter)
+        size = number(abs(float(x)))
+        known = sympy.Integer(size) if size.isdigit() else sympy.Symbol(size, positive=True)
+        short[x] = -known if x < 0 else known
+    return expression.xreplace(short)
 
 
 class Start:

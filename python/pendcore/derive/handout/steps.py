@@ -68,7 +68,7 @@ def _shown(step: Step, derivation: Derivation) -> Iterator[Block]:
         else:
             yield Displayed(line_breaks.aligned(lines), number)
         if remark := equations[-1].remark:
-            yield Paragraph(remark)
+            yield Paragraph(f"*{remark}*")
 
 
 def groups(equations: Iterable[Equation]) -> Iterator[tuple[str | None, list[Equation]]]:
@@ -89,8 +89,8 @@ def groups(equations: Iterable[Equation]) -> Iterator[tuple[str | None, list[Equ
 
 def _rows(equation: Equation, derivation: Derivation) -> list[str]:
     left, right = equation.side_latex(equation.lhs), equation.rhs
-    write = derivation.symbols.latex
-    rows = line_breaks.rows(left, right.latex if isinstance(right, Formula) else right, write)
+    written = right.latex if isinstance(right, Formula) else right
+    rows = line_breaks.rows(left, written, derivation.symbols)
     if (number := _number(equation, derivation)) is not None:
         rows[-1] += f" = {number}"
     return rows
