@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+
 def sheets(rows: int, height: float = 2.1) -> tuple[Figure, list[Axes]]:
     """Return a figure with axes below each other."""
     from matplotlib.figure import Figure
@@ -64,7 +65,9 @@ def reactions(t: Floats, forces: Floats, names: Sequence[str]) -> Figure:
         stem = name.removesuffix("}")
         axis.plot(t, forces[:, i, 0], "r-", label=f"${stem}x}}$")
         axis.plot(t, forces[:, i, 1], "b--", label=f"${stem}y}}$")
-        axis.plot(t, np.hypot(*forces[:, i].T), "k-", lw=0.8, label=rf"$|\mathbf{{F}}_{stem[2:]}}}|$")
+        axis.plot(
+            t, np.hypot(*forces[:, i].T), "k-", lw=0.8, label=rf"$|\mathbf{{F}}_{stem[2:]}}}|$"
+        )
         axis.set_ylabel(f"${name}$ (N)")
         _dress(axis)
         axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)

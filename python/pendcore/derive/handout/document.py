@@ -7,6 +7,8 @@ from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
+from pendcore.derive.handout.drawing import lettering
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
@@ -66,7 +68,9 @@ class Displayed:
         if reader is Reader.HTML and self.number:
             return f"::: equation\n$${self.latex}$$\n\n[({self.number})]{{.number}}\n:::"
         tag = rf" \tag{{{self.number}}}" if self.number else ""
-        shown = f"$$\n{self.latex}{tag}\n$$" if reader is Reader.PEOPLE else f"$${self.latex}{tag}$$"
+        shown = (
+            f"$$\n{self.latex}{tag}\n$$" if reader is Reader.PEOPLE else f"$${self.latex}{tag}$$"
+        )
         return shown
 
 
@@ -138,7 +142,8 @@ class Drawing:
         """Write the picture that this reader looks at; return where it is."""
         path = folder / self.written(reader).splitlines()[0].rpartition("(")[2].rstrip(")")
         dates = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(path.suffix)
-        self.figure.savefig(path, dpi=150, metadata=dates)
+        with lettering():
+            self.figure.savefig(path, dpi=150, metadata=dates)
         return path
 
 

@@ -7,6 +7,7 @@ are scaled, m. Where a name goes is chosen so that it is clear of what meets the
 from __future__ import annotations
 
 from collections.abc import Iterable
+from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -19,14 +20,20 @@ if TYPE_CHECKING:
 BLACK, STEEL = "#1a1a1a", "#d5dde5"
 REACTION, WEIGHT, COUPLE, ANGLE = "#b3261e", "#1f5fa8", "#7a4a9e", "#2e6b3f"
 
-FONT = {
+_FONT: Any = {
     "mathtext.fontset": "stix",
     "font.family": "STIXGeneral",
     "font.size": 11,
     "axes.titlesize": 11,
     "svg.hashsalt": "pendcore",
 }
-"""Matplotlib's settings for all figures of a handout: letters as in the equations."""
+
+
+def lettering() -> AbstractContextManager[None]:
+    """Within, figures are drawn with letters as in the equations, and saved the same every time."""
+    import matplotlib as mpl
+
+    return mpl.rc_context(_FONT)
 
 
 class Sketch(NamedTuple):
@@ -101,9 +108,7 @@ def ground(on: Sketch, at: Floats) -> None:
     )
     on.axes.plot([x - 2 * a, x + 2 * a], [y - b, y - b], color=BLACK, lw=1.4)
     for k in np.linspace(-1.75, 1.75, 8):
-        on.axes.plot(
-            [x + k * a, x + (k + 0.55) * a], [y - b, y - b - 0.7 * a], color=BLACK, lw=0.8
-        )
+        on.axes.plot([x + k * a, x + (k + 0.55) * a], [y - b, y - b - 0.7 * a], color=BLACK, lw=0.8)
 
 
 def mass_center(on: Sketch, at: Floats) -> None:
@@ -138,10 +143,8 @@ def arrow(
     on.axes.update_datalim(np.array([start, end]))
     if text:
         outwards = 0.055 * on.size * along / np.hypot(*along)
-        on.axes.text(
-            *(start - outwards if arriving else end + outwards), text,
-            color=color, ha="center", va="center", zorder=9,
-        )  # fmt: skip
+        x, y = start - outwards if arriving else end + outwards
+        on.axes.text(x, y, text, color=color, ha="center", va="center", zorder=9)
 
 
 def turning_arrow(
@@ -156,9 +159,8 @@ def turning_arrow(
         arrowprops={"arrowstyle": "-|>,head_width=0.18,head_length=0.4", "color": color, "lw": 1.1,
                     "shrinkA": 0, "shrinkB": 0, "mutation_scale": 11},
     )  # fmt: skip
-    middle = direction(float(np.mean(span)))
-    place = at + (radius + 0.055) * on.size * middle
-    on.axes.text(*place, text, color=color, ha="center", va="center", zorder=9)
+    beside = at + (radius + 0.055) * on.size * direction(float(np.mean(span)))
+    on.axes.text(beside[0], beside[1], text, color=color, ha="center", va="center", zorder=9)
 
 
 def angle_from_x(on: Sketch, at: Floats, angle: float, text: str) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import degrees
 
-import matplotlib as mpl
 import numpy as np
 
 from pendcore.derive.derivation import Derivation
@@ -46,7 +45,7 @@ class Figures:
 
     def mechanism(self) -> Drawing:
         """Fig. 1 of the textbook."""
-        with mpl.rc_context(drawing.FONT):
+        with drawing.lettering():
             figure = mechanism(self.scene, self.q, self.points)
         what = "The double pendulum" if self.derivation.n == 2 else "The chain"
         return Drawing(
@@ -64,7 +63,7 @@ class Figures:
         if tip is not None:
             reactions.append(Reaction(write(tip[0]), write(tip[1]), False))
         acting = {getattr(e, "joint", 0) for e in self.scene.effects if e.kind in COUPLES}
-        with mpl.rc_context(drawing.FONT):
+        with drawing.lettering():
             figure = free_bodies(
                 self.scene, self.q, self.points, reactions if forces else [], frozenset(acting)
             )
@@ -77,7 +76,7 @@ class Figures:
 
     def angles(self, solution: Solution) -> Drawing:
         """The textbook's figure."""
-        with mpl.rc_context(drawing.FONT):
+        with drawing.lettering():
             figure = curves.angles(solution)
         return Drawing("angles", self._caption("The angles of the links over time."), figure)
 
@@ -89,9 +88,11 @@ class Figures:
             self.derivation.symbols.latex(x).replace("x}", "}")
             for x, _ in self.derivation.equations.forces
         ]
-        with mpl.rc_context(drawing.FONT):
+        with drawing.lettering():
             figure = curves.reactions(solution.t, forces, names)
-        words = "The joint reactions over time; $y$ points down, so that a force upward is negative."
+        words = (
+            "The joint reactions over time; $y$ points down, so that a force upward is negative."
+        )
         return Drawing("reactions", self._caption(words), figure)
 
     def energies(self, solution: Solution) -> Drawing:
@@ -100,7 +101,7 @@ class Figures:
         found = {"$T$": energy.kinetic, "$V$": energy.potential, "$T + V$": energy.total}
         ledger = energy.ledger
         left = energy.total - energy.total[0] if ledger is None else ledger.residual
-        with mpl.rc_context(drawing.FONT):
+        with drawing.lettering():
             figure = curves.energies(solution.t, found, np.asarray(left))
         words = "Above: kinetic, potential and total energy over time. Below: " + (
             "the change of $T + V$ since the start, which is to be zero."
@@ -111,7 +112,7 @@ class Figures:
 
     def empty_axes(self, solution: Solution) -> Drawing:
         """The axes of the figure of the angles, to draw into."""
-        with mpl.rc_context(drawing.FONT):
+        with drawing.lettering():
             figure = curves.empty_axes(solution)
         return Drawing("axes", self._caption("The angles of the links over time."), figure)
 

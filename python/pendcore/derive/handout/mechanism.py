@@ -98,7 +98,7 @@ def _weight(on: Sketch, center: Floats, angle: float, number: str) -> None:
 def _number(on: Sketch, at: Floats, number: int) -> None:
     """Write the number of a link into a circle."""
     on.axes.text(
-        *at, str(number), ha="center", va="center", fontsize=9, zorder=9,
+        at[0], at[1], str(number), ha="center", va="center", fontsize=9, zorder=9,
         bbox={"boxstyle": "circle,pad=0.22", "facecolor": "white", "edgecolor": "0.3", "lw": 0.7},
     )  # fmt: skip
 

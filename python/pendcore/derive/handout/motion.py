@@ -103,12 +103,12 @@ def _largest(derivation: Derivation, solution: Solution) -> str:
     return f"The largest reactions are {', '.join(sentences)}."
 
 
-def energy_check(
-    derivation: Derivation, solution: Solution, figures: Figures
-) -> Iterator[Block]:
+def energy_check(derivation: Derivation, solution: Solution, figures: Figures) -> Iterator[Block]:
     """Yield the energies in symbols, and how well the run kept them."""
     yield Heading(2, "Check by the energy")
-    yield Paragraph("Kinetic and potential energy, the latter zero at the height of the origin, are")
+    yield Paragraph(
+        "Kinetic and potential energy, the latter 0 at the height of the origin, are"
+    )
     lines: list[str] = []
     for name, value in (("T", derivation.kinetic_energy), ("V", derivation.potential_energy)):
         lines += line_breaks.rows(name, value, derivation.symbols)

@@ -118,7 +118,9 @@ def at_the_start(derivation: Derivation, case: Case) -> Iterator[Block]:
     start = Start(derivation, case)
     s, write = derivation.symbols, derivation.symbols.latex
     yield Heading(3, "At the start")
-    state = [rf"{write(x)} = {quantity(value, 'rad')}" for x, value in zip(s.q, case.q0, strict=True)]
+    state = [
+        rf"{write(x)} = {quantity(value, 'rad')}" for x, value in zip(s.q, case.q0, strict=True)
+    ]
     state += [
         rf"{write(x)} = {quantity(value, 'rad/s')}" for x, value in zip(s.qd, case.qd0, strict=True)
     ]
@@ -138,7 +140,9 @@ def at_the_start(derivation: Derivation, case: Case) -> Iterator[Block]:
     rows = start.rows()
     yield Table(
         ("", "by this derivation", "by the core", "unit"),
-        tuple((f"${n}$", f"${number(a)}$", f"${number(b)}$", f"${unit(u)}$") for n, u, a, b in rows),
+        tuple(
+            (f"${n}$", f"${number(a)}$", f"${number(b)}$", f"${unit(u)}$") for n, u, a, b in rows
+        ),
         "lrrl",
     )
     scale = max(max(abs(a), abs(b)) for *_, a, b in rows) or 1.0
