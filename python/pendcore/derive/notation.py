@@ -123,10 +123,12 @@ class Notation:
         """The numbers of the scene."""
         return {parameter.symbol: parameter.value for parameter in self._parameters}
 
-    def symbol(self, name: str, latex: str) -> Symbol:
-        """Return the real symbol of that name, and remember how LaTeX writes it."""
+    def symbol(self, name: str, latex: str, rank: int | None = None, link: int = 0) -> Symbol:
+        """Return the real symbol of that name, and remember how it is written, and where."""
         made = Symbol(name, real=True)
         self.latex_names[made] = latex
+        if rank is not None:
+            self._ranks[made] = rank, link
         return made
 
     def parameter(self, name: str, latex: str, value: float, unit: str, meaning: str) -> Symbol:
