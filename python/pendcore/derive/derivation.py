@@ -123,13 +123,13 @@ class Derivation:
 
     @property
     def kinetic_energy(self) -> Expr:
-        """T, J."""
-        return self.energy.kinetic
+        """T, J, in t, q, qd and parameters."""
+        return self.energy.kinetic.xreplace(self.motion.definitions)
 
     @property
     def potential_energy(self) -> Expr:
-        """V, of weights and springs, J; zero at the height of the origin."""
-        return self.energy.potential
+        """V, of weights and springs, J, in t, q and parameters; zero at the origin's height."""
+        return self.energy.potential.xreplace(self.motion.definitions)
 
     @property
     def powers(self) -> dict[Any, Expr]:

@@ -12,8 +12,7 @@ from typing import Any
 
 from sympy import Expr, Integer, Symbol, expand
 
-from pendcore.derive.chain import Vector, dot
-from pendcore.derive.motion import of_differences
+from pendcore.derive.chain import Vector, dot, of_differences
 from pendcore.derive.solution import Solution
 
 
@@ -94,7 +93,8 @@ class Energy:
         for i, rate in enumerate(s.qd):
             line = sum(motion.mass_matrix[i, k] * a for k, a in enumerate(s.qdd))
             unbalanced += rate * (line - motion.forcing_by_definitions[i].xreplace(torques))
-        left = of_differences((residual - unbalanced).xreplace(torques).subs(locked))
+        left = (residual - unbalanced).xreplace(torques).subs(locked)
+        left = of_differences(left.xreplace(self.chain.path))
         return left + self.solution.power_of_the_error()
 
     def _locked_rates(self) -> dict[Symbol, Expr]:

@@ -9,9 +9,9 @@ from __future__ import annotations
 from functools import cached_property
 from typing import NamedTuple
 
-from sympy import Expr, ImmutableMatrix, Integer, Matrix, Symbol, expand
-from sympy.simplify.fu import TR8
+from sympy import Expr, ImmutableMatrix, Integer, Matrix, Symbol
 
+from pendcore.derive.chain import of_differences
 from pendcore.derive.newton_euler import NewtonEuler
 
 
@@ -58,12 +58,9 @@ class Motion:
         """f, (n, 1), N m, with torques and loads as symbols, without the couples of locks."""
         at_rest = dict.fromkeys(self.notation.qdd, Integer(0))
         at_rest |= dict.fromkeys(self.equations.holding.values(), Integer(0))
-        applied = {definition.symbol for definition in self.equations.definitions}
         lines = []
         for line in self.equations.without_reactions:
-            whole = expand((line.acting - line.inertia).subs(at_rest))
-            own, of_effects = whole.as_independent(*applied, as_Add=True) if applied else (whole, 0)
-            lines.append([of_differences(own) + of_effects])
+            lines.append([of_differences((line.acting - line.inertia).subs(at_rest))])
         return ImmutableMatrix(lines)
 
     @cached_property
@@ -109,8 +106,3 @@ class Motion:
                 columns[-1].append(link)
         size = self.notation.n, len(columns)
         return ImmutableMatrix(*size, lambda i, k: int(i + 1 in columns[k]))
-
-
-def of_differences(expression: Expr) -> Expr:
-    """Write products of sines and cosines as sines and cosines of sums: a normal form."""
-    return expand(TR8(expand(expression)))

@@ -140,10 +140,10 @@ def plain(text: str) -> str:
 
 def _spoken(latex: str) -> str:
     """Return a short formula without LaTeX's marks: ``q1``, ``M qdd = f``."""
-    for dots, letter in ((r"\ddot", "dd"), (r"\dot", "d")):
-        latex = re.sub(rf"{dots}{{(\w+)}}", rf"\g<1>{letter}", latex)
-    latex = re.sub(r"\\math\w+{(\w+)}", r"\1", latex)
-    return re.sub(r"[_\\]|{|}", "", latex.replace(r"\,", " "))
+    spoken = latex.replace(r"\,", " ")
+    spoken = re.sub(r"\\(d+)ot{(\w+)}", r"\2\1", spoken)
+    spoken = re.sub(r"\\math\w+{(\w+)}", r"\1", spoken)
+    return re.sub(r"[_\\{}]", "", spoken)
 
 
 def escaped(text: str) -> str:

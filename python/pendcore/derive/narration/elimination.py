@@ -13,10 +13,12 @@ def elimination(page: Page) -> None:
     """Write the reactions, and what is left without them."""
     found: list[Equation] = []
     if page.equations.payload_equations is not None and page.equations.payload_force is not None:
-        for symbol, line in zip(
-            page.equations.payload_force, page.equations.payload_equations, strict=True
+        mass, tip = page.derivation.equations.payload[0], page.joint(page.n)
+        for axis, symbol, line in zip(
+            "xy", page.equations.payload_force, page.equations.payload_equations, strict=True
         ):
-            found.append(page.equation(symbol, line.acting + symbol - line.inertia))
+            inertia = mass * page.coordinate(axis, tip, 2)
+            found.append(page.equation(symbol, line.acting + symbol - inertia))
     for i in range(page.n, 0, -1):
         for axis in (0, 1):
             symbol = page.equations.forces[i - 1][axis]

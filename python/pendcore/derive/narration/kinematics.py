@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from sympy import Integer
-
 from pendcore.derive.chain import Vector
 from pendcore.derive.narration.page import Page, total
 from pendcore.derive.step import Equation, Formula
@@ -19,14 +17,17 @@ def kinematics(page: Page) -> None:
     _mobility(page)
     centers = [page.center(i) for i in range(1, n + 1)]
     joints = [page.joint(i) for i in range(n + 1)]
-    pivot = "" if chain.pivot_is_fixed else " from where the pivot $A$ is at $x = y = 0$; it moves"
+    fixed = chain.pivot_is_fixed
+    origin = "The origin is at $A$." if fixed else (
+        "The origin is the point about which the pivot $A$ moves on a given path."
+    )
     page.step(
         "Positions",
         "The plane of motion is the $xy$ plane, with $x$ to the right and $y$ vertical, positive "
-        f"downward. Positions are measured from {'$A$' if not pivot else 'the origin,'}{pivot}. "
+        f"downward. {origin} "
         f"The angles {_listed(f'$q_{{{i}}}$' for i in range(1, n + 1))} are measured from the "
         "$x$ axis towards the $y$ axis.",
-        *(_points(page, [chain.pivot], joints[:1], 0) if pivot else ()),
+        *(page.equation(symbol, law) for symbol, law in chain.path.items()),
         *_points(page, chain.joints[1:], joints[1:], 0),
         *_vectors(page, centers),
         *_points(page, chain.centers, centers, 0),
@@ -60,30 +61,31 @@ def kinematics(page: Page) -> None:
 
 def _mobility(page: Page) -> None:
     n = page.n
-    joints = "one revolute joint" if n == 1 else f"{n} revolute joints"
-    links = "one moving link" if n == 1 else f"{n} moving links"
-    text = (
-        f"The chain has {links} and {joints}, of one degree of freedom each: $n = {n}$, "
-        f"$c_{{5}} = {n}$, $c_{{4}} = 0$."
-    )
     locked = page.equations.locked
+    k = n - len(locked)  # links that a lock makes one are one
+    joints = "one revolute joint" if k == 1 else f"{k} revolute joints"
+    links = "one moving link" if k == 1 else f"{k} moving links"
+    text = (
+        f"The chain has {links} and {joints}, of one degree of freedom each: $n = {k}$, "
+        f"$c_{{5}} = {k}$, $c_{{4}} = 0$."
+    )
     if locked:
-        text += (
-            f" It would move with {n} if no joint were locked; the lock of joint"
-            f"{'s' if len(locked) > 1 else ''} {_listed(map(str, locked))} takes "
-            f"{len(locked)} away."
-        )
+        joints = f"joint{'s' if len(locked) > 1 else ''} {_listed(map(str, locked))}"
+        text += f" The lock of {joints} makes one of the bodies that it joins."
     symbol = page.symbol("M", "M")
-    count = Formula(f"3*{n} - 2*{n} - 0 = {n}", rf"3 \cdot {n} - 2 \cdot {n} - 0 = {n}")
+    count = Formula(f"3*{k} - 2*{k} - 0 = {k}", rf"3 \cdot {k} - 2 \cdot {k} - 0 = {k}")
     general = Formula("3 n - 2 c5 - c4", r"3 n - 2 c_{5} - c_{4}")
     angles = _listed(f"$q_{{{i}}}(t)$" for i in range(1, n + 1))
+    coordinates = "The generalized coordinates are the angles"
+    if locked:
+        coordinates = "It is described by the angles"
+    elif n == 1:
+        coordinates = "The generalized coordinate is the angle"
     page.step(
         "Degrees of freedom",
-        f"{text} The generalized coordinate{'s are the angles' if n > 1 else ' is the angle'} "
-        f"{angles} of the link{'s' if n > 1 else ''}.",
+        f"{text} {coordinates} {angles} of the link{'s' if n > 1 else ''}.",
         page.equation(symbol, general),
         page.equation(symbol, count),
-        *([page.equation(symbol, Integer(n - len(locked)))] if locked else ()),
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sympy import Integer
 
-from pendcore.derive.narration.page import Page
+from pendcore.derive.narration.page import Page, total
 from pendcore.derive.step import Equation
 from pendcore.derive.writing import MASS
 
@@ -40,30 +40,31 @@ def _moments_of_inertia(page: Page) -> None:
         about_pivot = page.symbol("I_A", "I_{A}", MASS)
         parallel = page.moment_of_inertia(1) + s.masses[0] * s.centers[0] ** 2
         found.append(page.equation(about_pivot, parallel))
+        whole = page.equations.links[0].moment.inertia / s.qdd[0]
         if s.inertias[0] != page.moment_of_inertia(1):
-            found.append(page.equation(about_pivot, page.equations.links[0].moment.inertia / s.qdd[0]))
+            found.append(page.equation(about_pivot, whole))
     page.step("Moments of inertia", f"{text}.", *found)
 
 
 def _effects(page: Page) -> None:
-    sentences = list(dict.fromkeys(law.sentence for law in page.equations.laws))
+    path = page.chain.path
     found: list[Equation] = [
         page.equation(definition.symbol, definition.value)
         for definition in page.equations.definitions
+        if definition.symbol not in path
     ]
-    for joint, armature in enumerate(page.equations.armatures, start=1):
-        if armature != 0:
-            name = page.symbol(f"M_J{joint}", f"M_{{J,{joint}}}")
-            couple = -armature * page.chain.joint_acceleration(joint)
-            found.append(page.equation(name, couple))
+    for load in page.equations.loads:
+        parts = (page.along(u, f) for u, f in zip("ij", load.force, strict=True))
+        found.append(page.equation(page.vector("D", load.link), total(parts)))
     if page.equations.payload is not None:
         weight = page.along("j", page.equations.payload[0] * page.s.gravity)
-        found.append(page.equation(page.vector("G", "P"), weight))
+        found.append(page.equation(page.vector("G", "p"), weight))
+    torques = page.equations.torques or page.equations.locked or any(page.equations.armatures)
     for joint in page.equations.locked:
         found.append(page.equation(page.chain.joint_acceleration(joint), Integer(0)))
     page.step(
         "Effects",
-        f"{'. '.join(sentences)}. A torque $\\tau_{{j}}$ at joint j acts on link j, and its "
-        "opposite on link j-1.",
+        " ".join(law.sentence(page.s) for law in page.equations.laws)
+        + (" A torque at joint j acts on link j, and its opposite on link j-1." if torques else ""),
         *found,
     )

@@ -22,7 +22,7 @@ def _forces(page: Page, i: int) -> tuple[Formula, Formula | None]:
     near = page.vector("F", f"{i - 1}{i}")
     if i < page.n:
         return near, page.vector("F", f"{i + 1}{i}")
-    return near, None if page.equations.payload is None else page.vector("F", f"P{i}")
+    return near, None if page.equations.payload is None else page.vector("F", f"p{i}")
 
 
 def _newton(page: Page, i: int, number: str | None) -> Equation:
@@ -68,9 +68,10 @@ def _components(page: Page, i: int, link: LinkEquations, number: str | None) -> 
     """Newton's along x and y, with accelerations as symbols."""
     mass = page.s.masses[i - 1]
     ax, ay = (page.coordinate(axis, page.center(i), 2) for axis in "xy")
+    remark = errata.REMARKS["y of 2.5"] if i == 2 else ""
     return [
-        page.equation(mass * ax, link.x.acting, number),
-        page.equation(mass * ay, link.y.acting, number, errata.REMARKS.get(f"y of {number}", "")),
+        page.equation(mass * ax, link.x.acting),
+        page.equation(mass * ay, link.y.acting, number, remark),
     ]
 
 
@@ -141,7 +142,7 @@ def _other(page: Page, i: int, link: LinkEquations) -> None:
         f"acceleration the sum of the moments about ${center.latex}$.{_opposite(i)}",
         _newton(page, i, "2.3"),
         _euler(page, i, center, "2.4"),
-        *_components(page, i, link, "2.5" if page.n == i else None),
+        *_components(page, i, link, "2.5" if page.n == i and not page.is_textbook else None),
         *determinant,
         *out,
         page.equation(
@@ -157,13 +158,18 @@ def _payload(page: Page) -> None:
     """Newton's equations of the payload."""
     lines = page.equations.payload_equations
     assert lines is not None
-    tip, force = page.joint(page.n), page.vector("F", f"P{page.n}")
+    assert page.equations.payload is not None
+    tip, force = page.joint(page.n), page.vector("F", f"p{page.n}")
+    opposite, mass = Formula(f"-{force.text}", f"-{force.latex}"), page.equations.payload[0]
     page.step(
         "Newton's equations of the payload",
         f"${force.latex}$ is the force of the payload on link {page.n}, at ${tip.latex}$; its "
         "opposite acts on the payload, whose mass centre is there.",
+        page.equation(
+            page.scaled(mass, page.vector("a", tip)), total([opposite, page.vector("G", "p")])
+        ),
         *(
-            page.equation(line.inertia, line.acting)
-            for line in lines
+            page.equation(mass * page.coordinate(axis, tip, 2), line.acting)
+            for axis, line in zip("xy", lines, strict=True)
         ),
     )
