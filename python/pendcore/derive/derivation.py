@@ -14,6 +14,7 @@ from pendcore.derive.motion import Motion
 from pendcore.derive.narration import steps
 from pendcore.derive.newton_euler import NewtonEuler
 from pendcore.derive.notation import Notation
+from pendcore.derive.solution import Assignments, Solution
 from pendcore.derive.step import Step
 from pendcore.scene import Scene
 
@@ -45,7 +46,9 @@ class Derivation:
     equations : NewtonEuler
         Newton's and Euler's equations, with the reactions as unknowns.
     motion : Motion
-        What is left when the reactions are eliminated, and its solution.
+        What is left when the reactions are eliminated.
+    solution : Solution
+        The accelerations.
     energy : Energy
         Energies, powers, and their balance.
     """
@@ -60,7 +63,8 @@ class Derivation:
         self.chain = Chain(self.symbols, (x, y))
         self.equations = NewtonEuler(self.chain, laws)
         self.motion = Motion(self.equations)
-        self.energy = Energy(self.motion)
+        self.solution = Solution(self.motion)
+        self.energy = Energy(self.solution)
 
     @classmethod
     def textbook(cls) -> Derivation:
@@ -90,20 +94,20 @@ class Derivation:
     @property
     def accelerations(self) -> tuple[Expr, ...]:
         """Angular accelerations written out, in t, q, qd and parameters, (n,), rad/s^2."""
-        return self.motion.accelerations
+        return self.solution.accelerations
 
     @property
-    def shared(self) -> tuple[tuple[Symbol, Expr], ...]:
+    def shared(self) -> Assignments:
         """Assignments that lead to the accelerations, each in terms of those before it.
 
         `shared_accelerations` are in terms of them.
         """
-        return self.motion.shared
+        return self.solution.shared
 
     @property
     def shared_accelerations(self) -> tuple[Expr, ...]:
         """The accelerations in terms of `shared`, (n,), rad/s^2."""
-        return self.motion.shared_accelerations
+        return self.solution.shared_accelerations
 
     @cached_property
     def reactions(self) -> tuple[Vector, ...]:
@@ -111,15 +115,21 @@ class Derivation:
         known = self.motion.definitions
         return tuple((x.xreplace(known), y.xreplace(known)) for x, y in self.equations.reactions)
 
+    @cached_property
+    def holding_couples(self) -> dict[int, Expr]:
+        """Couple of each locked joint on the link beyond it, N m, in t, q, qd, qdd."""
+        known = {s: x.xreplace(self.motion.definitions) for s, x in self.motion.named.entries.items()}
+        return {joint: couple.xreplace(known) for joint, couple in self.solution.holding.items()}
+
     @property
     def kinetic_energy(self) -> Expr:
-        """T, J."""
-        return self.energy.kinetic
+        """T, J, in t, q, qd and parameters."""
+        return self.energy.kinetic.xreplace(self.motion.definitions)
 
     @property
     def potential_energy(self) -> Expr:
-        """V, of weights and springs, J; zero at the height of the origin."""
-        return self.energy.potential
+        """V, of weights and springs, J, in t, q and parameters; zero at the origin's height."""
+        return self.energy.potential.xreplace(self.motion.definitions)
 
     @property
     def powers(self) -> dict[Any, Expr]:

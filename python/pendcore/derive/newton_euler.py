@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 from sympy import Expr, Integer, Symbol, expand
 
-from pendcore.derive.chain import Chain, Vector, cross, minus
+from pendcore.derive.chain import Chain, Vector, cross, minus, of_differences
 from pendcore.derive.laws import Definition, Law, LinkLoad
 
 ZERO: Vector = (Integer(0), Integer(0))
@@ -81,7 +81,7 @@ class NewtonEuler:
         return x, y
 
     def _payload_force(self) -> tuple[Symbol, Symbol] | None:
-        return self._components(f"P{self.n}") if self.payload is not None else None
+        return self._components(f"p{self.n}") if self.payload is not None else None
 
     @cached_property
     def payload(self) -> tuple[Expr, Expr] | None:
@@ -123,8 +123,10 @@ class NewtonEuler:
     @cached_property
     def definitions(self) -> tuple[Definition, ...]:
         """All symbols that stand for laws, each in terms of those before it."""
+        path = self.chain.path.items()
+        moved = [Definition(symbol, law, "motion of the pivot") for symbol, law in path]
         of_loads = [d for law in self.laws for d in law.definitions(self.chain)]
-        return (*of_loads, *self.torques)
+        return (*moved, *of_loads, *self.torques)
 
     @cached_property
     def loads(self) -> tuple[LinkLoad, ...]:
@@ -162,7 +164,7 @@ class NewtonEuler:
 
     @cached_property
     def payload_equations(self) -> tuple[Balance, Balance] | None:
-        """Newton's equations of the payload; -F_(Pn) is the force of link n on it."""
+        """Newton's equations of the payload; -F_pn is the force of link n on it."""
         if self.payload is None or self.payload_force is None:
             return None
         mass, acceleration = self.payload[0], self.chain.tip_acceleration
@@ -195,7 +197,7 @@ class NewtonEuler:
         moment = cross(minus(center, point), weight) + cross(minus(end, point), far)
         moment += cross(minus(begin, point), near)
         for load in loads:
-            moment += load.moment + cross(minus(begin, point), load.force)
+            moment += of_differences(load.moment + cross(minus(begin, point), load.force))
         moment += self.joint_couple(link) - self.joint_couple(link + 1)
         if link == self.n and self.payload is not None:
             moment -= self.payload[1] * turning

@@ -123,13 +123,23 @@ class Notation:
         """The numbers of the scene."""
         return {parameter.symbol: parameter.value for parameter in self._parameters}
 
-    def symbol(self, name: str, latex: str) -> Symbol:
-        """Return the real symbol of that name, and remember how LaTeX writes it."""
+    def symbol(self, name: str, latex: str, rank: int | None = None, link: int = 0) -> Symbol:
+        """Return the real symbol of that name, and remember how it is written, and where."""
         made = Symbol(name, real=True)
         self.latex_names[made] = latex
+        if rank is not None:
+            self._ranks[made] = rank, link
         return made
 
-    def parameter(self, name: str, latex: str, value: float, unit: str, meaning: str) -> Symbol:
+    def parameter(
+        self,
+        name: str,
+        latex: str,
+        value: float,
+        unit: str,
+        meaning: str,
+        rank: tuple[int, int] = (CONSTANT, 0),
+    ) -> Symbol:
         """Return a new symbol for a constant of the scene.
 
         A second one of the same name, such as of two dampers in one joint, is told from the first.
@@ -140,7 +150,7 @@ class Notation:
             name, latex = f"{name}__{count}", f"{{{latex}}}^{{({count})}}"
         symbol = self.symbol(name, latex)
         self._parameters.append(Parameter(symbol, float(value), unit, meaning))
-        self._ranks.setdefault(symbol, (CONSTANT, 0))
+        self._ranks[symbol] = rank
         return symbol
 
     def rank(self, symbol: Symbol) -> tuple[int, int]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 from textwrap import fill
 from typing import Any, NamedTuple
@@ -133,8 +134,16 @@ class Step:
 
 
 def plain(text: str) -> str:
-    """Return a text without the dollars of its inline LaTeX."""
-    return text.replace("$", "")
+    """Return a text with its inline LaTeX as a line of text has it."""
+    return "".join(_spoken(x) if k % 2 else x for k, x in enumerate(text.split("$")))
+
+
+def _spoken(latex: str) -> str:
+    """Return a short formula without LaTeX's marks: ``q1``, ``M qdd = f``."""
+    spoken = latex.replace(r"\,", " ")
+    spoken = re.sub(r"\\(d+)ot{(\w+)}", r"\2\1", spoken)
+    spoken = re.sub(r"\\math\w+{(\w+)}", r"\1", spoken)
+    return re.sub(r"[_\\{}]", "", spoken)
 
 
 def escaped(text: str) -> str:

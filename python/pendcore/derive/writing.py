@@ -76,7 +76,10 @@ class Language:
         """Return the terms of a sum in the order in which they are written."""
         if not expression.is_Add:
             return [expression]
-        return sorted(expression.args, key=self._place_in_sum)
+        terms = sorted(expression.args, key=self._place_in_sum)
+        if all(term.is_Symbol or (-term).is_Symbol for term in terms):  # such as an angle's
+            terms.sort(key=lambda term: not term.is_Symbol)
+        return terms
 
     def _sum(self, expression: Expr) -> str:
         written = ""
@@ -141,10 +144,10 @@ class Language:
         moving = sorted(
             (link, kind) for kind, link, _ in found if kind in (ACCELERATION, RATE)
         ) or sorted((link, ANGLE) for kind, link, _ in found if kind == ANGLE)
-        group = 0 if UNKNOWN in kinds else 2 if GRAVITY in kinds else 1
-        sign = group == 0 and term.could_extract_minus_sign()
+        negative = term.could_extract_minus_sign()
+        group = 2 * negative if UNKNOWN in kinds else 3 if GRAVITY in kinds else 1
         masses = sorted(link for kind, link, _ in found if kind == MASS)
-        return group, sign, moving, masses, str(term)
+        return group, moving, masses, str(term)
 
 
 class Text(Language):
