@@ -26,6 +26,8 @@ joints count from 1.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any
+
 from pendcore import effects, events
 from pendcore._core import __version__
 from pendcore.accuracy.report import Accuracy, AccuracyError
@@ -46,6 +48,18 @@ from pendcore.simulate import simulate
 from pendcore.solution import Solution
 from pendcore.statistics import Statistics
 from pendcore.warning import PendcoreWarning
+
+if TYPE_CHECKING:
+    from pendcore import derive
+
+
+def __getattr__(name: str) -> Any:
+    if name == "derive":  # SymPy is an extra, and takes its time
+        import importlib
+
+        return importlib.import_module("pendcore.derive")
+    raise AttributeError(f"module 'pendcore' has no attribute {name!r}")
+
 
 __all__ = [
     "Accuracy",
@@ -69,6 +83,7 @@ __all__ = [
     "accuracy_cost",
     "angles_from_vertical",
     "angles_to_vertical",
+    "derive",
     "effects",
     "events",
     "horizon_work",

@@ -1,0 +1,27 @@
+"""A rotor that turns with a joint: T = J phid^2 / 2."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from sympy import Expr
+
+from pendcore.derive.laws.law import Law
+from pendcore.derive.notation import Notation
+
+
+class RotorInertia(Law):
+    """See the core's effect of that name; to turn it takes the couple J phidd."""
+
+    sentence = "A rotor turns with the joint, and resists its acceleration"
+
+    def __init__(self, effect: Any, notation: Notation) -> None:
+        super().__init__(effect, notation)
+        j = effect.joint
+        self.inertia = notation.parameter(
+            f"J_{j}", f"J_{{{j}}}", effect.armature, "kg m^2", f"inertia of the rotor at joint {j}"
+        )
+
+    def armature(self) -> tuple[int, Expr]:
+        """Its joint and inertia."""
+        return self.effect.joint, self.inertia

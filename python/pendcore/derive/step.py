@@ -1,0 +1,147 @@
+"""Steps of a derivation and the equations in them, ready to be read."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from textwrap import fill
+from typing import Any, NamedTuple
+
+from pendcore.derive.notation import Notation
+
+
+class Formula(NamedTuple):
+    """One side of an equation that is no scalar expression, such as a sum of vectors.
+
+    Attributes
+    ----------
+    text, latex : str
+        As text and as LaTeX.
+    """
+
+    text: str
+    latex: str
+
+    def __str__(self) -> str:
+        return self.text
+
+
+@dataclass(frozen=True, slots=True)
+class Equation:
+    """One equation.
+
+    Attributes
+    ----------
+    lhs, rhs : sympy.Expr or Formula
+        Its sides.
+    number : str or None
+        As in the textbook, ``"2.1"``, where it is one of the textbook's.
+    remark : str
+        What is to be said of it; empty where there is nothing.
+    """
+
+    lhs: Any
+    rhs: Any
+    number: str | None = None
+    remark: str = ""
+    notation: Notation | None = field(default=None, compare=False, repr=False)
+
+    def __str__(self) -> str:
+        number = f"    ({self.number})" if self.number else ""
+        return f"{self.lhs} = {self.rhs}{number}"
+
+    def latex(self) -> str:
+        """Return both sides in LaTeX, without the number: ``lhs &= rhs``."""
+        return f"{self.side_latex(self.lhs)} &= {self.side_latex(self.rhs)}"
+
+    def side_latex(self, side: Any) -> str:
+        """Return one side in LaTeX."""
+        if isinstance(side, Formula):
+            return side.latex
+        if self.notation is None:
+            raise ValueError(f"{self}: has no notation, which LaTeX needs")
+        return self.notation.latex(side)
+
+    def _repr_latex_(self) -> str:
+        tag = rf" \tag{{{self.number}}}" if self.number else ""
+        return rf"$\displaystyle {self.latex().replace('&=', '=')}{tag}$"
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One step of a derivation.
+
+    Attributes
+    ----------
+    number : int
+        From 1.
+    title, text : str
+        What is done, and why. The text holds inline LaTeX between ``$``.
+    equations : tuple of Equation
+        What comes of it.
+    """
+
+    number: int
+    title: str
+    text: str
+    equations: tuple[Equation, ...] = ()
+
+    def __str__(self) -> str:
+        head = f"{self.number}. {self.title}"
+        lines = [head, "-" * len(head), fill(plain(self.text), 88, break_on_hyphens=False), ""]
+        for equation in self.equations:
+            lines.append(f"    {equation}")
+            if equation.remark:
+                remark = fill(f"[{plain(equation.remark)}]", 80, break_on_hyphens=False)
+                lines += [f"        {line}" for line in remark.splitlines()]
+        return "\n".join(lines).rstrip()
+
+    def latex(self) -> str:
+        """Return the step as a LaTeX section, for ``amsmath``."""
+        title = f"\\subsection*{{{self.number}. {self.title}}}"
+        parts = [title, escaped(self.text), *map(_align, self._groups())]
+        return "\n".join(parts)
+
+    def _repr_markdown_(self) -> str:
+        parts = [f"### {self.number}. {self.title}", "", self.text, ""]
+        for group in self._groups():
+            lines = [
+                equation.latex() + (rf" \tag{{{equation.number}}}" if equation.number else "")
+                for equation in group
+            ]
+            body = " \\\\\n".join(lines)
+            parts += ["$$", rf"\begin{{align}}{body}\end{{align}}", "$$", ""]
+            if group[-1].remark:
+                parts += [f"*{group[-1].remark}*", ""]
+        return "\n".join(parts)
+
+    def _repr_latex_(self) -> str:
+        return self.latex()
+
+    def _groups(self) -> list[list[Equation]]:
+        """The equations, those that are shown together together: a remark ends a group."""
+        groups: list[list[Equation]] = []
+        for equation in self.equations:
+            if not groups or groups[-1][-1].remark:
+                groups.append([])
+            groups[-1].append(equation)
+        return groups
+
+
+def plain(text: str) -> str:
+    """Return a text without the dollars of its inline LaTeX."""
+    return text.replace("$", "")
+
+
+def escaped(text: str) -> str:
+    """Return a text as LaTeX takes it: percent signs and hashes outside of formulas."""
+    return text.replace("%", r"\%").replace("#", r"\#")
+
+
+def _align(group: list[Equation]) -> str:
+    lines = []
+    for equation in group:
+        tag = rf" \tag{{{equation.number}}}" if equation.number else r" \notag"
+        lines.append(equation.latex() + tag)
+    body = " \\\\\n".join(lines)
+    shown = "\\begin{align}\n" + body + "\n\\end{align}"
+    return shown + (f"\n\\emph{{{escaped(group[-1].remark)}}}\n" if group[-1].remark else "")
