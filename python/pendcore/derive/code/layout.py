@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
+from keyword import iskeyword
 from textwrap import wrap
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import sympy
 from sympy import Symbol
 
 from pendcore import _core
+from pendcore.derive.code.printer import Infix
 
 if TYPE_CHECKING:
     from pendcore.derive.derivation import Derivation
@@ -62,37 +64,34 @@ def identifiers(symbols: Iterable[Symbol], taken: Iterable[str]) -> dict[Symbol,
     names: dict[Symbol, str] = {}
     for symbol in symbols:
         name = re.sub(r"\W|_+", "_", symbol.name)
-        while name in known:
+        while name in known or iskeyword(name):
             name += "_" if not name.endswith("_") else "1"
         known.add(name)
         names[symbol] = name
     return names
 
 
-def in_columns(rows: Iterable[tuple[str, ...]]) -> list[str]:
-    """Return rows as lines whose parts stand below each other."""
-    rows = [*rows]
-    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))] if rows else []
-    return [
-        "".join(part.ljust(w) for part, w in zip(row, widths, strict=True)).rstrip()
-        for row in rows
+def constants(
+    derivation: Derivation, writer: Infix, name: str, value: str, remark: str
+) -> list[str]:
+    """Return the scene's numbers as lines; the three patterns are a language's."""
+    rows = [
+        (
+            name.format(writer.doprint(parameter.symbol)) + value.format(parameter.value),
+            remark.format(_in_words(parameter)),
+        )
+        for parameter in derivation.symbols.parameters
     ]
+    width = max(len(row[0]) for row in rows)
+    return [f"{row[0]:{width}}{row[1]}" for row in rows]
 
 
-def of_unit(parameter: Parameter) -> str:
-    """Return what a parameter is, with its unit."""
+def chain_in_words(derivation: Derivation) -> str:
+    """Return what is simulated, in words."""
+    kinds = {1: "a pendulum", 2: "a double pendulum", 3: "a triple pendulum"}
+    return kinds.get(derivation.n, f"a chain of {derivation.n} links")
+
+
+def _in_words(parameter: Parameter) -> str:
     unit = "" if parameter.unit in ("", "1") else f", {parameter.unit}"
     return f"{parameter.meaning}{unit}"
-
-
-def named_powers(derivation: Derivation) -> dict[str, Any]:
-    """Return the powers of effects, by kind and place: ``viscous_joint_1``."""
-    found: dict[str, Any] = {}
-    for effect, power in derivation.powers.items():
-        place = getattr(effect, "joint", getattr(effect, "link", None))
-        name = effect.kind if place is None else f"{effect.kind}_{place}"
-        number = 2
-        while name in found:
-            name, number = f"{name.removesuffix(f'_again{number - 1}')}_again{number}", number + 1
-        found[name] = power
-    return found

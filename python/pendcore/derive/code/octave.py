@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import sympy
-from sympy import Expr, Piecewise, Symbol
+from sympy import Expr, Float, Integer, Symbol
 
-from pendcore.derive.code.layout import identifiers, in_columns, of_unit, origin, wrapped
-from pendcore.derive.code.printer import Octave, number
+from pendcore.derive.code.layout import chain_in_words, constants, identifiers, origin, wrapped
+from pendcore.derive.code.printer import Octave
 from pendcore.derive.code.shared import Computation, share
 
 if TYPE_CHECKING:
@@ -32,13 +31,9 @@ def function_file(derivation: Derivation, name: str = "RR") -> str:
     """
     _check(name)
     computation = share(derivation.shared_accelerations, derivation.shared, TAKEN)
-    parameters = [p for p in derivation.symbols.parameters if p.symbol in computation.needs]
     printer = Octave(_names(derivation, computation))
-    constants = in_columns(
-        (f"{printer.doprint(p.symbol)} = {number(p.value)};", f"  % {of_unit(p)}")
-        for p in parameters
-    )
-    lines = [*_head(derivation, name), "", *constants, ""]
+    numbers = constants(derivation, printer, "{} = ", "{!r};", "  % {}")
+    lines = [*_head(derivation, name), "", *numbers, ""]
     for symbol, value in computation.assignments:
         lines += _assignment(printer, printer.doprint(symbol), value)
     lines += ["", f"dx = zeros({2 * derivation.n},1);"]
@@ -64,21 +59,16 @@ def inline_function(derivation: Derivation, name: str = "g") -> str:
     """Return the statements that make the textbook's inline function, called `g` as there.
 
     An inline function is one expression: the scene's numbers are put in, and nothing is shared.
-
-    Raises
-    ------
-    ValueError
-        If a law chooses between cases, which one expression cannot; the function file can.
     """
     _check(name)
-    rows = [f"{row}" for i, text in enumerate(_with_numbers(derivation)) for row in (
-        f"x({2 * i + 2})", text
-    )]  # fmt: skip
+    rows = []
+    for i, text in enumerate(_with_numbers(derivation), start=1):
+        rows += [f"x({2 * i})", text]
     parts = [f"dx{i}dt" for i in range(1, len(rows) + 1)]
     pattern = ";".join(["%s"] * len(rows))
     call = f"{name} = inline(sprintf('[{pattern}]', {', '.join(parts)}), 't', 'x');"
     lines = [
-        f"% {name}(t,x)  First-order system of {_chain(derivation)}, as the textbook's inline function.",
+        f"% {name}(t,x)  First-order system of {chain_in_words(derivation)}: the textbook's inline function.",
         *_comment(derivation),
         "%",
         f"%   [t,xs] = ode45({name}, [0 5], x0);              % MATLAB, as in the book",
@@ -94,7 +84,7 @@ def _head(derivation: Derivation, name: str) -> list[str]:
     start = " ".join(["pi/4 0"] * derivation.n)
     return [
         f"function dx = {name}(t,x)",
-        f"% {name.upper()}  First-order system of {_chain(derivation)}, for ode45.",
+        f"% {name.upper()}  First-order system of {chain_in_words(derivation)}, for ode45.",
         *_comment(derivation),
         "%",
         f"%   [t,xs] = ode45(@{name}, [0 5], [{start}]);",
@@ -105,17 +95,12 @@ def _comment(derivation: Derivation) -> list[str]:
     n = derivation.n
     state = "; ".join(f"q{i}; q{i}'" for i in range(1, n + 1))
     return [
-        f"%   t    time, s",
+        "%   t    time, s",
         f"%   x    [{state}]: angles, rad, and rates, rad/s",
         f"%   dx   its derivative with respect to time, {2 * n} x 1",
         "%",
         *(f"% {line}".rstrip() for line in origin(derivation)),
     ]
-
-
-def _chain(derivation: Derivation) -> str:
-    kinds = {1: "a pendulum", 2: "a double pendulum", 3: "a triple pendulum"}
-    return kinds.get(derivation.n, f"a chain of {derivation.n} links")
 
 
 def _names(derivation: Derivation, computation: Computation) -> dict[Symbol, str]:
@@ -131,34 +116,17 @@ def _state(derivation: Derivation) -> dict[Symbol, str]:
 
 
 def _assignment(printer: Octave, name: str, value: Expr) -> list[str]:
-    if not isinstance(value, Piecewise):
-        return wrapped(f"{name} = {printer.doprint(value)};", "", " ...")
-    lines, word = [], "if"
-    for case, condition in value.args:
-        if condition == sympy.true:
-            lines.append("else")
-        else:
-            lines.append(f"{word} {printer.doprint(condition)}")
-        lines += wrapped(f"{name} = {printer.doprint(case)};", "  ", " ...")
-        word = "elseif"
-    return [*lines, "end"]
+    return wrapped(f"{name} = {printer.doprint(value)};", "", " ...")
 
 
 def _with_numbers(derivation: Derivation) -> list[str]:
     """The accelerations written out, in x(1), x(2), ... and numbers."""
-    numbers = {symbol: sympy.nsimplify(value) if value == int(value) else sympy.Float(value)
-               for symbol, value in derivation.values.items()}  # fmt: skip
+    numbers = {
+        symbol: Integer(int(value)) if value == int(value) else Float(value)
+        for symbol, value in derivation.values.items()
+    }
     printer = Octave(_state(derivation))
-    texts = []
-    for acceleration in derivation.accelerations:
-        known = acceleration.xreplace(numbers)
-        if known.has(Piecewise):
-            raise ValueError(
-                "to_octave_inline: a law of this scene chooses between cases, which an inline "
-                "function, a single expression, cannot: to_octave() writes a function file"
-            )
-        texts.append(printer.doprint(known))
-    return texts
+    return [printer.doprint(one.xreplace(numbers)) for one in derivation.accelerations]
 
 
 def _check(name: str) -> None:

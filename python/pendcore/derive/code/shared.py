@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import count
 
 import sympy
-from sympy import Expr, Piecewise, Symbol, cos, sin
+from sympy import Expr, Symbol, cos, sin
 
 Assignment = tuple[Symbol, Expr]
 
@@ -62,25 +62,21 @@ def share(
     -------
     Computation
         Sines and cosines are ``sin_q1``, or ``cos_q1_q2`` of q1 - q2; what else is shared is
-        ``e1``, ``e2``, ... A choice between cases (Piecewise) is an assignment of its own.
+        ``e1``, ``e2``, ...
     """
     used = _used(results, assignments)
     expressions = [*(value for _, value in used), *results]
     known = {symbol.name for one in expressions for symbol in one.free_symbols} | {*taken}
     known |= {symbol.name for symbol, _ in used}
     called = _named_calls(expressions, known)
-    plain = [one.xreplace(called) for one in expressions]
-    chosen = _named_choices(plain, known)
     temporary, reduced = sympy.cse(
-        [*(one.xreplace(chosen) for one in plain), *(_inside(one, chosen) for one in chosen)],
-        symbols=_fresh("e", known),
-        order="canonical",
+        [one.xreplace(called) for one in expressions], symbols=_fresh("e", known), order="canonical"
     )
-    values = dict(zip([symbol for symbol, _ in used], reduced, strict=False))
-    values |= dict(zip(chosen.values(), reduced[len(plain) :], strict=True))
-    values |= {symbol: call for call, symbol in called.items()} | dict(temporary)
-    wanted = reduced[len(used) : len(plain)]
-    return Computation(tuple(_in_order([symbol for symbol, _ in used], wanted, values)), (*wanted,))
+    names = [symbol for symbol, _ in used]
+    values = {symbol: call for call, symbol in called.items()} | dict(temporary)
+    values |= dict(zip(names, reduced[: len(names)], strict=True))
+    wanted = tuple(reduced[len(names) :])
+    return Computation(tuple(_in_order(names, wanted, values)), wanted)
 
 
 def _used(results: Sequence[Expr], assignments: Sequence[Assignment]) -> list[Assignment]:
@@ -101,25 +97,15 @@ def _named_calls(expressions: Sequence[Expr], known: set[str]) -> dict[Expr, Sym
     for call in sorted(calls, key=lambda call: (len(call.free_symbols), str(call))):
         symbols = sorted(symbol.name for symbol in call.free_symbols)
         name = "_".join([type(call).__name__, *symbols])
-        named[call] = next(_fresh(name, known)) if name in known else Symbol(name)
+        named[call] = next(_fresh(name, known)) if name in known else Symbol(name, real=True)
         known.add(named[call].name)
     return named
-
-
-def _named_choices(expressions: Sequence[Expr], known: set[str]) -> dict[Expr, Symbol]:
-    """Name every choice between cases."""
-    choices = {choice for one in expressions for choice in one.atoms(Piecewise)}
-    return dict(zip(sorted(choices, key=str), _fresh("choice", known), strict=False))
-
-
-def _inside(choice: Expr, chosen: dict[Expr, Symbol]) -> Expr:
-    return choice.xreplace({other: symbol for other, symbol in chosen.items() if other != choice})
 
 
 def _fresh(letter: str, known: set[str]) -> Iterator[Symbol]:
     for number in count(1):
         if f"{letter}{number}" not in known:
-            yield Symbol(f"{letter}{number}")
+            yield Symbol(f"{letter}{number}", real=True)
 
 
 def _in_order(
