@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from pendcore.derive.code.layout import chain_in_words, constants, identifiers, origin, wrapped
+from pendcore.derive.code.layout import chain_in_words, constants, identifiers, indented, origin, wrapped
 from pendcore.derive.code.printer import Cpp
 from pendcore.derive.code.quantities import Quantities
 from pendcore.derive.code.shared import Computation
@@ -20,7 +20,7 @@ TAKEN = (
 """What the header calls its own."""
 
 HEAD = """/// \\file
-/// {chain} as a right-hand side of its own: nothing else is included, linked or installed.
+/// {chain}, ready to be integrated; this file needs nothing but the standard library.
 ///
 {origin}
 ///
@@ -28,18 +28,18 @@ HEAD = """/// \\file
 ///
 ///     M(q) qdd = f(t, q, qd)          M the mass matrix ({n} x {n}), kg m^2; f in N m
 ///     M = L D L^T                     eliminated without exchanges: M is positive definite
-///     y = (q_1 .. q_{n}, qd_1 .. qd_{n})   dy/dt = (qd, qdd): the state, 2n numbers
+///     y = (q_1 .. q_n, qd_1 .. qd_n)  the state, 2n numbers: dy/dt = (qd, qdd)
 ///
-/// Names in the code are those of the derivation: M11, f1, D1, l21 (of L); cos_q1_q2 is the cosine of
-/// q1 - q2; e1, e2, ... are what several lines share.
+/// Names in the code are those of the derivation, M11, f1, D1, l21 (of L); cos_q1_q2 is the cosine
+/// of q1 - q2; e1, e2, ... are what several lines share.
 ///
 /// Cost: {cost}.
-/// Nothing is allocated, nothing thrown. What is no finite number comes out as none.
+/// Nothing is allocated and nothing thrown; angles and rates that are not finite give NaN.
 ///
 ///     {namespace}::{name} chain;
-///     chain.{first} = 2.0;                                       // its own numbers are the scene's
-///     auto dydt = chain.right_hand_side(t, y);
-///     boost::numeric::odeint::integrate(chain, y, 0.0, 5.0, 1e-3);   // it is a system, too
+///     auto dydt = chain.right_hand_side(t, y);   // with the scene's numbers
+///     chain.{first} = 2.0;
+///     chain(y, dydt, t);                         // with others; as Boost.odeint calls a system
 #pragma once
 
 #include <array>
@@ -53,7 +53,7 @@ struct {name} {{
 
   static constexpr std::size_t links = {n};
   using Angles = std::array<double, links>;     ///< a number for each link
-  using State = std::array<double, 2 * links>;  ///< q_1 .. q_{n}, rad; qd_1 .. qd_{n}, rad/s
+  using State = std::array<double, 2 * links>;  ///< q_1 .. q_n, rad; qd_1 .. qd_n, rad/s
 
   struct Force {{
     double x, y;  ///< N; x right, y down
@@ -72,7 +72,7 @@ DOCUMENTATION = {
         "link 2, and so on.",
     ],
     "energy": ["Kinetic and potential energy of the chain."],
-    "powers": ["What each effect brings in."],
+    "powers": ["Power of each effect."],
 }
 
 TAIL = """
@@ -147,11 +147,15 @@ def _cost(quantities: Quantities) -> str:
 
 
 def _powers_struct(quantities: Quantities) -> str:
-    lines = ["  /// Power of each effect, W; negative where it takes."]
-    lines += ["  struct Powers {", *(f"    double {name};" for name in quantities.powers)]
+    lines = ["  /// Power that each effect brings into the chain, W; negative where it takes."]
+    lines.append("  struct Powers {")
+    for name, effect in quantities.powers.items():
+        lines += [f"    /// {line.strip()}" for line in indented(repr(effect))]
+        lines.append(f"    double {name};")
     lines.append("    /// The rate at which kinetic + potential energy grows.")
-    lines.append(f"    double total() const {{ return {' + '.join(quantities.powers)}; }}")
-    return "\n".join([*lines, "  };", ""])
+    lines.append("    double total() const {")
+    lines += wrapped(f"return {' + '.join(quantities.powers)};", "      ")
+    return "\n".join([*lines, "    }", "  };", ""])
 
 
 def _function(

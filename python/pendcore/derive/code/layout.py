@@ -74,7 +74,10 @@ def identifiers(symbols: Iterable[Symbol], taken: Iterable[str]) -> dict[Symbol,
 def constants(
     derivation: Derivation, writer: Infix, name: str, value: str, remark: str
 ) -> list[str]:
-    """Return the scene's numbers as lines; the three patterns are a language's."""
+    """Return the scene's numbers as lines; the three patterns are a language's.
+
+    What a number is stands behind it, or above where that would be too long.
+    """
     rows = [
         (
             name.format(writer.doprint(parameter.symbol)) + value.format(parameter.value),
@@ -83,7 +86,15 @@ def constants(
         for parameter in derivation.symbols.parameters
     ]
     width = max(len(row[0]) for row in rows)
-    return [f"{row[0]:{width}}{row[1]}" for row in rows]
+    lines: list[str] = []
+    for number, words in rows:
+        beside = f"{number:{width}}{words}"
+        if len(beside) <= COLUMNS:
+            lines.append(beside)
+        else:
+            indent = number[: len(number) - len(number.lstrip())]
+            lines += [f"{indent}{words.strip().replace('///<', '///')}", number]
+    return lines
 
 
 def chain_in_words(derivation: Derivation) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from sympy import Expr, Float, Integer, Symbol
+from sympy import Expr, Float, Rational, Symbol
 
 from pendcore.derive.code.layout import chain_in_words, constants, identifiers, origin, wrapped
 from pendcore.derive.code.printer import Octave
@@ -81,7 +81,7 @@ def inline_function(derivation: Derivation, name: str = "g") -> str:
 
 
 def _head(derivation: Derivation, name: str) -> list[str]:
-    start = " ".join(["pi/4 0"] * derivation.n)
+    start = " ".join(["pi/4 0", *["pi/3 0"] * (derivation.n - 1)])
     return [
         f"function dx = {name}(t,x)",
         f"% {name.upper()}  First-order system of {chain_in_words(derivation)}, for ode45.",
@@ -121,12 +121,15 @@ def _assignment(printer: Octave, name: str, value: Expr) -> list[str]:
 
 def _with_numbers(derivation: Derivation) -> list[str]:
     """The accelerations written out, in x(1), x(2), ... and numbers."""
-    numbers = {
-        symbol: Integer(int(value)) if value == int(value) else Float(value)
-        for symbol, value in derivation.values.items()
-    }
+    numbers = {symbol: _exact(value) for symbol, value in derivation.values.items()}
     printer = Octave(_state(derivation))
     return [printer.doprint(one.xreplace(numbers)) for one in derivation.accelerations]
+
+
+def _exact(value: float) -> Rational | Float:
+    """Return 9.807 as 9807/1000, as MATLAB does; what has many digits as it is."""
+    digits = repr(value).partition("e")[0].replace(".", "").strip("-0")
+    return Rational(repr(value)) if len(digits) <= 6 and abs(value) > 1e-6 else Float(value)
 
 
 def _check(name: str) -> None:

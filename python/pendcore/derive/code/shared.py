@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import count
 
 import sympy
-from sympy import Expr, Symbol, cos, sin
+from sympy import Dummy, Expr, Symbol, cos, sin
 
 Assignment = tuple[Symbol, Expr]
 
@@ -61,8 +61,8 @@ def share(
     Returns
     -------
     Computation
-        Sines and cosines are ``sin_q1``, or ``cos_q1_q2`` of q1 - q2; what else is shared is
-        ``e1``, ``e2``, ...
+        Sines and cosines are ``sin_q1``, ``cos_q1_q2`` of q1 - q2, and of other arguments ``sin1``,
+        ``cos1``, ...; what else is shared is ``e1``, ``e2``, ...
     """
     used = _used(results, assignments)
     expressions = [*(value for _, value in used), *results]
@@ -70,13 +70,21 @@ def share(
     known |= {symbol.name for symbol, _ in used}
     called = _named_calls(expressions, known)
     temporary, reduced = sympy.cse(
-        [one.xreplace(called) for one in expressions], symbols=_fresh("e", known), order="canonical"
+        [one.xreplace(called) for one in expressions],
+        symbols=sympy.numbered_symbols(cls=Dummy),
+        order="canonical",
     )
     names = [symbol for symbol, _ in used]
     values = {symbol: call for call, symbol in called.items()} | dict(temporary)
     values |= dict(zip(names, reduced[: len(names)], strict=True))
-    wanted = tuple(reduced[len(names) :])
-    return Computation(tuple(_in_order(names, wanted, values)), wanted)
+    wanted = reduced[len(names) :]
+    found = [*_in_order(names, wanted, values)]
+    numbers = _fresh("e", known)
+    final = {symbol: next(numbers) for symbol, _ in found if isinstance(symbol, Dummy)}
+    return Computation(
+        tuple((final.get(symbol, symbol), value.xreplace(final)) for symbol, value in found),
+        tuple(value.xreplace(final) for value in wanted),
+    )
 
 
 def _used(results: Sequence[Expr], assignments: Sequence[Assignment]) -> list[Assignment]:
@@ -93,19 +101,36 @@ def _used(results: Sequence[Expr], assignments: Sequence[Assignment]) -> list[As
 def _named_calls(expressions: Sequence[Expr], known: set[str]) -> dict[Expr, Symbol]:
     """Name every sine and cosine."""
     calls = {call for one in expressions for call in one.atoms(sin, cos)}
+    fresh = {kind: _fresh(kind, known) for kind in ("sin", "cos")}
     named: dict[Expr, Symbol] = {}
     for call in sorted(calls, key=lambda call: (len(call.free_symbols), str(call))):
-        symbols = sorted(symbol.name for symbol in call.free_symbols)
-        name = "_".join([type(call).__name__, *symbols])
-        named[call] = next(_fresh(name, known)) if name in known else Symbol(name, real=True)
-        known.add(named[call].name)
+        kind, words = type(call).__name__, _words(call.args[0])
+        name = "_".join([kind, *words])
+        named[call] = next(fresh[kind]) if not words or name in known else _symbol(name)
+        known.add(str(named[call].name))
     return named
+
+
+def _words(argument: Expr) -> list[str]:
+    """Return what a symbol, or a difference of two, is called; nothing for other arguments."""
+    parts = sympy.Add.make_args(argument)
+    if argument.is_Symbol:
+        return [str(argument.name)]
+    if len(parts) == 2 and parts[0].is_Symbol and (-parts[1]).is_Symbol:
+        return [str(parts[0].name), str((-parts[1]).name)]
+    if len(parts) == 2 and parts[1].is_Symbol and (-parts[0]).is_Symbol:
+        return [str(parts[1].name), str((-parts[0]).name)]
+    return []
+
+
+def _symbol(name: str) -> Symbol:
+    return Symbol(name, real=True)
 
 
 def _fresh(letter: str, known: set[str]) -> Iterator[Symbol]:
     for number in count(1):
         if f"{letter}{number}" not in known:
-            yield Symbol(f"{letter}{number}", real=True)
+            yield _symbol(f"{letter}{number}")
 
 
 def _in_order(
