@@ -77,6 +77,7 @@ def page(document: Document) -> str:
 
         for combining, spacing in ACCENTS.items():
             text = text.replace(f">{combining}</mo>", f">{spacing}</mo>")
+        text = re.sub(r'<mo (stretchy="true" form="(?:pre|post)fix")>', r"<mo \1 lspace="0" rspace="0">", text)
         return re.sub(r'src="([\w-]+\.svg)"', embedded, text)
 
 

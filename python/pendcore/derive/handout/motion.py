@@ -9,8 +9,7 @@ import numpy as np
 
 from pendcore.case import Case
 from pendcore.derive.derivation import Derivation
-from pendcore.derive.handout import line_breaks
-from pendcore.derive.handout.document import Block, Displayed, Heading, Paragraph, Table
+from pendcore.derive.handout.document import Block, Heading, Paragraph, Table
 from pendcore.derive.handout.figures import Figures
 from pendcore.derive.handout.quantities import number, quantity
 from pendcore.energy import LOSSES
@@ -106,23 +105,14 @@ def _largest(derivation: Derivation, solution: Solution) -> str:
 def energy_check(derivation: Derivation, solution: Solution, figures: Figures) -> Iterator[Block]:
     """Yield the energies in symbols, and how well the run kept them."""
     yield Heading(2, "Check by the energy")
-    yield Paragraph(
-        "Kinetic and potential energy, the latter 0 at the height of the origin, are"
-    )
-    lines: list[str] = []
-    for name, value in (("T", derivation.kinetic_energy), ("V", derivation.potential_energy)):
-        lines += line_breaks.rows(name, value, derivation.symbols)
-    yield Displayed(line_breaks.aligned(lines))
     works = solution.energy().ledger is not None
-    zero = derivation.energy_rate() == 0
+    rate = r"\frac{\mathrm{d}}{\mathrm{d}t}(T + V)" + (r" - \sum_k P_k" if works else "")
+    exactly = derivation.energy_rate() == 0
     yield Paragraph(
-        "Differentiated with respect to time, with the equations of motion put in, their sum "
-        + ("changes at the rate of the powers of what acts" if works else "does not change")
-        + (r": SymPy reduces $\frac{d}{dt}(T + V)" if zero else r": $\frac{d}{dt}(T + V)")
-        + (r" - \sum P$" if works else "$")
-        + (" to 0, exactly, for all angles and rates. " if zero else " is to be 0. ")
-        + _kept(solution)
-    )
+        (f"With the equations of motion put in, SymPy reduces ${rate}$ to 0: exactly, for all "
+         "angles, rates and parameters. " if exactly else "")
+        + "What is left in the run is its error. " + _kept(solution)
+    )  # fmt: skip
     if works:
         yield from _work(solution)
     yield figures.energies(solution)

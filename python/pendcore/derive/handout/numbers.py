@@ -37,7 +37,7 @@ def _laws(derivation: Derivation) -> list[str]:
 
 def _entries(derivation: Derivation) -> list[str]:
     found: list[str] = []
-    for symbol, value in derivation.motion.by_entries[0].items():
+    for symbol, value in derivation.motion.named.entries.items():
         name = "kg m^2" if symbol.name.startswith("M") else "N m"
         found += _numeric(derivation, symbol, value, name)
     return found
@@ -128,7 +128,7 @@ def at_the_start(derivation: Derivation, case: Case) -> Iterator[Block]:
         f"At $t = {quantity(case.t_span[0], 's')}$, with ${', '.join(state)}$, they are"
     )
     lines = []
-    for symbol, value in derivation.motion.by_entries[0].items():
+    for symbol, value in derivation.motion.named.entries.items():
         name = "kg m^2" if symbol.name.startswith("M") else "N m"
         known = value.xreplace(derivation.motion.definitions)
         lines.append(f"{write(symbol)} &= {quantity(start.value(known), name)}")

@@ -9,7 +9,6 @@ from pendcore.derive.derivation import Derivation
 from pendcore.derive.handout.document import Block, Displayed, Heading, Paragraph, Table
 from pendcore.derive.handout.figures import Figures
 from pendcore.derive.handout.quantities import number, quantity, unit
-from pendcore.derive.laws import Law
 
 COUNTS = {1: "one link", 2: "two links", 3: "three links", 4: "four links", 5: "five links"}
 
@@ -53,27 +52,13 @@ def _what_moves(derivation: Derivation) -> str:
     name = {1: "pendulum", 2: "double pendulum"}.get(n, "chain")
     links = COUNTS.get(n, f"{n} links")
     rods = " The links are uniform rods." if uniform else ""
-    free = scene.mobility()
-    acting = [_acts(law) for law in derivation.equations.laws]
-    words = (
+    acting = " ".join(law.sentence(derivation.symbols) for law in derivation.equations.laws)
+    return (
         f"A planar {name} of {links} (Fig. 1) moves in a vertical plane.{rods} "
         "The $x$ axis points to the right and the $y$ axis down; the angles are measured from the "
-        "$x$ axis towards the $y$ axis. Besides gravity "
-        + ("nothing acts." if not acting else "there is what follows:\n\n" + "\n".join(acting))
+        "$x$ axis towards the $y$ axis. "
+        + (acting or "Nothing acts on it but gravity and the joint that holds it.")
     )
-    return (
-        f"{words}\n\nThe number of degrees of freedom is "
-        f"$M = 3n - 2c_5 - c_4 = 3 \\cdot {free.links} - 2 \\cdot {free.c5} - {free.c4} = "
-        f"{free.degrees_of_freedom}$, where $n$ is the number of moving links, $c_5$ that of the "
-        "joints with one degree of freedom and $c_4$ that of the joints with two."
-    )
-
-
-def _acts(law: Law) -> str:
-    """Return an effect as a point of a list: where it is, and what it does."""
-    places = ((name, getattr(law.effect, name, None)) for name in ("joint", "link"))
-    where = [f"{name} {number}: " for name, number in places if number is not None]
-    return f"* {''.join(where)}{law.sentence[:1].lower()}{law.sentence[1:].rstrip('.')};"
 
 
 def _unit(parameter: object) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import groupby
 
-from sympy import Expr
+from sympy import Expr, sympify
 
 from pendcore.derive.derivation import Derivation
 from pendcore.derive.handout import line_breaks
@@ -89,7 +89,7 @@ def groups(equations: Iterable[Equation]) -> Iterator[tuple[str | None, list[Equ
 
 def _rows(equation: Equation, derivation: Derivation) -> list[str]:
     left, right = equation.side_latex(equation.lhs), equation.rhs
-    written = right.latex if isinstance(right, Formula) else right
+    written = right.latex if isinstance(right, Formula) else sympify(right)
     rows = line_breaks.rows(left, written, derivation.symbols)
     if (number := _number(equation, derivation)) is not None:
         rows[-1] += f" = {number}"
