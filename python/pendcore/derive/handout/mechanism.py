@@ -60,7 +60,8 @@ def mechanism(scene: Scene, q: Sequence[float], points: Sequence[str]) -> Figure
     for i, angle in enumerate(q):
         start, end = places[i], places[i + 1]
         drawing.rod(on, start, end)
-        drawing.angle_from_x(on, start, angle, rf"$q_{{{i + 1}}}$")
+        reach = min(0.17, 0.42 * scene.links[i].length / size)
+        drawing.angle_from_x(on, start, angle, rf"$q_{{{i + 1}}}$", reach)
         _weight(on, centers[i], angle, str(i + 1))
         side = start + 0.8 * (end - start) + 0.07 * size * direction(angle - np.pi / 2)
         _number(on, side, i + 1)
@@ -70,7 +71,7 @@ def mechanism(scene: Scene, q: Sequence[float], points: Sequence[str]) -> Figure
         drawing.pin(on, place)
         taken = [0.0] if i < len(q) else []
         taken += [q[i], q[i] / 2] if i < len(q) else []
-        taken += [q[i - 1] + np.pi] if i else [-np.pi / 2]
+        taken += [q[i - 1] + np.pi] if i else [-np.pi / 2, np.pi / 2]
         if i + 1 in couples:
             aside = drawing.clear_direction(taken)
             middle = float(np.arctan2(aside[1], aside[0]))
@@ -103,7 +104,7 @@ def _frame(on: Sketch, scene: Scene, places: Floats) -> None:
 def _weight(on: Sketch, center: Floats, angle: float, number: str) -> None:
     """Draw a mass centre with its weight."""
     drawing.mass_center(on, center)
-    down = np.array([0.0, 0.2 * on.size])
+    down = np.array([0.0, 0.16 * on.size])
     drawing.arrow(on, center, down, rf"$\mathbf{{G}}_{{{number}}}$", drawing.WEIGHT)
     side = drawing.clear_direction([angle, angle + np.pi, np.pi / 2], prefer=-np.pi / 4)
     name(on, center, f"$C_{{{number}}}$", side, 0.075)
