@@ -59,7 +59,7 @@ class Chain:
         What they and their rates, ``xd_A`` to ``ydd_A``, are as functions of time.
     """
 
-    def __init__(self, notation: Notation, path: Vector = (Integer(0), Integer(0))) -> None:
+    def __init__(self, notation: Notation, path: Vector) -> None:
         self.notation = notation
         self.path: dict[Symbol, Expr] = {}
         self._rates: dict[Symbol, Expr] = {}
@@ -71,7 +71,9 @@ class Chain:
             return law
         dots = {0: axis, 1: rf"\dot{{{axis}}}", 2: rf"\ddot{{{axis}}}"}
         symbols = [
-            self.notation.symbol(f"{axis}{'d' * k}_A", f"{shown}_{{A}}", (ANGLE, RATE, ACCELERATION)[k])
+            self.notation.symbol(
+                f"{axis}{'d' * k}_A", f"{shown}_{{A}}", (ANGLE, RATE, ACCELERATION)[k]
+            )
             for k, shown in dots.items()
         ]
         for k, symbol in enumerate(symbols):
