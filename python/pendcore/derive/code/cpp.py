@@ -1,0 +1,191 @@
+"""C++: a header with right-hand side, reactions and energies, for any C++17 program."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from pendcore.derive.code.layout import chain_in_words, constants, identifiers, indented, origin, wrapped
+from pendcore.derive.code.printer import Cpp
+from pendcore.derive.code.quantities import Quantities
+from pendcore.derive.code.shared import Computation
+
+if TYPE_CHECKING:
+    from pendcore.derive.derivation import Derivation
+
+TAKEN = (
+    *("links", "t", "y", "dydt", "q", "qd", "qdd", "force", "energy", "power", "square", "cube"),
+    *("right_hand_side", "accelerations", "reactions", "energies", "powers", "total", "std"),
+    *("Angles", "State", "Force", "Energy", "Powers", "x", "kinetic", "potential"),
+)
+"""What the header calls its own."""
+
+HEAD = """/// \\file
+/// {chain}, ready to be integrated; this file needs nothing but the standard library.
+///
+{origin}
+///
+/// The equations, with t (s), q (rad), qd (rad/s) and the constants of `{name}`:
+///
+///     M(q) qdd = f(t, q, qd)          M the mass matrix ({n} x {n}), kg m^2; f in N m
+///     M = L D L^T                     eliminated without exchanges: M is positive definite
+///     y = (q_1 .. q_n, qd_1 .. qd_n)  the state, 2n numbers: dy/dt = (qd, qdd)
+///
+/// Names in the code are those of the derivation, M11, f1, D1, l21 (of L); cos_q1_q2 is the cosine
+/// of q1 - q2; e1, e2, ... are what several lines share.
+///
+/// Cost: {cost}.
+/// Nothing is allocated and nothing thrown; angles and rates that are not finite give NaN.
+///
+///     {namespace}::{name} chain;
+///     auto dydt = chain.right_hand_side(t, y);   // with the scene's numbers
+///     chain.{first} = 2.0;
+///     chain(y, dydt, t);                         // with others; as Boost.odeint calls a system
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace {namespace} {{
+
+struct {name} {{
+{constants}
+
+  static constexpr std::size_t links = {n};
+  using Angles = std::array<double, links>;     ///< a number for each link
+  using State = std::array<double, 2 * links>;  ///< q_1 .. q_n, rad; qd_1 .. qd_n, rad/s
+
+  struct Force {{
+    double x, y;  ///< N; x right, y down
+  }};
+  struct Energy {{
+    double kinetic;    ///< J
+    double potential;  ///< J; 0 at the height of the origin
+    double total() const {{ return kinetic + potential; }}
+  }};
+"""
+
+DOCUMENTATION = {
+    "accelerations": ["Angular accelerations of the links, rad/s^2."],
+    "reactions": [
+        "Force on each link where it begins: F_01, of the ground on link 1, then F_12, of link 1 on",
+        "link 2, and so on.",
+    ],
+    "energy": ["Kinetic and potential energy of the chain."],
+    "powers": ["Power of each effect."],
+}
+
+TAIL = """
+  /// dy/dt of the state y.
+  State right_hand_side(double t, const State& y) const {
+    Angles q{}, qd{};
+    for (std::size_t i = 0; i < links; ++i) {
+      q[i] = y[i];
+      qd[i] = y[links + i];
+    }
+    const Angles qdd = accelerations(t, q, qd);
+    State dydt{};
+    for (std::size_t i = 0; i < links; ++i) {
+      dydt[i] = qd[i];
+      dydt[links + i] = qdd[i];
+    }
+    return dydt;
+  }
+
+  /// The same as Boost.odeint and others call it.
+  void operator()(const State& y, State& dydt, double t) const { dydt = right_hand_side(t, y); }
+"""
+POWER = {"square": "x * x", "cube": "x * x * x"}
+
+
+def header(derivation: Derivation, name: str = "Chain", namespace: str = "pendulum") -> str:
+    """Return the text of a C++17 header that needs the standard library alone.
+
+    Its struct has the scene's numbers as defaults, and ``accelerations``, ``right_hand_side``,
+    ``reactions``, ``energy`` and, where effects do work, ``powers``.
+
+    Parameters
+    ----------
+    derivation : Derivation
+        Of any scene that can be derived.
+    name, namespace : str, default "Chain" and "pendulum"
+        Of the struct, and where it stands.
+    """
+    for what, given in (("name", name), ("namespace", namespace)):
+        if not given.isidentifier() or not given.isascii():
+            raise ValueError(f"{what} = {given!r}: must be a name that C++ allows")
+    taken = (*TAKEN, name, namespace)
+    n, quantities = derivation.n, Quantities.of(derivation, taken)
+    every = [p.symbol for p in derivation.symbols.parameters]
+    writer = Cpp(identifiers([*every, *quantities.symbols()], taken))
+    numbers = constants(derivation, writer, "  double {} = ", "{!r};", "  ///< {}")
+    text = HEAD.format(
+        chain=chain_in_words(derivation).capitalize(), name=name, namespace=namespace, n=n,
+        origin="\n".join(f"/// {line}".rstrip() for line in origin(derivation)),
+        cost=_cost(quantities), first=writer.doprint(every[0]), constants="\n".join(numbers),
+    )  # fmt: skip
+    if quantities.powers:
+        text += _powers_struct(quantities)
+    text += _function(derivation, writer, "Angles", "accelerations", quantities.accelerations)
+    text += TAIL
+    text += _function(derivation, writer, "std::array<Force, links>", "reactions", quantities.reactions)
+    text += _function(derivation, writer, "Energy", "energy", quantities.energies)
+    if quantities.powers:
+        text += _function(derivation, writer, "Powers", "powers", quantities.power)
+    used = [f"  static double {one}(double x) {{ return {product}; }}"
+            for one, product in POWER.items() if f"{one}(" in text]  # fmt: skip
+    text += "\n".join(["\n private:", *used, ""]) if used else ""
+    return f"{text}}};\n\n}}  // namespace {namespace}\n"
+
+
+def _cost(quantities: Quantities) -> str:
+    calls = sum(
+        type(value).__name__ in ("sin", "cos") for _, value in quantities.accelerations.assignments
+    )
+    others = quantities.accelerations.operations - calls
+    return f"{calls} sines and cosines, {others} other operations a right-hand side"
+
+
+def _powers_struct(quantities: Quantities) -> str:
+    lines = ["  /// Power that each effect brings into the chain, W; negative where it takes."]
+    lines.append("  struct Powers {")
+    for name, effect in quantities.powers.items():
+        lines += [f"    /// {line.strip()}" for line in indented(repr(effect))]
+        lines.append(f"    double {name};")
+    lines.append("    /// The rate at which kinetic + potential energy grows.")
+    lines.append("    double total() const {")
+    lines += wrapped(f"return {' + '.join(quantities.powers)};", "      ")
+    return "\n".join([*lines, "    }", "  };", ""])
+
+
+def _function(
+    derivation: Derivation, writer: Cpp, kind: str, name: str, computation: Computation
+) -> str:
+    """Write a member function of t, q, qd that returns the computation's results in braces."""
+    s, needs = derivation.symbols, computation.needs
+    accelerated = bool(needs & {*s.qdd})
+    time = "double t" if accelerated or s.t in needs else "double /*t*/"
+    q, qd = (
+        f"const Angles& {name}" if accelerated or needs & {*symbols} else f"const Angles& /*{name}*/"
+        for symbols, name in ((s.q, "q"), (s.qd, "qd"))
+    )
+    lines = ["", *(f"  /// {line}" for line in DOCUMENTATION[name])]
+    lines.append(f"  {kind} {name}({time}, {q}, {qd}) const {{")
+    if accelerated:
+        lines.append("    const Angles qdd = accelerations(t, q, qd);")
+    for symbols, whole in ((s.q, "q"), (s.qd, "qd"), (s.qdd, "qdd")):
+        parts = [
+            f"{writer.doprint(one)} = {whole}[{i}]" for i, one in enumerate(symbols) if one in needs
+        ]
+        lines += wrapped(f"const double {', '.join(parts)};", "    ") if parts else []
+    for symbol, value in computation.assignments:
+        lines += wrapped(f"const double {writer.doprint(symbol)} = {writer.doprint(value)};", "    ")
+    results = [writer.doprint(value) for value in computation.results]
+    if kind.startswith("std::array<Force"):
+        pairs = zip(results[::2], results[1::2], strict=True)
+        results = [f"Force{{{x}, {y}}}" for x, y in pairs]
+    body = [line for result in results for line in wrapped(f"{result},", "        ")]
+    body[-1] = body[-1].removesuffix(",")
+    opening, closing = ("{{", "}}") if "std::array" in kind or kind == "Angles" else ("{", "}")
+    lines += [f"    return {kind}{opening}", *body, f"    {closing};", "  }"]
+    return "\n".join(lines) + "\n"
