@@ -9,10 +9,13 @@ time, nothing else: the textbook's ``diff(rC1, t)``.
 from __future__ import annotations
 
 from functools import cached_property
+from itertools import pairwise
 
 from sympy import Expr, Integer, Symbol, cos, diff, expand, sin
+from sympy.simplify.fu import TR8
 
 from pendcore.derive.notation import Notation
+from pendcore.derive.writing import ACCELERATION, ANGLE, RATE
 
 Vector = tuple[Expr, Expr]
 """Components along x (right) and y (down)."""
@@ -33,6 +36,11 @@ def minus(a: Vector, b: Vector) -> Vector:
     return a[0] - b[0], a[1] - b[1]
 
 
+def of_differences(expression: Expr) -> Expr:
+    """Write products of sines and cosines as sines and cosines of sums: a normal form."""
+    return expand(TR8(expand(expression)))
+
+
 class Chain:
     """Where the links are and how they move, as expressions.
 
@@ -40,20 +48,45 @@ class Chain:
     ----------
     notation : Notation
         The symbols.
-    pivot : (sympy.Expr, sympy.Expr)
+    path : (sympy.Expr, sympy.Expr)
         Position of the pivot, a function of time alone, m.
+
+    Attributes
+    ----------
+    pivot : (sympy.Expr, sympy.Expr)
+        The same as symbols, ``x_A`` and ``y_A``, and 0 along an axis on which it does not move.
+    path : dict
+        What they and their rates, ``xd_A`` to ``ydd_A``, are as functions of time.
     """
 
-    def __init__(self, notation: Notation, pivot: Vector = (Integer(0), Integer(0))) -> None:
+    def __init__(self, notation: Notation, path: Vector) -> None:
         self.notation = notation
-        self.pivot = pivot
+        self.path: dict[Symbol, Expr] = {}
+        self._rates: dict[Symbol, Expr] = {}
+        x, y = (self._along(axis, law) for axis, law in zip("xy", path, strict=True))
+        self.pivot: Vector = (x, y)
+
+    def _along(self, axis: str, law: Expr) -> Expr:
+        if law == 0:
+            return law
+        dots = {0: axis, 1: rf"\dot{{{axis}}}", 2: rf"\ddot{{{axis}}}"}
+        symbols = [
+            self.notation.symbol(
+                f"{axis}{'d' * k}_A", f"{shown}_{{A}}", (ANGLE, RATE, ACCELERATION)[k]
+            )
+            for k, shown in dots.items()
+        ]
+        for k, symbol in enumerate(symbols):
+            self.path[symbol] = law.diff(self.notation.t, k)
+        self._rates |= dict(pairwise(symbols))
+        return symbols[0]
 
     def rate(self, expression: Expr) -> Expr:
-        """Differentiate with respect to time: angles and rates are functions of it."""
+        """Differentiate with respect to time: angles, rates and pivot are functions of it."""
         s = self.notation
-        moving: list[tuple[Symbol, Expr]] = [(s.t, Integer(1))]
-        moving += [*zip(s.q, s.qd, strict=True), *zip(s.qd, s.qdd, strict=True)]
-        return sum((diff(expression, x) * rate for x, rate in moving), Integer(0))
+        moving = {s.t: Integer(1), **self._rates}
+        moving |= {**dict(zip(s.q, s.qd, strict=True)), **dict(zip(s.qd, s.qdd, strict=True))}
+        return sum((diff(expression, x) * rate for x, rate in moving.items()), Integer(0))
 
     def velocity(self, point: Vector) -> Vector:
         """Return the velocity of a point, m/s."""

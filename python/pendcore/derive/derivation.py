@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 from sympy import Expr, Integer, Matrix, Symbol
 
+from pendcore.case import Case
 from pendcore.derive.chain import Chain, Vector
 from pendcore.derive.energy import Energy
+from pendcore.derive.growth import check_length
 from pendcore.derive.laws import laws_of
 from pendcore.derive.motion import Motion
 from pendcore.derive.narration import steps
 from pendcore.derive.newton_euler import NewtonEuler
 from pendcore.derive.notation import Notation
+from pendcore.derive.solution import Assignments, Solution
 from pendcore.derive.step import Step
+from pendcore.progress import Progress
 from pendcore.scene import Scene
 
 
@@ -45,12 +50,15 @@ class Derivation:
     equations : NewtonEuler
         Newton's and Euler's equations, with the reactions as unknowns.
     motion : Motion
-        What is left when the reactions are eliminated, and its solution.
+        What is left when the reactions are eliminated.
+    solution : Solution
+        The accelerations.
     energy : Energy
         Energies, powers, and their balance.
     """
 
     def __init__(self, scene: Scene) -> None:
+        check_length(len(scene.links))
         self.scene = scene
         self.n = len(scene.links)
         self.symbols = Notation(scene)
@@ -60,7 +68,8 @@ class Derivation:
         self.chain = Chain(self.symbols, (x, y))
         self.equations = NewtonEuler(self.chain, laws)
         self.motion = Motion(self.equations)
-        self.energy = Energy(self.motion)
+        self.solution = Solution(self.motion)
+        self.energy = Energy(self.solution)
 
     @classmethod
     def textbook(cls) -> Derivation:
@@ -90,20 +99,20 @@ class Derivation:
     @property
     def accelerations(self) -> tuple[Expr, ...]:
         """Angular accelerations written out, in t, q, qd and parameters, (n,), rad/s^2."""
-        return self.motion.accelerations
+        return self.solution.accelerations
 
     @property
-    def shared(self) -> tuple[tuple[Symbol, Expr], ...]:
+    def shared(self) -> Assignments:
         """Assignments that lead to the accelerations, each in terms of those before it.
 
         `shared_accelerations` are in terms of them.
         """
-        return self.motion.shared
+        return self.solution.shared
 
     @property
     def shared_accelerations(self) -> tuple[Expr, ...]:
         """The accelerations in terms of `shared`, (n,), rad/s^2."""
-        return self.motion.shared_accelerations
+        return self.solution.shared_accelerations
 
     @cached_property
     def reactions(self) -> tuple[Vector, ...]:
@@ -111,15 +120,23 @@ class Derivation:
         known = self.motion.definitions
         return tuple((x.xreplace(known), y.xreplace(known)) for x, y in self.equations.reactions)
 
+    @cached_property
+    def holding_couples(self) -> dict[int, Expr]:
+        """Couple of each locked joint on the link beyond it, N m, in t, q, qd, qdd."""
+        known = {
+            s: x.xreplace(self.motion.definitions) for s, x in self.motion.named.entries.items()
+        }
+        return {joint: couple.xreplace(known) for joint, couple in self.solution.holding.items()}
+
     @property
     def kinetic_energy(self) -> Expr:
-        """T, J."""
-        return self.energy.kinetic
+        """T, J, in t, q, qd and parameters."""
+        return self.energy.kinetic.xreplace(self.motion.definitions)
 
     @property
     def potential_energy(self) -> Expr:
-        """V, of weights and springs, J; zero at the height of the origin."""
-        return self.energy.potential
+        """V, of weights and springs, J, in t, q and parameters; zero at the origin's height."""
+        return self.energy.potential.xreplace(self.motion.definitions)
 
     @property
     def powers(self) -> dict[Any, Expr]:
@@ -145,6 +162,35 @@ class Derivation:
 
     def __repr__(self) -> str:
         return f"Derivation({self.scene!r})"
+
+    def report(
+        self, case: Case, folder: Path, *, worksheet: bool = False, progress: Progress = None
+    ) -> list[Path]:
+        """Write the derivation with numbers and the solution of a case, to hand in or teach from.
+
+        Parameters
+        ----------
+        case : Case
+            A start and a time for this scene.
+        folder : Path
+            Where to; it is made if it is not there.
+        worksheet : bool
+            Whether to write a worksheet as well: the same with blanks.
+        progress : None, bool or callable
+            As in `pendcore.simulate`.
+
+        Returns
+        -------
+        list of Path
+            What was written, the report first: Markdown always, HTML and PDF where there are
+            converters.
+        """
+        from pendcore.derive.handout import write_handout
+
+        if case.scene != self.scene:
+            raise ValueError("case: is of another scene than the derivation: derive case.scene")
+        folder.mkdir(parents=True, exist_ok=True)
+        return write_handout(self, case, folder, with_worksheet=worksheet, progress=progress)
 
     def to_octave(self, name: str = "RR") -> str:
         """Return a function file of MATLAB and Octave, as the textbook's RR.m."""

@@ -1,8 +1,8 @@
 """Energies of the chain, the powers of effects, and the balance of both, which holds exactly.
 
-    T + V changes at the rate of the powers of all effects, nothing more:
+T + V changes at the rate of the powers of all effects, nothing more:
 
-    d/dt (T + V) = sum of powers        when        M qdd = f
+d/dt (T + V) = sum of powers        when        M qdd = f
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from typing import Any
 
 from sympy import Expr, Integer, Symbol, expand
 
-from pendcore.derive.chain import dot
-from pendcore.derive.motion import Motion, of_differences
+from pendcore.derive.chain import Vector, dot, of_differences
+from pendcore.derive.solution import Solution
 
 
 class Energy:
@@ -21,12 +21,13 @@ class Energy:
 
     Parameters
     ----------
-    motion : Motion
-        The equations of motion.
+    solution : Solution
+        The accelerations.
     """
 
-    def __init__(self, motion: Motion) -> None:
-        self.motion = motion
+    def __init__(self, solution: Solution) -> None:
+        self.solution = solution
+        self.motion = motion = solution.motion
         self.equations = motion.equations
         self.chain = motion.equations.chain
         self.notation = motion.notation
@@ -38,7 +39,7 @@ class Energy:
         for i, v in enumerate(self.chain.center_velocities):
             found += s.masses[i] * dot(v, v) / 2 + s.inertias[i] * s.qd[i] ** 2 / 2
         if self.equations.payload is not None:
-            mass, inertia = self.equations.payload
+            mass, inertia = self.equations.payload.mass, self.equations.payload.inertia
             v = self.chain.joint_velocities[-1]
             found += mass * dot(v, v) / 2 + inertia * s.qd[-1] ** 2 / 2
         for joint, armature in enumerate(self.equations.armatures, start=1):
@@ -51,16 +52,20 @@ class Energy:
         s = self.notation
         heights = [m * c[1] for m, c in zip(s.masses, self.chain.centers, strict=True)]
         if self.equations.payload is not None:
-            heights.append(self.equations.payload[0] * self.chain.joints[-1][1])
+            heights.append(self.equations.payload.mass * self.chain.joints[-1][1])
         stored = [law.potential_energy(self.chain) for law in self.equations.laws]
         return expand(-s.gravity * sum(heights)) + sum(stored, Integer(0))
 
     @cached_property
     def powers_by_definitions(self) -> dict[Any, Expr]:
         """The power of each effect, W, its loads as symbols."""
+        return self.powers_with(self.equations.reactions[0])
+
+    def powers_with(self, ground_force: Vector) -> dict[Any, Expr]:
+        """Return the power of each effect, W, with the ground's force on link 1 as it is given."""
         found: dict[Any, Expr] = {}
         for law in self.equations.laws:
-            power = law.power(self.chain, self.equations.reactions[0])
+            power = law.power(self.chain, ground_force)
             if power is not None:
                 found[law.effect] = found.get(law.effect, Integer(0)) + power
         return found
@@ -88,8 +93,9 @@ class Energy:
         for i, rate in enumerate(s.qd):
             line = sum(motion.mass_matrix[i, k] * a for k, a in enumerate(s.qdd))
             unbalanced += rate * (line - motion.forcing_by_definitions[i].xreplace(torques))
-        left = of_differences((residual - unbalanced).xreplace(torques).subs(locked))
-        return left + motion.power_of_the_solution_error()
+        left = (residual - unbalanced).xreplace(torques).subs(locked)
+        left = of_differences(left.xreplace(self.chain.path))
+        return left + self.solution.power_of_the_error()
 
     def _locked_rates(self) -> dict[Symbol, Expr]:
         """The rates that locks take from the links before them."""

@@ -8,11 +8,22 @@ keeps every derivative an ordinary partial one; LaTeX shows them with dots.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
-import sympy
 from sympy import Expr, Rational, Symbol
-from sympy.printing.latex import latex as sympy_latex
 
+from pendcore.derive.writing import (
+    ACCELERATION,
+    ANGLE,
+    CONSTANT,
+    GRAVITY,
+    LENGTH,
+    MASS,
+    RATE,
+    UNKNOWN,
+    Latex,
+    Text,
+)
 from pendcore.scene import Scene
 
 
@@ -62,6 +73,7 @@ class Notation:
         self.n = n = len(scene.links)
         self.latex_names: dict[Symbol, str] = {}
         self._parameters: list[Parameter] = []
+        self._ranks: dict[Symbol, tuple[int, int]] = {}
         self.t = self.symbol("t", "t")
         links = range(1, n + 1)
         self.q = tuple(self.symbol(f"q{i}", f"q_{{{i}}}") for i in links)
@@ -92,6 +104,14 @@ class Notation:
                 inertias.append(Rational(1, 12) * mass * length**2)
         self.centers, self.inertias = tuple(centers), tuple(inertias)
         self.gravity = self.parameter("g", "g", scene.gravity, "m/s^2", "acceleration of gravity")
+        self._ranks |= {self.t: (ANGLE, 0), self.gravity: (GRAVITY, 0)}
+        for kind, row in (
+            (ANGLE, self.q), (RATE, self.qd), (ACCELERATION, self.qdd),
+            (MASS, self.masses), (MASS, self.inertias),
+            (LENGTH, self.lengths), (LENGTH, self.centers),
+        ):  # fmt: skip
+            for i, symbol in enumerate(row, start=1):
+                self._ranks[symbol] = (kind, i)
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
@@ -103,13 +123,23 @@ class Notation:
         """The numbers of the scene."""
         return {parameter.symbol: parameter.value for parameter in self._parameters}
 
-    def symbol(self, name: str, latex: str) -> Symbol:
-        """Return the real symbol of that name, and remember how LaTeX writes it."""
+    def symbol(self, name: str, latex: str, rank: int | None = None, link: int = 0) -> Symbol:
+        """Return the real symbol of that name, and remember how it is written, and where."""
         made = Symbol(name, real=True)
         self.latex_names[made] = latex
+        if rank is not None:
+            self._ranks[made] = rank, link
         return made
 
-    def parameter(self, name: str, latex: str, value: float, unit: str, meaning: str) -> Symbol:
+    def parameter(
+        self,
+        name: str,
+        latex: str,
+        value: float,
+        unit: str,
+        meaning: str,
+        rank: tuple[int, int] = (CONSTANT, 0),
+    ) -> Symbol:
         """Return a new symbol for a constant of the scene.
 
         A second one of the same name, such as of two dampers in one joint, is told from the first.
@@ -120,16 +150,17 @@ class Notation:
             name, latex = f"{name}__{count}", f"{{{latex}}}^{{({count})}}"
         symbol = self.symbol(name, latex)
         self._parameters.append(Parameter(symbol, float(value), unit, meaning))
+        self._ranks[symbol] = rank
         return symbol
 
-    def latex(self, expression: Expr) -> str:
-        """Write an expression in LaTeX, functions of a single symbol without brackets."""
-        return str(
-            sympy_latex(
-                expression, symbol_names=self.latex_names, fold_func_brackets=True, mul_symbol=r"\,"
-            )
-        )
+    def rank(self, symbol: Symbol) -> tuple[int, int]:
+        """Return the kind of a symbol and its link: what orders factors and terms."""
+        return self._ranks.get(symbol, (UNKNOWN, 0))
 
-    def text(self, expression: Expr) -> str:
-        """Write an expression in a line of text."""
-        return str(sympy.sstr(expression))
+    def latex(self, expression: Any) -> str:
+        """Write an expression in LaTeX."""
+        return Latex(self.rank, self.latex_names).write(expression)
+
+    def text(self, expression: Any) -> str:
+        """Write an expression in a line of text that Python and SymPy read."""
+        return Text(self.rank, self.latex_names).write(expression)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 from textwrap import fill
 from typing import Any, NamedTuple
@@ -47,11 +48,16 @@ class Equation:
 
     def __str__(self) -> str:
         number = f"    ({self.number})" if self.number else ""
-        return f"{self.lhs} = {self.rhs}{number}"
+        return f"{self._text(self.lhs)} = {self._text(self.rhs)}{number}"
 
     def latex(self) -> str:
         """Return both sides in LaTeX, without the number: ``lhs &= rhs``."""
         return f"{self.side_latex(self.lhs)} &= {self.side_latex(self.rhs)}"
+
+    def _text(self, side: Any) -> str:
+        if isinstance(side, Formula) or self.notation is None:
+            return str(side)
+        return self.notation.text(side)
 
     def side_latex(self, side: Any) -> str:
         """Return one side in LaTeX."""
@@ -128,8 +134,17 @@ class Step:
 
 
 def plain(text: str) -> str:
-    """Return a text without the dollars of its inline LaTeX."""
-    return text.replace("$", "")
+    """Return a text with its inline LaTeX as a line of text has it."""
+    return "".join(_spoken(x) if k % 2 else x for k, x in enumerate(text.split("$")))
+
+
+def _spoken(latex: str) -> str:
+    """Return a short formula without LaTeX's marks: ``q1``, ``M qdd = f``."""
+    spoken = latex.replace(r"\,", " ")
+    for dots, letters in ((r"\ddot", "dd"), (r"\dot", "d")):
+        spoken = re.sub(rf"{re.escape(dots)}{{(\w+)}}", rf"\g<1>{letters}", spoken)
+    spoken = re.sub(r"\\math\w+{(\w+)}", r"\1", spoken)
+    return re.sub(r"[_\\{}]", "", spoken)
 
 
 def escaped(text: str) -> str:

@@ -18,8 +18,6 @@ class DrivenPivot(Law):
     A spline is smooth only in pieces: its third derivative jumps at every point.
     """
 
-    sentence = "The pivot is moved along a given path"
-
     def __init__(self, effect: Any, notation: Notation) -> None:
         super().__init__(effect, notation)
         if effect.spline is not None:
@@ -29,6 +27,10 @@ class DrivenPivot(Law):
                 "give sinusoids, x= and y=",
             )
         self.path = self._axis("x"), self._axis("y")
+
+    def sentence(self, notation: Notation) -> str:
+        """Say what it does."""
+        return "The pivot is moved along a given path."
 
     def _axis(self, axis: str) -> Expr:
         wave = getattr(self.effect, axis)
@@ -44,4 +46,6 @@ class DrivenPivot(Law):
 
     def power(self, chain: Chain, ground_force: Vector) -> Expr:
         """Work per second of what moves it."""
-        return dot(ground_force, chain.velocity(self.path))
+        symbols = {law: symbol for symbol, law in chain.path.items()}
+        x, y = (law.diff(self.notation.t) for law in self.path)
+        return dot(ground_force, (symbols.get(x, x), symbols.get(y, y)))

@@ -56,12 +56,13 @@ class Law:
         Where the law puts the symbols of its parameters.
     """
 
-    sentence = ""
-    """What the reader of a derivation is told of it."""
-
     def __init__(self, effect: Any, notation: Notation) -> None:
         self.effect = effect
         self.notation = notation
+
+    def sentence(self, notation: Notation) -> str:
+        """Return what the reader of a derivation is told of it; formulas between dollars."""
+        raise NotImplementedError
 
     def pivot(self) -> Vector | None:
         """Position of the pivot over time, if the effect moves it, m."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pendcore.derive.laws.law import Law
+from pendcore.derive.notation import Notation
 
 
 class Lock(Law):
@@ -12,7 +13,13 @@ class Lock(Law):
     locked is the state's affair.
     """
 
-    sentence = "A lock keeps the angle of the joint constant, by a couple that is unknown"
+    def sentence(self, notation: Notation) -> str:
+        """Say what it does."""
+        joint = self.effect.joint
+        return (
+            f"A lock keeps the angle of joint {joint} constant by the couple "
+            f"$\\Lambda_{{{joint}}}$, one more unknown, on the link beyond it."
+        )
 
     def lock(self) -> int:
         """Return its joint."""

@@ -19,8 +19,6 @@ class Motor(Law):
     a corner in the law, and a table has one at every point.
     """
 
-    sentence = "A motor turns the joint"
-
     def __init__(self, effect: Any, notation: Notation) -> None:
         super().__init__(effect, notation)
         _check(effect)
@@ -44,6 +42,10 @@ class Motor(Law):
             self.kd = parameter(name, latex, pd.kd, "N m s/rad", f"derivative gain {motor}")
             name, latex = f"phiR_{j}", rf"\varphi_{{r,{j}}}"
             self.reference = parameter(name, latex, pd.reference, "rad", f"angle aimed at {motor}")
+
+    def sentence(self, notation: Notation) -> str:
+        """Say what it does."""
+        return f"A motor turns joint {self.effect.joint}."
 
     def couple(self, chain: Chain) -> Expr:
         """One of the three."""

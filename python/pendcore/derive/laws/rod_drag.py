@@ -29,8 +29,6 @@ AT_REST = 1e-100
 class RodDrag(Law):
     """See the core's effect of that name; its power is F n . v + T qd."""
 
-    sentence = "The air resists the motion across the rod, quadratic in the speed"
-
     def __init__(self, effect: Any, notation: Notation) -> None:
         super().__init__(effect, notation)
         i, parameter = effect.link, notation.parameter
@@ -52,6 +50,15 @@ class RodDrag(Law):
             f"eps_{i}", rf"\varepsilon_{{{i}}}", AT_REST, "m/s", "keeps 0/0 from a rod at rest"
         )
         self._names: dict[str, Symbol] = {}
+
+    def sentence(self, notation: Notation) -> str:
+        """Say what it does."""
+        i = self.effect.link
+        return (
+            f"The air resists the motion of link {i} across itself: the force on a length of rod "
+            "is quadratic in its speed; its integrals along the rod are the force and the moment "
+            "about the joint where the link begins."
+        )
 
     def _symbol(self, letter: str, latex: str) -> Symbol:
         """A symbol of this effect, told from that of another on the same rod."""

@@ -14,8 +14,6 @@ from pendcore.derive.notation import Notation
 class TorsionalSpring(Law):
     """See the core's effect of that name; what it stores is potential energy."""
 
-    sentence = "A torsional spring turns the joint back to its rest angle"
-
     def __init__(self, effect: Any, notation: Notation) -> None:
         super().__init__(effect, notation)
         j = effect.joint
@@ -28,6 +26,10 @@ class TorsionalSpring(Law):
             self.rest_angle = notation.parameter(
                 f"phi0_{j}", rf"\varphi_{{0,{j}}}", effect.rest_angle, "rad", words
             )
+
+    def sentence(self, notation: Notation) -> str:
+        """Say what it does."""
+        return f"A torsional spring turns joint {self.effect.joint} to its rest angle."
 
     def couple(self, chain: Chain) -> Expr:
         """Towards the rest angle, for positive stiffness."""

@@ -14,8 +14,6 @@ from pendcore.derive.notation import Notation
 class ViscousJoint(Law):
     """See the core's effect of that name; its power is tau w."""
 
-    sentence = "Viscous damping opposes the rate of the joint"
-
     def __init__(self, effect: Any, notation: Notation) -> None:
         super().__init__(effect, notation)
         j, self.coefficients = effect.joint, dict[int, Expr]()
@@ -35,6 +33,10 @@ class ViscousJoint(Law):
                     + ("" if power == 1 else f"^{power}"),
                     f"{word} damping of joint {j}",
                 )
+
+    def sentence(self, notation: Notation) -> str:
+        """Say what it does."""
+        return f"Viscous damping at joint {self.effect.joint} opposes its rate."
 
     def couple(self, chain: Chain) -> Expr:
         """Odd in w."""

@@ -5,8 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from pendcore.derive.narration.elimination import elimination
+from pendcore.derive.narration.energy import energy
 from pendcore.derive.narration.first_order import first_order
 from pendcore.derive.narration.kinematics import kinematics
+from pendcore.derive.narration.loads import loads
 from pendcore.derive.narration.newton_euler import newton_euler
 from pendcore.derive.narration.page import Page
 from pendcore.derive.step import Step
@@ -14,7 +16,7 @@ from pendcore.derive.step import Step
 if TYPE_CHECKING:
     from pendcore.derive.derivation import Derivation
 
-PARTS = (kinematics, newton_euler, elimination, first_order)
+PARTS = (kinematics, loads, newton_euler, elimination, first_order, energy)
 
 
 def steps(derivation: Derivation) -> tuple[Step, ...]:

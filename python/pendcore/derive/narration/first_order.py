@@ -1,24 +1,45 @@
-"""The equations collected, solved, and as a first-order system."""
+"""The equations of motion solved, and as a first-order system."""
 
 from __future__ import annotations
 
 from pendcore.derive.narration.page import Page
+from pendcore.derive.writing import ANGLE, RATE
 
 
 def first_order(page: Page) -> None:
     """Write the solution and the first-order form."""
-    entries, solved = page.motion.by_entries
+    solution = page.derivation.solution
+    text = "The equations of motion are linear in the accelerations"
+    if page.equations.locked:
+        text += (
+            "; the equations of the links that a lock makes turn as one are added, which takes "
+            "its couple out of them"
+        )
     page.step(
         "Solution for the angular accelerations",
-        "The equations of motion are linear in the accelerations, $M \\ddot{q} = f$.",
-        *(page.equation(name, value) for name, value in entries.items()),
-        *(page.equation(a, value) for a, value in zip(page.s.qdd, solved, strict=True)),
+        f"{text}.",
+        *(
+            page.equation(a, value)
+            for a, value in zip(page.s.qdd, solution.by_entries, strict=True)
+        ),
+        *(
+            page.equation(page.equations.holding[joint], couple)
+            for joint, couple in solution.holding.items()
+        ),
     )
-    state = []
+    names, rates = [], []
     for i, (q, qd, qdd) in enumerate(zip(page.s.q, page.s.qd, page.s.qdd, strict=True)):
-        x, xd = (page.symbol(f"x({2 * i + k})", f"x_{{{2 * i + k}}}") for k in (1, 2))
-        state += [page.equation(x, q), page.equation(xd, qd)]
+        k = 2 * i + 1
+        x = page.symbol(f"x({k})", f"x_{{{k}}}", ANGLE)
+        xd = page.symbol(f"x({k + 1})", f"x_{{{k + 1}}}", RATE)
+        names += [page.equation(x, q), page.equation(xd, qd)]
         for name, value in ((x, xd), (xd, qdd)):
-            rate = page.symbol(f"d{name}/dt", rf"\dot{{{page.s.latex(name)}}}")
-            state.append(page.equation(rate, value))
-    page.step("First-order form", "Two states for each link.", *state)
+            rate = page.symbol(f"d[{name}]/dt", rf"\dot{{x}}_{{{str(name)[2:-1]}}}")
+            rates.append(page.equation(rate, value))
+    page.step(
+        "First-order form",
+        "The equations of second order are written as a system of first order, with two states "
+        "for each link.",
+        *names,
+        *rates,
+    )

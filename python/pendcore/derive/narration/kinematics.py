@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from pendcore.derive.chain import Vector
-from pendcore.derive.narration.page import Page
+from pendcore.derive.narration.page import Page, total
 from pendcore.derive.step import Equation, Formula
 
 AXES = ("x", "y")
@@ -12,16 +14,26 @@ AXES = ("x", "y")
 def kinematics(page: Page) -> None:
     """Write the kinematics."""
     n, chain = page.n, page.chain
-    page.step(
-        "Positions of the mass centres",
-        f"The plane of motion is the $xy$ plane, $x$ to the right and $y$ vertical, positive "
-        f"downward; the origin is at $A$. The angles "
-        f"{', '.join(f'$q_{{{i}}}$' for i in range(1, n + 1))} of the links, measured from the "
-        "$x$ axis towards the $y$ axis, are the generalized coordinates.",
-        *_points(page, chain.joints[1:], [page.joint(i) for i in range(1, n + 1)], 0),
-        *_points(page, chain.centers, [page.center(i) for i in range(1, n + 1)], 0),
-    )
+    _mobility(page)
     centers = [page.center(i) for i in range(1, n + 1)]
+    joints = [page.joint(i) for i in range(n + 1)]
+    fixed = chain.pivot_is_fixed
+    origin = (
+        "The origin is at $A$."
+        if fixed
+        else ("The origin is the point about which the pivot $A$ moves on a given path.")
+    )
+    page.step(
+        "Positions",
+        "The plane of motion is the $xy$ plane, with $x$ to the right and $y$ vertical, positive "
+        f"downward. {origin} "
+        f"The angles {_listed(f'$q_{{{i}}}$' for i in range(1, n + 1))} are measured from the "
+        "$x$ axis towards the $y$ axis.",
+        *(page.equation(symbol, law) for symbol, law in chain.path.items()),
+        *_points(page, chain.joints[1:], joints[1:], 0),
+        *_vectors(page, centers),
+        *_points(page, chain.centers, centers, 0),
+    )
     page.step(
         "Velocities of the mass centres",
         "The velocity is the derivative with respect to time of the position.",
@@ -31,25 +43,74 @@ def kinematics(page: Page) -> None:
         "Accelerations of the mass centres",
         "The acceleration is the derivative with respect to time of the velocity.",
         *_points(page, chain.center_accelerations, centers, 2),
+        *(
+            _points(page, [chain.tip_acceleration], joints[-1:], 2)
+            if page.equations.payload is not None
+            else ()
+        ),
     )
-    angular = []
-    for i, (rate, turning) in enumerate(zip(page.s.qd, page.s.qdd, strict=True), start=1):
-        for letter, latex, value in (("omega", r"\omega", rate), ("alpha", r"\alpha", turning)):
-            name = Formula(f"{letter}{i}", rf"\boldsymbol{{{latex}}}_{{{i}}}")
-            of = Formula(f"{value} k", rf"{page.s.latex(value)} \, \mathbf{{k}}")
-            angular.append(page.equation(name, of))
     page.step(
         "Angular velocities and accelerations",
-        "The links turn about the axis $z$ of unit vector $\\mathbf{k}$, away from the reader.",
-        *angular,
+        "The links turn about the $z$ axis, of unit vector $\\mathbf{k}$; positive is from $x$ to "
+        "$y$.",
+        *(
+            page.equation(page.vector(letter, i), page.along("k", row[i - 1]))
+            for letter, row in (("omega", page.s.qd), ("alpha", page.s.qdd))
+            for i in range(1, n + 1)
+        ),
     )
+
+
+def _mobility(page: Page) -> None:
+    n = page.n
+    locked = page.equations.locked
+    k = n - len(locked)  # links that a lock makes one are one
+    joints = "one revolute joint" if k == 1 else f"{k} revolute joints"
+    links = "one moving link" if k == 1 else f"{k} moving links"
+    text = (
+        f"The chain has {links} and {joints}, of one degree of freedom each: $n = {k}$, "
+        f"$c_{{5}} = {k}$, $c_{{4}} = 0$."
+    )
+    if locked:
+        joints = f"joint{'s' if len(locked) > 1 else ''} {_listed(map(str, locked))}"
+        text += f" The lock of {joints} makes one of the bodies that it joins."
+    symbol = page.symbol("M", "M")
+    count = Formula(f"3*{k} - 2*{k} - 0 = {k}", rf"3 \cdot {k} - 2 \cdot {k} - 0 = {k}")
+    general = Formula("3 n - 2 c5 - c4", r"3 n - 2 c_{5} - c_{4}")
+    angles = _listed(f"$q_{{{i}}}(t)$" for i in range(1, n + 1))
+    coordinates = "The generalized coordinates are the angles"
+    if locked:
+        coordinates = "It is described by the angles"
+    elif n == 1:
+        coordinates = "The generalized coordinate is the angle"
+    page.step(
+        "Degrees of freedom",
+        f"{text} {coordinates} {angles} of the link{'s' if n > 1 else ''}.",
+        page.equation(symbol, general),
+        page.equation(symbol, count),
+    )
+
+
+def _vectors(page: Page, names: Sequence[Formula]) -> list[Equation]:
+    return [
+        page.equation(
+            page.position(name),
+            total(page.along(u, page.coordinate(a, name)) for a, u in zip(AXES, "ij", strict=True)),
+        )
+        for name in names
+    ]
 
 
 def _points(
-    page: Page, vectors: tuple[Vector, ...], names: list[tuple[str, str]], dots: int
+    page: Page, vectors: Sequence[Vector], names: Sequence[Formula], dots: int
 ) -> list[Equation]:
     return [
         page.equation(page.coordinate(axis, name, dots), vector[k])
         for vector, name in zip(vectors, names, strict=True)
         for k, axis in enumerate(AXES)
     ]
+
+
+def _listed(words: object) -> str:
+    *most, last = list(words)  # type: ignore[call-overload]
+    return f"{', '.join(most)} and {last}" if most else str(last)

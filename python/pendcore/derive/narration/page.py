@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from sympy import Expr, Symbol
 
 from pendcore.derive.step import Equation, Formula, Step
+from pendcore.derive.writing import ACCELERATION, ANGLE, MASS, RATE
 
 if TYPE_CHECKING:
     from pendcore.derive.derivation import Derivation
@@ -32,14 +34,10 @@ class Page:
         self.chain = derivation.chain
         self.equations = derivation.equations
         self.motion = derivation.motion
-        uniform = not any(link.particulars().keys() - {"mass", "length"} for link in self.links)
-        self.is_textbook = self.n == 2 and uniform and not derivation.scene.effects
+        links = derivation.scene.links
+        self.is_uniform = not any(x.particulars().keys() - {"mass", "length"} for x in links)
+        self.is_textbook = self.n == 2 and self.is_uniform and not derivation.scene.effects
         self.steps: list[Step] = []
-
-    @property
-    def links(self) -> Any:
-        """The links of the scene."""
-        return self.derivation.scene.links
 
     def step(self, title: str, text: str, *equations: Equation) -> None:
         """Write a step."""
@@ -52,34 +50,89 @@ class Page:
         number: str | None = None,
         remark: str = "",
     ) -> Equation:
-        """Return an equation; a textbook number is left out where there are not two links."""
+        """Return an equation; the textbook's number and remarks on it are for two links."""
         number = number if self.n == 2 else None
         return Equation(lhs, rhs, number, remark if self.is_textbook else "", self.s)
 
-    def symbol(self, name: str, latex: str) -> Symbol:
+    def symbol(self, name: str, latex: str, rank: int | None = None, link: int = 0) -> Symbol:
         """Return a symbol that only names a side of an equation."""
-        return self.s.symbol(name, latex)
+        return self.s.symbol(name, latex, rank, link)
 
-    def center(self, link: int) -> tuple[str, str]:
-        """Return the name of a mass centre, in text and LaTeX."""
-        return f"C{link}", f"C_{{{link}}}"
-
-    def joint(self, joint: int) -> tuple[str, str]:
+    def joint(self, joint: int) -> Formula:
         """Return the name of P_0, ..., P_n: A, B and D for two links, as in the textbook."""
-        if joint == 0:
-            return "A", "A"
-        if self.n <= 2:
-            name = "BD"[joint - 1 if self.n == 2 else 0]
-            return name, name
-        return f"P{joint}", f"P_{{{joint}}}"
+        if joint <= min(self.n, 2) <= self.n <= 2:
+            name = ("A", "B", "D")[joint]
+            return Formula(name, name)
+        return Formula("A", "A") if joint == 0 else Formula(f"P{joint}", f"P_{{{joint}}}")
 
-    def coordinate(self, axis: str, point: tuple[str, str], dots: int = 0) -> Symbol:
+    @staticmethod
+    def center(link: int) -> Formula:
+        """Return the name of a mass centre."""
+        return Formula(f"C{link}", f"C_{{{link}}}")
+
+    def coordinate(self, axis: str, point: Formula, dots: int = 0) -> Symbol:
         """Return x_C1, or with dots its velocity and acceleration."""
-        text, latex = point
-        name = f"{axis}{'d' * dots}_{text}"
+        name = f"{axis}{'d' * dots}_{point.text}"
         letter = {0: axis, 1: rf"\dot{{{axis}}}", 2: rf"\ddot{{{axis}}}"}[dots]
-        return self.symbol(name, f"{letter}_{{{latex}}}")
+        rank = (ANGLE, RATE, ACCELERATION)[dots]
+        return self.symbol(name, f"{letter}_{{{point.latex}}}", rank)
 
-    def force(self, on: int, of: str) -> Formula:
-        """Return a force vector: of another body on a link."""
-        return Formula(f"F{of}{on}", rf"\mathbf{{F}}_{{{of}{on}}}")
+    def moment_of_inertia(self, link: int) -> Symbol:
+        """Return I_C1."""
+        return self.symbol(f"I_C{link}", f"I_{{C_{{{link}}}}}", MASS, link)
+
+    @staticmethod
+    def position(of: Formula, origin: Formula | None = None) -> Formula:
+        """Return a vector between points, such as r_C1 or from C1 to B, r_C1B."""
+        before = origin or Formula("", "")
+        return Formula(f"r_{before.text}{of.text}", rf"\mathbf{{r}}_{{{before.latex}{of.latex}}}")
+
+    @staticmethod
+    def vector(letter: str, index: Formula | str | int) -> Formula:
+        """Return a vector: a_C1, alpha_1, G_1, F_12."""
+        text, latex = (index.text, index.latex) if isinstance(index, Formula) else (index, index)
+        name = {"alpha": r"\boldsymbol{\alpha}", "omega": r"\boldsymbol{\omega}"}.get(
+            letter, rf"\mathbf{{{letter}}}"
+        )
+        between = "_" if isinstance(index, Formula) else ""
+        return Formula(f"{letter}{between}{text}", f"{name}_{{{latex}}}")
+
+    def along(self, unit: str, value: Any) -> Formula:
+        """Return a value along a unit vector: ``m1*g j``."""
+        text, latex = self.s.text(value), self.s.latex(value)
+        if getattr(value, "is_Add", False):
+            text, latex = f"({text})", rf"\left({latex}\right)"
+        return Formula(f"{text} {unit}", rf"{latex} \, \mathbf{{{unit}}}")
+
+    def scaled(self, factor: Expr, vector: Formula) -> Formula:
+        """Return a vector times a factor: ``m1 a_C1``."""
+        return Formula(
+            f"{self.s.text(factor)} {vector.text}", f"{self.s.latex(factor)} {vector.latex}"
+        )
+
+    @staticmethod
+    def cross(arm: Formula, force: Formula) -> Formula:
+        """Return a moment: arm x force."""
+        return Formula(f"{arm.text} x {force.text}", rf"{arm.latex} \times {force.latex}")
+
+    def determinant(self, arm: tuple[Expr, Expr], force: tuple[Expr, Expr]) -> Formula:
+        """Return the cross product of two vectors in the plane, as the textbook prints it."""
+        rows = [[self.s.text(x) for x in row] for row in (arm, force)]
+        shown = [[self.s.latex(x) for x in row] for row in (arm, force)]
+        text = "; ".join(f"{x}, {y}, 0" for x, y in rows)
+        latex = r" \\ ".join(f"{x} & {y} & 0" for x, y in shown)
+        head = r"\mathbf{i} & \mathbf{j} & \mathbf{k}"
+        return Formula(
+            f"det[i, j, k; {text}]", rf"\begin{{vmatrix}} {head} \\ {latex} \end{{vmatrix}}"
+        )
+
+
+def total(terms: Iterable[Formula]) -> Formula:
+    """Return a sum; a term that begins with a minus is taken away."""
+    text = latex = ""
+    for term in terms:
+        for_text, for_latex = term.text.removeprefix("-"), term.latex.removeprefix("-")
+        sign = "-" if term.text.startswith("-") else "+"
+        text += f" {sign} {for_text}" if text else term.text
+        latex += f" {sign} {for_latex}" if latex else term.latex
+    return Formula(text or "0", latex or "0")
