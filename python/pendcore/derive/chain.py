@@ -1,6 +1,6 @@
 """Kinematics of the chain: positions, velocities and accelerations of its joints and mass centres.
 
-    P_0 = (x_0, y_0),   P_i = P_(i-1) + L_i u_i,   C_i = P_(i-1) + c_i u_i,   u_i = (cos q_i, sin q_i)
+    P_0 = (x_0, y_0),  P_i = P_(i-1) + L_i u_i,  C_i = P_(i-1) + c_i u_i,  u_i = (cos q_i, sin q_i)
 
 x points right and y down. Velocities and accelerations are the derivatives of these with respect to
 time, nothing else: the textbook's ``diff(rC1, t)``.
@@ -59,7 +59,7 @@ class Chain:
         What they and their rates, ``xd_A`` to ``ydd_A``, are as functions of time.
     """
 
-    def __init__(self, notation: Notation, path: Vector = (Integer(0), Integer(0))) -> None:
+    def __init__(self, notation: Notation, path: Vector) -> None:
         self.notation = notation
         self.path: dict[Symbol, Expr] = {}
         self._rates: dict[Symbol, Expr] = {}
@@ -71,7 +71,9 @@ class Chain:
             return law
         dots = {0: axis, 1: rf"\dot{{{axis}}}", 2: rf"\ddot{{{axis}}}"}
         symbols = [
-            self.notation.symbol(f"{axis}{'d' * k}_A", f"{shown}_{{A}}", (ANGLE, RATE, ACCELERATION)[k])
+            self.notation.symbol(
+                f"{axis}{'d' * k}_A", f"{shown}_{{A}}", (ANGLE, RATE, ACCELERATION)[k]
+            )
             for k, shown in dots.items()
         ]
         for k, symbol in enumerate(symbols):

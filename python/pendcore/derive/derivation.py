@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 from sympy import Expr, Integer, Matrix, Symbol
 
+from pendcore.case import Case
 from pendcore.derive.chain import Chain, Vector
 from pendcore.derive.energy import Energy
+from pendcore.derive.growth import check_length
 from pendcore.derive.laws import laws_of
 from pendcore.derive.motion import Motion
 from pendcore.derive.narration import steps
@@ -16,6 +19,7 @@ from pendcore.derive.newton_euler import NewtonEuler
 from pendcore.derive.notation import Notation
 from pendcore.derive.solution import Assignments, Solution
 from pendcore.derive.step import Step
+from pendcore.progress import Progress
 from pendcore.scene import Scene
 
 
@@ -54,6 +58,7 @@ class Derivation:
     """
 
     def __init__(self, scene: Scene) -> None:
+        check_length(len(scene.links))
         self.scene = scene
         self.n = len(scene.links)
         self.symbols = Notation(scene)
@@ -118,7 +123,9 @@ class Derivation:
     @cached_property
     def holding_couples(self) -> dict[int, Expr]:
         """Couple of each locked joint on the link beyond it, N m, in t, q, qd, qdd."""
-        known = {s: x.xreplace(self.motion.definitions) for s, x in self.motion.named.entries.items()}
+        known = {
+            s: x.xreplace(self.motion.definitions) for s, x in self.motion.named.entries.items()
+        }
         return {joint: couple.xreplace(known) for joint, couple in self.solution.holding.items()}
 
     @property
@@ -155,6 +162,35 @@ class Derivation:
 
     def __repr__(self) -> str:
         return f"Derivation({self.scene!r})"
+
+    def report(
+        self, case: Case, folder: Path, *, worksheet: bool = False, progress: Progress = None
+    ) -> list[Path]:
+        """Write the derivation with numbers and the solution of a case, to hand in or teach from.
+
+        Parameters
+        ----------
+        case : Case
+            A start and a time for this scene.
+        folder : Path
+            Where to; it is made if it is not there.
+        worksheet : bool
+            Whether to write a worksheet as well: the same with blanks.
+        progress : None, bool or callable
+            As in `pendcore.simulate`.
+
+        Returns
+        -------
+        list of Path
+            What was written, the report first: Markdown always, HTML and PDF where there are
+            converters.
+        """
+        from pendcore.derive.handout import write_handout
+
+        if case.scene != self.scene:
+            raise ValueError("case: is of another scene than the derivation: derive case.scene")
+        folder.mkdir(parents=True, exist_ok=True)
+        return write_handout(self, case, folder, with_worksheet=worksheet, progress=progress)
 
     def to_octave(self, name: str = "RR") -> str:
         """Return a function file of MATLAB and Octave, as the textbook's RR.m."""

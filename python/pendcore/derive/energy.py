@@ -1,8 +1,8 @@
 """Energies of the chain, the powers of effects, and the balance of both, which holds exactly.
 
-    T + V changes at the rate of the powers of all effects, nothing more:
+T + V changes at the rate of the powers of all effects, nothing more:
 
-    d/dt (T + V) = sum of powers        when        M qdd = f
+d/dt (T + V) = sum of powers        when        M qdd = f
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class Energy:
         for i, v in enumerate(self.chain.center_velocities):
             found += s.masses[i] * dot(v, v) / 2 + s.inertias[i] * s.qd[i] ** 2 / 2
         if self.equations.payload is not None:
-            mass, inertia = self.equations.payload
+            mass, inertia = self.equations.payload.mass, self.equations.payload.inertia
             v = self.chain.joint_velocities[-1]
             found += mass * dot(v, v) / 2 + inertia * s.qd[-1] ** 2 / 2
         for joint, armature in enumerate(self.equations.armatures, start=1):
@@ -52,7 +52,7 @@ class Energy:
         s = self.notation
         heights = [m * c[1] for m, c in zip(s.masses, self.chain.centers, strict=True)]
         if self.equations.payload is not None:
-            heights.append(self.equations.payload[0] * self.chain.joints[-1][1])
+            heights.append(self.equations.payload.mass * self.chain.joints[-1][1])
         stored = [law.potential_energy(self.chain) for law in self.equations.laws]
         return expand(-s.gravity * sum(heights)) + sum(stored, Integer(0))
 

@@ -37,18 +37,36 @@ class LinkEquations(NamedTuple):
 
     Attributes
     ----------
-    x, y : Balance
-        Newton's, N.
+    newton : (Balance, Balance)
+        Newton's along x and y, N.
     moment : Balance
         Euler's, N m: about the pivot A for link 1, if A is fixed; else about the mass centre.
     about_pivot : bool
         Which of the two it is.
     """
 
-    x: Balance
-    y: Balance
+    newton: tuple[Balance, Balance]
     moment: Balance
     about_pivot: bool
+
+
+class PayloadEquations(NamedTuple):
+    """A body at the tip, and its equations.
+
+    Attributes
+    ----------
+    mass, inertia : sympy.Expr
+        kg, kg m^2; of all payloads together.
+    force : tuple of sympy.Symbol
+        F_p3 and so on, the unknown force of it on the last link; its opposite acts on it.
+    newton : (Balance, Balance)
+        Newton's along x and y, N.
+    """
+
+    mass: Expr
+    inertia: Expr
+    force: tuple[Symbol, Symbol]
+    newton: tuple[Balance, Balance]
 
 
 class NewtonEuler:
@@ -68,7 +86,6 @@ class NewtonEuler:
         s = self.notation = chain.notation
         self.n = s.n
         self.forces = tuple(self._force(i) for i in range(s.n))
-        self.payload_force = self._payload_force()
 
     def _force(self, joint: int) -> tuple[Symbol, Symbol]:
         """F_01 for the pivot, counted as 0; F_21 for joint 1 between links 1 and 2; and so on."""
@@ -80,16 +97,17 @@ class NewtonEuler:
         x, y = (self.notation.symbol(f"F{pair}{axis}", f"F_{{{shown}{axis}}}") for axis in "xy")
         return x, y
 
-    def _payload_force(self) -> tuple[Symbol, Symbol] | None:
-        return self._components(f"p{self.n}") if self.payload is not None else None
-
     @cached_property
-    def payload(self) -> tuple[Expr, Expr] | None:
-        """Mass and moment of inertia of all there is at the tip."""
+    def payload(self) -> PayloadEquations | None:
+        """What is at the tip, if there is anything."""
         found = [payload for law in self.laws if (payload := law.payload()) is not None]
         if not found:
             return None
-        return sum(m for m, _ in found), sum(inertia for _, inertia in found)
+        mass, inertia = (sum(column, Integer(0)) for column in zip(*found, strict=True))
+        acceleration, weight = self.chain.tip_acceleration, self.weight(mass)
+        force = self._components(f"p{self.n}")
+        x, y = (Balance(mass * acceleration[k], weight[k] - force[k]) for k in (0, 1))
+        return PayloadEquations(mass, inertia, force, (x, y))
 
     @cached_property
     def armatures(self) -> tuple[Expr, ...]:
@@ -156,21 +174,11 @@ class NewtonEuler:
         """Return the force on a link where it ends: of the next link, or of the payload."""
         if link < self.n:
             return self.forces[link]
-        return self.payload_force or ZERO
+        return ZERO if self.payload is None else self.payload.force
 
     def weight(self, mass: Expr) -> Vector:
         """Return the weight of a mass: downward, towards +y."""
         return Integer(0), mass * self.notation.gravity
-
-    @cached_property
-    def payload_equations(self) -> tuple[Balance, Balance] | None:
-        """Newton's equations of the payload; -F_pn is the force of link n on it."""
-        if self.payload is None or self.payload_force is None:
-            return None
-        mass, acceleration = self.payload[0], self.chain.tip_acceleration
-        force, weight = self.payload_force, self.weight(mass)
-        x, y = (Balance(mass * acceleration[k], weight[k] - force[k]) for k in (0, 1))
-        return x, y
 
     @cached_property
     def links(self) -> tuple[LinkEquations, ...]:
@@ -200,19 +208,19 @@ class NewtonEuler:
             moment += of_differences(load.moment + cross(minus(begin, point), load.force))
         moment += self.joint_couple(link) - self.joint_couple(link + 1)
         if link == self.n and self.payload is not None:
-            moment -= self.payload[1] * turning
-        return LinkEquations(x, y, Balance(resistance * turning, expand(moment)), about_pivot)
+            moment -= self.payload.inertia * turning
+        return LinkEquations((x, y), Balance(resistance * turning, expand(moment)), about_pivot)
 
     @cached_property
     def solved_forces(self) -> dict[Symbol, Expr]:
         """Every reaction in terms of angles, rates and accelerations: the textbook's (2.9)."""
         solved: dict[Symbol, Expr] = {}
-        if self.payload_equations is not None and self.payload_force is not None:
-            for symbol, line in zip(self.payload_force, self.payload_equations, strict=True):
+        if self.payload is not None:
+            for symbol, line in zip(self.payload.force, self.payload.newton, strict=True):
                 solved[symbol] = expand(line.acting + symbol - line.inertia)
         for link in range(self.n, 0, -1):
             equations = self.links[link - 1]
-            for symbol, line in zip(self.forces[link - 1], equations[:2], strict=True):
+            for symbol, line in zip(self.forces[link - 1], equations.newton, strict=True):
                 rest = (line.inertia - line.acting).subs(symbol, 0)  # sign F + rest = 0
                 sign = 1 if link == 1 else -1
                 solved[symbol] = expand(sign * rest.xreplace(solved))

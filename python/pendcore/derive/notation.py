@@ -110,8 +110,8 @@ class Notation:
             (MASS, self.masses), (MASS, self.inertias),
             (LENGTH, self.lengths), (LENGTH, self.centers),
         ):  # fmt: skip
-            for link, symbol in enumerate(row, start=1):
-                self._ranks[symbol] = (kind, link)
+            for i, symbol in enumerate(row, start=1):
+                self._ranks[symbol] = (kind, i)
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:

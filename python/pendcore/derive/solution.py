@@ -41,7 +41,7 @@ class Solution:
             symbol: value.xreplace(self.motion.definitions)
             for symbol, value in self.motion.named.entries.items()
         }
-        return tuple(expression.xreplace(known) for expression in self.by_entries)
+        return tuple([expression.xreplace(known) for expression in self.by_entries])
 
     @cached_property
     def by_entries(self) -> tuple[Expr, ...]:
@@ -49,7 +49,7 @@ class Solution:
         matrix, right = self._free
         together = self.motion.turning_together
         if matrix.rows == 0:
-            return (Integer(0),) * together.rows
+            return tuple([Integer(0)] * self.notation.n)
         determinant = expand(matrix.det(method="berkowitz"))
         free = []
         for k in range(matrix.rows):
@@ -86,7 +86,9 @@ class Solution:
         """Return qd . (M qdd - f) at the solved accelerations, for any M and f: 0, W."""
         matrix, right = self._free
         together = self.motion.turning_together
-        first = [next(i for i in range(together.rows) if together[i, k]) for k in range(matrix.rows)]
+        first = [
+            next(i for i in range(together.rows) if together[i, k]) for k in range(matrix.rows)
+        ]
         free = Matrix(len(first), 1, [self.by_entries[i] for i in first])
         error = (matrix * free - right).applyfunc(sympy.cancel)
         return sum((self.notation.qd[i] * e for i, e in zip(first, error, strict=True)), Integer(0))

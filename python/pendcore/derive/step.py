@@ -141,7 +141,8 @@ def plain(text: str) -> str:
 def _spoken(latex: str) -> str:
     """Return a short formula without LaTeX's marks: ``q1``, ``M qdd = f``."""
     spoken = latex.replace(r"\,", " ")
-    spoken = re.sub(r"\\(d+)ot{(\w+)}", r"\2\1", spoken)
+    for dots, letters in ((r"\ddot", "dd"), (r"\dot", "d")):
+        spoken = re.sub(rf"{re.escape(dots)}{{(\w+)}}", rf"\g<1>{letters}", spoken)
     spoken = re.sub(r"\\math\w+{(\w+)}", r"\1", spoken)
     return re.sub(r"[_\\{}]", "", spoken)
 

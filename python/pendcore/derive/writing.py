@@ -111,7 +111,9 @@ class Language:
         digits = [] if abs(number.p) == 1 and (over or number.q == 1) else [str(abs(number.p))]
         below = [] if number.q == 1 else [str(number.q)]
         below += [self._factor(x, alone=self.bars and len(below) + len(under) == 1) for x in under]
-        top = digits + [self._factor(x, alone=self.bars and len(over) + len(digits) == 1) for x in lead]
+        top = digits + [
+            self._factor(x, alone=self.bars and len(over) + len(digits) == 1) for x in lead
+        ]
         end = [self._factor(x) for x in rest]
         if not top and not end:
             top = ["1"]
@@ -216,4 +218,3 @@ class Latex(Language):
     def quotient(self, over: list[str], under: list[str], rest: list[str]) -> str:
         fraction = rf"\frac{{{self.product(over or ['1'])}}}{{{self.product(under)}}}"
         return self.product([fraction, *rest])
-

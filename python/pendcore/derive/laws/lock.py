@@ -17,8 +17,8 @@ class Lock(Law):
         """Say what it does."""
         joint = self.effect.joint
         return (
-            f"A lock keeps the angle of joint {joint} constant by the couple $\\Lambda_{{{joint}}}$, "
-            "one more unknown, on the link beyond it."
+            f"A lock keeps the angle of joint {joint} constant by the couple "
+            f"$\\Lambda_{{{joint}}}$, one more unknown, on the link beyond it."
         )
 
     def lock(self) -> int:

@@ -17,13 +17,13 @@ class Payload(Law):
     def __init__(self, effect: Any, notation: Notation) -> None:
         super().__init__(effect, notation)
         rank = (MASS, notation.n + 1)
-        self.mass = notation.parameter("m_p", "m_{p}", effect.mass, "kg", "mass of the payload", rank)
+        self.mass = notation.parameter(
+            "m_p", "m_{p}", effect.mass, "kg", "mass of the payload", rank
+        )
         self.inertia: Expr = Integer(0)
         if effect.inertia != 0.0:
             words = "moment of inertia of the payload about its mass centre"
-            self.inertia = notation.parameter(
-                "I_p", "I_{p}", effect.inertia, "kg m^2", words, rank
-            )
+            self.inertia = notation.parameter("I_p", "I_{p}", effect.inertia, "kg m^2", words, rank)
 
     def sentence(self, notation: Notation) -> str:
         """Say what it does."""

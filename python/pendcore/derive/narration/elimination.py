@@ -12,12 +12,10 @@ from pendcore.derive.step import Equation
 def elimination(page: Page) -> None:
     """Write the reactions, and what is left without them."""
     found: list[Equation] = []
-    if page.equations.payload_equations is not None and page.equations.payload_force is not None:
-        mass, tip = page.derivation.equations.payload[0], page.joint(page.n)
-        for axis, symbol, line in zip(
-            "xy", page.equations.payload_force, page.equations.payload_equations, strict=True
-        ):
-            inertia = mass * page.coordinate(axis, tip, 2)
+    payload = page.equations.payload
+    if payload is not None:
+        for letter, symbol, line in zip("xy", payload.force, payload.newton, strict=True):
+            inertia = payload.mass * page.coordinate(letter, page.joint(page.n), 2)
             found.append(page.equation(symbol, line.acting + symbol - inertia))
     for i in range(page.n, 0, -1):
         for axis in (0, 1):
@@ -39,7 +37,7 @@ def elimination(page: Page) -> None:
 def force(page: Page, link: int, axis: int) -> Expr:
     """Return F_01, or F_21 and so on, with accelerations put in where the textbook does."""
     equations = page.equations
-    line = equations.links[link - 1][axis]
+    line = equations.links[link - 1].newton[axis]
     symbol = equations.forces[link - 1][axis]
     rest = line.acting.subs(symbol, 0)
     written_out = link == page.n == 2

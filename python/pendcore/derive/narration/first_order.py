@@ -18,7 +18,10 @@ def first_order(page: Page) -> None:
     page.step(
         "Solution for the angular accelerations",
         f"{text}.",
-        *(page.equation(a, value) for a, value in zip(page.s.qdd, solution.by_entries, strict=True)),
+        *(
+            page.equation(a, value)
+            for a, value in zip(page.s.qdd, solution.by_entries, strict=True)
+        ),
         *(
             page.equation(page.equations.holding[joint], couple)
             for joint, couple in solution.holding.items()

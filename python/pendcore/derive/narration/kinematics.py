@@ -18,8 +18,10 @@ def kinematics(page: Page) -> None:
     centers = [page.center(i) for i in range(1, n + 1)]
     joints = [page.joint(i) for i in range(n + 1)]
     fixed = chain.pivot_is_fixed
-    origin = "The origin is at $A$." if fixed else (
-        "The origin is the point about which the pivot $A$ moves on a given path."
+    origin = (
+        "The origin is at $A$."
+        if fixed
+        else ("The origin is the point about which the pivot $A$ moves on a given path.")
     )
     page.step(
         "Positions",

@@ -57,7 +57,7 @@ def _effects(page: Page) -> None:
         parts = (page.along(u, f) for u, f in zip("ij", load.force, strict=True))
         found.append(page.equation(page.vector("D", load.link), total(parts)))
     if page.equations.payload is not None:
-        weight = page.along("j", page.equations.payload[0] * page.s.gravity)
+        weight = page.along("j", page.equations.payload.mass * page.s.gravity)
         found.append(page.equation(page.vector("G", "p"), weight))
     torques = page.equations.torques or page.equations.locked or any(page.equations.armatures)
     for joint in page.equations.locked:

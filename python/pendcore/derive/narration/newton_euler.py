@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pendcore.derive.narration import errata
 from pendcore.derive.narration.page import Page, total
-from pendcore.derive.newton_euler import LinkEquations
+from pendcore.derive.newton_euler import LinkEquations, PayloadEquations
 from pendcore.derive.step import Equation, Formula
 from pendcore.derive.writing import MASS
 
@@ -13,8 +13,8 @@ def newton_euler(page: Page) -> None:
     """Write the equations of every link."""
     for i, link in enumerate(page.equations.links, start=1):
         _first(page, link) if link.about_pivot else _other(page, i, link)
-    if page.equations.payload_equations is not None:
-        _payload(page)
+    if page.equations.payload is not None:
+        _payload(page, page.equations.payload)
 
 
 def _forces(page: Page, i: int) -> tuple[Formula, Formula | None]:
@@ -26,7 +26,7 @@ def _forces(page: Page, i: int) -> tuple[Formula, Formula | None]:
 
 
 def _newton(page: Page, i: int, number: str | None) -> Equation:
-    """m a_C = F + F + G + loads."""
+    """Newton's, m a_C = F + F + G + loads."""
     near, far = _forces(page, i)
     acting = [near, *([far] if far else []), page.vector("G", i)]
     acting += [page.vector("D", i) for load in page.equations.loads if load.link == i]
@@ -53,7 +53,7 @@ def _euler(page: Page, i: int, about: Formula, number: str | None) -> Equation:
                 acting.append(page.cross(page.position(begin, about), page.vector("D", i)))
     couples = page.equations.joint_couple(i) - page.equations.joint_couple(i + 1)
     if i == page.n and page.equations.payload is not None:
-        couples -= page.equations.payload[1] * page.s.qdd[i - 1]
+        couples -= page.equations.payload.inertia * page.s.qdd[i - 1]
     if couples != 0:
         acting.append(page.along("k", couples))
     if about == center:
@@ -70,8 +70,8 @@ def _components(page: Page, i: int, link: LinkEquations, number: str | None) -> 
     ax, ay = (page.coordinate(axis, page.center(i), 2) for axis in "xy")
     remark = errata.REMARKS["y of 2.5"] if i == 2 else ""
     return [
-        page.equation(mass * ax, link.x.acting),
-        page.equation(mass * ay, link.y.acting, number, remark),
+        page.equation(mass * ax, link.newton[0].acting),
+        page.equation(mass * ay, link.newton[1].acting, number, remark),
     ]
 
 
@@ -124,7 +124,7 @@ def _other(page: Page, i: int, link: LinkEquations) -> None:
     if i == page.n == 2:
         out = [
             page.equation(mass * a, line.acting, number, errata.REMARKS.get(number, ""))
-            for a, line, number in zip(accelerated, (link.x, link.y), ("2.6", "2.7"), strict=True)
+            for a, line, number in zip(accelerated, link.newton, ("2.6", "2.7"), strict=True)
         ]
     determinant: list[Equation] = []
     begin = page.joint(i - 1)
@@ -154,13 +154,10 @@ def _other(page: Page, i: int, link: LinkEquations) -> None:
     )
 
 
-def _payload(page: Page) -> None:
+def _payload(page: Page, payload: PayloadEquations) -> None:
     """Newton's equations of the payload."""
-    lines = page.equations.payload_equations
-    assert lines is not None
-    assert page.equations.payload is not None
     tip, force = page.joint(page.n), page.vector("F", f"p{page.n}")
-    opposite, mass = Formula(f"-{force.text}", f"-{force.latex}"), page.equations.payload[0]
+    opposite, mass = Formula(f"-{force.text}", f"-{force.latex}"), payload.mass
     page.step(
         "Newton's equations of the payload",
         f"${force.latex}$ is the force of the payload on link {page.n}, at ${tip.latex}$; its "
@@ -170,6 +167,6 @@ def _payload(page: Page) -> None:
         ),
         *(
             page.equation(mass * page.coordinate(axis, tip, 2), line.acting)
-            for axis, line in zip("xy", lines, strict=True)
+            for axis, line in zip("xy", payload.newton, strict=True)
         ),
     )

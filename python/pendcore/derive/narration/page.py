@@ -61,7 +61,7 @@ class Page:
     def joint(self, joint: int) -> Formula:
         """Return the name of P_0, ..., P_n: A, B and D for two links, as in the textbook."""
         if joint <= min(self.n, 2) <= self.n <= 2:
-            name = "ABD"[joint]
+            name = ("A", "B", "D")[joint]
             return Formula(name, name)
         return Formula("A", "A") if joint == 0 else Formula(f"P{joint}", f"P_{{{joint}}}")
 
@@ -85,9 +85,7 @@ class Page:
     def position(of: Formula, origin: Formula | None = None) -> Formula:
         """Return a vector between points, such as r_C1 or from C1 to B, r_C1B."""
         before = origin or Formula("", "")
-        return Formula(
-            f"r_{before.text}{of.text}", rf"\mathbf{{r}}_{{{before.latex}{of.latex}}}"
-        )
+        return Formula(f"r_{before.text}{of.text}", rf"\mathbf{{r}}_{{{before.latex}{of.latex}}}")
 
     @staticmethod
     def vector(letter: str, index: Formula | str | int) -> Formula:
