@@ -59,8 +59,9 @@ class Figures:
         symbols = self.derivation.equations.forces
         write = self.derivation.symbols.latex
         reactions = [Reaction(write(x), write(y), k == 0) for k, (x, y) in enumerate(symbols)]
-        tip = self.derivation.equations.payload_force
-        if tip is not None:
+        payload = self.derivation.equations.payload
+        if payload is not None:
+            tip = payload.force
             reactions.append(Reaction(write(tip[0]), write(tip[1]), False))
         with drawing.lettering():
             figure = free_bodies(
