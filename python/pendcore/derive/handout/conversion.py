@@ -77,7 +77,7 @@ def page(document: Document) -> str:
 
         for combining, spacing in ACCENTS.items():
             text = text.replace(f">{combining}</mo>", f">{spacing}</mo>")
-        text = re.sub(r'<mo (stretchy="true" form="(?:pre|post)fix")>', r"<mo \1 lspace="0" rspace="0">", text)
+        text = re.sub(r'(<mo stretchy="true" form="\w+fix")>', r'\1 lspace="0" rspace="0">', text)
         return re.sub(r'src="([\w-]+\.svg)"', embedded, text)
 
 
@@ -108,7 +108,7 @@ def _pandoc(
     source, made = folder / "handout.md", folder / f"handout.{suffix}"
     source.write_text(document.markdown(reader), encoding="utf-8")
     command = [
-        "pandoc", "--standalone", "--from=markdown", f"--metadata=pagetitle:{document.title}",
+        "pandoc", "--standalone", "--from=markdown", "--columns=1000", f"--metadata=pagetitle:{document.title}",
         f"--metadata=title:{document.title}", "--metadata=lang:en", *options, f"--output={made}",
         str(source),
     ]  # fmt: skip

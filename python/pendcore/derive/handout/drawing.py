@@ -163,7 +163,7 @@ def turning_arrow(
     on.axes.text(beside[0], beside[1], text, color=color, ha="center", va="center", zorder=9)
 
 
-def angle_from_x(on: Sketch, at: Floats, angle: float, text: str) -> None:
+def angle_from_x(on: Sketch, at: Floats, angle: float, text: str, radius: float) -> None:
     """Mark the angle of a link: a dashed line along +x, and an arc to the link if it shows."""
     reach = 0.3 * on.size
     x, y = at
@@ -172,4 +172,4 @@ def angle_from_x(on: Sketch, at: Floats, angle: float, text: str) -> None:
     if abs(shown) < np.radians(8):
         name(on, at + np.array([0.6 * reach, 0.0]), text, np.array([0.0, 1.0]), 0.08)
         return
-    turning_arrow(on, at, text, radius=0.17, span=(0.0, shown), color=ANGLE)
+    turning_arrow(on, at, text, radius=radius, span=(0.0, shown), color=ANGLE)

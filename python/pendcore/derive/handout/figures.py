@@ -11,7 +11,7 @@ from pendcore.derive.derivation import Derivation
 from pendcore.derive.handout import curves, drawing
 from pendcore.derive.handout.document import Drawing
 from pendcore.derive.handout.free_bodies import Reaction, free_bodies
-from pendcore.derive.handout.mechanism import COUPLES, mechanism
+from pendcore.derive.handout.mechanism import couples_of, mechanism
 from pendcore.derive.handout.quantities import number
 from pendcore.derive.narration.page import Page
 from pendcore.solution import Solution
@@ -59,13 +59,13 @@ class Figures:
         symbols = self.derivation.equations.forces
         write = self.derivation.symbols.latex
         reactions = [Reaction(write(x), write(y), k == 0) for k, (x, y) in enumerate(symbols)]
-        tip = self.derivation.equations.payload_force
-        if tip is not None:
+        payload = self.derivation.equations.payload
+        if payload is not None:
+            tip = payload.force
             reactions.append(Reaction(write(tip[0]), write(tip[1]), False))
-        acting = {getattr(e, "joint", 0) for e in self.scene.effects if e.kind in COUPLES}
         with drawing.lettering():
             figure = free_bodies(
-                self.scene, self.q, self.points, reactions if forces else [], frozenset(acting)
+                self.scene, self.q, self.points, reactions if forces else [], couples_of(self.scene)
             )
         words = (
             "The links as free bodies; the arrows show what counts as positive."

@@ -55,7 +55,9 @@ def _width(tokens: Iterator[tuple[Any, ...]], *, one: bool = False) -> float:
     return total
 
 
-def rows(left: str, right: Expr | str, notation: Notation, room: float = LINE) -> list[str]:
+def rows(
+    left: str, right: Expr | str, notation: Notation, margin: float = 0.0, room: float = LINE
+) -> list[str]:
     """Return left = right as rows of LaTeX's ``aligned``, as many as it takes.
 
     Parameters
@@ -66,17 +68,20 @@ def rows(left: str, right: Expr | str, notation: Notation, room: float = LINE) -
         The right side; LaTeX is taken as it is, on one row.
     notation : Notation
         How an expression is written in LaTeX, and in which order.
+    margin : float
+        Width of the widest left side among those that the row is aligned with.
     room : float
         Width of a line, in the letter m's of its font.
     """
+    margin = max(margin, width(left))
     pieces = [right] if isinstance(right, str) else _pieces(right, notation, room - 4.0)
     if not isinstance(right, str):
         whole = notation.latex(right)
-        if width(whole) + width(left) + 1.4 <= room:
+        if width(whole) + margin + 1.4 <= room:
             pieces = [whole]
-    indent = width(left) + 1.5
+    indent = margin + 1.5
     if indent > room / 3 and indent + sum(map(width, pieces)) > room:
-        found, used, indent = [f"{left} &= {{}}", r"&\quad "], 2.0, 2.0
+        found, used = [f"{left} &= {{}}", r"&\quad "], indent
     else:
         found, used = [f"{left} &= "], indent
     for k, piece in enumerate(pieces):

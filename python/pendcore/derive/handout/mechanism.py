@@ -20,6 +20,11 @@ COUPLES = {"viscous_joint", "torsional_spring", "motor", "dry_joint_friction"}
 """Kinds of effects that act by a couple in their joint."""
 
 
+def couples_of(scene: Scene) -> frozenset[int]:
+    """Return the joints in which something acts by a couple."""
+    return frozenset(getattr(e, "joint", 0) for e in scene.effects if e.kind in COUPLES)
+
+
 def joints(scene: Scene, q: Sequence[float]) -> Floats:
     """Return the pivot, the joints and the tip, (n + 1, 2), m, with the pivot at the origin."""
     steps = [link.length * direction(angle) for link, angle in zip(scene.links, q, strict=True)]
@@ -55,16 +60,26 @@ def mechanism(scene: Scene, q: Sequence[float], points: Sequence[str]) -> Figure
     for i, angle in enumerate(q):
         start, end = places[i], places[i + 1]
         drawing.rod(on, start, end)
-        drawing.angle_from_x(on, start, angle, rf"$q_{{{i + 1}}}$")
+        reach = min(0.17, 0.42 * scene.links[i].length / size)
+        drawing.angle_from_x(on, start, angle, rf"$q_{{{i + 1}}}$", reach)
         _weight(on, centers[i], angle, str(i + 1))
         side = start + 0.8 * (end - start) + 0.07 * size * direction(angle - np.pi / 2)
         _number(on, side, i + 1)
     _acting(on, scene.effects, places, q)
+    couples = couples_of(scene)
     for i, place in enumerate(places):
         drawing.pin(on, place)
         taken = [0.0] if i < len(q) else []
         taken += [q[i], q[i] / 2] if i < len(q) else []
-        taken += [q[i - 1] + np.pi] if i else [-np.pi / 2]
+        taken += [q[i - 1] + np.pi] if i else [-np.pi / 2, np.pi / 2]
+        if i + 1 in couples:
+            aside = drawing.clear_direction(taken)
+            middle = float(np.arctan2(aside[1], aside[0]))
+            drawing.turning_arrow(
+                on, place, rf"$\tau_{{{i + 1}}}$", radius=0.085,
+                span=(middle - 0.7, middle + 0.7), color=drawing.COUPLE,
+            )  # fmt: skip
+            taken.append(middle)
         name(on, place, f"${points[i]}$", drawing.clear_direction(taken))
     on.axes.margins(0.07)
     return figure
@@ -89,7 +104,7 @@ def _frame(on: Sketch, scene: Scene, places: Floats) -> None:
 def _weight(on: Sketch, center: Floats, angle: float, number: str) -> None:
     """Draw a mass centre with its weight."""
     drawing.mass_center(on, center)
-    down = np.array([0.0, 0.2 * on.size])
+    down = np.array([0.0, 0.16 * on.size])
     drawing.arrow(on, center, down, rf"$\mathbf{{G}}_{{{number}}}$", drawing.WEIGHT)
     side = drawing.clear_direction([angle, angle + np.pi, np.pi / 2], prefer=-np.pi / 4)
     name(on, center, f"$C_{{{number}}}$", side, 0.075)
@@ -104,16 +119,9 @@ def _number(on: Sketch, at: Floats, number: int) -> None:
 
 
 def _acting(on: Sketch, effects: Sequence[Effect], places: Floats, q: Sequence[float]) -> None:
-    """Draw what acts besides gravity: couples, a payload, a moving pivot, the wind."""
+    """Draw a payload and a moving pivot."""
     from matplotlib.patches import Circle
 
-    with_couple = {getattr(e, "joint") for e in effects if e.kind in COUPLES}  # noqa: B009
-    for joint in sorted(with_couple):
-        middle = np.pi + q[joint - 1] / 2
-        drawing.turning_arrow(
-            on, places[joint - 1], rf"$\tau_{{{joint}}}$", radius=0.09,
-            span=(middle - 1.0, middle + 1.0), color=drawing.COUPLE,
-        )  # fmt: skip
     kinds = {effect.kind for effect in effects}
     if "payload" in kinds:
         disc = Circle(tuple(places[-1]), 0.045 * on.size, facecolor="0.35", ec="k", zorder=4)

@@ -64,6 +64,7 @@ def _how(solution: Solution) -> str:
         "ode45": "Dormand and Prince's method of order 5, that of MATLAB's `ode45`",
         "dop853": "Dormand and Prince's method of order 8",
         "taylor": "Taylor series",
+        "taylor-radau5": "Taylor series, and by Radau IIA where the equations are stiff",
         "rk4": "the classical Runge-Kutta method of order 4",
     }.get(method, f"the method `{method}`")
     return (

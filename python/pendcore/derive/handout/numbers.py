@@ -118,20 +118,20 @@ def at_the_start(derivation: Derivation, case: Case) -> Iterator[Block]:
     start = Start(derivation, case)
     s, write = derivation.symbols, derivation.symbols.latex
     yield Heading(3, "At the start")
-    state = [
-        rf"{write(x)} = {quantity(value, 'rad')}" for x, value in zip(s.q, case.q0, strict=True)
-    ]
-    state += [
-        rf"{write(x)} = {quantity(value, 'rad/s')}" for x, value in zip(s.qd, case.qd0, strict=True)
-    ]
-    yield Paragraph(
-        f"At $t = {quantity(case.t_span[0], 's')}$, with ${', '.join(state)}$, they are"
-    )
+    state = [(q, angle, "rad") for q, angle in zip(s.q, case.q0, strict=True)]
+    state += [(qd, rate, "rad/s") for qd, rate in zip(s.qd, case.qd0, strict=True)]
+    told = ", ".join(f"${write(x)} = {quantity(value, of)}$" for x, value, of in state)
+    yield Paragraph(f"At $t = {quantity(case.t_span[0], 's')}$, with {told}, they are")
+    entries = {
+        symbol: start.value(value.xreplace(derivation.motion.definitions))
+        for symbol, value in derivation.motion.named.entries.items()
+    }
+    largest = max(map(abs, entries.values()))
     lines = []
-    for symbol, value in derivation.motion.named.entries.items():
+    for symbol, value in entries.items():
         name = "kg m^2" if symbol.name.startswith("M") else "N m"
-        known = value.xreplace(derivation.motion.definitions)
-        lines.append(f"{write(symbol)} &= {quantity(start.value(known), name)}")
+        shown = value if abs(value) > 1e-15 * largest else 0.0  # the rounding of an angle is none
+        lines.append(f"{write(symbol)} &= {quantity(shown, name)}")
     yield Displayed(line_breaks.aligned(lines))
     yield Paragraph(
         "From them follow the accelerations, and from these the reactions. The compiled core of "

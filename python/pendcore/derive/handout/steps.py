@@ -59,7 +59,8 @@ def _is_of_forces(step: Step, derivation: Derivation) -> bool:
 
 def _shown(step: Step, derivation: Derivation) -> Iterator[Block]:
     for number, equations in groups(step.equations):
-        lines = [row for e in equations for row in _rows(e, derivation)]
+        margin = max(line_breaks.width(e.side_latex(e.lhs)) for e in equations)
+        lines = [row for e in equations for row in _rows(e, derivation, margin)]
         if len(lines) > A_BLOCK and number is None:  # a page must be able to end in between
             for equation in equations:
                 own = _rows(equation, derivation)
@@ -87,10 +88,10 @@ def groups(equations: Iterable[Equation]) -> Iterator[tuple[str | None, list[Equ
             yield number, together
 
 
-def _rows(equation: Equation, derivation: Derivation) -> list[str]:
+def _rows(equation: Equation, derivation: Derivation, margin: float = 0.0) -> list[str]:
     left, right = equation.side_latex(equation.lhs), equation.rhs
     written = right.latex if isinstance(right, Formula) else sympify(right)
-    rows = line_breaks.rows(left, written, derivation.symbols)
+    rows = line_breaks.rows(left, written, derivation.symbols, margin)
     if (number := _number(equation, derivation)) is not None:
         rows[-1] += f" = {number}"
     return rows
