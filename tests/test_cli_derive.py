@@ -11,6 +11,8 @@ import pytest
 from pendcore.cli import main
 from pendcore.derive import Derivation
 
+pytestmark = pytest.mark.unsanitized
+
 TEXTBOOK = Derivation.textbook()
 FORMS = {
     "text": str(TEXTBOOK),

@@ -11,6 +11,8 @@ from pendcore.derive import Derivation
 from pendcore.derive.growth import MOST_LINKS, WRITTEN_OUT
 from pendcore.derive.laws import LAWS, WITHOUT_LAW
 
+pytestmark = pytest.mark.unsanitized
+
 fx = pc.effects
 ROD = pc.Link(mass=1.0, length=1.0)
 

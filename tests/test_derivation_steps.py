@@ -18,6 +18,8 @@ import sympy
 from pendcore.derive import Derivation, Equation, Formula
 from symbolic_scenes import SETS, derived, scene, states
 
+pytestmark = pytest.mark.unsanitized
+
 every_chain = pytest.mark.parametrize(
     ("name", "n"), [(name, n) for n in (1, 2, 3) for name in SETS]
 )
@@ -86,9 +88,29 @@ def test_every_printed_equation_holds_on_a_motion_of_the_core(name: str, n: int)
             assert abs(value(equation.lhs, known) - right) <= 1e-11 * size, str(equation)
             held += 1
         assert held >= 5 * n  # of Newton's and Euler's alone 3 n, and as many again are solved
-        energy = {symbol.name: x for symbol, x in known.items()}
-        assert energy["T"] == pytest.approx(now.energy().kinetic[0], rel=1e-13)
-        assert energy["V"] == pytest.approx(now.energy().potential[0], rel=1e-13, abs=1e-13)
+        check_first_order(n, known, now)
+        check_energy(derived(name, n), known, now)
+
+
+def check_first_order(n: int, known: dict[Any, float], now: pc.Solution) -> None:
+    """The textbook's order of states: x(1) = q1, x(2) = qd1, and so on."""
+    named = {symbol.name: x for symbol, x in known.items()}
+    order = np.arange(2 * n).reshape(2, n).T.ravel()
+    rates = np.concatenate([now.qd[0], now.accelerations()[0]])[order]
+    assert [named[f"x({k + 1})"] for k in range(2 * n)] == list(now.y[order, 0])
+    assert [named[f"d[x({k + 1})]/dt"] for k in range(2 * n)] == list(rates)
+
+
+def check_energy(derivation: Derivation, known: dict[Any, float], now: pc.Solution) -> None:
+    """Energies are the core's, and the powers that are told of add up to their change."""
+    named = {symbol.name: x for symbol, x in known.items()}
+    kinetic, potential = now.energy().kinetic[0], now.energy().potential[0]
+    assert named["T"] == pytest.approx(kinetic, rel=1e-13)
+    assert named["V"] == pytest.approx(potential, rel=1e-13, abs=1e-13)
+    total = derivation.energy.kinetic + derivation.energy.potential
+    rate = value(derivation.chain.rate(total), known)
+    size = abs(rate) + sum(abs(x) for name, x in named.items() if re.fullmatch(r"P\d", name))
+    assert abs(named["d(T + V)/dt"] - rate) <= 1e-11 * (1 + size)
 
 
 def test_the_textbook_s_equations_have_its_numbers_once_each_and_in_order() -> None:
