@@ -60,7 +60,7 @@ def mechanism(scene: Scene, q: Sequence[float], points: Sequence[str]) -> Figure
     for i, angle in enumerate(q):
         start, end = places[i], places[i + 1]
         drawing.rod(on, start, end)
-        reach = min(0.17, 0.42 * scene.links[i].length / size)
+        reach = min(0.14, 0.3 * scene.links[i].length / size)
         drawing.angle_from_x(on, start, angle, rf"$q_{{{i + 1}}}$", reach)
         _weight(on, centers[i], angle, str(i + 1))
         side = start + 0.8 * (end - start) + 0.07 * size * direction(angle - np.pi / 2)
