@@ -136,7 +136,8 @@ def _spoken(latex: str) -> str:
     for dots, letters in ((r"\ddot", "dd"), (r"\dot", "d")):
         spoken = re.sub(rf"{re.escape(dots)}{{(\w+)}}", rf"\g<1>{letters}", spoken)
     spoken = re.sub(r"\\math\w+{(\w+)}", r"\1", spoken)
-    return re.sub(r"[_\\{}]", "", spoken)
+    spoken = re.sub(r"_{(\d+)}", r"\1", spoken)
+    return re.sub(r"[\\{}]", "", spoken)
 
 
 def escaped(text: str) -> str:
