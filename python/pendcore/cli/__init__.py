@@ -21,7 +21,7 @@ examples:
   pendcore explain swing.toml             what it simulates, what not, how fast it moves
   pendcore plot out/swing/solution.npz -o swing.pdf
   pendcore cost swing.toml                what accuracy costs on it: error and time of every method
-  pendcore derive swing.toml              its equations of motion in symbols; --to octave, report, ...
+  pendcore derive swing.toml              its equations of motion in symbols, as code, as a report
 
 exit status: 0 fine, 1 the run failed or was interrupted (what it has is written all the same),
 2 wrong usage, 141 nobody reads what is printed (what is written is whole)

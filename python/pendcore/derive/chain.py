@@ -1,6 +1,6 @@
 """Kinematics of the chain: positions, velocities and accelerations of its joints and mass centres.
 
-    P_0 = (x_0, y_0),   P_i = P_(i-1) + L_i u_i,   C_i = P_(i-1) + c_i u_i,   u_i = (cos q_i, sin q_i)
+    P_0 = (x_0, y_0),  P_i = P_(i-1) + L_i u_i,  C_i = P_(i-1) + c_i u_i,  u_i = (cos q_i, sin q_i)
 
 x points right and y down. Velocities and accelerations are the derivatives of these with respect to
 time, nothing else: the textbook's ``diff(rC1, t)``.

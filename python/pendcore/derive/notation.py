@@ -161,6 +161,10 @@ class Notation:
         """Write an expression in LaTeX."""
         return Latex(self.rank, self.latex_names).write(expression)
 
+    def terms(self, expression: Expr) -> list[Expr]:
+        """Return the terms of a sum in the order in which they are written."""
+        return Latex(self.rank, self.latex_names).terms(expression)
+
     def text(self, expression: Any) -> str:
         """Write an expression in a line of text that Python and SymPy read."""
         return Text(self.rank, self.latex_names).write(expression)

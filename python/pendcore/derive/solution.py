@@ -49,7 +49,7 @@ class Solution:
         matrix, right = self._free
         together = self.motion.turning_together
         if matrix.rows == 0:
-            return (Integer(0),) * together.rows
+            return tuple([Integer(0)] * self.notation.n)
         determinant = expand(matrix.det(method="berkowitz"))
         free = []
         for k in range(matrix.rows):

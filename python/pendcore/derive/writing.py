@@ -72,12 +72,18 @@ class Language:
     def quotient(self, over: list[str], under: list[str], rest: list[str]) -> str:
         raise NotImplementedError
 
-    def _sum(self, expression: Expr) -> str:
-        written = ""
+    def terms(self, expression: Expr) -> list[Expr]:
+        """Return the terms of a sum in the order in which they are written."""
+        if not expression.is_Add:
+            return [expression]
         terms = sorted(expression.args, key=self._place_in_sum)
         if all(term.is_Symbol or (-term).is_Symbol for term in terms):  # such as an angle's
             terms.sort(key=lambda term: not term.is_Symbol)
-        for term in terms:
+        return terms
+
+    def _sum(self, expression: Expr) -> str:
+        written = ""
+        for term in self.terms(expression):
             negative, text = self._term(term)
             if written:
                 written += f" {'-' if negative else '+'} {text}"

@@ -26,7 +26,7 @@ def _forces(page: Page, i: int) -> tuple[Formula, Formula | None]:
 
 
 def _newton(page: Page, i: int, number: str | None) -> Equation:
-    """m a_C = F + F + G + loads."""
+    """Newton's, m a_C = F + F + G + loads."""
     near, far = _forces(page, i)
     acting = [near, *([far] if far else []), page.vector("G", i)]
     acting += [page.vector("D", i) for load in page.equations.loads if load.link == i]
