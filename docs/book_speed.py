@@ -9,7 +9,6 @@ figure docs/figures/book_speed.png.
 from __future__ import annotations
 
 import json
-import os
 import stat
 import subprocess
 import sys
@@ -40,27 +39,27 @@ WAYS = {
     "inline": "Octave, inline function",
     "file": "Octave, function file, as the book's",
     "shared": "Octave, function file, subexpressions shared",
-    "numpy": "NumPy from SymPy, SciPy's RK45",
-    "core": "pendcore from Python, ode45's method",
-    "default": "pendcore from Python, its own choice",
+    "numpy": "Python, NumPy from SymPy, SciPy's RK45",
+    "core": "Python, pendcore, ode45's method",
+    "default": "Python, pendcore, its own choice",
 }
 STATES = (1, 100, 100_000)
 CALLS = 200
-ROUNDS, BURST, SECONDS_A_RUN = 2, 0.02, 12.0
+ROUNDS, BURST, SECONDS_A_RUN = 24, 0.02, 15.0
 BEGIN, END = "<!-- book speed: {}: begin -->\n", "<!-- book speed: {}: end -->"
 
 
 @dataclass(frozen=True)
-class OctaveRun:
-    """A request that Octave answers with the seconds it took, of `calls` calls."""
+class Asked:
+    """A request that another program answers with the seconds it took, for `calls` calls."""
 
-    octave: Conversation
+    program: Conversation
     request: str
     calls: int = 1
 
     def burst(self, seconds: float) -> list[float]:
         """Ask once: a run takes longer than any burst."""
-        return [float(self.octave.ask(self.request)) / self.calls]
+        return [float(self.program.ask(self.request)) / self.calls]
 
 
 def begin_octave(folder: Path) -> Conversation:
@@ -76,6 +75,17 @@ def begin_octave(folder: Path) -> Conversation:
     program.write_text((ROOT / "docs/book_speed.m").read_text())
     program.chmod(program.stat().st_mode | stat.S_IXUSR)
     return Conversation(program, {"BOOK_SPEED": str(folder)})
+
+
+def begin_cpp(folder: Path) -> Conversation:
+    """Compile and start the program that calls the generated header."""
+    from pendcore.derive import Derivation
+    from pendcore.derive.code.cpp import header
+
+    (folder / "book.hpp").write_text(header(Derivation.textbook(), namespace="book"))
+    command = ["g++", "-std=c++17", "-O2", f"-I{folder}", ROOT / "docs/book_speed.cpp"]
+    subprocess.run([*command, "-o", folder / "calls"], check=True)
+    return Conversation(folder / "calls")
 
 
 def numpy_module() -> dict[str, Any]:
@@ -129,13 +139,14 @@ def looked_at(
 
 
 def right_hand_sides(
-    octave: Conversation, module: dict[str, Any]
-) -> dict[tuple[str, int], OctaveRun | PythonRun[Any]]:
+    octave: Conversation, cpp: Conversation, module: dict[str, Any]
+) -> dict[tuple[str, int], Asked | PythonRun[Any]]:
     """Return what computes accelerations of so many states in one call."""
-    runs: dict[tuple[str, int], OctaveRun | PythonRun[Any]] = {
-        (way, 1): OctaveRun(octave, f"call {way} {CALLS}", CALLS)
+    runs: dict[tuple[str, int], Asked | PythonRun[Any]] = {
+        (way, 1): Asked(octave, f"call {way} {CALLS}", CALLS)
         for way in ("inline", "file", "shared")
     }
+    runs["cpp", 1] = Asked(cpp, f"call {1000 * CALLS}", 1000 * CALLS)
     for count in STATES:
         q = np.random.default_rng(1).uniform(-3.0, 3.0, (2, count))
         columns = (q[:, 0], q[:, 0]) if count == 1 else (q, q)
@@ -151,18 +162,18 @@ def _call(function: Callable[..., Any], q: Floats, qd: Floats) -> PythonRun[Any]
 
 def once() -> dict[str, float]:
     """Return the shortest seconds of what comes once, in a process of its own each."""
+    solve = "import pendcore as pc; pc.simulate(pc.Scene.textbook(), .8, 0, (0, 5))"
+    derive = "from pendcore.derive import Derivation; Derivation.textbook().to_octave()"
     commands = {
-        "import": "import pendcore",
-        "solve": "import pendcore as pc; pc.simulate(pc.Scene.textbook(), .8, 0, (0, 5))",
-        "derive": "from pendcore.derive import Derivation; Derivation.textbook().to_octave()",
+        "octave": ["octave-cli", "--no-init-file", "--eval", "1;"],
+        "solve": [sys.executable, "-c", solve],
+        "derive": [sys.executable, "-c", derive],
     }
-    seconds = dict.fromkeys([*commands, "octave"], np.inf)
+    seconds = dict.fromkeys(commands, np.inf)
     for _ in range(5):
-        for name in seconds:
-            program = [sys.executable, "-c", commands.get(name, "")]
-            command = ["octave-cli", "--no-init-file", "--eval", "1;"] if name == "octave" else program
+        for name, command in commands.items():
             begun = time.perf_counter()
-            subprocess.run(command, check=True, capture_output=True, env={**os.environ})
+            subprocess.run(command, check=True, capture_output=True)
             seconds[name] = min(seconds[name], time.perf_counter() - begun)
     return {name: float(one) for name, one in seconds.items()}
 
@@ -176,7 +187,7 @@ def record(rounds: int) -> dict[str, Any]:
     begun, module = time.perf_counter(), numpy_module()
     here = solvers(module)
     with TemporaryDirectory() as folder:
-        octave = begin_octave(Path(folder))
+        octave, cpp = begin_octave(Path(folder)), begin_cpp(Path(folder))
         try:
             looked = looked_at(octave, here)
             runs: dict[Any, Any] = {}
@@ -185,15 +196,16 @@ def record(rounds: int) -> dict[str, Any]:
                     runs["solve", way, named] = (
                         PythonRun(partial(here[way], *pair), lambda _: None)  # type: ignore[arg-type]
                         if way in here
-                        else OctaveRun(octave, f"solve {way} {pair[0]} {pair[1]}")
+                        else Asked(octave, f"solve {way} {pair[0]} {pair[1]}")
                     )
-            for (way, count), run in right_hand_sides(octave, module).items():
+            for (way, count), run in right_hand_sides(octave, cpp, module).items():
                 runs["call", way, count] = run
             turns = tqdm(range(rounds), unit="round", disable=not sys.stderr.isatty())
             timings = interleave(runs, turns, BURST, SECONDS_A_RUN)
             versions = {"octave": octave.ask("version"), "scipy": scipy.__version__}
         finally:
             octave.close()
+            cpp.close()
     seconds = once()
     about = circumstances(begun, rounds, BURST)
     about["machine"] |= {**versions, "sympy": sympy.__version__, "pendcore": pc.__version__}
@@ -234,7 +246,7 @@ def of_times(ratio: float) -> str:
 def solves_table(found: dict[str, Any]) -> str:
     """Return the table of whole solves."""
     lines = [
-        "| tolerance | way | least time | median | faster than inline | right-hand sides | error, rad |",
+        "| tolerance | way | least time | median | faster than inline | calls of f | error, rad |",
         "|---|---|--:|--:|--:|--:|--:|",
     ]
     for named in TOLERANCES:
@@ -258,6 +270,7 @@ def calls_table(found: dict[str, Any]) -> str:
     """Return the table of single right-hand sides, a state's time each."""
     known = {(row["way"], row["states"]): row["least"] for row in found["right_hand_sides"]}
     names = {way: WAYS[way] for way in ("inline", "file", "shared")}
+    names["cpp"] = "C++ header from SymPy, in C++"
     names |= {"numpy": "NumPy from SymPy", "core": "pendcore from Python, `scene.accelerations`"}
     heads = [f"{count:,} state{'s' * (count > 1)}" for count in STATES]
     lines = [f"| time of a state, in a call of | {' | '.join(heads)} |", "|---" + "|--:" * 3 + "|"]
@@ -273,9 +286,8 @@ def once_table(found: dict[str, Any]) -> str:
     """Return the table of what comes once."""
     names = {
         "octave": "start Octave",
-        "import": "start Python, import pendcore",
-        "solve": "the same, and solve the case",
-        "derive": "start Python, derive the textbook's case with SymPy, write RR.m",
+        "solve": "start Python, import pendcore, solve the case",
+        "derive": "start Python, derive the case with SymPy, write RR.m",
     }
     lines = ["| once | least time |", "|---|--:|"]
     lines += [f"| {words} | {in_words(found['once'][name])} |" for name, words in names.items()]
@@ -301,8 +313,8 @@ def figure(found: dict[str, Any], path: Path) -> None:
         bars = part.barh([*WAYS.values()], least, color=colors, height=0.7)
         labels = [f"{in_words(x)}   ×{of_times(least[0] / x)}" for x in least]
         part.bar_label(bars, labels, padding=4, fontsize=9)
-        part.set(xscale="log", xlabel="time of a run of 5 s (s)",
-                 xlim=(min(least) / 3, max(least) * 60), title=f"relative tolerance {named}")  # fmt: skip
+        part.set(xscale="log", xlim=(min(least) / 3, max(least) * 60))
+        part.set(xlabel="time of a run of 5 s (s)", title=f"relative tolerance {named}")
         part.spines[["top", "right"]].set_visible(False)
     axes[0].invert_yaxis()
     sheet.savefig(path, dpi=110)

@@ -19,6 +19,11 @@ from pendcore.derive.chain import of_differences
 from pendcore.derive.laws import LAWS
 from pendcore.derive.laws.rod_drag import RodDrag
 from pendcore.derive.laws.viscous_joint import ViscousJoint
+from pendcore.effect_description import account_of
+from reference.arithmetic import multiple_precision
+from reference.effects import law
+from reference.newton_euler import Body
+from reference.rig import Rig, balance
 from symbolic_scenes import (
     DIGITS,
     SETS,
@@ -29,6 +34,8 @@ from symbolic_scenes import (
     scene,
     states,
 )
+
+pytestmark = pytest.mark.unsanitized
 
 TOLERANCE = 1e-13
 CASES = [(name, n) for n in (1, 2, 3) for name in SETS]
@@ -134,6 +141,34 @@ def test_the_energy_s_rate_is_found_the_long_way_too(n: int) -> None:
         left, size = evaluated(drawn, state, solved(drawn, state))
         assert abs(left) <= 10 ** (5 - DIGITS) * max(1, abs(size))
         assert abs(size) > 0.01
+
+
+@pytest.mark.parametrize("n", [1, 2, 3])
+@pytest.mark.parametrize("kind", [kind for kind in SMOOTH if account_of(kind) != "none"])
+def test_the_powers_are_those_of_the_reference(kind: str, n: int) -> None:
+    derivation = derived(kind, n)
+    evaluated = Evaluated(derivation, [sum(derivation.powers.values())])
+    solved, _ = accelerations(kind, n)
+    drawn = scene(kind, n, 4)
+    rig = Rig(
+        bodies=[Body(x.mass, x.length, x.center, x.inertia) for x in drawn.links],
+        gravity=drawn.gravity,
+        effects=[law((effect.kind, described(effect))) for effect in drawn.effects],
+        arithmetic=multiple_precision(DIGITS),
+    )
+    for state in states(drawn, 4):
+        (power,) = evaluated(drawn, state, solved(drawn, state))
+        shares = rig.shares(state.t, list(state.q), list(state.qd))
+        assert abs(power - balance(shares)) <= 10 ** (8 - DIGITS) * abs(power)
+        assert abs(power) > 1e-6
+
+
+def described(effect: Any) -> dict[str, Any]:
+    """The parameters of an effect as the reference takes them."""
+    return {
+        name: x.particulars() if isinstance(x, pc.effects.Part) else x
+        for name, x in effect.particulars().items()
+    }
 
 
 def test_a_power_or_a_torque_that_is_not_the_law_s_is_found(

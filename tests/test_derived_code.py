@@ -307,5 +307,3 @@ def test_lines_fit_a_page() -> None:
     for name in SCENES:
         for text in (derived(name).to_octave(), derived(name).to_python(), derived(name).to_cpp()):
             assert max(map(len, text.splitlines())) <= 100
-
-

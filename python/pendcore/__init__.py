@@ -18,6 +18,7 @@
     sol.events                                   # times and states at which what was asked for is
     sol.plot()                                   # the angles over time, as in the textbook
     sol.save("run.npz")                          # and pc.load("run.npz")
+    print(pc.derive.Derivation(scene))           # the equations in symbols, step by step: SymPy
 
 x points right, **y points down**, and an angle q is absolute, from x towards y: q = 0 is
 horizontal, q = pi/2 hangs straight down. Everything is in SI units: kg, m, s, rad, N, J. Links and

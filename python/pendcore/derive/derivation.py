@@ -151,9 +151,6 @@ class Derivation:
         """Return all steps in LaTeX, for ``amsmath``."""
         return "\n\n".join(step.latex() for step in self.steps) + "\n"
 
-    def _repr_latex_(self) -> str:
-        return self.latex()
-
     def _repr_markdown_(self) -> str:
         return "\n\n".join(step._repr_markdown_() for step in self.steps)
 

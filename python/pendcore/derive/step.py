@@ -104,24 +104,16 @@ class Step:
     def latex(self) -> str:
         """Return the step as a LaTeX section, for ``amsmath``."""
         title = f"\\subsection*{{{self.number}. {self.title}}}"
-        parts = [title, escaped(self.text), *map(_align, self._groups())]
+        parts = [title, escaped(self.text), *map(_with_remark, self._groups())]
         return "\n".join(parts)
 
     def _repr_markdown_(self) -> str:
         parts = [f"### {self.number}. {self.title}", "", self.text, ""]
         for group in self._groups():
-            lines = [
-                equation.latex() + (rf" \tag{{{equation.number}}}" if equation.number else "")
-                for equation in group
-            ]
-            body = " \\\\\n".join(lines)
-            parts += ["$$", rf"\begin{{align}}{body}\end{{align}}", "$$", ""]
+            parts += ["$$", _aligned(group), "$$", ""]
             if group[-1].remark:
                 parts += [f"*{group[-1].remark}*", ""]
         return "\n".join(parts)
-
-    def _repr_latex_(self) -> str:
-        return self.latex()
 
     def _groups(self) -> list[list[Equation]]:
         """The equations, those that are shown together together: a remark ends a group."""
@@ -144,7 +136,8 @@ def _spoken(latex: str) -> str:
     for dots, letters in ((r"\ddot", "dd"), (r"\dot", "d")):
         spoken = re.sub(rf"{re.escape(dots)}{{(\w+)}}", rf"\g<1>{letters}", spoken)
     spoken = re.sub(r"\\math\w+{(\w+)}", r"\1", spoken)
-    return re.sub(r"[_\\{}]", "", spoken)
+    spoken = re.sub(r"_{(\d+)}", r"\1", spoken)
+    return re.sub(r"[\\{}]", "", spoken)
 
 
 def escaped(text: str) -> str:
@@ -152,11 +145,15 @@ def escaped(text: str) -> str:
     return text.replace("%", r"\%").replace("#", r"\#")
 
 
-def _align(group: list[Equation]) -> str:
+def _aligned(group: list[Equation]) -> str:
     lines = []
     for equation in group:
         tag = rf" \tag{{{equation.number}}}" if equation.number else r" \notag"
         lines.append(equation.latex() + tag)
     body = " \\\\\n".join(lines)
-    shown = "\\begin{align}\n" + body + "\n\\end{align}"
-    return shown + (f"\n\\emph{{{escaped(group[-1].remark)}}}\n" if group[-1].remark else "")
+    return f"\\begin{{align}}\n{body}\n\\end{{align}}"
+
+
+def _with_remark(group: list[Equation]) -> str:
+    remark = escaped(group[-1].remark)
+    return _aligned(group) + (f"\n\\emph{{{remark}}}\n" if remark else "")

@@ -4,7 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from pendcore.derive.code.layout import chain_in_words, constants, identifiers, indented, origin, wrapped
+from pendcore.derive.code.layout import (
+    chain_in_words,
+    constants,
+    identifiers,
+    indented,
+    origin,
+    wrapped,
+)
 from pendcore.derive.code.printer import Cpp
 from pendcore.derive.code.quantities import Quantities
 from pendcore.derive.code.shared import Computation
@@ -68,8 +75,8 @@ struct {name} {{
 DOCUMENTATION = {
     "accelerations": ["Angular accelerations of the links, rad/s^2."],
     "reactions": [
-        "Force on each link where it begins: F_01, of the ground on link 1, then F_12, of link 1 on",
-        "link 2, and so on.",
+        "Force on each link where it begins: F_01, of the ground on link 1, then F_12, of link 1",
+        "on link 2, and so on.",
     ],
     "energy": ["Kinetic and potential energy of the chain."],
     "powers": ["Power of each effect."],
@@ -95,6 +102,7 @@ TAIL = """
   /// The same as Boost.odeint and others call it.
   void operator()(const State& y, State& dydt, double t) const { dydt = right_hand_side(t, y); }
 """
+FORCES = "std::array<Force, links>"
 POWER = {"square": "x * x", "cube": "x * x * x"}
 
 
@@ -128,7 +136,7 @@ def header(derivation: Derivation, name: str = "Chain", namespace: str = "pendul
         text += _powers_struct(quantities)
     text += _function(derivation, writer, "Angles", "accelerations", quantities.accelerations)
     text += TAIL
-    text += _function(derivation, writer, "std::array<Force, links>", "reactions", quantities.reactions)
+    text += _function(derivation, writer, FORCES, "reactions", quantities.reactions)
     text += _function(derivation, writer, "Energy", "energy", quantities.energies)
     if quantities.powers:
         text += _function(derivation, writer, "Powers", "powers", quantities.power)
@@ -159,18 +167,21 @@ def _powers_struct(quantities: Quantities) -> str:
 
 
 def _function(
-    derivation: Derivation, writer: Cpp, kind: str, name: str, computation: Computation
+    derivation: Derivation, writer: Cpp, result: str, name: str, computation: Computation
 ) -> str:
     """Write a member function of t, q, qd that returns the computation's results in braces."""
     s, needs = derivation.symbols, computation.needs
     accelerated = bool(needs & {*s.qdd})
-    time = "double t" if accelerated or s.t in needs else "double /*t*/"
-    q, qd = (
-        f"const Angles& {name}" if accelerated or needs & {*symbols} else f"const Angles& /*{name}*/"
-        for symbols, name in ((s.q, "q"), (s.qd, "qd"))
+    time, angles, rates = (
+        f"{kind} {name}" if accelerated or needs & {*symbols} else f"{kind} /*{name}*/"
+        for kind, name, symbols in (
+            ("double", "t", (s.t,)),
+            ("const Angles&", "q", s.q),
+            ("const Angles&", "qd", s.qd),
+        )
     )
     lines = ["", *(f"  /// {line}" for line in DOCUMENTATION[name])]
-    lines.append(f"  {kind} {name}({time}, {q}, {qd}) const {{")
+    lines.append(f"  {result} {name}({time}, {angles}, {rates}) const {{")
     if accelerated:
         lines.append("    const Angles qdd = accelerations(t, q, qd);")
     for symbols, whole in ((s.q, "q"), (s.qd, "qd"), (s.qdd, "qdd")):
@@ -179,13 +190,13 @@ def _function(
         ]
         lines += wrapped(f"const double {', '.join(parts)};", "    ") if parts else []
     for symbol, value in computation.assignments:
-        lines += wrapped(f"const double {writer.doprint(symbol)} = {writer.doprint(value)};", "    ")
-    results = [writer.doprint(value) for value in computation.results]
-    if kind.startswith("std::array<Force"):
-        pairs = zip(results[::2], results[1::2], strict=True)
-        results = [f"Force{{{x}, {y}}}" for x, y in pairs]
-    body = [line for result in results for line in wrapped(f"{result},", "        ")]
+        own = f"{writer.doprint(symbol)} = {writer.doprint(value)}"
+        lines += wrapped(f"const double {own};", "    ")
+    values = [writer.doprint(value) for value in computation.results]
+    if result == FORCES:
+        values = [f"Force{{{x}, {y}}}" for x, y in zip(values[::2], values[1::2], strict=True)]
+    body = [line for value in values for line in wrapped(f"{value},", "        ")]
     body[-1] = body[-1].removesuffix(",")
-    opening, closing = ("{{", "}}") if "std::array" in kind or kind == "Angles" else ("{", "}")
-    lines += [f"    return {kind}{opening}", *body, f"    {closing};", "  }"]
+    opening, closing = ("{{", "}}") if result in ("Angles", FORCES) else ("{", "}")
+    lines += [f"    return {result}{opening}", *body, f"    {closing};", "  }"]
     return "\n".join(lines) + "\n"

@@ -1,4 +1,4 @@
-"""What generated files have in common: who wrote them from what, and lines that are not too long."""
+"""What generated files have in common: what wrote them from what, names, lines of a page."""
 
 from __future__ import annotations
 
@@ -23,15 +23,17 @@ COLUMNS = 100
 
 def origin(derivation: Derivation) -> Iterator[str]:
     """Yield the lines that say what wrote a file, from which scene, and in which convention."""
-    yield f"Written by pendcore {_core.__version__} (pendcore.derive, SymPy {sympy.__version__}) from"
+    writer = f"pendcore {_core.__version__} (pendcore.derive, SymPy {sympy.__version__})"
+    yield f"Written by {writer} from"
     yield ""
     yield from indented(repr(derivation.scene))
     yield ""
     yield "The textbook's section 2.1, for any chain: Newton's and Euler's equations of every link,"
     yield "its joint forces eliminated, solved for the angular accelerations."
     yield ""
-    yield "x points right, y points DOWN, the origin is the pivot. q_i is the absolute angle of link i"
-    yield "from +x towards +y: 0 is horizontal, pi/2 hangs straight down. Units: kg, m, s, rad, N, J."
+    yield "x points right, y points DOWN, the origin is the pivot. q_i is the absolute angle of"
+    yield "link i, from +x towards +y: 0 is horizontal, pi/2 hangs straight down. Units are SI: kg,"
+    yield "m, s, rad, N, J."
 
 
 def indented(text: str, columns: int = COLUMNS - 10) -> list[str]:

@@ -13,7 +13,7 @@ from pendcore.derive.code.shared import Computation, share
 if TYPE_CHECKING:
     from pendcore.derive.derivation import Derivation
 
-TAKEN = ("t", "x", "dx", "g0", "i", "j", "e", "pi", "end", "function", "Inf", "NaN", "ans", "eps")
+TAKEN = ("t", "x", "dx", "g0", "i", "j", "e", "pi", "end", "function", "Inf", "NaN", "eps")
 """What the language, or the file, calls its own."""
 
 
@@ -68,7 +68,7 @@ def inline_function(derivation: Derivation, name: str = "g") -> str:
     pattern = ";".join(["%s"] * len(rows))
     call = f"{name} = inline(sprintf('[{pattern}]', {', '.join(parts)}), 't', 'x');"
     lines = [
-        f"% {name}(t,x)  First-order system of {chain_in_words(derivation)}: the textbook's inline function.",
+        f"% {name}  First-order system of {chain_in_words(derivation)}, as an inline function.",
         *_comment(derivation),
         "%",
         f"%   [t,xs] = ode45({name}, [0 5], x0);              % MATLAB, as in the book",

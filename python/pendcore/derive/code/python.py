@@ -47,12 +47,18 @@ def right_hand_side(t, y):
 '''
 
 DOCUMENTATION = {
-    "accelerations": "Return the angular accelerations of the links, rad/s^2, (n, ...).",
-    "reactions": "Return the force on each link where it begins, N, (n, 2, ...); x right, y down.\n\n"
-    "    First F_01, of the ground on link 1, then F_12, of link 1 on link 2, and so on.",
-    "energies": "Return kinetic and potential energy, J, the latter 0 at the height of the origin.",
-    "powers": "Return the power that each effect brings into the chain, W; < 0 where it takes.\n\n"
-    "    Their sum is the rate at which kinetic + potential energy grows.",
+    "accelerations": ["Return the angular accelerations of the links, rad/s^2, (n, ...)."],
+    "reactions": [
+        "Return the force on each link where it begins, N, (n, 2, ...); x right, y down.",
+        "First F_01, of the ground on link 1, then F_12, of link 1 on link 2, and so on.",
+    ],
+    "energies": [
+        "Return kinetic and potential energy, J, the latter 0 at the height of the origin."
+    ],
+    "powers": [
+        "Return the power that each effect brings into the chain, W; negative where it takes.",
+        "Their sum is the rate at which kinetic + potential energy grows.",
+    ],
 }
 
 
@@ -76,7 +82,7 @@ def module(derivation: Derivation) -> str:
         chain=chain_in_words(derivation).capitalize(), origin="\n".join(origin(derivation)), n=n,
         constants="\n".join(numbers),
     )  # fmt: skip
-    places = ["".join(f"[{i}, {k}]") for i in range(n) for k in (0, 1)]
+    places = [f"[{i}, {k}]" for i in range(n) for k in (0, 1)]
     text += _function(
         derivation, writer, "accelerations", quantities.accelerations,
         ["qdd = np.empty_like(q)"], [f"qdd[{i}]" for i in range(n)], "qdd",
@@ -103,12 +109,16 @@ def _function(
 ) -> str:  # fmt: skip
     """Write a function of t, q, qd."""
     s = derivation.symbols
-    lines = ["", "", f"def {name}(t, q, qd):", f'    """{DOCUMENTATION[name]}']
-    lines[-1:] = [f'{lines[-1]}"""'] if "\n" not in lines[-1] else [lines[-1], '    """']
+    summary, *more = DOCUMENTATION[name]
+    lines = ["", "", f"def {name}(t, q, qd):", f'    """{summary}']
+    lines += ["", *(f"    {line}" for line in more), "    "] if more else []
+    lines[-1] += '"""'
     lines.append("    q, qd = np.asarray(q, dtype=float), np.asarray(qd, dtype=float)")
     for symbols, whole in ((s.q, "q"), (s.qd, "qd"), (s.qdd, "accelerations(t, q, qd)")):
         if computation.needs & {*symbols}:
-            lines.append(f"    {', '.join(map(writer.doprint, symbols))}{',' * (len(symbols) == 1)}")
+            lines.append(
+                f"    {', '.join(map(writer.doprint, symbols))}{',' * (len(symbols) == 1)}"
+            )
             lines[-1] += f" = {whole}"
     for symbol, value in computation.assignments:
         lines += _assignment(writer.doprint(symbol), writer.doprint(value))

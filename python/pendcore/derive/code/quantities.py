@@ -41,17 +41,16 @@ class Quantities:
     @classmethod
     def of(cls, derivation: Derivation, taken: Iterable[str]) -> Quantities:
         """Collect them; `taken` are the names that the language needs for itself."""
-        steps, taken = derivation.shared, {*taken}
-        taken |= {parameter.symbol.name for parameter in derivation.symbols.parameters}
-        powers = derivation.energy.powers_by_definitions
+        taken = {*taken, *(parameter.symbol.name for parameter in derivation.symbols.parameters)}
+        laws = [(known.symbol, known.value) for known in derivation.equations.definitions]
+        forces = [part for force in derivation.equations.reactions for part in force]
+        energy, powers = derivation.energy, derivation.energy.powers_by_definitions
         return cls(
-            accelerations=share(derivation.shared_accelerations, steps, taken),
-            reactions=share(
-                [part for force in derivation.equations.reactions for part in force], steps, taken
-            ),
-            energies=share([derivation.kinetic_energy, derivation.potential_energy], (), taken),
+            accelerations=share(derivation.shared_accelerations, derivation.shared, taken),
+            reactions=share(forces, laws, taken),
+            energies=share([energy.kinetic, energy.potential], laws, taken),
             powers=_named(powers),
-            power=share([*powers.values()], steps, taken),
+            power=share([*powers.values()], laws, taken),
         )
 
     def symbols(self) -> list[Symbol]:

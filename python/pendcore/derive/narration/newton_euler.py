@@ -56,10 +56,8 @@ def _euler(page: Page, i: int, about: Formula, number: str | None) -> Equation:
         couples -= page.equations.payload.inertia * page.s.qdd[i - 1]
     if couples != 0:
         acting.append(page.along("k", couples))
-    if about == center:
-        resistance = page.moment_of_inertia(i)
-    else:
-        resistance = page.symbol("I_A", "I_{A}", MASS)
+    about_pivot = page.symbol("I_A", "I_{A}", MASS)
+    resistance = page.moment_of_inertia(i) if about == center else about_pivot
     left = page.scaled(resistance, page.vector("alpha", i))
     return page.equation(left, total(acting), number)
 
