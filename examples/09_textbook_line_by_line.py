@@ -81,7 +81,7 @@ assert same((EqA, Eq2), [line.acting - line.inertia for line in book.equations.w
 # %  sol = solve(eq1,eq2,'ddq1, ddq2');
 sol = sympy.solve([EqA, Eq2], [qdd1, qdd2])
 put_in = dict(zip((qdd1, qdd2), book.accelerations, strict=True))
-left_over = [sympy.numer(sympy.together(line.subs(put_in))) for line in (EqA, Eq2)]
+left_over = [sympy.fraction(sympy.together(line.subs(put_in)))[0] for line in (EqA, Eq2)]
 assert same(left_over, (0, 0))  # the derivation's solution solves the book's equations
 at_start = {**book.values, q1: pi / 4, q2: pi / 3, s.qd[0]: 0, s.qd[1]: 0}
 print(f"ddq1 = {sol[qdd1].subs(at_start):.6f}, ddq2 = {sol[qdd2].subs(at_start):.6f} rad/s^2")

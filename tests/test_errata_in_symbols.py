@@ -11,12 +11,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import sympy
+from pendcore.derive import Derivation
+from pendcore.derive.newton_euler import Balance
 from reference import printed_equations as printed
 from reference.printed_equations import ALL_REPAIRS, AS_PRINTED, Instant, Pendulum, Repairs
-
-sympy = pytest.importorskip("sympy")
-from pendcore.derive import Derivation  # noqa: E402
-from pendcore.derive.newton_euler import Balance  # noqa: E402
 
 PAGE = Path(__file__).parent.parent / "docs/errata.md"
 BOOK = Derivation.textbook()
@@ -49,8 +48,8 @@ SOLVED = [Balance(force, BOOK.equations.solved_forces[force]) for force in (F21x
 TABLE = [
     ("determinants under (2.1)", printed.determinant_of_2_1, ON_LINK_1.moment),
     ("(2.2)", printed.equation_2_2, ON_LINK_1.moment),
-    ("(2.5), x line; (2.6)", printed.x_line_of_2_5, ON_LINK_2.x),
-    ("(2.5), y line; (2.7)", printed.y_line_of_2_5, ON_LINK_2.y),
+    ("(2.5), x line; (2.6)", printed.x_line_of_2_5, ON_LINK_2.newton[0]),
+    ("(2.5), y line; (2.7)", printed.y_line_of_2_5, ON_LINK_2.newton[1]),
     ("(2.5), determinant", printed.determinant_of_2_5, ON_LINK_2.moment),
     ("(2.8)", printed.equation_2_8, ON_LINK_2.moment),
     ("(2.9), x line", printed.x_line_of_2_9, SOLVED[0]),

@@ -155,8 +155,8 @@ def _questions(
     yield figures.empty_axes(solution)
     yield Heading(2, "Check by the energy")
     yield Paragraph(
-        "Write down kinetic and potential energy. What is their sum at the start, and how well does "
-        "your solution keep it?"
+        "Write down kinetic and potential energy. What is their sum at the start, and how well "
+        "does your solution keep it?"
     )
     yield Space(6)
 

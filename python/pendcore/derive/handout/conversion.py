@@ -108,7 +108,8 @@ def _pandoc(
     source, made = folder / "handout.md", folder / f"handout.{suffix}"
     source.write_text(document.markdown(reader), encoding="utf-8")
     command = [
-        "pandoc", "--standalone", "--from=markdown", "--columns=1000", f"--metadata=pagetitle:{document.title}",
+        "pandoc", "--standalone", "--from=markdown", "--columns=1000",
+        f"--metadata=pagetitle:{document.title}",
         f"--metadata=title:{document.title}", "--metadata=lang:en", *options, f"--output={made}",
         str(source),
     ]  # fmt: skip

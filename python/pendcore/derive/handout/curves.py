@@ -65,9 +65,8 @@ def reactions(t: Floats, forces: Floats, names: Sequence[str]) -> Figure:
         stem = name.removesuffix("}")
         axis.plot(t, forces[:, i, 0], "r-", label=f"${stem}x}}$")
         axis.plot(t, forces[:, i, 1], "b--", label=f"${stem}y}}$")
-        axis.plot(
-            t, np.hypot(*forces[:, i].T), "k-", lw=0.8, label=rf"$|\mathbf{{F}}_{stem[2:]}}}|$"
-        )
+        size = rf"$\left|\mathbf{{F}}_{stem[2:]}}}\right|$"
+        axis.plot(t, np.hypot(*forces[:, i].T), "k-", lw=0.8, label=size)
         axis.set_ylabel(f"${name}$ (N)")
         _dress(axis)
         axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)

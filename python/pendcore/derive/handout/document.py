@@ -14,10 +14,10 @@ if TYPE_CHECKING:
 
 
 class Reader(Enum):
-    """Who reads the Markdown.
+    r"""Who reads the Markdown.
 
-    ``PEOPLE``, and the programs they view it with: equations are numbered by ``\\tag``.
-    ``HTML`` and ``LATEX`` are pandoc, on its way there; its MathML knows no ``\\tag``.
+    ``PEOPLE``, and the programs they view it with: equations are numbered by ``\tag``.
+    ``HTML`` and ``LATEX`` are pandoc, on its way there; its MathML knows no ``\tag``.
     """
 
     PEOPLE = "md"
@@ -68,10 +68,9 @@ class Displayed:
         if reader is Reader.HTML and self.number:
             return f"::: equation\n$${self.latex}$$\n\n[({self.number})]{{.number}}\n:::"
         tag = rf" \tag{{{self.number}}}" if self.number else ""
-        shown = (
-            f"$$\n{self.latex}{tag}\n$$" if reader is Reader.PEOPLE else f"$${self.latex}{tag}$$"
-        )
-        return shown
+        if reader is Reader.PEOPLE:
+            return f"$$\n{self.latex}{tag}\n$$"
+        return f"$${self.latex}{tag}$$"
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,6 +142,8 @@ class Drawing:
         path = folder / self.written(reader).splitlines()[0].rpartition("(")[2].rstrip(")")
         dates = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(path.suffix)
         with lettering():
+            self.figure.draw_without_rendering()
+            self.figure.set_layout_engine("none")  # every picture of it has the first one's layout
             self.figure.savefig(path, dpi=150, metadata=dates)
         return path
 

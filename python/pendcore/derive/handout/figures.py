@@ -40,7 +40,7 @@ class Figures:
     def angles_in_words(self) -> str:
         """The angles at which the chain is drawn."""
         return ", ".join(
-            rf"$q_{{{i}}} = {number(degrees(q))}^\circ$" for i, q in enumerate(self.q, start=1)
+            rf"$q_{{{i}}} = {number(degrees(q))}$°" for i, q in enumerate(self.q, start=1)
         )
 
     def mechanism(self) -> Drawing:
@@ -72,7 +72,7 @@ class Figures:
             if forces
             else "The links, to be completed to free-body diagrams."
         )
-        return Drawing("free_bodies", self._caption(words), figure)
+        return Drawing("free_bodies" if forces else "links", self._caption(words), figure)
 
     def angles(self, solution: Solution) -> Drawing:
         """The textbook's figure."""

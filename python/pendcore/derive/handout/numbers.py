@@ -90,7 +90,7 @@ class Start:
         return float(expression.xreplace(self.known).evalf(20))
 
     def rows(self) -> list[tuple[str, str, float, float]]:
-        """Return name, unit, value by the derivation and value by the core, for all that is told."""
+        """Return name, unit, value by the derivation and by the core, for all that is told."""
         derivation, case, scene = self.derivation, self.case, self.derivation.scene
         s, write = derivation.symbols, derivation.symbols.latex
         q, qd, t = np.array([case.q0]), np.array([case.qd0]), np.array([case.t_span[0]])
