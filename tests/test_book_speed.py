@@ -12,7 +12,6 @@ import numpy as np
 import pendcore as pc
 import pytest
 
-pytest.importorskip("sympy")
 DOCS = Path(__file__).parents[1] / "docs"
 sys.path.append(str(DOCS))
 import book_speed  # noqa: E402

@@ -15,8 +15,6 @@ import numpy as np
 import pendcore as pc
 import pytest
 from derived_scenes import SCENES, STATES, Floats, Known, known
-
-pytest.importorskip("sympy")
 from pendcore.derive import Derivation
 from pendcore.derive.code.cpp import header
 from pendcore.derive.code.octave import inline_function, written_out
