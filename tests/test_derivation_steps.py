@@ -7,6 +7,7 @@ differ from what is computed.
 
 from __future__ import annotations
 
+import pickle
 import re
 from typing import Any
 
@@ -70,26 +71,25 @@ def value(expression: Any, known: dict[Any, float]) -> float:
 
 @every_chain
 def test_every_printed_equation_holds_on_a_motion_of_the_core(name: str, n: int) -> None:
-    for seed in (1, 2):
-        known, now = motion(name, n, seed)
-        size = 1 + np.abs(now.reactions()).max() + np.abs(now.accelerations()).max()
-        held = 0
-        payload = derived(name, n).equations.payload
-        for symbol, law in derived(name, n).chain.path.items():
-            known[symbol] = value(law, known)
-        if payload is not None:  # the core does not tell of it
-            solved = derived(name, n).equations.solved_forces
-            known |= {x: value(solved[x].xreplace(known), known) for x in payload.force}
-        for equation in scalars(derived(name, n)):
-            right = value(sympy.sympify(equation.rhs), known)
-            if equation.lhs.is_Symbol and equation.lhs not in known:
-                known[equation.lhs] = right
-                continue
-            assert abs(value(equation.lhs, known) - right) <= 1e-11 * size, str(equation)
-            held += 1
-        assert held >= 5 * n  # of Newton's and Euler's alone 3 n, and as many again are solved
-        check_first_order(n, known, now)
-        check_energy(derived(name, n), known, now)
+    known, now = motion(name, n, seed=1)
+    size = 1 + np.abs(now.reactions()).max() + np.abs(now.accelerations()).max()
+    held = 0
+    payload = derived(name, n).equations.payload
+    for symbol, law in derived(name, n).chain.path.items():
+        known[symbol] = value(law, known)
+    if payload is not None:  # the core does not tell of it
+        solved = derived(name, n).equations.solved_forces
+        known |= {x: value(solved[x].xreplace(known), known) for x in payload.force}
+    for equation in scalars(derived(name, n)):
+        right = value(sympy.sympify(equation.rhs), known)
+        if equation.lhs.is_Symbol and equation.lhs not in known:
+            known[equation.lhs] = right
+            continue
+        assert abs(value(equation.lhs, known) - right) <= 1e-11 * size, str(equation)
+        held += 1
+    assert held >= 5 * n  # of Newton's and Euler's alone 3 n, and as many again are solved
+    check_first_order(n, known, now)
+    check_energy(derived(name, n), known, now)
 
 
 def check_first_order(n: int, known: dict[Any, float], now: pc.Solution) -> None:
@@ -204,6 +204,22 @@ def test_a_step_and_a_derivation_show_themselves_in_a_notebook() -> None:
     assert step._repr_markdown_() in TEXTBOOK._repr_markdown_()
     assert step.equations[0]._repr_latex_().startswith(r"$\displaystyle ")
     assert r"\tag{2.2}" in by_number("2.2")._repr_latex_()
+
+
+@every_chain
+def test_text_fits_a_terminal_and_loses_nothing(name: str, n: int) -> None:
+    for step in derived(name, n).steps:
+        shown = str(step)
+        pieces = shown.replace("\n        ", " ")
+        assert all(f"    {equation}" in pieces for equation in step.equations)
+        for line in shown.splitlines():
+            assert len(line) <= 100 or " " not in line.strip()  # a factor that is longer
+
+
+def test_a_derivation_pickles_by_its_scene() -> None:
+    again = pickle.loads(pickle.dumps(TEXTBOOK))
+    assert again.accelerations == TEXTBOOK.accelerations
+    assert str(pickle.loads(pickle.dumps(TEXTBOOK.steps))) == str(TEXTBOOK.steps)
 
 
 def test_a_derivation_prints_its_steps_and_tells_of_its_scene() -> None:

@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
+import sys
 import types
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pendcore as pc
 import pytest
 from derived_scenes import SCENES, STATES, Floats, Known, known
-
-pytest.importorskip("sympy")
 from pendcore.derive import Derivation
 from pendcore.derive.code.cpp import header
 from pendcore.derive.code.octave import inline_function, written_out
 
 WARNINGS = ("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror")
+EXAMPLES = Path(__file__).parents[1] / "examples"
 START, TIMES = [np.pi / 4, np.pi / 3], (0.0, 5.0)
 octave = pytest.mark.skipif(
     not shutil.which("octave-cli"),
@@ -307,3 +309,53 @@ def test_lines_fit_a_page() -> None:
     for name in SCENES:
         for text in (derived(name).to_octave(), derived(name).to_python(), derived(name).to_cpp()):
             assert max(map(len, text.splitlines())) <= 100
+
+
+def test_the_example_s_header_is_what_is_written_now() -> None:
+    """With the versions that wrote it; others may share other subexpressions."""
+    kept = (EXAMPLES / "10_generated_header.hpp").read_text()
+    case = pc.read_case(EXAMPLES / "10_generated_header.toml")
+    written = Derivation(case.scene).to_cpp()
+    (line,) = (line for line in written.splitlines() if "Written by" in line)
+    if line not in kept:
+        pytest.skip(f"another version than this wrote it: {line}")
+    assert written == kept
+
+
+def blocks(language: str) -> list[str]:
+    """The code on the engineer's page."""
+    page = (EXAMPLES.parent / "docs/derive_engineer.md").read_text()
+    return re.findall(rf"```{language}\n(.*?)```", page, re.DOTALL)
+
+
+def test_the_engineer_s_lines_of_python_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("scipy")
+    case = pc.read_case(EXAMPLES / "10_generated_header.toml")
+    (tmp_path / "arm.py").write_text(Derivation(case.scene).to_python())
+    monkeypatch.syspath_prepend(tmp_path)
+    first, second = blocks("python")
+    names: dict[str, Any] = {}
+    exec(first, names)
+    assert "struct Chain" in names["text"]
+    exec(second, names)
+    run = case.simulate()
+    np.testing.assert_allclose(names["force"][..., -1], run.reactions()[-1], rtol=0, atol=1e-3)
+    np.testing.assert_allclose(names["kinetic"][-1], run.energy().kinetic[-1], rtol=1e-5)
+    sys.modules.pop("arm")
+
+
+@compiler
+@pytest.mark.outside_build
+def test_the_engineer_s_lines_of_cpp_compile(tmp_path: Path) -> None:
+    shutil.copy(EXAMPLES / "10_generated_header.hpp", tmp_path / "arm.hpp")
+    (block,) = blocks("cpp")
+    included, lines = block.split("\n", 1)
+    known = "double t = 0.0; std::array<double, 2> q{}, qd{}; std::array<double, 4> y{};"
+    used = "return dydt[0] + qdd[0] + force[0].x + total + power.motor_1 > 0.0;"
+    program = f"{included}\nint main() {{\n{known}\n{lines}\n{used}\n}}\n"
+    (tmp_path / "main.cpp").write_text(program)
+    command = ["g++", "-std=c++17", *WARNINGS, "-fsyntax-only", "main.cpp"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr

@@ -36,6 +36,10 @@ SAYS = {
         "q1(5) = 1.083067, q2(5) = 0.538461 rad",
     ),
     "05_own_effect": ("q_1(30) = -89.6420 deg", "work of the water 12.308263 J"),
+    "10_generated_header": (
+        "q(5) = -6.5358320, -6.1258751 rad",
+        "energy gained 20.272427 J, brought in by motor and damper 20.272427 J",
+    ),
     "07_stick_slip": (  # tests/hybrid_chain.py says the same
         "both joints rest from 5.543172 s to 6.047550 s",
         "phi_1 = 0.53079695, phi_2 = -0.47785263 rad",

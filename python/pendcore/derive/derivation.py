@@ -157,6 +157,9 @@ class Derivation:
     def __str__(self) -> str:
         return "\n\n".join(map(str, self.steps)) + "\n"
 
+    def __reduce__(self) -> tuple[object, ...]:
+        return Derivation, (self.scene,)
+
     def __repr__(self) -> str:
         return f"Derivation({self.scene!r})"
 

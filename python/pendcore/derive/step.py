@@ -95,7 +95,7 @@ class Step:
         head = f"{self.number}. {self.title}"
         lines = [head, "-" * len(head), fill(plain(self.text), 88, break_on_hyphens=False), ""]
         for equation in self.equations:
-            lines.append(f"    {equation}")
+            lines.append(_wrapped(str(equation)))
             if equation.remark:
                 remark = fill(f"[{plain(equation.remark)}]", 80, break_on_hyphens=False)
                 lines += [f"        {line}" for line in remark.splitlines()]
@@ -123,6 +123,21 @@ class Step:
                 groups.append([])
             groups[-1].append(equation)
         return groups
+
+
+def _wrapped(equation: str) -> str:
+    """Return an equation on as many lines as it needs, broken before a term."""
+    for sign in "+-=":
+        equation = equation.replace(f" {sign} ", f" {sign}\N{NO-BREAK SPACE}")
+    lines = fill(
+        equation.replace("    (", "\N{NO-BREAK SPACE}" * 4 + "("),
+        100,
+        initial_indent=" " * 4,
+        subsequent_indent=" " * 8,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+    return lines.replace("\N{NO-BREAK SPACE}", " ")
 
 
 def plain(text: str) -> str:

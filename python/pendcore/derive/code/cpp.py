@@ -49,6 +49,8 @@ HEAD = """/// \\file
 ///     chain(y, dydt, t);                         // with others; as Boost.odeint calls a system
 #pragma once
 
+// clang-format off: written by a program, and again when the scene changes
+
 #include <array>
 #include <cmath>
 #include <cstddef>

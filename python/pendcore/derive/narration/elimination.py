@@ -75,11 +75,19 @@ def _put_in(page: Page) -> None:
 
 def _collected(page: Page) -> None:
     """Write M qdd = f, entry by entry."""
-    source = "" if page.n == 2 else "The reactions are put into the moment equations. "
+    text = "" if page.n == 2 else "The reactions are put into the moment equations. "
+    if page.n > 1:
+        text += (
+            "What they have of the accelerations is collected on the left, with $\\sin^{2} + "
+            "\\cos^{2} = 1$ and the sine and cosine of a difference: $M \\ddot{q} = f$, with a "
+            "symmetric matrix $M$."
+        )
+    else:
+        text += "What they have of the acceleration is collected on the left: $M \\ddot{q} = f$."
+    if page.equations.locked:
+        text += " The unknown couples of locks are left out of $f$; they follow later."
     page.step(
         "Equations of motion, collected" if page.n == 2 else "Equations of motion",
-        f"{source}What they have of the accelerations is collected on the left, with "
-        "$\\sin^{2} + \\cos^{2} = 1$ and the cosine of a difference: "
-        f"$M \\ddot{{q}} = f$, with a {'symmetric matrix' if page.n > 1 else 'number'} $M$.",
+        text,
         *(page.equation(name, value) for name, value in page.motion.named.entries.items()),
     )

@@ -9,14 +9,19 @@ from pendcore.derive.writing import ANGLE, RATE
 def first_order(page: Page) -> None:
     """Write the solution and the first-order form."""
     solution = page.derivation.solution
+    several = page.n > 1
     text = "The equations of motion are linear in the accelerations"
+    if not several:
+        text = "The equation of motion is divided by the factor of the acceleration"
+    if page.n > 1 and not page.equations.locked:
+        text += "; Cramer's rule solves them"
     if page.equations.locked:
         text += (
             "; the equations of the links that a lock makes turn as one are added, which takes "
             "its couple out of them"
         )
     page.step(
-        "Solution for the angular accelerations",
+        f"Solution for the angular acceleration{'s' if several else ''}",
         f"{text}.",
         *(
             page.equation(a, value)
@@ -38,8 +43,10 @@ def first_order(page: Page) -> None:
             rates.append(page.equation(rate, value))
     page.step(
         "First-order form",
-        "The equations of second order are written as a system of first order, with two states "
-        "for each link.",
+        "The equations of second order become a system of first order, with two states for each "
+        "link."
+        if several
+        else "The equation of second order becomes a system of first order, with two states.",
         *names,
         *rates,
     )

@@ -23,12 +23,13 @@ def kinematics(page: Page) -> None:
         if fixed
         else ("The origin is the point about which the pivot $A$ moves on a given path.")
     )
+    names = _listed(f"$q_{{{i}}}$" for i in range(1, n + 1))
+    measured = f"The angles {names} are" if n > 1 else f"The angle {names} is"
     page.step(
         "Positions",
         "The plane of motion is the $xy$ plane, with $x$ to the right and $y$ vertical, positive "
         f"downward. {origin} "
-        f"The angles {_listed(f'$q_{{{i}}}$' for i in range(1, n + 1))} are measured from the "
-        "$x$ axis towards the $y$ axis.",
+        f"{measured} measured from the $x$ axis towards the $y$ axis.",
         *(page.equation(symbol, law) for symbol, law in chain.path.items()),
         *_points(page, chain.joints[1:], joints[1:], 0),
         *_vectors(page, centers),
@@ -51,8 +52,8 @@ def kinematics(page: Page) -> None:
     )
     page.step(
         "Angular velocities and accelerations",
-        "The links turn about the $z$ axis, of unit vector $\\mathbf{k}$; positive is from $x$ to "
-        "$y$.",
+        f"{'The links turn' if n > 1 else 'The link turns'} about the $z$ axis, of unit vector "
+        "$\\mathbf{k}$; positive is from $x$ to $y$.",
         *(
             page.equation(page.vector(letter, i), page.along("k", row[i - 1]))
             for letter, row in (("omega", page.s.qd), ("alpha", page.s.qdd))

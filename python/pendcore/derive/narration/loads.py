@@ -31,8 +31,11 @@ def _moments_of_inertia(page: Page) -> None:
         name = page.moment_of_inertia(i)
         if value != name:
             found.append(page.equation(name, value))
-    whose = "of uniform rods" if page.is_uniform else "of the links"
-    text = f"Moments of inertia {whose} about their mass centres"
+    if page.n == 1:
+        text = f"That of {'a uniform rod' if page.is_uniform else 'the link'} about its mass centre"
+    else:
+        whose = "uniform rods" if page.is_uniform else "the links"
+        text = f"Those of {whose} about their mass centres"
     text += ", where they are not given" if len(found) < page.n else ""
     if page.chain.pivot_is_fixed:
         text += "; link 1 turns about the fixed point $A$, and there the parallel axis theorem"
@@ -59,12 +62,13 @@ def _effects(page: Page) -> None:
     if page.equations.payload is not None:
         weight = page.along("j", page.equations.payload.mass * page.s.gravity)
         found.append(page.equation(page.vector("G", "p"), weight))
+    opposite = ", and its opposite on the link before" if page.n > 1 else ""
     torques = page.equations.torques or page.equations.locked or any(page.equations.armatures)
     for joint in page.equations.locked:
         found.append(page.equation(page.chain.joint_acceleration(joint), Integer(0)))
     page.step(
         "Effects",
         " ".join(law.sentence(page.s) for law in page.equations.laws)
-        + (" A torque at joint j acts on link j, and its opposite on link j-1." if torques else ""),
+        + (f" A torque at a joint acts on the link beyond it{opposite}." if torques else ""),
         *found,
     )
