@@ -89,7 +89,7 @@ def page(document: Document) -> str:
 
 
 def _for_browsers(text: str) -> str:
-    """Set pandoc's MathML right where browsers are particular: dots, brackets, functions, commas."""
+    """Set MathML right where browsers are particular: dots, brackets, functions, commas."""
     for combining, spacing in ACCENTS.items():
         text = text.replace(f">{combining}</mo>", f">{spacing}</mo>")
     known = ""
@@ -97,7 +97,9 @@ def _for_browsers(text: str) -> str:
         known, text = text, LOW_BRACKETS.sub(
             r'<mrow><mo stretchy="false">(</mo>\1<mo stretchy="false">)</mo></mrow>', text
         )  # fmt: skip
-    text = re.sub(r"<mo>(sin|cos)</mo>(?=<mrow><mo)", r'<mo lspace=".17em" rspace="0">\1</mo>', text)
+    text = re.sub(
+        r"<mo>(sin|cos)</mo>(?=<mrow><mo)", r'<mo lspace=".17em" rspace="0">\1</mo>', text
+    )
     text = re.sub(r"<mo>(sin|cos)</mo>", r'<mo lspace=".17em" rspace=".17em">\1</mo>', text)
     return re.sub(r"</math>(?=[,.;:])", "</math>\N{WORD JOINER}", text)
 
