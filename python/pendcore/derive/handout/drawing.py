@@ -175,3 +175,16 @@ def angle_from_x(on: Sketch, at: Floats, angle: float, text: str, radius: float)
         name(on, at + np.array([0.6 * reach, 0.0]), text, np.array([0.0, 1.0]), 0.08)
         return
     turning_arrow(on, at, text, radius=radius, span=(0.0, shown), color=ANGLE)
+
+
+def weight(on: Sketch, center: Floats, link: float, text: str, reach: float) -> None:
+    """Draw a weight at a mass centre; where it lies along the link its name stands beside it.
+
+    `link` is the angle of the link, rad.
+    """
+    down = np.array([0.0, reach * on.size])
+    on_the_link = abs(np.cos(link)) < 0.35
+    arrow(on, center, down, "" if on_the_link else text, WEIGHT)
+    if on_the_link:
+        x, y = center + 0.8 * down - np.array([0.05 * on.size, 0.0])
+        on.axes.text(x, y, text, color=WEIGHT, ha="right", va="center", zorder=9)

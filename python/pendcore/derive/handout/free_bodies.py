@@ -73,12 +73,11 @@ def free_bodies(
         on = drawing.sketch(sheets[i], max(link.length, abs(link.center)))
         start, end = np.zeros(2), link.length * direction(angle)
         drawing.rod(on, start, end)
-        drawing.mass_center(on, link.center * direction(angle))
-        _center_name(on, link.center * direction(angle), angle, i + 1)
+        weight = rf"$m_{{{i + 1}}} g$" if reactions else ""
+        _center(on, link.center * direction(angle), angle, weight, i + 1)
         name(on, start, f"${points[i]}$", _clear(angle, outer=True), 0.11)
         name(on, end, f"${points[i + 1]}$", _clear(angle, outer=False), 0.11)
         if reactions:
-            _weight(on, link.center * direction(angle), i + 1)
             _forces(on, start, reactions[i], angle, outer=True)
             _couples(on, (start, end), angle, i + 1, couples)
         if i + 1 < len(reactions):
@@ -90,14 +89,13 @@ def free_bodies(
     return figure
 
 
-def _weight(on: Sketch, center: Floats, number: int) -> None:
-    down = np.array([0.0, 0.3 * on.size])
-    drawing.arrow(on, center, down, rf"$m_{{{number}}} g$", drawing.WEIGHT)
-
-
-def _center_name(on: Sketch, center: Floats, angle: float, number: int) -> None:
+def _center(on: Sketch, center: Floats, angle: float, weight: str, number: int) -> None:
+    """Draw a mass centre, with its weight unless that has no name."""
+    drawing.mass_center(on, center)
     side = drawing.clear_direction([angle, angle + np.pi, np.pi / 2], prefer=-np.pi / 4)
     name(on, center, f"$C_{{{number}}}$", side, 0.11)
+    if weight:
+        drawing.weight(on, center, angle, weight, 0.3)
 
 
 def _forces(on: Sketch, at: Floats, force: Reaction, link: float, *, outer: bool) -> None:

@@ -105,10 +105,9 @@ def _frame(on: Sketch, scene: Scene, places: Floats) -> None:
 def _weight(on: Sketch, center: Floats, angle: float, number: str) -> None:
     """Draw a mass centre with its weight."""
     drawing.mass_center(on, center)
-    down = np.array([0.0, 0.16 * on.size])
-    drawing.arrow(on, center, down, rf"$\mathbf{{G}}_{{{number}}}$", drawing.WEIGHT)
     side = drawing.clear_direction([angle, angle + np.pi, np.pi / 2], prefer=-np.pi / 4)
     name(on, center, f"$C_{{{number}}}$", side, 0.075)
+    drawing.weight(on, center, angle, rf"$\mathbf{{G}}_{{{number}}}$", 0.16)
 
 
 def _number(on: Sketch, at: Floats, number: int) -> None:

@@ -18,6 +18,8 @@ from pendcore.views.energy_drift import energy_drift
 
 POINTS = 1201
 """Times at which curves are drawn."""
+MOST_WITH_RATES = 3
+"""Links of which the table has the rates too: more are wider than a page."""
 ROWS = 11
 """Times that the table shows."""
 
@@ -80,12 +82,13 @@ def _one(tolerance: Any) -> str:
 def _table(derivation: Derivation, solution: Solution) -> Table:
     s, write = derivation.symbols, derivation.symbols.latex
     head = ["$t$ (s)", *(f"${write(x)}$ (deg)" for x in s.q)]
-    head += [f"${write(x)}$ (rad/s)" for x in s.qd]
+    with_rates = derivation.n <= MOST_WITH_RATES
+    head += [f"${write(x)}$ (rad/s)" for x in s.qd] if with_rates else []
     chosen = np.unique(np.linspace(0, len(solution.t) - 1, ROWS).round().astype(int))
     rows = []
     for k in chosen:
         cells = [f"{solution.t[k]:.4g}", *(f"{x:.3f}" for x in np.degrees(solution.q[k]))]
-        cells += [f"{x:.4f}" for x in solution.qd[k]]
+        cells += [f"{x:.4f}" for x in solution.qd[k]] if with_rates else []
         rows.append(tuple(f"${cell}$" for cell in cells))
     return Table(tuple(head), tuple(rows), "r" * len(head))
 
