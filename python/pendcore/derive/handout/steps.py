@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import groupby
 
-from sympy import Expr, sympify
+from sympy import Expr
 
+from pendcore.derive import line_breaks
 from pendcore.derive.derivation import Derivation
-from pendcore.derive.handout import line_breaks
 from pendcore.derive.handout.document import Blank, Block, Displayed, Heading, Paragraph
 from pendcore.derive.handout.figures import Figures
 from pendcore.derive.handout.quantities import quantity
-from pendcore.derive.step import Equation, Formula, Step
+from pendcore.derive.step import Equation, Step
 
 A_BLOCK = 12
 """Rows that are displayed together."""
@@ -89,9 +89,7 @@ def groups(equations: Iterable[Equation]) -> Iterator[tuple[str | None, list[Equ
 
 
 def _rows(equation: Equation, derivation: Derivation, margin: float = 0.0) -> list[str]:
-    left, right = equation.side_latex(equation.lhs), equation.rhs
-    written = right.latex if isinstance(right, Formula) else sympify(right)
-    rows = line_breaks.rows(left, written, derivation.symbols, margin)
+    rows = equation.rows(margin)
     if (number := _number(equation, derivation)) is not None:
         rows[-1] += f" = {number}"
     return rows
