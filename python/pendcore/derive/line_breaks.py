@@ -129,7 +129,7 @@ def _pieces(expression: Expr, notation: Notation, room: float, depth: int = 0) -
     if rest != 1:
         text = write(rest)
         before += rf"\left({text}\right)" if rest.is_Add else text
-    opened, closed = (r"\Bigl[", r"\Bigr]") if depth % 2 == 0 else (r"\bigl(", r"\bigr)")
+    opened, closed = (r"\bigl[", r"\bigr]") if depth % 2 == 0 else (r"\bigl(", r"\bigr)")
     inner = _pieces_of_sum(longest, notation, room - 1.0, depth + 1)
     inner[0] = f"{before} {opened} {inner[0]}"
     inner[-1] = f"{inner[-1]} {closed}"

@@ -22,6 +22,14 @@ ENGINES = ("xelatex", "lualatex", "pdflatex")
 ACCENTS = {"\N{COMBINING DOT ABOVE}": "\N{DOT ABOVE}", "\N{COMBINING DIAERESIS}": "\N{DIAERESIS}"}
 """Dots over letters: pandoc writes combining ones, which browsers draw beside their letter."""
 
+_STRETCHED = r'<mo stretchy="true" form="{}fix">'
+LOW_BRACKETS = re.compile(
+    f"<mrow>{_STRETCHED.format('pre')}\\(</mo>"
+    r'((?:(?!<mfrac|<mtable|<mo stretchy="true").)*?)'
+    f"{_STRETCHED.format('post')}\\)</mo></mrow>"
+)
+"""Brackets around what is no higher than a letter: they need not stretch, and are set closer."""
+
 STYLE = Path(__file__).with_name("page.css")
 PREAMBLE = r"""
 \usepackage{amsmath,amssymb,float,graphicx}
@@ -30,6 +38,7 @@ PREAMBLE = r"""
 \floatplacement{figure}{H}
 \setkeys{Gin}{width=0.8\linewidth,height=0.42\textheight,keepaspectratio}
 \setlength{\parindent}{0pt}\setlength{\parskip}{6pt}
+\AtBeginDocument{\ifdefined\symbf\renewcommand\boldsymbol[1]{\symbf{#1}}\fi}
 \newcommand\needroom[1]{\par\begingroup\dimen0=#1\relax\dimen2=\pagegoal\relax
   \advance\dimen2 by -\pagetotal\relax
   \ifdim\dimen0>\dimen2\relax\ifdim\dimen2>0pt\relax\newpage\fi\fi\endgroup}
@@ -75,10 +84,24 @@ def page(document: Document) -> str:
             picture = base64.b64encode((folder / found[1]).read_bytes()).decode()
             return f'src="data:image/svg+xml;base64,{picture}"'
 
-        for combining, spacing in ACCENTS.items():
-            text = text.replace(f">{combining}</mo>", f">{spacing}</mo>")
-        text = re.sub(r'(<mo stretchy="true" form="\w+fix")>', r'\1 lspace="0" rspace="0">', text)
+        text = _for_browsers(text)
         return re.sub(r'src="([\w-]+\.svg)"', embedded, text)
+
+
+def _for_browsers(text: str) -> str:
+    """Set MathML right where browsers are particular: dots, brackets, functions, commas."""
+    for combining, spacing in ACCENTS.items():
+        text = text.replace(f">{combining}</mo>", f">{spacing}</mo>")
+    known = ""
+    while known != text:  # from the inside out
+        known, text = text, LOW_BRACKETS.sub(
+            r'<mrow><mo stretchy="false">(</mo>\1<mo stretchy="false">)</mo></mrow>', text
+        )  # fmt: skip
+    text = re.sub(
+        r"<mo>(sin|cos)</mo>(?=<mrow><mo)", r'<mo lspace=".17em" rspace="0">\1</mo>', text
+    )
+    text = re.sub(r"<mo>(sin|cos)</mo>", r'<mo lspace=".17em" rspace=".17em">\1</mo>', text)
+    return re.sub(r"</math>(?=[,.;:])", "</math>\N{WORD JOINER}", text)
 
 
 def pdf(document: Document, path: Path, engine: str) -> None:

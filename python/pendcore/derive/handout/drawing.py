@@ -97,18 +97,20 @@ def pin(on: Sketch, at: Floats) -> None:
     )
 
 
-def ground(on: Sketch, at: Floats) -> None:
-    """Draw what the first joint is held by: a bracket under a hatched line."""
+def ground(on: Sketch, at: Floats, *, above: bool = True) -> None:
+    """Draw what the first joint is held by: a bracket on a hatched line, above it or below."""
     from matplotlib.patches import Polygon
 
-    a, b = 0.05 * on.size, 0.09 * on.size
+    a, b = 0.05 * on.size, (0.09 if above else -0.09) * on.size
     x, y = at
     on.axes.add_patch(
         Polygon([(x, y), (x - a, y - b), (x + a, y - b)], facecolor="white", ec=BLACK, lw=1.1)
     )
     on.axes.plot([x - 2 * a, x + 2 * a], [y - b, y - b], color=BLACK, lw=1.4)
     for k in np.linspace(-1.75, 1.75, 8):
-        on.axes.plot([x + k * a, x + (k + 0.55) * a], [y - b, y - b - 0.7 * a], color=BLACK, lw=0.8)
+        on.axes.plot(
+            [x + k * a, x + (k + 0.55) * a], [y - b, y - b - 0.39 * b], color=BLACK, lw=0.8
+        )
 
 
 def mass_center(on: Sketch, at: Floats) -> None:

@@ -47,7 +47,7 @@ class Figures:
         """Fig. 1 of the textbook."""
         with drawing.lettering():
             figure = mechanism(self.scene, self.q, self.points)
-        what = "The double pendulum" if self.derivation.n == 2 else "The chain"
+        what = {1: "The pendulum", 2: "The double pendulum"}.get(self.derivation.n, "The chain")
         return Drawing(
             "mechanism",
             self._caption(f"{what} at its start: {self.angles_in_words}."),

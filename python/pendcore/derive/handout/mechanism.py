@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -88,17 +88,18 @@ def mechanism(scene: Scene, q: Sequence[float], points: Sequence[str]) -> Figure
 def _frame(on: Sketch, scene: Scene, places: Floats) -> None:
     """Draw the ground, the axes with the origin in the pivot, and which way gravity pulls."""
     size, pivot = on.size, places[0]
-    drawing.ground(on, pivot)
-    name(on, pivot + size * np.array([0.15, -0.11]), "$0$", np.zeros(2))
+    above = places[1, 1] >= -0.2 * size  # the bracket is where the first link is not
+    drawing.ground(on, pivot, above=above)
+    name(on, pivot + size * np.array([0.15, -0.11 if above else 0.11]), "$0$", np.zeros(2))
     for axis, text in enumerate(("$x$", "$y$")):
         in_the_way = np.abs(places[1:2, 1 - axis]).min() < 0.1 * size and places[1, axis] > 0
         reach = places[1, axis] + 0.25 * size if in_the_way else 0.52 * size
         along = reach * np.eye(2)[axis]
         drawing.arrow(on, pivot, along, text, zorder=2, lw=0.9)
     if scene.gravity:
-        left = min(0.0, *places[:, 0]) - 0.22 * size
+        left = min(0.0, *places[:, 0]) - 0.28 * size
         down = np.array([0.0, 0.16 * size * np.sign(scene.gravity)])
-        drawing.arrow(on, np.array([left, 0.08 * size]), down, "$g$", drawing.WEIGHT)
+        drawing.arrow(on, np.array([left, 0.14 * size]), down, "$g$", drawing.WEIGHT)
 
 
 def _weight(on: Sketch, center: Floats, angle: float, number: str) -> None:
@@ -127,9 +128,17 @@ def _acting(on: Sketch, effects: Sequence[Effect], places: Floats, q: Sequence[f
         disc = Circle(tuple(places[-1]), 0.045 * on.size, facecolor="0.35", ec="k", zorder=4)
         on.axes.add_patch(disc)
         name(on, places[-1], "$m_p$", direction(q[-1]), 0.1)
-    if "driven_pivot" in kinds:
-        reach = np.array([0.1 * on.size, 0.0])
-        for side in (1, -1):
-            at = np.array([0.0, -0.17 * on.size])
-            drawing.arrow(on, at, side * reach, color=drawing.COUPLE)
-        name(on, np.array([0.0, -0.17 * on.size]), r"$(x_0, y_0)(t)$", np.array([0.0, -1.0]))
+    for effect in effects:
+        if effect.kind == "driven_pivot":
+            _path(on, effect)
+
+
+def _path(on: Sketch, effect: Any) -> None:
+    """Draw which way a pivot is moved, beside it."""
+    beside = np.array([-0.22 * on.size, 0.0])
+    for along, law in zip(np.eye(2), (effect.x, effect.y), strict=True):
+        if law is not None or effect.spline is not None:
+            for side in (1, -1):
+                reach = 0.08 * side * on.size * along
+                drawing.arrow(on, beside, reach, color=drawing.COUPLE)
+    name(on, beside, r"$\mathbf{r}_A(t)$", np.array([-1.0, 0.0]), 0.15)

@@ -51,7 +51,8 @@ def _what_moves(derivation: Derivation) -> str:
     uniform = not any(link.particulars().keys() - {"mass", "length"} for link in scene.links)
     name = {1: "pendulum", 2: "double pendulum"}.get(n, "chain")
     links = COUNTS.get(n, f"{n} links")
-    rods = " The links are uniform rods." if uniform else ""
+    rods = " The links are uniform rods." if n > 1 else " The link is a uniform rod."
+    rods = rods if uniform else ""
     acting = " ".join(law.sentence(derivation.symbols) for law in derivation.equations.laws)
     return (
         f"A planar {name} of {links} (Fig. 1) moves in a vertical plane.{rods} "

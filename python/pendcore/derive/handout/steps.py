@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from itertools import groupby
 
-from sympy import Expr
+from sympy import Expr, fraction
 
 from pendcore.derive import line_breaks
 from pendcore.derive.derivation import Derivation
@@ -18,6 +19,8 @@ A_BLOCK = 12
 """Rows that are displayed together."""
 A_PAGE = 24
 """Rows that one equation may have before a page must be able to end in it."""
+A_DENOMINATOR = 24.0
+"""Width of a denominator, in the letter m's, beyond which it has a name of its own."""
 BY_HAND = 22.0
 """Width of what fits on a line by hand, in the letter m's of print."""
 
@@ -58,18 +61,39 @@ def _is_of_forces(step: Step, derivation: Derivation) -> bool:
 
 
 def _shown(step: Step, derivation: Derivation) -> Iterator[Block]:
-    for number, equations in groups(step.equations):
+    for number, equations in groups(_with_short_denominators(step.equations, derivation)):
         margin = max(line_breaks.width(e.side_latex(e.lhs)) for e in equations)
-        lines = [row for e in equations for row in _rows(e, derivation, margin)]
-        if len(lines) > A_BLOCK and number is None:  # a page must be able to end in between
-            for equation in equations:
-                own = _rows(equation, derivation)
-                for first in range(0, len(own), A_PAGE):
-                    yield Displayed(line_breaks.aligned(own[first : first + A_PAGE]))
-        else:
-            yield Displayed(line_breaks.aligned(lines), number)
+        together: list[str] = []
+        for equation in equations:
+            own = _rows(equation, derivation, margin)
+            if number is None and together and len(together) + len(own) > A_BLOCK:
+                yield Displayed(line_breaks.aligned(together))
+                together = []
+            together += own
+        first = max(0, len(together) - 1) // A_PAGE * A_PAGE
+        for k in range(0, first, A_PAGE):  # a page must be able to end in a very long one
+            yield Displayed(line_breaks.aligned(together[k : k + A_PAGE]))
+        yield Displayed(line_breaks.aligned(together[first:]), number)
         if remark := equations[-1].remark:
             yield Paragraph(f"*{remark}*")
+
+
+def _with_short_denominators(
+    equations: Iterable[Equation], derivation: Derivation
+) -> list[Equation]:
+    """Return equations of which a long denominator has a name, such as a determinant."""
+    notation, found, named = derivation.symbols, list[Equation](), dict[Expr, Expr]()
+    for equation in equations:
+        if isinstance(equation.rhs, Expr):
+            above, below = fraction(equation.rhs)
+            if below not in named and line_breaks.width(notation.latex(below)) > A_DENOMINATOR:
+                mark = f"_{{{len(named) + 1}}}" if named else ""
+                named[below] = notation.symbol(f"Delta{len(named) or ''}", rf"\Delta{mark}")
+                found.append(replace(equation, lhs=named[below], rhs=below, number=None, remark=""))
+            if below in named:
+                equation = replace(equation, rhs=above / named[below])
+        found.append(equation)
+    return found
 
 
 def groups(equations: Iterable[Equation]) -> Iterator[tuple[str | None, list[Equation]]]:
