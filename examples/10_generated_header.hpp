@@ -1,5 +1,5 @@
 /// \file
-/// A double pendulum, ready to be integrated; this file needs nothing but the standard library.
+/// A double pendulum: right-hand side, joint reactions, energies. Needs nothing but C++17.
 ///
 /// Written by pendcore 0.1.0 (pendcore.derive, SymPy 1.14.0) from
 ///
@@ -15,14 +15,12 @@
 /// link i, from +x towards +y: 0 is horizontal, pi/2 hangs straight down. Units are SI: kg,
 /// m, s, rad, N, J.
 ///
-/// The equations, with t (s), q (rad), qd (rad/s) and the constants of `Chain`:
+/// M qdd = f are the equations of motion, M11 and f1 entries of both; D1, l21, h1, a2 come
+/// of the elimination, M = L D L^T. cos_q1_q2 is the cosine of q1 - q2; e1, e2, ... is what
+/// several lines share.
 ///
 ///     M(q) qdd = f(t, q, qd)          M the mass matrix (2 x 2), kg m^2; f in N m
-///     M = L D L^T                     eliminated without exchanges: M is positive definite
 ///     y = (q_1 .. q_n, qd_1 .. qd_n)  the state, 2n numbers: dy/dt = (qd, qdd)
-///
-/// Names in the code are those of the derivation, M11, f1, D1, l21 (of L); cos_q1_q2 is the cosine
-/// of q1 - q2; e1, e2, ... are what several lines share.
 ///
 /// Cost: 5 sines and cosines, 68 other operations a right-hand side.
 /// Nothing is allocated and nothing thrown; angles and rates that are not finite give NaN.
@@ -81,12 +79,33 @@ struct Chain {
     }
   };
 
+  /// dy/dt of the state y.
+  State right_hand_side(double t, const State& y) const {
+    Angles q{}, qd{};
+    for (std::size_t i = 0; i < links; ++i) {
+      q[i] = y[i];
+      qd[i] = y[links + i];
+    }
+    const Angles qdd = accelerations(t, q, qd);
+    State dydt{};
+    for (std::size_t i = 0; i < links; ++i) {
+      dydt[i] = qd[i];
+      dydt[links + i] = qdd[i];
+    }
+    return dydt;
+  }
+
+  /// The same as Boost.odeint and others call it.
+  void operator()(const State& y, State& dydt, double t) const { dydt = right_hand_side(t, y); }
+
   /// Angular accelerations of the links, rad/s^2.
   Angles accelerations(double t, const Angles& q, const Angles& qd) const {
     const double q1 = q[0], q2 = q[1];
     const double qd1 = qd[0], qd2 = qd[1];
     const double sin1 = std::sin(Omega_1*t);
+    // torque at joint 1, N m
     const double tau1 = -b_1*qd1 + sin1*tauM_1;
+    // torque at joint 2, N m
     const double tau2 = -k_2*(-phi0_2 - q1 + q2);
     const double e1 = square(L1);
     const double M11 = e1*m1/3.0 + e1*m2 + e1*m_p;
@@ -116,25 +135,6 @@ struct Chain {
         a2
     }};
   }
-
-  /// dy/dt of the state y.
-  State right_hand_side(double t, const State& y) const {
-    Angles q{}, qd{};
-    for (std::size_t i = 0; i < links; ++i) {
-      q[i] = y[i];
-      qd[i] = y[links + i];
-    }
-    const Angles qdd = accelerations(t, q, qd);
-    State dydt{};
-    for (std::size_t i = 0; i < links; ++i) {
-      dydt[i] = qd[i];
-      dydt[links + i] = qdd[i];
-    }
-    return dydt;
-  }
-
-  /// The same as Boost.odeint and others call it.
-  void operator()(const State& y, State& dydt, double t) const { dydt = right_hand_side(t, y); }
 
   /// Force on each link where it begins: F_01, of the ground on link 1, then F_12, of link 1
   /// on link 2, and so on.

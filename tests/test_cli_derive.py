@@ -85,6 +85,20 @@ def test_what_cannot_be_derived_is_told_in_a_line(
     assert not Path("rough.hpp").exists()
 
 
+def test_a_report_is_written_into_a_folder(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PATH", "")  # no converter: Markdown and its figures
+    assert main(["derive", "--to", "report"]) == 0
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("written to out/textbook: report.md, ")
+    assert main(["derive", "--to", "report", "--worksheet", "-o", "sheets"]) == 0
+    names = {path.name for path in Path("sheets").iterdir()}
+    assert {"report.md", "worksheet.md", "angles.png"} <= names
+    assert {path.suffix for path in Path("sheets").iterdir()} == {".md", ".png"}
+
+
 def test_a_worksheet_is_of_a_report(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["derive", "--worksheet"]) == 2
     assert capsys.readouterr().err == (

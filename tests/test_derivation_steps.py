@@ -178,6 +178,7 @@ def test_latex_is_balanced_and_knows_every_symbol(name: str, n: int) -> None:
         assert latex.count("{") == latex.count("}")
         assert latex.count(r"\left") == latex.count(r"\right")
         assert latex.count("&=") == 1
+        assert not re.search(r"\}\^\{[^{}]*\}\^", latex), latex  # a superscript on another
         words = set(re.findall(r"(?<![\\A-Za-z])[A-Za-z]{2,}", re.sub(r"\\begin.*?}", "", latex)))
         assert words <= {"vmatrix", "AB", "AC", "AP"}, latex
     whole = derivation.latex()

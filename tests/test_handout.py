@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import pendcore as pc
 import pytest
-from pendcore.derive import Derivation
-from pendcore.derive.handout import conversion, line_breaks, motion, report, worksheet
+from pendcore.derive import Derivation, line_breaks
+from pendcore.derive.handout import conversion, motion, report, worksheet
 from pendcore.derive.handout.document import Displayed, Document, Reader
 from pendcore.derive.handout.figures import Figures
 from pendcore.derive.handout.numbers import Start

@@ -198,20 +198,20 @@ class Derivation:
 
         return function_file(self, name)
 
-    def to_octave_inline(self) -> str:
-        """Return the textbook's inline form: a statement that makes the function ``g``."""
+    def to_octave_inline(self, name: str = "g") -> str:
+        """Return the textbook's inline form: statements that make the inline function ``g``."""
         from pendcore.derive.code.octave import inline_function
 
-        return inline_function(self)
+        return inline_function(self, name)
 
     def to_python(self) -> str:
-        """Return a Python module with the right-hand side, for NumPy."""
+        """Return a Python module with right-hand side, reactions and energies, for NumPy."""
         from pendcore.derive.code.python import module
 
         return module(self)
 
-    def to_cpp(self) -> str:
-        """Return a C++ header with the right-hand side."""
+    def to_cpp(self, name: str = "Chain", namespace: str = "pendulum") -> str:
+        """Return a C++17 header: a struct with right-hand side, reactions and energies."""
         from pendcore.derive.code.cpp import header
 
-        return header(self)
+        return header(self, name, namespace)

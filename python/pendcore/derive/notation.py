@@ -147,7 +147,7 @@ class Notation:
         taken = [p.symbol.name for p in self._parameters]
         count = 1 + sum(known == name or known.startswith(f"{name}__") for known in taken)
         if count > 1:
-            name, latex = f"{name}__{count}", f"{{{latex}}}^{{({count})}}"
+            name, latex = f"{name}__{count}", f"{{{latex}^{{({count})}}}}"
         symbol = self.symbol(name, latex)
         self._parameters.append(Parameter(symbol, float(value), unit, meaning))
         self._ranks[symbol] = rank

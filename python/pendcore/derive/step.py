@@ -7,6 +7,9 @@ from dataclasses import dataclass, field
 from textwrap import fill
 from typing import Any, NamedTuple
 
+from sympy import sympify
+
+from pendcore.derive import line_breaks
 from pendcore.derive.notation import Notation
 
 
@@ -17,10 +20,13 @@ class Formula(NamedTuple):
     ----------
     text, latex : str
         As text and as LaTeX.
+    terms : tuple of str
+        The terms of a sum in LaTeX, with their signs, between which a line may end.
     """
 
     text: str
     latex: str
+    terms: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         return self.text
@@ -58,6 +64,20 @@ class Equation:
         if isinstance(side, Formula) or self.notation is None:
             return str(side)
         return self.notation.text(side)
+
+    def rows(self, margin: float = 0.0) -> list[str]:
+        """Return the equation in LaTeX on as many rows of an ``align`` as it takes.
+
+        Parameters
+        ----------
+        margin : float
+            Width of the widest left side that it is aligned with; see `line_breaks.rows`.
+        """
+        left, right = self.side_latex(self.lhs), self.rhs
+        if self.notation is None:
+            raise ValueError(f"{self}: has no notation, which LaTeX needs")
+        whole = (right.terms or right.latex) if isinstance(right, Formula) else sympify(right)
+        return line_breaks.rows(left, whole, self.notation, margin)
 
     def side_latex(self, side: Any) -> str:
         """Return one side in LaTeX."""
@@ -161,10 +181,12 @@ def escaped(text: str) -> str:
 
 
 def _aligned(group: list[Equation]) -> str:
+    margin = max(line_breaks.width(equation.side_latex(equation.lhs)) for equation in group)
     lines = []
     for equation in group:
+        *rows, last = equation.rows(margin)
         tag = rf" \tag{{{equation.number}}}" if equation.number else r" \notag"
-        lines.append(equation.latex() + tag)
+        lines += [*(row + r" \notag" for row in rows), last + tag]
     body = " \\\\\n".join(lines)
     return f"\\begin{{align}}\n{body}\n\\end{{align}}"
 

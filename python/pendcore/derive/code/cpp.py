@@ -9,6 +9,7 @@ from pendcore.derive.code.layout import (
     constants,
     identifiers,
     indented,
+    meanings,
     origin,
     wrapped,
 )
@@ -27,18 +28,12 @@ TAKEN = (
 """What the header calls its own."""
 
 HEAD = """/// \\file
-/// {chain}, ready to be integrated; this file needs nothing but the standard library.
+/// {chain}: right-hand side, joint reactions, energies. Needs nothing but C++17.
 ///
 {origin}
 ///
-/// The equations, with t (s), q (rad), qd (rad/s) and the constants of `{name}`:
-///
 ///     M(q) qdd = f(t, q, qd)          M the mass matrix ({n} x {n}), kg m^2; f in N m
-///     M = L D L^T                     eliminated without exchanges: M is positive definite
 ///     y = (q_1 .. q_n, qd_1 .. qd_n)  the state, 2n numbers: dy/dt = (qd, qdd)
-///
-/// Names in the code are those of the derivation, M11, f1, D1, l21 (of L); cos_q1_q2 is the cosine
-/// of q1 - q2; e1, e2, ... are what several lines share.
 ///
 /// Cost: {cost}.
 /// Nothing is allocated and nothing thrown; angles and rates that are not finite give NaN.
@@ -84,7 +79,7 @@ DOCUMENTATION = {
     "powers": ["Power of each effect."],
 }
 
-TAIL = """
+RIGHT_HAND_SIDE = """
   /// dy/dt of the state y.
   State right_hand_side(double t, const State& y) const {
     Angles q{}, qd{};
@@ -136,12 +131,15 @@ def header(derivation: Derivation, name: str = "Chain", namespace: str = "pendul
     )  # fmt: skip
     if quantities.powers:
         text += _powers_struct(quantities)
-    text += _function(derivation, writer, "Angles", "accelerations", quantities.accelerations)
-    text += TAIL
-    text += _function(derivation, writer, FORCES, "reactions", quantities.reactions)
-    text += _function(derivation, writer, "Energy", "energy", quantities.energies)
-    if quantities.powers:
-        text += _function(derivation, writer, "Powers", "powers", quantities.power)
+    text += RIGHT_HAND_SIDE
+    for result, what, computation in (
+        ("Angles", "accelerations", quantities.accelerations),
+        (FORCES, "reactions", quantities.reactions),
+        ("Energy", "energy", quantities.energies),
+        ("Powers", "powers", quantities.power),
+    ):
+        if computation.results:
+            text += _function(derivation, writer, result, what, computation)
     used = [f"  static double {one}(double x) {{ return {product}; }}"
             for one, product in POWER.items() if f"{one}(" in text]  # fmt: skip
     text += "\n".join(["\n private:", *used, ""]) if used else ""
@@ -191,7 +189,9 @@ def _function(
             f"{writer.doprint(one)} = {whole}[{i}]" for i, one in enumerate(symbols) if one in needs
         ]
         lines += wrapped(f"const double {', '.join(parts)};", "    ") if parts else []
+    words = meanings(derivation)
     for symbol, value in computation.assignments:
+        lines += [f"    // {words[symbol]}"] if symbol in words else []
         own = f"{writer.doprint(symbol)} = {writer.doprint(value)}"
         lines += wrapped(f"const double {own};", "    ")
     values = [writer.doprint(value) for value in computation.results]

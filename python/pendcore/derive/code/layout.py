@@ -34,6 +34,10 @@ def origin(derivation: Derivation) -> Iterator[str]:
     yield "x points right, y points DOWN, the origin is the pivot. q_i is the absolute angle of"
     yield "link i, from +x towards +y: 0 is horizontal, pi/2 hangs straight down. Units are SI: kg,"
     yield "m, s, rad, N, J."
+    yield ""
+    yield "M qdd = f are the equations of motion, M11 and f1 entries of both; D1, l21, h1, a2 come"
+    yield "of the elimination, M = L D L^T. cos_q1_q2 is the cosine of q1 - q2; e1, e2, ... is what"
+    yield "several lines share."
 
 
 def indented(text: str, columns: int = COLUMNS - 10) -> list[str]:
@@ -71,6 +75,11 @@ def identifiers(symbols: Iterable[Symbol], taken: Iterable[str]) -> dict[Symbol,
         known.add(name)
         names[symbol] = name
     return names
+
+
+def meanings(derivation: Derivation) -> dict[Symbol, str]:
+    """Return what the symbols of laws are that are assigned on the way, with their units."""
+    return {known.symbol: known.meaning for known in derivation.equations.definitions}
 
 
 def constants(

@@ -6,7 +6,14 @@ from typing import TYPE_CHECKING
 
 from sympy import Expr, Float, Rational, Symbol
 
-from pendcore.derive.code.layout import chain_in_words, constants, identifiers, origin, wrapped
+from pendcore.derive.code.layout import (
+    chain_in_words,
+    constants,
+    identifiers,
+    meanings,
+    origin,
+    wrapped,
+)
 from pendcore.derive.code.printer import Octave
 from pendcore.derive.code.shared import Computation, share
 
@@ -34,7 +41,9 @@ def function_file(derivation: Derivation, name: str = "RR") -> str:
     printer = Octave(_names(derivation, computation))
     numbers = constants(derivation, printer, "{} = ", "{!r};", "  % {}")
     lines = [*_head(derivation, name), "", *numbers, ""]
+    words = meanings(derivation)
     for symbol, value in computation.assignments:
+        lines += [f"% {words[symbol]}"] if symbol in words else []
         lines += _assignment(printer, printer.doprint(symbol), value)
     lines += ["", f"dx = zeros({2 * derivation.n},1);"]
     for i, value in enumerate(computation.results):

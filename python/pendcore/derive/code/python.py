@@ -4,7 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from pendcore.derive.code.layout import chain_in_words, constants, identifiers, origin, wrapped
+from pendcore.derive.code.layout import (
+    chain_in_words,
+    constants,
+    identifiers,
+    meanings,
+    origin,
+    wrapped,
+)
 from pendcore.derive.code.printer import NumPy
 from pendcore.derive.code.quantities import Quantities
 from pendcore.derive.code.shared import Computation
@@ -116,11 +123,11 @@ def _function(
     lines.append("    q, qd = np.asarray(q, dtype=float), np.asarray(qd, dtype=float)")
     for symbols, whole in ((s.q, "q"), (s.qd, "qd"), (s.qdd, "accelerations(t, q, qd)")):
         if computation.needs & {*symbols}:
-            lines.append(
-                f"    {', '.join(map(writer.doprint, symbols))}{',' * (len(symbols) == 1)}"
-            )
-            lines[-1] += f" = {whole}"
+            parts = ", ".join(map(writer.doprint, symbols))
+            lines.append(f"    {parts if len(symbols) > 1 else f'({parts},)'} = {whole}")
+    words = meanings(derivation)
     for symbol, value in computation.assignments:
+        lines += [f"    # {words[symbol]}"] if symbol in words else []
         lines += _assignment(writer.doprint(symbol), writer.doprint(value))
     lines += [f"    {line}" for line in made]
     for result, value in zip(results, computation.results, strict=True):

@@ -10,8 +10,8 @@ import sympy
 from sympy import Expr, Float
 
 from pendcore.case import Case
+from pendcore.derive import line_breaks
 from pendcore.derive.derivation import Derivation
-from pendcore.derive.handout import line_breaks
 from pendcore.derive.handout.document import Block, Displayed, Heading, Paragraph, Table
 from pendcore.derive.handout.quantities import number, quantity, unit
 

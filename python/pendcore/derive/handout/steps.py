@@ -6,14 +6,14 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from itertools import groupby
 
-from sympy import Expr, fraction, sympify
+from sympy import Expr, fraction
 
+from pendcore.derive import line_breaks
 from pendcore.derive.derivation import Derivation
-from pendcore.derive.handout import line_breaks
 from pendcore.derive.handout.document import Blank, Block, Displayed, Heading, Paragraph
 from pendcore.derive.handout.figures import Figures
 from pendcore.derive.handout.quantities import quantity
-from pendcore.derive.step import Equation, Formula, Step
+from pendcore.derive.step import Equation, Step
 
 A_BLOCK = 12
 """Rows that are displayed together."""
@@ -113,9 +113,7 @@ def groups(equations: Iterable[Equation]) -> Iterator[tuple[str | None, list[Equ
 
 
 def _rows(equation: Equation, derivation: Derivation, margin: float = 0.0) -> list[str]:
-    left, right = equation.side_latex(equation.lhs), equation.rhs
-    written = right.latex if isinstance(right, Formula) else sympify(right)
-    rows = line_breaks.rows(left, written, derivation.symbols, margin)
+    rows = equation.rows(margin)
     if (number := _number(equation, derivation)) is not None:
         rows[-1] += f" = {number}"
     return rows

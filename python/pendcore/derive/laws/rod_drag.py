@@ -67,8 +67,9 @@ class RodDrag(Law):
             taken = {symbol.name for symbol in self.notation.latex_names}
             while (own := name if known == 1 else f"{name}__{known}") in taken:
                 known += 1
-            mark = "" if known == 1 else f"^{{({known})}}"
-            self._names[letter] = self.notation.symbol(own, f"{latex.format(i=i)}{mark}")
+            shown = latex.format(i=i)
+            shown = shown if known == 1 else f"{{{shown}^{{({known})}}}}"
+            self._names[letter] = self.notation.symbol(own, shown)
         return self._names[letter]
 
     def definitions(self, chain: Chain) -> tuple[Definition, ...]:

@@ -68,7 +68,7 @@ def _effects(page: Page) -> None:
         found.append(page.equation(page.chain.joint_acceleration(joint), Integer(0)))
     page.step(
         "Effects",
-        " ".join(law.sentence(page.s) for law in page.equations.laws)
+        " ".join(dict.fromkeys(law.sentence(page.s) for law in page.equations.laws))
         + (f" A torque at a joint acts on the link beyond it{opposite}." if torques else ""),
         *found,
     )

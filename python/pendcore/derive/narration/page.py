@@ -106,9 +106,10 @@ class Page:
 
     def scaled(self, factor: Expr, vector: Formula) -> Formula:
         """Return a vector times a factor: ``m1 a_C1``."""
-        return Formula(
-            f"{self.s.text(factor)} {vector.text}", f"{self.s.latex(factor)} {vector.latex}"
-        )
+        text, latex = self.s.text(factor), self.s.latex(factor)
+        if factor.is_Add:
+            text, latex = f"({text})", rf"\left({latex}\right)"
+        return Formula(f"{text} {vector.text}", f"{latex} {vector.latex}")
 
     @staticmethod
     def cross(arm: Formula, force: Formula) -> Formula:
@@ -129,10 +130,11 @@ class Page:
 
 def total(terms: Iterable[Formula]) -> Formula:
     """Return a sum; a term that begins with a minus is taken away."""
-    text = latex = ""
+    texts: list[str] = []
+    pieces: list[str] = []
     for term in terms:
-        for_text, for_latex = term.text.removeprefix("-"), term.latex.removeprefix("-")
         sign = "-" if term.text.startswith("-") else "+"
-        text += f" {sign} {for_text}" if text else term.text
-        latex += f" {sign} {for_latex}" if latex else term.latex
-    return Formula(text or "0", latex or "0")
+        text, latex = term.text.removeprefix("-"), term.latex.removeprefix("-")
+        texts.append(f"{sign} {text}" if texts else term.text)
+        pieces.append(f"{sign} {latex}" if pieces else term.latex)
+    return Formula(" ".join(texts) or "0", " ".join(pieces) or "0", tuple(pieces))

@@ -56,7 +56,11 @@ def _width(tokens: Iterator[tuple[Any, ...]], *, one: bool = False) -> float:
 
 
 def rows(
-    left: str, right: Expr | str, notation: Notation, margin: float = 0.0, room: float = LINE
+    left: str,
+    right: Expr | str | tuple[str, ...],
+    notation: Notation,
+    margin: float = 0.0,
+    room: float = LINE,
 ) -> list[str]:
     """Return left = right as rows of LaTeX's ``aligned``, as many as it takes.
 
@@ -64,8 +68,8 @@ def rows(
     ----------
     left : str
         LaTeX of the left side.
-    right : sympy.Expr or str
-        The right side; LaTeX is taken as it is, on one row.
+    right : sympy.Expr, str or tuple of str
+        The right side; LaTeX is taken as it is, on one row, or its terms on several.
     notation : Notation
         How an expression is written in LaTeX, and in which order.
     margin : float
@@ -74,8 +78,12 @@ def rows(
         Width of a line, in the letter m's of its font.
     """
     margin = max(margin, width(left))
-    pieces = [right] if isinstance(right, str) else _pieces(right, notation, room - 4.0)
-    if not isinstance(right, str):
+    if isinstance(right, str):
+        pieces = [right]
+    elif isinstance(right, tuple):
+        pieces = list(right)
+    else:
+        pieces = _pieces(right, notation, room - 4.0)
         whole = notation.latex(right)
         if width(whole) + margin + 1.4 <= room:
             pieces = [whole]
