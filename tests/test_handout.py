@@ -202,6 +202,7 @@ def test_without_converters_there_is_markdown_with_its_figures(
             assert target in names
 
 
+@pytest.mark.outside_build
 def test_a_converter_that_fails_is_told_of_and_costs_nothing_else(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -238,10 +239,12 @@ def test_the_page_needs_no_other_file_and_no_network(handed_out: Any) -> None:
 
 @needs_latex
 @pytest.mark.outside_build
-def test_the_pdf_is_made(handed_out: Any, tmp_path: Path) -> None:
-    engine = conversion.latex_engine()
+@pytest.mark.parametrize("name", ["textbook", "busy"])
+def test_the_pdf_is_made(name: str, tmp_path: Path) -> None:
+    case, engine = CASES[name], conversion.latex_engine()
     assert engine is not None
-    conversion.pdf(handed_out[2], tmp_path / "report.pdf", engine)
+    document = report(Derivation(case.scene), case, motion.solved(case))
+    conversion.pdf(document, tmp_path / "report.pdf", engine)
     assert (tmp_path / "report.pdf").read_bytes().startswith(b"%PDF")
 
 
