@@ -28,9 +28,17 @@ _COMMANDS = {
 _TOKEN = re.compile(r"\\([A-Za-z]+|.)|([{}^_])|(.)", re.DOTALL)
 
 
+_MATRIX = re.compile(r"\\begin{vmatrix}(.*?)\\end{vmatrix}", re.DOTALL)
+
+
+def _widest_row(matrix: re.Match[str]) -> str:
+    rows = [row.replace("&", r"\quad ") for row in matrix[1].split(r"\\")]
+    return max(rows, key=width)
+
+
 def width(latex: str) -> float:
     """Estimate how wide LaTeX is when set, in the letter m's of its font."""
-    tokens = [found.groups() for found in _TOKEN.finditer(latex)]
+    tokens = [found.groups() for found in _TOKEN.finditer(_MATRIX.sub(_widest_row, latex))]
     return _width(iter(tokens))
 
 
