@@ -142,13 +142,11 @@ def motions(draw: st.DrawFn, kinds: Collection[str] = SMOOTH) -> Drawn:
         reject()
 
 
-@st.composite
-def stopped_motions(
-    draw: st.DrawFn, kinds: Collection[str] = SMOOTH, restitutions: tuple[float, ...] = (0.0, 0.5)
+def stopped_motion(
+    choices: Choices, kinds: Collection[str] = SMOOTH, restitutions: tuple[float, ...] = (0.0, 0.5)
 ) -> Drawn:
     """Return one of these motions with stops about the start, most of which are soon reached."""
-    run = draw(motions(sorted({*kinds} - {"lock"})))
-    choices = Rounded(FromHypothesis(draw))
+    run = motion(choices, sorted({*kinds} - {"lock"}))
     stops = []
     for joint, phi in enumerate(np.diff(run.q0, prepend=0.0), start=1):
         if joint == 1 or choices.integer(0, 1):
@@ -156,6 +154,25 @@ def stopped_motions(
             e = choices.one_of(restitutions)
             stops.append(pc.effects.JointStop(joint=joint, range=ends, restitution=e))
     return replace(run, scene=with_effects(run.scene, [*run.scene.effects, *stops]))
+
+
+@st.composite
+def stopped_motions(
+    draw: st.DrawFn, kinds: Collection[str] = SMOOTH, restitutions: tuple[float, ...] = (0.0, 0.5)
+) -> Drawn:
+    """Return any of these motions."""
+    try:
+        return stopped_motion(Rounded(FromHypothesis(draw)), kinds, restitutions)
+    except ValueError:
+        reject()
+
+
+def stopped_motion_of_seed(seed: str) -> Drawn:
+    """Return a motion with stops; the next seed's where its parts do not agree."""
+    try:
+        return stopped_motion(Rounded(FromSeed(seed)))
+    except ValueError:
+        return stopped_motion_of_seed(f"{seed}, once more")
 
 
 def motion_of_seed(seed: str, kind: str) -> Drawn:

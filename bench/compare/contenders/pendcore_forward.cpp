@@ -106,6 +106,7 @@ class WholeRuns : public Calls {
     q0_.assign(given.q.begin(), given.q.begin() + n);
     qd0_.assign(given.qd.begin(), given.qd.begin() + n);
     options_.rtol = options_.atol = {1e-9};
+    options_.method = "dopri5";
     options_.store = pendcore::Store::end;
     make(1);
     if (solution_.status != pendcore::Status::finished) throw std::runtime_error(solution_.message);
