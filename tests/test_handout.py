@@ -207,6 +207,22 @@ def test_arrows_point_the_way_that_counts_as_positive(
     assert len(drawn) == n
 
 
+def test_free_bodies_have_the_couples_of_the_equations(handed_out: Any) -> None:
+    case, derivation, *_ = handed_out
+    drawing_of_them = Figures(derivation, case.q0).free_bodies()
+    shown = [t.get_text() for axes in drawing_of_them.figure.axes for t in axes.texts]
+    couples = [d.symbol for d in derivation.equations.torques]
+    couples += derivation.equations.holding.values()
+    for couple in couples:
+        links = 1 if couple.name.endswith("1") else 2
+        assert shown.count(f"${derivation.symbols.latex(couple)}$") == links
+    assert ("Not drawn: " in drawing_of_them.caption) == bool(
+        derivation.equations.loads
+        or any(derivation.equations.armatures)
+        or (derivation.equations.payload and derivation.equations.payload.inertia)
+    )
+
+
 def test_curves_are_of_the_forces_that_the_derivation_names(handed_out: Any) -> None:
     case, derivation, *_ = handed_out
     drawn = Figures(derivation, case.q0).reactions(motion.solved(case)).figure
