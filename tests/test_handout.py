@@ -153,6 +153,21 @@ def test_at_rest_there_is_no_rounding_to_be_seen() -> None:
     assert "$-0.0000$" not in text
 
 
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({}, "order 8, and by Radau IIA where the equations are stiff, with the tolerances"),
+        ({"rtol": 1e-4, "atol": 1e-6}, "`ode45`, and by Radau IIA where the equations are stiff"),
+        ({"method": "ode45"}, "that of MATLAB's `ode45`, with the tolerances"),
+        ({"method": "Radau"}, "by Radau IIA, an implicit method of order 5, with"),
+        ({"method": "rk4", "step": 0.01}, "the classical Runge-Kutta method of order 4, with a"),
+    ],
+)
+def test_the_method_is_told_in_words(options: dict[str, Any], words: str) -> None:
+    case = pc.Case(scene=LEVEL.scene, q0=0.0, t_span=(0, 1), options=options)
+    assert words in motion._how(motion.solved(case))
+
+
 def test_a_run_that_stops_says_why() -> None:
     rod = pc.Scene(links=[pc.Link(mass=1.0, length=1.0)])
     down = pc.events.LinkAngle(link=1, value=1.5, terminal=True)

@@ -23,6 +23,15 @@ MOST_WITH_RATES = 3
 ROWS = 11
 """Times that the table shows."""
 
+METHODS = {
+    "dopri5": "Dormand and Prince's method of order 5, that of MATLAB's `ode45`",
+    "dop853": "Dormand and Prince's method of order 8",
+    "taylor": "Taylor series",
+    "radau5": "Radau IIA, an implicit method of order 5",
+    "rk4": "the classical Runge-Kutta method of order 4",
+}
+"""In words; of a pair, such as `taylor-radau5`, the first."""
+
 
 def solved(case: Case) -> Solution:
     """Run a case so that it can be drawn, with a ledger if its effects do work."""
@@ -64,15 +73,9 @@ def _how(solution: Solution) -> str:
         if step
         else f"with the tolerances $r = {_one(asked['rtol'])}$ and $a = {_one(asked['atol'])}$"
     )
-    method = solution.method
-    words = {
-        "dopri5": "Dormand and Prince's method of order 5, that of MATLAB's `ode45`",
-        "ode45": "Dormand and Prince's method of order 5, that of MATLAB's `ode45`",
-        "dop853": "Dormand and Prince's method of order 8",
-        "taylor": "Taylor series",
-        "taylor-radau5": "Taylor series, and by Radau IIA where the equations are stiff",
-        "rk4": "the classical Runge-Kutta method of order 4",
-    }.get(method, f"the method `{method}`")
+    first, _, other = solution.method.partition("-")
+    words = METHODS.get(first, f"the method `{first}`")
+    words += ", and by Radau IIA where the equations are stiff" if other else ""
     return (
         f"The first-order system is integrated by {words}, {tolerance}: {stats.accepted} steps, "
         f"{stats.nfev} evaluations of the right-hand side."
