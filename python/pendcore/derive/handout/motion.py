@@ -23,10 +23,21 @@ MOST_WITH_RATES = 3
 ROWS = 11
 """Times that the table shows."""
 
+METHODS = {
+    "dopri5": "Dormand and Prince's method of order 5, that of MATLAB's `ode45`",
+    "dop853": "Dormand and Prince's method of order 8",
+    "taylor": "Taylor series",
+    "radau5": "Radau IIA, an implicit method of order 5",
+    "rk4": "the classical Runge-Kutta method of order 4",
+}
+"""In words; of a pair, such as `taylor-radau5`, the first."""
+
 
 def solved(case: Case) -> Solution:
     """Run a case so that it can be drawn, with a ledger if its effects do work."""
     start, end = case.t_span
+    if start == end:
+        raise ValueError(f"t_span = {case.t_span}: a report draws curves: let the run take time")
     options: dict[str, Any] = dict(case.options)
     options.pop("store", None)
     options |= {"t_eval": tuple(np.linspace(start, end, POINTS).tolist())}
@@ -46,6 +57,8 @@ def numerical_solution(
     yield Paragraph(_how(solution))
     if not solution.success:
         yield Paragraph(f"**The run is not complete: {solution.message}**")
+    elif solution.status == "event":
+        yield Paragraph(f"The run is {solution.message}.")
     yield figures.angles(solution)
     yield _table(derivation, solution)
     yield figures.reactions(solution)
@@ -60,15 +73,9 @@ def _how(solution: Solution) -> str:
         if step
         else f"with the tolerances $r = {_one(asked['rtol'])}$ and $a = {_one(asked['atol'])}$"
     )
-    method = solution.method
-    words = {
-        "dopri5": "Dormand and Prince's method of order 5, that of MATLAB's `ode45`",
-        "ode45": "Dormand and Prince's method of order 5, that of MATLAB's `ode45`",
-        "dop853": "Dormand and Prince's method of order 8",
-        "taylor": "Taylor series",
-        "taylor-radau5": "Taylor series, and by Radau IIA where the equations are stiff",
-        "rk4": "the classical Runge-Kutta method of order 4",
-    }.get(method, f"the method `{method}`")
+    first, _, other = solution.method.partition("-")
+    words = METHODS.get(first, f"the method `{first}`")
+    words += ", and by Radau IIA where the equations are stiff" if other else ""
     return (
         f"The first-order system is integrated by {words}, {tolerance}: {stats.accepted} steps, "
         f"{stats.nfev} evaluations of the right-hand side."
@@ -87,8 +94,8 @@ def _table(derivation: Derivation, solution: Solution) -> Table:
     chosen = np.unique(np.linspace(0, len(solution.t) - 1, ROWS).round().astype(int))
     rows = []
     for k in chosen:
-        cells = [f"{solution.t[k]:.4g}", *(f"{x:.3f}" for x in np.degrees(solution.q[k]))]
-        cells += [f"{x:.4f}" for x in solution.qd[k]] if with_rates else []
+        cells = [f"{solution.t[k]:.4g}", *(f"{x:z.3f}" for x in np.degrees(solution.q[k]))]
+        cells += [f"{x:z.4f}" for x in solution.qd[k]] if with_rates else []
         rows.append(tuple(f"${cell}$" for cell in cells))
     return Table(tuple(head), tuple(rows), "r" * len(head))
 
