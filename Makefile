@@ -22,7 +22,7 @@ SOURCES := pyproject.toml CMakeLists.txt $(shell find cpp python ! -path '*__pyc
 
 .DEFAULT_GOAL := help
 .PHONY: demo test compare hard-cases bench build-bench lint tidy sanitize threads long horizon \
-    asked-errors default-method fuzz fuzz-readers clean help
+    asked-errors default-method book-speed fuzz fuzz-readers clean help
 
 demo: $(DONE)/installed  ## build, run the textbook's case, say where its figure and summary are
 	pendcore run -o out/textbook
@@ -89,6 +89,10 @@ asked-errors: $(DONE)/installed $(DONE)/test-requirements  ## docs/accuracy_cost
 default-method: $(DONE)/installed $(DONE)/test-requirements  ## docs/accuracy_cost.md: what simulate takes by default, and why
 	python docs/default_method.py
 
+book-speed: $(DONE)/installed $(DONE)/bench-requirements  ## the book's claim of speed: docs/book_speed.md, written anew
+	@sh setup/debian_packages.sh octave
+	python docs/book_speed.py
+
 CASES ?= 100000
 SEED ?= 1
 fuzz: $(DONE)/installed $(DONE)/test-requirements  ## random cases (CASES, SEED); 100,000 and more write docs/fuzz.md
@@ -125,7 +129,7 @@ $(DONE)/installed: $(SOURCES) $(DONE)/build-requirements
 
 $(DONE)/test-requirements: pyproject.toml | $(DONE)/build-requirements
 	@sh setup/debian_packages.sh doctest
-	python setup/requirements.py test export | $(PIP_INSTALL) -r /dev/stdin
+	python setup/requirements.py test export symbolic | $(PIP_INSTALL) -r /dev/stdin
 	@touch $@
 
 $(DONE)/fuzz-requirements: pyproject.toml | $(DONE)/test-requirements
@@ -134,7 +138,7 @@ $(DONE)/fuzz-requirements: pyproject.toml | $(DONE)/test-requirements
 
 $(DONE)/bench-requirements: pyproject.toml | $(DONE)/build-requirements
 	@sh setup/debian_packages.sh doctest also benchmark boost sundials valgrind
-	python setup/requirements.py bench | $(PIP_INSTALL) -r /dev/stdin
+	python setup/requirements.py bench symbolic | $(PIP_INSTALL) -r /dev/stdin
 	@touch $@
 
 $(DONE)/lint-requirements: pyproject.toml | $(DONE)/venv

@@ -4,7 +4,7 @@
 # without, but asking once for everything is kinder.
 #
 #   setup/debian_packages.sh [python] [compiler] [eigen] [doctest] [benchmark] [boost] [sundials]
-#                            [valgrind] [also ...]
+#                            [valgrind] [octave] [pandoc] [also ...]
 set -eu
 
 python=${PYTHON:-python3}
@@ -46,6 +46,8 @@ for thing in "$@"; do
         boost) [ -e /usr/include/boost/numeric/odeint.hpp ] || miss libboost-dev ;;
         sundials) [ -e /usr/include/arkode/arkode_erkstep.h ] || miss libsundials-dev ;;
         valgrind) command -v valgrind >/dev/null || miss valgrind ;;
+        octave) command -v octave-cli >/dev/null || miss octave ;;
+        pandoc) command -v pandoc >/dev/null || miss pandoc ;;
         *) stop "debian_packages.sh: no '$thing' is known" ;;
     esac
 done

@@ -83,6 +83,7 @@ PYTHON_FLOW = [
     "case_file",
     "archive",
     "views",
+    "derive",
     "cli",
 ]
 # The methods of a solution (plot, save, ...) and of a scene (explain) call what comes later, but

@@ -18,6 +18,7 @@
     sol.events                                   # times and states at which what was asked for is
     sol.plot()                                   # the angles over time, as in the textbook
     sol.save("run.npz")                          # and pc.load("run.npz")
+    print(pc.derive.Derivation(scene))           # the equations in symbols, step by step: SymPy
 
 x points right, **y points down**, and an angle q is absolute, from x towards y: q = 0 is
 horizontal, q = pi/2 hangs straight down. Everything is in SI units: kg, m, s, rad, N, J. Links and
@@ -25,6 +26,8 @@ joints count from 1.
 """
 
 from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
 
 from pendcore import effects, events
 from pendcore._core import __version__
@@ -46,6 +49,18 @@ from pendcore.simulate import simulate
 from pendcore.solution import Solution
 from pendcore.statistics import Statistics
 from pendcore.warning import PendcoreWarning
+
+if TYPE_CHECKING:
+    from pendcore import derive as derive
+
+
+def __getattr__(name: str) -> Any:
+    if name == "derive":  # SymPy is an extra, and takes its time
+        import importlib
+
+        return importlib.import_module("pendcore.derive")
+    raise AttributeError(f"module 'pendcore' has no attribute {name!r}")
+
 
 __all__ = [
     "Accuracy",

@@ -9,7 +9,7 @@ import warnings
 from collections.abc import Sequence
 
 from pendcore import _core
-from pendcore.cli import cost, explain, plot, run
+from pendcore.cli import cost, derive, explain, plot, run
 from pendcore.cli.usage import UsageError
 from pendcore.warning import PendcoreWarning
 
@@ -21,6 +21,7 @@ examples:
   pendcore explain swing.toml             what it simulates, what not, how fast it moves
   pendcore plot out/swing/solution.npz -o swing.pdf
   pendcore cost swing.toml                what accuracy costs on it: error and time of every method
+  pendcore derive swing.toml              its equations of motion in symbols, as code, as a report
 
 exit status: 0 fine, 1 the run failed or was interrupted (what it has is written all the same),
 2 wrong usage, 141 nobody reads what is printed (what is written is whole)
@@ -75,7 +76,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"pendcore {_core.__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for command in (run, explain, plot, cost):
+    for command in (run, explain, plot, cost, derive):
         command.add_parser(commands)
     return parser
 

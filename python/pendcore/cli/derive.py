@@ -1,0 +1,110 @@
+"""`pendcore derive`: the equations of motion in symbols, as text, LaTeX, code or a report."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pendcore.case import Case
+from pendcore.cli.case_and_folder import case_of, folder_of
+from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder, written
+
+if TYPE_CHECKING:
+    from pendcore.derive import Derivation
+
+_EPILOG = """
+forms:
+  text     every step of the derivation, as text
+  latex    the same for LaTeX with amsmath
+  octave   a function file of MATLAB and Octave, as the textbook's RR.m
+  inline   the textbook's inline form of it
+  python   a module for NumPy
+  cpp      a header for C++
+  report   a folder: derivation, numbers, solution and its plots, to hand in or to teach from
+
+examples:
+  pendcore derive                               the textbook's double pendulum, step by step
+  pendcore derive --to octave -o RR.m
+  pendcore derive swing.toml --to report -o homework --worksheet
+"""
+
+FORMS = ("text", "latex", "octave", "inline", "python", "cpp", "report")
+
+
+def add_parser(commands: Any) -> None:
+    """Add the sub-command and its arguments."""
+    parser = commands.add_parser(
+        "derive",
+        help="derive the equations of motion in symbols: steps, code, a report",
+        description="Derive the equations of motion of a case in symbols, as the textbook does.",
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "case", nargs="?", type=Path, metavar="CASE.toml", help="default: the textbook's"
+    )
+    parser.add_argument("--to", choices=FORMS, default="text", help="default: %(default)s")
+    parser.add_argument(
+        "-o",
+        "--out",
+        type=Path,
+        metavar="PATH",
+        help="a file, default: print it; of a report a folder, default: out/ and the case's name",
+    )
+    parser.add_argument(
+        "--worksheet", action="store_true", help="beside the report, the same with blanks"
+    )
+    parser.set_defaults(execute=execute)
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Do it; return the exit status."""
+    if args.worksheet and args.to != "report":
+        raise UsageError("--worksheet: is of a report: add --to report")
+    with blamed_on_usage():
+        case = case_of(args)
+        derivation = _derived(case)
+    if args.to == "report":
+        return _report(derivation, case, args)
+    with blamed_on_usage("-o"):
+        text = _text(derivation, args)
+    if args.out is None:
+        print(text, end="")
+        return 0
+    where = written(args.out, [args.out])
+    with blamed_on_usage():
+        args.out.parent.mkdir(parents=True, exist_ok=True)
+        args.out.write_text(text, encoding="utf-8")
+    print(where, file=sys.stderr)
+    return 0
+
+
+def _derived(case: Case) -> Derivation:
+    try:
+        from pendcore.derive import Derivation
+    except ModuleNotFoundError as missing:
+        raise UsageError(str(missing)) from None
+    return Derivation(case.scene)
+
+
+def _text(derivation: Derivation, args: argparse.Namespace) -> str:
+    if args.to == "octave":  # the function is called what its file is called
+        return derivation.to_octave(args.out.stem if args.out else "RR")
+    made = {
+        "text": derivation.__str__,
+        "latex": derivation.latex,
+        "inline": derivation.to_octave_inline,
+        "python": derivation.to_python,
+        "cpp": derivation.to_cpp,
+    }
+    return made[args.to]()
+
+
+def _report(derivation: Derivation, case: Case, args: argparse.Namespace) -> int:
+    folder = folder_of(args)
+    with new_folder(folder), blamed_on_usage():
+        files = derivation.report(case, folder, worksheet=args.worksheet)
+    print(f"written to {folder}: {', '.join(path.name for path in files)}", file=sys.stderr)
+    return 0

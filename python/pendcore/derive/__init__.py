@@ -1,0 +1,28 @@
+"""The equations of motion derived in symbols, as the textbook derives them, with SymPy.
+
+    import pendcore as pc
+
+    derivation = pc.derive.Derivation.textbook()
+    print(derivation)                    # every step, from the positions to the first-order form
+    derivation.accelerations             # sympy expressions
+    print(derivation.to_octave())        # RR.m
+
+It is a derivation of its own: nothing of the compiled core enters it, and so it checks it.
+"""
+
+from __future__ import annotations
+
+try:
+    import sympy  # noqa: F401
+except ModuleNotFoundError as error:
+    raise ModuleNotFoundError(
+        f"pendcore.derive needs {error.name}, which is not installed: "
+        'pip install "pendcore[symbolic]"',
+        name=error.name,
+    ) from None
+
+from pendcore.derive.derivation import Derivation
+from pendcore.derive.notation import Notation, Parameter
+from pendcore.derive.step import Equation, Formula, Step
+
+__all__ = ["Derivation", "Equation", "Formula", "Notation", "Parameter", "Step"]

@@ -1,0 +1,1 @@
+"""A derivation as code: MATLAB and Octave, Python, C++."""

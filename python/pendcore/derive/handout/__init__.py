@@ -1,0 +1,169 @@
+"""The handout: the derivation of a user's scene as a document to hand in or to teach from.
+
+It walks from the problem with its figure through the steps of the derivation, puts the numbers in,
+solves, draws angles and reactions, and checks by the energy. The worksheet is the same with blanks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from pendcore import _core
+from pendcore import progress as bars
+from pendcore.case import Case
+from pendcore.derive.derivation import Derivation
+from pendcore.derive.handout import conversion, motion, numbers, problem, steps
+from pendcore.derive.handout.document import Block, Document, Heading, Paragraph, Reader, Space
+from pendcore.derive.handout.figures import Figures
+from pendcore.progress import Progress
+from pendcore.solution import Solution
+from pendcore.warning import warn
+
+
+def report(derivation: Derivation, case: Case, solution: Solution) -> Document:
+    """Return the derivation of a case with its solution.
+
+    Parameters
+    ----------
+    derivation : Derivation
+        Of the scene of the case.
+    case : Case
+        With the start.
+    solution : Solution
+        Of the case, as `motion.solved` returns it.
+    """
+    figures = Figures(derivation, case.q0)
+    blocks = [
+        *problem.problem(derivation, case, figures),
+        Heading(2, "Derivation of the equations of motion"),
+        *steps.derivation_steps(derivation, figures),
+        *numbers.numbers_put_in(derivation),
+        *numbers.at_the_start(derivation, case),
+        *motion.numerical_solution(derivation, solution, figures),
+        *motion.energy_check(derivation, solution, figures),
+        Paragraph(f"*Derived with SymPy and solved by pendcore {_core.__version__}.*"),
+    ]
+    return Document(_title(derivation, case), tuple(blocks))
+
+
+def worksheet(derivation: Derivation, case: Case, solution: Solution) -> Document:
+    """Return the same problem with blanks: right sides, free bodies and curves are to be found."""
+    figures = Figures(derivation, case.q0)
+    blocks: list[Block] = [
+        *problem.problem(derivation, case, figures),
+        Heading(2, "Derivation of the equations of motion"),
+        *steps.derivation_steps(derivation, figures, blanks=True),
+        *_questions(derivation, case, solution, figures),
+    ]
+    return Document(f"{_title(derivation, case)}: worksheet", tuple(blocks))
+
+
+def write_handout(
+    derivation: Derivation,
+    case: Case,
+    folder: Path,
+    *,
+    with_worksheet: bool = False,
+    progress: Progress = None,
+) -> list[Path]:
+    """Write the report of a case, and its worksheet, in every form that this machine can make.
+
+    Parameters
+    ----------
+    derivation : Derivation
+        Of the scene of the case.
+    case : Case
+        What is derived and solved.
+    folder : Path
+        Where to; it is there.
+    with_worksheet : bool
+        Whether to write ``worksheet`` beside ``report``.
+    progress : None, bool or callable
+        As of `pendcore.simulate`.
+
+    Returns
+    -------
+    list of Path
+        What was written, the report first: Markdown always, HTML where pandoc is, PDF where a
+        LaTeX engine is beside it; then the figures.
+    """
+    told = bars.callback(progress, "deriving") or (lambda fraction: None)
+    try:
+        return _written(derivation, case, folder, with_worksheet, told)
+    finally:
+        bars.close(told)
+
+
+def _written(
+    derivation: Derivation,
+    case: Case,
+    folder: Path,
+    with_worksheet: bool,
+    told: Callable[[float], object],
+) -> list[Path]:
+    told(0.0)
+    solution = motion.solved(case)
+    if not solution.success:
+        warn(f"the run is not complete: {solution.message}")
+    told(0.05)
+    documents = {"report": report(derivation, case, solution)}
+    if with_worksheet:
+        documents["worksheet"] = worksheet(derivation, case, solution)
+    told(0.4)
+    texts: list[Path] = []
+    figures: dict[str, Path] = {}
+    for k, (name, document) in enumerate(documents.items()):
+        texts += _texts(document, folder, name)
+        for drawing in document.drawings:
+            figures[drawing.name] = drawing.save(folder, Reader.PEOPLE)
+        told(0.4 + 0.6 * (k + 1) / len(documents))
+    return [*texts, *figures.values()]
+
+
+def _texts(document: Document, folder: Path, name: str) -> Iterator[Path]:
+    """Write a document as what the machine has converters for; one that fails is told of."""
+    path = folder / f"{name}.md"
+    path.write_text(document.markdown(), encoding="utf-8")
+    yield path
+    if not conversion.has_pandoc():
+        return
+    try:
+        path = folder / f"{name}.html"
+        path.write_text(conversion.page(document), encoding="utf-8")
+        yield path
+        if (engine := conversion.latex_engine()) is not None:
+            path = folder / f"{name}.pdf"
+            conversion.pdf(document, path, engine)
+            yield path
+    except conversion.ConversionError as error:
+        warn(f"{path.name} is not written: {error}")
+
+
+def _questions(
+    derivation: Derivation, case: Case, solution: Solution, figures: Figures
+) -> Iterator[Block]:
+    yield Heading(3, "The equations of motion with numbers")
+    yield Paragraph("Put the numbers of the table into the equations of motion. Give the units.")
+    yield Space(5)
+    yield Heading(3, "At the start")
+    yield Paragraph(
+        "Compute the angular accelerations and the joint reactions at the start. Which way does "
+        "each link begin to turn? Which way does each joint push?"
+    )
+    yield Space(7)
+    yield Heading(2, "Numerical solution")
+    yield Paragraph("Integrate the first-order system, and draw the angles.")
+    yield figures.empty_axes(solution)
+    yield Heading(2, "Check by the energy")
+    yield Paragraph(
+        "Write down kinetic and potential energy. What is their sum at the start, and how well "
+        "does your solution keep it?"
+    )
+    yield Space(6)
+
+
+def _title(derivation: Derivation, case: Case) -> str:
+    names = {1: "Pendulum", 2: "Double pendulum"}
+    name = case.name or names.get(derivation.n, f"Chain of {derivation.n} links")
+    return name[:1].upper() + name[1:]

@@ -1,0 +1,141 @@
+"""The figures of a handout, numbered, with their captions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import degrees
+
+import numpy as np
+from sympy import Integer
+
+from pendcore.derive.derivation import Derivation
+from pendcore.derive.handout import curves, drawing
+from pendcore.derive.handout.document import Drawing
+from pendcore.derive.handout.free_bodies import Reaction, free_bodies
+from pendcore.derive.handout.mechanism import mechanism
+from pendcore.derive.handout.quantities import number
+from pendcore.derive.narration.page import Page
+from pendcore.solution import Solution
+
+
+class Figures:
+    """Draws what a handout shows, and counts.
+
+    Parameters
+    ----------
+    derivation : Derivation
+        Whose symbols name points and forces.
+    q : sequence of float, (n,)
+        Angles at which the chain is drawn, rad.
+    """
+
+    def __init__(self, derivation: Derivation, q: Sequence[float]) -> None:
+        self.derivation = derivation
+        self.scene = derivation.scene
+        self.q = list(q)
+        page = Page(derivation)
+        self.points = [page.joint(i)[1] for i in range(derivation.n + 1)]
+        self._count = 0
+
+    @property
+    def angles_in_words(self) -> str:
+        """The angles at which the chain is drawn."""
+        return ", ".join(
+            rf"$q_{{{i}}} = {number(degrees(q))}$°" for i, q in enumerate(self.q, start=1)
+        )
+
+    def mechanism(self) -> Drawing:
+        """Fig. 1 of the textbook."""
+        with drawing.lettering():
+            figure = mechanism(self.scene, self.q, self.points)
+        what = {1: "The pendulum", 2: "The double pendulum"}.get(self.derivation.n, "The chain")
+        return Drawing(
+            "mechanism",
+            self._caption(f"{what} at its start: {self.angles_in_words}."),
+            figure,
+        )
+
+    def free_bodies(self, *, forces: bool = True) -> Drawing:
+        """Every link alone; without forces it is for those who are to draw them."""
+        symbols = self.derivation.equations.forces
+        write = self.derivation.symbols.latex
+        reactions = [Reaction(write(x), write(y), k == 0) for k, (x, y) in enumerate(symbols)]
+        payload = self.derivation.equations.payload
+        if payload is not None:
+            tip = payload.force
+            reactions.append(Reaction(write(tip[0]), write(tip[1]), False))
+        with drawing.lettering():
+            figure = free_bodies(
+                self.scene, self.q, self.points, reactions if forces else [], self._couples()
+            )
+        words = (
+            f"The links as free bodies; the arrows show what counts as positive.{self._left_out()}"
+            if forces
+            else "The links, to be completed to free-body diagrams."
+        )
+        return Drawing("free_bodies" if forces else "links", self._caption(words), figure)
+
+    def _couples(self) -> dict[int, str]:
+        """LaTeX of the torque and of the couple of a lock, by joint."""
+        s, equations = self.derivation.symbols, self.derivation.equations
+        at_rest = dict.fromkeys(s.qdd, Integer(0))
+        couples = {j: equations.joint_couple(j).xreplace(at_rest) for j in range(1, s.n + 1)}
+        return {joint: s.latex(couple) for joint, couple in couples.items() if couple != 0}
+
+    def _left_out(self) -> str:
+        """What acts on the links and is not drawn."""
+        equations = self.derivation.equations
+        inert = equations.payload is not None and equations.payload.inertia != 0
+        found = {
+            "the drag along rods": bool(equations.loads),
+            "the couples that turn rotors": any(equations.armatures),
+            "the couple that turns the payload": inert,
+        }
+        left_out = [words for words, acts in found.items() if acts]
+        return f" Not drawn: {', '.join(left_out)}." if left_out else ""
+
+    def angles(self, solution: Solution) -> Drawing:
+        """The textbook's figure."""
+        with drawing.lettering():
+            figure = curves.angles(solution)
+        return Drawing("angles", self._caption("The angles of the links over time."), figure)
+
+    def reactions(self, solution: Solution) -> Drawing:
+        """The joint forces as the derivation has them: F_01, F_21, ..."""
+        forces = solution.reactions().copy()
+        forces[:, 1:] *= -1  # F_12 is the core's, F_21 the derivation's
+        names = [
+            self.derivation.symbols.latex(x).replace("x}", "}")
+            for x, _ in self.derivation.equations.forces
+        ]
+        with drawing.lettering():
+            figure = curves.reactions(solution.t, forces, names)
+        words = (
+            "The joint reactions over time; $y$ points down, so that a force upward is negative."
+        )
+        return Drawing("reactions", self._caption(words), figure)
+
+    def energies(self, solution: Solution) -> Drawing:
+        """Energies, work and loss, and what is left over."""
+        energy = solution.energy()
+        found = {"$T$": energy.kinetic, "$V$": energy.potential, "$T + V$": energy.total}
+        ledger = energy.ledger
+        left = energy.total - energy.total[0] if ledger is None else ledger.residual
+        with drawing.lettering():
+            figure = curves.energies(solution.t, found, np.asarray(left))
+        words = "Above: kinetic, potential and total energy over time. Below: " + (
+            "the change of $T + V$ since the start, which is to be zero."
+            if ledger is None
+            else "the change of $T + V$ since the start less all work, which is to be zero."
+        )
+        return Drawing("energies", self._caption(words), figure)
+
+    def empty_axes(self, solution: Solution) -> Drawing:
+        """The axes of the figure of the angles, to draw into."""
+        with drawing.lettering():
+            figure = curves.empty_axes(solution)
+        return Drawing("axes", self._caption("The angles of the links over time."), figure)
+
+    def _caption(self, words: str) -> str:
+        self._count += 1
+        return f"Fig. {self._count}. {words}"

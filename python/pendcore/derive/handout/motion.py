@@ -1,0 +1,153 @@
+"""The numerical solution: method, table, curves, largest reactions, and the check by energy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from pendcore.case import Case
+from pendcore.derive.derivation import Derivation
+from pendcore.derive.handout.document import Block, Heading, Paragraph, Table
+from pendcore.derive.handout.figures import Figures
+from pendcore.derive.handout.quantities import number, quantity
+from pendcore.energy import LOSSES
+from pendcore.solution import Solution
+from pendcore.views.energy_drift import energy_drift
+
+POINTS = 1201
+"""Times at which curves are drawn."""
+MOST_WITH_RATES = 3
+"""Links of which the table has the rates too: more are wider than a page."""
+ROWS = 11
+"""Times that the table shows."""
+
+METHODS = {
+    "dopri5": "Dormand and Prince's method of order 5, that of MATLAB's `ode45`",
+    "dop853": "Dormand and Prince's method of order 8",
+    "taylor": "Taylor series",
+    "radau5": "Radau IIA, an implicit method of order 5",
+    "rk4": "the classical Runge-Kutta method of order 4",
+}
+"""In words; of a pair, such as `taylor-radau5`, the first."""
+
+
+def solved(case: Case) -> Solution:
+    """Run a case so that it can be drawn, with a ledger if its effects do work."""
+    start, end = case.t_span
+    if start == end:
+        raise ValueError(f"t_span = {case.t_span}: a report draws curves: let the run take time")
+    options: dict[str, Any] = dict(case.options)
+    options.pop("store", None)
+    options |= {"t_eval": tuple(np.linspace(start, end, POINTS).tolist())}
+    if any(effect.description.account != "none" for effect in case.scene.effects):
+        options["ledger"] = True
+    return Case(
+        scene=case.scene, q0=case.q0, qd0=case.qd0, t_span=case.t_span, name=case.name,
+        options=options,
+    ).simulate()  # fmt: skip
+
+
+def numerical_solution(
+    derivation: Derivation, solution: Solution, figures: Figures
+) -> Iterator[Block]:
+    """Yield how the equations were integrated, and what came of it."""
+    yield Heading(2, "Numerical solution")
+    yield Paragraph(_how(solution))
+    if not solution.success:
+        yield Paragraph(f"**The run is not complete: {solution.message}**")
+    elif solution.status == "event":
+        yield Paragraph(f"The run is {solution.message}.")
+    yield figures.angles(solution)
+    yield _table(derivation, solution)
+    yield figures.reactions(solution)
+    yield Paragraph(_largest(derivation, solution))
+
+
+def _how(solution: Solution) -> str:
+    asked, stats = solution._run.arguments, solution.stats
+    step = asked.get("step")
+    tolerance = (
+        f"with a fixed step of ${quantity(step, 's')}$"
+        if step
+        else f"with the tolerances $r = {_one(asked['rtol'])}$ and $a = {_one(asked['atol'])}$"
+    )
+    first, _, other = solution.method.partition("-")
+    words = METHODS.get(first, f"the method `{first}`")
+    words += ", and by Radau IIA where the equations are stiff" if other else ""
+    return (
+        f"The first-order system is integrated by {words}, {tolerance}: {stats.accepted} steps, "
+        f"{stats.nfev} evaluations of the right-hand side."
+    )
+
+
+def _one(tolerance: Any) -> str:
+    return number(float(np.min(tolerance)), 3)
+
+
+def _table(derivation: Derivation, solution: Solution) -> Table:
+    s, write = derivation.symbols, derivation.symbols.latex
+    head = ["$t$ (s)", *(f"${write(x)}$ (deg)" for x in s.q)]
+    with_rates = derivation.n <= MOST_WITH_RATES
+    head += [f"${write(x)}$ (rad/s)" for x in s.qd] if with_rates else []
+    chosen = np.unique(np.linspace(0, len(solution.t) - 1, ROWS).round().astype(int))
+    rows = []
+    for k in chosen:
+        cells = [f"{solution.t[k]:.4g}", *(f"{x:z.3f}" for x in np.degrees(solution.q[k]))]
+        cells += [f"{x:z.4f}" for x in solution.qd[k]] if with_rates else []
+        rows.append(tuple(f"${cell}$" for cell in cells))
+    return Table(tuple(head), tuple(rows), "r" * len(head))
+
+
+def _largest(derivation: Derivation, solution: Solution) -> str:
+    size = np.linalg.norm(solution.reactions(), axis=-1)
+    sentences = []
+    for i, k in enumerate(size.argmax(axis=0)):
+        name = derivation.symbols.latex(derivation.equations.forces[i][0]).replace("x}", "}")
+        bold = rf"|\mathbf{{F}}{name[1:]}|"
+        sentences.append(
+            f"${bold} = {quantity(float(size[k, i]), 'N', 4)}$ "
+            f"at $t = {quantity(float(solution.t[k]), 's', 4)}$"
+        )
+    return f"The largest reactions are {', '.join(sentences)}."
+
+
+def energy_check(derivation: Derivation, solution: Solution, figures: Figures) -> Iterator[Block]:
+    """Yield the energies in symbols, and how well the run kept them."""
+    yield Heading(2, "Check by the energy")
+    works = solution.energy().ledger is not None
+    rate = r"\frac{\mathrm{d}}{\mathrm{d}t}(T + V)" + (r" - \sum_k P_k" if works else "")
+    exactly = derivation.energy_rate() == 0
+    yield Paragraph(
+        (f"With the equations of motion put in, SymPy reduces ${rate}$ to 0: exactly, for all "
+         "angles, rates and parameters. " if exactly else "")
+        + "What is left in the run is its error. " + _kept(solution)
+    )  # fmt: skip
+    if works:
+        yield from _work(solution)
+    yield figures.energies(solution)
+
+
+def _kept(solution: Solution) -> str:
+    drift = energy_drift(solution)
+    words = f"In the run, $T + V$ is ${quantity(drift.start, 'J')}$ at the start"
+    if drift.largest_drift is None:
+        return words + "."
+    what = "the balance with all work" if drift.ledger else "it"
+    share = "" if drift.relative_drift is None else (
+        f", ${number(drift.relative_drift, 2)}$ of the largest kinetic energy"
+    )  # fmt: skip
+    return f"{words}, and {what} stays within ${quantity(drift.largest_drift, 'J', 2)}${share}."
+
+
+def _work(solution: Solution) -> Iterator[Block]:
+    ledger, energy = solution.energy().ledger, solution.energy()
+    assert ledger is not None
+    rows = [("change of $T + V$", f"${number(float(energy.total[-1] - energy.total[0]))}$")]
+    for name, entry in ledger.items():
+        words = {"residual": "left over"}.get(
+            name, f"lost: {name}" if name in LOSSES else f"work done: {name}"
+        )
+        rows.append((words, f"${number(float(entry[-1]))}$"))
+    yield Table(("from start to end", "J"), tuple(rows), "lr")

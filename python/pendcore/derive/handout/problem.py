@@ -1,0 +1,67 @@
+"""The first page of a handout: what is given and what is to be found."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from pendcore.case import Case
+from pendcore.derive.derivation import Derivation
+from pendcore.derive.handout.document import Block, Displayed, Heading, Paragraph, Table
+from pendcore.derive.handout.figures import Figures
+from pendcore.derive.handout.quantities import number, quantity, unit
+
+COUNTS = {1: "one link", 2: "two links", 3: "three links", 4: "four links", 5: "five links"}
+
+
+def problem(derivation: Derivation, case: Case, figures: Figures) -> Iterator[Block]:
+    """Yield what is given, and Fig. 1."""
+    yield Heading(2, "The problem")
+    yield Paragraph(_what_moves(derivation))
+    yield figures.mechanism()
+    yield Paragraph("Given are")
+    rows = [
+        (f"${derivation.symbols.latex(p.symbol)}$", p.meaning, f"${number(p.value, 10)}$", _unit(p))
+        for p in derivation.symbols.parameters
+    ]
+    yield Table(("symbol", "meaning", "value", "unit"), tuple(rows), "llrl")
+    yield Paragraph(
+        "Find the equations of motion, the joint reactions and the motion that follows from"
+    )
+    yield Displayed(initial_conditions(derivation, case))
+    start, end = case.t_span
+    yield Paragraph(f"from $t = {quantity(start, 's')}$ to $t = {quantity(end, 's')}$.")
+
+
+def initial_conditions(derivation: Derivation, case: Case) -> str:
+    """Return LaTeX of the angles and rates at the start."""
+    s, lines = derivation.symbols, []
+    time = number(case.t_span[0])
+    for q, qd, angle, rate in zip(s.q, s.qd, case.q0, case.qd0, strict=True):
+        lines.append(
+            rf"{s.latex(q)}({time}) &= {quantity(angle, 'rad')} = "
+            rf"{number(angle * 57.29577951308232)}^\circ, & "
+            rf"{s.latex(qd)}({time}) &= {quantity(rate, 'rad/s')}"
+        )
+    body = " \\\\\n".join(lines)
+    return f"\\begin{{aligned}}\n{body}\n\\end{{aligned}}"
+
+
+def _what_moves(derivation: Derivation) -> str:
+    n, scene = derivation.n, derivation.scene
+    uniform = not any(link.particulars().keys() - {"mass", "length"} for link in scene.links)
+    name = {1: "pendulum", 2: "double pendulum"}.get(n, "chain")
+    links = COUNTS.get(n, f"{n} links")
+    rods = " The links are uniform rods." if n > 1 else " The link is a uniform rod."
+    rods = rods if uniform else ""
+    acting = " ".join(law.sentence(derivation.symbols) for law in derivation.equations.laws)
+    return (
+        f"A planar {name} of {links} (Fig. 1) moves in a vertical plane.{rods} "
+        "The $x$ axis points to the right and the $y$ axis down; the angles are measured from the "
+        "$x$ axis towards the $y$ axis. "
+        + (acting or "Nothing acts on it but gravity and the joint that holds it.")
+    )
+
+
+def _unit(parameter: object) -> str:
+    shown = unit(getattr(parameter, "unit", ""))
+    return f"${shown}$" if shown else ""

@@ -1,0 +1,105 @@
+"""What the law of a smooth effect may say, in symbols; most say one thing of these."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from sympy import Expr, Integer, Symbol
+
+from pendcore.derive.chain import Chain, Vector
+from pendcore.derive.notation import Notation
+
+
+class NotSmooth(Exception):
+    """The effect has no law that is smooth: the reason, and what to do instead."""
+
+    def __init__(self, reason: str, remedy: str) -> None:
+        super().__init__(f"{reason}: {remedy}")
+        self.reason = reason
+        self.remedy = remedy
+
+
+class LinkLoad(NamedTuple):
+    """A force on a link, and its moment.
+
+    Attributes
+    ----------
+    link : int
+        From 1.
+    force : (Expr, Expr)
+        N; x right, y down.
+    moment : Expr
+        About the joint where the link begins, N m.
+    """
+
+    link: int
+    force: Vector
+    moment: Expr
+
+
+class Definition(NamedTuple):
+    """A symbol that stands for a longer expression of a law, such as a speed or a force."""
+
+    symbol: Symbol
+    value: Expr
+    meaning: str
+
+
+class Law:
+    """An effect that does nothing; the laws say what they do.
+
+    Parameters
+    ----------
+    effect : pendcore.effects.Effect
+        With its numbers.
+    notation : Notation
+        Where the law puts the symbols of its parameters.
+    """
+
+    def __init__(self, effect: Any, notation: Notation) -> None:
+        self.effect = effect
+        self.notation = notation
+
+    def sentence(self, notation: Notation) -> str:
+        """Return what the reader of a derivation is told of it; formulas between dollars."""
+        raise NotImplementedError
+
+    def pivot(self) -> Vector | None:
+        """Position of the pivot over time, if the effect moves it, m."""
+        return None
+
+    def couple(self, chain: Chain) -> Expr | None:
+        """Torque at its joint, on the link beyond it, without that of rotors, N m."""
+        return None
+
+    def definitions(self, chain: Chain) -> tuple[Definition, ...]:
+        """Symbols that its loads are written with, each in terms of those before it."""
+        return ()
+
+    def load(self, chain: Chain) -> LinkLoad | None:
+        """Force along a link, in the symbols of `definitions`."""
+        return None
+
+    def armature(self) -> tuple[int, Expr] | None:
+        """Joint and moment of inertia of a rotor that turns with it, kg m^2."""
+        return None
+
+    def payload(self) -> tuple[Expr, Expr] | None:
+        """Mass (kg) and moment of inertia (kg m^2) of a body at the tip."""
+        return None
+
+    def lock(self) -> int | None:
+        """The joint that it locks."""
+        return None
+
+    def potential_energy(self, chain: Chain) -> Expr:
+        """What it stores, J."""
+        return Integer(0)
+
+    def power(self, chain: Chain, ground_force: Vector) -> Expr | None:
+        """Power that it brings into the chain, W, in the symbols of `definitions`.
+
+        ``ground_force`` is that of the ground on link 1, N. None for what does no work, or keeps
+        it as energy.
+        """
+        return None

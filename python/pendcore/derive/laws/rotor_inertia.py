@@ -1,0 +1,33 @@
+"""A rotor that turns with a joint: T = J phid^2 / 2."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from sympy import Expr
+
+from pendcore.derive.laws.law import Law
+from pendcore.derive.notation import Notation
+
+
+class RotorInertia(Law):
+    """See the core's effect of that name; to turn it takes the couple J phidd."""
+
+    def __init__(self, effect: Any, notation: Notation) -> None:
+        super().__init__(effect, notation)
+        j = effect.joint
+        self.inertia = notation.parameter(
+            f"J_{j}", f"J_{{{j}}}", effect.armature, "kg m^2", f"inertia of the rotor at joint {j}"
+        )
+
+    def sentence(self, notation: Notation) -> str:
+        """Say what it does."""
+        joint = self.effect.joint
+        return (
+            f"A rotor turns with joint {joint}: to turn it faster takes the moment of inertia "
+            f"${notation.latex(self.inertia)}$ times the acceleration of the joint."
+        )
+
+    def armature(self) -> tuple[int, Expr]:
+        """Its joint and inertia."""
+        return self.effect.joint, self.inertia

@@ -1,0 +1,118 @@
+"""`pendcore derive`: every form to the screen or into a file; mistakes in a line."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pendcore as pc
+import pytest
+from pendcore.cli import main
+from pendcore.derive import Derivation
+
+pytestmark = pytest.mark.unsanitized
+
+TEXTBOOK = Derivation.textbook()
+FORMS = {
+    "text": str(TEXTBOOK),
+    "latex": TEXTBOOK.latex(),
+    "octave": TEXTBOOK.to_octave(),
+    "inline": TEXTBOOK.to_octave_inline(),
+    "python": TEXTBOOK.to_python(),
+    "cpp": TEXTBOOK.to_cpp(),
+}
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_a_form_is_printed_or_written(form: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["derive", "--to", form]) == 0
+    assert capsys.readouterr() == (FORMS[form], "")
+    assert main(["derive", "--to", form, "-o", "a/RR.m"]) == 0
+    assert capsys.readouterr() == ("", "written to a/RR.m\n")
+    assert Path("a/RR.m").read_text(encoding="utf-8") == FORMS[form]
+
+
+def test_the_steps_are_what_is_printed_unless_asked_otherwise(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert main(["derive"]) == 0
+    assert capsys.readouterr().out == FORMS["text"]
+
+
+def test_a_case_of_one_s_own_is_derived(capsys: pytest.CaptureFixture[str]) -> None:
+    swing = pc.Case(scene=pc.Scene(links=[pc.Link(mass=2.0, length=1.5)]), q0=0.1, t_span=(0, 1))
+    Path("swing.toml").write_text(swing.to_toml())
+    assert main(["derive", "swing.toml", "--to", "octave"]) == 0
+    assert capsys.readouterr().out == Derivation(swing.scene).to_octave()
+
+
+def test_the_function_is_called_what_its_file_is_called(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert main(["derive", "--to", "octave", "-o", "swing.m"]) == 0
+    assert "function dx = swing(t,x)" in Path("swing.m").read_text()
+    assert main(["derive", "--to", "octave", "-o", "2 rods.m"]) == 2
+    assert "2 rods" in capsys.readouterr().err
+    assert not Path("2 rods.m").exists()
+
+
+@pytest.mark.parametrize(
+    ("effect", "message"),
+    [
+        ('kind = "dry_joint_friction"\njoint = 1\ncoulomb = 0.1', "cannot be derived in symbols"),
+        ('kind = "viscous_joint"\njoint = 3\ndamping = 0.1', "joint"),
+    ],
+)
+def test_what_cannot_be_derived_is_told_in_a_line(
+    effect: str, message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    Path("rough.toml").write_text(
+        pc.Case.textbook().to_toml() + f"\n[[effect]]\n{effect}\n", encoding="utf-8"
+    )
+    assert main(["derive", "rough.toml", "--to", "cpp", "-o", "rough.hpp"]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("pendcore derive: ")
+    assert err.count("\n") == 1
+    assert message in err
+    assert not Path("rough.hpp").exists()
+
+
+def test_a_report_is_written_into_a_folder(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PATH", "")  # no converter: Markdown and its figures
+    assert main(["derive", "--to", "report"]) == 0
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("written to out/textbook: report.md, ")
+    assert main(["derive", "--to", "report", "--worksheet", "-o", "sheets"]) == 0
+    names = {path.name for path in Path("sheets").iterdir()}
+    assert {"report.md", "worksheet.md", "angles.png"} <= names
+    assert {path.suffix for path in Path("sheets").iterdir()} == {".md", ".png"}
+
+
+def test_a_worksheet_is_of_a_report(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["derive", "--worksheet"]) == 2
+    assert capsys.readouterr().err == (
+        "pendcore derive: --worksheet: is of a report: add --to report\n"
+    )
+
+
+def test_without_sympy_the_command_says_what_to_install() -> None:
+    code = "import sys; sys.modules['sympy'] = None; from pendcore.cli import main; "
+    done = subprocess.run(
+        [sys.executable, "-c", f"{code}sys.exit(main(['derive']))"], capture_output=True, text=True
+    )
+    assert done.returncode == 2
+    assert done.stderr == (
+        "pendcore derive: pendcore.derive needs sympy, which is not installed: "
+        'pip install "pendcore[symbolic]"\n'
+    )

@@ -1,0 +1,262 @@
+"""What is derived in symbols is what the compiled core computes, for any numbers.
+
+The expressions are evaluated in forty digits: what differs is the core's rounding, or a mistake.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import mpmath
+import numpy as np
+import numpy.typing as npt
+import pendcore as pc
+import pytest
+import sympy
+from pendcore.derive import Derivation
+from pendcore.derive.chain import of_differences
+from pendcore.derive.laws import LAWS
+from pendcore.derive.laws.rod_drag import RodDrag
+from pendcore.derive.laws.viscous_joint import ViscousJoint
+from pendcore.effect_description import account_of
+from reference.arithmetic import multiple_precision
+from reference.effects import law
+from reference.newton_euler import Body
+from reference.rig import Rig, balance
+from symbolic_scenes import (
+    DIGITS,
+    SETS,
+    SMOOTH,
+    Evaluated,
+    derived,
+    named_in_order,
+    scene,
+    states,
+)
+
+pytestmark = pytest.mark.unsanitized
+
+TOLERANCE = 1e-13
+CASES = [(name, n) for n in (1, 2, 3) for name in SETS]
+SEEDS = range(1, 5)
+
+every_chain = pytest.mark.parametrize(("name", "n"), CASES)
+
+
+def assert_close(computed: npt.ArrayLike, exact: Any) -> None:
+    """Compare the components with the largest of them."""
+    exact = np.array(exact, dtype=float)
+    error = np.max(np.abs(np.asarray(computed) - exact))
+    assert error <= TOLERANCE * np.max(np.abs(exact)), (computed, exact)
+
+
+@cache
+def accelerations(name: str, n: int) -> tuple[Evaluated, Evaluated]:
+    derivation = derived(name, n)
+    return (
+        Evaluated(derivation, list(derivation.accelerations)),
+        Evaluated(derivation, named_in_order(derivation)),
+    )
+
+
+def test_every_kind_with_a_law_is_looked_at() -> None:
+    assert sorted(SMOOTH) == sorted(LAWS)
+
+
+@every_chain
+def test_accelerations_are_the_core_s(name: str, n: int) -> None:
+    for seed in SEEDS:
+        drawn = scene(name, n, seed)
+        for state in states(drawn, seed):
+            core = drawn.accelerations(state.t, state.q, state.qd)
+            for form in accelerations(name, n):
+                assert_close(core, form(drawn, state))
+
+
+@every_chain
+def test_reactions_and_energies_are_the_core_s(name: str, n: int) -> None:
+    derivation = derived(name, n)
+    energies = [derivation.kinetic_energy, derivation.potential_energy]
+    evaluated = Evaluated(derivation, [*sum(derivation.reactions, ()), *energies])
+    solved, _ = accelerations(name, n)
+    for seed in SEEDS:
+        drawn = scene(name, n, seed)
+        for state in states(drawn, seed):
+            *forces, kinetic, potential = evaluated(drawn, state, solved(drawn, state))
+            now = pc.simulate(drawn, state.q, state.qd, t_span=(state.t, state.t), store="steps")
+            assert_close(now.reactions()[0].ravel(), forces)
+            energy = now.energy()
+            assert_close([energy.kinetic[0], energy.potential[0]], [kinetic, potential])
+
+
+@every_chain
+def test_the_mass_matrix_is_the_core_s_and_solves(name: str, n: int) -> None:
+    derivation = derived(name, n)
+    assert derivation.mass_matrix == derivation.mass_matrix.T
+    evaluated = Evaluated(derivation, list(derivation.mass_matrix))
+    drawn = scene(name, n, 1)
+    for state in states(drawn, 1):
+        assert_close(drawn.mass_matrix(state.q).ravel(), evaluated(drawn, state))
+
+
+@every_chain
+def test_what_the_accelerations_leave_over_are_the_couples_of_locks(name: str, n: int) -> None:
+    derivation = derived(name, n)
+    s, holding = derivation.symbols, derivation.holding_couples
+    assert sorted(holding) == sorted(derivation.equations.locked)
+    left = (derivation.mass_matrix * sympy.Matrix(s.qdd) - derivation.forcing).as_mutable()
+    for joint, couple in holding.items():
+        left[joint - 1] -= couple
+        if joint > 1:
+            left[joint - 2] += couple
+    evaluated = Evaluated(derivation, [*left, *derivation.forcing])
+    solved, _ = accelerations(name, n)
+    drawn = scene(name, n, 2)
+    for state in states(drawn, 2):
+        values = evaluated(drawn, state, solved(drawn, state))
+        size = max(1.0, *map(abs, values))
+        assert all(abs(x) <= 10 ** (5 - DIGITS) * size for x in values[:n])
+
+
+@every_chain
+def test_the_energy_changes_by_the_powers_exactly(name: str, n: int) -> None:
+    assert derived(name, n).energy_rate() == 0
+
+
+@pytest.mark.parametrize("n", [1, 2, 3])
+def test_the_energy_s_rate_is_found_the_long_way_too(n: int) -> None:
+    derivation = derived("all", n)
+    s, known = derivation.symbols, derivation.motion.definitions
+    pivot = derivation.chain.path
+    total = derivation.kinetic_energy + derivation.potential_energy
+    rate = total.diff(s.t) + sum(
+        total.diff(x) * xd for x, xd in zip([*s.q, *s.qd], [*s.qd, *s.qdd], strict=True)
+    )
+    balance = rate.xreplace(known).xreplace(pivot) - sum(derivation.powers.values())
+    evaluated = Evaluated(derivation, [balance, rate])
+    solved, _ = accelerations("all", n)
+    drawn = scene("all", n, 3)
+    for state in states(drawn, 3):
+        left, size = evaluated(drawn, state, solved(drawn, state))
+        assert abs(left) <= 10 ** (5 - DIGITS) * max(1, abs(size))
+        assert abs(size) > 0.01
+
+
+@pytest.mark.parametrize("n", [1, 2, 3])
+@pytest.mark.parametrize("kind", [kind for kind in SMOOTH if account_of(kind) != "none"])
+def test_the_powers_are_those_of_the_reference(kind: str, n: int) -> None:
+    derivation = derived(kind, n)
+    evaluated = Evaluated(derivation, [sum(derivation.powers.values())])
+    solved, _ = accelerations(kind, n)
+    drawn = scene(kind, n, 4)
+    rig = Rig(
+        bodies=[Body(x.mass, x.length, x.center, x.inertia) for x in drawn.links],
+        gravity=drawn.gravity,
+        effects=[law((effect.kind, described(effect))) for effect in drawn.effects],
+        arithmetic=multiple_precision(DIGITS),
+    )
+    for state in states(drawn, 4):
+        (power,) = evaluated(drawn, state, solved(drawn, state))
+        shares = rig.shares(state.t, list(state.q), list(state.qd))
+        assert abs(power - balance(shares)) <= 10 ** (8 - DIGITS) * abs(power)
+        assert abs(power) > 1e-6
+
+
+def described(effect: Any) -> dict[str, Any]:
+    """The parameters of an effect as the reference takes them."""
+    return {
+        name: x.particulars() if isinstance(x, pc.effects.Part) else x
+        for name, x in effect.particulars().items()
+    }
+
+
+def test_a_power_or_a_torque_that_is_not_the_law_s_is_found(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    damped = scene("viscous_joint", 2, 0)
+    monkeypatch.setattr(ViscousJoint, "power", lambda *_: sympy.Integer(0))
+    assert Derivation(damped).energy_rate() != 0
+    in_air = scene("rod_drag", 2, 0)
+    moment = RodDrag.load
+    monkeypatch.setattr(
+        RodDrag, "load", lambda law, chain: moment(law, chain)._replace(moment=-law.moment)
+    )
+    assert Derivation(in_air).energy_rate() != 0
+
+
+@pytest.mark.parametrize("n", [1, 2, 3])
+def test_lagrange_s_equations_are_the_same_exactly(n: int) -> None:
+    derivation = derived("none", n)
+    s, chain = derivation.symbols, derivation.chain
+    kinetic, potential = derivation.kinetic_energy, derivation.potential_energy
+    for i, (q, qd) in enumerate(zip(s.q, s.qd, strict=True)):
+        lagrange = chain.rate(kinetic.diff(qd)) - kinetic.diff(q) + potential.diff(q)
+        newton_euler = derivation.mass_matrix[i, :].dot(s.qdd) - derivation.forcing[i]
+        assert of_differences(lagrange - newton_euler) == 0
+
+
+def equal_rods(derivation: Derivation) -> dict[Any, Any]:
+    """The textbook's rods, of equal mass m and length L."""
+    s = derivation.symbols
+    return {s.masses[1]: s.masses[0], s.lengths[1]: s.lengths[0]} | dict.fromkeys(s.qd, 0)
+
+
+def test_two_equal_rods_released_from_the_horizontal() -> None:
+    derivation = Derivation.textbook()
+    s = derivation.symbols
+    m, length, g = s.masses[0], s.lengths[0], s.gravity
+    start = equal_rods(derivation) | dict.fromkeys(s.q, 0)
+    found = [sympy.simplify(a.subs(start)) for a in derivation.accelerations]
+    assert found == [9 * g / (7 * length), -3 * g / (7 * length)]
+    forces = [
+        [sympy.simplify(x.subs(start | dict(zip(s.qdd, found, strict=True)))) for x in force]
+        for force in derivation.reactions
+    ]
+    assert forces == [[0, -2 * m * g / 7], [0, m * g / 14]]
+
+
+def test_two_equal_rods_swing_slightly_at_the_frequencies_that_are_known() -> None:
+    derivation = Derivation.textbook()
+    s = derivation.symbols
+    rest = equal_rods(derivation) | dict.fromkeys(s.q, sympy.pi / 2)
+    stiffness = -derivation.forcing.jacobian(s.q).subs(rest)
+    w2 = sympy.Symbol("w2")
+    roots = sympy.roots((stiffness - w2 * derivation.mass_matrix.subs(rest)).det(), w2)
+    g_over_length = s.gravity / s.lengths[0]
+    found = {sympy.nsimplify(sympy.simplify(root / g_over_length)) for root in roots}
+    root7 = sympy.sqrt(7)
+    assert {sympy.simplify(x) for x in found} == {3 - 6 * root7 / 7, 3 + 6 * root7 / 7}
+
+
+def test_a_uniform_rod_keeps_its_formulas_and_another_link_its_symbols() -> None:
+    rods, others = derived("none, uniform rods", 2).symbols, derived("none", 2).symbols
+    m, length = rods.masses[0], rods.lengths[0]
+    assert rods.centers[0] == length / 2
+    assert rods.inertias[0] == m * length**2 / 12
+    assert [p.symbol.name for p in rods.parameters] == ["m1", "m2", "L1", "L2", "g"]
+    assert str(others.centers[0]) == "c1"
+    assert str(others.inertias[1]) == "I_C2"
+
+
+def test_two_of_a_kind_in_one_joint_have_symbols_of_their_own() -> None:
+    damper = pc.effects.ViscousJoint(joint=1, damping=0.25)
+    rod = pc.Link(mass=1.0, length=1.0)
+    one = Derivation(pc.Scene(links=[rod], effects=[damper]))
+    two = Derivation(pc.Scene(links=[rod], effects=[damper, damper.replace(damping=0.5)]))
+    assert [s.name for s in two.values if s not in one.values] == ["b_1__2"]
+    assert len(two.powers) == 2
+    same = Derivation(pc.Scene(links=[rod], effects=[damper, damper]))
+    assert len(same.powers) == 1  # equal effects are one key
+    assert same.energy_rate() == 0
+
+
+def test_the_drag_of_a_rod_at_rest_is_zero() -> None:
+    drag = pc.effects.RodDrag(link=1, drag_coefficient=1.0, diameter=0.1)
+    derivation = Derivation(pc.Scene(links=[pc.Link(mass=1.0, length=1.0)], effects=[drag]))
+    s = derivation.symbols
+    function = sympy.lambdify([s.t, *s.q, *s.qd, *s.values], derivation.accelerations[0])
+    at_rest = function(0.0, 0.0, 0.0, *s.values.values())
+    assert at_rest == pytest.approx(1.5 * 9.807, rel=1e-15)
+    with mpmath.workdps(15):
+        assert function(0.0, 0.0, 1.0, *s.values.values()) < at_rest

@@ -1,0 +1,350 @@
+"""The report and the worksheet of a case say what is so, with units, and are whole."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pendcore as pc
+import pytest
+from pendcore.derive import Derivation, line_breaks
+from pendcore.derive.handout import conversion, drawing, motion, report, worksheet
+from pendcore.derive.handout.document import Displayed, Document, Reader
+from pendcore.derive.handout.figures import Figures
+from pendcore.derive.handout.numbers import Start
+from pendcore.derive.handout.quantities import number, quantity
+
+needs_pandoc = pytest.mark.skipif(shutil.which("pandoc") is None, reason="pandoc is not installed")
+needs_latex = pytest.mark.skipif(
+    shutil.which("pandoc") is None or conversion.latex_engine() is None,
+    reason="pandoc or a LaTeX engine is not installed",
+)
+effects = pc.effects
+BUSY = pc.Case(
+    scene=pc.Scene(
+        links=[
+            pc.Link(mass=1.2, length=0.5),
+            pc.Link(mass=0.8, length=0.4, center=0.15, inertia=0.012),
+            pc.Link(mass=0.5, length=0.3),
+        ],
+        gravity=9.81,
+        effects=[
+            effects.ViscousJoint(joint=2, damping=0.05),
+            effects.Motor(joint=1, sinusoid=effects.Sinusoid(1.0, angular_frequency=6.0)),
+            effects.TorsionalSpring(joint=3, stiffness=0.4, rest_angle=0.3),
+            effects.Payload(mass=0.2, inertia=0.001),
+        ],
+    ),
+    q0=np.radians([30.0, 75.0, 120.0]),
+    t_span=(0, 2),
+    name="busy arm",
+)
+LEVEL = pc.Case(scene=pc.Scene(links=[pc.Link(mass=2.0, length=0.5)]), q0=0.0, t_span=(0, 1))
+AIRY = pc.Case(
+    scene=pc.Scene(
+        links=[pc.Link(mass=1.0, length=0.6), pc.Link(mass=0.5, length=0.4, center=0.1)],
+        effects=[
+            effects.RodDrag(link=2, drag_coefficient=1.2, diameter=0.03, wind=(4.0, 0.0)),
+            effects.RotorInertia(joint=1, armature=0.01),
+            effects.Lock(joint=2),
+        ],
+    ),
+    q0=(0.3, 0.5),
+    t_span=(0, 1),
+)
+SHAKEN = pc.Case(
+    scene=pc.Scene(
+        links=[pc.Link(mass=1.0, length=0.3)] * 4,
+        effects=[effects.DrivenPivot(y=effects.Sinusoid(0.02, 80.0))],
+    ),
+    q0=(-1.4, -1.5, 0.2, 2.0),
+    t_span=(0, 0.5),
+    options={"method": "rk4", "step": 1e-3},
+)
+CASES = {
+    "textbook": pc.Case.textbook(),
+    "busy": BUSY,
+    "level": LEVEL,
+    "airy": AIRY,
+    "shaken": SHAKEN,
+}
+
+
+@pytest.fixture(scope="module", params=CASES)
+def handed_out(request: pytest.FixtureRequest) -> tuple[pc.Case, Derivation, Document, Document]:
+    case = CASES[request.param]
+    derivation, solution = Derivation(case.scene), motion.solved(case)
+    whole, blank = (write(derivation, case, solution) for write in (report, worksheet))
+    return case, derivation, whole, blank
+
+
+def displayed(document: Document) -> list[Displayed]:
+    return [block for block in document.blocks if isinstance(block, Displayed)]
+
+
+def test_every_step_of_the_derivation_is_in_it_with_its_numbers(handed_out: Any) -> None:
+    _, derivation, whole, blank = handed_out
+    for document in (whole, blank):
+        text = document.markdown()
+        for step in derivation.steps:
+            assert f"### {step.number}. {step.title}\n" in text
+    shown = [block.number for block in displayed(whole) if block.number]
+    assert shown == list(
+        dict.fromkeys(e.number for s in derivation.steps for e in s.equations if e.number)
+    )
+
+
+def test_the_textbooks_equations_have_the_textbooks_numbers() -> None:
+    case = CASES["textbook"]
+    document = report(Derivation(case.scene), case, motion.solved(case))
+    text = document.markdown()
+    assert re.findall(r"\\tag{(.*?)}", text) == [f"2.{k}" for k in range(1, 12)]
+    for told in (
+        r"q_{1}(0) &= 0.785398\;\text{rad} = 45^\circ",
+        r"I_{C_{1}} &= \frac{m_{1} L_{1}^{2}}{12} = 0.0833333\;\text{kg}\,\text{m}^{2}",
+        r"M_{12} &= 0.5 \, \cos \left(q_{1} - q_{2}\right)\;\text{kg}\,\text{m}^{2}",
+        r"| $\ddot{q}_{1}$ | $10.811$ | $10.811$ | $\text{rad}/\text{s}^{2}$ |",
+        "| $5$ | $62.055$ | $30.852$ |",
+        r"\text{m}/\text{s}^{2}",
+    ):
+        assert told.replace(r"\, \cos", r"\cos") in text.replace(r"\, \cos", r"\cos"), told
+
+
+def test_latex_is_balanced_and_fits_its_lines(handed_out: Any) -> None:
+    for block in displayed(handed_out[2]):
+        latex = block.latex
+        assert latex.count("{") == latex.count("}")
+        assert re.findall(r"\\begin{(\w+)}", latex).count("aligned") == latex.count(
+            r"\end{aligned}"
+        )
+        for row in latex.split(r"\\" + "\n"):
+            inside = re.sub(r"\\(begin|end){aligned}|&", "", row)
+            if "vmatrix" not in row:
+                assert line_breaks.width(inside) < line_breaks.LINE + 6, inside
+
+
+def test_a_row_may_break_at_its_terms_and_loses_none() -> None:
+    derivation = Derivation(BUSY.scene)
+    total = derivation.kinetic_energy
+    rows = line_breaks.rows("T", total, derivation.symbols)
+    assert len(rows) > 3
+    joined = " ".join(row.replace("&=", "=").replace(r"&\quad ", "") for row in rows)
+    assert joined.replace(" ", "") == f"T={derivation.symbols.latex(total)}".replace(" ", "")
+
+
+def test_what_the_derivation_says_of_the_start_is_what_the_core_says(handed_out: Any) -> None:
+    case, derivation, *_ = handed_out
+    rows = Start(derivation, case).rows()
+    assert len(rows) == 3 * derivation.n + 2
+    scale = max(abs(core) for *_, core in rows)
+    for name, _, own, core in rows:
+        assert abs(own - core) <= 1e-13 * scale, name
+
+
+def test_at_rest_there_is_no_rounding_to_be_seen() -> None:
+    rods = [pc.Link(mass=1.0, length=1.0), pc.Link(mass=2.0, length=0.7)]
+    case = pc.Case(scene=pc.Scene(links=rods), q0=np.pi / 2, t_span=(0, 1))  # cos q is 6e-17
+    text = report(Derivation(case.scene), case, motion.solved(case)).markdown()
+    for name in (r"\ddot{q}_{1}", r"\ddot{q}_{2}", "F_{01x}", "F_{21x}"):
+        assert f"| ${name}$ | $0$ | $0$ |" in text
+    assert "$-0.0000$" not in text
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({}, "order 8, and by Radau IIA where the equations are stiff, with the tolerances"),
+        ({"rtol": 1e-4, "atol": 1e-6}, "`ode45`, and by Radau IIA where the equations are stiff"),
+        ({"method": "ode45"}, "that of MATLAB's `ode45`, with the tolerances"),
+        ({"method": "Radau"}, "by Radau IIA, an implicit method of order 5, with"),
+        ({"method": "rk4", "step": 0.01}, "the classical Runge-Kutta method of order 4, with a"),
+    ],
+)
+def test_the_method_is_told_in_words(options: dict[str, Any], words: str) -> None:
+    case = pc.Case(scene=LEVEL.scene, q0=0.0, t_span=(0, 1), options=options)
+    assert words in motion._how(motion.solved(case))
+
+
+def test_a_run_that_stops_says_why() -> None:
+    rod = pc.Scene(links=[pc.Link(mass=1.0, length=1.0)])
+    down = pc.events.LinkAngle(link=1, value=1.5, terminal=True)
+    case = pc.Case(scene=rod, q0=0.5, t_span=(0, 5), options={"events": [down]})
+    text = report(Derivation(rod), case, motion.solved(case)).markdown()
+    assert "The run is stopped at a terminal event (at t = " in text
+
+
+def test_a_run_that_fails_is_warned_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", "")
+    rod = pc.Scene(links=[pc.Link(mass=1.0, length=1.0)])
+    case = pc.Case(scene=rod, q0=0.5, t_span=(0, 5), options={"max_steps": 2})
+    with pytest.warns(pc.PendcoreWarning, match="the run is not complete: the cap on steps"):
+        Derivation(rod).report(case, tmp_path)
+    assert "**The run is not complete: the cap on steps" in (tmp_path / "report.md").read_text()
+
+
+def test_a_run_that_takes_no_time_is_refused() -> None:
+    rod = pc.Scene(links=[pc.Link(mass=1.0, length=1.0)])
+    with pytest.raises(ValueError, match=r"^t_span = \(1\.0, 1\.0\): a report draws curves"):
+        motion.solved(pc.Case(scene=rod, q0=0.5, t_span=(1, 1)))
+
+
+@pytest.mark.parametrize("n", [1, 2, 3])
+def test_arrows_point_the_way_that_counts_as_positive(
+    n: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """F_01 along +x and +y on link 1; F_21 so on link 1, and the other way round on link 2."""
+    drawn: list[list[tuple[str, list[float]]]] = []
+    sketch, arrow = drawing.sketch, drawing.arrow
+
+    def begun(*given: Any) -> Any:
+        drawn.append([])
+        return sketch(*given)
+
+    def looked_at(on: Any, start: Any, along: Any, text: str = "", *more: Any, **how: Any) -> None:
+        drawn[-1].append((text, np.sign(np.round(along, 9)).tolist()))
+        arrow(on, start, along, text, *more, **how)
+
+    monkeypatch.setattr(drawing, "sketch", begun)
+    monkeypatch.setattr(drawing, "arrow", looked_at)
+    scene = pc.Scene(links=[pc.Link(mass=1.0, length=1.0)] * n)
+    Figures(Derivation(scene), [0.5] * n).free_bodies()
+    for i, arrows in enumerate(drawn, start=1):
+        near, far = ("01" if i == 1 else f"{i}{i - 1}"), f"{i + 1}{i}"
+        sign = 1.0 if i == 1 else -1.0
+        expected = {f"$m_{{{i}}} g$": [0.0, 1.0]}
+        expected |= {f"$F_{{{near}x}}$": [sign, 0.0], f"$F_{{{near}y}}$": [0.0, sign]}
+        if i < n:
+            expected |= {f"$F_{{{far}x}}$": [1.0, 0.0], f"$F_{{{far}y}}$": [0.0, 1.0]}
+        assert dict(arrows) == expected
+    assert len(drawn) == n
+
+
+def test_free_bodies_have_the_couples_of_the_equations(handed_out: Any) -> None:
+    case, derivation, *_ = handed_out
+    drawing_of_them = Figures(derivation, case.q0).free_bodies()
+    shown = [t.get_text() for axes in drawing_of_them.figure.axes for t in axes.texts]
+    couples = [d.symbol for d in derivation.equations.torques]
+    couples += derivation.equations.holding.values()
+    for couple in couples:
+        links = 1 if couple.name.endswith("1") else 2
+        assert shown.count(f"${derivation.symbols.latex(couple)}$") == links
+    assert ("Not drawn: " in drawing_of_them.caption) == bool(
+        derivation.equations.loads
+        or any(derivation.equations.armatures)
+        or (derivation.equations.payload and derivation.equations.payload.inertia)
+    )
+
+
+def test_curves_are_of_the_forces_that_the_derivation_names(handed_out: Any) -> None:
+    case, derivation, *_ = handed_out
+    drawn = Figures(derivation, case.q0).reactions(motion.solved(case)).figure
+    rows = {name: own for name, _, own, _ in Start(derivation, case).rows()}
+    for axis, names in zip(drawn.axes, derivation.equations.forces, strict=True):
+        assert axis.get_ylabel().endswith("(N)")
+        for line, name in zip(axis.lines, names, strict=False):
+            at_start = rows[derivation.symbols.latex(name)]
+            assert line.get_ydata()[0] == pytest.approx(at_start, rel=1e-12, abs=1e-12)
+    assert drawn.axes[-1].get_xlabel() == "t (s)"
+
+
+def test_the_mechanism_is_drawn_as_it_starts_with_y_down(handed_out: Any) -> None:
+    case, derivation, *_ = handed_out
+    (axes,) = Figures(derivation, case.q0).mechanism().figure.axes
+    assert axes.yaxis_inverted()
+    names = {text.get_text() for text in axes.texts}
+    assert {"$A$", "$x$", "$y$", "$0$"} <= names
+    assert {f"$q_{{{i}}}$" for i in range(1, derivation.n + 1)} <= names
+    pins = [p.center for p in axes.patches if getattr(p, "radius", 0) and p.get_zorder() == 6]
+    expected = case.simulate().positions()[0]
+    np.testing.assert_allclose(pins, expected, atol=1e-12)
+
+
+def test_a_worksheet_gives_nothing_away(handed_out: Any) -> None:
+    case, derivation, whole, blank = handed_out
+    text = blank.markdown()
+    assert "____" in text
+    for name, _, own, _ in Start(derivation, case).rows():
+        if own and name not in ("T", "V"):
+            assert f"${number(own)}$" in whole.markdown()
+            assert f"${number(own)}$" not in text
+    assert "free bodies" in whole.markdown()
+    assert {drawing.name for drawing in blank.drawings} == {"mechanism", "links", "axes"}
+    assert "links" not in {drawing.name for drawing in whole.drawings}  # they share a folder
+
+
+def test_numbers_have_six_digits_and_units_stand_upright() -> None:
+    assert number(1 / 12) == "0.0833333"
+    assert number(-1.5e-7) == r"-1.5 \times 10^{-7}"
+    assert number(-0.0) == "0"
+    assert quantity(9.807, "m/s^2") == r"9.807\;\text{m}/\text{s}^{2}"
+    assert quantity(1.2, "1") == "1.2"
+
+
+def test_without_converters_there_is_markdown_with_its_figures(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PATH", "")
+    files = Derivation(LEVEL.scene).report(LEVEL, tmp_path / "new", worksheet=True)
+    names = [path.name for path in files]
+    assert names[:2] == ["report.md", "worksheet.md"]
+    assert sorted(path.name for path in (tmp_path / "new").iterdir()) == sorted(names)
+    for name in names[:2]:
+        for target in re.findall(r"!\[.*?\]\((.*?)\)", (tmp_path / "new" / name).read_text()):
+            assert target in names
+
+
+@pytest.mark.outside_build
+def test_a_converter_that_fails_is_told_of_and_costs_nothing_else(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    broken = tmp_path / "pandoc"
+    broken.write_text("#!/bin/sh\necho out of order >&2\nexit 3\n")
+    broken.chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.warns(pc.PendcoreWarning, match=r"report\.html is not written: .*out of order"):
+        files = Derivation(LEVEL.scene).report(LEVEL, tmp_path / "new")
+    assert files[0].name == "report.md"
+    assert not [path for path in files if path.suffix in (".html", ".pdf")]
+
+
+@needs_pandoc
+@pytest.mark.outside_build
+def test_the_page_needs_no_other_file_and_no_network(handed_out: Any) -> None:
+    whole = handed_out[2]
+    text = conversion.page(whole)
+    assert text.count("<math") > len(displayed(whole))
+    assert all(
+        source.startswith("data:image/svg+xml;base64,")
+        for source in re.findall(r'src="(.*?)"', text)
+    )
+    assert text.count("<img") == len(whole.drawings)
+    links = set(re.findall(r"https?://[^\s\"'<]+", re.sub(r"base64,[^\"]*", "", text)))
+    assert links <= {"http://www.w3.org/1998/Math/MathML", "http://www.w3.org/1999/xhtml"}
+    assert not re.search(r"<(script|link)\b", text)
+    for block in displayed(whole):
+        if block.number:
+            assert f"({block.number})" in text
+    unread = re.sub(r"<annotation.*?</annotation>|<style.*?</style>", "", text, flags=re.DOTALL)
+    assert not re.search(r"\\[a-zA-Z]+|\$", unread)  # no LaTeX that pandoc could not read
+
+
+@needs_latex
+@pytest.mark.outside_build
+@pytest.mark.parametrize("name", ["textbook", "busy"])
+def test_the_pdf_is_made(name: str, tmp_path: Path) -> None:
+    case, engine = CASES[name], conversion.latex_engine()
+    assert engine is not None
+    document = report(Derivation(case.scene), case, motion.solved(case))
+    conversion.pdf(document, tmp_path / "report.pdf", engine)
+    assert (tmp_path / "report.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_pandoc_and_people_read_the_same_figures() -> None:
+    derivation = Derivation(LEVEL.scene)
+    document = report(derivation, LEVEL, motion.solved(LEVEL))
+    for reader, suffix in ((Reader.PEOPLE, "png"), (Reader.HTML, "svg"), (Reader.LATEX, "pdf")):
+        found = re.findall(r"!\[.*?\]\((\w+)\.(\w+)\)", document.markdown(reader))
+        assert found == [(drawing.name, suffix) for drawing in document.drawings]
