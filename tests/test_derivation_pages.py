@@ -9,6 +9,9 @@ import matplotlib as mpl
 import matplotlib.image
 import numpy as np
 import pendcore as pc
+import pytest
+
+pytestmark = pytest.mark.unsanitized
 
 ROOT = Path(__file__).parent.parent
 DRAWN = ("mechanism", "free_bodies", "reactions")

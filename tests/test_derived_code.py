@@ -19,6 +19,8 @@ from pendcore.derive import Derivation
 from pendcore.derive.code.cpp import header
 from pendcore.derive.code.octave import inline_function, written_out
 
+pytestmark = pytest.mark.unsanitized
+
 WARNINGS = ("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror")
 EXAMPLES = Path(__file__).parents[1] / "examples"
 START, TIMES = [np.pi / 4, np.pi / 3], (0.0, 5.0)

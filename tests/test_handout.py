@@ -17,6 +17,7 @@ from pendcore.derive.handout.figures import Figures
 from pendcore.derive.handout.numbers import Start
 from pendcore.derive.handout.quantities import number, quantity
 
+pytestmark = pytest.mark.unsanitized
 needs_pandoc = pytest.mark.skipif(shutil.which("pandoc") is None, reason="pandoc is not installed")
 needs_latex = pytest.mark.skipif(
     shutil.which("pandoc") is None or conversion.latex_engine() is None,
