@@ -257,9 +257,17 @@ def test_of_a_solution() -> None:
         ({"count": 5}, "count: must be 1 to 4"),
         ({"count": 1.5}, r"count = 1.5: must be a whole number"),
         ({"rtol": -1.0}, "rtol = -1.0: must be finite and > 0"),
-        ({"transient": 11.0}, r"transient = 11.0: must be 0 to 10.0 \(s\)"),
-        ({"t_eval": [3.0, 2.0]}, "t_eval: must rise from 0.0 s to the end"),
-        ({"t_eval": [3.0, 12.0]}, "t_eval: must rise from 0.0 s to the end"),
+        ({"transient": 11.0}, r"transient = 11.0: must be >= 0 and < 10.0 \(s\)"),
+        ({"transient": 10.0}, r"transient = 10.0: must be >= 0 and < 10.0 \(s\)"),
+        ({"transient": -1.0}, r"transient = -1.0: must be >= 0"),
+        ({"transient": 1e-20, "t_span": (1e9, 1e9)}, "t_span = .* two different times"),
+        ({"t_span": (1, 1)}, r"t_span = \(1, 1\): must be two different times \(s\)"),
+        ({"t_eval": [3.0, 2.0]}, r"t_eval\[1\] = 2.0: must rise from 0.0 s to the end, 10.0 s"),
+        ({"t_eval": [3.0, 12.0]}, r"t_eval\[1\] = 12.0: must rise from 0.0 s to the end"),
+        ({"t_eval": [-1.0, 12.0]}, r"t_eval\[0\] = -1.0: must rise from 0.0 s to the end"),
+        ({"t_eval": [1.0], "t_span": (0, -5)}, r"t_eval\[0\] = 1.0: must fall from 0.0 s"),
+        ({"t_eval": []}, r"t_eval = \[\]: must rise .* and hold a time beyond the first"),
+        ({"t_eval": [0.0]}, r"t_eval = \[0.0\]: must rise .* and hold a time beyond the first"),
         ({"coumt": 1}, "did you mean 'count'"),
         ({"t_span": (0,)}, r"t_span = \(0,\): must be \(t_start, t_end\), in s"),
         ({"t_span": (0, np.nan)}, r"t_span\[1\] = nan: must be finite \(s\)"),
@@ -273,6 +281,11 @@ def test_bad_arguments_are_named(bad: dict[str, object], message: str) -> None:
     arguments: dict[str, object] = {"t_span": (0, 10), **bad}
     with pytest.raises((ValueError, TypeError), match=message):
         pc.lyapunov(rods(2), [1.0, 1.0], **arguments)  # type: ignore[arg-type]
+
+
+def test_a_run_of_no_length_has_none() -> None:
+    with pytest.raises(ValueError, match="lyapunov: the run ended where it began"):
+        pc.simulate(rods(2), [1.0, 1.0], 0, (2, 2)).lyapunov()
 
 
 def test_what_was_found_so_far_is_not_lost() -> None:

@@ -168,10 +168,13 @@ def lyapunov(
     if q0 is None:
         raise TypeError("q0 is missing: give the angles at the start, one per link, in rad")
     t_start, t_end = time_span(t_span)
+    if t_start == t_end:
+        raise ValueError(f"t_span = {t_span!r}: must be two different times (s)")
     since = t_start + np.copysign(number("transient", transient, "s"), t_end - t_start)
-    if not 0 <= transient <= abs(t_end - t_start):
+    if not 0 <= transient < abs(t_end - t_start) or since == t_end:
         raise ValueError(
-            f"transient = {transient}: must be 0 to {abs(t_end - t_start)} (s), within t_span"
+            f"transient = {transient}: must be >= 0 and < {abs(t_end - t_start)} (s): growth "
+            "counts from its end to that of t_span"
         )
     times = _times(t_eval, since, t_end)
     report = callback(progress, "following neighbours")
@@ -196,6 +199,8 @@ def lyapunov_of(
 ) -> LyapunovExponents:
     """Of the motion that a solution computed, as far as it came, at its tolerances."""
     asked = solution._run.arguments
+    if solution._run.t_reached == asked["t_start"]:
+        raise ValueError("lyapunov: the run ended where it began: nothing had time to grow")
     return lyapunov(
         solution.scene,
         asked["q0"],
@@ -219,11 +224,18 @@ def _times(t_eval: npt.ArrayLike | None, since: float, t_end: float) -> Floats:
         distinct: Floats = even[np.append(True, np.diff(even) != 0)]
         return distinct
     given = np.array(numbers("t_eval", t_eval, "s"))
-    along = np.sign(t_end - since) * given
-    inside = len(given) > 0 and (np.diff(along) > 0).all()
-    if not (inside and min(since, t_end) <= given.min() <= given.max() <= max(since, t_end)):
-        way = "rise" if since <= t_end else "fall"
-        raise ValueError(f"t_eval: must {way} from {since} s to the end, {t_end} s")
+    forward = np.sign(t_end - since)
+    along, first, last = forward * given, forward * since, forward * t_end
+    is_wrong = ~((first <= along) & (along <= last))
+    is_wrong[1:] |= along[1:] <= along[:-1]
+    way = f"must {'rise' if forward > 0 else 'fall'} from {since} s to the end, {t_end} s"
+    if is_wrong.any():
+        k = int(np.argmax(is_wrong))
+        raise ValueError(f"t_eval[{k}] = {given[k]}: {way}")
+    if not len(given) or given[-1] == since:
+        raise ValueError(
+            f"t_eval = {given.tolist()}: {way}, and hold a time beyond the first of these"
+        )
     return given if given[0] == since else np.append(since, given)
 
 
