@@ -138,6 +138,23 @@ def test_who_stops_it_does_not_wait_for_exponents(monkeypatch: pytest.MonkeyPatc
     assert len(raised.value.work.points) == 3  # type: ignore[attr-defined]
 
 
+def test_the_interrupt_has_no_run_that_nobody_asked_for() -> None:
+    calls = 0
+
+    def law(t: float, q: np.ndarray, qd: np.ndarray) -> np.ndarray:
+        nonlocal calls
+        calls += 1
+        if calls == 3000:
+            raise KeyboardInterrupt
+        return 0 * q
+
+    scene = BOOK.replace(effects=[E.User(law)])
+    with pytest.raises(KeyboardInterrupt) as raised:
+        pc.horizon_work(scene, CHAOTIC, 0, (0, 10), rtols=FEW)
+    assert raised.value.work.points == ()  # type: ignore[attr-defined]
+    assert not {"solution", "estimate", "exponents"} & {*vars(raised.value)}
+
+
 def test_one_method_need_not_be_in_a_list() -> None:
     found = pc.horizon_work(BOOK, CHAOTIC, 0, (0, 2), methods="RK45", rtols=[1e-6])
     assert found.methods == ["dopri5"]

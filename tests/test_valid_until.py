@@ -231,6 +231,34 @@ def test_an_estimate_that_takes_too_long_ends_where_it_is() -> None:
 
 
 @pytest.mark.parametrize(
+    "asked",
+    [lambda run: run.error(), lambda run: run.valid_until(0.1), lambda run: run.plot(horizon=0.1)],
+    ids=["error", "valid_until", "plot"],
+)
+def test_interrupted_it_hands_over_the_users_run_and_none_of_its_own(asked) -> None:
+    import matplotlib.pyplot as plt
+
+    calls = 0
+    last = np.inf
+
+    def law(t: float, q: np.ndarray, qd: np.ndarray) -> np.ndarray:
+        nonlocal calls
+        calls += 1
+        if calls > last:
+            raise KeyboardInterrupt
+        return 0 * q
+
+    scene = pc.Scene.textbook().replace(effects=[E.User(law)])
+    run = pc.simulate(scene, [1.0, 1.0], 0, (0, 2))
+    for more in (3, 500):  # at once, and within a second run
+        last = calls + more
+        with pytest.raises(KeyboardInterrupt) as raised:
+            asked(run)
+        assert raised.value.solution is run  # type: ignore[attr-defined]
+    plt.close("all")
+
+
+@pytest.mark.parametrize(
     ("bad", "message"),
     [
         ({"limit": 0.0}, r"limit = 0.0: must be > 0"),

@@ -136,6 +136,12 @@ def carries(method: str, start: Start, step: float | None = None) -> bool:
     return True
 
 
+def forget_inner_runs(stop: BaseException) -> None:
+    """Take from an exception what a run on the way handed over: the user asked for none of them."""
+    for name in ("solution", "estimate", "exponents"):
+        vars(stop).pop(name, None)
+
+
 def tightened(choice: Choice, factor: float, tightest: float) -> Choice:
     """Divide both tolerances by a factor, or by as much as leaves rtol at the tightest."""
     rtol, atol = np.asarray(choice.rtol), np.asarray(choice.atol)

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore.accuracy.position_error import POINTS
-from pendcore.accuracy.run import Start, atol_beside, methods_named
+from pendcore.accuracy.run import Start, atol_beside, forget_inner_runs, methods_named
 from pendcore.arguments import (
     finite_array,
     known_keywords,
@@ -94,7 +94,8 @@ def accuracy_cost(
     ValueError, TypeError
         If an argument is not what is asked for, or no two methods get through the scene.
     KeyboardInterrupt, or any exception of ``progress`` or of an effect's function
-        With what was measured so far, if anything, as the attribute ``accuracy_cost``.
+        With what was measured so far as the attribute ``accuracy_cost``: no points before there is
+        a reference.
     """
     if not isinstance(scene, Scene):
         raise TypeError(f"scene = {scene!r}: must be a pendcore.Scene")
@@ -127,9 +128,9 @@ def accuracy_cost(
             warnings.simplefilter("ignore", PendcoreWarning)
             measurement.measure()
     except BaseException as stop:
-        if measurement.reference is not None:
-            measurement.remarks.append("it was interrupted: this is what was measured until then")
-            stop.accuracy_cost = measurement.result()  # type: ignore[attr-defined]
+        forget_inner_runs(stop)
+        measurement.remarks.append("it was interrupted: this is what was measured until then")
+        stop.accuracy_cost = measurement.result()  # type: ignore[attr-defined]
         raise
     finally:
         close(report)

@@ -135,6 +135,9 @@ def error_estimate(
                 farthest = found
             if found.is_complete or monotonic() > until:
                 break
+    except BaseException as stop:
+        stop.solution = solution  # type: ignore[attr-defined]
+        raise
     finally:
         close(report)
     assert farthest is not None, "an explicit Runge-Kutta method carries every scene"

@@ -16,7 +16,15 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from pendcore.accuracy.run import Choice, Start, atol_beside, carries, methods_named, run
+from pendcore.accuracy.run import (
+    Choice,
+    Start,
+    atol_beside,
+    carries,
+    forget_inner_runs,
+    methods_named,
+    run,
+)
 from pendcore.arguments import known_keywords, number, numbers, time_limit_of, time_span
 from pendcore.horizon.error_estimate import ErrorEstimate, error_estimate
 from pendcore.horizon.lyapunov import LyapunovExponents, lyapunov
@@ -215,6 +223,7 @@ def horizon_work(
         work = _work(start, limit, found)
         return replace(work, growth=_growth(start, work))
     except BaseException as stopped:
+        forget_inner_runs(stopped)
         stopped.work = _work(start, limit, found)  # type: ignore[attr-defined]
         raise
     finally:
