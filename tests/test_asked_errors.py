@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import pickle
+import re
 import sys
 from pathlib import Path
 
@@ -314,5 +315,17 @@ def test_a_case_and_the_command_know_it(tmp_path, monkeypatch, capsys):
     assert main(["run", "swing.toml", "--error", "1e-7"]) == 0
     assert "asked 1.0e-07, achieved" in Path("out/swing/summary.txt").read_text()
     assert main(["run", "swing.toml", "--error", "1e-17"]) == 1
-    assert "not reached" in capsys.readouterr().err
+    refusal = capsys.readouterr().err.splitlines()[-1]
+    assert re.fullmatch("error = 1e-17: not reached: .* the rounding of doubles", refusal)
+    summary = " ".join(Path("out/swing/summary.txt").read_text().split())
+    assert f"refused {refusal} end t = 5 s" in summary
+    assert json.loads(Path("out/swing/summary.json").read_text())["refusal"] == refusal
+    Path("chaotic.toml").write_text(
+        pc.Case(scene=BOOK, q0=CHAOTIC[0], t_span=(0, 100), options={"error": 1e-3}).to_toml()
+    )
+    assert main(["run", "chaotic.toml"]) == 1
+    summary = " ".join(Path("out/chaotic/summary.txt").read_text().split())
+    assert re.search(
+        r"refused error = 0.001: not reached: .* it holds until t = \d+ s end", summary
+    )
     assert main(["run", "swing.toml", "--error", "7"]) == 2
