@@ -308,6 +308,22 @@ def test_what_was_found_so_far_is_not_lost() -> None:
     assert limited.stats.accepted + limited.stats.rejected == 1000
 
 
+def test_printed_they_are_a_sentence() -> None:
+    found = pc.lyapunov(rods(2), [-2.0, -1.0], t_span=(0, 50))
+    assert str(found) == (
+        f"Lyapunov exponents {', '.join(f'{one:.3g}' for one in found.exponents)} 1/s, from "
+        f"t = 0 to 50 s: an error grows by e in {1 / found.largest:.3g} s, tenfold in "
+        f"{np.log(10) / found.largest:.3g} s"
+    )
+    limited = pc.lyapunov(rods(2), [-2.0, -1.0], t_span=(0, 3000), max_steps=1000, transient=1)
+    assert str(limited).endswith(f"; max_steps: {limited.message}")
+    assert f"from t = 1 to {limited.t[-1]:.6g} s" in str(limited)
+    many = pc.lyapunov(rods(4), -2.0, t_span=(0, 1))
+    assert f", {many.exponents[5]:.3g}, ... 1/s, from" in str(many)
+    still = pc.lyapunov(rods(1, E.Lock(joint=1)), 0.2, t_span=(0, 1))
+    assert str(still) == "no Lyapunov exponents: nothing of the scene can move"
+
+
 def test_the_finite_time_exponents_are_drawn() -> None:
     import matplotlib.pyplot as plt
 

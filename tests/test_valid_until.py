@@ -94,6 +94,21 @@ def test_the_error_over_time_is_what_the_reference_says() -> None:
     assert 0 < found.position.max() < found.angle.max()
 
 
+def test_printed_it_is_a_sentence() -> None:
+    scene = pc.Scene.textbook()
+    found = pc.simulate(scene, [1.0, 1.0], 0, (0, 2), method="dop853", rtol=1e-6).error()
+    assert str(found) == (
+        f"error estimated at 1001 times from t = 0 to 2 s: angles up to {found.angle.max():.1e} "
+        f"rad, positions up to {found.position.max():.1e} of the total length, from second runs "
+        f"by taylor at rtol 1e-08 and tighter"
+    )
+    lost = pc.simulate(scene, [-2.0, -1.0], 0, (0, 30), rtol=1e-6).error()
+    assert str(lost).endswith("; past that the runs have nothing to do with each other any more")
+    assert f"to {lost.t[-1]:.6g} s" in str(lost)
+    short = pc.simulate(scene, [1.0, 1.0], 0, (0, 5000), max_step=0.05).error(time_limit=0.01)
+    assert str(short).endswith("; the run goes on past that: it is not known there yet")
+
+
 def test_position_limits_are_shares_of_the_length() -> None:
     case = chaotic_starts()[1]
     run = solved(case, "dopri5", 1e-7)

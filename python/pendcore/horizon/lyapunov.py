@@ -91,6 +91,18 @@ class LyapunovExponents:
         """ln(10)/largest, s: so much longer is right a run that is right to one more digit."""
         return float(np.log(10)) * self.time
 
+    def __str__(self) -> str:
+        if not self.growth.shape[1]:
+            return "no Lyapunov exponents: nothing of the scene can move"
+        until = f" to {self.t[-1]:.6g} s" if len(self.t) else ", where no time was reached"
+        some = [f"{rate:.3g}" for rate in self.exponents[:6]]
+        some += ["..."] * (len(some) < self.growth.shape[1])
+        told = f"Lyapunov exponents {', '.join(some)} 1/s, from t = {self.since:.6g}{until}"
+        if self.time < inf:
+            told += f": an error grows by e in {self.time:.3g} s, tenfold in "
+            told += f"{self.seconds_a_digit:.3g} s"
+        return told if self.success else f"{told}; {self.status}: {self.message}"
+
     def plot(self, ax: Any = None, **line_properties: Any) -> list[Line2D]:
         """Draw the finite-time exponents over time; see `pendcore.views.horizon`.
 

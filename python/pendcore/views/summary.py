@@ -16,7 +16,7 @@ from pendcore.effect_class import Effect, Part
 from pendcore.explanation.absence import absent
 from pendcore.solution import Solution
 from pendcore.views import energy_drift
-from pendcore.views.table import listed, outcome
+from pendcore.views.table import evaluations, listed, outcome
 
 _MANY = 12
 """Links that a table for people has a row each of."""
@@ -144,7 +144,8 @@ def _happened(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
         yield "" if i else "events", f"{event['text']}: {_times(event['times'])}"
     yield "steps", f"{stats['accepted']} accepted, {stats['rejected']} rejected"
     yield "", f"{stats['min_step']:.3g} ... {stats['max_step']:.3g} s long"
-    yield "work", f"{stats['nfev']} right-hand sides"
+    method = found["run"]["method"]
+    yield "work", evaluations(method, found["message"], stats["nfev"])
     if found["accuracy"] is not None:
         yield "accuracy", str(Accuracy.from_dict(found["accuracy"]))
     yield "energy drift", energy_drift.text(energy)
