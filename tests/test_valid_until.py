@@ -305,6 +305,20 @@ def test_bad_time_limits_are_named(bad: float, message: str, is_known: bool) -> 
         run.error(time_limit=bad)
 
 
+@pytest.mark.parametrize(
+    ("bad", "message"),
+    [
+        (-1, r"horizon = -1: must be > 0 \(rad\)"),
+        (float("nan"), r"horizon = nan: must be > 0"),
+        (True, r"horizon = True: must be a real number \(rad\)"),
+    ],
+)
+def test_bad_horizons_are_named(bad: float, message: str) -> None:
+    run = pc.simulate(pc.Scene.textbook(), [1.0, 1.0], 0, (0, 0.1))
+    with pytest.raises((ValueError, TypeError), match=message):
+        run.plot(horizon=bad)
+
+
 def test_what_is_past_the_horizon_is_shaded() -> None:
     import matplotlib.pyplot as plt
 

@@ -116,6 +116,11 @@ def methods_of(method: str) -> set[str]:
     return {method, known["first"], known["second"]} - {""}
 
 
+def has_error_estimate(method: str) -> bool:
+    """Whether a method chooses its steps from tolerances."""
+    return bool(known_methods()[method]["error_order"])
+
+
 def pair_of(first: str) -> str:
     """Return the pair that begins with a method."""
     pairs = [one for one in _core.methods() if one["kind"] == "pair"]

@@ -62,7 +62,7 @@ def accuracy_cost(
         As in `simulate`, but not ``"auto"``, which is a rule. Default: all that can carry the
         scene, and where it is stiff the pairs that change over.
     rtol : array_like, (k,), default 1e-2, 1e-3, ..., 1e-14
-        Tolerances.
+        Tolerances, > 0 and < 1.
     atol : float, optional
         rad and rad/s. Default: a thousandth of each rtol, as in the defaults of `simulate`.
     step : array_like, (k,), optional
@@ -105,7 +105,7 @@ def accuracy_cost(
         raise ValueError(f"t_span = {t_span!r}: must be two different times (s)")
     angles, rates = vector("q0", q0, n, "rad"), vector("qd0", qd0, n, "rad/s")
     start = Start(scene, angles, rates, *span)
-    tolerances = _positive("rtol", rtol, "")
+    tolerances = _positive("rtol", rtol, "", below=1.0)
     absolute = None if atol is None else number("atol", atol, "")
     measurement = Measurement(
         start=start,
@@ -144,8 +144,10 @@ def _at_least(least: int, name: str, value: int) -> int:
     return whole
 
 
-def _positive(name: str, values: npt.ArrayLike, unit: str) -> list[float]:
+def _positive(name: str, values: npt.ArrayLike, unit: str, below: float = inf) -> list[float]:
     array = np.atleast_1d(finite_array(name, values, unit))
     if array.ndim != 1 or not array.size or not (array > 0).all():
         raise ValueError(f"{name} = {values!r}: must be numbers > 0, (k,)")
+    if not (array < below).all():
+        raise ValueError(f"{name} = {values!r}: must be > 0 and < {below:g}, (k,)")
     return sorted(array.tolist(), reverse=True)

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore import _core
-from pendcore.arguments import Floats, known_keywords, number, numbers, time_span
+from pendcore.arguments import Floats, known_keywords, number, numbers, time_span, whole_number
 from pendcore.progress import Progress, callback, close
 from pendcore.scene import Scene
 from pendcore.solution import Solution
@@ -189,6 +189,8 @@ def lyapunov(
             "counts from its end to that of t_span"
         )
     times = _times(t_eval, since, t_end)
+    _check_is_smooth(scene)
+    _check_count(scene, count)
     report = callback(progress, "following neighbours")
     found = _core.lyapunov(
         scene._compiled, q0, qd0, t_start, t_end, count, rtol, atol, [*times],
@@ -226,6 +228,27 @@ def lyapunov_of(
         max_step=asked["max_step"],
         progress=progress,
     )
+
+
+def _check_is_smooth(scene: Scene) -> None:
+    for i, effect in enumerate(scene.effects, start=1):
+        if effect.description.account in ("dry", "impact"):
+            raise ValueError(
+                f"effect {i} ({effect.kind}): motions jump or stick under it, each at a time of "
+                "its own, so that neighbours part at no rate: leave dry friction and stops out "
+                "for exponents; sol.valid_until() and pendcore.horizon_work tell with them too "
+                "how long a run is right"
+            )
+
+
+def _check_count(scene: Scene, count: int | None) -> None:
+    if count is None:
+        return
+    given, most = whole_number("count", count), 2 * scene.mobility().degrees_of_freedom
+    if most == 0:
+        raise ValueError(f"count = {given}: must be left out: nothing of the scene can move")
+    if not 1 <= given <= most:
+        raise ValueError(f"count = {given}: must be 1 to {most}, twice the degrees of freedom")
 
 
 def _times(t_eval: npt.ArrayLike | None, since: float, t_end: float) -> Floats:

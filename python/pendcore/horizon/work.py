@@ -22,6 +22,8 @@ from pendcore.accuracy.run import (
     atol_beside,
     carries,
     forget_inner_runs,
+    has_error_estimate,
+    known_methods,
     methods_named,
     run,
 )
@@ -241,6 +243,12 @@ def _methods(given: Iterable[str] | str | None, start: Start) -> list[str]:
         return [method for method in METHODS if carries(method, start)]
     names = methods_named(given)
     for method in names:
+        if not has_error_estimate(method):
+            known = [name for name in known_methods() if has_error_estimate(name)]
+            raise ValueError(
+                f"methods: {method!r} takes fixed steps and has no tolerance to vary: must be of "
+                f"{', '.join(known)}; pendcore.accuracy_cost measures it too"
+            )
         _nothing(start, method)
     return names
 
