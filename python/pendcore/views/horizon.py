@@ -87,7 +87,9 @@ def draw_work(work: HorizonWork, figure: Figure) -> None:
             by_cost.plot([1e6 * point.seconds for point in to_the_end], valid, **hollow)
     if work.growth is not None:
         _as_neighbours_part(by_digits, work)
+    columns = len(work.methods) + 1
     if any(work.is_to_the_end(point) for point in work.points):
+        columns += 1
         by_digits.plot([], [], "o", color="k", markerfacecolor="w", label="hollow: to the end")
     by_digits.set_xscale("log")
     by_digits.invert_xaxis()
@@ -99,7 +101,6 @@ def draw_work(work: HorizonWork, figure: Figure) -> None:
         axis.grid(True, alpha=0.4)
         axis.set_ylim(bottom=0)
         _few_ticks(axis)
-    columns = max(len(work.methods) + 1, 2)
     figure.legend(loc="outside upper center", ncols=columns, frameon=False)
 
 
