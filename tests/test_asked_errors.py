@@ -169,6 +169,16 @@ def test_a_chaotic_span_is_refused_and_told_until_when_it_holds():
     assert pc.simulate(BOOK, q0, qd0, (0, 0.6 * until), error=1e-3).accuracy.reached
 
 
+def test_the_page_says_until_when_it_holds(capsys):
+    page = (DOCS / "accuracy_cost.md").read_text()
+    (code,) = [x for x in re.findall(r"```python\n(.*?)```", page, re.DOTALL) if "refusal" in x]
+    (told,) = re.findall(r"print\(refusal\)  # \.\.\. (.*)", code)
+    exec(code, {})
+    refusal, until = capsys.readouterr().out.splitlines()
+    assert refusal.endswith(told)
+    assert told.endswith(f"until t = {float(until):g} s")
+
+
 def test_it_is_refused_as_well_when_no_round_is_left(monkeypatch):
     monkeypatch.setattr("pendcore.accuracy.asked_error.MOST_ROUNDS", 1)
     q0, qd0, _ = CHAOTIC
