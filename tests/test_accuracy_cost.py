@@ -233,6 +233,7 @@ def test_a_stiff_scene_is_measured_and_what_takes_too_long_says_so():
     assert "took more than" in failed["dopri5"].failure
     assert failed["dopri5"].error == math.inf
     assert len([p for p in found if p.method == "dopri5"]) == 1  # the tighter ones take longer
+    assert any("tried: dopri5 at rtol 1e-06 and below, " in remark for remark in found.remarks)
     assert found.best(1e-5).method in ("radau5", *PAIRS)
     assert {"radau5", *PAIRS} <= {p.method for p in found if not p.failure}
     assert any("both references are radau5" in remark for remark in found.remarks)
@@ -253,7 +254,28 @@ def test_interrupted_it_hands_over_what_it_has(book):
     limit = -1.0
     with pytest.raises(KeyboardInterrupt) as caught:
         pc.accuracy_cost(BOOK, *START, progress=report)
-    assert not hasattr(caught.value, "accuracy_cost")
+    none = caught.value.accuracy_cost
+    assert (len(none), none.t_span, none.times) == (0, (0, 5), 0)
+    assert "interrupted" in str(none)
+    assert "nothing was measured before it was stopped" in str(none)
+    assert json.loads(none.to_json())["uncertainty"] is None
+    none.plot()
+
+
+def test_the_interrupt_has_no_run_that_nobody_asked_for():
+    calls = []
+
+    def law(t, q, qd):
+        calls.append(t)
+        if len(calls) == 2000:
+            raise KeyboardInterrupt
+        return 0 * q
+
+    scene = BOOK.replace(effects=[E.User(law)])
+    with pytest.raises(KeyboardInterrupt) as caught:
+        pc.accuracy_cost(scene, *START)
+    assert not hasattr(caught.value, "solution")
+    assert len(caught.value.accuracy_cost) == 0
 
 
 def test_progress_only_grows():

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+import re
 import time
 
 import numpy as np
 import pendcore as pc
 import pytest
+from pendcore.cost.sweep import RTOL
 
 BOOK = pc.Scene.textbook()
 E = pc.effects
@@ -63,6 +65,19 @@ def test_a_cut_span_has_a_grid_that_ends_with_it():
     assert min(reached) < 1e-2
 
 
+def test_what_was_not_tried_for_want_of_time_is_named():
+    slow = BOOK.replace(effects=[E.User(lambda t, q, qd: -0.1 * qd)])
+    found = pc.accuracy_cost(slow, *SWING, (0, 0.5), time_limit=1e-3, methods=["dopri5", "rk4"])
+    (remark,) = [x for x in found.remarks if "before these were tried" in x]
+    assert remark.endswith("a larger time_limit than 0.001 s has them")
+    tried = [p.rtol for p in found if p.method == "dopri5"]
+    loosest = next(r for r in RTOL if r not in tried)
+    assert f"tried: dopri5 at rtol {loosest:.3g} and below" in remark
+    for point in found:
+        if point.failure:
+            assert re.fullmatch(r"took more than the \S+ s left for it of the .*", point.failure)
+
+
 @pytest.mark.parametrize(
     ("options", "complaint"),
     [
@@ -73,6 +88,8 @@ def test_a_cut_span_has_a_grid_that_ends_with_it():
         ({"methods": 3}, "methods = 3: must be names of methods"),
         ({"rtol": [1e-3, -1]}, "rtol = "),
         ({"rtol": []}, "rtol = "),
+        ({"rtol": [2]}, r"rtol = \[2\]: must be > 0 and < 1"),
+        ({"rtol": 1.0}, r"rtol = 1.0: must be > 0 and < 1"),
         ({"atol": "small"}, "atol = 'small': must be a real number"),
         ({"step": 0}, "step = 0: must be numbers > 0"),
         ({"time_limit": 0}, r"time_limit = 0.0: must be > 0 \(s\)"),

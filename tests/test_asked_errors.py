@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import pickle
+import re
 import sys
 from pathlib import Path
 
@@ -168,6 +169,16 @@ def test_a_chaotic_span_is_refused_and_told_until_when_it_holds():
     assert pc.simulate(BOOK, q0, qd0, (0, 0.6 * until), error=1e-3).accuracy.reached
 
 
+def test_the_page_says_until_when_it_holds(capsys):
+    page = (DOCS / "accuracy_cost.md").read_text()
+    (code,) = [x for x in re.findall(r"```python\n(.*?)```", page, re.DOTALL) if "refusal" in x]
+    (told,) = re.findall(r"print\(refusal\)  # \.\.\. (.*)", code)
+    exec(code, {})
+    refusal, until = capsys.readouterr().out.splitlines()
+    assert refusal.endswith(told)
+    assert told.endswith(f"until t = {float(until):g} s")
+
+
 def test_it_is_refused_as_well_when_no_round_is_left(monkeypatch):
     monkeypatch.setattr("pendcore.accuracy.asked_error.MOST_ROUNDS", 1)
     q0, qd0, _ = CHAOTIC
@@ -314,5 +325,17 @@ def test_a_case_and_the_command_know_it(tmp_path, monkeypatch, capsys):
     assert main(["run", "swing.toml", "--error", "1e-7"]) == 0
     assert "asked 1.0e-07, achieved" in Path("out/swing/summary.txt").read_text()
     assert main(["run", "swing.toml", "--error", "1e-17"]) == 1
-    assert "not reached" in capsys.readouterr().err
+    refusal = capsys.readouterr().err.splitlines()[-1]
+    assert re.fullmatch("error = 1e-17: not reached: .* the rounding of doubles", refusal)
+    summary = " ".join(Path("out/swing/summary.txt").read_text().split())
+    assert f"refused {refusal} end t = 5 s" in summary
+    assert json.loads(Path("out/swing/summary.json").read_text())["refusal"] == refusal
+    Path("chaotic.toml").write_text(
+        pc.Case(scene=BOOK, q0=CHAOTIC[0], t_span=(0, 100), options={"error": 1e-3}).to_toml()
+    )
+    assert main(["run", "chaotic.toml"]) == 1
+    summary = " ".join(Path("out/chaotic/summary.txt").read_text().split())
+    assert re.search(
+        r"refused error = 0.001: not reached: .* it holds until t = \d+ s end", summary
+    )
     assert main(["run", "swing.toml", "--error", "7"]) == 2

@@ -146,6 +146,19 @@ def test_a_fixed_step_that_is_too_long_is_told_so() -> None:
     assert 'a shorter one helps, or method="radau5"' in sol.message
 
 
+def test_in_fixed_steps_a_pair_changes_over_where_it_is_named_and_the_default_does_not() -> None:
+    scene = with_(fx.ViscousJoint(joint=2, damping=1e3))
+    run = (START, 0, (0, 0.5))
+    named = pc.simulate(scene, *run, step=2.5e-4, method="dopri5-radau5")
+    unnamed = pc.simulate(scene, *run, step=2.5e-4)
+    assert "went on with radau5" in named.message
+    assert unnamed.method == "dopri5"
+    assert unnamed.success
+    assert "went on" not in unnamed.message
+    page = " ".join((Path(__file__).parents[1] / "docs/stiff.md").read_text().split())
+    assert "In a fixed `step` the default is `dopri5` and stays that" in page
+
+
 def test_the_default_stays_with_its_first_method_where_radau5_does_not_pay() -> None:
     """A mode of 5e3 1/s that settles, beside a spring whose swing the steps have to follow."""
     spring = fx.TorsionalSpring(joint=4, stiffness=2000.0, rest_angle=0.3)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import re
 import sys
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -92,6 +94,68 @@ def test_it_is_drawn(work: pc.HorizonWork) -> None:
     assert work.plot() is not None
 
 
+def labels(axis: Any) -> list[Any]:
+    """The labels of the x axis that are drawn."""
+    ticks = axis.xaxis.get_majorticklabels() + axis.xaxis.get_minorticklabels()
+    low, high = sorted(axis.get_xlim())
+    return [x for x in ticks if x.get_text() and low <= x.get_position()[0] <= high]
+
+
+def test_what_is_valid_to_the_end_is_marked_as_that() -> None:
+    regular = pc.horizon_work(BOOK, [1.5, 1.6], 0, (0, 2), rtols=[1e-6, 1e-8])
+    rows = str(regular).splitlines()[2:]
+    assert len(rows) == 6
+    assert all(re.fullmatch(r"\w+ +1e-0[68] +2.00 s +\d+ us  to the end", row) for row in rows)
+    sheet = Figure()
+    draw_work(regular, sheet)
+    for axis in sheet.axes:
+        hollow = [x for x in axis.lines if x.get_markerfacecolor() == "w" and len(x.get_xdata())]
+        assert sum(len(line.get_xdata()) for line in hollow) == 6
+    assert "hollow: to the end" in [x.get_text() for x in sheet.legends[0].get_texts()]
+
+
+def test_it_says_what_there_was_no_time_for_and_why_there_is_no_exponent() -> None:
+    calls = []
+
+    def stop(fraction: float) -> None:
+        calls.append(fraction)
+        if len(calls) == 4:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt) as raised:
+        pc.horizon_work(BOOK, CHAOTIC, 0, (0, 10), rtols=FEW, progress=stop)
+    found = raised.value.work  # type: ignore[attr-defined]
+    assert found.untried[:2] == (("dopri5", 1e-10), ("dopri5", 1e-12))
+    assert len(found.untried) == 12
+    assert str(found).splitlines()[-1] == (
+        "not tried before the time was up: dopri5 at rtol 1e-10, 1e-12, dop853, taylor"
+    )
+    short = pc.horizon_work(BOOK, CHAOTIC, 0, (0, 10), rtols=FEW, time_limit=1e-9)
+    assert "not tried before the time was up: " in str(short)
+    rubbed = pc.Scene(links=BOOK.links, effects=[E.DryJointFriction(joint=2, coulomb=1e-3)])
+    found = pc.horizon_work(rubbed, CHAOTIC, 0, (0, 15), methods=["dopri5"], rtols=[1e-3, 1e-5])
+    told = " ".join(str(found).split())
+    assert "no Lyapunov exponent: effect 1 (dry_joint_friction): motions jump or stick" in told
+    assert found.refusal.startswith("effect 1 (dry_joint_friction)")
+
+
+@pytest.mark.parametrize("spread", [1.05, 1.5, 3.0, 4.0, 9.0, 25.0, 90.0, 110.0, 1e3])
+def test_the_labels_of_its_figure_do_not_meet(work: pc.HorizonWork, spread: float) -> None:
+    count = len(work.points)
+    points = tuple(
+        point._replace(seconds=3.3e-5 * spread ** (k / (count - 1)))
+        for k, point in enumerate(work.points)
+    )
+    sheet = Figure(figsize=(9.6, 4.2), layout="constrained")
+    draw_work(dataclasses.replace(work, points=points), sheet)
+    sheet.canvas.draw()
+    for axis in sheet.axes:
+        boxes = sorted((x.get_window_extent() for x in labels(axis)), key=lambda box: box.x0)
+        assert len(boxes) >= 2
+        for left, right in pairwise(boxes):
+            assert left.x1 < right.x0
+
+
 def test_where_nothing_grows_or_all_jumps_there_is_no_exponent() -> None:
     regular = pc.horizon_work(BOOK, [1.5, 1.6], 0, (0, 2), methods=["dopri5"], rtols=[1e-6, 1e-8])
     assert [point.valid for point in regular.points] == [2.0, 2.0]
@@ -138,6 +202,23 @@ def test_who_stops_it_does_not_wait_for_exponents(monkeypatch: pytest.MonkeyPatc
     assert len(raised.value.work.points) == 3  # type: ignore[attr-defined]
 
 
+def test_the_interrupt_has_no_run_that_nobody_asked_for() -> None:
+    calls = 0
+
+    def law(t: float, q: np.ndarray, qd: np.ndarray) -> np.ndarray:
+        nonlocal calls
+        calls += 1
+        if calls == 3000:
+            raise KeyboardInterrupt
+        return 0 * q
+
+    scene = BOOK.replace(effects=[E.User(law)])
+    with pytest.raises(KeyboardInterrupt) as raised:
+        pc.horizon_work(scene, CHAOTIC, 0, (0, 10), rtols=FEW)
+    assert raised.value.work.points == ()  # type: ignore[attr-defined]
+    assert not {"solution", "estimate", "exponents"} & {*vars(raised.value)}
+
+
 def test_one_method_need_not_be_in_a_list() -> None:
     found = pc.horizon_work(BOOK, CHAOTIC, 0, (0, 2), methods="RK45", rtols=[1e-6])
     assert found.methods == ["dopri5"]
@@ -177,7 +258,10 @@ def test_the_lines_of_the_page_run() -> None:
         ({"methods": "auto"}, "methods: 'auto' is a rule that chooses one: known are dopri5"),
         ({"methods": []}, "methods: is empty: must name a method, or be left out"),
         ({"methods": 8}, "methods = 8: must be names of methods, or one"),
-        ({"methods": "rk4"}, 'method "rk4" estimates no error and takes fixed steps'),
+        (
+            {"methods": "rk4"},
+            "methods: 'rk4' takes fixed steps and has no tolerance .* must be of dopri5,",
+        ),
         ({"rtols": [-1.0]}, r"rtols = \[-1.0\]: .* each be > 0 and < 1"),
         ({"rtols": []}, r"rtols = \[\]: must hold a tolerance"),
         ({"t_span": (0, np.inf)}, r"t_span\[1\] = inf: must be finite \(s\)"),

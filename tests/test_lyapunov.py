@@ -202,7 +202,9 @@ def test_what_is_locked_has_no_exponents() -> None:
     assert none.exponents.shape == (0,)
     assert np.isnan(none.largest)
     assert none.time == none.seconds_a_digit == np.inf
-    with pytest.raises(ValueError, match="count: must be left out: nothing of the scene can move"):
+    with pytest.raises(
+        ValueError, match="count = 1: must be left out: nothing of the scene can move"
+    ):
         pc.lyapunov(still, [0.2, 0.3], t_span=(0, 1), count=1)
 
 
@@ -215,7 +217,9 @@ def test_what_is_locked_has_no_exponents() -> None:
 )
 def test_effects_that_jump_are_refused_by_name(effect: pc.effects.Effect, name: str) -> None:
     scene = rods(2, E.ViscousJoint(joint=1, damping=0.1), effect)
-    with pytest.raises(ValueError, match=rf"effect 2 \({name}\): jumps.*dry friction and stops"):
+    with pytest.raises(
+        ValueError, match=rf"effect 2 \({name}\): motions jump .*: leave dry friction and stops out"
+    ):
         pc.lyapunov(scene, [1.0, 1.0], t_span=(0, 1))
 
 
@@ -253,13 +257,21 @@ def test_of_a_solution() -> None:
 @pytest.mark.parametrize(
     ("bad", "message"),
     [
-        ({"count": 0}, "count: must be 1 to 4, twice the degrees of freedom"),
-        ({"count": 5}, "count: must be 1 to 4"),
+        ({"count": 0}, "count = 0: must be 1 to 4, twice the degrees of freedom"),
+        ({"count": 9}, "count = 9: must be 1 to 4"),
         ({"count": 1.5}, r"count = 1.5: must be a whole number"),
         ({"rtol": -1.0}, "rtol = -1.0: must be finite and > 0"),
-        ({"transient": 11.0}, r"transient = 11.0: must be 0 to 10.0 \(s\)"),
-        ({"t_eval": [3.0, 2.0]}, "t_eval: must rise from 0.0 s to the end"),
-        ({"t_eval": [3.0, 12.0]}, "t_eval: must rise from 0.0 s to the end"),
+        ({"transient": 11.0}, r"transient = 11.0: must be >= 0 and < 10.0 \(s\)"),
+        ({"transient": 10.0}, r"transient = 10.0: must be >= 0 and < 10.0 \(s\)"),
+        ({"transient": -1.0}, r"transient = -1.0: must be >= 0"),
+        ({"transient": 1e-20, "t_span": (1e9, 1e9)}, "t_span = .* two different times"),
+        ({"t_span": (1, 1)}, r"t_span = \(1, 1\): must be two different times \(s\)"),
+        ({"t_eval": [3.0, 2.0]}, r"t_eval\[1\] = 2.0: must rise from 0.0 s to the end, 10.0 s"),
+        ({"t_eval": [3.0, 12.0]}, r"t_eval\[1\] = 12.0: must rise from 0.0 s to the end"),
+        ({"t_eval": [-1.0, 12.0]}, r"t_eval\[0\] = -1.0: must rise from 0.0 s to the end"),
+        ({"t_eval": [1.0], "t_span": (0, -5)}, r"t_eval\[0\] = 1.0: must fall from 0.0 s"),
+        ({"t_eval": []}, r"t_eval = \[\]: must rise .* and hold a time beyond the first"),
+        ({"t_eval": [0.0]}, r"t_eval = \[0.0\]: must rise .* and hold a time beyond the first"),
         ({"coumt": 1}, "did you mean 'count'"),
         ({"t_span": (0,)}, r"t_span = \(0,\): must be \(t_start, t_end\), in s"),
         ({"t_span": (0, np.nan)}, r"t_span\[1\] = nan: must be finite \(s\)"),
@@ -273,6 +285,11 @@ def test_bad_arguments_are_named(bad: dict[str, object], message: str) -> None:
     arguments: dict[str, object] = {"t_span": (0, 10), **bad}
     with pytest.raises((ValueError, TypeError), match=message):
         pc.lyapunov(rods(2), [1.0, 1.0], **arguments)  # type: ignore[arg-type]
+
+
+def test_a_run_of_no_length_has_none() -> None:
+    with pytest.raises(ValueError, match="lyapunov: the run ended where it began"):
+        pc.simulate(rods(2), [1.0, 1.0], 0, (2, 2)).lyapunov()
 
 
 def test_what_was_found_so_far_is_not_lost() -> None:
@@ -293,6 +310,22 @@ def test_what_was_found_so_far_is_not_lost() -> None:
     limited = pc.lyapunov(rods(2), [-2.0, -1.0], t_span=(0, 3000), max_steps=1000)
     assert (limited.status, limited.success) == ("max_steps", False)
     assert limited.stats.accepted + limited.stats.rejected == 1000
+
+
+def test_printed_they_are_a_sentence() -> None:
+    found = pc.lyapunov(rods(2), [-2.0, -1.0], t_span=(0, 50))
+    assert str(found) == (
+        f"Lyapunov exponents {', '.join(f'{one:.3g}' for one in found.exponents)} 1/s, from "
+        f"t = 0 to 50 s: an error grows by e in {1 / found.largest:.3g} s, tenfold in "
+        f"{np.log(10) / found.largest:.3g} s"
+    )
+    limited = pc.lyapunov(rods(2), [-2.0, -1.0], t_span=(0, 3000), max_steps=1000, transient=1)
+    assert str(limited).endswith(f"; max_steps: {limited.message}")
+    assert f"from t = 1 to {limited.t[-1]:.6g} s" in str(limited)
+    many = pc.lyapunov(rods(4), -2.0, t_span=(0, 1))
+    assert f", {many.exponents[5]:.3g}, ... 1/s, from" in str(many)
+    still = pc.lyapunov(rods(1, E.Lock(joint=1)), 0.2, t_span=(0, 1))
+    assert str(still) == "no Lyapunov exponents: nothing of the scene can move"
 
 
 def test_the_finite_time_exponents_are_drawn() -> None:

@@ -11,6 +11,8 @@ from math import pi
 import numpy as np
 import pendcore as pc
 import pytest
+from pendcore.views.summary import facts
+from pendcore.views.summary import text as summary_text
 
 G = 9.807
 SCENE = pc.Scene(
@@ -284,6 +286,31 @@ def test_repr_is_a_short_table():
     table = run._repr_html_()
     assert table.startswith("<table>")
     assert all(line.split("  ")[1] in table for line in lines[1:])
+
+
+def test_it_says_that_it_is_series_that_were_counted():
+    book = pc.Scene.textbook()
+    stiff = book.replace(effects=[pc.effects.ViscousJoint(joint=2, damping=1e6 / 3)])
+    for scene, method, counted in (
+        (book, "auto", "series, each as long as many right-hand sides"),
+        (book, "taylor", "series, each as long as many right-hand sides"),
+        (book, "dop853-radau5", "right-hand sides"),
+        (stiff, "auto", "series and right-hand sides"),
+        (stiff, "radau5", "right-hand sides"),
+    ):
+        run = pc.simulate(scene, [0.8, 1.0], 0, (0, 1), method=method)
+        assert f" steps, {run.stats.nfev} {counted}\n" in str(run)
+        summary = " ".join(summary_text(facts(run)).split())
+        assert f" work {run.stats.nfev} {counted} energy" in summary
+
+
+def test_it_has_a_line_of_the_accuracy_that_was_asked_for():
+    book = pc.Scene.textbook()
+    run = pc.simulate(book, [0.8, 1.0], 0, (0, 1), error=1e-6)
+    (line,) = [line for line in str(run).splitlines() if line.startswith("  accuracy ")]
+    assert re.search(r"asked 1.0e-06, achieved \S+ of the total length: the distance from ", line)
+    assert "paid" not in line
+    assert "accuracy" not in str(pc.simulate(book, [0.8, 1.0], 0, (0, 1)))
 
 
 def test_energy_is_shown_in_a_line(sol):

@@ -94,6 +94,21 @@ def test_the_error_over_time_is_what_the_reference_says() -> None:
     assert 0 < found.position.max() < found.angle.max()
 
 
+def test_printed_it_is_a_sentence() -> None:
+    scene = pc.Scene.textbook()
+    found = pc.simulate(scene, [1.0, 1.0], 0, (0, 2), method="dop853", rtol=1e-6).error()
+    assert str(found) == (
+        f"error estimated at 1001 times from t = 0 to 2 s: angles up to {found.angle.max():.1e} "
+        f"rad, positions up to {found.position.max():.1e} of the total length, from second runs "
+        f"by taylor at rtol 1e-08 and tighter"
+    )
+    lost = pc.simulate(scene, [-2.0, -1.0], 0, (0, 30), rtol=1e-6).error()
+    assert str(lost).endswith("; past that the runs have nothing to do with each other any more")
+    assert f"to {lost.t[-1]:.6g} s" in str(lost)
+    short = pc.simulate(scene, [1.0, 1.0], 0, (0, 5000), max_step=0.05).error(time_limit=0.01)
+    assert str(short).endswith("; the run goes on past that: it is not known there yet")
+
+
 def test_position_limits_are_shares_of_the_length() -> None:
     case = chaotic_starts()[1]
     run = solved(case, "dopri5", 1e-7)
@@ -231,6 +246,34 @@ def test_an_estimate_that_takes_too_long_ends_where_it_is() -> None:
 
 
 @pytest.mark.parametrize(
+    "asked",
+    [lambda run: run.error(), lambda run: run.valid_until(0.1), lambda run: run.plot(horizon=0.1)],
+    ids=["error", "valid_until", "plot"],
+)
+def test_interrupted_it_hands_over_the_users_run_and_none_of_its_own(asked) -> None:
+    import matplotlib.pyplot as plt
+
+    calls = 0
+    last = np.inf
+
+    def law(t: float, q: np.ndarray, qd: np.ndarray) -> np.ndarray:
+        nonlocal calls
+        calls += 1
+        if calls > last:
+            raise KeyboardInterrupt
+        return 0 * q
+
+    scene = pc.Scene.textbook().replace(effects=[E.User(law)])
+    run = pc.simulate(scene, [1.0, 1.0], 0, (0, 2))
+    for more in (3, 500):  # at once, and within a second run
+        last = calls + more
+        with pytest.raises(KeyboardInterrupt) as raised:
+            asked(run)
+        assert raised.value.solution is run  # type: ignore[attr-defined]
+    plt.close("all")
+
+
+@pytest.mark.parametrize(
     ("bad", "message"),
     [
         ({"limit": 0.0}, r"limit = 0.0: must be > 0"),
@@ -260,6 +303,20 @@ def test_bad_time_limits_are_named(bad: float, message: str, is_known: bool) -> 
         run.error()
     with pytest.raises((ValueError, TypeError), match=message):
         run.error(time_limit=bad)
+
+
+@pytest.mark.parametrize(
+    ("bad", "message"),
+    [
+        (-1, r"horizon = -1: must be > 0 \(rad\)"),
+        (float("nan"), r"horizon = nan: must be > 0"),
+        (True, r"horizon = True: must be a real number \(rad\)"),
+    ],
+)
+def test_bad_horizons_are_named(bad: float, message: str) -> None:
+    run = pc.simulate(pc.Scene.textbook(), [1.0, 1.0], 0, (0, 0.1))
+    with pytest.raises((ValueError, TypeError), match=message):
+        run.plot(horizon=bad)
 
 
 def test_what_is_past_the_horizon_is_shaded() -> None:

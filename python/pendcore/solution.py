@@ -242,7 +242,8 @@ class Solution:
         Raises
         ------
         KeyboardInterrupt, or any exception of ``progress`` or of an effect's function
-            With what was found so far as the attribute ``estimate``, if there was anything.
+            With what was found so far as the attribute ``estimate``, if there was anything, and
+            this very run as ``solution``.
         """
         from pendcore.horizon.error_estimate import error_estimate
 

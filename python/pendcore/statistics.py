@@ -11,7 +11,7 @@ class Statistics(NamedTuple):
     Attributes
     ----------
     nfev : int
-        Right-hand sides.
+        Right-hand sides; of ``taylor``, series, each as long as many of them.
     njev : int
         Jacobians.
     nlu : int

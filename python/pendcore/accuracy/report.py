@@ -91,7 +91,8 @@ class Accuracy:
         paid = tuple(Paid(**p) for p in values["paid"])
         return cls(**(values | {"achieved": achieved, "paid": paid}))
 
-    def __repr__(self) -> str:
+    def outcome(self) -> str:
+        """Return what was asked for and what came of it, without what it took."""
         verdict = "" if self.reached else ", not reached"
         found = (
             f"achieved {self.achieved:.1e} of the total length{verdict}: the distance from "
@@ -99,8 +100,11 @@ class Accuracy:
         )
         if not self.times:
             found = f"not verified: {self.verified_by}"
+        return f"asked {self.asked:.1e}, {found}"
+
+    def __repr__(self) -> str:
         return (
-            f"asked {self.asked:.1e}, {found}; paid {len(self.paid)} runs, as long as "
+            f"{self.outcome()}; paid {len(self.paid)} runs, as long as "
             f"{self.work():.0f} right-hand sides: {self.work('run'):.0f} the run, "
             f"{self.work('verify'):.0f} to verify it, {self.work('choose'):.0f} to choose it"
         )

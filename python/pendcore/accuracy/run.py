@@ -116,6 +116,11 @@ def methods_of(method: str) -> set[str]:
     return {method, known["first"], known["second"]} - {""}
 
 
+def has_error_estimate(method: str) -> bool:
+    """Whether a method chooses its steps from tolerances."""
+    return bool(known_methods()[method]["error_order"])
+
+
 def pair_of(first: str) -> str:
     """Return the pair that begins with a method."""
     pairs = [one for one in _core.methods() if one["kind"] == "pair"]
@@ -134,6 +139,12 @@ def carries(method: str, start: Start, step: float | None = None) -> bool:
     except ValueError:
         return False
     return True
+
+
+def forget_inner_runs(stop: BaseException) -> None:
+    """Take from an exception what a run on the way handed over: the user asked for none of them."""
+    for name in ("solution", "estimate", "exponents"):
+        vars(stop).pop(name, None)
 
 
 def tightened(choice: Choice, factor: float, tightest: float) -> Choice:

@@ -99,6 +99,7 @@ def _measured(case: Case, args: argparse.Namespace) -> tuple[AccuracyCost, bool]
     except (ValueError, TypeError) as error:
         raise UsageError(str(error)) from None
     except KeyboardInterrupt as stop:
-        if isinstance(so_far := getattr(stop, "accuracy_cost", None), AccuracyCost):
+        so_far = getattr(stop, "accuracy_cost", None)
+        if isinstance(so_far, AccuracyCost) and so_far.points:
             return so_far, False
         raise

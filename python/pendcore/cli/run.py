@@ -76,8 +76,8 @@ def execute(args: argparse.Namespace) -> int:
         case = case if args.error is None else _with_error(case, args.error)
     folder = folder_of(args)
     with new_folder(folder):
-        solution, complaint = _simulated(case, args.case)
-    found = facts(solution)
+        solution, complaint, refusal = _simulated(case, args.case)
+    found = facts(solution, refusal)
     where = written(folder, [folder / name for name in FILES])
     _write(folder, solution, found)
     print(where, file=sys.stderr)
@@ -93,15 +93,15 @@ def execute(args: argparse.Namespace) -> int:
     return 1 if complaint else 0
 
 
-def _simulated(case: Case, file: Path | None) -> tuple[Solution, str]:
-    """Return the run, and what is to be said against it."""
+def _simulated(case: Case, file: Path | None) -> tuple[Solution, str, str]:
+    """Return the run, what is to be said against it, and of that what its error was refused for."""
     try:
-        return case.simulate(), ""
+        return case.simulate(), "", ""
     except (ValueError, TypeError) as error:
         raise UsageError(with_line(file, str(error)) if file else str(error)) from None
     except (KeyboardInterrupt, AccuracyError) as stop:
         if isinstance(so_far := getattr(stop, "solution", None), Solution):
-            return so_far, str(stop) or "interrupted"
+            return so_far, str(stop) or "interrupted", str(stop)
         raise
 
 

@@ -84,6 +84,8 @@ class AccuracyCost:
         kept = [p for p in self.points if p.error + self.uncertainty <= asked]
         if not kept:
             reached = min((p.error for p in self.points), default=inf) + self.uncertainty
+            if not self.points:
+                raise ValueError(f"error = {asked!r}: nothing was measured before it was stopped")
             if reached == inf:
                 raise ValueError(f"error = {asked!r}: no run got to the end; the table says why")
             raise ValueError(

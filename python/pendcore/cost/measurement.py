@@ -12,7 +12,15 @@ from time import monotonic, perf_counter
 import numpy as np
 
 from pendcore import _core
-from pendcore.accuracy.run import Choice, Start, carries, known_methods, pair_of, run
+from pendcore.accuracy.run import (
+    Choice,
+    Start,
+    carries,
+    has_error_estimate,
+    known_methods,
+    pair_of,
+    run,
+)
 from pendcore.arguments import Floats
 from pendcore.cost.accuracy_cost import AccuracyCost
 from pendcore.cost.machine import processor
@@ -43,6 +51,12 @@ class Contender:
     accepted: int = 0
     failure: str = ""
     seconds: list[float] = field(default_factory=list)
+
+    @property
+    def text(self) -> str:
+        """It and those that are tighter, for people."""
+        how = f"steps of {self.step:.3g} s" if self.rtol is None else f"rtol {self.rtol:.3g}"
+        return f"{self.method} at {how} and below"
 
     def point(self) -> Point:
         """Return it as it is kept."""
@@ -96,8 +110,8 @@ class Measurement:
         self.report(1.0)
 
     def result(self) -> AccuracyCost:
-        """Return what was measured."""
-        assert self.reference is not None
+        """Return what was measured; without a reference, of which nothing is known, no points."""
+        found = self.reference
         tried = [c.point() for c in self.contenders if c.seconds or c.failure]
         order = list(known_methods())
         tried.sort(key=lambda p: (order.index(p.method), -(p.rtol or 0.0), -(p.step or 0.0)))
@@ -105,11 +119,11 @@ class Measurement:
             name=self.name,
             t_span=(self.start.t_start, self.start.t_end),
             asked_t_span=self.asked_t_span,
-            times=len(self.reference.times),
+            times=len(found.times) if found else 0,
             points=tuple(tried),
-            uncertainty=self.reference.uncertainty,
-            references=self.reference.texts(),
-            timed=self._timed(tried),
+            uncertainty=found.uncertainty if found else inf,
+            references=found.texts() if found else ("there is none yet", "neither"),
+            timed=self._timed(tried) if found else "nothing was timed",
             remarks=tuple(self.remarks),
             machine=f"{processor()}, instruction set {_core.instruction_set()}",
             version=_core.__version__,
@@ -191,16 +205,24 @@ class Measurement:
         rows = [[*self._contenders_of(method)] for method in self._methods(stiff)]
         allowed = max(self._left(2 * SHARE), self._left() / 2) / max(len(rows), 1)
         left = [allowed] * len(rows)
+        ended: set[int] = set()
         longest = max((len(row) for row in rows), default=0)
         for k in range(longest):
             for i, row in enumerate(rows):
-                if k < len(row) and left[i] > 0:
+                if k < len(row) and i not in ended and left[i] > 0:
                     self._try(row[k], left[i])
                     self.contenders.append(row[k])
                     left[i] -= sum(row[k].seconds)
                     if self.steps is None and self._is_short_enough(row[: k + 1], allowed):
-                        left[i] = 0.0
+                        ended.add(i)
             self.report(0.2 + 0.3 * (k + 1) / longest)
+        untried = [next((x for x in row if not x.seconds), None) for row in rows]
+        missed = [x.text for i, x in enumerate(untried) if x is not None and i not in ended]
+        if missed:
+            self.remarks.append(
+                f"the time limit was up before these were tried: {', '.join(missed)}; a larger "
+                f"time_limit than {self.time_limit:.3g} s has them"
+            )
 
     def _is_short_enough(self, row: list[Contender], allowed: float) -> bool:
         """Whether to halve a fixed step no more: nothing was gained by it, or too dear."""
@@ -218,7 +240,7 @@ class Measurement:
         one.seconds.append(seconds)
         one.error = self.reference.error_of(solution)
         if not solution.success:
-            too_long = f"took more than {limit:.2g} s"
+            too_long = f"took more than the {limit:.2g} s left for it of the time limit"
             one.failure = too_long if solution.status == "time_limit" else solution.message
         elif one.error == inf:
             one.failure = "did not get to the end with finite angles"
@@ -281,8 +303,3 @@ class Measurement:
         span = abs(self.start.t_end - self.start.t_start)
         longest = span / max(1.0, np.ceil(loose.stats.accepted / 2))
         return [float(longest / 2**k) for k in range(14)]
-
-
-def has_error_estimate(method: str) -> bool:
-    """Whether a method chooses its steps from tolerances."""
-    return bool(known_methods()[method]["error_order"])

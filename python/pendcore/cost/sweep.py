@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore.accuracy.position_error import POINTS
-from pendcore.accuracy.run import Start, atol_beside, methods_named
+from pendcore.accuracy.run import Start, atol_beside, forget_inner_runs, methods_named
 from pendcore.arguments import (
     finite_array,
     known_keywords,
@@ -62,7 +62,7 @@ def accuracy_cost(
         As in `simulate`, but not ``"auto"``, which is a rule. Default: all that can carry the
         scene, and where it is stiff the pairs that change over.
     rtol : array_like, (k,), default 1e-2, 1e-3, ..., 1e-14
-        Tolerances.
+        Tolerances, > 0 and < 1.
     atol : float, optional
         rad and rad/s. Default: a thousandth of each rtol, as in the defaults of `simulate`.
     step : array_like, (k,), optional
@@ -94,7 +94,8 @@ def accuracy_cost(
     ValueError, TypeError
         If an argument is not what is asked for, or no two methods get through the scene.
     KeyboardInterrupt, or any exception of ``progress`` or of an effect's function
-        With what was measured so far, if anything, as the attribute ``accuracy_cost``.
+        With what was measured so far as the attribute ``accuracy_cost``: no points before there is
+        a reference.
     """
     if not isinstance(scene, Scene):
         raise TypeError(f"scene = {scene!r}: must be a pendcore.Scene")
@@ -104,7 +105,7 @@ def accuracy_cost(
         raise ValueError(f"t_span = {t_span!r}: must be two different times (s)")
     angles, rates = vector("q0", q0, n, "rad"), vector("qd0", qd0, n, "rad/s")
     start = Start(scene, angles, rates, *span)
-    tolerances = _positive("rtol", rtol, "")
+    tolerances = _positive("rtol", rtol, "", below=1.0)
     absolute = None if atol is None else number("atol", atol, "")
     measurement = Measurement(
         start=start,
@@ -127,9 +128,9 @@ def accuracy_cost(
             warnings.simplefilter("ignore", PendcoreWarning)
             measurement.measure()
     except BaseException as stop:
-        if measurement.reference is not None:
-            measurement.remarks.append("it was interrupted: this is what was measured until then")
-            stop.accuracy_cost = measurement.result()  # type: ignore[attr-defined]
+        forget_inner_runs(stop)
+        measurement.remarks.append("it was interrupted: this is what was measured until then")
+        stop.accuracy_cost = measurement.result()  # type: ignore[attr-defined]
         raise
     finally:
         close(report)
@@ -143,8 +144,10 @@ def _at_least(least: int, name: str, value: int) -> int:
     return whole
 
 
-def _positive(name: str, values: npt.ArrayLike, unit: str) -> list[float]:
+def _positive(name: str, values: npt.ArrayLike, unit: str, below: float = inf) -> list[float]:
     array = np.atleast_1d(finite_array(name, values, unit))
     if array.ndim != 1 or not array.size or not (array > 0).all():
         raise ValueError(f"{name} = {values!r}: must be numbers > 0, (k,)")
+    if not (array < below).all():
+        raise ValueError(f"{name} = {values!r}: must be > 0 and < {below:g}, (k,)")
     return sorted(array.tolist(), reverse=True)

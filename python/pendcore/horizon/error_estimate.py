@@ -107,6 +107,20 @@ class ErrorEstimate:
         within = np.argmax(is_past) if is_past.any() else len(self.t)
         return float(self.t[within - 1]) if within else self.begin
 
+    def __str__(self) -> str:
+        until = self.t[-1] if len(self.t) else self.begin
+        ends = ""
+        if self.is_lost:
+            ends = "; past that the runs have nothing to do with each other any more"
+        elif not self.is_complete:
+            ends = "; the run goes on past that: it is not known there yet"
+        return (
+            f"error estimated at {len(self.t)} times from t = {self.begin:.6g} to {until:.6g} s: "
+            f"angles up to {self.angle.max(initial=0.0):.1e} rad, positions up to "
+            f"{self.position.max(initial=0.0):.1e} of the total length, from second runs by "
+            f"{self.method} at rtol {self.rtol:.0e} and tighter{ends}"
+        )
+
     def _limited(self, of: str) -> Floats:
         if of not in ("angle", "position"):
             raise ValueError(f'of = {of!r}: must be "angle" (rad) or "position" (a share)')
@@ -135,6 +149,9 @@ def error_estimate(
                 farthest = found
             if found.is_complete or monotonic() > until:
                 break
+    except BaseException as stop:
+        stop.solution = solution  # type: ignore[attr-defined]
+        raise
     finally:
         close(report)
     assert farthest is not None, "an explicit Runge-Kutta method carries every scene"

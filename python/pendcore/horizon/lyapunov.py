@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore import _core
-from pendcore.arguments import Floats, known_keywords, number, numbers, time_span
+from pendcore.arguments import Floats, known_keywords, number, numbers, time_span, whole_number
 from pendcore.progress import Progress, callback, close
 from pendcore.scene import Scene
 from pendcore.solution import Solution
@@ -91,6 +91,18 @@ class LyapunovExponents:
         """ln(10)/largest, s: so much longer is right a run that is right to one more digit."""
         return float(np.log(10)) * self.time
 
+    def __str__(self) -> str:
+        if not self.growth.shape[1]:
+            return "no Lyapunov exponents: nothing of the scene can move"
+        until = f" to {self.t[-1]:.6g} s" if len(self.t) else ", where no time was reached"
+        some = [f"{rate:.3g}" for rate in self.exponents[:6]]
+        some += ["..."] * (len(some) < self.growth.shape[1])
+        told = f"Lyapunov exponents {', '.join(some)} 1/s, from t = {self.since:.6g}{until}"
+        if self.time < inf:
+            told += f": an error grows by e in {self.time:.3g} s, tenfold in "
+            told += f"{self.seconds_a_digit:.3g} s"
+        return told if self.success else f"{told}; {self.status}: {self.message}"
+
     def plot(self, ax: Any = None, **line_properties: Any) -> list[Line2D]:
         """Draw the finite-time exponents over time; see `pendcore.views.horizon`.
 
@@ -168,12 +180,17 @@ def lyapunov(
     if q0 is None:
         raise TypeError("q0 is missing: give the angles at the start, one per link, in rad")
     t_start, t_end = time_span(t_span)
+    if t_start == t_end:
+        raise ValueError(f"t_span = {t_span!r}: must be two different times (s)")
     since = t_start + np.copysign(number("transient", transient, "s"), t_end - t_start)
-    if not 0 <= transient <= abs(t_end - t_start):
+    if not 0 <= transient < abs(t_end - t_start) or since == t_end:
         raise ValueError(
-            f"transient = {transient}: must be 0 to {abs(t_end - t_start)} (s), within t_span"
+            f"transient = {transient}: must be >= 0 and < {abs(t_end - t_start)} (s): growth "
+            "counts from its end to that of t_span"
         )
     times = _times(t_eval, since, t_end)
+    _check_is_smooth(scene)
+    _check_count(scene, count)
     report = callback(progress, "following neighbours")
     found = _core.lyapunov(
         scene._compiled, q0, qd0, t_start, t_end, count, rtol, atol, [*times],
@@ -196,6 +213,8 @@ def lyapunov_of(
 ) -> LyapunovExponents:
     """Of the motion that a solution computed, as far as it came, at its tolerances."""
     asked = solution._run.arguments
+    if solution._run.t_reached == asked["t_start"]:
+        raise ValueError("lyapunov: the run ended where it began: nothing had time to grow")
     return lyapunov(
         solution.scene,
         asked["q0"],
@@ -211,6 +230,27 @@ def lyapunov_of(
     )
 
 
+def _check_is_smooth(scene: Scene) -> None:
+    for i, effect in enumerate(scene.effects, start=1):
+        if effect.description.account in ("dry", "impact"):
+            raise ValueError(
+                f"effect {i} ({effect.kind}): motions jump or stick under it, each at a time of "
+                "its own, so that neighbours part at no rate: leave dry friction and stops out "
+                "for exponents; sol.valid_until() and pendcore.horizon_work tell with them too "
+                "how long a run is right"
+            )
+
+
+def _check_count(scene: Scene, count: int | None) -> None:
+    if count is None:
+        return
+    given, most = whole_number("count", count), 2 * scene.mobility().degrees_of_freedom
+    if most == 0:
+        raise ValueError(f"count = {given}: must be left out: nothing of the scene can move")
+    if not 1 <= given <= most:
+        raise ValueError(f"count = {given}: must be 1 to {most}, twice the degrees of freedom")
+
+
 def _times(t_eval: npt.ArrayLike | None, since: float, t_end: float) -> Floats:
     """Return the times to keep; the first is that from which growth counts."""
     if t_eval is None:
@@ -219,11 +259,18 @@ def _times(t_eval: npt.ArrayLike | None, since: float, t_end: float) -> Floats:
         distinct: Floats = even[np.append(True, np.diff(even) != 0)]
         return distinct
     given = np.array(numbers("t_eval", t_eval, "s"))
-    along = np.sign(t_end - since) * given
-    inside = len(given) > 0 and (np.diff(along) > 0).all()
-    if not (inside and min(since, t_end) <= given.min() <= given.max() <= max(since, t_end)):
-        way = "rise" if since <= t_end else "fall"
-        raise ValueError(f"t_eval: must {way} from {since} s to the end, {t_end} s")
+    forward = np.sign(t_end - since)
+    along, first, last = forward * given, forward * since, forward * t_end
+    is_wrong = ~((first <= along) & (along <= last))
+    is_wrong[1:] |= along[1:] <= along[:-1]
+    way = f"must {'rise' if forward > 0 else 'fall'} from {since} s to the end, {t_end} s"
+    if is_wrong.any():
+        k = int(np.argmax(is_wrong))
+        raise ValueError(f"t_eval[{k}] = {given[k]}: {way}")
+    if not len(given) or given[-1] == since:
+        raise ValueError(
+            f"t_eval = {given.tolist()}: {way}, and hold a time beyond the first of these"
+        )
     return given if given[0] == since else np.append(since, given)
 
 

@@ -7,16 +7,26 @@ is right for ln(10)/lambda seconds longer, whatever the method; what the digit c
 from __future__ import annotations
 
 from collections.abc import Iterable
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import inf, nan
+from textwrap import wrap
 from time import monotonic, perf_counter
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from pendcore.accuracy.run import Choice, Start, atol_beside, carries, methods_named, run
+from pendcore.accuracy.run import (
+    Choice,
+    Start,
+    atol_beside,
+    carries,
+    forget_inner_runs,
+    has_error_estimate,
+    known_methods,
+    methods_named,
+    run,
+)
 from pendcore.arguments import known_keywords, number, numbers, time_limit_of, time_span
 from pendcore.horizon.error_estimate import ErrorEstimate, error_estimate
 from pendcore.horizon.lyapunov import LyapunovExponents, lyapunov
@@ -78,6 +88,10 @@ class HorizonWork:
         How fast neighbours part between the shortest and the longest of the horizons; None where
         exponents mean nothing (dry friction, stops), where the horizons are one, and of what was
         stopped before.
+    refusal : str
+        Why there is no exponent, where it was refused; else empty.
+    untried : tuple of (str, float)
+        The methods and tolerances that there was no time for.
     """
 
     limit: float
@@ -85,6 +99,8 @@ class HorizonWork:
     points: tuple[HorizonPoint, ...]
     early: float
     growth: LyapunovExponents | None
+    refusal: str = ""
+    untried: tuple[tuple[str, float], ...] = ()
 
     @property
     def exponent(self) -> float:
@@ -105,6 +121,10 @@ class HorizonWork:
         """Return the points of a method."""
         return [point for point in self.points if point.method == method]
 
+    def is_to_the_end(self, point: HorizonPoint) -> bool:
+        """Whether a point is valid to the end of the span: a longer one may find more."""
+        return point.valid >= abs(self.t_span[1] - self.t_span[0])
+
     def measured(self, method: str) -> float:
         """Return the slope that the points of a method have: s for each digit that is right early.
 
@@ -112,8 +132,7 @@ class HorizonWork:
         three. Of one start it scatters by a tenth about ``seconds_a_digit``: neighbours do not part
         evenly.
         """
-        end = abs(self.t_span[1] - self.t_span[0])
-        inside = [point for point in self.of(method) if point.valid < end and point.early > 0]
+        inside = [p for p in self.of(method) if not self.is_to_the_end(p) and p.early > 0]
         if len(inside) < 3:
             return nan
         digits = -np.log10([point.early for point in inside])
@@ -134,14 +153,28 @@ class HorizonWork:
         for point in self.points:
             lines.append(
                 f"{point.method:<8} {point.rtol:>7.0e} {point.valid:>7.2f} s "
-                f"{1e6 * point.seconds:>9.0f} us"
+                f"{1e6 * point.seconds:>9.0f} us{'  to the end' * self.is_to_the_end(point)}"
             )
         if self.exponent > 0:
             lines.append(
                 f"Lyapunov exponent {self.exponent:.3g}/s: a digit more is worth "
                 f"{self.seconds_a_digit:.2g} s"
             )
+        if self.refusal:
+            lines += wrap(f"no Lyapunov exponent: {self.refusal.partition(';')[0]}", 96)
+        if self.untried:
+            lines += wrap(f"not tried before the time was up: {self._untried_by_method()}", 96)
         return "\n".join(lines)
+
+    def _untried_by_method(self) -> str:
+        rows: dict[str, list[str]] = {}
+        for method, rtol in self.untried:
+            rows.setdefault(method, []).append(f"{rtol:.0e}")
+        tried = self.methods
+        return ", ".join(
+            f"{method} at rtol {', '.join(rtols)}" if method in tried else method
+            for method, rtols in rows.items()
+        )
 
 
 @known_keywords
@@ -212,10 +245,14 @@ def horizon_work(
             if report is not None:
                 report(done / len(choices))
             found.append(_point(start, choice, limit))
-        work = _work(start, limit, found)
-        return replace(work, growth=_growth(start, work))
+        work = _work(start, limit, choices, found)
+        try:
+            return replace(work, growth=_growth(start, work))
+        except ValueError as refusal:  # dry friction, stops: what jumps has none
+            return replace(work, refusal=str(refusal))
     except BaseException as stopped:
-        stopped.work = _work(start, limit, found)  # type: ignore[attr-defined]
+        forget_inner_runs(stopped)
+        stopped.work = _work(start, limit, choices, found)  # type: ignore[attr-defined]
         raise
     finally:
         close(report)
@@ -232,6 +269,12 @@ def _methods(given: Iterable[str] | str | None, start: Start) -> list[str]:
         return [method for method in METHODS if carries(method, start)]
     names = methods_named(given)
     for method in names:
+        if not has_error_estimate(method):
+            known = [name for name in known_methods() if has_error_estimate(name)]
+            raise ValueError(
+                f"methods: {method!r} takes fixed steps and has no tolerance to vary: must be of "
+                f"{', '.join(known)}; pendcore.accuracy_cost measures it too"
+            )
         _nothing(start, method)
     return names
 
@@ -251,7 +294,10 @@ def _point(start: Start, choice: Choice, limit: float) -> tuple[ErrorEstimate, H
 
 
 def _work(
-    start: Start, limit: float, found: list[tuple[ErrorEstimate, HorizonPoint]]
+    start: Start,
+    limit: float,
+    choices: list[Choice],
+    found: list[tuple[ErrorEstimate, HorizonPoint]],
 ) -> HorizonWork:
     """Return what the points tell; the exponent is yet to come."""
     early = min((point.valid for _, point in found), default=0.0)
@@ -260,7 +306,10 @@ def _work(
         for error, point in found
     ]
     span = start.t_start, start.t_end
-    return HorizonWork(limit=limit, t_span=span, points=tuple(points), early=early, growth=None)
+    untried = tuple((one.method, float(np.min(one.rtol))) for one in choices[len(found) :])
+    return HorizonWork(
+        limit=limit, t_span=span, points=tuple(points), early=early, growth=None, untried=untried
+    )
 
 
 def _growth(start: Start, work: HorizonWork) -> LyapunovExponents | None:
@@ -269,9 +318,7 @@ def _growth(start: Start, work: HorizonWork) -> LyapunovExponents | None:
     if not longest > work.early:
         return None
     end = start.t_start + np.copysign(longest, start.t_end - start.t_start)
-    with suppress(ValueError):  # dry friction, stops: what jumps has none
-        return lyapunov(
-            start.scene, start.q0, start.qd0, (start.t_start, end), count=1, transient=work.early,
-            rtol=TIGHT, atol=atol_beside(TIGHT), progress=False,
-        )  # fmt: skip
-    return None
+    return lyapunov(
+        start.scene, start.q0, start.qd0, (start.t_start, end), count=1, transient=work.early,
+        rtol=TIGHT, atol=atol_beside(TIGHT), progress=False,
+    )  # fmt: skip

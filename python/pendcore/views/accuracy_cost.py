@@ -107,11 +107,12 @@ def _dress(ax: Axes, cost: AccuracyCost, y: str, unit: str) -> None:
     ax.set_ylabel(f"time of a run ({unit})" if y == "time" else counted)
     if not ax.xaxis_inverted():
         ax.invert_xaxis()
-    left, right = ax.get_xlim()
-    edge = max(cost.uncertainty, 1e-17)
-    right = min(right, edge / 3)
-    ax.set_xlim(left, right)
-    ax.axvspan(right, edge, color="0.88", zorder=0)
+    if is_known := cost.uncertainty < inf:
+        left, right = ax.get_xlim()
+        edge = max(cost.uncertainty, 1e-17)
+        right = min(right, edge / 3)
+        ax.set_xlim(left, right)
+        ax.axvspan(right, edge, color="0.88", zorder=0)
     ax.xaxis.set_major_locator(LogLocator(base=100, numticks=20))
     ax.xaxis.set_minor_formatter(NullFormatter())
     if y == "time":  # plain numbers, between the powers of ten where there are few of these
@@ -129,7 +130,7 @@ def _dress(ax: Axes, cost: AccuracyCost, y: str, unit: str) -> None:
 
         filled = "filled: no other is\nboth better and faster"
         handles.append(Line2D([], [], linestyle="", marker="o", color="0.2", label=filled))
-    handles.append(unknown)
+    handles += [unknown] * is_known
     fine = {p.method for p in cost.points if not p.failure}
     if failed := [m for m in dict.fromkeys(p.method for p in cost.points) if m not in fine]:
         why = "too slow here, or failed:\n" + "\n".join(failed)

@@ -31,6 +31,8 @@ _MARKS = {
     "dop853": ("s", "--", "C3"),
     "taylor": ("^", "-.", "C2"),
 }
+NARROW, FEW_DECADES = 6, 200
+"""Ranges of so much have hardly a number of one digit to label, and hardly a power of ten."""
 
 
 def shade_past(axes: Iterable[Axes], solution: Solution, limit: float) -> list[Rectangle]:
@@ -77,8 +79,18 @@ def draw_work(work: HorizonWork, figure: Figure) -> None:
         properties = {"marker": marker, "linestyle": style, "color": color, "markersize": 5}
         by_digits.plot([point.early for point in points], valid, label=method, **properties)
         by_cost.plot([1e6 * point.seconds for point in points], valid, **properties)
+        to_the_end = [point for point in points if work.is_to_the_end(point)]
+        hollow = {**properties, "linestyle": "", "markerfacecolor": "w", "zorder": 3}
+        valid = [point.valid for point in to_the_end]
+        if to_the_end:
+            by_digits.plot([point.early for point in to_the_end], valid, **hollow)
+            by_cost.plot([1e6 * point.seconds for point in to_the_end], valid, **hollow)
     if work.growth is not None:
         _as_neighbours_part(by_digits, work)
+    columns = len(work.methods) + 1
+    if any(work.is_to_the_end(point) for point in work.points):
+        columns += 1
+        by_digits.plot([], [], "o", color="k", markerfacecolor="w", label="hollow: to the end")
     by_digits.set_xscale("log")
     by_digits.invert_xaxis()
     by_digits.set_xlabel(f"error of the angles after {work.early:.2g} s (rad)")
@@ -88,7 +100,21 @@ def draw_work(work: HorizonWork, figure: Figure) -> None:
     for axis in (by_digits, by_cost):
         axis.grid(True, alpha=0.4)
         axis.set_ylim(bottom=0)
-    figure.legend(loc="outside upper center", ncols=len(work.methods) + 1, frameon=False)
+        _few_ticks(axis)
+    figure.legend(loc="outside upper center", ncols=columns, frameon=False)
+
+
+def _few_ticks(axis: Axes) -> None:
+    """Label a few round numbers where there are hardly any powers of ten to label."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
+
+    low, high = sorted(axis.get_xlim())
+    if 0 < high < FEW_DECADES * low:
+        is_narrow = high < NARROW * low
+        ticks = MaxNLocator(4) if is_narrow else LogLocator(subs=(1, 3), numticks=20)
+        axis.xaxis.set_major_locator(ticks)
+        axis.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
+        axis.xaxis.set_minor_formatter(NullFormatter())
 
 
 def _as_neighbours_part(axis: Axes, work: HorizonWork) -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pendcore.arguments import Floats
+from pendcore.arguments import Floats, number
 from pendcore.solution import Solution
 from pendcore.views.horizon import shade_past
 
@@ -60,10 +60,12 @@ def plot(
     Raises
     ------
     TypeError
-        If ``ax`` is something else than axes.
+        If ``ax`` is something else than axes, or ``horizon`` than a number.
     ValueError
-        If the number of axes is neither one nor that of the links.
+        If the number of axes is neither one nor that of the links, or ``horizon`` is not > 0.
     """
+    if horizon is not None and not number("horizon", horizon, "rad") > 0:
+        raise ValueError(f"horizon = {horizon}: must be > 0 (rad)")
     from matplotlib.cbook import normalize_kwargs
     from matplotlib.lines import Line2D
 

@@ -16,14 +16,17 @@ from pendcore.effect_class import Effect, Part
 from pendcore.explanation.absence import absent
 from pendcore.solution import Solution
 from pendcore.views import energy_drift
-from pendcore.views.table import listed, outcome
+from pendcore.views.table import evaluations, listed, outcome
 
 _MANY = 12
 """Links that a table for people has a row each of."""
 
 
-def facts(solution: Solution) -> dict[str, Any]:
-    """Return the facts as JSON can hold them: SI units, rad; None where there is no number."""
+def facts(solution: Solution, refusal: str = "") -> dict[str, Any]:
+    """Return the facts as JSON can hold them: SI units, rad; None where there is no number.
+
+    ``refusal`` is what an `AccuracyError` said, if the run comes from one.
+    """
     case, run = solution.case(), solution._run
     n = len(case.scene.links)
     found = {
@@ -38,6 +41,7 @@ def facts(solution: Solution) -> dict[str, Any]:
         "status": solution.status,
         "message": solution.message,
         "success": solution.success,
+        "refusal": refusal or None,
         "end": {"t": run.t_reached, "q": run.y_reached[:n], "qd": run.y_reached[n:]},
         "statistics": solution.stats._asdict(),
         "accuracy": None if solution.accuracy is None else solution.accuracy.to_dict(),
@@ -133,12 +137,15 @@ def _asked(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
 def _happened(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
     stats, end, energy = found["statistics"], found["end"], found["energy"]
     yield "status", outcome(found["status"], found["message"])
+    if found["refusal"] is not None:
+        yield "refused", found["refusal"]
     yield "end", f"t = {end['t']:.6g} s, {_state(end)}"
     for i, event in enumerate(found["events"]):
         yield "" if i else "events", f"{event['text']}: {_times(event['times'])}"
     yield "steps", f"{stats['accepted']} accepted, {stats['rejected']} rejected"
     yield "", f"{stats['min_step']:.3g} ... {stats['max_step']:.3g} s long"
-    yield "work", f"{stats['nfev']} right-hand sides"
+    method = found["run"]["method"]
+    yield "work", evaluations(method, found["message"], stats["nfev"])
     if found["accuracy"] is not None:
         yield "accuracy", str(Accuracy.from_dict(found["accuracy"]))
     yield "energy drift", energy_drift.text(energy)

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Sequence
 from html import escape
 
+from pendcore import _core
 from pendcore.arguments import Floats
 from pendcore.solution import Solution
 from pendcore.views import energy_drift
@@ -41,14 +42,27 @@ def outcome(status: str, message: str) -> str:
     return message if message.startswith(f"{status}:") else f"{status}: {message}"
 
 
+def evaluations(method: str, message: str, nfev: int) -> str:
+    """Return how often what was evaluated: series by Taylor's, right-hand sides by others."""
+    known = {one["name"]: one for one in _core.methods()}
+    begins = known[known[method]["first"] or method]
+    if not begins["dense_output_is_series"]:
+        return f"{nfev} right-hand sides"
+    if f"went on with {known[method]['second'] or method}" in message:
+        return f"{nfev} series and right-hand sides"
+    return f"{nfev} series, each as long as many right-hand sides"
+
+
 def _rows(solution: Solution) -> list[tuple[str, str]]:
     n, t, stats = len(solution.scene.links), solution.t, solution.stats
     rows = [
         ("status", outcome(solution.status, solution.message)),
         ("scene", f"{n} link{'s'[: n > 1]}, gravity {solution.scene.gravity:.6g} m/s^2"),
         *([("effects", _effects(solution))] if solution.scene.effects else []),
-        ("method", f"{solution.method}, {stats.accepted} steps, {stats.nfev} right-hand sides"),
+        ("method", f"{solution.method}, {stats.accepted} steps, {_evaluations(solution)}"),
     ]
+    if solution.accuracy is not None:
+        rows.append(("accuracy", solution.accuracy.outcome()))
     if len(t):
         rows += [
             ("t", f"{t[0]:.6g} ... {t[-1]:.6g} s, {len(t)} kept"),
@@ -61,6 +75,10 @@ def _rows(solution: Solution) -> list[tuple[str, str]]:
     rows.append(("energy", "drift " + energy_drift.text(drift) + of_some))
     rows += [("", energy_drift.TOO_LARGE)] * drift["too_large"]
     return rows
+
+
+def _evaluations(solution: Solution) -> str:
+    return evaluations(solution.method, solution.message, solution.stats.nfev)
 
 
 def _effects(solution: Solution) -> str:
