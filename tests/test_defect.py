@@ -41,7 +41,7 @@ def run(scene: pc.Scene, method: str, t_end: float = 1.0, **options: Any) -> pc.
 
 
 def value(coefficients: list[Any], theta: Any) -> Any:
-    return mpmath.polyval(coefficients, theta, asc=True)
+    return mpmath.polyval(coefficients[::-1], theta)
 
 
 def exact_couples(sol: pc.Solution) -> np.ndarray:
