@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pendcore as pc
 import sympy
-from pendcore.derive.motion import of_differences
+from pendcore.derive.chain import of_differences
 
 # %  L1 = 1; L2 = 1; m1 = 1; m2 = 1; g = 9.807;
 # %  t = sym('t','real');
@@ -94,7 +94,7 @@ Path("inline_function.m").write_text(book.to_octave_inline(), encoding="utf-8")
 Path("RR.m").write_text(book.to_octave("RR"), encoding="utf-8")
 
 # %  t0 = 0; tf = 5; time = [0 tf];  x0 = [pi/4; 0; pi/3; 0];
-# %  [t,xs] = ode45(@RR, time, x0);
+# %  [t,xs] = ode45(g, time, x0);    and with the function file    [t,xs] = ode45(@RR, time, x0);
 # MATLAB's x is (q1, qd1, q2, qd2). The method is ode45's; its default tolerances are 1e-3 and 1e-6.
 run = pc.simulate(scene, q0=[pi / 4, pi / 3], qd0=[0, 0], t_span=(0, 5), method="ode45")
 print(f"q1(5) = {run.q[-1, 0]:.6f}, q2(5) = {run.q[-1, 1]:.6f} rad")

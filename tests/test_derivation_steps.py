@@ -124,6 +124,18 @@ def test_what_the_textbook_prints_otherwise_is_remarked_on_where_it_is() -> None
     assert not any(e.remark or e.number for e in others)
 
 
+def test_two_drags_on_a_rod_are_told_apart() -> None:
+    drag = pc.effects.RodDrag(link=2, drag_coefficient=1.0, diameter=0.1)
+    rod = pc.Link(mass=1.0, length=1.0)
+    both = Derivation(pc.Scene(links=[rod, rod], effects=[drag, drag.replace(diameter=0.2)]))
+    found = equations(both)
+    assert [str(e.lhs) for e in found if str(e.lhs).startswith("D2")] == ["D2", "D2__2"]
+    (newton,) = (e for e in found if e.number == "2.3")
+    assert str(newton.rhs) == "F12 + G2 + D2 + D2__2"
+    (euler,) = (e for e in found if e.number == "2.4")
+    assert str(euler.rhs).endswith("r_C2B x D2 + Td_2__2 k + r_C2B x D2__2")
+
+
 def by_number(number: str) -> Equation:
     return next(e for e in equations(TEXTBOOK) if e.number == number)
 

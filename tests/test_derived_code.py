@@ -296,13 +296,20 @@ def test_the_textbook_s_file_begins_as_the_book_s_does() -> None:
     assert "dx(3) = x(4);" in lines
 
 
-@pytest.mark.parametrize("name", ["2RR", "R R", "R-R", "", "_R"])
+@pytest.mark.parametrize("name", ["2RR", "R R", "R-R", "", "while", "_R", "end", "dx"])
 def test_names_that_a_language_refuses_are_refused(name: str) -> None:
     with pytest.raises(ValueError, match="must be a name that Octave allows"):
         derived("textbook").to_octave(name)
-    if name != "_R":
-        with pytest.raises(ValueError, match=r"must be a name that C\+\+ allows"):
-            header(derived("textbook"), name)
+    if name not in ("_R", "end", "dx"):
+        for given in ({"name": name}, {"namespace": name}):
+            with pytest.raises(ValueError, match=r"must be a name that C\+\+ allows"):
+                header(derived("textbook"), **given)
+
+
+@pytest.mark.parametrize("given", [{"name": "State"}, {"name": "energy"}, {"namespace": "std"}])
+def test_a_header_is_not_called_as_what_is_in_it(given: dict[str, str]) -> None:
+    with pytest.raises(ValueError, match="is taken"):
+        header(derived("textbook"), **given)
 
 
 def test_lines_fit_a_page() -> None:

@@ -11,7 +11,7 @@ import numpy as np
 import pendcore as pc
 import pytest
 from pendcore.derive import Derivation, line_breaks
-from pendcore.derive.handout import conversion, motion, report, worksheet
+from pendcore.derive.handout import conversion, drawing, motion, report, worksheet
 from pendcore.derive.handout.document import Displayed, Document, Reader
 from pendcore.derive.handout.figures import Figures
 from pendcore.derive.handout.numbers import Start
@@ -142,6 +142,69 @@ def test_what_the_derivation_says_of_the_start_is_what_the_core_says(handed_out:
     scale = max(abs(core) for *_, core in rows)
     for name, _, own, core in rows:
         assert abs(own - core) <= 1e-13 * scale, name
+
+
+def test_at_rest_there_is_no_rounding_to_be_seen() -> None:
+    rods = [pc.Link(mass=1.0, length=1.0), pc.Link(mass=2.0, length=0.7)]
+    case = pc.Case(scene=pc.Scene(links=rods), q0=np.pi / 2, t_span=(0, 1))  # cos q is 6e-17
+    text = report(Derivation(case.scene), case, motion.solved(case)).markdown()
+    for name in (r"\ddot{q}_{1}", r"\ddot{q}_{2}", "F_{01x}", "F_{21x}"):
+        assert f"| ${name}$ | $0$ | $0$ |" in text
+    assert "$-0.0000$" not in text
+
+
+def test_a_run_that_stops_says_why() -> None:
+    rod = pc.Scene(links=[pc.Link(mass=1.0, length=1.0)])
+    down = pc.events.LinkAngle(link=1, value=1.5, terminal=True)
+    case = pc.Case(scene=rod, q0=0.5, t_span=(0, 5), options={"events": [down]})
+    text = report(Derivation(rod), case, motion.solved(case)).markdown()
+    assert "The run is stopped at a terminal event (at t = " in text
+
+
+def test_a_run_that_fails_is_warned_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", "")
+    rod = pc.Scene(links=[pc.Link(mass=1.0, length=1.0)])
+    case = pc.Case(scene=rod, q0=0.5, t_span=(0, 5), options={"max_steps": 2})
+    with pytest.warns(pc.PendcoreWarning, match="the run is not complete: the cap on steps"):
+        Derivation(rod).report(case, tmp_path)
+    assert "**The run is not complete: the cap on steps" in (tmp_path / "report.md").read_text()
+
+
+def test_a_run_that_takes_no_time_is_refused() -> None:
+    rod = pc.Scene(links=[pc.Link(mass=1.0, length=1.0)])
+    with pytest.raises(ValueError, match=r"^t_span = \(1\.0, 1\.0\): a report draws curves"):
+        motion.solved(pc.Case(scene=rod, q0=0.5, t_span=(1, 1)))
+
+
+@pytest.mark.parametrize("n", [1, 2, 3])
+def test_arrows_point_the_way_that_counts_as_positive(
+    n: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """F_01 along +x and +y on link 1; F_21 so on link 1, and the other way round on link 2."""
+    drawn: list[list[tuple[str, list[float]]]] = []
+    sketch, arrow = drawing.sketch, drawing.arrow
+
+    def begun(*given: Any) -> Any:
+        drawn.append([])
+        return sketch(*given)
+
+    def looked_at(on: Any, start: Any, along: Any, text: str = "", *more: Any, **how: Any) -> None:
+        drawn[-1].append((text, np.sign(np.round(along, 9)).tolist()))
+        arrow(on, start, along, text, *more, **how)
+
+    monkeypatch.setattr(drawing, "sketch", begun)
+    monkeypatch.setattr(drawing, "arrow", looked_at)
+    scene = pc.Scene(links=[pc.Link(mass=1.0, length=1.0)] * n)
+    Figures(Derivation(scene), [0.5] * n).free_bodies()
+    for i, arrows in enumerate(drawn, start=1):
+        near, far = ("01" if i == 1 else f"{i}{i - 1}"), f"{i + 1}{i}"
+        sign = 1.0 if i == 1 else -1.0
+        expected = {f"$m_{{{i}}} g$": [0.0, 1.0]}
+        expected |= {f"$F_{{{near}x}}$": [sign, 0.0], f"$F_{{{near}y}}$": [0.0, sign]}
+        if i < n:
+            expected |= {f"$F_{{{far}x}}$": [1.0, 0.0], f"$F_{{{far}y}}$": [0.0, 1.0]}
+        assert dict(arrows) == expected
+    assert len(drawn) == n
 
 
 def test_curves_are_of_the_forces_that_the_derivation_names(handed_out: Any) -> None:

@@ -51,7 +51,7 @@ from pendcore.statistics import Statistics
 from pendcore.warning import PendcoreWarning
 
 if TYPE_CHECKING:
-    from pendcore import derive
+    from pendcore import derive as derive
 
 
 def __getattr__(name: str) -> Any:
@@ -84,7 +84,6 @@ __all__ = [
     "accuracy_cost",
     "angles_from_vertical",
     "angles_to_vertical",
-    "derive",
     "effects",
     "events",
     "horizon_work",

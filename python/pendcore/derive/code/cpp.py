@@ -27,6 +27,18 @@ TAKEN = (
 )
 """What the header calls its own."""
 
+KEYWORDS = {
+    *("alignas", "alignof", "and", "asm", "auto", "bitand", "bitor", "bool", "break", "case"),
+    *("catch", "char", "class", "compl", "const", "constexpr", "continue", "decltype", "default"),
+    *("delete", "do", "double", "else", "enum", "explicit", "export", "extern", "false", "float"),
+    *("for", "friend", "goto", "if", "inline", "int", "long", "mutable", "namespace", "new"),
+    *("noexcept", "not", "nullptr", "operator", "or", "private", "protected", "public"),
+    *("register", "return", "short", "signed", "sizeof", "static", "struct", "switch"),
+    *("template", "this", "throw", "true", "try", "typedef", "typeid", "typename", "union"),
+    *("unsigned", "using", "virtual", "void", "volatile", "while", "xor"),
+}
+"""Words of the language that are names to Python."""
+
 HEAD = """/// \\file
 /// {chain}: right-hand side, joint reactions, energies. Needs nothing but C++17.
 ///
@@ -116,9 +128,11 @@ def header(derivation: Derivation, name: str = "Chain", namespace: str = "pendul
     name, namespace : str, default "Chain" and "pendulum"
         Of the struct, and where it stands.
     """
-    for what, given in (("name", name), ("namespace", namespace)):
-        if not given.isidentifier() or not given.isascii():
+    for what, given, own in (("name", name, TAKEN), ("namespace", namespace, ("std",))):
+        if not given.isidentifier() or not given.isascii() or given in KEYWORDS:
             raise ValueError(f"{what} = {given!r}: must be a name that C++ allows")
+        if given in own:
+            raise ValueError(f"{what} = {given!r}: is taken: the header has something of that name")
     taken = (*TAKEN, name, namespace)
     n, quantities = derivation.n, Quantities.of(derivation, taken)
     every = [p.symbol for p in derivation.symbols.parameters]

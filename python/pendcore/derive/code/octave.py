@@ -23,6 +23,13 @@ if TYPE_CHECKING:
 TAKEN = ("t", "x", "dx", "g0", "i", "j", "e", "pi", "end", "function", "Inf", "NaN", "eps")
 """What the language, or the file, calls its own."""
 
+KEYWORDS = {
+    *("break", "case", "catch", "classdef", "continue", "do", "else", "elseif", "end", "endfor"),
+    *("endfunction", "endif", "endswitch", "endwhile", "for", "function", "global", "if"),
+    *("otherwise", "parfor", "persistent", "return", "spmd", "switch", "try", "until", "while"),
+}
+"""What no function can be called, in Octave or in MATLAB."""
+
 
 def function_file(derivation: Derivation, name: str = "RR") -> str:
     """Return the text of a function file for ``ode45``, such as the textbook's RR.m.
@@ -142,5 +149,6 @@ def _exact(value: float) -> Rational | Float:
 
 
 def _check(name: str) -> None:
-    if not name.isidentifier() or not name.isascii() or name.startswith("_"):
+    refused = name.startswith("_") or name in KEYWORDS | {"t", "x", "dx"}
+    if not name.isidentifier() or not name.isascii() or refused:
         raise ValueError(f"name = {name!r}: must be a name that Octave allows, such as 'RR'")

@@ -104,6 +104,8 @@ def _written(
 ) -> list[Path]:
     told(0.0)
     solution = motion.solved(case)
+    if not solution.success:
+        warn(f"the run is not complete: {solution.message}")
     told(0.05)
     documents = {"report": report(derivation, case, solution)}
     if with_worksheet:

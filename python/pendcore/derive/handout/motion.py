@@ -27,6 +27,8 @@ ROWS = 11
 def solved(case: Case) -> Solution:
     """Run a case so that it can be drawn, with a ledger if its effects do work."""
     start, end = case.t_span
+    if start == end:
+        raise ValueError(f"t_span = {case.t_span}: a report draws curves: let the run take time")
     options: dict[str, Any] = dict(case.options)
     options.pop("store", None)
     options |= {"t_eval": tuple(np.linspace(start, end, POINTS).tolist())}
@@ -46,6 +48,8 @@ def numerical_solution(
     yield Paragraph(_how(solution))
     if not solution.success:
         yield Paragraph(f"**The run is not complete: {solution.message}**")
+    elif solution.status == "event":
+        yield Paragraph(f"The run is {solution.message}.")
     yield figures.angles(solution)
     yield _table(derivation, solution)
     yield figures.reactions(solution)
@@ -87,8 +91,8 @@ def _table(derivation: Derivation, solution: Solution) -> Table:
     chosen = np.unique(np.linspace(0, len(solution.t) - 1, ROWS).round().astype(int))
     rows = []
     for k in chosen:
-        cells = [f"{solution.t[k]:.4g}", *(f"{x:.3f}" for x in np.degrees(solution.q[k]))]
-        cells += [f"{x:.4f}" for x in solution.qd[k]] if with_rates else []
+        cells = [f"{solution.t[k]:.4g}", *(f"{x:z.3f}" for x in np.degrees(solution.q[k]))]
+        cells += [f"{x:z.4f}" for x in solution.qd[k]] if with_rates else []
         rows.append(tuple(f"${cell}$" for cell in cells))
     return Table(tuple(head), tuple(rows), "r" * len(head))
 

@@ -130,21 +130,23 @@ def at_the_start(derivation: Derivation, case: Case) -> Iterator[Block]:
     lines = []
     for symbol, value in entries.items():
         name = "kg m^2" if symbol.name.startswith("M") else "N m"
-        shown = value if abs(value) > 1e-15 * largest else 0.0  # the rounding of an angle is none
-        lines.append(f"{write(symbol)} &= {quantity(shown, name)}")
+        lines.append(f"{write(symbol)} &= {quantity(_shown(value, largest), name)}")
     yield Displayed(line_breaks.aligned(lines))
     yield Paragraph(
         "From them follow the accelerations, and from these the reactions. The compiled core of "
         "pendcore, which does not have its equations from here, computes the same:"
     )
     rows = start.rows()
-    yield Table(
-        ("", "by this derivation", "by the core", "unit"),
-        tuple(
-            (f"${n}$", f"${number(a)}$", f"${number(b)}$", f"${unit(u)}$") for n, u, a, b in rows
-        ),
-        "lrrl",
-    )
     scale = max(max(abs(a), abs(b)) for *_, a, b in rows) or 1.0
+    cells = [
+        (f"${n}$", *(f"${number(_shown(value, scale))}$" for value in both), f"${unit(u)}$")
+        for n, u, *both in rows
+    ]
+    yield Table(("", "by this derivation", "by the core", "unit"), tuple(cells), "lrrl")
     off = max(abs(a - b) for *_, a, b in rows) / scale
     yield Paragraph(f"The two differ by at most ${number(off, 2)}$ of the largest value.")
+
+
+def _shown(value: float, largest: float) -> float:
+    """Return a number as it is printed: what the rounding of an angle leaves of 0 is 0."""
+    return value if abs(value) > 1e-15 * largest else 0.0

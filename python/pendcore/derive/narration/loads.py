@@ -58,7 +58,7 @@ def _effects(page: Page) -> None:
     ]
     for load in page.equations.loads:
         parts = (page.along(u, f) for u, f in zip("ij", load.force, strict=True))
-        found.append(page.equation(page.vector("D", load.link), total(parts)))
+        found.append(page.equation(page.load(load), total(parts)))
     if page.equations.payload is not None:
         weight = page.along("j", page.equations.payload.mass * page.s.gravity)
         found.append(page.equation(page.vector("G", "p"), weight))

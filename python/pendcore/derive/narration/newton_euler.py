@@ -29,7 +29,7 @@ def _newton(page: Page, i: int, number: str | None) -> Equation:
     """Newton's, m a_C = F + F + G + loads."""
     near, far = _forces(page, i)
     acting = [near, *([far] if far else []), page.vector("G", i)]
-    acting += [page.vector("D", i) for load in page.equations.loads if load.link == i]
+    acting += [page.load(load) for load in page.equations.loads if load.link == i]
     mass = page.s.masses[i - 1]
     left = page.scaled(mass, page.vector("a", page.center(i)))
     return page.equation(left, total(acting), number)
@@ -50,7 +50,7 @@ def _euler(page: Page, i: int, about: Formula, number: str | None) -> Equation:
         if load.link == i:
             acting.append(page.along("k", load.moment))
             if about != begin:
-                acting.append(page.cross(page.position(begin, about), page.vector("D", i)))
+                acting.append(page.cross(page.position(begin, about), page.load(load)))
     couples = page.equations.joint_couple(i) - page.equations.joint_couple(i + 1)
     if i == page.n and page.equations.payload is not None:
         couples -= page.equations.payload.inertia * page.s.qdd[i - 1]

@@ -12,6 +12,7 @@ from pendcore.derive.writing import ACCELERATION, ANGLE, MASS, RATE
 
 if TYPE_CHECKING:
     from pendcore.derive.derivation import Derivation
+    from pendcore.derive.laws import LinkLoad
 
 
 class Page:
@@ -96,6 +97,14 @@ class Page:
         )
         between = "_" if isinstance(index, Formula) else ""
         return Formula(f"{letter}{between}{text}", f"{name}_{{{latex}}}")
+
+    def load(self, load: LinkLoad) -> Formula:
+        """Return the name of a force along a link, D_2; a second one there is told from it."""
+        vector = self.vector("D", load.link)
+        count = 1 + [x for x in self.equations.loads if x.link == load.link].index(load)
+        if count == 1:
+            return vector
+        return Formula(f"{vector.text}__{count}", f"{vector.latex}^{{({count})}}")
 
     def along(self, unit: str, value: Any) -> Formula:
         """Return a value along a unit vector: ``m1*g j``."""
