@@ -1,4 +1,4 @@
-"""What the steps refer to is there: numbers of the textbook, and what is said of reactions and locks."""
+"""What the steps refer to is there: numbers of the textbook, reactions, couples of locks."""
 
 from __future__ import annotations
 
