@@ -101,18 +101,11 @@ def test_a_run_at_rest_is_said_to_be_one() -> None:
 
 
 def test_a_method_is_told_in_words() -> None:
+    dormand, radau = "Dormand and Prince's method of order", "Radau IIA of order 5"
     pairs = {
-        "dop853-radau5": (
-            "Dormand and Prince's method of order 8",
-            "stiff",
-            "Radau IIA of order 5",
-        ),
-        "dopri5-radau5": (
-            "Dormand and Prince's method of order 5",
-            "stiff",
-            "Radau IIA of order 5",
-        ),
-        "taylor-radau5": ("Taylor series", "stiff", "Radau IIA of order 5"),
+        "dop853-radau5": (f"{dormand} 8", "stiff", radau),
+        "dopri5-radau5": (f"{dormand} 5", "stiff", radau),
+        "taylor-radau5": ("Taylor series", "stiff", radau),
     }
     for name, told in pairs.items():
         words = method_in_words(name)

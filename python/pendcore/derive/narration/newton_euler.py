@@ -118,7 +118,7 @@ def _first(page: Page, link: LinkEquations) -> None:
 
 
 def _other(page: Page, i: int, link: LinkEquations) -> None:
-    """Another link, or one that hangs from no fixed point, about its mass centre: (2.3) to (2.8)."""
+    """Write a link about its mass centre; link 2 is that of (2.3) to (2.8)."""
     center = page.center(i)
     accelerated = page.chain.center_accelerations[i - 1]
     mass = page.s.masses[i - 1]
