@@ -153,6 +153,21 @@ def test_at_rest_there_is_no_rounding_to_be_seen() -> None:
     assert "$-0.0000$" not in text
 
 
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({}, "order 8, and by Radau IIA where the equations are stiff, with the tolerances"),
+        ({"rtol": 1e-4, "atol": 1e-6}, "`ode45`, and by Radau IIA where the equations are stiff"),
+        ({"method": "ode45"}, "that of MATLAB's `ode45`, with the tolerances"),
+        ({"method": "Radau"}, "by Radau IIA, an implicit method of order 5, with"),
+        ({"method": "rk4", "step": 0.01}, "the classical Runge-Kutta method of order 4, with a"),
+    ],
+)
+def test_the_method_is_told_in_words(options: dict[str, Any], words: str) -> None:
+    case = pc.Case(scene=LEVEL.scene, q0=0.0, t_span=(0, 1), options=options)
+    assert words in motion._how(motion.solved(case))
+
+
 def test_a_run_that_stops_says_why() -> None:
     rod = pc.Scene(links=[pc.Link(mass=1.0, length=1.0)])
     down = pc.events.LinkAngle(link=1, value=1.5, terminal=True)
@@ -205,6 +220,22 @@ def test_arrows_point_the_way_that_counts_as_positive(
             expected |= {f"$F_{{{far}x}}$": [1.0, 0.0], f"$F_{{{far}y}}$": [0.0, 1.0]}
         assert dict(arrows) == expected
     assert len(drawn) == n
+
+
+def test_free_bodies_have_the_couples_of_the_equations(handed_out: Any) -> None:
+    case, derivation, *_ = handed_out
+    drawing_of_them = Figures(derivation, case.q0).free_bodies()
+    shown = [t.get_text() for axes in drawing_of_them.figure.axes for t in axes.texts]
+    couples = [d.symbol for d in derivation.equations.torques]
+    couples += derivation.equations.holding.values()
+    for couple in couples:
+        links = 1 if couple.name.endswith("1") else 2
+        assert shown.count(f"${derivation.symbols.latex(couple)}$") == links
+    assert ("Not drawn: " in drawing_of_them.caption) == bool(
+        derivation.equations.loads
+        or any(derivation.equations.armatures)
+        or (derivation.equations.payload and derivation.equations.payload.inertia)
+    )
 
 
 def test_curves_are_of_the_forces_that_the_derivation_names(handed_out: Any) -> None:

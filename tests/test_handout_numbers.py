@@ -12,7 +12,6 @@ from pendcore.derive import Derivation
 from pendcore.derive.handout import motion, report
 from pendcore.derive.handout.document import Document
 from pendcore.derive.handout.largest import largest_reactions
-from pendcore.derive.handout.motion import method_in_words
 from pendcore.derive.handout.numbers import Start
 
 fx = pc.effects
@@ -98,23 +97,6 @@ def test_a_run_at_rest_is_said_to_be_one() -> None:
     assert "$-0.0000$" not in text
     assert re.search(r"and it (does not change in any digit|stays within .*; nothing moves)", text)
     assert r"|\mathbf{F}_{01}| = 19.61\;\text{N}$ throughout" in text
-
-
-def test_a_method_is_told_in_words() -> None:
-    dormand, radau = "Dormand and Prince's method of order", "Radau IIA of order 5"
-    pairs = {
-        "dop853-radau5": (f"{dormand} 8", "stiff", radau),
-        "dopri5-radau5": (f"{dormand} 5", "stiff", radau),
-        "taylor-radau5": ("Taylor series", "stiff", radau),
-    }
-    for name, told in pairs.items():
-        words = method_in_words(name)
-        assert "`" not in words.replace("`ode45`", "")
-        assert all(x in words for x in told)
-    for name in ("dopri5", "RK45", "ode45", "dop853", "DOP853", "taylor", "radau5", "Radau", "rk4"):
-        assert "the method `" not in method_in_words(name)
-    drag = case(2, fx.RodDrag(link=2, drag_coefficient=1.2, diameter=0.1))
-    assert "Radau IIA of order 5" in document(drag).markdown()
 
 
 def size_at(solution: pc.Solution, t: Any) -> Any:

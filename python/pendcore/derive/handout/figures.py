@@ -6,12 +6,13 @@ from collections.abc import Sequence
 from math import degrees
 
 import numpy as np
+from sympy import Integer
 
 from pendcore.derive.derivation import Derivation
 from pendcore.derive.handout import curves, drawing
 from pendcore.derive.handout.document import Drawing
 from pendcore.derive.handout.free_bodies import Reaction, free_bodies
-from pendcore.derive.handout.mechanism import couples_of, mechanism
+from pendcore.derive.handout.mechanism import mechanism
 from pendcore.derive.handout.quantities import number
 from pendcore.derive.narration.page import Page
 from pendcore.solution import Solution
@@ -65,14 +66,33 @@ class Figures:
             reactions.append(Reaction(write(tip[0]), write(tip[1]), False))
         with drawing.lettering():
             figure = free_bodies(
-                self.scene, self.q, self.points, reactions if forces else [], couples_of(self.scene)
+                self.scene, self.q, self.points, reactions if forces else [], self._couples()
             )
         words = (
-            "The links as free bodies; the arrows show what counts as positive."
+            f"The links as free bodies; the arrows show what counts as positive.{self._left_out()}"
             if forces
             else "The links, to be completed to free-body diagrams."
         )
         return Drawing("free_bodies" if forces else "links", self._caption(words), figure)
+
+    def _couples(self) -> dict[int, str]:
+        """LaTeX of the torque and of the couple of a lock, by joint."""
+        s, equations = self.derivation.symbols, self.derivation.equations
+        at_rest = dict.fromkeys(s.qdd, Integer(0))
+        couples = {j: equations.joint_couple(j).xreplace(at_rest) for j in range(1, s.n + 1)}
+        return {joint: s.latex(couple) for joint, couple in couples.items() if couple != 0}
+
+    def _left_out(self) -> str:
+        """What acts on the links and is not drawn."""
+        equations = self.derivation.equations
+        inert = equations.payload is not None and equations.payload.inertia != 0
+        found = {
+            "the drag along rods": bool(equations.loads),
+            "the couples that turn rotors": any(equations.armatures),
+            "the couple that turns the payload": inert,
+        }
+        left_out = [words for words, acts in found.items() if acts]
+        return f" Not drawn: {', '.join(left_out)}." if left_out else ""
 
     def angles(self, solution: Solution) -> Drawing:
         """The textbook's figure."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -41,7 +41,7 @@ def free_bodies(
     q: Sequence[float],
     points: Sequence[str],
     reactions: Sequence[Reaction],
-    couples: frozenset[int] = frozenset(),
+    couples: Mapping[int, str],
 ) -> Figure:
     """Draw each link at its angle, with what acts on it; arrows show what counts as positive.
 
@@ -56,8 +56,8 @@ def free_bodies(
     reactions : sequence of Reaction
         Of the joints, from the pivot outwards, and of the payload if there is one; empty for the
         links without anything that acts on them.
-    couples : frozenset of int
-        Joints with a couple.
+    couples : dict of int to str
+        LaTeX of the couple at a joint, where there is one.
     """
     from matplotlib.figure import Figure
 
@@ -112,17 +112,17 @@ def _forces(on: Sketch, at: Floats, force: Reaction, link: float, *, outer: bool
 
 
 def _couples(
-    on: Sketch, ends: tuple[Floats, Floats], angle: float, number: int, joints: frozenset[int]
+    on: Sketch, ends: tuple[Floats, Floats], angle: float, number: int, couples: Mapping[int, str]
 ) -> None:
     """Draw the couple of the link's own joint, and against it that of the next one."""
     for end, joint, sense in ((0, number, 1.0), (1, number + 1, -1.0)):
-        if joint in joints:
+        if joint in couples:
             outer = end == 0
             at_name = np.arctan2(*_clear(angle, outer=outer)[::-1])
             towards = _clear(angle, outer=outer, taken=float(at_name))
             middle = float(np.arctan2(towards[1], towards[0]))
             drawing.turning_arrow(
-                on, ends[end], rf"$\tau_{{{joint}}}$", radius=0.13,
+                on, ends[end], f"${couples[joint]}$", radius=0.13,
                 span=(middle - 0.8 * sense, middle + 0.8 * sense), color=drawing.COUPLE,
             )  # fmt: skip
 

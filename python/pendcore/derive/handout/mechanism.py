@@ -16,7 +16,7 @@ from pendcore.scene import Scene
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-COUPLES = {"viscous_joint", "torsional_spring", "motor", "dry_joint_friction"}
+COUPLES = {"viscous_joint", "torsional_spring", "motor"}
 """Kinds of effects that act by a couple in their joint."""
 
 

@@ -31,11 +31,10 @@ METHODS = {
     "dopri5": "Dormand and Prince's method of order 5, that of MATLAB's `ode45`",
     "dop853": "Dormand and Prince's method of order 8",
     "taylor": "Taylor series",
-    "radau5": "Radau IIA of order 5, an implicit Runge-Kutta method",
+    "radau5": "Radau IIA, an implicit method of order 5",
     "rk4": "the classical Runge-Kutta method of order 4",
 }
-METHODS |= {"ode45": METHODS["dopri5"], "rk45": METHODS["dopri5"], "radau": METHODS["radau5"]}
-"""What a report calls the methods."""
+"""In words; of a pair, such as `taylor-radau5`, the first."""
 
 
 def solved(case: Case) -> Solution:
@@ -78,20 +77,13 @@ def _how(solution: Solution) -> str:
         if step
         else f"with the tolerances $r = {_one(asked['rtol'])}$ and $a = {_one(asked['atol'])}$"
     )
+    first, _, other = solution.method.partition("-")
+    words = METHODS.get(first, f"the method `{first}`")
+    words += ", and by Radau IIA where the equations are stiff" if other else ""
     return (
-        f"The first-order system is integrated by {method_in_words(solution.method)}, "
-        f"{tolerance}: {stats.accepted} steps, "
+        f"The first-order system is integrated by {words}, {tolerance}: {stats.accepted} steps, "
         f"{stats.nfev} evaluations of the right-hand side."
     )
-
-
-def method_in_words(name: str) -> str:
-    """Return what the book would call a method; of a pair, both."""
-    first, _, then = name.lower().partition("-")
-    words = METHODS.get(first, f"the method `{first}`")
-    if not then:
-        return words
-    return f"{words}, going on, where the equations are stiff, with {METHODS.get(then, then)}"
 
 
 def _one(tolerance: Any) -> str:
