@@ -164,7 +164,7 @@ class Derivation:
         return f"Derivation({self.scene!r})"
 
     def report(
-        self, case: Case, folder: Path, *, worksheet: bool = False, progress: Progress = None
+        self, case: Case, folder: Path | str, *, worksheet: bool = False, progress: Progress = None
     ) -> list[Path]:
         """Write the derivation with numbers and the solution of a case, to hand in or teach from.
 
@@ -172,7 +172,7 @@ class Derivation:
         ----------
         case : Case
             A start and a time for this scene.
-        folder : Path
+        folder : Path or str
             Where to; it is made if it is not there.
         worksheet : bool
             Whether to write a worksheet as well: the same with blanks.
@@ -189,6 +189,7 @@ class Derivation:
 
         if case.scene != self.scene:
             raise ValueError("case: is of another scene than the derivation: derive case.scene")
+        folder = Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
         return write_handout(self, case, folder, with_worksheet=worksheet, progress=progress)
 

@@ -1,4 +1,4 @@
-"""The equations of motion collected: M(q) qdd = f(t, q, qd).
+"""The equations of motion collected: M(q) qdd = f(t, q, qd), and with locks M qdd = f + lambda.
 
 The n moment equations without reactions are linear in the accelerations; M and f are their
 coefficients, with products of sines and cosines written as those of angle differences.
@@ -94,6 +94,21 @@ class Motion:
                 right[i - 1] = symbol(f"f{i}", f"f_{{{i}}}")
                 entries[right[i - 1]] = value
         return Named(entries, matrix.as_immutable(), right.as_immutable())
+
+    @cached_property
+    def locking(self) -> dict[Symbol, Expr]:
+        """The couples of locks on each link, lambda_i = Lambda_i - Lambda_(i+1), N m; if any."""
+        couples, found = self.equations.holding, dict[Symbol, Expr]()
+        for i in range(1, self.notation.n + 1):
+            value = couples.get(i, Integer(0)) - couples.get(i + 1, Integer(0))
+            if value != 0:
+                found[self.notation.symbol(f"lambda{i}", rf"\lambda_{{{i}}}")] = value
+        return found
+
+    @property
+    def law(self) -> str:
+        """The equations of motion in LaTeX: with locks their couples are on the right as well."""
+        return r"M \ddot{q} = f" + (r" + \lambda" if self.equations.locked else "")
 
     @cached_property
     def turning_together(self) -> Matrix:

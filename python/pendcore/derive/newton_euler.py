@@ -142,7 +142,11 @@ class NewtonEuler:
     def definitions(self) -> tuple[Definition, ...]:
         """All symbols that stand for laws, each in terms of those before it."""
         path = self.chain.path.items()
-        moved = [Definition(symbol, law, "motion of the pivot") for symbol, law in path]
+        units = {0: "m", 1: "m/s", 2: "m/s^2"}
+        moved = [
+            Definition(symbol, law, f"motion of the pivot, {units[symbol.name.count('d')]}")
+            for symbol, law in path
+        ]
         of_loads = [d for law in self.laws for d in law.definitions(self.chain)]
         return (*moved, *of_loads, *self.torques)
 

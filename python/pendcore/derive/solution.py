@@ -78,6 +78,12 @@ class Solution:
         return self._elimination[0]
 
     @property
+    def by_elimination(self) -> Assignments:
+        """Those of them that eliminate: D, L, h and a, by the symbols of `Motion.named`."""
+        known = {d.symbol for d in self.equations.definitions} | self.motion.named.entries.keys()
+        return tuple((symbol, value) for symbol, value in self.shared if symbol not in known)
+
+    @property
     def shared_accelerations(self) -> tuple[Expr, ...]:
         """The accelerations in terms of the symbols of `shared`, rad/s^2."""
         return self._elimination[1]

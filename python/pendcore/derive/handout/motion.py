@@ -11,7 +11,9 @@ from pendcore.case import Case
 from pendcore.derive.derivation import Derivation
 from pendcore.derive.handout.document import Block, Heading, Paragraph, Table
 from pendcore.derive.handout.figures import Figures
+from pendcore.derive.handout.largest import largest_reactions
 from pendcore.derive.handout.quantities import number, quantity
+from pendcore.derive.handout.scales import Scales
 from pendcore.energy import LOSSES
 from pendcore.solution import Solution
 from pendcore.views.energy_drift import energy_drift
@@ -20,6 +22,8 @@ POINTS = 1201
 """Times at which curves are drawn."""
 MOST_WITH_RATES = 3
 """Links of which the table has the rates too: more are wider than a page."""
+AT_REST = 1e-13
+"""Share of weights times lengths below which a kinetic energy is that of rounding."""
 ROWS = 11
 """Times that the table shows."""
 
@@ -40,7 +44,7 @@ def solved(case: Case) -> Solution:
         raise ValueError(f"t_span = {case.t_span}: a report draws curves: let the run take time")
     options: dict[str, Any] = dict(case.options)
     options.pop("store", None)
-    options |= {"t_eval": tuple(np.linspace(start, end, POINTS).tolist())}
+    options |= {"t_eval": tuple(np.linspace(start, end, POINTS).tolist()), "store": "dense"}
     if any(effect.description.account != "none" for effect in case.scene.effects):
         options["ledger"] = True
     return Case(
@@ -101,15 +105,12 @@ def _table(derivation: Derivation, solution: Solution) -> Table:
 
 
 def _largest(derivation: Derivation, solution: Solution) -> str:
-    size = np.linalg.norm(solution.reactions(), axis=-1)
     sentences = []
-    for i, k in enumerate(size.argmax(axis=0)):
+    for i, (size, time, steady) in enumerate(largest_reactions(solution)):
         name = derivation.symbols.latex(derivation.equations.forces[i][0]).replace("x}", "}")
         bold = rf"|\mathbf{{F}}{name[1:]}|"
-        sentences.append(
-            f"${bold} = {quantity(float(size[k, i]), 'N', 4)}$ "
-            f"at $t = {quantity(float(solution.t[k]), 's', 4)}$"
-        )
+        when = "throughout" if steady else f"at $t = {quantity(time, 's', 4)}$"
+        sentences.append(f"${bold} = {quantity(size, 'N', 4)}$ {when}")
     return f"The largest reactions are {', '.join(sentences)}."
 
 
@@ -122,23 +123,27 @@ def energy_check(derivation: Derivation, solution: Solution, figures: Figures) -
     yield Paragraph(
         (f"With the equations of motion put in, SymPy reduces ${rate}$ to 0: exactly, for all "
          "angles, rates and parameters. " if exactly else "")
-        + "What is left in the run is its error. " + _kept(solution)
+        + "What is left in the run is its error. " + _kept(derivation, solution)
     )  # fmt: skip
     if works:
         yield from _work(solution)
     yield figures.energies(solution)
 
 
-def _kept(solution: Solution) -> str:
-    drift = energy_drift(solution)
+def _kept(derivation: Derivation, solution: Solution) -> str:
+    drift, measure = energy_drift(solution), Scales(derivation).of["J"]
     words = f"In the run, $T + V$ is ${quantity(drift.start, 'J')}$ at the start"
     if drift.largest_drift is None:
         return words + "."
     what = "the balance with all work" if drift.ledger else "it"
-    share = "" if drift.relative_drift is None else (
-        f", ${number(drift.relative_drift, 2)}$ of the largest kinetic energy"
-    )  # fmt: skip
-    return f"{words}, and {what} stays within ${quantity(drift.largest_drift, 'J', 2)}${share}."
+    kept = f"stays within ${quantity(drift.largest_drift, 'J', 2)}$"
+    if drift.largest_drift == 0:
+        kept = "leaves over nothing at all" if drift.ledger else "does not change in any digit"
+    elif drift.relative_drift is not None and drift.largest_kinetic > AT_REST * measure:
+        kept += f", ${number(drift.relative_drift, 2)}$ of the largest kinetic energy"
+    else:
+        kept += "; nothing moves whose energy this could be measured by"
+    return f"{words}, and {what} {kept}."
 
 
 def _work(solution: Solution) -> Iterator[Block]:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from sympy import Expr
+from sympy import Dummy, Expr, Integer, expand
 
+from pendcore.derive.chain import Vector
 from pendcore.derive.narration import errata
 from pendcore.derive.narration.page import Page
 from pendcore.derive.step import Equation
@@ -50,44 +51,74 @@ def force(page: Page, link: int, axis: int) -> Expr:
 
 
 def _put_in(page: Page) -> None:
-    """Write (2.10) and (2.11): the force between the links put into both moment equations."""
-    mass = page.s.masses[1]
-    known = {}
-    for axis in (0, 1):
-        acceleration = page.chain.center_accelerations[1][axis]
-        weight = page.s.gravity if axis == 1 else 0
-        rest = force(page, 2, axis) + mass * acceleration - mass * weight
-        known[page.equations.forces[1][axis]] = -mass * (acceleration - weight) + rest
+    """Write (2.10) and (2.11): the reactions put into both moment equations."""
+    known, accelerations = _in_brackets(page)
+    fixed = page.chain.pivot_is_fixed
+    numbers = "2.10" if fixed else None, "2.11"  # about C_1 it is another equation than (2.10)
+    force = "The force between the links is" if fixed else "The joint reactions are"
+    if page.equations.payload is not None:
+        force = "The force between the links and that of the payload are" if fixed else force
+    of_link_1 = "equations (2.2)" if fixed else f"equation of link 1 (step {page.links[1]})"
     page.step(
         "Equations of motion",
-        "The force between the links is put into the moment equations (2.2) and (2.8).",
+        f"{force} put into the moment {of_link_1} and {'' if fixed else 'into '}(2.8).",
         *(
             page.equation(
                 link.moment.inertia,
-                link.moment.acting.xreplace(known),
+                expand(link.moment.acting.xreplace(known)).xreplace(accelerations),
                 number,
-                errata.REMARKS[number],
+                errata.REMARKS[number] if number else "",
             )
-            for link, number in zip(page.equations.links, ("2.10", "2.11"), strict=True)
+            for link, number in zip(page.equations.links, numbers, strict=True)
         ),
     )
+
+
+def _in_brackets(page: Page) -> tuple[dict[Expr, Expr], dict[Expr, Expr]]:
+    """Return the reactions by m (a - g), the brackets as symbols, and what stands in these."""
+    equations, chain = page.equations, page.chain
+    known: dict[Expr, Expr] = {}
+    brackets: dict[Expr, Expr] = {}
+
+    def bracket(acceleration: Vector, axis: int) -> Expr:
+        symbol = Dummy()
+        brackets[symbol] = acceleration[axis] - equations.weight(Integer(1))[axis]
+        return symbol
+
+    for axis in (0, 1):
+        if equations.payload is not None:
+            mass = equations.payload.mass
+            force = equations.payload.force[axis]
+            known[force] = expand(-mass * bracket(chain.tip_acceleration, axis))
+        for i in range(page.n, 0, -1):
+            mass = page.s.masses[i - 1]
+            near = mass * bracket(chain.center_accelerations[i - 1], axis)
+            near -= equations.far_force(i)[axis].xreplace(known)
+            near -= sum(load.force[axis] for load in equations.loads if load.link == i)
+            known[equations.forces[i - 1][axis]] = expand(near if i == 1 else -near)
+    return known, brackets
 
 
 def _collected(page: Page) -> None:
     """Write M qdd = f, entry by entry."""
     text = "" if page.n == 2 else "The reactions are put into the moment equations. "
+    law, locked = page.motion.law, page.motion.locking
     if page.n > 1:
         text += (
             "What they have of the accelerations is collected on the left, with $\\sin^{2} + "
-            "\\cos^{2} = 1$ and the sine and cosine of a difference: $M \\ddot{q} = f$, with a "
-            "symmetric matrix $M$."
+            "\\cos^{2} = 1$ and the sine and cosine of a difference: "
+            f"${law}$, with a symmetric matrix $M$."
         )
     else:
-        text += "What they have of the acceleration is collected on the left: $M \\ddot{q} = f$."
-    if page.equations.locked:
-        text += " The unknown couples of locks are left out of $f$; they follow later."
+        text += f"What they have of the acceleration is collected on the left: ${law}$."
+    if locked:
+        text += (
+            " $f$ has all but the unknown couples of locks; these are in $\\lambda$, on the link "
+            "beyond a joint and the opposite on the link before."
+        )
+    named = page.motion.named.entries | locked
     page.step(
         "Equations of motion, collected" if page.n == 2 else "Equations of motion",
         text,
-        *(page.equation(name, value) for name, value in page.motion.named.entries.items()),
+        *(page.equation(name, value) for name, value in named.items()),
     )

@@ -3,35 +3,89 @@
 from __future__ import annotations
 
 from pendcore.derive.narration.page import Page
+from pendcore.derive.step import Equation
 from pendcore.derive.writing import ANGLE, RATE
+
+BY_ELIMINATION = 4
+"""Unknown accelerations from which on determinants are longer than a page."""
 
 
 def first_order(page: Page) -> None:
     """Write the solution and the first-order form."""
-    solution = page.derivation.solution
-    several = page.n > 1
+    _solution(page)
+    _states(page)
+
+
+def _solution(page: Page) -> None:
+    solution, motion = page.derivation.solution, page.motion
+    unknowns = motion.turning_together.cols
     text = "The equations of motion are linear in the accelerations"
-    if not several:
+    if page.n == 1:
         text = "The equation of motion is divided by the factor of the acceleration"
-    if page.n > 1 and not page.equations.locked:
-        text += "; Cramer's rule solves them"
     if page.equations.locked:
         text += (
             "; the equations of the links that a lock makes turn as one are added, which takes "
             "its couple out of them"
         )
+        matrix, right, first = "B^{T} M B", "B^{T} f", ""
+    else:
+        matrix, right, first = "M", "f", ", with $D_{1} = M_{11}$ and $h_{1} = f_{1}$"
+    found = list[Equation]()
+    if unknowns >= BY_ELIMINATION:
+        kept = "what turns as one, $\\dot{q} = B r$, is one unknown, and " * bool(
+            page.equations.locked
+        )
+        text += (
+            f"; {kept}elimination solves them: ${matrix} = L D L^{{T}}$, where $L$ has ones on its "
+            "diagonal, its entries $\\ell_{ij}$ below and zeros above, and $D$ has nothing but "
+            f"its diagonal{first}. Then $L h = {right}$ gives $h$, and from "
+            "$L^{T} a = D^{-1} h$ follow the accelerations $a$, the last one first"
+        )
+        found = [page.equation(*assignment) for assignment in solution.by_elimination]
+        accelerations = solution.shared_accelerations
+    else:
+        accelerations = solution.by_entries
+    if unknowns < BY_ELIMINATION and page.n > 1 and not page.equations.locked:
+        text += "; Cramer's rule solves them"
+    if page.equations.locked:
+        text += f". {_condition(page)}"
     page.step(
-        f"Solution for the angular acceleration{'s' if several else ''}",
+        f"Solution for the angular acceleration{'s' if page.n > 1 else ''}",
         f"{text}.",
-        *(
-            page.equation(a, value)
-            for a, value in zip(page.s.qdd, solution.by_entries, strict=True)
-        ),
+        *found,
+        *(page.equation(a, value) for a, value in zip(page.s.qdd, accelerations, strict=True)),
         *(
             page.equation(page.equations.holding[joint], couple)
             for joint, couple in solution.holding.items()
         ),
     )
+
+
+def _condition(page: Page) -> str:
+    """Say what the couples of locks are found from."""
+    couples = [page.s.latex(symbol) for symbol in page.equations.holding.values()]
+    conditions = [
+        page.s.latex(page.chain.joint_acceleration(joint)) + " = 0"
+        for joint in page.equations.locked
+    ]
+    one = len(couples) == 1
+    return (
+        f"The condition of the lock, ${conditions[0]}$, is the equation that finds "
+        f"${couples[0]}$: it is what the lock must add to $f$ so that ${page.motion.law}$ holds "
+        "with these accelerations"
+        if one
+        else f"The conditions of the locks, {_listed(conditions)}, are the equations that find "
+        f"{_listed(couples)}: they are what the locks must add to $f$ so that "
+        f"${page.motion.law}$ holds with these accelerations"
+    )
+
+
+def _listed(formulas: list[str]) -> str:
+    *most, last = (f"${formula}$" for formula in formulas)
+    return f"{', '.join(most)} and {last}"
+
+
+def _states(page: Page) -> None:
     names, rates = [], []
     for i, (q, qd, qdd) in enumerate(zip(page.s.q, page.s.qd, page.s.qdd, strict=True)):
         k = 2 * i + 1
@@ -45,7 +99,7 @@ def first_order(page: Page) -> None:
         "First-order form",
         "The equations of second order become a system of first order, with two states for each "
         "link."
-        if several
+        if page.n > 1
         else "The equation of second order becomes a system of first order, with two states.",
         *names,
         *rates,

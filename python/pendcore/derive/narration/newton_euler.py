@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from sympy import expand
+
+from pendcore.derive.chain import cross, minus
 from pendcore.derive.narration import errata
 from pendcore.derive.narration.page import Page, total
 from pendcore.derive.newton_euler import LinkEquations, PayloadEquations
@@ -13,6 +16,7 @@ def newton_euler(page: Page) -> None:
     """Write the equations of every link."""
     for i, link in enumerate(page.equations.links, start=1):
         _first(page, link) if link.about_pivot else _other(page, i, link)
+        page.links[i] = len(page.steps)
     if page.equations.payload is not None:
         _payload(page, page.equations.payload)
 
@@ -62,20 +66,20 @@ def _euler(page: Page, i: int, about: Formula, number: str | None) -> Equation:
     return page.equation(left, total(acting), number)
 
 
-def _components(page: Page, i: int, link: LinkEquations, number: str | None) -> list[Equation]:
+def _components(page: Page, i: int, link: LinkEquations) -> list[Equation]:
     """Newton's along x and y, with accelerations as symbols."""
     mass = page.s.masses[i - 1]
     ax, ay = (page.coordinate(axis, page.center(i), 2) for axis in "xy")
     remark = errata.REMARKS["y of 2.5"] if i == 2 else ""
     return [
         page.equation(mass * ax, link.newton[0].acting),
-        page.equation(mass * ay, link.newton[1].acting, number, remark),
+        page.equation(mass * ay, link.newton[1].acting, None, remark),
     ]
 
 
 def _opposite(i: int) -> str:
     if i == 1:
-        return ""
+        return " $\\mathbf{F}_{01}$ is the joint reaction of the ground 0 on link 1 at $A$."
     pair, back = f"{i - 1}{i}", f"{i}{i - 1}"
     return (
         f" $\\mathbf{{F}}_{{{pair}}} = -\\mathbf{{F}}_{{{back}}}$ is the joint reaction of link "
@@ -109,46 +113,56 @@ def _first(page: Page, link: LinkEquations) -> None:
         _euler(page, 1, begin, "2.1"),
         *([] if has_more else written),
         page.equation(link.moment.inertia, link.moment.acting, "2.2", errata.REMARKS["2.2"]),
-        *_components(page, 1, link, None),
+        *_components(page, 1, link),
     )
 
 
 def _other(page: Page, i: int, link: LinkEquations) -> None:
-    """Another link, about its mass centre: (2.3) to (2.8)."""
+    """Write a link about its mass centre; link 2 is that of (2.3) to (2.8)."""
     center = page.center(i)
     accelerated = page.chain.center_accelerations[i - 1]
     mass = page.s.masses[i - 1]
     out: list[Equation] = []
-    if i == page.n == 2:
+    own = i == 2  # the textbook's numbers of link 2
+    if own and page.n == 2:
         out = [
             page.equation(mass * a, line.acting, number, errata.REMARKS.get(number, ""))
             for a, line, number in zip(accelerated, link.newton, ("2.6", "2.7"), strict=True)
         ]
-    determinant: list[Equation] = []
-    begin = page.joint(i - 1)
-    if page.is_textbook:
-        arm = (
-            page.coordinate("x", begin) - page.coordinate("x", center),
-            page.coordinate("y", begin) - page.coordinate("y", center),
-        )
-        moment = page.determinant(arm, page.equations.near_force(i))
-        left = page.along("k", link.moment.inertia)
-        determinant = [page.equation(left, moment, "2.5", errata.REMARKS["2.5"])]
+    determinant = [_determinant(page, link)] if own and page.n == 2 else []
     page.step(
         f"Newton-Euler equations of link {i}",
         "Mass times acceleration is the sum of the forces, moment of inertia times angular "
         f"acceleration the sum of the moments about ${center.latex}$.{_opposite(i)}",
-        _newton(page, i, "2.3"),
-        _euler(page, i, center, "2.4"),
-        *_components(page, i, link, "2.5" if page.n == i and not page.is_textbook else None),
+        _newton(page, i, "2.3" if own else None),
+        _euler(page, i, center, "2.4" if own else None),
+        *_components(page, i, link),
         *determinant,
         *out,
         page.equation(
             link.moment.inertia,
             link.moment.acting,
-            "2.8" if i == 2 else None,
+            "2.8" if own else None,
             errata.REMARKS["2.8"],
         ),
+    )
+
+
+def _determinant(page: Page, link: LinkEquations) -> Equation:
+    """(2.5): the moment of F_12 about C_2 as a determinant, and what effects add to it."""
+    begin, center, force = page.joint(1), page.center(2), page.equations.near_force(2)
+    arm = (
+        page.coordinate("x", begin) - page.coordinate("x", center),
+        page.coordinate("y", begin) - page.coordinate("y", center),
+    )
+    known = minus(page.chain.joints[1], page.chain.centers[1])
+    rest = expand(link.moment.acting - cross(known, force))
+    more = [page.along("k", term) for term in page.s.terms(rest) if term != 0]
+    return page.equation(
+        page.along("k", link.moment.inertia),
+        total([page.determinant(arm, force), *more]),
+        "2.5",
+        errata.REMARKS["2.5"],
     )
 
 

@@ -26,6 +26,8 @@ class Page:
         Whether the equations are the textbook's: two uniform rods and nothing else.
     steps : list of Step
         Those written so far.
+    links : dict
+        The number of the step with the equations of each link written so far.
     """
 
     def __init__(self, derivation: Derivation) -> None:
@@ -39,6 +41,7 @@ class Page:
         self.is_uniform = not any(x.particulars().keys() - {"mass", "length"} for x in links)
         self.is_textbook = self.n == 2 and self.is_uniform and not derivation.scene.effects
         self.steps: list[Step] = []
+        self.links: dict[int, int] = {}
 
     def step(self, title: str, text: str, *equations: Equation) -> None:
         """Write a step."""
