@@ -12,7 +12,7 @@ import pendcore as pc
 import pytest
 from pendcore.derive import Derivation, line_breaks
 from pendcore.derive.handout import conversion, drawing, motion, report, worksheet
-from pendcore.derive.handout.document import Displayed, Document, Reader
+from pendcore.derive.handout.document import Blank, Displayed, Document, Reader
 from pendcore.derive.handout.figures import Figures
 from pendcore.derive.handout.numbers import Start
 from pendcore.derive.handout.quantities import number, quantity
@@ -242,6 +242,37 @@ def test_a_worksheet_gives_nothing_away(handed_out: Any) -> None:
     assert "free bodies" in whole.markdown()
     assert {drawing.name for drawing in blank.drawings} == {"mechanism", "links", "axes"}
     assert "links" not in {drawing.name for drawing in whole.drawings}  # they share a folder
+
+
+def test_no_left_side_of_a_worksheet_is_the_answer_to_a_blank(handed_out: Any) -> None:
+    _, derivation, _, blank = handed_out
+    asked = [block.latex for block in blank.blocks if isinstance(block, Blank)]
+    assert len(asked) == sum(len(step.equations) for step in derivation.steps)
+    for left in asked:
+        assert not re.search(r"\\(sin|cos)\b|\\frac{[^\\]", left), left
+
+
+def test_a_worksheet_states_what_acts_and_what_its_symbols_are() -> None:
+    def stated(case: pc.Case) -> str:
+        derivation = Derivation(case.scene)
+        text = worksheet(derivation, case, motion.solved(case)).markdown()
+        return text[: text.index("## Derivation")]
+
+    busy, airy, shaken = (stated(case) for case in (BUSY, AIRY, SHAKEN))
+    for law in (
+        r"viscous damping, $-b_{2} \dot{\varphi}_{2}$",
+        r"a motor, $\tau_{M,1} \sin \left(\Omega_{1} t\right)$",
+        r"a torsional spring, $-k_{3} \left(\varphi_{3} - \varphi_{0,3}\right)$",
+        r"its moment of inertia about it is $I_{p}$",
+    ):
+        assert law in busy, law
+    angle = number(np.degrees(0.5 - 0.3))
+    assert rf"$\varphi_{{2}} = {angle}^\circ$" in airy
+    assert r"J_{1}\,\ddot{\varphi}_{1}" in airy
+    assert r"it is $w_{0,2}$ at $B$, $w_{1,2}$ at $D$" in airy
+    assert r"the wind $(v_{x,2}, 0)$" in airy
+    assert r"\varepsilon" not in airy
+    assert r"$y_{A}(t) = \hat{y}_{A} \sin \left(\Omega_{y} t\right), x_{A} = 0$" in shaken
 
 
 def test_numbers_have_six_digits_and_units_stand_upright() -> None:
