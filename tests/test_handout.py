@@ -10,8 +10,18 @@ from typing import Any
 import numpy as np
 import pendcore as pc
 import pytest
+from matplotlib.path import Path as MarkedPath
+from matplotlib.text import Text
 from pendcore.derive import Derivation, line_breaks
-from pendcore.derive.handout import conversion, drawing, motion, report, worksheet
+from pendcore.derive.handout import (
+    conversion,
+    curves,
+    drawing,
+    mechanism,
+    motion,
+    report,
+    worksheet,
+)
 from pendcore.derive.handout.document import Blank, Displayed, Document, Reader
 from pendcore.derive.handout.figures import Figures
 from pendcore.derive.handout.numbers import Start
@@ -273,6 +283,45 @@ def test_a_worksheet_states_what_acts_and_what_its_symbols_are() -> None:
     assert r"the wind $(v_{x,2}, 0)$" in airy
     assert r"\varepsilon" not in airy
     assert r"$y_{A}(t) = \hat{y}_{A} \sin \left(\Omega_{y} t\right), x_{A} = 0$" in shaken
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_names_in_figures_lie_on_nothing(seed: int) -> None:
+    """Not on each other, nor on a link: measured where they are drawn."""
+    rng = np.random.default_rng(seed)
+    n = 1 + seed % 4
+    q = np.radians(rng.choice([0.0, 15.0, 30.0, 70.0, 90.0, 110.0, 180.0, -40.0], n))
+    q = q + rng.uniform(-0.2, 0.2, n) * (seed % 2)
+    links = [pc.Link(mass=1.0, length=rng.uniform(0.3, 1.0)) for _ in range(n)]
+    acting: list[Any] = [effects.Payload(mass=0.2, inertia=0.01 * (seed % 2))] * (seed % 3 == 0)
+    acting += [effects.ViscousJoint(joint=j, damping=0.1) for j in range(1, n + 1)]
+    if seed % 5 == 0:
+        acting += [effects.DrivenPivot(y=effects.Sinusoid(0.02, 80.0))]
+        acting += [effects.RodDrag(link=n, drag_coefficient=1.2, diameter=0.03)]
+    scene = pc.Scene(links=links, effects=acting * (seed % 4 != 3))
+    figures = Figures(Derivation(scene), list(q))
+    chain = mechanism.joints(scene, q)
+    for figure, free in ((figures.mechanism().figure, False), (figures.free_bodies().figure, True)):
+        figure.draw_without_rendering()
+        for i, axes in enumerate(figure.axes):
+            boxes = [text.get_window_extent() for text in axes.texts if text.get_text()]
+            for k, box in enumerate(boxes):
+                assert not any(box.overlaps(other) for other in boxes[:k]), axes.texts[k]
+            pairs = list(zip(chain[:-1], chain[1:], strict=True))
+            if free:
+                pairs = [(start - start, end - start) for start, end in pairs][i : i + 1]
+            for ends in pairs:
+                rod = MarkedPath(axes.transData.transform(np.array(ends)))
+                for text, box in zip(filter(Text.get_text, axes.texts), boxes, strict=True):
+                    assert not rod.intersects_bbox(box, filled=False), text
+
+
+def test_empty_axes_have_few_ticks_at_whole_angles() -> None:
+    for turns in ([0.1, 80.0], [-200.0, 300.0], [-30.0, 100.0], [40.0, 5000.0], [-1e6, 0.0]):
+        low, high, step = curves.whole_ticks(np.array(turns))
+        assert low <= min(turns) and high >= max(turns)
+        assert step % 30 == 0 or step % 45 == 0
+        assert low % step == 0 and 3 <= round((high - low) / step) + 1 <= 7
 
 
 def test_numbers_have_six_digits_and_units_stand_upright() -> None:

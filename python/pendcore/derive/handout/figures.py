@@ -10,8 +10,8 @@ import numpy as np
 from pendcore.derive.derivation import Derivation
 from pendcore.derive.handout import curves, drawing
 from pendcore.derive.handout.document import Drawing
-from pendcore.derive.handout.free_bodies import Reaction, free_bodies
-from pendcore.derive.handout.mechanism import couples_of, mechanism
+from pendcore.derive.handout.free_bodies import Acting, Reaction, free_bodies
+from pendcore.derive.handout.mechanism import mechanism
 from pendcore.derive.handout.quantities import number
 from pendcore.derive.narration.page import Page
 from pendcore.solution import Solution
@@ -32,7 +32,7 @@ class Figures:
         self.derivation = derivation
         self.scene = derivation.scene
         self.q = list(q)
-        page = Page(derivation)
+        self._page = page = Page(derivation)
         self.points = [page.joint(i)[1] for i in range(derivation.n + 1)]
         self._count = 0
 
@@ -65,14 +65,33 @@ class Figures:
             reactions.append(Reaction(write(tip[0]), write(tip[1]), False))
         with drawing.lettering():
             figure = free_bodies(
-                self.scene, self.q, self.points, reactions if forces else [], couples_of(self.scene)
+                self.scene, self.q, self.points, reactions if forces else [], self._acting()
             )
         words = (
             "The links as free bodies; the arrows show what counts as positive."
             if forces
             else "The links, to be completed to free-body diagrams."
         )
+        if forces and self.derivation.equations.loads:
+            words += (
+                r" A force $\mathbf{D}_{i}$ along rod $i$ is drawn where $F_{d,i}$ is positive; "
+                "its moment about the joint where the rod begins is $T_{d,i}$."
+            )
         return Drawing("free_bodies" if forces else "links", self._caption(words), figure)
+
+    def _acting(self) -> Acting:
+        """What acts on the free bodies besides weights and joint forces."""
+        equations, write = self.derivation.equations, self.derivation.symbols.latex
+        joints = range(1, self.derivation.n + 1)
+        couples = {j: write(c) for j in joints if (c := equations.joint_couple(j)) != 0}
+        loads = tuple((load.link, self._page.load(load).latex) for load in equations.loads)
+        payload = equations.payload
+        if payload is None:
+            return Acting(couples, loads)
+        turning = payload.inertia * self.derivation.symbols.qdd[-1]
+        couple = write(turning) if turning != 0 else ""
+        mass = write(payload.mass)
+        return Acting(couples, loads, rf"({mass})" if payload.mass.is_Add else mass, couple)
 
     def angles(self, solution: Solution) -> Drawing:
         """The textbook's figure."""
