@@ -10,18 +10,9 @@ from typing import Any
 import numpy as np
 import pendcore as pc
 import pytest
-from matplotlib.path import Path as MarkedPath
-from matplotlib.text import Text
+from handed_out_cases import AIRY, BUSY, CASES, LEVEL, SHAKEN
 from pendcore.derive import Derivation, line_breaks
-from pendcore.derive.handout import (
-    conversion,
-    curves,
-    drawing,
-    mechanism,
-    motion,
-    report,
-    worksheet,
-)
+from pendcore.derive.handout import conversion, motion, report, worksheet
 from pendcore.derive.handout.document import Blank, Displayed, Document, Reader
 from pendcore.derive.handout.figures import Figures
 from pendcore.derive.handout.numbers import Start
@@ -32,55 +23,6 @@ needs_latex = pytest.mark.skipif(
     shutil.which("pandoc") is None or conversion.latex_engine() is None,
     reason="pandoc or a LaTeX engine is not installed",
 )
-effects = pc.effects
-BUSY = pc.Case(
-    scene=pc.Scene(
-        links=[
-            pc.Link(mass=1.2, length=0.5),
-            pc.Link(mass=0.8, length=0.4, center=0.15, inertia=0.012),
-            pc.Link(mass=0.5, length=0.3),
-        ],
-        gravity=9.81,
-        effects=[
-            effects.ViscousJoint(joint=2, damping=0.05),
-            effects.Motor(joint=1, sinusoid=effects.Sinusoid(1.0, angular_frequency=6.0)),
-            effects.TorsionalSpring(joint=3, stiffness=0.4, rest_angle=0.3),
-            effects.Payload(mass=0.2, inertia=0.001),
-        ],
-    ),
-    q0=np.radians([30.0, 75.0, 120.0]),
-    t_span=(0, 2),
-    name="busy arm",
-)
-LEVEL = pc.Case(scene=pc.Scene(links=[pc.Link(mass=2.0, length=0.5)]), q0=0.0, t_span=(0, 1))
-AIRY = pc.Case(
-    scene=pc.Scene(
-        links=[pc.Link(mass=1.0, length=0.6), pc.Link(mass=0.5, length=0.4, center=0.1)],
-        effects=[
-            effects.RodDrag(link=2, drag_coefficient=1.2, diameter=0.03, wind=(4.0, 0.0)),
-            effects.RotorInertia(joint=1, armature=0.01),
-            effects.Lock(joint=2),
-        ],
-    ),
-    q0=(0.3, 0.5),
-    t_span=(0, 1),
-)
-SHAKEN = pc.Case(
-    scene=pc.Scene(
-        links=[pc.Link(mass=1.0, length=0.3)] * 4,
-        effects=[effects.DrivenPivot(y=effects.Sinusoid(0.02, 80.0))],
-    ),
-    q0=(-1.4, -1.5, 0.2, 2.0),
-    t_span=(0, 0.5),
-    options={"method": "rk4", "step": 1e-3},
-)
-CASES = {
-    "textbook": pc.Case.textbook(),
-    "busy": BUSY,
-    "level": LEVEL,
-    "airy": AIRY,
-    "shaken": SHAKEN,
-}
 
 
 @pytest.fixture(scope="module", params=CASES)
@@ -186,37 +128,6 @@ def test_a_run_that_takes_no_time_is_refused() -> None:
         motion.solved(pc.Case(scene=rod, q0=0.5, t_span=(1, 1)))
 
 
-@pytest.mark.parametrize("n", [1, 2, 3])
-def test_arrows_point_the_way_that_counts_as_positive(
-    n: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """F_01 along +x and +y on link 1; F_21 so on link 1, and the other way round on link 2."""
-    drawn: list[list[tuple[str, list[float]]]] = []
-    sketch, arrow = drawing.sketch, drawing.arrow
-
-    def begun(*given: Any) -> Any:
-        drawn.append([])
-        return sketch(*given)
-
-    def looked_at(on: Any, start: Any, along: Any, text: str = "", *more: Any, **how: Any) -> None:
-        drawn[-1].append((text, np.sign(np.round(along, 9)).tolist()))
-        arrow(on, start, along, text, *more, **how)
-
-    monkeypatch.setattr(drawing, "sketch", begun)
-    monkeypatch.setattr(drawing, "arrow", looked_at)
-    scene = pc.Scene(links=[pc.Link(mass=1.0, length=1.0)] * n)
-    Figures(Derivation(scene), [0.5] * n).free_bodies()
-    for i, arrows in enumerate(drawn, start=1):
-        near, far = ("01" if i == 1 else f"{i}{i - 1}"), f"{i + 1}{i}"
-        sign = 1.0 if i == 1 else -1.0
-        expected = {f"$m_{{{i}}} g$": [0.0, 1.0]}
-        expected |= {f"$F_{{{near}x}}$": [sign, 0.0], f"$F_{{{near}y}}$": [0.0, sign]}
-        if i < n:
-            expected |= {f"$F_{{{far}x}}$": [1.0, 0.0], f"$F_{{{far}y}}$": [0.0, 1.0]}
-        assert dict(arrows) == expected
-    assert len(drawn) == n
-
-
 def test_curves_are_of_the_forces_that_the_derivation_names(handed_out: Any) -> None:
     case, derivation, *_ = handed_out
     drawn = Figures(derivation, case.q0).reactions(motion.solved(case)).figure
@@ -227,18 +138,6 @@ def test_curves_are_of_the_forces_that_the_derivation_names(handed_out: Any) -> 
             at_start = rows[derivation.symbols.latex(name)]
             assert line.get_ydata()[0] == pytest.approx(at_start, rel=1e-12, abs=1e-12)
     assert drawn.axes[-1].get_xlabel() == "t (s)"
-
-
-def test_the_mechanism_is_drawn_as_it_starts_with_y_down(handed_out: Any) -> None:
-    case, derivation, *_ = handed_out
-    (axes,) = Figures(derivation, case.q0).mechanism().figure.axes
-    assert axes.yaxis_inverted()
-    names = {text.get_text() for text in axes.texts}
-    assert {"$A$", "$x$", "$y$", "$0$"} <= names
-    assert {f"$q_{{{i}}}$" for i in range(1, derivation.n + 1)} <= names
-    pins = [p.center for p in axes.patches if getattr(p, "radius", 0) and p.get_zorder() == 6]
-    expected = case.simulate().positions()[0]
-    np.testing.assert_allclose(pins, expected, atol=1e-12)
 
 
 def test_a_worksheet_gives_nothing_away(handed_out: Any) -> None:
@@ -283,45 +182,6 @@ def test_a_worksheet_states_what_acts_and_what_its_symbols_are() -> None:
     assert r"the wind $(v_{x,2}, 0)$" in airy
     assert r"\varepsilon" not in airy
     assert r"$y_{A}(t) = \hat{y}_{A} \sin \left(\Omega_{y} t\right), x_{A} = 0$" in shaken
-
-
-@pytest.mark.parametrize("seed", range(30))
-def test_names_in_figures_lie_on_nothing(seed: int) -> None:
-    """Not on each other, nor on a link: measured where they are drawn."""
-    rng = np.random.default_rng(seed)
-    n = 1 + seed % 4
-    q = np.radians(rng.choice([0.0, 15.0, 30.0, 70.0, 90.0, 110.0, 180.0, -40.0], n))
-    q = q + rng.uniform(-0.2, 0.2, n) * (seed % 2)
-    links = [pc.Link(mass=1.0, length=rng.uniform(0.3, 1.0)) for _ in range(n)]
-    acting: list[Any] = [effects.Payload(mass=0.2, inertia=0.01 * (seed % 2))] * (seed % 3 == 0)
-    acting += [effects.ViscousJoint(joint=j, damping=0.1) for j in range(1, n + 1)]
-    if seed % 5 == 0:
-        acting += [effects.DrivenPivot(y=effects.Sinusoid(0.02, 80.0))]
-        acting += [effects.RodDrag(link=n, drag_coefficient=1.2, diameter=0.03)]
-    scene = pc.Scene(links=links, effects=acting * (seed % 4 != 3))
-    figures = Figures(Derivation(scene), list(q))
-    chain = mechanism.joints(scene, q)
-    for figure, free in ((figures.mechanism().figure, False), (figures.free_bodies().figure, True)):
-        figure.draw_without_rendering()
-        for i, axes in enumerate(figure.axes):
-            boxes = [text.get_window_extent() for text in axes.texts if text.get_text()]
-            for k, box in enumerate(boxes):
-                assert not any(box.overlaps(other) for other in boxes[:k]), axes.texts[k]
-            pairs = list(zip(chain[:-1], chain[1:], strict=True))
-            if free:
-                pairs = [(start - start, end - start) for start, end in pairs][i : i + 1]
-            for ends in pairs:
-                rod = MarkedPath(axes.transData.transform(np.array(ends)))
-                for text, box in zip(filter(Text.get_text, axes.texts), boxes, strict=True):
-                    assert not rod.intersects_bbox(box, filled=False), text
-
-
-def test_empty_axes_have_few_ticks_at_whole_angles() -> None:
-    for turns in ([0.1, 80.0], [-200.0, 300.0], [-30.0, 100.0], [40.0, 5000.0], [-1e6, 0.0]):
-        low, high, step = curves.whole_ticks(np.array(turns))
-        assert low <= min(turns) and high >= max(turns)
-        assert step % 30 == 0 or step % 45 == 0
-        assert low % step == 0 and 3 <= round((high - low) / step) + 1 <= 7
 
 
 def test_numbers_have_six_digits_and_units_stand_upright() -> None:

@@ -45,8 +45,9 @@ PREAMBLE = r"""
 \newcommand\needroom[1]{\par\begingroup\dimen0=#1\relax\dimen2=\pagegoal\relax
   \advance\dimen2 by -\pagetotal\relax
   \ifdim\dimen0>\dimen2\relax\ifdim\dimen2>0pt\relax\newpage\fi\fi\endgroup}
+\IfFileExists{placeins.sty}{\usepackage{placeins}}{\newcommand\FloatBarrier{}}
 \let\headingofpart\subsection
-\renewcommand\subsection{\needroom{12\baselineskip}\headingofpart}
+\renewcommand\subsection{\FloatBarrier\needroom{12\baselineskip}\headingofpart}
 \let\headingofstep\subsubsection
 \renewcommand\subsubsection{\needroom{9\baselineskip}\headingofstep}
 """

@@ -74,7 +74,7 @@ class Figures:
         )
         if forces and self.derivation.equations.loads:
             words += (
-                r" A force $\mathbf{D}_{i}$ along rod $i$ is drawn where $F_{d,i}$ is positive; "
+                " The drag $D_{i}$ on rod $i$ is drawn as it is for positive $F_{d,i}$; "
                 "its moment about the joint where the rod begins is $T_{d,i}$."
             )
         return Drawing("free_bodies" if forces else "links", self._caption(words), figure)
