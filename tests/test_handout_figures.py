@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -84,7 +85,7 @@ def test_names_in_figures_lie_on_nothing(seed: int) -> None:
             boxes = [text.get_window_extent() for text in axes.texts if text.get_text()]
             for k, box in enumerate(boxes):
                 assert not any(box.overlaps(other) for other in boxes[:k]), axes.texts[k]
-            pairs = list(zip(chain[:-1], chain[1:], strict=True))
+            pairs = list(pairwise(chain))
             if free:
                 pairs = [(start - start, end - start) for start, end in pairs][i : i + 1]
             for ends in pairs:

@@ -140,7 +140,8 @@ def _lock(law: Law, q: Sequence[float]) -> str:
     joint = law.effect.joint
     angle = degrees(q[joint - 1] - (q[joint - 2] if joint > 1 else 0.0))
     return (
-        f"Joint {joint} is locked: its angle stays $\\varphi_{{{joint}}} = {number(angle)}^\\circ$, "
+        f"Joint {joint} is locked: its angle stays "
+        f"$\\varphi_{{{joint}}} = {number(angle)}^\\circ$, "
         f"kept by a couple $\\Lambda_{{{joint}}}$ that is one more unknown."
     )
 

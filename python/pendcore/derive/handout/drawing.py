@@ -88,7 +88,7 @@ def finish(on: Sketch, *, above: float = 0.0, shrink: bool = False) -> None:
     figure = on.axes.get_figure(root=True)
     assert figure is not None
     margin = np.array([2 * MARGIN, 2 * MARGIN + above])
-    sheet = on.axes.get_position(original=True).size * np.asarray(figure.get_size_inches()) * 72.0
+    sheet = np.multiply(on.axes.get_position(original=True).size, figure.get_size_inches()) * 72.0
     scale = float(((sheet - margin) / span).min())
     if shrink:
         sheet = span * scale + margin
