@@ -13,6 +13,8 @@ from pendcore.derive.handout import motion, report
 from pendcore.derive.handout.document import Displayed
 from symbolic_scenes import SETS, derived
 
+pytestmark = pytest.mark.unsanitized
+
 fx = pc.effects
 every_chain = pytest.mark.parametrize(
     ("name", "n"), [(name, n) for n in (1, 2, 3) for name in SETS]

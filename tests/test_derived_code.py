@@ -15,6 +15,7 @@ import numpy as np
 import pendcore as pc
 import pytest
 from derived_scenes import SCENES, STATES, Floats, Known, known
+from pendcore.cli import main
 from pendcore.derive import Derivation
 from pendcore.derive.code.cpp import header
 from pendcore.derive.code.octave import inline_function, written_out
@@ -337,19 +338,38 @@ def blocks(language: str) -> list[str]:
     return re.findall(rf"```{language}\n(.*?)```", page, re.DOTALL)
 
 
+@pytest.fixture
+def as_the_page_says(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The engineer's folder: the case file that the page shows, and what its commands write."""
+    page = (EXAMPLES.parent / "docs/derive_engineer.md").read_text()
+    (shown,) = blocks("toml")
+    (tmp_path / "arm.toml").write_text(shown)
+    monkeypatch.chdir(tmp_path)
+    commands = re.findall(r"^    pendcore (derive .*)$", page, re.MULTILINE)
+    assert len(commands) == 3
+    for command in commands:
+        assert main(command.split()) == 0
+    return tmp_path
+
+
+def test_the_engineer_is_shown_the_example() -> None:
+    (shown,) = blocks("toml")
+    assert (EXAMPLES / "10_generated_header.toml").read_text().endswith(f"\n{shown}")
+
+
 def test_the_engineer_s_lines_of_python_run(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    as_the_page_says: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pytest.importorskip("scipy")
-    case = pc.read_case(EXAMPLES / "10_generated_header.toml")
-    (tmp_path / "arm.py").write_text(Derivation(case.scene).to_python())
-    monkeypatch.syspath_prepend(tmp_path)
+    written = (as_the_page_says / "arm.hpp").read_text()
+    monkeypatch.syspath_prepend(as_the_page_says)
     first, second = blocks("python")
     names: dict[str, Any] = {}
     exec(first, names)
-    assert "struct Chain" in names["text"]
+    again = (as_the_page_says / "arm.hpp").read_text()
+    assert again[again.index("struct Chain") :] == written[written.index("struct Chain") :]
     exec(second, names)
-    run = case.simulate()
+    run = pc.read_case(as_the_page_says / "arm.toml").simulate()
     np.testing.assert_allclose(names["force"][..., -1], run.reactions()[-1], rtol=0, atol=1e-3)
     np.testing.assert_allclose(names["kinetic"][-1], run.energy().kinetic[-1], rtol=1e-5)
     sys.modules.pop("arm")
@@ -357,14 +377,11 @@ def test_the_engineer_s_lines_of_python_run(
 
 @compiler
 @pytest.mark.outside_build
-def test_the_engineer_s_lines_of_cpp_compile(tmp_path: Path) -> None:
-    shutil.copy(EXAMPLES / "10_generated_header.hpp", tmp_path / "arm.hpp")
+def test_the_engineer_s_lines_of_cpp_compile_and_run(as_the_page_says: Path) -> None:
     (block,) = blocks("cpp")
-    included, lines = block.split("\n", 1)
-    known = "double t = 0.0; std::array<double, 2> q{}, qd{}; std::array<double, 4> y{};"
-    used = "return dydt[0] + qdd[0] + force[0].x + total + power.motor_1 > 0.0;"
-    program = f"{included}\nint main() {{\n{known}\n{lines}\n{used}\n}}\n"
-    (tmp_path / "main.cpp").write_text(program)
-    command = ["g++", "-std=c++17", *WARNINGS, "-fsyntax-only", "main.cpp"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
+    (as_the_page_says / "main.cpp").write_text(block)
+    for command in (["g++", "-std=c++17", *WARNINGS, "main.cpp", "-o", "main"], ["./main"]):
+        done = subprocess.run(command, cwd=as_the_page_says, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+    rate, acceleration, *_ = map(float, done.stdout.split())
+    assert rate == acceleration != 0.0

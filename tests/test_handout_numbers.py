@@ -14,6 +14,8 @@ from pendcore.derive.handout.document import Document
 from pendcore.derive.handout.largest import largest_reactions
 from pendcore.derive.handout.numbers import Start
 
+pytestmark = pytest.mark.unsanitized
+
 fx = pc.effects
 ROD = pc.Link(mass=1.0, length=1.0)
 

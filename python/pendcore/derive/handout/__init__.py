@@ -14,6 +14,7 @@ from pendcore import progress as bars
 from pendcore.case import Case
 from pendcore.derive.derivation import Derivation
 from pendcore.derive.handout import conversion, motion, numbers, problem, steps
+from pendcore.derive.handout.blanks import concealed
 from pendcore.derive.handout.document import Block, Document, Heading, Paragraph, Reader, Space
 from pendcore.derive.handout.figures import Figures
 from pendcore.progress import Progress
@@ -51,9 +52,9 @@ def worksheet(derivation: Derivation, case: Case, solution: Solution) -> Documen
     """Return the same problem with blanks: right sides, free bodies and curves are to be found."""
     figures = Figures(derivation, case.q0)
     blocks: list[Block] = [
-        *problem.problem(derivation, case, figures),
+        *problem.problem(derivation, case, figures, by_hand=True),
         Heading(2, "Derivation of the equations of motion"),
-        *steps.derivation_steps(derivation, figures, blanks=True),
+        *steps.derivation_steps(concealed(derivation), figures, blanks=True),
         *_questions(derivation, case, solution, figures),
     ]
     return Document(f"{_title(derivation, case)}: worksheet", tuple(blocks))

@@ -33,15 +33,21 @@ LOW_BRACKETS = re.compile(
 STYLE = Path(__file__).with_name("page.css")
 PREAMBLE = r"""
 \usepackage{amsmath,amssymb,float,graphicx}
-\usepackage[margin=24mm]{geometry}
+\usepackage[a4paper,margin=24mm]{geometry}
 \usepackage[labelformat=empty,font=small]{caption}
-\floatplacement{figure}{H}
-\setkeys{Gin}{width=0.8\linewidth,height=0.42\textheight,keepaspectratio}
+\floatplacement{figure}{!htbp}
+\renewcommand\topfraction{0.9}\renewcommand\bottomfraction{0.8}
+\renewcommand\textfraction{0.08}\renewcommand\floatpagefraction{0.75}
+\raggedbottom
+\setkeys{Gin}{width=0.8\linewidth,height=0.36\textheight,keepaspectratio}
 \setlength{\parindent}{0pt}\setlength{\parskip}{6pt}
 \AtBeginDocument{\ifdefined\symbf\renewcommand\boldsymbol[1]{\symbf{#1}}\fi}
 \newcommand\needroom[1]{\par\begingroup\dimen0=#1\relax\dimen2=\pagegoal\relax
   \advance\dimen2 by -\pagetotal\relax
   \ifdim\dimen0>\dimen2\relax\ifdim\dimen2>0pt\relax\newpage\fi\fi\endgroup}
+\IfFileExists{placeins.sty}{\usepackage{placeins}}{\newcommand\FloatBarrier{}}
+\let\headingofpart\subsection
+\renewcommand\subsection{\FloatBarrier\needroom{12\baselineskip}\headingofpart}
 \let\headingofstep\subsubsection
 \renewcommand\subsubsection{\needroom{9\baselineskip}\headingofstep}
 """

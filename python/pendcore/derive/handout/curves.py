@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+MOST_TICKS = 7
+"""Of an axis to draw into."""
+
+
 def sheets(rows: int, height: float = 2.1) -> tuple[Figure, list[Axes]]:
     """Return a figure with axes below each other."""
     from matplotlib.figure import Figure
@@ -35,17 +39,30 @@ def angles(solution: Solution) -> Figure:
 
 def empty_axes(solution: Solution) -> Figure:
     """Draw the axes of the angles with nothing in them: the scale gives nothing away."""
+    from matplotlib.ticker import AutoMinorLocator
+
     figure, axes = sheets(len(solution.scene.links))
     for i, axis in enumerate(axes, start=1):
         axis.set(xlim=(solution.t[0], solution.t[-1]), ylabel=f"q{i} (deg)")
-        most = 90.0 * np.ceil(np.abs(np.degrees(solution.q[:, i - 1])).max() / 90.0 + 0.01)
-        low = 0.0 if solution.q[:, i - 1].min() >= 0 else -most
-        axis.set_ylim(low, most)
-        axis.set_yticks(np.arange(low, most + 1, 45.0 if most <= 360 else most / 4))
-        axis.minorticks_on()
-        axis.grid(True, which="both", color="0.88", linewidth=0.5)
+        low, high, step = whole_ticks(np.degrees(solution.q[:, i - 1]))
+        axis.set_ylim(low, high)
+        axis.set_yticks(np.arange(low, high + 1.0, step))
+        axis.set_yticks(np.arange(low, high + 1.0, step / 3.0), minor=True)
+        axis.xaxis.set_minor_locator(AutoMinorLocator(5))
+        axis.grid(True, which="major", color="0.6", linewidth=0.6)
+        axis.grid(True, which="minor", color="0.85", linewidth=0.5)
     axes[-1].set_xlabel("t (s)")
     return figure
+
+
+def whole_ticks(angles: Floats) -> tuple[float, float, float]:
+    """Return ends and step of an axis for angles, deg: at most seven ticks, at whole 30 degrees."""
+    for step in (30.0, 45.0, 90.0, 180.0, *(360.0 * 2.0 ** np.arange(20))):
+        low = step * np.floor(min(0.0, float(angles.min())) / step)
+        high = step * np.ceil(max(90.0, float(angles.max()) + 0.05 * step) / step)
+        if (high - low) / step <= MOST_TICKS - 1:
+            break
+    return float(low), float(high), float(step)
 
 
 def reactions(t: Floats, forces: Floats, names: Sequence[str]) -> Figure:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import Enum
+from itertools import zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -118,9 +119,7 @@ class Table:
     def written(self, reader: Reader) -> str:
         """Return it as Markdown."""
         rules = ["--:" if column == "r" else ":--" for column in self.columns]
-        table = "\n".join(f"| {' | '.join(row)} |" for row in (self.head, rules, *self.rows))
-        room = f"```{{=latex}}\n\\needroom{{{len(self.rows) + 3}\\baselineskip}}\n```\n\n"
-        return room + table if reader is Reader.LATEX else table
+        return "\n".join(f"| {' | '.join(row)} |" for row in (self.head, rules, *self.rows))
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,6 +167,10 @@ class Space:
 Block: TypeAlias = Heading | Paragraph | Displayed | Blank | Table | Drawing | Space
 
 
+A_PAGE = 40
+"""Lines of a table that fit on a page."""
+
+
 @dataclass(frozen=True, slots=True)
 class Document:
     """A document: its title, and what it is made of."""
@@ -177,7 +180,11 @@ class Document:
 
     def markdown(self, reader: Reader = Reader.PEOPLE) -> str:
         """Return all of it as Markdown for a reader; pandoc gets the title by itself."""
-        parts = [block.written(reader) for block in self.blocks]
+        parts: list[str] = []
+        for block, following in zip_longest(self.blocks, self.blocks[1:]):
+            if reader is Reader.LATEX and (lines := _lines_together(block, following)):
+                parts.append(f"```{{=latex}}\n\\needroom{{{lines}\\baselineskip}}\n```")
+            parts.append(block.written(reader))
         title = [f"# {self.title}"] if reader is Reader.PEOPLE else []
         return "\n\n".join([*title, *parts]) + "\n"
 
@@ -185,3 +192,14 @@ class Document:
     def drawings(self) -> tuple[Drawing, ...]:
         """The figures."""
         return tuple(block for block in self.blocks if isinstance(block, Drawing))
+
+
+def _lines_together(block: Block, following: Block | None) -> int:
+    """Return the lines that a page must have left for a lead-in and what it leads to."""
+    if isinstance(block, Paragraph) and not isinstance(following, (Heading, Paragraph)):
+        lead = 1 + len(block.text) // 90
+        if isinstance(following, Table):
+            return lead + min(len(following.rows) + 3, A_PAGE)
+        if isinstance(following, (Displayed, Blank, Space)):
+            return lead + 4
+    return 0

@@ -6,12 +6,11 @@ from collections.abc import Sequence
 from math import degrees
 
 import numpy as np
-from sympy import Integer
 
 from pendcore.derive.derivation import Derivation
 from pendcore.derive.handout import curves, drawing
 from pendcore.derive.handout.document import Drawing
-from pendcore.derive.handout.free_bodies import Reaction, free_bodies
+from pendcore.derive.handout.free_bodies import Acting, Reaction, free_bodies
 from pendcore.derive.handout.mechanism import mechanism
 from pendcore.derive.handout.quantities import number
 from pendcore.derive.narration.page import Page
@@ -33,7 +32,7 @@ class Figures:
         self.derivation = derivation
         self.scene = derivation.scene
         self.q = list(q)
-        page = Page(derivation)
+        self._page = page = Page(derivation)
         self.points = [page.joint(i)[1] for i in range(derivation.n + 1)]
         self._count = 0
 
@@ -66,33 +65,33 @@ class Figures:
             reactions.append(Reaction(write(tip[0]), write(tip[1]), False))
         with drawing.lettering():
             figure = free_bodies(
-                self.scene, self.q, self.points, reactions if forces else [], self._couples()
+                self.scene, self.q, self.points, reactions if forces else [], self._acting()
             )
         words = (
-            f"The links as free bodies; the arrows show what counts as positive.{self._left_out()}"
+            "The links as free bodies; the arrows show what counts as positive."
             if forces
             else "The links, to be completed to free-body diagrams."
         )
+        if forces and self.derivation.equations.loads:
+            words += (
+                " The drag $D_{i}$ on rod $i$ is drawn as it is for positive $F_{d,i}$; "
+                "its moment about the joint where the rod begins is $T_{d,i}$."
+            )
         return Drawing("free_bodies" if forces else "links", self._caption(words), figure)
 
-    def _couples(self) -> dict[int, str]:
-        """LaTeX of the torque and of the couple of a lock, by joint."""
-        s, equations = self.derivation.symbols, self.derivation.equations
-        at_rest = dict.fromkeys(s.qdd, Integer(0))
-        couples = {j: equations.joint_couple(j).xreplace(at_rest) for j in range(1, s.n + 1)}
-        return {joint: s.latex(couple) for joint, couple in couples.items() if couple != 0}
-
-    def _left_out(self) -> str:
-        """What acts on the links and is not drawn."""
-        equations = self.derivation.equations
-        inert = equations.payload is not None and equations.payload.inertia != 0
-        found = {
-            "the drag along rods": bool(equations.loads),
-            "the couples that turn rotors": any(equations.armatures),
-            "the couple that turns the payload": inert,
-        }
-        left_out = [words for words, acts in found.items() if acts]
-        return f" Not drawn: {', '.join(left_out)}." if left_out else ""
+    def _acting(self) -> Acting:
+        """What acts on the free bodies besides weights and joint forces."""
+        equations, write = self.derivation.equations, self.derivation.symbols.latex
+        joints = range(1, self.derivation.n + 1)
+        couples = {j: write(c) for j in joints if (c := equations.joint_couple(j)) != 0}
+        loads = tuple((load.link, self._page.load(load).latex) for load in equations.loads)
+        payload = equations.payload
+        if payload is None:
+            return Acting(couples, loads)
+        turning = payload.inertia * self.derivation.symbols.qdd[-1]
+        couple = write(turning) if turning != 0 else ""
+        mass = write(payload.mass)
+        return Acting(couples, loads, rf"({mass})" if payload.mass.is_Add else mass, couple)
 
     def angles(self, solution: Solution) -> Drawing:
         """The textbook's figure."""

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 COUPLES = {"viscous_joint", "torsional_spring", "motor"}
 """Kinds of effects that act by a couple in their joint."""
 
+CIRCLE = {"boxstyle": "circle,pad=0.22", "facecolor": "white", "edgecolor": "0.3", "lw": 0.7}
+"""Around the number of a link."""
+
 
 def couples_of(scene: Scene) -> frozenset[int]:
     """Return the joints in which something acts by a couple."""
@@ -54,35 +57,42 @@ def mechanism(scene: Scene, q: Sequence[float], points: Sequence[str]) -> Figure
     places, centers = joints(scene, q), mass_centers(scene, q)
     total = float(np.hypot(*np.ptp(np.vstack([places, centers]), axis=0)))
     size = max(total, 0.6 * sum(link.length for link in scene.links))
-    figure = Figure(figsize=(5.6, 5.2), layout="constrained")
-    on = drawing.sketch(figure.subplots(), size)
+    figure = Figure(figsize=(5.6, 4.6))
+    on = drawing.sketch(figure.add_axes((0.0, 0.0, 1.0, 1.0)), size)
+    couples = couples_of(scene)
     _frame(on, scene, places)
     for i, angle in enumerate(q):
         start, end = places[i], places[i + 1]
         drawing.rod(on, start, end)
+        drawing.mass_center(on, centers[i])
+        drawing.weight(on, centers[i], rf"$\mathbf{{G}}_{{{i + 1}}}$", 0.16)
         reach = min(0.14, 0.3 * scene.links[i].length / size)
         drawing.angle_from_x(on, start, angle, rf"$q_{{{i + 1}}}$", reach)
-        _weight(on, centers[i], angle, str(i + 1))
-        side = start + 0.8 * (end - start) + 0.07 * size * direction(angle - np.pi / 2)
-        _number(on, side, i + 1)
+        taken = [0.0, angle, angle / 2, q[i - 1] + np.pi if i else -np.pi / 2, np.pi / 2]
+        if i + 1 in couples:
+            _couple(on, start, i + 1, taken)
     _acting(on, scene.effects, places, q)
-    couples = couples_of(scene)
+    for i, angle in enumerate(q):
+        name(on, centers[i], f"$C_{{{i + 1}}}$", direction(angle - np.pi / 2))
     for i, place in enumerate(places):
         drawing.pin(on, place)
-        taken = [0.0] if i < len(q) else []
-        taken += [q[i], q[i] / 2] if i < len(q) else []
-        taken += [q[i - 1] + np.pi] if i else [-np.pi / 2, np.pi / 2]
-        if i + 1 in couples:
-            aside = drawing.clear_direction(taken)
-            middle = float(np.arctan2(aside[1], aside[0]))
-            drawing.turning_arrow(
-                on, place, rf"$\tau_{{{i + 1}}}$", radius=0.085,
-                span=(middle - 0.7, middle + 0.7), color=drawing.COUPLE,
-            )  # fmt: skip
-            taken.append(middle)
-        name(on, place, f"${points[i]}$", drawing.clear_direction(taken))
-    on.axes.margins(0.07)
+        along = [q[j] + turn for j, turn in ((i, 0.0), (i - 1, np.pi)) if 0 <= j < len(q)]
+        name(on, place, f"${points[i]}$", drawing.clear_direction([*along, 0.0]))
+    for i, angle in enumerate(q):
+        parts = [places[i] + x * (places[i + 1] - places[i]) for x in (0.8, 0.7, 0.3, 0.9, 0.2)]
+        name(on, parts, str(i + 1), direction(angle - np.pi / 2), fontsize=9, bbox=CIRCLE)
+    drawing.finish(on, shrink=True)
     return figure
+
+
+def _couple(on: Sketch, joint: Floats, number: int, taken: Sequence[float]) -> None:
+    """Draw a couple around a joint, on the side that is farthest from what else is there."""
+    aside = drawing.clear_direction(taken)
+    middle = float(np.arctan2(aside[1], aside[0]))
+    drawing.turning_arrow(
+        on, joint, rf"$\tau_{{{number}}}$", radius=0.085,
+        span=(middle - 0.7, middle + 0.7), color=drawing.COUPLE,
+    )  # fmt: skip
 
 
 def _frame(on: Sketch, scene: Scene, places: Floats) -> None:
@@ -90,7 +100,8 @@ def _frame(on: Sketch, scene: Scene, places: Floats) -> None:
     size, pivot = on.size, places[0]
     above = places[1, 1] >= -0.2 * size  # the bracket is where the first link is not
     drawing.ground(on, pivot, above=above)
-    name(on, pivot + size * np.array([0.15, -0.11 if above else 0.11]), "$0$", np.zeros(2))
+    corner = pivot + size * np.array([[0.1, -0.09], [-0.1, -0.09]]) * [1.0, 1.0 if above else -1.0]
+    name(on, corner, "$0$", np.array([1.0, 0.0]))
     for axis, text in enumerate(("$x$", "$y$")):
         in_the_way = np.abs(places[1:2, 1 - axis]).min() < 0.1 * size and places[1, axis] > 0
         reach = places[1, axis] + 0.25 * size if in_the_way else 0.52 * size
@@ -102,22 +113,6 @@ def _frame(on: Sketch, scene: Scene, places: Floats) -> None:
         drawing.arrow(on, np.array([left, 0.14 * size]), down, "$g$", drawing.WEIGHT)
 
 
-def _weight(on: Sketch, center: Floats, angle: float, number: str) -> None:
-    """Draw a mass centre with its weight."""
-    drawing.mass_center(on, center)
-    side = drawing.clear_direction([angle, angle + np.pi, np.pi / 2], prefer=-np.pi / 4)
-    name(on, center, f"$C_{{{number}}}$", side, 0.075)
-    drawing.weight(on, center, angle, rf"$\mathbf{{G}}_{{{number}}}$", 0.16)
-
-
-def _number(on: Sketch, at: Floats, number: int) -> None:
-    """Write the number of a link into a circle."""
-    on.axes.text(
-        at[0], at[1], str(number), ha="center", va="center", fontsize=9, zorder=9,
-        bbox={"boxstyle": "circle,pad=0.22", "facecolor": "white", "edgecolor": "0.3", "lw": 0.7},
-    )  # fmt: skip
-
-
 def _acting(on: Sketch, effects: Sequence[Effect], places: Floats, q: Sequence[float]) -> None:
     """Draw a payload and a moving pivot."""
     from matplotlib.patches import Circle
@@ -126,18 +121,20 @@ def _acting(on: Sketch, effects: Sequence[Effect], places: Floats, q: Sequence[f
     if "payload" in kinds:
         disc = Circle(tuple(places[-1]), 0.045 * on.size, facecolor="0.35", ec="k", zorder=4)
         on.axes.add_patch(disc)
-        name(on, places[-1], "$m_p$", direction(q[-1]), 0.1)
+        on.drawn.append((places[-1:], 0.045 * on.size))
+        edge = places[-1] + 0.045 * on.size * np.array([direction(q[-1] + x) for x in (0, 1, -1)])
+        name(on, edge, "$m_p$", direction(q[-1]))
     for effect in effects:
         if effect.kind == "driven_pivot":
-            _path(on, effect)
+            _path(on, effect, -1.0 if places[1, 0] >= 0.0 else 1.0)
 
 
-def _path(on: Sketch, effect: Any) -> None:
-    """Draw which way a pivot is moved, beside it."""
-    beside = np.array([-0.22 * on.size, 0.0])
+def _path(on: Sketch, effect: Any, side: float) -> None:
+    """Draw which way a pivot is moved, beside it: to the left (-1) or to the right."""
+    beside = np.array([0.24 * side * on.size, 0.0])
     for along, law in zip(np.eye(2), (effect.x, effect.y), strict=True):
         if law is not None or effect.spline is not None:
-            for side in (1, -1):
-                reach = 0.08 * side * on.size * along
+            for sense in (1, -1):
+                reach = 0.08 * sense * on.size * along
                 drawing.arrow(on, beside, reach, color=drawing.COUPLE)
-    name(on, beside, r"$\mathbf{r}_A(t)$", np.array([-1.0, 0.0]), 0.15)
+    name(on, beside, r"$\mathbf{r}_A(t)$", np.array([side, 0.0]))

@@ -6,22 +6,41 @@ from collections.abc import Iterator
 
 from pendcore.case import Case
 from pendcore.derive.derivation import Derivation
+from pendcore.derive.handout.acting import what_acts
 from pendcore.derive.handout.document import Block, Displayed, Heading, Paragraph, Table
 from pendcore.derive.handout.figures import Figures
 from pendcore.derive.handout.quantities import number, quantity, unit
+from pendcore.derive.laws.rod_drag import AT_REST
 
 COUNTS = {1: "one link", 2: "two links", 3: "three links", 4: "four links", 5: "five links"}
 
 
-def problem(derivation: Derivation, case: Case, figures: Figures) -> Iterator[Block]:
-    """Yield what is given, and Fig. 1."""
+def problem(
+    derivation: Derivation, case: Case, figures: Figures, *, by_hand: bool = False
+) -> Iterator[Block]:
+    """Yield what is given, and Fig. 1.
+
+    Parameters
+    ----------
+    derivation : Derivation
+        Of the scene.
+    case : Case
+        With the start.
+    figures : Figures
+        Draws Fig. 1.
+    by_hand : bool
+        Whether what only a computer needs, against 0/0, is left out.
+    """
     yield Heading(2, "The problem")
     yield Paragraph(_what_moves(derivation))
+    for sentences in what_acts(derivation, case.q0):
+        yield Paragraph(sentences)
     yield figures.mechanism()
     yield Paragraph("Given are")
     rows = [
         (f"${derivation.symbols.latex(p.symbol)}$", p.meaning, f"${number(p.value, 10)}$", _unit(p))
         for p in derivation.symbols.parameters
+        if not (by_hand and p.value == AT_REST)
     ]
     yield Table(("symbol", "meaning", "value", "unit"), tuple(rows), "llrl")
     yield Paragraph(
@@ -53,12 +72,10 @@ def _what_moves(derivation: Derivation) -> str:
     links = COUNTS.get(n, f"{n} links")
     rods = " The links are uniform rods." if n > 1 else " The link is a uniform rod."
     rods = rods if uniform else ""
-    acting = " ".join(law.sentence(derivation.symbols) for law in derivation.equations.laws)
     return (
         f"A planar {name} of {links} (Fig. 1) moves in a vertical plane.{rods} "
         "The $x$ axis points to the right and the $y$ axis down; the angles are measured from the "
-        "$x$ axis towards the $y$ axis. "
-        + (acting or "Nothing acts on it but gravity and the joint that holds it.")
+        "$x$ axis towards the $y$ axis."
     )
 
 

@@ -38,8 +38,9 @@ class RodDrag(Law):
         )
         self.diameter = parameter(f"d_{i}", f"d_{{{i}}}", effect.diameter, "m", f"diameter {rod}")
         self.density = parameter(
-            f"rho_{i}", rf"\rho_{{{i}}}", effect.air_density, "kg/m^3", f"density of the air {rod}"
-        )
+            f"rho_{i}", rf"\rho_{{{i}}}", effect.air_density, "kg/m^3",
+            f"density of the air around rod {i}",
+        )  # fmt: skip
         self.wind = tuple(
             parameter(f"v{a}_{i}", f"v_{{{a},{i}}}", v, "m/s", f"wind along {a} at rod {i}")
             if v != 0.0

@@ -1,0 +1,106 @@
+"""The figures of the handout: which way arrows point, and that names lie on nothing."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pendcore as pc
+import pytest
+from handed_out_cases import CASES
+from matplotlib.path import Path as MarkedPath
+from matplotlib.text import Text
+from pendcore.derive import Derivation
+from pendcore.derive.handout import curves, drawing, mechanism
+from pendcore.derive.handout.figures import Figures
+
+pytestmark = pytest.mark.unsanitized
+
+effects = pc.effects
+
+
+@pytest.mark.parametrize("n", [1, 2, 3])
+def test_arrows_point_the_way_that_counts_as_positive(
+    n: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """F_01 along +x and +y on link 1; F_21 so on link 1, and the other way round on link 2."""
+    drawn: list[list[tuple[str, list[float]]]] = []
+    sketch, arrow = drawing.sketch, drawing.arrow
+
+    def begun(*given: Any) -> Any:
+        drawn.append([])
+        return sketch(*given)
+
+    def looked_at(on: Any, start: Any, along: Any, text: str = "", *more: Any, **how: Any) -> None:
+        drawn[-1].append((text, np.sign(np.round(along, 9)).tolist()))
+        arrow(on, start, along, text, *more, **how)
+
+    monkeypatch.setattr(drawing, "sketch", begun)
+    monkeypatch.setattr(drawing, "arrow", looked_at)
+    scene = pc.Scene(links=[pc.Link(mass=1.0, length=1.0)] * n)
+    Figures(Derivation(scene), [0.5] * n).free_bodies()
+    for i, arrows in enumerate(drawn, start=1):
+        near, far = ("01" if i == 1 else f"{i}{i - 1}"), f"{i + 1}{i}"
+        sign = 1.0 if i == 1 else -1.0
+        expected = {f"$m_{{{i}}} g$": [0.0, 1.0]}
+        expected |= {f"$F_{{{near}x}}$": [sign, 0.0], f"$F_{{{near}y}}$": [0.0, sign]}
+        if i < n:
+            expected |= {f"$F_{{{far}x}}$": [1.0, 0.0], f"$F_{{{far}y}}$": [0.0, 1.0]}
+        assert dict(arrows) == expected
+    assert len(drawn) == n
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_the_mechanism_is_drawn_as_it_starts_with_y_down(name: str) -> None:
+    case = CASES[name]
+    derivation = Derivation(case.scene)
+    (axes,) = Figures(derivation, case.q0).mechanism().figure.axes
+    assert axes.yaxis_inverted()
+    names = {text.get_text() for text in axes.texts}
+    assert {"$A$", "$x$", "$y$", "$0$"} <= names
+    assert {f"$q_{{{i}}}$" for i in range(1, derivation.n + 1)} <= names
+    pins = [p.center for p in axes.patches if getattr(p, "radius", 0) and p.get_zorder() == 6]
+    expected = case.simulate().positions()[0]
+    np.testing.assert_allclose(pins, expected, atol=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_names_in_figures_lie_on_nothing(seed: int) -> None:
+    """Not on each other, nor on a link: measured where they are drawn."""
+    rng = np.random.default_rng(seed)
+    n = 1 + seed % 4
+    q = np.radians(rng.choice([0.0, 15.0, 30.0, 70.0, 90.0, 110.0, 180.0, -40.0], n))
+    q = q + rng.uniform(-0.2, 0.2, n) * (seed % 2)
+    links = [pc.Link(mass=1.0, length=rng.uniform(0.3, 1.0)) for _ in range(n)]
+    acting: list[Any] = [effects.Payload(mass=0.2, inertia=0.01 * (seed % 2))] * (seed % 3 == 0)
+    acting += [effects.ViscousJoint(joint=j, damping=0.1) for j in range(1, n + 1)]
+    if seed % 5 == 0:
+        acting += [effects.DrivenPivot(y=effects.Sinusoid(0.02, 80.0))]
+        acting += [effects.RodDrag(link=n, drag_coefficient=1.2, diameter=0.03)]
+    scene = pc.Scene(links=links, effects=acting * (seed % 4 != 3))
+    figures = Figures(Derivation(scene), list(q))
+    chain = mechanism.joints(scene, q)
+    for figure, free in ((figures.mechanism().figure, False), (figures.free_bodies().figure, True)):
+        figure.draw_without_rendering()
+        for i, axes in enumerate(figure.axes):
+            boxes = [text.get_window_extent() for text in axes.texts if text.get_text()]
+            for k, box in enumerate(boxes):
+                assert not any(box.overlaps(other) for other in boxes[:k]), axes.texts[k]
+            pairs = list(pairwise(chain))
+            if free:
+                pairs = [(start - start, end - start) for start, end in pairs][i : i + 1]
+            for ends in pairs:
+                rod = MarkedPath(axes.transData.transform(np.array(ends)))
+                for text, box in zip(filter(Text.get_text, axes.texts), boxes, strict=True):
+                    assert not rod.intersects_bbox(box, filled=False), text
+
+
+def test_empty_axes_have_few_ticks_at_whole_angles() -> None:
+    for turns in ([0.1, 80.0], [-200.0, 300.0], [-30.0, 100.0], [40.0, 5000.0], [-1e6, 0.0]):
+        low, high, step = curves.whole_ticks(np.array(turns))
+        assert low <= min(turns)
+        assert high >= max(turns)
+        assert step % 30 == 0 or step % 45 == 0
+        assert low % step == 0
+        assert 3 <= round((high - low) / step) + 1 <= 7
