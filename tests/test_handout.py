@@ -13,7 +13,7 @@ import pytest
 from handed_out_cases import AIRY, BUSY, CASES, LEVEL, SHAKEN
 from pendcore.derive import Derivation, line_breaks
 from pendcore.derive.handout import conversion, motion, report, worksheet
-from pendcore.derive.handout.document import Blank, Displayed, Document, Reader
+from pendcore.derive.handout.document import Blank, Displayed, Document, Reader, Table
 from pendcore.derive.handout.figures import Figures
 from pendcore.derive.handout.numbers import Start
 from pendcore.derive.handout.quantities import number, quantity
@@ -288,3 +288,15 @@ def test_pandoc_and_people_read_the_same_figures() -> None:
     for reader, suffix in ((Reader.PEOPLE, "png"), (Reader.HTML, "svg"), (Reader.LATEX, "pdf")):
         found = re.findall(r"!\[.*?\]\((\w+)\.(\w+)\)", document.markdown(reader))
         assert found == [(drawing.name, suffix) for drawing in document.drawings]
+
+
+def test_no_table_is_parted_by_the_end_of_a_page() -> None:
+    """Room for it is asked for before it, or before the paragraph that leads to it."""
+    document = report(Derivation(LEVEL.scene), LEVEL, motion.solved(LEVEL))
+    paragraphs = document.markdown(Reader.LATEX).split("\n\n")
+    tables = [i for i, text in enumerate(paragraphs) if text.startswith("| ")]
+    assert len(tables) == sum(isinstance(block, Table) for block in document.blocks) >= 3
+    for i in tables:
+        room = re.search(r"needroom\{(\d+)", "".join(paragraphs[i - 2 : i]))
+        assert room, paragraphs[i]
+        assert int(room[1]) > paragraphs[i].count("\n") + 1

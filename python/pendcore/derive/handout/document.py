@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import Enum
-from itertools import zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -181,8 +180,9 @@ class Document:
     def markdown(self, reader: Reader = Reader.PEOPLE) -> str:
         """Return all of it as Markdown for a reader; pandoc gets the title by itself."""
         parts: list[str] = []
-        for block, following in zip_longest(self.blocks, self.blocks[1:]):
-            if reader is Reader.LATEX and (lines := _lines_together(block, following)):
+        before, after = (None, *self.blocks[:-1]), (*self.blocks[1:], None)
+        for previous, block, following in zip(before, self.blocks, after, strict=True):
+            if reader is Reader.LATEX and (lines := _lines_together(previous, block, following)):
                 parts.append(f"```{{=latex}}\n\\needroom{{{lines}\\baselineskip}}\n```")
             parts.append(block.written(reader))
         title = [f"# {self.title}"] if reader is Reader.PEOPLE else []
@@ -194,8 +194,10 @@ class Document:
         return tuple(block for block in self.blocks if isinstance(block, Drawing))
 
 
-def _lines_together(block: Block, following: Block | None) -> int:
-    """Return the lines that a page must have left for a lead-in and what it leads to."""
+def _lines_together(previous: Block | None, block: Block, following: Block | None) -> int:
+    """Return the lines that a page must have left for a table, or a lead-in and what follows."""
+    if isinstance(block, Table) and not isinstance(previous, Paragraph):
+        return min(len(block.rows) + 3, A_PAGE)
     if isinstance(block, Paragraph) and not isinstance(following, (Heading, Paragraph)):
         lead = 1 + len(block.text) // 90
         if isinstance(following, Table):
