@@ -99,6 +99,16 @@ def test_a_report_is_written_into_a_folder(
     assert {path.suffix for path in Path("sheets").iterdir()} == {".md", ".png"}
 
 
+def test_a_report_of_a_run_that_fails_is_written_and_exits_with_1(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PATH", "")
+    Path("short.toml").write_text(pc.Case.textbook().to_toml() + "max_steps = 3\n")
+    assert main(["derive", "short.toml", "--to", "report", "-o", "sheets"]) == 1
+    assert "The run is not complete" in Path("sheets/report.md").read_text()
+    assert "warning: the run is not complete" in capsys.readouterr().err
+
+
 def test_a_worksheet_is_of_a_report(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["derive", "--worksheet"]) == 2
     assert capsys.readouterr().err == (

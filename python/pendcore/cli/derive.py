@@ -107,4 +107,4 @@ def _report(derivation: Derivation, case: Case, args: argparse.Namespace) -> int
     with new_folder(folder), blamed_on_usage():
         files = derivation.report(case, folder, worksheet=args.worksheet)
     print(f"written to {folder}: {', '.join(path.name for path in files)}", file=sys.stderr)
-    return 0
+    return 0 if case.simulate().success else 1
