@@ -12,6 +12,8 @@ import re
 import sys
 from pathlib import Path
 
+import math
+
 import numpy as np
 import pendcore as pc
 import pytest
@@ -239,9 +241,33 @@ def test_a_short_span_is_verified_by_other_steps():
     assert sol.accuracy.achieved > 0
 
 
-def test_a_step_of_ones_own_that_is_too_long_is_named():
-    with pytest.raises(pc.AccuracyError, match=r"first_step set the steps.*leave it out"):
-        pc.simulate(BOOK, *START[:2], (0, 0.02), error=1e-10, first_step=0.02)
+ROD = pc.Link(mass=1.0, length=1.0)
+
+
+@pytest.mark.parametrize("options", [{}, {"store": "end"}, {"t_eval": [1.0, 2.0]}], ids=str)
+def test_what_rests_from_the_start_takes_no_steps_and_has_no_error(options):
+    stuck = pc.Scene(links=[ROD], effects=[E.DryJointFriction(1, coulomb=25.0, static=25.0)])
+    sol = pc.simulate(stuck, 0.3, 0, (0, 3), error=1e-7, **options)
+    assert sol.status == "at_rest"
+    assert sol.accuracy.reached
+
+
+@pytest.mark.parametrize(("static", "rate"), [(15.0, 1.0), (30.0, 2.0)])
+def test_a_run_that_rests_after_two_steps_is_verified(static, rate):
+    friction = E.DryJointFriction(1, coulomb=10.0, static=static, stribeck_velocity=1.0)
+    scene = pc.Scene(links=[ROD], gravity=0.0, effects=[friction])
+    sol = pc.simulate(scene, 0.3, rate, (0, 10), error=1e-5, store="end")
+    fine = {"method": "dop853", "rtol": 1e-13, "atol": 1e-15, "max_step": 1e-3}
+    truth = pc.simulate(scene, 0.3, rate, (0, 10), store="end", **fine)
+    apart = 2 * abs(math.sin((sol.q - truth.q).item() / 2))
+    assert sol.accuracy.reached
+    assert apart <= 3e-5
+    assert apart <= 3 * sol.accuracy.achieved
+
+
+def test_a_first_step_of_the_whole_span_is_made_shorter_by_tighter_tolerances():
+    sol = pc.simulate(BOOK, *START[:2], (0, 0.02), error=1e-10, first_step=0.02)
+    assert sol.accuracy.reached
 
 
 @pytest.mark.parametrize("times", [[3.0, 4.0], [0.2, 4.0]], ids=str)

@@ -128,10 +128,10 @@ def test_it_says_what_there_was_no_time_for_and_why_there_is_no_exponent() -> No
     assert found.untried[:2] == (("dopri5", 1e-10), ("dopri5", 1e-12))
     assert len(found.untried) == 12
     assert str(found).splitlines()[-1] == (
-        "not tried before the time was up: dopri5 at rtol 1e-10, 1e-12, dop853, taylor"
+        "not tried before it was stopped: dopri5 at rtol 1e-10, 1e-12, dop853, taylor"
     )
     short = pc.horizon_work(BOOK, CHAOTIC, 0, (0, 10), rtols=FEW, time_limit=1e-9)
-    assert "not tried before the time was up: " in str(short)
+    assert "not tried before it was stopped: " in str(short)
     rubbed = pc.Scene(links=BOOK.links, effects=[E.DryJointFriction(joint=2, coulomb=1e-3)])
     found = pc.horizon_work(rubbed, CHAOTIC, 0, (0, 15), methods=["dopri5"], rtols=[1e-3, 1e-5])
     told = " ".join(str(found).split())

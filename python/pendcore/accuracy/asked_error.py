@@ -5,7 +5,7 @@
 2. The run: by the method that is expected to take the least work for the error, at the tolerance
    that follows from the proportionality of error and tolerance.
 3. The verification: by another method, tighter; where the two would take far more work than the
-   cheapest run, by the same one at a twelfth of the tolerance, in other steps. The distance is the
+   cheapest run, and tolerances set the steps, by the same one at a twelfth. The distance is the
    error that is told. If it is larger than asked, the run is made again at the tolerance that
    follows from this measurement, or by another method where that is expected to take less by now,
    until the error is kept or nothing is left to tighten.
@@ -41,6 +41,8 @@ WHOLE = 2.8
 """How many times the work of the cheapest run the run and a verification by another method take."""
 VERIFYING_STEP = 12.0
 """By what factor the same method is tighter where it verifies itself."""
+LEAST, UNTOLD = 1.5, 100.0
+"""By what factor a tolerance is made tighter at least; and where it does not set the steps."""
 HOPELESS = 1e-6
 """An error at the tightest tolerances beyond which it is not rounding alone, but its growth."""
 WORTH_A_CHANGE = 0.9
@@ -217,6 +219,8 @@ class _Search:
             method, rtol = min(others, key=lambda other: self.forecast.work_for(*other))
             least = self.forecast.least_work(self.methods, self.error)
             left = WHOLE * min(made.work, least) - made.work
+            if not self.purse.takes_other_steps(made):  # tolerances tell little, and cost little
+                return self.purse.verification(method, rounded(rtol / UNTOLD), made)
             if own >= made.rtol or self.forecast.work_for(method, rtol) <= left:
                 return self.purse.verification(method, rtol, made)
         if own < made.rtol:
@@ -230,7 +234,8 @@ class _Search:
         aimed = self.forecast.rtol_for(made.method, self.error, MEASURED_AIM)
         if apart > NOTHING_IN_COMMON:
             aimed = max(aimed, made.rtol / FARTHEST)
-        rtol = rounded(min(aimed, made.rtol / 1.5))
+        least = LEAST if self.purse.takes_other_steps(made) else UNTOLD
+        rtol = rounded(min(aimed, made.rtol / least))
         if rtol <= TIGHTEST:
             return self.made(self.methods[-1], rtol)
         others = [m for m in self.methods if m != made.method]
@@ -286,8 +291,6 @@ class _Search:
         )
         if made.rtol > TIGHTEST:
             why = "the error does not follow the tolerances: is a law of your own not smooth?"
-            if given := self.purse.given_steps():
-                why = f"{given} set the steps, not the tolerances: leave it out"
         elif found.achieved > HOPELESS:
             why = "neighbouring motions part too fast for double precision (chaos)"
         else:

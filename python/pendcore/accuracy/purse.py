@@ -29,7 +29,7 @@ SHORTER = 0.6
 
 The error of order five and more is then a twelfth.
 """
-FEW_STEPS = 8
+FEW_STEPS = 5
 """So many steps it may take until they are as long as the tolerance lets them be."""
 # How much of what is left on the bar a run of each purpose moves it.
 _ADVANCE = {"choose": 0.05, "run": 0.4, "verify": 0.9}
@@ -99,20 +99,24 @@ class Purse:
         steps = 10 * self.options["max_steps"]
         options = {"t_eval": self._kept_times(made), "max_steps": steps}
         if method == made.method:
-            options["max_step"] = self._other_steps(made)
+            options["max_step"] = self._shorter_steps(made)
         return self._make("verify", start, method, rtol, options)
 
-    def _other_steps(self, made: Made) -> float:
-        """Return a max_step, s, with which a tighter run of the same method takes other steps.
+    def takes_other_steps(self, made: Made) -> bool:
+        """Whether the same method takes other steps where it is tighter.
 
-        It does so by itself where tolerances set most steps, but not where max_step does, or points
-        at which laws change, or where a short run is over before its steps have grown.
+        It does so where tolerances set most steps, but not where max_step does, or points at which
+        laws change, or where a run is over, or at rest, before its steps have grown.
         """
         stats = made.stats
-        if stats.accepted >= FEW_STEPS and 2 * stats.limited_by_tolerance > stats.accepted:
-            return float(self.options["max_step"])
+        return stats.accepted >= FEW_STEPS and 2 * stats.limited_by_tolerance > stats.accepted
+
+    def _shorter_steps(self, made: Made) -> float:
+        """Return a max_step, s, with which the same method takes other steps in any case."""
         span = abs(made.solution._run.t_reached - self.start.t_start)
-        return SHORTER * span / stats.accepted if span else inf
+        if self.takes_other_steps(made) or not (made.stats.accepted and span):
+            return float(self.options["max_step"])
+        return SHORTER * span / made.stats.accepted
 
     def comparable(self, made: Made, other: Made) -> bool:
         """Whether the other run says something of the one: it is tighter, and has its times."""
@@ -151,13 +155,6 @@ class Purse:
     def is_dense(self) -> bool:
         """Whether what is asked for is a run that can be compared at any time."""
         return self.options["t_eval"] is None and self.options["store"] in (None, "dense")
-
-    def given_steps(self) -> str:
-        """Return the names of what was asked for and sets steps, if anything was."""
-        given = (
-            name for name in ("first_step", "max_step") if self.options[name] not in (None, inf)
-        )
-        return " and ".join(given)
 
     def seconds(self) -> float:
         """Return the time since the beginning, s."""

@@ -91,7 +91,7 @@ class HorizonWork:
     refusal : str
         Why there is no exponent, where it was refused; else empty.
     untried : tuple of (str, float)
-        The methods and tolerances that there was no time for.
+        The methods and tolerances that were left when the time was up, or at an interrupt.
     """
 
     limit: float
@@ -163,7 +163,7 @@ class HorizonWork:
         if self.refusal:
             lines += wrap(f"no Lyapunov exponent: {self.refusal.partition(';')[0]}", 96)
         if self.untried:
-            lines += wrap(f"not tried before the time was up: {self._untried_by_method()}", 96)
+            lines += wrap(f"not tried before it was stopped: {self._untried_by_method()}", 96)
         return "\n".join(lines)
 
     def _untried_by_method(self) -> str:
