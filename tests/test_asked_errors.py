@@ -7,12 +7,11 @@ work is counted, not timed. docs/asked_errors.py has the same with times.
 from __future__ import annotations
 
 import json
+import math
 import pickle
 import re
 import sys
 from pathlib import Path
-
-import math
 
 import numpy as np
 import pendcore as pc
