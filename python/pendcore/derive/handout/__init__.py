@@ -38,9 +38,7 @@ class Handout(NamedTuple):
     complaint: str
 
 
-def report(
-    derivation: Derivation, case: Case, solution: Solution, refusal: str = ""
-) -> Document:
+def report(derivation: Derivation, case: Case, solution: Solution, refusal: str = "") -> Document:
     """Return the derivation of a case with its solution.
 
     Parameters

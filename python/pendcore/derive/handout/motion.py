@@ -94,7 +94,7 @@ def numerical_solution(
     elif solution.status == "event":
         yield Paragraph(f"The run is {solution.message}.")
     if refusal:
-        yield Paragraph(f"**The error that was asked for is not reached: {refusal}.**")
+        yield Paragraph(f"**The run is not shown to be as exact as asked for: {refusal}.**")
     if not takes_time(solution):
         yield Paragraph("It ends where it starts: there are no curves to draw.")
         return
