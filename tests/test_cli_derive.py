@@ -123,7 +123,9 @@ def test_a_report_is_written_of_the_run_whose_error_is_not_reached(
     assert len(runs) == 1
     assert "warning: error = 1e-06: not reached: " in capsys.readouterr().err
     told = Path("o/report.md").read_text()
-    assert "**The run is not shown to be as exact as asked for: error = 1e-06: not reached: " in told
+    assert (
+        "**The run is not shown to be as exact as asked for: error = 1e-06: not reached: " in told
+    )
     assert Path("o/angles.png").exists()
 
 
