@@ -109,6 +109,26 @@ def test_a_report_of_a_run_that_fails_is_written_and_exits_with_1(
     assert "warning: the run is not complete" in capsys.readouterr().err
 
 
+def test_a_report_is_written_of_the_run_whose_error_is_not_reached(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PATH", "")
+    rods = pc.Scene(links=[pc.Link(mass=1, length=1)] * 2)
+    chaos = pc.Case(scene=rods, q0=(-2, -1), t_span=(0, 60), options={"error": 1e-6})
+    Path("chaos.toml").write_text(chaos.to_toml())
+    runs = list[pc.Case]()
+    monkeypatch.setattr(pc.Case, "simulate", lambda case, run=pc.Case.simulate: (
+        runs.append(case), run(case))[1])  # fmt: skip
+    assert main(["derive", "chaos.toml", "--to", "report", "-o", "o"]) == 1
+    assert len(runs) == 1
+    assert "warning: error = 1e-06: not reached: " in capsys.readouterr().err
+    told = Path("o/report.md").read_text()
+    assert (
+        "**The run is not shown to be as exact as asked for: error = 1e-06: not reached: " in told
+    )
+    assert Path("o/angles.png").exists()
+
+
 def test_a_worksheet_is_of_a_report(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["derive", "--worksheet"]) == 2
     assert capsys.readouterr().err == (

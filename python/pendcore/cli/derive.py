@@ -103,8 +103,10 @@ def _text(derivation: Derivation, args: argparse.Namespace) -> str:
 
 
 def _report(derivation: Derivation, case: Case, args: argparse.Namespace) -> int:
+    from pendcore.derive.handout import write_handout
+
     folder = folder_of(args)
     with new_folder(folder), blamed_on_usage():
-        files = derivation.report(case, folder, worksheet=args.worksheet)
-    print(f"written to {folder}: {', '.join(path.name for path in files)}", file=sys.stderr)
-    return 0 if case.simulate().success else 1
+        made = write_handout(derivation, case, folder, with_worksheet=args.worksheet)
+    print(f"written to {folder}: {', '.join(path.name for path in made.files)}", file=sys.stderr)
+    return 1 if made.complaint else 0

@@ -191,7 +191,8 @@ class Derivation:
             raise ValueError("case: is of another scene than the derivation: derive case.scene")
         folder = Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
-        return write_handout(self, case, folder, with_worksheet=worksheet, progress=progress)
+        made = write_handout(self, case, folder, with_worksheet=worksheet, progress=progress)
+        return made.files
 
     def to_octave(self, name: str = "RR") -> str:
         """Return a function file of MATLAB and Octave, as the textbook's RR.m."""

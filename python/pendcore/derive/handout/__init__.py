@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import NamedTuple
 
 from pendcore import _core
 from pendcore import progress as bars
@@ -22,7 +23,22 @@ from pendcore.solution import Solution
 from pendcore.warning import warn
 
 
-def report(derivation: Derivation, case: Case, solution: Solution) -> Document:
+class Handout(NamedTuple):
+    """What came of writing a report.
+
+    Attributes
+    ----------
+    files : list of Path
+        What was written.
+    complaint : str
+        What is to be said against the run that it shows; empty if there is nothing.
+    """
+
+    files: list[Path]
+    complaint: str
+
+
+def report(derivation: Derivation, case: Case, solution: Solution, refusal: str = "") -> Document:
     """Return the derivation of a case with its solution.
 
     Parameters
@@ -33,6 +49,8 @@ def report(derivation: Derivation, case: Case, solution: Solution) -> Document:
         With the start.
     solution : Solution
         Of the case, as `motion.solved` returns it.
+    refusal : str
+        What an `AccuracyError` said, if the solution comes from one.
     """
     figures = Figures(derivation, case.q0)
     blocks = [
@@ -41,7 +59,7 @@ def report(derivation: Derivation, case: Case, solution: Solution) -> Document:
         *steps.derivation_steps(derivation, figures),
         *numbers.numbers_put_in(derivation),
         *numbers.at_the_start(derivation, case),
-        *motion.numerical_solution(derivation, solution, figures),
+        *motion.numerical_solution(derivation, solution, figures, refusal),
         *motion.energy_check(derivation, solution, figures),
         Paragraph(f"*Derived with SymPy and solved by pendcore {_core.__version__}.*"),
     ]
@@ -67,7 +85,7 @@ def write_handout(
     *,
     with_worksheet: bool = False,
     progress: Progress = None,
-) -> list[Path]:
+) -> Handout:
     """Write the report of a case, and its worksheet, in every form that this machine can make.
 
     Parameters
@@ -85,9 +103,9 @@ def write_handout(
 
     Returns
     -------
-    list of Path
-        What was written, the report first: Markdown always, HTML where pandoc is, PDF where a
-        LaTeX engine is beside it; then the figures.
+    Handout
+        Its files, the report first: Markdown always, HTML where pandoc is, PDF where a LaTeX
+        engine is beside it; then the figures. And what is to be said against the run.
     """
     told = bars.callback(progress, "deriving") or (lambda fraction: None)
     try:
@@ -102,13 +120,16 @@ def _written(
     folder: Path,
     with_worksheet: bool,
     told: Callable[[float], object],
-) -> list[Path]:
+) -> Handout:
     told(0.0)
-    solution = motion.solved(case)
+    solution, refusal = motion.solved_or_refused(case)
+    complaint = refusal
     if not solution.success:
-        warn(f"the run is not complete: {solution.message}")
+        complaint = f"the run is not complete: {solution.message}"
+    if complaint:
+        warn(complaint)
     told(0.05)
-    documents = {"report": report(derivation, case, solution)}
+    documents = {"report": report(derivation, case, solution, refusal)}
     if with_worksheet:
         documents["worksheet"] = worksheet(derivation, case, solution)
     told(0.4)
@@ -119,7 +140,7 @@ def _written(
         for drawing in document.drawings:
             figures[drawing.name] = drawing.save(folder, Reader.PEOPLE)
         told(0.4 + 0.6 * (k + 1) / len(documents))
-    return [*texts, *figures.values()]
+    return Handout([*texts, *figures.values()], complaint)
 
 
 def _texts(document: Document, folder: Path, name: str) -> Iterator[Path]:

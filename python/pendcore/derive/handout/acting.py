@@ -9,9 +9,9 @@ from collections.abc import Iterator, Sequence
 from math import degrees
 from typing import cast
 
-from sympy import Abs, Expr, Symbol
+from sympy import Abs, Add, Expr, Symbol
 
-from pendcore.derive.chain import Chain
+from pendcore.derive.chain import Chain, Vector
 from pendcore.derive.derivation import Derivation
 from pendcore.derive.handout.quantities import number
 from pendcore.derive.laws import Law
@@ -58,20 +58,22 @@ def what_acts(derivation: Derivation, q: Sequence[float]) -> Iterator[str]:
     laws, s = derivation.equations.laws, derivation.symbols
     page = Page(derivation)
     if not laws:
-        yield "Nothing acts on it but gravity and the joint that holds it."
+        gravity = "gravity and " if derivation.scene.gravity else ""
+        weightless = "" if gravity else " Gravity is 0."
+        yield f"Nothing acts on it but {gravity}the joint that holds it.{weightless}"
         return
     if derivation.equations.torques or derivation.equations.locked or _rotors(laws):
         yield _joint_angles(derivation)
     if derivation.equations.torques:
         yield " ".join(_torques(derivation))
+    if moved := [path for law in laws if (path := law.pivot()) is not None]:
+        yield _path(moved, s)
     for law in laws:
         match law.effect.kind:
             case "rotor_inertia":
                 yield _rotor(law, s)
             case "lock":
                 yield _lock(law, q)
-            case "driven_pivot":
-                yield _path(law, s)
             case "payload":
                 yield _payload(law, s, page.joint(derivation.n).latex)
             case "rod_drag":
@@ -146,9 +148,8 @@ def _lock(law: Law, q: Sequence[float]) -> str:
     )
 
 
-def _path(law: Law, s: Notation) -> str:
-    path = law.pivot()
-    assert path is not None
+def _path(paths: Sequence[Vector], s: Notation) -> str:
+    path = [Add(*along) for along in zip(*paths, strict=True)]
     moved = [rf"{axis}_{{A}}(t) = {s.latex(e)}" for axis, e in zip("xy", path, strict=True) if e]
     rests = [rf"{axis}_{{A}} = 0" for axis, e in zip("xy", path, strict=True) if not e]
     return f"The pivot $A$ is moved on the path ${', '.join(moved + rests)}$."
@@ -173,6 +174,8 @@ def _drag(law: Law, derivation: Derivation, page: Page) -> str:
     i, s = law.effect.link, derivation.symbols
     w0, w1, force, moment = (d.symbol for d in law.definitions(derivation.chain))
     begin, end = page.joint(i - 1).latex, page.joint(i).latex
+    load = law.load(derivation.chain)
+    assert load is not None
     w = s.symbol("w", "w")
     density, coefficient, diameter = (
         s.latex(getattr(law, name)) for name in ("density", "coefficient", "diameter")
@@ -189,5 +192,5 @@ def _drag(law: Law, derivation: Derivation, page: Page) -> str:
         f"$\\mathbf{{n}}_{{{i}}}$ relative to {blows}; it is ${s.latex(w0)}$ at ${begin}$, "
         f"${s.latex(w1)}$ at ${end}$, and linear between them. ${s.latex(force)}$ is the sum of "
         f"these forces, ${s.latex(moment)}$ that of their moments about ${begin}$; "
-        f"$\\mathbf{{D}}_{{{i}}} = {s.latex(force)}\\,\\mathbf{{n}}_{{{i}}}$."
+        f"${page.load(load).latex} = {s.latex(force)}\\,\\mathbf{{n}}_{{{i}}}$."
     )

@@ -42,8 +42,11 @@ def empty_axes(solution: Solution) -> Figure:
     from matplotlib.ticker import AutoMinorLocator
 
     figure, axes = sheets(len(solution.scene.links))
+    span = solution.t[0], solution.t[-1]
+    if span[0] == span[1]:  # a run that failed at once: the span that was asked for
+        span = solution._run.arguments["t_start"], solution._run.arguments["t_end"]
     for i, axis in enumerate(axes, start=1):
-        axis.set(xlim=(solution.t[0], solution.t[-1]), ylabel=f"q{i} (deg)")
+        axis.set(xlim=span, ylabel=f"q{i} (deg)")
         low, high, step = whole_ticks(np.degrees(solution.q[:, i - 1]))
         axis.set_ylim(low, high)
         axis.set_yticks(np.arange(low, high + 1.0, step))

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from pendcore.accuracy.report import AccuracyError
 from pendcore.case import Case
 from pendcore.derive.derivation import Derivation
 from pendcore.derive.handout.document import Block, Heading, Paragraph, Table
@@ -26,6 +27,8 @@ AT_REST = 1e-13
 """Share of weights times lengths below which a kinetic energy is that of rounding."""
 ROWS = 11
 """Times that the table shows."""
+VISIBLE = 1e-9
+"""Share of the times themselves that a run has to take for its curves to be drawn."""
 
 METHODS = {
     "dopri5": "Dormand and Prince's method of order 5, that of MATLAB's `ode45`",
@@ -39,22 +42,49 @@ METHODS = {
 
 def solved(case: Case) -> Solution:
     """Run a case so that it can be drawn, with a ledger if its effects do work."""
+    return solved_or_refused(case)[0]
+
+
+def solved_or_refused(case: Case) -> tuple[Solution, str]:
+    """Run a case as `solved` does; return also what its error was refused for, else nothing."""
     start, end = case.t_span
     if start == end:
         raise ValueError(f"t_span = {case.t_span}: a report draws curves: let the run take time")
     options: dict[str, Any] = dict(case.options)
     options.pop("store", None)
-    options |= {"t_eval": tuple(np.linspace(start, end, POINTS).tolist()), "store": "dense"}
+    options["store"] = "dense"
     if any(effect.description.account != "none" for effect in case.scene.effects):
         options["ledger"] = True
-    return Case(
+    found = _at_times_until(end, case, options)
+    reached = float(found[0]._run.t_reached)
+    return found if reached == end else _at_times_until(reached, case, options)
+
+
+def _at_times_until(end: float, case: Case, options: dict[str, Any]) -> tuple[Solution, str]:
+    """Run a case and keep its states and its ledger at times spread until then."""
+    start = case.t_span[0]
+    times = np.unique(np.linspace(start, end, POINTS))
+    times = times if end >= start else times[::-1]
+    spread = Case(
         scene=case.scene, q0=case.q0, qd0=case.qd0, t_span=case.t_span, name=case.name,
-        options=options,
-    ).simulate()  # fmt: skip
+        options=options | {"t_eval": tuple(times.tolist())},
+    )  # fmt: skip
+    try:
+        return spread.simulate(), ""
+    except AccuracyError as refused:
+        if refused.solution is None:
+            raise
+        return refused.solution, str(refused)
+
+
+def takes_time(solution: Solution) -> bool:
+    """Return whether a run went on for long enough to draw curves of it."""
+    start, end = float(solution.t[0]), float(solution.t[-1])
+    return abs(end - start) > VISIBLE * max(abs(start), abs(end))
 
 
 def numerical_solution(
-    derivation: Derivation, solution: Solution, figures: Figures
+    derivation: Derivation, solution: Solution, figures: Figures, refusal: str = ""
 ) -> Iterator[Block]:
     """Yield how the equations were integrated, and what came of it."""
     yield Heading(2, "Numerical solution")
@@ -63,6 +93,11 @@ def numerical_solution(
         yield Paragraph(f"**The run is not complete: {solution.message}**")
     elif solution.status == "event":
         yield Paragraph(f"The run is {solution.message}.")
+    if refusal:
+        yield Paragraph(f"**The run is not shown to be as exact as asked for: {refusal}.**")
+    if not takes_time(solution):
+        yield Paragraph("It ends where it starts: there are no curves to draw.")
+        return
     yield figures.angles(solution)
     yield _table(derivation, solution)
     yield figures.reactions(solution)
@@ -117,17 +152,20 @@ def _largest(derivation: Derivation, solution: Solution) -> str:
 def energy_check(derivation: Derivation, solution: Solution, figures: Figures) -> Iterator[Block]:
     """Yield the energies in symbols, and how well the run kept them."""
     yield Heading(2, "Check by the energy")
+    moves = takes_time(solution)
     works = solution.energy().ledger is not None
     rate = r"\frac{\mathrm{d}}{\mathrm{d}t}(T + V)" + (r" - \sum_k P_k" if works else "")
     exactly = derivation.energy_rate() == 0
     yield Paragraph(
         (f"With the equations of motion put in, SymPy reduces ${rate}$ to 0: exactly, for all "
          "angles, rates and parameters. " if exactly else "")
-        + "What is left in the run is its error. " + _kept(derivation, solution)
+        + ("What is left in the run is its error. " + _kept(derivation, solution) if moves else
+           "The run ends where it starts: there is nothing to compare.")
     )  # fmt: skip
-    if works:
+    if moves and works:
         yield from _work(solution)
-    yield figures.energies(solution)
+    if moves:
+        yield figures.energies(solution)
 
 
 def _kept(derivation: Derivation, solution: Solution) -> str:

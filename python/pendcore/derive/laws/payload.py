@@ -27,6 +27,8 @@ class Payload(Law):
 
     def sentence(self, notation: Notation) -> str:
         """Say what it does."""
+        if any(p.symbol.name == "m_p__2" for p in notation.parameters):
+            return "The payloads are fixed to the tip, and move as one body."
         return "A payload is fixed to the tip."
 
     def payload(self) -> tuple[Expr, Expr]:

@@ -23,10 +23,7 @@ def _solution(page: Page) -> None:
     if page.n == 1:
         text = "The equation of motion is divided by the factor of the acceleration"
     if page.equations.locked:
-        text += (
-            "; the equations of the links that a lock makes turn as one are added, which takes "
-            "its couple out of them"
-        )
+        text = _without_couples(page, text)
         matrix, right, first = "B^{T} M B", "B^{T} f", ""
     else:
         matrix, right, first = "M", "f", ", with $D_{1} = M_{11}$ and $h_{1} = f_{1}$"
@@ -59,6 +56,25 @@ def _solution(page: Page) -> None:
             for joint, couple in solution.holding.items()
         ),
     )
+
+
+def _without_couples(page: Page, text: str) -> str:
+    """Say how the couples of locks are taken out of the equations."""
+    locked = page.equations.locked
+    held = [joint for k, joint in enumerate(locked, start=1) if joint == k]
+    if page.n == len(held):
+        whose = "The link is" if page.n == 1 else "All links are"
+        return f"{whose} held by the ground: no equation is needed to find that nothing turns"
+    links = " and ".join(filter(None, [", ".join(map(str, held[:-1])), *map(str, held[-1:])]))
+    left_out = (
+        f"link {links} is held by the ground, and its equation is left out"
+        if len(held) == 1
+        else f"links {links} are held by the ground, and their equations are left out"
+    )
+    added = "the equations of the links that a lock makes turn as one are added"
+    told = [left_out] * bool(held) + [added] * (len(locked) > len(held))
+    whose = "the couple of the lock" if len(locked) == 1 else "the couples of the locks"
+    return f"{text}; {'; '.join(told)}, which takes {whose} out of them"
 
 
 def _condition(page: Page) -> str:

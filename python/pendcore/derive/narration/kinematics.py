@@ -68,10 +68,10 @@ def _mobility(page: Page) -> None:
     k = n - len(locked)  # links that a lock makes one are one
     joints = "one revolute joint" if k == 1 else f"{k} revolute joints"
     links = "one moving link" if k == 1 else f"{k} moving links"
-    text = (
-        f"The chain has {links} and {joints}, of one degree of freedom each: $n = {k}$, "
-        f"$c_{{5}} = {k}$, $c_{{4}} = 0$."
-    )
+    text = f"The chain has {links} and {joints}, of one degree of freedom{' each' * (k > 1)}"
+    if k == 0:
+        text = f"{'The link does' if n == 1 else 'The links do'} not move"
+    text += f": $n = {k}$, $c_{{5}} = {k}$, $c_{{4}} = 0$."
     if locked:
         joints = f"joint{'s' if len(locked) > 1 else ''} {_listed(map(str, locked))}"
         text += f" The lock of {joints} makes one of the bodies that it joins."
@@ -81,7 +81,7 @@ def _mobility(page: Page) -> None:
     angles = _listed(f"$q_{{{i}}}(t)$" for i in range(1, n + 1))
     coordinates = "The generalized coordinates are the angles"
     if locked:
-        coordinates = "It is described by the angles"
+        coordinates = f"It is described by the angle{'s' * (n > 1)}"
     elif n == 1:
         coordinates = "The generalized coordinate is the angle"
     page.step(

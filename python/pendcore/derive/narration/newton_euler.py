@@ -87,6 +87,15 @@ def _opposite(i: int) -> str:
     )
 
 
+def _turning_with(page: Page, i: int) -> str:
+    """Say what a payload with a moment of inertia takes of the link at whose end it is."""
+    payload = page.equations.payload
+    if i < page.n or payload is None or payload.inertia == 0:
+        return ""
+    couple = page.s.latex(expand(payload.inertia * page.s.qdd[i - 1]))
+    return f" The payload turns with link {i}; the couple that this takes, ${couple}$, acts back."
+
+
 def _first(page: Page, link: LinkEquations) -> None:
     """Link 1, about the fixed point A: (2.1) and (2.2)."""
     begin, end, center = page.joint(0), page.joint(1), page.center(1)
@@ -107,7 +116,7 @@ def _first(page: Page, link: LinkEquations) -> None:
         "Newton-Euler equations of link 1",
         f"{text}. As link 1 turns about the fixed point $A$, the sum of the moments about $A$ "
         "equals the moment of inertia about $A$ times the angular acceleration: "
-        "$\\mathbf{F}_{01}$ has no part in it.",
+        f"$\\mathbf{{F}}_{{01}}$ has no part in it.{_turning_with(page, 1)}",
         _newton(page, 1, None),
         _euler(page, 1, center, None),
         _euler(page, 1, begin, "2.1"),
@@ -124,6 +133,10 @@ def _other(page: Page, i: int, link: LinkEquations) -> None:
     mass = page.s.masses[i - 1]
     out: list[Equation] = []
     own = i == 2  # the textbook's numbers of link 2
+    payload = ""
+    if i == page.n and (far := _forces(page, i)[1]) is not None:
+        payload = f" ${far.latex}$ is the force of the payload on it, at ${page.joint(i).latex}$."
+        payload += _turning_with(page, i)
     if own and page.n == 2:
         out = [
             page.equation(mass * a, line.acting, number, errata.REMARKS.get(number, ""))
@@ -133,7 +146,8 @@ def _other(page: Page, i: int, link: LinkEquations) -> None:
     page.step(
         f"Newton-Euler equations of link {i}",
         "Mass times acceleration is the sum of the forces, moment of inertia times angular "
-        f"acceleration the sum of the moments about ${center.latex}$.{_opposite(i)}",
+        f"acceleration the sum of the moments about ${center.latex}$."
+        f"{_opposite(i)}{payload}",
         _newton(page, i, "2.3" if own else None),
         _euler(page, i, center, "2.4" if own else None),
         *_components(page, i, link),
@@ -170,10 +184,18 @@ def _payload(page: Page, payload: PayloadEquations) -> None:
     """Newton's equations of the payload."""
     tip, force = page.joint(page.n), page.vector("F", f"p{page.n}")
     opposite, mass = Formula(f"-{force.text}", f"-{force.latex}"), payload.mass
+    couple, turning, moment = page.vector("T", "p"), "", []
+    if payload.inertia != 0:
+        turning = (
+            f" There its forces have no moment: the couple ${couple.latex}$ of link {page.n} turns "
+            "it, and its opposite acts on the link."
+        )
+        alpha = page.vector("alpha", page.n)
+        moment = [page.equation(page.scaled(payload.inertia, alpha), couple)]
     page.step(
-        "Newton's equations of the payload",
+        "Newton-Euler equations of the payload" if moment else "Newton's equations of the payload",
         f"${force.latex}$ is the force of the payload on link {page.n}, at ${tip.latex}$; its "
-        "opposite acts on the payload, whose mass centre is there.",
+        f"opposite acts on the payload, whose mass centre is there.{turning}",
         page.equation(
             page.scaled(mass, page.vector("a", tip)), total([opposite, page.vector("G", "p")])
         ),
@@ -181,4 +203,5 @@ def _payload(page: Page, payload: PayloadEquations) -> None:
             page.equation(mass * page.coordinate(axis, tip, 2), line.acting)
             for axis, line in zip("xy", payload.newton, strict=True)
         ),
+        *moment,
     )
