@@ -11,6 +11,7 @@ import math
 import pickle
 import re
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +26,7 @@ sys.path.append(str(DOCS))
 import asked_errors  # noqa: E402
 
 BOOK = pc.Scene.textbook()
+ROD = pc.Link(mass=1.0, length=1.0)
 START = ([np.pi / 4, np.pi / 3], 0, (0, 5))
 CHAOTIC = ([-1.5, -1.4], 0, (0, 100))
 
@@ -235,12 +237,21 @@ def test_steps_that_are_not_set_by_the_tolerance_are_verified_by_other_steps(max
     assert apart <= 3 * sol.accuracy.achieved
 
 
+def test_a_stiff_run_in_steps_of_max_step_is_verified_by_shorter_ones():
+    """No other method gets through: the same one verifies itself."""
+    stiff = pc.Scene(links=[ROD, ROD], effects=[E.ViscousJoint(2, damping=1e5)])
+    start, times = ([0.7, 1.0], 0, (0, 2)), np.linspace(0, 2, 41)
+    sol = pc.simulate(stiff, *start, t_eval=times, error=1e-6, max_step=0.05)
+    truth = pc.simulate(stiff, *start, t_eval=times, method="radau5", rtol=1e-13, atol=1e-15)
+    apart = np.linalg.norm(sol.positions() - truth.positions(), axis=-1).max() / 2
+    assert sol.method == "radau5"
+    assert 2 * sol.stats.limited_by_max_step > sol.stats.accepted
+    assert apart <= 3 * sol.accuracy.achieved
+
+
 def test_a_short_span_is_verified_by_other_steps():
     sol = pc.simulate(BOOK, *START[:2], (0, 0.02), error=1e-10)
     assert sol.accuracy.achieved > 0
-
-
-ROD = pc.Link(mass=1.0, length=1.0)
 
 
 @pytest.mark.parametrize("options", [{}, {"store": "end"}, {"t_eval": [1.0, 2.0]}], ids=str)
@@ -301,13 +312,17 @@ def test_an_interrupt_hands_over_the_best_run_so_far_and_says_what_it_is(at, sta
         if fraction > at:
             raise KeyboardInterrupt
 
-    slow = pc.Scene(links=[pc.Link(mass=1, length=1)], effects=[E.User(lambda t, q, qd: 0 * q)])
+    def law(t, q, qd):
+        time.sleep(2e-5)  # every run is to report often, on any machine
+        return 0 * q
+
+    slow = pc.Scene(links=[ROD], effects=[E.User(law)])
     with pytest.raises(KeyboardInterrupt) as caught:
-        pc.simulate(slow, 1.2, 0, (0, 400), error=1e-6, progress=report)
+        pc.simulate(slow, 1.2, 0, (0, 50), error=1e-6, progress=report)
     assert seen == sorted(seen)
     best = caught.value.solution
     assert best.status == status
-    assert (best.t[-1] == 400) == best.success
+    assert (best.t[-1] == 50) == best.success
     assert not best.accuracy.reached
     assert "not verified: interrupted" in str(best.accuracy)
     assert told in best.accuracy.verified_by
