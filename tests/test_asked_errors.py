@@ -17,7 +17,6 @@ from pathlib import Path
 import numpy as np
 import pendcore as pc
 import pytest
-from pendcore.accuracy.forecast import LAWS, Forecast
 from pendcore.cli import main
 from regular_scenes import regular
 
@@ -41,27 +40,27 @@ def share(outcomes, key, at_most):
 
 
 @pytest.mark.unsanitized
-def test_on_200_scenes_no_error_exceeds_the_asked_one_by_a_factor_of_three(outcomes):
+def test_on_200_scenes_no_error_exceeds_the_asked_one(outcomes):
     assert len(outcomes) == 200
-    assert {one["method"] for one in outcomes} == {"dopri5", "dop853", "taylor"}
-    assert max(one["error"] for one in outcomes) < 3
+    firsts = {one["method"].partition("-")[0] for one in outcomes}
+    assert firsts == {"dopri5", "dop853", "taylor"}
+    assert max(one["error"] for one in outcomes) <= 1
     assert max(one["told"] for one in outcomes) <= 1
 
 
 @pytest.mark.unsanitized
-def test_what_is_told_is_the_error(outcomes):
-    """But for the verifying run's own, which is a share of the error that was asked for."""
-    assert max(one["error"] - one["told"] for one in outcomes) < 0.5
-    assert 0.8 < np.median([one["error"] / one["told"] for one in outcomes]) < 1.2
+def test_what_is_told_is_the_error_and_never_less(outcomes):
+    shares = [one["error"] / one["told"] for one in outcomes]
+    assert max(shares) <= 1
+    assert np.median(shares) > 0.8
 
 
 @pytest.mark.unsanitized
 def test_the_run_takes_hardly_more_work_than_the_best_of_a_sweep(outcomes):
-    assert share(outcomes, "run", 1.5) >= 0.98
     assert share(outcomes, "verified", 3.5) >= 0.97
-    assert max(one["run"] for one in outcomes) < 1.75
-    assert max(one["verified"] for one in outcomes) < 4
-    assert np.median([one["all"] for one in outcomes]) < 5
+    assert max(one["verified"] for one in outcomes) <= 6
+    assert np.median([one["run"] for one in outcomes]) < 1.2
+    assert np.median([one["all"] for one in outcomes]) < 4.5
 
 
 def test_the_pages_table_is_that_of_the_record():
@@ -80,8 +79,7 @@ def test_the_error_is_kept_against_multiple_precision(reference_case, name, erro
     sol = pc.simulate(scene, known.q0, known.qd0, span, t_eval=known.t, error=error)
     tips = [known.lengths * np.exp(1j * q) for q in (sol.q, known.q)]
     apart = abs(np.cumsum(tips[0] - tips[1], axis=1)).max() / known.lengths.sum()
-    assert apart < 2 * error
-    assert apart - sol.accuracy.achieved < error / 2
+    assert apart <= sol.accuracy.achieved <= error
 
 
 @pytest.mark.parametrize(
@@ -100,13 +98,13 @@ def test_what_was_asked_reached_and_paid_is_told():
     assert found.asked == 1e-6
     assert found.reached
     assert found.until == 5.0
-    assert found.times == 101
-    assert [p.purpose for p in found.paid][:2] == ["choose", "choose"]
+    assert found.everywhere
+    assert found.times > 200
     last = {p.purpose: p for p in found.paid}
     assert found.work("run") == last["run"].work
     assert sum(found.work(x) for x in ("choose", "run", "verify")) == pytest.approx(found.work())
     assert found.verified_by == f"{last['verify'].method} at rtol {last['verify'].rtol:g}"
-    assert last["verify"].rtol <= last["run"].rtol / 4
+    assert last["verify"].rtol <= last["run"].rtol / 10
     assert "asked 1.0e-06, achieved" in str(found)
     assert type(found).from_dict(found.to_dict()) == found
 
@@ -137,8 +135,8 @@ def test_stiff_and_piecewise_scenes_keep_it_too(kind, error):
     method = "radau5" if kind == "stiff" else "dop853"
     known = pc.simulate(scene, *start, t_eval=times, method=method, rtol=1e-13, atol=1e-16)
     apart = abs(np.cumsum(np.exp(1j * sol.q) - np.exp(1j * known.q), axis=1)).max() / 2
-    assert apart < 2 * error
-    assert (sol.method == "radau5") == (kind == "stiff")
+    assert apart <= error
+    assert sol.stats.stiff == (kind == "stiff")
 
 
 def test_a_terminal_event_ends_the_run_and_what_verifies_it():
@@ -190,16 +188,6 @@ def test_it_is_refused_as_well_when_no_round_is_left(monkeypatch):
     assert not caught.value.solution.accuracy.reached
 
 
-def test_of_the_distance_of_two_pilots_each_has_the_share_of_its_method():
-    forecast = Forecast(BOOK)
-    forecast.measured_distance(("dop853", 1e-3), ("dopri5", 1e-4), 0.01)
-    both = forecast.factor("dop853") * 1e-3 + forecast.factor("dopri5") * 1e-4
-    assert both == pytest.approx(0.01)
-    assert forecast.factor("dopri5") / forecast.factor("dop853") == pytest.approx(
-        LAWS["dopri5"].factor / LAWS["dop853"].factor
-    )
-
-
 def test_a_law_that_is_not_smooth_is_refused():
     """Noise: a step is too long for it however short it is, and no second run is like the first."""
     noise = np.random.default_rng(5)
@@ -233,8 +221,7 @@ def test_steps_that_are_not_set_by_the_tolerance_are_verified_by_other_steps(max
     truth = pc.simulate(BOOK, *start, t_eval=times, method="dop853", rtol=1e-13, atol=1e-15)
     apart = np.linalg.norm(sol.positions() - truth.positions(), axis=-1).max() / 2
     assert sol.accuracy.reached
-    assert apart <= 3e-6
-    assert apart <= 3 * sol.accuracy.achieved
+    assert apart <= sol.accuracy.achieved <= 1e-6
 
 
 def test_a_stiff_run_in_steps_of_max_step_is_verified_by_shorter_ones():
@@ -244,9 +231,9 @@ def test_a_stiff_run_in_steps_of_max_step_is_verified_by_shorter_ones():
     sol = pc.simulate(stiff, *start, t_eval=times, error=1e-6, max_step=0.05)
     truth = pc.simulate(stiff, *start, t_eval=times, method="radau5", rtol=1e-13, atol=1e-15)
     apart = np.linalg.norm(sol.positions() - truth.positions(), axis=-1).max() / 2
-    assert sol.method == "radau5"
+    assert sol.stats.stiff
     assert 2 * sol.stats.limited_by_max_step > sol.stats.accepted
-    assert apart <= 3 * sol.accuracy.achieved
+    assert apart <= sol.accuracy.achieved
 
 
 def test_a_short_span_is_verified_by_other_steps():
@@ -271,8 +258,7 @@ def test_a_run_that_rests_after_two_steps_is_verified(static, rate):
     truth = pc.simulate(scene, 0.3, rate, (0, 10), store="end", **fine)
     apart = 2 * abs(math.sin((sol.q - truth.q).item() / 2))
     assert sol.accuracy.reached
-    assert apart <= 3e-5
-    assert apart <= 3 * sol.accuracy.achieved
+    assert apart <= sol.accuracy.achieved <= 1e-5
 
 
 def test_a_first_step_of_the_whole_span_is_made_shorter_by_tighter_tolerances():

@@ -40,7 +40,7 @@ from pendcore.cost import AccuracyCost, accuracy_cost
 from pendcore.defect import Defect
 from pendcore.energy import Energy, Ledger
 from pendcore.explanation import Explanation
-from pendcore.horizon.error_estimate import ErrorEstimate
+from pendcore.accuracy.estimate import ErrorEstimate
 from pendcore.horizon.lyapunov import LyapunovExponents, lyapunov
 from pendcore.horizon.work import HorizonWork, horizon_work
 from pendcore.link import Link

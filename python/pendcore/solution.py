@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from pendcore.accuracy.report import Accuracy
     from pendcore.case import Case
-    from pendcore.horizon.error_estimate import ErrorEstimate
+    from pendcore.accuracy.estimate import ErrorEstimate
     from pendcore.horizon.lyapunov import LyapunovExponents
 
 
@@ -235,7 +235,7 @@ class Solution:
 
         Returns
         -------
-        pendcore.horizon.error_estimate.ErrorEstimate
+        pendcore.accuracy.estimate.ErrorEstimate
             ``.t`` (n_t,), s, ``.angle`` (n_t,), rad, ``.position`` (n_t,), a share of the total
             length.
 
@@ -245,7 +245,7 @@ class Solution:
             With what was found so far as the attribute ``estimate``, if there was anything, and
             this very run as ``solution``.
         """
-        from pendcore.horizon.error_estimate import error_estimate
+        from pendcore.accuracy.estimate import error_estimate
 
         time_limit_of(time_limit)  # also where it is known already
         if self._error is None:

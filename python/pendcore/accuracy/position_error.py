@@ -1,4 +1,4 @@
-"""How far apart two computed motions are.
+"""How far apart two computed motions are, and at which times to look.
 
 The measure is the distance between the same joint, or the tip, in both, the largest over the joints
 and the tip, divided by the total length: of the order of 1 where the two have nothing in common any
@@ -12,6 +12,8 @@ and r are close.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 import numpy.typing as npt
 
@@ -20,7 +22,13 @@ from pendcore.scene import Scene
 from pendcore.solution import Solution
 
 POINTS = 101
-"""Times of the fixed grid on which errors are measured, both ends among them."""
+"""Times of the fixed grid on which methods are compared, both ends among them."""
+SAMPLES = 6
+"""Times in each interval between two steps of any of the runs that are compared.
+
+A run's own step is cut by the steps of the others, so that each holds ten and more; the error
+within a step is a polynomial of low degree there.
+"""
 
 
 def time_grid(t_start: float, t_end: float, points: int = POINTS) -> Floats:
@@ -33,6 +41,30 @@ def time_grid(t_start: float, t_end: float, points: int = POINTS) -> Floats:
     return distinct
 
 
+def kept_times(solution: Solution) -> Floats:
+    """Return the times that a solution kept, s, each once: at a jump it stands there twice."""
+    t = solution.t
+    distinct: Floats = t[np.append(True, np.diff(t) != 0)[: len(t)]]
+    return distinct
+
+
+def times_within_steps(runs: Iterable[Solution]) -> Floats:
+    """Return times inside every step of all the runs, s, from their start to the nearest end."""
+    solutions = [*runs]
+    begin = solutions[0]._run.arguments["t_start"]
+    ends = [one._run.t_reached for one in solutions]
+    direction = -1.0 if min(ends) < begin else 1.0
+    end = direction * min(direction * one for one in ends)
+    nodes = np.unique(np.concatenate([direction * one._run.step_starts for one in solutions]))
+    nodes = np.append(nodes[nodes < direction * end], direction * end)
+    if len(nodes) == 1:
+        return np.array([end])
+    inside = nodes[:-1, np.newaxis] + np.diff(nodes)[:, np.newaxis] * (np.arange(SAMPLES) / SAMPLES)
+    times = np.append(inside.ravel(), nodes[-1])
+    distinct: Floats = direction * times[np.append(True, np.diff(times) > 0)]
+    return distinct
+
+
 def angles_at(solution: Solution, t: Floats) -> Floats:
     """Return the angles of a solution at times, rad, (n_t, n): kept ones, or interpolated.
 
@@ -41,9 +73,18 @@ def angles_at(solution: Solution, t: Floats) -> Floats:
     ValueError
         If the solution has neither kept them nor its interpolants.
     """
+    if solution.store == "dense":
+        return solution(t)[: len(solution.scene.links)].T
     if len(solution.t) == len(t) and (solution.t == t).all():
         return solution.q
-    return solution(t)[: len(solution.scene.links)].T
+    run = solution._run
+    if len(t) == 1 and t[0] == run.t_reached:
+        return np.asarray(run.y_reached)[np.newaxis, : len(solution.scene.links)]
+    direction = -1.0 if run.t_reached < run.arguments["t_start"] else 1.0
+    rows = np.searchsorted(direction * solution.t, direction * t)
+    if (rows == len(solution.t)).any() or (solution.t[rows] != t).any():
+        raise ValueError(f"t: the solution kept its state at {len(solution.t)} other times (s)")
+    return solution.q[rows]
 
 
 def distances(scene: Scene, q: npt.ArrayLike, reference: npt.ArrayLike) -> Floats:

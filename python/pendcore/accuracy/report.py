@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 from math import inf
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
 
 if TYPE_CHECKING:
     from pendcore.solution import Solution
+
+Outcome: TypeAlias = Literal["kept", "refused", "ended early"]
 
 
 class Paid(NamedTuple):
@@ -16,7 +18,8 @@ class Paid(NamedTuple):
     Attributes
     ----------
     purpose : str
-        ``"choose"``, ``"run"``, ``"verify"``; what is not the last of its kind was not good enough.
+        ``"run"`` for the run that is returned, ``"verify"`` for those that it is compared with,
+        ``"choose"`` for the others.
     method : str
     rtol : float
     nfev : int
@@ -36,23 +39,26 @@ class Paid(NamedTuple):
 class Accuracy:
     """The error that was asked for, and what came of it.
 
-    Errors are the largest distance of a joint or the tip, over the times that were compared, as a
-    share of the total length.
+    Errors are the largest distance of a joint or the tip from where it ought to be, as a share of
+    the total length: over the whole curve of a run with dense output, else over the times it kept.
 
     Attributes
     ----------
     asked : float
         The error that was asked for.
     achieved : float
-        The distance from the verifying run; infinite where there is none.
-    reached : bool
-        Whether that is as small as asked.
+        The error of the run, estimated from above; infinite where nothing verified it.
+    outcome : {"kept", "refused", "ended early"}
+        Whether the error is kept; could not be shown to be kept; or the run did not get to its end,
+        and ``achieved`` and ``until`` tell of what there is.
     until : float
-        Until when it is, s.
+        Until when the error is kept, s.
     times : int
-        At how many times the two runs were compared.
+        At how many times the runs were compared.
+    everywhere : bool
+        Whether these lie within every step, so that the error is that of the whole curve.
     verified_by : str
-        How the verifying run was made; why there is none, where ``times`` is 0.
+        How the verifying runs were made; why there is none, where ``times`` is 0.
     paid : tuple of Paid
         All the runs, in their order.
     seconds : float
@@ -61,23 +67,25 @@ class Accuracy:
 
     asked: float
     achieved: float
-    reached: bool
+    outcome: Outcome
     until: float
     times: int
+    everywhere: bool
     verified_by: str
     paid: tuple[Paid, ...]
     seconds: float
 
+    @property
+    def reached(self) -> bool:
+        """Whether the error is as small as asked."""
+        return self.outcome == "kept"
+
     def work(self, purpose: str | None = None) -> float:
-        """Return the work of all runs in right-hand sides, or that of the last of a purpose.
+        """Return the work of all runs, or of those with a purpose, in right-hand sides.
 
         A series of ``taylor`` counts as the many right-hand sides that take as long.
         """
-        if purpose == "choose":
-            return self.work() - self.work("run") - self.work("verify")
-        if purpose is not None:
-            return next((p.work for p in reversed(self.paid) if p.purpose == purpose), 0.0)
-        return sum(p.work for p in self.paid)
+        return sum(p.work for p in self.paid if purpose in (None, p.purpose))
 
     def to_dict(self) -> dict[str, Any]:
         """Return the same for JSON."""
@@ -91,20 +99,25 @@ class Accuracy:
         paid = tuple(Paid(**p) for p in values["paid"])
         return cls(**(values | {"achieved": achieved, "paid": paid}))
 
-    def outcome(self) -> str:
+    def text(self) -> str:
         """Return what was asked for and what came of it, without what it took."""
-        verdict = "" if self.reached else ", not reached"
-        found = (
-            f"achieved {self.achieved:.1e} of the total length{verdict}: the distance from "
-            f"{self.verified_by} at {self.times} times"
-        )
+        asked = f"asked {self.asked:.1e}"
         if not self.times:
-            found = f"not verified: {self.verified_by}"
-        return f"asked {self.asked:.1e}, {found}"
+            return f"{asked}, not verified: {self.verified_by}"
+        verdict = {
+            "kept": "",
+            "refused": ", not reached",
+            "ended early": " as far as the run came",
+        }[self.outcome]
+        where = "over the whole curve" if self.everywhere else f"at {self.times} times"
+        return (
+            f"{asked}, achieved {self.achieved:.1e} of the total length {where}{verdict}: "
+            f"verified by {self.verified_by}"
+        )
 
     def __repr__(self) -> str:
         return (
-            f"{self.outcome()}; paid {len(self.paid)} runs, as long as "
+            f"{self.text()}; paid {len(self.paid)} runs, as long as "
             f"{self.work():.0f} right-hand sides: {self.work('run'):.0f} the run, "
             f"{self.work('verify'):.0f} to verify it, {self.work('choose'):.0f} to choose it"
         )
@@ -117,11 +130,17 @@ class AccuracyError(ArithmeticError):
     ----------
     solution : Solution
         The most accurate run that was made; its ``accuracy`` says what was reached.
+    least : float
+        The least error that can be verified here, as a share of the total length; infinite where
+        none can.
     """
 
-    def __init__(self, message: str, solution: Solution | None = None) -> None:
+    def __init__(
+        self, message: str, solution: Solution | None = None, least: float = inf
+    ) -> None:
         super().__init__(message)
         self.solution = solution
+        self.least = least
 
     def __reduce__(self) -> tuple[object, ...]:
-        return type(self), (str(self), self.solution)
+        return type(self), (str(self), self.solution, self.least)

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pendcore.accuracy.methods import MOST_ACCURATE, TIGHTEST, TIGHTEST_IMPLICIT
 from pendcore.accuracy.position_error import angles_at, distances, reached, time_grid
 from pendcore.accuracy.run import (
     Choice,
@@ -23,14 +24,11 @@ from pendcore.accuracy.run import (
     pair_of,
     run,
 )
-from pendcore.accuracy.second_run import MOST_ACCURATE, TIGHTEST
 from pendcore.arguments import Floats
 from pendcore.solution import Solution
 
 # Where the scene is stiff, an implicit method first.
 REFEREES_IF_STIFF = ("radau5", "dop853", pair_of("dopri5"))
-TIGHTEST_IMPLICIT = 1e-13
-"""Below, the equations of a step are not solved any better."""
 TOO_UNCERTAIN = 1e-6
 """Beyond, the span is cut to where the two agree to `KNOWN`."""
 KNOWN = 1e-8

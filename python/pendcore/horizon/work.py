@@ -28,7 +28,7 @@ from pendcore.accuracy.run import (
     run,
 )
 from pendcore.arguments import known_keywords, number, numbers, time_limit_of, time_span
-from pendcore.horizon.error_estimate import ErrorEstimate, error_estimate
+from pendcore.accuracy.estimate import ErrorEstimate, error_estimate
 from pendcore.horizon.lyapunov import LyapunovExponents, lyapunov
 from pendcore.progress import Progress, callback, close
 from pendcore.scene import Scene

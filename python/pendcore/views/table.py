@@ -62,7 +62,7 @@ def _rows(solution: Solution) -> list[tuple[str, str]]:
         ("method", f"{solution.method}, {stats.accepted} steps, {_evaluations(solution)}"),
     ]
     if solution.accuracy is not None:
-        rows.append(("accuracy", solution.accuracy.outcome()))
+        rows.append(("accuracy", solution.accuracy.text()))
     if len(t):
         rows += [
             ("t", f"{t[0]:.6g} ... {t[-1]:.6g} s, {len(t)} kept"),

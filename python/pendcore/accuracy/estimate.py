@@ -1,0 +1,355 @@
+"""The error of a run over its whole curve: the one estimate behind all that is said of errors.
+
+`Solution.error`, `Solution.valid_until` and what ``simulate(error=...)`` verifies come from here.
+The run is compared with second runs that are better by a factor which is known, for they
+are compared with each other as well: they take another method where one can carry the scene, have
+tolerances a hundredth and less, other steps, and each has its constants and its start moved by a
+few last bits of its own (`pendcore.accuracy.rounding`). With the runs r_1, r_2, ... the error is at most
+
+    max_i |run - r_i| + max_ij |r_i - r_j|
+
+if the best of them is no worse than the distance of the others from it. In a chaotic motion all that
+is off is off along one direction, so that two errors of one size may cancel; several runs, each
+moved another way, do not all agree with one that is wrong.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from math import inf
+from time import monotonic
+from typing import TypeAlias
+
+import numpy as np
+
+from pendcore.accuracy.methods import TIGHTEST, second_methods
+from pendcore.accuracy.position_error import (
+    angles_at,
+    distances,
+    kept_times,
+    reached,
+    times_within_steps,
+)
+from pendcore.accuracy.rounding import moved
+from pendcore.accuracy.run import Choice, run, start_of, tightened
+from pendcore.arguments import Floats, number, time_limit_of
+from pendcore.progress import Progress, callback, close
+from pendcore.solution import Solution
+
+Report: TypeAlias = Callable[[float], object]
+
+TIGHTER = (100.0, 1000.0, 1000.0)
+"""By what factors the tolerances of the second runs are tighter."""
+ROUNDING_MATTERS = 1e-11
+"""rtol below which a third second run tells what rounding does: truncation may be less."""
+FOR_FIXED_STEPS = 1e-10
+"""What counts as the tolerance of a run in fixed steps."""
+MORE_STEPS = 10
+"""How many times the steps that were allowed to the first run they may take."""
+OTHER_STEPS = 0.6
+"""How long their steps are at most, in mean steps of a run that tolerances did not limit."""
+LEAST_STEPS = 5
+"""So many steps a run may take until they are as long as the tolerance lets them be."""
+LOST = np.pi
+"""rad; runs that are farther apart have nothing to do with each other."""
+LEGS, STEPS_A_LEG = 32, 200
+"""In as many parts at most a second run is made; it ends with that in which it is lost."""
+SPARE_OF_SEVERAL = 0.05
+"""What share is added to a distance from several second runs: none of them is exact."""
+BETWEEN = 1.1
+"""By what factor the error between the times that are compared may be larger than at them."""
+AT_ONCE = 100_000
+"""Times that are compared at once, which bounds the memory."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ErrorEstimate:
+    """How far a run is off, estimated from above.
+
+    Attributes
+    ----------
+    begin : float
+        s, the start of the run.
+    t : ndarray, (n_t,)
+        s: several in every step of a run with dense output, else the times that it kept. They end
+        before the run does where a second run has nothing to do with it any more, or did not get
+        further.
+    angle : ndarray, (n_t,)
+        The largest error over the links, rad.
+    position : ndarray, (n_t,)
+        The largest error over the joints and the tip, as a share of the total length.
+    verified_by : str
+        How the second runs were made.
+    is_lost : bool
+        Whether they had nothing to do with the run any more at the last of the times.
+    is_complete : bool
+        Whether the times go as far as that, or to the end of the run.
+    is_dense : bool
+        Whether the times cover the whole curve.
+    """
+
+    begin: float
+    t: Floats
+    angle: Floats
+    position: Floats
+    verified_by: str
+    is_lost: bool = False
+    is_complete: bool = True
+    is_dense: bool = True
+
+    @property
+    def largest(self) -> float:
+        """The largest error of a position, as a share of the total length; inf if none is known."""
+        largest = float(self.position.max(initial=0.0)) if len(self.t) else inf
+        return largest if largest == largest else inf
+
+    def valid_until(self, limit: float = 0.1, *, of: str = "angle") -> float:
+        """Return the last time until which the error stays within a limit, s.
+
+        Parameters
+        ----------
+        limit : float
+            > 0, rad; with ``of="position"`` a share of the total length.
+        of : {"angle", "position"}
+            What is limited: the angles of the links, or the positions of joints and tip.
+
+        Returns
+        -------
+        float
+            The end of the run where the limit is not passed before; its start where it is passed
+            at the first time that was compared, or none was. The error is taken never to shrink.
+        """
+        if of not in ("angle", "position"):
+            raise ValueError(f'of = {of!r}: must be "angle" (rad) or "position" (a share)')
+        error = self.angle if of == "angle" else self.position
+        limit = number("limit", limit, "rad" if of == "angle" else "of the total length")
+        if not limit > 0:
+            raise ValueError(f"limit = {limit}: must be > 0")
+        is_past = ~(error <= limit)
+        is_past[-1:] |= self.is_lost
+        within = np.argmax(is_past) if is_past.any() else len(self.t)
+        return float(self.t[within - 1]) if within else self.begin
+
+    def __str__(self) -> str:
+        until = self.t[-1] if len(self.t) else self.begin
+        where = "everywhere" if self.is_dense else f"at {len(self.t)} times"
+        ends = ""
+        if self.is_lost:
+            ends = "; past that the runs have nothing to do with each other any more"
+        elif not self.is_complete:
+            ends = "; the run goes on past that: it is not known there yet"
+        return (
+            f"error estimated {where} from t = {self.begin:.6g} to {until:.6g} s: "
+            f"angles up to {self.angle.max(initial=0.0):.1e} rad, positions up to "
+            f"{self.position.max(initial=0.0):.1e} of the total length, from second runs by "
+            f"{self.verified_by}{ends}"
+        )
+
+
+def estimate(
+    solution: Solution, seconds: Sequence[Solution], verified_by: str, share: float = SPARE_OF_SEVERAL
+) -> ErrorEstimate:
+    """Compare a run with second runs, as far as all of them came.
+
+    Parameters
+    ----------
+    solution : Solution
+        Whose error is estimated.
+    seconds : sequence of Solution
+        Better runs of the same, dense or with the times that the solution kept.
+    verified_by : str
+        How they were made.
+    share : float
+        What the error of a single second run is at most, as a share of the distance from it.
+    """
+    angles, positions = [np.empty(0)], [np.empty(0)]
+    t = _common_times(solution, seconds)
+    factor = (1 + share) * (BETWEEN if solution.store == "dense" else 1.0)
+    for some in np.array_split(t, len(t) // AT_ONCE + 1):
+        q = angles_at(solution, some)
+        others = [angles_at(second, some) for second in seconds]
+        angle = factor * np.max([_apart(q, r) for r in others], axis=0)
+        position = factor * np.max([distances(solution.scene, q, r) for r in others], axis=0)
+        for r, s in combinations(others, 2):
+            angle = np.maximum(angle, angle + _apart(r, s))
+            position = np.maximum(position, position + distances(solution.scene, r, s))
+        rounding = np.finfo(np.float64).eps * np.abs(q).max(axis=-1)  # the state is a double
+        angles.append(angle + rounding)
+        positions.append(position + rounding)
+    angle, position = np.concatenate(angles), np.concatenate(positions)
+    lost = np.flatnonzero(~(angle < LOST))
+    count = int(lost[0]) + 1 if len(lost) else len(t)
+    end = solution._run.t_reached
+    last = end if solution.store == "dense" or not len(solution.t) else solution.t[-1]
+    return ErrorEstimate(
+        begin=float(solution._run.arguments["t_start"]),
+        t=t[:count],
+        angle=angle[:count],
+        position=position[:count],
+        verified_by=verified_by,
+        is_lost=len(lost) > 0,
+        is_complete=len(lost) > 0 or bool(len(t) and t[-1] == last),
+        is_dense=solution.store == "dense",
+    )
+
+
+def error_estimate(
+    solution: Solution, *, time_limit: float | None = None, progress: Progress = None
+) -> ErrorEstimate:
+    """Estimate the error of a solution; see `Solution.error`."""
+    if solution.store != "dense" and not len(solution.t):
+        raise ValueError(
+            "error: the run ended before the first of its t_eval and kept no state to compare: "
+            "ask for earlier times, or for none"
+        )
+    until = monotonic() + time_limit_of(time_limit)
+    report = callback(progress, "estimating the error")
+    farthest: ErrorEstimate | None = None
+    try:
+        for method in second_methods(start_of(solution), solution.method, solution.stats.stiff):
+            found = _compared(solution, method, until, report)
+            if farthest is None or len(found.t) > len(farthest.t):
+                farthest = found
+            if found.is_complete or monotonic() > until:
+                break
+    except BaseException as stop:
+        stop.solution = solution  # type: ignore[attr-defined]
+        raise
+    finally:
+        close(report)
+    assert farthest is not None, "an explicit Runge-Kutta method carries every scene"
+    return farthest
+
+
+def other_steps(solution: Solution, max_step: float) -> float:
+    """Return a max_step, s, with which a second run takes other steps than the first.
+
+    Tighter tolerances see to that where they set most of the steps, but not where max_step does,
+    or points at which laws change, or where a run is over before its steps have grown.
+    """
+    stats, run = solution.stats, solution._run
+    span = abs(run.t_reached - run.arguments["t_start"])
+    if 2 * stats.limited_by_tolerance > stats.accepted >= LEAST_STEPS or not span:
+        return max_step
+    return min(max_step, OTHER_STEPS * span / max(stats.accepted, 1))
+
+
+def second_times(solution: Solution) -> Floats | None:
+    """Return the times that a second run is to keep, s; None for all, densely."""
+    if solution.store in ("dense", "steps"):
+        return None
+    return kept_times(solution) if len(solution.t) else np.array([solution._run.t_reached])
+
+
+def _compared(
+    solution: Solution, method: str, until: float, report: Report | None
+) -> ErrorEstimate:
+    """Compare with second runs by a method, until they and the solution are lost."""
+    asked, first = solution._run.arguments, _choice_of(solution)
+    tight = float(np.min(first.rtol)) < ROUNDING_MATTERS or asked["step"] is not None
+    tight |= other_steps(solution, inf) < inf
+    start = start_of(solution)
+    seconds: list[Solution] = []
+    count = 3 if tight else 2
+    first = first._replace(method=method, compensated=True)
+    text = f"{method} at rtol {float(np.min(first.rtol)) / TIGHTER[0]:.0e} and tighter"
+    try:
+        for seed in range(count):
+            choice = tightened(first, TIGHTER[seed], TIGHTEST)
+            begin = moved(start, seed)
+
+            def share(fraction: float, done: int = seed) -> None:
+                if report is not None:
+                    report((done + fraction) / count)
+
+            second: Solution | None = None
+            for second in _legs(solution, begin, choice, until, share):
+                if _is_lost(solution, second):
+                    break
+            assert second is not None
+            seconds.append(second)
+            start = start._replace(t_end=second._run.t_reached)
+            if not second.success:
+                break
+    except BaseException as stop:
+        if isinstance(partly := getattr(stop, "solution", second), Solution):
+            seconds.append(partly)
+        if seconds:
+            stop.estimate = estimate(solution, seconds, text)  # type: ignore[attr-defined]
+        raise
+    return estimate(solution, seconds, text)
+
+
+def _legs(
+    solution: Solution, start: Start, choice: Choice, until: float, report: Report
+) -> Iterator[Solution]:
+    """Yield a second run as it gets on, part by part."""
+    asked = solution._run.arguments
+    max_steps = MORE_STEPS * asked["max_steps"]
+    max_step = other_steps(solution, asked["max_step"])
+    count = int(np.clip(solution.stats.accepted / STEPS_A_LEG, 1, LEGS))
+    times = second_times(solution)
+    ends = np.linspace(start.t_start, start.t_end, count + 1)[1:]
+    ends[-1] = start.t_end
+    parts = [None] * count if times is None else np.array_split(times, count)
+    second: Solution | None = None
+    for done, (end, part) in enumerate(zip(ends, parts, strict=True)):
+        left = None if until == inf else max(1e-3, until - monotonic())
+
+        def share(fraction: float, done: int = done) -> None:
+            report((done + fraction) / count)
+
+        share(0.0)  # parts may be shorter than what the core calls after
+        if part is not None:
+            if not len(part):
+                return
+            end = part[-1]
+        if second is None:
+            second = run(
+                start._replace(t_end=end), choice, part, max_step=max_step, max_steps=max_steps,
+                time_limit=left, progress=share,
+            )  # fmt: skip
+        else:
+            second = second.resume(
+                end, part, max_steps=max_steps, time_limit=left, progress=share
+            )  # fmt: skip
+        yield second
+        if not second.success:
+            return
+
+
+def _choice_of(solution: Solution) -> Choice:
+    """Return how a solution was made; a fixed step counts as a tight tolerance."""
+    asked = solution._run.arguments
+    if asked["step"] is not None:
+        return Choice(solution.method, FOR_FIXED_STEPS, FOR_FIXED_STEPS)
+    return Choice(solution.method, asked["rtol"], asked["atol"])
+
+
+def _common_times(solution: Solution, seconds: Sequence[Solution]) -> Floats:
+    """Return the times at which to compare: in all steps, or those kept that all came to."""
+    if solution.store == "dense":
+        return times_within_steps([solution, *seconds])
+    times = kept_times(solution)
+    if not len(times):
+        times = np.array([solution._run.t_reached])
+    return times[np.all([reached(second, times) for second in seconds], axis=0)]
+
+
+def _is_lost(solution: Solution, second: Solution) -> bool:
+    """Whether they have nothing to do with each other any more where the second one ended."""
+    last = np.array([second._run.t_reached])
+    if solution.store != "dense":
+        last = kept_times(solution)
+        last = last[reached(second, last)][-1:]
+    if not len(last):
+        return False
+    return not bool((_apart(angles_at(solution, last), angles_at(second, last)) < LOST).all())
+
+
+def _apart(q: Floats, reference: Floats) -> Floats:
+    """Return the largest difference over the links, rad."""
+    largest: Floats = np.abs(q - reference).max(axis=-1, initial=0.0)
+    return largest

@@ -1,0 +1,99 @@
+"""What is known of a method before it runs: which one to take for an error, and which to verify it.
+
+Over the tolerances that matter the largest position error is proportional to rtol. The factor
+between the two is the scene's: how fast it is, for how long, how far it drives neighbours apart. It
+is measured; what a method's own share in it is stands here, as it was found on three hundred scenes of
+tests/regular_scenes.py (seeds 400 to 699); docs/asked_errors.py tests others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import floor, log10
+
+from pendcore.accuracy.run import Start, carries, known_methods, pair_of
+from pendcore.effect_description import account_of
+from pendcore.scene import Scene
+
+LOOSEST, TIGHTEST = 1e-2, 1e-14
+"""rtol. Beyond the tightest, smaller steps add more rounding than they take away truncation."""
+TIGHTEST_IMPLICIT = 1e-13
+"""The same of an implicit method, whose equations are not solved any better."""
+ERROR_OVER_RTOL = {"dopri5": 3.0, "dop853": 0.4, "taylor": 0.9, "radau5": 1.0}
+"""The largest position error of a run, typically, as a multiple of its rtol."""
+SERIES_TO_DOP853 = 0.092
+"""Series that taylor takes at rtol 1e-3 for each right-hand side of dop853, typically."""
+TAYLOR_BELOW = ((1.05, 3e-4), (1.6, 1e-7), (3.0, 3e-11))
+"""Below which error taylor takes the least work, if it takes so many times that of dop853 at 1e-3."""
+DOPRI5_ABOVE = {1: 1e-3}
+"""Above which error dopri5 takes the least work with so many links."""
+DOPRI5_ABOVE_ELSE = 1e-5
+INERTIA_ALONE = {"payload", "rotor_inertia"}
+"""Effects that change what the links weigh, and add no torque."""
+MOST_ACCURATE = ("taylor", "dop853", "dopri5", "radau5")
+"""Whom to ask for a second opinion: the first of these that can carry the scene and is another."""
+_DIGITS = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
+
+
+def cheapest(start: Start, error: float) -> str:
+    """Return the method that takes the least work for an error as a rule, if the scene is not stiff."""
+    if error > DOPRI5_ABOVE.get(len(start.scene.links), DOPRI5_ABOVE_ELSE):
+        quick = "dopri5"
+    else:
+        quick = "dop853"
+    share = SERIES_TO_DOP853 * series_work(start.scene, 1e-3)
+    below = next((limit for most, limit in TAYLOR_BELOW if share <= most), 0.0)
+    return "taylor" if error < below and carries("taylor", start) else quick
+
+
+def series_work(scene: Scene, rtol: float) -> float:
+    """Return how many right-hand sides take as long as the series of one step of ``taylor``.
+
+    Its order, and so its work, grows with the digits asked for. Measured; the ratio is large where
+    the right-hand side has a closed form and the series has not. docs/series_work.py measures it
+    again, for every kind of effect.
+    """
+    n, free = len(scene.links), scene._compiled.mobility()[-1]
+    moving = any(account_of(effect.kind) == "drive" for effect in scene.effects)
+    waves = sum(getattr(effect, "sinusoid", None) is not None for effect in scene.effects)
+    if n == 1:  # where time enters, its sines are the larger part of the right-hand side
+        base, exponent = (14.2, 0.035) if moving or waves else (26.0, 0.036)
+    elif n == 2 and (moving or waves > 2 or free < n):  # have the series of longer chains
+        base, exponent = 26.0, 0.037
+    elif n == 2:
+        bare = all(effect.kind in INERTIA_ALONE for effect in scene.effects)
+        base, exponent = (8.3, 0.030) if bare else (11.2, 0.029)
+    else:
+        base, exponent = 12.2, 0.040
+    if free < n:
+        base *= 1.5
+    return float(base * (1e-3 / rtol) ** exponent)
+
+
+def rounded(rtol: float, tightest: float = TIGHTEST) -> float:
+    """Return a tolerance as people write it, not above, within what makes sense."""
+    if not rtol > tightest:
+        return tightest
+    if rtol >= LOOSEST:
+        return LOOSEST
+    power = floor(log10(rtol) + 1e-9)
+    digit = max((d for d in _DIGITS if d * 10.0**power <= rtol * 1.0001), default=1.0)
+    return float(f"{digit}e{power}")
+
+
+def second_methods(start: Start, method: str, stiff: bool) -> Iterator[str]:
+    """Yield with which methods a run may be verified, the best one first.
+
+    What one method gets wrong, such as a step size that is fooled or a wrong coefficient, another
+    does not get wrong in the same way. Where stability limited the steps, an explicit method may
+    take too many: an implicit one then, itself perhaps.
+    """
+    known = known_methods()[method]
+    begins, goes_on = known["first"], known["second"]
+    methods: tuple[str, ...] = tuple(name for name in MOST_ACCURATE if name != begins)
+    if stiff and goes_on:  # the second method made most of the run
+        methods = (goes_on,)
+    elif stiff:
+        implicit = ("radau5", pair_of("dopri5"))
+        methods = implicit[::-1] if begins == "radau5" else implicit
+    yield from (name for name in methods if carries(name, start))
