@@ -24,7 +24,6 @@ ROOT = Path(__file__).parents[1]
 sys.path.append(str(ROOT / "tests"))
 
 import chaotic_starts as record  # noqa: E402
-from pendcore.horizon.error_estimate import SAFETY  # noqa: E402
 from pendcore.views.horizon import draw_work  # noqa: E402
 from reference.taylor_series import RodChain, motion  # noqa: E402
 
@@ -84,7 +83,7 @@ def slopes() -> dict[str, dict[str, list[float]]]:
         for method in work.methods:
             of = found.setdefault(method, {"share": [], "even": [], "gained": []})
             early = np.array([point.early for point in work.of(method)])
-            wanted = np.log(LIMIT / SAFETY / early)
+            wanted = np.log(LIMIT / early)
             within = wanted <= grown[-1]
             reached = np.interp(wanted[within], grown, t)
             even = np.polyfit(-np.log10(early[within]), reached, 1)[0]
@@ -165,7 +164,7 @@ def draw_run(path: Path) -> None:
         axis.set_xlabel("")
         axis.lines[0].set_color("k")  # the shade is what is to be seen
     below.semilogy(found.t[1:], found.angle[1:], "-", color="0.75", lw=4, label="estimate")
-    limited = SAFETY * np.maximum.accumulate(found.angle)
+    limited = np.maximum.accumulate(found.angle)
     below.semilogy(found.t[1:], limited[1:], "--", color="C3", lw=1.2,
                    label="what valid_until takes")  # fmt: skip
     below.semilogy(times[1:], true[1:], ".", color="k", ms=3, label="true, by series in 44 digits")

@@ -6,10 +6,9 @@ CONTRIBUTING.md, "Add a method", step 4, says what they are for.
 from __future__ import annotations
 
 import pytest
-from pendcore.accuracy.asked_error import IMPLICIT, PILOTS
-from pendcore.accuracy.forecast import LAWS
+from pendcore.accuracy.trials import IMPLICIT
+from pendcore.accuracy.methods import ERROR_OVER_RTOL, MOST_ACCURATE
 from pendcore.accuracy.run import known_methods
-from pendcore.accuracy.second_run import MOST_ACCURATE
 from pendcore.views.accuracy_cost import STYLES
 
 METHODS = known_methods()
@@ -23,10 +22,10 @@ STEP_4 = 'see step 4 of "Add a method" in CONTRIBUTING.md'
 
 
 @pytest.mark.parametrize("method", ONE_BY_ONE)
-def test_a_method_has_a_law_or_a_reason_why_not(method):
-    assert (method in LAWS) != (method in NEVER_CHOSEN), (
-        f"{method}: measure how its error and work follow the tolerance and add them to LAWS in "
-        f"accuracy/forecast.py, or say in NEVER_CHOSEN here why error= never takes it; {STEP_4}"
+def test_it_is_known_how_large_a_methods_error_is_or_why_not(method):
+    assert (method in ERROR_OVER_RTOL) != (method in NEVER_CHOSEN), (
+        f"{method}: measure its error at a tolerance and add it to ERROR_OVER_RTOL in "
+        f"accuracy/methods.py, or say in NEVER_CHOSEN here why error= never takes it; {STEP_4}"
     )
 
 
@@ -41,10 +40,9 @@ def test_a_method_has_a_line_of_its_own_in_the_figures(method):
 @pytest.mark.parametrize(
     ("table", "names"),
     {
-        "accuracy.forecast.LAWS": LAWS,
-        "accuracy.asked_error.PILOTS": PILOTS,
-        "accuracy.asked_error.IMPLICIT": IMPLICIT,
-        "accuracy.second_run.MOST_ACCURATE": MOST_ACCURATE,
+        "accuracy.methods.ERROR_OVER_RTOL": ERROR_OVER_RTOL,
+        "accuracy.trials.IMPLICIT": [IMPLICIT],
+        "accuracy.methods.MOST_ACCURATE": MOST_ACCURATE,
         "views.accuracy_cost.STYLES": STYLES,
         "NEVER_CHOSEN": NEVER_CHOSEN,
     }.items(),

@@ -9,7 +9,7 @@ import numpy as np
 import pendcore as pc
 import pytest
 from chaotic_starts import EACH, GRAVITY, T_END, ChaoticStart, chaotic_starts, times
-from pendcore.horizon import error_estimate as estimate
+from pendcore.accuracy import estimate
 from reference.taylor_series import RodChain, motion
 from reference.trajectories import trajectory
 
@@ -31,7 +31,7 @@ def test_by_default_fifty_chaotic_runs_are_never_trusted_too_long() -> None:
     valid = np.array([run.valid_until(LIMIT) for run in runs])
     right = np.array([case.last_right(run, LIMIT) for case, run in zip(cases, runs, strict=True)])
     assert (right < T_END).all()  # they all are wrong in the end
-    assert (valid <= right).all()
+    assert (valid < right + 1 / EACH).all()  # the next state that is known is wrong
     assert np.median(valid / right) >= 0.7
     assert (valid / right).min() >= 0.5
 
@@ -43,7 +43,7 @@ def test_at_any_tolerance_runs_are_never_trusted_too_long(method: str, rtol: flo
     runs = [solved(case, method, rtol) for case in cases]
     valid = np.array([run.valid_until(LIMIT) for run in runs])
     right = np.array([case.last_right(run, LIMIT) for case, run in zip(cases, runs, strict=True)])
-    assert (valid <= right).all()
+    assert (valid < right + 1 / EACH).all()  # the next state that is known is wrong
     assert np.median(valid / right) >= 0.7
 
 
@@ -51,7 +51,7 @@ def test_at_any_tolerance_runs_are_never_trusted_too_long(method: str, rtol: flo
 def test_other_limits(limit: float) -> None:
     for case in chaotic_starts()[::5]:
         run = solved(case, "dopri5", 1e-9)
-        assert run.valid_until(limit) <= case.last_right(run, limit)
+        assert run.valid_until(limit) < case.last_right(run, limit) + 1 / EACH
 
 
 @pytest.mark.parametrize("case", chaotic_starts()[1:16:7], ids=lambda case: str(case.q0))
@@ -85,8 +85,9 @@ def test_the_error_over_time_is_what_the_reference_says() -> None:
     found = run.error()
     true = np.abs(run(known.t)[:2].T - known.q).max(axis=1)
     near = np.interp(known.t, found.t, found.angle)
-    # Between the times of the estimate that of the interpolant goes up and down.
-    assert true[1:] == pytest.approx(near[1:], rel=0.1, abs=2e-9)
+    # From above, and not by much: what lies between the times, and the second runs' own errors.
+    assert (true[1:] <= near[1:]).all()
+    assert near[1:] == pytest.approx(1.2 * true[1:], rel=0.1, abs=2e-9)
     assert (found.t[0], found.t[-1]) == (0.0, 5.0)
     assert found.is_complete
     assert not found.is_lost
@@ -98,7 +99,7 @@ def test_printed_it_is_a_sentence() -> None:
     scene = pc.Scene.textbook()
     found = pc.simulate(scene, [1.0, 1.0], 0, (0, 2), method="dop853", rtol=1e-6).error()
     assert str(found) == (
-        f"error estimated at 1001 times from t = 0 to 2 s: angles up to {found.angle.max():.1e} "
+        f"error estimated everywhere from t = 0 to 2 s: angles up to {found.angle.max():.1e} "
         f"rad, positions up to {found.position.max():.1e} of the total length, from second runs "
         f"by taylor at rtol 1e-08 and tighter"
     )
@@ -115,8 +116,8 @@ def test_position_limits_are_shares_of_the_length() -> None:
     found = run.error()
     at = run.valid_until(0.05, of="position")
     k = int(np.searchsorted(found.t, at))
-    assert estimate.SAFETY * found.position[: k + 1].max() <= 0.05
-    assert estimate.SAFETY * found.position[k + 1] > 0.05
+    assert found.position[: k + 1].max() <= 0.05
+    assert found.position[k + 1] > 0.05
     assert found.position == pytest.approx(
         np.minimum(found.position, 2.0)
     )  # of the total length: no two points are farther apart
@@ -142,7 +143,7 @@ def test_both_second_runs_together_are_never_fooled_by_one() -> None:
     estimated = np.interp(t, found.t, np.maximum.accumulate(found.angle))
     known = (true > 1e-8) & (true < LIMIT)
     assert known.any()
-    assert (true <= estimate.SAFETY * estimated)[known].all()
+    assert (true <= estimated)[known].all()
 
 
 def test_what_is_kept_decides_at_what_times() -> None:
@@ -154,7 +155,7 @@ def test_what_is_kept_decides_at_what_times() -> None:
     assert few.error().t.tolist() == np.arange(0, few.error().t[-1] + 0.25, 0.5).tolist()
     assert exact - 0.5 <= few.valid_until(LIMIT) <= exact + 0.02
     steps = pc.simulate(scene, start, 0, (0, 20), rtol=1e-6, store="steps")
-    assert steps.valid_until(LIMIT) == pytest.approx(exact, abs=0.1)
+    assert steps.valid_until(LIMIT) == pytest.approx(exact, abs=dense.stats.max_step)
     end = pc.simulate(scene, start, 0, (0, 20), rtol=1e-6, store="end")
     assert end.error().t.tolist() == [20.0]
     short = pc.simulate(scene, start, 0, (0, 1), rtol=1e-6, store="end")
@@ -220,7 +221,7 @@ def test_second_runs_may_take_more_steps_than_the_first_was_allowed():
 def test_the_second_runs_are_made_once(monkeypatch: pytest.MonkeyPatch) -> None:
     run = pc.simulate(pc.Scene.textbook(), [1.0, 1.0], 0, (0, 2))
     first = run.error()
-    monkeypatch.setattr(estimate, "error_estimate", None)
+    monkeypatch.setattr("pendcore.accuracy.estimate.error_estimate", None)
     assert run.error() is first
     assert run.valid_until(0.1) == 2.0
     monkeypatch.undo()

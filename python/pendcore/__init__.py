@@ -37,7 +37,7 @@ from pendcore.archive import load
 from pendcore.case import Case
 from pendcore.case_file import read_case
 from pendcore.cost import AccuracyCost, accuracy_cost
-from pendcore.defect import Defect
+from pendcore.accuracy.defect import Defect
 from pendcore.energy import Energy, Ledger
 from pendcore.explanation import Explanation
 from pendcore.accuracy.estimate import ErrorEstimate

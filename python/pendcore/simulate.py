@@ -104,10 +104,11 @@ def simulate(
         pays.
     error : float, optional
         The largest error of the positions to keep, as a share of the total length, in place of
-        ``method``, ``rtol``, ``atol`` and ``step``: they are chosen, and the run is verified by an
-        independent one. ``sol.accuracy`` tells what was reached and what it took. The error is the
-        distance of a joint or the tip from where it ought to be, the largest over the times that
-        are kept, or 101 of a dense run. ``docs/accuracy_cost.md`` has more.
+        ``method``, ``rtol``, ``atol`` and ``step``: they are chosen, and the run is verified by
+        independent ones. The error is the distance of a joint or the tip from where it ought to be,
+        the largest over the whole curve of a run with dense output, else over the times that it
+        keeps. ``sol.accuracy`` tells what was reached and what it took;
+        ``docs/accuracy_cost.md`` says what is promised.
     progress : None, bool or callable
         None: a bar after a second, on a terminal. A callable gets the fraction done, in 0...1.
 
@@ -124,10 +125,11 @@ def simulate(
         If an argument is not what is asked for; the message names it.
     AccuracyError
         If ``error`` is less than double precision can keep on this scene, or could not be verified.
-        Its attribute ``solution`` has the most accurate run.
+        Its attribute ``solution`` has the most accurate run, ``least`` the least error that can be
+        kept.
     KeyboardInterrupt, or any exception of ``progress`` or of an effect's or event's function
-        With the run so far as the attribute ``solution``; of an ``error`` the best run so far, and
-        its ``accuracy`` says that it is not verified.
+        With the run so far as the attribute ``solution``; with an ``error`` the tightest run so
+        far, and its ``accuracy`` says that it is not verified.
 
     Warns
     -----

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from pendcore import _core
 from pendcore.arguments import Floats, finite_array, time_limit_of
-from pendcore.defect import Defect, defect
+from pendcore.accuracy.defect import Defect, defect
 from pendcore.energy import Energy, Ledger
 from pendcore.events import Event, Found, event_of, found_events
 from pendcore.progress import Progress, callback, close
@@ -219,12 +219,13 @@ class Solution:
         return defect(self.scene, self._run, progress)
 
     def error(self, *, time_limit: float | None = None, progress: Progress = None) -> ErrorEstimate:
-        """Estimate the error over time from two independent second runs, made when first asked for.
+        """Estimate the error over time from independent second runs, made when first asked for.
 
-        They are of another method, at tolerances a hundredth and a thousandth of this run's, and
-        go on until they have nothing to do with it any more. Of a default run that has changed over
-        to ``"radau5"`` both are ``"radau5"``, which made most of it: only their tolerances and
-        starts are others. Run it with another method where that is too little.
+        They are of another method, at tolerances a hundredth and a thousandth of this run's, with
+        constants and start moved by some last bits, and go on until they have nothing to do with it
+        any more. If a default run has changed over to ``"radau5"``, they are ``"radau5"`` too, with
+        other tolerances, steps and starts. For a run with an ``error`` that was asked for, the
+        estimate is the one that verified it.
 
         Parameters
         ----------

@@ -226,10 +226,12 @@ def error_estimate(
 def other_steps(solution: Solution, max_step: float) -> float:
     """Return a max_step, s, with which a second run takes other steps than the first.
 
-    Tighter tolerances see to that where they set most of the steps, but not where max_step does,
-    or points at which laws change, or where a run is over before its steps have grown.
+    Tighter tolerances see to that where they set the steps, but not where max_step does, or points
+    at which laws change, or where a run is over before its steps have grown.
     """
     stats, run = solution.stats, solution._run
+    if stats.limited_by_max_step:
+        max_step = min(max_step, OTHER_STEPS * stats.max_step)
     span = abs(run.t_reached - run.arguments["t_start"])
     if 2 * stats.limited_by_tolerance > stats.accepted >= LEAST_STEPS or not span:
         return max_step

@@ -23,11 +23,11 @@ ERROR_OVER_RTOL = {"dopri5": 3.0, "dop853": 0.4, "taylor": 0.9, "radau5": 1.0}
 """The largest position error of a run, typically, as a multiple of its rtol."""
 SERIES_TO_DOP853 = 0.092
 """Series that taylor takes at rtol 1e-3 for each right-hand side of dop853, typically."""
-TAYLOR_BELOW = ((1.05, 3e-4), (1.6, 1e-7), (3.0, 3e-11))
+TAYLOR_BELOW = ((0.9, 5e-3), (1.08, 2e-5), (1.2, 1e-6), (1.6, 3e-6), (4.0, 1e-10))
 """Below which error taylor takes the least work, if it takes so many times that of dop853 at 1e-3."""
 DOPRI5_ABOVE = {1: 1e-3}
-"""Above which error dopri5 takes the least work with so many links."""
-DOPRI5_ABOVE_ELSE = 1e-5
+"""Above which error dopri5 takes less work than dop853, with so many links."""
+DOPRI5_ABOVE_ELSE = 3e-7
 INERTIA_ALONE = {"payload", "rotor_inertia"}
 """Effects that change what the links weigh, and add no torque."""
 MOST_ACCURATE = ("taylor", "dop853", "dopri5", "radau5")
@@ -37,13 +37,12 @@ _DIGITS = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
 
 def cheapest(start: Start, error: float) -> str:
     """Return the method that takes the least work for an error as a rule, if the scene is not stiff."""
-    if error > DOPRI5_ABOVE.get(len(start.scene.links), DOPRI5_ABOVE_ELSE):
-        quick = "dopri5"
-    else:
-        quick = "dop853"
     share = SERIES_TO_DOP853 * series_work(start.scene, 1e-3)
-    below = next((limit for most, limit in TAYLOR_BELOW if share <= most), 0.0)
-    return "taylor" if error < below and carries("taylor", start) else quick
+    if error < next((below for most, below in TAYLOR_BELOW if share <= most), 0.0):
+        if carries("taylor", start):
+            return "taylor"
+    is_loose = error > DOPRI5_ABOVE.get(len(start.scene.links), DOPRI5_ABOVE_ELSE)
+    return "dopri5" if is_loose else "dop853"
 
 
 def series_work(scene: Scene, rtol: float) -> float:

@@ -32,7 +32,7 @@ inline constexpr std::array<StatusText, 11> status_texts = {{
     {"event", true, "stopped at a terminal event"},
     {"at_rest", true, "came to rest for good, and stayed as it is to the end of the interval"},
     {"max_steps", false,
-     "the cap on steps was reached: raise max_steps, shorten the interval or loosen rtol and atol"},
+     "the cap on steps was reached: raise max_steps, shorten the interval or allow larger errors"},
     {"max_turns", false, "events with every_turn were looked for in too many turns"},
     {"step_too_small", false,
      "the step fell below what time can resolve: the motion blows up here (or rtol and atol are "

@@ -1,0 +1,211 @@
+"""The runs that are made for one error: trials of what was asked for, and better second runs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from math import inf
+from time import monotonic
+from typing import Any
+
+from pendcore.accuracy.estimate import (
+    MORE_STEPS,
+    SPARE_OF_SEVERAL,
+    ErrorEstimate,
+    estimate,
+    other_steps,
+    second_times,
+)
+from pendcore.accuracy.methods import (
+    ERROR_OVER_RTOL,
+    TIGHTEST,
+    TIGHTEST_IMPLICIT,
+    cheapest,
+    rounded,
+    series_work,
+)
+from pendcore.accuracy.report import Accuracy, Outcome, Paid
+from pendcore.accuracy.rounding import moved
+from pendcore.accuracy.run import Choice, Start, atol_beside, pair_of, run, silent
+from pendcore.arguments import time_limit_of
+from pendcore.solution import Solution
+from pendcore.warning import warn
+
+IMPLICIT = "radau5"
+"""The method for what the first trial found to be stiff."""
+COMPENSATED_BELOW = 1e-12
+"""rtol, from which on what the rounding of the state leaves over is carried on."""
+MOST_STEPS, LEAST_STEPS = 300, 100
+"""How many times the steps of the first run a later one may take, if that took so many at least."""
+_ADVANCE = 0.35
+"""How much of what is left on the bar a run moves it."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Made:
+    """A run: how it was made, and what it took in right-hand sides.
+
+    Its ``scale`` is its error where the scene is like most: it makes tolerances of methods
+    comparable.
+    """
+
+    method: str
+    rtol: float
+    scale: float
+    work: float
+    solution: Solution
+
+    @property
+    def text(self) -> str:
+        return f"{self.method} at rtol {self.rtol:g}"
+
+
+def leading(method: str) -> str:
+    """Return the first method of a pair."""
+    return method.partition("-")[0]
+
+
+class Trials:
+    """Makes the runs for one error, compares them and keeps count of them."""
+
+    def __init__(
+        self,
+        start: Start,
+        error: float,
+        options: dict[str, Any],
+        report: Callable[[float], object] | None,
+    ) -> None:
+        self.start = start
+        self.error = error
+        self.options = options
+        self.report = report
+        self.began = monotonic()
+        self.time_limit = time_limit_of(options.pop("time_limit", None))
+        self.compensated: bool = options.pop("compensated", False)
+        self.is_stiff = False
+        self.trials: list[Made] = []
+        self.seconds: list[Made] = []
+        self.paid: list[Made] = []
+        self._estimates: dict[tuple[Any, ...], ErrorEstimate] = {}
+        self._done = 0.0
+
+    @property
+    def tightest(self) -> float:
+        return TIGHTEST_IMPLICIT if self.is_stiff else TIGHTEST
+
+    def method_for(self, scale: float) -> str:
+        """Return the method that takes the least work for an error of that size in most scenes."""
+        return IMPLICIT if self.is_stiff else pair_of(cheapest(self.start, scale))
+
+    def trial(self, scale: float, method: str) -> Made:
+        """Run with all that was asked for."""
+        rtol = rounded(scale / ERROR_OVER_RTOL[leading(method)], self.tightest)
+        options = self.options
+        if self.trials:
+            options = options | {"max_steps": self._most_steps()}
+        made = self._run(self.start, method, rtol, options)
+        self.trials.append(made)
+        self.seconds = [self._as_far_as(made, one) for one in self.seconds]
+        return made
+
+    def second(self, trial: Made, scale: float) -> Made:
+        """Run better than a trial, with other steps, constants and start."""
+        method = self.method_for(scale)
+        rtol = rounded(scale / ERROR_OVER_RTOL[leading(method)], self.tightest)
+        ends_anywhere = any(values.get("terminal") for _, values in self.options["wanted"])
+        options = {
+            "t_eval": None if ends_anywhere else second_times(trial.solution),
+            "max_step": other_steps(trial.solution, self.options["max_step"]),
+            "max_steps": self._most_steps(MORE_STEPS),
+        }
+        start = self.start._replace(t_end=trial.solution._run.t_reached)
+        made = self._run(moved(start, len(self.seconds)), method, rtol, options)
+        self.seconds.append(made)
+        return made
+
+    def compared(
+        self, trial: Made, seconds: list[Made], share: float = SPARE_OF_SEVERAL
+    ) -> ErrorEstimate:
+        """Return the error of a trial as second runs tell it; see `estimate`."""
+        key = (trial, *seconds, share)
+        if key not in self._estimates:
+            text = " and ".join(dict.fromkeys(one.text for one in seconds))
+            solutions = [one.solution for one in seconds]
+            self._estimates[key] = estimate(trial.solution, solutions, text, share)
+        return self._estimates[key]
+
+    def distance(self, trial: Made, second: Made) -> float:
+        return self.compared(trial, [second], 0.0).largest
+
+    def best(self) -> Solution | None:
+        """Return the tightest of the trials that are whole."""
+        whole = [one for one in self.trials if one.solution.success]
+        return min(whole, key=lambda one: one.scale).solution if whole else None
+
+    def labelled(
+        self, solution: Solution, outcome: Outcome, found: ErrorEstimate | None, why: str = ""
+    ) -> Solution:
+        """Attach to a trial what is known of its error; ``why`` if that is nothing."""
+        solution._error = found
+        solution._accuracy = Accuracy(
+            asked=self.error,
+            achieved=inf if found is None else found.largest,
+            outcome=outcome,
+            until=self.start.t_start if found is None else found.valid_until(self.error, of="position"),
+            times=0 if found is None else len(found.t),
+            everywhere=found is not None and found.is_dense,
+            verified_by=why if found is None else found.verified_by,
+            paid=self._bill(solution, found),
+            seconds=monotonic() - self.began,
+        )  # fmt: skip
+        return solution
+
+    def _bill(self, solution: Solution, found: ErrorEstimate | None) -> tuple[Paid, ...]:
+        verifying = next((key[1:-1] for key, one in self._estimates.items() if one is found), ())
+        paid = []
+        for one in self.paid:
+            purpose = "verify" if one in verifying else "choose"
+            if one.solution is solution:
+                purpose = "run"
+            paid.append(Paid(purpose, one.method, one.rtol, one.solution.stats.nfev, one.work))
+        return tuple(paid)
+
+    def _most_steps(self, times: int = 1) -> int:
+        enough = MOST_STEPS * max(self.trials[0].solution.stats.accepted, LEAST_STEPS)
+        return min(times * int(self.options["max_steps"]), enough)
+
+    def _as_far_as(self, trial: Made, second: Made) -> Made:
+        """Let a second run go on to where a trial came: a terminal event may come a bit later."""
+        end, begin, run = trial.solution._run.t_reached, self.start.t_start, second.solution._run
+        is_behind = abs(end - begin) > abs(run.t_reached - begin)
+        if not (is_behind and second.solution.store == "dense" and second.solution.success):
+            return second
+        longer = second.solution.resume(end, max_steps=self._most_steps(MORE_STEPS))
+        went_on = replace(second, solution=longer)
+        self.paid[self.paid.index(second)] = went_on
+        return went_on
+
+    def _run(self, start: Start, method: str, rtol: float, options: dict[str, Any]) -> Made:
+        is_second = start.scene is not self.start.scene
+        compensated = is_second or self.compensated or rtol < COMPENSATED_BELOW
+        left = None
+        if self.time_limit < inf:
+            left = max(self.time_limit - (monotonic() - self.began), 1e-6)
+        solution = run(
+            start, Choice(method, rtol, atol_beside(rtol), compensated), **options,
+            time_limit=left, progress=self._progress(), warn=silent if self.paid else warn,
+        )  # fmt: skip
+        work = float(solution.stats.nfev)
+        if leading(method) == "taylor" and not solution.stats.stiff:
+            work *= series_work(start.scene, rtol)
+        scale = rtol * ERROR_OVER_RTOL[leading(method)]
+        made = Made(method, rtol, scale, work, solution)
+        self.paid.append(made)
+        self._done += _ADVANCE * (1 - self._done)
+        return made
+
+    def _progress(self) -> Callable[[float], object] | bool:
+        report, done = self.report, self._done
+        if report is None:
+            return False
+        return lambda fraction: report(done + _ADVANCE * (1 - done) * fraction)
