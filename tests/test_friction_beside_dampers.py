@@ -25,7 +25,9 @@ STRONG = [b for b in DAMPINGS if b >= 1e4]
 def rig(*more: fx.Effect) -> pc.Scene:
     bearing = RIG.scene.effects[0]
     rub = [fx.DryJointFriction(joint, coulomb=torque) for joint, torque in BEARINGS.items()]
-    return pc.Scene(links=RIG.scene.links, gravity=RIG.scene.gravity, effects=[bearing, *rub, *more])
+    return pc.Scene(
+        links=RIG.scene.links, gravity=RIG.scene.gravity, effects=[bearing, *rub, *more]
+    )
 
 
 def run(scene: pc.Scene, qd0: object = RIG.qd0, **options: object) -> pc.Solution:
@@ -116,7 +118,14 @@ def test_a_pushed_rod_slides_and_sticks_as_the_closed_form_has_it(
     scene = pc.Scene(links=[rod], gravity=0, effects=[push, rub, fx.ViscousJoint(1, damping)])
     times = np.linspace(0, 12, 121)
     sol = pc.simulate(
-        scene, 0.0, t_span=(0, 12), t_eval=times, method=method, rtol=1e-9, atol=1e-9 / damping, max_steps=60_000
+        scene,
+        0.0,
+        t_span=(0, 12),
+        t_eval=times,
+        method=method,
+        rtol=1e-9,
+        atol=1e-9 / damping,
+        max_steps=60_000,
     )
     assert sol.success, sol.message
     exact = angle_of_a_pushed_rod(damping, 0.2, list(times))

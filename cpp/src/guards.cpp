@@ -45,6 +45,26 @@ double slope_at_end(const double* coefficients, int degree) {
   return slope;
 }
 
+double value_of(const double* coefficients, int degree, double theta) {
+  double value = coefficients[degree];
+  for (int p = degree - 1; p >= 0; --p) value = value * theta + coefficients[p];
+  return value;
+}
+
+/// The polynomial between theta and 1, in units of that part.
+std::vector<double> beyond(const double* coefficients, int degree, double theta) {
+  std::vector<double> rest(coefficients, coefficients + degree + 1);
+  for (int from = 0; from < degree; ++from) {
+    for (int p = degree - 1; p >= from; --p) rest[p] += theta * rest[p + 1];
+  }
+  double power = 1.0;
+  for (double& one : rest) {
+    one *= power;
+    power *= 1.0 - theta;
+  }
+  return rest;
+}
+
 }  // namespace
 
 Guards::Guards(Stepper& stepper, Breaks& breaks)
@@ -127,19 +147,33 @@ void Guards::slopes_along_step(int k, double t, double h, double from) {
 Crossing Guards::where_slope_allows(Crossing crossing, double t, double h, int degree) {
   const int k = crossing.guard;
   const bool is_let_go = k < breaks_.linear_guards() && breaks_.zeros_at_start(k) > 1;
-  const bool at_start = crossing.theta * std::abs(h) <= 4.0 * epsilon * std::abs(t);
-  if (!(is_let_go && at_start)) {  // as a rule
-    sample(crossing.theta);
-    const double slope = breaks_.slope_at_rest(k, t + crossing.theta * h, state_.data());
-    if (!(slope * h > 0.0)) return crossing;
+  for (int dips = 0; dips < points; ++dips) {
+    const double theta = crossing.theta;
+    const bool at_start = theta * std::abs(h) <= 4.0 * epsilon * std::abs(t);
+    if (!(is_let_go && at_start)) {  // as a rule
+      sample(theta);
+      const double slope = breaks_.slope_at_rest(k, t + theta * h, state_.data());
+      if (!(slope * h > 0.0)) return crossing;
+    }
+    const double from = at_start ? 0.0 : theta;
+    slopes_along_step(k, t, h, from);
+    if (std::isnan(slopes_[0])) return crossing;
+    if (is_let_go && at_start) slopes_[0] = 0.0;
+    const double share = first_negative(slopes_.data(), points - 1);
+    if (share > 1.0) return {};
+    const double turns = from + share * (1.0 - from);
+    double dip = 0.0;  // what the errors come to
+    for (const double node : nodes) {
+      dip = std::min(dip, value_of(polynomial_.data(), degree, from + node * (turns - from)));
+    }
+    if (value_of(polynomial_.data(), degree, turns) <= -dip) return {k, turns, true};
+    // It has risen above them: its own zero is the next.
+    const std::vector<double> rest = beyond(polynomial_.data(), degree, turns);
+    const double next = first_negative(rest.data(), degree);
+    if (next > 1.0) return {};
+    crossing.theta = turns + next * (1.0 - turns);
   }
-  const double from = at_start ? 0.0 : crossing.theta;
-  slopes_along_step(k, t, h, from);
-  if (std::isnan(slopes_[0])) return crossing;
-  if (is_let_go && at_start) slopes_[0] = 0.0;
-  const double share = first_negative(slopes_.data(), points - 1);
-  if (share > 1.0) return {};
-  return {k, from + share * (1.0 - from), true};
+  return crossing;
 }
 
 /// Of state_.
@@ -207,9 +241,7 @@ bool Guards::goes_below(double theta) {
     double x = std::min(theta, 2.0);
     for (int halvings = 0; halvings < shares; ++halvings) {
       x *= 0.5;
-      double value = polynomial_[degree_];
-      for (int p = degree_ - 1; p >= 0; --p) value = value * x + polynomial_[p];
-      if (value < least) return true;
+      if (value_of(polynomial_.data(), degree_, x) < least) return true;
     }
   }
   return false;
