@@ -127,6 +127,7 @@ py::list effect_descriptors() {
     row["source"] = string(Kind::info.source);
     row["account"] = string(account_name(Kind::info.account));
     row["bounds_joint"] = Kind::info.bounds_joint;
+    row["jumps_or_sticks"] = Kind::info.jumps_or_sticks;
     row["parameters"] = parameters_of(effect);
     result.append(row);
   });

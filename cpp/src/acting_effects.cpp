@@ -242,6 +242,7 @@ void ActingEffects<Row>::put_mode(std::size_t i, int mode) {
 template <class Row>
 void ActingEffects<Row>::sum_couples(int joint) {
   Couple sum;
+  bool has_start = false;
   std::erase_if(joint_waves, [&](const JointWave& wave) { return wave.joint == joint; });
   for (std::size_t i = 0; i < effects.size(); ++i) {
     std::visit(
@@ -249,11 +250,17 @@ void ActingEffects<Row>::sum_couples(int joint) {
           if constexpr (requires { effect.couple(0); }) {
             if (place_of(effect) != joint || !is_couple(effect)) return;
             const Couple one = *effect.couple(modes[i]);
-            const double start = std::max(sum.start, one.start);
-            sum.held +=
-                sum.slope * (start - sum.start) + one.held + one.slope * (start - one.start);
-            sum.start = start;
-            sum.slope += one.slope;
+            if (one.slope != 0.0 || one.start != 0.0) {
+              // The latest, negative or not: so far from a start of its own a torque is not taken.
+              const double start = has_start ? std::max(sum.start, one.start) : one.start;
+              sum.held +=
+                  sum.slope * (start - sum.start) + one.held + one.slope * (start - one.start);
+              sum.start = start;
+              sum.slope += one.slope;
+              has_start = true;
+            } else {
+              sum.held += one.held;
+            }
             sum.on_phi += one.on_phi;
             sum.on_phid += one.on_phid;
             sum.on_phid2 += one.on_phid2;

@@ -45,6 +45,26 @@ double slope_at_end(const double* coefficients, int degree) {
   return slope;
 }
 
+double value_of(const double* coefficients, int degree, double theta) {
+  double value = coefficients[degree];
+  for (int p = degree - 1; p >= 0; --p) value = value * theta + coefficients[p];
+  return value;
+}
+
+/// The polynomial between theta and 1, in units of that part.
+std::vector<double> beyond(const double* coefficients, int degree, double theta) {
+  std::vector<double> rest(coefficients, coefficients + degree + 1);
+  for (int from = 0; from < degree; ++from) {
+    for (int p = degree - 1; p >= from; --p) rest[p] += theta * rest[p + 1];
+  }
+  double power = 1.0;
+  for (double& one : rest) {
+    one *= power;
+    power *= 1.0 - theta;
+  }
+  return rest;
+}
+
 }  // namespace
 
 Guards::Guards(Stepper& stepper, Breaks& breaks)
@@ -54,7 +74,8 @@ Guards::Guards(Stepper& stepper, Breaks& breaks)
       degree_(stepper.interpolant_degree()),
       rows_(static_cast<std::size_t>(degree_ + 1) * dimension_),
       state_(dimension_),
-      polynomial_(static_cast<std::size_t>(std::max(degree_ + 1, points))) {}
+      polynomial_(static_cast<std::size_t>(std::max(degree_ + 1, points))),
+      slopes_(points) {}
 
 /// polynomial_ becomes guard k, in theta; its degree is returned. One that is not linear has been
 /// interpolated.
@@ -70,18 +91,23 @@ int Guards::along_step(int k) {
   return points - 1;
 }
 
+/// state_ becomes the dense output at theta.
+void Guards::sample(double theta) {
+  for (int c = 0; c < dimension_; ++c) {
+    double value = rows_[static_cast<std::size_t>(degree_) * dimension_ + c];
+    for (int p = degree_ - 1; p >= 0; --p) {
+      value = std::fma(theta, value, rows_[static_cast<std::size_t>(p) * dimension_ + c]);
+    }
+    state_[c] = value;
+  }
+}
+
 /// samples_ gets a polynomial for each guard that is not linear.
 void Guards::interpolate_others(double t, double h) {
   const int others = breaks_.guards() - breaks_.linear_guards();
   samples_.resize(static_cast<std::size_t>(points) * others);
   for (int i = 0; i < points; ++i) {
-    for (int c = 0; c < dimension_; ++c) {
-      double value = rows_[static_cast<std::size_t>(degree_) * dimension_ + c];
-      for (int p = degree_ - 1; p >= 0; --p) {
-        value = std::fma(nodes[i], value, rows_[static_cast<std::size_t>(p) * dimension_ + c]);
-      }
-      state_[c] = value;
-    }
+    sample(nodes[i]);
     breaks_.other_guards(t + nodes[i] * h, state_.data(),
                          samples_.data() + static_cast<std::ptrdiff_t>(i) * others);
   }
@@ -97,9 +123,57 @@ Crossing Guards::first(double t, double h) {
   for (int k = 0; k < guards; ++k) {
     const int degree = along_step(k);
     const double theta = first_negative(polynomial_.data(), degree);
-    if (theta < found.theta) found = {k, theta};
+    if (!(theta < found.theta)) continue;
+    const Crossing crossing = where_slope_allows({k, theta}, t, h, degree);
+    if (crossing.theta < found.theta) found = crossing;
   }
   return found;
+}
+
+/// slopes_ becomes the polynomial of the slope at rest between `from` and the end of the step, in
+/// units of that part.
+void Guards::slopes_along_step(int k, double t, double h, double from) {
+  const double direction = std::copysign(1.0, h);
+  for (int i = 0; i < points; ++i) {
+    const double theta = from + nodes[i] * (1.0 - from);
+    sample(theta);
+    slopes_[i] = direction * breaks_.slope_at_rest(k, t + theta * h, state_.data());
+  }
+  interpolate(slopes_.data(), 1);
+}
+
+/// A rate that a strong damper has made small is lost in the errors of a step, and its sign with
+/// it. The crossing of polynomial_ that is no such error, or where the slope makes it one.
+Crossing Guards::where_slope_allows(Crossing crossing, double t, double h, int degree) {
+  const int k = crossing.guard;
+  const bool is_let_go = k < breaks_.linear_guards() && breaks_.zeros_at_start(k) > 1;
+  for (int dips = 0; dips < points; ++dips) {
+    const double theta = crossing.theta;
+    const bool at_start = theta * std::abs(h) <= 4.0 * epsilon * std::abs(t);
+    if (!(is_let_go && at_start)) {  // as a rule
+      sample(theta);
+      const double slope = breaks_.slope_at_rest(k, t + theta * h, state_.data());
+      if (!(slope * h > 0.0)) return crossing;
+    }
+    const double from = at_start ? 0.0 : theta;
+    slopes_along_step(k, t, h, from);
+    if (std::isnan(slopes_[0])) return crossing;
+    if (is_let_go && at_start) slopes_[0] = 0.0;
+    const double share = first_negative(slopes_.data(), points - 1);
+    if (share > 1.0) return {};
+    const double turns = from + share * (1.0 - from);
+    double dip = 0.0;  // what the errors come to
+    for (const double node : nodes) {
+      dip = std::min(dip, value_of(polynomial_.data(), degree, from + node * (turns - from)));
+    }
+    if (value_of(polynomial_.data(), degree, turns) <= -dip) return {k, turns, true};
+    // It has risen above them: its own zero is the next.
+    const std::vector<double> rest = beyond(polynomial_.data(), degree, turns);
+    const double next = first_negative(rest.data(), degree);
+    if (next > 1.0) return {};
+    crossing.theta = turns + next * (1.0 - turns);
+  }
+  return crossing;
 }
 
 /// Of state_.
@@ -167,16 +241,25 @@ bool Guards::goes_below(double theta) {
     double x = std::min(theta, 2.0);
     for (int halvings = 0; halvings < shares; ++halvings) {
       x *= 0.5;
-      double value = polynomial_[degree_];
-      for (int p = degree_ - 1; p >= 0; --p) value = value * x + polynomial_[p];
-      if (value < least) return true;
+      if (value_of(polynomial_.data(), degree_, x) < least) return true;
     }
   }
   return false;
 }
 
-Guards::Miss Guards::miss(int k, double t, double h) {
+Guards::Miss Guards::miss_of_slope(int k, double t, double h) {
+  slopes_along_step(k, t, h, 0.0);
+  const double slope = slope_at_end(slopes_.data(), points - 1);
+  if (slope == 0.0) return {0.0, 0.0};
+  stepper_.get_new_state(state_.data());
+  const double direction = std::copysign(1.0, h);
+  return {direction * breaks_.slope_at_rest(k, t + h, state_.data()) / slope, 0.0};
+}
+
+Guards::Miss Guards::miss(const Crossing& crossing, double t, double h) {
+  const int k = crossing.guard;
   stepper_.interpolant(h, rows_.data());
+  if (crossing.is_of_slope) return miss_of_slope(k, t, h);
   const int other = k - breaks_.linear_guards();
   if (other >= 0) interpolate_others(t, h);
   const int degree = along_step(k);
@@ -200,7 +283,7 @@ Guards::Located Guards::locate(const Crossing& crossing, double t, double whole,
   Attempt attempt{};
   for (int polish = 0; polish < 10; ++polish) {
     attempt = stepper_.attempt(t, h, gain);
-    const Miss miss = this->miss(crossing.guard, t, h);
+    const Miss miss = this->miss(crossing, t, h);
     const double correction = miss.share * h;
     const double size = std::abs(correction);
     if (!(size <= 0.5 * std::abs(h))) break;

@@ -77,8 +77,10 @@ class Run {
 
   bool step() {
     const double t = position_.t.high;
+    // A run that goes on may be asked to go no further: what is less than the last bit of its time
+    // would be a step of its own, and as like as not a backward one.
+    if (t == limits_.t_end) return end(Status::finished);
     const double left = difference(limits_.t_end, position_.t);
-    if (left == 0.0) return end(Status::finished);
     if (attempts_ == limits_.max_steps) return end(Status::max_steps);
     if (const Status clock = clock_.look(t); clock != Status::finished) return end(clock);
 
@@ -115,7 +117,9 @@ class Run {
         position_.h = trial_.h();
         position_.h_is_max_step = false;
         return true;
-      case Trial::Verdict::changes_at_start: return change_at_once(trial_.guard());
+      case Trial::Verdict::changes_at_start:
+        --attempts_;  // no step: the statistics do not count it either
+        return change_at_once(trial_.guard());
       case Trial::Verdict::fails:
         ++position_.statistics.rejected;
         return end(trial_.result().converged ? Status::non_finite : Status::not_converged);

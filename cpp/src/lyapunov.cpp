@@ -170,14 +170,9 @@ class GrowthRecorder final : public Observer {
   std::vector<double> polynomial_;
 };
 
-/// Whether the motion, or the law that it follows, jumps under an effect.
-bool has_jumps(const Effect& effect) {
-  return info_of(effect).account == Account::impact || holding_torque(effect);
-}
-
 void check_is_smooth(const Scene& scene) {
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
-    if (!has_jumps(scene.effects[i])) continue;
+    if (!info_of(scene.effects[i]).jumps_or_sticks) continue;
     throw std::invalid_argument(effect_name(scene, i) +
                                 ": jumps, and with it what the variational equations would follow: "
                                 "there are Lyapunov exponents of scenes without dry friction and "

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 
@@ -182,6 +183,10 @@ void run(const Scene& scene, Solution& solution, double t_end, Limits limits, Be
   }
 }
 
+long long attempts(const Statistics& statistics) {
+  return statistics.accepted + statistics.rejected;
+}
+
 Limits limits_of(const Options& options, double t_end) {
   return {.t_end = t_end,
           .max_step = options.max_step,
@@ -260,6 +265,12 @@ Solution resume(const Scene& scene, const Solution& solution, double t_end,
   longer.dense.coefficients.resize(longer.resumable_steps * (degree + 1) * dimension);
   Limits limits = limits_of(options, t_end);
   limits.monitor = monitor;
+  // To the same end, the run does again what it did since: that is no step of the continuation.
+  if (t_end == solution.t_end) {
+    const long long again = attempts(solution.statistics) - attempts(solution.resumable.statistics);
+    const long long most = std::numeric_limits<long long>::max() - max_steps;
+    limits.max_steps += std::clamp(again, 0LL, most);
+  }
   run(scene, longer, t_end, limits, has_begun ? Before::steps : Before::a_start, passed_events);
   return longer;
 }

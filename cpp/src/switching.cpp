@@ -225,7 +225,13 @@ bool Switching::is_of_friction(const Watch& watch) const {
 
 void Switching::come_to_rest(int k, double t, double* y) {
   settle(k, y);
-  choose(t, y, guards_[k].joint);
+  const int joint = guards_[k].joint;
+  // Where the torques begin to hold it just now, rounding has no say in whether they do.
+  if (joints_.is_rounding(joint, slope_at_rest(k, t, y))) {
+    joints_.choose(equations_, t, y, y + n_, joint);
+  } else {
+    choose(t, y, joint);
+  }
 }
 
 /// A law that has its sides apart is on the next.

@@ -75,6 +75,21 @@ double Switching::guard(int k, const double* y) const {
   return g.offset + g.on_phi * relative(y, joint) + g.on_phid * relative(y + n_, joint);
 }
 
+/// The links beyond the joint go with it: what dampers between them do is as before.
+double Switching::slope_at_rest(int k, double t, const double* y) {
+  if (k >= linear_guards()) return std::nan("");
+  const Watch& watch = guards_[k];
+  if (watch.stop != Side::none || !watch.guard.is_on_rate()) return std::nan("");
+  still_.assign(y, y + 2 * static_cast<std::ptrdiff_t>(n_));
+  qdd_.resize(n_);
+  double* const qd = still_.data() + n_;
+  const double rate = relative(qd, watch.joint + 1);
+  set_relative(qd, watch.joint + 1, 0.0);
+  for (int i = watch.joint + 1; i < n_; ++i) qd[i] -= rate;
+  accelerations_in_force(equations_, t, still_.data(), qd, qdd_.data());
+  return watch.guard.on_phid * relative(qdd_.data(), watch.joint + 1);
+}
+
 double Switching::rounding(int k, const double* y) const {
   const double last_bits = 4.0 * epsilon;
   if (k >= linear_guards())
@@ -105,6 +120,18 @@ void Switching::other_guards(double t, const double* y, double* values) {
   }
 }
 
+/// Where the next joint has a strong damper, the links beyond go with it: what the rate was off by
+/// would give that damper a torque which nothing in the motion has.
+void Switching::stop_joint(int joint, double* qd) const {
+  const double rate = relative(qd, joint + 1);
+  set_relative(qd, joint + 1, 0.0);
+  if (joint + 1 == n_) return;
+  const JointSupport& next = joints_.supports()[joint + 1];
+  const double torque = joints_.inertia()[joint + 1] * next.natural_speed * next.natural_speed;
+  if (next.damping * std::abs(rate) <= epsilon * torque) return;
+  for (int i = joint + 1; i < n_; ++i) qd[i] -= rate;
+}
+
 bool Switching::settle(int k, double* y) const {
   double* const q = y;
   double* const qd = y + n_;
@@ -116,7 +143,7 @@ bool Switching::settle(int k, double* y) const {
       set_relative(q, j + 1, joints_.supports()[j].stop(watch.stop).angle);
       changed = true;
     } else if (watch.guard.is_on_rate()) {
-      set_relative(qd, j + 1, 0.0);  // on a rate alone: it is zero there
+      stop_joint(j, qd);  // on a rate alone: it is zero there
       changed = true;
     }
   }

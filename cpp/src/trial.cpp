@@ -85,7 +85,8 @@ Trial::Verdict Trial::set_out() {
     const bool is_short = std::abs(h_) <= few * last_bits(t_, t_);
     const double at_start = epsilon * std::max(few * std::abs(t_), 2.0 * std::abs(h_));
     if (crossing_.guard >= 0 && crossing_.theta * std::abs(h_) <= at_start) {
-      if (is_short || guards_->falls_at_start(crossing_.guard, t_, h_, halvings)) {
+      if (is_short || crossing_.is_of_slope ||
+          guards_->falls_at_start(crossing_.guard, t_, h_, halvings)) {
         return Verdict::changes_at_start;
       }
     } else if (is_short || halvings == most_halvings || !guards_->strays(crossing_, h_)) {

@@ -81,6 +81,8 @@ class Description(NamedTuple):
         Where the ledger books its work; ``"none"`` where there is none.
     bounds_joint : bool
         Whether a start next to one that it allows may be none that it allows.
+    jumps_or_sticks : bool
+        Whether the motion jumps or sticks under it, each time at an instant of its own.
     """
 
     name: str
@@ -91,6 +93,7 @@ class Description(NamedTuple):
     source: str = ""
     account: str = "none"
     bounds_joint: bool = False
+    jumps_or_sticks: bool = False
 
 
 CAVEATS = {

@@ -303,9 +303,9 @@ class Solution:
             for. Only for a run that had a ``t_eval``.
         max_steps, time_limit, progress
             As in `simulate`, for the continuation. It begins before the first attempt that the
-            earlier ``t_end`` cut short, as what came after that depends on it. If such an attempt
-            was rejected, a ``max_steps`` of a few may begin there again and again and never get
-            on: give more of them, or a later ``t_end``.
+            earlier ``t_end`` cut short, as what came after that depends on it. To the same
+            ``t_end`` the attempts made since then are made again and do not count, so that a
+            ``max_steps`` of 1 gets on as well.
 
         Returns
         -------

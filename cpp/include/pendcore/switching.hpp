@@ -39,6 +39,7 @@ class Switching final : public Breaks {
   void polynomial(int k, const double* rows, int degree, int dimension,
                   double* coefficients) const override;
   double guard(int k, const double* y) const override;
+  double slope_at_rest(int k, double t, const double* y) override;
   double rounding(int k, const double* y) const override;
   void other_guards(double t, const double* y, double* values) override;
   bool settles_every_step() const override { return any_held_; }
@@ -86,6 +87,7 @@ class Switching final : public Breaks {
   void let_go(const HeldGuard& guard, double t, const double* y);
   bool reach_stop(int k, double t, double* y);
   void come_to_rest(int k, double t, double* y);
+  void stop_joint(int joint, double* qd) const;
   void change_side(const Watch& watch);
   bool is_of_friction(const Watch& watch) const;
   double shortest_moment(double t) const;  ///< s, that time resolves
@@ -118,6 +120,8 @@ class Switching final : public Breaks {
   std::vector<Watch> guards_;
   std::vector<HeldGuard> held_guards_;
   std::vector<double> torque_;  ///< that holds the joints
+  std::vector<double> still_;   ///< a state in which a joint is at rest
+  std::vector<double> qdd_;
   double time_of_change_ = std::numeric_limits<double>::quiet_NaN();
   int changes_at_once_ = 0;
   /// Of each joint that was held until this time: whether its rate is to go up (1) or down (-1)

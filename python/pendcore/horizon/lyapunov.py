@@ -232,7 +232,7 @@ def lyapunov_of(
 
 def _check_is_smooth(scene: Scene) -> None:
     for i, effect in enumerate(scene.effects, start=1):
-        if effect.description.account in ("dry", "impact"):
+        if effect.description.jumps_or_sticks:
             raise ValueError(
                 f"effect {i} ({effect.kind}): motions jump or stick under it, each at a time of "
                 "its own, so that neighbours part at no rate: leave dry friction and stops out "

@@ -56,7 +56,9 @@ class HeldJoints {
   const std::vector<JointSupport>& supports() const { return supports_; }
   const std::vector<Hold>& holds() const { return holds_; }
   bool is_held(int joint) const { return holds_[joint].is_held; }
-  bool any_held_for_now() const;                           ///< by other than a lock
+  bool any_held_for_now() const;  ///< by other than a lock
+  /// Of each link with all that hangs on it, at its joint, kg m^2, (n).
+  const std::vector<double>& inertia() const { return forces_.inertia.diagonal; }
   double natural_speed() const { return natural_speed_; }  ///< rad/s, of the fastest joint
 
   /// A lock: at that angle from now on, in the state too.

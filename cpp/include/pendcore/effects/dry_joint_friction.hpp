@@ -27,7 +27,8 @@ struct DryJointFriction {
       .sentence = "Dry friction in a joint, Coulomb's with a static peak (Stribeck).",
       .law = "tau = -(t_c + (t_s - t_c) exp(-abs(w/w_s)^p)) sgn w,  w = phid",
       .source = "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083, section 3",
-      .account = Account::dry};
+      .account = Account::dry,
+      .jumps_or_sticks = true};
   static constexpr auto parameters = std::tuple{
       parameter(&DryJointFriction::joint, joint_number),
       parameter(&DryJointFriction::coulomb, {.name = "coulomb",

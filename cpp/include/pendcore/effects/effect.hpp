@@ -80,6 +80,9 @@ struct EffectInfo {
   std::string_view source;    ///< where the law comes from
   Account account = Account::none;
   bool bounds_joint = false;  ///< a start next to one that it allows may be none that it allows
+  /// Under it the motion jumps or sticks, each time at an instant of its own: two motions that are
+  /// neighbours part there at no rate.
+  bool jumps_or_sticks = false;
   /// Of one that is part of the equations of motion: whether their Taylor series hold it. Of those
   /// that are laws, couples have a series and no others.
   bool has_series = false;

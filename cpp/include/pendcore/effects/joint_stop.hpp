@@ -28,6 +28,7 @@ struct JointStop {
       .source = "Brogliato, Nonsmooth Mechanics (2016), sections 4.1 and 5.2",
       .account = Account::impact,
       .bounds_joint = true,
+      .jumps_or_sticks = true,
       .has_series = true};
   static constexpr auto parameters = std::tuple{
       parameter(&JointStop::joint, joint_number),

@@ -35,6 +35,10 @@ class Breaks {
   virtual void polynomial(int k, const double* rows, int degree, int dimension,
                           double* coefficients) const = 0;
   virtual double guard(int k, const double* y) const = 0;
+  /// The slope that a guard on a rate has where the joint is at rest, 1/s, though it be turning in
+  /// the state given; NaN of any other guard. Errors of the rate have no part in it: a guard that
+  /// would rise there cannot have fallen through zero.
+  virtual double slope_at_rest(int k, double t, const double* y) = 0;
   /// How far a guard's value can be off by the rounding of the state.
   virtual double rounding(int k, const double* y) const = 0;
   /// The values of the others.

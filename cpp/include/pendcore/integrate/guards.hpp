@@ -17,6 +17,9 @@ namespace pendcore {
 struct Crossing {
   int guard = -1;
   double theta = 2.0;
+  /// The guard had fallen below zero by an error, and its slope follows there: what a rate is that
+  /// is lost in errors, the torques on the joint still tell.
+  bool is_of_slope = false;
 };
 
 class Guards {
@@ -51,9 +54,13 @@ class Guards {
   struct Miss {
     double share, rounding;
   };
-  Miss miss(int k, double t, double h);
+  Miss miss(const Crossing& crossing, double t, double h);
   int along_step(int k);
   std::array<double, 3> start_of(int k);
+  void sample(double theta);
+  void slopes_along_step(int k, double t, double h, double from);
+  Crossing where_slope_allows(Crossing crossing, double t, double h, int degree);
+  Miss miss_of_slope(int k, double t, double h);
   bool is_of_error(const Crossing& crossing, double h);
   bool goes_below(double theta);
   double value_at(int k, double t);
@@ -66,6 +73,7 @@ class Guards {
   std::vector<double> rows_;  ///< the dense output of the step
   std::vector<double> state_;
   std::vector<double> polynomial_;  ///< of a guard, in theta
+  std::vector<double> slopes_;      ///< of a guard on a rate, were the joint at rest; in theta
   std::vector<double> samples_;     ///< (points, others), and then the same as polynomials
 };
 

@@ -1,0 +1,55 @@
+"""A run that goes on at the end it was cut for, or stays there: the same in every bit."""
+
+from __future__ import annotations
+
+import pendcore as pc
+import pytest
+from pendcore import effects as fx
+from test_resumed_anywhere import differences
+
+
+# Ends at which the step that is cut there is rejected.
+@pytest.mark.parametrize(
+    ("method", "rtol", "t_end"),
+    [("dopri5", 1e-3, 3.4), ("dopri5", 1e-6, 4.1), ("dop853", 1e-3, 2.3), ("dop853", 1e-3, 3.1)],
+)
+def test_one_attempt_a_leg_gets_past_a_last_step_that_is_rejected(
+    method: str, rtol: float, t_end: float
+) -> None:
+    free = pc.Scene(links=[pc.Link(mass=1.0, length=0.6)] * 2)
+    how = {"method": method, "rtol": rtol}
+    whole = pc.simulate(free, [0.4, 1.0], [3.0, -2.0], (0, t_end), **how)
+    longer = pc.simulate(free, [0.4, 1.0], [3.0, -2.0], (0, t_end + 1), **how)
+    sol = pc.simulate(free, [0.4, 1.0], [3.0, -2.0], (0, t_end), max_steps=1, **how)
+    attempts = whole.stats.accepted + whole.stats.rejected
+    for _ in range(attempts - 1):
+        assert sol.status == "max_steps"
+        assert differences(longer, sol.resume(t_end + 1)) == []
+        sol = sol.resume(t_end, max_steps=1)
+    assert differences(whole, sol) == []
+
+
+FAST = fx.Motor(1, sinusoid=fx.Sinusoid(amplitude=1e243, angular_frequency=1e154))
+
+
+@pytest.mark.parametrize("store", ["steps", "dense"])
+@pytest.mark.parametrize("steps", [1, 3, 7, 20])
+@pytest.mark.parametrize(
+    "effects",
+    [[], [fx.Lock(1), FAST], [fx.DryJointFriction(2, coulomb=0.01)]],
+    ids=["free", "fast motor on a locked joint", "friction"],
+)
+def test_to_go_on_to_where_a_run_stands_is_to_stay_there(
+    effects: list[fx.Effect], steps: int, store: str
+) -> None:
+    """Its time has more digits than a double, and is not at the double's by as much."""
+    scene = pc.Scene(links=[pc.Link(mass=1.0, length=0.6)] * 2, effects=effects)
+    start = ([1.0, 1.0], [0.0, 0.5], (1.0, 3.0))
+    how = {"method": "dopri5", "store": store}
+    whole = pc.simulate(scene, *start, **how)
+    sol = pc.simulate(scene, *start, max_steps=steps, **how)
+    stays = sol.resume(sol.t[-1])
+    assert stays.status == "finished"
+    assert stays.t.tobytes() == sol.t.tobytes()
+    assert stays.y.tobytes() == sol.y.tobytes()
+    assert differences(whole, stays.resume(3.0)) == []
