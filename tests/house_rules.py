@@ -73,6 +73,7 @@ PYTHON_FLOW = [
     "explanation",
     "energy",
     "defect",
+    "largest_reactions",
     "statistics",
     "solution",
     "accuracy",

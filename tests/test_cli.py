@@ -65,7 +65,7 @@ def test_the_summary_tells_what_was_simulated_and_what_came_of_it(capsys):
         r"end +t = 5 s, q = \(1\.08307, 0\.53846",
         r"steps +\d+ accepted, \d+ rejected",
         r"energy drift +\d\.\de-\d\d J, \d\.\de-\d\d of the largest kinetic energy",
-        r"largest reaction +joint 1: 31\.9\d+ N at t = 0\.6",
+        r"largest reaction +joint 1: 31\.9307 N at t = 0\.643519 s",
     ):
         assert re.search(fact, text), fact
     assert "kept time" not in text
@@ -87,7 +87,7 @@ def test_json_has_the_same_facts(capsys):
     assert printed["statistics"] == solution.stats._asdict()
     total = solution.energy().total
     assert printed["energy"]["largest_drift"] == np.abs(total - total[0]).max()
-    assert printed["largest_reactions"][0]["force"] == pytest.approx(31.9, abs=0.1)
+    assert printed["largest_reactions"][0]["force"] == pytest.approx(31.9307278, rel=1e-8)
     assert printed["version"] == pc.__version__
 
 
@@ -128,10 +128,10 @@ def test_ctrl_c_outside_the_run_is_told_in_a_line(stage, monkeypatch, capsys):
 @pytest.mark.parametrize(
     ("asked", "among"),
     [
-        ('store = "steps"', None),
+        ('store = "steps"', "among the 508 kept times\n"),
         ('store = "end"', "among the 1 kept time\n"),
         ("t_eval = [1.0, 2.0]", "among the 2 kept times\n"),
-        ('t_eval = [1.0, 2.0]\nstore = "dense"', "among the 2 kept times\n"),
+        ('t_eval = [1.0, 2.0]\nstore = "dense"', None),
     ],
 )
 def test_whatever_is_kept_start_end_and_drift_are_the_runs(asked, among, capsys):

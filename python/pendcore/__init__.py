@@ -43,6 +43,7 @@ from pendcore.explanation import Explanation
 from pendcore.horizon.error_estimate import ErrorEstimate
 from pendcore.horizon.lyapunov import LyapunovExponents, lyapunov
 from pendcore.horizon.work import HorizonWork, horizon_work
+from pendcore.largest_reactions import LargestReaction
 from pendcore.link import Link
 from pendcore.scene import Mobility, Scene
 from pendcore.simulate import simulate
@@ -72,6 +73,7 @@ __all__ = [
     "ErrorEstimate",
     "Explanation",
     "HorizonWork",
+    "LargestReaction",
     "Ledger",
     "Link",
     "LyapunovExponents",

@@ -18,6 +18,7 @@ from pendcore.arguments import Floats, finite_array, time_limit_of
 from pendcore.defect import Defect, defect
 from pendcore.energy import Energy, Ledger
 from pendcore.events import Event, Found, event_of, found_events
+from pendcore.largest_reactions import LargestReaction, largest_reactions
 from pendcore.progress import Progress, callback, close
 from pendcore.scene import Scene
 from pendcore.statistics import Statistics
@@ -193,28 +194,20 @@ class Solution:
             gain = total - sum(start)
             return Energy(kinetic, potential, total, Ledger(self._run.ledger, gain))
 
+    def largest_reactions(self, *, progress: Progress = None) -> list[LargestReaction]:
+        """Return the largest force of each joint: ``.joint``, ``.force`` (N), ``.t`` (s).
+
+        Of a run with its interpolants it is that of the whole curve, between the steps too and on
+        both sides of every jump; of others the largest at the kept times. What an impact does in no
+        time is no force. See `pendcore.LargestReaction`; ``progress`` is as in `simulate`.
+        """
+        return largest_reactions(self.scene, self._run, progress)
+
     def defect(self, *, progress: Progress = None) -> Defect:
         """Return the spurious torques: what motors would have to add to make the curve exact.
 
-        The rates of ``sol(t)``, and the angles that their integral gives, obey the equations of
-        motion of the scene with these torques at the joints. A number to hold against what a model
-        leaves out: bearing friction, air, a motor's ripple. It tells nothing of how far a chaotic
-        motion has moved away from the one that was meant.
-
-        Parameters
-        ----------
-        progress : None, bool or callable
-            As in `simulate`.
-
-        Returns
-        -------
-        Defect
-            ``largest`` (N m), ``share`` (of m g L), and the torques at each joint in each step.
-
-        Raises
-        ------
-        ValueError
-            If the run did not store its interpolants: ``store="dense"``.
+        See `pendcore.Defect` and, for what they tell, `docs/defect.md`; ``progress`` is as in
+        `simulate`. A ValueError if the run did not store its interpolants: ``store="dense"``.
         """
         return defect(self.scene, self._run, progress)
 
