@@ -63,6 +63,7 @@ PYTHON_FLOW = [
     "arguments",
     "angles",
     "progress",
+    "whole_file",
     "toml_text",
     "effect_description",
     "effect_class",

@@ -115,14 +115,14 @@ def test_ctrl_c_writes_what_there_is_and_ends_with_1(capsys):
     assert eval(again, {"pc": pc}).status == "interrupted"
 
 
-@pytest.mark.parametrize("stage", ["pendcore.case.simulate", "pendcore.cli.run.facts"])
-def test_ctrl_c_outside_the_run_is_told_in_a_line(stage, monkeypatch, capsys):
+def test_ctrl_c_outside_the_run_is_told_in_a_line(monkeypatch, capsys):
     def stop(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(stage, stop)
+    monkeypatch.setattr("pendcore.case.simulate", stop)
     assert main(["run"]) == 1
     assert capsys.readouterr() == ("", "pendcore run: interrupted\n")
+    assert written(".") == []
 
 
 @pytest.mark.parametrize(
@@ -237,6 +237,13 @@ def test_plot_draws_a_saved_solution(suffix, capsys):
     assert json.loads(out) == {"figure": f"figure.{suffix}", "status": "finished"}
     assert err == f"written to figure.{suffix}\n"
     assert Path(f"figure.{suffix}").stat().st_size > 1000
+
+
+def test_plot_draws_what_matplotlib_would_where_no_suffix_tells(capsys):
+    pc.Case.textbook().simulate().save("run.npz")
+    assert main(["plot", "run.npz", "-o", "figure"]) == 0
+    assert capsys.readouterr().err == "written to figure.png\n"
+    assert Path("figure.png").read_bytes().startswith(PNG)
 
 
 def test_plot_puts_the_figure_beside_the_solution():

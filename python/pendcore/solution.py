@@ -319,11 +319,14 @@ class Solution:
 
         return Case.of_solution(self)
 
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Write everything to a file of NumPy's npz format; see `pendcore.load`."""
+    def save(self, path: str | os.PathLike[str], *, progress: Progress = None) -> None:
+        """Write everything to a file of NumPy's npz format; see `pendcore.load`.
+
+        It has its name only when it is whole. ``progress`` is as in `simulate`.
+        """
         from pendcore.archive import save
 
-        save(self, path)
+        save(self, path, progress=progress)
 
     def plot(
         self,
