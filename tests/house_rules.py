@@ -76,6 +76,7 @@ PYTHON_FLOW = [
     "defect",
     "largest_reactions",
     "statistics",
+    "run_error",
     "solution",
     "accuracy",
     "horizon",
@@ -92,6 +93,7 @@ PYTHON_FLOW = [
 # only when they are called.
 LATE_IMPORTS = {
     "scene": {"explanation"},
+    "run_error": {"solution"},
     "solution": {"accuracy", "horizon", "case", "archive", "views"},
     "horizon": {"views"},
     "cost": {"views"},

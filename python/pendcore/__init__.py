@@ -45,6 +45,7 @@ from pendcore.horizon.lyapunov import LyapunovExponents, lyapunov
 from pendcore.horizon.work import HorizonWork, horizon_work
 from pendcore.largest_reactions import LargestReaction
 from pendcore.link import Link
+from pendcore.run_error import RunError
 from pendcore.scene import Mobility, Scene
 from pendcore.simulate import simulate
 from pendcore.solution import Solution
@@ -79,6 +80,7 @@ __all__ = [
     "LyapunovExponents",
     "Mobility",
     "PendcoreWarning",
+    "RunError",
     "Scene",
     "Solution",
     "Statistics",

@@ -20,6 +20,7 @@ from pendcore.energy import Energy, Ledger
 from pendcore.events import Event, Found, event_of, found_events
 from pendcore.largest_reactions import LargestReaction, largest_reactions
 from pendcore.progress import Progress, callback, close
+from pendcore.run_error import checked, require_check
 from pendcore.scene import Scene
 from pendcore.statistics import Statistics
 
@@ -282,6 +283,7 @@ class Solution:
         *,
         max_steps: int = 10_000_000,
         time_limit: float | None = None,
+        check: bool | None = None,
         progress: Progress = None,
     ) -> Solution:
         """Continue to a later end, bitwise as if the run had never stopped.
@@ -293,7 +295,7 @@ class Solution:
         t_eval : array_like, (k,), optional
             More times to keep, s: at or beyond where this run ended, and beyond those it was asked
             for. Only for a run that had a ``t_eval``.
-        max_steps, time_limit, progress
+        max_steps, time_limit, check, progress
             As in `simulate`, for the continuation. It begins before the first attempt that the
             earlier ``t_end`` cut short, as what came after that depends on it. If such an attempt
             was rejected, a ``max_steps`` of a few may begin there again and again and never get
@@ -309,9 +311,10 @@ class Solution:
         ValueError, TypeError
             If an argument is not what is asked for; the message names it.
         """
+        require_check(check)
         report = callback(progress)
         run = self._run.resume(t_end, t_eval, max_steps, time_limit, report)
-        return solution_of(self.scene, run, report, self.name)
+        return checked(solution_of(self.scene, run, report, self.name), check)
 
     def case(self) -> Case:
         """Return what was asked for, ready to be run again or written as TOML."""

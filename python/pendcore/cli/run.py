@@ -15,6 +15,7 @@ from pendcore.case_file import with_line
 from pendcore.cli.case_and_folder import add_case_and_folder, case_of, folder_of
 from pendcore.cli.files_to_write import FilesToWrite
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder
+from pendcore.run_error import CAN_GO_ON
 from pendcore.solution import Solution
 from pendcore.views.plot import save_figure
 from pendcore.views.summary import facts, text
@@ -50,7 +51,6 @@ a case:
 FILES = ("summary.txt", "summary.json", "angles.png", "solution.npz")
 _MANY_STEPS = 100_000
 """What takes seconds to write."""
-_CAN_GO_ON = {"max_steps", "max_turns", "time_limit", "interrupted"}
 
 
 def add_parser(commands: Any) -> None:
@@ -89,7 +89,7 @@ def execute(args: argparse.Namespace) -> int:
             complaint = f"the run is not complete: {solution.message}"
         if complaint:
             print(complaint, file=sys.stderr)
-        if solution.status in _CAN_GO_ON and "solution.npz" not in files.left_out:
+        if solution.status in CAN_GO_ON and "solution.npz" not in files.left_out:
             t_end = solution.case().t_span[1]
             file = str(folder / "solution.npz")
             print(f"to go on, in Python: pc.load({file!r}).resume({t_end!r})", file=sys.stderr)
@@ -102,7 +102,7 @@ def execute(args: argparse.Namespace) -> int:
 def _simulated(case: Case, file: Path | None) -> tuple[Solution, str, str]:
     """Return the run, what is to be said against it, and of that what its error was refused for."""
     try:
-        return case.simulate(), "", ""
+        return case.simulate(check=False), "", ""  # what is to be said is said once, at the end
     except (ValueError, TypeError) as error:
         raise UsageError(with_line(file, str(error)) if file else str(error)) from None
     except (KeyboardInterrupt, AccuracyError) as stop:

@@ -232,7 +232,7 @@ def _legs(
             )  # fmt: skip
         else:
             second = second.resume(
-                part[-1], part, max_steps=max_steps, time_limit=left, progress=share
+                part[-1], part, max_steps=max_steps, time_limit=left, check=False, progress=share
             )
         yield second
         if not second.success:
