@@ -63,6 +63,7 @@ PYTHON_FLOW = [
     "arguments",
     "angles",
     "progress",
+    "whole_file",
     "toml_text",
     "effect_description",
     "effect_class",
@@ -73,7 +74,9 @@ PYTHON_FLOW = [
     "explanation",
     "energy",
     "defect",
+    "largest_reactions",
     "statistics",
+    "run_error",
     "solution",
     "accuracy",
     "horizon",
@@ -90,6 +93,7 @@ PYTHON_FLOW = [
 # only when they are called.
 LATE_IMPORTS = {
     "scene": {"explanation"},
+    "run_error": {"solution"},
     "solution": {"accuracy", "horizon", "case", "archive", "views"},
     "horizon": {"views"},
     "cost": {"views"},

@@ -53,7 +53,13 @@ Ask = Callable[[Any], np.ndarray]
 
 def run_with(name: str) -> Ask:
     def ask(values: Any) -> np.ndarray:
-        given = {"q0": [0.25, 1.0], "qd0": [0.5, -1.0], "t_span": (0, 4), "max_steps": 50}
+        given = {
+            "q0": [0.25, 1.0],
+            "qd0": [0.5, -1.0],
+            "t_span": (0, 4),
+            "max_steps": 50,
+            "check": False,
+        }
         sol = pc.simulate(SCENE, **(given | {name: values}))
         return np.vstack([sol.t, sol.y])
 

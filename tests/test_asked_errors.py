@@ -200,14 +200,17 @@ def test_a_law_that_is_not_smooth_is_refused():
 
 def test_a_run_that_fails_is_returned_as_ever():
     scene = pc.Scene.textbook().replace(effects=[E.User(lambda t, q, qd: [np.nan, 0.0])])
-    sol = pc.simulate(scene, *START, error=1e-3)
+    with pytest.warns(pc.PendcoreWarning, match=r"status non_finite: .*; it is no run of"):
+        sol = pc.simulate(scene, *START, error=1e-3)
     assert sol.status == "non_finite"
     assert sol.accuracy.outcome == "ended early"
     assert sol.accuracy.until == 0.0
 
 
 def test_a_run_that_the_cap_on_steps_ends_is_labelled():
-    sol = pc.simulate(BOOK, *START, error=1e-6, max_steps=30)
+    with pytest.raises(pc.RunError, match=r"status max_steps: .*not verified: the run") as end:
+        pc.simulate(BOOK, *START, error=1e-6, max_steps=30, check=True)
+    sol = end.value.solution
     assert sol.status == "max_steps"
     assert sol.accuracy.outcome == "ended early"
     assert 0 < sol.accuracy.achieved < 1e-4
@@ -283,7 +286,7 @@ def test_a_terminal_event_may_come_before_the_times(times):
 
 
 def test_time_is_limited_for_all_runs_together():
-    sol = pc.simulate(BOOK, [-1.5, -1.4], 0, (0, 1e6), error=1e-3, time_limit=0.2)
+    sol = pc.simulate(BOOK, [-1.5, -1.4], 0, (0, 1e6), error=1e-3, time_limit=0.2, check=False)
     assert sol.status == "time_limit"
     assert not sol.accuracy.reached
     assert "not verified: the run ended early: time_limit" in str(sol.accuracy)

@@ -40,7 +40,7 @@ def test_the_reference_has_the_keys_of_every_event():
 
 
 def test_the_reference_has_the_defaults_of_simulate():
-    words = {"none", "chosen", "every step", "when it takes long"}
+    words = {"none", "chosen", "every step", "when it takes long", "a warning"}
     for kind, key, default in documented():
         if kind == "run" and key in RUN_DEFAULTS:
             usual = RUN_DEFAULTS[key]

@@ -134,7 +134,7 @@ def test_a_run_cut_between_two_impacts_at_one_time_finds_what_the_whole_one_does
     assert len(struck) > len(set(struck)) == 1
     cut = [run(float(struck[0]))]
     while not cut[1:] or cut[-1].status == "max_steps":
-        cut.append(run(max_steps=len(cut)))
+        cut.append(run(max_steps=len(cut), check=False))
     between = [sol for sol in cut if np.count_nonzero(sol.t == struck[0]) == 2]
     assert between
     for sol in cut:
@@ -240,7 +240,7 @@ def test_an_impact_that_changes_no_rate_is_no_jump() -> None:
     """The pivot has accelerations beyond doubles: no impulse is found, and the rate stays."""
     shaken = fx.DrivenPivot(y=fx.Sinusoid(amplitude=1e200, angular_frequency=1e120))
     scene = rod(fx.JointStop(joint=1, range=(0.7, 2.5)), shaken)
-    sol = pc.simulate(scene, 0.7, -4.0, (0, 1), max_steps=1)
+    sol = pc.simulate(scene, 0.7, -4.0, (0, 1), max_steps=1, check=False)
     assert [*sol.t] == [0.0]
     np.testing.assert_array_equal(sol.y[:, 0], [0.7, -4.0])
 

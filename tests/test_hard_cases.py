@@ -41,7 +41,7 @@ def test_a_hundred_units_in_the_last_place_are_one_step(method):
 
 
 def test_a_time_too_large_for_its_step_is_said_plainly():
-    sol = pc.simulate(BOOK, 0.3, 0, (1e17, 1e17 + 1000))
+    sol = pc.simulate(BOOK, 0.3, 0, (1e17, 1e17 + 1000), check=False)
     assert sol.status == "step_too_small"
     assert not sol.success
     assert "t + h = t" in sol.message
@@ -147,7 +147,7 @@ def test_tolerances_beyond_measure_end_as_the_status_says(tolerance, method):
     """At the end or wherever the steps lead to; a tenth of a second is a single step."""
     how = {"method": method, "rtol": tolerance, "atol": tolerance}
     assert pc.simulate(BOOK, [0.8, 1.0], 0, (0, 0.1), **how).success
-    sol = pc.simulate(BOOK, [0.8, 1.0], 0, (0, 5), **how)
+    sol = pc.simulate(BOOK, [0.8, 1.0], 0, (0, 5), check=False, **how)
     assert sol.status in {"finished", "step_too_small", "non_finite"}
     assert sol.success == (sol.t[-1] == 5)
     assert np.isfinite(sol.y).all()

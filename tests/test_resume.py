@@ -81,7 +81,7 @@ def test_a_run_that_was_not_sampled_is_not_sampled_on(store):
 
 
 def test_an_end_before_the_times_asked_for_is_refused():
-    capped = begun(t_eval=[1, 2, 3, 4, 5], max_steps=30)
+    capped = begun(t_eval=[1, 2, 3, 4, 5], max_steps=30, check=False)
     assert capped.status == "max_steps"
     with pytest.raises(ValueError, match=r"^t_end = 3\.0: must be at or beyond the last time"):
         capped.resume(3)
@@ -91,18 +91,18 @@ def test_an_end_before_the_times_asked_for_is_refused():
 def test_a_few_attempts_at_a_time_get_past_one_that_the_end_cut_short():
     """The first would go beyond the end: all of the run depends on that, and is made anew."""
     how = {"method": "dopri5", "first_step": 2.0}
-    few = pc.simulate(BOOK, Q0, 0, (0, 1), max_steps=8, **how)
+    few = pc.simulate(BOOK, Q0, 0, (0, 1), max_steps=8, check=False, **how)
     whole = pc.simulate(BOOK, Q0, 0, (0, 1), **how)
     assert np.array_equal(few.resume(1).y, whole.y)
     attempts = whole.stats.accepted + whole.stats.rejected
     same = few
     for _ in range((attempts - 1) // 8):
         assert same.status == "max_steps"
-        same = same.resume(1, max_steps=8)
+        same = same.resume(1, max_steps=8, check=False)
     assert np.array_equal(same.y, whole.y)
     later = few
     while later.status == "max_steps":
-        later = later.resume(3, max_steps=8)
+        later = later.resume(3, max_steps=8, check=False)
     assert np.array_equal(later.y, pc.simulate(BOOK, Q0, 0, (0, 3), **how).y)
 
 

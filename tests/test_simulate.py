@@ -15,7 +15,7 @@ from pendcore.progress import ProgressBar
 
 Q0 = (np.pi / 4, np.pi / 3)
 textbook = partial(pc.simulate, pc.Scene.textbook(), Q0, 0.0, (0, 5))
-endless = partial(pc.simulate, pc.Scene.textbook(), Q0, 0.0, (0, 1e9), store="end")
+endless = partial(pc.simulate, pc.Scene.textbook(), Q0, 0.0, (0, 1e9), store="end", check=False)
 """Would take hours."""
 
 
@@ -137,7 +137,7 @@ def test_the_first_step_is_as_asked(t_end, method):
 
 
 def test_a_capped_run_keeps_what_it_has():
-    run = textbook(max_steps=10)
+    run = textbook(max_steps=10, check=False)
     assert not run.success
     assert run.status == "max_steps"
     assert "max_steps" in run.message
@@ -177,7 +177,8 @@ def test_an_exception_of_the_progress_function_passes_through_with_the_run_so_fa
 def test_a_progress_function_gets_growing_fractions():
     fractions = []
     scene = pc.Scene.textbook()
-    pc.simulate(scene, Q0, 0.0, (0, 1e9), store="end", time_limit=0.4, progress=fractions.append)
+    how = {"store": "end", "time_limit": 0.4, "check": False}
+    pc.simulate(scene, Q0, 0.0, (0, 1e9), **how, progress=fractions.append)
     assert len(fractions) >= 3
     assert fractions == sorted(fractions)
     assert 0 <= fractions[0] <= fractions[-1] <= 1

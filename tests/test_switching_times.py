@@ -234,7 +234,7 @@ def test_a_run_of_no_length_outside_a_table_says_so_whatever_is_kept(options: An
         links=[pc.Link(mass=1.0, length=1.0)], effects=[fx.Lock(1), fx.Motor(1, table=table)]
     )
     with pytest.warns(pc.PendcoreWarning, match="ends where it leaves that span"):
-        sol = pc.simulate(scene, 0.5, t_span=(0, 0), **options)
+        sol = pc.simulate(scene, 0.5, t_span=(0, 0), check=False, **options)
     assert sol.status == "non_finite"
     assert "its table goes from 1.0 to 2.0 s, and the run is at t = 0.0 s" in sol.message
     assert pc.simulate(scene, 0.5, t_span=(1, 1), **options).status == "finished"

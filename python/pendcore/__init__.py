@@ -43,7 +43,9 @@ from pendcore.explanation import Explanation
 from pendcore.accuracy.estimate import ErrorEstimate
 from pendcore.horizon.lyapunov import LyapunovExponents, lyapunov
 from pendcore.horizon.work import HorizonWork, horizon_work
+from pendcore.largest_reactions import LargestReaction
 from pendcore.link import Link
+from pendcore.run_error import RunError
 from pendcore.scene import Mobility, Scene
 from pendcore.simulate import simulate
 from pendcore.solution import Solution
@@ -72,11 +74,13 @@ __all__ = [
     "ErrorEstimate",
     "Explanation",
     "HorizonWork",
+    "LargestReaction",
     "Ledger",
     "Link",
     "LyapunovExponents",
     "Mobility",
     "PendcoreWarning",
+    "RunError",
     "Scene",
     "Solution",
     "Statistics",

@@ -11,8 +11,9 @@ import json
 import os
 import warnings
 import zipfile
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import IO, Any, BinaryIO
 
 import numpy as np
 
@@ -23,16 +24,18 @@ from pendcore.case_file import case_from_text
 from pendcore.effect_class import OwnEffect, effect_of
 from pendcore.events import Function
 from pendcore.link import Link
+from pendcore.progress import Progress, callback, close
 from pendcore.scene import Scene
 from pendcore.solution import Solution
 from pendcore.warning import PendcoreWarning
+from pendcore.whole_file import whole_file
 
 _RUN = "run."
 _KEEP = ": keep the numbers, sol.to_pandas() or numpy.savez(path, t=sol.t, y=sol.y)"
 
 
-def save(solution: Solution, path: str | os.PathLike[str]) -> None:
-    """Write a solution to the file ``path``, under just that name."""
+def save(solution: Solution, path: str | os.PathLike[str], *, progress: Progress = None) -> None:
+    """Write a solution to the file ``path``, under just that name, and not before it is whole."""
     for effect in solution.scene.effects:
         if isinstance(effect, OwnEffect):
             raise effect.cannot_be("saved", _KEEP)
@@ -50,9 +53,43 @@ def save(solution: Solution, path: str | os.PathLike[str]) -> None:
     }
     if solution.accuracy is not None:
         entries["accuracy"] = json.dumps(solution.accuracy.to_dict())
-    state = {_RUN + key: value for key, value in solution._run.__getstate__().items()}
-    with Path(path).open("wb") as file:
-        np.savez(file, **entries, **state)
+    report = callback(progress, f"writing {os.fspath(path)}")
+    try:
+        state = {_RUN + key: value for key, value in solution._run.__getstate__().items()}
+        with whole_file(path) as name, name.open("wb") as file:
+            _write(file, entries | state, report)
+    finally:
+        close(report)
+
+
+def _write(
+    file: BinaryIO, entries: dict[str, Any], report: Callable[[float], object] | None
+) -> None:
+    """Do what `numpy.savez` does, and tell what share is written."""
+    arrays = {key: np.asanyarray(value) for key, value in entries.items()}
+    told = _Told(report, sum(array.nbytes for array in arrays.values()))
+    with zipfile.ZipFile(file, "w") as archive:
+        for key, array in arrays.items():
+            with archive.open(f"{key}.npy", "w", force_zip64=True) as told.entry:
+                np.lib.format.write_array(told, array, allow_pickle=False)
+
+
+class _Told:
+    """An entry of an archive that tells what share of all is written: NumPy writes in pieces."""
+
+    entry: IO[bytes]
+
+    def __init__(self, report: Callable[[float], object] | None, whole: int) -> None:
+        self.report = report
+        self.whole = whole
+        self.written = 0
+
+    def write(self, piece: bytes) -> None:
+        """Write it, and tell."""
+        self.entry.write(piece)
+        self.written += len(piece)
+        if self.report is not None:  # the heads of the arrays count as well
+            self.report(min(self.written / self.whole, 1.0))
 
 
 def load(path: str | os.PathLike[str]) -> Solution:

@@ -16,6 +16,7 @@ import numpy.typing as npt
 from pendcore.arguments import finite_array, vector
 from pendcore.effect_class import Effect, OwnEffect, Part
 from pendcore.events import Event, Function, events_asked_for
+from pendcore.run_error import require_check
 from pendcore.scene import Scene
 from pendcore.simulate import simulate
 from pendcore.solution import Solution
@@ -108,10 +109,17 @@ class Case:
             scene=solution.scene, **start, t_span=t_span, name=solution.name, options=options
         )
 
-    def simulate(self) -> Solution:
-        """Run it; see `pendcore.simulate`. The solution has the name of the case."""
+    def simulate(self, *, check: bool | None = None) -> Solution:
+        """Run it; see `pendcore.simulate`. The solution has the name of the case.
+
+        ``check`` takes the place of the case's own, if it is given.
+        """
+        options = dict(self.options)
+        require_check(options.get("check"))
+        if check is not None:
+            options["check"] = check
         try:
-            solution = simulate(self.scene, self.q0, self.qd0, self.t_span, **self.options)
+            solution = simulate(self.scene, self.q0, self.qd0, self.t_span, **options)
         except BaseException as stop:
             if isinstance(so_far := getattr(stop, "solution", None), Solution):
                 so_far.name = self.name

@@ -16,6 +16,7 @@ from pendcore.accuracy.run import Start
 from pendcore.arguments import known_keywords, number, two_times
 from pendcore.events import Event, events_asked_for
 from pendcore.progress import Progress, callback
+from pendcore.run_error import checked, require_check
 from pendcore.scene import Scene
 from pendcore.solution import Solution, solution_of
 from pendcore.warning import warn
@@ -42,6 +43,7 @@ def simulate(
     ledger: bool = False,
     compensated: bool = False,
     error: float | None = None,
+    check: bool | None = None,
     progress: Progress = None,
 ) -> Solution:
     """Solve the equations of motion of a scene from a start.
@@ -109,13 +111,17 @@ def simulate(
         the largest over the whole curve of a run with dense output, else over the times that it
         keeps. ``sol.accuracy`` tells what was reached and what it took;
         ``docs/accuracy_cost.md`` says what is promised.
+    check : bool, optional
+        What to do where the run does not get to its end. None: give a warning. True: raise a
+        `RunError`. False: say nothing; look at ``sol.success`` then.
     progress : None, bool or callable
         None: a bar after a second, on a terminal. A callable gets the fraction done, in 0...1.
 
     Returns
     -------
     Solution
-        What happened, also if the run could not be finished: see its ``status`` and ``message``.
+        What happened, also if the run could not be finished: see its ``status`` and ``message``
+        (and ``check``). It is then shorter than was asked for.
         Where friction and stops bring all to rest for good, its status is ``at_rest``, a success:
         the message says since when, and the last step goes from there to ``t_end``.
 
@@ -127,6 +133,9 @@ def simulate(
         If ``error`` is less than double precision can keep on this scene, or could not be verified.
         Its attribute ``solution`` has the most accurate run, ``least`` the least error that can be
         kept.
+    RunError
+        With ``check=True``, if the run does not get to its end, for whatever reason. Its attribute
+        ``solution`` has the run so far.
     KeyboardInterrupt, or any exception of ``progress`` or of an effect's or event's function
         With the run so far as the attribute ``solution``; with an ``error`` the tightest run so
         far, and its ``accuracy`` says that it is not verified.
@@ -134,7 +143,8 @@ def simulate(
     Warns
     -----
     PendcoreWarning
-        If the start or the interval look wrong, such as angles in degrees.
+        If the start or the interval look wrong, such as angles in degrees; and if the run does not
+        get to its end, unless ``check`` is given.
 
     Notes
     -----
@@ -146,11 +156,12 @@ def simulate(
         raise _no_scene(scene)
     if q0 is None:
         raise TypeError("q0 is missing: give the angles at the start, one per link, in rad")
+    require_check(check)
     t_start, t_end = two_times(t_span)
     wanted = [event._as_pair() for event in events_asked_for(events)]
     if error is not None:
         _check_error(error, method=method, rtol=rtol, atol=atol, step=step)
-        return run_to_error(
+        solution = run_to_error(
             Start(scene, q0, qd0, t_start, t_end), float(error),
             {
                 "t_eval": t_eval, "store": store, "first_step": first_step, "max_step": max_step,
@@ -158,13 +169,14 @@ def simulate(
                 "ledger": ledger, "compensated": compensated, "progress": progress,
             },
         )  # fmt: skip
+        return checked(solution, check)
     report = callback(progress)
     run = _core.simulate(
         scene._compiled, q0, qd0, t_start, t_end, method, rtol, atol, t_eval, store,
         first_step, max_step, step, max_steps, time_limit, wanted, ledger, compensated, report,
         warn,
     )  # fmt: skip
-    return solution_of(scene, run, report)
+    return checked(solution_of(scene, run, report), check)
 
 
 def _check_error(error: float, **chosen: object) -> None:

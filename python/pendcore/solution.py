@@ -18,7 +18,9 @@ from pendcore.arguments import Floats, finite_array, time_limit_of
 from pendcore.accuracy.defect import Defect, defect
 from pendcore.energy import Energy, Ledger
 from pendcore.events import Event, Found, event_of, found_events
+from pendcore.largest_reactions import LargestReaction, largest_reactions
 from pendcore.progress import Progress, callback, close
+from pendcore.run_error import checked, require_check
 from pendcore.scene import Scene
 from pendcore.statistics import Statistics
 
@@ -193,28 +195,20 @@ class Solution:
             gain = total - sum(start)
             return Energy(kinetic, potential, total, Ledger(self._run.ledger, gain))
 
+    def largest_reactions(self, *, progress: Progress = None) -> list[LargestReaction]:
+        """Return the largest force of each joint: ``.joint``, ``.force`` (N), ``.t`` (s).
+
+        Of a run with its interpolants it is that of the whole curve, between the steps too and on
+        both sides of every jump; of others the largest at the kept times. What an impact does in no
+        time is no force. See `pendcore.LargestReaction`; ``progress`` is as in `simulate`.
+        """
+        return largest_reactions(self.scene, self._run, progress)
+
     def defect(self, *, progress: Progress = None) -> Defect:
         """Return the spurious torques: what motors would have to add to make the curve exact.
 
-        The rates of ``sol(t)``, and the angles that their integral gives, obey the equations of
-        motion of the scene with these torques at the joints. A number to hold against what a model
-        leaves out: bearing friction, air, a motor's ripple. It tells nothing of how far a chaotic
-        motion has moved away from the one that was meant.
-
-        Parameters
-        ----------
-        progress : None, bool or callable
-            As in `simulate`.
-
-        Returns
-        -------
-        Defect
-            ``largest`` (N m), ``share`` (of m g L), and the torques at each joint in each step.
-
-        Raises
-        ------
-        ValueError
-            If the run did not store its interpolants: ``store="dense"``.
+        See `pendcore.Defect` and, for what they tell, `docs/defect.md`; ``progress`` is as in
+        `simulate`. A ValueError if the run did not store its interpolants: ``store="dense"``.
         """
         return defect(self.scene, self._run, progress)
 
@@ -290,6 +284,7 @@ class Solution:
         *,
         max_steps: int = 10_000_000,
         time_limit: float | None = None,
+        check: bool | None = None,
         progress: Progress = None,
     ) -> Solution:
         """Continue to a later end, bitwise as if the run had never stopped.
@@ -301,7 +296,7 @@ class Solution:
         t_eval : array_like, (k,), optional
             More times to keep, s: at or beyond where this run ended, and beyond those it was asked
             for. Only for a run that had a ``t_eval``.
-        max_steps, time_limit, progress
+        max_steps, time_limit, check, progress
             As in `simulate`, for the continuation. It begins before the first attempt that the
             earlier ``t_end`` cut short, as what came after that depends on it. To the same
             ``t_end`` the attempts made since then are made again and do not count, so that a
@@ -317,9 +312,10 @@ class Solution:
         ValueError, TypeError
             If an argument is not what is asked for; the message names it.
         """
+        require_check(check)
         report = callback(progress)
         run = self._run.resume(t_end, t_eval, max_steps, time_limit, report)
-        return solution_of(self.scene, run, report, self.name)
+        return checked(solution_of(self.scene, run, report, self.name), check)
 
     def case(self) -> Case:
         """Return what was asked for, ready to be run again or written as TOML."""
@@ -327,11 +323,14 @@ class Solution:
 
         return Case.of_solution(self)
 
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Write everything to a file of NumPy's npz format; see `pendcore.load`."""
+    def save(self, path: str | os.PathLike[str], *, progress: Progress = None) -> None:
+        """Write everything to a file of NumPy's npz format; see `pendcore.load`.
+
+        It has its name only when it is whole. ``progress`` is as in `simulate`.
+        """
         from pendcore.archive import save
 
-        save(self, path)
+        save(self, path, progress=progress)
 
     def plot(
         self,

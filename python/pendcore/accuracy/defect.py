@@ -76,7 +76,13 @@ class Defect:
 
 
 def defect(scene: Scene, run: _core.Run, progress: Progress = None) -> Defect:
-    """See `pendcore.Solution.defect`."""
+    """Return the torques at the joints that would make a run exact.
+
+    The rates of ``sol(t)``, and the angles that their integral gives, obey the equations of motion
+    of the scene with these torques at the joints. A number to hold against what a model leaves out:
+    bearing friction, air, a motor's ripple. It tells nothing of how far a chaotic motion has moved
+    away from the one that was meant.
+    """
     report = callback(progress, "looking for torques")
     n = len(scene.links)
     starts = run.step_starts

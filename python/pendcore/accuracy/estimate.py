@@ -315,7 +315,7 @@ def _legs(
             )  # fmt: skip
         else:
             second = second.resume(
-                end, part, max_steps=max_steps, time_limit=left, progress=share
+                end, part, max_steps=max_steps, time_limit=left, check=False, progress=share
             )  # fmt: skip
         yield second
         if not second.success:

@@ -14,6 +14,7 @@ from pendcore.cost import AccuracyCost, accuracy_cost
 from pendcore.cost.sweep import REPEATS, TIME_LIMIT
 from pendcore.cost.table import text
 from pendcore.views.accuracy_cost import save_figure
+from pendcore.whole_file import whole_file
 
 _EPILOG = """
 what is written into the folder:
@@ -77,9 +78,12 @@ def execute(args: argparse.Namespace) -> int:
         cost, whole = _measured(case, args)
     where = written(folder, [folder / name for name in FILES])
     table = text(cost, args.error)
-    (folder / "cost.txt").write_text(table, encoding="utf-8")
-    cost.to_json(folder / "cost.json")
-    save_figure(cost, folder / "cost.png")
+    with whole_file(folder / "cost.txt") as path:
+        path.write_text(table, encoding="utf-8")
+    with whole_file(folder / "cost.json") as path:
+        cost.to_json(path)
+    with whole_file(folder / "cost.png") as path:
+        save_figure(cost, path)
     print(where, file=sys.stderr)
     if not whole:
         print("interrupted: this is what was measured until then", file=sys.stderr)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from pendcore.case import Case
 from pendcore.cli.case_and_folder import case_of, folder_of
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder, written
+from pendcore.whole_file import whole_file
 
 if TYPE_CHECKING:
     from pendcore.derive import Derivation
@@ -76,7 +77,8 @@ def execute(args: argparse.Namespace) -> int:
     where = written(args.out, [args.out])
     with blamed_on_usage():
         args.out.parent.mkdir(parents=True, exist_ok=True)
-        args.out.write_text(text, encoding="utf-8")
+        with whole_file(args.out) as path:
+            path.write_text(text, encoding="utf-8")
     print(where, file=sys.stderr)
     return 0
 

@@ -11,6 +11,7 @@ from typing import Any
 from pendcore.archive import load
 from pendcore.cli.usage import blamed_on_usage, written
 from pendcore.views.plot import save_figure
+from pendcore.whole_file import whole_file
 
 _EPILOG = """
 example:
@@ -41,11 +42,14 @@ def add_parser(commands: Any) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Do it; return the exit status."""
-    out = args.out or args.solution.with_suffix(".png")
+    out = args.out or args.solution
+    if args.out is None or not out.suffix:
+        out = out.with_suffix(".png")
     with blamed_on_usage():
         solution = load(args.solution)
         where = written(out, [out])
-        save_figure(solution, out)
+        with whole_file(out) as path:
+            save_figure(solution, path)
     print(where, file=sys.stderr)
     if args.json:
         print(json.dumps({"figure": str(out), "status": solution.status}))

@@ -13,7 +13,9 @@ from pendcore.archive import save
 from pendcore.case import Case
 from pendcore.case_file import with_line
 from pendcore.cli.case_and_folder import add_case_and_folder, case_of, folder_of
-from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder, written
+from pendcore.cli.files_to_write import FilesToWrite
+from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder
+from pendcore.run_error import CAN_GO_ON
 from pendcore.solution import Solution
 from pendcore.views.plot import save_figure
 from pendcore.views.summary import facts, text
@@ -24,6 +26,8 @@ what is written into the folder:
   summary.txt    what was simulated, how it ended, what it took, drift of energy, largest reactions
   summary.json   the same facts for programs
   angles.png     the angles in degrees over time
+Ctrl-C ends the run, and all of them are written; while one of them is written it leaves that one
+out, and the others are written. So does an error, such as a full disk. No file is there in part.
 
 a case:
   gravity = 9.807                  # m/s^2
@@ -44,8 +48,9 @@ a case:
   # docs/case_files.md has every key, docs/effects a page per effect
 """
 
-FILES = ("solution.npz", "summary.txt", "summary.json", "angles.png")
-_CAN_GO_ON = {"max_steps", "max_turns", "time_limit", "interrupted"}
+FILES = ("summary.txt", "summary.json", "angles.png", "solution.npz")
+_MANY_STEPS = 100_000
+"""What takes seconds to write."""
 
 
 def add_parser(commands: Any) -> None:
@@ -77,26 +82,27 @@ def execute(args: argparse.Namespace) -> int:
     folder = folder_of(args)
     with new_folder(folder):
         solution, complaint, refusal = _simulated(case, args.case)
-    found = facts(solution, refusal)
-    where = written(folder, [folder / name for name in FILES])
-    _write(folder, solution, found)
-    print(where, file=sys.stderr)
-    if not solution.success:
-        complaint = f"the run is not complete: {solution.message}"
-    if complaint:
-        print(complaint, file=sys.stderr)
-    if solution.status in _CAN_GO_ON:
-        t_end = found["run"]["t_end"]
-        file = str(folder / "solution.npz")
-        print(f"to go on, in Python: pc.load({file!r}).resume({t_end!r})", file=sys.stderr)
-    print(json.dumps(found, indent=2) if args.json else text(found), end="\n" * args.json)
-    return 1 if complaint else 0
+        files = FilesToWrite(folder, FILES)
+        found = _write(files, solution, refusal)
+        print(files.outcome(), file=sys.stderr)
+        if not solution.success:
+            complaint = f"the run is not complete: {solution.message}"
+        if complaint:
+            print(complaint, file=sys.stderr)
+        if solution.status in CAN_GO_ON and "solution.npz" not in files.left_out:
+            t_end = solution.case().t_span[1]
+            file = str(folder / "solution.npz")
+            print(f"to go on, in Python: pc.load({file!r}).resume({t_end!r})", file=sys.stderr)
+        if found:
+            print(json.dumps(found, indent=2) if args.json else text(found), end="\n" * args.json)
+        files.refuse_if_none()
+    return 1 if complaint or files.left_out else 0
 
 
 def _simulated(case: Case, file: Path | None) -> tuple[Solution, str, str]:
     """Return the run, what is to be said against it, and of that what its error was refused for."""
     try:
-        return case.simulate(), "", ""
+        return case.simulate(check=False), "", ""  # what is to be said is said once, at the end
     except (ValueError, TypeError) as error:
         raise UsageError(with_line(file, str(error)) if file else str(error)) from None
     except (KeyboardInterrupt, AccuracyError) as stop:
@@ -115,8 +121,20 @@ def _with_error(case: Case, error: float) -> Case:
     )  # fmt: skip
 
 
-def _write(folder: Path, solution: Solution, found: dict[str, Any]) -> None:
-    save(solution, folder / "solution.npz")
-    (folder / "summary.txt").write_text(text(found), encoding="utf-8")
-    (folder / "summary.json").write_text(json.dumps(found, indent=2) + "\n", encoding="utf-8")
-    save_figure(solution, folder / "angles.png")
+def _write(files: FilesToWrite, solution: Solution, refusal: str) -> dict[str, Any]:
+    """Write what is small first; return the facts, if there was time to find them."""
+    found: dict[str, Any] = {}
+    if (steps := len(solution._run.step_starts)) > _MANY_STEPS:
+        print(f"writing {steps} steps to {files.folder}", file=sys.stderr)
+    with files.needed_for("summary.txt", "summary.json"):
+        found = facts(solution, refusal)
+    if found:
+        with files.one("summary.txt") as path:
+            path.write_text(text(found), encoding="utf-8")
+        with files.one("summary.json") as path:
+            path.write_text(json.dumps(found, indent=2) + "\n", encoding="utf-8")
+    with files.one("angles.png") as path:
+        save_figure(solution, path)
+    with files.needed_for("solution.npz"):
+        save(solution, files.folder / "solution.npz")
+    return found

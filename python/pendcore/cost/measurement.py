@@ -275,7 +275,7 @@ class Measurement:
         begin = perf_counter()
         solution = simulate(
             start.scene, start.q0, start.qd0, span, method=one.method, t_eval=times,
-            time_limit=time_limit, progress=False, **options,
+            time_limit=time_limit, check=False, progress=False, **options,
         )  # fmt: skip
         return solution, perf_counter() - begin
 

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from io import BytesIO
 from math import ceil
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -105,7 +107,10 @@ def save_figure(solution: Solution, path: str | os.PathLike[str]) -> None:
 
     axes = _subplots(Figure, len(solution.scene.links))
     plot(solution, axes)
-    axes[0].figure.savefig(path, dpi=150)
+    drawn = BytesIO()  # matplotlib's PDF breaks off with an error of its own if the disk is full
+    kind = Path(path).suffix.removeprefix(".")
+    axes[0].figure.savefig(drawn, dpi=150, format=kind or None)
+    Path(path).write_bytes(drawn.getvalue())
 
 
 def _axes(ax: Any, n: int) -> list[Axes]:

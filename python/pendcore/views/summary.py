@@ -17,6 +17,7 @@ from pendcore.explanation.absence import absent
 from pendcore.solution import Solution
 from pendcore.views import energy_drift
 from pendcore.views.table import evaluations, listed, outcome
+from pendcore.views.trusted_digits import rounded, trusted_digits
 
 _MANY = 12
 """Links that a table for people has a row each of."""
@@ -29,6 +30,7 @@ def facts(solution: Solution, refusal: str = "") -> dict[str, Any]:
     """
     case, run = solution.case(), solution._run
     n = len(case.scene.links)
+    drift = energy_drift.energy_drift(solution)
     found = {
         "name": case.name,
         "links": [asdict(link) for link in case.scene.links],
@@ -45,10 +47,15 @@ def facts(solution: Solution, refusal: str = "") -> dict[str, Any]:
         "end": {"t": run.t_reached, "q": run.y_reached[:n], "qd": run.y_reached[n:]},
         "statistics": solution.stats._asdict(),
         "accuracy": None if solution.accuracy is None else solution.accuracy.to_dict(),
-        "energy": energy_drift.energy_drift(solution)._asdict(),
+        "energy": drift._asdict(),
         "ledger": _ledger(solution),
-        "kept": {"times": len(solution.t), "every_step": energy_drift.has_every_step(solution)},
-        "largest_reactions": _largest_reactions(solution),
+        "kept": {
+            "times": len(solution.t),
+            "every_step": energy_drift.has_every_step(solution),
+            "between_steps": solution.store == "dense",
+        },
+        "largest_reactions": [one._asdict() for one in solution.largest_reactions()],
+        "trusted_digits": trusted_digits(solution, drift),
         "not_simulated": [absence._asdict() for absence in absent(case.scene)],
         "version": _core.__version__,
     }
@@ -100,14 +107,6 @@ def _run_options(solution: Solution) -> dict[str, Any]:
     return options
 
 
-def _largest_reactions(solution: Solution) -> list[dict[str, Any]]:
-    if not len(solution.t):
-        return []
-    forces = np.linalg.norm(solution.reactions(), axis=-1)
-    when = forces.argmax(axis=0)
-    return [{"joint": i + 1, "force": forces[k, i], "t": solution.t[k]} for i, k in enumerate(when)]
-
-
 def _link_table(found: dict[str, Any]) -> Iterator[str]:
     yield "  link    mass (kg)   length (m)   center (m)   inertia (kg m^2)"
     for i, link in enumerate(found["links"][:_MANY], start=1):
@@ -153,16 +152,24 @@ def _happened(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
         yield "" if i else "ledger", f"{name} {value:.6g} J"
     if energy["too_large"]:
         yield "", energy_drift.TOO_LARGE
-    for largest in found["largest_reactions"][:_MANY]:
-        force = f"{_number(largest['force'])} N at t = {largest['t']:.6g} s"
-        name = "largest reaction" if largest["joint"] == 1 else ""
-        yield name, f"joint {largest['joint']}: {force}"
-    if len(found["largest_reactions"]) > _MANY:
-        yield "", f"... {len(found['largest_reactions']) - _MANY} more joints"
-    if not found["kept"]["every_step"]:
-        times = found["kept"]["times"]
-        name = "" if times else "largest reaction"
-        yield name, f"among the {times} kept time{'s'[: times != 1]}"
+    yield from _largest_reactions(found)
+
+
+def _largest_reactions(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    largest, kept = found["largest_reactions"], found["kept"]
+    for one in largest[:_MANY]:
+        force = "beyond the range of doubles"
+        if one["force"] is not None:
+            force = f"{rounded(one['force'], found['trusted_digits']):.6g} N"
+        when = "just before t" if one["just_before"] else "at t"
+        when = "throughout" if one["steady"] else f"{when} = {one['t']:.6g} s"
+        name = "largest reaction" if one["joint"] == 1 else ""
+        yield name, f"joint {one['joint']}: {force} {when}"
+    if len(largest) > _MANY:
+        yield "", f"... {len(largest) - _MANY} more joints"
+    if not kept["between_steps"]:
+        times = kept["times"]
+        yield "" if times else "largest reaction", f"among the {times} kept time{'s'[: times != 1]}"
 
 
 def _state(at: dict[str, Any], in_degrees: bool = False) -> str:
@@ -177,10 +184,6 @@ def _times(times: list[float]) -> str:
         return "not found"
     shown = [f"{t:.6g}" for t in times[:_MANY]] + ["..."] * (len(times) > _MANY)
     return f"{len(times)} found, t = {', '.join(shown)} s"
-
-
-def _number(value: float | None) -> str:
-    return "not a number of" if value is None else f"{value:.6g}"
 
 
 def _brief(value: Any) -> str:

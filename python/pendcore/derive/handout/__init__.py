@@ -21,6 +21,7 @@ from pendcore.derive.handout.figures import Figures
 from pendcore.progress import Progress
 from pendcore.solution import Solution
 from pendcore.warning import warn
+from pendcore.whole_file import whole_file
 
 
 class Handout(NamedTuple):
@@ -146,13 +147,16 @@ def _written(
 def _texts(document: Document, folder: Path, name: str) -> Iterator[Path]:
     """Write a document as what the machine has converters for; one that fails is told of."""
     path = folder / f"{name}.md"
-    path.write_text(document.markdown(), encoding="utf-8")
+    with whole_file(path) as unfinished:
+        unfinished.write_text(document.markdown(), encoding="utf-8")
     yield path
     if not conversion.has_pandoc():
         return
     try:
         path = folder / f"{name}.html"
-        path.write_text(conversion.page(document), encoding="utf-8")
+        page = conversion.page(document)
+        with whole_file(path) as unfinished:
+            unfinished.write_text(page, encoding="utf-8")
         yield path
         if (engine := conversion.latex_engine()) is not None:
             path = folder / f"{name}.pdf"

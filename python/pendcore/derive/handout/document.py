@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
 from pendcore.derive.handout.drawing import lettering
+from pendcore.whole_file import whole_file
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -142,7 +143,8 @@ class Drawing:
         with lettering():
             self.figure.draw_without_rendering()
             self.figure.set_layout_engine("none")  # every picture of it has the first one's layout
-            self.figure.savefig(path, dpi=150, metadata=dates)
+            with whole_file(path) as name:
+                self.figure.savefig(name, dpi=150, metadata=dates)
         return path
 
 

@@ -1,0 +1,58 @@
+"""The files of a command, each of which is written whatever becomes of the others."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from pendcore.cli.usage import written
+from pendcore.whole_file import whole_file
+
+
+class FilesToWrite:
+    """Files of a folder, to be written one after the other; each is there whole or not at all.
+
+    Ctrl-C and what the system refuses leave out the file that is being written, with a line that
+    says so at once.
+    """
+
+    def __init__(self, folder: Path, names: Iterable[str]) -> None:
+        self.folder = folder
+        self.names = tuple(names)
+        self.left_out: list[str] = []
+        self._told = written(folder, [folder / name for name in self.names])
+        self._last: BaseException | None = None
+
+    @contextmanager
+    def needed_for(self, *names: str) -> Iterator[None]:
+        """Within, what is stopped leaves out these files."""
+        try:
+            yield
+        except (KeyboardInterrupt, OSError) as stop:
+            why = (stop.strerror or stop) if isinstance(stop, OSError) else "interrupted"
+            for name in names:
+                path = self.folder / name
+                earlier = "; the earlier one is still there" if path.exists() else ""
+                print(f"{path}: not written: {why}{earlier}", file=sys.stderr)
+            self.left_out += names
+            self._last = stop
+
+    @contextmanager
+    def one(self, name: str) -> Iterator[Path]:
+        """Yield where to write a file."""
+        with self.needed_for(name), whole_file(self.folder / name) as path:
+            yield path
+
+    def outcome(self) -> str:
+        """Return what was written, and whether earlier files gave way."""
+        if not self.left_out:
+            return self._told
+        done = [name for name in self.names if name not in self.left_out]
+        return f"written to {self.folder}: {', '.join(done) or 'nothing'}"
+
+    def refuse_if_none(self) -> None:
+        """Raise what kept the last from being written, if none was."""
+        if self._last is not None and len(self.left_out) == len(self.names):
+            raise self._last

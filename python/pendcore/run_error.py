@@ -1,0 +1,63 @@
+"""What becomes of a run that did not get where it was to go: a warning, an error, or nothing."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from pendcore.warning import warn
+
+if TYPE_CHECKING:
+    from pendcore.solution import Solution
+
+CAN_GO_ON = frozenset({"max_steps", "max_turns", "time_limit", "interrupted"})
+"""Statuses after which `Solution.resume` gets further."""
+
+
+class RunError(RuntimeError):
+    """A run ended before it got where it was to go, and ``check=True`` asked for an exception.
+
+    Attributes
+    ----------
+    solution : Solution
+        The run as far as it came; its ``status`` and ``message`` tell why it ended.
+    """
+
+    def __init__(self, message: str, solution: Solution) -> None:
+        super().__init__(message)
+        self.solution = solution
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return type(self), (str(self), self.solution)
+
+
+def require_check(check: object) -> None:
+    """Refuse what is no answer to whether a run is to be checked, before it takes an hour."""
+    if check is not None and not isinstance(check, bool):
+        raise TypeError(
+            f"check = {check!r}: must be None (warn if the run does not get to its end), True "
+            "(raise) or False (say nothing)"
+        )
+
+
+def checked(solution: Solution, check: bool | None) -> Solution:
+    """Return a solution; of one that is no success warn, or raise, or say nothing."""
+    if check is False or solution.success:
+        return solution
+    if check:
+        raise RunError(_complaint(solution), solution)
+    warn(f"{_complaint(solution)}; check=True raises an error, check=False says nothing")
+    return solution
+
+
+def _complaint(solution: Solution) -> str:
+    """Return status, time and remedy in a sentence; the message has the time, and some remedies."""
+    t_end, message = solution._run.arguments["t_end"], solution.message
+    complaint = (
+        f"the run ended before t_end = {t_end:.6g} s, with status {solution.status}: "
+        f"{message.removeprefix(f'{solution.status}: ')}"
+    )
+    if solution.accuracy is not None:
+        return f"{complaint}; it is no run of the error asked for: {solution.accuracy.outcome()}"
+    if solution.status in CAN_GO_ON and "resume" not in message:
+        complaint += f"; its resume({t_end!r}) goes on"
+    return complaint

@@ -1,0 +1,37 @@
+"""How many digits of a run's forces are worth printing: no more than its own error leaves right."""
+
+from __future__ import annotations
+
+from math import floor, isfinite, log10
+
+import numpy as np
+
+from pendcore.solution import Solution
+from pendcore.views.energy_drift import EnergyDrift
+
+AMPLIFIED = 10.0
+"""How much larger the error of a force may be, as a share, than a tolerance: errors of steps add up
+in a run, as they have in its drift already."""
+FEWEST, MOST = 2, 6
+
+
+def trusted_digits(solution: Solution, drift: EnergyDrift, most: int = MOST) -> int:
+    """Return how many, 2 to 6: by tolerance, energy drift and, if it was verified, the error.
+
+    It tells nothing of a chaotic run past the time to which it is right: see `Solution.error`.
+    """
+    asked, accuracy = solution._run.arguments, solution.accuracy
+    shares = [drift.relative_drift or 0.0]
+    if "step" not in solution.case().options:  # else tolerances set no step
+        shares.append(AMPLIFIED * float(np.max(asked["rtol"])))
+    if accuracy is not None and accuracy.times:
+        shares.append(accuracy.achieved)
+    share = max(shares)
+    if not isfinite(share):
+        return FEWEST
+    return most if share == 0 else min(max(floor(-log10(share)), FEWEST), most)
+
+
+def rounded(value: float, digits: int) -> float:
+    """Return a number with the rest of its digits zero."""
+    return float(f"{value:.{digits - 1}e}")
