@@ -50,9 +50,7 @@ def asked(
     fast = rates(scene, q0, qd0)
     span = min(span, turns / fast.fastest)
     t_start = dice.one_of((0.0, 0.0, 0.0, -3.7, 12.5))
-    # What a cubic damper takes comes back in no time at all: such a motion has no past.
-    has_past = not any(getattr(effect, "damping3", 0.0) for effect in scene.effects)
-    if dice.chance(backward) and has_past:
+    if dice.chance(backward) and has_past(scene):
         span = -min(span, GROWTH / max(fast.decay, 1.0))
     t_end = t_start + span
     options = times_kept(dice, t_start, t_end)
@@ -65,6 +63,19 @@ def asked(
         error=dice.decades(*decades), options=options,
         rtol=dice.decades(-11, -3), limit=dice.decades(-4, -1),
     )  # fmt: skip
+
+
+def has_past(scene: pc.Scene) -> bool:
+    """Whether a motion can be followed back: what dampers of more than the rate take is infinite.
+
+    It comes back in no time at all.
+    """
+    return not any(
+        getattr(effect, "damping2", 0.0)
+        or getattr(effect, "damping3", 0.0)
+        or getattr(getattr(effect, "function", None), "name", "") == "quadratic damper"
+        for effect in scene.effects
+    )
 
 
 def times_kept(dice: Dice, t_start: float, t_end: float) -> dict[str, Any]:

@@ -51,7 +51,12 @@ class Drawn:
     @property
     def is_switched(self) -> bool:
         """Whether joints stick, stops are met, or laws have kinks or jumps: see `switches`."""
-        return any(effect.kind in SWITCHED or getattr(effect, "limit", inf) < inf for effect in self.scene.effects)
+        return any(
+            effect.kind in SWITCHED
+            or any(getattr(effect, name, None) for name in ("table", "spline", "damping2"))
+            or getattr(effect, "limit", inf) < inf
+            for effect in self.scene.effects
+        )
 
     @property
     def is_dense(self) -> bool:

@@ -17,6 +17,7 @@ from true_error.arithmetic import LADDER
 from true_error.arrays import Floats, Longs
 from true_error.curve import angles_apart, positions_apart
 from true_error.drawn import Drawn
+from true_error.switched import SwitchedTrajectory
 from true_error.trajectory import NoReferenceError, Trajectory
 
 MARGIN = 4
@@ -58,7 +59,8 @@ class Reference:
     def __init__(self, drawn: Drawn, seconds: float) -> None:
         self.drawn = drawn
         self.until = monotonic() + seconds
-        self._ladder = [Trajectory(drawn, arithmetic) for arithmetic in LADDER]
+        kind = SwitchedTrajectory if drawn.is_switched else Trajectory
+        self._ladder = [kind(drawn, arithmetic) for arithmetic in LADDER]
 
     def angles(self, t: Floats, *, finest: bool = False) -> Truth:
         """Return the absolute angles at times (n_t,), s, in the order of the run.

@@ -35,9 +35,11 @@ class Trajectory:
         self.direction = 1.0 if drawn.t_end >= drawn.t_start else -1.0
         number = arithmetic.number
         exact = [Fraction(0), *map(Fraction, drawn.q0)], [Fraction(0), *map(Fraction, drawn.qd0)]
-        self.state = np.array([number(b - a) for of in exact for a, b in pairwise(of)])
+        self.state = np.zeros(2 * self.n, dtype=arithmetic.type)
+        self.state[:] = [number(b - a) for of in exact for a, b in pairwise(of)]
         self.t = drawn.t_start
         self.time = number(Fraction(drawn.t_start))
+        self.begin = 0.0
         self.pieces: list[tuple[float, Any]] = []
         """Where each begins, s after the start, and its dense output."""
 
@@ -78,17 +80,21 @@ class Trajectory:
         system.integrator.time = self.time
         system.integrator.state[:] = self.state
 
+    def _later(self) -> float:
+        """Return how long after the start it is, s."""
+        start = self.arithmetic.number(Fraction(self.drawn.t_start))
+        return self.direction * float(self.time - start)
+
     def _legs(self, system: System, t_end: float, until: float) -> Iterator[int]:
         """Propagate to t_end; yield the number of each event on the way, with the state there."""
         goal = self.arithmetic.number(Fraction(t_end))
         while True:
-            begin = self.direction * float(system.integrator.time - self.arithmetic.number(
-                Fraction(self.drawn.t_start)))  # fmt: skip
+            self.begin = self._later()
             outcome, *_, output, _ = system.integrator.propagate_until(
                 goal, max_steps=STEPS, c_output=True
             )
             if output is not None:
-                self.pieces.append((begin, output))
+                self.pieces.append((self.begin, output))
             self.time = system.integrator.time
             self.state = system.integrator.state.copy()
             if outcome == hy.taylor_outcome.time_limit:
