@@ -18,6 +18,7 @@ import numpy as np
 from true_error.arithmetic import Arithmetic
 from true_error.constants import Parameters, inertia, smooth_torques
 from true_error.drawn import Drawn
+from true_error.equations import System
 from true_error.switched_equations import SLOTS, SwitchedSystem, switched
 from true_error.switches import (
     NEVER, Friction, Pieces, Stop, smooth_own_torques, switches_of, tables_of,
@@ -28,6 +29,8 @@ CLEAR = 1e-9
 """By what share a choice must be clear."""
 AT_ONCE = 1e-9
 """s; what is at a bound leaves it first: an event there does not count so soon."""
+HARDLY = 1e-24
+"""rad/s."""
 MOST_EVENTS = 3000
 
 
@@ -78,6 +81,22 @@ class SwitchedTrajectory(Trajectory):
                 self._put(system)
             self.t = goal
 
+    def _longest(self, system: System) -> float:
+        """Return the longest step here, s."""
+        longest = [
+            table.longest for table in self.tables for begin, end, _ in table.intervals
+            if begin <= self.inside < end
+        ]  # fmt: skip
+        if any(f.longest(1.0) < np.inf for f in self.frictions):
+            wd = self._now(system)[0]
+            longest += [f.longest(float(wd[f.joint - 1])) for f in self.frictions]
+        return min(longest, default=np.inf)
+
+    def _now(self, system: System) -> Any:
+        """Return accelerations, holding torques, rates after unit impulses: (3, n)."""
+        assert isinstance(system, SwitchedSystem)
+        return system.at(self.time, self.state, {})
+
     # Parameters ------------------------------------------------------------------------------
 
     def _breaks(self, t_end: float) -> list[float]:
@@ -118,7 +137,7 @@ class SwitchedTrajectory(Trajectory):
                     x += self.direction * 1e-6 * float(self._heading(system, switch))
                 switch.piece = sum(x > bound for bound in switch.bounds)
             elif isinstance(switch, Friction):
-                switch.sign = int(np.sign(float(self.w[switch.joint - 1])))
+                switch.slide(float(self.w[switch.joint - 1]))
             elif not switch.low < float(self.phi[switch.joint - 1]) < switch.high:
                 raise NoReferenceError("a start at a stop")
         if any(not friction.sign for friction in self.frictions):
@@ -126,8 +145,7 @@ class SwitchedTrajectory(Trajectory):
 
     def _heading(self, system: SwitchedSystem, switch: Pieces) -> Any:
         """Return the rate at which x of a law changes."""
-        x = system.at(self.time, self.state, {})
-        return switch.value(self.w, x[0])
+        return switch.value(self.w, self._now(system)[0])
 
     def _at_bounds(self) -> set[int]:
         """Return the slots whose event has just been, or is where the motion begins."""
@@ -157,13 +175,16 @@ class SwitchedTrajectory(Trajectory):
             below = abs(x - float(bound.low)) < abs(x - float(bound.high))
             switch.piece += -1 if below else 1
         elif isinstance(switch, Friction):
-            if switch.sign:
+            rate = abs(float(self.w[switch.joint - 1]))
+            if switch.sign and rate > 0.5 * switch.far:
+                switch.is_far = not switch.is_far
+            elif switch.sign:
                 self.w[switch.joint - 1] = self.arithmetic.type(0.0)
                 self._decide(system, switch)
             else:
                 # It gives way to what it holds against.
-                holding = system.at(self.time, self.state, {})[1][switch.joint - 1]
-                switch.sign = -int(np.sign(float(holding)))
+                holding = self._now(system)[1][switch.joint - 1]
+                self._let_slide(switch, -int(np.sign(float(holding))))
         elif switch.held:
             switch.held = 0
         else:
@@ -185,7 +206,7 @@ class SwitchedTrajectory(Trajectory):
         self.w[:] = self.w + impulse * after
         self.w[j] = -self.arithmetic.number(e) * speed
         for friction in self.frictions:
-            friction.sign = int(np.sign(float(self.w[friction.joint - 1])))
+            friction.slide(float(self.w[friction.joint - 1]))
         if is_captured:
             self._decide(system, stop, side=1 if at_high else -1)
 
@@ -204,9 +225,17 @@ class SwitchedTrajectory(Trajectory):
             raise NoReferenceError(f"whether joints hold is not clear: {found[:2]}")
         _, signs, stays = found[0]
         for friction, sign in zip(resting, signs, strict=True):
-            friction.sign = sign
+            self._let_slide(friction, sign)
         for (stop, at), is_held in zip(contacts, stays, strict=True):
             stop.held = at if is_held else 0
+
+    def _let_slide(self, friction: Friction, sign: int) -> None:
+        """Let a joint at rest slide, or hold (0), with less than nothing of a rate.
+
+        Then its rate has no zero where it begins, not even for rounding.
+        """
+        friction.sign, friction.is_far = sign, False
+        self.w[friction.joint - 1] = sign * self.arithmetic.type(HARDLY)
 
     def _agreement(self, system: SwitchedSystem, resting: list[Friction], contacts: Any) -> float:
         """Return by how much, relatively, the states agree with what they lead to; < 0: not."""

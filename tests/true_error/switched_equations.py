@@ -26,6 +26,8 @@ from true_error.equations import (
 )  # fmt: skip
 
 SLOTS = 3
+COOLDOWN = 1e-12
+"""s; an event has no second zero so soon."""
 
 
 @dataclass
@@ -68,7 +70,7 @@ def switched(n: int, arithmetic: Arithmetic) -> SwitchedSystem:
             for j, value in enumerate(values)
         ])  # fmt: skip
         bounds = (x - par(f"ea{slot}")) * (par(f"ed{slot}") * x - par(f"eb{slot}"))
-        events.append(hy.t_event(bounds, fp_type=arithmetic.type))
+        events.append(hy.t_event(bounds, fp_type=arithmetic.type, cooldown=arithmetic.type(COOLDOWN)))
     system = compile_system(chain, rates, par, arithmetic, t_events=events)
     instant = hy.cfunc(
         [*rates, *holding, *after], [*chain.phi, *chain.w], fp_type=arithmetic.type,

@@ -7,17 +7,20 @@ which event ends it.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
 from math import inf
 from typing import Any
 
+import numpy as np
 import pendcore as pc
 
 from true_error.constants import Parameters
 from true_error.own_laws import OwnLaw
 
 ONE = Fraction(1)
+NOTHING = 100.0
+"""exp(-NOTHING) is nothing beside 1, in any arithmetic that is used."""
 
 
 @dataclass
@@ -83,7 +86,11 @@ class Pieces:
 
 @dataclass
 class Friction:
-    """Dry friction in a joint: sliding with a sign, or stuck (0)."""
+    """Dry friction in a joint: sliding with a sign, or stuck (0).
+
+    Where Stribeck's exponential is nothing to any digit, ``is_far``, it is left out: a series that
+    begins there does not see it, and would take its step across the peak.
+    """
 
     joint: int
     coulomb: Fraction
@@ -91,24 +98,44 @@ class Friction:
     velocity: Fraction
     exponent: int
     sign: int = 0
+    is_far: bool = False
 
-    def parameters(self, sign: int | None = None) -> Parameters:
-        """Return those of a sign, or of the one it has; held joints are held by `held`."""
-        sign = self.sign if sign is None else sign
+    @property
+    def far(self) -> float:
+        """From which rate on it is far, rad/s."""
+        if self.static == self.coulomb:
+            return inf
+        return float(self.velocity) * NOTHING ** (1 / self.exponent)
+
+    def slide(self, rate: float) -> None:
+        """Slide at a rate, rad/s."""
+        self.sign = int(np.sign(rate))
+        self.is_far = abs(rate) > self.far
+
+    def parameters(self) -> Parameters:
+        """Return those of its sign; a joint that sticks is held."""
         j, slope = self.joint - 1, 1 / self.velocity**self.exponent
+        peak = Fraction(0) if self.is_far else self.static - self.coulomb
         is_linear = self.exponent == 1
         return {
-            f"fc{j}": sign * self.coulomb,
-            f"fd{j}": sign * (self.static - self.coulomb),
-            f"fe{j}": abs(sign) * sign * slope * is_linear,
-            f"ff{j}": abs(sign) * slope * (not is_linear),
+            f"fc{j}": self.sign * self.coulomb,
+            f"fd{j}": self.sign * peak,
+            f"fe{j}": self.sign * slope * is_linear,
+            f"ff{j}": abs(self.sign) * slope * (not is_linear),
         }
 
     def line(self) -> Line:
         j = self.joint - 1
-        if self.sign:
-            return Line({f"ew{j}": ONE}, Fraction(0), inf)
-        return Line({f"el{j}": ONE}, -self.static, self.static)
+        if not self.sign:
+            return Line({f"el{j}": ONE}, -self.static, self.static)
+        rate = {f"ew{j}": Fraction(self.sign)}
+        return Line(rate, self.far, inf) if self.is_far else Line(rate, Fraction(0), self.far)
+
+    def longest(self, acceleration: float) -> float:
+        """Return the longest step in which the exponential changes but little, s."""
+        if not self.sign or self.is_far or self.static == self.coulomb:
+            return inf
+        return 0.5 * float(self.velocity) / (abs(acceleration) + 1e-300)
 
 
 @dataclass
@@ -137,12 +164,18 @@ Switch = Pieces | Friction | Stop
 
 @dataclass
 class Tables:
-    """What is linear in time between given times: its parameters in the interval of each."""
+    """What begins and ends at given times.
 
-    intervals: list[tuple[float, float, Parameters]] = field(default_factory=list)
+    Attributes
+    ----------
+    intervals : list of (begin, end, parameters)
+        s.
+    longest : float
+        The longest step in an interval, s.
+    """
 
-    def __post_init__(self) -> None:
-        self.intervals.sort(key=lambda interval: interval[0])
+    intervals: list[tuple[float, float, Parameters]]
+    longest: float = inf
 
 
 def switches_of(scene: pc.Scene) -> list[Switch]:
@@ -220,13 +253,14 @@ def smooth_own_torques(scene: pc.Scene) -> Parameters:
             found[f"k3{j}"] = values[0]
         elif law.name == "detent":
             found |= {f"us{j}": values[0], f"ut{j}": values[1]}
-        elif law.name == "pulse":
-            found |= {f"gh{j}": values[0], f"gm{j}": values[1], f"gi{j}": 1 / values[2]}
     return found
 
 
 def tables_of(scene: pc.Scene) -> list[Tables]:
-    """Return what is linear in time between given times: tables of torque, splines of the pivot."""
+    """Return what begins and ends at given times: tables of torque, splines of the pivot, pulses.
+
+    A pulse is one where it is more than nothing: see `Friction.is_far`.
+    """
     found = []
     for effect in scene.effects:
         if effect.kind == "motor" and effect.table is not None:
@@ -239,6 +273,12 @@ def tables_of(scene: pc.Scene) -> list[Tables]:
                 (axis + "c", axis + "d", list(zip(spline.t, bends(spline.t, along), strict=True)))
                 for axis, along in (("x", spline.x), ("y", spline.y))
             ]))  # fmt: skip
+        elif getattr(getattr(effect, "function", None), "name", "") == "pulse":
+            j, (height, middle, width) = effect.function.joint - 1, effect.function.values
+            ends = middle - 10 * width, middle + 10 * width
+            values = {f"gh{j}": height, f"gm{j}": middle, f"gi{j}": 1 / Fraction(width)}
+            exact = {name: Fraction(value) for name, value in values.items()}
+            found.append(Tables([(*ends, exact)], longest=0.5 * width))
     return found
 
 
