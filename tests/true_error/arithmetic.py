@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any
 
 import heyoka as hy
@@ -22,11 +23,13 @@ class Arithmetic:
     bits: int
 
     def number(self, exact: Fraction) -> Any:
-        """Return the number next to a fraction: the sum of the doubles that make it up."""
-        value = self.type(0.0)
-        for part in reversed(_doubles(exact, -(-self.bits // 53))):
-            value = value + self.type(part)
-        return value
+        """Return the number next to a fraction."""
+        return _number(exact, self.type, -(-self.bits // 53))
+
+    @property
+    def nothing(self) -> float:
+        """An exponent: exp of less than minus this is nothing beside 1."""
+        return 0.7 * self.bits
 
     def array(self, doubles: npt.ArrayLike) -> npt.NDArray[Any]:
         return np.asarray(doubles, dtype=np.float64).astype(self.type)
@@ -47,9 +50,16 @@ def as_longs(values: npt.NDArray[Any]) -> Longs:
     return high.astype(np.longdouble) + low.astype(np.longdouble)
 
 
-def _doubles(exact: Fraction, count: int) -> list[float]:
+@lru_cache(1 << 16)
+def _number(exact: Fraction, of: Any, count: int) -> Any:
+    """Return the sum of so many doubles that make a fraction up, from the least one on."""
     parts = []
     for _ in range(count):
         parts.append(float(exact))
         exact -= Fraction(parts[-1])
-    return parts
+        if not exact:
+            break
+    value = of(parts.pop())
+    while parts:
+        value = value + of(parts.pop())
+    return value

@@ -39,15 +39,17 @@ class SwitchedTrajectory(Trajectory):
 
     def __init__(self, drawn: Drawn, arithmetic: Arithmetic) -> None:
         super().__init__(drawn, arithmetic)
-        self.switches = switches_of(drawn.scene)
+        self.switches = switches_of(drawn.scene, arithmetic.nothing)
         if len(self.switches) > SLOTS:
             raise NotImplementedError(f"{len(self.switches)} switches: {SLOTS} events are compiled")
-        self.tables = tables_of(drawn.scene)
+        self.tables = tables_of(drawn.scene, arithmetic.nothing)
         self.frictions = [s for s in self.switches if isinstance(s, Friction)]
         self.stops = [s for s in self.switches if isinstance(s, Stop)]
         self.smooth = inertia(drawn.scene) | _sum(
             smooth_torques(drawn.scene), smooth_own_torques(drawn.scene)
         )
+        self.changing: Parameters = {}
+        """What states and tables have changed so far, as it is without them."""
         self.inside = drawn.t_start
         self.events = 0
         self.has_begun = False
@@ -62,13 +64,15 @@ class SwitchedTrajectory(Trajectory):
 
     def _go(self, t_end: float, until: float) -> None:
         system = switched(self.n, self.arithmetic)
+        never = [NEVER.parameters(slot, self.n) for slot in range(SLOTS)]
+        system.begin(_sum(self.smooth, *never))
         for goal in [*self._breaks(t_end), t_end]:
             self.inside = 0.5 * (self.t + goal)
-            system.begin(self._parameters())
+            system.set(self._parameters())
             if not self.has_begun:
                 self._begin(system)
                 self.has_begun = True
-                system.begin(self._parameters())
+                system.set(self._parameters())
             system.integrator.reset_cooldowns()
             self._put(system)
             fresh, since = self._at_bounds(), self._later()
@@ -77,20 +81,9 @@ class SwitchedTrajectory(Trajectory):
                     continue
                 self._happen(system, slot)
                 fresh, since = self._at_bounds(), self._later()
-                system.begin(self._parameters())
+                system.set(self._parameters())
                 self._put(system)
             self.t = goal
-
-    def _longest(self, system: System) -> float:
-        """Return the longest step here, s."""
-        longest = [
-            table.longest for table in self.tables for begin, end, _ in table.intervals
-            if begin <= self.inside < end
-        ]  # fmt: skip
-        if any(f.longest(1.0) < np.inf for f in self.frictions):
-            wd = self._now(system)[0]
-            longest += [f.longest(float(wd[f.joint - 1])) for f in self.frictions]
-        return min(longest, default=np.inf)
 
     def _now(self, system: System) -> Any:
         """Return accelerations, holding torques, rates after unit impulses: (3, n)."""
@@ -108,15 +101,16 @@ class SwitchedTrajectory(Trajectory):
                       key=lambda t: sign * t)  # fmt: skip
 
     def _parameters(self) -> Parameters:
-        """Return all parameters in the present states and intervals of tables."""
+        """Return what changes of the parameters, in the present states and intervals of tables."""
         parts = [switch.parameters() for switch in self.switches]
         for table in self.tables:
             parts += [values for begin, end, values in table.intervals if begin <= self.inside < end]
-        found = _sum(self.smooth, *parts) | self._held()
+        changed = {name for part in parts for name in part}
+        for name in changed - self.changing.keys():
+            self.changing[name] = self.smooth.get(name, Fraction(0))
+        found = _sum(self.changing, *parts) | self._held()
         for slot, switch in enumerate(self.switches):
-            found |= switch.line().parameters(slot)
-        for slot in range(len(self.switches), SLOTS):
-            found |= NEVER.parameters(slot)
+            found |= switch.line().parameters(slot, self.n)
         return found
 
     def _held(self) -> Parameters:
@@ -129,23 +123,26 @@ class SwitchedTrajectory(Trajectory):
 
     def _begin(self, system: SwitchedSystem) -> None:
         """Find the states at the start."""
+        at_bounds = []
         for switch in self.switches:
             if isinstance(switch, Pieces):
                 x = float(switch.value(self.phi, self.w))
-                if any(abs(x - float(bound)) < CLEAR for bound in switch.bounds):
-                    # At a bound: go to where it is heading.
-                    x += self.direction * 1e-6 * float(self._heading(system, switch))
                 switch.piece = sum(x > bound for bound in switch.bounds)
+                if any(abs(x - float(bound)) < CLEAR for bound in switch.bounds):
+                    at_bounds.append((switch, x))
             elif isinstance(switch, Friction):
                 switch.slide(float(self.w[switch.joint - 1]))
             elif not switch.low < float(self.phi[switch.joint - 1]) < switch.high:
                 raise NoReferenceError("a start at a stop")
+        if at_bounds:
+            # Its laws have no jumps: on either side of a bound it heads the same way.
+            system.set(self._parameters())
+            wd = self._now(system)[0]
+            for switch, x in at_bounds:
+                heading = self.direction * float(switch.value(self.w, wd))
+                switch.piece = sum(x + 1e-6 * heading > bound for bound in switch.bounds)
         if any(not friction.sign for friction in self.frictions):
             self._decide(system)
-
-    def _heading(self, system: SwitchedSystem, switch: Pieces) -> Any:
-        """Return the rate at which x of a law changes."""
-        return switch.value(self.w, self._now(system)[0])
 
     def _at_bounds(self) -> set[int]:
         """Return the slots whose event has just been, or is where the motion begins."""

@@ -19,8 +19,6 @@ from true_error.constants import Parameters
 from true_error.own_laws import OwnLaw
 
 ONE = Fraction(1)
-NOTHING = 100.0
-"""exp(-NOTHING) is nothing beside 1, in any arithmetic that is used."""
 
 
 @dataclass
@@ -34,11 +32,12 @@ class Line:
     low: float | Fraction
     high: float | Fraction
 
-    def parameters(self, slot: int) -> Parameters:
-        """Return the parameters of the event in a slot."""
-        found = {f"{name[:2]}{slot}{name[2:]}": value for name, value in self.weights.items()}
+    def parameters(self, slot: int, n: int) -> Parameters:
+        """Return the parameters of the event in a slot, of n joints."""
+        found = {f"{kind}{slot}{j}": Fraction(0) for kind in ("ef", "ew", "el") for j in range(n)}
         if self.low == -inf and self.high == inf:
-            return {f"ea{slot}": ONE, f"eb{slot}": ONE}  # of no weights: never
+            return found | {f"ea{slot}": ONE, f"eb{slot}": ONE, f"ed{slot}": Fraction(0)}
+        found |= {f"{name[:2]}{slot}{name[2:]}": value for name, value in self.weights.items()}
         bounds = [bound for bound in (self.low, self.high) if abs(bound) < inf]
         found[f"ea{slot}"] = Fraction(bounds[0])
         found[f"ed{slot}"] = ONE if len(bounds) == 2 else Fraction(0)
@@ -88,7 +87,7 @@ class Pieces:
 class Friction:
     """Dry friction in a joint: sliding with a sign, or stuck (0).
 
-    Where Stribeck's exponential is nothing to any digit, ``is_far``, it is left out: a series that
+    Where Stribeck's exponential is nothing beside 1, ``is_far``, it is left out: a series that
     begins there does not see it, and would take its step across the peak.
     """
 
@@ -97,6 +96,7 @@ class Friction:
     static: Fraction
     velocity: Fraction
     exponent: int
+    nothing: float
     sign: int = 0
     is_far: bool = False
 
@@ -105,7 +105,7 @@ class Friction:
         """From which rate on it is far, rad/s."""
         if self.static == self.coulomb:
             return inf
-        return float(self.velocity) * NOTHING ** (1 / self.exponent)
+        return float(self.velocity) * self.nothing ** (1 / self.exponent)
 
     def slide(self, rate: float) -> None:
         """Slide at a rate, rad/s."""
@@ -130,12 +130,6 @@ class Friction:
             return Line({f"el{j}": ONE}, -self.static, self.static)
         rate = {f"ew{j}": Fraction(self.sign)}
         return Line(rate, self.far, inf) if self.is_far else Line(rate, Fraction(0), self.far)
-
-    def longest(self, acceleration: float) -> float:
-        """Return the longest step in which the exponential changes but little, s."""
-        if not self.sign or self.is_far or self.static == self.coulomb:
-            return inf
-        return 0.5 * float(self.velocity) / (abs(acceleration) + 1e-300)
 
 
 @dataclass
@@ -164,33 +158,24 @@ Switch = Pieces | Friction | Stop
 
 @dataclass
 class Tables:
-    """What begins and ends at given times.
-
-    Attributes
-    ----------
-    intervals : list of (begin, end, parameters)
-        s.
-    longest : float
-        The longest step in an interval, s.
-    """
+    """What begins and ends at given times, s: intervals of (begin, end, parameters)."""
 
     intervals: list[tuple[float, float, Parameters]]
-    longest: float = inf
 
 
-def switches_of(scene: pc.Scene) -> list[Switch]:
+def switches_of(scene: pc.Scene, nothing: float) -> list[Switch]:
     """Return all of a scene's laws that change at events."""
-    return [switch for effect in scene.effects for switch in _of(effect)]
+    return [switch for effect in scene.effects for switch in _of(effect, nothing)]
 
 
-def _of(effect: Any) -> Iterator[Switch]:
+def _of(effect: Any, nothing: float) -> Iterator[Switch]:
     if effect.kind == "dry_joint_friction":
         static = effect.coulomb if effect.static is None else effect.static
         if effect.exponent not in (1.0, 2.0):
             raise NotImplementedError(f"exponent = {effect.exponent}: 1 and 2 are compiled")
         yield Friction(
             effect.joint, Fraction(effect.coulomb), Fraction(static),
-            Fraction(effect.stribeck_velocity), int(effect.exponent),
+            Fraction(effect.stribeck_velocity), int(effect.exponent), nothing,
         )  # fmt: skip
     elif effect.kind == "joint_stop":
         if effect.capture_speed is None:
@@ -256,7 +241,7 @@ def smooth_own_torques(scene: pc.Scene) -> Parameters:
     return found
 
 
-def tables_of(scene: pc.Scene) -> list[Tables]:
+def tables_of(scene: pc.Scene, nothing: float) -> list[Tables]:
     """Return what begins and ends at given times: tables of torque, splines of the pivot, pulses.
 
     A pulse is one where it is more than nothing: see `Friction.is_far`.
@@ -275,10 +260,11 @@ def tables_of(scene: pc.Scene) -> list[Tables]:
             ]))  # fmt: skip
         elif getattr(getattr(effect, "function", None), "name", "") == "pulse":
             j, (height, middle, width) = effect.function.joint - 1, effect.function.values
-            ends = middle - 10 * width, middle + 10 * width
+            reach = width * nothing**0.5
+            ends = middle - reach, middle + reach
             values = {f"gh{j}": height, f"gm{j}": middle, f"gi{j}": 1 / Fraction(width)}
             exact = {name: Fraction(value) for name, value in values.items()}
-            found.append(Tables([(*ends, exact)], longest=0.5 * width))
+            found.append(Tables([(*ends, exact)]))
     return found
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from fractions import Fraction
 from itertools import pairwise
-from math import inf
 from time import monotonic
 from typing import Any
 
@@ -20,8 +19,6 @@ from true_error.equations import System, smooth
 
 STEPS = 500
 """Steps between two looks at the clock."""
-FEW_STEPS = 5
-"""And between two looks at how long a step may be."""
 
 
 class NoReferenceError(Exception):
@@ -83,10 +80,6 @@ class Trajectory:
         system.integrator.time = self.time
         system.integrator.state[:] = self.state
 
-    def _longest(self, system: System) -> float:
-        """Return the longest step here, s."""
-        return inf
-
     def _later(self) -> float:
         """Return how long after the start it is, s."""
         start = self.arithmetic.number(Fraction(self.drawn.t_start))
@@ -97,12 +90,8 @@ class Trajectory:
         goal = self.arithmetic.number(Fraction(t_end))
         while True:
             self.begin = self._later()
-            longest = self._longest(system)
-            bounds = {"max_steps": STEPS}
-            if longest < inf:
-                bounds = {"max_steps": FEW_STEPS, "max_delta_t": self.arithmetic.type(longest)}
             outcome, *_, output, _ = system.integrator.propagate_until(
-                goal, c_output=True, **bounds
+                goal, max_steps=STEPS, c_output=True
             )
             if output is not None:
                 self.pieces.append((self.begin, output))
