@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from true_error.arithmetic import LADDER
+from true_error.arithmetic import LADDER, Arithmetic
 from true_error.arrays import Floats, Longs
 from true_error.curve import angles_apart, positions_apart
 from true_error.drawn import Drawn
@@ -59,8 +59,7 @@ class Reference:
     def __init__(self, drawn: Drawn, seconds: float) -> None:
         self.drawn = drawn
         self.until = monotonic() + seconds
-        kind = SwitchedTrajectory if drawn.is_switched else Trajectory
-        self._ladder = [kind(drawn, arithmetic) for arithmetic in LADDER]
+        self._ladder = [trajectory(drawn, arithmetic) for arithmetic in LADDER]
 
     def angles(self, t: Floats, *, finest: bool = False) -> Truth:
         """Return the absolute angles at times (n_t,), s, in the order of the run.
@@ -89,3 +88,8 @@ class Reference:
             unsure_angle=np.where(followed, np.maximum.accumulate(angle) * gained, np.inf),
             coarse=apart,
         )
+
+
+def trajectory(drawn: Drawn, arithmetic: Arithmetic) -> Trajectory:
+    """Return the motion of a drawn scene in one kind of numbers, of the kind that it takes."""
+    return (SwitchedTrajectory if drawn.is_switched else Trajectory)(drawn, arithmetic)

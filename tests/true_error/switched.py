@@ -62,19 +62,24 @@ class SwitchedTrajectory(Trajectory):
     def w(self) -> Any:
         return self.state[self.n :]
 
-    def _go(self, t_end: float, until: float) -> None:
+    def prepared(self, goal: float) -> SwitchedSystem:
+        """Return the system, ready to go on from here towards a time with no knot before it, s."""
+        self.inside = 0.5 * (self.t + goal)
         system = switched(self.n, self.arithmetic)
         never = [NEVER.parameters(slot, self.n) for slot in range(SLOTS)]
         system.begin(_sum(self.smooth, *never))
-        for goal in [*self._breaks(t_end), t_end]:
-            self.inside = 0.5 * (self.t + goal)
+        system.set(self._parameters())
+        if not self.has_begun:
+            self._begin(system)
+            self.has_begun = True
             system.set(self._parameters())
-            if not self.has_begun:
-                self._begin(system)
-                self.has_begun = True
-                system.set(self._parameters())
-            system.integrator.reset_cooldowns()
-            self._put(system)
+        system.integrator.reset_cooldowns()
+        self._put(system)
+        return system
+
+    def _go(self, t_end: float, until: float) -> None:
+        for goal in [*self._breaks(t_end), t_end]:
+            system = self.prepared(goal)
             fresh, since = self._at_bounds(), self._later()
             for slot in self._legs(system, goal, until):
                 if slot in fresh and self._later() - since < AT_ONCE:

@@ -71,8 +71,14 @@ class Trajectory:
         system.begin(inertia(self.drawn.scene) | values)
         return system
 
+    def prepared(self, goal: float) -> System:
+        """Return the system, ready to go on from here towards a time, s."""
+        system = self._system()
+        self._put(system)
+        return system
+
     def _go(self, t_end: float, until: float) -> None:
-        self._put(system := self._system())
+        system = self.prepared(t_end)
         for _ in self._legs(system, t_end, until):
             raise AssertionError("a smooth system has no events")
 

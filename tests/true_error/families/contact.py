@@ -33,7 +33,7 @@ def contact(seed: int) -> Drawn:
     if dice.chance(0.4):
         found.append(act.damper(links, dice.whole(1, n), dice.decades(-2, 1)))
     if dice.chance(0.4):
-        strength = act.weight_torque(links) * dice.uniform(0, 0.5)
+        strength = act.weight_torque(links[joint - 1 :]) * dice.uniform(0, 0.5)
         drive = act.sinusoid(dice, strength, dice.decades(-0.5, 1))
         found.append(E.Motor(joint, sinusoid=drive))
     if dice.chance(0.2):

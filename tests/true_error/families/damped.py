@@ -40,22 +40,23 @@ def damped(seed: int) -> Drawn:
 def effects(dice: Dice, links: list[pc.Link]) -> list[Any]:
     """Return dampers in most joints, and what drives the chain."""
     n = len(links)
-    scale = act.weight_torque(links)
+    weights = [act.weight_torque(links[joint:]) for joint in range(n)]
     found: list[Any] = [
-        E.ViscousJoint(joint, scale * dice.decades(-3, 0.5))
+        E.ViscousJoint(joint, weights[joint - 1] * dice.decades(-3, 0.5))
         for joint in range(1, n + 1)
         if dice.chance(0.6)
     ]
     joint = dice.whole(1, n)
+    scale = act.weight_torque(links[joint - 1 :])
     if dice.chance(0.3):
         stiffness = scale * dice.decades(-1, 1.5)
         found.append(E.TorsionalSpring(joint, stiffness, rest_angle=dice.uniform(-1, 1)))
     if dice.chance(0.3):
         pd = E.PD(scale * dice.decades(-1, 1), scale * dice.decades(-2, 0), dice.uniform(-1, 1))
-        found.append(E.Motor(dice.whole(1, n), pd=pd))
+        found.append(E.Motor(joint, pd=pd))
     if dice.chance(0.3):
         drive = act.sinusoid(dice, scale * dice.uniform(0, 0.5), dice.decades(-1, 1))
-        found.append(E.Motor(dice.whole(1, n), sinusoid=drive))
+        found.append(E.Motor(joint, sinusoid=drive))
     if dice.chance(0.2):
         found.append(E.DrivenPivot(y=E.Sinusoid(dice.decades(-3, -1), dice.decades(0, 1))))
     return found

@@ -59,13 +59,11 @@ def own_function(dice: Dice, links: list[pc.Link]) -> Any:
 
 def table(dice: Dice, links: list[pc.Link]) -> Any:
     """Return a motor that follows a table: a jagged curve whose knots are anywhere."""
-    knots = dice.whole(2, 12)
+    joint, knots = dice.whole(1, len(links)), dice.whole(2, 12)
     t = np.sort(dice.rng.uniform(-6, 16, knots))
     t = np.concatenate([[-ASIDE], t, [ASIDE]])
-    return E.Motor(
-        dice.whole(1, len(links)),
-        table=E.Table(t, act.weight_torque(links) * dice.spread(len(t), 0.5)),
-    )
+    torque = act.weight_torque(links[joint - 1 :]) * dice.spread(len(t), 0.5)
+    return E.Motor(joint, table=E.Table(t, torque))
 
 
 def spline(dice: Dice, links: list[pc.Link]) -> Any:

@@ -26,12 +26,10 @@ def stiff(seed: int) -> Drawn:
     if dice.chance(0.3):
         found.append(act.damper(links, dice.whole(1, n), dice.decades(-1, 1)))
     if dice.chance(0.3):
-        strength = act.weight_torque(links) * dice.uniform(0, 0.5)
-        found.append(
-            E.Motor(
-                dice.whole(1, n), sinusoid=act.sinusoid(dice, strength, dice.decades(-0.5, 1.0))
-            )
-        )
+        joint = dice.whole(1, n)
+        strength = act.weight_torque(links[joint - 1 :]) * dice.uniform(0, 0.5)
+        drive = act.sinusoid(dice, strength, dice.decades(-0.5, 1.0))
+        found.append(E.Motor(joint, sinusoid=drive))
     scene = chains.scene_of(links, found, dice.one_of(chains.GRAVITIES))
     start = chains.start(dice, n, (0.3, 1.0, 2.0), (0.0, 1.0, 3.0))
     # A reference by explicit series takes a step for every few of these turns.
