@@ -151,9 +151,7 @@ def test_an_exception_is_told_and_ends_nothing(drawn: Drawn) -> None:
         assert found.says == "RecursionError: too deep"
 
 
-def test_what_hangs_is_told_and_ends_nothing(
-    drawn: Drawn, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_hangs_is_told_and_ends_nothing(drawn: Drawn, monkeypatch: pytest.MonkeyPatch) -> None:
     def hanging(*_: Any, **__: Any) -> Any:
         while True:
             pass
@@ -180,9 +178,7 @@ def test_the_campaign_lists_what_repeats_an_offender(
     tmp_path: Any, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     worse = {"outcome": "kept", "true": 3.0, "achieved": 0.5, "asked": 1.0}
-    monkeypatch.setattr(
-        campaign, "of_case", lambda case: Verdict(case[0], case[1], 2, **worse)
-    )
+    monkeypatch.setattr(campaign, "of_case", lambda case: Verdict(case[0], case[1], 2, **worse))
     out, record = tmp_path / "o.json", tmp_path / "r.json"
     asked = ["--family", "mixed", "--seeds", "5:7", "--workers", "1"]
     assert campaign.main([*asked, "--output", str(out), "--record", str(record)]) == 1

@@ -28,7 +28,8 @@ from true_error.own_laws import OwnLaw
 from true_error.rates import mass_matrix
 from true_error.reference import Reference, trajectory
 from true_error.switched import SwitchedTrajectory
-from true_error.switches import Friction, bends
+from true_error.switches import Friction
+from true_error.tables import bends
 from true_error.trajectory import NoReferenceError
 
 pytestmark = pytest.mark.unsanitized
@@ -61,13 +62,13 @@ def angle(of: Drawn, *times: float) -> Any:
 # Smooth scenes -------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    "name", ["textbook", "unequal", "light_tip", "no_gravity", "single_rod"]
-)
+@pytest.mark.parametrize("name", ["textbook", "unequal", "light_tip", "no_gravity", "single_rod"])
 def test_trajectories_of_forty_digits(name: str) -> None:
     """Integrated by other equations, in another arithmetic."""
     case: Digits = of_digits(name)
-    links = [pc.Link(mass=m, length=length) for m, length in zip(case.masses, case.lengths)]
+    links = [
+        pc.Link(mass=m, length=length) for m, length in zip(case.masses, case.lengths, strict=False)
+    ]
     damping = [E.ViscousJoint(j, b) for j, b in enumerate(case.damping, start=1) if b]
     start = tuple(map(float, case.q0)), tuple(map(float, case.qd0))
     of = drawn(damping, *start, float(case.t[-1]), case.gravity, links)
@@ -86,7 +87,9 @@ def test_accelerations_are_those_of_another_derivation(family: str, seed: int) -
     moving = replace(of, qd0=rates)
     bodies = [Body(x.mass, x.length, x.center, x.inertia) for x in of.scene.links]
     rig = Rig(
-        bodies=bodies, gravity=of.scene.gravity, effects=[law(described(x)) for x in of.scene.effects]
+        bodies=bodies,
+        gravity=of.scene.gravity,
+        effects=[law(described(x)) for x in of.scene.effects],
     )
     found = trajectory(moving, LONG)
     integrator = found.prepared(of.t_start + 1e-9 * found.direction).integrator
@@ -266,6 +269,9 @@ def test_a_short_pulse_far_ahead_is_not_stepped_over() -> None:
 
 
 def test_quadratic_damping_slows_a_rod_like_one_over_time() -> None:
-    for damping in (E.ViscousJoint(1, 0.0, damping2=0.4), E.User(OwnLaw("quadratic damper", 1, (0.4,)))):
+    for damping in (
+        E.ViscousJoint(1, 0.0, damping2=0.4),
+        E.User(OwnLaw("quadratic damper", 1, (0.4,))),
+    ):
         found = angle(drawn([damping], (0.0,), (-3.0,), 5.0), 5.0)[0]
         assert float(found) == pytest.approx(-J / 0.4 * np.log1p(0.4 * 3.0 * 5.0 / J), rel=1e-13)

@@ -13,7 +13,7 @@ from true_error.rates import rates
 
 GROWTH = 3.0
 """The exponent by which dampers may let a run grow that goes back in time."""
-TURNS = 2000.0
+TURNS = 1000.0
 """How often the fastest motion at the start may turn, so that a scene costs no more than others."""
 
 

@@ -31,9 +31,7 @@ from true_error.report import broken, offenders, record_of, table
 
 def main(arguments: list[str] | None = None) -> int:
     """Run a campaign."""
-    parser = argparse.ArgumentParser(
-        prog="true_error.campaign", description=__doc__.split("\n")[0]
-    )
+    parser = argparse.ArgumentParser(prog="true_error.campaign", description=__doc__.split("\n")[0])
     parser.add_argument("--family", action="append", choices=FAMILIES, help="default: all")
     parser.add_argument("--seeds", type=seeds, default=range(100), metavar="FIRST:END")
     parser.add_argument("--workers", type=int, default=2)

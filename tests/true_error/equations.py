@@ -7,8 +7,8 @@ equation alone:
     r_j = tau_j + sum_{i >= j} [h_i ((g - ydd_0) cos q_i + xdd_0 sin q_i)
                                 - sum_b K_ib sin(q_i - q_b) qd_b^2].
 
-It is solved from the tip to the base, R = L^T D L. All constants are parameters: a system is compiled
-once for a number of links.
+It is solved from the tip to the base, R = L^T D L. All constants are parameters: a system is
+compiled once for a number of links.
 """
 
 from __future__ import annotations

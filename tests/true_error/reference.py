@@ -18,7 +18,7 @@ from true_error.arrays import Floats, Longs
 from true_error.curve import angles_apart, positions_apart
 from true_error.drawn import Drawn
 from true_error.switched import SwitchedTrajectory
-from true_error.trajectory import NoReferenceError, Trajectory
+from true_error.trajectory import Trajectory
 
 MARGIN = 4
 """Bits by which a reference may be worse than its bits promise."""
@@ -58,7 +58,7 @@ class Reference:
 
     def __init__(self, drawn: Drawn, seconds: float) -> None:
         self.drawn = drawn
-        self.until = monotonic() + seconds
+        self.left = seconds
         self._ladder = [trajectory(drawn, arithmetic) for arithmetic in LADDER]
 
     def angles(self, t: Floats, *, finest: bool = False) -> Truth:
@@ -76,8 +76,12 @@ class Reference:
             Where they cannot be computed, or not in time.
         """
         coarse, fine = self._ladder[1:] if finest else self._ladder[:2]
-        for trajectory in (coarse, fine):
-            trajectory.extend(t[-1], self.until)
+        began = monotonic()
+        try:
+            for motion in (coarse, fine):
+                motion.extend(t[-1], began + self.left)
+        finally:
+            self.left -= monotonic() - began
         rough, truth = coarse.angles(t), fine.angles(t)
         gained = 2.0 ** (coarse.arithmetic.bits - fine.arithmetic.bits + MARGIN)
         apart, angle = positions_apart(self.drawn.scene, rough, truth), angles_apart(rough, truth)

@@ -21,8 +21,14 @@ from true_error.drawn import Drawn
 from true_error.equations import System
 from true_error.switched_equations import SLOTS, SwitchedSystem, switched
 from true_error.switches import (
-    NEVER, Friction, Pieces, Stop, smooth_own_torques, switches_of, tables_of,
-)  # fmt: skip
+    NEVER,
+    Friction,
+    Pieces,
+    Stop,
+    smooth_own_torques,
+    switches_of,
+)
+from true_error.tables import tables_of
 from true_error.trajectory import NoReferenceError, Trajectory
 
 CLEAR = 1e-9
@@ -109,7 +115,9 @@ class SwitchedTrajectory(Trajectory):
         """Return what changes of the parameters, in the present states and intervals of tables."""
         parts = [switch.parameters() for switch in self.switches]
         for table in self.tables:
-            parts += [values for begin, end, values in table.intervals if begin <= self.inside < end]
+            parts += [
+                values for begin, end, values in table.intervals if begin <= self.inside < end
+            ]
         changed = {name for part in parts for name in part}
         for name in changed - self.changing.keys():
             self.changing[name] = self.smooth.get(name, Fraction(0))

@@ -22,7 +22,13 @@ import numpy.typing as npt
 from true_error.arithmetic import Arithmetic
 from true_error.constants import Parameters
 from true_error.equations import (
-    Chain, Names, System, balance, compile_system, smooth_torque, solved,
+    Chain,
+    Names,
+    System,
+    balance,
+    compile_system,
+    smooth_torque,
+    solved,
 )  # fmt: skip
 
 SLOTS = 3
@@ -70,7 +76,9 @@ def switched(n: int, arithmetic: Arithmetic) -> SwitchedSystem:
             for j, value in enumerate(values)
         ])  # fmt: skip
         bounds = (x - par(f"ea{slot}")) * (par(f"ed{slot}") * x - par(f"eb{slot}"))
-        events.append(hy.t_event(bounds, fp_type=arithmetic.type, cooldown=arithmetic.type(COOLDOWN)))
+        events.append(
+            hy.t_event(bounds, fp_type=arithmetic.type, cooldown=arithmetic.type(COOLDOWN))
+        )
     system = compile_system(chain, rates, par, arithmetic, t_events=events)
     instant = hy.cfunc(
         [*rates, *holding, *after], [*chain.phi, *chain.w], fp_type=arithmetic.type,

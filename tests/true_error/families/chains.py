@@ -17,7 +17,7 @@ GRAVITIES = (9.807, 9.807, 9.807, 1.62, 0.0)
 def links(dice: Dice, n: int, decades: float) -> list[pc.Link]:
     """Return n links of masses over so many decades: rods, points and bodies of any kind."""
     found = []
-    for i in range(n):
+    for _i in range(n):
         mass, length = dice.decades(-decades, 0.3), dice.decades(-1, 0.3)
         rod = mass * length * length / 12
         kind = dice.whole(0, 2)
@@ -32,7 +32,9 @@ def links(dice: Dice, n: int, decades: float) -> list[pc.Link]:
     return found
 
 
-def start(dice: Dice, n: int, wide: tuple[float, ...], fast: tuple[float, ...]) -> tuple[Floats, Any]:
+def start(
+    dice: Dice, n: int, wide: tuple[float, ...], fast: tuple[float, ...]
+) -> tuple[Floats, Any]:
     """Return angles around hanging, rad, and rates, rad/s."""
     q0 = np.pi / 2 + dice.spread(n, dice.one_of(wide))
     return q0, dice.spread(n, dice.one_of(fast))

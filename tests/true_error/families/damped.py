@@ -77,9 +77,7 @@ def whole_periods(dice: Dice, seed: int) -> Drawn:
     scene = chains.scene_of([link], found, 9.807)
     periods = dice.one_of((20, 25, 50, 100, 100, 200))
     start = [pi / 2 - wide], [0.0]
-    drawn = asked(
-        dice, "damped", seed, scene, start, periods * period, backward=0.0, turns=np.inf
-    )
+    drawn = asked(dice, "damped", seed, scene, start, periods * period, backward=0.0, turns=np.inf)
     options = {name: drawn.options[name] for name in drawn.options if name in ("max_step", "store")}
     return replace(drawn, options=options)
 

@@ -84,4 +84,6 @@ def clipped(dice: Dice, links: list[pc.Link]) -> Any:
 def quadratic(dice: Dice, links: list[pc.Link]) -> Any:
     """Return quadratic damping, whose second derivative jumps where the rate is zero."""
     joint = dice.whole(1, len(links))
-    return E.ViscousJoint(joint, 0.0, damping2=act.joint_inertia(links, joint) * dice.decades(-1, 1))
+    return E.ViscousJoint(
+        joint, 0.0, damping2=act.joint_inertia(links, joint) * dice.decades(-1, 1)
+    )
