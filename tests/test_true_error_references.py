@@ -129,16 +129,17 @@ def test_energy_is_kept() -> None:
     assert abs(energy() - before) < 1e-14 * abs(before)
 
 
-@pytest.mark.parametrize("seed", range(3))
-@pytest.mark.parametrize("family", ["mixed", "chaotic", "contact", "own"])
-def test_the_reference_knows_its_own_error(family: str, seed: int) -> None:
-    of = FAMILIES[family](seed)
-    t = np.linspace(of.t_start, of.t_start + 0.5 * (of.t_end - of.t_start), 20)
-    truth = Reference(of, 20.0).angles(t)
-    finest = trajectory(of, QUAD)
-    finest.extend(t[-1], monotonic() + 60)
-    apart = positions_apart(of.scene, truth.angles, finest.angles(t))
-    assert (apart <= truth.unsure + 1e-18).all()
+@pytest.mark.parametrize("family", sorted(set(FAMILIES) - {"stiff"}))
+def test_the_reference_knows_its_own_error(family: str) -> None:
+    """Beside yet more digits; of few links, since these take long."""
+    few = [of for of in map(FAMILIES[family], range(30)) if len(of.q0) <= 2]
+    for of in few[:3]:
+        t = np.linspace(of.t_start, of.t_start + 0.3 * (of.t_end - of.t_start), 20)
+        truth = Reference(of, 20.0).angles(t)
+        finest = trajectory(of, QUAD)
+        finest.extend(t[-1], monotonic() + 60)
+        apart = positions_apart(of.scene, truth.angles, finest.angles(t))
+        assert (apart <= truth.unsure + 1e-18).all()
 
 
 # Friction and stops: what can be said exactly --------------------------------------------------

@@ -7,6 +7,7 @@ import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
+from math import isfinite
 from time import monotonic
 from typing import Any
 
@@ -88,7 +89,7 @@ class Verdict:
     @property
     def is_contradicted(self) -> bool:
         """Whether ``sol.error()`` denies what ``sol.accuracy`` says."""
-        return self.outcome == "kept" and (self.estimated or 0.0) > self.asked
+        return self.outcome == "kept" and not (self.estimated or 0.0) <= self.asked
 
     @property
     def is_late(self) -> bool:
@@ -112,7 +113,11 @@ class Verdict:
 
     def record(self) -> dict[str, Any]:
         """Return the same for JSON."""
-        return asdict(self) | {"faults": self.faults}
+        values = {
+            name: None if isinstance(value, float) and not isfinite(value) else value
+            for name, value in asdict(self).items()
+        }
+        return values | {"faults": self.faults}
 
 
 class UnexpectedError(Exception):

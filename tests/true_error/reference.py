@@ -18,7 +18,7 @@ from true_error.arrays import Floats, Longs
 from true_error.curve import angles_apart, positions_apart
 from true_error.drawn import Drawn
 from true_error.switched import SwitchedTrajectory
-from true_error.trajectory import Trajectory
+from true_error.trajectory import NoReferenceError, Trajectory
 
 MARGIN = 4
 """Bits by which a reference may be worse than its bits promise."""
@@ -80,6 +80,8 @@ class Reference:
         try:
             for motion in (coarse, fine):
                 motion.extend(t[-1], began + self.left)
+        except (ArithmeticError, ValueError, NotImplementedError) as stop:
+            raise NoReferenceError(f"{type(stop).__name__}: {stop}") from stop
         finally:
             self.left -= monotonic() - began
         rough, truth = coarse.angles(t), fine.angles(t)

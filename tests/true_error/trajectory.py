@@ -17,7 +17,7 @@ from true_error.constants import inertia, smooth_torques
 from true_error.drawn import Drawn
 from true_error.equations import System, smooth
 
-STEPS = 500
+STEPS = {"double": 500, "long double": 500, "quadruple": 10}
 """Steps between two looks at the clock."""
 
 
@@ -97,7 +97,7 @@ class Trajectory:
         while True:
             self.begin = self._later()
             outcome, *_, output, _ = system.integrator.propagate_until(
-                goal, max_steps=STEPS, c_output=True
+                goal, max_steps=STEPS[self.arithmetic.name], c_output=True
             )
             if output is not None:
                 self.pieces.append((self.begin, output))

@@ -36,6 +36,8 @@ def chaotic(seed: int) -> Drawn:
     # So fast errors grow, by and large: then doubles know them until about here.
     rate = 0.5 if n == 1 else 0.7 * np.sqrt(9.807 * n / sum(link.length for link in links))
     span = dice.uniform(0.2, 1.3) * log(drawn.error / 1e-16) / rate
+    if dice.chance(0.08):
+        span *= 5
     if dice.chance(0.2):
         span = -span
     t_end = drawn.t_start + span
