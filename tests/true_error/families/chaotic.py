@@ -24,6 +24,8 @@ def chaotic(seed: int) -> Drawn:
     n = dice.whole(1, 5)
     is_textbook = n == 2 and dice.chance(0.5)
     links = chains.links(dice, n, 0.5) if not is_textbook else list(pc.Scene.textbook().links)
+    if n == 1:
+        links = [pc.Link(mass=links[0].mass, length=links[0].length)]
     found: list[Any] = []
     if n == 1 or dice.chance(0.15):
         # One rod alone is regular: what drives it makes it chaotic.
