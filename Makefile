@@ -22,7 +22,7 @@ SOURCES := pyproject.toml CMakeLists.txt $(shell find cpp python ! -path '*__pyc
 
 .DEFAULT_GOAL := help
 .PHONY: demo test compare hard-cases bench build-bench lint tidy sanitize threads long horizon \
-    asked-errors default-method book-speed fuzz fuzz-readers clean help
+    asked-errors default-method book-speed fuzz fuzz-readers test-error clean help
 
 demo: $(DONE)/installed  ## build, run the textbook's case, say where its figure and summary are
 	pendcore run -o out/textbook
@@ -98,6 +98,14 @@ SEED ?= 1
 fuzz: $(DONE)/installed $(DONE)/test-requirements  ## random cases (CASES, SEED); 100,000 and more write docs/fuzz.md
 	PYTHONPATH=tests python -m fuzz.campaign --cases $(CASES) --seed $(SEED) --page docs/fuzz.md
 
+SEEDS ?= 0:5000
+FAMILIES ?= mixed damped chaotic stiff contact own
+ERROR_WORKERS ?= 2
+test-error: $(DONE)/installed $(DONE)/error-requirements  ## true errors (SEEDS, FAMILIES) against references of more digits
+	PYTHONPATH=tests python -m true_error.campaign --seeds $(SEEDS) $(FAMILIES:%=--family %) \
+	    --workers $(ERROR_WORKERS) --output out/true_error/scenes.json \
+	    --record out/true_error/record.json
+
 SECONDS_EACH ?= 60
 fuzz-readers: $(DONE)/installed $(DONE)/fuzz-requirements  ## damaged files and pickles, by coverage
 	for reader in case archive state scene; do \
@@ -130,6 +138,10 @@ $(DONE)/installed: $(SOURCES) $(DONE)/build-requirements
 $(DONE)/test-requirements: pyproject.toml | $(DONE)/build-requirements
 	@sh setup/debian_packages.sh doctest
 	python setup/requirements.py test export symbolic | $(PIP_INSTALL) -r /dev/stdin
+	@touch $@
+
+$(DONE)/error-requirements: pyproject.toml | $(DONE)/test-requirements
+	python setup/requirements.py true-error | $(PIP_INSTALL) -r /dev/stdin
 	@touch $@
 
 $(DONE)/fuzz-requirements: pyproject.toml | $(DONE)/test-requirements

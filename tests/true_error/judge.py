@@ -1,0 +1,262 @@
+"""What became of a drawn scene: pendcore's answers beside the truth."""
+
+from __future__ import annotations
+
+import signal
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass
+from math import isfinite
+from time import monotonic
+from typing import Any
+
+import numpy as np
+import pendcore as pc
+
+from true_error.curve import angles_apart, angles_of, positions_apart, times_of
+from true_error.dice import Dice
+from true_error.drawn import Drawn
+from true_error.reference import Reference, Truth
+from true_error.trajectory import NoReferenceError
+
+SECONDS = 10.0
+"""What a run, its estimate of error and the reference may take, each, s."""
+PATIENCE = 4.0
+"""How many times as long an answer may take until it counts as hung."""
+SURE = 1 / 20
+"""How much better than what is judged a reference is, at least."""
+
+Simulate = Callable[..., pc.Solution]
+
+
+@dataclass
+class Verdict:
+    """What became of a scene.
+
+    Attributes
+    ----------
+    family, seed
+        What it was drawn from.
+    n, asked, method : int, float, str
+        Links, the error that was asked for, the method that was taken.
+    outcome : str
+        ``"kept"``, ``"refused"`` (`AccuracyError`), ``"unverified"``, or ``"exception"``.
+    says : str
+        The verification, the message, or the exception.
+    achieved, true, estimated : float or None
+        What the run says it reached, the truth, and what ``sol.error()`` says of it, all as shares
+        of the total length; ``true`` is missing where the reference is not good enough.
+    doubles : float or None
+        The error of an independent integrator of tight tolerance in doubles: a refusal is needed
+        where it is above what was asked.
+    limit, valid_until, first_past : float or None
+        Of the run without ``error=``: the limit, rad, until when it is told to be kept, s, and when
+        the truth first passed it before that, s.
+    limit_known : bool
+        Whether the reference could tell.
+    work, seconds, reference_seconds : float
+        Right-hand sides of all runs; the time of the answers and of the reference, s.
+    no_reference : str
+        Why there is none.
+    """
+
+    family: str
+    seed: int
+    n: int
+    asked: float
+    method: str = ""
+    outcome: str = ""
+    says: str = ""
+    achieved: float | None = None
+    true: float | None = None
+    estimated: float | None = None
+    doubles: float | None = None
+    limit: float | None = None
+    valid_until: float | None = None
+    first_past: float | None = None
+    limit_known: bool = False
+    work: float = 0.0
+    seconds: float = 0.0
+    reference_seconds: float = 0.0
+    no_reference: str = ""
+
+    @property
+    def is_above(self) -> bool:
+        """Whether the run says that the error is kept, and it is not."""
+        return self.outcome == "kept" and self.true is not None and self.true > self.asked
+
+    @property
+    def is_contradicted(self) -> bool:
+        """Whether ``sol.error()`` denies what ``sol.accuracy`` says."""
+        return self.outcome == "kept" and not (self.estimated or 0.0) <= self.asked
+
+    @property
+    def is_late(self) -> bool:
+        return self.first_past is not None
+
+    @property
+    def is_unknown(self) -> bool:
+        """Whether the run says that the error is kept, and the reference cannot tell."""
+        return self.outcome == "kept" and self.true is None
+
+    @property
+    def faults(self) -> list[str]:
+        """Return which claims the scene breaks."""
+        found = {
+            "above": self.is_above,
+            "late": self.is_late,
+            "contradicted": self.is_contradicted,
+            "exception": self.outcome == "exception",
+        }
+        return [name for name, is_so in found.items() if is_so]
+
+    def record(self) -> dict[str, Any]:
+        """Return the same for JSON."""
+        values = {
+            name: None if isinstance(value, float) and not isfinite(value) else value
+            for name, value in asdict(self).items()
+        }
+        return values | {"faults": self.faults}
+
+
+class UnexpectedError(Exception):
+    """What pendcore raised, and should not have."""
+
+
+def judged(drawn: Drawn, simulate: Simulate = pc.simulate, seconds: float = SECONDS) -> Verdict:
+    """Return what became of a scene; what raises anything but `AccuracyError` is an exception."""
+    verdict = Verdict(drawn.family, drawn.seed, len(drawn.scene.links), drawn.error)
+    reference = Reference(drawn, seconds)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", pc.PendcoreWarning)
+        for question in (_asked_error, _valid_until):
+            try:
+                question(drawn, verdict, simulate, reference, seconds)
+            except UnexpectedError as stop:
+                verdict.outcome = "exception"
+                verdict.says = f"{stop}"[:300]
+    return verdict
+
+
+@contextmanager
+def answering(verdict: Verdict, seconds: float) -> Iterator[None]:
+    """Take the time of an answer of pendcore's, and turn what it raises into `UnexpectedError`."""
+    began = monotonic()
+    former = signal.signal(signal.SIGALRM, _hung)
+    signal.setitimer(signal.ITIMER_REAL, PATIENCE * seconds)
+    try:
+        yield
+    except pc.AccuracyError:
+        raise
+    except Exception as stop:
+        raise UnexpectedError(f"{type(stop).__name__}: {stop}") from stop
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, former)
+        verdict.seconds += monotonic() - began
+
+
+def _hung(*_: object) -> None:
+    raise TimeoutError("the time limit was passed long ago")
+
+
+def outcome_of(sol: pc.Solution) -> str:
+    """Return in a word what became of an error that was asked for, and not refused."""
+    return "kept" if sol.accuracy.reached else "unverified"
+
+
+def _asked_error(
+    drawn: Drawn, verdict: Verdict, simulate: Simulate, reference: Reference, seconds: float
+) -> None:
+    """Ask for the error, and see whether it was kept."""
+    try:
+        with answering(verdict, seconds):
+            sol = simulate(
+                drawn.scene, drawn.q0, drawn.qd0, drawn.span,
+                error=drawn.error, time_limit=seconds, **drawn.options,
+            )  # fmt: skip
+        verdict.outcome = outcome_of(sol)
+    except pc.AccuracyError as refusal:
+        sol = refusal.solution
+        verdict.outcome = "refused"
+    verdict.method = sol.method
+    verdict.says = f"{sol.status}; {sol.accuracy.verified_by}"
+    verdict.achieved = float(sol.accuracy.achieved)
+    verdict.work = float(sum(paid.work for paid in sol.accuracy.paid))
+    is_kept = verdict.outcome == "kept"
+    if is_kept and len(sol.t):
+        with answering(verdict, seconds):
+            estimate = sol.error(time_limit=seconds)
+            verdict.estimated = float(estimate.position.max(initial=0.0))
+    dense = is_kept and drawn.is_dense
+    with answering(verdict, seconds):
+        t = times_of(sol, dense, Dice(drawn.family, drawn.seed).rng)
+        q = angles_of(sol, t, dense)
+    began = monotonic()
+    try:
+        _compare(drawn, verdict, t, q, reference)
+    except NoReferenceError as reason:
+        verdict.no_reference = str(reason)
+    verdict.reference_seconds += monotonic() - began
+
+
+def _compare(drawn: Drawn, verdict: Verdict, t: Any, q: Any, reference: Reference) -> None:
+    """Hold the run that was asked for against the reference, if it is said to keep the error."""
+    if not len(t):
+        raise NoReferenceError("the run kept no state")
+    truth = reference.angles(t)
+    verdict.doubles = float(truth.coarse.max())
+    if verdict.outcome != "kept":
+        return
+    verdict.true = _true_error(drawn, q, truth)
+    if verdict.true is None:
+        verdict.true = _true_error(drawn, q, reference.angles(t, finest=True))
+    if verdict.true is None:
+        verdict.no_reference = "more digits than quadruple precision has would be needed"
+
+
+def _true_error(drawn: Drawn, q: Any, truth: Truth) -> float | None:
+    """Return the true error, if the reference knows that, or that it is above what was asked."""
+    apart = positions_apart(drawn.scene, q, truth.angles)
+    if not np.isfinite(apart).all():
+        return np.inf
+    known = truth.unsure <= SURE * drawn.error
+    if known.all() or apart[known].max(initial=0.0) > drawn.error:
+        return float(apart[known].max(initial=0.0))
+    return None
+
+
+def _valid_until(
+    drawn: Drawn, verdict: Verdict, simulate: Simulate, reference: Reference, seconds: float
+) -> None:
+    """Run without asking for an error, and see whether the run knows how long it is right."""
+    with answering(verdict, seconds):
+        sol = simulate(
+            drawn.scene, drawn.q0, drawn.qd0, drawn.span, rtol=drawn.rtol, time_limit=seconds
+        )
+        verdict.limit = drawn.limit
+        sol.error(time_limit=seconds)
+        verdict.valid_until = sol.valid_until(drawn.limit)
+    began = monotonic()
+    t = times_of(sol, True, Dice(drawn.family, drawn.seed).rng)
+    sign = np.sign(drawn.t_end - drawn.t_start)
+    t = t[sign * t <= sign * verdict.valid_until]
+    if len(t):
+        q = angles_of(sol, t, True)
+        try:
+            truth = reference.angles(t)
+            if not _limit_known(drawn, verdict, q, t, truth):
+                _limit_known(drawn, verdict, q, t, reference.angles(t, finest=True))
+        except NoReferenceError as reason:
+            verdict.no_reference = verdict.no_reference or str(reason)
+    verdict.reference_seconds += monotonic() - began
+
+
+def _limit_known(drawn: Drawn, verdict: Verdict, q: Any, t: Any, truth: Truth) -> bool:
+    known = truth.unsure_angle <= SURE * drawn.limit
+    past = np.flatnonzero(known & ~(angles_apart(q, truth.angles) <= drawn.limit))
+    if len(past):
+        verdict.first_past = float(t[past[0]])
+    verdict.limit_known = bool(known.all() or len(past))
+    return verdict.limit_known

@@ -1,0 +1,128 @@
+"""What a campaign came to: counts and shares by family, and the scenes that break a claim."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import Any
+
+import numpy as np
+
+from true_error.judge import Verdict
+
+SHARES = (5, 25, 50, 75, 95, 99, 100)
+UNVERIFIED = 1 / 100
+"""The share of scenes that may end unverified."""
+MEDIAN = (0.05, 0.8)
+"""Between which the median of true over asked is to lie."""
+SHOWN = 40
+"""Offenders of one kind that are listed."""
+
+
+def record_of(verdicts: list[Verdict]) -> dict[str, Any]:
+    """Return what became of the scenes of a family."""
+    outcomes = Counter(verdict.outcome for verdict in verdicts)
+    faults = Counter(fault for verdict in verdicts for fault in verdict.faults)
+    ratios = ratios_of(verdicts)
+    refused = [verdict for verdict in verdicts if verdict.outcome == "refused"]
+    return {
+        "scenes": len(verdicts),
+        "kept": outcomes["kept"],
+        "above": faults["above"],
+        "contradicted": faults["contradicted"],
+        "late": faults["late"],
+        "refused": len(refused),
+        "refused_though_doubles_know": sum(is_needless(verdict) for verdict in refused),
+        "unverified": outcomes["unverified"],
+        "exceptions": outcomes["exception"],
+        "no_reference": sum(verdict.is_unknown for verdict in verdicts),
+        "limit_not_known": sum(not verdict.limit_known for verdict in verdicts),
+        "ratios": {
+            str(share): round(float(np.percentile(ratios, share)), 4) for share in SHARES
+        } if len(ratios) else {},
+        "work": sum(verdict.work for verdict in verdicts),
+        "seconds": round(sum(verdict.seconds for verdict in verdicts), 1),
+        "reference_seconds": round(sum(verdict.reference_seconds for verdict in verdicts), 1),
+    }  # fmt: skip
+
+
+def is_needless(verdict: Verdict) -> bool:
+    """Whether an error was refused that an independent integrator keeps in doubles, with ease."""
+    return verdict.doubles is not None and 10 * verdict.doubles < verdict.asked
+
+
+def ratios_of(verdicts: list[Verdict]) -> np.ndarray:
+    """Return the true error over the one asked for, where that was kept and is known."""
+    return np.array(
+        [v.true / v.asked for v in verdicts if v.outcome == "kept" and v.true is not None]
+    )
+
+
+def broken(verdicts: list[Verdict]) -> list[str]:
+    """Return the claims that a family breaks."""
+    record = record_of(verdicts)
+    found = [
+        f"{record[name]} {what}"
+        for name, what in (
+            ("above", "above what was asked"),
+            ("contradicted", "told as kept, which sol.error() denies"),
+            ("late", "with a valid_until that is late"),
+            ("exceptions", "with an exception other than AccuracyError"),
+        )
+        if record[name]
+    ]
+    if record["unverified"] > UNVERIFIED * len(verdicts):
+        found.append(f"{record['unverified']} of {len(verdicts)} unverified")
+    low, high = MEDIAN
+    if record["ratios"] and not low <= record["ratios"]["50"] <= high:
+        found.append(f"the median of true over asked is {record['ratios']['50']}")
+    return found
+
+
+def offenders(found: dict[str, list[Verdict]]) -> str:
+    """Return the scenes that break a claim, each with what repeats it."""
+    lines = []
+    for family, verdicts in found.items():
+        kinds: dict[str, list[Verdict]] = {}
+        for verdict in sorted(verdicts, key=lambda verdict: verdict.seed):
+            for fault in verdict.faults or [verdict.outcome] * (verdict.outcome == "unverified"):
+                kinds.setdefault(fault, []).append(verdict)
+        for fault, those in kinds.items():
+            lines.append(f"==== {family}, {fault}: {len(those)}")
+            lines += [line_of(verdict, fault) for verdict in those[:SHOWN]]
+    return "\n".join(lines)
+
+
+def line_of(verdict: Verdict, fault: str) -> str:
+    """Return one scene that breaks a claim, and what repeats it."""
+    what = {
+        "above": f"true {times(verdict.true, verdict.asked)} of {verdict.asked:.2e}, told "
+        f"{times(verdict.achieved, verdict.asked)}",
+        "contradicted": f"sol.error() {times(verdict.estimated, verdict.asked)}, true "
+        f"{times(verdict.true, verdict.asked)} of {verdict.asked:.2e}",
+        "late": f"valid_until {verdict.valid_until}, past {verdict.limit} at {verdict.first_past}",
+    }.get(fault, "")
+    repeat = f"--family {verdict.family} --seeds {verdict.seed}:{verdict.seed + 1}"
+    return f"{repeat}  n = {verdict.n}, {verdict.method}: {what} {verdict.says}"[:200]
+
+
+def times(value: float | None, asked: float) -> str:
+    return "?" if value is None else f"{value / asked:.3g}x"
+
+
+def table(record: dict[str, Any]) -> str:
+    """Return the families side by side."""
+    families = record["families"]
+    rows = [["", *families]]
+    names = [name for name in next(iter(families.values())) if name != "ratios"]
+    for name in names[: names.index("work")]:
+        rows.append([name.replace("_", " "), *(str(of_it[name]) for of_it in families.values())])
+    for share in SHARES:
+        name = {50: "median", 100: "largest"}.get(share, f"{share} %")
+        values = [f"{of_it['ratios'].get(str(share), np.nan):.3g}" for of_it in families.values()]
+        rows.append([f"true / asked, {name}", *values])
+    for name in names[names.index("work") :]:
+        values = [f"{of_it[name] / of_it['scenes']:.3g}" for of_it in families.values()]
+        rows.append([f"{name.replace('_', ' ')} of a scene", *values])
+    wide = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = ["  ".join(cell.rjust(to) for cell, to in zip(row, wide, strict=True)) for row in rows]
+    return "\n".join(lines)
