@@ -1,8 +1,8 @@
 """Solutions on disk: NumPy's npz, readable without pendcore, and without pickle.
 
 Entries: ``t``, ``q``, ``qd``, ``y`` (as in `Solution`), ``case`` (TOML), ``statistics`` (JSON),
-``version``, ``accuracy`` (JSON, where an error was asked for), and ``run.*``, from which the whole
-object comes back: interpolants, and what is needed to resume.
+``version``, ``accuracy`` (JSON) and ``error.*`` (what verified it) where an error was asked for, and
+``run.*``, from which the whole object comes back: interpolants, and what is needed to resume.
 """
 
 from __future__ import annotations
@@ -12,12 +12,14 @@ import os
 import warnings
 import zipfile
 from collections.abc import Callable
+from dataclasses import fields
 from pathlib import Path
 from typing import IO, Any, BinaryIO
 
 import numpy as np
 
 from pendcore import _core
+from pendcore.accuracy.estimate import ErrorEstimate
 from pendcore.accuracy.report import Accuracy
 from pendcore.case import Case
 from pendcore.case_file import case_from_text
@@ -30,7 +32,7 @@ from pendcore.solution import Solution
 from pendcore.warning import PendcoreWarning
 from pendcore.whole_file import whole_file
 
-_RUN = "run."
+_RUN, _ERROR = "run.", "error."
 _KEEP = ": keep the numbers, sol.to_pandas() or numpy.savez(path, t=sol.t, y=sol.y)"
 
 
@@ -53,6 +55,8 @@ def save(solution: Solution, path: str | os.PathLike[str], *, progress: Progress
     }
     if solution.accuracy is not None:
         entries["accuracy"] = json.dumps(solution.accuracy.to_dict())
+        if (error := solution._verified_error()) is not None:
+            entries |= {_ERROR + one.name: getattr(error, one.name) for one in fields(error)}
     report = callback(progress, f"writing {os.fspath(path)}")
     try:
         state = {_RUN + key: value for key, value in solution._run.__getstate__().items()}
@@ -125,17 +129,22 @@ def _loaded(file: BinaryIO) -> Solution:
     file.seek(0)
     with np.load(file, allow_pickle=False) as entries:
         case = _case(str(entries["case"]))
-        state = {
-            key.removeprefix(_RUN): _plain(entries[key]) for key in entries if key.startswith(_RUN)
-        }
+        state, error = _group(entries, _RUN), _group(entries, _ERROR)
         told = json.loads(str(entries["accuracy"])) if "accuracy" in entries else None
     run = _core.Run.__new__(_core.Run)
     run.__setstate__(state)
     accuracy = None if told is None else Accuracy.from_dict(told)
-    solution = Solution(_scene(state), run, case.name, accuracy)
+    verified = ErrorEstimate(**error) if error else None
+    solution = Solution(_scene(state), run, case.name, accuracy, verified)
     if solution.case() != case:
         raise ValueError("its case is not that of its run")
     return solution
+
+
+def _group(entries: Any, prefix: str) -> dict[str, Any]:
+    """Return what stands under a prefix; numbers and strings were written as arrays without axes."""
+    found = {key.removeprefix(prefix): entries[key] for key in entries if key.startswith(prefix)}
+    return {key: one.item() if one.ndim == 0 else one for key, one in found.items()}
 
 
 def _case(text: str) -> Case:
@@ -151,8 +160,3 @@ def _scene(state: dict[str, Any]) -> Scene:
     links = [Link(**dict(zip(names, row, strict=True))) for row in rows]
     effects = [effect_of(kind, values) for kind, values in json.loads(state["effects"])]
     return Scene._unpickled(links, state["gravity"], effects)
-
-
-def _plain(entry: Any) -> Any:
-    """Numbers and strings were written as arrays without axes."""
-    return entry.item() if entry.ndim == 0 else entry

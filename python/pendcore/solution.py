@@ -51,13 +51,14 @@ class Solution:
     __slots__ = ("_accuracy", "_error", "_events", "_run", "name", "scene")
 
     def __init__(
-        self, scene: Scene, run: _core.Run, name: str = "", accuracy: Accuracy | None = None
+        self, scene: Scene, run: _core.Run, name: str = "", accuracy: Accuracy | None = None,
+        error: ErrorEstimate | None = None,
     ) -> None:
         self.scene = scene
         self.name = name
         self._run = run
         self._events: list[list[Found]] | None = None
-        self._error: ErrorEstimate | None = None
+        self._error = error
         self._accuracy = accuracy
 
     @property
@@ -364,11 +365,15 @@ class Solution:
 
     def __reduce__(self) -> tuple[object, ...]:
         # The scene first: it says best that it cannot be pickled, if it cannot.
-        return type(self), (self.scene, self._run, self.name, self._accuracy)
+        return type(self), (self.scene, self._run, self.name, self._accuracy, self._verified_error())
 
     def __deepcopy__(self, memo: object) -> Solution:
         # None of them ever changes.
-        return Solution(self.scene, self._run, self.name, self._accuracy)
+        return Solution(self.scene, self._run, self.name, self._accuracy, self._verified_error())
+
+    def _verified_error(self) -> ErrorEstimate | None:
+        """Return the estimate behind `accuracy`; another one is made anew where it is asked for."""
+        return None if self._accuracy is None else self._error
 
     def __repr__(self) -> str:
         from pendcore.views.table import text
