@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import fields, replace
+from inspect import signature
 from time import monotonic
 from typing import Any
 
@@ -24,7 +25,7 @@ from true_error.constants import inertia
 from true_error.curve import positions_apart
 from true_error.drawn import Drawn
 from true_error.families import FAMILIES
-from true_error.own_laws import OwnLaw
+from true_error.own_laws import LAWS, OwnLaw
 from true_error.rates import mass_matrix
 from true_error.reference import Reference, trajectory
 from true_error.switched import SwitchedTrajectory
@@ -77,26 +78,42 @@ def test_trajectories_of_forty_digits(name: str) -> None:
     assert apart.max() < 1e-15 + 10 * truth.unsure.max()
 
 
-@pytest.mark.parametrize("family", FAMILIES)
-@pytest.mark.parametrize("seed", range(12))
-def test_accelerations_are_those_of_another_derivation(family: str, seed: int) -> None:
+def check_accelerations(of: Drawn) -> None:
     """Newton-Euler equations of each link, each effect's law written in the most direct form."""
-    of = FAMILIES[family](seed)
     n = len(of.q0)
-    rates = tuple(np.random.default_rng(seed).uniform(-2, 2, n))
-    moving = replace(of, qd0=rates)
     bodies = [Body(x.mass, x.length, x.center, x.inertia) for x in of.scene.links]
-    rig = Rig(
-        bodies=bodies,
-        gravity=of.scene.gravity,
-        effects=[law(described(x)) for x in of.scene.effects],
-    )
-    found = trajectory(moving, LONG)
+    laws = [law(described(effect)) for effect in of.scene.effects]
+    rig = Rig(bodies=bodies, gravity=of.scene.gravity, effects=laws)
+    found = trajectory(of, LONG)
     integrator = found.prepared(of.t_start + 1e-9 * found.direction).integrator
     integrator.step(write_tc=True)
     qdd = np.cumsum(integrator.tc[n:, 1]).astype(float)
-    expected = np.array(rig.motion(of.t_start, of.q0, rates).accelerations, dtype=float)
+    expected = np.array(rig.motion(of.t_start, of.q0, of.qd0).accelerations, dtype=float)
     np.testing.assert_allclose(qdd, expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+@pytest.mark.parametrize("seed", range(12))
+def test_accelerations_are_those_of_another_derivation(family: str, seed: int) -> None:
+    of = FAMILIES[family](seed)
+    rates = np.random.default_rng(seed).uniform(-2, 2, len(of.q0))
+    check_accelerations(replace(of, qd0=tuple(map(float, rates))))
+
+
+PIECES = {
+    **{name: E.User(OwnLaw(name, 2, (1.3, 0.4, 0.7)[: len(signature(of).parameters) - 3]))
+       for name, of in LAWS.items()},
+    "clipped controller": E.Motor(2, pd=E.PD(3.0, 0.5, 0.2), limit=1.1),
+    "damping2": E.ViscousJoint(2, 0.1, damping2=0.6),
+    "friction": E.DryJointFriction(2, 0.4, static=0.9, stribeck_velocity=0.7, exponent=1.0),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", PIECES)
+def test_each_piece_of_a_law_is_that_of_another_derivation(kind: str) -> None:
+    for phi in (-2.0, -0.1, 0.3, 2.0):
+        for w in (-1.5, 1.5):
+            check_accelerations(drawn([PIECES[kind]], (0.5, 0.5 + phi), (0.3, 0.3 + w), 1.0, 9.8))
 
 
 def described(effect: Any) -> tuple[str, dict[str, Any]]:
