@@ -1,8 +1,8 @@
 """Solutions on disk: NumPy's npz, readable without pendcore, and without pickle.
 
 Entries: ``t``, ``q``, ``qd``, ``y`` (as in `Solution`), ``case`` (TOML), ``statistics`` (JSON),
-``version``, ``accuracy`` (JSON) and ``error.*`` (what verified it) where an error was asked for, and
-``run.*``, from which the whole object comes back: interpolants, and what is needed to resume.
+``version``, ``accuracy`` (JSON) and ``error.*`` (how far off it is) where an error was asked for,
+and ``run.*``, from which the whole object comes back: interpolants, and what is needed to resume.
 """
 
 from __future__ import annotations
@@ -142,7 +142,7 @@ def _loaded(file: BinaryIO) -> Solution:
 
 
 def _group(entries: Any, prefix: str) -> dict[str, Any]:
-    """Return what stands under a prefix; numbers and strings were written as arrays without axes."""
+    """Return what stands under a prefix; numbers and strings are arrays without axes there."""
     found = {key.removeprefix(prefix): entries[key] for key in entries if key.startswith(prefix)}
     return {key: one.item() if one.ndim == 0 else one for key, one in found.items()}
 

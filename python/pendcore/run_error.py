@@ -57,7 +57,7 @@ def _complaint(solution: Solution) -> str:
         f"{message.removeprefix(f'{solution.status}: ')}"
     )
     if solution.accuracy is not None:
-        return f"{complaint}; it is no run of the error asked for: {solution.accuracy.outcome()}"
+        return f"{complaint}; it is no run of the error asked for: {solution.accuracy.text()}"
     if solution.status in CAN_GO_ON and "resume" not in message:
         complaint += f"; its resume({t_end!r}) goes on"
     return complaint

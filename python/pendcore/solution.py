@@ -15,7 +15,6 @@ import numpy.typing as npt
 
 from pendcore import _core
 from pendcore.arguments import Floats, finite_array, time_limit_of
-from pendcore.accuracy.defect import Defect, defect
 from pendcore.energy import Energy, Ledger
 from pendcore.events import Event, Found, event_of, found_events
 from pendcore.largest_reactions import LargestReaction, largest_reactions
@@ -31,6 +30,7 @@ if TYPE_CHECKING:
 
     from pendcore.accuracy.report import Accuracy
     from pendcore.case import Case
+    from pendcore.accuracy.defect import Defect
     from pendcore.accuracy.estimate import ErrorEstimate
     from pendcore.horizon.lyapunov import LyapunovExponents
 
@@ -211,6 +211,8 @@ class Solution:
         See `pendcore.Defect` and, for what they tell, `docs/defect.md`; ``progress`` is as in
         `simulate`. A ValueError if the run did not store its interpolants: ``store="dense"``.
         """
+        from pendcore.accuracy.defect import defect
+
         return defect(self.scene, self._run, progress)
 
     def error(self, *, time_limit: float | None = None, progress: Progress = None) -> ErrorEstimate:
@@ -365,7 +367,8 @@ class Solution:
 
     def __reduce__(self) -> tuple[object, ...]:
         # The scene first: it says best that it cannot be pickled, if it cannot.
-        return type(self), (self.scene, self._run, self.name, self._accuracy, self._verified_error())
+        rest = (self._run, self.name, self._accuracy, self._verified_error())
+        return type(self), (self.scene, *rest)
 
     def __deepcopy__(self, memo: object) -> Solution:
         # None of them ever changes.

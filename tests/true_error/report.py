@@ -32,6 +32,7 @@ def record_of(verdicts: list[Verdict]) -> dict[str, Any]:
         "late": faults["late"],
         "refused": len(refused),
         "refused_though_doubles_know": sum(is_needless(verdict) for verdict in refused),
+        "ended_early": outcomes["ended early"],
         "unverified": outcomes["unverified"],
         "exceptions": outcomes["exception"],
         "no_reference": sum(verdict.is_unknown for verdict in verdicts),

@@ -1,10 +1,10 @@
 """A run that keeps an error: method and tolerance are chosen, and what comes out is verified.
 
 Two kinds of runs are made in a loop. A *trial* is what was asked for, at some tolerance. A *second
-run* is better: its tolerance is a twenty-fifth or less of the trial's, its constants and start are moved
-by some last bits, and its steps are others. The distance of the two says how the error follows the
-tolerance on this scene, and so at which tolerance to try next. A trial is returned when its error is
-at most the one asked for, and the second run is known to be the better of the two:
+run* is better: its tolerance is a twenty-fifth or less of the trial's, its constants and start are
+moved by some last bits, and its steps are others. The distance of the two says how the error follows
+the tolerance on this scene, and so at which tolerance to try next. A trial is returned when its
+error is at most the one asked for, and the second run is known to be the better of the two:
 
 * by another trial, at a different tolerance, whose error is to the first one's as their tolerances
   let expect: then the second run's is smaller by as much; or
@@ -32,7 +32,7 @@ from pendcore.solution import Solution
 # What tolerances aim at.
 FIRST, LOOSE = 3.0, 1e-3
 """What multiple of the error the first trial aims at; a looser error it is to keep at once."""
-AIM = 0.6
+AIM = 0.55
 """What share of the error the trials after that aim at."""
 LEAST_CHANGE, FARTHER = 1.5, 100.0
 """By what factor a trial is tighter at least than one that was too loose, or that was lost."""
@@ -57,7 +57,7 @@ At few times an error may be small by chance, which looks as if it fell faster.
 """
 CAUTION = 0.6
 """What share of the exponent is trusted beyond the tolerances where it was seen."""
-SHARE, SPARE = 0.35, 0.1
+SHARE, SPARE = 0.35, 0.25
 """What the error of a single second run may be, as a share of the distance from it, at most; and
 what is added to that, as methods do not all follow their tolerances alike."""
 ROUNDING = 1.5e-12
@@ -77,8 +77,8 @@ MOST_RUNS = 16
 def run_to_error(start: Start, error: float, options: dict[str, Any]) -> Solution:
     """Return a run whose error is verified to be at most ``error``; see `pendcore.simulate`.
 
-    ``options`` are further keywords of `run`, for the run that is returned; ``time_limit`` holds for
-    all runs together.
+    ``options`` are further keywords of `run`, for the run that is returned; ``time_limit`` holds
+    for all runs together.
 
     Raises
     ------

@@ -4,12 +4,12 @@
 The run is compared with second runs that are better by a factor which is known, for they
 are compared with each other as well: they take another method where one can carry the scene, have
 tolerances a hundredth and less, other steps, and each has its constants and its start moved by a
-few last bits of its own (`pendcore.accuracy.rounding`). With the runs r_1, r_2, ... the error is at most
+few last bits of its own (`pendcore.accuracy.rounding`). With runs r_1, r_2, ... the error is at most
 
     max_i |run - r_i| + max_ij |r_i - r_j|
 
-if the best of them is no worse than the distance of the others from it. In a chaotic motion all that
-is off is off along one direction, so that two errors of one size may cancel; several runs, each
+if the best of them is no worse than the distance of the others from it. In a chaotic motion all
+that is off is off along one direction, so that two errors of one size may cancel; several runs, each
 moved another way, do not all agree with one that is wrong.
 """
 
@@ -149,7 +149,10 @@ class ErrorEstimate:
 
 
 def estimate(
-    solution: Solution, seconds: Sequence[Solution], verified_by: str, share: float = SPARE_OF_SEVERAL
+    solution: Solution,
+    seconds: Sequence[Solution],
+    verified_by: str,
+    share: float = SPARE_OF_SEVERAL,
 ) -> ErrorEstimate:
     """Compare a run with second runs, as far as all of them came.
 

@@ -34,11 +34,17 @@ def moved(start: Start, seed: int) -> Start:
         shares = rng.uniform(0.5, 1.0, count) * rng.choice([-1.0, 1.0], count)
         return [float(x) for x in 1.0 + LAST_BITS * shares]
 
-    links = [
-        Link(mass=one.mass * m, length=one.length * x, center=one.center * c, inertia=one.inertia * j)
-        for one in scene.links
-        for m, x, c, j in [by(4)]
-    ]  # fmt: skip
+    links = []
+    for one in scene.links:
+        m, x, c, j = by(4)
+        links.append(
+            Link(
+                mass=one.mass * m,
+                length=one.length * x,
+                center=one.center * c,
+                inertia=one.inertia * j,
+            )
+        )
     nearby = Scene._unpickled(links, scene.gravity * by(1)[0], scene.effects)
     if any(effect.description.bounds_joint for effect in scene.effects):
         return start._replace(scene=nearby)

@@ -146,12 +146,13 @@ class Trials:
         self, solution: Solution, outcome: Outcome, found: ErrorEstimate | None, why: str = ""
     ) -> Solution:
         """Attach to a trial what is known of its error; ``why`` if that is nothing."""
+        begin = self.start.t_start
         solution._error = found
         solution._accuracy = Accuracy(
             asked=self.error,
             achieved=inf if found is None else found.largest,
             outcome=outcome,
-            until=self.start.t_start if found is None else found.valid_until(self.error, of="position"),
+            until=begin if found is None else found.valid_until(self.error, of="position"),
             times=0 if found is None else len(found.t),
             everywhere=found is not None and found.is_dense,
             verified_by=why if found is None else found.verified_by,
