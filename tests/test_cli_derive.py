@@ -117,8 +117,8 @@ def test_a_report_is_written_of_the_run_whose_error_is_not_reached(
     chaos = pc.Case(scene=rods, q0=(-2, -1), t_span=(0, 60), options={"error": 1e-6})
     Path("chaos.toml").write_text(chaos.to_toml())
     runs = list[pc.Case]()
-    monkeypatch.setattr(pc.Case, "simulate", lambda case, run=pc.Case.simulate: (
-        runs.append(case), run(case))[1])  # fmt: skip
+    monkeypatch.setattr(pc.Case, "simulate", lambda case, run=pc.Case.simulate, **how: (
+        runs.append(case), run(case, **how))[1])  # fmt: skip
     assert main(["derive", "chaos.toml", "--to", "report", "-o", "o"]) == 1
     assert len(runs) == 1
     assert "warning: error = 1e-06: not reached: " in capsys.readouterr().err

@@ -111,6 +111,13 @@ def test_a_run_for_an_error_is_checked_as_well(options: Any) -> None:
     assert pc.simulate(BOOK, **how, check=False).status == status
 
 
+def test_where_warnings_are_errors_the_run_is_not_lost() -> None:
+    with pytest.raises(pc.PendcoreWarning, match="with status max_steps") as end:
+        pc.Case(scene=BOOK, **START, name="short", options={"max_steps": 5}).simulate()
+    assert end.value.solution.status == "max_steps"  # type: ignore[attr-defined]
+    assert end.value.solution.name == "short"  # type: ignore[attr-defined]
+
+
 def test_an_error_of_a_run_pickles_with_the_run() -> None:
     with pytest.raises(pc.RunError) as end:
         pc.simulate(**UNFINISHED["max_steps"], check=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from pendcore.warning import warn
+from pendcore.warning import PendcoreWarning, warn
 
 if TYPE_CHECKING:
     from pendcore.solution import Solution
@@ -45,7 +45,11 @@ def checked(solution: Solution, check: bool | None) -> Solution:
         return solution
     if check:
         raise RunError(_complaint(solution), solution)
-    warn(f"{_complaint(solution)}; check=True raises an error, check=False says nothing")
+    try:
+        warn(f"{_complaint(solution)}; check=True raises an error, check=False says nothing")
+    except PendcoreWarning as error:  # where warnings are errors the run is not lost either
+        error.solution = solution  # type: ignore[attr-defined]
+        raise
     return solution
 
 
