@@ -51,7 +51,11 @@ class Solution:
     __slots__ = ("_accuracy", "_error", "_events", "_run", "name", "scene")
 
     def __init__(
-        self, scene: Scene, run: _core.Run, name: str = "", accuracy: Accuracy | None = None,
+        self,
+        scene: Scene,
+        run: _core.Run,
+        name: str = "",
+        accuracy: Accuracy | None = None,
         error: ErrorEstimate | None = None,
     ) -> None:
         self.scene = scene

@@ -2,9 +2,9 @@
 
 Two kinds of runs are made in a loop. A *trial* is what was asked for, at some tolerance. A *second
 run* is better: its tolerance is a twenty-fifth or less of the trial's, its constants and start are
-moved by some last bits, and its steps are others. The distance of the two says how the error follows
-the tolerance on this scene, and so at which tolerance to try next. A trial is returned when its
-error is at most the one asked for, and the second run is known to be the better of the two:
+moved by some last bits, and its steps are others. The distance of the two says how the error
+follows the tolerance on this scene, and so at which tolerance to try next. A trial is returned when
+its error is at most the one asked for, and the second run is known to be the better of the two:
 
 * by another trial, at a different tolerance, whose error is to the first one's as their tolerances
   let expect: then the second run's is smaller by as much; or
@@ -186,7 +186,7 @@ def _scale_before_it_grew(runs: Trials, trial: Made, second: Made) -> float:
     if not until or trial.scale >= NOTHING_IN_COMMON:
         return farther
     whole = trial.solution._run.t_reached - begin
-    grown = (trial.scale / NOTHING_IN_COMMON) ** (whole / until)
+    grown = (trial.scale / NOTHING_IN_COMMON) ** float(whole / until)
     return min(farther, max(AIM * runs.error * grown, farther / FARTHER))
 
 

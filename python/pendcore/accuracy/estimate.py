@@ -4,13 +4,14 @@
 The run is compared with second runs that are better by a factor which is known, for they
 are compared with each other as well: they take another method where one can carry the scene, have
 tolerances a hundredth and less, other steps, and each has its constants and its start moved by a
-few last bits of its own (`pendcore.accuracy.rounding`). With runs r_1, r_2, ... the error is at most
+few last bits of its own (`pendcore.accuracy.rounding`). With runs r_1, r_2, ... the error is at
+most
 
     max_i |run - r_i| + max_ij |r_i - r_j|
 
 if the best of them is no worse than the distance of the others from it. In a chaotic motion all
-that is off is off along one direction, so that two errors of one size may cancel; several runs, each
-moved another way, do not all agree with one that is wrong.
+that is off is off along one direction, so that two errors of one size may cancel; several runs,
+each moved another way, do not all agree with one that is wrong.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ from pendcore.accuracy.position_error import (
     times_within_steps,
 )
 from pendcore.accuracy.rounding import moved
-from pendcore.accuracy.run import Choice, run, start_of, tightened
+from pendcore.accuracy.run import Choice, Start, run, start_of, tightened
 from pendcore.arguments import Floats, number, time_limit_of
 from pendcore.progress import Progress, callback, close
 from pendcore.solution import Solution
@@ -235,7 +236,7 @@ def other_steps(solution: Solution, max_step: float) -> float:
     stats, run = solution.stats, solution._run
     if stats.limited_by_max_step:
         max_step = min(max_step, OTHER_STEPS * stats.max_step)
-    span = abs(run.t_reached - run.arguments["t_start"])
+    span = float(abs(run.t_reached - run.arguments["t_start"]))
     if 2 * stats.limited_by_tolerance > stats.accepted >= LEAST_STEPS or not span:
         return max_step
     return min(max_step, OTHER_STEPS * span / max(stats.accepted, 1))

@@ -38,9 +38,9 @@ _DIGITS = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
 def cheapest(start: Start, error: float) -> str:
     """Return the method that takes the least work for an error as a rule, if nothing is stiff."""
     share = SERIES_TO_DOP853 * series_work(start.scene, 1e-3)
-    if error < next((below for most, below in TAYLOR_BELOW if share <= most), 0.0):
-        if carries("taylor", start):
-            return "taylor"
+    below = next((error for most, error in TAYLOR_BELOW if share <= most), 0.0)
+    if error < below and carries("taylor", start):
+        return "taylor"
     is_loose = error > DOPRI5_ABOVE.get(len(start.scene.links), DOPRI5_ABOVE_ELSE)
     return "dopri5" if is_loose else "dop853"
 

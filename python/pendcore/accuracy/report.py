@@ -135,9 +135,7 @@ class AccuracyError(ArithmeticError):
         none can.
     """
 
-    def __init__(
-        self, message: str, solution: Solution | None = None, least: float = inf
-    ) -> None:
+    def __init__(self, message: str, solution: Solution | None = None, least: float = inf) -> None:
         super().__init__(message)
         self.solution = solution
         self.least = least
