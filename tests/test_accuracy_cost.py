@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pendcore as pc
 import pytest
-from pendcore.accuracy.position_error import distances, position_error, time_grid
+from pendcore.accuracy.position_error import distances, time_grid
 from pendcore.accuracy.run import Start
 from pendcore.cli import main
 from pendcore.cost.point import Point, front, seconds_at

@@ -6,9 +6,9 @@ CONTRIBUTING.md, "Add a method", step 4, says what they are for.
 from __future__ import annotations
 
 import pytest
-from pendcore.accuracy.trials import IMPLICIT
 from pendcore.accuracy.methods import ERROR_OVER_RTOL, MOST_ACCURATE
 from pendcore.accuracy.run import known_methods
+from pendcore.accuracy.trials import IMPLICIT
 from pendcore.views.accuracy_cost import STYLES
 
 METHODS = known_methods()

@@ -31,16 +31,16 @@ from typing import TYPE_CHECKING, Any
 
 from pendcore import effects, events
 from pendcore._core import __version__
+from pendcore.accuracy.defect import Defect
+from pendcore.accuracy.estimate import ErrorEstimate
 from pendcore.accuracy.report import Accuracy, AccuracyError
 from pendcore.angles import angles_from_vertical, angles_to_vertical
 from pendcore.archive import load
 from pendcore.case import Case
 from pendcore.case_file import read_case
 from pendcore.cost import AccuracyCost, accuracy_cost
-from pendcore.accuracy.defect import Defect
 from pendcore.energy import Energy, Ledger
 from pendcore.explanation import Explanation
-from pendcore.accuracy.estimate import ErrorEstimate
 from pendcore.horizon.lyapunov import LyapunovExponents, lyapunov
 from pendcore.horizon.work import HorizonWork, horizon_work
 from pendcore.largest_reactions import LargestReaction

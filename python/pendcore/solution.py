@@ -28,10 +28,10 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.lines import Line2D
 
-    from pendcore.accuracy.report import Accuracy
-    from pendcore.case import Case
     from pendcore.accuracy.defect import Defect
     from pendcore.accuracy.estimate import ErrorEstimate
+    from pendcore.accuracy.report import Accuracy
+    from pendcore.case import Case
     from pendcore.horizon.lyapunov import LyapunovExponents
 
 

@@ -21,7 +21,7 @@ from math import inf, log
 from typing import Any
 
 from pendcore.accuracy.estimate import ErrorEstimate
-from pendcore.accuracy.methods import ERROR_OVER_RTOL, LOOSEST, cheapest
+from pendcore.accuracy.methods import LOOSEST, cheapest
 from pendcore.accuracy.report import AccuracyError
 from pendcore.accuracy.run import Start, pair_of
 from pendcore.accuracy.trials import Made, Trials, leading
@@ -186,7 +186,7 @@ def _scale_before_it_grew(runs: Trials, trial: Made, second: Made) -> float:
     if not until or trial.scale >= NOTHING_IN_COMMON:
         return farther
     whole = trial.solution._run.t_reached - begin
-    grown = (trial.scale / NOTHING_IN_COMMON) ** float(whole / until)
+    grown: float = (trial.scale / NOTHING_IN_COMMON) ** float(whole / until)
     return min(farther, max(AIM * runs.error * grown, farther / FARTHER))
 
 
@@ -214,7 +214,7 @@ def _share(runs: Trials, trial: Made, second: Made) -> float:
         if 1 / least < ratio < least or second not in _better_than(runs, other):
             continue
         apart = runs.distance(other, second)
-        if 0 < min(own, apart) and max(own, apart) < NOTHING_IN_COMMON:
+        if min(own, apart) > 0 and max(own, apart) < NOTHING_IN_COMMON:
             exponent = log(apart / own) / log(ratio)
             if 0 < exponent <= most:
                 trusted = CAUTION * min(exponent, 1.0)

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from pendcore.accuracy.estimate import ErrorEstimate, error_estimate
 from pendcore.accuracy.run import (
     Choice,
     Start,
@@ -28,7 +29,6 @@ from pendcore.accuracy.run import (
     run,
 )
 from pendcore.arguments import known_keywords, number, numbers, time_limit_of, time_span
-from pendcore.accuracy.estimate import ErrorEstimate, error_estimate
 from pendcore.horizon.lyapunov import LyapunovExponents, lyapunov
 from pendcore.progress import Progress, callback, close
 from pendcore.scene import Scene
