@@ -104,7 +104,7 @@ ERROR_WORKERS ?= 2
 test-error: $(DONE)/installed $(DONE)/error-requirements  ## true errors (SEEDS, FAMILIES) against references of more digits
 	PYTHONPATH=tests python -m true_error.campaign --seeds $(SEEDS) $(FAMILIES:%=--family %) \
 	    --workers $(ERROR_WORKERS) --output out/true_error/scenes.json \
-	    --record out/true_error/record.json
+	    --record $(or $(RECORD),out/true_error/record.json) $(PAGE:%=--page %)
 
 SECONDS_EACH ?= 60
 fuzz-readers: $(DONE)/installed $(DONE)/fuzz-requirements  ## damaged files and pickles, by coverage

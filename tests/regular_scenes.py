@@ -38,7 +38,7 @@ class Regular:
         return time_grid(*self.arguments[3])
 
     def run(self, **options: Any) -> pc.Solution:
-        return pc.simulate(*self.arguments, t_eval=self.times, check=False, **options)
+        return pc.simulate(*self.arguments, t_eval=self.times, **options)
 
     def error_of(self, solution: pc.Solution) -> float:
         """Measure against a method that is not the solution's."""

@@ -5,7 +5,9 @@ The whole of it is `make test-error`.
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -48,6 +50,13 @@ def test_the_scenes_are_of_every_kind() -> None:
         assert any(one.t_start for one in drawn)
         goes_back = any(one.t_end < one.t_start for one in drawn)
         assert goes_back == (family not in ("contact", "stiff"))
+
+
+def test_the_page_shows_the_record() -> None:
+    docs = Path(__file__).parents[1] / "docs"
+    record = json.loads((docs / "true_error.json").read_text())
+    assert report.markdown(record) in (docs / "accuracy_cost.md").read_text()
+    assert set(record["families"]) == set(FAMILIES)
 
 
 # A deliberate mistake of each sort is seen -----------------------------------------------------

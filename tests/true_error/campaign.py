@@ -26,7 +26,9 @@ from tqdm import tqdm
 
 from true_error.families import FAMILIES
 from true_error.judge import SECONDS, Verdict, judged
-from true_error.report import broken, offenders, record_of, table
+from true_error.report import broken, markdown, offenders, record_of, table
+
+BEGIN, END = "<!-- true error: begin -->\n", "<!-- true error: end -->"
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -38,6 +40,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--seconds", type=float, default=SECONDS, help="for each answer of a scene")
     parser.add_argument("--output", type=Path, help="JSON with a verdict for each scene")
     parser.add_argument("--record", type=Path, help="JSON with what the families came to")
+    parser.add_argument("--page", type=Path, help="the page that shows what they came to")
     asked = parser.parse_args(arguments)
     began = time.monotonic()
     names = asked.family or list(FAMILIES)
@@ -60,6 +63,8 @@ def main(arguments: list[str] | None = None) -> int:
         if path:
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(json.dumps(content, indent=1) + "\n")
+    if asked.page:
+        _write_page(asked.page, markdown(record))
     failures = [f"{name}: {claim}" for name, of_it in found.items() for claim in broken(of_it)]
     print(*failures, sep="\n")
     return 1 if failures else 0
@@ -88,6 +93,11 @@ def of_case(case: tuple[str, int, float]) -> Verdict:
     """Return what became of the scene of a family's seed."""
     family, seed, seconds = case
     return judged(FAMILIES[family](seed), seconds=seconds)
+
+
+def _write_page(page: Path, shown: str) -> None:
+    before, _, rest = page.read_text().partition(BEGIN)
+    page.write_text(before + BEGIN + shown + END + rest.partition(END)[2])
 
 
 def _by_scene(found: dict[str, list[Verdict]]) -> list[dict[str, Any]]:

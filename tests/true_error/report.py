@@ -110,6 +110,22 @@ def times(value: float | None, asked: float) -> str:
     return "?" if value is None else f"{value / asked:.3g}x"
 
 
+def markdown(record: dict[str, Any]) -> str:
+    """Return what the page shows of a record: a row for each family."""
+    names = ["scenes", "kept", "above", "late", "refused", "ended_early", "unverified"]
+    names += ["exceptions", "no_reference"]
+    heads = ["family", *(name.replace("_", " ") for name in names)]
+    heads += ["true / asked, median", "largest"]
+    lines = [f"| {' | '.join(heads)} |", "|---|" + "--:|" * (len(heads) - 1)]
+    for family, of_it in record["families"].items():
+        shares = [f"{of_it['ratios'][share]:.2f}" for share in ("50", "100")]
+        cells = [family, *(str(of_it[name]) for name in names), *shares]
+        lines.append(f"| {' | '.join(cells)} |")
+    first, end = record["seeds"]
+    lines.append(f"\nSeeds {first} to {end - 1} of each family, {record['date']}.")
+    return "\n".join(lines) + "\n"
+
+
 def table(record: dict[str, Any]) -> str:
     """Return the families side by side."""
     families = record["families"]
