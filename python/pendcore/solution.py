@@ -222,11 +222,10 @@ class Solution:
     def error(self, *, time_limit: float | None = None, progress: Progress = None) -> ErrorEstimate:
         """Estimate the error over time from independent second runs, made when first asked for.
 
-        They are of another method, at tolerances a hundredth and a thousandth of this run's, with
-        constants and start moved by some last bits, and go on until they have nothing to do with it
-        any more. If a default run has changed over to ``"radau5"``, they are ``"radau5"`` too, with
-        other tolerances, steps and starts. For a run with an ``error`` that was asked for, the
-        estimate is the one that verified it.
+        They are of another method (of ``"radau5"`` too if a default run has changed over to it), at
+        tolerances a hundredth and less of this run's, with constants and start moved by some last
+        bits, and go on until they have nothing to do with it any more. For a run with an ``error``
+        that was asked for, the estimate is the one that verified it.
 
         Parameters
         ----------
@@ -237,15 +236,13 @@ class Solution:
 
         Returns
         -------
-        pendcore.accuracy.estimate.ErrorEstimate
-            ``.t`` (n_t,), s, ``.angle`` (n_t,), rad, ``.position`` (n_t,), a share of the total
-            length.
+        ErrorEstimate
+            ``.t`` (n_t,), s, ``.angle``, rad, ``.position``, a share of the total length.
 
         Raises
         ------
         KeyboardInterrupt, or any exception of ``progress`` or of an effect's function
-            With what was found so far as the attribute ``estimate``, if there was anything, and
-            this very run as ``solution``.
+            With what was found so far as the attribute ``estimate``, and this run as ``solution``.
         """
         from pendcore.accuracy.estimate import error_estimate
 
