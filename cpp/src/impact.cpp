@@ -9,84 +9,121 @@
 namespace pendcore {
 namespace {
 
-/// Joints that throw each other back may strike for ever at one time, ever more slowly: the last
-/// impact leaves all of them at their stops, or leaving.
-constexpr int most_at_once = 100;
+/// Joints that throw each other back strike in turn at one time, as often as the angle between
+/// their stops in the metric M says, or for ever, ever more slowly: by then below all rounding.
+constexpr int most_at_once = 10'000;
 
 }  // namespace
 
-bool HeldJoints::strikes(int joint, const double* q, const double* qd) const {
-  return static_cast<double>(contact(joint, q)) * relative(qd, joint + 1) * direction_ > 0.0;
+double HeldJoints::into(int joint, const double* q, const double* qd) const {
+  return static_cast<double>(contact(joint, q)) * direction_ * relative(qd, joint + 1);
 }
 
-bool HeldJoints::any_strikes(const double* q, const double* qd) const {
-  for (int j = 0; j < n_; ++j) {
-    if (strikes(j, q, qd)) return true;
-  }
-  return false;
+double HeldJoints::fastest_strike(const double* q, const double* qd) const {
+  double fastest = 0.0;
+  for (int j = 0; j < n_; ++j) fastest = std::max(fastest, into(j, q, qd));
+  return fastest;
 }
 
 Impact HeldJoints::strike(const EquationsOfMotion& equations, double t, const double* q, double* qd,
                           bool is_plastic) {
   const std::vector<double> before(qd, qd + n_);
   forces_.set_mass_matrix(q);
+  std::ranges::fill(captured_, 0);
   std::ranges::fill(bounced_, 0);
   Impact impact;
-  for (int i = 1; i <= most_at_once; ++i) {
-    const bool is_last = i == most_at_once;
-    impact.loss += strike_once(q, qd, is_plastic || is_last, is_last);
-    if (has_failed_ || !any_strikes(q, qd)) break;
+  const double rounding = epsilon * fastest_strike(q, qd);
+  for (int i = 1; i <= most_at_once && !has_failed_; ++i) {
+    const double speed = fastest_strike(q, qd);
+    if (speed == 0.0) break;
+    const bool is_last = i == most_at_once || speed <= rounding;
+    impact.loss += is_last ? stay_at_stops(q, qd) : bounce_once(q, qd, is_plastic);
+    if (is_last) break;
   }
-  std::vector<double> change(n_);
-  for (int i = 0; i < n_; ++i) change[i] = qd[i] - before[i];
-  impact.work_of_drive = work_of_drive(equations, t, change.data());
+  impact.work_of_drive = work_of_drive(equations, t, before, qd);
   return impact;
 }
 
-/// All joints that do not leave their stops, or all that touch them; what it took of the energy.
-double HeldJoints::strike_once(const double* q, double* qd, bool is_plastic, bool all) {
+Impact HeldJoints::stop_captured(const EquationsOfMotion& equations, double t, const double* q,
+                                 double* qd) {
+  const std::vector<double> before(qd, qd + n_);
+  forces_.set_mass_matrix(q);
+  Impact impact;
+  impact.loss = stay_at_stops(q, qd);
+  impact.work_of_drive = work_of_drive(equations, t, before, qd);
+  return impact;
+}
+
+/// A row of the problem for each joint that is locked or takes part: what it would do without
+/// impulses, and which of them its stop can give.
+template <class TakesPart>
+void HeldJoints::set_up_impact(const double* q, const double* qd, TakesPart takes_part) {
   std::vector<int>& joints = forces_.joints;
   ForcesBetweenBounds& problem = forces_.problem;
-  auto into = [&](int j) {  // the stop
-    return static_cast<double>(contact(j, q)) * direction_ * relative(qd, j + 1);
-  };
   joints.clear();
   for (int j = 0; j < n_; ++j) {
     const bool touches = contact(j, q) != Side::none;
-    const bool takes_part = all || is_captured(j) || into(j) >= 0.0;
-    if (supports_[j].is_locked || (touches && takes_part)) joints.push_back(j);
+    if (supports_[j].is_locked || (touches && takes_part(j))) joints.push_back(j);
   }
   forces_.set_up();
-  std::vector<double> before(joints.size());
   for (int r = 0; r < problem.size; ++r) {
     const int j = joints[r];
     const Side side = contact(j, q);
-    const Stop& stop = supports_[j].stop(side);
     const bool must_stay = supports_[j].is_locked || is_captured(j);
-    const bool bounces = !must_stay && !is_plastic && stop.restitution > 0.0 && into(j) > 0.0 &&
-                         into(j) >= stop.capture_speed;
-    before[r] = direction_ * relative(qd, j + 1);
-    problem.a[r] = before[r] + (bounces ? stop.restitution * before[r] : 0.0);
+    problem.a[r] = direction_ * relative(qd, j + 1);
     problem.lower[r] = must_stay || side == Side::upper ? -never : 0.0;
     problem.upper[r] = must_stay || side == Side::lower ? never : 0.0;
-    bounced_[j] = bounces ? 1 : 0;
   }
+}
+
+/// The impulses, and the rates after them, exactly zero where a joint is stopped and where rounding
+/// would leave it going into its stop; what they took of the energy. `before` are the rates of the
+/// rows.
+double HeldJoints::solve_impact(const std::vector<double>& before, const double* q, double* qd) {
+  const ForcesBetweenBounds& problem = forces_.problem;
   solve();
   std::vector<double> change(n_, 0.0);
   forces_.add_response(change.data());
   for (int i = 0; i < n_; ++i) qd[i] += direction_ * change[i];
   double loss = 0.0;
   for (int r = 0; r < problem.size; ++r) {
-    const int j = joints[r];
-    if (bounced_[j] == 0 && problem.at[r] == Bound::between) set_relative(qd, j + 1, 0.0);
+    const int j = forces_.joints[r];
+    const bool stops = bounces_[r] == 0 && problem.at[r] == Bound::between;
+    if (stops || into(j, q, qd) > 0.0) set_relative(qd, j + 1, 0.0);
     loss -= 0.5 * problem.lambda[r] * (before[r] + direction_ * relative(qd, j + 1));
   }
-  return loss;
+  return std::max(loss, 0.0);  // rounding may give to an elastic one
 }
 
-/// What moves the pivot does work against the impulses at it, J; of a change of the rates.
+/// Newton's law for all joints that do not leave their stops; what it took of the energy.
+double HeldJoints::bounce_once(const double* q, double* qd, bool is_plastic) {
+  set_up_impact(q, qd, [&](int j) { return into(j, q, qd) >= 0.0; });
+  ForcesBetweenBounds& problem = forces_.problem;
+  const std::vector<double> before = problem.a;
+  bounces_.assign(before.size(), 0);
+  for (int r = 0; r < problem.size; ++r) {
+    const int j = forces_.joints[r];
+    const Stop& stop = supports_[j].stop(contact(j, q));
+    const double speed = into(j, q, qd);
+    const bool bounces = !supports_[j].is_locked && !is_plastic && stop.restitution > 0.0 &&
+                         speed > 0.0 && speed >= stop.capture_speed;
+    bounced_[j] = bounces_[r] = bounces ? 1 : 0;
+    if (bounces) problem.a[r] += stop.restitution * before[r];
+  }
+  return solve_impact(before, q, qd);
+}
+
+/// Joints that are captured stop, and no other one moves into its stop; what it took of the energy.
+double HeldJoints::stay_at_stops(const double* q, double* qd) {
+  set_up_impact(q, qd, [](int) { return true; });
+  const std::vector<double> before = forces_.problem.a;
+  bounces_.assign(before.size(), 0);
+  return solve_impact(before, q, qd);
+}
+
+/// What moves the pivot does work against the impulses at it, J, as the rates change.
 double HeldJoints::work_of_drive(const EquationsOfMotion& equations, double t,
-                                 const double* change) const {
+                                 const std::vector<double>& before, const double* after) const {
   EffectsInForce& effects = *equations.effects;
   if (effects.pivots.empty()) return 0.0;
   double x, y;
@@ -94,7 +131,7 @@ double HeldJoints::work_of_drive(const EquationsOfMotion& equations, double t,
   effects.pivot_velocity(t, x, y);
   double work = 0.0;
   for (int i = 0; i < n_; ++i) {
-    const double moment = forces_.inertia.first_moment[i] * change[i];
+    const double moment = forces_.inertia.first_moment[i] * (after[i] - before[i]);
     work += moment * (y * forces_.cosine[i] - x * forces_.sine[i]);
   }
   return work;

@@ -53,7 +53,7 @@ bool Switching::begin(double t, double* y, bool forward) {
   for (const Lock& lock : effects_of<Lock>(scene_)) {
     joints_.lock(lock.joint - 1, lock.angle.value_or(relative(y, lock.joint)), y);
   }
-  const bool strikes = joints_.any_strikes(y, y + n_);
+  const bool strikes = joints_.fastest_strike(y, y + n_) > 0.0;
   if (strikes) {
     strike(t, y);
   } else {

@@ -13,23 +13,27 @@ namespace pendcore {
 void Switching::strike(double t, double* y) {
   double* const qd = y + n_;
   const std::vector<double> before(qd, qd + n_);
-  joints_.forget_captures();
-  Impact impact;
-  do {
-    std::ranges::copy(before, qd);
-    impact = joints_.strike(equations_, t, y, qd, changes_at_once_ > many_at_once);
-    choose_modes_from(t, y, qd);
-    joints_.choose(equations_, t, y, qd);
-    choose_sides(t, y, qd);
-  } while (capture(t, y, qd));
+  Impact impact = joints_.strike(equations_, t, y, qd, changes_at_once_ > many_at_once);
+  set_out(t, y);
+  while (capture(t, y, qd)) {
+    const Impact last = joints_.stop_captured(equations_, t, y, qd);
+    impact.loss += last.loss;
+    impact.work_of_drive += last.work_of_drive;
+    set_out(t, y);
+  }
   if (joints_.has_failed()) std::ranges::copy(before, qd);
   book(Account::impact, impact.loss, y);
   book(Account::drive, impact.work_of_drive, y);
 }
 
+void Switching::set_out(double t, const double* y) {
+  choose_modes_from(t, y, y + n_);
+  joints_.choose(equations_, t, y, y + n_);
+  choose_sides(t, y, y + n_);
+}
+
 /// Whether there are joints that leave a stop and are pushed back, and are there again before time
-/// can resolve it, or did not bounce there and are slower than the capture speed: they are left at
-/// the stop.
+/// can resolve it, or did not bounce there and are slower than the capture speed.
 bool Switching::capture(double t, const double* q, const double* qd) {
   bool any = false;
   std::vector<double> qdd(n_);

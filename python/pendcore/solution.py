@@ -58,12 +58,9 @@ class Solution:
         accuracy: Accuracy | None = None,
         error: ErrorEstimate | None = None,
     ) -> None:
-        self.scene = scene
-        self.name = name
-        self._run = run
+        self.scene, self._run, self.name = scene, run, name
+        self._accuracy, self._error = accuracy, error
         self._events: list[list[Found]] | None = None
-        self._error = error
-        self._accuracy = accuracy
 
     @property
     def t(self) -> Floats:
@@ -231,8 +228,7 @@ class Solution:
         ----------
         time_limit : float, optional
             s of the clock, > 0, after which the estimate ends where it is.
-        progress
-            As in `simulate`.
+        progress : as in `simulate`
 
         Returns
         -------
@@ -368,7 +364,7 @@ class Solution:
 
     def __reduce__(self) -> tuple[object, ...]:
         # The scene first: it says best that it cannot be pickled, if it cannot.
-        rest = (self._run, self.name, self._accuracy, self._verified_error())
+        rest = self._run, self.name, self._accuracy, self._verified_error()
         return type(self), (self.scene, *rest)
 
     def __deepcopy__(self, memo: object) -> Solution:
@@ -376,7 +372,7 @@ class Solution:
         return Solution(self.scene, self._run, self.name, self._accuracy, self._verified_error())
 
     def _verified_error(self) -> ErrorEstimate | None:
-        """Return the estimate behind `accuracy`; another one is made anew where it is asked for."""
+        """Return the estimate behind `accuracy`; another is made anew where it is asked for."""
         return None if self._accuracy is None else self._error
 
     def __repr__(self) -> str:

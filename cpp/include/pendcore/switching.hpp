@@ -93,6 +93,7 @@ class Switching final : public Breaks {
   double shortest_moment(double t) const;  ///< s, that time resolves
   void choose(double t, const double* y, int joint);
   void strike(double t, double* y);
+  void set_out(double t, const double* y);
   bool capture(double t, const double* q, const double* qd);
   void count_at_once(double t);
   bool is_at_its_border(int joint, double t, const double* y) const;

@@ -89,19 +89,21 @@ class HeldJoints {
   /// The stop that a joint touches.
   Side contact(int joint, const double* q) const;
 
-  /// Whether a joint that touches a stop moves into it.
-  bool strikes(int joint, const double* q, const double* qd) const;
-  bool any_strikes(const double* q, const double* qd) const;
-
-  /// Joints that the next impact leaves at their stops, whatever it takes.
-  void forget_captures() { captured_.assign(captured_.size(), 0); }
-  void capture(int joint) { captured_[joint] = 1; }
-  bool is_captured(int joint) const { return captured_[joint] != 0; }
-  bool has_bounced(int joint) const { return bounced_[joint] != 0; }  ///< in the last impact
+  /// How fast a joint that touches a stop moves into it, rad/s; 0 where it touches none.
+  double into(int joint, const double* q, const double* qd) const;
+  /// The fastest of those that do, or 0.
+  double fastest_strike(const double* q, const double* qd) const;
 
   /// `qd` becomes what it is after the impact. Without restitution if `is_plastic`.
   Impact strike(const EquationsOfMotion& equations, double t, const double* q, double* qd,
                 bool is_plastic);
+  bool has_bounced(int joint) const { return bounced_[joint] != 0; }  ///< in the last impact
+
+  /// A joint that leaves its stop after an impact, and is to stay there.
+  void capture(int joint) { captured_[joint] = 1; }
+  bool is_captured(int joint) const { return captured_[joint] != 0; }
+  /// The blow after the impact that stops them.
+  Impact stop_captured(const EquationsOfMotion& equations, double t, const double* q, double* qd);
 
   /// Puts held joints exactly where they are held. Whether that changed something.
   bool settle(double* q, double* qd) const;
@@ -117,8 +119,13 @@ class HeldJoints {
   void set_free(EffectsInForce& effects);
   void solve();
   void set_slack(const EquationsOfMotion& equations, double t, const double* q, const double* qd);
-  double strike_once(const double* q, double* qd, bool is_plastic, bool all);
-  double work_of_drive(const EquationsOfMotion& equations, double t, const double* change) const;
+  template <class TakesPart>
+  void set_up_impact(const double* q, const double* qd, TakesPart takes_part);
+  double solve_impact(const std::vector<double>& before, const double* q, double* qd);
+  double bounce_once(const double* q, double* qd, bool is_plastic);
+  double stay_at_stops(const double* q, double* qd);
+  double work_of_drive(const EquationsOfMotion& equations, double t,
+                       const std::vector<double>& before, const double* after) const;
 
   int n_;
   JointForces forces_;
@@ -128,6 +135,7 @@ class HeldJoints {
   double direction_ = 1.0;
   bool has_failed_ = false;
   std::vector<char> captured_, bounced_;
+  std::vector<char> bounces_;  ///< of each row of the problem of an impact
   std::vector<Hold> holds_;
   std::vector<double> held_qdd_, free_qdd_, torque_, size_;
 };

@@ -1,22 +1,36 @@
 /// \file
-/// Impacts of joints on their stops, by HeldJoints::strike (held_joints.hpp).
+/// Impacts of joints on their stops, by HeldJoints (held_joints.hpp) and Switching::strike.
 ///
-/// The problem of joint_forces.hpp in rates phid and impulses Lambda, over the closed stops that no
-/// joint leaves (phid- <= 0, counted positive away from the stop):
+/// With w the rates of joints, positive away from the stop that they touch, and impulses Lambda,
+/// both as in the problem of joint_forces.hpp, two laws follow each other:
 ///
-///     0 <= Lambda,  phid+ + e phid- >= 0,  Lambda (phid+ + e phid-) = 0
+/// 1. Newton's, over the closed stops that no joint leaves (w- <= 0), each with its own e:
 ///
-/// so that it takes sum (1 - e) Lambda |phid-| / 2 >= 0 of the energy, whatever the e. A joint that
-/// was leaving its stop and is thrown back strikes in turn, at the same time. Friction gives no
-/// impulse.
-/// Source: Brogliato, Nonsmooth Mechanics (2016), section 5.2, for one impact.
+///        0 <= Lambda,  w+ + e w- >= 0,  Lambda (w+ + e w-) = 0
+///
+///    e = 0 below the capture speed. A joint that was leaving its stop and is thrown back strikes
+///    in turn, at the same time.
+/// 2. A joint that did not bounce, leaves more slowly than the capture speed and is pushed back is
+///    captured: a last blow stops it, plastic at all closed stops. The rates v+ are the nearest to
+///    v- in |v|^2 = v.M v with w+ = 0 for the captured joints and w+ >= 0 for the others.
+///
+/// Neither adds energy, T+ - T- = Lambda.(w+ + w-)/2. In 1, Lambda_i > 0 only where
+/// w_i+ = -e_i w_i-: the terms of the sum are (1 - e_i) Lambda_i w_i-/2 <= 0, whatever the e, and
+/// w_i+ >= -e_i w_i- >= 0 leads into no stop. In 2, the rates allowed are a convex cone and v+ is
+/// the projection on it: T- - T+ = |v+ - v-|^2/2. Both at one stroke would: a captured joint may
+/// have to be pulled, and bilateral constraints beside contacts of other restitution are what
+/// Glocker finds inconsistent. With one e for all, 1 is Moreau's v+ = (1 + e) v_c - e v-, with v_c
+/// after a plastic impact.
+/// Friction gives no impulse.
+/// Sources: Moreau, in Nonsmooth Mechanics and Applications (1988), for 2 and equal e; Glocker,
+/// Multibody System Dynamics 29 (2013) 77, for which restitutions keep Newton's law consistent.
 #pragma once
 
 namespace pendcore {
 
 /// What an impact took from the chain, and what the drive of the pivot gave in it, J.
 struct Impact {
-  double loss = 0.0;
+  double loss = 0.0;  ///< never negative
   double work_of_drive = 0.0;
 };
 

@@ -1,0 +1,175 @@
+// Impacts at several stops at once, by the hundred thousand: what must hold of each.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "pendcore/dynamics/kinematics.hpp"
+#include "pendcore/switching.hpp"
+
+using namespace pendcore;
+
+namespace {
+
+using Row = std::vector<double>;
+
+/// Rods whose joints are all at a stop, and move any way.
+struct Drawn {
+  Scene scene{.links = {}, .gravity = 9.81};
+  Row q, phid;
+  std::vector<int> sides;  ///< -1 at the lower stop, 1 at the upper one
+
+  int n() const { return static_cast<int>(sides.size()); }
+  JointStop& stop(int j) { return std::get<JointStop>(scene.effects[j]); }
+};
+
+Drawn draw(int n, std::mt19937_64& random) {
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  auto between = [&](double low, double high) { return low + (high - low) * unit(random); };
+  Drawn drawn;
+  double capture = 0.0;
+  for (int j = 0; j < n; ++j) {
+    drawn.scene.links.push_back(Link::uniform_rod(between(0.05, 3.0), between(0.1, 1.5)));
+    drawn.q.push_back((j > 0 ? drawn.q[j - 1] : 0.0) + between(-2.0, 2.0));
+    const double phi = relative(drawn.q.data(), j + 1);
+    drawn.sides.push_back(unit(random) < 0.5 ? -1 : 1);
+    drawn.phid.push_back(unit(random) < 0.2 ? 0.0 : between(-5.0, 5.0));
+    const double rather = between(-0.3, 1.3);  // 0 and 1 as often as not
+    if (j == 0 || unit(random) < 0.7) capture = std::pow(10.0, between(-6.0, 2.0));
+    JointStop stop{.joint = j + 1,
+                   .restitution = std::clamp(rather, 0.0, 1.0),
+                   .capture_speed = unit(random) < 0.2 ? 0.0 : capture};
+    stop.range = drawn.sides[j] < 0 ? std::array{phi, phi + 1.0} : std::array{phi - 1.0, phi};
+    drawn.scene.effects.emplace_back(stop);
+  }
+  return drawn;
+}
+
+Row links(const Row& of_joints) {
+  Row sum(of_joints);
+  for (std::size_t i = 1; i < sum.size(); ++i) sum[i] += sum[i - 1];
+  return sum;
+}
+
+/// Uniform rods: A_ij = L_i a_j for i < j, A_ii = m L^2/3 + L^2 (all the mass beyond).
+double kinetic_energy(const Drawn& drawn, const Row& phid) {
+  const std::vector<Link>& rods = drawn.scene.links;
+  const Row qd = links(phid);
+  long double sum = 0.0;
+  for (std::size_t i = 0; i < rods.size(); ++i) {
+    long double beyond = 0.0;
+    for (std::size_t k = i + 1; k < rods.size(); ++k) beyond += rods[k].mass;
+    const long double L = rods[i].length;
+    sum += (rods[i].mass / 3.0L + beyond) * L * L * qd[i] * qd[i];
+    const long double a = (rods[i].mass / 2.0L + beyond) * L;
+    for (std::size_t k = 0; k < i; ++k) {
+      sum += 2.0L * rods[k].length * a * std::cos(drawn.q[i] - drawn.q[k]) * qd[i] * qd[k];
+    }
+  }
+  return static_cast<double>(sum / 2.0L);
+}
+
+struct Struck {
+  Row phid;     ///< after the impact
+  double loss;  ///< the ledger's entry
+  bool jumped;
+};
+
+Struck strike(const Drawn& drawn) {
+  const int n = drawn.n();
+  const EquationsOfMotion equations = equations_of_motion(drawn.scene);
+  Switching switching(drawn.scene, equations, {Account::impact});
+  Row y(drawn.q);
+  const Row qd = links(drawn.phid);
+  y.insert(y.end(), qd.begin(), qd.end());
+  y.push_back(0.0);
+  const bool jumped = switching.begin(0.0, y.data(), true);
+  REQUIRE_FALSE(switching.is_over());
+  Struck struck{.phid = Row(n), .loss = y.back(), .jumped = jumped};
+  for (int j = 0; j < n; ++j) struck.phid[j] = relative(y.data() + n, j + 1);
+  return struck;
+}
+
+double largest(const Row& row) {
+  double size = 0.0;
+  for (const double x : row) size = std::max(size, std::abs(x));
+  return size;
+}
+
+}  // namespace
+
+TEST_CASE("no impact adds energy or leads out of a stop, whatever restitutions and captures") {
+  std::mt19937_64 random(20240607);
+  int jumps = 0;
+  int captures = 0;
+  for (int i = 0; i < 100'000; ++i) {
+    Drawn drawn = draw(1 + i % 6, random);
+    const Struck struck = strike(drawn);
+    const double before = kinetic_energy(drawn, drawn.phid);
+    const double lost = before - kinetic_energy(drawn, struck.phid);
+    const double rounding = 1e-11 * before;  // of ill-conditioned mass matrices
+    jumps += struck.jumped ? 1 : 0;
+    bool was_captured = false;
+    bool is_right = struck.loss >= 0.0 && std::abs(struck.loss - lost) <= rounding;
+    for (int j = 0; j < drawn.n(); ++j) {
+      is_right = is_right && -drawn.sides[j] * struck.phid[j] >= 0.0;
+      was_captured |= struck.phid[j] == 0.0 && drawn.stop(j).restitution > 0.0;
+    }
+    captures += was_captured ? 1 : 0;
+    if (!is_right)
+      CHECK_MESSAGE(false, "impact " << i << " loses " << lost << ", books " << struck.loss
+                                     << " of " << before << " J");
+  }
+  CHECK(jumps > 70'000);
+  CHECK(captures > 10'000);
+}
+
+TEST_CASE("an impact at one stop is Newton's: the joint turns to e times its rate, or stays") {
+  std::mt19937_64 random(7);
+  for (int i = 0; i < 2000; ++i) {
+    Drawn drawn = draw(1 + i % 6, random);
+    const int joint = i % drawn.n();
+    for (int j = 0; j < drawn.n(); ++j) {
+      if (j == joint) continue;
+      drawn.stop(j).range = {-100.0, 100.0};
+    }
+    drawn.phid[joint] = drawn.sides[joint] * std::abs(drawn.phid[joint]);
+    const double speed = std::abs(drawn.phid[joint]);
+    const JointStop& stop = drawn.stop(joint);
+    const double e = speed < *stop.capture_speed ? 0.0 : stop.restitution;
+    const Struck struck = strike(drawn);
+    const double off = std::abs(struck.phid[joint] + e * drawn.phid[joint]);
+    CHECK(off <= 1e-11 * largest(links(drawn.phid)));
+  }
+}
+
+TEST_CASE("with one restitution for all, an impact goes beyond the plastic one by its share") {
+  std::mt19937_64 random(11);
+  int together = 0;
+  for (int i = 0; i < 4000; ++i) {
+    Drawn drawn = draw(2 + i % 5, random);
+    const double e = drawn.stop(0).restitution;
+    for (int j = 0; j < drawn.n(); ++j) {
+      drawn.stop(j).capture_speed = 0.0;
+      drawn.phid[j] = drawn.sides[j] * std::abs(drawn.phid[j]);  // none leaves its stop
+    }
+    Drawn plastic = drawn;
+    for (int j = 0; j < drawn.n(); ++j) {
+      drawn.stop(j).restitution = e;
+      plastic.stop(j).restitution = 0.0;
+    }
+    const Row after = strike(drawn).phid;
+    const Row compressed = strike(plastic).phid;
+    const double size = 1e-10 * largest(links(drawn.phid));
+    int acting = 0;
+    for (int j = 0; j < drawn.n(); ++j) {
+      acting += compressed[j] == 0.0 ? 1 : 0;
+      const double exact = (1.0 + e) * compressed[j] - e * drawn.phid[j];
+      if (!(std::abs(after[j] - exact) <= size)) CHECK(after[j] == exact);
+    }
+    together += acting > 1 ? 1 : 0;
+  }
+  CHECK(together > 2000);
+}
