@@ -308,7 +308,9 @@ def test_it_has_a_line_of_the_accuracy_that_was_asked_for():
     book = pc.Scene.textbook()
     run = pc.simulate(book, [0.8, 1.0], 0, (0, 1), error=1e-6)
     (line,) = [line for line in str(run).splitlines() if line.startswith("  accuracy ")]
-    assert re.search(r"asked 1.0e-06, achieved \S+ of the total length over the whole curve: verified by ", line)
+    assert re.search(
+        r"asked 1.0e-06, achieved \S+ of the total length over the whole curve: verified by ", line
+    )
     assert "paid" not in line
     assert "accuracy" not in str(pc.simulate(book, [0.8, 1.0], 0, (0, 1)))
 
