@@ -52,7 +52,7 @@ def test_on_200_scenes_no_error_exceeds_the_asked_one(outcomes):
 def test_what_is_told_is_the_error_and_never_less(outcomes):
     shares = [one["error"] / one["told"] for one in outcomes]
     assert max(shares) <= 1
-    assert np.median(shares) > 0.8
+    assert np.median(shares) > 0.7
 
 
 @pytest.mark.unsanitized
