@@ -198,7 +198,6 @@ def test_a_law_that_is_not_smooth_is_never_called_kept():
         how = {"error": 1e-9, "max_steps": 2000, "check": False}
         outcome = pc.simulate(scene, [0.7, 1.0], 0, (0, 0.5), **how).accuracy.outcome
     except pc.AccuracyError as refusal:
-        assert refusal.solution.success
         outcome = refusal.solution.accuracy.outcome
     assert outcome in ("refused", "ended early")
 

@@ -60,9 +60,10 @@ CAUTION = 0.6
 SHARE, SPARE = 0.35, 0.25
 """What the error of a single second run may be, as a share of the distance from it, at most; and
 what is added to that, as methods do not all follow their tolerances alike."""
-SHARE_IF_STIFF = 1.0
-"""The same of several that are as tight as doubles allow, where the scene is stiff: what is left of
-the equations of an implicit step is alike in all of them."""
+ALIKE, SHARE_IF_ALIKE = 20.0, 1.0
+"""By what factor second runs as tight as doubles allow may not be tighter than the trial; then they
+have in common with it as much as they differ by: what an implicit step leaves over, or steps that
+stability sets."""
 ROUNDING = 1.5e-12
 """The scale of an error that constants and start make that are moved, at most.
 
@@ -198,9 +199,8 @@ def _known_error(runs: Trials, trial: Made) -> ErrorEstimate | None:
     better = _better_than(runs, trial)
     count = _tight_runs(trial) or 2
     if len(better) >= count:
-        are_stiff = runs.is_stiff or any(one.solution.stats.stiff for one in (trial, *better))
-        if _tight_runs(trial) and are_stiff:
-            return runs.compared(trial, better[:count], SHARE_IF_STIFF)
+        if trial.rtol < ALIKE * runs.tightest:
+            return runs.compared(trial, better[:count], SHARE_IF_ALIKE)
         return runs.compared(trial, better[:count])
     if _tight_runs(trial) or not better:
         return None
