@@ -14,7 +14,7 @@ import matplotlib as mpl
 import numpy as np
 import pendcore as pc
 import pytest
-from chaotic_starts import chaotic_starts
+from chaotic_starts import EACH, chaotic_starts
 from matplotlib.figure import Figure
 from pendcore.views.horizon import draw_work
 
@@ -234,7 +234,8 @@ def test_the_page_quotes_its_record() -> None:
     between = page.split(horizon.BEGIN)[1].split(horizon.END)[0]
     assert between == horizon.table(found)
     for one in found["trusted"]:
-        assert (np.array(one["valid"]) <= one["right"]).all()
+        next_known = np.array(one["right"]) + 1 / EACH
+        assert (np.array(one["valid"]) < next_known).all()
 
 
 def test_the_lines_of_the_page_run() -> None:
