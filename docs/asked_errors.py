@@ -25,7 +25,7 @@ ROOT = Path(__file__).parents[1]
 sys.path.append(str(ROOT / "tests"))
 from regular_scenes import Regular, regular  # noqa: E402
 
-SCENES = range(200, 400)
+SCENES = range(1000, 1200)
 """Seeds: others served to choose the numbers in `pendcore.accuracy.methods`."""
 ROUNDS = 30
 BEGIN, END = "<!-- asked: begin -->\n", "<!-- asked: end -->"
