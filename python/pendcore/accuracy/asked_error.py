@@ -43,7 +43,7 @@ BETTER, MUCH_BETTER, FAR_BETTER = 25.0, 40.0, 300.0
 series of `taylor`, to which a digit more costs little."""
 BETTER_STILL = 8.0
 """By what factor one more second run is better, which tells how good the first one is."""
-# What is taken for known.
+# When something counts as known.
 NOTHING_IN_COMMON = 0.2
 """A distance beyond says of the error only that it is large."""
 LIKELY = 0.9
