@@ -52,7 +52,7 @@ def kinetic(stops: TouchedStops, qd: Any) -> float:
 
 
 @pytest.mark.parametrize("n", [1, 2, 3, 4])
-def test_a_captured_joint_is_stopped_by_a_blow_of_its_own_after_the_others_have_bounced(
+def test_a_captured_joint_is_stopped_after_the_others_have_bounced(
     n: int,
 ) -> None:
     captures = 0

@@ -83,7 +83,8 @@ int Guards::along_step(int k) {
   const int other = k - breaks_.linear_guards();
   if (other < 0) {
     breaks_.polynomial(k, rows_.data(), degree_, dimension_, polynomial_.data());
-    for (int p = 0; p < breaks_.zeros_at_start(k); ++p) polynomial_[p] = 0.0;
+    const int zeros = breaks_.zeros_at_start(k);
+    for (int p = 0; p < zeros; ++p) polynomial_[p] = 0.0;
     return degree_;
   }
   const int others = breaks_.guards() - breaks_.linear_guards();
@@ -114,7 +115,7 @@ void Guards::interpolate_others(double t, double h) {
   for (int k = 0; k < others; ++k) interpolate(samples_.data() + k, others);
 }
 
-Crossing Guards::first(double t, double h) {
+Crossing Guards::first(double t, double h, bool from_rest_too) {
   Crossing found;
   const int guards = breaks_.guards();
   if (guards == 0) return found;
@@ -123,7 +124,7 @@ Crossing Guards::first(double t, double h) {
   for (int k = 0; k < guards; ++k) {
     const int degree = along_step(k);
     const double theta = first_negative(polynomial_.data(), degree);
-    if (!(theta < found.theta)) continue;
+    if (!(theta < found.theta) || (!from_rest_too && rises_from_rest(k))) continue;
     const Crossing crossing = where_slope_allows({k, theta}, t, h, degree);
     if (crossing.theta < found.theta) found = crossing;
   }
@@ -199,6 +200,24 @@ std::array<double, 3> Guards::start_of(int k) {
   return along;
 }
 
+/// Of a guard that begins at zero: its slope as the law has it or, where that is zero too, its
+/// curvature; 0 where neither tells.
+double Guards::rise_at_start(int k, double h) {
+  const std::array<double, 3> along = start_of(k);
+  for (int order = breaks_.zeros_at_start(k); order <= 2; ++order) {
+    const double rise = order == 1 ? along[1] * h : along[2];
+    if (rise != 0.0) return rise;
+  }
+  return 0.0;
+}
+
+/// What touches its stop at rest, and is pushed away.
+bool Guards::rises_from_rest(int k) {
+  if (k >= breaks_.linear_guards() || breaks_.zeros_at_start(k) == 0) return false;
+  const std::array<double, 3> along = start_of(k);
+  return along[1] == 0.0 && along[2] > 0.0;
+}
+
 bool Guards::falls_at_start(int k, double t, double h, int halvings) {
   if (halvings == most_halvings) return true;
   stepper_.get_state(state_.data());
@@ -207,12 +226,8 @@ bool Guards::falls_at_start(int k, double t, double h, int halvings) {
     const double value = value_at(k, t);  // and first of all, as it knows what it is rounded by
     return value <= breaks_.rounding(k, state_.data());
   }
-  const std::array<double, 3> along = start_of(k);
-  for (int order = zeros; order <= 2; ++order) {
-    const double rise = order == 1 ? along[1] * h : along[2];
-    if (rise != 0.0) return rise < 0.0;
-  }
-  return halvings == halvings_without_sign;
+  const double rise = rise_at_start(k, h);
+  return rise != 0.0 ? rise < 0.0 : halvings == halvings_without_sign;
 }
 
 bool Guards::strays(const Crossing& crossing, double h) {
@@ -232,9 +247,10 @@ bool Guards::is_of_error(const Crossing& crossing, double h) {
 }
 
 bool Guards::goes_below(double theta) {
-  stepper_.get_state(state_.data());
-  for (int k = 0; k < breaks_.linear_guards(); ++k) {
+  const int linear = breaks_.linear_guards();
+  for (int k = 0; k < linear; ++k) {
     if (breaks_.zeros_at_start(k) < 3) continue;
+    stepper_.get_state(state_.data());
     breaks_.polynomial(k, rows_.data(), degree_, dimension_, polynomial_.data());
     polynomial_[0] = polynomial_[1] = 0.0;
     const double least = -breaks_.rounding(k, state_.data());

@@ -1,20 +1,13 @@
-#include "pendcore/dynamics/impact.hpp"
+// The impacts of HeldJoints.
 
 #include <algorithm>
 #include <cmath>
 
 #include "pendcore/dynamics/equations_of_motion.hpp"
+#include "pendcore/dynamics/held_joints.hpp"
 #include "pendcore/dynamics/kinematics.hpp"
 
 namespace pendcore {
-namespace {
-
-/// Joints that throw each other back strike in turn at one time, as often as the angle between
-/// their stops in the metric M says, or for ever, ever more slowly: by then below all rounding.
-constexpr int most_at_once = 10'000;
-
-}  // namespace
-
 double HeldJoints::into(int joint, const double* q, const double* qd) const {
   return static_cast<double>(contact(joint, q)) * direction_ * relative(qd, joint + 1);
 }
@@ -25,33 +18,10 @@ double HeldJoints::fastest_strike(const double* q, const double* qd) const {
   return fastest;
 }
 
-Impact HeldJoints::strike(const EquationsOfMotion& equations, double t, const double* q, double* qd,
-                          bool is_plastic) {
-  const std::vector<double> before(qd, qd + n_);
+void HeldJoints::begin_impact(const double* q) {
   forces_.set_mass_matrix(q);
   std::ranges::fill(captured_, 0);
   std::ranges::fill(bounced_, 0);
-  Impact impact;
-  const double rounding = epsilon * fastest_strike(q, qd);
-  for (int i = 1; i <= most_at_once && !has_failed_; ++i) {
-    const double speed = fastest_strike(q, qd);
-    if (speed == 0.0) break;
-    const bool is_last = i == most_at_once || speed <= rounding;
-    impact.loss += is_last ? stay_at_stops(q, qd) : bounce_once(q, qd, is_plastic);
-    if (is_last) break;
-  }
-  impact.work_of_drive = work_of_drive(equations, t, before, qd);
-  return impact;
-}
-
-Impact HeldJoints::stop_captured(const EquationsOfMotion& equations, double t, const double* q,
-                                 double* qd) {
-  const std::vector<double> before(qd, qd + n_);
-  forces_.set_mass_matrix(q);
-  Impact impact;
-  impact.loss = stay_at_stops(q, qd);
-  impact.work_of_drive = work_of_drive(equations, t, before, qd);
-  return impact;
 }
 
 /// A row of the problem for each joint that is locked or takes part: what it would do without
@@ -95,9 +65,11 @@ double HeldJoints::solve_impact(const std::vector<double>& before, const double*
   return std::max(loss, 0.0);  // rounding may give to an elastic one
 }
 
-/// Newton's law for all joints that do not leave their stops; what it took of the energy.
-double HeldJoints::bounce_once(const double* q, double* qd, bool is_plastic) {
-  set_up_impact(q, qd, [&](int j) { return into(j, q, qd) >= 0.0; });
+double HeldJoints::bounce(const double* q, double* qd, bool is_plastic, bool with_all_at_rest) {
+  set_up_impact(q, qd, [&](int j) {
+    const double speed = into(j, q, qd);
+    return speed > 0.0 || (speed == 0.0 && (with_all_at_rest || is_held(j)));
+  });
   ForcesBetweenBounds& problem = forces_.problem;
   const std::vector<double> before = problem.a;
   bounces_.assign(before.size(), 0);
@@ -113,7 +85,6 @@ double HeldJoints::bounce_once(const double* q, double* qd, bool is_plastic) {
   return solve_impact(before, q, qd);
 }
 
-/// Joints that are captured stop, and no other one moves into its stop; what it took of the energy.
 double HeldJoints::stay_at_stops(const double* q, double* qd) {
   set_up_impact(q, qd, [](int) { return true; });
   const std::vector<double> before = forces_.problem.a;
@@ -121,7 +92,6 @@ double HeldJoints::stay_at_stops(const double* q, double* qd) {
   return solve_impact(before, q, qd);
 }
 
-/// What moves the pivot does work against the impulses at it, J, as the rates change.
 double HeldJoints::work_of_drive(const EquationsOfMotion& equations, double t,
                                  const std::vector<double>& before, const double* after) const {
   EffectsInForce& effects = *equations.effects;

@@ -174,6 +174,7 @@ void run(const Scene& scene, Solution& solution, double t_end, Limits limits, Be
   solution.y_reached = position.y;
   solution.message = ending_message(ending, scene, solution, position,
                                     switching ? switching->remark() : "", recorder.ended_by());
+  if (switching) solution.message += switching->remark_on_impacts();
   solution.message += remark_on_steps(scene, equations, position, find_method(options.method),
                                       stepper->info(), options.step.has_value(), solution.t0);
   solution.error = ending.error;

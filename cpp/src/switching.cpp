@@ -44,6 +44,7 @@ Switching::Switching(const Scene& scene, const EquationsOfMotion& equations,
       n_(static_cast<int>(scene.links.size())),
       joints_(*equations_.held_joints),
       torque_(scene.links.size()),
+      struck_(scene.links.size()),
       let_go_(scene.links.size()) {}
 
 bool Switching::begin(double t, double* y, bool forward) {
@@ -55,7 +56,7 @@ bool Switching::begin(double t, double* y, bool forward) {
   }
   const bool strikes = joints_.fastest_strike(y, y + n_) > 0.0;
   if (strikes) {
-    strike(t, y);
+    strike(t, y, true);
   } else {
     joints_.choose(equations_, t, y, y + n_);
     choose_sides(t, y, y + n_);
@@ -215,7 +216,7 @@ bool Switching::reach_stop(int k, double t, double* y) {
   }
   // Or it was leaving, and is back too soon to be told: captured.
   const std::vector<double> before(qd, qd + n_);
-  strike(t, y);
+  strike(t, y, false);
   return !std::equal(before.begin(), before.end(), qd);
 }
 
@@ -302,6 +303,9 @@ std::vector<double> Switching::memory() const {
   std::vector<double> memory(modes.begin(), modes.end());
   memory.push_back(time_of_change_);
   memory.push_back(changes_at_once_);
+  memory.push_back(order_lost_);
+  memory.push_back(time_of_impact_);
+  memory.insert(memory.end(), struck_.begin(), struck_.end());
   memory.insert(memory.end(), let_go_.begin(), let_go_.end());
   const std::vector<double> holds = joints_.memory();
   memory.insert(memory.end(), holds.begin(), holds.end());
@@ -315,14 +319,19 @@ void Switching::restore(const std::vector<double>& memory, double t, const doubl
   joints_.set_direction(forward);
   const std::size_t effects = scene_.effects.size();
   const std::size_t joints = scene_.links.size();
-  require(memory.size() >= effects + 2 + (1 + HeldJoints::numbers_in_memory) * joints);
+  require(memory.size() >= effects + 4 + (2 + HeldJoints::numbers_in_memory) * joints);
   for (std::size_t i = 0; i < effects; ++i) put_mode(i, whole(memory[i], -1, INT_MAX));
   is_over_ = std::ranges::any_of(
       scene_.effects, [&](const Effect& one) { return is_outside_table(one, t, forward_); });
-  std::size_t from = joints_.restore(*equations_.effects, memory, effects + 2 + joints);
+  std::size_t from = joints_.restore(*equations_.effects, memory, effects + 4 + 2 * joints);
   time_of_change_ = memory[effects];
   changes_at_once_ = whole(memory[effects + 1], 0, INT_MAX);
-  for (std::size_t j = 0; j < joints; ++j) let_go_[j] = whole(memory[effects + 2 + j], -1, 1);
+  order_lost_ = memory[effects + 2];
+  time_of_impact_ = memory[effects + 3];
+  for (std::size_t j = 0; j < joints; ++j) {
+    struck_[j] = whole(memory[effects + 4 + j], 0, 1);
+    let_go_[j] = whole(memory[effects + 4 + joints + j], -1, 1);
+  }
   collect_guards(y);
   require(memory.size() == from + guards_.size());
   for (Watch& watch : guards_) watch.zeros_at_start = whole(memory[from++], 0, 3);

@@ -103,11 +103,10 @@ double Switching::rounding(int k, const double* y) const {
 
 void Switching::polynomial(int k, const double* rows, int degree, int dimension,
                            double* coefficients) const {
-  const Guard& g = guards_[k].guard;
+  const Guard g = guards_[k].guard;
   const int joint = guards_[k].joint + 1;
-  for (int p = 0; p <= degree; ++p) {
-    const double* const row = rows + static_cast<std::ptrdiff_t>(p) * dimension;
-    coefficients[p] = g.on_phi * relative(row, joint) + g.on_phid * relative(row + n_, joint);
+  for (int p = 0; p <= degree; ++p, rows += dimension) {
+    coefficients[p] = g.on_phi * relative(rows, joint) + g.on_phid * relative(rows + n_, joint);
   }
   coefficients[0] += g.offset;
 }

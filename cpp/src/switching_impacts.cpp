@@ -3,27 +3,79 @@
 #include <cmath>
 
 #include "pendcore/arithmetic/epsilon.hpp"
+#include "pendcore/dynamics/impact.hpp"
 #include "pendcore/dynamics/kinematics.hpp"
+#include "pendcore/message.hpp"
 #include "pendcore/switching.hpp"
 
 namespace pendcore {
-
 /// An impact, and what the joints do after it: rates have jumped, so that every law that has sides
 /// may be on another one.
-void Switching::strike(double t, double* y) {
+void Switching::strike(double t, double* y, bool begins) {
   double* const qd = y + n_;
   const std::vector<double> before(qd, qd + n_);
-  Impact impact = joints_.strike(equations_, t, y, qd, changes_at_once_ > many_at_once);
-  set_out(t, y);
+  joints_.begin_impact(y);
+  double loss = bounce_in_turn(t, y, begins);
   while (capture(t, y, qd)) {
-    const Impact last = joints_.stop_captured(equations_, t, y, qd);
-    impact.loss += last.loss;
-    impact.work_of_drive += last.work_of_drive;
+    loss += joints_.stay_at_stops(y, qd);
     set_out(t, y);
   }
+  if (loses_order_ && any_struck_leaves(y) && std::isnan(order_lost_)) order_lost_ = t;
   if (joints_.has_failed()) std::ranges::copy(before, qd);
-  book(Account::impact, impact.loss, y);
-  book(Account::drive, impact.work_of_drive, y);
+  book(Account::impact, loss, y);
+  book(Account::drive, joints_.work_of_drive(equations_, t, before, qd), y);
+}
+
+/// Impacts at one time until no joint moves into its stop; what they take of the energy. Joints at
+/// rest that nothing pushes on their stops are leaving them, as far as more exact numbers could
+/// tell; where a run begins, all that touch their stops share the first impacts.
+double Switching::bounce_in_turn(double t, double* y, bool begins) {
+  double* const qd = y + n_;
+  const bool is_plastic = changes_at_once_ > many_at_once;
+  const double rounding = epsilon * joints_.fastest_strike(y, qd);
+  loses_order_ = false;
+  if (!(std::abs(t - time_of_impact_) <= shortest_moment(t))) std::ranges::fill(struck_, 0);
+  time_of_impact_ = t;
+  double loss = 0.0;
+  for (int i = 1; i <= most_impacts_at_once && !joints_.has_failed(); ++i) {
+    const double speed = joints_.fastest_strike(y, qd);
+    if (speed == 0.0) break;
+    const bool is_last = i == most_impacts_at_once || speed <= rounding;
+    if (!begins) loses_order_ |= loses_order_of(y);
+    loss += is_last ? joints_.stay_at_stops(y, qd) : joints_.bounce(y, qd, is_plastic, begins);
+    set_out(t, y);
+    if (is_last) break;
+  }
+  return loss;
+}
+
+/// Whether the order cannot be told of what strikes now and has struck at this time: in a corner of
+/// two stops each impact says which is next, whatever is left of the gaps; not so in one of three,
+/// nor where two joints are on their way to their stops at once.
+bool Switching::loses_order_of(const double* y) {
+  int at_once = 0;
+  for (int j = 0; j < n_; ++j) {
+    if (!(joints_.into(j, y, y + n_) > 0.0)) continue;
+    ++at_once;
+    struck_[j] = 1;
+  }
+  return at_once > 1 || std::ranges::count(struck_, 1) > 2;
+}
+
+/// Whether some of them go on: if the impacts have brought all to rest, another order does as well.
+bool Switching::any_struck_leaves(const double* y) const {
+  for (int j = 0; j < n_; ++j) {
+    const double away = std::abs(relative(y + n_, j + 1));
+    if (struck_[j] != 0 && away > noticeable_rate * joints_.natural_speed()) return true;
+  }
+  return false;
+}
+
+std::string Switching::remark_on_impacts() const {
+  if (std::isnan(order_lost_)) return {};
+  return "; at t = " + text(order_lost_) +
+         " s stops were struck within the last bits of one time: in which order, and with it what "
+         "follows, rounding has decided";
 }
 
 void Switching::set_out(double t, const double* y) {

@@ -81,8 +81,8 @@ Trial::Verdict Trial::follow_guards() {
 /// its start, its own error may have made.
 Trial::Verdict Trial::set_out() {
   for (int halvings = 0;; ++halvings) {
-    crossing_ = guards_->first(t_, h_);
     const bool is_short = std::abs(h_) <= few * last_bits(t_, t_);
+    crossing_ = guards_->first(t_, h_, !is_short);
     const double at_start = epsilon * std::max(few * std::abs(t_), 2.0 * std::abs(h_));
     if (crossing_.guard >= 0 && crossing_.theta * std::abs(h_) <= at_start) {
       if (is_short || crossing_.is_of_slope ||

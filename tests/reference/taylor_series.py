@@ -69,7 +69,22 @@ class Series:
         self, q: Sequence[int], qd: Sequence[int], halvings: int, order: int
     ) -> list[list[int]]:
         """Return those of each angle in x, where t = t_0 + 2^-halvings x."""
+        return self.with_held_joints(q, qd, halvings, order, frozenset())[0]
+
+    def with_held_joints(
+        self,
+        q: Sequence[int],
+        qd: Sequence[int],
+        halvings: int,
+        order: int,
+        locked: frozenset[int],
+    ) -> tuple[list[list[int]], list[list[int]]]:
+        """Return the same, and of each joint the torque that locks it, per 4^halvings.
+
+        A link behind a joint that is locked, counted from 0, turns as the one before it, or not.
+        """
         n, bits, links = self.n, self.bits, range(self.n)
+        bodies = self.bodies(locked)
         angle = [[q[i], qd[i] >> halvings] for i in links]
         u, v, mq = [], [], []  # cosines, sines, and m times coefficient m of the angle
         for i in links:
@@ -77,10 +92,14 @@ class Series:
             u.append([cosine, -sine * angle[i][1] >> bits])
             v.append([sine, cosine * angle[i][1] >> bits])
             mq.append([0, angle[i][1]])
+        mass = [
+            [self.matrix[i][j] * (u[i][0] * u[j][0] + v[i][0] * v[j][0]) >> 2 * bits
+             for j in links] for i in links
+        ]  # fmt: skip
         inverse = self.inverse(
-            [[self.matrix[i][j] * (u[i][0] * u[j][0] + v[i][0] * v[j][0]) >> 2 * bits
-              for j in links] for i in links]
-        )  # fmt: skip
+            [[sum(mass[i][j] for i in one for j in other) for other in bodies] for one in bodies]
+        )
+        forces: list[list[int]] = [[] for _ in links]  # that hold the links
         bx: list[list[int]] = [[] for _ in links]  # sum_j A_ij u_j'', and its second component
         by: list[list[int]] = [[] for _ in links]
         for k in range(order - 1):
@@ -100,8 +119,12 @@ class Series:
                 pull = self.weight[i] * u[i][k] >> 2 * halvings
                 held = (torque[i + 1] if i + 1 < n else 0) - torque[i] >> halvings
                 right.append(pull + held - known >> bits)
-            for i in links:
-                next_one = (sum(map(mul, inverse[i], right)) >> bits) // of_two
+            of_bodies = [sum(right[i] for i in body) for body in bodies]
+            found = [0] * n
+            for body, row in zip(bodies, inverse, strict=True):
+                for i in body:
+                    found[i] = (sum(map(mul, row, of_bodies)) >> bits) // of_two
+            for i, next_one in enumerate(found):
                 angle[i].append(next_one)
                 mq[i].append((k + 2) * next_one)
                 u[i][-1] -= v[i][0] * next_one >> bits
@@ -111,7 +134,18 @@ class Series:
                 new_y = (of_two * u[j][0] * angle[j][-1] for j in links)
                 bx[i][-1] += sum(map(mul, self.matrix[i], new_x)) >> 2 * bits
                 by[i][-1] += sum(map(mul, self.matrix[i], new_y)) >> 2 * bits
-        return angle
+                pushed = (mass_row * x for mass_row, x in zip(mass[i], found, strict=True))
+                forces[i].append((of_two * sum(pushed) >> bits) - right[i])
+        return angle, [[sum(at) for at in zip(*forces[j:], strict=True)] for j in links]
+
+    def bodies(self, locked: frozenset[int]) -> list[list[int]]:
+        """Return the links that turn as one; none of those that do not turn at all."""
+        bodies: list[list[int]] = [[]]
+        for i in range(self.n):
+            if i not in locked:
+                bodies.append([])
+            bodies[-1].append(i)
+        return bodies[1:]
 
     def cosine_sine(self, q: int) -> tuple[int, int]:
         with mpmath.workprec(self.bits + 32):
@@ -120,7 +154,7 @@ class Series:
 
     def inverse(self, matrix: list[list[int]]) -> list[list[int]]:
         """By Gauss and Jordan; the mass matrix is positive definite and asks for no pivots."""
-        n, one = self.n, 1 << self.bits
+        n, one = len(matrix), 1 << self.bits
         rows = [[*row, *(one * (i == j) for j in range(n))] for i, row in enumerate(matrix)]
         for i in range(n):
             rows[i] = [(x << self.bits) // rows[i][i] for x in rows[i]]

@@ -12,6 +12,8 @@ BOUNCES = "tests/test_hard_cases_bounces.py"
 BOUNCING = "tests/test_hard_cases_bounces_of_chains.py"
 CONTACT = "tests/test_hard_cases_contact.py"
 IMPACTS = "tests/test_hard_cases_impacts.py"
+CAPTURES = "tests/test_impacts_with_capture.py"
+CORNERS = "tests/test_corner_impacts.py"
 EVENTS = "tests/test_hard_cases_events.py"
 MORE = "tests/test_hard_cases_forces.py"
 CHAINS = "tests/test_hard_cases_contact_of_chains.py"
@@ -92,6 +94,10 @@ LISTED: dict[str, tuple[str, ...]] = {
     "impacts on chains, several stops at once": (
         f"{IMPACTS}::test_an_impact_turns_the_joint_and_jerks_the_others_as_the_law_says",
         f"{IMPACTS}::test_stops_hit_at_once_share_the_impulse_by_complementarity",
+        f"{CAPTURES}::test_a_captured_joint_is_stopped_after_the_others_have_bounced",
+    ),
+    "impacts that alternate ever faster between two stops, to the end": (
+        f"{CORNERS}::test_a_run_through_a_corner_ends_where_its_impacts_lead",
     ),
     "a stop that is never reached": (
         f"{CONTACT}::test_a_stop_that_is_never_reached_changes_no_bit",

@@ -60,6 +60,8 @@ class Switching final : public Breaks {
 
   /// What a run says that ended at rest; empty if nothing.
   const std::string& remark() const { return remark_; }
+  /// What it says where the order of impacts was lost; empty if nothing.
+  std::string remark_on_impacts() const;
 
  private:
   /// What a guard is on: a mode of an effect, or a stop.
@@ -92,8 +94,11 @@ class Switching final : public Breaks {
   bool is_of_friction(const Watch& watch) const;
   double shortest_moment(double t) const;  ///< s, that time resolves
   void choose(double t, const double* y, int joint);
-  void strike(double t, double* y);
+  void strike(double t, double* y, bool begins);
+  double bounce_in_turn(double t, double* y, bool begins);
   void set_out(double t, const double* y);
+  bool loses_order_of(const double* y);
+  bool any_struck_leaves(const double* y) const;
   bool capture(double t, const double* q, const double* qd);
   void count_at_once(double t);
   bool is_at_its_border(int joint, double t, const double* y) const;
@@ -125,6 +130,13 @@ class Switching final : public Breaks {
   std::vector<double> qdd_;
   double time_of_change_ = std::numeric_limits<double>::quiet_NaN();
   int changes_at_once_ = 0;
+  /// The last impact, and the joints that struck then and in those before it that time hardly
+  /// tells apart.
+  double time_of_impact_ = std::numeric_limits<double>::quiet_NaN();
+  std::vector<int> struck_;
+  bool loses_order_ = false;  ///< the impact at hand
+  /// When impacts first came so near each other that their order is not known; or not a number.
+  double order_lost_ = std::numeric_limits<double>::quiet_NaN();
   /// Of each joint that was held until this time: whether its rate is to go up (1) or down (-1)
   /// from zero; 0 of all others. Joints that can be let go are held forward in time alone.
   std::vector<int> let_go_;

@@ -21,7 +21,6 @@
 #include <functional>
 
 #include "pendcore/arithmetic/epsilon.hpp"
-#include "pendcore/dynamics/impact.hpp"
 #include "pendcore/dynamics/joint_forces.hpp"
 #include "pendcore/dynamics/joint_support.hpp"
 
@@ -94,16 +93,20 @@ class HeldJoints {
   /// The fastest of those that do, or 0.
   double fastest_strike(const double* q, const double* qd) const;
 
-  /// `qd` becomes what it is after the impact. Without restitution if `is_plastic`.
-  Impact strike(const EquationsOfMotion& equations, double t, const double* q, double* qd,
-                bool is_plastic);
-  bool has_bounced(int joint) const { return bounced_[joint] != 0; }  ///< in the last impact
-
-  /// A joint that leaves its stop after an impact, and is to stay there.
+  /// An impact at these angles, by the laws of impact.hpp.
+  void begin_impact(const double* q);
+  /// Newton's law for all joints that do not leave their stops; what it took of the energy. Joints
+  /// at rest there take part if they are held, or all. Without restitution if `is_plastic`.
+  double bounce(const double* q, double* qd, bool is_plastic, bool with_all_at_rest);
+  bool has_bounced(int joint) const { return bounced_[joint] != 0; }  ///< in this impact
+  /// A joint that leaves its stop is to stay there.
   void capture(int joint) { captured_[joint] = 1; }
   bool is_captured(int joint) const { return captured_[joint] != 0; }
-  /// The blow after the impact that stops them.
-  Impact stop_captured(const EquationsOfMotion& equations, double t, const double* q, double* qd);
+  /// Joints that are captured stop, no other moves into its stop; what that took of the energy.
+  double stay_at_stops(const double* q, double* qd);
+  /// What moves the pivot does work against the impulses at it, J, as the rates change.
+  double work_of_drive(const EquationsOfMotion& equations, double t,
+                       const std::vector<double>& before, const double* after) const;
 
   /// Puts held joints exactly where they are held. Whether that changed something.
   bool settle(double* q, double* qd) const;
@@ -122,10 +125,6 @@ class HeldJoints {
   template <class TakesPart>
   void set_up_impact(const double* q, const double* qd, TakesPart takes_part);
   double solve_impact(const std::vector<double>& before, const double* q, double* qd);
-  double bounce_once(const double* q, double* qd, bool is_plastic);
-  double stay_at_stops(const double* q, double* qd);
-  double work_of_drive(const EquationsOfMotion& equations, double t,
-                       const std::vector<double>& before, const double* after) const;
 
   int n_;
   JointForces forces_;

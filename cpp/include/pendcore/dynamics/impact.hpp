@@ -1,5 +1,5 @@
 /// \file
-/// Impacts of joints on their stops, by HeldJoints (held_joints.hpp) and Switching::strike.
+/// Impacts of joints on their stops, by HeldJoints (held_joints.hpp), in turn by Switching.
 ///
 /// With w the rates of joints, positive away from the stop that they touch, and impulses Lambda,
 /// both as in the problem of joint_forces.hpp, two laws follow each other:
@@ -9,7 +9,9 @@
 ///        0 <= Lambda,  w+ + e w- >= 0,  Lambda (w+ + e w-) = 0
 ///
 ///    e = 0 below the capture speed. A joint that was leaving its stop and is thrown back strikes
-///    in turn, at the same time.
+///    in turn, at the same time: so do joints whose impacts alternate ever faster between their
+///    stops, once time cannot tell them apart. Hence a joint at rest at its stop that nothing
+///    pushes there counts as leaving; where a run begins, none does.
 /// 2. A joint that did not bounce, leaves more slowly than the capture speed and is pushed back is
 ///    captured: a last blow stops it, plastic at all closed stops. The rates v+ are the nearest to
 ///    v- in |v|^2 = v.M v with w+ = 0 for the captured joints and w+ >= 0 for the others.
@@ -28,10 +30,11 @@
 
 namespace pendcore {
 
-/// What an impact took from the chain, and what the drive of the pivot gave in it, J.
-struct Impact {
-  double loss = 0.0;  ///< never negative
-  double work_of_drive = 0.0;
-};
+/// Joints that throw each other back strike in turn at one time, as often as the angle between
+/// their stops in the metric M says, or for ever, ever more slowly: by then below all rounding.
+inline constexpr int most_impacts_at_once = 10'000;
+
+/// In natural speeds of the chain: rates that are slower change little.
+inline constexpr double noticeable_rate = 1e-6;
 
 }  // namespace pendcore

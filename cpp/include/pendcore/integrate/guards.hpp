@@ -26,8 +26,9 @@ class Guards {
  public:
   Guards(Stepper& stepper, Breaks& breaks);
 
-  /// In the attempted step of size h from time t.
-  Crossing first(double t, double h);
+  /// In the attempted step of size h from time t. The dense output of a few last bits of time says
+  /// nothing of what sets out from rest: not `from_rest_too`.
+  Crossing first(double t, double h, bool from_rest_too = true);
 
   /// Whether a guard that the dense output makes negative where the step begins is so: one that is
   /// positive there, or rises from zero, is not. Where that is not known, a step that was halved
@@ -63,6 +64,8 @@ class Guards {
   Miss miss_of_slope(int k, double t, double h);
   bool is_of_error(const Crossing& crossing, double h);
   bool goes_below(double theta);
+  double rise_at_start(int k, double h);
+  bool rises_from_rest(int k);
   double value_at(int k, double t);
   void interpolate_others(double t, double h);
 
