@@ -143,7 +143,7 @@ def test_a_contradiction_is_seen(drawn: Drawn) -> None:
 def test_a_late_valid_until_is_seen(drawn: Drawn) -> None:
     def trusting(*scene_and_start: Any, **options: Any) -> Any:
         sol = pc.simulate(*scene_and_start, **options)
-        return Claiming(sol, valid_until=lambda limit: 5.0)
+        return Claiming(sol, valid_until=lambda limit, **_: 5.0)
 
     found = verdict_of(replace(drawn, rtol=1e-4, limit=1e-7), rtol=trusting)
     assert found.faults == ["late"]

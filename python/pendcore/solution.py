@@ -250,7 +250,14 @@ class Solution:
             self._error = found
         return self._error
 
-    def valid_until(self, limit: float = 0.1, *, of: str = "angle") -> float:
+    def valid_until(
+        self,
+        limit: float = 0.1,
+        *,
+        of: str = "angle",
+        time_limit: float | None = None,
+        progress: Progress = None,
+    ) -> float:
         """Return how far to trust the run: the time at which its `error` passes a limit, s.
 
         On the safe side; the end of the run where it does not. See `ErrorEstimate.valid_until`.
@@ -261,8 +268,11 @@ class Solution:
             rad; with ``of="position"`` a share of the total length.
         of : {"angle", "position"}
             Of the links, or of joints and tip.
+        time_limit, progress : as in `error`
+            Where the time is up, the run is known to hold so far, and perhaps for longer.
         """
-        return self.error().valid_until(limit, of=of)
+        known = self.error(time_limit=time_limit, progress=progress)
+        return known.valid_until(limit, of=of)
 
     def lyapunov(
         self,

@@ -237,8 +237,7 @@ def _valid_until(
             drawn.scene, drawn.q0, drawn.qd0, drawn.span, rtol=drawn.rtol, time_limit=seconds
         )
         verdict.limit = drawn.limit
-        sol.error(time_limit=seconds)
-        verdict.valid_until = sol.valid_until(drawn.limit)
+        verdict.valid_until = sol.valid_until(drawn.limit, time_limit=seconds)
     began = monotonic()
     t = times_of(sol, True, Dice(drawn.family, drawn.seed).rng)
     sign = np.sign(drawn.t_end - drawn.t_start)

@@ -21,9 +21,9 @@ from math import inf, log
 from typing import Any
 
 from pendcore.accuracy.estimate import ErrorEstimate
-from pendcore.accuracy.methods import LOOSEST, cheapest
+from pendcore.accuracy.methods import LOOSEST
 from pendcore.accuracy.report import AccuracyError
-from pendcore.accuracy.run import Start, pair_of
+from pendcore.accuracy.run import Start
 from pendcore.accuracy.trials import Made, Trials, leading
 from pendcore.arguments import finite_array
 from pendcore.progress import callback, close
@@ -32,15 +32,18 @@ from pendcore.solution import Solution
 # What tolerances aim at.
 FIRST, LOOSE = 3.0, 1e-3
 """What multiple of the error the first trial aims at; a looser error it is to keep at once."""
-AIM = 0.55
+AIM = 0.65
 """What share of the error the trials after that aim at."""
 LEAST_CHANGE, FARTHER = 1.5, 100.0
 """By what factor a trial is tighter at least than one that was too loose, or that was lost."""
-LOOSER = 50.0
-"""By what factor a trial is looser that shows how the error follows the tolerance."""
-BETTER, MUCH_BETTER, FAR_BETTER = 25.0, 40.0, 300.0
-"""By what factor a second run is better than a trial: at least, as a rule, and as the first of a
-series of `taylor`, to which a digit more costs little."""
+LOOSER, NEXT_LOOSER, APART = 50.0, 8.0, 1.9
+"""By what factor a trial is looser that shows how the error follows the tolerance; by what another
+is, if that one did not show it; how far it is from those that were made, at least."""
+BETTER, BETTER_SERIES, SPARED = 25.0, 100.0, 1.6
+"""By what factor a second run is better than a trial at least; by what one of `taylor` is, to which
+a digit more costs little, and whose order changes with the tolerance; what it has to spare."""
+FAR_BETTER = 1000.0
+"""By what factor the first second run of `taylor` is better: it is to verify a tighter trial too."""
 BETTER_STILL = 8.0
 """By what factor one more second run is better, which tells how good the first one is."""
 # When something counts as known.
@@ -48,8 +51,8 @@ NOTHING_IN_COMMON = 0.2
 """A distance beyond says of the error only that it is large."""
 LIKELY = 0.9
 """What share of the error a distance is at most for the run to be likely good enough."""
-RATIO, RATIO_OF_METHODS = 5.0, 30.0
-"""By what factor two tolerances of one method, or of two, differ at least to tell an exponent."""
+RATIO = 5.0
+"""By what factor two tolerances differ at least to tell an exponent."""
 FOLLOWS, FOLLOWS_AT_FEW_TIMES, FEW = 2.0, 1.4, 50
 """Up to which exponent of the tolerance an error is said to follow it.
 
@@ -57,7 +60,7 @@ At few times an error may be small by chance, which looks as if it fell faster.
 """
 CAUTION = 0.6
 """What share of the exponent is trusted beyond the tolerances where it was seen."""
-SHARE, SPARE = 0.35, 0.25
+SHARE, SPARE = 0.35, 0.35
 """What the error of a single second run may be, as a share of the distance from it, at most; and
 what is added to that, as methods do not all follow their tolerances alike."""
 ALIKE, SHARE_IF_ALIKE = 20.0, 1.0
@@ -135,7 +138,7 @@ def _kept(runs: Trials) -> Solution:
 def _first_trial(runs: Trials) -> Made:
     """Run at a tolerance that is not too loose to follow the motion to its end."""
     scale = runs.error * (FIRST if runs.error < LOOSE else AIM)
-    made = runs.trial(scale, pair_of(cheapest(runs.start, runs.error)))
+    made = runs.trial(scale, runs.method_for(runs.error))
     while made.solution.status in FOLLOWED_BADLY and made.rtol > runs.tightest:
         before = made.solution._run.t_reached
         runs.trials.clear()
@@ -158,15 +161,27 @@ def _next_run(runs: Trials) -> Made | None:
     else:
         aimed = last.scale * AIM * runs.error / max(apart, 1e-9 * runs.error)
     if known is None and apart <= LIKELY * runs.error:
-        looser = aimed if aimed > BETTER * last.scale else LOOSER * last.scale
-        looser = min(looser, LOOSEST * last.scale / last.rtol)
-        if looser > RATIO * max(one.scale for one in runs.trials):
-            return runs.trial(looser, last.method)
-        return _second(runs, last)
+        looser = _looser(runs, last, aimed)
+        return _second(runs, last) if looser is None else runs.trial(looser, last.method)
     if last.rtol <= runs.tightest:
         return None
     aimed = min(aimed, last.scale / LEAST_CHANGE)
     return runs.trial(aimed, runs.method_for(aimed))
+
+
+def _looser(runs: Trials, trial: Made, aimed: float) -> float | None:
+    """Return the scale of a trial that may show how the error follows the tolerance."""
+    if _tight_runs(trial):
+        return None
+    scales = [LOOSER * trial.scale, NEXT_LOOSER * trial.scale]
+    if aimed > RATIO * trial.scale:
+        scales.insert(0, aimed)
+    loosest = LOOSEST * trial.scale / trial.rtol
+    for scale in (min(one, loosest) for one in scales):
+        ratios = [scale / one.scale for one in runs.trials]
+        if scale >= RATIO * trial.scale and not any(1 / APART < r < APART for r in ratios):
+            return scale
+    return None
 
 
 def _second(runs: Trials, trial: Made) -> Made:
@@ -176,7 +191,13 @@ def _second(runs: Trials, trial: Made) -> Made:
     if _better_than(runs, trial):
         return runs.second(trial, min(one.scale for one in runs.seconds) / BETTER_STILL)
     is_first_of_series = not runs.seconds and leading(trial.method) == "taylor"
-    return runs.second(trial, trial.scale / (FAR_BETTER if is_first_of_series else MUCH_BETTER))
+    better_by = FAR_BETTER if is_first_of_series else SPARED * _better_by(trial)
+    return runs.second(trial, trial.scale / better_by)
+
+
+def _better_by(trial: Made) -> float:
+    """Return by what factor a second run of its method is better than a trial at least."""
+    return BETTER_SERIES if leading(trial.method) == "taylor" else BETTER
 
 
 def _scale_before_it_grew(runs: Trials, trial: Made, second: Made) -> float:
@@ -201,6 +222,8 @@ def _known_error(runs: Trials, trial: Made) -> ErrorEstimate | None:
     if len(better) >= count:
         if trial.rtol < ALIKE * runs.tightest:
             return runs.compared(trial, better[:count], SHARE_IF_ALIKE)
+        if not _tight_runs(trial) and better[0].scale * RATIO > better[1].scale:
+            return runs.compared(trial, better[:count], SPARE)  # they may be off alike
         return runs.compared(trial, better[:count])
     if _tight_runs(trial) or not better:
         return None
@@ -216,9 +239,10 @@ def _share(runs: Trials, trial: Made, second: Made) -> float:
     most = FOLLOWS if times >= FEW else FOLLOWS_AT_FEW_TIMES
     for other in runs.trials:
         ratio = other.scale / trial.scale
-        least = RATIO if other.method == trial.method else RATIO_OF_METHODS
-        if 1 / least < ratio < least or second not in _better_than(runs, other):
+        if 1 / RATIO < ratio < RATIO or second not in _better_than(runs, other):
             continue
+        if not other.method == trial.method == second.method:
+            continue  # a scene may suit one method and not the other
         apart = runs.distance(other, second)
         if min(own, apart) > 0 and max(own, apart) < NOTHING_IN_COMMON:
             exponent = log(apart / own) / log(ratio)
@@ -233,7 +257,7 @@ def _better_than(runs: Trials, trial: Made) -> list[Made]:
     if _tight_runs(trial):
         found = [one for one in runs.seconds if one.rtol <= runs.tightest]
     else:
-        found = [one for one in runs.seconds if one.scale * BETTER <= trial.scale * 1.01]
+        found = [one for one in runs.seconds if one.scale * _better_by(one) <= trial.scale * 1.01]
     return sorted(found, key=lambda one: one.scale)
 
 

@@ -33,6 +33,9 @@ from pendcore.warning import warn
 
 IMPLICIT = "radau5"
 """The method for what the first trial found to be stiff."""
+FOR_BOTH = 5.0
+"""A method is chosen that is good for a run and for a second one, which is better: for an error so
+many times less."""
 COMPENSATED_BELOW = 1e-12
 """rtol, from which on what the rounding of the state leaves over is carried on."""
 MOST_STEPS, LEAST_STEPS = 300, 100
@@ -94,8 +97,11 @@ class Trials:
         return TIGHTEST_IMPLICIT if self.is_stiff else TIGHTEST
 
     def method_for(self, scale: float) -> str:
-        """Return the method that takes the least work for an error of that size in most scenes."""
-        return IMPLICIT if self.is_stiff else pair_of(cheapest(self.start, scale))
+        """Return the method that takes the least work for an error of that size, and to verify it.
+
+        In most scenes, that is.
+        """
+        return IMPLICIT if self.is_stiff else pair_of(cheapest(self.start, scale / FOR_BOTH))
 
     def trial(self, scale: float, method: str) -> Made:
         """Run with all that was asked for."""
@@ -109,8 +115,12 @@ class Trials:
         return made
 
     def second(self, trial: Made, scale: float) -> Made:
-        """Run better than a trial, with other steps, constants and start."""
-        method = self.method_for(scale)
+        """Run better than a trial, with other steps, constants and start.
+
+        The method is the trial's: by how much another one is better would be a guess, as a scene
+        may suit the one and not the other.
+        """
+        method = IMPLICIT if self.is_stiff else trial.method
         rtol = rounded(scale / ERROR_OVER_RTOL[leading(method)], self.tightest)
         ends_anywhere = any(values.get("terminal") for _, values in self.options["wanted"])
         options = {
