@@ -21,7 +21,7 @@ exec(Path("arm.py").read_text(), arm)  # as `import arm` does, wherever this run
 
 
 def rate(t, p):
-    """Of the state, and of the energy that the effects bring in."""
+    """Return the rates of the state and of the energy that the effects bring in."""
     return np.append(
         arm["right_hand_side"](t, p[:4]), sum(arm["powers"](t, p[:2], p[2:4]).values())
     )

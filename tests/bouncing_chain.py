@@ -75,7 +75,7 @@ class BouncingChain:
         return found, float(found[self.joint])
 
     def accelerations(self, t: float, y: Array) -> Array:
-        """Of joints and gap, as if there was no stop."""
+        """Return the accelerations of joints and gap, as if there was no stop."""
         n = self.chain.n
         q, qd = self.of_links(y[:n], self.bound), self.of_links(y[n:])
         forces = self.chain.forces(q, qd, self.torques(t))

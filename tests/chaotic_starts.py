@@ -26,7 +26,7 @@ T_END = 14
 EACH = 20
 """Times a second."""
 DECIMALS = 9
-"""Of the angles: what is asked is when an error passes a tenth."""
+"""The digits of the angles that count: what is asked is when an error passes a tenth."""
 DIGITS = 46
 DISPLACED = Fraction(1, 10**24)
 """By which the neighbour's first angle differs, rad."""

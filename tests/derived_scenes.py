@@ -57,7 +57,7 @@ SCENES["locked"] = pc.Scene(
 
 @dataclass(frozen=True)
 class Known:
-    """Of random states: what the core says, the links along the last axis but that of forces."""
+    """What the core says of random states, the links along the last axis but that of forces."""
 
     t: Floats
     q: Floats

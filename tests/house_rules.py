@@ -213,6 +213,15 @@ def files_are_short(root: Path) -> Iterator[str]:
         yield "more than one file in twenty has more than 300 lines"
 
 
+def comments_have_a_subject(root: Path) -> Iterator[str]:
+    """A comment that begins with "Of" leaves it to the reader what is meant."""
+    beginning = re.compile(r'^.*?(?:///?<?|#|"""|\*)\s+?Of\s|^\s*"""Of\s')
+    for path in files(root, CODE, *FOLDERS):
+        for number, line in enumerate(path.read_text().splitlines(), start=1):
+            if beginning.match(line):
+                yield f'{path.relative_to(root)}:{number} begins with "Of"'
+
+
 def kernels_call_no_libm(root: Path) -> Iterator[str]:
     """Only what is correctly rounded (sqrt, fma, ...) gives the same bits on every machine."""
     call = re.compile(rf"(?<![\w.>:])(?:std::|::|__builtin_)?(?:{LIBM})[fl]?\s*\(")
@@ -257,6 +266,7 @@ RULES: list[Rule] = [
     imports_follow_the_flow,
     names_say_what_a_file_holds,
     files_are_short,
+    comments_have_a_subject,
     kernels_call_no_libm,
     builds_use_no_flag_that_changes_bits,
     sources_are_listed,

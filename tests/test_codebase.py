@@ -19,6 +19,7 @@ def test_in_this_project(rule: Rule) -> None:
 
 
 CORE = "cpp/include/pendcore"
+OF = "Of"
 BREACHES = {
     rules.includes_follow_the_flow: [
         (f"{CORE}/integrate/step.hpp", '#include "pendcore/scene.hpp"', "includes pendcore/scene"),
@@ -57,6 +58,12 @@ BREACHES = {
         ("tests/test_all_long.py", "pass\n" * 301, "one file in twenty"),
         ("tests/test_half_long.py", "pass\n" * 121, "half of the files"),
         ("tests/test_wide.py", "x" * 101, "101 columns"),
+    ],
+    rules.comments_have_a_subject: [
+        (f"{CORE}/dynamics/chain.hpp", f"/// {OF} each link: its inertia.", ':1 begins with "Of"'),
+        ("cpp/src/scene.cpp", f"double mass;  ///< {OF} the links, kg", ':1 begins with "Of"'),
+        ("tests/test_all.py", f'def f():\n    """{OF} no use."""', ':2 begins with "Of"'),
+        ("python/pendcore/scene.py", f"x = 1\n# {OF} no use", ':2 begins with "Of"'),
     ],
     rules.kernels_call_no_libm: [
         (f"{CORE}/dynamics/chain.hpp", "auto s = std::sin(q);", "std::sin"),

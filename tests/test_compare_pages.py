@@ -68,7 +68,7 @@ def test_everybody_took_part_in_the_record(case: str) -> None:
 
 
 def ratios_to_scipy(record: dict[str, Any], kind: str) -> dict[float, list[float]]:
-    """Of radau5's steps or times, to each of SciPy's Radaus, at every error that both have."""
+    """Return ratios of radau5's steps or times to each of SciPy's Radaus, at every common error."""
     who = {one["name"]: one for one in record["contenders"]}
     own = stiff_page.counted(who["pendcore_radau5"], kind)
     found: dict[float, list[float]] = {}

@@ -101,7 +101,7 @@ def test_it_falls_at_the_order_of_the_interpolant(method: str) -> None:
 
 @pytest.mark.parametrize("method", [name for name, m in METHODS.items() if m["kind"] == "pair"])
 def test_of_a_pair_that_changed_over_it_is_told_as_of_its_second(method: str) -> None:
-    """Of a run that ends before, and of one that is resumed past it."""
+    """It is that of a run that ends before, and of one that is resumed past it."""
     stiff = BOOK.replace(effects=[fx.ViscousJoint(joint=2, damping=1e6 / 3)])
     first, second = method.split("-")
     before = pc.simulate(stiff, [0.8, 1.0], 0.1, (0, 1e-5), method=method)

@@ -163,7 +163,7 @@ def test_rates_and_accelerations_are_derivatives(motion: str, t: float) -> None:
 
 
 def test_the_spline_bends_least() -> None:
-    """Of all curves through the points it has the least integral of the squared acceleration."""
+    """No curve through the points has a smaller integral of the squared acceleration."""
 
     def bending(other: float) -> float:
         total = 0.0

@@ -26,7 +26,7 @@ def test_rest_is_trusted_to_its_last_bits(q0):
 
 
 def test_a_drift_between_what_was_kept_is_called_out():
-    """Of what was asked for only the start was kept: the end that was reached tells."""
+    """Only the start was kept of what was asked for: the end that was reached tells."""
     coarse = {"rtol": 1e-1, "atol": 1e-1}
     run = pc.simulate(pc.Scene.textbook(), 1, 0, (0, 5), t_eval=[0.0], **coarse)
     assert "too large to trust this run" in repr(run)

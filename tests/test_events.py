@@ -21,7 +21,7 @@ BOOK = pc.Scene.textbook()
 TURNED = rod(pc.effects.Motor(joint=1, constant=2.0))
 
 
-# Of a step that moves by one; and of a dense output, whose weights in dop853 are some hundreds.
+# For a step that moves by one, and for a dense output, whose weights in dop853 are some hundreds.
 STEPS = dict.fromkeys(["dop853", "dop853-radau5"], of_new_state("dop853"))
 WITHIN_STEPS = dict.fromkeys(STEPS, of_dense_output("dop853"))
 

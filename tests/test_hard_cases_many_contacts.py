@@ -71,7 +71,7 @@ def test_chains_of_many_contacts_get_to_their_end_within_their_stops(
     for seed in range(60 * block, 60 * block + 60):
         scene, q0, qd0 = drawn(seed)
         runs = [pc.simulate(scene, q0, qd0, (0, 3), ledger=True, **how)]
-        # Of a shaken chain that is held, nothing but max_step limits the error of the work.
+        # Nothing but max_step limits the error of the work where a shaken chain is held.
         drives = [effect.x for effect in scene.effects if effect.kind == "driven_pivot"]
         for drive in drives:
             fine = 2 * np.pi / drive.angular_frequency / 50

@@ -72,7 +72,7 @@ def test_under_a_sinusoidal_torque_each_slide_begins_and_ends_when_it_should(
 
 
 def test_what_the_motor_gives_is_what_friction_takes(fine: Any) -> None:
-    """Of the staircase, in the stick after the last slide; the work is the friction's path."""
+    """The staircase ends in the stick after the last slide; the work is the friction's path."""
     hum = HUMS["a staircase"]
     with mp.workdps(DIGITS):
         _, found, turns = solved(2.0, **hum)

@@ -1,4 +1,4 @@
-"""Of any run at all: it is bounded, what it reached is finite, and it says how it ended.
+"""Any run at all is bounded, what it reached is finite, and it says how it ended.
 
 The claims are those of `fuzz.claims`; here hypothesis looks for a run that breaks one, and makes it
 small: for the same ones each time, as it is `make fuzz` that looks further, and survives a crash.

@@ -135,7 +135,7 @@ def test_a_fixed_step_stays_fixed_where_it_lands_on_edges_and_reversals() -> Non
 
 
 def test_a_table_of_many_points_takes_one_step_each() -> None:
-    """Of six right-hand sides, as the last of a step is the first of the next, and one anew."""
+    """Six right-hand sides: the last of a step is the first of the next, and one is made anew."""
     t = np.arange(20_001.0)
     motor = fx.Motor(joint=1, table=fx.Table(t=t, torque=np.sin(t)))
     sol = pc.simulate(rod(motor), 0, 0, (0, t[-1]), rtol=1e-3, max_steps=100_000)

@@ -116,13 +116,13 @@ def test_over_a_million_steps_energy_wanders_no_faster_than_their_root():
         drifts.append(abs(run.energy().total[-1] - start) / scale)
         steps.append(run.stats.accepted)
     assert steps[-1] > 1e6
-    # Of the state, a rounding error at the end; of each step, half a one in a random walk, of which
+    # The state has a rounding error at the end, each step half a one in a random walk, of which
     # three times the spread are next to certain.
     assert np.all(drifts < 8 * EPS + 3 * 0.5 * EPS * np.sqrt(steps))
 
 
 def test_energies_from_many_starts_walk_by_half_a_rounding_a_step():
-    """Of starts so low that no link can turn over, whose motions are alike; 1e5 steps each."""
+    """The starts are so low that no link can turn over, and motions are alike; 1e5 steps each."""
     scale = 2 * 9.807  # J, as above
     walks = []
     for start in START + np.random.default_rng(1).uniform(-0.1, 0.1, (24, 2)):
@@ -185,7 +185,7 @@ def test_the_ledger_changes_no_bit_of_the_motion():
 @pytest.mark.parametrize("with_friction", [False, True])
 @pytest.mark.parametrize("n", [1, 2, 3])
 def test_laws_that_change_along_the_run_are_those_in_force(n, with_friction):
-    # Of two links this is the closed form's own series: no driven pivot, nothing held for long.
+    # For two links this is the closed form's own series: no driven pivot, nothing held for long.
     effects = pc.effects
     laws = [
         effects.Motor(joint=1, sinusoid=effects.Sinusoid(1.0, 6.0), limit=0.7),

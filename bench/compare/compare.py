@@ -63,7 +63,7 @@ def of_solves(case: str) -> Comparison:
 
 
 def of_pages(stem: str, measuring: Any, pages: Any, figures: Any) -> Comparison:
-    """Of modules that measure, write and draw under these names."""
+    """Gather modules that measure, write and draw under these names."""
     return Comparison(
         stem=stem,
         measure=measuring.measure,

@@ -18,7 +18,7 @@ from scipy.integrate import solve_ivp
 from tqdm import tqdm
 from trajectory_error import position_error
 
-# Of the spring the vibration is followed, about a radian a step.
+# The spring's vibration is followed, about a radian a step.
 WAYS: dict[str, tuple[dict[str, Any], ...]] = {
     "damper": ({"method": "Radau", "tolerance": 1e-11}, {"method": "LSODA", "tolerance": 1e-12}),
     "spring": (

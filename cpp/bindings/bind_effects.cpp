@@ -146,7 +146,7 @@ py::list part_descriptors() {
   return rows.attr("values")();
 }
 
-/// Of each entry of the ledger, whether it is a loss.
+/// Whether each entry of the ledger is a loss.
 py::dict accounts() {
   py::dict result;
   for (std::size_t i = 1; i < account_names.size(); ++i) {

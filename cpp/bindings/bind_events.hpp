@@ -20,7 +20,7 @@ py::tuple kind_and_values(const Event& event, const py::object& f);
 /// The same for a pickle or a file. TypeError for a function, of which there is nothing to keep.
 py::tuple saved_event(const Event& event, std::size_t i);
 
-/// Of each event: its Python function, or None.
+/// The Python function of each event, or None.
 py::list functions_of(const py::sequence& events);
 
 }  // namespace pendcore::bindings

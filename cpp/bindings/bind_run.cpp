@@ -123,7 +123,8 @@ py::array evaluate(const Run& run, const Array& t) {
   return columns(copy(states, {t.size(), run.solution.dimension}), 0, 2 * run.solution.n);
 }
 
-/// Of steps first .. end - 1: (torques, distances of the angles, the curve's angles at the end).
+/// The defect of steps first .. end - 1: (torques, distances of the angles, the curve's angles at
+/// the end).
 py::tuple defect_of_steps(const Run& run, std::size_t first, std::size_t end, const Array& angles) {
   const Solution& s = run.solution;
   std::vector<double> q(angles.data(), angles.data() + angles.size());

@@ -29,7 +29,7 @@ class Curve {
   double end(double t_reached) const {
     return std::min(1.0, ((t_reached - start_) - start_low_) / h_);
   }
-  /// Of the dense output, since the step began.
+  /// The angle by which the dense output has turned since the step began, rad.
   double turned(std::size_t link, double theta) const { return theta * sum(link, theta, 0); }
   double angle(std::size_t link, double theta) const { return rows_[link] + turned(link, theta); }
   double rate(std::size_t link, double theta) const {

@@ -91,7 +91,7 @@ EventFinder::Levels EventFinder::levels_between(const Difference& difference, do
   return {value, first, std::floor(to + margin) - first + 1.0};
 }
 
-/// Of the polynomial, as far as it comes.
+/// The levels that the difference may pass, as far as its polynomial comes.
 EventFinder::Levels EventFinder::levels_along(const Difference& difference, int degree, double end,
                                               double noise) {
   if (!difference.every_turn) return levels_between(difference, 0.0, 0.0);
@@ -160,7 +160,8 @@ void EventFinder::find_function(std::size_t k, const events::Function& event, co
              roots_);
 }
 
-/// Of what costs more than a difference: at the start of a step it is that of the end before.
+/// The values at both ends of a step of what costs more than a difference: the first is known from
+/// the step before.
 void EventFinder::node_values(std::size_t k, const Step& step, double& start, double& end) {
   const bool is_known =
       node_t_ == step.t_old.high && std::equal(node_y_.begin(), node_y_.end(), step.rows);

@@ -177,7 +177,7 @@ Crossing Guards::where_slope_allows(Crossing crossing, double t, double h, int d
   return crossing;
 }
 
-/// Of state_.
+/// The value of guard k at state_.
 double Guards::value_at(int k, double t) {
   const int other = k - breaks_.linear_guards();
   if (other < 0) return breaks_.guard(k, state_.data());
@@ -200,8 +200,8 @@ std::array<double, 3> Guards::start_of(int k) {
   return along;
 }
 
-/// Of a guard that begins at zero: its slope as the law has it or, where that is zero too, its
-/// curvature; 0 where neither tells.
+/// How a guard that begins at zero rises: its slope as the law has it or, where that is zero too,
+/// its curvature; 0 where neither tells.
 double Guards::rise_at_start(int k, double h) {
   const std::array<double, 3> along = start_of(k);
   for (int order = breaks_.zeros_at_start(k); order <= 2; ++order) {
@@ -211,7 +211,7 @@ double Guards::rise_at_start(int k, double h) {
   return 0.0;
 }
 
-/// What touches its stop at rest, and is pushed away.
+/// Whether guard k is of a joint that touches its stop at rest, and is pushed away.
 bool Guards::rises_from_rest(int k) {
   if (k >= breaks_.linear_guards() || breaks_.zeros_at_start(k) == 0) return false;
   const std::array<double, 3> along = start_of(k);
@@ -234,7 +234,8 @@ bool Guards::strays(const Crossing& crossing, double h) {
   return is_of_error(crossing, h) || goes_below(crossing.theta);
 }
 
-/// With the slope and the curvature that the law has, the guard is zero later by half, or not.
+/// Whether the guard, with the slope and the curvature that the law has, is zero only after twice
+/// the crossing's share of the step: then the crossing is an error of the dense output.
 bool Guards::is_of_error(const Crossing& crossing, double h) {
   const int k = crossing.guard;
   if (k < 0 || k >= breaks_.linear_guards() || breaks_.zeros_at_start(k) == 0) return false;

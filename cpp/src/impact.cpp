@@ -62,7 +62,7 @@ double HeldJoints::solve_impact(const std::vector<double>& before, const double*
     if (stops || into(j, q, qd) > 0.0) set_relative(qd, j + 1, 0.0);
     loss -= 0.5 * problem.lambda[r] * (before[r] + direction_ * relative(qd, j + 1));
   }
-  return std::max(loss, 0.0);  // rounding may give to an elastic one
+  return std::max(loss, 0.0);  // rounding may make an elastic one negative
 }
 
 double HeldJoints::bounce(const double* q, double* qd, bool is_plastic, bool with_all_at_rest) {

@@ -49,7 +49,7 @@ void check_continuation(const Solution& solution, double t_end, const std::vecto
   }
 }
 
-/// Of a solution that goes on: one that has no length yet has no direction either.
+/// What a solution that goes on has: one that has no length yet has no direction either.
 enum class Before { nothing, a_start, steps };
 
 /// The laws, the rates and the first step of a run that begins. Where a function of the user's

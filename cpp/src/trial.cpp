@@ -13,7 +13,7 @@ constexpr int most_halvings = 20;
 /// Where the dense output of a fixed step puts a guard's zero says little: shortened to no less.
 constexpr double least_share_of_fixed = 0.1;
 
-/// Of the attempted step: the component whose new value, or new rate, is not finite, or -1.
+/// The component of the attempted step whose new value, or new rate, is not finite, or -1.
 int bad_component_of(Stepper& stepper, double t_new) {
   std::vector<double> y(stepper.dimension());
   std::vector<double> dydt(stepper.dimension());
@@ -135,7 +135,7 @@ bool Trial::is_far_off() {
   return std::ranges::any_of(new_state_, [](double x) { return std::abs(x) > far; });
 }
 
-/// Of the dense output, which may have stages of its own.
+/// The same of the dense output, which may have stages of its own.
 int Trial::bad_component_between() {
   const int size = stepper_.dimension();
   polynomial_.resize(static_cast<std::size_t>(stepper_.interpolant_degree() + 1) * size);

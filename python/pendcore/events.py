@@ -68,7 +68,7 @@ class Event:
         object.__setattr__(self, name, value)
 
     def _take_angle(self, where: str, number_of: str) -> None:
-        """Of the kinds for an angle."""
+        """Check and set the parameters of the kinds for an angle."""
         values: Any = self
         self._set(number_of, whole_number(where + number_of, getattr(values, number_of)))
         self._set("value", number(where + "value", values.value, "rad"))

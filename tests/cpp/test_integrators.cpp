@@ -88,7 +88,7 @@ double infinite_from_one(double t, double) { return t < 1.0 ? 1.0 : HUGE_VAL; }
 double undefined(double, double) { return std::nan(""); }
 double undefined_over_half(double, double y) { return y + 0.0 * std::sqrt(0.5 - y); }
 
-// Of Hull, Enright, Fellen & Sedgwick 1972, class A, from t = 0 to 20; `growing` is A3.
+// Class A of Hull, Enright, Fellen & Sedgwick 1972, from t = 0 to 20; `growing` is A3.
 double detest_a1(double, double y) { return -y; }                    // y = exp(-t)
 double detest_a2(double, double y) { return -0.5 * y * y * y; }      // y = 1/sqrt(1 + t)
 double detest_a4(double, double y) { return y / 4 * (1 - y / 20); }  // y = 20/(1 + 19 exp(-t/4))
@@ -153,7 +153,7 @@ constexpr auto and_one_without_error_estimate(MethodList<tables...>) {
 }
 const auto methods = and_one_without_error_estimate(Methods{});
 
-/// Of those that know nothing of pendulums: not of series.
+/// Whether a method is a series, which only pendulums have.
 template <const auto& method>
 constexpr bool is_of_series = method.info.kind == MethodKind::taylor_one;
 template <>

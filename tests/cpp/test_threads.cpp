@@ -17,7 +17,7 @@ constexpr auto own_torque = [](double /*t*/, std::span<const double> /*q*/,
                                std::span<const double> qd,
                                std::span<double> Q) { Q[0] -= 0.01 * qd[0]; };
 
-/// Of all that a run keeps for itself: modes, places in tables, locks.
+/// Scenes with all that a run keeps for itself: modes, places in tables, locks.
 std::vector<Scene> shared_scenes() {
   const std::vector<Link> links(3, Link::uniform_rod(1.0, 0.7));
   return {
@@ -35,7 +35,8 @@ std::vector<Scene> shared_scenes() {
   };
 }
 
-/// Of modes that change by themselves, and of what the implicit method keeps: to be run by each.
+/// Scenes with modes that change by themselves, and with what the implicit method keeps: each
+/// method runs them.
 std::vector<Scene> scenes_for_every_method() {
   const std::vector<Link> links(2, Link::uniform_rod(1.0, 0.7));
   return {

@@ -21,7 +21,7 @@ def _value(number: Any) -> float:
 
 
 def _sizes(row: Any) -> list[float]:
-    """Of the weights and of their partial sums."""
+    """Return the sizes of the weights and of their partial sums."""
     weights = [_value(number) for number in row]
     return [*map(abs, weights), *map(abs, accumulate(weights))]
 

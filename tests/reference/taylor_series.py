@@ -35,7 +35,7 @@ class RodChain(NamedTuple):
     lengths: Sequence[float]
     gravity: float
     damping: Sequence[float] = ()
-    """Of each joint, N m s/rad; none if it is empty."""
+    """The damping of each joint, N m s/rad; none if it is empty."""
 
     def inertia(self) -> tuple[list[list[Fraction]], list[Fraction]]:
         """Return A_ij and a_i, exactly."""

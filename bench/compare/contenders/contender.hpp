@@ -24,7 +24,7 @@ struct Case {
   std::vector<double> start, times;
 };
 
-// Of one solve: right-hand sides and attempted steps; < 0 where nobody counts.
+// What one solve took: right-hand sides and attempted steps; < 0 where nobody counts.
 struct Counts {
   long long evaluations = -1, steps = -1;
 };

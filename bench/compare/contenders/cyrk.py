@@ -20,7 +20,7 @@ from CyRK import PySolver, cyjit, nbsolve2_ivp, pysolve_ivp
 from contenders.contender import Contender, Outcome, PythonRun, compiled
 from contenders.equations import fill
 
-# Of nine methods those that are best somewhere; the last three are for stiff scenes.
+# Those of nine methods that are best somewhere; the last three are for stiff scenes.
 BY_ADDRESS = ("RK45", "DOP853", "Vern7", "LSODA", "RADAU", "BDF")
 BY_FUNCTION = ("RK45", "DOP853")
 TYPES = numba.void(numba.float64[::1], numba.float64, numba.float64[::1])

@@ -18,7 +18,7 @@ TIMES = np.linspace(0, T_END, 201)
 
 
 def energy(states: Any) -> Array:
-    """Of two rods of 1 kg and 1 m, states (..., 4): kinetic, and that of their middles' heights."""
+    """Return the energy, J, of two rods of 1 kg and 1 m in states (..., 4)."""
     q1, q2, w1, w2 = np.moveaxis(np.asarray(states), -1, 0)
     kinetic = 2 / 3 * w1**2 + w2**2 / 6 + np.cos(q1 - q2) * w1 * w2 / 2
     return np.asarray(kinetic - G * (1.5 * np.sin(q1) + 0.5 * np.sin(q2)))

@@ -30,7 +30,7 @@ def reference() -> dict[str, list[float]]:
 
 
 def around_a_turn(times: Sequence[float] | Array) -> list[float]:
-    """Of times, s, those of the figure, as ms from the tenth turn on the mark's side."""
+    """Return the times, s, that the figure shows, as ms from the tenth turn, on the mark's side."""
     first, second = reference()["t"][18:20]
     ms = 1e3 * (np.asarray(times, dtype=float) - (first + second) / 2)
     return ms[np.abs(ms) < SHOWN].tolist()  # type: ignore[no-any-return]

@@ -30,7 +30,7 @@ struct Defect {
   std::vector<double> apart;   ///< (n_steps): the largest distance of the two angles, rad
 };
 
-/// Of some steps in a row, first .. end - 1, each on a grid of 4 (degree + 1) times. `q` (n) are
+/// The defect of steps first .. end - 1, each on a grid of 4 (degree + 1) times. `q` (n) are
 /// the curve's angles where they begin, and become those where they end; none: it begins there.
 /// Throws std::invalid_argument without dense output.
 Defect defect(const Scene& scene, const Solution& solution, std::size_t first, std::size_t end,

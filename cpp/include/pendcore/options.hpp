@@ -28,7 +28,7 @@ constexpr std::string_view store_name(Store store) {
   return store_names[static_cast<std::size_t>(store)];
 }
 
-/// Of a run that names no method: method_choice.hpp has the rule.
+/// The method of a run that names none: method_choice.hpp has the rule.
 inline constexpr std::string_view automatic = "auto";
 
 /// Kept with the solution, so that it can be resumed.

@@ -12,7 +12,7 @@ namespace pendcore {
 
 class Recorder final : public Observer {
  public:
-  /// Of each event, so many occurrences end the run no more: it ended there, and goes on.
+  /// How many occurrences of each event no longer end the run: it ended there, and goes on.
   Recorder(Solution& solution, const Stepper& stepper, const Scene& scene,
            const std::vector<long long>& passed_events);
 

@@ -71,7 +71,7 @@ PivotMotion pivot_motion(const Scene& scene, double t);
 /// The number of the first effect that has no Taylor series, from 0 on.
 std::optional<std::size_t> without_series(const Scene& scene);
 
-/// Of each joint: whether a Lock holds it.
+/// Whether a Lock holds each joint.
 std::vector<bool> locked_joints(const Scene& scene);
 
 /// Throws std::invalid_argument, naming the link or effect, the field, the value, the allowed range

@@ -137,7 +137,7 @@ class Switching final : public Breaks {
   bool loses_order_ = false;  ///< the impact at hand
   /// When impacts first came so near each other that their order is not known; or not a number.
   double order_lost_ = std::numeric_limits<double>::quiet_NaN();
-  /// Of each joint that was held until this time: whether its rate is to go up (1) or down (-1)
+  /// Whether the rate of each joint that was held until this time is to go up (1) or down (-1)
   /// from zero; 0 of all others. Joints that can be let go are held forward in time alone.
   std::vector<int> let_go_;
   std::string remark_;

@@ -46,7 +46,7 @@ class FilesToWrite:
             yield path
 
     def outcome(self) -> str:
-        """Return what was written, and whether earlier files gave way."""
+        """Return what was written; where all was, also whether earlier files gave way."""
         if not self.left_out:
             return self._told
         done = [name for name in self.names if name not in self.left_out]

@@ -29,7 +29,7 @@ from pendcore.cost.reference import KNOWN, Reference, TooFarError, known_until, 
 from pendcore.simulate import simulate
 from pendcore.solution import Solution
 
-# Of the time limit: the reference may have a third, single runs a third, the rest is for repeats.
+# The reference may have a third of the time limit, single runs a third; the rest is for repeats.
 SHARE = 1 / 3
 PILOT_SHARE = 1 / 200
 """And a loose run: where that takes longer, tight ones would not get to the end."""

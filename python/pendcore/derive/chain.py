@@ -141,22 +141,22 @@ class Chain:
 
     @cached_property
     def joint_velocities(self) -> tuple[Vector, ...]:
-        """Of P_0, ..., P_n, m/s."""
+        """The velocities of P_0, ..., P_n, m/s."""
         return tuple(map(self.velocity, self.joints))
 
     @cached_property
     def center_velocities(self) -> tuple[Vector, ...]:
-        """Of C_1, ..., C_n, m/s."""
+        """The velocities of C_1, ..., C_n, m/s."""
         return tuple(map(self.velocity, self.centers))
 
     @cached_property
     def center_accelerations(self) -> tuple[Vector, ...]:
-        """Of C_1, ..., C_n, m/s^2."""
+        """The accelerations of C_1, ..., C_n, m/s^2."""
         return tuple(map(self.velocity, self.center_velocities))
 
     @cached_property
     def tip_acceleration(self) -> Vector:
-        """Of P_n, where a payload is, m/s^2."""
+        """The acceleration of P_n, where a payload is, m/s^2."""
         return self.velocity(self.joint_velocities[-1])
 
     def _beyond(self, point: Vector, link: int, distance: Expr) -> Vector:

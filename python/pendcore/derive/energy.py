@@ -34,7 +34,7 @@ class Energy:
 
     @cached_property
     def kinetic(self) -> Expr:
-        """Of links, payload and rotors, J."""
+        """The kinetic energy of links, payload and rotors, J."""
         s, found = self.notation, Integer(0)
         for i, v in enumerate(self.chain.center_velocities):
             found += s.masses[i] * dot(v, v) / 2 + s.inertias[i] * s.qd[i] ** 2 / 2
@@ -48,7 +48,7 @@ class Energy:
 
     @cached_property
     def potential(self) -> Expr:
-        """Of weights and springs, J; zero at the height of the origin."""
+        """The potential energy of weights and springs, J; zero at the height of the origin."""
         s = self.notation
         heights = [m * c[1] for m, c in zip(s.masses, self.chain.centers, strict=True)]
         if self.equations.payload is not None:

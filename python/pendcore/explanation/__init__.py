@@ -18,8 +18,8 @@ from pendcore.scene import Mobility, Scene
 MANY = 60
 """Links beyond which no matrix of them is made."""
 STEPS_A_PERIOD = 500
-"""Of the fastest oscillation: what a start at rest up to half a radian from an equilibrium takes
-without a rejected step, at the tolerances that `simulate` has by default."""
+"""How many steps a period of the fastest oscillation takes without a rejected one, from a start at
+rest up to half a radian from an equilibrium, at the tolerances that `simulate` has by default."""
 
 
 class Cost(NamedTuple):

@@ -35,7 +35,7 @@ _LONGEST = 0.5
 _NOISE = 1e-5
 """What the differences leave of a growth that is zero, as a share of the mode's own size."""
 _SLOW = 1e-3
-"""Of the stiffest rate: what is below comes from the inverse."""
+"""The share of the stiffest rate below which a rate comes from the inverse."""
 _SINGULAR = 1e-12
 """Least singular value of A, as a share of the largest, of what nothing turns back."""
 _LEFT_OUT = {
@@ -129,7 +129,7 @@ class FreeAngles:
         return z @ self._turning.T + self._fixed
 
     def accelerations(self, z: Floats, zd: Floats) -> Floats:
-        """Of the free angles, (..., m)."""
+        """Return the accelerations of the free angles, (..., m)."""
         found = self._scene.accelerations(self._t, self.q(z), zd @ self._turning.T)
         return found[..., self.leaders]
 

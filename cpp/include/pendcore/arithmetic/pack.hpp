@@ -143,7 +143,7 @@ PENDCORE_INLINE double sum_of_lanes(const Real& x) {
   for (int i = 1; i < Lanes<Real>::width; ++i) sum += lane(x, i);
   return sum;
 }
-/// Of a pack of four, halves first: what is waited for is shorter.
+/// The sum of a pack of four, halves first: what is waited for is shorter.
 template <class Real>
 PENDCORE_INLINE double sum_by_halves(const Real& x) {
   if constexpr (Lanes<Real>::width == 4) {

@@ -65,7 +65,7 @@ struct Constants<Two<Real>> {
   PENDCORE_INLINE static Two<Real> of(double x) { return {broadcast<Real>(x), broadcast<Real>(x)}; }
 };
 
-/// Of the joint before, and of the joint after, and 0 beyond the ends of the chain:
+/// The value of the joint before, that of the joint after, and 0 beyond the ends of the chain:
 /// phi_j = q_j - q_{j-1} is q - before(q), tau_j - tau_{j+1} is tau - after(tau).
 PENDCORE_INLINE double before(double) { return 0.0; }
 PENDCORE_INLINE double after(double) { return 0.0; }

@@ -49,11 +49,11 @@ class ChainSeries {
                               double* coefficients) const;
 
  private:
-  /// Of one link, for all orders.
+  /// What one link has for all orders.
   struct Link {
     double m, L, mc, I, Io, LL, turn, across, rotor;  // as in chain.hpp
   };
-  /// Of one link in its place, for the orders of one series.
+  /// What one link has in its place, for the orders of one series.
   struct Factors {
     double nx, ny;         ///< across the link
     double Bxx, Bxy, Byy;  ///< of the links beyond
@@ -73,7 +73,7 @@ class ChainSeries {
   PENDCORE_INLINE void add_couples(double t, double sigma, int k) const;
   PENDCORE_INLINE void solve(double ax, double ay) const;
 
-  /// Of a group of links, a quantity's series: a row for each order.
+  /// The series of a quantity for a group of links: a row for each order.
   PENDCORE_INLINE double* of(int quantity, int group) const {
     return series_.data() + (static_cast<std::size_t>(group) * quantities + quantity) * room_;
   }

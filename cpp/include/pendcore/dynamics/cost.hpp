@@ -21,7 +21,7 @@ struct Cost {
   std::optional<int> operations;
 };
 
-/// Of the links alone, then what each effect adds to them on its own, then of the whole scene.
+/// What the links cost alone, what each effect adds to them on its own, what the whole scene costs.
 std::vector<Cost> costs(const Scene& scene);
 
 }  // namespace pendcore

@@ -108,7 +108,7 @@ struct DoublePendulumWithEffects {
   }
 
  private:
-  /// Of the links, and of the first two waves; one trajectory has both in a pack.
+  /// The sines of the links and of the first two waves; one trajectory has both in a pack.
   PENDCORE_INLINE Pair sines(double t, const Pair& q, Pair& s, Pair& c) const {
     const TwoWaves& two = effects->two_waves;
     const Pair wave = fma(two.angular_frequency, Pair{t, t}, two.phase);

@@ -26,7 +26,7 @@ struct EquationsOfMotion {
   std::shared_ptr<HeldJoints> held_joints = nullptr;  ///< likewise
 };
 
-/// Of a scene that check() passed.
+/// The equations of a scene that check() passed.
 EquationsOfMotion equations_of_motion(const Scene& scene);
 
 /// qdd (rad/s^2) from the time (s), angles (rad) and rates (rad/s), (n) each; the same bits as in

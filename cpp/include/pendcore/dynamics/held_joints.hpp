@@ -56,7 +56,7 @@ class HeldJoints {
   const std::vector<Hold>& holds() const { return holds_; }
   bool is_held(int joint) const { return holds_[joint].is_held; }
   bool any_held_for_now() const;  ///< by other than a lock
-  /// Of each link with all that hangs on it, at its joint, kg m^2, (n).
+  /// The inertia of each link with all that hangs on it, at its joint, kg m^2, (n).
   const std::vector<double>& inertia() const { return forces_.inertia.diagonal; }
   double natural_speed() const { return natural_speed_; }  ///< rad/s, of the fastest joint
 

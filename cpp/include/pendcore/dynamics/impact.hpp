@@ -12,9 +12,10 @@
 ///    in turn, at the same time: so do joints whose impacts alternate ever faster between their
 ///    stops, once time cannot tell them apart. Hence a joint at rest at its stop that nothing
 ///    pushes there counts as leaving; where a run begins, none does.
-/// 2. A joint that did not bounce, leaves more slowly than the capture speed and is pushed back is
-///    captured: a last blow stops it, plastic at all closed stops. The rates v+ are the nearest to
-///    v- in |v|^2 = v.M v with w+ = 0 for the captured joints and w+ >= 0 for the others.
+/// 2. A joint that is pushed back to its stop is captured if it did not bounce and leaves more
+///    slowly than the capture speed, or if it is there again before time can tell: a last blow
+///    stops it, plastic at all closed stops. The rates v+ are the nearest to v- in |v|^2 = v.M v
+///    with w+ = 0 for the captured joints and w+ >= 0 for the others.
 ///
 /// Neither adds energy, T+ - T- = Lambda.(w+ + w-)/2. In 1, Lambda_i > 0 only where
 /// w_i+ = -e_i w_i-: the terms of the sum are (1 - e_i) Lambda_i w_i-/2 <= 0, whatever the e, and

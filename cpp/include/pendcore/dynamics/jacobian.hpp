@@ -20,7 +20,7 @@ namespace pendcore {
 
 class Jacobian {
  public:
-  /// Of a scene and its equations, with which it shares the modes in force.
+  /// The Jacobian shares the modes in force with the equations of its scene.
   Jacobian(const Scene& scene, const EquationsOfMotion& equations);
 
   /// by_q and by_qd, (n, n) row-major, from the time (s), angles (rad) and rates (rad/s), (n) each.

@@ -32,7 +32,7 @@ struct JointSupport {
   const Stop& stop(Side side) const { return side == Side::lower ? lower : upper; }
 };
 
-/// Of each joint, (n). Where stops overlap, the narrowest range counts.
+/// The supports of all joints, (n). Where stops overlap, the narrowest range counts.
 std::vector<JointSupport> joint_supports(const Scene& scene, const Inertia& inertia);
 
 }  // namespace pendcore

@@ -16,7 +16,7 @@
 
 namespace pendcore {
 
-/// Of joint j, counted from 1: x_j - x_{j-1}, as phi_j = q_j - q_{j-1}.
+/// The value of joint j, counted from 1: x_j - x_{j-1}, as phi_j = q_j - q_{j-1}.
 inline double relative(const double* x, int joint) {
   return joint > 1 ? x[joint - 1] - x[joint - 2] : x[0];
 }

@@ -26,11 +26,11 @@ class CoupleTorque {
   static constexpr bool is_there = true;
   static constexpr bool depends_on_time = true;
 
-  /// Of effects that neither hold a joint nor move the pivot, with two waves at most.
+  /// The effects neither hold a joint nor move the pivot, and have two waves at most.
   CoupleTorque(std::shared_ptr<const ActingEffects<Pair>> effects, const Pair& inverse_diagonal)
       : effects_(std::move(effects)), inverse_diagonal_(inverse_diagonal) {}
 
-  /// Of one series.
+  /// The orders of one series.
   class Orders {
    public:
     PENDCORE_INLINE Orders(const CoupleTorque& laws, double t, double sigma)

@@ -83,7 +83,7 @@ struct EffectInfo {
   /// Under it the motion jumps or sticks, each time at an instant of its own: two motions that are
   /// neighbours part there at no rate.
   bool jumps_or_sticks = false;
-  /// Of one that is part of the equations of motion: whether their Taylor series hold it. Of those
+  /// Whether the Taylor series hold one that is part of the equations of motion. Among those
   /// that are laws, couples have a series and no others.
   bool has_series = false;
 };

@@ -30,7 +30,7 @@ class Breaks {
   /// How many of the guard, its slope, its curvature are zero where the next step begins, whatever
   /// rounding says.
   virtual int zeros_at_start(int k) const = 0;
-  /// Of a linear guard: its coefficients along the dense output, a polynomial given by (degree + 1)
+  /// The coefficients of a linear guard along the dense output, a polynomial given by (degree + 1)
   /// rows of `dimension` numbers.
   virtual void polynomial(int k, const double* rows, int degree, int dimension,
                           double* coefficients) const = 0;

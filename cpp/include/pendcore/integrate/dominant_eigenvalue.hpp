@@ -21,7 +21,7 @@ class DominantEigenvalue {
  public:
   static constexpr int evaluations = 4;
 
-  /// Of n angles, n rates and that many quadratures, which have no say.
+  /// The state has n angles, n rates and that many quadratures, which have no say.
   DominantEigenvalue(int n, int quadratures);
 
   /// The direction, 2n numbers, to be filled in: rad, rad/s.

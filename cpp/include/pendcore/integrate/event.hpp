@@ -43,7 +43,7 @@ struct LinkAngle {
   static constexpr std::string_view kind = "link_angle";
 };
 
-/// Of a joint or of a link, one of the two.
+/// The rate of a joint or of a link becomes zero: one of the two is given.
 struct RateZero {
   std::optional<int> joint;
   std::optional<int> link;

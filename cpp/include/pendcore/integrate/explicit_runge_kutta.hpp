@@ -151,7 +151,7 @@ class ExplicitRungeKutta final : public Stepper {
   }
 
  private:
-  /// Of components that are given another value.
+  /// Forgets what belongs to components that are given another value.
   static void forget(const double* y, const Block* instead_of, Block* low) {
     for (int i = 0; i < blocks; ++i) {
       for (int j = 0; j < width; ++j) {

@@ -25,7 +25,7 @@ struct GaussQuadrature {
       0.18134189168918099148,  0.18134189168918099148, 0.15685332293894364367,
       0.11119051722668723527,  0.050614268145188129576};
 
-  /// Of the values at the points, the integral over the whole step of length 1.
+  /// The integral over the whole step, of length 1, from the values at the points.
   static double whole(const double* values) {
     double sum = 0.0;
     for (int j = 0; j < points; ++j) sum += weight[j] * values[j];

@@ -301,7 +301,7 @@ class GeneralRungeKutta final : public Stepper {
   }
 
  private:
-  /// Of components that are given another value.
+  /// Forgets what belongs to components that are given another value.
   void forget(const double* y, const double* instead_of, double* low) const {
     for (int i = 0; i < dimension(); ++i) {
       const int at = i < n_ ? i : i < 2 * n_ ? row_ + i - n_ : 2 * (row_ - n_) + i;

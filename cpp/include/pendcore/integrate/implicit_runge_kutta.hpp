@@ -80,7 +80,7 @@ class ImplicitRungeKutta final : public Stepper {
   double squared_norm(const double* error) const;
   double scale(int i) const;
   void set_slope(double h);
-  /// Of component i of u, through the stages: the coefficient of theta^(p + 1).
+  /// The coefficient of theta^(p + 1) of component i of u, through the stages.
   double power_of_stages(int p, int i) const {
     const Collocation::Row& row = method_.interpolant[p];
     return row[0] * stages_[i] + row[1] * stages_[size_ + i] + row[2] * stages_[2 * size_ + i];

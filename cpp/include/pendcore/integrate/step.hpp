@@ -240,7 +240,7 @@ PENDCORE_INLINE void dense_stages_of_step(StepMemory<method, System, compensated
   }
 }
 
-/// Of one block of the state: the coefficients of theta, theta^2, ... of the dense output, from its
+/// The coefficients of theta, theta^2, ... of the dense output of one block of the state, from its
 /// stages.
 template <const auto& method, class Stage, class Block>
 PENDCORE_INLINE void interpolant_of_block(double h, const Stage& k, Block* powers) {

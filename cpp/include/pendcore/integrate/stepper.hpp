@@ -51,7 +51,7 @@ class Stepper {
   /// Makes the attempted step the past: y becomes y_new.
   virtual void accept(double t_new) = 0;
 
-  /// Of the attempted step: the dense output, (degree + 1, dimension) row-major,
+  /// The dense output of the attempted step, (degree + 1, dimension) row-major,
   /// y(t + theta h) = sum_p theta^p coefficient[p].
   virtual void interpolant(double h, double* coefficients) = 0;
 

@@ -166,7 +166,7 @@ PENDCORE_INLINE Attempt attempt_series(TaylorMemory<Series>* memory, double t, d
     }
   }
   const double size_of_step = std::abs(h);
-  // Of order 8 for what the control makes of a step that is too long.
+  // As if of order 8, for what the control makes of a step that is too long.
   const double share = size_of_step / memory->largest;
   const double square = share * share;
   const double of_order = (square * square) * (square * square);

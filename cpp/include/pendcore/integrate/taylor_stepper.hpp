@@ -145,7 +145,8 @@ class Taylor final : public Stepper {
               int count, double* states) const override {
     sample_(coefficients, start, h, times, count, states, dimension(), memory_.order);
   }
-  /// Of the part that dominates the last coefficient of the series at the start of the attempt.
+  /// The stiffness of the part that dominates the last coefficient of the series where the attempt
+  /// starts.
   double stiffness(double h) override {
     write_rows(memory_.rows + static_cast<std::ptrdiff_t>(memory_.order) * size_,
                eigenvalue_.direction());
@@ -206,7 +207,7 @@ class Taylor final : public Stepper {
     has_series_ = has_new_series_ = false;
   }
 
-  /// Of components that are given another value.
+  /// Forgets what belongs to components that are given another value.
   void forget(const double* y, const double* instead_of, double* low) const {
     for (int i = 0; i < n_; ++i) {
       if (y[i] != instead_of[i]) low[i] = 0.0;

@@ -17,7 +17,7 @@ namespace pendcore {
 
 /// How far apart doubles are about there, and a little more: times within that are the same.
 double last_bits(double t, double t_new);
-/// Of these: a step of no more resolves nothing.
+/// How many of the last bits of time a step has that resolves nothing, at most.
 inline constexpr double few = 10.0;
 
 class Trial {

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 MOST_TICKS = 7
-"""Of an axis to draw into."""
+"""How many ticks an axis has that is drawn into, at most."""
 
 
 def sheets(rows: int, height: float = 2.1) -> tuple[Figure, list[Axes]]:

@@ -112,7 +112,7 @@ class RodDrag(Law):
         return LinkLoad(i, (self.force * across[0], self.force * across[1]), self.moment)
 
     def power(self, chain: Chain, ground_force: Vector) -> Expr:
-        """Of F at the joint where the rod begins, and of T."""
+        """Return the powers of F, at the joint where the rod begins, and of T."""
         i = self.effect.link
         speed = dot(chain.across(i), chain.joint_velocities[i - 1])
         return self.force * speed + self.moment * self.notation.qd[i - 1]

@@ -36,6 +36,6 @@ class TorsionalSpring(Law):
         return -self.stiffness * (chain.joint_angle(self.effect.joint) - self.rest_angle)
 
     def potential_energy(self, chain: Chain) -> Expr:
-        """Of the spring, J."""
+        """Return the energy of the spring, J."""
         wound = chain.joint_angle(self.effect.joint) - self.rest_angle
         return self.stiffness * wound**2 / 2
