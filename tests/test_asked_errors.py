@@ -218,7 +218,7 @@ def test_a_run_that_the_cap_on_steps_ends_is_labelled():
     assert sol.status == "max_steps"
     assert sol.accuracy.outcome == "ended early"
     assert 0 < sol.accuracy.achieved < 1e-4
-    assert "as far as the run came" in str(sol.accuracy)
+    assert "as far as it is known (kept until t = " in str(sol.accuracy)
     assert "rtol" not in sol.message
 
 

@@ -203,3 +203,9 @@ def test_forces_that_no_double_holds_are_said_to_be_so() -> None:
     solution = pc.simulate(ROD_ALONE, 0.0, 1e160, t_span=(0, 1e-170), store="end")
     assert solution.largest_reactions()[0].force == np.inf
     assert "joint 1: beyond the range of doubles at t = " in text(facts(solution))
+
+
+def test_what_is_known_at_one_time_is_not_told_to_be_steady() -> None:
+    sol = pc.simulate(pc.Scene.textbook(), [0.7, 1.2], t_span=(0, 5), store="end")
+    assert len(sol.t) == 1
+    assert not any(one.steady for one in sol.largest_reactions())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import mpmath
 import numpy as np
@@ -61,3 +62,33 @@ def test_near_the_end_of_double_precision_rounded_constants_are_seen(error, t_en
         pc.simulate(BOOK, q0, 0, (0, t_end), error=error)
     assert caught.value.least > error
     assert caught.value.solution.accuracy.until < t_end
+
+
+@pytest.mark.parametrize("start", [(-1.2, -0.6), (-1.2599042254758888, -1.2119615135616397)])
+def test_second_runs_that_share_the_truncation_of_a_tight_trial_do_not_verify_it(
+    start: tuple[float, float],
+) -> None:
+    """Three runs at rtol 1e-14 agreed to 4e-11, and were off by 5.3e-10 (and by 3.9e-10)."""
+    off = {-1.2: (8, 5.303e-10)}.get(start[0], (7, 3.92e-10))
+    with pytest.raises(pc.AccuracyError) as refusal:
+        pc.simulate(BOOK, start, t_span=(0, off[0]), error=0.75 * off[1])
+    assert refusal.value.least > off[1]
+
+
+def test_a_trial_is_handed_over_wherever_the_interrupt_falls(monkeypatch: Any) -> None:
+    def interrupted(*_: Any) -> Any:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("pendcore.accuracy.trials.estimate", interrupted)
+    with pytest.raises(KeyboardInterrupt) as stop:
+        pc.simulate(BOOK, [0.7, 1.2], t_span=(0, 10), error=1e-6)
+    sol = stop.value.solution  # type: ignore[attr-defined]
+    assert sol.success
+    assert sol.accuracy.outcome == "ended early"
+
+
+def test_when_the_time_is_up_a_whole_trial_is_returned_and_called_unverified() -> None:
+    with pytest.warns(pc.PendcoreWarning, match="got to its end, but .* not verified"):
+        sol = pc.simulate(BOOK, [-1.5, -1.4], t_span=(0, 30), error=1e-3, time_limit=0.004)
+    assert sol.t[-1] == 30
+    assert sol.accuracy.outcome == "ended early"

@@ -57,6 +57,8 @@ def test_the_page_shows_the_record() -> None:
     record = json.loads((docs / "true_error.json").read_text())
     assert report.markdown(record) in (docs / "accuracy_cost.md").read_text()
     assert set(record["families"]) == set(FAMILIES)
+    for of_it in record["families"].values():
+        assert not any(of_it[name] for name in ("above", "contradicted", "late", "exceptions"))
 
 
 # A deliberate mistake of each sort is seen -----------------------------------------------------

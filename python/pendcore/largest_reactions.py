@@ -74,7 +74,7 @@ def largest_reactions(
     search = _Search(scene, run)
     if run.store != "dense":
         search.take(run.t, search.sizes_at(run.t, run.states))
-        return search.found()
+        return search.found(is_over_time=len(set(run.t)) > 1)
     report = callback(progress, "looking for the largest reactions")
     starts, end = run.step_starts, run.t_reached
     try:
@@ -98,7 +98,7 @@ class _Search:
         self.when, self.before = np.full(n, np.nan), np.zeros(n, dtype=bool)
         self.at_once = max(AT_ONCE // (4 * IN_A_PIECE * n), 16)
 
-    def found(self) -> list[LargestReaction]:
+    def found(self, is_over_time: bool = True) -> list[LargestReaction]:
         """Return what was found: nothing where there were no times."""
         if np.isinf(self.least).all() and (self.best < 0).all():
             return []
@@ -109,7 +109,7 @@ class _Search:
                 force=float(self.best[i]),
                 t=float(self.when[i]),
                 just_before=bool(self.before[i]),
-                steady=bool(steady[i]),
+                steady=is_over_time and bool(steady[i]),
             )
             for i in range(self.n)
         ]

@@ -10,7 +10,8 @@ if TYPE_CHECKING:
     from pendcore.solution import Solution
 
 CAN_GO_ON = frozenset({"max_steps", "max_turns", "time_limit", "interrupted"})
-"""Statuses after which `Solution.resume` gets further."""
+"""Statuses after which `Solution.resume` gets further; also that of a loaded run, whose functions
+are gone."""
 
 
 class RunError(RuntimeError):
@@ -41,7 +42,7 @@ def require_check(check: object) -> None:
 
 def checked(solution: Solution, check: bool | None) -> Solution:
     """Return a solution; of one that is no success warn, or raise, or say nothing."""
-    if check is False or solution.success:
+    if check is False or (solution.success and not _is_unverified(solution)):
         return solution
     if check:
         raise RunError(_complaint(solution), solution)
@@ -53,8 +54,15 @@ def checked(solution: Solution, check: bool | None) -> Solution:
     return solution
 
 
+def _is_unverified(solution: Solution) -> bool:
+    """Whether the time was up before a run that got to its end was verified."""
+    return solution.accuracy is not None and solution.accuracy.outcome == "ended early"
+
+
 def _complaint(solution: Solution) -> str:
     """Return status, time and remedy in a sentence; the message has the time, and some remedies."""
+    if solution.success and solution.accuracy is not None:
+        return f"the run got to its end, but {solution.accuracy.text()}"
     t_end, message = solution._run.arguments["t_end"], solution.message
     complaint = (
         f"the run ended before t_end = {t_end:.6g} s, with status {solution.status}: "

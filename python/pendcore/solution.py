@@ -251,12 +251,7 @@ class Solution:
         return self._error
 
     def valid_until(
-        self,
-        limit: float = 0.1,
-        *,
-        of: str = "angle",
-        time_limit: float | None = None,
-        progress: Progress = None,
+        self, limit: float = 0.1, *, of: str = "angle", time_limit: float | None = None
     ) -> float:
         """Return how far to trust the run: the time at which its `error` passes a limit, s.
 
@@ -264,15 +259,11 @@ class Solution:
 
         Parameters
         ----------
-        limit : float
-            rad; with ``of="position"`` a share of the total length.
-        of : {"angle", "position"}
-            Of the links, or of joints and tip.
-        time_limit, progress : as in `error`
-            Where the time is up, the run is known to hold so far, and perhaps for longer.
+        limit : float, rad; with ``of="position"`` a share of the total length
+        of : {"angle", "position"}, of the links, or of joints and tip
+        time_limit : as in `error`; how far the run is known to hold by then
         """
-        known = self.error(time_limit=time_limit, progress=progress)
-        return known.valid_until(limit, of=of)
+        return self.error(time_limit=time_limit).valid_until(limit, of=of)
 
     def lyapunov(
         self,

@@ -41,7 +41,8 @@ class Verdict:
     n, asked, method : int, float, str
         Links, the error that was asked for, the method that was taken.
     outcome : str
-        ``"kept"``, ``"refused"`` (`AccuracyError`), ``"unverified"``, or ``"exception"``.
+        ``"kept"``, ``"refused"`` (`AccuracyError`), ``"ended early"``, ``"unverified"``, or
+        ``"exception"``.
     says : str
         The verification, the message, or the exception.
     achieved, true, estimated : float or None

@@ -10,6 +10,8 @@ import numpy as np
 from true_error.judge import Verdict
 
 SHARES = (5, 25, 50, 75, 95, 99, 100)
+NO_REFERENCE, MANY = 0.02, 20
+"""The share of scenes that may lack a reference; of so many scenes one at least is kept."""
 UNVERIFIED = 1 / 100
 """The share of scenes that may end unverified."""
 MEDIAN = (0.05, 0.8)
@@ -71,6 +73,10 @@ def broken(verdicts: list[Verdict]) -> list[str]:
         )
         if record[name]
     ]
+    if record["no_reference"] > NO_REFERENCE * len(verdicts):
+        found.append(f"{record['no_reference']} of {len(verdicts)} without a reference")
+    if len(verdicts) >= MANY and not record["kept"]:
+        found.append("no error was kept: nothing was tested")
     if record["unverified"] > UNVERIFIED * len(verdicts):
         found.append(f"{record['unverified']} of {len(verdicts)} unverified")
     low, high = MEDIAN
@@ -118,7 +124,8 @@ def markdown(record: dict[str, Any]) -> str:
     heads += ["true / asked, median", "largest"]
     lines = [f"| {' | '.join(heads)} |", "|---|" + "--:|" * (len(heads) - 1)]
     for family, of_it in record["families"].items():
-        shares = [f"{of_it['ratios'][share]:.2f}" for share in ("50", "100")]
+        ratios = of_it["ratios"]
+        shares = [f"{ratios[share]:.2f}" if ratios else "-" for share in ("50", "100")]
         cells = [family, *(str(of_it[name]) for name in names), *shares]
         lines.append(f"| {' | '.join(cells)} |")
     first, end = record["seeds"]

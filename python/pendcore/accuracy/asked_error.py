@@ -1,10 +1,11 @@
 """A run that keeps an error: method and tolerance are chosen, and what comes out is verified.
 
 Two kinds of runs are made in a loop. A *trial* is what was asked for, at some tolerance. A *second
-run* is better: its tolerance is a twenty-fifth or less of the trial's, its constants and start are
-moved by some last bits, and its steps are others. The distance of the two says how the error
-follows the tolerance on this scene, and so at which tolerance to try next. A trial is returned when
-its error is at most the one asked for, and the second run is known to be the better of the two:
+run* is better: it takes the same method at a twenty-fifth of the tolerance or less (`taylor` at a
+hundredth), its constants and start are moved by some last bits, and its steps are others. The
+distance of the two says how the error follows the tolerance on this scene, and so at which
+tolerance to try next. A trial is returned when its error is at most the one asked for, and the
+second run is known to be the better of the two:
 
 * by another trial, at a different tolerance, whose error is to the first one's as their tolerances
   let expect: then the second run's is smaller by as much; or
@@ -20,7 +21,7 @@ from __future__ import annotations
 from math import inf, log
 from typing import Any
 
-from pendcore.accuracy.estimate import ErrorEstimate
+from pendcore.accuracy.estimate import SPARE_OF_SEVERAL, ErrorEstimate
 from pendcore.accuracy.methods import LOOSEST
 from pendcore.accuracy.report import AccuracyError
 from pendcore.accuracy.run import Start
@@ -31,7 +32,7 @@ from pendcore.solution import Solution
 
 # What tolerances aim at.
 FIRST, LOOSE = 3.0, 1e-3
-"""What multiple of the error the first trial aims at; a looser error it is to keep at once."""
+"""What multiple of the error the first trial aims at; the error above which it aims to keep it."""
 AIM = 0.65
 """What share of the error the trials after that aim at."""
 LEAST_CHANGE, FARTHER = 1.5, 100.0
@@ -43,7 +44,7 @@ BETTER, BETTER_SERIES, SPARED = 25.0, 100.0, 1.6
 """By what factor a second run is better than a trial at least; by what one of `taylor` is, to which
 a digit more costs little, and whose order changes with the tolerance; what it has to spare."""
 FAR_BETTER = 1000.0
-"""By what factor the first second run of `taylor` is better: it is to verify a tighter trial too."""
+"""By what factor the first second run of `taylor` is better: it may verify a tighter trial too."""
 BETTER_STILL = 8.0
 """By what factor one more second run is better, which tells how good the first one is."""
 # When something counts as known.
@@ -64,9 +65,11 @@ SHARE, SPARE = 0.35, 0.35
 """What the error of a single second run may be, as a share of the distance from it, at most; and
 what is added to that, as methods do not all follow their tolerances alike."""
 ALIKE, SHARE_IF_ALIKE = 20.0, 1.0
-"""By what factor second runs as tight as doubles allow may not be tighter than the trial; then they
+"""If second runs as tight as doubles allow are less than this factor tighter than the trial, they
 have in common with it as much as they differ by: what an implicit step leaves over, or steps that
 stability sets."""
+CAUTION_IF_TIGHT = 0.5
+"""The exponent with which the error of looser runs is carried over to these second runs."""
 ROUNDING = 1.5e-12
 """The scale of an error that constants and start make that are moved, at most.
 
@@ -103,13 +106,14 @@ def run_to_error(start: Start, error: float, options: dict[str, Any]) -> Solutio
     except AccuracyError:
         raise
     except BaseException as stop:
+        best = runs.best()
         if isinstance(partly := getattr(stop, "solution", None), Solution):
-            best = runs.best() or (partly if partly.scene is start.scene else None)
+            best = best or (partly if partly.scene is start.scene else None)
             del stop.solution  # type: ignore[attr-defined]
-            if best is not None:
-                during = "while it was verified" if best.success else "during the run itself"
-                runs.labelled(best, "ended early", None, f"interrupted {during}")
-                stop.solution = best  # type: ignore[attr-defined]
+        if best is not None:
+            during = "while it was verified" if best.success else "during the run itself"
+            runs.labelled(best, "ended early", None, f"interrupted {during}")
+            stop.solution = best  # type: ignore[attr-defined]
         raise
     finally:
         close(report)
@@ -125,6 +129,8 @@ def _kept(runs: Trials) -> Solution:
         if latest is None:
             break
         if not latest.solution.success:
+            if latest.solution.status == "time_limit":
+                return _out_of_time(runs, latest)
             if latest in runs.trials and latest.solution.status != "max_steps":
                 return _ended_early(runs, latest)
             raise _refusal(runs, f"{latest.text}: {latest.solution.message}")
@@ -162,7 +168,9 @@ def _next_run(runs: Trials) -> Made | None:
         aimed = last.scale * AIM * runs.error / max(apart, 1e-9 * runs.error)
     if known is None and apart <= LIKELY * runs.error:
         looser = _looser(runs, last, aimed)
-        return _second(runs, last) if looser is None else runs.trial(looser, last.method)
+        if looser is not None:
+            return runs.trial(looser, last.method)
+        return None if _tight_runs(last) else _second(runs, last)
     if last.rtol <= runs.tightest:
         return None
     aimed = min(aimed, last.scale / LEAST_CHANGE)
@@ -171,8 +179,6 @@ def _next_run(runs: Trials) -> Made | None:
 
 def _looser(runs: Trials, trial: Made, aimed: float) -> float | None:
     """Return the scale of a trial that may show how the error follows the tolerance."""
-    if _tight_runs(trial):
-        return None
     scales = [LOOSER * trial.scale, NEXT_LOOSER * trial.scale]
     if aimed > RATIO * trial.scale:
         scales.insert(0, aimed)
@@ -220,9 +226,10 @@ def _known_error(runs: Trials, trial: Made) -> ErrorEstimate | None:
     better = _better_than(runs, trial)
     count = _tight_runs(trial) or 2
     if len(better) >= count:
-        if trial.rtol < ALIKE * runs.tightest:
-            return runs.compared(trial, better[:count], SHARE_IF_ALIKE)
-        if not _tight_runs(trial) and better[0].scale * RATIO > better[1].scale:
+        if _tight_runs(trial) or trial.rtol < ALIKE * runs.tightest:
+            share = _share_if_tight(runs, trial, better[:count])
+            return None if share is None else runs.compared(trial, better[:count], share)
+        if better[0].scale * RATIO > better[1].scale:
             return runs.compared(trial, better[:count], SPARE)  # they may be off alike
         return runs.compared(trial, better[:count])
     if _tight_runs(trial) or not better:
@@ -252,6 +259,27 @@ def _share(runs: Trials, trial: Made, second: Made) -> float:
     return found + ROUNDING / trial.scale
 
 
+def _share_if_tight(runs: Trials, trial: Made, seconds: list[Made]) -> float | None:
+    """Return what is added to the distance from second runs as tight as doubles allow, as a share.
+
+    They may be off alike, by their truncation: looser runs of the method tell it. None if there are
+    none where it takes them, in a stiff scene.
+    """
+    own = max(runs.distance(trial, one) for one in seconds)
+    left = inf
+    for other in (*runs.trials, *runs.seconds):
+        is_looser = other is not trial and other.scale >= LEAST_CHANGE * seconds[0].scale
+        if not (is_looser and other.method == seconds[0].method and other.solution.success and own):
+            continue
+        apart = runs.distance(other, seconds[0])
+        if apart < NOTHING_IN_COMMON:
+            left = min(left, apart * (seconds[0].scale / other.scale) ** CAUTION_IF_TIGHT)
+    least = SHARE_IF_ALIKE if trial.rtol < ALIKE * runs.tightest else SPARE_OF_SEVERAL
+    if left == inf:
+        return None if runs.is_stiff and own > 0 else least
+    return max(least, left / own)
+
+
 def _better_than(runs: Trials, trial: Made) -> list[Made]:
     """Return the second runs that may verify a trial, the best first."""
     if _tight_runs(trial):
@@ -266,6 +294,12 @@ def _tight_runs(trial: Made) -> int:
     return next((count for below, count in ROUNDING_MATTERS if trial.scale < below), 0)
 
 
+def _out_of_time(runs: Trials, latest: Made) -> Solution:
+    """Return the tightest whole trial, if there is one: nothing has verified it."""
+    why = "the time limit was reached before it was verified"
+    return runs.labelled(runs.best() or latest.solution, "ended early", None, why)
+
+
 def _ended_early(runs: Trials, trial: Made) -> Solution:
     """Return a run that did not get to its end, with what is known of it."""
     status = trial.solution.status
@@ -273,13 +307,18 @@ def _ended_early(runs: Trials, trial: Made) -> Solution:
         why = f"the run ended early: {status}"
         return runs.labelled(trial.solution, "ended early", None, why)
     seconds = [_second(runs, trial) for _ in range(_tight_runs(trial) or 2)]
-    return runs.labelled(trial.solution, "ended early", runs.compared(trial, seconds))
+    found = runs.compared(trial, seconds)
+    solution = runs.labelled(trial.solution, "ended early", found)
+    if not found.is_complete:
+        solution._error = None  # another time there may be more time
+    return solution
 
 
 def _refusal(runs: Trials, why: str = "") -> AccuracyError:
     """Return the error that says what was reached and why not more."""
     asked = f"error = {runs.error:g}"
-    last = min(runs.trials, key=lambda one: one.scale)
+    whole = [one for one in runs.trials if one.solution.success]
+    last = min(whole or runs.trials, key=lambda one: one.scale)
     found = _known_error(runs, last)
     if found is None or why:
         why = why or "its error does not follow the tolerances: is a law of your own not smooth?"

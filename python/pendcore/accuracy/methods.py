@@ -24,10 +24,14 @@ ERROR_OVER_RTOL = {"dopri5": 3.0, "dop853": 0.4, "taylor": 0.9, "radau5": 1.0}
 SERIES_TO_DOP853 = 0.092
 """Series that taylor takes at rtol 1e-3 for each right-hand side of dop853, typically."""
 TAYLOR_BELOW = ((0.9, 5e-3), (1.08, 2e-5), (1.2, 1e-6), (1.6, 3e-6), (4.0, 1e-10))
-"""Below which error taylor takes the least work, if at 1e-3 it takes so many times dop853's."""
+"""Below which error taylor takes the least work, if at 1e-3 it takes so many times dop853's.
+
+The rows stand for the kinds of scenes that `series_work` tells apart, so they need not fall.
+"""
 DOPRI5_ABOVE = {1: 1e-3}
 """Above which error dopri5 takes less work than dop853, with so many links."""
 DOPRI5_ABOVE_ELSE = 3e-7
+"""The same with any other number of links."""
 INERTIA_ALONE = {"payload", "rotor_inertia"}
 """Effects that change what the links weigh, and add no torque."""
 MOST_ACCURATE = ("taylor", "dop853", "dopri5", "radau5")
@@ -85,7 +89,7 @@ def second_methods(start: Start, method: str, stiff: bool) -> Iterator[str]:
 
     What one method gets wrong, such as a step size that is fooled or a wrong coefficient, another
     does not get wrong in the same way. Where stability limited the steps, an explicit method may
-    take too many: an implicit one then, itself perhaps.
+    take too many; an implicit one is taken then, perhaps the run's own.
     """
     known = known_methods()[method]
     begins, goes_on = known["first"], known["second"]

@@ -107,9 +107,11 @@ class Accuracy:
         verdict = {
             "kept": "",
             "refused": ", not reached",
-            "ended early": " as far as the run came",
+            "ended early": f" as far as it is known (kept until t = {self.until:.6g} s)",
         }[self.outcome]
-        where = "over the whole curve" if self.everywhere else f"at {self.times} times"
+        where = f"at {self.times} times"
+        if self.everywhere:
+            where = "over the curve" if self.outcome == "ended early" else "over the whole curve"
         return (
             f"{asked}, achieved {self.achieved:.1e} of the total length {where}{verdict}: "
             f"verified by {self.verified_by}"

@@ -25,7 +25,8 @@ Constants are formed in two or three operations, each of which is off by half a 
 def moved(start: Start, seed: int) -> Start:
     """Return what is run with its constants and angles some last bits off, others for each seed.
 
-    Angles stay where effects say where they may be (stops, locks), and what is zero stays zero.
+    Angles stay where effects say where they may be (stops, locks); a constant that is zero stays
+    zero.
     """
     scene = start.scene
     rng = np.random.default_rng(seed)

@@ -117,8 +117,8 @@ class Trials:
     def second(self, trial: Made, scale: float) -> Made:
         """Run better than a trial, with other steps, constants and start.
 
-        The method is the trial's: by how much another one is better would be a guess, as a scene
-        may suit the one and not the other.
+        The method is the trial's, or radau5 where the scene is stiff: by how much another one is
+        better would be a guess, as a scene may suit the one and not the other.
         """
         method = IMPLICIT if self.is_stiff else trial.method
         rtol = rounded(scale / ERROR_OVER_RTOL[leading(method)], self.tightest)
@@ -191,20 +191,22 @@ class Trials:
         is_behind = abs(end - begin) > abs(run.t_reached - begin)
         if not (is_behind and second.solution.store == "dense" and second.solution.success):
             return second
-        longer = second.solution.resume(end, max_steps=self._most_steps(MORE_STEPS), check=False)
-        went_on = replace(second, solution=longer)
+        longer = second.solution.resume(
+            end, max_steps=self._most_steps(MORE_STEPS), check=False,
+            time_limit=self._time_left(), progress=self._progress(),
+        )  # fmt: skip
+        work = second.work * longer.stats.nfev / max(second.solution.stats.nfev, 1)
+        went_on = replace(second, solution=longer, work=work)
         self.paid[self.paid.index(second)] = went_on
         return went_on
 
     def _run(self, start: Start, method: str, rtol: float, options: dict[str, Any]) -> Made:
         is_second = start.scene is not self.start.scene
         compensated = is_second or self.compensated or rtol < COMPENSATED_BELOW
-        left = None
-        if self.time_limit < inf:
-            left = max(self.time_limit - (monotonic() - self.began), 1e-6)
         solution = run(
             start, Choice(method, rtol, atol_beside(rtol), compensated), **options,
-            time_limit=left, progress=self._progress(), warn=silent if self.paid else warn,
+            time_limit=self._time_left(), progress=self._progress(),
+            warn=silent if self.paid else warn,
         )  # fmt: skip
         work = float(solution.stats.nfev)
         if leading(method) == "taylor" and not solution.stats.stiff:
@@ -214,6 +216,11 @@ class Trials:
         self.paid.append(made)
         self._done += _ADVANCE * (1 - self._done)
         return made
+
+    def _time_left(self) -> float | None:
+        if self.time_limit == inf:
+            return None
+        return max(self.time_limit - (monotonic() - self.began), 1e-6)
 
     def _progress(self) -> Callable[[float], object] | bool:
         report, done = self.report, self._done

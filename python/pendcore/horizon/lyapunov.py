@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
 
 TIMES = 201
-"""Of the result, unless they are given."""
+"""How many times the result has, unless they are given."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -192,11 +192,13 @@ def lyapunov(
     _check_is_smooth(scene)
     _check_count(scene, count)
     report = callback(progress, "following neighbours")
-    found = _core.lyapunov(
-        scene._compiled, q0, qd0, t_start, t_end, count, rtol, atol, [*times],
-        max_step, max_steps, time_limit, report, warn,
-    )  # fmt: skip
-    close(report)
+    try:
+        found = _core.lyapunov(
+            scene._compiled, q0, qd0, t_start, t_end, count, rtol, atol, [*times],
+            max_step, max_steps, time_limit, report, warn,
+        )  # fmt: skip
+    finally:
+        close(report)
     result = _exponents(found, since, len(scene.links))
     if found["error"] is not None:
         found["error"].exponents = result
@@ -211,7 +213,7 @@ def lyapunov_of(
     t_eval: npt.ArrayLike | None,
     progress: Progress,
 ) -> LyapunovExponents:
-    """Of the motion that a solution computed, as far as it came, at its tolerances."""
+    """Compute the exponents of a solution's motion, as far as it came, at its tolerances."""
     asked = solution._run.arguments
     if solution._run.t_reached == asked["t_start"]:
         raise ValueError("lyapunov: the run ended where it began: nothing had time to grow")
