@@ -276,8 +276,8 @@ def _share_if_tight(runs: Trials, trial: Made, seconds: list[Made]) -> float | N
             left = min(left, apart * (seconds[0].scale / other.scale) ** CAUTION_IF_TIGHT)
     least = SHARE_IF_ALIKE if trial.rtol < ALIKE * runs.tightest else SPARE_OF_SEVERAL
     if left == inf:
-        return None if runs.is_stiff and own > 0 else least
-    return max(least, left / own)
+        return None if runs.is_stiff and own > 0 else least + SPARE
+    return max(least, left / own) + SPARE
 
 
 def _better_than(runs: Trials, trial: Made) -> list[Made]:
