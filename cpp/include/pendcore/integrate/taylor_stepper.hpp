@@ -66,6 +66,7 @@ class Taylor final : public Stepper {
     for (int i = 0; i < n_; ++i) {
       rate = std::max({rate, dydt[i] * dydt[i], std::abs(dydt[n_ + i])});
     }
+    starts_at_rest_ = rate == 0.0;
     memory_.sigma = taylor_detail::power_of_two_below(rate > 0.0 ? 1.0 / std::sqrt(rate) : 1.0);
     has_series_ = false;
   }
@@ -94,6 +95,10 @@ class Taylor final : public Stepper {
 
   Attempt attempt(double t, double h, double /*gain*/) override {
     stays_ = false;
+    // A step that is given is the only time there is, where nothing moves yet.
+    if (std::exchange(starts_at_rest_, false) && !has_series_) {
+      memory_.sigma = taylor_detail::power_of_two_below(std::abs(h));
+    }
     if (!begin(t)) return {std::numeric_limits<double>::quiet_NaN(), 0.0};
     ++evaluations;
     t_new_ = t + h;
@@ -269,6 +274,7 @@ class Taylor final : public Stepper {
   std::vector<double> sums_, sums_new_;  ///< quadratures
   std::vector<double> powers_;           ///< their rates along the attempt, (sum, point)
   std::vector<double> numbers_;
+  bool starts_at_rest_ = false;  ///< nothing has a rate yet
   bool has_series_ = false;
   bool has_new_series_ = false;
   bool stays_ = false;
