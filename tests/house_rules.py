@@ -215,10 +215,10 @@ def files_are_short(root: Path) -> Iterator[str]:
 
 def comments_have_a_subject(root: Path) -> Iterator[str]:
     """A comment that begins with "Of" leaves it to the reader what is meant."""
-    beginning = re.compile(r'^.*?(?:///?<?|#|"""|\*)\s+?Of\s|^\s*"""Of\s')
+    beginning = re.compile(r'(?://+<?|#|^\s*""")\s*Of\s')
     for path in files(root, CODE, *FOLDERS):
         for number, line in enumerate(path.read_text().splitlines(), start=1):
-            if beginning.match(line):
+            if beginning.search(line):
                 yield f'{path.relative_to(root)}:{number} begins with "Of"'
 
 

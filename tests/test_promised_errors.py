@@ -9,6 +9,7 @@ import mpmath
 import numpy as np
 import pendcore as pc
 import pytest
+from pendcore.accuracy.trials import Trials
 
 BOOK = pc.Scene.textbook()
 START = ([np.pi / 4, np.pi / 3], 0, (0, 5))
@@ -64,18 +65,22 @@ def test_near_the_end_of_double_precision_rounded_constants_are_seen(error, t_en
     assert caught.value.solution.accuracy.until < t_end
 
 
-@pytest.mark.parametrize("start", [(-1.2, -0.6), (-1.2599042254758888, -1.2119615135616397)])
+@pytest.mark.parametrize(
+    ("q0", "t_end", "true"),
+    [((-1.2, -0.6), 8, 5.303e-10), ((-1.2599042254758888, -1.2119615135616397), 7, 3.92e-10)],
+)
 def test_second_runs_that_share_the_truncation_of_a_tight_trial_do_not_verify_it(
-    start: tuple[float, float],
+    q0: tuple[float, float], t_end: float, true: float
 ) -> None:
-    """Three runs at rtol 1e-14 agreed to 4e-11, and were off by 5.3e-10 (and by 3.9e-10)."""
-    off = {-1.2: (8, 5.303e-10)}.get(start[0], (7, 3.92e-10))
+    """The runs at rtol 1e-14 agree to 1e-10; a solution in 34 digits says how far off they are."""
     with pytest.raises(pc.AccuracyError) as refusal:
-        pc.simulate(BOOK, start, t_span=(0, off[0]), error=0.75 * off[1])
-    assert refusal.value.least > off[1]
+        pc.simulate(BOOK, q0, t_span=(0, t_end), error=0.75 * true)
+    assert refusal.value.least > true
 
 
-def test_a_trial_is_handed_over_wherever_the_interrupt_falls(monkeypatch: Any) -> None:
+def test_a_trial_is_handed_over_if_the_interrupt_falls_while_runs_are_compared(
+    monkeypatch: Any,
+) -> None:
     def interrupted(*_: Any) -> Any:
         raise KeyboardInterrupt
 
@@ -87,8 +92,14 @@ def test_a_trial_is_handed_over_wherever_the_interrupt_falls(monkeypatch: Any) -
     assert sol.accuracy.outcome == "ended early"
 
 
-def test_when_the_time_is_up_a_whole_trial_is_returned_and_called_unverified() -> None:
+def test_when_the_time_is_up_a_whole_trial_is_returned_and_called_unverified(
+    monkeypatch: Any,
+) -> None:
+    def up_after_the_first(runs: Trials) -> float | None:
+        return 1e-6 if runs.trials else None
+
+    monkeypatch.setattr(Trials, "_time_left", up_after_the_first)
     with pytest.warns(pc.PendcoreWarning, match="got to its end, but .* not verified"):
-        sol = pc.simulate(BOOK, [-1.5, -1.4], t_span=(0, 30), error=1e-3, time_limit=0.004)
+        sol = pc.simulate(BOOK, [-1.5, -1.4], t_span=(0, 30), error=1e-3)
     assert sol.t[-1] == 30
     assert sol.accuracy.outcome == "ended early"

@@ -112,7 +112,8 @@ def simulate(
         keeps. ``sol.accuracy`` tells what was reached and what it took;
         ``docs/accuracy_cost.md`` says what is promised.
     check : bool, optional
-        What to do where the run does not get to its end. None: give a warning. True: raise a
+        What to do where the run does not get to its end, or the time limit is up before it is
+        verified to have the ``error`` asked for. None: give a warning. True: raise a
         `RunError`. False: say nothing; look at ``sol.success`` then.
     progress : None, bool or callable
         None: a bar after a second, on a terminal. A callable gets the fraction done, in 0...1.

@@ -129,9 +129,8 @@ def _kept(runs: Trials) -> Solution:
         if latest is None:
             break
         if not latest.solution.success:
-            if latest.solution.status == "time_limit":
-                return _out_of_time(runs, latest)
-            if latest in runs.trials and latest.solution.status != "max_steps":
+            status = latest.solution.status
+            if status == "time_limit" or (latest in runs.trials and status != "max_steps"):
                 return _ended_early(runs, latest)
             raise _refusal(runs, f"{latest.text}: {latest.solution.message}")
         for trial in sorted(runs.trials, key=lambda one: -one.scale):
@@ -226,7 +225,7 @@ def _known_error(runs: Trials, trial: Made) -> ErrorEstimate | None:
     better = _better_than(runs, trial)
     count = _tight_runs(trial) or 2
     if len(better) >= count:
-        if _tight_runs(trial) or trial.rtol < ALIKE * runs.tightest:
+        if _tight_runs(trial):
             share = _share_if_tight(runs, trial, better[:count])
             return None if share is None else runs.compared(trial, better[:count], share)
         if better[0].scale * RATIO > better[1].scale:
@@ -294,21 +293,19 @@ def _tight_runs(trial: Made) -> int:
     return next((count for below, count in ROUNDING_MATTERS if trial.scale < below), 0)
 
 
-def _out_of_time(runs: Trials, latest: Made) -> Solution:
-    """Return the tightest whole trial, if there is one: nothing has verified it."""
-    why = "the time limit was reached before it was verified"
-    return runs.labelled(runs.best() or latest.solution, "ended early", None, why)
+def _ended_early(runs: Trials, latest: Made) -> Solution:
+    """Return a trial that did not get to its end, with what is known of it.
 
-
-def _ended_early(runs: Trials, trial: Made) -> Solution:
-    """Return a run that did not get to its end, with what is known of it."""
-    status = trial.solution.status
-    if status == "time_limit":
-        why = f"the run ended early: {status}"
-        return runs.labelled(trial.solution, "ended early", None, why)
-    seconds = [_second(runs, trial) for _ in range(_tight_runs(trial) or 2)]
-    found = runs.compared(trial, seconds)
-    solution = runs.labelled(trial.solution, "ended early", found)
+    When the time is up it is the tightest whole trial, if there is one: nothing has verified it.
+    """
+    if latest.solution.status == "time_limit":
+        why = "the run ended early: time_limit"
+        if whole := runs.best():
+            why = "the time limit was reached before it was verified"
+        return runs.labelled(whole or latest.solution, "ended early", None, why)
+    seconds = [_second(runs, latest) for _ in range(_tight_runs(latest) or 2)]
+    found = runs.compared(latest, seconds)
+    solution = runs.labelled(latest.solution, "ended early", found)
     if not found.is_complete:
         solution._error = None  # another time there may be more time
     return solution

@@ -181,6 +181,7 @@ class Taylor final : public Stepper {
       if (has_low_part(low, dimension())) read_rows(low.data(), memory_.low);
     }
     memory_.sigma = memory.back();
+    starts_at_rest_ = false;
   }
 
  private:
