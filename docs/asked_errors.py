@@ -26,7 +26,7 @@ sys.path.append(str(ROOT / "tests"))
 from regular_scenes import Regular, regular  # noqa: E402
 
 SCENES = range(1000, 1200)
-"""Seeds: others served to choose the numbers in `pendcore.accuracy.methods`."""
+"""Seeds: others served to choose the numbers in `pendcore.accuracy.method_choice`."""
 ROUNDS = 30
 BEGIN, END = "<!-- asked: begin -->\n", "<!-- asked: end -->"
 # What is told of each scene, its key, and the goal, where there is one.

@@ -27,7 +27,7 @@ sys.path.append(str(ROOT / "tests"))
 from regular_scenes import EXACT, REGULAR, growth, scene_and_start  # noqa: E402
 
 SCENES = range(1200, 1400)
-"""Seeds that had no part in choosing anything: those of accuracy/methods.py are others."""
+"""Seeds that had no part in choosing anything: those of accuracy/method_choice.py are others."""
 ROUNDS = 7
 DEFAULT = "the default"
 WAYS: dict[str, dict[str, Any]] = {

@@ -3,9 +3,9 @@
     make asked-errors
 
 Measured in turns, in right-hand sides of dop853 of the same scene, and divided by what
-`pendcore.accuracy.methods.series_work` says. It prints, and fails where one of them is not within
-a factor of two. No test measures times; tests/test_series_work.py sees that every kind of effect
-is measured here.
+`series_work` of `pendcore.accuracy.method_choice` says. It prints, and fails where one of them is
+not within a factor of two. No test measures times; tests/test_series_work.py sees that every kind
+of effect is measured here.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from time import perf_counter
 from typing import Any
 
 import pendcore as pc
-from pendcore.accuracy.methods import series_work
+from pendcore.accuracy.method_choice import series_work
 
 E = pc.effects
 WAVE = E.Sinusoid(0.5, angular_frequency=3.0)
@@ -94,7 +94,9 @@ def main() -> None:
         cells = " ".join(f"{x:6.2f}" for x in ratios)
         tqdm.write(f"{len(scene.links)} links, {name:24} {cells}{'  <<' * wrong}", file=sys.stdout)
     if beyond:
-        sys.exit(f"series_work in pendcore.accuracy.methods.py: wrong in {beyond} scenes (<<)")
+        sys.exit(
+            f"series_work in pendcore.accuracy.method_choice.py: wrong in {beyond} scenes (<<)"
+        )
 
 
 if __name__ == "__main__":

@@ -59,6 +59,7 @@ CPP_FILES = dict.fromkeys(
 # exceptions that are named below.
 PYTHON_FLOW = [
     "_core",
+    "methods",
     "warning",
     "arguments",
     "angles",

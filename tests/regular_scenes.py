@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 import pendcore as pc
-from pendcore.accuracy.methods import series_work
+from pendcore.accuracy.method_choice import series_work
 from pendcore.accuracy.position_error import distances, time_grid
 
 REGULAR = 100.0

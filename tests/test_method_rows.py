@@ -6,9 +6,9 @@ CONTRIBUTING.md, "Add a method", step 4, says what they are for.
 from __future__ import annotations
 
 import pytest
-from pendcore.accuracy.methods import ERROR_OVER_RTOL, MOST_ACCURATE
-from pendcore.accuracy.run import known_methods
+from pendcore.accuracy.method_choice import ERROR_OVER_RTOL, MOST_ACCURATE
 from pendcore.accuracy.trials import IMPLICIT
+from pendcore.methods import known_methods
 from pendcore.views.accuracy_cost import STYLES
 
 METHODS = known_methods()
@@ -24,8 +24,8 @@ STEP_4 = 'see step 4 of "Add a method" in CONTRIBUTING.md'
 @pytest.mark.parametrize("method", ONE_BY_ONE)
 def test_it_is_known_how_large_a_methods_error_is_or_why_not(method):
     assert (method in ERROR_OVER_RTOL) != (method in NEVER_CHOSEN), (
-        f"{method}: measure its error at a tolerance and add it to ERROR_OVER_RTOL in "
-        f"accuracy/methods.py, or say in NEVER_CHOSEN here why error= never takes it; {STEP_4}"
+        f"{method}: measure its error at a tolerance and add it to ERROR_OVER_RTOL of "
+        f"method_choice.py, or say in NEVER_CHOSEN here why error= never takes it; {STEP_4}"
     )
 
 
@@ -40,9 +40,9 @@ def test_a_method_has_a_line_of_its_own_in_the_figures(method):
 @pytest.mark.parametrize(
     ("table", "names"),
     {
-        "accuracy.methods.ERROR_OVER_RTOL": ERROR_OVER_RTOL,
+        "accuracy.method_choice.ERROR_OVER_RTOL": ERROR_OVER_RTOL,
         "accuracy.trials.IMPLICIT": [IMPLICIT],
-        "accuracy.methods.MOST_ACCURATE": MOST_ACCURATE,
+        "accuracy.method_choice.MOST_ACCURATE": MOST_ACCURATE,
         "views.accuracy_cost.STYLES": STYLES,
         "NEVER_CHOSEN": NEVER_CHOSEN,
     }.items(),

@@ -1,6 +1,6 @@
 """What a series of taylor costs is measured with every kind of effect: docs/series_work.py does.
 
-An effect that is added must be drawn there, or `pendcore.accuracy.methods.series_work` knows
+An effect that is added must be drawn there, or `pendcore.accuracy.method_choice.series_work` knows
 nothing of it. That the forecast grows with the digits, and never falls to nothing, is counted here.
 """
 
@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pendcore as pc
 import pytest
-from pendcore.accuracy.methods import INERTIA_ALONE, series_work
+from pendcore.accuracy.method_choice import INERTIA_ALONE, series_work
 from pendcore.effect_class import OwnEffect
 
 sys.path.append(str(Path(__file__).parents[1] / "docs"))
@@ -26,7 +26,7 @@ def test_every_kind_of_effect_is_considered():
     assert not missing, (
         f"{missing}: what does a series of taylor cost beside a right-hand side with it? Add "
         "one to EFFECTS of docs/series_work.py, and see by `make asked-errors` that series_work "
-        "in pendcore.accuracy.methods.py still holds"
+        "in pendcore.accuracy.method_choice.py still holds"
     )
 
 

@@ -65,6 +65,14 @@ def number(name: str, value: object, unit: str) -> float:
         raise _too_large(name, unit) from None
 
 
+def positive(name: str, value: object, unit: str) -> float:
+    """Return one real number above 0 as a float."""
+    given = number(name, value, unit)
+    if not given > 0:
+        raise ValueError(f"{name} = {given}: must be > 0{in_unit(unit)}")
+    return given
+
+
 def whole_number(name: str, value: Any, most: int = 2**31 - 1) -> int:
     """Return a whole number up to ``most`` in size as an int."""
     try:
@@ -112,10 +120,7 @@ def time_limit_of(time_limit: object) -> float:
     """Return how long something may take, s of the clock; inf for None."""
     if time_limit is None:
         return inf
-    limit = number("time_limit", time_limit, "s")
-    if not limit > 0:
-        raise ValueError(f"time_limit = {limit}: must be > 0 (s)")
-    return limit
+    return positive("time_limit", time_limit, "s")
 
 
 def in_unit(unit: str) -> str:

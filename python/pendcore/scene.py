@@ -266,3 +266,16 @@ def _tuple_of(
         if not isinstance(value, kind):
             raise TypeError(f"{noun} {i} = {value!r}: {remedy}")
     return values
+
+
+def require_start(scene: object, q0: npt.ArrayLike | None) -> npt.ArrayLike:
+    """Return the angles at the start; TypeError unless there are some, and a scene."""
+    if not isinstance(scene, Scene):
+        told, remedy = f"scene = {scene!r}", ""
+        if isinstance(getattr(scene, "scene", None), Scene):
+            told = f"scene: is a {type(scene).__name__}"
+            remedy = "; case.simulate() runs a case" if hasattr(scene, "simulate") else ""
+        raise TypeError(f"{told}: must be a pendcore.Scene{remedy}")
+    if q0 is None:
+        raise TypeError("q0 is missing: give the angles at the start, one per link, in rad")
+    return q0

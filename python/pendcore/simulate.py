@@ -17,7 +17,7 @@ from pendcore.arguments import known_keywords, number, two_times
 from pendcore.events import Event, events_asked_for
 from pendcore.progress import Progress, callback
 from pendcore.run_error import checked, require_check
-from pendcore.scene import Scene
+from pendcore.scene import Scene, require_start
 from pendcore.solution import Solution, solution_of
 from pendcore.warning import warn
 
@@ -153,10 +153,7 @@ def simulate(
     Differential Equations I*, II.4; a Taylor series sets its steps by its coefficients. The same
     arguments give the same bits on every x86-64 machine, whatever is stored.
     """
-    if not isinstance(scene, Scene):
-        raise _no_scene(scene)
-    if q0 is None:
-        raise TypeError("q0 is missing: give the angles at the start, one per link, in rad")
+    q0 = require_start(scene, q0)
     require_check(check)
     t_start, t_end = two_times(t_span)
     wanted = [event._as_pair() for event in events_asked_for(events)]
@@ -193,11 +190,3 @@ def _check_error(error: float, **chosen: object) -> None:
 @cache
 def _default(name: str) -> object:
     return signature(simulate).parameters[name].default
-
-
-def _no_scene(value: object) -> TypeError:
-    if isinstance(getattr(value, "scene", None), Scene):
-        kind = type(value).__name__
-        remedy = "; case.simulate() runs a case" if hasattr(value, "simulate") else ""
-        return TypeError(f"scene: is a {kind}: must be a pendcore.Scene{remedy}")
-    return TypeError(f"scene = {value!r}: must be a pendcore.Scene")

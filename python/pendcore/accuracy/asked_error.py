@@ -22,7 +22,7 @@ from math import inf, log
 from typing import Any
 
 from pendcore.accuracy.estimate import SPARE_OF_SEVERAL, ErrorEstimate
-from pendcore.accuracy.methods import LOOSEST
+from pendcore.accuracy.method_choice import LOOSEST
 from pendcore.accuracy.report import AccuracyError
 from pendcore.accuracy.run import Start
 from pendcore.accuracy.trials import Made, Trials, leading

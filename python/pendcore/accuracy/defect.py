@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from pendcore import _core
 from pendcore.arguments import Floats
+from pendcore.methods import known_methods, method_at_the_end
 from pendcore.progress import callback, close
 
 if TYPE_CHECKING:
@@ -97,7 +98,7 @@ def defect(scene: Scene, run: _core.Run, progress: Progress = None) -> Defect:
                 report(some.stop / max(len(starts), 1))
     finally:
         close(report)
-    method = _method_of_dense_output(run)
+    method = known_methods()[method_at_the_end(run.method, run.message)]
     is_series = method["dense_output_is_series"]  # whose order the tolerances choose
     return Defect(
         t=starts,
@@ -107,14 +108,6 @@ def defect(scene: Scene, run: _core.Run, progress: Progress = None) -> Defect:
         order=run.dense_degree if is_series else method["interpolant_order"],
         is_bound=not is_series and method["interpolant_order"] < method["order"],
     )
-
-
-def _method_of_dense_output(run: _core.Run) -> dict[str, Any]:
-    """Return the method whose interpolant it is; of a pair, the later one that took steps."""
-    methods = {one["name"]: one for one in _core.methods()}
-    asked = methods[run.method]
-    has_changed = asked["second"] and f"went on with {asked['second']}" in run.message
-    return methods[asked["second"] if has_changed else asked["first"] or run.method]
 
 
 def _weight(scene: Scene) -> float:

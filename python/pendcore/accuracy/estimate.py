@@ -27,7 +27,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from pendcore.accuracy.methods import TIGHTEST, second_methods
+from pendcore.accuracy.method_choice import TIGHTEST, second_methods
 from pendcore.accuracy.position_error import (
     angles_at,
     distances,
@@ -37,7 +37,7 @@ from pendcore.accuracy.position_error import (
 )
 from pendcore.accuracy.rounding import moved
 from pendcore.accuracy.run import Choice, Start, run, start_of, tightened
-from pendcore.arguments import Floats, number, time_limit_of
+from pendcore.arguments import Floats, positive, time_limit_of
 from pendcore.progress import Progress, callback, close
 from pendcore.solution import Solution
 
@@ -127,9 +127,7 @@ class ErrorEstimate:
         if of not in ("angle", "position"):
             raise ValueError(f'of = {of!r}: must be "angle" (rad) or "position" (a share)')
         error = self.angle if of == "angle" else self.position
-        limit = number("limit", limit, "rad" if of == "angle" else "of the total length")
-        if not limit > 0:
-            raise ValueError(f"limit = {limit}: must be > 0")
+        limit = positive("limit", limit, "rad" if of == "angle" else "of the total length")
         is_past = ~(error <= limit)
         is_past[-1:] |= self.is_lost
         within = np.argmax(is_past) if is_past.any() else len(self.t)

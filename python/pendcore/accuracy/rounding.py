@@ -15,6 +15,7 @@ from pendcore.accuracy.run import Start
 from pendcore.link import Link
 from pendcore.scene import Scene
 
+CONSTANTS = ("mass", "length", "center", "inertia")
 LAST_BITS = 8 * np.finfo(np.float64).eps
 """How far a number is moved at most, relatively; an angle below 1 rad by so many radians.
 
@@ -35,17 +36,10 @@ def moved(start: Start, seed: int) -> Start:
         shares = rng.uniform(0.5, 1.0, count) * rng.choice([-1.0, 1.0], count)
         return [float(x) for x in 1.0 + LAST_BITS * shares]
 
-    links = []
-    for one in scene.links:
-        m, x, c, j = by(4)
-        links.append(
-            Link(
-                mass=one.mass * m,
-                length=one.length * x,
-                center=one.center * c,
-                inertia=one.inertia * j,
-            )
-        )
+    links = [
+        Link(**{name: getattr(one, name) * x for name, x in zip(CONSTANTS, by(4), strict=True)})
+        for one in scene.links
+    ]
     nearby = Scene._unpickled(links, scene.gravity * by(1)[0], scene.effects)
     if any(effect.description.bounds_joint for effect in scene.effects):
         return start._replace(scene=nearby)

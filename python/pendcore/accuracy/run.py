@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from math import inf
 from typing import Any, NamedTuple
 
@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore import _core
+from pendcore.methods import known_methods
 from pendcore.progress import Progress, callback
 from pendcore.scene import Scene
 from pendcore.solution import Solution, solution_of
@@ -84,47 +85,6 @@ def start_of(solution: Solution) -> Start:
     asked = solution._run.arguments
     end = solution._run.t_reached
     return Start(solution.scene, asked["q0"], asked["qd0"], asked["t_start"], end)
-
-
-def known_methods() -> dict[str, dict[str, Any]]:
-    """Return the methods of the core by their names."""
-    return {method["name"]: method for method in _core.methods()}
-
-
-def methods_named(methods: str | Iterable[str]) -> list[str]:
-    """Return methods to compare by their own names, each once.
-
-    ``"auto"`` is refused: it may be one method at one tolerance, and another at the next.
-    """
-    names = {alias: name for name, m in known_methods().items() for alias in (name, *m["aliases"])}
-    try:
-        listed = [methods] if isinstance(methods, str) else list(methods)
-    except TypeError:
-        raise TypeError(f"methods = {methods!r}: must be names of methods, or one") from None
-    if not listed:
-        raise ValueError("methods: is empty: must name a method, or be left out")
-    for method in listed:
-        if method not in names:
-            what = "is a rule that chooses one" if method == "auto" else "is none"
-            raise ValueError(f"methods: {method!r} {what}: known are {', '.join(names)}")
-    return [*dict.fromkeys(names[method] for method in listed)]
-
-
-def methods_of(method: str) -> set[str]:
-    """Return a method's name and, of a pair, those of its two."""
-    known = known_methods()[method]
-    return {method, known["first"], known["second"]} - {""}
-
-
-def has_error_estimate(method: str) -> bool:
-    """Whether a method chooses its steps from tolerances."""
-    return bool(known_methods()[method]["error_order"])
-
-
-def pair_of(first: str) -> str:
-    """Return the pair that begins with a method."""
-    pairs = [one for one in _core.methods() if one["kind"] == "pair"]
-    return str(next(pair["name"] for pair in pairs if pair["first"] == first))
 
 
 def carries(method: str, start: Start, step: float | None = None) -> bool:

@@ -16,7 +16,7 @@ from pendcore.accuracy.estimate import (
     other_steps,
     second_times,
 )
-from pendcore.accuracy.methods import (
+from pendcore.accuracy.method_choice import (
     ERROR_OVER_RTOL,
     TIGHTEST,
     TIGHTEST_IMPLICIT,
@@ -26,8 +26,9 @@ from pendcore.accuracy.methods import (
 )
 from pendcore.accuracy.report import Accuracy, Outcome, Paid
 from pendcore.accuracy.rounding import moved
-from pendcore.accuracy.run import Choice, Start, atol_beside, pair_of, run, silent
+from pendcore.accuracy.run import Choice, Start, atol_beside, run, silent
 from pendcore.arguments import time_limit_of
+from pendcore.methods import pair_of
 from pendcore.solution import Solution
 from pendcore.warning import warn
 

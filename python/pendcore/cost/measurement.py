@@ -12,20 +12,13 @@ from time import monotonic, perf_counter
 import numpy as np
 
 from pendcore import _core
-from pendcore.accuracy.run import (
-    Choice,
-    Start,
-    carries,
-    has_error_estimate,
-    known_methods,
-    pair_of,
-    run,
-)
+from pendcore.accuracy.run import Choice, Start, carries, run
 from pendcore.arguments import Floats
 from pendcore.cost.accuracy_cost import AccuracyCost
 from pendcore.cost.machine import processor
 from pendcore.cost.point import Point
 from pendcore.cost.reference import KNOWN, Reference, TooFarError, known_until, reference
+from pendcore.methods import has_error_estimate, known_methods, pair_of
 from pendcore.simulate import simulate
 from pendcore.solution import Solution
 

@@ -13,18 +13,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pendcore.accuracy.methods import MOST_ACCURATE, TIGHTEST, TIGHTEST_IMPLICIT
+from pendcore.accuracy.method_choice import MOST_ACCURATE, TIGHTEST, TIGHTEST_IMPLICIT
 from pendcore.accuracy.position_error import angles_at, distances, reached, time_grid
-from pendcore.accuracy.run import (
-    Choice,
-    Start,
-    atol_beside,
-    carries,
-    methods_of,
-    pair_of,
-    run,
-)
+from pendcore.accuracy.run import Choice, Start, atol_beside, carries, run
 from pendcore.arguments import Floats
+from pendcore.methods import methods_of, pair_of
 from pendcore.solution import Solution
 
 # Where the scene is stiff, an implicit method first.

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore.accuracy.position_error import POINTS
-from pendcore.accuracy.run import Start, atol_beside, forget_inner_runs, methods_named
+from pendcore.accuracy.run import Start, atol_beside, forget_inner_runs
 from pendcore.arguments import (
     finite_array,
     known_keywords,
@@ -22,8 +22,9 @@ from pendcore.arguments import (
 )
 from pendcore.cost.accuracy_cost import AccuracyCost
 from pendcore.cost.measurement import Measurement
+from pendcore.methods import methods_named
 from pendcore.progress import Progress, callback, close
-from pendcore.scene import Scene
+from pendcore.scene import Scene, require_start
 from pendcore.warning import PendcoreWarning, warn
 
 RTOL = tuple(float(f"1e-{k}") for k in range(2, 15))
@@ -97,8 +98,7 @@ def accuracy_cost(
         With what was measured so far as the attribute ``accuracy_cost``: no points before there is
         a reference.
     """
-    if not isinstance(scene, Scene):
-        raise TypeError(f"scene = {scene!r}: must be a pendcore.Scene")
+    require_start(scene, q0)
     n = len(scene.links)
     span = time_span(t_span)
     if span[0] == span[1]:

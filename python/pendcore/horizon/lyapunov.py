@@ -11,9 +11,10 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore import _core
+from pendcore.accuracy.position_error import time_grid
 from pendcore.arguments import Floats, known_keywords, number, numbers, time_span, whole_number
 from pendcore.progress import Progress, callback, close
-from pendcore.scene import Scene
+from pendcore.scene import Scene, require_start
 from pendcore.solution import Solution
 from pendcore.statistics import Statistics
 from pendcore.warning import warn
@@ -175,10 +176,7 @@ def lyapunov(
     (dq, dqd) in rad and rad/s: over a long time they do not matter. The first change is one of q_1,
     the second of q_2, and so on; then those of the rates.
     """
-    if not isinstance(scene, Scene):
-        raise TypeError(f"scene = {scene!r}: must be a pendcore.Scene")
-    if q0 is None:
-        raise TypeError("q0 is missing: give the angles at the start, one per link, in rad")
+    q0 = require_start(scene, q0)
     t_start, t_end = time_span(t_span)
     if t_start == t_end:
         raise ValueError(f"t_span = {t_span!r}: must be two different times (s)")
@@ -256,10 +254,7 @@ def _check_count(scene: Scene, count: int | None) -> None:
 def _times(t_eval: npt.ArrayLike | None, since: float, t_end: float) -> Floats:
     """Return the times to keep; the first is that from which growth counts."""
     if t_eval is None:
-        even = np.linspace(since, t_end, TIMES)
-        even[-1] = t_end
-        distinct: Floats = even[np.append(True, np.diff(even) != 0)]
-        return distinct
+        return time_grid(since, t_end, TIMES)
     given = np.array(numbers("t_eval", t_eval, "s"))
     forward = np.sign(t_end - since)
     along, first, last = forward * given, forward * since, forward * t_end

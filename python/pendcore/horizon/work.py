@@ -17,21 +17,12 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore.accuracy.estimate import ErrorEstimate, error_estimate
-from pendcore.accuracy.run import (
-    Choice,
-    Start,
-    atol_beside,
-    carries,
-    forget_inner_runs,
-    has_error_estimate,
-    known_methods,
-    methods_named,
-    run,
-)
-from pendcore.arguments import known_keywords, number, numbers, time_limit_of, time_span
+from pendcore.accuracy.run import Choice, Start, atol_beside, carries, forget_inner_runs, run
+from pendcore.arguments import known_keywords, numbers, positive, time_limit_of, time_span
 from pendcore.horizon.lyapunov import LyapunovExponents, lyapunov
+from pendcore.methods import has_error_estimate, known_methods, methods_named
 from pendcore.progress import Progress, callback, close
-from pendcore.scene import Scene
+from pendcore.scene import Scene, require_start
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -221,15 +212,10 @@ def horizon_work(
     KeyboardInterrupt, or any exception of ``progress`` or of an effect's function
         With what was found so far as the attribute ``work``.
     """
-    if not isinstance(scene, Scene):
-        raise TypeError(f"scene = {scene!r}: must be a pendcore.Scene")
-    if q0 is None:
-        raise TypeError("q0 is missing: give the angles at the start, one per link, in rad")
+    q0 = require_start(scene, q0)
     start = Start(scene, q0, qd0, *time_span(t_span))
     _nothing(start, "dopri5")  # checks what it starts from
-    limit = number("limit", limit, "rad")
-    if not limit > 0:
-        raise ValueError(f"limit = {limit}: must be > 0 (rad)")
+    limit = positive("limit", limit, "rad")
     names = _methods(methods, start)
     tolerances = numbers("rtols", rtols, "")
     if not tolerances or not all(0 < rtol < 1 for rtol in tolerances):

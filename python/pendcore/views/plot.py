@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pendcore.arguments import Floats, number
+from pendcore.arguments import Floats, positive
 from pendcore.solution import Solution
 from pendcore.views.horizon import shade_past
 
@@ -66,8 +66,8 @@ def plot(
     ValueError
         If the number of axes is neither one nor that of the links, or ``horizon`` is not > 0.
     """
-    if horizon is not None and not number("horizon", horizon, "rad") > 0:
-        raise ValueError(f"horizon = {horizon}: must be > 0 (rad)")
+    if horizon is not None:
+        positive("horizon", horizon, "rad")
     from matplotlib.cbook import normalize_kwargs
     from matplotlib.lines import Line2D
 

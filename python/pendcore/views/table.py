@@ -6,8 +6,8 @@ from collections import Counter
 from collections.abc import Sequence
 from html import escape
 
-from pendcore import _core
 from pendcore.arguments import Floats
+from pendcore.methods import known_methods, method_at_the_end
 from pendcore.solution import Solution
 from pendcore.views import energy_drift
 
@@ -44,11 +44,11 @@ def outcome(status: str, message: str) -> str:
 
 def evaluations(method: str, message: str, nfev: int) -> str:
     """Return how often what was evaluated: series by Taylor's, right-hand sides by others."""
-    known = {one["name"]: one for one in _core.methods()}
-    begins = known[known[method]["first"] or method]
-    if not begins["dense_output_is_series"]:
+    known = known_methods()
+    first = known[method]["first"] or method
+    if not known[first]["dense_output_is_series"]:
         return f"{nfev} right-hand sides"
-    if f"went on with {known[method]['second'] or method}" in message:
+    if method_at_the_end(method, message) != first:
         return f"{nfev} series and right-hand sides"
     return f"{nfev} series, each as long as many right-hand sides"
 

@@ -11,8 +11,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import floor, log10
 
-from pendcore.accuracy.run import Start, carries, known_methods, pair_of
+from pendcore.accuracy.run import Start, carries
 from pendcore.effect_description import account_of
+from pendcore.methods import known_methods, pair_of
 from pendcore.scene import Scene
 
 LOOSEST, TIGHTEST = 1e-2, 1e-14
