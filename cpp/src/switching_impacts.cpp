@@ -90,7 +90,7 @@ bool Switching::capture(double t, const double* q, const double* qd) {
   bool any = false;
   std::vector<double> qdd(n_);
   accelerations_in_force(equations_, t, q, qd, qdd.data());
-  const double shortest = 32.0 * epsilon * std::abs(t);
+  const double shortest = shortest_moment(t);
   for (int j = 0; j < n_; ++j) {
     const Side touched = joints_.contact(j, q);
     const auto side = static_cast<double>(touched);

@@ -75,11 +75,13 @@ class HeldJoints {
   /// The size of what the torque of a joint was added up from, N m.
   double torque_size(int joint) const { return size_[joint]; }
 
+  /// What share of the size of a torque its rounding is at most: thousands of sums enter into it.
+  static constexpr double rounding_of_torque = 1e4 * epsilon;
+
   /// Whether an acceleration of a joint is no more than the rounding of its torque.
   bool is_rounding(int joint, double phidd) const {
-    const double rounding = 1e4 * epsilon;
     return forces_.inertia.diagonal[joint] * std::abs(phidd) <=
-           rounding * (size_[joint] + supports_[joint].friction);
+           rounding_of_torque * (size_[joint] + supports_[joint].friction);
   }
 
   /// Lets a joint go, to slide up or down its angle (1 or -1).
