@@ -293,3 +293,13 @@ def test_quadratic_damping_slows_a_rod_like_one_over_time() -> None:
     ):
         found = angle(drawn([damping], (0.0,), (-3.0,), 5.0), 5.0)[0]
         assert float(found) == pytest.approx(-J / 0.4 * np.log1p(0.4 * 3.0 * 5.0 / J), rel=1e-13)
+
+
+def test_laws_that_change_side_at_one_time_all_do() -> None:
+    """Two dampers in one joint are one damper of their sum."""
+    spring = E.TorsionalSpring(1, 20.0)
+    both = [E.ViscousJoint(1, 0.0, damping2=0.1), E.User(OwnLaw("quadratic damper", 1, (0.25,)))]
+    start = (1.0,), (0.0,), 5.0
+    found = angle(drawn([spring, *both], *start), 5.0)[0]
+    alone = angle(drawn([spring, E.ViscousJoint(1, 0.0, damping2=0.35)], *start), 5.0)[0]
+    assert float(found) == pytest.approx(float(alone), rel=1e-13)

@@ -183,7 +183,9 @@ class SwitchedTrajectory(Trajectory):
             bound = switch.line()
             x = float(switch.value(self.phi, self.w))
             below = abs(x - float(bound.low)) < abs(x - float(bound.high))
-            switch.piece += -1 if below else 1
+            for other in self.switches:
+                if isinstance(other, Pieces) and other.line() == bound:
+                    other.piece += -1 if below else 1  # which its own event would do too late
         elif isinstance(switch, Friction):
             rate = abs(float(self.w[switch.joint - 1]))
             if switch.sign and rate > 0.5 * switch.far:
