@@ -9,6 +9,7 @@ import mpmath
 import numpy as np
 import pendcore as pc
 import pytest
+from pendcore.accuracy.position_error import distances, times_within_steps
 from pendcore.accuracy.trials import Trials
 
 BOOK = pc.Scene.textbook()
@@ -103,3 +104,66 @@ def test_when_the_time_is_up_a_whole_trial_is_returned_and_called_unverified(
         sol = pc.simulate(BOOK, [-1.5, -1.4], t_span=(0, 30), error=1e-3)
     assert sol.t[-1] == 30
     assert sol.accuracy.outcome == "ended early"
+
+
+@pytest.mark.parametrize("t_start", [0.0, 12.5, -70.0])
+@pytest.mark.parametrize("error", [3e-12, 1e-11, 1e-10])
+def test_the_last_bit_of_a_time_is_a_part_of_the_error(t_start: float, error: float) -> None:
+    """A state is kept under the double next to its time: a rod at 1e5 rad/s turns in between."""
+    rod, stiffness = pc.Link.point_mass(mass=1.0, length=1.0), 1e10
+    spring = pc.effects.TorsionalSpring(joint=1, stiffness=stiffness)
+    scene = pc.Scene(links=[rod], effects=[spring], gravity=0.0)
+    try:
+        sol = pc.simulate(scene, 1.0, 0, (t_start, t_start + 2.0**-10), error=error)
+    except pc.AccuracyError as refusal:
+        sol = refusal.solution
+    exact = np.cos(np.sqrt(np.longdouble(stiffness)) * (sol.t - np.longdouble(t_start)))
+    apart = float(abs(2 * np.sin((sol.q[:, 0] - exact) / 2)).max())
+    least = 1e5 * np.spacing(abs(t_start)) / 2
+    assert max(apart, 0.9 * least) <= sol.accuracy.achieved <= 20 * max(error, least)
+
+
+def test_a_run_is_verified_to_the_event_that_ends_it() -> None:
+    """It may come later in a looser trial than in the one for which a second run was made."""
+
+    def stop(t: float, q: Any, qd: Any) -> Any:
+        return [-208.01800826101422 * max(q[0] + 0.47352738352278734, 0.0)]
+
+    rod = pc.Link(mass=1.723859270359083, length=1.9252206858708738)
+    damper = pc.effects.ViscousJoint(1, 0.9215352565494289)
+    scene = pc.Scene(links=[rod], effects=[pc.effects.User(stop), damper], gravity=9.807)
+    end = pc.events.LinkAngle(1, 1.2904680194292113, terminal=True)
+    for error in np.geomspace(1e-11, 1e-9, 9):
+        sol = pc.simulate(
+            scene, 1.5105808821167965, 2.312735409753138, (-3.7, -2.7), error=error, store="steps",
+            events=[end],
+        )  # fmt: skip
+        assert sol.error().t[-1] == sol.t[-1]
+
+
+def test_second_runs_of_a_series_are_tighter_than_the_tightest_trial() -> None:
+    """All at rtol 1e-14 have the same truncation here, 5.6e-11: more than they are told to have."""
+    links = [
+        pc.Link(
+            mass=0.04602293018960736, length=0.16517151492763457, center=0.09491503985719417,
+            inertia=2.3219145115356827e-06,
+        ),
+        pc.Link(mass=0.5316393466490769, length=0.7327071171056337),
+    ]  # fmt: skip
+    spring = pc.effects.TorsionalSpring(2, 492.85686576460034, rest_angle=0.1618594017886068)
+    scene = pc.Scene(links=links, effects=[spring], gravity=1.62)
+    start = (scene, [2.3462883317744248, 1.5554941614334186], 0, (12.5, 9.5))
+    t = np.linspace(12.5, 9.5, 5001)
+    tight = {"rtol": 1e-15, "atol": 1e-18, "compensated": True}
+    better = pc.simulate(*start, method="dop853", t_eval=t, **tight)
+    sol = pc.simulate(*start, error=3.694588949553511e-11)
+    assert distances(scene, sol(t).T[:, :2], better.q).max() <= sol.accuracy.achieved
+
+
+def test_steps_that_are_cut_often_enough_are_cut_no_further() -> None:
+    """A second run of ten million steps would be compared at sixty million times."""
+    coarse = pc.simulate(BOOK, *START, rtol=1e-6)
+    fine = pc.simulate(BOOK, *START, method="dopri5", step=1e-5)
+    steps = coarse.stats.accepted + fine.stats.accepted
+    assert len(times_within_steps([coarse, fine])) <= steps + 1
+    assert len(times_within_steps([fine, coarse])) >= 6 * fine.stats.accepted

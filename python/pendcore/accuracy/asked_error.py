@@ -135,7 +135,7 @@ def _kept(runs: Trials) -> Solution:
             raise _refusal(runs, f"{latest.text}: {latest.solution.message}")
         for trial in sorted(runs.trials, key=lambda one: -one.scale):
             found = _known_error(runs, trial)
-            if found is not None and found.largest <= runs.error:
+            if found is not None and found.is_complete and found.largest <= runs.error:
                 return runs.labelled(trial.solution, "kept", found)
     raise _refusal(runs)
 

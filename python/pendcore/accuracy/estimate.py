@@ -11,9 +11,10 @@ steps, and each has its constants and its start moved by a few last bits of its 
     (1 + share) max_i |run - r_i| + max_ij |r_i - r_j|
 
 (the first part times ``BETWEEN`` on a dense curve) if the best is no worse than the distance
-of the others from it. In a chaotic motion all that is off is off along one direction, so that two
-errors of one size may cancel; several runs, each moved another way, do not all agree with one that
-is wrong.
+of the others from it; and what the chain moves in half of the last bit of a time, as a state of the
+run is kept under the double next to its time. In a chaotic motion all that is off is off along one
+direction, so that two errors of one size may cancel; several runs, each moved another way, do not
+all agree with one that is wrong.
 """
 
 from __future__ import annotations
@@ -33,6 +34,7 @@ from pendcore.accuracy.position_error import (
     distances,
     kept_times,
     reached,
+    states_at,
     times_within_steps,
 )
 from pendcore.accuracy.rounding import moved
@@ -172,7 +174,7 @@ def estimate(
     t = _common_times(solution, seconds)
     factor = (1 + share) * (BETWEEN if solution.store == "dense" else 1.0)
     for some in np.array_split(t, len(t) // AT_ONCE + 1):
-        q = angles_at(solution, some)
+        q, qd = np.hsplit(states_at(solution, some), 2)
         others = [angles_at(second, some) for second in seconds]
         angle = factor * np.max([_apart(q, r) for r in others], axis=0)
         position = factor * np.max([distances(solution.scene, q, r) for r in others], axis=0)
@@ -181,6 +183,7 @@ def estimate(
             angle += np.max([_apart(r, s) for r, s in pairs], axis=0)
             position += np.max([distances(solution.scene, r, s) for r, s in pairs], axis=0)
         rounding = np.finfo(np.float64).eps * np.abs(q).max(axis=-1)  # the state is a double
+        rounding += np.spacing(np.abs(some)) / 2 * np.abs(qd).max(axis=-1)  # and so is its time
         angles.append(angle + rounding)
         positions.append(position + rounding)
     angle, position = np.concatenate(angles), np.concatenate(positions)

@@ -18,6 +18,9 @@ from pendcore.scene import Scene
 
 LOOSEST, TIGHTEST = 1e-2, 1e-14
 """rtol. Beyond the tightest, smaller steps add more rounding than they take away truncation."""
+TIGHTEST_SECOND = {"taylor": 1e-15}
+"""The same of a second run of ``taylor``, which estimates no errors that rounding could fool: its
+truncation is to be less than that of a run at the tightest."""
 TIGHTEST_IMPLICIT = 1e-13
 """The same of an implicit method, whose equations are not solved any better."""
 ERROR_OVER_RTOL = {"dopri5": 3.0, "dop853": 0.4, "taylor": 0.9, "radau5": 1.0}

@@ -23,11 +23,12 @@ from pendcore.solution import Solution
 
 POINTS = 101
 """Times of the fixed grid on which methods are compared, both ends among them."""
-SAMPLES = 6
-"""Times in each interval between two steps of any of the runs that are compared.
+SAMPLES, CUTS = 6, 60
+"""Times in each interval between two steps of any of the runs that are compared; into how many
+intervals a step of the run itself may be cut for that.
 
-A run's own step is cut by the steps of the others, so that each holds ten and more; the error
-within a step is a polynomial of low degree there.
+It is cut by the steps of the others, so that it holds ten times and more; the error within a step
+is a polynomial of low degree there. Where it is cut into more, one time in each does as well.
 """
 
 
@@ -49,7 +50,10 @@ def kept_times(solution: Solution) -> Floats:
 
 
 def times_within_steps(runs: Iterable[Solution]) -> Floats:
-    """Return times inside every step of all the runs, s, from their start to the nearest end."""
+    """Return times inside every step of the first of the runs, s, and at those of the others.
+
+    From their start to the nearest end.
+    """
     solutions = [*runs]
     begin = solutions[0]._run.arguments["t_start"]
     ends = [one._run.t_reached for one in solutions]
@@ -59,14 +63,22 @@ def times_within_steps(runs: Iterable[Solution]) -> Floats:
     nodes = np.append(nodes[nodes < direction * end], direction * end)
     if len(nodes) == 1:
         return np.array([end])
-    inside = nodes[:-1, np.newaxis] + np.diff(nodes)[:, np.newaxis] * (np.arange(SAMPLES) / SAMPLES)
-    times = np.append(inside.ravel(), nodes[-1])
+    own = np.searchsorted(direction * solutions[0]._run.step_starts, nodes[:-1], side="right")
+    few = np.bincount(own)[own] <= CUTS
+    shares = np.arange(1, SAMPLES) / SAMPLES
+    inside = nodes[:-1][few, np.newaxis] + np.diff(nodes)[few, np.newaxis] * shares
+    times = np.sort(np.append(inside.ravel(), nodes))
     distinct: Floats = direction * times[np.append(True, np.diff(times) > 0)]
     return distinct
 
 
 def angles_at(solution: Solution, t: Floats) -> Floats:
-    """Return the angles of a solution at times, rad, (n_t, n): kept ones, or interpolated.
+    """Return the angles of a solution at times, rad, (n_t, n); see `states_at`."""
+    return states_at(solution, t)[:, : len(solution.scene.links)]
+
+
+def states_at(solution: Solution, t: Floats) -> Floats:
+    """Return angles, rad, and rates, rad/s, at times, (n_t, 2n): kept ones, or interpolated.
 
     Raises
     ------
@@ -74,17 +86,17 @@ def angles_at(solution: Solution, t: Floats) -> Floats:
         If the solution has neither kept them nor its interpolants.
     """
     if solution.store == "dense":
-        return solution(t)[: len(solution.scene.links)].T
+        return solution(t).T
+    run, kept = solution._run, np.hstack([solution.q, solution.qd])
     if len(solution.t) == len(t) and (solution.t == t).all():
-        return solution.q
-    run = solution._run
+        return kept
     if len(t) == 1 and t[0] == run.t_reached:
-        return np.asarray(run.y_reached)[np.newaxis, : len(solution.scene.links)]
+        return np.asarray(run.y_reached)[np.newaxis, : kept.shape[1]]
     direction = -1.0 if run.t_reached < run.arguments["t_start"] else 1.0
     rows = np.searchsorted(direction * solution.t, direction * t)
     if (rows == len(solution.t)).any() or (solution.t[rows] != t).any():
         raise ValueError(f"t: the solution kept its state at {len(solution.t)} other times (s)")
-    return solution.q[rows]
+    return kept[rows]
 
 
 def distances(scene: Scene, q: npt.ArrayLike, reference: npt.ArrayLike) -> Floats:

@@ -20,6 +20,7 @@ from pendcore.accuracy.method_choice import (
     ERROR_OVER_RTOL,
     TIGHTEST,
     TIGHTEST_IMPLICIT,
+    TIGHTEST_SECOND,
     cheapest,
     rounded,
     series_work,
@@ -122,14 +123,16 @@ class Trials:
         better would be a guess, as a scene may suit the one and not the other.
         """
         method = IMPLICIT if self.is_stiff else trial.method
-        rtol = rounded(scale / ERROR_OVER_RTOL[leading(method)], self.tightest)
+        tightest = TIGHTEST_SECOND.get(leading(method), self.tightest)
+        rtol = rounded(scale / ERROR_OVER_RTOL[leading(method)], tightest)
         ends_anywhere = any(values.get("terminal") for _, values in self.options["wanted"])
         options = {
             "t_eval": None if ends_anywhere else second_times(trial.solution),
             "max_step": other_steps(trial.solution, self.options["max_step"]),
             "max_steps": self._most_steps(MORE_STEPS),
         }
-        start = self.start._replace(t_end=trial.solution._run.t_reached)
+        ends = [one.solution._run.t_reached for one in self.trials]  # terminal events differ
+        start = self.start._replace(t_end=max(ends, key=lambda t: abs(t - self.start.t_start)))
         made = self._run(moved(start, len(self.seconds)), method, rtol, options)
         self.seconds.append(made)
         return made
