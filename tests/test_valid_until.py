@@ -309,7 +309,7 @@ def test_bad_time_limits_are_named(bad: float, message: str, is_known: bool) -> 
 @pytest.mark.parametrize(
     ("bad", "message"),
     [
-        (-1, r"horizon = -1: must be > 0 \(rad\)"),
+        (-1, r"horizon = -1.0: must be > 0 \(rad\)"),
         (float("nan"), r"horizon = nan: must be > 0"),
         (True, r"horizon = True: must be a real number \(rad\)"),
     ],
