@@ -19,41 +19,20 @@ Rule = Callable[[Path], Iterator[str]]
 CODE = {".hpp", ".cpp", ".py", ".pyi", ".cmake", ".sh"}
 FOLDERS = ["cpp", "python", "tests", "bench", "examples", "docs", "setup"]
 
-# Data flows one way. Each stage of the C++ core, and what it may include.
+# Data flows one way. Each stage of the C++ core is a folder, and may include what is named here.
+# dynamics and integrate know nothing of each other; they meet in simulate.
 CPP_FLOW = {
     "arithmetic": set[str](),
-    "message": set[str](),
-    "effects": {"arithmetic", "message"},
-    "scene": {"arithmetic", "message", "effects"},
-    "dynamics": {"arithmetic", "message", "effects", "scene"},
-    "integrate": {"arithmetic", "message"},
-    "solution": {"arithmetic", "message", "effects", "scene", "dynamics", "integrate"},
-    "bindings": {"arithmetic", "message", "effects", "scene", "dynamics", "integrate", "solution"},
+    "text": set[str](),
+    "effects": {"arithmetic", "text"},
+    "scene": {"arithmetic", "text", "effects"},
+    "dynamics": {"arithmetic", "text", "effects", "scene"},
+    "integrate": {"arithmetic", "text"},
+    "simulate": {"arithmetic", "text", "effects", "scene", "dynamics", "integrate"},
+    "analysis": {"arithmetic", "text", "effects", "scene", "dynamics", "integrate", "simulate"},
 }
-# The files that stand in no folder and where the two branches, dynamics and integrate, meet.
-CPP_FILES = dict.fromkeys(
-    [
-        "defect",
-        "event_finder",
-        "lyapunov",
-        "ending_message",
-        "fast_mode",
-        "method_choice",
-        "not_finite",
-        "options",
-        "pendcore",
-        "recorder",
-        "simulate",
-        "steppers",
-        "taylor_steppers",
-        "start",
-        "switching",
-        "switching_guards",
-        "switching_impacts",
-        "tip_line",
-    ],
-    "solution",
-)
+ALL_OF_IT = "pendcore.hpp"
+"""The header that includes the whole core: for users, and for the bindings."""
 
 # The same for Python: modules in the order of the flow; each may import those above it, with the
 # exceptions that are named below.
@@ -106,7 +85,7 @@ LIBM = (
     "sin|cos|tan|sincos|asin|acos|atan|atan2|sinh|cosh|tanh|"
     "exp|exp2|expm1|log|log2|log10|log1p|pow|cbrt|hypot"
 )
-KERNELS = ["arithmetic", "effects", "dynamics", "integrate", "solution"]
+KERNELS = ["arithmetic", "effects", "dynamics", "integrate", "simulate", "analysis"]
 
 
 def files(root: Path, suffixes: set[str], *folders: str) -> Iterator[Path]:
@@ -124,28 +103,40 @@ def without_texts(code: str) -> str:
     return re.sub(r'"(?:\\.|[^"\\\n])*"', '""', code)
 
 
-def cpp_stage(cpp: Path, place: Path) -> str:
-    """The stage of a file that stands at `place` in cpp/include/pendcore, cpp/src or cpp."""
-    if len(place.parts) == 1:  # a source belongs where its header is
-        headers = sorted((cpp / "include/pendcore").rglob(f"{place.stem}.hpp"))
-        place = headers[0].relative_to(cpp / "include/pendcore") if headers else place
-    name = place.parts[0].removesuffix(place.suffix)
-    stage = CPP_FILES.get(name, name)
-    return stage if stage in CPP_FLOW else f"{name}, no stage of the flow"
-
-
 def includes_follow_the_flow(root: Path) -> Iterator[str]:
     cpp = root / "cpp"
-    for path in files(cpp, {".hpp", ".cpp"}, "include/pendcore", "src", "bindings"):
-        base = next(b for b in (cpp / "include/pendcore", cpp / "src", cpp) if b in path.parents)
-        stage = cpp_stage(cpp, path.relative_to(base))
-        allowed = CPP_FLOW.get(stage, set()) | {stage}
-        for mark, name in re.findall(r'^#include (["<])([^">]+)', path.read_text(), re.MULTILINE):
-            inside = name.removeprefix("pendcore/")
-            if inside != name and cpp_stage(cpp, Path(inside)) not in allowed:
-                yield f"{path.relative_to(root)} ({stage}) includes {name}"
-            if inside == name and mark == '"' and stage != "bindings":
-                yield f"{path.relative_to(root)} includes {name}, not by its place in pendcore/"
+    for base in (cpp / "include/pendcore", cpp / "src"):
+        for path in files(base, {".hpp", ".cpp"}, ""):
+            place = path.relative_to(base)
+            stage = place.parts[0]
+            if place.name == ALL_OF_IT:
+                continue
+            if stage not in CPP_FLOW:
+                yield f"{path.relative_to(root)} stands in no folder of the flow"
+                continue
+            for mark, name in includes_of(path):
+                inside = name.removeprefix("pendcore/")
+                if inside == name and mark == '"':
+                    yield f"{path.relative_to(root)} includes {name}, not by its place in pendcore/"
+                elif inside != name and inside.partition("/")[0] not in CPP_FLOW[stage] | {stage}:
+                    yield f"{path.relative_to(root)} ({stage}) includes {name}"
+
+
+def includes_of(path: Path) -> list[tuple[str, str]]:
+    return re.findall(r'^#include (["<])([^">]+)', path.read_text(), re.MULTILINE)
+
+
+def sources_stand_where_their_headers_do(root: Path) -> Iterator[str]:
+    """cpp/src has the folders of the headers."""
+    cpp = root / "cpp"
+    for path in files(cpp / "src", {".cpp"}, ""):
+        place = path.relative_to(cpp / "src")
+        folder = cpp / "include/pendcore" / place.parent
+        if not folder.is_dir():
+            yield f"{path.relative_to(root)}: cpp/include/pendcore has no folder {place.parent}"
+        elsewhere = list((cpp / "include/pendcore").rglob(f"{path.stem}.hpp"))
+        if elsewhere and not (folder / f"{path.stem}.hpp").is_file():
+            yield f"{path.relative_to(root)} stands in another folder than {elsewhere[0].name}"
 
 
 def imports_of(tree: ast.Module) -> Iterator[tuple[str, bool]]:
@@ -229,7 +220,7 @@ def kernels_call_no_libm(root: Path) -> Iterator[str]:
     cpp = root / "cpp"
     for base in (cpp / "include/pendcore", cpp / "src"):
         for path in files(base, {".hpp", ".cpp"}, ""):
-            if cpp_stage(cpp, path.relative_to(base)) not in KERNELS:
+            if path.relative_to(base).parts[0] not in KERNELS:
                 continue
             for found in call.findall(without_texts(without_comments(path.read_text()))):
                 yield f"{path.relative_to(root)} calls {found}...)"
@@ -245,14 +236,6 @@ def builds_use_no_flag_that_changes_bits(root: Path) -> Iterator[str]:
             yield f"{path.relative_to(root)} passes {flag}"
 
 
-def sources_are_listed(root: Path) -> Iterator[str]:
-    listed = (root / "CMakeLists.txt").read_text()
-    for path in files(root, {".cpp"}, "cpp/src", "cpp/bindings"):
-        name = str(path.relative_to(root))
-        if name not in listed:
-            yield f"CMakeLists.txt does not list {name}"
-
-
 def version_is_the_same_everywhere(root: Path) -> Iterator[str]:
     version = tomllib.loads((root / "pyproject.toml").read_text())["project"]["version"]
     cited = re.findall(r"^version: (\S+)$", (root / "CITATION.cff").read_text(), re.MULTILINE)
@@ -264,12 +247,12 @@ def version_is_the_same_everywhere(root: Path) -> Iterator[str]:
 
 RULES: list[Rule] = [
     includes_follow_the_flow,
+    sources_stand_where_their_headers_do,
     imports_follow_the_flow,
     names_say_what_a_file_holds,
     files_are_short,
     comments_have_a_subject,
     kernels_call_no_libm,
     builds_use_no_flag_that_changes_bits,
-    sources_are_listed,
     version_is_the_same_everywhere,
 ]

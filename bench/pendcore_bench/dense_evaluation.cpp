@@ -1,7 +1,7 @@
 // The dense output of the textbook's case at 10 000 times, in order and in no order.
 #include <benchmark/benchmark.h>
 #include <algorithm>
-#include <pendcore/simulate.hpp>
+#include <pendcore/simulate/simulate.hpp>
 #include <random>
 #include <vector>
 

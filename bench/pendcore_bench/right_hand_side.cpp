@@ -2,7 +2,7 @@
 // latency: each call waits for the last one's accelerations, as the stages of a step do.
 // throughput: calls on states that do not depend on each other.
 #include <benchmark/benchmark.h>
-#include <pendcore/dynamics/double_pendulum.hpp>
+#include <pendcore/dynamics/closed_form/double_pendulum.hpp>
 #include <vector>
 
 #include "calls.hpp"

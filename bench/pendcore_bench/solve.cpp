@@ -2,7 +2,7 @@
 // "a call" is a right-hand side; of taylor, a series.
 #include <benchmark/benchmark.h>
 #include <cmath>
-#include <pendcore/simulate.hpp>
+#include <pendcore/simulate/simulate.hpp>
 #include <vector>
 
 #include "calls.hpp"

@@ -5,7 +5,7 @@
 
 #include <cmath>
 #include <memory>
-#include <pendcore/simulate.hpp>
+#include <pendcore/simulate/simulate.hpp>
 #include <vector>
 
 namespace {

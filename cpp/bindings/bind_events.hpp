@@ -4,7 +4,7 @@
 
 #include <pybind11/pybind11.h>
 
-#include "pendcore/solution.hpp"
+#include "pendcore/simulate/solution.hpp"
 
 namespace pendcore::bindings {
 

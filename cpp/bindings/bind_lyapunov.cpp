@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "pendcore/lyapunov.hpp"
+#include "pendcore/analysis/lyapunov.hpp"
 #include "python_monitor.hpp"
 #include "run_state.hpp"
 #include "start.hpp"

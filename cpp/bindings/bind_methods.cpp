@@ -23,7 +23,7 @@ py::list rows_of_fractions(const Table& table) {
 }
 
 template <const auto& first, const auto& second>
-py::dict tableau(const MethodPair<first, second>& /*method*/) {
+py::dict tableau(const StiffSwitching<first, second>& /*method*/) {
   return {};
 }
 py::dict tableau(const TaylorSeries& /*method*/) { return {}; }

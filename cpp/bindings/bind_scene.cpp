@@ -7,7 +7,7 @@
 #include "bind_effects.hpp"
 #include "pendcore/arithmetic/floating_point_environment.hpp"
 #include "pendcore/pendcore.hpp"
-#include "pendcore/start.hpp"
+#include "pendcore/simulate/initial_state.hpp"
 
 namespace pendcore::bindings {
 namespace {

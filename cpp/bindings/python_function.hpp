@@ -7,7 +7,7 @@
 #include <exception>
 
 #include "pendcore/effects/user.hpp"
-#include "pendcore/integrate/event.hpp"
+#include "pendcore/integrate/events/event.hpp"
 
 namespace pendcore::bindings {
 

@@ -151,9 +151,9 @@ void visit(Archive& io, AnySolution& s) {
   io("position_stiff_hits", p.stiff_hits);
   io("position_stiff_misses", p.stiff_misses);
   io("position_stiff_since", p.stiff_since);
-  visit_statistics(io, "position_", p.statistics);
+  visit_statistics(io, "integrator_", p.statistics);
   io("position_stepper", p.stepper);
-  io("position_breaks", p.breaks);
+  io("position_breaks", p.discontinuities);
   io("position_y", p.y);
   io("position_dydt", p.dydt);
 }
@@ -196,7 +196,7 @@ bool counts_fit(const Statistics& s) {
   return std::ranges::all_of(counts, [](long long n) { return n >= 0 && n < 1LL << 60; });
 }
 
-bool position_fits(const Position& p) {
+bool position_fits(const IntegratorState& p) {
   const auto few = [](int n) { return n >= 0 && n < 1'000'000; };
   // The logarithm of a double is within 1100; NaN is not.
   return counts_fit(p.statistics) && few(p.stiff_hits) && few(p.stiff_misses) &&

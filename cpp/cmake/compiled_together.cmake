@@ -1,11 +1,18 @@
 # pendcore_compile_together(target): sources of the core that include the same are one translation
 # unit, which takes half the time; kernels and what takes longest stay alone. No two things in a
 # group may have one name; clang-tidy reads every source by itself.
-set(together_scene driven_pivot energy ledger motor reactions registry scene wave)
-set(together_run dominant_eigenvalue ending_message first_step method_choice method_pair methods
-    not_finite options recorder simulate solution start stiffness)
-set(together_joints complementarity held_joints joint_forces switching switching_guards)
-set(together_events event event_finder root)
+set(together_scene
+    dynamics/energetics/energy dynamics/energetics/ledger dynamics/energetics/reactions
+    effects/driven_pivot effects/motor effects/registry effects/wave scene/scene)
+set(together_run
+    integrate/loop/first_step integrate/loop/stiffness integrate/methods integrate/stiff_switching
+    integrate/taylor/dominant_eigenvalue simulate/ending_message simulate/initial_state
+    simulate/method_choice simulate/not_finite simulate/options simulate/recorder simulate/simulate
+    simulate/solution)
+set(together_joints
+    dynamics/contact/complementarity dynamics/contact/held_joints dynamics/joint_forces
+    simulate/switching simulate/switching_guards)
+set(together_events integrate/events/event integrate/events/root simulate/event_finder)
 
 function(pendcore_compile_together target)
   foreach(group scene run joints events)

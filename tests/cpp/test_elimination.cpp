@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "pendcore/integrate/elimination.hpp"
+#include "pendcore/integrate/radau/gaussian_elimination.hpp"
 
 using namespace pendcore;
 
@@ -14,7 +14,7 @@ TEST_CASE("real systems of any size are solved, with zeros on the diagonal as we
   std::mt19937_64 random(11);
   std::uniform_real_distribution any(-1.0, 1.0);
   for (int n = 1; n < 12; ++n) {
-    Elimination<double> system(n);
+    GaussianElimination<double> system(n);
     std::vector<double> matrix(n * n);
     for (int k = 0; k < n * n; ++k) matrix[k] = any(random);
     if (n > 1) {
@@ -37,7 +37,7 @@ TEST_CASE("complex systems agree with the library's complex numbers") {
   std::mt19937_64 random(12);
   std::uniform_real_distribution any(-1.0, 1.0);
   for (int n = 1; n < 12; ++n) {
-    Elimination<Complex> system(n);
+    GaussianElimination<Complex> system(n);
     std::vector<std::complex<double>> matrix(n * n);
     std::vector<std::complex<double>> exact(n);
     std::vector<Complex> x(n);
@@ -60,7 +60,7 @@ TEST_CASE("complex systems agree with the library's complex numbers") {
 }
 
 TEST_CASE("an elimination that is told not to go on ends early") {
-  Elimination<double> system(200);
+  GaussianElimination<double> system(200);
   for (int k = 0; k < 200; ++k) system.matrix()[k * 200 + k] = 1.0;
   int asked = 0;
   CHECK(!system.factor([&] { return ++asked < 3; }));

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "pendcore/event_finder.hpp"
-#include "pendcore/simulate.hpp"
+#include "pendcore/simulate/event_finder.hpp"
+#include "pendcore/simulate/simulate.hpp"
 
 using namespace pendcore;
 

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "pendcore/integrate/root.hpp"
+#include "pendcore/integrate/events/root.hpp"
 #include "polynomials.hpp"
 
 using namespace pendcore;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "pendcore/dynamics/kinematics.hpp"
-#include "pendcore/switching.hpp"
+#include "pendcore/simulate/switching.hpp"
 
 using namespace pendcore;
 

@@ -5,11 +5,11 @@
 #include <memory>
 #include <vector>
 
-#include "pendcore/integrate/explicit_runge_kutta.hpp"
-#include "pendcore/integrate/first_step.hpp"
-#include "pendcore/integrate/implicit_runge_kutta.hpp"
-#include "pendcore/integrate/integrate.hpp"
+#include "pendcore/integrate/loop/first_step.hpp"
+#include "pendcore/integrate/loop/integrate.hpp"
 #include "pendcore/integrate/methods.hpp"
+#include "pendcore/integrate/radau/implicit_runge_kutta.hpp"
+#include "pendcore/integrate/runge_kutta/runge_kutta_fixed.hpp"
 
 using namespace pendcore;
 
@@ -72,11 +72,12 @@ std::unique_ptr<Stepper> make_stepper() {
   if constexpr (method.info.kind == MethodKind::implicit_one) {
     return implicit(method);
   } else if constexpr (method.info.kind == MethodKind::pair) {
-    return std::make_unique<PairStepper>(std::make_unique<GeneralRungeKutta<method.first, double>>(
-                                             std::make_unique<OfTheRate<f>>(), 1),
-                                         [=] { return implicit(method.second); });
+    return std::make_unique<StiffSwitchingStepper>(
+        std::make_unique<RungeKuttaDynamic<method.first, double>>(std::make_unique<OfTheRate<f>>(),
+                                                                  1),
+        [=] { return implicit(method.second); });
   } else {
-    return std::make_unique<ExplicitRungeKutta<method, Scalar<f>>>(Scalar<f>{});
+    return std::make_unique<RungeKuttaFixed<method, Scalar<f>>>(Scalar<f>{});
   }
 }
 
@@ -123,28 +124,28 @@ Result solve(const Request& request) {
   Stepper& stepper = *made;
   const std::vector<double> tolerances(stepper.dimension(), request.tolerance);
   stepper.set_tolerances(tolerances.data(), tolerances.data());
-  Position position;
-  position.t = {request.t0, 0.0};
-  position.y.resize(stepper.dimension());
-  position.y.back() = request.y0;
-  position.dydt.resize(stepper.dimension());
-  stepper.evaluate(request.t0, position.y.data(), position.dydt.data());
-  stepper.start(position.y.data(), position.dydt.data());
+  IntegratorState integrator;
+  integrator.t = {request.t0, 0.0};
+  integrator.y.resize(stepper.dimension());
+  integrator.y.back() = request.y0;
+  integrator.dydt.resize(stepper.dimension());
+  stepper.evaluate(request.t0, integrator.y.data(), integrator.dydt.data());
+  stepper.start(integrator.y.data(), integrator.dydt.data());
   const double direction = request.t_end < request.t0 ? -1.0 : 1.0;
   const double infinity = std::numeric_limits<double>::infinity();
-  position.h =
+  integrator.h =
       direction * (request.step > 0.0 ? request.step
                                       : first_step(stepper, request.t0, request.t_end, infinity,
                                                    tolerances.data(), tolerances.data())
                                             .h);
   Nothing nothing;
-  Position resumable;
+  IntegratorState resumable;
   const Limits limits{.t_end = request.t_end,
                       .fixed_step = request.step > 0.0,
                       .max_steps = request.max_steps,
                       .monitor = {}};
-  const Ending ending = integrate(stepper, position, resumable, limits, nothing);
-  return {ending.status, position.t.high, position.y.back(), position.statistics, ending.bad};
+  const Ending ending = integrate(stepper, integrator, resumable, limits, nothing);
+  return {ending.status, integrator.t.high, integrator.y.back(), integrator.statistics, ending.bad};
 }
 
 template <const auto&... tables>

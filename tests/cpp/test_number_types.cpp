@@ -6,9 +6,9 @@
 #include <random>
 
 #include "pendcore/arithmetic/dual.hpp"
-#include "pendcore/dynamics/double_pendulum.hpp"
-#include "pendcore/dynamics/double_pendulum_with_effects.hpp"
-#include "pendcore/dynamics/single_pendulum.hpp"
+#include "pendcore/dynamics/closed_form/double_pendulum.hpp"
+#include "pendcore/dynamics/closed_form/double_pendulum_with_effects.hpp"
+#include "pendcore/dynamics/closed_form/single_pendulum.hpp"
 
 using namespace pendcore;
 

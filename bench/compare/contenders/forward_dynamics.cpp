@@ -19,7 +19,7 @@
 namespace {
 
 using namespace contenders;
-using Clock = std::chrono::steady_clock;
+using RunLimits = std::chrono::steady_clock;
 constexpr double batch_seconds = 1e-5;  // long beside what reading the clock takes
 
 struct Prepared {
@@ -39,9 +39,9 @@ std::size_t bytes_in_use() {
 }
 
 double seconds_of(Calls& calls, int count) {
-  const auto before = Clock::now();
+  const auto before = RunLimits::now();
   calls.make(count);
-  return std::chrono::duration<double>(Clock::now() - before).count();
+  return std::chrono::duration<double>(RunLimits::now() - before).count();
 }
 
 Scene read_scene(std::istream& in) {
@@ -58,7 +58,7 @@ Scene read_scene(std::istream& in) {
 
 std::string burst(Prepared& prepared, double seconds) {
   Calls& calls = *prepared.calls;
-  const auto begin = Clock::now();
+  const auto begin = RunLimits::now();
   double taken = seconds_of(calls, prepared.count > 0 ? prepared.count : 1);  // warms up
   for (int count = 1; prepared.count == 0; count *= 2) {
     taken = seconds_of(calls, count);
@@ -70,7 +70,7 @@ std::string burst(Prepared& prepared, double seconds) {
     taken = seconds_of(calls, prepared.count) / (prepared.count * calls.right_hand_sides());
     std::snprintf(word, sizeof word, "%.4g ", 1e9 * taken);
     line += word;
-  } while (std::chrono::duration<double>(Clock::now() - begin).count() < seconds);
+  } while (std::chrono::duration<double>(RunLimits::now() - begin).count() < seconds);
   return line;
 }
 

@@ -1,7 +1,7 @@
 // pendcore's right-hand side as a C++ user calls it, and within whole runs.
 #include <pendcore/dynamics/first_order.hpp>
-#include <pendcore/integrate/explicit_runge_kutta.hpp>
 #include <pendcore/integrate/methods.hpp>
+#include <pendcore/integrate/runge_kutta/runge_kutta_fixed.hpp>
 #include <pendcore/pendcore.hpp>
 #include <utility>
 
@@ -161,9 +161,8 @@ std::unique_ptr<Calls> steps_of_kernel(const Scene& given) {
   using System = FirstOrder<DoublePendulum>;
   if (given.n() != 2 || given.effect != "none") throw Unsupported("it is that of two bare links");
   const pendcore::Scene scene = scene_of(given);
-  return std::make_unique<Steps>(given,
-                                 std::make_unique<ExplicitRungeKutta<dormand_prince_5, System>>(
-                                     System{DoublePendulum(scene, Inertia(scene))}));
+  return std::make_unique<Steps>(given, std::make_unique<RungeKuttaFixed<dormand_prince_5, System>>(
+                                            System{DoublePendulum(scene, Inertia(scene))}));
 }
 
 const std::string registered =

@@ -47,13 +47,13 @@ std::string outcome(Run& run) {
 }
 
 std::string burst(Run& run, double seconds) {
-  using Clock = std::chrono::steady_clock;
+  using RunLimits = std::chrono::steady_clock;
   std::vector<long long> taken;
-  const auto begin = Clock::now();
+  const auto begin = RunLimits::now();
   for (;;) {
-    const auto before = Clock::now();
+    const auto before = RunLimits::now();
     run.solve();
-    const auto after = Clock::now();
+    const auto after = RunLimits::now();
     taken.push_back(std::chrono::duration_cast<std::chrono::nanoseconds>(after - before).count());
     if (std::chrono::duration<double>(after - begin).count() >= seconds) break;
   }

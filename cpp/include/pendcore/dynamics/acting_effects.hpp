@@ -10,7 +10,7 @@
 
 #include "pendcore/arithmetic/dual.hpp"
 #include "pendcore/arithmetic/sine_cosine.hpp"
-#include "pendcore/scene.hpp"
+#include "pendcore/scene/scene.hpp"
 
 namespace pendcore {
 

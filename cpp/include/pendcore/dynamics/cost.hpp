@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "pendcore/scene.hpp"
+#include "pendcore/scene/scene.hpp"
 
 namespace pendcore {
 

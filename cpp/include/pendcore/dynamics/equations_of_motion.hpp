@@ -8,11 +8,11 @@
 
 #include <variant>
 
-#include "pendcore/dynamics/chain.hpp"
-#include "pendcore/dynamics/double_pendulum_with_effects.hpp"
-#include "pendcore/dynamics/held_joints.hpp"
-#include "pendcore/dynamics/single_pendulum.hpp"
-#include "pendcore/dynamics/single_pendulum_with_effects.hpp"
+#include "pendcore/dynamics/chain/chain.hpp"
+#include "pendcore/dynamics/closed_form/double_pendulum_with_effects.hpp"
+#include "pendcore/dynamics/closed_form/single_pendulum.hpp"
+#include "pendcore/dynamics/closed_form/single_pendulum_with_effects.hpp"
+#include "pendcore/dynamics/contact/held_joints.hpp"
 
 namespace pendcore {
 

@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-#include "pendcore/scene.hpp"
+#include "pendcore/scene/scene.hpp"
 
 namespace pendcore {
 

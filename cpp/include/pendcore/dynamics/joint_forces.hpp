@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "pendcore/dynamics/complementarity.hpp"
+#include "pendcore/dynamics/contact/complementarity.hpp"
 #include "pendcore/dynamics/inertia.hpp"
 
 namespace pendcore {

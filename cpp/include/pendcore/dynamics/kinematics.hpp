@@ -12,7 +12,7 @@
 
 #include <span>
 
-#include "pendcore/scene.hpp"
+#include "pendcore/scene/scene.hpp"
 
 namespace pendcore {
 

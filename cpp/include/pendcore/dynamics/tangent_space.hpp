@@ -8,7 +8,7 @@
 
 #include <vector>
 
-#include "pendcore/scene.hpp"
+#include "pendcore/scene/scene.hpp"
 
 namespace pendcore {
 

@@ -42,7 +42,7 @@
 #include <tuple>
 #include <vector>
 
-#include "pendcore/message.hpp"
+#include "pendcore/text/message.hpp"
 
 namespace pendcore {
 

@@ -3,12 +3,12 @@
 /// Python layer and the tests of order conditions, convergence, dense output and bits find it.
 #pragma once
 
-#include "pendcore/integrate/dormand_prince_5.hpp"
-#include "pendcore/integrate/dormand_prince_8.hpp"
-#include "pendcore/integrate/method_pair.hpp"
-#include "pendcore/integrate/radau_5.hpp"
-#include "pendcore/integrate/runge_kutta_4.hpp"
-#include "pendcore/integrate/taylor.hpp"
+#include "pendcore/integrate/radau/radau_5.hpp"
+#include "pendcore/integrate/runge_kutta/dormand_prince_5.hpp"
+#include "pendcore/integrate/runge_kutta/dormand_prince_8.hpp"
+#include "pendcore/integrate/runge_kutta/runge_kutta_4.hpp"
+#include "pendcore/integrate/stiff_switching.hpp"
+#include "pendcore/integrate/taylor/taylor.hpp"
 
 namespace pendcore {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "pendcore/arithmetic/two_double.hpp"
-#include "pendcore/integrate/attempt.hpp"
-#include "pendcore/integrate/tableau.hpp"
+#include "pendcore/integrate/loop/attempt.hpp"
+#include "pendcore/integrate/runge_kutta/tableau.hpp"
 
 namespace pendcore {
 
@@ -37,7 +37,7 @@ class Stepper {
 
   /// Is asked now and then in an attempt that takes long; at false the attempt is given up, and
   /// nothing that the next one depends on has changed.
-  std::function<bool()> goes_on;
+  std::function<bool()> keep_going;
 
   /// With which a run, from the state at time t, begins: s, of a method that knows; 0 of others.
   virtual double own_first_step(double /*t*/) { return 0.0; }
@@ -69,7 +69,7 @@ class Stepper {
   virtual bool stiffness_found(bool /*size_is_given*/) { return false; }
 
   /// What the next step depends on beside y and dydt: nothing, of most methods.
-  virtual std::vector<double> memory() const { return {}; }
+  virtual std::vector<double> saved_state() const { return {}; }
   /// Goes on from there, in place of what start() left.
   virtual void restore(const std::vector<double>& /*memory*/) {}
 

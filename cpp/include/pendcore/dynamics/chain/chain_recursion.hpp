@@ -1,0 +1,292 @@
+/// \file
+/// The recursion of chain.hpp.
+#pragma once
+
+#include "pendcore/dynamics/chain/chain.hpp"
+#include "pendcore/dynamics/row.hpp"
+
+namespace pendcore {
+
+template <class Number>
+PENDCORE_INLINE void ChainOf<Number>::prepare(const Number* q, const Number* qd) const {
+  Number* const s = in(s_);
+  Number* const c = in(c_);
+  __builtin_memcpy(in(q_), q, n_ * sizeof(Number));
+  __builtin_memcpy(in(qd_), qd, n_ * sizeof(Number));
+  for (int i = 0; i < padded_; i += 4) {
+    const Row rate = load<Row>(in(qd_) + i);
+    Row sine, cosine;
+    sine_cosine(load<Row>(in(q_) + i), sine, cosine);
+    store(s + i, sine);
+    store(c + i, cosine);
+    const Row square = rate * rate;
+    store(in(centripetal_) + i, Row(load<Row>(in(length_) + i) * square));
+    store(in(center_) + i, Row(load<Row>(in(mass_moment_) + i) * square));
+  }
+  for (int i = 0; i < padded_; i += 4) {
+    const Row sine = load<Row>(s + i);
+    const Row cosine = load<Row>(c + i);
+    const Row sine_before = load<Row>(s + i - 1);
+    const Row cosine_before = load<Row>(c + i - 1);
+    const Row cos = fma(cosine, cosine_before, sine * sine_before);
+    const Row sin = fma(sine, cosine_before, -(cosine * sine_before));
+    store(in(cos_) + i, cos);
+    store(in(sin_) + i, sin);
+    store(in(cc_) + i, Row(cos * cos));
+    store(in(ss_) + i, Row(sin * sin));
+    store(in(sc_) + i, Row(sin * cos));
+  }
+}
+
+/// What a law of four links adds to.
+template <class Row>
+struct ChainLoads {
+  using Number = typename Lanes<Row>::Number;
+  Number *couples, *moments, *fx, *fy;
+  PENDCORE_INLINE static void add(Number* to, const Row& x) { store(to, Row(load<Row>(to) + x)); }
+  PENDCORE_INLINE void couple(const Row& tau) { add(couples, tau); }
+  PENDCORE_INLINE void generalised(const Row& Q) { add(moments, Q); }
+  PENDCORE_INLINE void force(const Row& moment, const Row& x, const Row& y) {
+    add(moments, moment);
+    add(fx, x);
+    add(fy, y);
+  }
+};
+
+/// The torque on each link and, turned into its frame, the force.
+template <class Number>
+PENDCORE_INLINE void ChainOf<Number>::collect_loads(double t) const {
+  using Effects = ActingEffects<Pack<4>>;
+  const Effects& effects = *effects_;
+  const bool forces = effects.has_forces;
+  Number* const couple = in(couple_);
+  Number* const torque = in(torque_);
+  Number* const fx = in(fx_);
+  Number* const fy = in(fy_);
+  for (int i = 0; i < padded_; i += 4) {
+    store(couple + i, Row{});
+    store(torque + i, Row{});
+    store(fx + i, Row{});
+    store(fy + i, Row{});
+  }
+  if (forces) {
+    double pivot_x = 0.0;
+    double pivot_y = 0.0;
+    if (!effects.pivots.empty()) effects.pivot_velocity(t, pivot_x, pivot_y);
+    Number x = pivot_x;
+    Number y = pivot_y;
+    for (int i = 0; i < n_; ++i) {
+      in(vx_)[i] = x;
+      in(vy_)[i] = y;
+      const Number speed = in(length_)[i] * in(qd_)[i];
+      x = fma(-speed, in(s_)[i], x);
+      y = fma(speed, in(c_)[i], y);
+    }
+  }
+  const ArraysOver<Number> links{in(q_), in(qd_), in(s_), in(c_), in(length_), in(vx_), in(vy_)};
+  auto loads_of = [&](int row) {
+    return ChainLoads<Row>{couple + 4 * row, torque + 4 * row, fx + 4 * row, fy + 4 * row};
+  };
+  for (const Couples<Pack<4>>& one : effects.couples) {
+    loads_of(one.row).couple(one.torque(RowInArrays<Row>(links, t, one.row)));
+  }
+  for (const JointWave& one : effects.joint_waves) {
+    couple[one.joint] += one.gain * effects.wave_sine[one.wave];
+  }
+  for (const auto& entry : effects.entries) {
+    ChainLoads<Row> loads = loads_of(entry.row);
+    Effects::add(entry, RowInArrays<Row>(links, t, entry.row), loads);
+  }
+  for (const CompiledUser& user : effects.users) {
+    Number* const Q = in(user_);
+    for (int i = 0; i < n_; ++i) Q[i] = Number{};
+    effects.call(user, t, in(q_), in(qd_), Q);
+    for (int i = 0; i < n_; ++i) torque[i] += Q[i];
+  }
+  for (int i = 0; i < padded_; i += 4) {
+    store(torque + i,
+          Row(load<Row>(torque + i) + load<Row>(couple + i) - load<Row>(couple + i + 1)));
+    if (forces) {
+      const Row x = load<Row>(fx + i);
+      const Row y = load<Row>(fy + i);
+      const Row s = load<Row>(in(s_) + i);
+      const Row c = load<Row>(in(c_) + i);
+      store(fx + i, fma(c, x, s * y));
+      store(fy + i, fma(c, y, -(s * x)));
+    }
+  }
+}
+
+template <class Number>
+template <bool loaded, int size>
+PENDCORE_INLINE void ChainOf<Number>::tip_to_base() const {
+  const int n = size > 0 ? size : n_;
+  Number Buu = payload_mass_;
+  Number Bun = 0.0;
+  Number Bnn = payload_mass_;
+  Number b_u = 0.0;
+  Number b_n = 0.0;
+#pragma GCC unroll 3
+  for (int i = n - 1; i >= 0; --i) {
+    const Constants& k = links_[i];
+    const Number D = fma(k.LL, Bnn, k.Io);
+    const Number r = 1.0 / D;
+    const Number speed = in(centripetal_)[i];
+    const Number pu = fma(-speed, Buu, b_u);
+    const Number pn = fma(-speed, Bun, b_n);
+    const Number torque = loaded ? fma(-k.L, pn, in(torque_)[i]) : -k.L * pn;
+    const Number free = torque * r;
+    const Number wu = k.L * Bun;
+    const Number wn = fma(k.L, Bnn, k.mc);
+    Number fu = pu - in(center_)[i];
+    Number fn = pn;
+    if constexpr (loaded) {
+      fu -= in(fx_)[i];
+      fn -= in(fy_)[i];
+    }
+    fu = fma(wu, free, fu);
+    fn = fma(wn, free, fn);
+    const Number s = in(s_)[i];
+    const Number c = in(c_)[i];
+    response_[i] = {free, r * fma(wu, c, -(wn * s)), r * fma(wu, s, wn * c), 0.0};
+
+    // Into the frame of the link before. What waits for the division comes in last.
+    const Number mass = k.m + Buu;
+    const Number uu = wu * wu;
+    const Number un = Bun * k.turn;
+    const Number nn = fma(Bnn, k.across, k.m * k.I);
+    const Number cc = in(cc_)[i];
+    const Number ss = in(ss_)[i];
+    const Number sc = in(sc_)[i];
+    const Number both = sc + sc;
+    Bnn = fma(r, fma(-ss, uu, fma(both, un, cc * nn)), ss * mass);
+    Bun = fma(r, fma(-sc, uu + nn, (cc - ss) * un), sc * mass);
+    Buu = fma(r, fma(-cc, uu, fma(-both, un, ss * nn)), cc * mass);
+    b_u = fma(fu, in(cos_)[i], -(fn * in(sin_)[i]));
+    b_n = fma(fu, in(sin_)[i], fn * in(cos_)[i]);
+  }
+}
+
+template <class Number>
+template <int size>
+PENDCORE_INLINE void ChainOf<Number>::base_to_tip(Number ax, Number ay, Number* qdd) const {
+  const int n = size > 0 ? size : n_;
+#pragma GCC unroll 3
+  for (int i = 0; i < n; ++i) {
+    const Response& k = response_[i];
+    const Number s = in(s_)[i];
+    const Number c = in(c_)[i];
+    const Number L = in(length_)[i];
+    const Number speed = in(centripetal_)[i];
+    const Number x = fma(-speed, c, ax);
+    const Number y = fma(-speed, s, ay);
+    const Number found = fma(-k.y, ay, fma(-k.x, ax, k.free));
+    qdd[i] = found;
+    ax = fma(-(L * s), found, x);
+    ay = fma(L * c, found, y);
+  }
+}
+
+template <class Number>
+PENDCORE_INLINE void ChainOf<Number>::tip_to_base_coupled() const {
+  Number Buu = payload_mass_;
+  Number Bun = 0.0;
+  Number Bnn = payload_mass_;
+  Number b_u = 0.0;
+  Number b_n = 0.0;
+  Number beta_u = 0.0;  // force per angular acceleration of the link before
+  Number beta_n = 0.0;
+  Number kappa = 0.0;  // torque per angular acceleration
+  Number t = 0.0;      // the rest of the torque
+  for (int i = n_ - 1; i >= 0; --i) {
+    const Constants& k = links_[i];
+    const Number speed = in(centripetal_)[i];
+    const Number pu = fma(-speed, Buu, b_u);
+    const Number pn = fma(-speed, Bun, b_n);
+    const Number D = fma(k.LL, Bnn, k.Io) + fma(2.0 * k.L, beta_n, kappa);
+    const double J = rotor_[i];
+    const bool is_held = effects_->held[i];
+    const Number r = is_held ? Number(0.0) : 1.0 / (D + J);
+    const Number share = is_held ? Number(1.0) : J * r;
+    const Number wu = fma(k.L, Bun, beta_u);
+    const Number wn = fma(k.L, Bnn, k.mc) + beta_n;
+    const Number torque = in(torque_)[i] - fma(k.L, pn, fma(-speed, beta_u, t));
+    const Number free = r * torque;
+    const Number fu = fma(wu, free, pu - in(center_)[i] - in(fx_)[i]);
+    const Number fn = fma(wn, free, pn - in(fy_)[i]);
+    const Number s = in(s_)[i];
+    const Number c = in(c_)[i];
+    response_[i] = {free, r * fma(wu, c, -(wn * s)), r * fma(wu, s, wn * c), share};
+
+    const Number uu = fma(-r * wu, wu, k.m + Buu);
+    const Number un = fma(-r * wu, wn, Bun);
+    const Number nn = fma(-r * wn, wn, k.m + Bnn);
+    const Number cc = in(cc_)[i];
+    const Number ss = in(ss_)[i];
+    const Number sc = in(sc_)[i];
+    const Number cos = in(cos_)[i];
+    const Number sin = in(sin_)[i];
+    Bnn = fma(ss, uu, fma(2.0 * sc, un, cc * nn));
+    Bun = fma(sc, uu - nn, (cc - ss) * un);
+    Buu = fma(cc, uu, fma(-2.0 * sc, un, ss * nn));
+    b_u = fma(fu, cos, -(fn * sin));
+    b_n = fma(fu, sin, fn * cos);
+    beta_u = share * fma(wu, cos, -(wn * sin));
+    beta_n = share * fma(wu, sin, wn * cos);
+    kappa = share * D;
+    t = -share * torque;
+  }
+}
+
+template <class Number>
+PENDCORE_INLINE void ChainOf<Number>::base_to_tip_coupled(Number ax, Number ay, Number* qdd) const {
+  Number before = 0.0;
+  for (int i = 0; i < n_; ++i) {
+    const Response& k = response_[i];
+    const Number s = in(s_)[i];
+    const Number c = in(c_)[i];
+    const Number L = in(length_)[i];
+    const Number speed = in(centripetal_)[i];
+    const Number found = fma(-k.y, ay, fma(-k.x, ax, fma(k.from_before, before, k.free)));
+    qdd[i] = before = found;
+    ax = fma(-(L * s), found, fma(-speed, c, ax));
+    ay = fma(L * c, found, fma(-speed, s, ay));
+  }
+}
+
+template <class Number>
+PENDCORE_INLINE void ChainOf<Number>::accelerations(double t, const Number* q, const Number* qd,
+                                                    Number* qdd) const {
+  double ax = 0.0;
+  double ay = 0.0;
+  prepare(q, qd);
+  if (loaded_) {
+    effects_->compute_waves(t, 0);
+    if (!effects_->pivots.empty()) effects_->pivot_acceleration(t, ax, ay);
+    collect_loads(t);
+  }
+  ay -= gravity_;
+  if (has_rotors_ || effects_->any_held) {
+    tip_to_base_coupled();
+    base_to_tip_coupled(ax, ay, qdd);
+    return;
+  }
+  if (n_ == 3) {
+    recursion<3>(ax, ay, qdd);
+  } else {
+    recursion<0>(ax, ay, qdd);
+  }
+}
+
+template <class Number>
+template <int size>
+PENDCORE_INLINE void ChainOf<Number>::recursion(Number ax, Number ay, Number* qdd) const {
+  if (loaded_) {
+    tip_to_base<true, size>();
+  } else {
+    tip_to_base<false, size>();
+  }
+  base_to_tip<size>(ax, ay, qdd);
+}
+
+}  // namespace pendcore

@@ -1,0 +1,44 @@
+/// \file
+/// The series of a double pendulum whose joints may be held: of both joints free the closed form's
+/// (series.hpp), and where one is held the chain's (chain_series.hpp).
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "pendcore/dynamics/series/chain_series_recurrence.hpp"
+#include "pendcore/dynamics/series/series.hpp"
+#include "pendcore/dynamics/series/torque_series.hpp"
+
+namespace pendcore {
+
+class SeriesWithHolds {
+ public:
+  using Free = DoublePendulumSeries<CoupleTorque>;
+  using Block = Free::Block;
+  static constexpr int blocks = Free::blocks;
+  static constexpr bool depends_on_time = true;
+
+  SeriesWithHolds(Free free, ChainSeries<Pair> held, std::shared_ptr<const EffectsInForce> effects)
+      : free_(std::move(free)), held_(std::move(held)), effects_(std::move(effects)) {}
+
+  static constexpr int row() { return 2; }
+  static constexpr int links() { return 2; }
+  void set_order(int order) { held_.set_order(order); }
+
+  PENDCORE_INLINE void expand(double t, const double* y, double sigma, int order,
+                              double* coefficients) const {
+    if (effects_->any_held) {
+      held_.expand(t, y, sigma, order, coefficients);
+    } else {
+      free_.expand(t, y, sigma, order, coefficients);
+    }
+  }
+
+ private:
+  Free free_;
+  ChainSeries<Pair> held_;
+  std::shared_ptr<const EffectsInForce> effects_;
+};
+
+}  // namespace pendcore

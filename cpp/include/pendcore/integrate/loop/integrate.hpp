@@ -1,0 +1,102 @@
+/// \file
+/// WHERE IS THE LOOP: steps from where a run stands to the end of its interval.
+///
+/// The loop knows no method (a Stepper does) and no pendulum; what is kept of the steps is an
+/// Observer's affair and changes none of them.
+#pragma once
+
+#include <exception>
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "pendcore/arithmetic/two_double.hpp"
+#include "pendcore/integrate/loop/discontinuities.hpp"
+#include "pendcore/integrate/loop/statistics.hpp"
+#include "pendcore/integrate/loop/status.hpp"
+#include "pendcore/integrate/loop/step_control.hpp"
+#include "pendcore/integrate/stepper.hpp"
+
+namespace pendcore {
+
+/// Everything the next step depends on: a run that goes on from here takes the very steps that it
+/// would have taken had it never stopped.
+struct IntegratorState {
+  TwoDouble t;
+  double h = 0.0;  ///< s, the step to try next; its sign is the direction
+  bool h_is_max_step = false;
+  bool trial_was_finite = true;  ///< of the last step that was tried
+  int crossings_at_once = 0;     ///< laws that changed since the last step
+  StepControl control;
+  int stiff_hits = 0;        ///< of Hairer's test for stiffness since it last forgot
+  int stiff_misses = 0;      ///< since the last hit
+  double stiff_since = 0.0;  ///< s, if statistics.stiff; of a pair, when it was told last
+  Statistics statistics;
+  std::vector<double> y;        ///< (dimension)
+  std::vector<double> dydt;     ///< (dimension)
+  std::vector<double> stepper;  ///< what the method keeps from step to step (Stepper::memory)
+  std::vector<double> discontinuities;  ///< and what Discontinuities does (Discontinuities::memory)
+};
+
+/// Is called about every 50 ms with the share of the interval that is done; false stops the run.
+using Monitor = std::function<bool(double fraction)>;
+
+struct Limits {
+  double t_end;
+  double max_step = std::numeric_limits<double>::infinity();  ///< s
+  bool fixed_step = false;  ///< keep the position's h, whatever the error
+  long long max_steps = std::numeric_limits<long long>::max();  ///< attempted, accepted or not
+  double time_limit = std::numeric_limits<double>::infinity();  ///< s, of the clock on the wall
+  Monitor monitor;
+  bool begins_anew = false;  ///< a run that goes on does so from the start, not from later
+};
+
+/// Is shown each accepted step before it becomes the past.
+class Observer {
+ public:
+  virtual ~Observer() = default;
+  /// Returns where in the step the run is to end, as a share of it: above 1, it goes on; at 0,
+  /// nothing was kept of the step, whose events take too many turns.
+  virtual double step_accepted(Stepper& stepper, const TwoDouble& t_old, double h,
+                               double t_new) = 0;
+  /// At the end of that step, time t, the state jumped.
+  virtual void state_jumped(double t, const double* before, const double* after) = 0;
+  /// There, its last bits were set to what holds exactly.
+  virtual void state_settled(double /*t*/, const double* /*after*/) {}
+  /// Should the run end now, one that goes on restarts here: what comes may be cut or undone.
+  virtual void restarts_here() = 0;
+
+  /// Whether it may end the run, by an event or an exception: each step then begins by writing down
+  /// where, and step_begins(). A run that goes on takes the step again: restarts_at_step().
+  virtual bool may_end() const { return false; }
+  virtual void step_begins() {}
+  virtual void restarts_at_step() {}
+  /// Whether the run is to end where it stands: of a step, or of a jump.
+  virtual bool has_ended() const { return false; }
+};
+
+/// The time at a share theta of a step of size h from t_old; never beyond its end.
+inline TwoDouble time_in_step(const TwoDouble& t_old, double h, double theta, double t_new) {
+  const TwoDouble t = t_old + theta * h;
+  return difference(t_new, t) * h < 0.0 ? TwoDouble{t_new, 0.0} : t;
+}
+
+struct Ending {
+  Status status;
+  bool cut;      ///< the last step, or one before it, was cut to end at t_end
+  int bad = -1;  ///< of status non_finite: the component that is not finite, if it is known
+  std::exception_ptr error = nullptr;  ///< of status callback_error
+  bool chatters = false;  ///< the law changes back and forth at one time: no step leads on
+};
+
+/// The first component that is not finite, or -1.
+int bad_component(const std::vector<double>& y);
+
+/// Takes steps from `integrator` (which moves along) until `limits` ends them. `resumable` becomes
+/// the last position that no cut step came before.
+/// `discontinuities` is null where the right-hand side is smooth.
+Ending integrate(Stepper& stepper, IntegratorState& integrator, IntegratorState& resumable,
+                 const Limits& limits, Observer& observer,
+                 Discontinuities* discontinuities = nullptr);
+
+}  // namespace pendcore

@@ -1,0 +1,39 @@
+/// \file
+/// The clock on the wall, as the loop sees it: when to stop, when to report.
+#pragma once
+
+#include <chrono>
+#include <exception>
+
+#include "pendcore/integrate/loop/integrate.hpp"
+
+namespace pendcore {
+
+/// Is thrown out of work that is not done in steps: why the run is to end.
+struct Stopped : std::exception {
+  explicit Stopped(Status why) : status(why) {}
+  Status status;
+};
+
+/// Looks at the clock seldom, yet often enough: the time limit is kept within a few milliseconds
+/// and the monitor is called about every 50.
+class RunLimits {
+ public:
+  RunLimits(const Limits& limits, double t0) : limits_(limits), t0_(t0) {}
+
+  /// Status::finished means: go on.
+  Status look(double t);
+
+ private:
+  using Steady = std::chrono::steady_clock;
+
+  const Limits& limits_;
+  double t0_;
+  int steps_ = 0;
+  int steps_between_looks_ = 1;
+  Steady::time_point start_ = Steady::now();
+  Steady::time_point last_look_ = start_;
+  Steady::time_point last_call_ = start_;
+};
+
+}  // namespace pendcore

@@ -1,0 +1,115 @@
+/// \file
+/// A collocation method (collocation.hpp) applied to q'' = a(t, q, q'), as the loop sees it.
+///
+/// The stages Z = T W solve Z = h a F(Z); simplified Newton with the Jacobian J at the start of the
+/// step splits into a real and a complex system,
+///
+///     (g - J) dW_1 = T^-1 F - g W_1,   g = real/h;    (g - J)(dW_2 + i dW_3) alike, g = (alpha +
+///     i beta)/h
+///
+/// which are solved in half their size (newton_systems.hpp).
+///
+/// The error is (g - J)^-1 (f(t, y) - u'(t)), g = real/h, with u the polynomial of the step: of
+/// order 3, and damped where J is. Tolerances are those of the step's own error, of order 5: the
+/// estimate is held against 0.1 rtol^(2/3), and atol in proportion.
+///
+/// Source: Hairer and Wanner, Solving Ordinary Differential Equations II (1996), IV.8: the
+/// iteration and where it stops, error (8.20), starting values (8.5), predictive control (8.25).
+/// Unlike their program, J and its factors are made for every step: exact and cheap here, and a
+/// step depends on nothing but where it starts, the polynomial and the size of the one before.
+/// Cost: three right-hand sides an iteration, of which there are two to four, and one J.
+#pragma once
+
+#include <memory>
+
+#include "pendcore/integrate/radau/collocation.hpp"
+#include "pendcore/integrate/radau/newton_systems.hpp"
+#include "pendcore/integrate/runge_kutta/runge_kutta_dynamic.hpp"
+
+namespace pendcore {
+
+/// A system of two rows (q and qd) that knows the derivatives of qdd, (row, row) each.
+class DifferentiableSystem : public GeneralSystem {
+ public:
+  using GeneralSystem::GeneralSystem;
+  virtual void jacobian(double t, const double* y, double* by_q, double* by_qd) const = 0;
+};
+
+class ImplicitRungeKutta final : public Stepper {
+ public:
+  ImplicitRungeKutta(const Collocation& method, std::unique_ptr<DifferentiableSystem> system,
+                     bool compensated = false);
+
+  const MethodInfo& info() const override { return method_.info; }
+  int dimension() const override { return size_; }
+  int controlled() const override { return state_; }
+  int interpolant_degree() const override { return Collocation::degree; }
+
+  void set_tolerances(const double* rtol, const double* atol) override;
+  void start(const double* y, const double* dydt) override;
+  void get_state(double* y) const override;
+  void get_derivative(double* dydt) const override;
+  void get_new_state(double* y) const override;
+  void set_new_state(const double* y) override;
+  void evaluate(double t, const double* y, double* dydt) override;
+
+  /// Where the iteration does not converge the error is NaN: the step is not accepted.
+  Attempt attempt(double t, double h, double gain) override;
+  void stay() override;
+  void accept(double t_new) override;
+  void interpolant(double h, double* coefficients) override;
+  void sample(const double* coefficients, const TwoDouble& start, double h, const double* times,
+              int count, double* states) const override;
+  double stiffness(double /*h*/) override { return 0.0; }  // no bound to stability
+
+  /// The low part of the state, if compensated. Of the accepted step, its polynomial and size, its
+  /// error, the iteration's contraction. Whether a step from here was tried already.
+  std::vector<double> saved_state() const override;
+  void restore(const std::vector<double>& memory) override;
+
+ private:
+  using Rows = std::vector<double>;
+
+  void predict(double h);
+  bool iterate(double t, double h);
+  bool is_rounding(double h) const;
+  void polish(double h);
+  void advance();
+  static void forget(const double* y, const Rows& instead_of, Rows& low);
+  void integrate_quadratures(double t, double h);
+  double squared_norm(const double* error) const;
+  double scale(int i) const;
+  void set_slope(double h);
+  /// The coefficient of theta^(p + 1) of component i of u, through the stages.
+  double power_of_stages(int p, int i) const {
+    const Collocation::Row& row = method_.interpolant[p];
+    return row[0] * stages_[i] + row[1] * stages_[size_ + i] + row[2] * stages_[2 * size_ + i];
+  }
+  void write_polynomial(double* rows) const;
+
+  const Collocation& method_;
+  std::unique_ptr<DifferentiableSystem> system_;
+  int n_;      ///< numbers in q
+  int state_;  ///< in q and qd
+  int size_;   ///< and in the quadratures
+  Rows rtol_, atol_;
+  double newton_tolerance_ = 0.0;
+  Rows y_, dydt_, y_new_;
+  bool has_jacobian_ = false;
+  Rows stages_, transformed_, rates_, increment_, trial_, error_;  ///< (3, size) or (size)
+  Rows slope_;                                                     ///< h u'(t) of what is shown
+  NewtonSystems systems_;
+  int iterations_ = 0;  ///< that the last attempt took
+  double h_ = 0.0;      ///< and its size
+  double squared_error_ = 0.0;
+  double contraction_of_attempt_ = 1.0;
+  // What the next step takes from the one before; h_before_ = 0: there is none.
+  Rows polynomial_;  ///< powers 1 to 3
+  double h_before_ = 0.0;
+  double log2_error_before_ = 0.0;
+  double contraction_ = 1.0;
+  bool is_retry_ = false;
+  Rows low_, low_new_;  ///< what the rounding of y and y_new left over, if compensated
+};
+
+}  // namespace pendcore

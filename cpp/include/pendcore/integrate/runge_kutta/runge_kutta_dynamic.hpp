@@ -1,0 +1,348 @@
+/// \file
+/// An explicit Runge-Kutta method on a state of any size, in memory.
+///
+/// The same step as step.hpp, operation for operation, where the size of the state or the system
+/// is not known to the compiler: long chains, and runs with quadratures beside the state, which
+/// count for nothing in the error norm. `Block` is the pack that the arrays are worked on with.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "pendcore/integrate/runge_kutta/step.hpp"
+#include "pendcore/integrate/stepper.hpp"
+
+namespace pendcore {
+
+/// dy/dt of a state in memory: two rows (q and qd) of `row` numbers each, and then quadratures.
+class GeneralSystem {
+ public:
+  GeneralSystem(int row_size, int quadrature_count)
+      : row(row_size), quadratures(quadrature_count) {}
+  virtual ~GeneralSystem() = default;
+
+  /// From the state (row, row) to its derivative (row, row, quadratures).
+  virtual void operator()(double t, const double* y, double* dydt) const = 0;
+
+  const int row;
+  const int quadratures;
+};
+
+/// What one step works on: rows of blocks, `stages` of them for k.
+struct GeneralMemory {
+  const GeneralSystem* system;
+  int blocks;        ///< of the state,
+  int error_blocks;  ///< and of its part in the error norm
+  double count;      ///< numbers in that part
+  double *y, *y_new, *k, *rtol, *atol;
+  double *low, *low_new;  ///< of y and y_new, if the step is compensated
+};
+
+/// One block of the stages k, rows of `size` numbers.
+template <class Block>
+struct StageInMemory {
+  const double* k;
+  int size;
+  PENDCORE_INLINE Block operator()(int j) const { return load<Block>(k + j * size); }
+};
+
+/// Stages first .. end - 1, as in step.hpp.
+template <const auto& method, class Block, int first, int end>
+PENDCORE_INLINE void stages_in_memory(const GeneralMemory* memory, double t, double h, double* z) {
+  constexpr int width = Lanes<Block>::width;
+  const int size = memory->blocks * width;
+  const auto block = [=](int at) { return StageInMemory<Block>{memory->k + at, size}; };
+  if constexpr (method.written_out) {
+#pragma GCC unroll 16
+    for (int s = first; s < end; ++s) {
+      for (int at = 0; at < size; at += width) {
+        store(z + at, advance(load<Block>(memory->y + at), h, method.a[s], block(at), s));
+      }
+      (*memory->system)(t + method.c[s].value() * h, z, memory->k + s * size);
+    }
+  } else {
+    static constexpr auto rows = rows_of(method);
+#pragma GCC unroll 1
+    for (int s = first; s < end; ++s) {
+      for (int at = 0; at < size; at += width) {
+        store(z + at, advance(load<Block>(memory->y + at), h, rows[s], block(at)));
+      }
+      (*memory->system)(t + rows[s].node * h, z, memory->k + s * size);
+    }
+  }
+}
+
+template <const auto& method, class Block, bool compensated>
+PENDCORE_INLINE Attempt attempt_in_memory(const GeneralMemory* memory, double t, double h,
+                                          double gain) {
+  constexpr int width = Lanes<Block>::width;
+  constexpr int stages = std::remove_cvref_t<decltype(method)>::stages;
+  const int blocks = memory->blocks;
+  const int size = blocks * width;
+  double* const z = memory->y_new;
+  double* const k = memory->k;
+  constexpr int before_end = stages - (compensated && method.first_same_as_last ? 1 : 0);
+  stages_in_memory<method, Block, 1, before_end>(memory, t, h, z);
+  if constexpr (compensated) {
+    for (int at = 0; at < size; at += width) {
+      Block after;
+      store(z + at,
+            advance_compensated(load<Block>(memory->y + at), load<Block>(memory->low + at), h,
+                                method.b, StageInMemory<Block>{k + at, size}, before_end, after));
+      store(memory->low_new + at, after);
+    }
+    if constexpr (method.first_same_as_last) {
+      (*memory->system)(t + h, z, k + static_cast<std::ptrdiff_t>(stages - 1) * size);
+    }
+  } else if constexpr (!method.first_same_as_last) {
+    for (int at = 0; at < size; at += width) {
+      store(z + at, advance(load<Block>(memory->y + at), h, method.b,
+                            StageInMemory<Block>{k + at, size}, stages));
+    }
+  }
+  SquaredErrors<method, Block> squares;
+  for (int i = 0; i < memory->error_blocks; ++i) {
+    const int at = i * width;
+    const Block before = load<Block>(memory->y + at);
+    const Block after = load<Block>(z + at);
+    const Block larger_one = larger(absolute(before), absolute(after));
+    const Block scale =
+        h / fma(load<Block>(memory->rtol + at), larger_one, load<Block>(memory->atol + at));
+    squares.add(after, scale, StageInMemory<Block>{k + at, size}, i == 0);
+  }
+  const double squared_error = squares.mean(1.0 / memory->count);
+  return {squared_error, scaled_power(squared_error, -0.5 * exponent(method.info), gain)};
+}
+
+/// The stages of the attempted step, from time t, that the dense output alone asks for; `z` is room
+/// for a state.
+template <const auto& method, class Block>
+PENDCORE_INLINE void dense_stages_in_memory(const GeneralMemory* memory, double t, double h,
+                                            double* z) {
+  using Method = std::remove_cvref_t<decltype(method)>;
+  if constexpr (Method::all_stages > Method::stages) {
+    stages_in_memory<method, Block, Method::stages, Method::all_stages>(memory, t, h, z);
+  }
+}
+
+template <const auto& method, class Block>
+PENDCORE_INLINE void interpolant_in_memory(const GeneralMemory* memory, double h,
+                                           double* coefficients) {
+  using Method = std::remove_cvref_t<decltype(method)>;
+  constexpr int width = Lanes<Block>::width;
+  const int size = memory->blocks * width;
+  for (int at = 0; at < size; at += width) {
+    store(coefficients + at, load<Block>(memory->y + at));
+    Block powers[Method::degree];
+    interpolant_of_block<method>(h, StageInMemory<Block>{memory->k + at, size}, powers);
+#pragma GCC unroll 16
+    for (int p = 0; p < Method::degree; ++p) {
+      store(coefficients + (p + 1) * size + at, powers[p]);
+    }
+  }
+}
+
+/// Horner's scheme as in sample_interpolant, on rows of `dimension` numbers.
+template <int degree>
+PENDCORE_INLINE void sample_rows(const double* coefficients, TwoDouble start, double h,
+                                 const double* times, int count, double* states, int dimension) {
+  for (int k = 0; k < count; ++k) {
+    const double theta = ((times[k] - start.high) - start.low) / h;
+    for (int i = 0; i < dimension; ++i) {
+      double value = coefficients[degree * dimension + i];
+#pragma GCC unroll 16
+      for (int p = degree - 1; p >= 0; --p) {
+        value = fma(theta, value, coefficients[p * dimension + i]);
+      }
+      states[k * dimension + i] = value;
+    }
+  }
+}
+
+/// The numbers of a state stand close together for the loop: (n, n, quadratures). In memory each
+/// row is filled up to whole blocks.
+template <const auto& method, class Block, bool compensated = false>
+class RungeKuttaDynamic final : public Stepper {
+  using Method = std::remove_cvref_t<decltype(method)>;
+  static constexpr int width = Lanes<Block>::width;
+  static constexpr int stages = Method::stages;
+  static constexpr int all_stages = Method::all_stages;
+  static constexpr int degree = Method::degree;
+  static constexpr int rows = 4 + all_stages + (compensated ? 2 : 0);
+  static_assert(degree <= 15, "as root.hpp has it");
+
+ public:
+  RungeKuttaDynamic(std::unique_ptr<GeneralSystem> system, int n)
+      : system_(std::move(system)),
+        n_(n),
+        row_(system_->row),
+        size_(2 * row_ + (system_->quadratures + width - 1) / width * width),
+        numbers_(static_cast<std::size_t>(size_) * (rows + degree + 1)) {
+    memory_.system = system_.get();
+    memory_.blocks = size_ / width;
+    memory_.error_blocks = 2 * row_ / width;
+    memory_.count = 2.0 * n;
+    memory_.y = numbers_.data();
+    memory_.y_new = memory_.y + size_;
+    memory_.rtol = memory_.y_new + size_;
+    memory_.atol = memory_.rtol + size_;
+    memory_.k = memory_.atol + size_;
+    memory_.low =
+        compensated ? memory_.k + static_cast<std::ptrdiff_t>(all_stages) * size_ : nullptr;
+    memory_.low_new = compensated ? memory_.low + size_ : nullptr;
+    rows_ = numbers_.data() + static_cast<std::ptrdiff_t>(rows) * size_;
+    for (int i = 0; i < size_; ++i) memory_.atol[i] = 1.0;  // where there is no component
+  }
+
+  const MethodInfo& info() const override { return method.info; }
+  int dimension() const override { return 2 * n_ + system_->quadratures; }
+  int controlled() const override { return 2 * n_; }
+  int interpolant_degree() const override { return degree; }
+
+  void set_tolerances(const double* rtol, const double* atol) override {
+    read_rows(rtol, memory_.rtol);
+    read_rows(atol, memory_.atol);
+  }
+  void start(const double* y, const double* dydt) override {
+    if constexpr (compensated) forget(y, memory_.y, memory_.low);
+    read(y, memory_.y);
+    read(dydt, memory_.k);
+  }
+  void get_state(double* y) const override { write(memory_.y, y); }
+  void get_derivative(double* dydt) const override { write(memory_.k, dydt); }
+  void get_new_state(double* y) const override { write(memory_.y_new, y); }
+  void set_new_state(const double* y) override {
+    if constexpr (compensated) forget(y, memory_.y_new, memory_.low_new);
+    read(y, memory_.y_new);
+  }
+
+  void evaluate(double t, const double* y, double* dydt) override {
+    std::vector<double> state(size_);
+    std::vector<double> rate(size_);
+    read(y, state.data());
+    (*system_)(t, state.data(), rate.data());
+    write(rate.data(), dydt);
+    ++evaluations;
+  }
+  Attempt attempt(double t, double h, double gain) override {
+    evaluations += stages - 1;
+    t_ = t;
+    has_dense_stages_ = all_stages == stages;
+    return attempt_(&memory_, t, h, gain);
+  }
+  void stay() override {
+    const std::size_t bytes = size_ * sizeof(double);
+    __builtin_memcpy(memory_.y_new, memory_.y, bytes);
+    if constexpr (compensated) __builtin_memcpy(memory_.low_new, memory_.low, bytes);
+    std::fill_n(memory_.k, static_cast<std::ptrdiff_t>(all_stages) * size_, 0.0);
+    has_dense_stages_ = true;
+  }
+  void accept(double t_new) override {
+    const std::size_t bytes = size_ * sizeof(double);
+    __builtin_memcpy(memory_.y, memory_.y_new, bytes);
+    if constexpr (compensated) __builtin_memcpy(memory_.low, memory_.low_new, bytes);
+    if constexpr (method.first_same_as_last) {
+      __builtin_memcpy(memory_.k, memory_.k + static_cast<std::ptrdiff_t>(stages - 1) * size_,
+                       bytes);
+    } else {
+      (*system_)(t_new, memory_.y, memory_.k);
+      ++evaluations;
+    }
+  }
+  void interpolant(double h, double* coefficients) override {
+    if (!has_dense_stages_) {
+      evaluations += all_stages - stages;
+      dense_stages_(&memory_, t_, h, rows_);
+      has_dense_stages_ = true;
+    }
+    interpolant_(&memory_, h, rows_);
+    for (int p = 0; p <= degree; ++p) write(rows_ + p * size_, coefficients + p * dimension());
+  }
+  void sample(const double* coefficients, const TwoDouble& start, double h, const double* times,
+              int count, double* states) const override {
+    sample_(coefficients, start, h, times, count, states, dimension());
+  }
+  std::vector<double> saved_state() const override {
+    std::vector<double> low;
+    if constexpr (compensated) {
+      low.resize(dimension());
+      write(memory_.low, low.data());
+    }
+    return low;
+  }
+  void restore(const std::vector<double>& memory) override {
+    if constexpr (compensated) {
+      if (has_low_part(memory, dimension())) read(memory.data(), memory_.low);
+    }
+  }
+  double stiffness(double h) override {
+    if constexpr (method.info.stability == 0.0) {
+      return 0.0;
+    } else {
+      static_assert(method.first_same_as_last && stages >= 3 && method.c[stages - 2].value() == 1.0,
+                    "the test for stiffness needs two stages at the end of the step");
+      double rates = 0.0;
+      double states = 0.0;
+      for (int i = 0; i < memory_.error_blocks; ++i) {
+        const int at = i * width;
+        const Block before = advance(load<Block>(memory_.y + at), h, method.a[stages - 2],
+                                     StageInMemory<Block>{memory_.k + at, size_}, stages - 2);
+        const Block dk = load<Block>(memory_.k + (stages - 1) * size_ + at) -
+                         load<Block>(memory_.k + (stages - 2) * size_ + at);
+        const Block dy = load<Block>(memory_.y_new + at) - before;
+        rates += sum_of_lanes(Block(dk * dk));
+        states += sum_of_lanes(Block(dy * dy));
+      }
+      return states > 0.0 ? std::abs(h) * std::sqrt(rates / states) : 0.0;
+    }
+  }
+
+ private:
+  /// Forgets what belongs to components that are given another value.
+  void forget(const double* y, const double* instead_of, double* low) const {
+    for (int i = 0; i < dimension(); ++i) {
+      const int at = i < n_ ? i : i < 2 * n_ ? row_ + i - n_ : 2 * (row_ - n_) + i;
+      if (y[i] != instead_of[at]) low[at] = 0.0;
+    }
+  }
+  void read_rows(const double* from, double* to) const {
+    for (int i = 0; i < n_; ++i) {
+      to[i] = from[i];
+      to[row_ + i] = from[n_ + i];
+    }
+  }
+  void read(const double* from, double* to) const {
+    read_rows(from, to);
+    for (int i = 0; i < system_->quadratures; ++i) to[2 * row_ + i] = from[2 * n_ + i];
+  }
+  void write(const double* from, double* to) const {
+    for (int i = 0; i < n_; ++i) {
+      to[i] = from[i];
+      to[n_ + i] = from[row_ + i];
+    }
+    for (int i = 0; i < system_->quadratures; ++i) to[2 * n_ + i] = from[2 * row_ + i];
+  }
+
+  std::unique_ptr<GeneralSystem> system_;
+  int n_;
+  int row_;
+  int size_;
+  std::vector<double> numbers_;
+  double* rows_;  ///< of an interpolant
+  GeneralMemory memory_;
+  double t_ = 0.0;  ///< of the attempt
+  bool has_dense_stages_ = false;
+  Attempt (*attempt_)(const GeneralMemory*, double, double,
+                      double) = fastest<&attempt_in_memory<method, Block, compensated>>();
+  void (*dense_stages_)(const GeneralMemory*, double, double,
+                        double*) = fastest<&dense_stages_in_memory<method, Block>>();
+  void (*interpolant_)(const GeneralMemory*, double,
+                       double*) = fastest<&interpolant_in_memory<method, Block>>();
+  void (*sample_)(const double*, TwoDouble, double, const double*, int, double*,
+                  int) = fastest<&sample_rows<degree>>();
+};
+
+}  // namespace pendcore

@@ -1,0 +1,314 @@
+/// \file
+/// WHERE IS THE STEPPER: one step of an explicit Runge-Kutta method, from its table.
+///
+/// `attempt_step` is the kernel: the stages, the new state and its error norm, unrolled for the
+/// table and the system at compile time. It allocates nothing and branches on nothing itself.
+/// explicit_runge_kutta.hpp clones it for each instruction set and hands it to the loop.
+///
+/// A system is a type with `Block` (a double or a pack), `blocks` (how many make a state) and
+/// operator()(t, y, dydt) on blocks.
+///
+/// A `compensated` step carries on what the rounding of y_new leaves over (low_part.hpp): the
+/// increment h sum b_k k is formed on its own, on top of the low part of y, and its sum with y is
+/// split without error.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <type_traits>
+
+#include "pendcore/arithmetic/pack.hpp"
+#include "pendcore/arithmetic/power.hpp"
+#include "pendcore/arithmetic/two_double.hpp"
+#include "pendcore/integrate/loop/attempt.hpp"
+#include "pendcore/integrate/loop/step_control.hpp"
+#include "pendcore/integrate/runge_kutta/compensation.hpp"
+#include "pendcore/integrate/runge_kutta/tableau.hpp"
+
+namespace pendcore {
+
+template <const auto& method, class System, bool is_compensated = false>
+struct StepMemory {
+  using Block = typename System::Block;
+  static constexpr int blocks = System::blocks;
+  static constexpr int stages = std::remove_cvref_t<decltype(method)>::stages;
+  static constexpr int all_stages = std::remove_cvref_t<decltype(method)>::all_stages;
+  static constexpr int degree = std::remove_cvref_t<decltype(method)>::degree;
+  static constexpr bool compensated = is_compensated;
+
+  System system;
+  Block y[blocks] = {};
+  Block y_new[blocks] = {};
+  Block k[all_stages][blocks] = {};
+  Block rtol[blocks] = {};
+  Block atol[blocks] = {};
+  [[no_unique_address]] Compensation<Block, blocks, compensated> low = {};
+};
+
+/// start + h (sum of weights[j] k(j) over the first `count` stages); terms with weight zero are
+/// left out. The last stage is the one that is waited for: it comes in last, its weight times h
+/// ready.
+template <class Block, class Scale, class Weights, class Stage>
+PENDCORE_INLINE Block advance(const Block& start, const Scale& h, const Weights& weights,
+                              const Stage& k, int count) {
+  int last = count - 1;
+  while (last >= 0 && weights[last].is_zero()) --last;
+  if (last < 0) return start;
+  Block sum{};
+  bool empty = true;
+#pragma GCC unroll 16
+  for (int j = 0; j < last; ++j) {
+    if (weights[j].is_zero()) continue;
+    const Block weight = broadcast<Block>(weights[j].value());
+    sum = empty ? Block(weight * k(j)) : fma(weight, k(j), sum);
+    empty = false;
+  }
+  const Block known = empty ? start : fma(h, sum, start);
+  return fma(h * weights[last].value(), k(last), known);
+}
+
+/// The same sum, to the bit, with weights that are read as a loop goes.
+template <class Block, class Stage>
+PENDCORE_INLINE Block advance(const Block& start, double h, const StageRow& row, const Stage& k) {
+  if (row.count == 0) return start;
+  Block sum{};
+  if (row.count > 1) sum = broadcast<Block>(row.weight[0]) * k(row.stage[0]);
+#pragma GCC unroll 1
+  for (int i = 1; i < row.count - 1; ++i) {
+    sum = fma(broadcast<Block>(row.weight[i]), k(row.stage[i]), sum);
+  }
+  const int last = row.count - 1;
+  const Block known = row.count > 1 ? fma(broadcast<Block>(h), sum, start) : start;
+  return fma(broadcast<Block>(h * row.weight[last]), k(row.stage[last]), known);
+}
+
+/// One block of the stages k.
+template <class Block, int blocks>
+struct StageBlock {
+  const Block (*k)[blocks];
+  int block;
+  PENDCORE_INLINE const Block& operator()(int j) const { return k[j][block]; }
+};
+template <class Block, int blocks>
+StageBlock(const Block (*)[blocks], int) -> StageBlock<Block, blocks>;
+
+/// y + (low + h sum b_k k), rounded; `after` becomes what that leaves over.
+template <class Block, class Weights, class Stage>
+PENDCORE_INLINE Block advance_compensated(const Block& y, const Block& low, double h,
+                                          const Weights& weights, const Stage& k, int count,
+                                          Block& after) {
+  const Block increment = advance(low, h, weights, k, count);
+  const Block sum = y + increment;
+  after = left_over(y, increment, sum);
+  return sum;
+}
+
+/// The squares of the error over the components, in units of what the tolerances allow.
+template <const auto& method, class Block>
+class SquaredErrors {
+  using Method = std::remove_cvref_t<decltype(method)>;
+  static constexpr bool has_second =
+      std::ranges::any_of(method.d, [](const Fraction& weight) { return !weight.is_zero(); });
+
+ public:
+  /// Those of one block; `scale` is h over what is allowed.
+  template <class Stage>
+  PENDCORE_INLINE void add(const Block& y_new, const Block& scale, const Stage& k, bool is_first) {
+    // Without a stage at the new state, or an estimate that has it in, nothing else says that they
+    // are finite: 0, or NaN.
+    Block start{};
+    if constexpr (!method.first_same_as_last) start = y_new - y_new;
+    if constexpr (method.first_same_as_last && method.info.error_order == 0) {
+      start = k(Method::stages - 1) - k(Method::stages - 1);
+    }
+    const Block ratio = advance(start, scale, method.e, k, Method::stages);
+    squares_ = is_first ? Block(ratio * ratio) : Block(squares_ + ratio * ratio);
+    if constexpr (has_second) {
+      const Block other = advance(Block{}, scale, method.d, k, Method::stages);
+      others_ = is_first ? Block(other * other) : Block(others_ + other * other);
+    }
+  }
+  PENDCORE_INLINE double mean(double share) const {
+    const double sum = sum_of_lanes(squares_) * share;
+    if constexpr (!has_second) return sum;
+    const double others = sum_of_lanes(others_) * share;
+    const double both = sum + 0.01 * others;
+    return both > 0.0 && both < std::numeric_limits<double>::infinity() ? sum * (sum / both) : both;
+  }
+
+ private:
+  Block squares_{};
+  std::conditional_t<has_second, Block, char> others_{};  // never read without
+};
+
+/// Whether the stages are compiled one after the other, each with its copy of the right-hand side:
+/// the fastest step. Otherwise they are a loop around one, which compiles in a fifth of the time.
+template <const auto& method, class System>
+constexpr bool is_written_out = [] {
+  if constexpr (requires { System::is_short; }) return method.written_out || System::is_short;
+  return method.written_out;
+}();
+
+/// Stages first .. end - 1, into k, which has those before; z becomes the last one's state.
+template <const auto& method, int first, int end, class System, class Block, int blocks>
+PENDCORE_INLINE void evaluate_stages(const System& system, double t, double h,
+                                     const Block (&y)[blocks], Block (*k)[blocks],
+                                     Block (&z)[blocks]) {
+  if constexpr (is_written_out<method, System>) {
+#pragma GCC unroll 16
+    for (int s = first; s < end; ++s) {
+#pragma GCC unroll 16
+      for (int i = 0; i < blocks; ++i) z[i] = advance(y[i], h, method.a[s], StageBlock(k, i), s);
+      system(t + method.c[s].value() * h, z, k[s]);
+    }
+  } else {
+    static constexpr auto rows = rows_of(method);
+#pragma GCC unroll 1
+    for (int s = first; s < end; ++s) {
+#pragma GCC unroll 16
+      for (int i = 0; i < blocks; ++i) z[i] = advance(y[i], h, rows[s], StageBlock(k, i));
+      system(t + rows[s].node * h, z, k[s]);
+    }
+  }
+}
+
+/// Tries a step of size h at time t, as Stepper::attempt says.
+template <const auto& method, class System, bool compensated>
+PENDCORE_INLINE Attempt attempt_step(StepMemory<method, System, compensated>* memory, double t,
+                                     double h, double gain) {
+  using Memory = StepMemory<method, System, compensated>;
+  using Block = typename Memory::Block;
+  constexpr int blocks = Memory::blocks;
+  constexpr int stages = Memory::stages;
+
+  // Local copies stay in registers; memory is written once, at the end. Stages of a loop do not.
+  const System system = memory->system;
+  Block y[blocks];
+  Block z[blocks];
+  constexpr bool in_registers = is_written_out<method, System>;
+  Block local[in_registers ? stages : 1][blocks];
+  Block(*const k)[blocks] = in_registers ? local : memory->k;
+#pragma GCC unroll 16
+  for (int i = 0; i < blocks; ++i) {
+    y[i] = memory->y[i];
+    k[0][i] = memory->k[0][i];
+  }
+  // Compensated, a stage at the new state comes on its own.
+  constexpr int before_end = stages - (compensated && method.first_same_as_last ? 1 : 0);
+  evaluate_stages<method, 1, before_end>(system, t, h, y, k, z);
+  if constexpr (compensated) {
+#pragma GCC unroll 16
+    for (int i = 0; i < blocks; ++i) {
+      z[i] = advance_compensated(y[i], memory->low.before[i], h, method.b, StageBlock(k, i),
+                                 before_end, memory->low.after[i]);
+    }
+    if constexpr (method.first_same_as_last) system(t + h, z, k[stages - 1]);
+  } else if constexpr (!method.first_same_as_last) {
+#pragma GCC unroll 16
+    for (int i = 0; i < blocks; ++i) z[i] = advance(y[i], h, method.b, StageBlock(k, i), stages);
+  }
+
+  // The scales wait for y_new only, so their division is done before the last stage is.
+  SquaredErrors<method, Block> squares;
+#pragma GCC unroll 16
+  for (int i = 0; i < blocks; ++i) {
+    const Block size = larger(absolute(y[i]), absolute(z[i]));
+    const Block scale = h / fma(memory->rtol[i], size, memory->atol[i]);
+    squares.add(z[i], scale, StageBlock(k, i), i == 0);
+  }
+#pragma GCC unroll 16
+  for (int i = 0; i < blocks; ++i) {
+    memory->y_new[i] = z[i];
+    if constexpr (in_registers) {
+#pragma GCC unroll 16
+      for (int s = 1; s < stages; ++s) memory->k[s][i] = k[s][i];
+    }
+  }
+  const double squared_error = squares.mean(1.0 / (blocks * Lanes<Block>::width));
+  return {squared_error, scaled_power(squared_error, -0.5 * exponent(method.info), gain)};
+}
+
+/// The stages of the attempted step, from time t, that the dense output alone asks for.
+template <const auto& method, class System, bool compensated>
+PENDCORE_INLINE void dense_stages_of_step(StepMemory<method, System, compensated>* memory, double t,
+                                          double h) {
+  using Memory = StepMemory<method, System, compensated>;
+  if constexpr (Memory::all_stages > Memory::stages) {
+    typename Memory::Block z[Memory::blocks];
+    evaluate_stages<method, Memory::stages, Memory::all_stages>(memory->system, t, h, memory->y,
+                                                                memory->k, z);
+  }
+}
+
+/// The coefficients of theta, theta^2, ... of the dense output of one block of the state, from its
+/// stages.
+template <const auto& method, class Stage, class Block>
+PENDCORE_INLINE void interpolant_of_block(double h, const Stage& k, Block* powers) {
+  using Method = std::remove_cvref_t<decltype(method)>;
+  Block functions[Method::degree];
+#pragma GCC unroll 16
+  for (int i = 0; i < Method::degree; ++i) {
+    Block sum{};
+#pragma GCC unroll 16
+    for (int s = 0; s < Method::all_stages; ++s) {
+      if (method.interpolant[i][s].is_zero()) continue;
+      sum = fma(broadcast<Block>(method.interpolant[i][s].value()), k(s), sum);
+    }
+    functions[i] = h * sum;
+  }
+#pragma GCC unroll 16
+  for (int p = 0; p < Method::degree; ++p) {
+    powers[p] = Block{};
+    bool empty = true;
+#pragma GCC unroll 16
+    for (int i = 0; i < Method::degree; ++i) {
+      const int weight = method.basis[i][p];
+      if (weight == 0) continue;
+      const bool is_alone = empty && weight == 1;
+      powers[p] = is_alone
+                      ? functions[i]
+                      : fma(broadcast<Block>(static_cast<double>(weight)), functions[i], powers[p]);
+      empty = false;
+    }
+  }
+}
+
+/// coefficient[p] theta^p for p = 1 .. degree, and coefficient[0] = y: the dense output of a step
+/// from y with the stages k, (degree + 1) rows of a state each. Of any system.
+template <const auto& method, class Block, int blocks>
+PENDCORE_INLINE void interpolant_of_step(const Block* y, const Block (*k)[blocks], double h,
+                                         double* coefficients) {
+  constexpr int degree = std::remove_cvref_t<decltype(method)>::degree;
+  constexpr int width = Lanes<Block>::width;
+#pragma GCC unroll 16
+  for (int i = 0; i < blocks; ++i) {
+    store(coefficients + i * width, y[i]);
+    Block powers[degree];
+    interpolant_of_block<method>(h, StageBlock(k, i), powers);
+#pragma GCC unroll 16
+    for (int p = 0; p < degree; ++p) {
+      store(coefficients + ((p + 1) * blocks + i) * width, powers[p]);
+    }
+  }
+}
+
+/// Horner's scheme in theta = (time - start) / h, at `count` times.
+template <class Block, int blocks, int degree>
+PENDCORE_INLINE void sample_interpolant(const double* coefficients, TwoDouble start, double h,
+                                        const double* times, int count, double* states) {
+  constexpr int width = Lanes<Block>::width;
+  for (int k = 0; k < count; ++k) {
+    const double theta = ((times[k] - start.high) - start.low) / h;
+#pragma GCC unroll 16
+    for (int i = 0; i < blocks; ++i) {
+      Block value = load<Block>(coefficients + (degree * blocks + i) * width);
+#pragma GCC unroll 16
+      for (int p = degree - 1; p >= 0; --p) {
+        value = fma(theta, value, load<Block>(coefficients + (p * blocks + i) * width));
+      }
+      store(states + (k * blocks + i) * width, value);
+    }
+  }
+}
+
+}  // namespace pendcore

@@ -1,0 +1,109 @@
+/// \file
+/// Finds events along a run: looks at each accepted step, and at each jump of the state.
+///
+/// Each event is a number at the ends of a step, computed from the states there, and a list of
+/// zeros in between (integrate/events/root.hpp). What happened before a step never matters: an event
+/// whose function is zero where the step begins is not armed until the function leaves zero, at the
+/// start of the run as after an event at the end of the step before. So a resumed run finds the same
+/// events as a run that never stopped.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pendcore/integrate/events/event.hpp"
+#include "pendcore/integrate/stepper.hpp"
+#include "pendcore/simulate/tip_line.hpp"
+
+namespace pendcore {
+
+class EventFinder {
+ public:
+  /// Adds to `found`, which may hold events already. Of event number k the first passed[k]
+  /// occurrences end no run: one that ended there went on.
+  EventFinder(const Scene& scene, const std::vector<Event>& events, std::vector<FoundEvent>& found,
+              std::vector<long long> passed);
+
+  /// Whether an event may end the run: a terminal one, a function that may throw, too many turns.
+  bool may_end() const;
+
+  /// Looks at an accepted step, with its dense output in `rows`. Returns the share of the step at
+  /// which the run ends; 2 if it goes on. 0: its turns are too many, and nothing was found in it.
+  double look(const Stepper& stepper, const double* rows, const TwoDouble& t_old, double h,
+              double t_new);
+
+  /// The state jumped at the end of that step.
+  void jump(double t, const double* before, const double* after);
+
+  /// The event that ended the run; -1 if none did.
+  int ended_by() const { return ended_by_; }
+
+ private:
+  struct Candidate {
+    double theta;
+    int direction;
+    int event;
+  };
+  /// y[plus] - y[minus], the latter left out if negative: an angle or a rate. It is looked at
+  /// where it is `value`, or that and every turn more.
+  struct Difference {
+    int plus;
+    int minus;
+    double value = 0.0;
+    bool every_turn = false;
+    double of(const double* y) const { return minus < 0 ? y[plus] : y[plus] - y[minus]; }
+    /// Less a level; within the rounding of the state it is there.
+    double from(double level, const double* y) const;
+  };
+  struct Step {
+    const Stepper& stepper;
+    const double* rows;
+    const TwoDouble& t_old;
+    double h;
+    double t_new;
+  };
+  /// value + (first + i) 2 pi for i = 0 ... count - 1
+  struct Levels {
+    double value, first, count;
+    double at(int i) const;
+  };
+
+  Difference difference_of(const EventFunction& function) const;
+  double function_at(std::size_t k, double t, const double* y);
+  void find(std::size_t k, const Step& step);
+  void find_difference(std::size_t k, const Step& step);
+  void find_tip_line(std::size_t k, const Step& step);
+  void find_function(std::size_t k, const events::Function& event, const Step& step);
+  void node_values(std::size_t k, const Step& step, double& start, double& end);
+  double sampled(std::size_t k, const Step& step, double theta);
+  static Levels levels_between(const Difference& difference, double low, double high);
+  Levels levels_along(const Difference& difference, int degree, double end, double noise);
+  void append(const Candidate& candidate, double t, const double* y);
+  void cross(std::size_t k, double before, double after, double t, const double* y_before,
+             const double* y_after);
+
+  const std::vector<Event>& events_;
+  std::vector<FoundEvent>& found_;
+  std::vector<long long> passed_;
+  std::vector<long long> counts_;
+  std::vector<TipLine> tip_lines_;
+  std::vector<int> tip_line_of_;  ///< of each event, its number among them, or -1
+  int n_;
+  int ended_by_ = -1;
+  double turns_ = 0.0;         ///< that steps went through, beyond one each
+  bool has_too_many_ = false;  ///< of them
+  std::vector<Root> roots_;
+  std::vector<TurningPoint> samples_;
+  std::vector<Candidate> candidates_;
+  std::vector<std::size_t> at_the_end_;  ///< those found at the end of the last step
+  std::vector<double> polynomial_;
+  std::vector<double> bernstein_;
+  std::vector<double> y_new_;
+  std::vector<double> y_;
+  // What was computed at the end of the last step, to be taken again at the start of the next.
+  double node_t_ = 0.0;
+  std::vector<double> node_y_;
+  std::vector<double> node_values_;
+};
+
+}  // namespace pendcore

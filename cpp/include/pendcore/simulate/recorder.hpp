@@ -1,0 +1,53 @@
+/// \file
+/// Keeps of the steps what the options ask for, and the events that are found on them.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "pendcore/simulate/event_finder.hpp"
+#include "pendcore/simulate/solution.hpp"
+
+namespace pendcore {
+
+class Recorder final : public Observer {
+ public:
+  /// How many occurrences of each event no longer end the run: it ended there, and goes on.
+  Recorder(Solution& solution, const Stepper& stepper, const Scene& scene,
+           const std::vector<long long>& passed_events);
+
+  void start(double t, const std::vector<double>& y);
+  double step_accepted(Stepper& stepper, const TwoDouble& t_old, double h, double t_new) override;
+  void state_jumped(double t, const double* before, const double* after) override;
+  void state_settled(double t, const double* after) override;
+  void restarts_here() override { count(kept()); }
+  void restarts_at_step() override { count(at_step_start_); }
+  bool may_end() const override { return may_throw_ || (finder_ && finder_->may_end()); }
+  void step_begins() override { at_step_start_ = kept(); }
+  bool has_ended() const override { return finder_ && finder_->ended_by() >= 0; }
+
+  /// The event that ended the run; -1 if none did.
+  int ended_by() const { return finder_ ? finder_->ended_by() : -1; }
+
+ private:
+  struct Kept {
+    std::size_t t, steps, found;
+  };
+  Kept kept() const;
+  void count(const Kept& kept);  ///< so much an unstopped run has as well
+  void sample_step(Stepper& stepper, const TwoDouble& t_old, double h, double t_new,
+                   bool with_end = true);
+  void keep_clipped(Stepper& stepper, const TwoDouble& t_old, double h, double theta, double t);
+  double* append(double t);  ///< room for the state at t
+
+  Solution& solution_;
+  std::optional<EventFinder> finder_;
+  bool may_throw_;  ///< functions of the user's
+  Kept at_step_start_{};
+  bool keeps_polynomials_;
+  bool keeps_steps_;
+  std::size_t dimension_;
+  std::vector<double> polynomial_;  ///< of one step
+};
+
+}  // namespace pendcore

@@ -1,0 +1,40 @@
+/// \file
+/// From a scene and a start to a solution.
+#pragma once
+
+#include <memory>
+
+#include "pendcore/dynamics/equations_of_motion.hpp"
+#include "pendcore/integrate/stepper.hpp"
+#include "pendcore/scene/scene.hpp"
+#include "pendcore/simulate/solution.hpp"
+
+namespace pendcore {
+
+/// The method applied to the equations of motion that the scene calls for, with the ledger's
+/// quadratures beside the state if it is kept, with compensated steps if they are asked for. Throws
+/// std::invalid_argument for an unknown method. With a pair of methods the scene is to outlive the
+/// stepper.
+std::unique_ptr<Stepper> make_stepper(const Scene& scene, std::string_view method);
+std::unique_ptr<Stepper> make_stepper(const Scene& scene, const EquationsOfMotion& equations,
+                                      std::string_view method, bool ledger, bool compensated);
+
+/// The Taylor series of those equations; `rates` is their right-hand side, with that of so many
+/// quadratures. Throws std::invalid_argument for a scene with an effect that has no series.
+std::unique_ptr<Stepper> make_taylor_stepper(const Scene& scene, const EquationsOfMotion& equations,
+                                             Rates rates, int quadratures, bool compensated);
+
+/// Simulates the scene from angles q0 (rad, n) and rates qd0 (rad/s, n) over t0 .. t_end (s), which
+/// may run backward. Throws std::invalid_argument for bad input, naming the argument; a run that
+/// fails returns what it has, with a status and a message that say why.
+Solution simulate(const Scene& scene, const std::vector<double>& q0, const std::vector<double>& qd0,
+                  double t0, double t_end, const Options& options = {});
+
+/// The solution of the same run to t_end further on, bitwise as if it had never stopped. `t_eval`
+/// names further times of a run that was asked for times; max_steps, time_limit and monitor count
+/// for this leg. Throws std::invalid_argument for an end, or times, that the run has passed.
+Solution resume(const Scene& scene, const Solution& solution, double t_end,
+                const std::vector<double>& t_eval, long long max_steps, double time_limit,
+                const Monitor& monitor);
+
+}  // namespace pendcore

@@ -1,0 +1,56 @@
+/// \file
+/// What a run leaves behind: times, states, dense output, statistics, and where to go on from.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pendcore/integrate/loop/integrate.hpp"
+#include "pendcore/scene/scene.hpp"
+#include "pendcore/simulate/options.hpp"
+
+namespace pendcore {
+
+/// y(t) between the steps: a polynomial in theta = (t - start) / h for each accepted step.
+struct DenseOutput {
+  int degree = 0;
+  std::vector<double> start;         ///< s, (n_steps)
+  std::vector<double> start_low;     ///< s, (n_steps), what its double leaves over of the time
+  std::vector<double> h;             ///< s, (n_steps), negative in a backward run
+  std::vector<double> coefficients;  ///< (n_steps, degree + 1, dimension) row-major
+};
+
+struct Solution {
+  Status status = Status::finished;
+  std::string message;
+  Statistics statistics;
+  std::vector<double> t;  ///< s, (n_t)
+  /// (n_t, dimension) row-major: q_1 .. q_n (rad), qd_1 .. qd_n (rad/s), the accounts (J)
+  std::vector<double> states;
+  DenseOutput dense;
+
+  Options options;
+  double t0 = 0.0;                ///< s, as asked for
+  double t_end = 0.0;             ///< s, as asked for
+  std::vector<double> start;      ///< (dimension), the state at t0
+  int n = 0;                      ///< links
+  int dimension = 0;              ///< 2n, and the accounts of the ledger
+  std::vector<Account> accounts;  ///< the ledger's, if it is kept
+  double t_reached = 0.0;         ///< s; before t_end if the run failed
+  std::vector<double> y_reached;  ///< (dimension), the state there
+  std::vector<FoundEvent> found;  ///< of the events asked for, along the run
+  std::exception_ptr error;       ///< what a function of the user's threw, if it ended the run
+
+  /// Where a resumed run goes on: before the first step that the end of this one cut short.
+  IntegratorState resumable;
+  std::size_t resumable_t = 0;      ///< so many of `t` an unstopped run has as well,
+  std::size_t resumable_steps = 0;  ///< and so many polynomials
+  std::size_t resumable_found = 0;  ///< and so many events
+
+  /// States at m times within the run, (m, dimension) row-major, from the dense output; where two
+  /// steps meet, the state itself. Throws std::invalid_argument outside the run or without dense
+  /// output.
+  std::vector<double> at(const std::vector<double>& times) const;
+};
+
+}  // namespace pendcore

@@ -1,0 +1,147 @@
+/// \file
+/// The modes of a scene's effects along a run: when they change, and to what.
+///
+/// Dynamics and integration meet here. The loop sees discontinuities
+/// (integrate/loop/discontinuities.hpp), the laws see the mode that they are frozen to
+/// (effects/law.hpp), and joints that are held are eliminated from the equations
+/// (dynamics/contact/held_joints.hpp). The angles of held joints are set anew at the end of each
+/// step, so that no rounding lets them wander.
+///
+/// * The rate of a joint with dry friction reaches zero: it sticks, or goes on in the other
+///   direction, as all joints at rest decide together.
+/// * A joint reaches a stop: an impact, after which it bounces or stays.
+/// * The torque that holds a joint leaves its range: the joint is let go.
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "pendcore/dynamics/equations_of_motion.hpp"
+#include "pendcore/integrate/loop/discontinuities.hpp"
+
+namespace pendcore {
+
+class Switching final : public Discontinuities {
+ public:
+  /// `accounts` are those of a ledger that the state has beside angles and rates, if it is kept.
+  Switching(const Scene& scene, const EquationsOfMotion& equations,
+            const std::vector<Account>& accounts);
+
+  /// Whether the scene has anything for it to do.
+  static bool is_needed(const Scene& scene);
+
+  bool begin(double t, double* y, bool forward) override;
+  double next_time(double t) const override;
+  double longest_step() const override { return longest_step_; }
+  int guards() const override { return linear_guards() + static_cast<int>(held_guards_.size()); }
+  int linear_guards() const override { return static_cast<int>(guards_.size()); }
+  int zeros_at_start(int k) const override { return guards_[k].zeros_at_start; }
+  void polynomial(int k, const double* rows, int degree, int dimension,
+                  double* coefficients) const override;
+  double guard(int k, const double* y) const override;
+  double slope_at_rest(int k, double t, const double* y) override;
+  double rounding(int k, const double* y) const override;
+  void other_guards(double t, const double* y, double* values) override;
+  bool settles_every_step() const override { return any_held_; }
+  bool settle(int k, double* y) const override;
+  void step_taken() override;
+  bool cross(int k, double t, double* y) override;
+  bool is_over() const override { return is_over_ || joints_.has_failed(); }
+  bool rests() const override { return rests_; }
+  std::vector<double> saved_state() const override;
+
+  /// In place of begin() for a run that goes on.
+  void restore(const std::vector<double>& memory, double t, const double* y, bool forward);
+
+  /// `look` is called now and then where it works long on which joints hold, and may throw.
+  void look_up_in_long_work(const std::function<void()>& look) {
+    joints_.look_up_in_long_work(look);
+  }
+
+  /// What a run says that ended at rest; empty if nothing.
+  const std::string& remark() const { return remark_; }
+  /// What it says where the order of impacts was lost; empty if nothing.
+  std::string remark_on_impacts() const;
+
+ private:
+  /// What a guard is on: a mode of an effect, or a stop.
+  struct Watch {
+    std::size_t effect;
+    std::size_t number;  ///< among the guards of the effect's mode
+    int joint;           ///< from 0
+    Guard guard;
+    Side stop;
+    int zeros_at_start;
+  };
+  /// The torque that holds a joint, on the side where its range ends.
+  struct HeldGuard {
+    int joint;
+    bool is_most;
+  };
+  /// Changes at one time of which rounding may be the cause.
+  static constexpr int many_at_once = 8;
+  void put_mode(std::size_t i, int mode) { equations_.effects->put_mode(i, mode); }
+  /// The modes that hold from time t on: those of the state, and none where a table has ended.
+  void choose_modes_from(double t, const double* q, const double* qd);
+  void choose_sides(double t, const double* q, const double* qd);
+  /// What cross() does on a time, and on each kind of guard.
+  void cross_time(double t);
+  void release(const HeldGuard& guard, double t, const double* y);
+  bool reach_stop(int k, double t, double* y);
+  void come_to_rest(int k, double t, double* y);
+  void stop_joint(int joint, double* qd) const;
+  void change_side(const Watch& watch);
+  bool is_of_friction(const Watch& watch) const;
+  double shortest_moment(double t) const;  ///< s, that time resolves
+  void choose(double t, const double* y, int joint);
+  void strike(double t, double* y, bool begins);
+  double bounce_in_turn(double t, double* y, bool begins);
+  void choose_all_modes(double t, const double* y);
+  bool loses_order_of(const double* y);
+  bool any_struck_leaves(const double* y) const;
+  bool capture(double t, const double* q, const double* qd);
+  void count_at_once(double t);
+  bool is_at_its_border(int joint, double t, const double* y) const;
+  void forget_releases_away_from_the_border(double t, const double* y);
+  /// After modes and holds have changed.
+  void collect_guards(const double* y);
+  void collect_stops(const double* y);
+  void see_whether_all_rests(const double* y);
+  void set_longest_step();
+  bool is_for_good() const;
+  void book(Account account, double value, double* y) const;
+
+  Scene scene_;
+  EquationsOfMotion equations_;
+  std::vector<Account> accounts_;
+  int n_;
+  HeldJoints& joints_;
+  bool forward_ = true;
+  bool any_held_ = false;
+  bool is_over_ = false;  ///< a table or a spline has ended
+  bool rests_ = false;
+  double longest_step_ = never;
+  mutable double next_time_ = 0.0;  ///< after the time asked for last
+  mutable double asked_ = std::numeric_limits<double>::quiet_NaN();
+  std::vector<Watch> guards_;
+  std::vector<HeldGuard> held_guards_;
+  std::vector<double> torque_;  ///< that holds the joints
+  std::vector<double> still_;   ///< a state in which a joint is at rest
+  std::vector<double> qdd_;
+  double time_of_change_ = std::numeric_limits<double>::quiet_NaN();
+  int changes_at_once_ = 0;
+  /// The last impact, and the joints that struck then and in those before it that time hardly
+  /// tells apart.
+  double time_of_impact_ = std::numeric_limits<double>::quiet_NaN();
+  std::vector<int> struck_;
+  bool loses_order_ = false;  ///< the impact at hand
+  /// When impacts first came so near each other that their order is not known; or not a number.
+  double order_lost_ = std::numeric_limits<double>::quiet_NaN();
+  /// Whether the rate of each joint that was held until this time is to go up (1) or down (-1)
+  /// from zero; 0 of all others. Joints that can be let go are held forward in time alone.
+  std::vector<int> release_direction_;
+  std::string remark_;
+};
+
+}  // namespace pendcore

@@ -1,0 +1,283 @@
+#include "pendcore/analysis/lyapunov.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+
+#include "pendcore/arithmetic/exponential.hpp"
+#include "pendcore/arithmetic/floating_point_environment.hpp"
+#include "pendcore/dynamics/jacobian.hpp"
+#include "pendcore/dynamics/tangent_space.hpp"
+#include "pendcore/integrate/loop/first_step.hpp"
+#include "pendcore/integrate/runge_kutta/dormand_prince_8.hpp"
+#include "pendcore/integrate/runge_kutta/runge_kutta_dynamic.hpp"
+#include "pendcore/simulate/initial_state.hpp"
+#include "pendcore/simulate/options.hpp"
+#include "pendcore/text/message.hpp"
+
+namespace pendcore {
+namespace {
+
+/// The state and k changes of it as one second-order system: rows (q, dq_1 .. dq_k) and
+/// (qd, dqd_1 .. dqd_k).
+class TangentSystem final : public GeneralSystem {
+ public:
+  static int row_of(int numbers) { return (numbers + 3) / 4 * 4; }
+
+  TangentSystem(const Scene& scene, int count, double t_end, bool forward)
+      : GeneralSystem(row_of(static_cast<int>(scene.links.size()) * (1 + count)), 0),
+        equations_(equations_of_motion(scene)),
+        jacobian_(scene, equations_),
+        n_(static_cast<int>(scene.links.size())),
+        count_(count),
+        t_end_(t_end),
+        forward_(forward) {}
+
+  void operator()(double t, const double* y, double* dydt) const override {
+    const double* const qd = y + row;
+    double* const qdd = dydt + row;
+    __builtin_memcpy(dydt, qd, row * sizeof(double));
+    std::fill_n(qdd, row, 0.0);
+    choose_laws(t, y, qd);
+    for (int change = n_; change <= count_ * n_; change += n_) {
+      jacobian_.along(t, y, qd, y + change, qd + change, qdd, qdd + change);
+    }
+  }
+
+ private:
+  /// Laws of pieces that meet without a jump are the piece that the state calls for; a table is its
+  /// last piece where the run ends with it.
+  void choose_laws(double t, const double* q, const double* qd) const {
+    if (!equations_.effects || !equations_.effects->has_modes) return;
+    const bool is_within = forward_ ? t < t_end_ : t > t_end_;
+    choose_modes(*equations_.effects, is_within ? t : t_end_, q, qd, is_within == forward_);
+  }
+
+  EquationsOfMotion equations_;
+  Jacobian jacobian_;
+  int n_;
+  int count_;
+  double t_end_;
+  bool forward_;
+};
+
+/// Sums up the growth, and keeps it at the times asked for.
+class GrowthRecorder final : public Observer {
+ public:
+  GrowthRecorder(Stepper& stepper, int n, const std::vector<double>& times, TangentGrowth& result)
+      : stepper_(stepper),
+        n_(n),
+        k_(result.count),
+        times_(times),
+        result_(result),
+        sums_(k_),
+        lengths_(k_),
+        state_(stepper.dimension()),
+        rate_(stepper.dimension()),
+        changes_(static_cast<std::size_t>(k_) * 2 * n),
+        slopes_(changes_.size()) {}
+
+  void start(double t, const std::vector<double>& y) {
+    if (next_ < times_.size() && times_[next_] == t) keep(t, y);
+  }
+  double step_accepted(Stepper& stepper, const TwoDouble& t_old, double h, double t_new) override {
+    has_polynomial_ = false;
+    was_stepped_ = true;
+    while (next_ < times_.size() && (times_[next_] - t_new) * h <= 0.0) {
+      const double t = times_[next_];
+      if (t == t_new) {
+        stepper.get_new_state(state_.data());
+      } else {
+        interpolate(stepper, t_old, h, t);
+      }
+      keep(t, state_);
+    }
+    return 2.0;
+  }
+  void state_jumped(double, const double*, const double*) override {}
+  void restarts_here() override {}
+
+  /// The loop asks for it before each step, where the state that was reached is the stepper's.
+  bool may_end() const override { return true; }
+  void step_begins() override {
+    if (!was_stepped_) return;
+    was_stepped_ = false;
+    stepper_.get_state(state_.data());
+    stepper_.get_derivative(rate_.data());
+    gather(state_, changes_);
+    gather(rate_, slopes_);
+    // Their derivatives are linear in them: nothing need be evaluated anew.
+    orthonormalise(k_, 2 * n_, changes_.data(), slopes_.data(), lengths_.data());
+    for (int i = 0; i < k_; ++i) sums_[i] += logarithm(lengths_[i]);
+    scatter(changes_, state_);
+    scatter(slopes_, rate_);
+    stepper_.start(state_.data(), rate_.data());
+  }
+
+ private:
+  void interpolate(Stepper& stepper, const TwoDouble& t_old, double h, double t) {
+    if (!has_polynomial_) {
+      polynomial_.resize(static_cast<std::size_t>(stepper.interpolant_degree() + 1) *
+                         stepper.dimension());
+      stepper.interpolant(h, polynomial_.data());
+      has_polynomial_ = true;
+    }
+    stepper.sample(polynomial_.data(), t_old, h, &t, 1, state_.data());
+  }
+  void keep(double t, const std::vector<double>& y) {
+    gather(y, changes_);
+    slopes_ = changes_;
+    orthonormalise(k_, 2 * n_, changes_.data(), slopes_.data(), lengths_.data());
+    result_.t.push_back(t);
+    for (int i = 0; i < k_; ++i) result_.growth.push_back(sums_[i] + logarithm(lengths_[i]));
+    const auto q = y.begin();
+    const auto qd = q + half();
+    result_.states.insert(result_.states.end(), q, q + n_);
+    result_.states.insert(result_.states.end(), qd, qd + n_);
+    ++next_;
+  }
+  std::ptrdiff_t half() const { return static_cast<std::ptrdiff_t>(n_) * (1 + k_); }
+  /// A row (dq, dqd) for each change, from the two halves of a state and back.
+  void gather(const std::vector<double>& y, std::vector<double>& rows) const {
+    for (int i = 0; i < k_; ++i) {
+      const auto dq = y.begin() + static_cast<std::ptrdiff_t>(i + 1) * n_;
+      const auto row = rows.begin() + static_cast<std::ptrdiff_t>(i) * 2 * n_;
+      std::copy_n(dq, n_, row);
+      std::copy_n(dq + half(), n_, row + n_);
+    }
+  }
+  void scatter(const std::vector<double>& rows, std::vector<double>& y) const {
+    for (int i = 0; i < k_; ++i) {
+      const auto dq = y.begin() + static_cast<std::ptrdiff_t>(i + 1) * n_;
+      const auto row = rows.begin() + static_cast<std::ptrdiff_t>(i) * 2 * n_;
+      std::copy_n(row, n_, dq);
+      std::copy_n(row + n_, n_, dq + half());
+    }
+  }
+
+  Stepper& stepper_;
+  int n_;
+  int k_;
+  const std::vector<double>& times_;
+  TangentGrowth& result_;
+  std::size_t next_ = 0;
+  bool was_stepped_ = false;
+  bool has_polynomial_ = false;
+  std::vector<double> sums_, lengths_;
+  std::vector<double> state_, rate_;
+  std::vector<double> changes_, slopes_;
+  std::vector<double> polynomial_;
+};
+
+void check_is_smooth(const Scene& scene) {
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    if (!info_of(scene.effects[i]).jumps_or_sticks) continue;
+    throw std::invalid_argument(effect_name(scene, i) +
+                                ": jumps, and with it what the variational equations would follow: "
+                                "there are Lyapunov exponents of scenes without dry friction and "
+                                "stops alone");
+  }
+}
+
+/// The same as of a simulation, checked like those.
+Options options_of_run(const LyapunovOptions& options) {
+  Options run;
+  run.rtol = {options.rtol};
+  run.atol = {options.atol};
+  run.max_step = options.max_step;
+  run.max_steps = options.max_steps;
+  run.time_limit = options.time_limit;
+  check(run);
+  return run;
+}
+
+}  // namespace
+
+int lyapunov_count(const Scene& scene) {
+  return static_cast<int>(tangent_basis(scene).size() / (2 * scene.links.size()));
+}
+
+TangentGrowth lyapunov(const Scene& scene, const std::vector<double>& q0,
+                       const std::vector<double>& qd0, double t0, double t_end,
+                       const LyapunovOptions& options) {
+  const FloatingPointEnvironment ieee;
+  check(scene);
+  check_start(scene, q0, qd0, t0, t_end);
+  check_is_smooth(scene);
+  const std::vector<double> basis = tangent_basis(scene);
+  const int n = static_cast<int>(scene.links.size());
+  const int all = static_cast<int>(basis.size()) / (2 * n);
+  if (options.count < 0 || options.count > all) {
+    throw std::invalid_argument(
+        "count: must be " +
+        (all == 0 ? "left out: nothing of the scene can move"
+                  : "1 to " + std::to_string(all) + ", twice the degrees of freedom"));
+  }
+  const Options run = options_of_run(options);
+  const std::vector<double> times = options.t_eval.empty() ? std::vector{t_end} : options.t_eval;
+  check_times(times, t0, t_end);
+
+  TangentGrowth result;
+  result.count = options.count == 0 ? all : options.count;
+  const int numbers = n * (1 + result.count);
+  RungeKuttaDynamic<dormand_prince_8, Pack<4>> stepper(
+      std::make_unique<TangentSystem>(scene, result.count, t_end, !(t_end < t0)), numbers);
+
+  IntegratorState integrator;
+  integrator.t = {t0, 0.0};
+  integrator.y.resize(2 * static_cast<std::size_t>(numbers));
+  integrator.dydt.resize(integrator.y.size());
+  const double rtol = relative_tolerances(run, n)[0];
+  const std::vector<double> relative(integrator.y.size(), rtol);
+  std::vector<double> absolute(integrator.y.size(), rtol);
+  const double atol = absolute_tolerances(run, n)[0];
+  for (int i = 0; i < n; ++i) {
+    integrator.y[i] = q0[i];
+    integrator.y[numbers + i] = qd0[i];
+    absolute[i] = absolute[numbers + i] = atol;
+  }
+  for (int change = 0; change < result.count; ++change) {
+    for (int i = 0; i < n; ++i) {
+      integrator.y[(change + 1) * n + i] = basis[change * 2 * n + i];
+      integrator.y[numbers + (change + 1) * n + i] = basis[change * 2 * n + n + i];
+    }
+  }
+  stepper.set_tolerances(relative.data(), absolute.data());
+
+  GrowthRecorder recorder(stepper, n, times, result);
+  const Limits limits{.t_end = t_end,
+                      .max_step = options.max_step,
+                      .max_steps = options.max_steps,
+                      .time_limit = options.time_limit,
+                      .monitor = options.monitor};
+  Ending ending{.status = Status::finished, .cut = false};
+  try {
+    stepper.evaluate(t0, integrator.y.data(), integrator.dydt.data());
+    stepper.start(integrator.y.data(), integrator.dydt.data());
+    recorder.start(t0, integrator.y);
+    if (t0 != t_end) {
+      const double h =
+          first_step(stepper, t0, t_end, options.max_step, relative.data(), absolute.data()).h;
+      integrator.h = t_end < t0 ? -h : h;
+      IntegratorState resumable = integrator;
+      ending = integrate(stepper, integrator, resumable, limits, recorder, nullptr);
+    }
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (...) {  // what a function of the user's throws
+    ending.status = Status::callback_error;
+    ending.error = std::current_exception();
+  }
+  result.status = ending.status;
+  result.message = text(ending.status).sentence;
+  result.statistics = integrator.statistics;
+  result.t_reached = integrator.t.high;
+  result.error = ending.error;
+  if (!text(ending.status).success) {
+    result.message += " (at t = " + text(result.t_reached) + " s)";
+  }
+  return result;
+}
+
+}  // namespace pendcore

@@ -1,0 +1,27 @@
+#include "pendcore/dynamics/closed_form/double_pendulum.hpp"
+
+namespace pendcore {
+
+DoublePendulum::DoublePendulum(const Scene& scene, const Inertia& inertia) {
+  const Link& first = scene.links[0];
+  const Link& second = scene.links[1];
+  for (int i = 0; i < 2; ++i) {
+    weight[i] = inertia.first_moment[i] * scene.gravity / inertia.diagonal[i];
+    coupling[i] = inertia.coupling(0, 1) / inertia.diagonal[i];
+  }
+  product = coupling[0] * coupling[1];
+  // A_11 A_22 - A_12^2 = (I_1 + m_1 c_1^2) A_22 + L_1^2 m_2 I_2, and with a payload
+  // L_1^2 ((m_2 + m_p)(I_2 + I_p) + m_2 m_p (L_2 - c_2)^2) at its end: no difference is taken.
+  const double about_joint = first.inertia_about_joint() + inertia.rotor[0];
+  const double hung = first.length * first.length * (second.mass + inertia.payload_mass);
+  const double apart = second.length - second.center;
+  double about_center = second.inertia + inertia.payload_inertia;
+  if (inertia.payload_mass > 0.0) {
+    const double share = inertia.payload_mass / (second.mass + inertia.payload_mass);
+    about_center += second.mass * share * apart * apart;
+  }
+  delta = about_joint / inertia.diagonal[0] +
+          (hung / inertia.diagonal[0]) * (about_center / inertia.diagonal[1]);
+}
+
+}  // namespace pendcore

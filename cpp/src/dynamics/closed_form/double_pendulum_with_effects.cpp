@@ -1,0 +1,48 @@
+#include "pendcore/dynamics/closed_form/double_pendulum_with_effects.hpp"
+
+namespace pendcore {
+
+namespace {
+
+constexpr Couples<Pair> no_couples;
+
+}  // namespace
+
+template <Parts parts>
+DoublePendulumWithEffects<parts>::DoublePendulumWithEffects(const Scene& scene,
+                                                            const Inertia& inertia,
+                                                            const ActingEffects<Pair>* in_force)
+    : couples(in_force->couples.empty() ? &no_couples : in_force->couples.data()),
+      effects(in_force) {
+  // With A' what A is without rotor 2: A_11 A_22 - (A_12 C - J)^2
+  //   = (A'_11 A'_22 - A_12^2) + A_12^2 S^2 + J (A'_11 + A'_22 + 2 A_12 C),
+  // sums of what is positive.
+  Scene without = scene;
+  std::erase_if(without.effects, [](const Effect& effect) {
+    const auto* one = std::get_if<RotorInertia>(&effect);
+    return one != nullptr && one->joint == 2;
+  });
+  const Inertia plain(without);
+  const DoublePendulum bare(scene, plain);
+  double share[2];  // A'/A
+  for (int i = 0; i < 2; ++i) {
+    length[i] = inertia.length[i];
+    diagonal[i] = inertia.diagonal[i];
+    inverse_diagonal[i] = 1.0 / inertia.diagonal[i];
+    moment[i] = inertia.first_moment[i] / inertia.diagonal[i];
+    share[i] = plain.diagonal[i] / inertia.diagonal[i];
+    weight[i] = inertia.first_moment[i] * scene.gravity / inertia.diagonal[i];
+    coupling[i] = inertia.coupling(0, 1) / inertia.diagonal[i];
+    rotor[i] = inertia.rotor[1] / inertia.diagonal[i];
+  }
+  product = coupling[0] * coupling[1];
+  delta = bare.delta * share[0] * share[1] + rotor[1] * share[0] + rotor[0] * share[1];
+  epsilon = coupling[0] * rotor[1] + coupling[1] * rotor[0];
+}
+
+template struct DoublePendulumWithEffects<Parts::couples>;
+template struct DoublePendulumWithEffects<Parts::waves>;
+template struct DoublePendulumWithEffects<Parts::laws>;
+template struct DoublePendulumWithEffects<Parts::everything>;
+
+}  // namespace pendcore

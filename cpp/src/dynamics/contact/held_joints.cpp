@@ -1,0 +1,204 @@
+#include "pendcore/dynamics/contact/held_joints.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pendcore/arithmetic/epsilon.hpp"
+#include "pendcore/dynamics/equations_of_motion.hpp"
+#include "pendcore/dynamics/kinematics.hpp"
+
+namespace pendcore {
+HeldJoints::HeldJoints(const Scene& scene)
+    : n_(static_cast<int>(scene.links.size())),
+      forces_(scene),
+      captured_(scene.links.size()),
+      bounced_(scene.links.size()),
+      holds_(scene.links.size()) {
+  supports_ = joint_supports(scene, forces_.inertia);
+  natural_speed_ = std::ranges::max(supports_, {}, &JointSupport::natural_speed).natural_speed;
+  can_hold_ = std::ranges::any_of(scene.effects, [](const Effect& effect) {
+    return holding_torque(effect) || std::holds_alternative<JointStop>(effect);
+  });
+  for (std::vector<double>* row : {&held_qdd_, &free_qdd_, &torque_, &size_}) {
+    row->assign(scene.links.size(), 0.0);
+  }
+}
+
+bool HeldJoints::any_held_for_now() const {
+  for (int j = 0; j < n_; ++j) {
+    if (is_held(j) && !supports_[j].is_locked) return true;
+  }
+  return false;
+}
+
+void HeldJoints::put_friction(EffectsInForce& effects, int joint, int mode) {
+  for (const std::size_t i : supports_[joint].friction_effects) effects.put_mode(i, mode);
+}
+
+void HeldJoints::hold(EffectsInForce& effects, int joint, double angle) {
+  holds_[joint] = {.is_held = true, .angle = angle, .least = -never, .most = never};
+  put_friction(effects, joint, 0);
+  effects.hold(joint, true);
+}
+
+void HeldJoints::lock(int joint, double angle, double* q) {
+  holds_[joint] = {.is_held = true, .angle = angle, .least = -never, .most = never};
+  set_relative(q, joint + 1, angle);
+}
+
+void HeldJoints::set_free(EffectsInForce& effects) {
+  for (int j = 0; j < n_; ++j) effects.hold(j, false);
+}
+
+void HeldJoints::release(EffectsInForce& effects, int joint, int direction) {
+  holds_[joint] = Hold{};
+  effects.hold(joint, false);
+  put_friction(effects, joint, direction);
+}
+
+/// The range of a joint ends within the last bits of its angle.
+Side HeldJoints::contact(int joint, const double* q) const {
+  const double phi = relative(q, joint + 1);
+  const double size = std::abs(q[joint]) + (joint > 0 ? std::abs(q[joint - 1]) : 0.0);
+  auto is_at = [&](double end, double distance) {
+    return std::isfinite(end) && distance <= 4.0 * epsilon * (size + std::abs(end));
+  };
+  const double lower = supports_[joint].lower.angle;
+  const double upper = supports_[joint].upper.angle;
+  if (is_at(lower, phi - lower)) return Side::lower;
+  if (is_at(upper, upper - phi)) return Side::upper;
+  return Side::none;
+}
+
+void HeldJoints::solve() {
+  has_failed_ |= !forces_.problem.solve();
+  for (const double force : forces_.problem.lambda) has_failed_ |= !std::isfinite(force);
+}
+
+void HeldJoints::choose(const EquationsOfMotion& equations, double t, const double* q,
+                        const double* qd, int surely) {
+  EffectsInForce& effects = *equations.effects;
+  std::vector<int>& joints = forces_.joints;
+  ForcesBetweenBounds& problem = forces_.problem;
+  joints.clear();
+  bool any = false;
+  for (int j = 0; j < n_; ++j) {
+    const JointSupport& support = supports_[j];
+    const double rate = relative(qd, j + 1);
+    const bool is_at_rest =
+        rate == 0.0 && (!support.friction_effects.empty() || contact(j, q) != Side::none);
+    any |= is_at_rest && !support.is_locked;
+    if (support.is_locked || is_at_rest) joints.push_back(j);
+    if (!support.is_locked) holds_[j] = Hold{};
+    put_friction(effects, j, is_at_rest || support.is_locked ? 0 : rate < 0.0 ? -1 : 1);
+  }
+  set_free(effects);
+  if (any) {
+    accelerations_in_force(equations, t, q, qd, free_qdd_.data());
+    forces_.set_mass_matrix(q);
+    forces_.set_up();
+    for (int r = 0; r < problem.size; ++r) {
+      const int j = joints[r];
+      const bool is_locked = supports_[j].is_locked;
+      const Side side = contact(j, q);
+      problem.a[r] = relative(free_qdd_.data(), j + 1);
+      problem.lower[r] = is_locked || side == Side::upper ? -never : -supports_[j].friction;
+      problem.upper[r] = is_locked || side == Side::lower ? never : supports_[j].friction;
+    }
+    solve();
+  }
+  for (int r = 0; r < static_cast<int>(joints.size()); ++r) {
+    const int j = joints[r];
+    // At a stop exactly there: its last bits may be of angles that were larger.
+    const Side side = contact(j, q);
+    const double angle = supports_[j].is_locked ? holds_[j].angle
+                         : side != Side::none   ? supports_[j].stop(side).angle
+                                                : relative(q, j + 1);
+    if (supports_[j].is_locked || problem.at[r] == Bound::between || j == surely) {
+      hold(effects, j, angle);
+    } else {
+      put_friction(effects, j, problem.at[r] == Bound::lower ? 1 : -1);
+    }
+  }
+  if (any) set_slack(equations, t, q, qd);
+}
+
+/// The torques at which the joints are let go: a rounding beyond their range, so that a joint that
+/// is held is not let go by the next evaluation of the same torque.
+void HeldJoints::set_slack(const EquationsOfMotion& equations, double t, const double* q,
+                           const double* qd) {
+  const ForcesBetweenBounds& problem = forces_.problem;
+  torques(equations, t, q, qd, torque_.data());
+  for (int r = 0; r < problem.size; ++r) {
+    const int j = forces_.joints[r];
+    if (!is_held(j) || supports_[j].is_locked) continue;
+    const double slack = 64.0 * epsilon * (size_[j] + supports_[j].friction);
+    holds_[j].least = std::min(problem.lower[r], torque_[j]) - slack;
+    holds_[j].most = std::max(problem.upper[r], torque_[j]) + slack;
+  }
+}
+
+void HeldJoints::torques(const EquationsOfMotion& equations, double t, const double* q,
+                         const double* qd, double* torque) {
+  EffectsInForce& effects = *equations.effects;
+  accelerations_in_force(equations, t, q, qd, held_qdd_.data());
+  set_free(effects);
+  accelerations_in_force(equations, t, q, qd, free_qdd_.data());
+  for (int j = 0; j < n_; ++j) effects.hold(j, is_held(j));
+  forces_.set_mass_matrix(q);
+  double sum = 0.0;
+  double size = 0.0;  // with what cancels within the laws, an eighth: they take few operations
+  for (int j = 0; j < n_; ++j) {
+    const JointSupport& joint = supports_[j];
+    const double before = j > 0 ? std::abs(q[j - 1]) : 0.0;
+    const double rate_before = j > 0 ? std::abs(qd[j - 1]) : 0.0;
+    size += 0.125 * (joint.stiffness * (std::abs(q[j]) + before) +
+                     joint.damping * (std::abs(qd[j]) + rate_before) + joint.torque);
+  }
+  for (int i = n_ - 1; i >= 0; --i) {
+    const double* const row = forces_.mass.data() + static_cast<std::ptrdiff_t>(i) * n_;
+    for (int k = 0; k < n_; ++k) {
+      sum += row[k] * (held_qdd_[k] - free_qdd_[k]);
+      size += std::abs(row[k]) * (std::abs(held_qdd_[k]) + std::abs(free_qdd_[k]));
+    }
+    torque[i] = sum;
+    size_[i] = size;
+  }
+}
+
+bool HeldJoints::settle(double* q, double* qd) const {
+  bool changed = false;
+  for (int j = 0; j < n_; ++j) {
+    const double rate_before = j > 0 ? qd[j - 1] : 0.0;
+    // What does not turn at all is where it was.
+    if (!is_held(j) || (rate_before == 0.0 && qd[j] == 0.0)) continue;
+    set_relative(q, j + 1, holds_[j].angle);
+    set_relative(qd, j + 1, 0.0);
+    changed = true;
+  }
+  return changed;
+}
+
+std::vector<double> HeldJoints::saved_state() const {
+  std::vector<double> memory;
+  for (int j = 0; j < n_; ++j) {
+    const Hold& hold = holds_[j];
+    memory.insert(memory.end(),
+                  {hold.is_held ? 1.0 : 0.0, hold.angle, hold.least, hold.most, size_[j]});
+  }
+  return memory;
+}
+
+std::size_t HeldJoints::restore(EffectsInForce& effects, const std::vector<double>& memory,
+                                std::size_t from) {
+  for (int j = 0; j < n_; ++j) {
+    const double* const at = memory.data() + from;
+    from += numbers_in_memory;
+    holds_[j] = {.is_held = at[0] != 0.0, .angle = at[1], .least = at[2], .most = at[3]};
+    size_[j] = at[4];
+    effects.hold(j, is_held(j));
+  }
+  return from;
+}
+
+}  // namespace pendcore

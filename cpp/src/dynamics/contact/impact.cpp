@@ -1,0 +1,110 @@
+// The impacts of HeldJoints.
+
+#include <algorithm>
+#include <cmath>
+
+#include "pendcore/dynamics/contact/held_joints.hpp"
+#include "pendcore/dynamics/equations_of_motion.hpp"
+#include "pendcore/dynamics/kinematics.hpp"
+
+namespace pendcore {
+double HeldJoints::into(int joint, const double* q, const double* qd) const {
+  return static_cast<double>(contact(joint, q)) * direction_ * relative(qd, joint + 1);
+}
+
+double HeldJoints::fastest_strike(const double* q, const double* qd) const {
+  double fastest = 0.0;
+  for (int j = 0; j < n_; ++j) fastest = std::max(fastest, into(j, q, qd));
+  return fastest;
+}
+
+void HeldJoints::begin_impact(const double* q) {
+  forces_.set_mass_matrix(q);
+  std::ranges::fill(captured_, 0);
+  std::ranges::fill(bounced_, 0);
+}
+
+/// A row of the problem for each joint that is locked or takes part: what it would do without
+/// impulses, and which of them its stop can give.
+template <class TakesPart>
+void HeldJoints::set_up_impact(const double* q, const double* qd, TakesPart takes_part) {
+  std::vector<int>& joints = forces_.joints;
+  ForcesBetweenBounds& problem = forces_.problem;
+  joints.clear();
+  for (int j = 0; j < n_; ++j) {
+    const bool touches = contact(j, q) != Side::none;
+    if (supports_[j].is_locked || (touches && takes_part(j))) joints.push_back(j);
+  }
+  forces_.set_up();
+  for (int r = 0; r < problem.size; ++r) {
+    const int j = joints[r];
+    const Side side = contact(j, q);
+    const bool must_stay = supports_[j].is_locked || is_captured(j);
+    problem.a[r] = direction_ * relative(qd, j + 1);
+    problem.lower[r] = must_stay || side == Side::upper ? -never : 0.0;
+    problem.upper[r] = must_stay || side == Side::lower ? never : 0.0;
+  }
+}
+
+/// The impulses, and the rates after them, exactly zero where a joint is stopped and where rounding
+/// would leave it going into its stop; what they took of the energy. `before` are the rates of the
+/// rows.
+double HeldJoints::solve_impact(const std::vector<double>& before, const double* q, double* qd) {
+  const ForcesBetweenBounds& problem = forces_.problem;
+  solve();
+  std::vector<double> change(n_, 0.0);
+  forces_.add_response(change.data());
+  for (int i = 0; i < n_; ++i) qd[i] += direction_ * change[i];
+  double loss = 0.0;
+  for (int r = 0; r < problem.size; ++r) {
+    const int j = forces_.joints[r];
+    const bool stops = bounces_[r] == 0 && problem.at[r] == Bound::between;
+    if (stops || into(j, q, qd) > 0.0) set_relative(qd, j + 1, 0.0);
+    loss -= 0.5 * problem.lambda[r] * (before[r] + direction_ * relative(qd, j + 1));
+  }
+  return std::max(loss, 0.0);  // rounding may make an elastic one negative
+}
+
+double HeldJoints::bounce(const double* q, double* qd, bool is_plastic, bool with_all_at_rest) {
+  set_up_impact(q, qd, [&](int j) {
+    const double speed = into(j, q, qd);
+    return speed > 0.0 || (speed == 0.0 && (with_all_at_rest || is_held(j)));
+  });
+  ForcesBetweenBounds& problem = forces_.problem;
+  const std::vector<double> before = problem.a;
+  bounces_.assign(before.size(), 0);
+  for (int r = 0; r < problem.size; ++r) {
+    const int j = forces_.joints[r];
+    const Stop& stop = supports_[j].stop(contact(j, q));
+    const double speed = into(j, q, qd);
+    const bool bounces = !supports_[j].is_locked && !is_plastic && stop.restitution > 0.0 &&
+                         speed > 0.0 && speed >= stop.capture_speed;
+    bounced_[j] = bounces_[r] = bounces ? 1 : 0;
+    if (bounces) problem.a[r] += stop.restitution * before[r];
+  }
+  return solve_impact(before, q, qd);
+}
+
+double HeldJoints::stay_at_stops(const double* q, double* qd) {
+  set_up_impact(q, qd, [](int) { return true; });
+  const std::vector<double> before = forces_.problem.a;
+  bounces_.assign(before.size(), 0);
+  return solve_impact(before, q, qd);
+}
+
+double HeldJoints::work_of_drive(const EquationsOfMotion& equations, double t,
+                                 const std::vector<double>& before, const double* after) const {
+  EffectsInForce& effects = *equations.effects;
+  if (effects.pivots.empty()) return 0.0;
+  double x, y;
+  effects.compute_waves(t, 0);
+  effects.pivot_velocity(t, x, y);
+  double work = 0.0;
+  for (int i = 0; i < n_; ++i) {
+    const double moment = forces_.inertia.first_moment[i] * (after[i] - before[i]);
+    work += moment * (y * forces_.cosine[i] - x * forces_.sine[i]);
+  }
+  return work;
+}
+
+}  // namespace pendcore

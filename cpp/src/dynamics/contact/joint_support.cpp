@@ -1,0 +1,77 @@
+#include "pendcore/dynamics/contact/joint_support.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pendcore {
+namespace {
+
+/// What the law of an effect adds up, in the joint that it acts on.
+void add_law(const Effect& effect, std::vector<JointSupport>& supports) {
+  std::visit(
+      [&](const auto& one) {
+        if constexpr (requires { one.couple(0); }) {
+          const auto couple = one.couple(0);
+          if (!couple) return;
+          const double torque = std::abs(couple->held) + std::abs(couple->gain);
+          const double stiffness = std::abs(couple->on_phi);
+          const double damping = std::abs(couple->on_phid);
+          if (!std::isfinite(torque + stiffness + damping)) return;
+          JointSupport& joint = supports[one.joint - 1];
+          joint.torque += torque;
+          joint.stiffness += stiffness;
+          joint.damping += damping;
+        }
+      },
+      effect);
+}
+
+void set_natural_speeds(const Scene& scene, const Inertia& inertia,
+                        std::vector<JointSupport>& supports) {
+  double largest = 0.0;
+  for (std::size_t j = 0; j < supports.size(); ++j) {
+    JointSupport& joint = supports[j];
+    const double weight = inertia.first_moment[j] * std::abs(scene.gravity);
+    joint.natural_speed =
+        std::sqrt((weight + joint.torque + joint.stiffness) / inertia.diagonal[j]);
+    largest = std::max(largest, joint.natural_speed);
+  }
+  if (largest == 0.0) largest = 1.0;  // nothing drives the joints: 1 rad/s
+  for (JointSupport& joint : supports) {
+    if (joint.natural_speed == 0.0) joint.natural_speed = largest;
+  }
+}
+
+void add_stop(const JointStop& stop, std::vector<JointSupport>& supports) {
+  JointSupport& joint = supports[stop.joint - 1];
+  const double capture = stop.capture_speed.value_or(1e-9 * joint.natural_speed);
+  const auto [lower, upper] = stop.range;
+  if (lower > joint.lower.angle) joint.lower = {lower, stop.restitution, capture};
+  if (upper < joint.upper.angle) joint.upper = {upper, stop.restitution, capture};
+}
+
+}  // namespace
+
+std::vector<JointSupport> joint_supports(const Scene& scene, const Inertia& inertia) {
+  std::vector<JointSupport> supports(scene.links.size());
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    const Effect& effect = scene.effects[i];
+    if (const auto* lock = std::get_if<Lock>(&effect)) supports[lock->joint - 1].is_locked = true;
+    if (const auto torque = holding_torque(effect)) {
+      std::visit(
+          [&](const auto& one) {
+            if constexpr (requires { one.joint; }) {
+              supports[one.joint - 1].friction += *torque;
+              supports[one.joint - 1].friction_effects.push_back(i);
+            }
+          },
+          effect);
+    }
+    add_law(effect, supports);
+  }
+  set_natural_speeds(scene, inertia, supports);
+  for (const JointStop& stop : effects_of<JointStop>(scene)) add_stop(stop, supports);
+  return supports;
+}
+
+}  // namespace pendcore

@@ -1,0 +1,142 @@
+#include "pendcore/dynamics/cost.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+
+#include "pendcore/dynamics/equations_of_motion.hpp"
+#include "pendcore/dynamics/row.hpp"
+
+namespace pendcore {
+namespace {
+
+thread_local int counted = 0;
+
+/// A number that counts the operations done with it.
+struct Counted {
+  double value = 0.0;
+  Counted() = default;
+  Counted(double x) : value(x) {}  // NOLINT(google-explicit-constructor): as a double would
+};
+
+Counted count(double x, int operations = 1) {
+  counted += operations;
+  return {x};
+}
+Counted operator+(Counted a, Counted b) { return count(a.value + b.value); }
+Counted operator-(Counted a, Counted b) { return count(a.value - b.value); }
+Counted operator*(Counted a, Counted b) { return count(a.value * b.value); }
+Counted operator/(Counted a, Counted b) { return count(a.value / b.value); }
+Counted operator-(Counted a) { return {-a.value}; }  // a sign costs nothing: it is fused
+Counted fma(Counted a, Counted b, Counted c) { return count(a.value * b.value + c.value); }
+Counted absolute(Counted a) { return count(a.value < 0.0 ? -a.value : a.value); }
+Counted exponential(Counted a) { return count(pendcore::exponential(a.value), 20); }
+Counted power(Counted a, double p) { return count(pendcore::power(a.value, p), p == 2.0 ? 1 : 45); }
+Counted before(Counted /*x*/) { return {}; }
+
+/// What the laws of one effect do in a right-hand side.
+template <class Kind>
+std::optional<int> operations_of(const Kind& effect) {
+  counted = 0;
+  double waves[8] = {};
+  const RowAt<Counted> at{0.0, 0.5, 1.0, 0.6, 0.8, 1.0, 0.1, 0.2};
+  RowLoads<Counted> loads;
+  if constexpr (requires { effect.couple(0); }) {
+    if (effect.couple(0)) {
+      loads.couple(Couples<double>{}.torque(at));
+      return counted;
+    }
+  }
+  if constexpr (requires { typename Kind::template Law<double>; }) {
+    typename Kind::template Law<double> law;
+    effect.put(law, 0, {.mass = 1.0, .length = 1.0, .center = 0.5, .gravity = 9.807});
+    if constexpr (requires { effect.put_mode(law, 0, 1); }) {
+      effect.put_mode(law, 0, effect.mode_at(0.0, 0.0, 0.0, true));
+    }
+    law.add(at, loads);
+    return counted;
+  } else if constexpr (requires { typename Kind::Law; }) {
+    typename Kind::Law law;
+    Counted x, y;
+    law.add_acceleration(0.0, waves, x, y);
+    return counted;
+  } else if constexpr (Kind::info.account == Account::user) {
+    return std::nullopt;
+  } else {
+    return 0;
+  }
+}
+
+class Contender {
+ public:
+  explicit Contender(const Scene& scene)
+      : t_(time_of(scene)),
+        equations_(equations_of_motion(scene)),
+        q_(scene.links.size(), 0.5),
+        qd_(scene.links.size(), 0.7),
+        qdd_(scene.links.size()) {
+    if (equations_.effects) choose_modes(*equations_.effects, t_, q_.data(), qd_.data(), true);
+    const double once = seconds(1);
+    calls_ = std::clamp(static_cast<long long>(0.3e-3 / std::max(once, 1e-9)), 1LL, 100000LL);
+  }
+
+  void measure() { least_ = std::min(least_, seconds(calls_) / static_cast<double>(calls_)); }
+  double nanoseconds() const { return 1e9 * least_; }
+
+ private:
+  /// Each call starts from what the one before returned, as the stages of a step do.
+  double seconds(long long calls) {
+    using RunLimits = std::chrono::steady_clock;
+    const RunLimits::time_point start = RunLimits::now();
+    for (long long i = 0; i < calls; ++i) {
+      accelerations_in_force(equations_, t_, q_.data(), qd_.data(), qdd_.data());
+      q_[0] = 0.5 + 1e-12 * qdd_[0];
+    }
+    return std::chrono::duration<double>(RunLimits::now() - start).count();
+  }
+
+  /// One that its tables have.
+  static double time_of(const Scene& scene) {
+    double t = 0.0;
+    for (const Effect& effect : scene.effects) {
+      std::visit(
+          [&](const auto& one) {
+            if constexpr (requires { one.first_time(); }) t = std::max(t, one.first_time());
+          },
+          effect);
+    }
+    return t;
+  }
+
+  double t_;
+  EquationsOfMotion equations_;
+  std::vector<double> q_, qd_, qdd_;
+  long long calls_ = 1;
+  double least_ = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace
+
+std::vector<Cost> costs(const Scene& scene) {
+  std::vector<Contender> contenders;
+  contenders.emplace_back(Scene{.links = scene.links, .gravity = scene.gravity});
+  for (const Effect& effect : scene.effects) {
+    contenders.emplace_back(
+        Scene{.links = scene.links, .gravity = scene.gravity, .effects = {effect}});
+  }
+  contenders.emplace_back(scene);
+  for (int round = 0; round < 12; ++round) {
+    for (Contender& contender : contenders) contender.measure();
+  }
+  const double links = contenders.front().nanoseconds();
+  std::vector<Cost> result{{"links", links, std::nullopt}};
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    result.push_back(
+        {effect_name(scene, i), contenders[i + 1].nanoseconds() - links,
+         std::visit([](const auto& one) { return operations_of(one); }, scene.effects[i])});
+  }
+  result.push_back({"all", contenders.back().nanoseconds(), std::nullopt});
+  return result;
+}
+
+}  // namespace pendcore

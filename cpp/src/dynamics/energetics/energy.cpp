@@ -1,0 +1,61 @@
+#include "pendcore/dynamics/energetics/energy.hpp"
+
+#include <vector>
+
+#include "pendcore/text/message.hpp"
+
+namespace pendcore {
+double kinetic_energy(const Scene& scene, double t, std::span<const double> q,
+                      std::span<const double> qd) {
+  const std::size_t n = scene.links.size();
+  require_size("q", q, n);
+  require_size("qd", qd, n);
+  std::vector<double> u(2 * n);
+  directions(q, u);
+  const PivotMotion pivot = pivot_motion(scene, t);
+  double joint_x = pivot.velocity[0];  // velocity of the joint where link i begins
+  double joint_y = pivot.velocity[1];
+  double twice = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Link& link = scene.links[i];
+    const double x = -qd[i] * u[2 * i + 1];
+    const double y = qd[i] * u[2 * i];
+    const double center_x = joint_x + link.center * x;
+    const double center_y = joint_y + link.center * y;
+    twice += link.mass * (center_x * center_x + center_y * center_y) + link.inertia * qd[i] * qd[i];
+    joint_x += link.length * x;
+    joint_y += link.length * y;
+  }
+  for (const Payload& payload : effects_of<Payload>(scene)) {
+    twice += payload.mass * (joint_x * joint_x + joint_y * joint_y);
+    twice += payload.inertia * qd[n - 1] * qd[n - 1];
+  }
+  for (const RotorInertia& rotor : effects_of<RotorInertia>(scene)) {
+    const double phid = relative(qd.data(), rotor.joint);
+    twice += rotor.armature * phid * phid;
+  }
+  return 0.5 * twice;
+}
+
+double potential_energy(const Scene& scene, double t, std::span<const double> q) {
+  const std::size_t n = scene.links.size();
+  std::vector<double> centers(2 * n);
+  mass_centers(scene, t, q, centers);
+  double moment = 0.0;
+  for (std::size_t i = 0; i < n; ++i) moment += scene.links[i].mass * centers[2 * i + 1];
+  std::vector<double> joints(2 * n + 2);
+  positions(scene, t, q, joints);
+  for (const Payload& payload : effects_of<Payload>(scene)) moment += payload.mass * joints.back();
+  double kept = 0.0;
+  for (const Effect& effect : scene.effects) {
+    std::visit(
+        [&](const auto& one) {
+          if constexpr (requires { one.potential(0.0); })
+            kept += one.potential(relative(q.data(), one.joint));
+        },
+        effect);
+  }
+  return kept - scene.gravity * moment;
+}
+
+}  // namespace pendcore

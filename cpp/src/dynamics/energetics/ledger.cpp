@@ -1,0 +1,198 @@
+#include "pendcore/dynamics/energetics/ledger.hpp"
+
+#include <algorithm>
+
+#include "pendcore/dynamics/kinematics.hpp"
+
+namespace pendcore {
+namespace {
+
+/// Calls visit(entry, at, loads) for each law of the effects, if its rows have that width.
+template <class Row, class Visit>
+bool visit_rows(const EffectsInForce& effects, double t, const LinkMemory& links, Visit& visit) {
+  const auto* acting = dynamic_cast<const ActingEffects<Row>*>(&effects);
+  if (acting == nullptr) return false;
+  for (const auto& entry : acting->entries) {
+    const RowInArrays<Row> at(links.arrays(), t, entry.row);
+    RowLoads<Row> loads;
+    ActingEffects<Row>::add(entry, at, loads);
+    visit(entry, at, loads);
+  }
+  return true;
+}
+
+template <class Visit>
+void for_each_law(const EffectsInForce& effects, double t, const LinkMemory& links, Visit visit) {
+  visit_rows<double>(effects, t, links, visit) || visit_rows<Pair>(effects, t, links, visit) ||
+      visit_rows<Pack<4>>(effects, t, links, visit);
+}
+
+Account account_of(int kind) {
+  return [kind]<std::size_t... kinds>(std::index_sequence<kinds...>) {
+    constexpr std::array accounts = {std::variant_alternative_t<kinds, Effect>::info.account...};
+    return accounts[static_cast<std::size_t>(kind)];
+  }(std::make_index_sequence<std::variant_size_v<Effect>>{});
+}
+
+bool has_wind(const Effect& effect) {
+  return std::visit(
+      [](const auto& one) {
+        if constexpr (requires { one.has_wind(); }) return one.has_wind();
+        return false;
+      },
+      effect);
+}
+
+template <class Powers>
+void book(Powers& power, Account account, double value) {
+  power[static_cast<std::size_t>(account)] += is_loss(account) ? -value : value;
+}
+
+}  // namespace
+
+std::vector<Account> accounts_of(const Scene& scene) {
+  std::vector<Account> found;
+  for (const Effect& effect : scene.effects) {
+    const Account account = info_of(effect).account;
+    if (account != Account::none) found.push_back(account);
+    if (has_wind(effect)) found.push_back(Account::wind);
+  }
+  std::ranges::sort(found);
+  found.erase(std::ranges::unique(found).begin(), found.end());
+  return found;
+}
+
+LinkMemory::LinkMemory(const Scene& scene) : n_(static_cast<int>(scene.links.size())) {
+  for (std::vector<double>* row : {&q, &qd, &s, &c, &length, &vx, &vy}) row->assign(n_ + 8, 0.0);
+  for (int i = 0; i < n_; ++i) length[i + 1] = scene.links[i].length;
+}
+
+void LinkMemory::fill(const EffectsInForce& effects, double t, const double* angles,
+                      const double* rates) {
+  effects.compute_waves(t, 0);
+  double x, y;
+  effects.pivot_velocity(t, x, y);
+  std::copy_n(angles, n_, &q[1]);
+  std::copy_n(rates, n_, &qd[1]);
+  sine_cosine(&q[1], n_, &s[1], &c[1]);
+  for (int i = 1; i <= n_; ++i) {
+    vx[i] = x;
+    vy[i] = y;
+    x -= length[i] * qd[i] * s[i];
+    y += length[i] * qd[i] * c[i];
+  }
+}
+
+Ledger::Ledger(const Scene& scene, std::shared_ptr<EffectsInForce> effects)
+    : scene_(scene),
+      effects_(std::move(effects)),
+      accounts_(accounts_of(scene)),
+      links_(scene),
+      user_forces_(scene.links.size()) {}
+
+void Ledger::powers(double t, const double* q, const double* qd, const double* qdd,
+                    double* result) {
+  Powers power{};
+  links_.fill(*effects_, t, q, qd);
+  add_laws(t, power);
+  add_couples(t, power);
+  if (!effects_->users.empty()) add_users(t, q, qd, power);
+  if (!effects_->pivots.empty()) add_drive(t, qdd, power);
+  for (std::size_t i = 0; i < accounts_.size(); ++i) {
+    result[i] = power[static_cast<std::size_t>(accounts_[i])];
+  }
+}
+
+/// M . qd + F . v of the laws, and tau phid.
+void Ledger::add_laws(double t, Powers& power) {
+  force_x_ = force_y_ = 0.0;
+  for_each_law(*effects_, t, links_, [&](const auto& entry, const auto& at, const auto& loads) {
+    using Row = typename std::remove_cvref_t<decltype(at)>::Value;
+    const Row all =
+        loads.couples * at.phid() + loads.moments * at.qd + loads.fx * at.vx() + loads.fy * at.vy();
+    force_x_ += sum_of_lanes(loads.fx);
+    force_y_ += sum_of_lanes(loads.fy);
+    const Account account = account_of(entry.kind);
+    double value = sum_of_lanes(all);
+    ActingEffects<Row>::visit(entry, [&](const auto& law) {
+      if constexpr (requires { law.dissipation(at); }) {
+        const double lost = sum_of_lanes(law.dissipation(at));
+        book(power, Account::wind, value + lost);
+        value = -lost;
+      }
+    });
+    book(power, account, value);
+  });
+}
+
+void Ledger::add_couples(double t, Powers& power) const {
+  for (std::size_t i = 0; i < effects_->effects.size(); ++i) {
+    std::visit(
+        [&]<class Kind>(const Kind& effect) {
+          if constexpr (requires { effect.couple(0); }) {
+            const auto couple = effect.couple(effects_->modes[i]);
+            if (!couple) return;
+            const double phi = relative(&links_.q[1], effect.joint);
+            const double phid = relative(&links_.qd[1], effect.joint);
+            const int wave = effects_->number_of_wave[i];
+            const double sine = wave < 0 ? 0.0 : effects_->wave_sine[wave];
+            book(power, Kind::info.account, couple->torque(t, phi, phid, sine) * phid);
+          }
+        },
+        effects_->effects[i]);
+  }
+}
+
+void Ledger::add_users(double t, const double* q, const double* qd, Powers& power) {
+  for (const CompiledUser& user : effects_->users) {
+    std::ranges::fill(user_forces_, 0.0);
+    user(t, static_cast<int>(user_forces_.size()), q, qd, user_forces_.data());
+    for (std::size_t i = 0; i < user_forces_.size(); ++i) {
+      book(power, Account::user, user_forces_[i] * qd[i]);
+    }
+  }
+}
+
+/// F_01 . v_0, F_01 being what moves the mass centres (reactions.hpp) less the laws' forces.
+void Ledger::add_drive(double t, const double* qdd, Powers& power) const {
+  double ax, ay;
+  effects_->pivot_acceleration(t, ax, ay);
+  double x = -force_x_;
+  double y = -force_y_;
+  for (std::size_t i = 1; i <= scene_.links.size(); ++i) {
+    const Link& link = scene_.links[i - 1];
+    const double square = links_.qd[i] * links_.qd[i];
+    const double along_x = -qdd[i - 1] * links_.s[i] - square * links_.c[i];  // qdd n - qd^2 u
+    const double along_y = qdd[i - 1] * links_.c[i] - square * links_.s[i];
+    x += link.mass * (ax + link.center * along_x);
+    y += link.mass * (ay + link.center * along_y - scene_.gravity);
+    ax += link.length * along_x;
+    ay += link.length * along_y;
+  }
+  for (const Payload& payload : effects_of<Payload>(scene_)) {
+    x += payload.mass * ax;
+    y += payload.mass * (ay - scene_.gravity);
+  }
+  book(power, Account::drive, x * links_.vx[1] + y * links_.vy[1]);
+}
+
+void effect_forces(const Scene& scene, const EffectsInForce& effects, double t, const double* q,
+                   const double* qd, std::span<double> forces) {
+  std::ranges::fill(forces, 0.0);
+  if (!effects.has_forces) return;
+  const std::size_t n = scene.links.size();
+  LinkMemory links(scene);
+  links.fill(effects, t, q, qd);
+  for_each_law(effects, t, links, [&](const auto& entry, const auto& at, const auto& loads) {
+    using Row = typename std::remove_cvref_t<decltype(at)>::Value;
+    constexpr std::size_t width = Lanes<Row>::width;
+    for (std::size_t lane_number = 0; lane_number < width; ++lane_number) {
+      const std::size_t i = entry.row * width + lane_number;
+      if (i >= n) break;
+      forces[2 * i] += lane(loads.fx, static_cast<int>(lane_number));
+      forces[2 * i + 1] += lane(loads.fy, static_cast<int>(lane_number));
+    }
+  });
+}
+
+}  // namespace pendcore

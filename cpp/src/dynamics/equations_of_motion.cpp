@@ -1,0 +1,121 @@
+#include "pendcore/dynamics/equations_of_motion.hpp"
+
+#include <algorithm>
+
+#include "pendcore/dynamics/chain/chain_recursion.hpp"
+#include "pendcore/dynamics/kinematics.hpp"
+
+namespace pendcore {
+namespace {
+
+template <class Dynamics>
+PENDCORE_INLINE void of_links(const Dynamics* dynamics, double t, const double* q, const double* qd,
+                              double* qdd) {
+  using Links = typename Dynamics::Links;
+  const Links angles = load<Links>(q);
+  const Links rates = load<Links>(qd);
+  if constexpr (requires { dynamics->accelerations(t, angles, rates); }) {
+    store(qdd, dynamics->accelerations(t, angles, rates));
+  } else {
+    store(qdd, dynamics->accelerations(angles, rates));
+  }
+}
+
+PENDCORE_INLINE void of_chain(const Chain* chain, double t, const double* q, const double* qd,
+                              double* qdd) {
+  chain->accelerations(t, q, qd, qdd);
+}
+
+/// Whether the scene has more than constants of the mass matrix of the closed form.
+bool is_bare(const Scene& scene) {
+  return std::ranges::all_of(scene.effects, [](const Effect& effect) {
+    const auto* rotor = std::get_if<RotorInertia>(&effect);
+    return std::holds_alternative<Payload>(effect) || (rotor != nullptr && rotor->joint == 1);
+  });
+}
+
+EquationsOfMotion form_of_motion(const Scene& scene) {
+  const Inertia inertia(scene);
+  const std::size_t n = scene.links.size();
+  if (n == 1 && is_bare(scene)) return {SinglePendulum(inertia, scene.gravity)};
+  if (n == 2 && is_bare(scene)) return {DoublePendulum(scene, inertia), nullptr};
+  if (n == 1) {
+    auto effects = std::make_shared<ActingEffects<double>>(scene);
+    return {SinglePendulumWithEffects(scene, inertia, effects.get()), effects};
+  }
+  if (n == 2) {
+    auto effects = std::make_shared<ActingEffects<Pair>>(scene);
+    const auto* in_force = effects.get();
+    const bool has_spline =
+        std::ranges::any_of(effects_of<DrivenPivot>(scene),
+                            [](const DrivenPivot& one) { return one.spline.has_value(); });
+    if (effects->entries.empty() && effects->users.empty() && !has_spline && effects->waves > 0 &&
+        effects->waves <= 2) {
+      return {DoublePendulumWithEffects<Parts::waves>(scene, inertia, in_force), effects};
+    }
+    if (effects->waves > 0 || !effects->pivots.empty() || !effects->users.empty()) {
+      return {DoublePendulumWithEffects<Parts::everything>(scene, inertia, in_force), effects};
+    }
+    if (!effects->entries.empty()) {
+      return {DoublePendulumWithEffects<Parts::laws>(scene, inertia, in_force), effects};
+    }
+    return {DoublePendulumWithEffects<Parts::couples>(scene, inertia, in_force), effects};
+  }
+  auto effects = std::make_shared<ActingEffects<Pack<4>>>(scene);
+  return {std::make_shared<Chain>(scene, effects), effects};
+}
+
+}  // namespace
+
+EquationsOfMotion equations_of_motion(const Scene& scene) {
+  EquationsOfMotion equations = form_of_motion(scene);
+  if (equations.effects) equations.held_joints = std::make_shared<HeldJoints>(scene);
+  return equations;
+}
+
+void choose_modes(EffectsInForce& effects, double t, const double* q, const double* qd,
+                  bool forward) {
+  for (std::size_t i = 0; i < effects.effects.size(); ++i) {
+    std::visit(
+        [&]<class Kind>(const Kind& effect) {
+          if constexpr (requires { effect.has_modes(); }) {
+            double phi = 0.0;
+            double phid = 0.0;
+            if constexpr (requires { effect.joint; }) {
+              phi = relative(q, effect.joint);
+              phid = relative(qd, effect.joint);
+            }
+            effects.put_mode(i, effect.mode_at(t, phi, phid, forward));
+          }
+        },
+        effects.effects[i]);
+  }
+}
+
+void accelerations_in_force(const EquationsOfMotion& equations, double t, const double* q,
+                            const double* qd, double* qdd) {
+  std::visit(
+      [=]<class Form>(const Form& form) {
+        if constexpr (std::is_same_v<Form, std::shared_ptr<Chain>>) {
+          static const auto compute = fastest<&of_chain>();
+          compute(form.get(), t, q, qd, qdd);
+        } else {
+          static const auto compute = fastest<&of_links<Form>>();
+          compute(&form, t, q, qd, qdd);
+        }
+      },
+      equations.form);
+}
+
+void accelerations(const EquationsOfMotion& equations, double t, const double* q, const double* qd,
+                   double* qdd) {
+  if (equations.effects && equations.effects->has_modes) {
+    choose_modes(*equations.effects, t, q, qd, true);
+  }
+  if (equations.held_joints && equations.held_joints->can_hold()) {
+    equations.held_joints->choose(equations, t, q, qd);
+  }
+  accelerations_in_force(equations, t, q, qd, qdd);
+}
+
+}  // namespace pendcore

@@ -1,0 +1,91 @@
+#include "pendcore/dynamics/jacobian.hpp"
+
+#include "pendcore/dynamics/chain/chain_recursion.hpp"
+
+namespace pendcore {
+namespace {
+
+/// The accelerations and their change along the slopes of q and qd, (n) each.
+template <class Dynamics>
+PENDCORE_INLINE void of_links(const Dynamics* dynamics, double t, const Dual<double>* q,
+                              const Dual<double>* qd, Dual<double>* qdd) {
+  using Links = Dual<typename Dynamics::Links>;
+  const Links angles = load<Links>(q);
+  const Links rates = load<Links>(qd);
+  if constexpr (requires { dynamics->accelerations(t, angles, rates); }) {
+    store(qdd, dynamics->accelerations(t, angles, rates));
+  } else {
+    store(qdd, dynamics->accelerations(angles, rates));
+  }
+}
+
+PENDCORE_INLINE void of_chain(const ChainOf<Dual<double>>* chain, double t, const Dual<double>* q,
+                              const Dual<double>* qd, Dual<double>* qdd) {
+  chain->accelerations(t, q, qd, qdd);
+}
+
+}  // namespace
+
+Jacobian::Jacobian(const Scene& scene, const EquationsOfMotion& equations)
+    : n_(static_cast<int>(scene.links.size())), equations_(equations), q_(n_), qd_(n_), qdd_(n_) {
+  if (std::holds_alternative<std::shared_ptr<Chain>>(equations.form)) {
+    chain_ = std::make_shared<ChainOf<Dual<double>>>(
+        scene, std::dynamic_pointer_cast<ActingEffects<Pack<4>>>(equations.effects));
+  }
+}
+
+bool Jacobian::has_differences() const {
+  return equations_.effects && !equations_.effects->users.empty();
+}
+
+void Jacobian::compute(double t) const {
+  std::visit(
+      [&]<class Form>(const Form& form) {
+        if constexpr (std::is_same_v<Form, std::shared_ptr<Chain>>) {
+          static const auto accelerations = fastest<&of_chain>();
+          accelerations(chain_.get(), t, q_.data(), qd_.data(), qdd_.data());
+        } else {
+          static const auto accelerations = fastest<&of_links<Form>>();
+          accelerations(&form, t, q_.data(), qd_.data(), qdd_.data());
+        }
+      },
+      equations_.form);
+  // What is held turns with the link before, to the last bit.
+  for (int i = 0; i < n_; ++i) {
+    if (!equations_.effects || equations_.effects->held[i] == 0) continue;
+    qdd_[i].slope = i > 0 ? qdd_[i - 1].slope : 0.0;
+  }
+}
+
+void Jacobian::operator()(double t, const double* q, const double* qd, double* by_q,
+                          double* by_qd) const {
+  for (int i = 0; i < n_; ++i) {
+    q_[i] = q[i];
+    qd_[i] = qd[i];
+  }
+  auto one = [&](Dual<double>& variable, double* column) {
+    variable.slope = 1.0;
+    compute(t);
+    variable.slope = 0.0;
+    for (int i = 0; i < n_; ++i) column[i * n_] = qdd_[i].slope;
+  };
+  for (int j = 0; j < n_; ++j) {
+    one(q_[j], by_q + j);
+    one(qd_[j], by_qd + j);
+  }
+}
+
+void Jacobian::along(double t, const double* q, const double* qd, const double* dq,
+                     const double* dqd, double* qdd, double* change) const {
+  for (int i = 0; i < n_; ++i) {
+    q_[i] = {q[i], dq[i]};
+    qd_[i] = {qd[i], dqd[i]};
+  }
+  compute(t);
+  for (int i = 0; i < n_; ++i) {
+    qdd[i] = qdd_[i].value;
+    change[i] = qdd_[i].slope;
+  }
+}
+
+}  // namespace pendcore

@@ -1,0 +1,326 @@
+#include "pendcore/integrate/loop/guards.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "pendcore/arithmetic/epsilon.hpp"
+#include "pendcore/integrate/events/root.hpp"
+
+namespace pendcore {
+namespace {
+
+constexpr int points = 9;
+/// Halvings after which a step is believed about a guard's start: that the slope and the curvature
+/// do not tell, and that its value does not.
+constexpr int halvings_without_sign = 10;
+constexpr int most_halvings = 50;
+/// How often the share of a step is halved in looking for where a polynomial strays.
+constexpr int shares = 30;
+
+/// sin^2(i pi / 16)
+constexpr std::array<double, points> nodes = {
+    0.0, 0.03806023374435663, 0.14644660940672624, 0.30865828381745514,
+    0.5, 0.6913417161825449,  0.8535533905932737,  0.9619397662556434,
+    1.0};
+
+/// Values at the nodes become the coefficients of the polynomial through them: Newton's divided
+/// differences, then powers of theta. Both are `stride` apart.
+void interpolate(double* values, int stride) {
+  for (int order = 1; order < points; ++order) {
+    for (int i = points - 1; i >= order; --i) {
+      values[i * stride] =
+          (values[i * stride] - values[(i - 1) * stride]) / (nodes[i] - nodes[i - order]);
+    }
+  }
+  for (int i = points - 2; i >= 0; --i) {
+    for (int k = i; k < points - 1; ++k) values[k * stride] -= nodes[i] * values[(k + 1) * stride];
+  }
+}
+
+double slope_at_end(const double* coefficients, int degree) {
+  double slope = 0.0;
+  for (int p = degree; p > 0; --p) slope += p * coefficients[p];
+  return slope;
+}
+
+double value_of(const double* coefficients, int degree, double theta) {
+  double value = coefficients[degree];
+  for (int p = degree - 1; p >= 0; --p) value = value * theta + coefficients[p];
+  return value;
+}
+
+/// The polynomial between theta and 1, in units of that part.
+std::vector<double> beyond(const double* coefficients, int degree, double theta) {
+  std::vector<double> rest(coefficients, coefficients + degree + 1);
+  for (int from = 0; from < degree; ++from) {
+    for (int p = degree - 1; p >= from; --p) rest[p] += theta * rest[p + 1];
+  }
+  double power = 1.0;
+  for (double& one : rest) {
+    one *= power;
+    power *= 1.0 - theta;
+  }
+  return rest;
+}
+
+}  // namespace
+
+Guards::Guards(Stepper& stepper, Discontinuities& discontinuities)
+    : stepper_(stepper),
+      discontinuities_(discontinuities),
+      dimension_(stepper.dimension()),
+      degree_(stepper.interpolant_degree()),
+      rows_(static_cast<std::size_t>(degree_ + 1) * dimension_),
+      state_(dimension_),
+      polynomial_(static_cast<std::size_t>(std::max(degree_ + 1, points))),
+      slopes_(points) {}
+
+/// polynomial_ becomes guard k, in theta; its degree is returned. One that is not linear has been
+/// interpolated.
+int Guards::along_step(int k) {
+  const int other = k - discontinuities_.linear_guards();
+  if (other < 0) {
+    discontinuities_.polynomial(k, rows_.data(), degree_, dimension_, polynomial_.data());
+    const int zeros = discontinuities_.zeros_at_start(k);
+    for (int p = 0; p < zeros; ++p) polynomial_[p] = 0.0;
+    return degree_;
+  }
+  const int others = discontinuities_.guards() - discontinuities_.linear_guards();
+  for (int p = 0; p < points; ++p) polynomial_[p] = samples_[p * others + other];
+  return points - 1;
+}
+
+/// state_ becomes the dense output at theta.
+void Guards::sample(double theta) {
+  for (int c = 0; c < dimension_; ++c) {
+    double value = rows_[static_cast<std::size_t>(degree_) * dimension_ + c];
+    for (int p = degree_ - 1; p >= 0; --p) {
+      value = std::fma(theta, value, rows_[static_cast<std::size_t>(p) * dimension_ + c]);
+    }
+    state_[c] = value;
+  }
+}
+
+/// samples_ gets a polynomial for each guard that is not linear.
+void Guards::interpolate_others(double t, double h) {
+  const int others = discontinuities_.guards() - discontinuities_.linear_guards();
+  samples_.resize(static_cast<std::size_t>(points) * others);
+  for (int i = 0; i < points; ++i) {
+    sample(nodes[i]);
+    discontinuities_.other_guards(t + nodes[i] * h, state_.data(),
+                                  samples_.data() + static_cast<std::ptrdiff_t>(i) * others);
+  }
+  for (int k = 0; k < others; ++k) interpolate(samples_.data() + k, others);
+}
+
+Crossing Guards::first(double t, double h, bool from_rest_too) {
+  Crossing found;
+  const int guards = discontinuities_.guards();
+  if (guards == 0) return found;
+  stepper_.interpolant(h, rows_.data());
+  if (guards > discontinuities_.linear_guards()) interpolate_others(t, h);
+  for (int k = 0; k < guards; ++k) {
+    const int degree = along_step(k);
+    const double theta = first_negative(polynomial_.data(), degree);
+    if (!(theta < found.theta) || (!from_rest_too && rises_from_rest(k))) continue;
+    const Crossing crossing = where_slope_allows({k, theta}, t, h, degree);
+    if (crossing.theta < found.theta) found = crossing;
+  }
+  return found;
+}
+
+/// slopes_ becomes the polynomial of the slope at rest between `from` and the end of the step, in
+/// units of that part.
+void Guards::slopes_along_step(int k, double t, double h, double from) {
+  const double direction = std::copysign(1.0, h);
+  for (int i = 0; i < points; ++i) {
+    const double theta = from + nodes[i] * (1.0 - from);
+    sample(theta);
+    slopes_[i] = direction * discontinuities_.slope_at_rest(k, t + theta * h, state_.data());
+  }
+  interpolate(slopes_.data(), 1);
+}
+
+/// A rate that a strong damper has made small is lost in the errors of a step, and its sign with
+/// it. The crossing of polynomial_ that is no such error, or where the slope makes it one.
+Crossing Guards::where_slope_allows(Crossing crossing, double t, double h, int degree) {
+  const int k = crossing.guard;
+  const bool was_released =
+      k < discontinuities_.linear_guards() && discontinuities_.zeros_at_start(k) > 1;
+  for (int dips = 0; dips < points; ++dips) {
+    const double theta = crossing.theta;
+    const bool at_start = theta * std::abs(h) <= 4.0 * epsilon * std::abs(t);
+    if (!(was_released && at_start)) {  // as a rule
+      sample(theta);
+      const double slope = discontinuities_.slope_at_rest(k, t + theta * h, state_.data());
+      if (!(slope * h > 0.0)) return crossing;
+    }
+    const double from = at_start ? 0.0 : theta;
+    slopes_along_step(k, t, h, from);
+    if (std::isnan(slopes_[0])) return crossing;
+    if (was_released && at_start) slopes_[0] = 0.0;
+    const double share = first_negative(slopes_.data(), points - 1);
+    if (share > 1.0) return {};
+    const double turns = from + share * (1.0 - from);
+    double dip = 0.0;  // what the errors come to
+    for (const double node : nodes) {
+      dip = std::min(dip, value_of(polynomial_.data(), degree, from + node * (turns - from)));
+    }
+    if (value_of(polynomial_.data(), degree, turns) <= -dip) return {k, turns, true};
+    // It has risen above them: its own zero is the next.
+    const std::vector<double> rest = beyond(polynomial_.data(), degree, turns);
+    const double next = first_negative(rest.data(), degree);
+    if (next > 1.0) return {};
+    crossing.theta = turns + next * (1.0 - turns);
+  }
+  return crossing;
+}
+
+/// The value of guard k at state_.
+double Guards::value_at(int k, double t) {
+  const int other = k - discontinuities_.linear_guards();
+  if (other < 0) return discontinuities_.guard(k, state_.data());
+  samples_.resize(static_cast<std::size_t>(points) *
+                  (discontinuities_.guards() - discontinuities_.linear_guards()));
+  discontinuities_.other_guards(t, state_.data(), samples_.data());
+  return samples_[other];
+}
+
+/// A linear guard's value, slope and curvature (half the second derivative) where the step begins,
+/// as the law has them: 1, 1/s, 1/s^2. A guard on a rate has no second derivative that is known.
+std::array<double, 3> Guards::start_of(int k) {
+  const int n = stepper_.controlled() / 2;
+  std::vector<double> rows(3 * static_cast<std::size_t>(dimension_), 0.0);
+  double* const rates = &rows[dimension_];
+  stepper_.get_derivative(rates);
+  for (int i = 0; i < n; ++i)
+    rows[2 * static_cast<std::size_t>(dimension_) + i] = 0.5 * rates[n + i];
+  std::array<double, 3> along{};
+  discontinuities_.polynomial(k, rows.data(), 2, dimension_, along.data());
+  return along;
+}
+
+/// How a guard that begins at zero rises: its slope as the law has it or, where that is zero too,
+/// its curvature; 0 where neither tells.
+double Guards::rise_at_start(int k, double h) {
+  const std::array<double, 3> along = start_of(k);
+  for (int order = discontinuities_.zeros_at_start(k); order <= 2; ++order) {
+    const double rise = order == 1 ? along[1] * h : along[2];
+    if (rise != 0.0) return rise;
+  }
+  return 0.0;
+}
+
+/// Whether guard k is of a joint that touches its stop at rest, and is pushed away.
+bool Guards::rises_from_rest(int k) {
+  if (k >= discontinuities_.linear_guards() || discontinuities_.zeros_at_start(k) == 0)
+    return false;
+  const std::array<double, 3> along = start_of(k);
+  return along[1] == 0.0 && along[2] > 0.0;
+}
+
+bool Guards::falls_at_start(int k, double t, double h, int halvings) {
+  if (halvings == most_halvings) return true;
+  stepper_.get_state(state_.data());
+  const int zeros = k < discontinuities_.linear_guards() ? discontinuities_.zeros_at_start(k) : 0;
+  if (zeros == 0) {
+    const double value = value_at(k, t);  // and first of all, as it knows what it is rounded by
+    return value <= discontinuities_.rounding(k, state_.data());
+  }
+  const double rise = rise_at_start(k, h);
+  return rise != 0.0 ? rise < 0.0 : halvings == halvings_without_sign;
+}
+
+bool Guards::contradicts_law_at_start(const Crossing& crossing, double h) {
+  return is_of_error(crossing, h) || goes_below(crossing.theta);
+}
+
+/// Whether the guard, with the slope and the curvature that the law has, is zero only after twice
+/// the crossing's share of the step: then the crossing is an error of the dense output.
+bool Guards::is_of_error(const Crossing& crossing, double h) {
+  const int k = crossing.guard;
+  if (k < 0 || k >= discontinuities_.linear_guards() || discontinuities_.zeros_at_start(k) == 0)
+    return false;
+  const int degree = along_step(k);
+  const std::array<double, 3> along = start_of(k);
+  if (discontinuities_.zeros_at_start(k) < 2) polynomial_[1] = along[1] * h;
+  const bool has_curvature = discontinuities_.zeros_at_start(k) < 3 && along[2] != 0.0;
+  if (has_curvature) polynomial_[2] = along[2] * h * h;
+  return first_negative(polynomial_.data(), degree) > 2.0 * crossing.theta;
+}
+
+bool Guards::goes_below(double theta) {
+  const int linear = discontinuities_.linear_guards();
+  for (int k = 0; k < linear; ++k) {
+    if (discontinuities_.zeros_at_start(k) < 3) continue;
+    stepper_.get_state(state_.data());
+    discontinuities_.polynomial(k, rows_.data(), degree_, dimension_, polynomial_.data());
+    polynomial_[0] = polynomial_[1] = 0.0;
+    const double least = -discontinuities_.rounding(k, state_.data());
+    double x = std::min(theta, 2.0);
+    for (int halvings = 0; halvings < shares; ++halvings) {
+      x *= 0.5;
+      if (value_of(polynomial_.data(), degree_, x) < least) return true;
+    }
+  }
+  return false;
+}
+
+Guards::Miss Guards::miss_of_slope(int k, double t, double h) {
+  slopes_along_step(k, t, h, 0.0);
+  const double slope = slope_at_end(slopes_.data(), points - 1);
+  if (slope == 0.0) return {0.0, 0.0};
+  stepper_.get_new_state(state_.data());
+  const double direction = std::copysign(1.0, h);
+  return {direction * discontinuities_.slope_at_rest(k, t + h, state_.data()) / slope, 0.0};
+}
+
+Guards::Miss Guards::miss(const Crossing& crossing, double t, double h) {
+  const int k = crossing.guard;
+  stepper_.interpolant(h, rows_.data());
+  if (crossing.is_of_slope) return miss_of_slope(k, t, h);
+  const int other = k - discontinuities_.linear_guards();
+  if (other >= 0) interpolate_others(t, h);
+  const int degree = along_step(k);
+  const double slope = slope_at_end(polynomial_.data(), degree);
+  if (slope == 0.0) return {0.0, 0.0};
+  double g = 0.0;
+  if (other < 0 && discontinuities_.zeros_at_start(k) > 0) {
+    // What the state has grown by, without the rounding of the state itself.
+    for (int p = degree; p > 0; --p) g += polynomial_[p];
+    return {g / slope, 0.0};
+  }
+  stepper_.get_new_state(state_.data());
+  g = value_at(k, t + h);
+  return {g / slope, discontinuities_.rounding(k, state_.data()) / std::abs(slope)};
+}
+
+Guards::Located Guards::locate(const Crossing& crossing, double t, double whole, double gain,
+                               double last_bits) {
+  double h = crossing.theta * whole;
+  double before = std::numeric_limits<double>::infinity();
+  Attempt attempt{};
+  for (int polish = 0; polish < 10; ++polish) {
+    attempt = stepper_.attempt(t, h, gain);
+    const Miss miss = this->miss(crossing, t, h);
+    const double correction = miss.share * h;
+    const double size = std::abs(correction);
+    if (!(size <= 0.5 * std::abs(h))) break;
+    const bool is_found =
+        size <= 4.0 * epsilon * std::max(std::abs(t), std::abs(h)) ||
+        // The guard's own rounding can be more than that, where it crosses zero slowly.
+        size <= miss.rounding * std::abs(h) || (size <= 1e-6 * std::abs(h) && size >= 0.5 * before);
+    if (is_found) return {true, h, attempt};
+    before = size;
+    h -= correction;
+    if (std::abs(h) > std::abs(whole)) {
+      if (std::abs(h) > std::abs(whole) + last_bits) break;
+      h = whole;
+    }
+  }
+  return {false, h, attempt};
+}
+
+}  // namespace pendcore

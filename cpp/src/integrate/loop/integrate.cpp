@@ -1,0 +1,302 @@
+#include "pendcore/integrate/loop/integrate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+
+#include "pendcore/arithmetic/epsilon.hpp"
+#include "pendcore/integrate/loop/resume_point.hpp"
+#include "pendcore/integrate/loop/run_limits.hpp"
+#include "pendcore/integrate/loop/statistics.hpp"
+#include "pendcore/integrate/loop/stiffness.hpp"
+#include "pendcore/integrate/loop/trial.hpp"
+
+namespace pendcore {
+namespace {
+
+class Run {
+ public:
+  Run(Stepper& stepper, IntegratorState& integrator, IntegratorState& resumable,
+      const Limits& limits, Observer& observer, Discontinuities* discontinuities)
+      : stepper_(stepper),
+        integrator_(integrator),
+        limits_(limits),
+        observer_(observer),
+        discontinuities_(discontinuities),
+        run_limits_(limits, integrator.t.high),
+        resume_(stepper, integrator, resumable, observer, discontinuities, limits.begins_anew),
+        trial_(stepper, integrator, limits.fixed_step, discontinuities),
+        state_(stepper.dimension()),
+        rate_(stepper.dimension()) {
+    has_quadratures_ = stepper.controlled() < stepper.dimension();
+    stepper.keep_going = [this] {
+      if (can_stop_) stopped_ = run_limits_.look(integrator_.t.high);
+      return stopped_ == Status::finished;
+    };
+  }
+
+  Ending go() {
+    // A law that is over where the run begins is so for a run of no length as well.
+    const bool begins = integrator_.h == 0.0;
+    if (begins && discontinuities_ != nullptr && discontinuities_->is_over())
+      return end_with(Status::non_finite);
+    if (const int bad = bad_component(integrator_.dydt); bad >= 0) {
+      return end_with(Status::non_finite, bad);
+    }
+    resume_.step_begins();
+    try {
+      while (!has_ended() && step()) {
+      }
+      return end_with(status_, bad_ >= 0 ? bad_ : trial_.bad());
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (const Stopped& stopped) {
+      resume_.interrupt();
+      return end_with(stopped.status);
+    } catch (...) {  // what a function of the user's throws
+      resume_.interrupt();
+      Ending ending = end_with(Status::callback_error);
+      ending.error = std::current_exception();
+      return ending;
+    }
+  }
+
+ private:
+  /// The time that the next step may not go beyond.
+  struct Target {
+    double t;
+    double left;    ///< until then
+    bool is_break;  ///< of the law's; otherwise the end of the interval
+    bool is_in_reach;
+  };
+
+  /// Each of these takes the run a little on, and returns whether it goes on: `end` says why not.
+  bool end(Status status) {
+    status_ = status;
+    return false;
+  }
+
+  bool step() {
+    const double t = integrator_.t.high;
+    // A run that goes on may be asked to go no further: what is less than the last bit of its time
+    // would be a step of its own, and as like as not a backward one.
+    if (t == limits_.t_end) return end(Status::finished);
+    const double left = difference(limits_.t_end, integrator_.t);
+    if (attempts_ == limits_.max_steps) return end(Status::max_steps);
+    if (const Status clock = run_limits_.look(t); clock != Status::finished) return end(clock);
+
+    resume_.step_begins();
+    if (discontinuities_ != nullptr && discontinuities_->is_over()) return end(Status::non_finite);
+    if (discontinuities_ != nullptr && discontinuities_->rests()) return rest(left);
+    if (discontinuities_ != nullptr && std::abs(integrator_.h) > discontinuities_->longest_step()) {
+      integrator_.h = std::copysign(discontinuities_->longest_step(), integrator_.h);
+    }
+    const Target target = next_target(left);
+    double h = integrator_.h;
+    const bool is_too_small = std::abs(h) <= few * epsilon * std::abs(t) || std::abs(h) < 1e-300;
+    // Where the target is the next time that there is, a step there may be tried, once.
+    if (is_too_small && (!target.is_in_reach || integrator_.control.after_rejection)) {
+      const bool is_coarse = integrator_.trial_was_finite || was_stretched_;
+      return end(is_coarse ? Status::step_too_small : Status::non_finite);
+    }
+    was_stretched_ = target.is_in_reach && std::abs(target.left) > 1.01 * std::abs(h);
+    if (target.is_in_reach) {
+      h = target.left;
+      if (!target.is_break) resume_.cut_from_here();
+    }
+
+    ++attempts_;
+    can_stop_ = true;
+    trial_.attempt(h);
+    can_stop_ = false;  // within a step that was tried already
+    if (stopped_ != Status::finished) return end(stopped_);
+    const bool is_shortest = target.is_in_reach && std::abs(h) <= few * last_bits(t, target.t);
+    switch (trial_.judge(is_shortest, is_shortest && !is_too_small)) {
+      case Trial::Verdict::accepted: break;
+      case Trial::Verdict::is_tried_again:
+        ++integrator_.statistics.rejected;
+        integrator_.h = trial_.h();
+        integrator_.h_is_max_step = false;
+        return true;
+      case Trial::Verdict::changes_at_start:
+        --attempts_;  // no step: the statistics do not count it either
+        return change_at_once(trial_.guard());
+      case Trial::Verdict::fails:
+        ++integrator_.statistics.rejected;
+        return end(trial_.result().converged ? Status::non_finite : Status::not_converged);
+    }
+    integrator_.crossings_at_once = 0;
+    return accept(target, trial_.guard(), trial_.h(), trial_.result());
+  }
+
+  /// Nothing moves any more: one step to the end.
+  bool rest(double left) {
+    resume_.cut_from_here();
+    integrator_.crossings_at_once = 0;
+    stepper_.stay();
+    const double last = observer_.step_accepted(stepper_, integrator_.t, left, limits_.t_end);
+    if (last == 0.0) return end(Status::max_turns);
+    if (last < 1.0) return end_within_step(last, left, limits_.t_end);
+    stepper_.accept(limits_.t_end);
+    integrator_.t = {limits_.t_end, 0.0};
+    return end(Status::at_rest);
+  }
+
+  Target next_target(double left) const {
+    const double h = integrator_.h;
+    // The last step may be a hundredth longer (Hairer's rule), but not longer than max_step, the
+    // last bits of t aside: a step of those alone would not be one.
+    const double reach = std::min(1.01 * std::abs(h), std::max(std::abs(h), limits_.max_step));
+    Target target{limits_.t_end, left, false, false};
+    if (discontinuities_ != nullptr) {
+      const double next = discontinuities_->next_time(integrator_.t.high);
+      if ((limits_.t_end - next) * left > 0.0) {
+        target = {next, difference(next, integrator_.t), true, false};
+      }
+    }
+    target.is_in_reach = std::abs(target.left) <= reach + last_bits(integrator_.t.high, target.t);
+    return target;
+  }
+  /// The law changes where the step begins.
+  bool change_at_once(int guard) {
+    resume_.begin_change();
+    if (++integrator_.crossings_at_once > 100 + 4 * discontinuities_->guards()) {
+      chatters_ = true;
+      return end(Status::step_too_small);
+    }
+    return change_law(guard);
+  }
+
+  /// The quadratures have no say in the steps: they are not to overflow in silence.
+  bool quadratures_overflow() {
+    if (!has_quadratures_) return false;
+    stepper_.get_new_state(state_.data());
+    bad_ = bad_component(state_);
+    return bad_ >= 0;
+  }
+
+  bool accept(const Target& target, int guard, double h, const Attempt& attempt) {
+    if (quadratures_overflow()) return end(Status::non_finite);
+    TwoDouble t_new = integrator_.t + h;
+    // A guard's zero within the last bits of the target is there too.
+    const bool lands = target.is_in_reach && difference(target.t, t_new) * std::copysign(1.0, h) <=
+                                                 last_bits(integrator_.t.high, target.t);
+    if (lands) t_new = {target.t, 0.0};
+    const bool law_changes = guard >= 0 || (lands && target.is_break);
+    if (law_changes) resume_.begin_change();
+    test_stiffness(stepper_, h, integrator_);
+    if (guard >= 0 || (discontinuities_ != nullptr && discontinuities_->settles_every_step())) {
+      stepper_.get_new_state(state_.data());
+      if (discontinuities_->settle(guard, state_.data())) stepper_.set_new_state(state_.data());
+    }
+    const double last = observer_.step_accepted(stepper_, integrator_.t, h, t_new.high);
+    if (last == 0.0) {
+      resume_.restart_at_step_start();
+      return end(Status::max_turns);
+    }
+    const bool is_cut = target.is_in_reach || h != integrator_.h || law_changes;
+    count_accepted(integrator_.statistics, h, is_cut, integrator_.h_is_max_step);
+    if (last < 1.0) return end_within_step(last, h, t_new.high);
+    stepper_.accept(t_new.high);
+    integrator_.t = t_new;
+    if (!law_changes) {
+      if (discontinuities_ != nullptr) discontinuities_->step_taken();
+      if (limits_.fixed_step) return true;
+      integrator_.h = h * integrator_.control.accept(stepper_.info(), attempt);
+      integrator_.h_is_max_step = std::abs(integrator_.h) >= limits_.max_step;
+      if (integrator_.h_is_max_step) integrator_.h = std::copysign(limits_.max_step, h);
+      return true;
+    }
+    if (guard >= 0 && !change_law(guard)) return false;
+    return lands && target.is_break ? change_law(-1) : true;
+  }
+
+  /// An event lies within the step: what is left there is a view, and nothing goes on from it.
+  bool end_within_step(double theta, double h, double t_new) {
+    const TwoDouble t = time_in_step(integrator_.t, h, theta, t_new);
+    // Within the last bits of its start no time has passed: there is one state at one time.
+    if (t.high == integrator_.t.high) return true;
+    const std::size_t rows = stepper_.interpolant_degree() + 1;
+    std::vector<double> polynomial(rows * stepper_.dimension());
+    stepper_.interpolant(h, polynomial.data());
+    stepper_.sample(polynomial.data(), {}, 1.0, &theta, 1, state_.data());
+    stepper_.get_derivative(rate_.data());
+    stepper_.start(state_.data(), rate_.data());
+    integrator_.t = t;
+    return true;
+  }
+  /// An event ended the run. A run that goes on takes the whole step again.
+  bool has_ended() {
+    if (!observer_.has_ended()) return false;
+    resume_.restart_at_step_start();
+    status_ = Status::event;
+    return true;
+  }
+
+  /// At the state that the stepper stands at. The step that was to be tried is tried next.
+  bool change_law(int guard) {
+    resume_.change_goes_on();
+    const double t = integrator_.t.high;
+    stepper_.get_state(state_.data());
+    const std::vector<double> before = state_;
+    const bool jumped = discontinuities_->cross(guard, t, state_.data());
+    bad_ = bad_component(state_);
+    if (bad_ >= 0) {  // the run ends with the state before
+      resume_.cut();
+      return end(Status::non_finite);
+    }
+    if (jumped) {
+      observer_.state_jumped(t, before.data(), state_.data());
+    } else if (state_ != before) {
+      observer_.state_settled(t, state_.data());
+    }
+    stepper_.evaluate(t, state_.data(), rate_.data());
+    stepper_.start(state_.data(), rate_.data());
+    integrator_.control = StepControl{};
+    resume_.end_change();
+    // As where a run begins: the ledger's rates have no say in a step's error.
+    bad_ = bad_component(rate_);
+    return bad_ < 0 || end(Status::non_finite);
+  }
+
+  Ending end_with(Status status, int bad = -1) {
+    resume_.end();
+    return Ending{.status = status,
+                  .cut = resume_.is_cut(),
+                  .bad = status == Status::non_finite ? bad : -1,
+                  .chatters = chatters_};
+  }
+
+  Stepper& stepper_;
+  IntegratorState& integrator_;
+  const Limits& limits_;
+  Observer& observer_;
+  Discontinuities* discontinuities_;
+  RunLimits run_limits_;
+  ResumePoint resume_;
+  Trial trial_;
+  Status status_ = Status::finished;
+  bool can_stop_ = false;
+  Status stopped_ = Status::finished;  ///< or why an attempt was given up
+  long long attempts_ = 0;
+  bool chatters_ = false;
+  bool was_stretched_ = false;  ///< the last attempt, to a target that lies beyond its step
+  bool has_quadratures_ = false;
+  int bad_ = -1;  ///< component of the last trial, while trials are not finite
+  std::vector<double> state_;
+  std::vector<double> rate_;
+};
+
+}  // namespace
+
+int bad_component(const std::vector<double>& y) {
+  const auto bad = std::ranges::find_if(y, [](double x) { return !std::isfinite(x); });
+  return bad == y.end() ? -1 : static_cast<int>(bad - y.begin());
+}
+
+Ending integrate(Stepper& stepper, IntegratorState& integrator, IntegratorState& resumable,
+                 const Limits& limits, Observer& observer, Discontinuities* discontinuities) {
+  return Run(stepper, integrator, resumable, limits, observer, discontinuities).go();
+}
+
+}  // namespace pendcore

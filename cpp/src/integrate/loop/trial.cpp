@@ -1,0 +1,153 @@
+#include "pendcore/integrate/loop/trial.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pendcore/arithmetic/epsilon.hpp"
+
+namespace pendcore {
+namespace {
+
+/// Halvings after which a dense output is believed that strays where a guard begins at zero.
+constexpr int most_halvings = 20;
+/// Where the dense output of a fixed step puts a guard's zero says little: shortened to no less.
+constexpr double least_share_of_fixed = 0.1;
+
+/// The component of the attempted step whose new value, or new rate, is not finite, or -1.
+int bad_component_of(Stepper& stepper, double t_new) {
+  std::vector<double> y(stepper.dimension());
+  std::vector<double> dydt(stepper.dimension());
+  stepper.get_new_state(y.data());
+  stepper.evaluate(t_new, y.data(), dydt.data());
+  y.resize(stepper.controlled());  // quadratures have no say in the steps
+  dydt.resize(stepper.controlled());
+  return std::max(bad_component(y), bad_component(dydt));
+}
+
+}  // namespace
+
+double last_bits(double t, double t_new) {
+  return 4.0 * epsilon * std::max(std::abs(t), std::abs(t_new));
+}
+
+Trial::Trial(Stepper& stepper, IntegratorState& integrator, bool fixed_step,
+             Discontinuities* discontinuities)
+    : stepper_(stepper), integrator_(integrator), fixed_step_(fixed_step) {
+  if (discontinuities != nullptr) guards_ = std::make_unique<Guards>(stepper, *discontinuities);
+}
+
+void Trial::attempt(double h) {
+  t_ = integrator_.t.high;
+  h_ = h;
+  attempt_ = stepper_.attempt(t_, h_, integrator_.control.gain(stepper_.info()));
+}
+
+Trial::Verdict Trial::judge(bool is_shortest, bool at_any_error) {
+  crossing_ = {};
+  look_for_bad_component();
+  const bool is_accepted = attempt_.squared_error <= 1.0 || fixed_step_ || at_any_error;
+  if (!integrator_.trial_was_finite || !is_accepted) {
+    return give_up(h_ * integrator_.control.reject(stepper_.info(), attempt_));
+  }
+  return guards_ && !is_shortest ? follow_guards() : Verdict::accepted;
+}
+
+/// Shortens the step so that it ends where the first guard is zero, or where no guard is. One that
+/// coarse steps do not locate, shorter ones do.
+Trial::Verdict Trial::follow_guards() {
+  while (true) {
+    const Verdict found = verify_guard_start();
+    if (found != Verdict::accepted || crossing_.guard < 0) return found;
+    const double bits = last_bits(t_, t_ + h_);
+    const Guards::Located located =
+        guards_->locate(crossing_, t_, h_, integrator_.control.gain(stepper_.info()), bits);
+    if (located.is_found) {
+      if (!fixed_step_ && located.attempt.squared_error > 1.0) {
+        return give_up(located.h * integrator_.control.reject(stepper_.info(), located.attempt));
+      }
+      h_ = located.h;
+      attempt_ = located.attempt;
+      look_for_bad_component();
+      if (integrator_.trial_was_finite) return Verdict::accepted;
+    }
+    // What the whole step strode over, the shorter one may see: friction's peak at rest.
+    h_ *= std::max(0.5 * crossing_.theta, fixed_step_ ? least_share_of_fixed : 0.0);
+    if (std::abs(h_) <= few * last_bits(t_, t_ + h_)) return Verdict::changes_at_start;
+    if (!fixed_step_) return Verdict::is_tried_again;
+    if (!take_again()) return give_up(h_);
+  }
+}
+
+/// The step is halved until its dense output begins as the law has it: what a coarse one says of
+/// its start, its own error may have made.
+Trial::Verdict Trial::verify_guard_start() {
+  for (int halvings = 0;; ++halvings) {
+    const bool is_short = std::abs(h_) <= few * last_bits(t_, t_);
+    crossing_ = guards_->first(t_, h_, !is_short);
+    const double at_start = epsilon * std::max(few * std::abs(t_), 2.0 * std::abs(h_));
+    if (crossing_.guard >= 0 && crossing_.theta * std::abs(h_) <= at_start) {
+      if (is_short || crossing_.is_of_slope ||
+          guards_->falls_at_start(crossing_.guard, t_, h_, halvings)) {
+        return Verdict::changes_at_start;
+      }
+    } else if (is_short || halvings == most_halvings ||
+               !guards_->contradicts_law_at_start(crossing_, h_)) {
+      return Verdict::accepted;
+    }
+    h_ *= 0.5;
+    if (!take_again()) return give_up(0.5 * h_);
+  }
+}
+
+/// Attempts the step at its new length. Whether it stands; a part of a fixed step may become as
+/// short as it takes.
+bool Trial::take_again() {
+  while (true) {
+    attempt(h_);
+    look_for_bad_component();
+    if (!fixed_step_) return integrator_.trial_was_finite && attempt_.squared_error <= 1.0;
+    if (integrator_.trial_was_finite) return true;
+    if (std::abs(h_) <= few * last_bits(t_, t_)) return false;
+    h_ *= 0.5;
+  }
+}
+
+/// Another of size h is tried, where steps are not all of one.
+Trial::Verdict Trial::give_up(double h) {
+  if (fixed_step_) return Verdict::fails;
+  h_ = h;
+  return Verdict::is_tried_again;
+}
+
+void Trial::look_for_bad_component() {
+  const double error = attempt_.squared_error;
+  bad_ = -1;
+  // Beyond the square root of the largest double the norm overflows, and nothing is wrong.
+  if (!std::isfinite(error)) bad_ = bad_component_of(stepper_, t_ + h_);
+  // A fixed step is taken whatever its error.
+  if (bad_ < 0 && fixed_step_ && is_far_off()) bad_ = bad_component_between();
+  integrator_.trial_was_finite = bad_ < 0 && !std::isnan(error);
+}
+
+/// Rates enter by their squares: four stages on, such numbers may overflow.
+bool Trial::is_far_off() {
+  constexpr double far = 1e15;
+  new_state_.resize(stepper_.dimension());
+  stepper_.get_new_state(new_state_.data());
+  return std::ranges::any_of(new_state_, [](double x) { return std::abs(x) > far; });
+}
+
+/// The same of the dense output, which may have stages of its own.
+int Trial::bad_component_between() {
+  const int size = stepper_.dimension();
+  polynomial_.resize(static_cast<std::size_t>(stepper_.interpolant_degree() + 1) * size);
+  stepper_.interpolant(h_, polynomial_.data());
+  for (std::size_t i = 0; i < polynomial_.size(); ++i) {
+    const int component = static_cast<int>(i) % size;
+    const bool error_controlled = component < stepper_.controlled();  // quadratures have none
+    if (error_controlled && !std::isfinite(polynomial_[i])) return component;
+  }
+  return -1;
+}
+
+}  // namespace pendcore

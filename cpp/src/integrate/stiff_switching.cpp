@@ -1,0 +1,143 @@
+#include "pendcore/integrate/stiff_switching.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <new>
+#include <utility>
+
+#include "pendcore/integrate/loop/run_limits.hpp"
+
+namespace pendcore {
+namespace {
+
+/// On 1 to 30 links a step of radau5 costs 1 to 6 series, 2 to 13 steps of dop853, 3 to 16 of
+/// dopri5.
+constexpr double longer = 10.0;
+
+/// What a memory ends in.
+constexpr double is_first = 0.0;
+constexpr double is_second = 1.0;
+constexpr double is_asked = 2.0;  ///< the first; the size of the step comes before
+
+}  // namespace
+
+StiffSwitchingStepper::StiffSwitchingStepper(std::unique_ptr<Stepper> first, Make make_implicit)
+    : first_(std::move(first)), make_implicit_(std::move(make_implicit)), info_(first_->info()) {}
+
+void StiffSwitchingStepper::set_tolerances(const double* rtol, const double* atol) {
+  first_->set_tolerances(rtol, atol);
+  rtol_.assign(rtol, rtol + controlled());
+  atol_.assign(atol, atol + controlled());
+}
+
+void StiffSwitchingStepper::count() {
+  evaluations = first_->evaluations;
+  if (!implicit_) return;
+  evaluations += implicit_->evaluations;
+  jacobians = implicit_->jacobians;
+  factorisations = implicit_->factorisations;
+}
+
+void StiffSwitchingStepper::evaluate(double t, const double* y, double* dydt) {
+  now().evaluate(t, y, dydt);
+  count();
+}
+
+bool StiffSwitchingStepper::stiffness_found(bool size_is_given) {
+  if (size_is_given) {
+    takes_over_ = true;
+  } else {
+    h_asked_ = longer * h_;
+  }
+  return true;
+}
+
+Attempt StiffSwitchingStepper::attempt(double t, double h, double gain) {
+  if (h_asked_ != 0.0) {
+    const std::optional<bool> answer = pays(t);
+    count();
+    if (!answer) return {std::numeric_limits<double>::quiet_NaN(), 0.0};
+    h_asked_ = 0.0;
+    if (*answer) change();
+  }
+  if (has_changed_) implicit_->keep_going = keep_going;  // the first never takes long
+  h_ = h;
+  const Attempt attempt = now().attempt(t, h, gain);
+  count();
+  return attempt;
+}
+
+/// Whether the implicit method's step is within the tolerances; no answer where it was given up.
+std::optional<bool> StiffSwitchingStepper::pays(double t) {
+  begin_implicit();
+  bool is_given_up = false;
+  implicit_->keep_going = [this, &is_given_up] {
+    is_given_up = is_given_up || (keep_going && !keep_going());
+    return !is_given_up;
+  };
+  double squared_error = 0.0;
+  try {
+    squared_error = implicit_->attempt(t, h_asked_, 0.0).squared_error;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const Stopped&) {
+    throw;
+  } catch (...) {  // a function of the user's, that steps of the run itself may never ask so far
+    squared_error = std::numeric_limits<double>::infinity();
+  }
+  implicit_->keep_going = nullptr;
+  if (is_given_up) return std::nullopt;
+  return squared_error <= 1.0;
+}
+
+void StiffSwitchingStepper::accept(double t_new) {
+  now().accept(t_new);
+  if (takes_over_ && !has_changed_) change();
+  count();
+}
+
+/// The implicit method begins where the first stands.
+void StiffSwitchingStepper::begin_implicit() {
+  std::vector<double> y(dimension());
+  std::vector<double> dydt(dimension());
+  first_->get_state(y.data());
+  first_->get_derivative(dydt.data());
+  if (!implicit_) {
+    implicit_ = make_implicit_();
+    implicit_->set_tolerances(rtol_.data(), atol_.data());
+  }
+  implicit_->start(y.data(), dydt.data());
+}
+
+void StiffSwitchingStepper::change() {
+  begin_implicit();
+  has_changed_ = true;
+  info_ = implicit_->info();
+}
+
+void StiffSwitchingStepper::interpolant(double h, double* coefficients) {
+  now().interpolant(h, coefficients);
+  const int size = dimension();
+  std::fill(coefficients + static_cast<std::ptrdiff_t>(now().interpolant_degree() + 1) * size,
+            coefficients + static_cast<std::ptrdiff_t>(interpolant_degree() + 1) * size, 0.0);
+}
+
+std::vector<double> StiffSwitchingStepper::saved_state() const {
+  std::vector<double> memory = now().saved_state();
+  if (h_asked_ != 0.0) memory.push_back(h_asked_);
+  memory.push_back(has_changed_ ? is_second : h_asked_ != 0.0 ? is_asked : is_first);
+  return memory;
+}
+
+void StiffSwitchingStepper::restore(const std::vector<double>& memory) {
+  if (memory.empty()) return;
+  std::vector<double> rest(memory.begin(), memory.end() - 1);
+  if (memory.back() == is_second) change();
+  if (memory.back() == is_asked && !rest.empty()) {
+    h_asked_ = rest.back();
+    rest.pop_back();
+  }
+  now().restore(rest);
+}
+
+}  // namespace pendcore

@@ -1,0 +1,18 @@
+#include "pendcore/integrate/taylor/taylor.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pendcore/arithmetic/order_of_series.hpp"
+#include "pendcore/arithmetic/power.hpp"
+
+namespace pendcore {
+
+int taylor_order(double tolerance) {
+  constexpr double log10_of_2 = 0.30102999566398120;
+  const double digits = -log10_of_2 * approximate_log2(tolerance);
+  const int order = 2 * static_cast<int>(std::lround(0.5 * (5.0 + 1.5 * digits)));
+  return std::clamp(order, lowest_taylor_order, highest_order);
+}
+
+}  // namespace pendcore

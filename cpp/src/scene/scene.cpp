@@ -1,0 +1,248 @@
+#include "pendcore/scene/scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pendcore/text/message.hpp"
+
+namespace pendcore {
+namespace {
+
+std::string link_name(std::size_t i) { return "link " + std::to_string(i + 1); }
+
+void check_link(const Link& link, std::size_t i, bool last) {
+  const double m = link.mass;
+  if (last && !(std::isfinite(m) && m > 0)) {
+    refuse(link_name(i) + ": mass", m, "finite and > 0 (kg)");
+  }
+  if (!(std::isfinite(m) && m >= 0)) {
+    refuse(link_name(i) + ": mass", m,
+           "finite and >= 0 (kg; 0 only where another link hangs on it)");
+  }
+  if (!(std::isfinite(link.length) && link.length > 0)) {
+    refuse(link_name(i) + ": length", link.length, "finite and > 0 (m)");
+  }
+  if (!std::isfinite(link.center)) {
+    refuse(link_name(i) + ": center", link.center,
+           "finite (m, from the proximal joint; half the length for a uniform rod)");
+  }
+  if (!(std::isfinite(link.inertia) && link.inertia >= 0)) {
+    refuse(link_name(i) + ": inertia", link.inertia,
+           "finite and >= 0 (kg m^2, about the mass centre; 0 for a point mass)");
+  }
+}
+
+void check_place(const std::string& where, const char* what, int number, int n) {
+  if (number <= n) return;
+  std::string message = where + what + " = " + std::to_string(number);
+  message += ": must be 1 to " + std::to_string(n) + ": the chain has " + std::to_string(n) + ' ';
+  message += what;
+  throw std::invalid_argument(n == 1 ? message : message + 's');
+}
+
+void check_effects(const Scene& scene) {
+  if (scene.effects.empty()) return;
+  const int n = static_cast<int>(scene.links.size());
+  std::vector<bool> locked(n);
+  std::vector<std::array<double, 2>> ranges(n, {-never, never});  // that stops leave
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    const std::string where = effect_name(scene, i) + ": ";
+    check_effect(where, scene.effects[i]);
+    std::visit(
+        [&]<class Kind>(const Kind& effect) {
+          if constexpr (requires { effect.joint; }) {
+            check_place(where, "joint", effect.joint, n);
+          }
+          if constexpr (requires { effect.link; }) check_place(where, "link", effect.link, n);
+          if constexpr (std::is_same_v<Kind, JointStop>) {
+            std::array<double, 2>& left = ranges[effect.joint - 1];
+            left = {std::max(left[0], effect.range[0]), std::min(left[1], effect.range[1])};
+            if (left[0] > left[1]) {
+              throw std::invalid_argument(where + "range: the stops of joint " +
+                                          std::to_string(effect.joint) +
+                                          " leave it no angle: their ranges must overlap");
+            }
+          }
+          if constexpr (std::is_same_v<Kind, Lock>) {
+            if (locked[effect.joint - 1]) {
+              throw std::invalid_argument(where + "joint " + std::to_string(effect.joint) +
+                                          " is locked already: leave one of the two out");
+            }
+            locked[effect.joint - 1] = true;
+          }
+        },
+        scene.effects[i]);
+  }
+}
+
+bool has_rotor(const Scene& scene, std::size_t joint) {
+  return std::ranges::any_of(effects_of<RotorInertia>(scene), [&](const RotorInertia& one) {
+    return static_cast<std::size_t>(one.joint) == joint && one.armature > 0;
+  });
+}
+
+constexpr double pi = 3.14159265358979323846;
+
+/// A sentence for an angle that looks as if it were in degrees: a multiple of five from fifteen up
+/// to two turns. A phase may well be large: it moves a wave in time.
+void warn_of_degrees(const std::string& where, const ParameterInfo& info, double x,
+                     std::vector<std::string>& warnings) {
+  if (info.unit != "rad" || info.name == "phase" || std::fmod(x, 5.0) != 0.0) return;
+  if (std::abs(x) < 15.0 || std::abs(x) > 720.0) return;
+  warnings.push_back(where + std::string(info.name) + " = " + text(x) + " rad: that is " +
+                     text(x * (180.0 / pi)) + " degrees: angles are in radians");
+}
+
+/// The same of each angle among the parameters of an effect, or of its parts.
+template <class Struct>
+void warn_of_degrees(const std::string& where, const Struct& effect,
+                     std::vector<std::string>& warnings) {
+  for_each_parameter(effect, [&]<class Value>(const ParameterInfo& info, const Value& value) {
+    if constexpr (std::is_same_v<Value, double> || std::is_same_v<Value, std::optional<double>>) {
+      warn_of_degrees(where, info, std::optional<double>(value).value_or(0.0), warnings);
+    } else if constexpr (std::is_same_v<Value, std::array<double, 2>>) {
+      for (const double x : value) warn_of_degrees(where, info, x, warnings);
+    } else if constexpr (requires { value->parameters; }) {
+      if (value) warn_of_degrees(where + std::string(info.name) + ".", *value, warnings);
+    }
+  });
+}
+
+}  // namespace
+
+Link Link::uniform_rod(double mass, double length) {
+  return {mass, length, 0.5 * length, mass * length * length / 12.0};
+}
+
+Link Link::point_mass(double mass, double length) { return {mass, length, length, 0.0}; }
+
+Scene Scene::textbook() {
+  return {.links = {Link::uniform_rod(1.0, 1.0), Link::uniform_rod(1.0, 1.0)}, .gravity = 9.807};
+}
+
+void check(const Scene& scene) {
+  const std::size_t n = scene.links.size();
+  if (n == 0) throw std::invalid_argument("links: none given: a scene has at least one link");
+  if (!std::isfinite(scene.gravity)) {
+    refuse("gravity", scene.gravity, "finite (m/s^2, downward; 0 switches it off)");
+  }
+  for (std::size_t i = 0; i < n; ++i) check_link(scene.links[i], i, i + 1 == n);
+
+  check_effects(scene);
+  // Straight or folded, a chain resists turning least: beta is the mass that the joint of link i
+  // feels across it then, D the inertia of link i about its joint (chain.hpp: D B_nn).
+  double carried = 0.0;
+  double payload_inertia = 0.0;
+  for (const Payload& payload : effects_of<Payload>(scene)) {
+    carried += payload.mass;
+    payload_inertia += payload.inertia;
+  }
+  double beta = carried;
+  for (std::size_t i = n; i-- > 0;) {
+    const auto& [m, L, c, own_inertia] = scene.links[i];
+    const double I = own_inertia + (i + 1 == n ? payload_inertia : 0.0);
+    const double about_joint = I + m * c * c + L * L * carried;
+    if (!(about_joint > 0 && std::isfinite(about_joint))) {
+      refuse(link_name(i) + ": inertia about its joint, with what it carries,", about_joint,
+             "finite and > 0 (kg m^2): give it an inertia, or move its mass centre off the joint");
+    }
+    const double D = I + m * c * c + L * L * beta;
+    if (!(D > 0) && !has_rotor(scene, i + 1)) {
+      throw std::invalid_argument(
+          link_name(i) +
+          ": has neither mass nor inertia about its joint: the mass matrix is singular when it "
+          "lines up with the next link: give one of the two an inertia");
+    }
+    beta = D > 0 ? ((m + beta) * I + m * beta * (L - c) * (L - c)) / D : m + beta;
+    carried += m;
+  }
+}
+
+std::string effect_name(const Scene& scene, std::size_t i) {
+  return "effect " + std::to_string(i + 1) + " (" + std::string(info_of(scene.effects[i]).kind) +
+         ")";
+}
+
+Scene compiled(Scene scene) {
+  for (Effect& effect : scene.effects) {
+    std::visit(
+        [](auto& one) {
+          if constexpr (requires { one.compiled(); }) one = one.compiled();
+        },
+        effect);
+  }
+  return scene;
+}
+
+PivotMotion pivot_motion(const Scene& scene, double t) {
+  PivotMotion sum;
+  for (const DrivenPivot& pivot : effects_of<DrivenPivot>(scene)) {
+    const PivotMotion one = pivot.at(t);
+    for (int axis = 0; axis < 2; ++axis) {
+      sum.position[axis] += one.position[axis];
+      sum.velocity[axis] += one.velocity[axis];
+      sum.acceleration[axis] += one.acceleration[axis];
+    }
+  }
+  return sum;
+}
+
+std::vector<bool> locked_joints(const Scene& scene) {
+  std::vector<bool> locked(scene.links.size());
+  for (const Lock& lock : effects_of<Lock>(scene)) locked[lock.joint - 1] = true;
+  return locked;
+}
+
+std::vector<std::string> plausibility_warnings(const Scene& scene) {
+  std::vector<std::string> warnings;
+  for (std::size_t i = 0; i < scene.links.size(); ++i) {
+    const Link& link = scene.links[i];
+    const double densest = 22590.0 * link.length * link.length * link.length;
+    if (link.mass > densest) {
+      warnings.push_back(link_name(i) + ": mass = " + text(link.mass) +
+                         ": a cube of osmium as wide as the link is long has " + text(densest) +
+                         " kg: is the mass in g, or the length in another unit?");
+    }
+    if (link.center < 0 || link.center > link.length) {
+      warnings.push_back(link_name(i) + ": center = " + text(link.center) +
+                         ": is not between the joints, 0 to " + text(link.length) +
+                         " m: a counterweight, or another unit?");
+    }
+    const double most = link.mass * link.center * (link.length - link.center);
+    if (link.center >= 0 && link.center <= link.length && link.inertia > most * (1 + 1e-12)) {
+      warnings.push_back(
+          link_name(i) + ": inertia = " + text(link.inertia) +
+          ": no mass between its joints has more than m c (L - c) = " + text(most) +
+          " kg m^2 about the mass centre: is it about the joint, or in other units?");
+    }
+  }
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    std::visit(
+        [&](const auto& effect) {
+          warn_of_degrees(effect_name(scene, i) + ": ", effect, warnings);
+          if constexpr (requires { effect.warnings(); }) {
+            for (const std::string& warning : effect.warnings()) {
+              warnings.push_back(effect_name(scene, i) + ": " + warning);
+            }
+          }
+        },
+        scene.effects[i]);
+  }
+  return warnings;
+}
+
+std::optional<std::size_t> without_series(const Scene& scene) {
+  const auto found = std::ranges::find_if_not(scene.effects, has_series);
+  if (found == scene.effects.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - scene.effects.begin());
+}
+
+Mobility mobility(const Scene& scene) {
+  const int n = static_cast<int>(scene.links.size());
+  const std::vector<bool> locked = locked_joints(scene);
+  // A lock makes two links one, or the first one part of the ground.
+  const int moving = n - static_cast<int>(std::ranges::count(locked, true));
+  return {.links = moving, .c5 = moving, .c4 = 0, .degrees_of_freedom = 3 * moving - 2 * moving};
+}
+
+}  // namespace pendcore

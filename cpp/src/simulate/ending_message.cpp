@@ -1,0 +1,95 @@
+#include "pendcore/simulate/ending_message.hpp"
+
+#include "pendcore/integrate/methods.hpp"
+#include "pendcore/simulate/initial_state.hpp"
+#include "pendcore/simulate/not_finite.hpp"
+#include "pendcore/text/message.hpp"
+
+namespace pendcore {
+namespace {
+
+/// "q_2" for component 1 of a chain of two links, "qd_1" for component 2.
+std::string component_name(int i, int n) {
+  return i < n ? "q_" + std::to_string(i + 1) : "qd_" + std::to_string(i - n + 1);
+}
+
+/// What is told where a table or spline does not go on at time t, in the run's direction.
+std::string table_that_ends(const Scene& scene, double t, bool forward) {
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    if (!is_outside_table(scene.effects[i], t, forward)) continue;
+    return effect_name(scene, i) + ": " + span_of(scene.effects[i]) +
+           ", and the run is at t = " + text(t) + " s: make it longer, or simulate less";
+  }
+  return {};
+}
+
+/// Where a user's law jumps, every step across it is rejected.
+bool jumps_under_users(const Scene& scene, const Statistics& statistics) {
+  return !effects_of<CompiledUser>(scene).empty() && statistics.rejected > statistics.accepted;
+}
+
+}  // namespace
+
+std::string ending_message(const Ending& ending, const Scene& scene, const Solution& solution,
+                           const IntegratorState& integrator, const std::string& remark,
+                           int ended_by) {
+  std::string message(text(ending.status).sentence);
+  const Statistics& statistics = integrator.statistics;
+  const bool wants_another_method = statistics.stiff && statistics.njev == 0;
+  // What helps there is told with the stiffness: a method, not more steps.
+  if (ending.status == Status::max_steps && wants_another_method) message.resize(message.find(':'));
+  if (ending.status == Status::at_rest) {
+    const double since = solution.resumable.t.high;
+    return message + " (at t = " + text(since) + " s: " + remark + ")";
+  }
+  if (ending.status == Status::event) {
+    const std::vector<Event>& events = solution.options.events;
+    return message + " (at t = " + text(solution.t_reached) +
+           " s: " + event_name(events[ended_by], ended_by) + ")";
+  }
+  if (ending.status == Status::max_turns) {
+    return event_name(solution.options.events[ended_by], ended_by) +
+           ": every_turn = true: the steps of this run went through more than a million turns, "
+           "beyond one each (at t = " +
+           text(solution.t_reached) +
+           " s): leave every_turn out, or keep the steps below a turn by max_step; resume goes on "
+           "with another million";
+  }
+  if (text(ending.status).success) return message;
+  if (ending.chatters) {
+    return "no step leads on: the law changes back and forth (at t = " + text(solution.t_reached) +
+           " s): dry friction that reverses at once, or two limits that meet: set one a little "
+           "apart, "
+           "or give the joint some damping";
+  }
+  const bool forward = !(solution.t_end < solution.t0);
+  std::string table = ending.status == Status::non_finite
+                          ? table_that_ends(scene, solution.t_reached, forward)
+                          : std::string();
+  if (!table.empty()) return table;
+  const std::string at = " (at t = " + text(solution.t_reached) + " s";
+  if (ending.bad >= 2 * solution.n) {
+    const Account account = solution.accounts[ending.bad - 2 * solution.n];
+    return "the ledger's " + std::string(account_name(account)) +
+           " stopped being finite: without ledger=True the motion can go on" + at + ')';
+  }
+  message += at;
+  if (ending.status == Status::max_steps && jumps_under_users(scene, statistics)) {
+    message +=
+        "; most steps were rejected: a law of yours that jumps, as sign(w) does, is no "
+        "friction that rests: DryJointFriction is";
+    return message + ')';
+  }
+  if (ending.status != Status::non_finite) return message + ')';
+  NotFinite found = find_what_is_not_finite(scene, integrator, solution.t_end);
+  if (found.component < 0) found.component = ending.bad;
+  if (found.component >= 0) message += ", " + component_name(found.component, solution.n);
+  if (found.effect >= 0) message += ", by " + effect_name(scene, found.effect);
+  if (solution.options.step &&
+      find_method(solution.options.method).kind != MethodKind::implicit_one) {
+    message += "; where the fixed step is too long, a shorter one helps, or method=\"radau5\"";
+  }
+  return message + ')';
+}
+
+}  // namespace pendcore

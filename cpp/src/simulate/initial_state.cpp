@@ -1,0 +1,144 @@
+#include "pendcore/simulate/initial_state.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "pendcore/dynamics/kinematics.hpp"
+#include "pendcore/text/message.hpp"
+
+namespace pendcore {
+namespace {
+
+void check_numbers(const char* name, const std::vector<double>& values, std::size_t n,
+                   const char* unit) {
+  if (values.size() != n) {
+    throw std::invalid_argument(std::string(name) + ": has " + std::to_string(values.size()) +
+                                " numbers: must have " + std::to_string(n) + ", one a link");
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!std::isfinite(values[i])) {
+      refuse(std::string(name) + "[" + std::to_string(i) + "]", values[i], unit);
+    }
+  }
+}
+
+void check_stop(const JointStop& stop, const std::string& where, const std::vector<double>& q0,
+                bool backward) {
+  const auto& [lower, upper] = stop.range;
+  const double phi = relative(q0.data(), stop.joint);
+  const double rounding = 1e-12 * std::max(1.0, std::abs(phi));
+  if (!(phi >= lower - rounding && phi <= upper + rounding)) {
+    refuse("q0: angle of joint " + std::to_string(stop.joint), phi,
+           text(lower) + " to " + text(upper) + " rad, as " + where + "range has it");
+  }
+  if (backward && stop.restitution < 1.0) {
+    throw std::invalid_argument(
+        "t_span: runs backward: " + where +
+        "with a restitution below 1 the past is not unique: run it forward");
+  }
+}
+
+/// What the effects of a scene ask of a start and of an interval.
+void check_effects_at_start(const Scene& scene, const std::vector<double>& q0,
+                            const std::vector<double>& qd0, double t0, double t_end) {
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    const std::string where = effect_name(scene, i) + ": ";
+    if (t_end < t0 && holding_torque(scene.effects[i])) {
+      throw std::invalid_argument("t_span: runs backward: " + where +
+                                  "with dry friction the past is not unique: run it forward");
+    }
+    if (const auto* stop = std::get_if<JointStop>(&scene.effects[i])) {
+      check_stop(*stop, where, q0, t_end < t0);
+    }
+    const auto* lock = std::get_if<Lock>(&scene.effects[i]);
+    if (lock == nullptr) continue;
+    const std::string joint = std::to_string(lock->joint);
+    const double phi = relative(q0.data(), lock->joint);
+    if (lock->angle && !(std::abs(phi - *lock->angle) <= 1e-9 * std::max(1.0, std::abs(phi)))) {
+      const std::string name = where.substr(0, where.size() - 2);  // without ": "
+      refuse(
+          "q0: angle of joint " + joint, phi,
+          text(*lock->angle) + " rad, as " + name + " says: start there, or leave its angle out");
+    }
+    const double rate = relative(qd0.data(), lock->joint);
+    if (!(std::abs(rate) <= 1e-12 * std::abs(qd0[lock->joint - 1]))) {
+      refuse("qd0: rate of joint " + joint, rate, "0 (rad/s): " + where + "it is locked");
+    }
+  }
+}
+
+}  // namespace
+
+void check_start(const Scene& scene, const std::vector<double>& q0, const std::vector<double>& qd0,
+                 double t0, double t_end) {
+  const std::size_t n = scene.links.size();
+  check_numbers("q0", q0, n, "finite (rad)");
+  check_numbers("qd0", qd0, n, "finite (rad/s)");
+  if (!std::isfinite(t0)) refuse("t_span[0]", t0, "finite (s)");
+  if (!std::isfinite(t_end)) refuse("t_span[1]", t_end, "finite (s)");
+  if (!std::isfinite(t_end - t0)) {
+    refuse("t_span[1]", t_end, "less than 1.8e308 s from t_span[0] = " + text(t0));
+  }
+  check_effects_at_start(scene, q0, qd0, t0, t_end);
+}
+
+bool is_outside_table(const Effect& effect, double t, bool forward) {
+  return std::visit(
+      [=](const auto& one) {
+        if constexpr (requires { one.last_time(); }) {
+          const double first = one.first_time();
+          const double last = one.last_time();
+          return forward ? t < first || t >= last : t <= first || t > last;
+        } else {
+          return false;
+        }
+      },
+      effect);
+}
+
+std::string span_of(const Effect& effect) {
+  return std::visit(
+      [](const auto& one) -> std::string {
+        if constexpr (requires { one.last_time(); }) {
+          std::string what = "table";
+          if constexpr (requires { one.spline; }) what = "spline";
+          return "its " + what + " goes from " + text(one.first_time()) + " to " +
+                 text(one.last_time()) + " s";
+        }
+        return {};
+      },
+      effect);
+}
+
+std::vector<std::string> run_warnings(const Scene& scene, const std::vector<double>& q0, double t0,
+                                      double t_end) {
+  std::vector<std::string> warnings;
+  // Who writes degrees writes multiples of five, and hardly beyond two turns; in radians such
+  // numbers are next to none but 0, 5 and 10.
+  const bool as_degrees = std::ranges::all_of(
+      q0, [](double q) { return std::fmod(q, 5.0) == 0.0 && std::abs(q) <= 720.0; });
+  const auto large = std::ranges::find_if(q0, [](double q) { return std::abs(q) >= 15.0; });
+  if (as_degrees && large != q0.end()) {
+    warnings.push_back("q0[" + std::to_string(large - q0.begin()) + "] = " + text(*large) +
+                       " rad: that is " + text(*large * (180.0 / 3.14159265358979323846)) +
+                       " degrees: angles are in radians");
+  }
+  const double first = std::min(t0, t_end);
+  const double last = std::max(t0, t_end);
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    std::visit(
+        [&](const auto& effect) {
+          if constexpr (requires { effect.last_time(); }) {
+            if (effect.first_time() <= first && last <= effect.last_time()) return;
+            warnings.push_back(effect_name(scene, i) + ": " + span_of(scene.effects[i]) +
+                               ", the run from " + text(t0) + " to " + text(t_end) +
+                               " s: it ends where it leaves that span");
+          }
+        },
+        scene.effects[i]);
+  }
+  return warnings;
+}
+
+}  // namespace pendcore

@@ -1,0 +1,107 @@
+#include "pendcore/simulate/options.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "pendcore/arithmetic/epsilon.hpp"
+#include "pendcore/integrate/methods.hpp"
+#include "pendcore/text/message.hpp"
+
+namespace pendcore {
+namespace {
+
+/// One number for all components or one for each, none below `least`.
+std::vector<double> tolerances(const char* name, const std::vector<double>& given,
+                               std::size_t dimension, bool zero_allowed, double least) {
+  if (given.size() != 1 && given.size() != dimension) {
+    throw std::invalid_argument(std::string(name) + ": has " + std::to_string(given.size()) +
+                                " numbers: must have 1, or " + std::to_string(dimension) +
+                                " (q_1 .. q_n, qd_1 .. qd_n)");
+  }
+  std::vector<double> result(dimension);
+  for (std::size_t i = 0; i < dimension; ++i) {
+    const double value = given[given.size() == 1 ? 0 : i];
+    if (!(std::isfinite(value) && (value > 0.0 || (zero_allowed && value == 0.0)))) {
+      const std::string index = given.size() == 1 ? "" : "[" + std::to_string(i) + "]";
+      refuse(name + index, value, zero_allowed ? "finite and >= 0" : "finite and > 0");
+    }
+    result[i] = std::max(value, least);
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<double> relative_tolerances(const Options& options, std::size_t n) {
+  const double least = 10 * epsilon;
+  return tolerances("rtol", options.rtol, 2 * n, false, least);
+}
+
+std::vector<double> absolute_tolerances(const Options& options, std::size_t n) {
+  return tolerances("atol", options.atol, 2 * n, true, 1e-150);
+}
+
+void check_times(const std::vector<double>& times, double t0, double t_end) {
+  const double direction = t_end < t0 ? -1.0 : 1.0;
+  if (times.empty()) return;
+  // In order, and both ends within the run: so are all. What is wrong is looked for after that.
+  bool is_right =
+      (times.front() - t0) * direction >= 0.0 && (t_end - times.back()) * direction >= 0.0;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    is_right &= (times[i] - times[i - 1]) * direction > 0.0;
+  }
+  if (is_right) return;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    if (!((times[i] - t0) * direction >= 0.0 && (t_end - times[i]) * direction >= 0.0)) {
+      refuse("t_eval[" + std::to_string(i) + "]", times[i],
+             "within t_span, " + text(t0) + " to " + text(t_end) + " s");
+    }
+    if (i > 0 && !((times[i] - times[i - 1]) * direction > 0.0)) {
+      refuse("t_eval[" + std::to_string(i) + "]", times[i],
+             "beyond t_eval[" + std::to_string(i - 1) + "] = " + text(times[i - 1]) +
+                 " in the direction of the run: sort the times, each once");
+    }
+  }
+}
+
+void check(const Options& options) {
+  if (!(options.max_step > 0.0)) refuse("max_step", options.max_step, "> 0 (s)");
+  for (const auto& [field, value] :
+       {std::pair{"first_step", options.first_step}, std::pair{"step", options.step}}) {
+    if (value && !(*value > 0.0 && std::isfinite(*value))) {
+      refuse(field, *value, "finite and > 0 (s)");
+    }
+  }
+  if (options.step && options.first_step) {
+    throw std::invalid_argument("first_step: a fixed step is given as step: leave one of them out");
+  }
+  if (options.step && *options.step > options.max_step) {
+    refuse("step", *options.step, "<= max_step = " + text(options.max_step) + " (s)");
+  }
+  if (!(options.time_limit > 0.0)) refuse("time_limit", options.time_limit, "> 0 (s)");
+  if (options.max_steps < 1) {
+    throw std::invalid_argument("max_steps = " + std::to_string(options.max_steps) +
+                                ": must be >= 1");
+  }
+  const bool takes_times = options.store == Store::times || options.store == Store::dense;
+  if (options.store == Store::times && options.t_eval.empty()) {
+    throw std::invalid_argument("t_eval: none given: store = \"times\" keeps the times in it (s)");
+  }
+  if (!options.t_eval.empty() && !takes_times) {
+    throw std::invalid_argument(
+        "store: keeps no times of t_eval: must be \"times\" or \"dense\" with it");
+  }
+  if (options.method == automatic) return;  // whatever it comes to be takes all that follows
+  const MethodInfo& method = find_method(options.method, automatic);
+  if (method.error_order == 0 && !options.step) {
+    throw std::invalid_argument("step: none given: method \"" + std::string(method.name) +
+                                "\" estimates no error and takes fixed steps: give one, > 0 (s)");
+  }
+  if (options.compensated && !method.compensates) {
+    throw std::invalid_argument("compensated: method \"" + std::string(method.name) +
+                                "\" cannot carry on what rounding leaves over: must be False");
+  }
+}
+
+}  // namespace pendcore

@@ -1,0 +1,121 @@
+#include "pendcore/simulate/recorder.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace pendcore {
+
+Recorder::Recorder(Solution& solution, const Stepper& stepper, const Scene& scene,
+                   const std::vector<long long>& passed_events)
+    : solution_(solution),
+      may_throw_(!effects_of<CompiledUser>(scene).empty()),
+      keeps_polynomials_(solution.options.store == Store::dense),
+      keeps_steps_(solution.options.store == Store::steps ||
+                   (keeps_polynomials_ && solution.options.t_eval.empty())),
+      dimension_(static_cast<std::size_t>(stepper.dimension())),
+      polynomial_(static_cast<std::size_t>(stepper.interpolant_degree() + 1) * dimension_) {
+  const std::vector<Event>& events = solution.options.events;
+  if (!events.empty() && stepper.interpolant_degree() > highest_degree) {
+    throw std::invalid_argument("events: the dense output of this method has too high a degree");
+  }
+  if (!events.empty()) finder_.emplace(scene, events, solution.found, passed_events);
+  solution_.t.reserve(solution_.options.t_eval.size());
+  solution_.states.reserve(solution_.options.t_eval.size() * dimension_);
+}
+
+void Recorder::start(double t, const std::vector<double>& y) {
+  const std::vector<double>& samples = solution_.options.t_eval;
+  const bool asked_for = !samples.empty() && samples.front() == t;
+  if (keeps_steps_ || asked_for) std::ranges::copy(y, append(t));
+}
+
+double Recorder::step_accepted(Stepper& stepper, const TwoDouble& t_old, double h, double t_new) {
+  double end = 2.0;
+  // Before anything is kept: it may ask for right-hand sides, and one of the user's may raise.
+  if (finder_ || keeps_polynomials_) stepper.interpolant(h, polynomial_.data());
+  if (finder_) {
+    end = finder_->look(stepper, polynomial_.data(), t_old, h, t_new);
+    if (end == 0.0) return end;
+  }
+  const double t_end = end < 1.0 ? time_in_step(t_old, h, end, t_new).high : t_new;
+  if (keeps_polynomials_ && t_end != t_old.high) {
+    DenseOutput& dense = solution_.dense;
+    dense.start.push_back(t_old.high);
+    dense.start_low.push_back(t_old.low);
+    dense.h.push_back(h);
+    dense.coefficients.insert(dense.coefficients.end(), polynomial_.begin(), polynomial_.end());
+  }
+  if (end < 1.0) {
+    keep_clipped(stepper, t_old, h, end, t_end);
+  } else if (keeps_steps_) {
+    stepper.get_new_state(append(t_new));
+  } else {
+    sample_step(stepper, t_old, h, t_new);
+  }
+  return end;
+}
+
+/// The step up to an event within it, at time t.
+void Recorder::keep_clipped(Stepper& stepper, const TwoDouble& t_old, double h, double theta,
+                            double t) {
+  const std::vector<double>& samples = solution_.options.t_eval;
+  const bool is_new = solution_.t.empty() || solution_.t.back() != t;
+  bool is_kept = keeps_steps_;
+  if (!keeps_steps_) {
+    sample_step(stepper, t_old, h, t, false);
+    is_kept = solution_.t.size() < samples.size() && samples[solution_.t.size()] == t;
+  }
+  if (is_kept && is_new) stepper.sample(polynomial_.data(), {}, 1.0, &theta, 1, append(t));
+}
+
+/// Both states are kept, with the same time; of times asked for, the state after. An impact that
+/// changes no rate is no jump.
+void Recorder::state_jumped(double t, const double* before, const double* after) {
+  if (std::equal(before, before + 2 * solution_.n, after)) return state_settled(t, after);
+  if (finder_) finder_->jump(t, before, after);
+  if (keeps_steps_) {
+    std::copy_n(after, dimension_, append(t));
+  } else {
+    state_settled(t, after);
+  }
+}
+
+void Recorder::state_settled(double t, const double* after) {
+  if (solution_.t.empty() || solution_.t.back() != t) return;
+  std::copy_n(after, dimension_, solution_.states.end() - static_cast<std::ptrdiff_t>(dimension_));
+}
+
+Recorder::Kept Recorder::kept() const {
+  return {solution_.t.size(), solution_.dense.h.size(), solution_.found.size()};
+}
+
+void Recorder::count(const Kept& kept) {
+  solution_.resumable_t = kept.t;
+  solution_.resumable_steps = kept.steps;
+  solution_.resumable_found = kept.found;
+}
+
+void Recorder::sample_step(Stepper& stepper, const TwoDouble& t_old, double h, double t_new,
+                           bool with_end) {
+  const std::vector<double>& samples = solution_.options.t_eval;
+  const std::size_t first = solution_.t.size();
+  std::size_t end = first;
+  while (end < samples.size() && (samples[end] - t_new) * h < 0.0) ++end;
+  if (end > first) {
+    for (std::size_t k = first; k < end; ++k) solution_.t.push_back(samples[k]);
+    solution_.states.resize(end * dimension_);
+    stepper.interpolant(h, polynomial_.data());
+    stepper.sample(polynomial_.data(), t_old, h, samples.data() + first,
+                   static_cast<int>(end - first), solution_.states.data() + first * dimension_);
+  }
+  if (with_end && end < samples.size() && samples[end] == t_new)
+    stepper.get_new_state(append(t_new));
+}
+
+double* Recorder::append(double t) {
+  solution_.t.push_back(t);
+  solution_.states.resize(solution_.states.size() + dimension_);
+  return solution_.states.data() + solution_.states.size() - dimension_;
+}
+
+}  // namespace pendcore

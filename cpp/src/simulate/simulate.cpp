@@ -1,0 +1,280 @@
+#include "pendcore/simulate/simulate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+
+#include "pendcore/arithmetic/floating_point_environment.hpp"
+#include "pendcore/dynamics/energetics/ledger.hpp"
+#include "pendcore/integrate/loop/first_step.hpp"
+#include "pendcore/integrate/loop/run_limits.hpp"
+#include "pendcore/integrate/methods.hpp"
+#include "pendcore/simulate/ending_message.hpp"
+#include "pendcore/simulate/fast_mode.hpp"
+#include "pendcore/simulate/initial_state.hpp"
+#include "pendcore/simulate/method_choice.hpp"
+#include "pendcore/simulate/recorder.hpp"
+#include "pendcore/simulate/switching.hpp"
+#include "pendcore/text/message.hpp"
+
+namespace pendcore {
+namespace {
+
+/// A run goes on from where it ended, to times that it has not been asked for.
+void check_continuation(const Solution& solution, double t_end, const std::vector<double>& t_eval) {
+  const double reached = solution.t_reached;
+  // A run of no length has no direction yet: it takes that of what follows.
+  const bool has_length = solution.t_end != solution.t0;
+  const double span = (has_length ? solution.t_end : t_end) - solution.t0;
+  auto before = [span](double a, double b) { return span < 0.0 ? b < a : span > 0.0 && a < b; };
+  if (!std::isfinite(t_end) || before(t_end, reached)) {
+    refuse("t_end", t_end, "finite and at or beyond the end reached, " + text(reached) + " s");
+  }
+  const std::vector<double>& asked = solution.options.t_eval;
+  if (!asked.empty() && before(t_end, asked.back())) {
+    refuse("t_end", t_end, "at or beyond the last time asked for, " + text(asked.back()) + " s");
+  }
+  if (t_eval.empty()) return;
+  if (asked.empty()) {
+    throw std::invalid_argument(
+        "t_eval: this run was not asked for times, and keeps what it kept so far: leave t_eval "
+        "out");
+  }
+  check_times(t_eval, reached, t_end);
+  if (!before(asked.back(), t_eval.front())) {
+    refuse("t_eval[0]", t_eval.front(),
+           "beyond the last time asked for so far, " + text(asked.back()) + " s");
+  }
+}
+
+/// What a solution that goes on has: one that has no length yet has no direction either.
+enum class Before { nothing, a_start, steps };
+
+/// The laws, the rates and the first step of a run that begins. Where a function of the user's
+/// raises, or an impact is not finite, nothing of that is kept: a run that goes on begins anew.
+struct Beginning {
+  const Options& options;
+  Stepper& stepper;
+  Switching* switching;
+  Recorder& recorder;
+  const std::vector<double>& rtol;
+  const std::vector<double>& atol;
+  bool depends_on_end = false;  ///< the first step does: of a longer run it is another one
+
+  /// `integrator` is of no use where the ending is cut.
+  Ending make(IntegratorState& integrator, double t_end) {
+    recorder.restarts_here();
+    Ending ending{.status = Status::finished, .cut = false};
+    try {
+      ending.bad = try_to(integrator, t_end);
+      if (ending.bad >= 0) ending.status = Status::non_finite;
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (const Stopped& stopped) {
+      ending.status = stopped.status;
+    } catch (...) {
+      ending.status = Status::callback_error;
+      ending.error = std::current_exception();
+    }
+    ending.cut = ending.status != Status::finished;
+    return ending;
+  }
+
+ private:
+  /// The component that is not finite, or -1.
+  int try_to(IntegratorState& integrator, double t_end) {
+    const double t = integrator.t.high;
+    const double direction = t_end < t ? -1.0 : 1.0;
+    std::vector<double>& y = integrator.y;
+    std::vector<double> before;
+    bool jumped = false;
+    if (switching != nullptr) {
+      before = y;
+      jumped = switching->begin(t, y.data(), direction > 0.0);
+    }
+    if (const int bad = bad_component(y); bad >= 0) return bad;
+    stepper.evaluate(t, y.data(), integrator.dydt.data());
+    stepper.start(y.data(), integrator.dydt.data());
+    if (t != t_end) {
+      double size = options.step.value_or(
+          std::min(options.first_step.value_or(options.max_step), options.max_step));
+      if (!options.step && !options.first_step) {
+        const FirstStep first =
+            first_step(stepper, t, t_end, options.max_step, rtol.data(), atol.data());
+        size = first.h;
+        depends_on_end = first.is_bounded;
+      }
+      integrator.h = direction * size;
+      integrator.h_is_max_step = options.step || size == options.max_step;
+    }
+    if (jumped) {
+      recorder.state_jumped(t, before.data(), y.data());
+    } else {
+      recorder.state_settled(t, y.data());
+    }
+    return -1;
+  }
+};
+
+/// From the solution's resumable position to t_end.
+void run(const Scene& scene, Solution& solution, double t_end, Limits limits, Before before,
+         const std::vector<long long>& passed_events = {}) {
+  const Options& options = solution.options;
+  const EquationsOfMotion equations = equations_of_motion(scene);
+  const auto stepper =
+      make_stepper(scene, equations, options.method, options.ledger, options.compensated);
+  std::optional<Switching> switching;
+  if (Switching::is_needed(scene)) switching.emplace(scene, equations, solution.accounts);
+  const std::size_t n = scene.links.size();
+  const std::vector<double> rtol = relative_tolerances(options, n);
+  const std::vector<double> atol = absolute_tolerances(options, n);
+  stepper->set_tolerances(rtol.data(), atol.data());
+
+  Recorder recorder(solution, *stepper, scene, passed_events);
+  if (before != Before::nothing && solution.dense.degree != stepper->interpolant_degree()) {
+    throw std::invalid_argument("the dense output of this solution is not that of its method");
+  }
+  solution.dense.degree = stepper->interpolant_degree();
+  IntegratorState integrator = solution.resumable;
+  if (before == Before::nothing) recorder.start(integrator.t.high, integrator.y);
+  Switching* const discontinuities = switching ? &*switching : nullptr;
+  RunLimits clock(limits, integrator.t.high);
+  if (switching) {  // which joints hold is no step, and takes long in a long chain
+    switching->look_up_in_long_work([&clock, &integrator] {
+      const Status status = clock.look(integrator.t.high);
+      if (status != Status::finished) throw Stopped{status};
+    });
+  }
+  Ending ending{.status = Status::finished, .cut = false};
+  if (before == Before::steps) {
+    const double t = integrator.t.high;
+    if (switching)
+      switching->restore(integrator.discontinuities, t, integrator.y.data(), !(t_end < t));
+    stepper->start(integrator.y.data(), integrator.dydt.data());
+    stepper->restore(integrator.stepper);
+    integrator.statistics.nfev += stepper->evaluations;
+  } else {
+    Beginning beginning{options, *stepper, discontinuities, recorder, rtol, atol};
+    ending = beginning.make(integrator, t_end);
+    if (ending.cut) integrator = solution.resumable;  // the start
+    limits.begins_anew = beginning.depends_on_end;
+    integrator.statistics.nfev = stepper->evaluations;
+  }
+  if (ending.status == Status::finished) {
+    if (switching) integrator.discontinuities = switching->saved_state();
+    ending = integrate(*stepper, integrator, solution.resumable, limits, recorder, discontinuities);
+  } else {
+    solution.resumable = integrator;
+  }
+  if (!ending.cut) recorder.restarts_here();
+  solution.status = ending.status;
+  solution.statistics = integrator.statistics;
+  solution.t_reached = integrator.t.high;
+  solution.y_reached = integrator.y;
+  solution.message = ending_message(ending, scene, solution, integrator,
+                                    switching ? switching->remark() : "", recorder.ended_by());
+  if (switching) solution.message += switching->remark_on_impacts();
+  solution.message += remark_on_steps(scene, equations, integrator, find_method(options.method),
+                                      stepper->info(), options.step.has_value(), solution.t0);
+  solution.error = ending.error;
+  if (options.store == Store::end) {
+    solution.t = {solution.t_reached};
+    solution.states = solution.y_reached;
+  }
+}
+
+long long attempts(const Statistics& statistics) {
+  return statistics.accepted + statistics.rejected;
+}
+
+Limits limits_of(const Options& options, double t_end) {
+  return {.t_end = t_end,
+          .max_step = options.max_step,
+          .fixed_step = options.step.has_value(),
+          .max_steps = options.max_steps,
+          .time_limit = options.time_limit,
+          .monitor = options.monitor};
+}
+
+}  // namespace
+
+Solution simulate(const Scene& scene, const std::vector<double>& q0, const std::vector<double>& qd0,
+                  double t0, double t_end, const Options& options) {
+  const FloatingPointEnvironment ieee;
+  const std::size_t n = scene.links.size();
+  check(scene);
+  check_start(scene, q0, qd0, t0, t_end);
+  check(options);
+  for (std::size_t i = 0; i < options.events.size(); ++i) {
+    const Event& event = options.events[i];
+    check_event(event_name(event, i) + ": ", event, static_cast<int>(n));
+  }
+  check_times(options.t_eval, t0, t_end);
+
+  Solution solution;
+  solution.options = options;
+  solution.options.method = chosen_method(scene, options);
+  solution.options.monitor = nullptr;
+  solution.t0 = t0;
+  solution.t_end = t_end;
+  solution.n = static_cast<int>(n);
+  if (options.ledger) solution.accounts = accounts_of(scene);
+  const std::size_t dimension = 2 * n + solution.accounts.size();
+  solution.dimension = static_cast<int>(dimension);
+  IntegratorState& start = solution.resumable;
+  start.t = {t0, 0.0};
+  start.y = q0;
+  start.y.insert(start.y.end(), qd0.begin(), qd0.end());
+  start.y.resize(dimension);
+  solution.start = start.y;
+  start.dydt.resize(dimension);
+  run(scene, solution, t_end, limits_of(options, t_end), Before::nothing);
+  return solution;
+}
+
+Solution resume(const Scene& scene, const Solution& solution, double t_end,
+                const std::vector<double>& t_eval, long long max_steps, double time_limit,
+                const Monitor& monitor) {
+  const FloatingPointEnvironment ieee;
+  Solution longer = solution;
+  Options& options = longer.options;
+  check_continuation(solution, t_end, t_eval);
+  options.max_steps = max_steps;
+  options.time_limit = time_limit;
+  options.t_eval.insert(options.t_eval.end(), t_eval.begin(), t_eval.end());
+  check(options);
+
+  longer.t_end = t_end;
+  // What has no step yet begins anew.
+  const bool has_begun = solution.resumable.h != 0.0;
+  if (!has_begun) {
+    const auto middle = solution.start.begin() + solution.n;
+    check_start(scene, {solution.start.begin(), middle}, {middle, middle + solution.n}, solution.t0,
+                t_end);
+  }
+  std::vector<long long> passed_events(options.events.size());
+  for (const FoundEvent& one : longer.found) ++passed_events[one.event];
+  longer.found.resize(longer.resumable_found);
+  const auto dimension = static_cast<std::size_t>(longer.dimension);
+  const auto degree = static_cast<std::size_t>(longer.dense.degree);
+  longer.t.resize(longer.resumable_t);
+  longer.states.resize(longer.resumable_t * dimension);
+  longer.dense.start.resize(longer.resumable_steps);
+  longer.dense.start_low.resize(longer.resumable_steps);
+  longer.dense.h.resize(longer.resumable_steps);
+  longer.dense.coefficients.resize(longer.resumable_steps * (degree + 1) * dimension);
+  Limits limits = limits_of(options, t_end);
+  limits.monitor = monitor;
+  // To the same end, the run does again what it did since: that is no step of the continuation.
+  if (t_end == solution.t_end) {
+    const long long again = attempts(solution.statistics) - attempts(solution.resumable.statistics);
+    const long long most = std::numeric_limits<long long>::max() - max_steps;
+    limits.max_steps += std::clamp(again, 0LL, most);
+  }
+  run(scene, longer, t_end, limits, has_begun ? Before::steps : Before::a_start, passed_events);
+  return longer;
+}
+
+}  // namespace pendcore

@@ -1,0 +1,340 @@
+#include "pendcore/simulate/switching.hpp"
+
+#include <algorithm>
+#include <climits>
+#include <stdexcept>
+
+#include "pendcore/arithmetic/epsilon.hpp"
+#include "pendcore/dynamics/kinematics.hpp"
+#include "pendcore/simulate/initial_state.hpp"
+#include "pendcore/text/message.hpp"
+
+namespace pendcore {
+namespace {
+
+void require(bool fits) {
+  if (!fits) throw std::invalid_argument("the modes of this solution are not those of its scene");
+}
+
+/// A whole number of a memory, which may come from a damaged file.
+int whole(double x, int least, int most) {
+  require(x >= least && x <= most);
+  return static_cast<int>(x);
+}
+
+}  // namespace
+
+bool Switching::is_needed(const Scene& scene) {
+  return std::ranges::any_of(scene.effects, [](const Effect& effect) {
+    return std::visit(
+        []<class Kind>(const Kind& one) {
+          if constexpr (std::is_same_v<Kind, Lock> || std::is_same_v<Kind, JointStop>) return true;
+          if constexpr (requires { one.has_modes(); }) return one.has_modes();
+          return false;
+        },
+        effect);
+  });
+}
+
+Switching::Switching(const Scene& scene, const EquationsOfMotion& equations,
+                     const std::vector<Account>& accounts)
+    : scene_(compiled(scene)),
+      equations_(equations),
+      accounts_(accounts),
+      n_(static_cast<int>(scene.links.size())),
+      joints_(*equations_.held_joints),
+      torque_(scene.links.size()),
+      struck_(scene.links.size()),
+      release_direction_(scene.links.size()) {}
+
+bool Switching::begin(double t, double* y, bool forward) {
+  forward_ = forward;
+  joints_.set_direction(forward);
+  choose_modes_from(t, y, y + n_);
+  for (const Lock& lock : effects_of<Lock>(scene_)) {
+    joints_.lock(lock.joint - 1, lock.angle.value_or(relative(y, lock.joint)), y);
+  }
+  const bool strikes = joints_.fastest_strike(y, y + n_) > 0.0;
+  if (strikes) {
+    strike(t, y, true);
+  } else {
+    joints_.choose(equations_, t, y, y + n_);
+    choose_sides(t, y, y + n_);
+  }
+  collect_guards(y);
+  return strikes;
+}
+
+void Switching::choose_modes_from(double t, const double* q, const double* qd) {
+  choose_modes(*equations_.effects, t, q, qd, forward_);
+  for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
+    if (!is_outside_table(scene_.effects[i], t, forward_)) continue;
+    put_mode(i, -1);
+    is_over_ = true;
+  }
+}
+
+/// A law that has its sides apart at the rate zero is on the one that a joint at rest sets out to:
+/// that of its acceleration, or the one it was let go to while it has none.
+void Switching::choose_sides(double t, const double* q, const double* qd) {
+  std::vector<double> qdd;
+  for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
+    std::visit(
+        [&](const auto& one) {
+          if constexpr (requires {
+                          one.has_modes();
+                          one.joint;
+                        }) {
+            if (holding_torque(scene_.effects[i])) return;  // as choose() has decided
+            if (relative(qd, one.joint) != 0.0 || joints_.is_held(one.joint - 1)) return;
+            const int mode = equations_.effects->modes[i];
+            const std::vector<Guard> guards = one.guards(mode);
+            for (std::size_t k = 0; k < guards.size(); ++k) {
+              if (!guards[k].is_on_rate()) continue;
+              if (qdd.empty()) {
+                qdd.resize(n_);
+                accelerations_in_force(equations_, t, q, qd, qdd.data());
+              }
+              const double phidd = relative(qdd.data(), one.joint);
+              const int direction = release_direction_[one.joint - 1];
+              const double way = direction != 0 ? direction : phidd;
+              const double slope = guards[k].on_phid * way;
+              if ((forward_ ? slope : -slope) < 0.0) put_mode(i, one.next_mode(mode, k));
+            }
+          }
+        },
+        scene_.effects[i]);
+  }
+}
+
+double Switching::next_time(double t) const {
+  const bool is_known = forward_ ? asked_ <= t && t < next_time_ : next_time_ < t && t <= asked_;
+  if (is_known) return next_time_;
+  asked_ = t;
+  next_time_ = forward_ ? never : -never;
+  for (const Effect& effect : scene_.effects) {
+    std::visit(
+        [&](const auto& one) {
+          if constexpr (requires { one.next_time(t, true); }) {
+            const double next = one.next_time(t, forward_);
+            next_time_ = forward_ ? std::min(next_time_, next) : std::max(next_time_, next);
+          }
+        },
+        effect);
+  }
+  return next_time_;
+}
+
+/// An eighth of the fastest wave, where a joint is held that it could set free.
+void Switching::set_longest_step() {
+  constexpr double eighth_turn = 0.785398163397448;
+  longest_step_ = never;
+  if (!joints_.any_held_for_now()) return;
+  const EffectsInForce& effects = *equations_.effects;
+  for (int k = 0; k < effects.waves; ++k) {
+    longest_step_ = std::min(longest_step_, eighth_turn / std::abs(effects.angular_frequency[k]));
+  }
+  if (!effects.users.empty()) {
+    longest_step_ = std::min(longest_step_, 0.01 / joints_.natural_speed());
+  }
+}
+
+/// Whether a joint that was let go has no acceleration yet, but for the last bits of its torque and
+/// of time: other changes at the same time may have given it one.
+bool Switching::is_at_its_border(int joint, double t, const double* y) const {
+  std::vector<double> qdd(n_);
+  accelerations_in_force(equations_, t, y, y + n_, qdd.data());
+  const double now = relative(qdd.data(), joint + 1);
+  if (joints_.is_rounding(joint, now)) return true;
+  if (now * release_direction_[joint] > 0.0) return false;
+  const double moment = (forward_ ? 1.0 : -1.0) * shortest_moment(t);
+  std::vector<double> soon(y, y + 2 * static_cast<std::ptrdiff_t>(n_));
+  for (int i = 0; i < n_; ++i) {
+    soon[i] += moment * y[n_ + i];
+    soon[n_ + i] += moment * qdd[i];
+  }
+  accelerations_in_force(equations_, t + moment, soon.data(), soon.data() + n_, qdd.data());
+  return relative(qdd.data(), joint + 1) * release_direction_[joint] > 0.0;
+}
+
+void Switching::forget_releases_away_from_the_border(double t, const double* y) {
+  for (int j = 0; j < n_; ++j) {
+    if (release_direction_[j] != 0 && !is_at_its_border(j, t, y)) release_direction_[j] = 0;
+  }
+}
+
+void Switching::count_at_once(double t) {
+  changes_at_once_ = t == time_of_change_ ? changes_at_once_ + 1 : 0;
+  if (changes_at_once_ == 0) std::ranges::fill(release_direction_, 0);
+  time_of_change_ = t;
+}
+
+bool Switching::cross(int k, double t, double* y) {
+  count_at_once(t);
+  if (k < 0) {
+    cross_time(t);
+    forget_releases_away_from_the_border(t, y);
+    collect_guards(y);
+    return false;
+  }
+  bool jumped = false;
+  if (k >= linear_guards()) {
+    release(held_guards_[k - linear_guards()], t, y);
+  } else if (guards_[k].stop != Side::none) {
+    jumped = reach_stop(k, t, y);
+  } else if (is_of_friction(guards_[k])) {
+    come_to_rest(k, t, y);
+  } else {
+    change_side(guards_[k]);
+  }
+  for (int j = 0; j < n_; ++j) {
+    if (jumped || joints_.is_held(j)) release_direction_[j] = 0;
+  }
+  forget_releases_away_from_the_border(t, y);
+  choose_sides(t, y, y + n_);
+  collect_guards(y);
+  return jumped;
+}
+
+void Switching::release(const HeldGuard& guard, double t, const double* y) {
+  if (changes_at_once_ > many_at_once) return choose(t, y, -1);
+  release_direction_[guard.joint] = guard.is_most ? -1 : 1;
+  joints_.release(*equations_.effects, guard.joint, release_direction_[guard.joint]);
+}
+
+/// Whether the state jumped.
+bool Switching::reach_stop(int k, double t, double* y) {
+  settle(k, y);
+  const int joint = guards_[k].joint;
+  double* const qd = y + n_;
+  if (std::abs(relative(qd, joint + 1)) <= epsilon * joints_.supports()[joint].natural_speed) {
+    // No impact: it would set joints in motion that friction holds, at a rate below all rounding.
+    set_relative(qd, joint + 1, 0.0);
+    joints_.settle(y, qd);
+    choose(t, y, joint);
+    return false;
+  }
+  // Or it was leaving, and is back too soon to be told: captured.
+  const std::vector<double> before(qd, qd + n_);
+  strike(t, y, false);
+  return !std::equal(before.begin(), before.end(), qd);
+}
+
+bool Switching::is_of_friction(const Watch& watch) const {
+  return watch.guard.is_on_rate() && !joints_.supports()[watch.joint].friction_effects.empty();
+}
+
+void Switching::come_to_rest(int k, double t, double* y) {
+  settle(k, y);
+  const int joint = guards_[k].joint;
+  // Where the torques begin to hold it just now, rounding has no say in whether they do.
+  if (joints_.is_rounding(joint, slope_at_rest(k, t, y))) {
+    joints_.choose(equations_, t, y, y + n_, joint);
+  } else {
+    choose(t, y, joint);
+  }
+}
+
+/// A law that has its sides apart is on the next.
+void Switching::change_side(const Watch& watch) {
+  std::visit(
+      [&](const auto& one) {
+        if constexpr (requires { one.has_modes(); }) {
+          const int mode = equations_.effects->modes[watch.effect];
+          put_mode(watch.effect, one.next_mode(mode, watch.number));
+        }
+      },
+      scene_.effects[watch.effect]);
+}
+
+double Switching::shortest_moment(double t) const {
+  return 64.0 * epsilon * std::max(std::abs(t), 1.0 / joints_.natural_speed());
+}
+
+/// Which joints are held; in the end, what changed last.
+void Switching::choose(double t, const double* y, int joint) {
+  const bool is_hopeless = changes_at_once_ > 3 * many_at_once;
+  joints_.choose(equations_, t, y, y + n_, is_hopeless ? joint : -1);
+}
+
+void Switching::cross_time(double t) {
+  for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
+    std::visit(
+        [&](const auto& one) {
+          if constexpr (requires { one.next_time(t, true); }) {
+            if (!one.has_modes() || one.guards(equations_.effects->modes[i]).size() > 0) return;
+            const bool is_outside = is_outside_table(scene_.effects[i], t, forward_);
+            put_mode(i, is_outside ? -1 : one.mode_at(t, 0.0, 0.0, forward_));
+            is_over_ |= is_outside;
+          }
+        },
+        scene_.effects[i]);
+  }
+}
+
+/// Whether what holds now holds for ever.
+bool Switching::is_for_good() const {
+  return std::ranges::none_of(scene_.effects, [](const Effect& effect) {
+    return std::visit(
+        [](const auto& one) {
+          if constexpr (requires { one.wave(); }) {
+            if (one.wave()) return true;
+          }
+          if constexpr (requires { one.last_time(); }) {
+            if (one.last_time() < never) return true;
+          }
+          return one.info.account == Account::drive || one.info.account == Account::user;
+        },
+        effect);
+  });
+}
+
+void Switching::see_whether_all_rests(const double* y) {
+  rests_ = joints_.any_held_for_now() && is_for_good();
+  for (int j = 0; j < n_; ++j) rests_ = rests_ && joints_.is_held(j) && y[n_ + j] == 0.0;
+  if (!rests_) return;
+  bool any_stop = false;
+  for (int j = 0; j < n_; ++j) any_stop |= joints_.contact(j, y) != Side::none;
+  remark_ = any_stop ? "friction and stops hold every joint" : "dry friction holds every joint";
+}
+
+std::vector<double> Switching::saved_state() const {
+  const std::vector<int>& modes = equations_.effects->modes;
+  std::vector<double> memory(modes.begin(), modes.end());
+  memory.push_back(time_of_change_);
+  memory.push_back(changes_at_once_);
+  memory.push_back(order_lost_);
+  memory.push_back(time_of_impact_);
+  memory.insert(memory.end(), struck_.begin(), struck_.end());
+  memory.insert(memory.end(), release_direction_.begin(), release_direction_.end());
+  const std::vector<double> holds = joints_.saved_state();
+  memory.insert(memory.end(), holds.begin(), holds.end());
+  for (const Watch& watch : guards_) memory.push_back(watch.zeros_at_start);
+  return memory;
+}
+
+void Switching::restore(const std::vector<double>& memory, double t, const double* y,
+                        bool forward) {
+  forward_ = forward;
+  joints_.set_direction(forward);
+  const std::size_t effects = scene_.effects.size();
+  const std::size_t joints = scene_.links.size();
+  require(memory.size() >= effects + 4 + (2 + HeldJoints::numbers_in_memory) * joints);
+  for (std::size_t i = 0; i < effects; ++i) put_mode(i, whole(memory[i], -1, INT_MAX));
+  is_over_ = std::ranges::any_of(
+      scene_.effects, [&](const Effect& one) { return is_outside_table(one, t, forward_); });
+  std::size_t from = joints_.restore(*equations_.effects, memory, effects + 4 + 2 * joints);
+  time_of_change_ = memory[effects];
+  changes_at_once_ = whole(memory[effects + 1], 0, INT_MAX);
+  order_lost_ = memory[effects + 2];
+  time_of_impact_ = memory[effects + 3];
+  for (std::size_t j = 0; j < joints; ++j) {
+    struck_[j] = whole(memory[effects + 4 + j], 0, 1);
+    release_direction_[j] = whole(memory[effects + 4 + joints + j], -1, 1);
+  }
+  collect_guards(y);
+  require(memory.size() == from + guards_.size());
+  for (Watch& watch : guards_) watch.zeros_at_start = whole(memory[from++], 0, 3);
+}
+
+}  // namespace pendcore

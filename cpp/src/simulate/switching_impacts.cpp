@@ -1,0 +1,114 @@
+// The impacts of Switching, and what the joints do after them.
+#include <algorithm>
+#include <cmath>
+
+#include "pendcore/arithmetic/epsilon.hpp"
+#include "pendcore/dynamics/contact/impact.hpp"
+#include "pendcore/dynamics/kinematics.hpp"
+#include "pendcore/simulate/switching.hpp"
+#include "pendcore/text/message.hpp"
+
+namespace pendcore {
+/// An impact, and what the joints do after it: rates have jumped, so that every law that has sides
+/// may be on another one.
+void Switching::strike(double t, double* y, bool begins) {
+  double* const qd = y + n_;
+  const std::vector<double> before(qd, qd + n_);
+  joints_.begin_impact(y);
+  double loss = bounce_in_turn(t, y, begins);
+  while (capture(t, y, qd)) {
+    loss += joints_.stay_at_stops(y, qd);
+    choose_all_modes(t, y);
+  }
+  if (loses_order_ && any_struck_leaves(y) && std::isnan(order_lost_)) order_lost_ = t;
+  if (joints_.has_failed()) std::ranges::copy(before, qd);
+  book(Account::impact, loss, y);
+  book(Account::drive, joints_.work_of_drive(equations_, t, before, qd), y);
+}
+
+/// Impacts at one time until no joint moves into its stop; what they take of the energy. Joints at
+/// rest that nothing pushes on their stops are leaving them, as far as more exact numbers could
+/// tell; where a run begins, all that touch their stops share the first impacts.
+double Switching::bounce_in_turn(double t, double* y, bool begins) {
+  double* const qd = y + n_;
+  const bool is_plastic = changes_at_once_ > many_at_once;
+  const double rounding = epsilon * joints_.fastest_strike(y, qd);
+  loses_order_ = false;
+  if (!(std::abs(t - time_of_impact_) <= shortest_moment(t))) std::ranges::fill(struck_, 0);
+  time_of_impact_ = t;
+  double loss = 0.0;
+  for (int i = 1; i <= most_impacts_at_once && !joints_.has_failed(); ++i) {
+    const double speed = joints_.fastest_strike(y, qd);
+    if (speed == 0.0) break;
+    const bool is_last = i == most_impacts_at_once || speed <= rounding;
+    if (!begins) loses_order_ |= loses_order_of(y);
+    loss += is_last ? joints_.stay_at_stops(y, qd) : joints_.bounce(y, qd, is_plastic, begins);
+    choose_all_modes(t, y);
+    if (is_last) break;
+  }
+  return loss;
+}
+
+/// Whether the order cannot be told of what strikes now and has struck at this time: in a corner of
+/// two stops each impact says which is next, whatever is left of the gaps; not so in one of three,
+/// nor where two joints are on their way to their stops at once.
+bool Switching::loses_order_of(const double* y) {
+  int at_once = 0;
+  for (int j = 0; j < n_; ++j) {
+    if (!(joints_.into(j, y, y + n_) > 0.0)) continue;
+    ++at_once;
+    struck_[j] = 1;
+  }
+  return at_once > 1 || std::ranges::count(struck_, 1) > 2;
+}
+
+/// Whether some of them go on: if the impacts have brought all to rest, another order does as well.
+bool Switching::any_struck_leaves(const double* y) const {
+  for (int j = 0; j < n_; ++j) {
+    const double away = std::abs(relative(y + n_, j + 1));
+    if (struck_[j] != 0 && away > noticeable_rate * joints_.natural_speed()) return true;
+  }
+  return false;
+}
+
+std::string Switching::remark_on_impacts() const {
+  if (std::isnan(order_lost_)) return {};
+  return "; at t = " + text(order_lost_) +
+         " s stops were struck within the last bits of one time: in which order, and with it what "
+         "follows, rounding has decided";
+}
+
+void Switching::choose_all_modes(double t, const double* y) {
+  choose_modes_from(t, y, y + n_);
+  joints_.choose(equations_, t, y, y + n_);
+  choose_sides(t, y, y + n_);
+}
+
+/// Whether there are joints that leave a stop and are pushed back, and are there again before time
+/// can resolve it, or did not bounce there and are slower than the capture speed.
+bool Switching::capture(double t, const double* q, const double* qd) {
+  bool any = false;
+  std::vector<double> qdd(n_);
+  accelerations_in_force(equations_, t, q, qd, qdd.data());
+  const double shortest = shortest_moment(t);
+  for (int j = 0; j < n_; ++j) {
+    const Side touched = joints_.contact(j, q);
+    const auto side = static_cast<double>(touched);
+    const double away = -side * relative(qd, j + 1);
+    const double back = side * relative(qdd.data(), j + 1);
+    if (!(away > 0.0 && back > 0.0) || joints_.is_captured(j)) continue;
+    const bool is_slow =
+        away < joints_.supports()[j].stop(touched).capture_speed && !joints_.has_bounced(j);
+    if (!is_slow && 2.0 * away >= shortest * back) continue;
+    joints_.capture(j);
+    any = true;
+  }
+  return any;
+}
+
+void Switching::book(Account account, double value, double* y) const {
+  const auto found = std::ranges::find(accounts_, account);
+  if (found != accounts_.end()) y[2 * n_ + (found - accounts_.begin())] += value;
+}
+
+}  // namespace pendcore
