@@ -50,17 +50,23 @@ struct Clones<kernel> {
 #endif
 };
 
-/// The clone of `kernel` for this processor.
-template <auto kernel>
+/// The clone of `kernel` for this processor. `best` is the highest instruction set that pays:
+/// kernels on packs of one or two numbers are as fast on x86-64-v3, which saves a clone.
+template <auto kernel, InstructionSet best = InstructionSet::x86_64_v4>
 typename Clones<kernel>::Function fastest() {
 #if PENDCORE_CLONES
-  switch (instruction_set()) {
-    case InstructionSet::x86_64_v4: return Clones<kernel>::v4;
-    case InstructionSet::x86_64_v3: return Clones<kernel>::v3;
-    case InstructionSet::baseline: break;
+  const InstructionSet offered = instruction_set();
+  if constexpr (best == InstructionSet::x86_64_v4) {
+    if (offered == InstructionSet::x86_64_v4) return Clones<kernel>::v4;
   }
+  if (offered != InstructionSet::baseline) return Clones<kernel>::v3;
 #endif
   return Clones<kernel>::baseline;
+}
+
+/// The highest instruction set that pays for a kernel on packs of that many numbers.
+constexpr InstructionSet best_for(int width) {
+  return width >= 4 ? InstructionSet::x86_64_v4 : InstructionSet::x86_64_v3;
 }
 
 }  // namespace pendcore

@@ -2,10 +2,10 @@
 /// Finds events along a run: looks at each accepted step, and at each jump of the state.
 ///
 /// Each event is a number at the ends of a step, computed from the states there, and a list of
-/// zeros in between (integrate/events/root.hpp). What happened before a step never matters: an event
-/// whose function is zero where the step begins is not armed until the function leaves zero, at the
-/// start of the run as after an event at the end of the step before. So a resumed run finds the same
-/// events as a run that never stopped.
+/// zeros in between (integrate/events/root.hpp). What happened before a step never matters: an
+/// event whose function is zero where the step begins is not armed until the function leaves zero,
+/// at the start of the run as after an event at the end of the step before. So a resumed run finds
+/// the same events as a run that never stopped.
 #pragma once
 
 #include <string>

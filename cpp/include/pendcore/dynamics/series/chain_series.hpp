@@ -35,6 +35,7 @@ class ChainSeries {
   using Block = Row;
   static constexpr int blocks = 0;  ///< known at run time only
   static constexpr bool depends_on_time = true;
+  static constexpr bool is_short = false;
   static constexpr int width = Lanes<Row>::width;
 
   /// `effects` may be null: a chain without any.

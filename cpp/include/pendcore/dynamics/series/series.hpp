@@ -71,6 +71,7 @@ class DoublePendulumSeries {
   using Block = Pack<4>;
   static constexpr int blocks = 1;
   static constexpr bool depends_on_time = Torque::depends_on_time;
+  static constexpr bool is_short = !depends_on_time;  ///< bare, without a torque
 
   DoublePendulumSeries(const DoublePendulumConstants& constants, Torque torque)
       : constants_(constants), torque_(std::move(torque)) {}

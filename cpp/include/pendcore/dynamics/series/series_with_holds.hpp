@@ -18,6 +18,7 @@ class SeriesWithHolds {
   using Block = Free::Block;
   static constexpr int blocks = Free::blocks;
   static constexpr bool depends_on_time = true;
+  static constexpr bool is_short = false;
 
   SeriesWithHolds(Free free, ChainSeries<Pair> held, std::shared_ptr<const EffectsInForce> effects)
       : free_(std::move(free)), held_(std::move(held)), effects_(std::move(effects)) {}

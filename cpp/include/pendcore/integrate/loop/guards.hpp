@@ -1,5 +1,6 @@
 /// \file
-/// Where along an attempted step the law changes: the guards of Discontinuities, on the dense output.
+/// Finds where along an attempted step the law changes: the guards of Discontinuities, evaluated on
+/// the dense output.
 ///
 /// A guard that is linear in the state is a polynomial there. Any other is taken at nine points of
 /// the step (Chebyshev's) and interpolated; where it is zero is then found from its own values.

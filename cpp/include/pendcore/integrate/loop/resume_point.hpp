@@ -11,7 +11,8 @@ namespace pendcore {
 
 class ResumePoint {
  public:
-  /// `resumable` becomes that position, and `integrator` where the run stands; `discontinuities` may be null.
+  /// `resumable` becomes the state to resume from, `integrator` is that of the run;
+  /// `discontinuities` may be null.
   ResumePoint(const Stepper& stepper, IntegratorState& integrator, IntegratorState& resumable,
               Observer& observer, const Discontinuities* discontinuities, bool begins_anew);
 

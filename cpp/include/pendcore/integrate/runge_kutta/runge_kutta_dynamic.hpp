@@ -335,14 +335,14 @@ class RungeKuttaDynamic final : public Stepper {
   GeneralMemory memory_;
   double t_ = 0.0;  ///< of the attempt
   bool has_dense_stages_ = false;
-  Attempt (*attempt_)(const GeneralMemory*, double, double,
-                      double) = fastest<&attempt_in_memory<method, Block, compensated>>();
-  void (*dense_stages_)(const GeneralMemory*, double, double,
-                        double*) = fastest<&dense_stages_in_memory<method, Block>>();
+  Attempt (*attempt_)(const GeneralMemory*, double, double, double) =
+      fastest<&attempt_in_memory<method, Block, compensated>, best_for(width)>();
+  void (*dense_stages_)(const GeneralMemory*, double, double, double*) =
+      fastest<&dense_stages_in_memory<method, Block>, best_for(width)>();
   void (*interpolant_)(const GeneralMemory*, double,
-                       double*) = fastest<&interpolant_in_memory<method, Block>>();
+                       double*) = fastest<&interpolant_in_memory<method, Block>, best_for(width)>();
   void (*sample_)(const double*, TwoDouble, double, const double*, int, double*,
-                  int) = fastest<&sample_rows<degree>>();
+                  int) = fastest<&sample_rows<degree>, best_for(width)>();
 };
 
 }  // namespace pendcore

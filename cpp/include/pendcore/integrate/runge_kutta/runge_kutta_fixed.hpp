@@ -170,16 +170,16 @@ class RungeKuttaFixed final : public Stepper {
   std::shared_ptr<const void> owner_;
   double t_ = 0.0;  ///< of the attempt
   bool has_dense_stages_ = false;
-  Attempt (*attempt_)(Memory*, double, double,
-                      double) = fastest<&attempt_step<method, System, compensated>>();
-  void (*dense_stages_)(Memory*, double,
-                        double) = fastest<&dense_stages_of_step<method, System, compensated>>();
-  void (*interpolant_)(const Block*, const Block (*)[blocks], double,
-                       double*) = fastest<&interpolant_of_step<method, Block, blocks>>();
-  void (*sample_)(const double*, TwoDouble, double, const double*, int,
-                  double*) = fastest<&sample_interpolant<Block, blocks, Memory::degree>>();
+  Attempt (*attempt_)(Memory*, double, double, double) =
+      fastest<&attempt_step<method, System, compensated>, best_for(width)>();
+  void (*dense_stages_)(Memory*, double, double) =
+      fastest<&dense_stages_of_step<method, System, compensated>, best_for(width)>();
+  void (*interpolant_)(const Block*, const Block (*)[blocks], double, double*) =
+      fastest<&interpolant_of_step<method, Block, blocks>, best_for(width)>();
+  void (*sample_)(const double*, TwoDouble, double, const double*, int, double*) =
+      fastest<&sample_interpolant<Block, blocks, Memory::degree>, best_for(width)>();
   void (*evaluate_)(const System*, double, const double*,
-                    double*) = fastest<&evaluate_system<System>>();
+                    double*) = fastest<&evaluate_system<System>, best_for(width)>();
 };
 
 }  // namespace pendcore

@@ -3,12 +3,12 @@
 ///
 /// `attempt_step` is the kernel: the stages, the new state and its error norm, unrolled for the
 /// table and the system at compile time. It allocates nothing and branches on nothing itself.
-/// explicit_runge_kutta.hpp clones it for each instruction set and hands it to the loop.
+/// runge_kutta_fixed.hpp clones it for each instruction set and hands it to the loop.
 ///
 /// A system is a type with `Block` (a double or a pack), `blocks` (how many make a state) and
 /// operator()(t, y, dydt) on blocks.
 ///
-/// A `compensated` step carries on what the rounding of y_new leaves over (low_part.hpp): the
+/// A `compensated` step carries on what the rounding of y_new leaves over (compensation.hpp): the
 /// increment h sum b_k k is formed on its own, on top of the low part of y, and its sum with y is
 /// split without error.
 #pragma once

@@ -42,7 +42,7 @@ struct Fraction {
   constexpr bool is_zero() const { return numerator == 0 && root == 0; }
 };
 
-/// What kind of table a method is: tableau.hpp, collocation.hpp, taylor.hpp, method_pair.hpp.
+/// What kind of table a method is: tableau.hpp, collocation.hpp, taylor.hpp, stiff_switching.hpp.
 enum class MethodKind { explicit_one, implicit_one, taylor_one, pair };
 
 /// What is said of a method, and how its steps are controlled.

@@ -103,7 +103,7 @@ class Taylor final : public Stepper {
     ++evaluations;
     t_new_ = t + h;
     has_new_series_ = true;
-    const Attempt attempt = attempt_(&memory_, t, h);
+    const Attempt attempt = attempt_(t, h);
     if (!sums_.empty()) integrate_quadratures(t, h);
     return attempt;
   }
@@ -185,6 +185,16 @@ class Taylor final : public Stepper {
   }
 
  private:
+  Attempt attempt_(double t, double h) {
+    if constexpr (Series::is_short) {
+      static const auto whole = fastest<&attempt_short_series<Series, compensated>>();
+      return whole(&memory_, t, h);
+    } else {
+      static const auto advance = fastest<&advance_series<Series, compensated>>();
+      return attempt_series(&memory_, t, h, advance, expand_);
+    }
+  }
+
   /// Makes the series from y at time t, if there is none yet.
   bool begin(double t) {
     if (has_series_) return true;
@@ -282,7 +292,6 @@ class Taylor final : public Stepper {
   double t_new_ = 0.0;  ///< of the attempt's end
   DominantEigenvalue eigenvalue_;
   std::vector<double> state_ = std::vector<double>(static_cast<std::size_t>(dimension()));
-  Attempt (*attempt_)(Memory*, double, double) = fastest<&attempt_series<Series, compensated>>();
   bool (*expand_)(Memory*, double, const double*, double*, double&,
                   double&) = fastest<&taylor_detail::expand<Series>>();
   void (*powers_of_step_)(const Memory*, double, int, int, int,

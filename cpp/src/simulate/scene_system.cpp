@@ -1,0 +1,30 @@
+#include "pendcore/simulate/scene_system.hpp"
+
+namespace pendcore {
+
+SceneSystem::SceneSystem(const Scene& scene, const EquationsOfMotion& equations, int row_size,
+                         bool keeps_ledger)
+    : DifferentiableSystem(row_size,
+                           keeps_ledger ? static_cast<int>(accounts_of(scene).size()) : 0),
+      equations_(equations),
+      n_(static_cast<int>(scene.links.size())) {
+  if (quadratures > 0) ledger_ = std::make_unique<Ledger>(scene, equations.effects);
+}
+
+void SceneSystem::operator()(double t, const double* y, double* dydt) const {
+  __builtin_memcpy(dydt, y + row, n_ * sizeof(double));
+  accelerations_in_force(equations_, t, y, y + row, dydt + row);
+  if (ledger_) {
+    ledger_->powers(t, y, y + row, dydt + row, dydt + static_cast<std::ptrdiff_t>(2) * row);
+  }
+}
+
+void SceneSystem::differentiate(const Scene& scene) {
+  jacobian_ = std::make_unique<Jacobian>(scene, equations_);
+}
+
+void SceneSystem::jacobian(double t, const double* y, double* by_q, double* by_qd) const {
+  (*jacobian_)(t, y, y + row, by_q, by_qd);
+}
+
+}  // namespace pendcore
