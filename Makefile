@@ -99,7 +99,7 @@ fuzz: $(DONE)/installed $(DONE)/test-requirements  ## random cases (CASES, SEED)
 	PYTHONPATH=tests python -m fuzz.campaign --cases $(CASES) --seed $(SEED) --page docs/fuzz.md
 
 SEEDS ?= 0:5000
-FAMILIES ?= mixed damped chaotic stiff contact own
+FAMILIES ?= mixed damped chaotic stiff contact own short_links
 ERROR_WORKERS ?= 2
 test-error: $(DONE)/installed $(DONE)/error-requirements  ## true errors (SEEDS, FAMILIES) against references of more digits
 	PYTHONPATH=tests python -m true_error.campaign --seeds $(SEEDS) $(FAMILIES:%=--family %) \

@@ -167,3 +167,41 @@ def test_steps_that_are_cut_often_enough_are_cut_no_further() -> None:
     steps = coarse.stats.accepted + fine.stats.accepted
     assert len(times_within_steps([coarse, fine])) <= steps + 1
     assert len(times_within_steps([fine, coarse])) >= 6 * fine.stats.accepted
+
+
+def point_masses(*links: tuple[float, float]) -> pc.Scene:
+    return pc.Scene(links=[pc.Link.point_mass(mass=mass, length=length) for mass, length in links])
+
+
+def test_a_run_whose_link_is_lost_is_not_kept_though_positions_agree_until_then() -> None:
+    """The last link is 4 mm long: its angle is lost at 1.15 s, when positions are still right."""
+    scene = point_masses((1, 1), (1, 0.004))
+    sol = pc.simulate(scene, (0.3, 2.0), 0, (0, 20), error=0.01)
+    assert sol.accuracy.until == 20.0
+    exact = pc.simulate(scene, (0.3, 2.0), 0, (0, 20), method="dop853", rtol=1e-14)
+    t = np.linspace(0, 20, 2001)
+    n = len(scene.links)
+    assert distances(scene, sol(t)[:n].T, exact(t)[:n].T).max() <= sol.accuracy.achieved <= 0.01
+
+
+@pytest.mark.parametrize(
+    ("masses", "q0", "t_end", "error"),
+    [
+        (((1, 1), (2, 0.03)), (0.3, 2.0), 30.0, 0.08),
+        (((1, 1), (3, 0.05)), (0.5, 2.5), 20.0, 0.12),
+        (((1, 1), (2, 0.03)), (0.3, 2.0), 30.0, 0.01),
+    ],
+)
+def test_a_loose_trial_that_fails_does_not_end_the_search(masses, q0, t_end, error) -> None:
+    sol = pc.simulate(point_masses(*masses), q0, 0, (0, t_end), error=error)
+    assert sol.accuracy.outcome == "kept"
+    assert sol.accuracy.until == sol.t[-1] == t_end
+
+
+def test_what_no_double_knows_is_refused_and_not_called_known_everywhere() -> None:
+    with pytest.raises(pc.AccuracyError, match="chaos") as caught:
+        pc.simulate(point_masses((1, 1), (0.5, 0.02)), (0.3, 2.0), 0, (0, 60), error=0.06)
+    told = caught.value.solution.accuracy
+    assert told.until < 60
+    assert not told.everywhere
+    assert "whole curve" not in told.text()

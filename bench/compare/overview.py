@@ -46,8 +46,9 @@ where pendcore is quicker. The goal on the textbook's case is 0.5, and 0.6 in C+
   over. Where the C++ side keeps the goal and this one does not, that is why.
 * **In C++** it is `taylor` from some 1e-4 on. Counted in `dynamics/series/series.hpp`, order k
   of its series is 2 (k - 3) + 30 products of rows of four numbers: k + 12 cycles of a processor
-  with two multipliers. An order waits for the one before it 9 cycles (two products, a change of places), for
-  the one before that 44 (two sums, both halves of a row, the two by two system), so 22 an order.
+  with two multipliers. An order waits for the one before it 9 cycles (two products, a change of
+  places), for the one before that 44 (two sums, both halves of a row, the two by two system), so
+  22 an order.
   Neither is what it takes: `make bench` (`series/order`) has some 35 cycles an order at order 12
   and 56 at 28, for one order's instructions, 140 by callgrind at order 18, fill half the window
   in which a processor looks for something else to do. Tried without gain: orders written out one

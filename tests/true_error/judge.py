@@ -48,6 +48,11 @@ class Verdict:
     achieved, true, estimated : float or None
         What the run says it reached, the truth, and what ``sol.error()`` says of it, all as shares
         of the total length; ``true`` is missing where the reference is not good enough.
+    is_one_estimate : bool
+        Whether ``accuracy.until`` of a run that is kept is its end, and ``sol.error()`` tells that
+        end.
+    exception : str
+        What was raised that is not an `AccuracyError`.
     doubles : float or None
         The error of an independent integrator of tight tolerance in doubles: a refusal is needed
         where it is above what was asked.
@@ -72,6 +77,8 @@ class Verdict:
     achieved: float | None = None
     true: float | None = None
     estimated: float | None = None
+    is_one_estimate: bool = True
+    exception: str = ""
     doubles: float | None = None
     limit: float | None = None
     valid_until: float | None = None
@@ -89,8 +96,9 @@ class Verdict:
 
     @property
     def is_contradicted(self) -> bool:
-        """Whether ``sol.error()`` denies what ``sol.accuracy`` says."""
-        return self.outcome == "kept" and not (self.estimated or 0.0) <= self.asked
+        """Whether ``sol.error()`` says another thing than ``sol.accuracy``, or not to the end."""
+        is_said_again = self.estimated in (None, self.achieved) and self.is_one_estimate
+        return self.outcome == "kept" and not is_said_again
 
     @property
     def is_late(self) -> bool:
@@ -108,7 +116,7 @@ class Verdict:
             "above": self.is_above,
             "late": self.is_late,
             "contradicted": self.is_contradicted,
-            "exception": self.outcome == "exception",
+            "exception": bool(self.exception),
         }
         return [name for name, is_so in found.items() if is_so]
 
@@ -135,8 +143,8 @@ def judged(drawn: Drawn, simulate: Simulate = pc.simulate, seconds: float = SECO
             try:
                 question(drawn, verdict, simulate, reference, seconds)
             except UnexpectedError as stop:
-                verdict.outcome = "exception"
-                verdict.says = f"{stop}"[:300]
+                verdict.exception = f"{stop}"[:300]
+                verdict.outcome = verdict.outcome or "exception"
     return verdict
 
 
@@ -190,7 +198,10 @@ def _asked_error(
     if is_kept and len(sol.t):
         with answering(verdict, seconds):
             estimate = sol.error(time_limit=seconds)
-            verdict.estimated = float(estimate.position.max(initial=0.0))
+            verdict.estimated = estimate.largest
+            ends = sol.accuracy.until, estimate.valid_until(drawn.error, of="position")
+            last = float(sol.t[-1])
+            verdict.is_one_estimate = all(end == last for end in ends)
     dense = is_kept and drawn.is_dense
     with answering(verdict, seconds):
         t = times_of(sol, dense, Dice(drawn.family, drawn.seed).rng)

@@ -130,12 +130,15 @@ def _kept(runs: Trials) -> Solution:
             break
         if not latest.solution.success:
             status = latest.solution.status
+            if latest in runs.trials and latest.scale > min(one.scale for one in runs.trials):
+                runs.drop(latest)  # looser than one that came to the end: it shows nothing
+                continue
             if status == "time_limit" or (latest in runs.trials and status != "max_steps"):
                 return _ended_early(runs, latest)
             raise _refusal(runs, f"{latest.text}: {latest.solution.message}")
         for trial in sorted(runs.trials, key=lambda one: -one.scale):
             found = _known_error(runs, trial)
-            if found is not None and found.is_complete and found.largest <= runs.error:
+            if found is not None and found.tells_the_end and found.largest <= runs.error:
                 return runs.labelled(trial.solution, "kept", found)
     raise _refusal(runs)
 
@@ -146,7 +149,7 @@ def _first_trial(runs: Trials) -> Made:
     made = runs.trial(scale, runs.method_for(runs.error))
     while made.solution.status in FOLLOWED_BADLY and made.rtol > runs.tightest:
         before = made.solution._run.t_reached
-        runs.trials.clear()
+        runs.drop(made)
         made = runs.trial(made.scale / FARTHER, made.method)
         if abs(made.solution._run.t_reached - before) <= 1e-3 * abs(before - runs.start.t_start):
             break  # both say that the motion ends there
@@ -160,12 +163,13 @@ def _next_run(runs: Trials) -> Made | None:
     if len(better) < max(_tight_runs(last), 1):
         return _second(runs, last)
     known = _known_error(runs, last)
-    apart = runs.distance(last, better[0]) if known is None else known.largest
-    if apart > max(NOTHING_IN_COMMON, runs.error):
+    found = known or runs.compared(last, better[:1], 0.0)
+    apart = found.largest
+    if found.is_lost or apart > max(NOTHING_IN_COMMON, runs.error):
         aimed = _scale_before_it_grew(runs, last, better[0])
     else:
         aimed = last.scale * AIM * runs.error / max(apart, 1e-9 * runs.error)
-    if known is None and apart <= LIKELY * runs.error:
+    if known is None and apart <= LIKELY * runs.error and not found.is_lost:
         looser = _looser(runs, last, aimed)
         if looser is not None:
             return runs.trial(looser, last.method)
@@ -184,7 +188,8 @@ def _looser(runs: Trials, trial: Made, aimed: float) -> float | None:
     loosest = LOOSEST * trial.scale / trial.rtol
     for scale in (min(one, loosest) for one in scales):
         ratios = [scale / one.scale for one in runs.trials]
-        if scale >= RATIO * trial.scale and not any(1 / APART < r < APART for r in ratios):
+        is_likely = RATIO * trial.scale <= scale < runs.too_loose
+        if is_likely and not any(1 / APART < r < APART for r in ratios):
             return scale
     return None
 
@@ -317,14 +322,16 @@ def _refusal(runs: Trials, why: str = "") -> AccuracyError:
     whole = [one for one in runs.trials if one.solution.success]
     last = min(whole or runs.trials, key=lambda one: one.scale)
     found = _known_error(runs, last)
+    if len(runs.paid) >= MOST_RUNS:
+        why = why or f"not settled after {MOST_RUNS} runs: a smaller error may be kept"
     if found is None or why:
-        why = why or "its error does not follow the tolerances: is a law of your own not smooth?"
+        why = why or _does_not_follow(runs)
         runs.labelled(last.solution, "refused", None, why)
         message = f"{asked}: the run by {last.text} could not be verified: {why}"
         return AccuracyError(message, last.solution)
     runs.labelled(last.solution, "refused", found)
     if last.rtol > runs.tightest:
-        why = "the error does not follow the tolerances: is a law of your own not smooth?"
+        why = _does_not_follow(runs)
     elif found.is_lost or found.largest > HOPELESS:
         why = "neighbouring motions part too fast for double precision (chaos)"
     else:
@@ -336,3 +343,10 @@ def _refusal(runs: Trials, why: str = "") -> AccuracyError:
     until = found.valid_until(runs.error, of="position")
     held = f"; it holds until t = {until:.6g} s" if until != runs.start.t_start else ""
     return AccuracyError(f"{asked}: not reached: {reached}: {why}{held}", last.solution, least)
+
+
+def _does_not_follow(runs: Trials) -> str:
+    """Return why no tolerance was found, as far as that can be told."""
+    has_own_law = any(effect.kind == "user" for effect in runs.start.scene.effects)
+    question = ": is a law of your own not smooth?" if has_own_law else ""
+    return f"the error does not follow the tolerances{question}"

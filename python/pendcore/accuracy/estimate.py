@@ -105,6 +105,11 @@ class ErrorEstimate:
     is_dense: bool = True
 
     @property
+    def tells_the_end(self) -> bool:
+        """Whether the error is known up to the end of the run."""
+        return self.is_complete and not self.is_lost
+
+    @property
     def largest(self) -> float:
         """The largest error of a position, as a share of the total length; inf if none is known."""
         largest = float(self.position.max(initial=0.0)) if len(self.t) else inf

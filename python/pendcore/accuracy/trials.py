@@ -88,6 +88,7 @@ class Trials:
         self.time_limit = time_limit_of(options.pop("time_limit", None))
         self.compensated: bool = options.pop("compensated", False)
         self.is_stiff = False
+        self.too_loose = inf
         self.trials: list[Made] = []
         self.seconds: list[Made] = []
         self.paid: list[Made] = []
@@ -115,6 +116,11 @@ class Trials:
         self.trials.append(made)
         self.seconds = [self._as_far_as(made, one) for one in self.seconds]
         return made
+
+    def drop(self, trial: Made) -> None:
+        """Forget a trial that was too loose to come to its end, and try none as loose again."""
+        self.trials.remove(trial)
+        self.too_loose = min(self.too_loose, trial.scale)
 
     def second(self, trial: Made, scale: float) -> Made:
         """Run better than a trial, with other steps, constants and start.
@@ -168,7 +174,7 @@ class Trials:
             outcome=outcome,
             until=begin if found is None else found.valid_until(self.error, of="position"),
             times=0 if found is None else len(found.t),
-            everywhere=found is not None and found.is_dense,
+            everywhere=found is not None and found.is_dense and not found.is_lost,
             verified_by=why if found is None else found.verified_by,
             paid=self._bill(solution, found),
             seconds=monotonic() - self.began,

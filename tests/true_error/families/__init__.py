@@ -10,6 +10,7 @@ from true_error.families.contact import contact
 from true_error.families.damped import damped
 from true_error.families.mixed import mixed
 from true_error.families.own import own
+from true_error.families.short_links import short_links
 from true_error.families.stiff import stiff
 
 FAMILIES: dict[str, Callable[[int], Drawn]] = {
@@ -19,4 +20,5 @@ FAMILIES: dict[str, Callable[[int], Drawn]] = {
     "stiff": stiff,
     "contact": contact,
     "own": own,
+    "short_links": short_links,
 }

@@ -7,8 +7,8 @@
 ///     dop853-radau5   else, where of any component max(rtol, atol) is below 1e-6
 ///     dopri5-radau5   else
 ///
-/// The pairs change over to radau5 where that pays (stiff_switching.hpp), at whatever time that comes
-/// to be. docs/accuracy_cost.md has what the rule is taken from.
+/// The pairs change over to radau5 where that pays, at whatever time (stiff_switching.hpp).
+/// docs/accuracy_cost.md has what the rule is taken from.
 #pragma once
 
 #include <string_view>

@@ -1,6 +1,6 @@
 /// \file
-/// The equations of motion of a scene, in any form, as a system in memory: dy/dt of (q, qd), and the
-/// powers of the ledger beside it where the run keeps one.
+/// The equations of motion of a scene, in any form, as a system in memory: dy/dt of (q, qd), and
+/// the powers of the ledger beside it where the run keeps one.
 #pragma once
 
 #include <memory>
