@@ -42,13 +42,22 @@ def test_a_page_imports_what_its_lines_use(path):
 def test_the_readmes_lines_run(tmp_path, monkeypatch, capsys):
     mpl.use("Agg")
     monkeypatch.chdir(tmp_path)
-    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
-    dozen, chains, rubbed = blocks
+    (dozen,) = blocks_of("README.md")
     names: dict[str, object] = {}
     exec(dozen, names)
     assert names["longer"].t[-1] == 10.0
     assert (tmp_path / "run.npz").exists()
-    names = {}  # each block stands for itself
+
+
+def blocks_of(document: str) -> list[str]:
+    return re.findall(r"```python\n(.*?)```", (ROOT / document).read_text(), re.DOTALL)
+
+
+def test_the_lines_of_the_first_steps_run(tmp_path, monkeypatch, capsys):
+    mpl.use("Agg")
+    monkeypatch.chdir(tmp_path)
+    chains, rubbed = blocks_of("docs/first_steps.md")
+    names: dict[str, object] = {}
     exec(chains, names)
     assert names["run"].success
     ledger = names["run"].energy().ledger
@@ -58,13 +67,27 @@ def test_the_readmes_lines_run(tmp_path, monkeypatch, capsys):
     assert rubbed == hard_case()
 
 
+def test_the_readmes_counts_are_those_of_the_records():
+    readme = " ".join((ROOT / "README.md").read_text().split())
+    hard = (ROOT / "docs/hard_cases.md").read_text()
+    (told,) = re.findall(r"^Right, of (\d+) cases: (.*)\.$", hard, re.MULTILINE)
+    right = dict(re.findall(r"(pendcore|SciPy|MuJoCo|Boost\.odeint) (\d+)", told[1]))
+    assert f"Of [{told[0]} cases that break simulators]" in readme
+    assert (
+        f"pendcore gets {right['pendcore']} right, SciPy {right['SciPy']}, "
+        f"MuJoCo {right['MuJoCo']} and Boost.odeint {right['Boost.odeint']}." in readme
+    )
+    families = json.loads((ROOT / "docs/true_error.json").read_text())["families"].values()
+    assert f"Of [{sum(one['scenes'] for one in families):,} random scenes]" in readme
+    assert sum(one["above"] for one in families) == 0
+
+
 def hard_case() -> str:
-    """The README's lines that draw its hard case."""
-    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
-    return next(block for block in blocks if "stick_slip.png" in block)
+    """Return the lines of the first steps that draw their hard case."""
+    return next(block for block in blocks_of("docs/first_steps.md") if "stick_slip.png" in block)
 
 
-def test_ten_lines_draw_the_readmes_hard_case(tmp_path, monkeypatch):
+def test_ten_lines_draw_the_hard_case_of_the_first_steps(tmp_path, monkeypatch):
     """The picture that stands there is theirs, and the grey in it is exact rest."""
     mpl.use("Agg")
     monkeypatch.chdir(tmp_path)
