@@ -84,7 +84,12 @@ py::dict describe(const MethodInfo& info) {
   result["interpolant_order"] = info.interpolant_order;
   result["beta"] = info.beta;
   result["compensates"] = info.compensates;
+  result["sentence"] = string(info.sentence);
   result["citation"] = string(info.citation);
+  result["error_over_rtol"] = info.error_over_rtol;
+  result["second_opinion"] = info.second_opinion;
+  result["line"] =
+      py::make_tuple(string(info.line.color), string(info.line.dash), string(info.line.marker));
   return result;
 }
 

@@ -33,9 +33,12 @@ struct StiffSwitching {
   static constexpr const auto& second = second_method;
   MethodInfo info;
 
-  constexpr explicit StiffSwitching(std::string_view name) : info(first_method.info) {
+  constexpr StiffSwitching(std::string_view name, LineStyle line) : info(first_method.info) {
     info.name = name;
     info.aliases = {};
+    info.sentence = "The first method, and the second from where stability limits the steps.";
+    info.second_opinion = 0;
+    info.line = line;
     info.citation = "Hairer & Wanner 1996, IV.2, for the test";
     info.kind = MethodKind::pair;
     info.first_of_pair = first.info.name;
@@ -43,9 +46,12 @@ struct StiffSwitching {
   }
 };
 
-inline constexpr StiffSwitching<dormand_prince_5, radau_5> dopri5_radau5{"dopri5-radau5"};
-inline constexpr StiffSwitching<dormand_prince_8, radau_5> dop853_radau5{"dop853-radau5"};
-inline constexpr StiffSwitching<taylor, radau_5> taylor_radau5{"taylor-radau5"};
+inline constexpr StiffSwitching<dormand_prince_5, radau_5> dopri5_radau5{
+    "dopri5-radau5", {.color = "#8b6bb1", .dash = "1 1", .marker = "v"}};
+inline constexpr StiffSwitching<dormand_prince_8, radau_5> dop853_radau5{
+    "dop853-radau5", {.color = "#a8741a", .dash = "3 1 1 1", .marker = "<"}};
+inline constexpr StiffSwitching<taylor, radau_5> taylor_radau5{
+    "taylor-radau5", {.color = "#3f3f5f", .dash = "6 2", .marker = ">"}};
 
 class StiffSwitchingStepper final : public Stepper {
  public:

@@ -22,13 +22,19 @@ inline constexpr std::array<std::string_view, 1> radau_5_aliases = {"Radau"};
 inline constexpr Collocation radau_5 = {
     .info = {.name = "radau5",
              .aliases = radau_5_aliases,
+             .sentence =
+                 "Radau IIA, implicit, for stiff scenes: strong damping, hard springs, stiff "
+                 "controllers.",
              .citation = "Hairer & Wanner 1996, IV.5 and IV.8",
              .kind = MethodKind::implicit_one,
              .order = 5,
              .error_order = 3,
              .interpolant_order = 4,
              .growth = 8.0,
-             .retry = 0.5},
+             .retry = 0.5,
+             .error_over_rtol = 1.0,
+             .second_opinion = 4,
+             .line = {.color = "#5b8c3a", .dash = "-.", .marker = "^"}},
     .c = {0.1550510257216822, 0.6449489742783178, 1.0},
     .a = {{{0.1968154772236604, -0.06553542585019839, 0.02377097434822015},
            {0.3944243147390873, 0.2920734116652285, -0.04154875212599793},

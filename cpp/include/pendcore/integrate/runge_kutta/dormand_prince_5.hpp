@@ -19,12 +19,17 @@ inline constexpr std::array<std::string_view, 2> dormand_prince_5_aliases = {"RK
 inline constexpr Tableau<7, 4> dormand_prince_5 = {
     .info = {.name = "dopri5",
              .aliases = dormand_prince_5_aliases,
+             .sentence =
+                 "Dormand-Prince 5(4) with dense output: loose tolerances, and ode45's method.",
              .citation = "Dormand & Prince 1980; Hairer, Norsett & Wanner 1993, II.5-6",
              .order = 5,
              .error_order = 4,
              .interpolant_order = 4,
              .beta = 0.04,
-             .stability = 3.25},
+             .stability = 3.25,
+             .error_over_rtol = 3.0,
+             .second_opinion = 3,
+             .line = {.color = "#1f5fa8", .dash = "-", .marker = "o"}},
     .first_same_as_last = true,
     .written_out = true,
     .c = {{{0}, {1, 5}, {3, 10}, {4, 5}, {8, 9}, {1}, {1}}},

@@ -26,6 +26,7 @@ inline constexpr std::array<std::string_view, 1> dormand_prince_8_aliases = {"DO
 inline constexpr Tableau<13, 7, 3> dormand_prince_8 = {
     .info = {.name = "dop853",
              .aliases = dormand_prince_8_aliases,
+             .sentence = "Dormand-Prince 8(5,3) with dense output of order 7: tight tolerances.",
              .citation = "Hairer, Norsett & Wanner 1993, II.5, II.10: Dormand & Prince",
              .order = 8,
              .error_order = 7,
@@ -34,7 +35,10 @@ inline constexpr Tableau<13, 7, 3> dormand_prince_8 = {
              .log2_safety = -0.3219280948873623,  // of 0.8
              .shrink = 1.0 / 3.0,
              .growth = 6.0,
-             .stability = 6.1},
+             .stability = 6.1,
+             .error_over_rtol = 0.4,
+             .second_opinion = 2,
+             .line = {.color = "#c2410c", .dash = "--", .marker = "s"}},
     .first_same_as_last = true,
     .c = {{{0},
            {12, 135, -2},

@@ -16,10 +16,12 @@ namespace pendcore {
 
 inline constexpr Tableau<5, 3> runge_kutta_4 = {
     .info = {.name = "rk4",
+             .sentence = "The classical Runge-Kutta method, in fixed steps of ``step``.",
              .citation = "Kutta 1901; Hairer, Norsett & Wanner 1993, II.1",
              .order = 4,
              .error_order = 0,
-             .interpolant_order = 3},
+             .interpolant_order = 3,
+             .line = {.color = "#8a8a8a", .dash = ":", .marker = "P"}},
     .first_same_as_last = true,
     .c = {{{0}, {1, 2}, {1, 2}, {1}, {1}}},
     .a = {{{}, {{{1, 2}}}, {{{0}, {1, 2}}}, {{{0}, {0}, {1}}}, {{{1, 6}, {1, 3}, {1, 3}, {1, 6}}}}},

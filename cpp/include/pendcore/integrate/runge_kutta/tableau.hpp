@@ -19,8 +19,8 @@
 #pragma once
 
 #include <array>
-#include <span>
-#include <string_view>
+
+#include "pendcore/integrate/method_info.hpp"
 
 namespace pendcore {
 
@@ -40,35 +40,6 @@ struct Fraction {
     return static_cast<double>(sum / static_cast<long double>(denominator));
   }
   constexpr bool is_zero() const { return numerator == 0 && root == 0; }
-};
-
-/// What kind of table a method is: tableau.hpp, collocation.hpp, taylor.hpp, stiff_switching.hpp.
-enum class MethodKind { explicit_one, implicit_one, taylor_one, pair };
-
-/// What is said of a method, and how its steps are controlled.
-struct MethodInfo {
-  std::string_view name;
-  std::span<const std::string_view> aliases = {};
-  std::string_view citation;
-  MethodKind kind = MethodKind::explicit_one;
-  int order;              ///< of y_new
-  int error_order;        ///< of the error estimate; 0: there is none, fixed steps only
-  int interpolant_order;  ///< of y(t + theta h), uniformly in theta
-  double beta = 0.0;      ///< weight of the previous error in the PI control
-  double log2_safety = -0.15200309344504997;  ///< of 0.9: a step aims a tenth short
-  double shrink = 0.2;                        ///< a step is at least this share of the one before
-  double growth = 10.0;                       ///< and at most this multiple;
-  double retry = 0.2;  ///< where a step could not be computed, this share is tried next
-  /// h |lambda| on the negative real axis that counts as stiff; of a series, over its order. 0: no
-  /// test
-  double stability = 0.0;
-  bool compensates = true;              ///< its steps can carry on what their rounding leaves over
-  bool dense_output_is_series = false;  ///< in powers of theta of the solution itself
-  std::string_view first_of_pair = {};  ///< with which a pair begins; else empty
-  std::string_view second_of_pair = {};
-
-  /// The method that a run begins with: of one that is no pair, itself.
-  constexpr std::string_view first() const { return first_of_pair.empty() ? name : first_of_pair; }
 };
 
 /// Rows of an identity: powers of theta.

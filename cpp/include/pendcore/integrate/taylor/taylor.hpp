@@ -43,16 +43,22 @@ struct TaylorSeries {
   MethodInfo info;
 };
 
-inline constexpr TaylorSeries taylor = {.info = {.name = "taylor",
-                                                 .citation = "Jorba & Zou 2005",
-                                                 .kind = MethodKind::taylor_one,
-                                                 .order = 20,
-                                                 .error_order = 7,
-                                                 .interpolant_order = 20,
-                                                 .shrink = 1e-10,
-                                                 .growth = 1e10,
-                                                 .stability = 0.3,
-                                                 .dense_output_is_series = true}};
+inline constexpr TaylorSeries taylor = {
+    .info = {.name = "taylor",
+             .sentence = "Taylor series of an order that the tolerances choose: the quickest from "
+                         "some 1e-6 down, right to the rounding limit.",
+             .citation = "Jorba & Zou 2005",
+             .kind = MethodKind::taylor_one,
+             .order = 20,
+             .error_order = 7,
+             .interpolant_order = 20,
+             .shrink = 1e-10,
+             .growth = 1e10,
+             .stability = 0.3,
+             .dense_output_is_series = true,
+             .error_over_rtol = 0.9,
+             .second_opinion = 1,
+             .line = {.color = "#000000", .dash = "-", .marker = "D"}}};
 
 inline constexpr int lowest_taylor_order = 8;  ///< the step looks at eight coefficients
 
