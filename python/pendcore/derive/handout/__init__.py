@@ -11,17 +11,17 @@ from pathlib import Path
 from typing import NamedTuple
 
 from pendcore import _core
-from pendcore import progress as bars
-from pendcore.case import Case
-from pendcore.derive.derivation import Derivation
+from pendcore.api.solution import Case, Solution
+from pendcore.cases.whole_file import whole_file
+from pendcore.derive import narration
+from pendcore.derive.algebra import Algebra
 from pendcore.derive.handout import conversion, motion, numbers, problem, steps
 from pendcore.derive.handout.blanks import concealed
 from pendcore.derive.handout.document import Block, Document, Heading, Paragraph, Reader, Space
 from pendcore.derive.handout.figures import Figures
-from pendcore.progress import Progress
-from pendcore.solution import Solution
-from pendcore.warning import warn
-from pendcore.whole_file import whole_file
+from pendcore.messages import progress as bars
+from pendcore.messages.progress import Progress
+from pendcore.messages.warning import warn
 
 
 class Handout(NamedTuple):
@@ -39,12 +39,12 @@ class Handout(NamedTuple):
     complaint: str
 
 
-def report(derivation: Derivation, case: Case, solution: Solution, refusal: str = "") -> Document:
+def report(derivation: Algebra, case: Case, solution: Solution, refusal: str = "") -> Document:
     """Return the derivation of a case with its solution.
 
     Parameters
     ----------
-    derivation : Derivation
+    derivation : Algebra
         Of the scene of the case.
     case : Case
         With the start.
@@ -57,7 +57,7 @@ def report(derivation: Derivation, case: Case, solution: Solution, refusal: str 
     blocks = [
         *problem.problem(derivation, case, figures),
         Heading(2, "Derivation of the equations of motion"),
-        *steps.derivation_steps(derivation, figures),
+        *steps.derivation_steps(derivation, narration.steps(derivation), figures),
         *numbers.numbers_put_in(derivation),
         *numbers.at_the_start(derivation, case),
         *motion.numerical_solution(derivation, solution, figures, refusal),
@@ -67,20 +67,20 @@ def report(derivation: Derivation, case: Case, solution: Solution, refusal: str 
     return Document(_title(derivation, case), tuple(blocks))
 
 
-def worksheet(derivation: Derivation, case: Case, solution: Solution) -> Document:
+def worksheet(derivation: Algebra, case: Case, solution: Solution) -> Document:
     """Return the same problem with blanks: right sides, free bodies and curves are to be found."""
     figures = Figures(derivation, case.q0)
     blocks: list[Block] = [
         *problem.problem(derivation, case, figures, by_hand=True),
         Heading(2, "Derivation of the equations of motion"),
-        *steps.derivation_steps(concealed(derivation), figures, blanks=True),
+        *steps.derivation_steps(derivation, concealed(derivation), figures, blanks=True),
         *_questions(derivation, case, solution, figures),
     ]
     return Document(f"{_title(derivation, case)}: worksheet", tuple(blocks))
 
 
 def write_handout(
-    derivation: Derivation,
+    derivation: Algebra,
     case: Case,
     folder: Path,
     *,
@@ -91,7 +91,7 @@ def write_handout(
 
     Parameters
     ----------
-    derivation : Derivation
+    derivation : Algebra
         Of the scene of the case.
     case : Case
         What is derived and solved.
@@ -116,7 +116,7 @@ def write_handout(
 
 
 def _written(
-    derivation: Derivation,
+    derivation: Algebra,
     case: Case,
     folder: Path,
     with_worksheet: bool,
@@ -167,7 +167,7 @@ def _texts(document: Document, folder: Path, name: str) -> Iterator[Path]:
 
 
 def _questions(
-    derivation: Derivation, case: Case, solution: Solution, figures: Figures
+    derivation: Algebra, case: Case, solution: Solution, figures: Figures
 ) -> Iterator[Block]:
     yield Heading(3, "The equations of motion with numbers")
     yield Paragraph("Put the numbers of the table into the equations of motion. Give the units.")
@@ -189,7 +189,7 @@ def _questions(
     yield Space(6)
 
 
-def _title(derivation: Derivation, case: Case) -> str:
+def _title(derivation: Algebra, case: Case) -> str:
     names = {1: "Pendulum", 2: "Double pendulum"}
     name = case.name or names.get(derivation.n, f"Chain of {derivation.n} links")
     return name[:1].upper() + name[1:]

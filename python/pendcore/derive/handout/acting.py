@@ -11,8 +11,8 @@ from typing import cast
 
 from sympy import Abs, Add, Expr, Symbol
 
+from pendcore.derive.algebra import Algebra
 from pendcore.derive.chain import Chain, Vector
-from pendcore.derive.derivation import Derivation
 from pendcore.derive.handout.quantities import number
 from pendcore.derive.laws import Law
 from pendcore.derive.narration.page import Page
@@ -45,12 +45,12 @@ class JointsByName:
         return self.notation.symbol(f"phid{joint}", rf"\dot{{\varphi}}_{{{joint}}}", RATE, joint)
 
 
-def what_acts(derivation: Derivation, q: Sequence[float]) -> Iterator[str]:
+def what_acts(derivation: Algebra, q: Sequence[float]) -> Iterator[str]:
     """Yield the paragraphs that state the effects, with every symbol that they bring.
 
     Parameters
     ----------
-    derivation : Derivation
+    derivation : Algebra
         Of the scene.
     q : sequence of float, (n,)
         Angles at the start, rad; a lock keeps that of its joint.
@@ -86,7 +86,7 @@ def _rotors(laws: Sequence[Law]) -> bool:
     return any(law.armature() is not None for law in laws)
 
 
-def _joint_angles(derivation: Derivation) -> str:
+def _joint_angles(derivation: Algebra) -> str:
     s = derivation.symbols
     first = f"$\\varphi_{{1}} = {s.latex(s.q[0])}$"
     if derivation.n == 1:
@@ -98,7 +98,7 @@ def _joint_angles(derivation: Derivation) -> str:
     )
 
 
-def _torques(derivation: Derivation) -> Iterator[str]:
+def _torques(derivation: Algebra) -> Iterator[str]:
     """Yield, for every joint with a torque, of what it is the sum."""
     s = derivation.symbols
     chain = cast("Chain", JointsByName(s))
@@ -170,7 +170,7 @@ def _payload(law: Law, s: Notation, tip: str) -> str:
     )
 
 
-def _drag(law: Law, derivation: Derivation, page: Page) -> str:
+def _drag(law: Law, derivation: Algebra, page: Page) -> str:
     i, s = law.effect.link, derivation.symbols
     w0, w1, force, moment = (d.symbol for d in law.definitions(derivation.chain))
     begin, end = page.joint(i - 1).latex, page.joint(i).latex

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from copy import copy
 from dataclasses import replace
 from typing import Any
 
 from sympy import Expr
 
-from pendcore.derive.derivation import Derivation
+from pendcore.derive import narration
+from pendcore.derive.algebra import Algebra
 from pendcore.derive.narration.page import Page
 from pendcore.derive.step import Equation, Formula, Step
 
@@ -16,16 +16,14 @@ ROOM = r"\qquad" * 7
 """Where an acceleration is written in by hand."""
 
 
-def concealed(derivation: Derivation) -> Derivation:
-    """Return a derivation whose left sides are the names of what other steps find.
+def concealed(derivation: Algebra) -> tuple[Step, ...]:
+    """Return the steps, but their left sides are the names of what other steps find.
 
     In the solution ``m2 L2^2/12 qdd2`` and the acceleration of C_2 written out stand on the left;
     here they are ``I_C2 qdd2`` and ``m2 xdd_C2``.
     """
-    shown = copy(derivation)
     names = _names(derivation)
-    shown.steps = tuple(_concealed(step, names) for step in derivation.steps)
-    return shown
+    return tuple(_concealed(step, names) for step in narration.steps(derivation))
 
 
 def _concealed(step: Step, names: dict[Any, Any]) -> Step:
@@ -49,7 +47,7 @@ def _without_repetition(equations: tuple[Equation, ...]) -> list[Equation]:
     return found
 
 
-def _names(derivation: Derivation) -> dict[Any, Any]:
+def _names(derivation: Algebra) -> dict[Any, Any]:
     """Return what stands for each left side that would give something away."""
     page, found = Page(derivation), dict[Any, Any]()
     for i, link in enumerate(derivation.equations.links, start=1):

@@ -7,8 +7,8 @@ from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
+from pendcore.cases.whole_file import whole_file
 from pendcore.derive.handout.drawing import lettering
-from pendcore.whole_file import whole_file
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

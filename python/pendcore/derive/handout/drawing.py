@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pendcore.arguments import Floats
 from pendcore.derive.handout.labels import Label, place
+from pendcore.messages.arguments import Floats
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

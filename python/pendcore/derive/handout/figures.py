@@ -7,14 +7,14 @@ from math import degrees
 
 import numpy as np
 
-from pendcore.derive.derivation import Derivation
+from pendcore.api.solution import Solution
+from pendcore.derive.algebra import Algebra
 from pendcore.derive.handout import curves, drawing
 from pendcore.derive.handout.document import Drawing
 from pendcore.derive.handout.free_bodies import Acting, Reaction, free_bodies
 from pendcore.derive.handout.mechanism import mechanism
 from pendcore.derive.handout.quantities import number
 from pendcore.derive.narration.page import Page
-from pendcore.solution import Solution
 
 
 class Figures:
@@ -22,13 +22,13 @@ class Figures:
 
     Parameters
     ----------
-    derivation : Derivation
+    derivation : Algebra
         Whose symbols name points and forces.
     q : sequence of float, (n,)
         Angles at which the chain is drawn, rad.
     """
 
-    def __init__(self, derivation: Derivation, q: Sequence[float]) -> None:
+    def __init__(self, derivation: Algebra, q: Sequence[float]) -> None:
         self.derivation = derivation
         self.scene = derivation.scene
         self.q = list(q)

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from pendcore.arguments import Floats
+from pendcore.api.scene import Scene
 from pendcore.derive.handout import drawing
 from pendcore.derive.handout.drawing import Sketch, direction, name
-from pendcore.scene import Scene
+from pendcore.messages.arguments import Floats
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

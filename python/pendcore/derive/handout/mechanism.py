@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pendcore.arguments import Floats
+from pendcore.api.scene import Scene
 from pendcore.derive.handout import drawing
 from pendcore.derive.handout.drawing import Sketch, direction, name
-from pendcore.effects import Effect
-from pendcore.scene import Scene
+from pendcore.messages.arguments import Floats
+from pendcore.scene.effect_class import Effect
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -7,15 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from pendcore.accuracy.report import AccuracyError
-from pendcore.case import Case
-from pendcore.derive.derivation import Derivation
+from pendcore.api.solution import Case, Solution
+from pendcore.derive.algebra import Algebra
 from pendcore.derive.handout.document import Block, Heading, Paragraph, Table
 from pendcore.derive.handout.figures import Figures
 from pendcore.derive.handout.quantities import number, quantity
 from pendcore.derive.handout.scales import Scales
-from pendcore.energy import LOSSES
-from pendcore.solution import Solution
+from pendcore.run.accuracy import AccuracyError
+from pendcore.run.energy import LOSSES
 from pendcore.views.energy_drift import energy_drift
 from pendcore.views.trusted_digits import rounded, trusted_digits
 
@@ -58,7 +57,7 @@ def solved_or_refused(case: Case) -> tuple[Solution, str]:
     if any(effect.description.account != "none" for effect in case.scene.effects):
         options["ledger"] = True
     found = _at_times_until(end, case, options)
-    reached = float(found[0]._run.t_reached)
+    reached = float(found[0].run.t_reached)
     return found if reached == end else _at_times_until(reached, case, options)
 
 
@@ -86,7 +85,7 @@ def takes_time(solution: Solution) -> bool:
 
 
 def numerical_solution(
-    derivation: Derivation, solution: Solution, figures: Figures, refusal: str = ""
+    derivation: Algebra, solution: Solution, figures: Figures, refusal: str = ""
 ) -> Iterator[Block]:
     """Yield how the equations were integrated, and what came of it."""
     yield Heading(2, "Numerical solution")
@@ -107,7 +106,7 @@ def numerical_solution(
 
 
 def _how(solution: Solution) -> str:
-    asked, stats = solution._run.arguments, solution.stats
+    asked, stats = solution.run.arguments, solution.stats
     step = asked.get("step")
     tolerance = (
         f"with a fixed step of ${quantity(step, 's')}$"
@@ -127,7 +126,7 @@ def _one(tolerance: Any) -> str:
     return number(float(np.min(tolerance)), 3)
 
 
-def _table(derivation: Derivation, solution: Solution) -> Table:
+def _table(derivation: Algebra, solution: Solution) -> Table:
     s, write = derivation.symbols, derivation.symbols.latex
     head = ["$t$ (s)", *(f"${write(x)}$ (deg)" for x in s.q)]
     with_rates = derivation.n <= MOST_WITH_RATES
@@ -141,7 +140,7 @@ def _table(derivation: Derivation, solution: Solution) -> Table:
     return Table(tuple(head), tuple(rows), "r" * len(head))
 
 
-def _largest(derivation: Derivation, solution: Solution) -> str:
+def _largest(derivation: Algebra, solution: Solution) -> str:
     digits = trusted_digits(solution, energy_drift(solution), DIGITS_OF_A_FORCE)
     sentences = []
     for one in solution.largest_reactions():
@@ -156,7 +155,7 @@ def _largest(derivation: Derivation, solution: Solution) -> str:
     return f"The largest reactions{among} are {', '.join(sentences)}."
 
 
-def energy_check(derivation: Derivation, solution: Solution, figures: Figures) -> Iterator[Block]:
+def energy_check(derivation: Algebra, solution: Solution, figures: Figures) -> Iterator[Block]:
     """Yield the energies in symbols, and how well the run kept them."""
     yield Heading(2, "Check by the energy")
     moves = takes_time(solution)
@@ -175,7 +174,7 @@ def energy_check(derivation: Derivation, solution: Solution, figures: Figures) -
         yield figures.energies(solution)
 
 
-def _kept(derivation: Derivation, solution: Solution) -> str:
+def _kept(derivation: Algebra, solution: Solution) -> str:
     drift, measure = energy_drift(solution), Scales(derivation).of["J"]
     words = f"In the run, $T + V$ is ${quantity(drift.start, 'J')}$ at the start"
     if drift.largest_drift is None:

@@ -9,16 +9,16 @@ import numpy as np
 import sympy
 from sympy import Expr, Float
 
-from pendcore.arguments import Floats
-from pendcore.case import Case
+from pendcore.api.solution import Case
 from pendcore.derive import line_breaks
-from pendcore.derive.derivation import Derivation
+from pendcore.derive.algebra import Algebra
 from pendcore.derive.handout.document import Block, Displayed, Heading, Paragraph, Table
 from pendcore.derive.handout.quantities import number, quantity, unit
 from pendcore.derive.handout.scales import ROUNDING, Scales
+from pendcore.messages.arguments import Floats
 
 
-def numbers_put_in(derivation: Derivation) -> Iterator[Block]:
+def numbers_put_in(derivation: Algebra) -> Iterator[Block]:
     """Yield M and f with the numbers of the scene."""
     yield Heading(3, "The equations of motion with numbers")
     locked = derivation.motion.locking
@@ -40,7 +40,7 @@ def numbers_put_in(derivation: Derivation) -> Iterator[Block]:
         )
 
 
-def _laws(derivation: Derivation) -> list[str]:
+def _laws(derivation: Algebra) -> list[str]:
     """Return rows of the symbols that M and f are written with: torques, loads, the pivot."""
     needed = set[Any]().union(*(x.free_symbols for x in derivation.motion.named.entries.values()))
     wanted = []
@@ -54,7 +54,7 @@ def _laws(derivation: Derivation) -> list[str]:
     return found
 
 
-def _entries(derivation: Derivation) -> list[str]:
+def _entries(derivation: Algebra) -> list[str]:
     found: list[str] = []
     for symbol, value in derivation.motion.named.entries.items():
         name = "kg m^2" if symbol.name.startswith("M") else "N m"
@@ -62,7 +62,7 @@ def _entries(derivation: Derivation) -> list[str]:
     return found
 
 
-def _numeric(derivation: Derivation, symbol: Any, value: Expr, name: str) -> list[str]:
+def _numeric(derivation: Algebra, symbol: Any, value: Expr, name: str) -> list[str]:
     """Return rows of a symbol's value in numbers, with its unit behind."""
     write = derivation.symbols.latex
     put_in = sympy.sympify(value.xreplace(derivation.values))
@@ -96,7 +96,7 @@ def _rounded(expression: Expr) -> Expr:
 class Start:
     """The state at the start, and what the derivation and the compiled core make of it."""
 
-    def __init__(self, derivation: Derivation, case: Case) -> None:
+    def __init__(self, derivation: Algebra, case: Case) -> None:
         self.derivation = derivation
         self.case = case
         s = derivation.symbols
@@ -149,7 +149,7 @@ class Start:
         return {joint: float(couples[joint - 1]) for joint in joints}
 
 
-def at_the_start(derivation: Derivation, case: Case) -> Iterator[Block]:
+def at_the_start(derivation: Algebra, case: Case) -> Iterator[Block]:
     """Yield the accelerations, reactions and energies at the start, beside the core's."""
     start = Start(derivation, case)
     rows = start.rows()
@@ -210,7 +210,7 @@ def _without_rounding(entries: dict[Any, float], scales: Scales) -> dict[Any, fl
     return shown
 
 
-def _state(derivation: Derivation, case: Case) -> str:
+def _state(derivation: Algebra, case: Case) -> str:
     """Say what the state at the start is."""
     s, write = derivation.symbols, derivation.symbols.latex
     state = [(q, angle, "rad") for q, angle in zip(s.q, case.q0, strict=True)]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from pendcore.case import Case
-from pendcore.derive.derivation import Derivation
+from pendcore.api.solution import Case
+from pendcore.derive.algebra import Algebra
 from pendcore.derive.handout.acting import what_acts
 from pendcore.derive.handout.document import Block, Displayed, Heading, Paragraph, Table
 from pendcore.derive.handout.figures import Figures
@@ -16,13 +16,13 @@ COUNTS = {1: "one link", 2: "two links", 3: "three links", 4: "four links", 5: "
 
 
 def problem(
-    derivation: Derivation, case: Case, figures: Figures, *, by_hand: bool = False
+    derivation: Algebra, case: Case, figures: Figures, *, by_hand: bool = False
 ) -> Iterator[Block]:
     """Yield what is given, and Fig. 1.
 
     Parameters
     ----------
-    derivation : Derivation
+    derivation : Algebra
         Of the scene.
     case : Case
         With the start.
@@ -51,7 +51,7 @@ def problem(
     yield Paragraph(f"from $t = {quantity(start, 's')}$ to $t = {quantity(end, 's')}$.")
 
 
-def initial_conditions(derivation: Derivation, case: Case) -> str:
+def initial_conditions(derivation: Algebra, case: Case) -> str:
     """Return LaTeX of the angles and rates at the start."""
     s, lines = derivation.symbols, []
     time = number(case.t_span[0])
@@ -65,7 +65,7 @@ def initial_conditions(derivation: Derivation, case: Case) -> str:
     return f"\\begin{{aligned}}\n{body}\n\\end{{aligned}}"
 
 
-def _what_moves(derivation: Derivation) -> str:
+def _what_moves(derivation: Algebra) -> str:
     n, scene = derivation.n, derivation.scene
     uniform = not any(link.particulars().keys() - {"mass", "length"} for link in scene.links)
     name = {1: "pendulum", 2: "double pendulum"}.get(n, "chain")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from pendcore.derive.derivation import Derivation
+from pendcore.derive.algebra import Algebra
 
 ROUNDING = 1e-12
 """Below that share of the scale of its kind a number is what rounding leaves of 0."""
@@ -15,13 +15,13 @@ class Scales:
 
     Parameters
     ----------
-    derivation : Derivation
+    derivation : Algebra
         Whose masses, lengths and gravity they are.
     found : iterable of (str, float)
         Numbers with their units; where one is larger than the scale of its unit, it is the scale.
     """
 
-    def __init__(self, derivation: Derivation, found: Iterable[tuple[str, float]] = ()) -> None:
+    def __init__(self, derivation: Algebra, found: Iterable[tuple[str, float]] = ()) -> None:
         scene, payload = derivation.scene, derivation.equations.payload
         lengths = [abs(link.length) for link in scene.links]
         mass = sum(link.mass for link in scene.links)

@@ -9,7 +9,7 @@ from itertools import groupby
 from sympy import Expr, fraction
 
 from pendcore.derive import line_breaks
-from pendcore.derive.derivation import Derivation
+from pendcore.derive.algebra import Algebra
 from pendcore.derive.handout.document import Blank, Block, Displayed, Heading, Paragraph
 from pendcore.derive.handout.figures import Figures
 from pendcore.derive.handout.quantities import quantity
@@ -26,21 +26,23 @@ BY_HAND = 22.0
 
 
 def derivation_steps(
-    derivation: Derivation, figures: Figures, *, blanks: bool = False
+    derivation: Algebra, written: Iterable[Step], figures: Figures, *, blanks: bool = False
 ) -> Iterator[Block]:
     """Yield the derivation, step by step; the free bodies come before the first of their equations.
 
     Parameters
     ----------
-    derivation : Derivation
+    derivation : Algebra
         Whose steps they are.
+    written : iterable of Step
+        The steps.
     figures : Figures
         Draws the free bodies.
     blanks : bool
         Whether the right sides are left for the reader to find.
     """
     drawn = False
-    for step in derivation.steps:
+    for step in written:
         yield Heading(3, f"{step.number}. {step.title}")
         yield Paragraph(step.text)
         if not drawn and _is_of_forces(step, derivation):
@@ -49,7 +51,7 @@ def derivation_steps(
         yield from _blanks(step) if blanks else _shown(step, derivation)
 
 
-def _is_of_forces(step: Step, derivation: Derivation) -> bool:
+def _is_of_forces(step: Step, derivation: Algebra) -> bool:
     """Whether a step has reactions in it."""
     forces = {symbol for pair in derivation.equations.forces for symbol in pair}
     return any(
@@ -60,7 +62,7 @@ def _is_of_forces(step: Step, derivation: Derivation) -> bool:
     )
 
 
-def _shown(step: Step, derivation: Derivation) -> Iterator[Block]:
+def _shown(step: Step, derivation: Algebra) -> Iterator[Block]:
     for number, equations in groups(_with_short_denominators(step.equations, derivation)):
         margin = max(line_breaks.width(e.side_latex(e.lhs)) for e in equations)
         together: list[str] = []
@@ -78,9 +80,7 @@ def _shown(step: Step, derivation: Derivation) -> Iterator[Block]:
             yield Paragraph(f"*{remark}*")
 
 
-def _with_short_denominators(
-    equations: Iterable[Equation], derivation: Derivation
-) -> list[Equation]:
+def _with_short_denominators(equations: Iterable[Equation], derivation: Algebra) -> list[Equation]:
     """Return equations of which a long denominator has a name, such as a determinant."""
     notation, found, named = derivation.symbols, list[Equation](), dict[Expr, Expr]()
     for equation in equations:
@@ -112,14 +112,14 @@ def groups(equations: Iterable[Equation]) -> Iterator[tuple[str | None, list[Equ
             yield number, together
 
 
-def _rows(equation: Equation, derivation: Derivation, margin: float = 0.0) -> list[str]:
+def _rows(equation: Equation, derivation: Algebra, margin: float = 0.0) -> list[str]:
     rows = equation.rows(margin)
     if (number := _number(equation, derivation)) is not None:
         rows[-1] += f" = {number}"
     return rows
 
 
-def _number(equation: Equation, derivation: Derivation) -> str | None:
+def _number(equation: Equation, derivation: Algebra) -> str | None:
     """Return the number of a moment of inertia that is given by the parameters alone."""
     name = getattr(equation.lhs, "name", "")
     right, values = equation.rhs, derivation.values

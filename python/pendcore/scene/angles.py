@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy.typing as npt
 
-from pendcore.arguments import finite_array
+from pendcore.messages.arguments import finite_array
 
 
 def angles_from_vertical(theta: npt.ArrayLike) -> Any:

@@ -1,60 +1,29 @@
-"""A case: a scene, where it starts, how it is run. It can be run, and written as TOML."""
+"""A case: a scene, where it starts, how it is run. It can be written as TOML."""
 
 from __future__ import annotations
 
-import inspect
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
-from math import pi
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import numpy.typing as npt
 
-from pendcore.arguments import finite_array, vector
-from pendcore.effect_class import Effect, OwnEffect, Part
-from pendcore.events import Event, Function, events_asked_for
-from pendcore.run_error import require_check
-from pendcore.scene import Scene
-from pendcore.simulate import simulate
-from pendcore.solution import Solution
-
-RUN_DEFAULTS: dict[str, Any] = {
-    name: parameter.default
-    for name, parameter in inspect.signature(simulate).parameters.items()
-    if parameter.kind is parameter.KEYWORD_ONLY
-}
-"""The keywords of `simulate` that say how to run, and their defaults."""
+from pendcore.messages.arguments import finite_array, vector
+from pendcore.run.events import Event, Function, events_asked_for
+from pendcore.run.options import RUN_DEFAULTS
+from pendcore.run.result import RunResult
+from pendcore.scene.effect_class import Effect, OwnEffect, Part
+from pendcore.scene.scene import SceneData
 
 
 @dataclass(frozen=True, slots=True, init=False, repr=False)
-class Case:
-    """A scene, where it starts, how long and how it is run. It cannot be changed, and hashes.
+class CaseData:
+    """A case without what is built on it; `pendcore.Case` has its parameters and the rest."""
 
-    Parameters
-    ----------
-    scene : Scene
-        What moves.
-    q0 : array_like, (n,)
-        Absolute angles at the start, rad. A scalar holds for every link.
-    qd0 : array_like, (n,), default 0
-        Rates at the start, rad/s. A scalar holds for every link.
-    t_span : (float, float)
-        Start and end, s.
-    name : str
-        For people.
-    options : mapping
-        Keywords of `simulate`; those not given have its defaults. Kept as a read-only mapping.
-
-    Raises
-    ------
-    ValueError, TypeError
-        If q0, qd0 or t_span are not finite numbers of that shape, or an option is unknown.
-    """
-
-    scene: Scene
+    scene: SceneData
     q0: tuple[float, ...]
     qd0: tuple[float, ...]
     t_span: tuple[float, float]
@@ -64,7 +33,7 @@ class Case:
     def __init__(
         self,
         *,
-        scene: Scene,
+        scene: SceneData,
         q0: npt.ArrayLike,
         qd0: npt.ArrayLike = 0.0,
         t_span: npt.ArrayLike,
@@ -87,45 +56,16 @@ class Case:
         object.__setattr__(self, "options", MappingProxyType(given))
 
     @classmethod
-    def textbook(cls) -> Case:
-        """Section 2.1 of the textbook: from rest at 45 and 60 degrees, for 5 s, by ode45."""
-        return cls(
-            name="double pendulum, section 2.1",
-            scene=Scene.textbook(),
-            q0=(pi / 4, pi / 3),
-            t_span=(0.0, 5.0),
-            options={"method": "ode45"},
-        )
-
-    @classmethod
-    def of_solution(cls, solution: Solution) -> Case:
+    def of_solution(cls, solution: RunResult) -> Self:
         """Return what was asked for when a solution was computed."""
-        asked = {key: _plain(value) for key, value in solution._run.arguments.items()}
+        asked = {key: _plain(value) for key, value in solution.run.arguments.items()}
         start = {key: asked.pop(key) for key in ("q0", "qd0")}
         t_span = (asked.pop("t_start"), asked.pop("t_end"))
-        asked["events"] = tuple(solution._events_asked_for())
+        asked["events"] = tuple(solution.events_asked_for())
         options = {key: value for key, value in asked.items() if value != RUN_DEFAULTS[key]}
         return cls(
             scene=solution.scene, **start, t_span=t_span, name=solution.name, options=options
         )
-
-    def simulate(self, *, check: bool | None = None) -> Solution:
-        """Run it; see `pendcore.simulate`. The solution has the name of the case.
-
-        ``check`` takes the place of the case's own, if it is given.
-        """
-        options = dict(self.options)
-        require_check(options.get("check"))
-        if check is not None:
-            options["check"] = check
-        try:
-            solution = simulate(self.scene, self.q0, self.qd0, self.t_span, **options)
-        except BaseException as stop:
-            if isinstance(so_far := getattr(stop, "solution", None), Solution):
-                so_far.name = self.name
-            raise
-        solution.name = self.name
-        return solution
 
     def to_toml(self) -> str:
         """Return the case as TOML; `pendcore.read_case` makes an equal one of it, to the last bit.
@@ -148,23 +88,24 @@ class Case:
         ]
         return "\n".join(header + "".join(_lines(table)) for header, table in tables)
 
-    def _values(self) -> dict[str, Any]:
+    def values(self) -> dict[str, Any]:
+        """Return all that it is made of, by name."""
         values = {field.name: getattr(self, field.name) for field in fields(self)}
         return values | {"options": dict(self.options)}
 
     def __repr__(self) -> str:
-        return f"Case({', '.join(f'{name}={x!r}' for name, x in self._values().items())})"
+        return f"Case({', '.join(f'{name}={x!r}' for name, x in self.values().items())})"
 
     def __hash__(self) -> int:
-        return hash(tuple((self._values() | {"options": frozenset(self.options.items())}).values()))
+        return hash(tuple((self.values() | {"options": frozenset(self.options.items())}).values()))
 
-    def __reduce__(self) -> tuple[object, tuple[dict[str, Any]]]:
+    def __reduce__(self) -> tuple[object, ...]:
         # A read-only mapping does not pickle, so the case is made anew.
-        return _case, (self._values(),)
+        return _case, (type(self), self.values())
 
 
-def _case(values: dict[str, Any]) -> Case:
-    return Case(**values)
+def _case(cls: type[CaseData], values: dict[str, Any]) -> CaseData:
+    return cls(**values)
 
 
 def _pair(name: str, value: npt.ArrayLike, unit: str) -> tuple[float, float]:

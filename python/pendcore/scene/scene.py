@@ -8,27 +8,23 @@ i is where link i begins.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple, TypeVar
+from dataclasses import dataclass, field, fields
+from typing import NamedTuple, Self, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 from pendcore import _core
-from pendcore.arguments import (
+from pendcore.messages.arguments import (
     Floats,
     finite_array,
     known_keywords,
     link_array,
     number,
-    vector,
 )
-from pendcore.effects import Effect
-from pendcore.link import Link
-from pendcore.warning import warn
-
-if TYPE_CHECKING:
-    from pendcore.explanation import Explanation
+from pendcore.messages.warning import warn
+from pendcore.scene.effect_class import Effect
+from pendcore.scene.link import Link
 
 Member = TypeVar("Member")
 
@@ -55,34 +51,8 @@ class Mobility(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, init=False, repr=False)
-class Scene:
-    """A chain of links on a pivot, and what acts on it, ready to be simulated.
-
-    Parameters
-    ----------
-    links : iterable of Link
-        From the pivot outwards, one or more.
-    gravity : float, default 9.807
-        Downward, m/s^2; finite. 0 is allowed.
-    effects : iterable of pendcore.effects.Effect
-        What acts besides gravity, in any number and order. Nothing else is simulated:
-        `explain` says what is and what is not.
-
-    Raises
-    ------
-    ValueError, TypeError
-        If a value is out of its range; the message names link, value, range and unit.
-
-    Warns
-    -----
-    PendcoreWarning
-        If a value is allowed and implausible, such as more inertia than a link of that length
-        could have.
-
-    Notes
-    -----
-    A scene cannot be changed; ``scene.replace(gravity=1.62)`` makes another.
-    """
+class SceneData:
+    """A scene without what is built on it; `pendcore.Scene` has its parameters and the rest."""
 
     links: tuple[Link, ...]
     gravity: float = 9.807
@@ -112,7 +82,7 @@ class Scene:
             warn(message)
 
     @classmethod
-    def textbook(cls) -> Scene:
+    def textbook(cls) -> Self:
         """Section 2.1 of the textbook: two uniform rods of 1 kg and 1 m, g = 9.807 m/s^2."""
         return cls(links=[Link(mass=1.0, length=1.0), Link(mass=1.0, length=1.0)])
 
@@ -123,7 +93,7 @@ class Scene:
         links: Iterable[Link] | None = None,
         gravity: float | None = None,
         effects: Iterable[Effect] | None = None,
-    ) -> Scene:
+    ) -> Self:
         """Return a scene with other links, gravity or effects; what is not given stays.
 
         Parameters
@@ -131,7 +101,7 @@ class Scene:
         links, gravity, effects
             As in `Scene`.
         """
-        return Scene(
+        return type(self)(
             links=self.links if links is None else links,
             gravity=self.gravity if gravity is None else gravity,
             effects=self.effects if effects is None else effects,
@@ -203,38 +173,22 @@ class Scene:
         """Count the degrees of freedom as the textbook does, ``M = 3 n - 2 c5 - c4``."""
         return Mobility(*self._compiled.mobility())
 
-    @known_keywords
-    def explain(self, t: float = 0.0, q: npt.ArrayLike | None = None) -> Explanation:
-        """Say what is simulated and what is not, what it costs, and how fast it moves.
-
-        Parameters
-        ----------
-        t : float, default 0
-            Time at which motors and pivot are looked at, s.
-        q : array_like, (n,), optional
-            Angles to look for equilibria from, besides hanging and upright, rad. A joint that is
-            locked where it starts is locked as it is here; without them, as it is in hanging and
-            in upright, and a remark says so.
-
-        Returns
-        -------
-        Explanation
-            Print it, or take its fields; ``to_dict()`` for JSON.
-        """
-        from pendcore.explanation import explain
-
-        start = None if q is None else vector("q", q, len(self.links), "rad")
-        (time,) = vector("t", t, 1, "s")
-        return explain(self, time, start)
-
     def __repr__(self) -> str:
         effects = f", effects={self.effects!r}" if self.effects else ""
         return f"Scene(links={self.links!r}, gravity={self.gravity!r}{effects})"
 
     @classmethod
+    def of(cls, scene: SceneData) -> Self:
+        """Return the same scene as one of this class."""
+        same = object.__new__(cls)
+        for member in fields(SceneData):
+            object.__setattr__(same, member.name, getattr(scene, member.name))
+        return same
+
+    @classmethod
     def _unpickled(
         cls, links: Iterable[Link], gravity: float, effects: Iterable[Effect] = ()
-    ) -> Scene:
+    ) -> Self:
         scene = object.__new__(cls)
         scene._compile(links, gravity, effects)
         return scene
@@ -270,9 +224,9 @@ def _tuple_of(
 
 def require_start(scene: object, q0: npt.ArrayLike | None) -> npt.ArrayLike:
     """Return the angles at the start; TypeError unless there are some, and a scene."""
-    if not isinstance(scene, Scene):
+    if not isinstance(scene, SceneData):
         told, remedy = f"scene = {scene!r}", ""
-        if isinstance(getattr(scene, "scene", None), Scene):
+        if isinstance(getattr(scene, "scene", None), SceneData):
             told = f"scene: is a {type(scene).__name__}"
             remedy = "; case.simulate() runs a case" if hasattr(scene, "simulate") else ""
         raise TypeError(f"{told}: must be a pendcore.Scene{remedy}")

@@ -1,25 +1,18 @@
-"""From a scene and a start to a solution."""
+"""The call that everything is about: from a scene and a start to a solution."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from functools import cache
-from inspect import signature
 from math import inf
 
-import numpy as np
 import numpy.typing as npt
 
-from pendcore import _core
-from pendcore.accuracy.asked_error import run_to_error
-from pendcore.accuracy.run import Start
-from pendcore.arguments import known_keywords, number, two_times
-from pendcore.events import Event, events_asked_for
-from pendcore.progress import Progress, callback
-from pendcore.run_error import checked, require_check
-from pendcore.scene import Scene, require_start
-from pendcore.solution import Solution, solution_of
-from pendcore.warning import warn
+from pendcore.api.scene import Scene
+from pendcore.api.solution import Solution
+from pendcore.api.solve import solve
+from pendcore.messages.arguments import known_keywords
+from pendcore.messages.progress import Progress
+from pendcore.run.events import Event
 
 
 @known_keywords
@@ -153,40 +146,9 @@ def simulate(
     Differential Equations I*, II.4; a Taylor series sets its steps by its coefficients. The same
     arguments give the same bits on every x86-64 machine, whatever is stored.
     """
-    q0 = require_start(scene, q0)
-    require_check(check)
-    t_start, t_end = two_times(t_span)
-    wanted = [event._as_pair() for event in events_asked_for(events)]
-    if error is not None:
-        _check_error(error, method=method, rtol=rtol, atol=atol, step=step)
-        solution = run_to_error(
-            Start(scene, q0, qd0, t_start, t_end), float(error),
-            {
-                "t_eval": t_eval, "store": store, "first_step": first_step, "max_step": max_step,
-                "max_steps": max_steps, "time_limit": time_limit, "wanted": wanted,
-                "ledger": ledger, "compensated": compensated, "progress": progress,
-            },
-        )  # fmt: skip
-        return checked(solution, check)
-    report = callback(progress)
-    run = _core.simulate(
-        scene._compiled, q0, qd0, t_start, t_end, method, rtol, atol, t_eval, store,
-        first_step, max_step, step, max_steps, time_limit, wanted, ledger, compensated, report,
-        warn,
+    return solve(
+        Solution, scene, q0, qd0, t_span, method=method, rtol=rtol, atol=atol, t_eval=t_eval,
+        store=store, first_step=first_step, max_step=max_step, step=step, max_steps=max_steps,
+        time_limit=time_limit, events=events, ledger=ledger, compensated=compensated, error=error,
+        check=check, progress=progress,
     )  # fmt: skip
-    return checked(solution_of(scene, run, report), check)
-
-
-def _check_error(error: float, **chosen: object) -> None:
-    if not 0 < number("error", error, "") < 1:
-        raise ValueError(f"error = {error!r}: must be > 0 and < 1, a share of the total length")
-    for name, value in chosen.items():
-        if not np.array_equal(value, _default(name)):  # type: ignore[arg-type]
-            raise ValueError(
-                f"{name} = {value!r}: is chosen for the error: leave one of the two out"
-            )
-
-
-@cache
-def _default(name: str) -> object:
-    return signature(simulate).parameters[name].default

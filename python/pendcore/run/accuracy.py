@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 from math import inf
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
-
-if TYPE_CHECKING:
-    from pendcore.solution import Solution
+from typing import Any, Literal, NamedTuple, TypeAlias
 
 Outcome: TypeAlias = Literal["kept", "refused", "ended early"]
 
@@ -137,7 +134,7 @@ class AccuracyError(ArithmeticError):
         none can.
     """
 
-    def __init__(self, message: str, solution: Solution | None = None, least: float = inf) -> None:
+    def __init__(self, message: str, solution: Any = None, least: float = inf) -> None:
         super().__init__(message)
         self.solution = solution
         self.least = least

@@ -1,4 +1,4 @@
-"""Reading a case from TOML; docs/case_files.md is the reference of its keys.
+"""A case from TOML; docs/case_files.md is the reference of its keys.
 
 A case::
 
@@ -37,14 +37,15 @@ from math import radians
 from pathlib import Path
 from typing import Any
 
-from pendcore.arguments import vector
-from pendcore.case import RUN_DEFAULTS, Case
-from pendcore.effect_class import KINDS, PARTS, Effect, OwnEffect, effect_of
-from pendcore.events import KINDS as EVENT_KINDS
-from pendcore.events import Event, Function
-from pendcore.link import Link
-from pendcore.scene import Scene
-from pendcore.toml_text import Place, TomlText
+from pendcore.cases.case import CaseData
+from pendcore.cases.toml_text import Place, TomlText
+from pendcore.messages.arguments import vector
+from pendcore.run.events import KINDS as EVENT_KINDS
+from pendcore.run.events import Event, Function
+from pendcore.run.options import RUN_DEFAULTS
+from pendcore.scene.effect_class import KINDS, PARTS, Effect, OwnEffect, effect_of
+from pendcore.scene.link import Link
+from pendcore.scene.scene import SceneData
 
 KEYS = {
     "": ("name", "gravity", "link", "effect", "event", "start", "run"),
@@ -77,26 +78,8 @@ _ANYWHERE = KEYS | {
 }
 
 
-def read_case(source: str | os.PathLike[str]) -> Case:
-    """Read a case from TOML.
-
-    Parameters
-    ----------
-    source : path or str
-        A file, or the text itself: a string with a line break is text.
-
-    Returns
-    -------
-    Case
-
-    Raises
-    ------
-    ValueError
-        If the text is not TOML, a key is unknown or missing, or a value is not what its key asks
-        for. The message names the line and, for an unknown key, the nearest known one.
-    OSError
-        If the file cannot be read.
-    """
+def case_from(source: str | os.PathLike[str]) -> CaseData:
+    """Read a case from a file, or from the text itself; see `pendcore.read_case`."""
     if isinstance(source, str) and "\n" in source:
         return case_from_text(source, "case")
     return case_from_text(_text_of(Path(source)), str(source))
@@ -115,7 +98,7 @@ def _text_of(path: Path) -> str:
         raise ValueError(f"{path}: is not a text file in UTF-8") from None
 
 
-def case_from_text(content: str, name: str) -> Case:
+def case_from_text(content: str, name: str) -> CaseData:
     """Read a case from TOML that messages call ``name``; see `read_case`."""
     text = TomlText(content.removeprefix("\ufeff"), name)
     text.check_keys((), _ANYWHERE)
@@ -132,12 +115,12 @@ def case_from_text(content: str, name: str) -> Case:
     if not isinstance(title, str):
         raise text.error(("name",), f"name = {title!r}: must be a string")
     try:
-        return Case(scene=scene, q0=q0, qd0=qd0, t_span=t_span, name=title, options=options)
+        return CaseData(scene=scene, q0=q0, qd0=qd0, t_span=t_span, name=title, options=options)
     except ValueError as error:
         raise text.error(_place(str(error)), str(error)) from None
 
 
-def _scene(text: TomlText) -> Scene:
+def _scene(text: TomlText) -> SceneData:
     tables = text.value(("link",))
     if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
         raise text.error(("link",), "links are needed: a table [[link]] for each")
@@ -151,7 +134,7 @@ def _scene(text: TomlText) -> Scene:
     gravity = {"gravity": text.number(("gravity",))} if "gravity" in text.content else {}
     effects = _effects(text)
     try:
-        return Scene(links=links, effects=effects, **gravity)
+        return SceneData(links=links, effects=effects, **gravity)
     except ValueError as error:
         raise text.error(_place(str(error)), str(error)) from None
 

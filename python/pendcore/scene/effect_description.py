@@ -12,7 +12,7 @@ from textwrap import wrap
 from typing import Any, NamedTuple
 
 from pendcore import _core
-from pendcore.arguments import in_unit
+from pendcore.messages.arguments import in_unit
 
 NUMBERS = {"int", "float", "optional float", "pair", "floats"}
 """The types of parameters that are numbers; the others are a part, an address or a function."""

@@ -21,14 +21,15 @@ from __future__ import annotations
 from math import inf, log
 from typing import Any
 
-from pendcore.accuracy.estimate import SPARE_OF_SEVERAL, ErrorEstimate
+from pendcore.accuracy.estimate import SPARE_OF_SEVERAL
 from pendcore.accuracy.method_choice import LOOSEST
-from pendcore.accuracy.report import AccuracyError
-from pendcore.accuracy.run import Start
-from pendcore.accuracy.trials import Made, Trials, leading
-from pendcore.arguments import finite_array
-from pendcore.progress import callback, close
-from pendcore.solution import Solution
+from pendcore.accuracy.trials import TrialRun, Trials, leading
+from pendcore.messages.arguments import finite_array
+from pendcore.messages.progress import callback, close
+from pendcore.run.accuracy import AccuracyError
+from pendcore.run.call import Start
+from pendcore.run.error_estimate import ErrorEstimate
+from pendcore.run.result import RunResult
 
 # What tolerances aim at.
 FIRST, LOOSE = 3.0, 1e-3
@@ -84,7 +85,7 @@ FOLLOWED_BADLY = ("step_too_small", "non_finite")
 MOST_RUNS = 16
 
 
-def run_to_error(start: Start, error: float, options: dict[str, Any]) -> Solution:
+def run_to_error(start: Start, error: float, options: dict[str, Any]) -> RunResult:
     """Return a run whose error is verified to be at most ``error``; see `pendcore.simulate`.
 
     ``options`` are further keywords of `run`, for the run that is returned; ``time_limit`` holds
@@ -107,7 +108,7 @@ def run_to_error(start: Start, error: float, options: dict[str, Any]) -> Solutio
         raise
     except BaseException as stop:
         best = runs.best()
-        if isinstance(partly := getattr(stop, "solution", None), Solution):
+        if isinstance(partly := getattr(stop, "solution", None), RunResult):
             best = best or (partly if partly.scene is start.scene else None)
             del stop.solution  # type: ignore[attr-defined]
         if best is not None:
@@ -119,7 +120,7 @@ def run_to_error(start: Start, error: float, options: dict[str, Any]) -> Solutio
         close(report)
 
 
-def _kept(runs: Trials) -> Solution:
+def _kept(runs: Trials) -> RunResult:
     first = _first_trial(runs)
     if not first.solution.success:
         return _ended_early(runs, first)
@@ -140,20 +141,20 @@ def _kept(runs: Trials) -> Solution:
     raise _refusal(runs)
 
 
-def _first_trial(runs: Trials) -> Made:
+def _first_trial(runs: Trials) -> TrialRun:
     """Run at a tolerance that is not too loose to follow the motion to its end."""
     scale = runs.error * (FIRST if runs.error < LOOSE else AIM)
     made = runs.trial(scale, runs.method_for(runs.error))
     while made.solution.status in FOLLOWED_BADLY and made.rtol > runs.tightest:
-        before = made.solution._run.t_reached
+        before = made.solution.run.t_reached
         runs.trials.clear()
         made = runs.trial(made.scale / FARTHER, made.method)
-        if abs(made.solution._run.t_reached - before) <= 1e-3 * abs(before - runs.start.t_start):
+        if abs(made.solution.run.t_reached - before) <= 1e-3 * abs(before - runs.start.t_start):
             break  # both say that the motion ends there
     return made
 
 
-def _next_run(runs: Trials) -> Made | None:
+def _next_run(runs: Trials) -> TrialRun | None:
     """Make the run that is expected to settle the matter; None where nothing can."""
     last = min(runs.trials, key=lambda one: one.scale)
     better = _better_than(runs, last)
@@ -176,7 +177,7 @@ def _next_run(runs: Trials) -> Made | None:
     return runs.trial(aimed, runs.method_for(aimed))
 
 
-def _looser(runs: Trials, trial: Made, aimed: float) -> float | None:
+def _looser(runs: Trials, trial: TrialRun, aimed: float) -> float | None:
     """Return the scale of a trial that may show how the error follows the tolerance."""
     scales = [LOOSER * trial.scale, NEXT_LOOSER * trial.scale]
     if aimed > RATIO * trial.scale:
@@ -189,7 +190,7 @@ def _looser(runs: Trials, trial: Made, aimed: float) -> float | None:
     return None
 
 
-def _second(runs: Trials, trial: Made) -> Made:
+def _second(runs: Trials, trial: TrialRun) -> TrialRun:
     """Run better than a trial, and than all second runs that verify it."""
     if _tight_runs(trial):
         return runs.second(trial, 0.0)
@@ -200,12 +201,12 @@ def _second(runs: Trials, trial: Made) -> Made:
     return runs.second(trial, trial.scale / better_by)
 
 
-def _better_by(trial: Made) -> float:
+def _better_by(trial: TrialRun) -> float:
     """Return by what factor a second run of its method is better than a trial at least."""
     return BETTER_SERIES if leading(trial.method) == "taylor" else BETTER
 
 
-def _scale_before_it_grew(runs: Trials, trial: Made, second: Made) -> float:
+def _scale_before_it_grew(runs: Trials, trial: TrialRun, second: TrialRun) -> float:
     """Return the scale at which a chaotic motion comes to its end with the error.
 
     Two runs have nothing in common after a share of the time: errors grow as exp(rate t).
@@ -215,12 +216,12 @@ def _scale_before_it_grew(runs: Trials, trial: Made, second: Made) -> float:
     farther = trial.scale / FARTHER
     if not until or trial.scale >= NOTHING_IN_COMMON:
         return farther
-    whole = trial.solution._run.t_reached - begin
+    whole = trial.solution.run.t_reached - begin
     grown: float = (trial.scale / NOTHING_IN_COMMON) ** float(whole / until)
     return min(farther, max(AIM * runs.error * grown, farther / FARTHER))
 
 
-def _known_error(runs: Trials, trial: Made) -> ErrorEstimate | None:
+def _known_error(runs: Trials, trial: TrialRun) -> ErrorEstimate | None:
     """Return the error of a trial, if what it is compared with is known to be better."""
     better = _better_than(runs, trial)
     count = _tight_runs(trial) or 2
@@ -237,7 +238,7 @@ def _known_error(runs: Trials, trial: Made) -> ErrorEstimate | None:
     return runs.compared(trial, better[:1], share + SPARE) if share <= SHARE else None
 
 
-def _share(runs: Trials, trial: Made, second: Made) -> float:
+def _share(runs: Trials, trial: TrialRun, second: TrialRun) -> float:
     """Return what share of a trial's error a second run's is at most, as other trials tell."""
     found = inf
     own = runs.distance(trial, second)
@@ -258,7 +259,7 @@ def _share(runs: Trials, trial: Made, second: Made) -> float:
     return found + ROUNDING / trial.scale
 
 
-def _share_if_tight(runs: Trials, trial: Made, seconds: list[Made]) -> float | None:
+def _share_if_tight(runs: Trials, trial: TrialRun, seconds: list[TrialRun]) -> float | None:
     """Return what is added to the distance from second runs as tight as doubles allow, as a share.
 
     They may be off alike, by their truncation: looser runs of the method tell it. None if there are
@@ -279,7 +280,7 @@ def _share_if_tight(runs: Trials, trial: Made, seconds: list[Made]) -> float | N
     return max(least, left / own) + SPARE
 
 
-def _better_than(runs: Trials, trial: Made) -> list[Made]:
+def _better_than(runs: Trials, trial: TrialRun) -> list[TrialRun]:
     """Return the second runs that may verify a trial, the best first."""
     if _tight_runs(trial):
         found = [one for one in runs.seconds if one.rtol <= runs.tightest]
@@ -288,12 +289,12 @@ def _better_than(runs: Trials, trial: Made) -> list[Made]:
     return sorted(found, key=lambda one: one.scale)
 
 
-def _tight_runs(trial: Made) -> int:
+def _tight_runs(trial: TrialRun) -> int:
     """Return how many second runs as tight as doubles allow a trial needs; 0 if looser ones do."""
     return next((count for below, count in ROUNDING_MATTERS if trial.scale < below), 0)
 
 
-def _ended_early(runs: Trials, latest: Made) -> Solution:
+def _ended_early(runs: Trials, latest: TrialRun) -> RunResult:
     """Return a trial that did not get to its end, with what is known of it.
 
     When the time is up it is the tightest whole trial, if there is one: nothing has verified it.
@@ -307,7 +308,7 @@ def _ended_early(runs: Trials, latest: Made) -> Solution:
     found = runs.compared(latest, seconds)
     solution = runs.labelled(latest.solution, "ended early", found)
     if not found.is_complete:
-        solution._error = None  # another time there may be more time
+        solution.known_error = None  # another time there may be more time
     return solution
 
 

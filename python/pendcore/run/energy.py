@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pendcore import _core
-from pendcore.arguments import Floats
+from pendcore.messages.arguments import Floats
 
 LOSSES = frozenset(name for name, is_loss in _core.accounts().items() if is_loss)
 """The entries that count what is lost; the others count work done on the chain."""

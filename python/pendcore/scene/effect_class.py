@@ -17,8 +17,8 @@ from typing import Any, ClassVar, NoReturn, Self
 import numpy as np
 
 from pendcore import _core
-from pendcore.arguments import did_you_mean, in_unit, number, numbers, whole_number
-from pendcore.effect_description import Description, Parameter, docstring, effects, parts
+from pendcore.messages.arguments import did_you_mean, in_unit, number, numbers, whole_number
+from pendcore.scene.effect_description import Description, Parameter, docstring, effects, parts
 
 
 class Described:

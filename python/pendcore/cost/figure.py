@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import os
+from collections.abc import Sequence
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-from pendcore.cost import AccuracyCost, Point
+from pendcore.cost.point import Point
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -28,7 +28,14 @@ UNITS = ((1e-4, 1e6, "\N{MICRO SIGN}s"), (0.1, 1e3, "ms"), (inf, 1.0, "s"))
 
 
 def plot(
-    cost: AccuracyCost, ax: Any = None, *, y: str = "time", **line_properties: Any
+    points: Sequence[Point],
+    best: Sequence[Point],
+    uncertainty: float,
+    title: str,
+    ax: Any = None,
+    *,
+    y: str = "time",
+    **line_properties: Any,
 ) -> list[Line2D]:
     """Draw time, or right-hand sides, against error; both axes logarithmic.
 
@@ -37,8 +44,14 @@ def plot(
 
     Parameters
     ----------
-    cost : AccuracyCost
+    points : sequence of Point
         What to draw.
+    best : sequence of Point
+        Those on the Pareto front.
+    uncertainty : float
+        What the reference is uncertain by.
+    title : str
+        Above the axes.
     ax : Axes, optional
         Default: a new figure of pyplot's, which is not shown.
     y : {"time", "nfev"}
@@ -61,9 +74,8 @@ def plot(
         ax = plt.figure(figsize=(7.6, 4.6), layout="constrained").subplots()
     if not isinstance(ax, Axes):
         raise TypeError(f"ax = {ax!r}: must be matplotlib Axes")
-    drawn = [p for p in cost.points if not p.failure and p.error > 0]
+    drawn = [p for p in points if not p.failure and p.error > 0]
     factor, unit = _unit(drawn) if y == "time" else (1.0, "")
-    best = cost.pareto()
     lines = []
     for method in dict.fromkeys(p.method for p in drawn):
         ours = [p for p in drawn if p.method == method]
@@ -77,17 +89,9 @@ def plot(
                 *zip(*on_front, strict=True), linestyle="", marker=line.get_marker(),
                 color=line.get_color(), markersize=line.get_markersize() + 1.5, zorder=3,
             )  # fmt: skip
-    _dress(ax, cost, y, unit)
+    _dress(ax, points, uncertainty, y, unit)
+    ax.set_title(title, fontsize=11)
     return lines
-
-
-def save_figure(cost: AccuracyCost, path: str | os.PathLike[str]) -> None:
-    """Draw the same figure into a file; the suffix says which kind (png, pdf, svg, ...)."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(7.6, 4.6), layout="constrained")
-    plot(cost, figure.subplots())
-    figure.savefig(path, dpi=160)
 
 
 def _unit(points: list[Point]) -> tuple[float, str]:
@@ -95,21 +99,21 @@ def _unit(points: list[Point]) -> tuple[float, str]:
     return next((factor, unit) for below, factor, unit in UNITS if least < below)
 
 
-def _dress(ax: Axes, cost: AccuracyCost, y: str, unit: str) -> None:
+def _dress(ax: Axes, points: Sequence[Point], uncertainty: float, y: str, unit: str) -> None:
     from matplotlib.patches import Patch
     from matplotlib.ticker import LogFormatter, LogLocator, NullFormatter
 
     ax.set(xscale="log", yscale="log")
     ax.set_xlabel("largest position error / total length (more accurate to the right)")
     counted = "right-hand sides"
-    if any(p.method == "taylor" for p in cost.points):
+    if any(p.method == "taylor" for p in points):
         counted += " (of taylor: series)"
     ax.set_ylabel(f"time of a run ({unit})" if y == "time" else counted)
     if not ax.xaxis_inverted():
         ax.invert_xaxis()
-    if is_known := cost.uncertainty < inf:
+    if is_known := uncertainty < inf:
         left, right = ax.get_xlim()
-        edge = max(cost.uncertainty, 1e-17)
+        edge = max(uncertainty, 1e-17)
         right = min(right, edge / 3)
         ax.set_xlim(left, right)
         ax.axvspan(right, edge, color="0.88", zorder=0)
@@ -120,9 +124,6 @@ def _dress(ax: Axes, cost: AccuracyCost, y: str, unit: str) -> None:
         ax.yaxis.set_minor_formatter(LogFormatter(labelOnlyBase=False, minor_thresholds=(1.5, 0.5)))
     ax.grid(which="major", color="0.85", linewidth=0.6)
     ax.set_axisbelow(True)
-    start, end = cost.t_span
-    title = f"{cost.name or 'chain of links'}, {start:.4g} to {end:.4g} s"
-    ax.set_title(title, fontsize=11)
     handles, _ = ax.get_legend_handles_labels()
     unknown = Patch(color="0.88", label="the reference is\nuncertain by this")
     if y == "time":
@@ -131,8 +132,8 @@ def _dress(ax: Axes, cost: AccuracyCost, y: str, unit: str) -> None:
         filled = "filled: no other is\nboth better and faster"
         handles.append(Line2D([], [], linestyle="", marker="o", color="0.2", label=filled))
     handles += [unknown] * is_known
-    fine = {p.method for p in cost.points if not p.failure}
-    if failed := [m for m in dict.fromkeys(p.method for p in cost.points) if m not in fine]:
+    fine = {p.method for p in points if not p.failure}
+    if failed := [m for m in dict.fromkeys(p.method for p in points) if m not in fine]:
         why = "too slow here, or failed:\n" + "\n".join(failed)
         handles.append(Patch(color="none", label=why))
     ax.legend(

@@ -10,10 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore import _core
-from pendcore.methods import known_methods
-from pendcore.progress import Progress, callback
-from pendcore.scene import Scene
-from pendcore.solution import Solution, solution_of
+from pendcore.messages.progress import Progress, callback, close
+from pendcore.run.methods import known_methods
+from pendcore.run.result import Result, RunResult
+from pendcore.scene.scene import SceneData
 
 
 def silent(message: str) -> None:
@@ -23,7 +23,7 @@ def silent(message: str) -> None:
 class Start(NamedTuple):
     """What is run: a scene, its angles (rad) and rates (rad/s), (n,) each, and when (s)."""
 
-    scene: Scene
+    scene: SceneData
     q0: npt.ArrayLike
     qd0: npt.ArrayLike
     t_start: float
@@ -68,7 +68,7 @@ def run(
     ledger: bool = False,
     progress: Progress = False,
     warn: Callable[[str], object] = silent,
-) -> Solution:
+) -> RunResult:
     """Run; the keywords are those of `simulate`, and ``wanted`` are the core's events."""
     report = callback(progress)
     made = _core.simulate(
@@ -77,18 +77,43 @@ def run(
         first_step, max_step, step, max_steps, time_limit, wanted, ledger, choice.compensated,
         report, warn,
     )  # fmt: skip
-    return solution_of(start.scene, made, report)
+    return completed(RunResult(start.scene, made), report)
 
 
-def start_of(solution: Solution) -> Start:
+def resumed(
+    result: Result,
+    t_end: float,
+    t_eval: npt.ArrayLike | None = None,
+    *,
+    max_steps: int = 10_000_000,
+    time_limit: float | None = None,
+    progress: Progress = None,
+) -> Result:
+    """Go on with a run; see `pendcore.Solution.resume`."""
+    report = callback(progress)
+    run = result.run.resume(t_end, t_eval, max_steps, time_limit, report)
+    return completed(type(result)(result.scene, run, result.name), report)
+
+
+def completed(result: Result, report: Callable[[float], object] | None) -> Result:
+    """End the bar of a run; if an exception broke it off, raise that with the run so far."""
+    close(report)
+    error = result.run.error
+    if error is not None:
+        error.solution = result  # type: ignore[attr-defined]
+        raise error
+    return result
+
+
+def start_of(solution: RunResult) -> Start:
     """Return what a solution ran, as far as it came."""
-    asked = solution._run.arguments
-    end = solution._run.t_reached
+    asked = solution.run.arguments
+    end = solution.run.t_reached
     return Start(solution.scene, asked["q0"], asked["qd0"], asked["t_start"], end)
 
 
-def carries(method: str, start: Start, step: float | None = None) -> bool:
-    """Whether a method can carry a scene from its start: found by a run of no length.
+def supports(method: str, start: Start, step: float | None = None) -> bool:
+    """Whether a method supports a scene from its start: found by a run of no length.
 
     ``step`` is for methods that need a fixed one, s.
     """

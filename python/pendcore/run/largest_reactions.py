@@ -11,10 +11,10 @@ import numpy.typing as npt
 from numpy.lib.stride_tricks import sliding_window_view
 
 from pendcore import _core
-from pendcore.arguments import Floats
-from pendcore.explanation import fastest_drive
-from pendcore.progress import Progress, callback, close
-from pendcore.scene import Scene
+from pendcore.messages.arguments import Floats
+from pendcore.messages.progress import Progress, callback, close
+from pendcore.scene.drives import fastest_drive
+from pendcore.scene.scene import SceneData
 
 IN_A_PIECE = 8
 """Times at which forces are looked at first in each piece of a step; a step is one piece,"""
@@ -68,7 +68,7 @@ class LargestReaction(NamedTuple):
 
 
 def largest_reactions(
-    scene: Scene, run: _core.Run, progress: Progress = None
+    scene: SceneData, run: _core.Run, progress: Progress = None
 ) -> list[LargestReaction]:
     """See `pendcore.Solution.largest_reactions`."""
     search = _Search(scene, run)
@@ -91,7 +91,7 @@ def largest_reactions(
 class _Search:
     """The largest forces so far, (n,), and when they were."""
 
-    def __init__(self, scene: Scene, run: _core.Run) -> None:
+    def __init__(self, scene: SceneData, run: _core.Run) -> None:
         self.scene, self.run = scene, run
         self.n = n = len(scene.links)
         self.best, self.least = np.full(n, -inf), np.full(n, inf)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from pendcore.arguments import known_keywords, number
+from pendcore.messages.arguments import known_keywords, number
 
 
 @dataclass(frozen=True, slots=True, init=False, repr=False)

@@ -19,29 +19,29 @@ from typing import IO, Any, BinaryIO
 import numpy as np
 
 from pendcore import _core
-from pendcore.accuracy.estimate import ErrorEstimate
-from pendcore.accuracy.report import Accuracy
-from pendcore.case import Case
-from pendcore.case_file import case_from_text
-from pendcore.effect_class import OwnEffect, effect_of
-from pendcore.events import Function
-from pendcore.link import Link
-from pendcore.progress import Progress, callback, close
-from pendcore.scene import Scene
-from pendcore.solution import Solution
-from pendcore.warning import PendcoreWarning
-from pendcore.whole_file import whole_file
+from pendcore.cases.case import CaseData
+from pendcore.cases.case_file import case_from_text
+from pendcore.cases.whole_file import whole_file
+from pendcore.messages.progress import Progress, callback, close
+from pendcore.messages.warning import PendcoreWarning
+from pendcore.run.accuracy import Accuracy
+from pendcore.run.error_estimate import ErrorEstimate
+from pendcore.run.events import Function
+from pendcore.run.result import RunResult
+from pendcore.scene.effect_class import OwnEffect, effect_of
+from pendcore.scene.link import Link
+from pendcore.scene.scene import SceneData
 
 _RUN, _ERROR = "run.", "error."
 _KEEP = ": keep the numbers, sol.to_pandas() or numpy.savez(path, t=sol.t, y=sol.y)"
 
 
-def save(solution: Solution, path: str | os.PathLike[str], *, progress: Progress = None) -> None:
+def save(solution: RunResult, path: str | os.PathLike[str], *, progress: Progress = None) -> None:
     """Write a solution to the file ``path``, under just that name, and not before it is whole."""
     for effect in solution.scene.effects:
         if isinstance(effect, OwnEffect):
             raise effect.cannot_be("saved", _KEEP)
-    for event in solution._events_asked_for():
+    for event in solution.events_asked_for():
         if isinstance(event, Function):
             raise event.cannot_be("saved", _KEEP)
     entries: dict[str, Any] = {
@@ -49,17 +49,17 @@ def save(solution: Solution, path: str | os.PathLike[str], *, progress: Progress
         "q": solution.q,
         "qd": solution.qd,
         "y": solution.y,
-        "case": solution.case().to_toml(),
+        "case": CaseData.of_solution(solution).to_toml(),
         "statistics": json.dumps(solution.stats._asdict()),
         "version": _core.__version__,
     }
     if solution.accuracy is not None:
         entries["accuracy"] = json.dumps(solution.accuracy.to_dict())
-        if (error := solution._verified_error()) is not None:
+        if (error := solution.verified_error) is not None:
             entries |= {_ERROR + one.name: getattr(error, one.name) for one in fields(error)}
     report = callback(progress, f"writing {os.fspath(path)}")
     try:
-        state = {_RUN + key: value for key, value in solution._run.__getstate__().items()}
+        state = {_RUN + key: value for key, value in solution.run.__getstate__().items()}
         with whole_file(path) as name, name.open("wb") as file:
             _write(file, entries | state, report)
     finally:
@@ -96,26 +96,8 @@ class _Told:
             self.report(min(self.written / self.whole, 1.0))
 
 
-def load(path: str | os.PathLike[str]) -> Solution:
-    """Read a solution that `Solution.save` wrote.
-
-    Parameters
-    ----------
-    path : path
-        The file.
-
-    Returns
-    -------
-    Solution
-        With every number of the saved one to the last bit; it evaluates and resumes as that did.
-
-    Raises
-    ------
-    ValueError
-        If the file is no such solution.
-    OSError
-        If the file cannot be read.
-    """
+def load(path: str | os.PathLike[str]) -> RunResult:
+    """Read what `save` wrote; see `pendcore.load`."""
     with Path(path).open("rb") as file:
         try:
             return _loaded(file)
@@ -123,7 +105,7 @@ def load(path: str | os.PathLike[str]) -> Solution:
             raise ValueError(f"{path}: is not a solution that pendcore saved ({error})") from None
 
 
-def _loaded(file: BinaryIO) -> Solution:
+def _loaded(file: BinaryIO) -> RunResult:
     if not zipfile.is_zipfile(file):
         raise ValueError("it is no npz file, or was cut short")
     file.seek(0)
@@ -135,8 +117,8 @@ def _loaded(file: BinaryIO) -> Solution:
     run.__setstate__(state)
     accuracy = None if told is None else Accuracy.from_dict(told)
     verified = ErrorEstimate(**error) if error else None
-    solution = Solution(_scene(state), run, case.name, accuracy, verified)
-    if solution.case() != case:
+    solution = RunResult(_scene(state), run, case.name, accuracy, verified)
+    if CaseData.of_solution(solution) != case:
         raise ValueError("its case is not that of its run")
     return solution
 
@@ -147,16 +129,16 @@ def _group(entries: Any, prefix: str) -> dict[str, Any]:
     return {key: one.item() if one.ndim == 0 else one for key, one in found.items()}
 
 
-def _case(text: str) -> Case:
+def _case(text: str) -> CaseData:
     with warnings.catch_warnings():  # what is implausible was said when the scene was made
         warnings.simplefilter("ignore", PendcoreWarning)
         return case_from_text(text, "case")
 
 
-def _scene(state: dict[str, Any]) -> Scene:
+def _scene(state: dict[str, Any]) -> SceneData:
     """Return what the run itself moved."""
     names = ("mass", "length", "center", "inertia")
     rows = state["links"].reshape(-1, 4).tolist()
     links = [Link(**dict(zip(names, row, strict=True))) for row in rows]
     effects = [effect_of(kind, values) for kind, values in json.loads(state["effects"])]
-    return Scene._unpickled(links, state["gravity"], effects)
+    return SceneData._unpickled(links, state["gravity"], effects)

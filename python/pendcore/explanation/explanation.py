@@ -1,20 +1,123 @@
-"""An explanation as people read it, and as JSON holds it."""
+"""An explanation of a scene: what it holds, how people read it, and JSON of it."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import asdict, dataclass
 from math import isfinite
 from textwrap import wrap
-from typing import Any
+from typing import Any, NamedTuple
 
-from pendcore.explanation import STEPS_A_PERIOD, Explanation, changes_with_time
-from pendcore.explanation.equilibria import Mode
+from pendcore.explanation.equilibria import Equilibrium, Mode
+from pendcore.explanation.not_modelled import Absence
+from pendcore.scene.drives import changes_with_time
+from pendcore.scene.scene import Mobility, SceneData
 
+STEPS_A_PERIOD = 500
+"""How many steps a period of the fastest oscillation takes without a rejected one, from a start at
+rest up to half a radian from an equilibrium, at the tolerances that `simulate` has by default."""
 _WIDTH = 80
 _NAME = 58
 
 
-def text(told: Explanation) -> str:
+class Cost(NamedTuple):
+    """What a part of a right-hand side takes.
+
+    Attributes
+    ----------
+    what : str
+        ``"links"`` (with gravity), an effect by its number and kind, or ``"all"``.
+    operations : int or None
+        Additions, multiplications, divisions and the like that an effect adds; None where they are
+        not counted, as in a function of the user's.
+    nanoseconds : float
+        Measured on the spot; of an effect, what it adds to the links alone.
+    """
+
+    what: str
+    operations: int | None
+    nanoseconds: float
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Explanation:
+    """What `Scene.explain` finds. It prints as a table.
+
+    Attributes
+    ----------
+    scene : Scene
+        What is explained.
+    t : float
+        Time at which motors and pivot were looked at, s.
+    costs : tuple of Cost
+        The links, each effect, all.
+    mobility : Mobility
+        The textbook's count.
+    constraint_rank : int or None
+        Rank of the constraint Jacobian of the hinges and locks, on 3 coordinates a link; None
+        where the links are too many.
+    equilibria : tuple of Equilibrium
+        Hanging, upright and the start, where they are in balance, or what Newton's method finds
+        from there; each with its natural frequencies. Dry friction is left out.
+    stiffest_rate : float or None
+        The largest eigenvalue about any of them, 1/s; None without one.
+    fastest_drive : float
+        The largest angular frequency of a sinusoid, rad/s; 0 without one.
+    first_step : float or None
+        The period of the faster of the two over `STEPS_A_PERIOD`, s: safe for a start at rest near
+        an equilibrium, at the default tolerances. None where no equilibrium is known.
+    not_simulated : tuple of Absence
+        What the program knows and the scene has not, then what the program does not know.
+    remarks : tuple of str
+        What was left out here, and why.
+    """
+
+    scene: SceneData
+    t: float
+    costs: tuple[Cost, ...]
+    mobility: Mobility
+    constraint_rank: int | None
+    equilibria: tuple[Equilibrium, ...]
+    stiffest_rate: float | None
+    fastest_drive: float
+    first_step: float | None
+    not_simulated: tuple[Absence, ...]
+    remarks: tuple[str, ...]
+
+    @property
+    def degrees_of_freedom(self) -> int | None:
+        """Coordinates less constraints, ``3 n - rank``; None where the rank is."""
+        rank = self.constraint_rank
+        return None if rank is None else 3 * len(self.scene.links) - rank
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the same as JSON can hold it; None where there is no number."""
+        told = {
+            "links": [asdict(link) for link in self.scene.links],
+            "gravity": self.scene.gravity,
+            "effects": [repr(effect) for effect in self.scene.effects],
+            "t": self.t,
+            "costs": [cost._asdict() for cost in self.costs],
+            "mobility": self.mobility._asdict(),
+            "constraint_rank": self.constraint_rank,
+            "degrees_of_freedom": self.degrees_of_freedom,
+            "equilibria": [
+                found._asdict() | {"modes": [mode._asdict() for mode in found.modes]}
+                for found in self.equilibria
+            ],
+            "stiffest_rate": self.stiffest_rate,
+            "fastest_drive": self.fastest_drive,
+            "first_step": self.first_step,
+            "not_simulated": [absence._asdict() for absence in self.not_simulated],
+            "remarks": self.remarks,
+        }
+        return _plain(told)  # type: ignore[no-any-return]
+
+    def __repr__(self) -> str:
+        return _text(self)
+
+
+def _text(told: Explanation) -> str:
     """Return it as a table."""
     n, at = len(told.scene.links), f"t = {told.t:.6g} s"
     head = f"{n} link{'s'[: n > 1]}, gravity {told.scene.gravity:.6g} m/s^2, looked at at {at}"
@@ -31,12 +134,12 @@ def text(told: Explanation) -> str:
     return "\n\n".join("\n".join(block) for block in blocks)
 
 
-def plain(value: Any) -> Any:
+def _plain(value: Any) -> Any:
     """JSON knows no tuples, and neither infinities nor NaN."""
     if isinstance(value, dict):
-        return {key: plain(x) for key, x in value.items()}
+        return {key: _plain(x) for key, x in value.items()}
     if isinstance(value, list | tuple):
-        return [plain(x) for x in value]
+        return [_plain(x) for x in value]
     return None if isinstance(value, float) and not isfinite(value) else value
 
 

@@ -38,7 +38,6 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
 
 def known_keywords(function: Callable[Taken, Given]) -> Callable[Taken, Given]:
     """Make a function refuse a keyword that it does not have with the nearest that it has."""
-    owner = function.__qualname__.removesuffix(".__init__")
     known = [name for name in signature(function).parameters if name not in ("self", "cls")]
 
     @wraps(function)
@@ -49,10 +48,20 @@ def known_keywords(function: Callable[Taken, Given]) -> Callable[Taken, Given]:
             for name in named:
                 if name not in known:
                     remedy = did_you_mean(name, known)
+                    owner = _owner(function, args)
                     raise TypeError(f"{owner}: has no parameter {name!r}: {remedy}") from None
             raise
 
     return called
+
+
+def _owner(function: Callable[..., object], args: tuple[object, ...]) -> str:
+    """Return what a user calls a function; a method may be inherited."""
+    if "." not in function.__qualname__ or not args:
+        return function.__qualname__
+    owner = args[0] if isinstance(args[0], type) else type(args[0])
+    name = function.__name__
+    return owner.__name__ if name == "__init__" else f"{owner.__name__}.{name}"
 
 
 def number(name: str, value: object, unit: str) -> float:

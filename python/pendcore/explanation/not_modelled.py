@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from pendcore.effect_class import KINDS, OwnEffect
-from pendcore.scene import Scene
+from pendcore.scene.effect_class import KINDS, OwnEffect
+from pendcore.scene.scene import SceneData
 
-UNKNOWN = {
+NOT_MODELLED = {
     "bending": "Bending of the links: they are rigid.",
     "play": "Play in the joints: they are perfect hinges.",
     "third_dimension": "Motion out of the plane.",
 }
-"""What no effect is, as long as it is none."""
+"""Physics that no effect models yet."""
 
 
 class Absence(NamedTuple):
@@ -34,12 +34,12 @@ class Absence(NamedTuple):
     available: bool
 
 
-def absent(scene: Scene) -> Iterator[Absence]:
+def absent(scene: SceneData) -> Iterator[Absence]:
     """Tell what a scene does not simulate."""
     present = {effect.kind for effect in scene.effects}
     for kind, cls in KINDS.items():
         if kind not in present and not issubclass(cls, OwnEffect):
             yield Absence(kind, cls.description.sentence, True)
-    for word, sentence in UNKNOWN.items():
+    for word, sentence in NOT_MODELLED.items():
         if word not in KINDS:
             yield Absence(word, sentence, False)

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Any
 
-from pendcore.warning import PendcoreWarning, warn
-
-if TYPE_CHECKING:
-    from pendcore.solution import Solution
+from pendcore.messages.warning import PendcoreWarning, warn
+from pendcore.run.result import Result, RunResult
 
 CAN_GO_ON = frozenset({"max_steps", "max_turns", "time_limit", "interrupted"})
 """Statuses after which `Solution.resume` gets further; also that of a loaded run, whose functions
@@ -23,7 +21,7 @@ class RunError(RuntimeError):
         The run as far as it came; its ``status`` and ``message`` tell why it ended.
     """
 
-    def __init__(self, message: str, solution: Solution) -> None:
+    def __init__(self, message: str, solution: Any) -> None:
         super().__init__(message)
         self.solution = solution
 
@@ -40,7 +38,7 @@ def require_check(check: object) -> None:
         )
 
 
-def checked(solution: Solution, check: bool | None) -> Solution:
+def checked(solution: Result, check: bool | None) -> Result:
     """Return a solution; of one that is no success warn, or raise, or say nothing."""
     if check is False or (solution.success and not _is_unverified(solution)):
         return solution
@@ -54,16 +52,16 @@ def checked(solution: Solution, check: bool | None) -> Solution:
     return solution
 
 
-def _is_unverified(solution: Solution) -> bool:
+def _is_unverified(solution: RunResult) -> bool:
     """Whether the time was up before a run that got to its end was verified."""
     return solution.accuracy is not None and solution.accuracy.outcome == "ended early"
 
 
-def _complaint(solution: Solution) -> str:
+def _complaint(solution: RunResult) -> str:
     """Return status, time and remedy in a sentence; the message has the time, and some remedies."""
     if solution.success and solution.accuracy is not None:
         return f"the run got to its end, but {solution.accuracy.text()}"
-    t_end, message = solution._run.arguments["t_end"], solution.message
+    t_end, message = solution.run.arguments["t_end"], solution.message
     complaint = (
         f"the run ended before t_end = {t_end:.6g} s, with status {solution.status}: "
         f"{message.removeprefix(f'{solution.status}: ')}"
