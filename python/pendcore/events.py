@@ -12,14 +12,7 @@ what is not.
 
 from __future__ import annotations
 
-from pendcore.run.events import (
-    Event,
-    Found,
-    Function,
-    JointAngle,
-    LinkAngle,
-    RateZero,
-    TipLine,
-)
+from pendcore.run.events import Event, Function, JointAngle, LinkAngle, RateZero, TipLine
+from pendcore.run.found_events import Found
 
 __all__ = ["Event", "Found", "Function", "JointAngle", "LinkAngle", "RateZero", "TipLine"]

@@ -4,7 +4,7 @@
 The run is compared with second runs that are better by a factor which is known, for they
 are compared with each other as well. Those of `Solution.error` take another method where one can
 carry the scene, at tolerances a hundredth and less, as far as doubles allow; those of
-``simulate(error=...)`` take the trial's own (`pendcore.accuracy.asked_error`). All take other
+``simulate(error=...)`` take the trial's own (`pendcore.accuracy.target_error`). All take other
 steps, and each has its constants and its start moved by a few last bits of its own
 (`pendcore.accuracy.rounding`). With runs r_1, r_2, ... the error is at most
 

@@ -17,7 +17,8 @@ from pendcore.messages.progress import Progress
 from pendcore.run.accuracy import Accuracy
 from pendcore.run.energy import Energy, Ledger
 from pendcore.run.error_estimate import ErrorEstimate
-from pendcore.run.events import Event, Found, event_of, found_events
+from pendcore.run.events import Event, event_of
+from pendcore.run.found_events import Found, found_events
 from pendcore.run.largest_reactions import LargestReaction, largest_reactions
 from pendcore.run.statistics import Statistics
 from pendcore.scene.scene import SceneData
