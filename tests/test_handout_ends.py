@@ -8,7 +8,7 @@ from typing import Any
 import pendcore as pc
 import pytest
 from pendcore.derive import Derivation
-from pendcore.derive.handout import motion, report
+from pendcore.derive.report import motion, report
 
 pytestmark = pytest.mark.unsanitized
 

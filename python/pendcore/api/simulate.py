@@ -13,6 +13,7 @@ from pendcore.api.solve import solve
 from pendcore.messages.arguments import known_keywords
 from pendcore.messages.progress import Progress
 from pendcore.run.events import Event
+from pendcore.run.options import Options
 
 
 @known_keywords
@@ -146,9 +147,8 @@ def simulate(
     Differential Equations I*, II.4; a Taylor series sets its steps by its coefficients. The same
     arguments give the same bits on every x86-64 machine, whatever is stored.
     """
-    return solve(
-        Solution, scene, q0, qd0, t_span, method=method, rtol=rtol, atol=atol, t_eval=t_eval,
-        store=store, first_step=first_step, max_step=max_step, step=step, max_steps=max_steps,
-        time_limit=time_limit, events=events, ledger=ledger, compensated=compensated, error=error,
-        check=check, progress=progress,
+    options = Options(
+        method, rtol, atol, t_eval, store, first_step, max_step, step, max_steps, time_limit,
+        events, ledger, compensated, error, check, progress,
     )  # fmt: skip
+    return solve(Solution, scene, q0, qd0, t_span, options)

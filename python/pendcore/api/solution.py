@@ -19,7 +19,7 @@ from pendcore.horizon.lyapunov import LyapunovExponents, lyapunov_of
 from pendcore.messages.progress import Progress
 from pendcore.run.call import resumed
 from pendcore.run.error_estimate import ErrorEstimate
-from pendcore.run.options import RUN_DEFAULTS
+from pendcore.run.options import Options
 from pendcore.run.result import RunResult
 from pendcore.run.run_error import checked, require_check
 from pendcore.views.export import to_pandas, to_xarray
@@ -242,12 +242,12 @@ class Case(CaseData):
 
         ``check`` takes the place of the case's own, if it is given.
         """
-        options = RUN_DEFAULTS | self.options
-        require_check(options["check"])
+        options = Options(**self.options)
+        require_check(options.check)
         if check is not None:
-            options["check"] = check
+            options = options._replace(check=check)
         try:
-            solution = solve(Solution, self.scene, self.q0, self.qd0, self.t_span, **options)
+            solution = solve(Solution, self.scene, self.q0, self.qd0, self.t_span, options)
         except BaseException as stop:
             if isinstance(so_far := getattr(stop, "solution", None), Solution):
                 so_far.name = self.name

@@ -11,14 +11,17 @@ import numpy.typing as npt
 from pendcore import _core
 from pendcore.accuracy.target_error import run_to_error
 from pendcore.messages.arguments import number, two_times
-from pendcore.messages.progress import Progress, callback
+from pendcore.messages.progress import callback
 from pendcore.messages.warning import warn
 from pendcore.run.call import Start, completed
-from pendcore.run.events import Event, events_asked_for
-from pendcore.run.options import RUN_DEFAULTS
+from pendcore.run.events import events_asked_for
+from pendcore.run.options import RUN_DEFAULTS, Options
 from pendcore.run.result import Result, RunResult
 from pendcore.run.run_error import checked, require_check
 from pendcore.scene.scene import SceneData, require_start
+
+CHOSEN = ("method", "rtol", "atol", "step")
+"""What an error that is asked for takes the place of."""
 
 
 def solve(
@@ -27,59 +30,41 @@ def solve(
     q0: npt.ArrayLike | None,
     qd0: npt.ArrayLike,
     t_span: Iterable[float] | None,
-    *,
-    method: str,
-    rtol: npt.ArrayLike,
-    atol: npt.ArrayLike,
-    t_eval: npt.ArrayLike | None,
-    store: str | None,
-    first_step: float | None,
-    max_step: float,
-    step: float | None,
-    max_steps: int,
-    time_limit: float | None,
-    events: Iterable[Event],
-    ledger: bool,
-    compensated: bool,
-    error: float | None,
-    check: bool | None,
-    progress: Progress,
+    options: Options,
 ) -> Result:
-    """Return a result of a class; `pendcore.simulate` says what the keywords are."""
+    """Run, and return the result as one of a class; see `pendcore.simulate`."""
     q0 = require_start(scene, q0)
-    require_check(check)
+    require_check(options.check)
     t_start, t_end = two_times(t_span)
-    wanted = [event._as_pair() for event in events_asked_for(events)]
-    if error is not None:
-        _check_error(error, method=method, rtol=rtol, atol=atol, step=step)
-        options = {
-            "t_eval": t_eval, "store": store, "first_step": first_step, "max_step": max_step,
-            "max_steps": max_steps, "time_limit": time_limit, "wanted": wanted,
-            "ledger": ledger, "compensated": compensated, "progress": progress,
-        }  # fmt: skip
-        start = Start(scene, q0, qd0, t_start, t_end)
-        return checked(_solved_to_error(kind, start, float(error), options), check)
-    report = callback(progress)
+    wanted = [event._as_pair() for event in events_asked_for(options.events)]
+    if options.error is not None:
+        result = _solved_to_error(kind, Start(scene, q0, qd0, t_start, t_end), options, wanted)
+        return checked(result, options.check)
+    report = callback(options.progress)
     run = _core.simulate(
-        scene._compiled, q0, qd0, t_start, t_end, method, rtol, atol, t_eval, store,
-        first_step, max_step, step, max_steps, time_limit, wanted, ledger, compensated, report,
-        warn,
+        scene._compiled, q0, qd0, t_start, t_end, options.method, options.rtol, options.atol,
+        options.t_eval, options.store, options.first_step, options.max_step, options.step,
+        options.max_steps, options.time_limit, wanted, options.ledger, options.compensated,
+        report, warn,
     )  # fmt: skip
-    return checked(completed(kind(scene, run), report), check)
+    return checked(completed(kind(scene, run), report), options.check)
 
 
 def _solved_to_error(
-    kind: type[Result], start: Start, error: float, options: dict[str, Any]
+    kind: type[Result], start: Start, options: Options, wanted: list[tuple[str, dict[str, Any]]]
 ) -> Result:
+    asked = options._asdict()
+    error = _error_asked_for(asked.pop("error"), **{name: asked.pop(name) for name in CHOSEN})
+    del asked["events"], asked["check"]
     try:
-        return kind.of(run_to_error(start, error, options))
+        return kind.of(run_to_error(start, error, asked | {"wanted": wanted}))
     except BaseException as stop:
         if isinstance(so_far := getattr(stop, "solution", None), RunResult):
             stop.solution = kind.of(so_far)  # type: ignore[attr-defined]
         raise
 
 
-def _check_error(error: float, **chosen: object) -> None:
+def _error_asked_for(error: float, **chosen: object) -> float:
     if not 0 < number("error", error, "") < 1:
         raise ValueError(f"error = {error!r}: must be > 0 and < 1, a share of the total length")
     for name, value in chosen.items():
@@ -87,3 +72,4 @@ def _check_error(error: float, **chosen: object) -> None:
             raise ValueError(
                 f"{name} = {value!r}: is chosen for the error: leave one of the two out"
             )
+    return float(error)

@@ -104,7 +104,7 @@ def _text(derivation: Any, args: argparse.Namespace) -> str:
 
 def _report(derivation: Any, case: Case, args: argparse.Namespace) -> int:
     folder = folder_of(args)
-    write = pendcore.derive.handout.write_handout
+    write = pendcore.derive.report.write_report
     with new_folder(folder), blamed_on_usage():
         made = write(derivation, case, folder, with_worksheet=args.worksheet)
     print(f"written to {folder}: {', '.join(path.name for path in made.files)}", file=sys.stderr)

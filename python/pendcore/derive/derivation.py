@@ -10,7 +10,7 @@ from pendcore.api.solution import Case
 from pendcore.derive import narration
 from pendcore.derive.algebra import Algebra
 from pendcore.derive.code import cpp, octave, python
-from pendcore.derive.handout import write_handout
+from pendcore.derive.report import write_report
 from pendcore.derive.step import Step
 from pendcore.messages.progress import Progress
 
@@ -101,7 +101,7 @@ class Derivation(Algebra):
             raise ValueError("case: is of another scene than the derivation: derive case.scene")
         folder = Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
-        made = write_handout(self, case, folder, with_worksheet=worksheet, progress=progress)
+        made = write_report(self, case, folder, with_worksheet=worksheet, progress=progress)
         return made.files
 
     def to_octave(self, name: str = "RR") -> str:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pendcore.derive.handout.labels import Label, place
+from pendcore.derive.report.labels import Label, place
 from pendcore.messages.arguments import Floats
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""What a handout is made of, and how it is written: Markdown to read, Markdown for pandoc."""
+"""What a report is made of, and how it is written: Markdown to read, Markdown for pandoc."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
 from pendcore.cases.whole_file import whole_file
-from pendcore.derive.handout.drawing import lettering
+from pendcore.derive.report.drawing import lettering
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

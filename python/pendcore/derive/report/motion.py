@@ -9,10 +9,10 @@ import numpy as np
 
 from pendcore.api.solution import Case, Solution
 from pendcore.derive.algebra import Algebra
-from pendcore.derive.handout.document import Block, Heading, Paragraph, Table
-from pendcore.derive.handout.figures import Figures
-from pendcore.derive.handout.quantities import number, quantity
-from pendcore.derive.handout.scales import Scales
+from pendcore.derive.report.document import Block, Heading, Paragraph, Table
+from pendcore.derive.report.figures import Figures
+from pendcore.derive.report.quantities import number, quantity
+from pendcore.derive.report.scales import Scales
 from pendcore.run.accuracy import AccuracyError
 from pendcore.run.energy import LOSSES
 from pendcore.views.energy_drift import energy_drift

@@ -1,4 +1,4 @@
-"""The steps of a derivation as they stand in a handout, and with blanks for the worksheet."""
+"""The steps of a derivation as they stand in a report, and with blanks for the worksheet."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from sympy import Expr, fraction
 
 from pendcore.derive import line_breaks
 from pendcore.derive.algebra import Algebra
-from pendcore.derive.handout.document import Blank, Block, Displayed, Heading, Paragraph
-from pendcore.derive.handout.figures import Figures
-from pendcore.derive.handout.quantities import quantity
+from pendcore.derive.report.document import Blank, Block, Displayed, Heading, Paragraph
+from pendcore.derive.report.figures import Figures
+from pendcore.derive.report.quantities import quantity
 from pendcore.derive.step import Equation, Step
 
 A_BLOCK = 12

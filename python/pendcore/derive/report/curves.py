@@ -1,4 +1,4 @@
-"""The curves at the end of a handout: angles, reactions and energies over time, with units."""
+"""The curves at the end of a report: angles, reactions and energies over time, with units."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ import subprocess
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from pendcore.derive.handout.document import Document, Reader
+from pendcore.derive.report.document import Document, Reader
 
 ENGINES = ("xelatex", "lualatex", "pdflatex")
 """LaTeX engines, in the order in which they are tried."""
@@ -134,7 +134,7 @@ def _pandoc(
     document: Document, reader: Reader, folder: Path, *options: str, suffix: str = "html"
 ) -> Path:
     """Let pandoc write into a folder where the figures are; return the file."""
-    source, made = folder / "handout.md", folder / f"handout.{suffix}"
+    source, made = folder / "report.md", folder / f"report.{suffix}"
     source.write_text(document.markdown(reader), encoding="utf-8")
     command = [
         "pandoc", "--standalone", "--from=markdown", "--columns=1000",

@@ -1,4 +1,4 @@
-"""The figures of a handout, numbered, with their captions."""
+"""The figures of a report, numbered, with their captions."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ import numpy as np
 
 from pendcore.api.solution import Solution
 from pendcore.derive.algebra import Algebra
-from pendcore.derive.handout import curves, drawing
-from pendcore.derive.handout.document import Drawing
-from pendcore.derive.handout.free_bodies import Acting, Reaction, free_bodies
-from pendcore.derive.handout.mechanism import mechanism
-from pendcore.derive.handout.quantities import number
 from pendcore.derive.narration.page import Page
+from pendcore.derive.report import curves, drawing
+from pendcore.derive.report.document import Drawing
+from pendcore.derive.report.free_bodies import Acting, Reaction, free_bodies
+from pendcore.derive.report.mechanism import mechanism
+from pendcore.derive.report.quantities import number
 
 
 class Figures:
-    """Draws what a handout shows, and counts.
+    """Draws what a report shows, and counts.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The handout: the derivation of a user's scene as a document to hand in or to teach from.
+"""The report: the derivation of a user's scene as a document to hand in or to teach from.
 
 It walks from the problem with its figure through the steps of the derivation, puts the numbers in,
 solves, draws angles and reactions, and checks by the energy. The worksheet is the same with blanks.
@@ -15,16 +15,16 @@ from pendcore.api.solution import Case, Solution
 from pendcore.cases.whole_file import whole_file
 from pendcore.derive import narration
 from pendcore.derive.algebra import Algebra
-from pendcore.derive.handout import conversion, motion, numbers, problem, steps
-from pendcore.derive.handout.blanks import concealed
-from pendcore.derive.handout.document import Block, Document, Heading, Paragraph, Reader, Space
-from pendcore.derive.handout.figures import Figures
+from pendcore.derive.report import conversion, motion, numbers, problem, steps
+from pendcore.derive.report.blanks import concealed
+from pendcore.derive.report.document import Block, Document, Heading, Paragraph, Reader, Space
+from pendcore.derive.report.figures import Figures
 from pendcore.messages import progress as bars
 from pendcore.messages.progress import Progress
 from pendcore.messages.warning import warn
 
 
-class Handout(NamedTuple):
+class Report(NamedTuple):
     """What came of writing a report.
 
     Attributes
@@ -79,14 +79,14 @@ def worksheet(derivation: Algebra, case: Case, solution: Solution) -> Document:
     return Document(f"{_title(derivation, case)}: worksheet", tuple(blocks))
 
 
-def write_handout(
+def write_report(
     derivation: Algebra,
     case: Case,
     folder: Path,
     *,
     with_worksheet: bool = False,
     progress: Progress = None,
-) -> Handout:
+) -> Report:
     """Write the report of a case, and its worksheet, in every form that this machine can make.
 
     Parameters
@@ -104,7 +104,7 @@ def write_handout(
 
     Returns
     -------
-    Handout
+    Report
         Its files, the report first: Markdown always, HTML where pandoc is, PDF where a LaTeX
         engine is beside it; then the figures. And what is to be said against the run.
     """
@@ -121,7 +121,7 @@ def _written(
     folder: Path,
     with_worksheet: bool,
     told: Callable[[float], object],
-) -> Handout:
+) -> Report:
     told(0.0)
     solution, refusal = motion.solved_or_refused(case)
     complaint = refusal
@@ -141,7 +141,7 @@ def _written(
         for drawing in document.drawings:
             figures[drawing.name] = drawing.save(folder, Reader.PEOPLE)
         told(0.4 + 0.6 * (k + 1) / len(documents))
-    return Handout([*texts, *figures.values()], complaint)
+    return Report([*texts, *figures.values()], complaint)
 
 
 def _texts(document: Document, folder: Path, name: str) -> Iterator[Path]:

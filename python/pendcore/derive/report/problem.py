@@ -1,4 +1,4 @@
-"""The first page of a handout: what is given and what is to be found."""
+"""The first page of a report: what is given and what is to be found."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 from pendcore.api.solution import Case
 from pendcore.derive.algebra import Algebra
-from pendcore.derive.handout.acting import what_acts
-from pendcore.derive.handout.document import Block, Displayed, Heading, Paragraph, Table
-from pendcore.derive.handout.figures import Figures
-from pendcore.derive.handout.quantities import number, quantity, unit
 from pendcore.derive.laws.rod_drag import AT_REST
+from pendcore.derive.report.document import Block, Displayed, Heading, Paragraph, Table
+from pendcore.derive.report.effect_text import what_acts
+from pendcore.derive.report.figures import Figures
+from pendcore.derive.report.quantities import number, quantity, unit
 
 COUNTS = {1: "one link", 2: "two links", 3: "three links", 4: "four links", 5: "five links"}
 

@@ -12,9 +12,9 @@ from sympy import Expr, Float
 from pendcore.api.solution import Case
 from pendcore.derive import line_breaks
 from pendcore.derive.algebra import Algebra
-from pendcore.derive.handout.document import Block, Displayed, Heading, Paragraph, Table
-from pendcore.derive.handout.quantities import number, quantity, unit
-from pendcore.derive.handout.scales import ROUNDING, Scales
+from pendcore.derive.report.document import Block, Displayed, Heading, Paragraph, Table
+from pendcore.derive.report.quantities import number, quantity, unit
+from pendcore.derive.report.scales import ROUNDING, Scales
 from pendcore.messages.arguments import Floats
 
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from pendcore.api.scene import Scene
-from pendcore.derive.handout import drawing
-from pendcore.derive.handout.drawing import Sketch, direction, name
+from pendcore.derive.report import drawing
+from pendcore.derive.report.drawing import Sketch, direction, name
 from pendcore.messages.arguments import Floats
 
 if TYPE_CHECKING:

@@ -13,10 +13,10 @@ from sympy import Abs, Add, Expr, Symbol
 
 from pendcore.derive.algebra import Algebra
 from pendcore.derive.chain import Chain, Vector
-from pendcore.derive.handout.quantities import number
 from pendcore.derive.laws import Law
 from pendcore.derive.narration.page import Page
 from pendcore.derive.notation import Notation
+from pendcore.derive.report.quantities import number
 from pendcore.derive.writing import ANGLE, RATE
 
 COUPLES = {

@@ -1,4 +1,4 @@
-"""Fig. 1 of a handout: the chain at its start, with frame, angles, mass centres and weights."""
+"""Fig. 1 of a report: the chain at its start, with frame, angles, mass centres and weights."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pendcore.api.scene import Scene
-from pendcore.derive.handout import drawing
-from pendcore.derive.handout.drawing import Sketch, direction, name
+from pendcore.derive.report import drawing
+from pendcore.derive.report.drawing import Sketch, direction, name
 from pendcore.messages.arguments import Floats
 from pendcore.scene.effect_class import Effect
 
