@@ -13,7 +13,6 @@ from pendcore.api.solve import solve
 from pendcore.messages.arguments import known_keywords
 from pendcore.messages.progress import Progress
 from pendcore.run.events import Event
-from pendcore.run.options import Options
 
 
 @known_keywords
@@ -147,7 +146,7 @@ def simulate(
     Differential Equations I*, II.4; a Taylor series sets its steps by its coefficients. The same
     arguments give the same bits on every x86-64 machine, whatever is stored.
     """
-    options = Options(
+    options = (
         method, rtol, atol, t_eval, store, first_step, max_step, step, max_steps, time_limit,
         events, ledger, compensated, error, check, progress,
     )  # fmt: skip

@@ -30,24 +30,26 @@ def solve(
     q0: npt.ArrayLike | None,
     qd0: npt.ArrayLike,
     t_span: Iterable[float] | None,
-    options: Options,
+    options: tuple[Any, ...],
 ) -> Result:
-    """Run, and return the result as one of a class; see `pendcore.simulate`."""
+    """Run, and return the result as one of a class; the options are in the order of `Options`."""
+    (
+        method, rtol, atol, t_eval, store, first_step, max_step, step, max_steps, time_limit,
+        events, ledger, compensated, error, check, progress,
+    ) = options  # fmt: skip
     q0 = require_start(scene, q0)
-    require_check(options.check)
+    require_check(check)
     t_start, t_end = two_times(t_span)
-    wanted = [event._as_pair() for event in events_asked_for(options.events)]
-    if options.error is not None:
-        result = _solved_to_error(kind, Start(scene, q0, qd0, t_start, t_end), options, wanted)
-        return checked(result, options.check)
-    report = callback(options.progress)
+    wanted = [event._as_pair() for event in events_asked_for(events)]
+    if error is not None:
+        start = Start(scene, q0, qd0, t_start, t_end)
+        return checked(_solved_to_error(kind, start, Options(*options), wanted), check)
+    report = callback(progress)
     run = _core.simulate(
-        scene._compiled, q0, qd0, t_start, t_end, options.method, options.rtol, options.atol,
-        options.t_eval, options.store, options.first_step, options.max_step, options.step,
-        options.max_steps, options.time_limit, wanted, options.ledger, options.compensated,
-        report, warn,
+        scene._compiled, q0, qd0, t_start, t_end, method, rtol, atol, t_eval, store, first_step,
+        max_step, step, max_steps, time_limit, wanted, ledger, compensated, report, warn,
     )  # fmt: skip
-    return checked(completed(kind(scene, run), report), options.check)
+    return checked(completed(kind(scene, run), report), check)
 
 
 def _solved_to_error(

@@ -40,7 +40,9 @@ def require_check(check: object) -> None:
 
 def checked(solution: Result, check: bool | None) -> Result:
     """Return a solution; of one that is no success warn, or raise, or say nothing."""
-    if check is False or (solution.success and not _is_unverified(solution)):
+    accuracy = solution.accuracy
+    is_verified = accuracy is None or accuracy.outcome != "ended early"
+    if check is False or (solution.success and is_verified):
         return solution
     if check:
         raise RunError(_complaint(solution), solution)
@@ -50,11 +52,6 @@ def checked(solution: Result, check: bool | None) -> Result:
         error.solution = solution  # type: ignore[attr-defined]
         raise
     return solution
-
-
-def _is_unverified(solution: RunResult) -> bool:
-    """Whether the time was up before a run that got to its end was verified."""
-    return solution.accuracy is not None and solution.accuracy.outcome == "ended early"
 
 
 def _complaint(solution: RunResult) -> str:
