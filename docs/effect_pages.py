@@ -13,9 +13,9 @@ from typing import Any
 
 import pendcore as pc
 from effect_sections import COMPILED, MORE
-from pendcore.effect_class import KINDS, Effect, OwnEffect
-from pendcore.effect_description import CAVEATS, Description, Parameter
-from pendcore.energy import LOSSES
+from pendcore.run.energy import LOSSES
+from pendcore.scene.effect_class import KINDS, Effect, OwnEffect
+from pendcore.scene.effect_description import CAVEATS, Description, Parameter
 
 EXAMPLES: dict[str, list[str]] = {
     "viscous_joint": ["ViscousJoint(joint=2, damping=0.05)"],

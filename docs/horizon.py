@@ -24,7 +24,7 @@ ROOT = Path(__file__).parents[1]
 sys.path.append(str(ROOT / "tests"))
 
 import chaotic_starts as record  # noqa: E402
-from pendcore.views.horizon import draw_work  # noqa: E402
+from pendcore.horizon.horizon_work import draw_work  # noqa: E402
 from reference.taylor_series import RodChain, motion  # noqa: E402
 
 BOOK = pc.Scene.textbook()

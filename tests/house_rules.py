@@ -10,6 +10,7 @@ import re
 import statistics
 import tomllib
 from collections.abc import Callable, Iterator
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pendcore
@@ -34,51 +35,24 @@ CPP_FLOW = {
 ALL_OF_IT = "pendcore.hpp"
 """The header that includes the whole core: for users, and for the bindings."""
 
-# The same for Python: modules in the order of the flow; each may import those above it, with the
-# exceptions that are named below.
-PYTHON_FLOW = [
+# Python's layers, each above those that it may import: the folders of the package, the compiled
+# core below them. The package's own files, the names that users import, are `pendcore` itself.
+PYTHON_LAYERS = [
     "_core",
-    "methods",
-    "warning",
-    "arguments",
-    "angles",
-    "progress",
-    "whole_file",
-    "toml_text",
-    "effect_description",
-    "effect_class",
-    "effects",
-    "events",
-    "link",
+    "messages",
     "scene",
     "explanation",
-    "energy",
-    "defect",
-    "largest_reactions",
-    "statistics",
-    "run_error",
-    "solution",
+    "run",
     "accuracy",
     "horizon",
-    "simulate",
-    "cost",
-    "case",
-    "case_file",
-    "archive",
+    "cases",
     "views",
+    "api",
+    "cost",
     "derive",
+    "pendcore",
     "cli",
 ]
-# The methods of a solution (plot, save, ...) and of a scene (explain) call what comes later, but
-# only when they are called.
-LATE_IMPORTS = {
-    "scene": {"explanation"},
-    "run_error": {"solution"},
-    "solution": {"accuracy", "horizon", "case", "archive", "views"},
-    "horizon": {"views"},
-    "cost": {"views"},
-}
-NOT_FOR_VIEWS = {"simulate", "archive", "case", "case_file", "toml_text"}
 
 FORBIDDEN_NAMES = {"util", "utils", "helper", "helpers", "common", "misc", "impl"}
 LIBM = (
@@ -139,45 +113,77 @@ def sources_stand_where_their_headers_do(root: Path) -> Iterator[str]:
             yield f"{path.relative_to(root)} stands in another folder than {elsewhere[0].name}"
 
 
-def imports_of(tree: ast.Module) -> Iterator[tuple[str, bool]]:
-    """The package's modules that a file imports, and whether in a function or for types alone."""
-    late = {
-        id(node)
-        for outer in ast.walk(tree)
-        if isinstance(outer, ast.FunctionDef | ast.AsyncFunctionDef)
-        or (isinstance(outer, ast.If) and ast.unparse(outer.test) == "TYPE_CHECKING")
-        for node in ast.walk(outer)
-    }
-    for node in ast.walk(tree):
+def imports_of(tree: ast.AST, where: str = "") -> Iterator[tuple[str, str]]:
+    """The package's modules that a file imports, and where, if not in the open."""
+    for node in ast.iter_child_nodes(tree):
         if isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom) and node.level:
             names = ["pendcore.(relative)"]
         elif isinstance(node, ast.ImportFrom):
             names = [f"{node.module}.{alias.name}" for alias in node.names]
+        elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
+            yield from imports_of(node, " in a function")
+            continue
+        elif isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
+            yield from imports_of(node, " for types alone")
+            continue
         else:
+            yield from imports_of(node, where)
             continue
-        for name in names:
-            if name.startswith("pendcore."):
-                yield name.split(".")[1], id(node) in late
+        yield from ((name, where) for name in names if name.split(".")[0] == "pendcore")
 
 
-def imports_follow_the_flow(root: Path) -> Iterator[str]:
-    package = root / "python/pendcore"
+def layer_of(module: str) -> str:
+    """The layer of a module, or of a name in it: `pendcore` for what is in no folder."""
+    names = module.split(".")
+    return names[1] if len(names) > 1 and names[1] in PYTHON_LAYERS else names[0]
+
+
+def modules_of(root: Path) -> dict[str, Path]:
+    """The package's files by the names under which they are imported."""
+    found = {}
     for path in files(root, {".py"}, "python/pendcore"):
-        if path == package / "__init__.py":
+        names = path.relative_to(root / "python").with_suffix("").parts
+        found[".".join(names).removesuffix(".__init__")] = path
+    return found
+
+
+def imports_go_down(root: Path) -> Iterator[str]:
+    for module, path in modules_of(root).items():
+        place = path.relative_to(root)
+        if len(place.parts) > 3 and place.parts[2] not in PYTHON_LAYERS:
+            yield f"{place} is in no layer"
             continue
-        relative = path.relative_to(package)
-        module = relative.parts[0].removesuffix(".py").replace("__main__", "cli")
-        if module not in PYTHON_FLOW:
-            yield f"{path.relative_to(root)} has no place in the flow"
-            continue
-        allowed = {*PYTHON_FLOW[: PYTHON_FLOW.index(module) + 1]}
-        if module == "views":
-            allowed -= NOT_FOR_VIEWS
-        for name, late in imports_of(ast.parse(path.read_text())):
-            if name not in allowed | (LATE_IMPORTS.get(module, set()) if late else set()):
-                yield f"{path.relative_to(root)} imports {name}"
+        # `python -m pendcore` is the command, though Python wants it here.
+        layer = "cli" if module == "pendcore.__main__" else layer_of(module)
+        tree = ast.parse(path.read_text())
+        for name, where in imports_of(tree):
+            if where:
+                yield f"{place} imports {name}{where}"
+            if name == "pendcore.(relative)":
+                yield f"{place} has a relative import"
+            elif PYTHON_LAYERS.index(layer_of(name)) > PYTHON_LAYERS.index(layer):
+                yield f"{place} ({layer}) imports {name}, which is above it"
+        # The one module that is loaded by its name is a name of the package: SymPy is an extra.
+        if layer != "pendcore" and re.search(r"\b(import_module|__import__)\b", ast.unparse(tree)):
+            yield f"{place} imports a module by its name"
+
+
+def imports_form_no_circle(root: Path) -> Iterator[str]:
+    modules = modules_of(root)
+    graph = {
+        module: {
+            name if name in modules else name.rpartition(".")[0]
+            for name, _ in imports_of(ast.parse(path.read_text()))
+            if layer_of(name) != "_core"
+        }
+        for module, path in modules.items()
+    }
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        yield f"a circle of imports: {' <- '.join(error.args[1])}"
 
 
 def names_say_what_a_file_holds(root: Path) -> Iterator[str]:
@@ -248,7 +254,8 @@ def version_is_the_same_everywhere(root: Path) -> Iterator[str]:
 RULES: list[Rule] = [
     includes_follow_the_flow,
     sources_stand_where_their_headers_do,
-    imports_follow_the_flow,
+    imports_go_down,
+    imports_form_no_circle,
     names_say_what_a_file_holds,
     files_are_short,
     comments_have_a_subject,

@@ -12,10 +12,10 @@ import numpy as np
 import pendcore as pc
 import pytest
 from pendcore.accuracy.position_error import distances, time_grid
-from pendcore.accuracy.run import Start
 from pendcore.cli import main
 from pendcore.cost.point import Point, front, seconds_at
 from pendcore.cost.reference import reference
+from pendcore.run.call import Start
 
 BOOK = pc.Scene.textbook()
 START = ([np.pi / 4, np.pi / 3], 0, (0, 5))
@@ -189,7 +189,7 @@ def test_the_figure_has_a_line_a_method_units_and_a_legend_beside_the_data(book,
 
 
 def test_the_figures_lines_differ_without_colour():
-    from pendcore.views.accuracy_cost import STYLES
+    from pendcore.cost.figure import STYLES
 
     looks = {(str(style["linestyle"]), style["marker"]) for style in STYLES.values()}
     assert len(looks) == len(STYLES)

@@ -183,7 +183,7 @@ def test_the_page_says_until_when_it_holds(capsys):
 
 
 def test_it_is_refused_as_well_when_no_round_is_left(monkeypatch):
-    monkeypatch.setattr("pendcore.accuracy.asked_error.MOST_RUNS", 2)
+    monkeypatch.setattr("pendcore.accuracy.target_error.MOST_RUNS", 2)
     q0, qd0, _ = CHAOTIC
     with pytest.raises(pc.AccuracyError, match="could not be verified") as caught:
         pc.simulate(BOOK, q0, qd0, (0, 10), error=1e-3)

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pendcore as pc
 import pytest
-from pendcore.case import RUN_DEFAULTS
-from pendcore.case_file import EVENT_KEYS, KEYS
+from pendcore.cases.case_file import EVENT_KEYS, KEYS
+from pendcore.run.options import RUN_DEFAULTS
 
 REFERENCE = (Path(__file__).parents[1] / "docs/case_files.md").read_text()
 BLOCKS = re.findall(r"```toml\n(.*?)```", REFERENCE, re.DOTALL)

@@ -19,6 +19,7 @@ def test_in_this_project(rule: Rule) -> None:
 
 
 CORE = "cpp/include/pendcore"
+PACKAGE = "python/pendcore"
 OF = "Of"
 SCENE = '#include "pendcore/scene/scene.hpp"'
 BREACHES = {
@@ -45,15 +46,33 @@ BREACHES = {
     rules.sources_stand_where_their_headers_do: [
         ("cpp/src/dynamics/chain.cpp", "", "has no folder dynamics"),
     ],
-    rules.imports_follow_the_flow: [
-        ("scene.py", "from pendcore.solution import Solution", "imports solution"),
-        ("scene.py", "def f():\n    import pendcore.views.plot", "imports views"),
-        ("solution.py", "from pendcore.views.plot import plot", "imports views"),
-        ("views/plot.py", "from pendcore import simulate", "imports simulate"),
-        ("views/plot.py", "from ..case import Case", "imports (relative)"),
-        ("case.py", "from pendcore.cli import main", "imports cli"),
-        ("scene.py", "def f():\n    from pendcore.derive import Derivation", "imports derive"),
-        ("attic.py", "", "has no place in the flow"),
+    rules.imports_go_down: [
+        (f"{PACKAGE}/scene/scene.py", "from pendcore.run.result import RunResult", "above it"),
+        (f"{PACKAGE}/run/result.py", "import pendcore.views.plot", "above it"),
+        (f"{PACKAGE}/views/plot.py", "from pendcore import api", "(views) imports pendcore.api"),
+        (f"{PACKAGE}/cases/case.py", "from pendcore import simulate", "above it"),
+        (f"{PACKAGE}/__init__.py", "from pendcore.cli import main", "(pendcore) imports"),
+        (
+            f"{PACKAGE}/api/solution.py",
+            "def plot():\n    from pendcore.views.plot import plot",
+            "imports pendcore.views.plot.plot in a function",
+        ),
+        (
+            f"{PACKAGE}/views/plot.py",
+            "if TYPE_CHECKING:\n    from pendcore.run.result import RunResult",
+            "for types alone",
+        ),
+        (
+            f"{PACKAGE}/views/plot.py",
+            "class A:\n    if typing.TYPE_CHECKING:\n        import pendcore.scene.link",
+            "for types alone",
+        ),
+        (f"{PACKAGE}/views/plot.py", "from ..run import result", "has a relative import"),
+        (f"{PACKAGE}/cli/run.py", "x = import_module('pendcore.derive')", "by its name"),
+        (f"{PACKAGE}/attic/link.py", "", "attic/link.py is in no layer"),
+    ],
+    rules.imports_form_no_circle: [
+        (f"{PACKAGE}/run/result.py", "import pendcore.run.result", "a circle of imports"),
     ],
     rules.names_say_what_a_file_holds: [
         ("cpp/src/string_utils.cpp", "", "'utils'"),
@@ -97,8 +116,7 @@ def write(path: Path, text: str) -> None:
 
 @pytest.mark.parametrize(("rule", "path", "text", "sentence"), CASES)
 def test_a_breach_is_found(rule: Rule, path: str, text: str, sentence: str, tmp_path: Path) -> None:
-    folder = "python/pendcore" if rule is rules.imports_follow_the_flow else ""
-    write(tmp_path / folder / path, text)
+    write(tmp_path / path, text)
     assert [found for found in rule(tmp_path) if sentence in found]
 
 
@@ -108,6 +126,16 @@ def test_a_source_in_another_folder_than_its_header_is_found(tmp_path: Path) -> 
     write(tmp_path / "cpp/src/dynamics/energetics/chain.cpp", "")
     (found,) = rules.sources_stand_where_their_headers_do(tmp_path)
     assert "stands in another folder than chain.hpp" in found
+
+
+def test_a_circle_of_imports_is_found(tmp_path: Path) -> None:
+    package = tmp_path / PACKAGE
+    write(package / "derive/__init__.py", "from pendcore.derive.algebra import Algebra")
+    write(package / "derive/algebra.py", "from pendcore.derive import laws")
+    write(package / "derive/laws/__init__.py", "import pendcore.derive.algebra")
+    (found,) = rules.imports_form_no_circle(tmp_path)
+    assert "pendcore.derive.algebra" in found
+    assert "pendcore.derive.laws" in found
 
 
 @pytest.mark.parametrize(
@@ -139,7 +167,14 @@ def test_what_the_rules_allow_is_no_breach(tmp_path: Path) -> None:
         '#include "pendcore/simulate/solution.hpp"\n'
         "#include <pybind11/numpy.h>",
     )
-    package = tmp_path / "python/pendcore"
-    write(package / "solution.py", "def plot():\n    from pendcore.views.plot import plot")
-    write(package / "views/plot.py", "from pendcore.solution import Solution")
+    package = tmp_path / PACKAGE
+    write(package / "__main__.py", "from pendcore.cli import main")
+    write(package / "cli/derive.py", "import pendcore\nfrom pendcore import _core")
+    write(
+        package / "views/plot.py",
+        "from pendcore.run.result import RunResult\nif TYPE_CHECKING:\n    import matplotlib\n"
+        "def plot():\n    import matplotlib",
+    )
+    write(package / "run/result.py", "from pendcore import scene\nfrom pendcore.run import call")
+    write(package / "run/call.py", "from pendcore.scene.link import Link")
     assert [found for rule in BREACHES for found in rule(tmp_path)] == []

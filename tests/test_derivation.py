@@ -19,7 +19,7 @@ from pendcore.derive.chain import of_differences
 from pendcore.derive.laws import LAWS
 from pendcore.derive.laws.rod_drag import RodDrag
 from pendcore.derive.laws.viscous_joint import ViscousJoint
-from pendcore.effect_description import account_of
+from pendcore.scene.effect_description import account_of
 from reference.arithmetic import multiple_precision
 from reference.effects import law
 from reference.newton_euler import Body

@@ -9,8 +9,8 @@ from typing import Any
 import pendcore as pc
 import pytest
 from pendcore.derive import Derivation, Equation
-from pendcore.derive.handout import motion, report
-from pendcore.derive.handout.document import Displayed
+from pendcore.derive.report import motion, report
+from pendcore.derive.report.document import Displayed
 from symbolic_scenes import SETS, derived
 
 pytestmark = pytest.mark.unsanitized

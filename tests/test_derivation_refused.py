@@ -8,8 +8,8 @@ import sys
 import pendcore as pc
 import pytest
 from pendcore.derive import Derivation
-from pendcore.derive.growth import MOST_LINKS, WRITTEN_OUT
 from pendcore.derive.laws import LAWS, WITHOUT_LAW
+from pendcore.derive.size_limit import MOST_LINKS, WRITTEN_OUT
 
 pytestmark = pytest.mark.unsanitized
 

@@ -7,8 +7,8 @@ from typing import Any
 import pendcore as pc
 import pytest
 from pendcore.derive import Derivation
-from pendcore.derive.handout.acting import what_acts
 from pendcore.derive.narration.page import Page
+from pendcore.derive.report.effect_text import what_acts
 
 pytestmark = pytest.mark.unsanitized
 

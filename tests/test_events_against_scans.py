@@ -24,7 +24,7 @@ CLEAR = 1e-6
 
 def pieces(sol: pc.Solution) -> Iterator[tuple[float, float, Array]]:
     """Yield start, size and coefficients (degree + 1, dimension) of each step's polynomial."""
-    state = sol._run.__getstate__()
+    state = sol.run.__getstate__()
     steps = len(state["dense_h"])
     rows = state["dense_coefficients"].reshape(steps, state["dense_degree"] + 1, -1)
     yield from zip(state["dense_start"], state["dense_h"], rows, strict=True)

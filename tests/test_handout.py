@@ -12,11 +12,11 @@ import pendcore as pc
 import pytest
 from handed_out_cases import AIRY, BUSY, CASES, LEVEL, SHAKEN
 from pendcore.derive import Derivation, line_breaks
-from pendcore.derive.handout import conversion, motion, report, worksheet
-from pendcore.derive.handout.document import Blank, Displayed, Document, Reader, Table
-from pendcore.derive.handout.figures import Figures
-from pendcore.derive.handout.numbers import Start
-from pendcore.derive.handout.quantities import number, quantity
+from pendcore.derive.report import conversion, motion, report, worksheet
+from pendcore.derive.report.document import Blank, Displayed, Document, Reader, Table
+from pendcore.derive.report.figures import Figures
+from pendcore.derive.report.numbers import Start
+from pendcore.derive.report.quantities import number, quantity
 
 pytestmark = pytest.mark.unsanitized
 needs_pandoc = pytest.mark.skipif(shutil.which("pandoc") is None, reason="pandoc is not installed")

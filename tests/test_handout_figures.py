@@ -12,8 +12,8 @@ from handed_out_cases import CASES
 from matplotlib.path import Path as MarkedPath
 from matplotlib.text import Text
 from pendcore.derive import Derivation
-from pendcore.derive.handout import curves, drawing, mechanism
-from pendcore.derive.handout.figures import Figures
+from pendcore.derive.report import curves, drawing, mechanism
+from pendcore.derive.report.figures import Figures
 
 pytestmark = pytest.mark.unsanitized
 

@@ -9,9 +9,9 @@ import numpy as np
 import pendcore as pc
 import pytest
 from pendcore.derive import Derivation
-from pendcore.derive.handout import motion, report
-from pendcore.derive.handout.document import Document
-from pendcore.derive.handout.numbers import Start
+from pendcore.derive.report import motion, report
+from pendcore.derive.report.document import Document
+from pendcore.derive.report.numbers import Start
 
 pytestmark = pytest.mark.unsanitized
 

@@ -16,7 +16,7 @@ import pendcore as pc
 import pytest
 from chaotic_starts import EACH, chaotic_starts
 from matplotlib.figure import Figure
-from pendcore.views.horizon import draw_work
+from pendcore.horizon.horizon_work import draw_work
 
 ROOT = Path(__file__).parents[1]
 sys.path.append(str(ROOT / "docs"))

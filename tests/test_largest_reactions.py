@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import pendcore as pc
 import pytest
-from pendcore import largest_reactions
 from pendcore.cli import main
+from pendcore.run import largest_reactions
 from pendcore.views.summary import facts, text
 
 fx = pc.effects

@@ -8,8 +8,8 @@ from __future__ import annotations
 import pytest
 from pendcore.accuracy.method_choice import ERROR_OVER_RTOL, MOST_ACCURATE
 from pendcore.accuracy.trials import IMPLICIT
-from pendcore.methods import known_methods
-from pendcore.views.accuracy_cost import STYLES
+from pendcore.cost.figure import STYLES
+from pendcore.run.methods import known_methods
 
 METHODS = known_methods()
 ONE_BY_ONE = [

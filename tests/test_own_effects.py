@@ -211,7 +211,7 @@ def test_a_function_lives_as_long_as_what_runs_under_it():
 
     function, alive = make()
     run = pc.simulate(scene(fx.User(function)), **START)
-    core = run._run
+    core = run.run
     del function
     gc.collect()
     expected = pc.simulate(scene(fx.User(damp)), **START).resume(3.0)

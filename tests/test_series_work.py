@@ -12,7 +12,7 @@ from pathlib import Path
 import pendcore as pc
 import pytest
 from pendcore.accuracy.method_choice import INERTIA_ALONE, series_work
-from pendcore.effect_class import OwnEffect
+from pendcore.scene.effect_class import OwnEffect
 
 sys.path.append(str(Path(__file__).parents[1] / "docs"))
 from series_work import EFFECTS, NOT_CARRIED, TOGETHER, scenes

@@ -7,16 +7,24 @@ import sys
 import threading
 import time
 from functools import partial
+from inspect import signature
 
 import numpy as np
 import pendcore as pc
 import pytest
-from pendcore.progress import ProgressBar
+from pendcore.messages.progress import ProgressBar
+from pendcore.run.options import RUN_DEFAULTS
 
 Q0 = (np.pi / 4, np.pi / 3)
 textbook = partial(pc.simulate, pc.Scene.textbook(), Q0, 0.0, (0, 5))
 endless = partial(pc.simulate, pc.Scene.textbook(), Q0, 0.0, (0, 1e9), store="end", check=False)
 """Would take hours."""
+
+
+def test_cases_know_the_keywords_of_simulate_and_their_defaults():
+    parameters = signature(pc.simulate).parameters.values()
+    keywords = [(one.name, one.default) for one in parameters if one.kind is one.KEYWORD_ONLY]
+    assert keywords == list(RUN_DEFAULTS.items())
 
 
 def same_bits(a, b):
@@ -208,7 +216,7 @@ def test_nothing_is_drawn_where_there_is_no_terminal(progress, capsys):
 def test_on_a_terminal_a_bar_comes_after_a_second(capsys, monkeypatch):
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     clock = iter([10.0, 10.9, 11.1])  # when the bar is first called, then as it looks again
-    monkeypatch.setattr("pendcore.progress.monotonic", lambda: next(clock))
+    monkeypatch.setattr("pendcore.messages.progress.monotonic", lambda: next(clock))
     bar = ProgressBar()
     bar(0.2)
     assert capsys.readouterr().err == ""

@@ -208,7 +208,7 @@ def test_laws_that_change_along_the_run_are_those_in_force(n, with_friction):
 
 def test_orders_are_those_that_the_pages_tell():
     orders = [
-        pc.simulate(BOOK, START, 0, (0, 0.01), method="taylor", rtol=tol, atol=0)._run.dense_degree
+        pc.simulate(BOOK, START, 0, (0, 0.01), method="taylor", rtol=tol, atol=0).run.dense_degree
         for tol in [0.5, *(10.0**-k for k in range(1, 18)), 1e-300]
     ]
     assert orders == sorted(orders)

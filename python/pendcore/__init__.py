@@ -27,40 +27,37 @@ joints count from 1.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from importlib import import_module
+from typing import Any
 
 from pendcore import effects, events
 from pendcore._core import __version__
 from pendcore.accuracy.defect import Defect
-from pendcore.accuracy.estimate import ErrorEstimate
-from pendcore.accuracy.report import Accuracy, AccuracyError
-from pendcore.angles import angles_from_vertical, angles_to_vertical
-from pendcore.archive import load
-from pendcore.case import Case
-from pendcore.case_file import read_case
-from pendcore.cost import AccuracyCost, accuracy_cost
-from pendcore.energy import Energy, Ledger
-from pendcore.explanation import Explanation
+from pendcore.api.files import load, read_case
+from pendcore.api.scene import Scene
+from pendcore.api.simulate import simulate
+from pendcore.api.solution import Case, Solution
+from pendcore.cost.accuracy_cost import AccuracyCost
+from pendcore.cost.sweep import accuracy_cost
+from pendcore.explanation.explanation import Explanation
+from pendcore.horizon.horizon_work import HorizonWork
 from pendcore.horizon.lyapunov import LyapunovExponents, lyapunov
-from pendcore.horizon.work import HorizonWork, horizon_work
-from pendcore.largest_reactions import LargestReaction
-from pendcore.link import Link
-from pendcore.run_error import RunError
-from pendcore.scene import Mobility, Scene
-from pendcore.simulate import simulate
-from pendcore.solution import Solution
-from pendcore.statistics import Statistics
-from pendcore.warning import PendcoreWarning
-
-if TYPE_CHECKING:
-    from pendcore import derive as derive
+from pendcore.horizon.work import horizon_work
+from pendcore.messages.warning import PendcoreWarning
+from pendcore.run.accuracy import Accuracy, AccuracyError
+from pendcore.run.energy import Energy, Ledger
+from pendcore.run.error_estimate import ErrorEstimate
+from pendcore.run.largest_reactions import LargestReaction
+from pendcore.run.run_error import RunError
+from pendcore.run.statistics import Statistics
+from pendcore.scene.angles import angles_from_vertical, angles_to_vertical
+from pendcore.scene.link import Link
+from pendcore.scene.scene import Mobility
 
 
 def __getattr__(name: str) -> Any:
     if name == "derive":  # SymPy is an extra, and takes its time
-        import importlib
-
-        return importlib.import_module("pendcore.derive")
+        return import_module("pendcore.derive")
     raise AttributeError(f"module 'pendcore' has no attribute {name!r}")
 
 

@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from pendcore import _core
-from pendcore.arguments import Floats
-from pendcore.methods import known_methods, method_at_the_end
-from pendcore.progress import callback, close
-
-if TYPE_CHECKING:
-    from pendcore.progress import Progress
-    from pendcore.scene import Scene
+from pendcore.messages.arguments import Floats
+from pendcore.messages.progress import Progress, callback, close
+from pendcore.run.methods import known_methods, method_at_the_end
+from pendcore.scene.scene import SceneData
 
 STEPS_AT_ONCE = 2000
 
@@ -76,7 +72,7 @@ class Defect:
         return f"an exact motion with {torque}; its angles are within {apart} of sol(t)"
 
 
-def defect(scene: Scene, run: _core.Run, progress: Progress = None) -> Defect:
+def defect(scene: SceneData, run: _core.Run, progress: Progress = None) -> Defect:
     """Return the torques at the joints that would make a run exact.
 
     The rates of ``sol(t)``, and the angles that their integral gives, obey the equations of motion
@@ -110,7 +106,7 @@ def defect(scene: Scene, run: _core.Run, progress: Progress = None) -> Defect:
     )
 
 
-def _weight(scene: Scene) -> float:
+def _weight(scene: SceneData) -> float:
     masses = sum(link.mass for link in scene.links)
     lengths = sum(link.length for link in scene.links)
     return float(abs(scene.gravity) * masses * lengths)

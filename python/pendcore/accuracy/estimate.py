@@ -4,7 +4,7 @@
 The run is compared with second runs that are better by a factor which is known, for they
 are compared with each other as well. Those of `Solution.error` take another method where one can
 carry the scene, at tolerances a hundredth and less, as far as doubles allow; those of
-``simulate(error=...)`` take the trial's own (`pendcore.accuracy.asked_error`). All take other
+``simulate(error=...)`` take the trial's own (`pendcore.accuracy.target_error`). All take other
 steps, and each has its constants and its start moved by a few last bits of its own
 (`pendcore.accuracy.rounding`). With runs r_1, r_2, ... the error is at most
 
@@ -20,7 +20,6 @@ all agree with one that is wrong.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import combinations
 from math import inf
 from time import monotonic
@@ -38,10 +37,11 @@ from pendcore.accuracy.position_error import (
     times_within_steps,
 )
 from pendcore.accuracy.rounding import moved
-from pendcore.accuracy.run import Choice, Start, run, start_of, tightened
-from pendcore.arguments import Floats, positive, time_limit_of
-from pendcore.progress import Progress, callback, close
-from pendcore.solution import Solution
+from pendcore.messages.arguments import Floats, time_limit_of
+from pendcore.messages.progress import Progress, callback, close
+from pendcore.run.call import Choice, Start, resumed, run, start_of, tightened
+from pendcore.run.error_estimate import ErrorEstimate
+from pendcore.run.result import RunResult
 
 Report: TypeAlias = Callable[[float], object]
 
@@ -69,96 +69,9 @@ AT_ONCE = 100_000
 """Times that are compared at once, which bounds the memory."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ErrorEstimate:
-    """How far a run is off, estimated from above.
-
-    Attributes
-    ----------
-    begin : float
-        s, the start of the run.
-    t : ndarray, (n_t,)
-        s: several in every step of a run with dense output, else the times that it kept. They end
-        before the run does where a second run has nothing to do with it any more, or did not get
-        further.
-    angle : ndarray, (n_t,)
-        The largest error over the links, rad.
-    position : ndarray, (n_t,)
-        The largest error over the joints and the tip, as a share of the total length.
-    verified_by : str
-        How the second runs were made.
-    is_lost : bool
-        Whether they had nothing to do with the run any more at the last of the times.
-    is_complete : bool
-        Whether the times go as far as that, or to the end of the run.
-    is_dense : bool
-        Whether the times cover the whole curve.
-    """
-
-    begin: float
-    t: Floats
-    angle: Floats
-    position: Floats
-    verified_by: str
-    is_lost: bool = False
-    is_complete: bool = True
-    is_dense: bool = True
-
-    @property
-    def tells_the_end(self) -> bool:
-        """Whether the error is known up to the end of the run."""
-        return self.is_complete and not self.is_lost
-
-    @property
-    def largest(self) -> float:
-        """The largest error of a position, as a share of the total length; inf if none is known."""
-        largest = float(self.position.max(initial=0.0)) if len(self.t) else inf
-        return largest if largest == largest else inf
-
-    def valid_until(self, limit: float = 0.1, *, of: str = "angle") -> float:
-        """Return the last time until which the error stays within a limit, s.
-
-        Parameters
-        ----------
-        limit : float
-            > 0, rad; with ``of="position"`` a share of the total length.
-        of : {"angle", "position"}
-            What is limited: the angles of the links, or the positions of joints and tip.
-
-        Returns
-        -------
-        float
-            The end of the run where the limit is not passed before; its start where it is passed
-            at the first time that was compared, or none was. The error is taken never to shrink.
-        """
-        if of not in ("angle", "position"):
-            raise ValueError(f'of = {of!r}: must be "angle" (rad) or "position" (a share)')
-        error = self.angle if of == "angle" else self.position
-        limit = positive("limit", limit, "rad" if of == "angle" else "of the total length")
-        is_past = ~(error <= limit)
-        is_past[-1:] |= self.is_lost
-        within = np.argmax(is_past) if is_past.any() else len(self.t)
-        return float(self.t[within - 1]) if within else self.begin
-
-    def __str__(self) -> str:
-        until = self.t[-1] if len(self.t) else self.begin
-        where = "everywhere" if self.is_dense else f"at {len(self.t)} times"
-        ends = ""
-        if self.is_lost:
-            ends = "; past that the runs have nothing to do with each other any more"
-        elif not self.is_complete:
-            ends = "; the run goes on past that: it is not known there yet"
-        return (
-            f"error estimated {where} from t = {self.begin:.6g} to {until:.6g} s: "
-            f"angles up to {self.angle.max(initial=0.0):.1e} rad, positions up to "
-            f"{self.position.max(initial=0.0):.1e} of the total length, from second runs by "
-            f"{self.verified_by}{ends}"
-        )
-
-
 def estimate(
-    solution: Solution,
-    seconds: Sequence[Solution],
+    solution: RunResult,
+    seconds: Sequence[RunResult],
     verified_by: str,
     share: float = SPARE_OF_SEVERAL,
 ) -> ErrorEstimate:
@@ -166,9 +79,9 @@ def estimate(
 
     Parameters
     ----------
-    solution : Solution
+    solution : RunResult
         Whose error is estimated.
-    seconds : sequence of Solution
+    seconds : sequence of RunResult
         Better runs of the same, dense or with the times that the solution kept.
     verified_by : str
         How they were made.
@@ -194,10 +107,10 @@ def estimate(
     angle, position = np.concatenate(angles), np.concatenate(positions)
     lost = np.flatnonzero(~(angle < LOST))
     count = int(lost[0]) + 1 if len(lost) else len(t)
-    end = solution._run.t_reached
+    end = solution.run.t_reached
     last = end if solution.store == "dense" or not len(solution.t) else solution.t[-1]
     return ErrorEstimate(
-        begin=float(solution._run.arguments["t_start"]),
+        begin=float(solution.run.arguments["t_start"]),
         t=t[:count],
         angle=angle[:count],
         position=position[:count],
@@ -208,8 +121,21 @@ def estimate(
     )
 
 
+def error_of(
+    solution: RunResult, *, time_limit: float | None = None, progress: Progress = None
+) -> ErrorEstimate:
+    """Return the error of a run, estimated when first asked for; see `pendcore.Solution.error`."""
+    time_limit_of(time_limit)  # also where it is known already
+    if solution.known_error is None:
+        found = error_estimate(solution, time_limit=time_limit, progress=progress)
+        if not found.is_complete:
+            return found  # another time there may be more time
+        solution.known_error = found
+    return solution.known_error
+
+
 def error_estimate(
-    solution: Solution, *, time_limit: float | None = None, progress: Progress = None
+    solution: RunResult, *, time_limit: float | None = None, progress: Progress = None
 ) -> ErrorEstimate:
     """Estimate the error of a solution; see `Solution.error`."""
     if solution.store != "dense" and not len(solution.t):
@@ -232,17 +158,17 @@ def error_estimate(
         raise
     finally:
         close(report)
-    assert farthest is not None, "an explicit Runge-Kutta method carries every scene"
+    assert farthest is not None, "an explicit Runge-Kutta method supports every scene"
     return farthest
 
 
-def other_steps(solution: Solution, max_step: float) -> float:
+def other_steps(solution: RunResult, max_step: float) -> float:
     """Return a max_step, s, with which a second run takes other steps than the first.
 
     Tighter tolerances see to that where they set the steps, but not where max_step does, or points
     at which laws change, or where a run is over before its steps have grown.
     """
-    stats, run = solution.stats, solution._run
+    stats, run = solution.stats, solution.run
     if stats.limited_by_max_step:
         max_step = min(max_step, OTHER_STEPS * stats.max_step)
     span = float(abs(run.t_reached - run.arguments["t_start"]))
@@ -251,22 +177,22 @@ def other_steps(solution: Solution, max_step: float) -> float:
     return min(max_step, OTHER_STEPS * span / max(stats.accepted, 1))
 
 
-def second_times(solution: Solution) -> Floats | None:
+def second_times(solution: RunResult) -> Floats | None:
     """Return the times that a second run is to keep, s; None for all, densely."""
     if solution.store in ("dense", "steps"):
         return None
-    return kept_times(solution) if len(solution.t) else np.array([solution._run.t_reached])
+    return kept_times(solution) if len(solution.t) else np.array([solution.run.t_reached])
 
 
 def _compared(
-    solution: Solution, method: str, until: float, report: Report | None
+    solution: RunResult, method: str, until: float, report: Report | None
 ) -> ErrorEstimate:
     """Compare with second runs by a method, until they and the solution are lost."""
-    asked, first = solution._run.arguments, _choice_of(solution)
+    asked, first = solution.run.arguments, _choice_of(solution)
     tight = float(np.min(first.rtol)) < ROUNDING_MATTERS or asked["step"] is not None
     tight |= other_steps(solution, inf) < inf
     start = start_of(solution)
-    seconds: list[Solution] = []
+    seconds: list[RunResult] = []
     count = 3 if tight else 2
     first = first._replace(method=method, compensated=True)
     used = [float(np.min(tightened(first, by, TIGHTEST).rtol)) for by in TIGHTER[:count]]
@@ -280,17 +206,17 @@ def _compared(
                 if report is not None:
                     report((done + fraction) / count)
 
-            second: Solution | None = None
+            second: RunResult | None = None
             for second in _legs(solution, begin, choice, until, share):
                 if _is_lost(solution, second):
                     break
             assert second is not None
             seconds.append(second)
-            start = start._replace(t_end=second._run.t_reached)
+            start = start._replace(t_end=second.run.t_reached)
             if not second.success:
                 break
     except BaseException as stop:
-        if isinstance(partly := getattr(stop, "solution", second), Solution):
+        if isinstance(partly := getattr(stop, "solution", second), RunResult):
             seconds.append(partly)
         if seconds:
             stop.estimate = estimate(solution, seconds, text)  # type: ignore[attr-defined]
@@ -299,10 +225,10 @@ def _compared(
 
 
 def _legs(
-    solution: Solution, start: Start, choice: Choice, until: float, report: Report
-) -> Iterator[Solution]:
+    solution: RunResult, start: Start, choice: Choice, until: float, report: Report
+) -> Iterator[RunResult]:
     """Yield a second run as it gets on, part by part."""
-    asked = solution._run.arguments
+    asked = solution.run.arguments
     max_steps = MORE_STEPS * asked["max_steps"]
     max_step = other_steps(solution, asked["max_step"])
     count = int(np.clip(solution.stats.accepted / STEPS_A_LEG, 1, LEGS))
@@ -310,7 +236,7 @@ def _legs(
     ends = np.linspace(start.t_start, start.t_end, count + 1)[1:]
     ends[-1] = start.t_end
     parts = [None] * count if times is None else np.array_split(times, count)
-    second: Solution | None = None
+    second: RunResult | None = None
     for done, (end, part) in enumerate(zip(ends, parts, strict=True)):
         left = None if until == inf else max(1e-3, until - monotonic())
 
@@ -328,35 +254,35 @@ def _legs(
                 time_limit=left, progress=share,
             )  # fmt: skip
         else:
-            second = second.resume(
-                end, part, max_steps=max_steps, time_limit=left, check=False, progress=share
-            )  # fmt: skip
+            second = resumed(
+                second, end, part, max_steps=max_steps, time_limit=left, progress=share
+            )
         yield second
         if not second.success:
             return
 
 
-def _choice_of(solution: Solution) -> Choice:
+def _choice_of(solution: RunResult) -> Choice:
     """Return how a solution was made; a fixed step counts as a tight tolerance."""
-    asked = solution._run.arguments
+    asked = solution.run.arguments
     if asked["step"] is not None:
         return Choice(solution.method, FOR_FIXED_STEPS, FOR_FIXED_STEPS)
     return Choice(solution.method, asked["rtol"], asked["atol"])
 
 
-def _common_times(solution: Solution, seconds: Sequence[Solution]) -> Floats:
+def _common_times(solution: RunResult, seconds: Sequence[RunResult]) -> Floats:
     """Return the times at which to compare: in all steps, or those kept that all came to."""
     if solution.store == "dense":
         return times_within_steps([solution, *seconds])
     times = kept_times(solution)
     if not len(times):
-        times = np.array([solution._run.t_reached])
+        times = np.array([solution.run.t_reached])
     return times[np.all([reached(second, times) for second in seconds], axis=0)]
 
 
-def _is_lost(solution: Solution, second: Solution) -> bool:
+def _is_lost(solution: RunResult, second: RunResult) -> bool:
     """Whether they have nothing to do with each other any more where the second one ended."""
-    last = np.array([second._run.t_reached])
+    last = np.array([second.run.t_reached])
     if solution.store != "dense":
         last = kept_times(solution)
         last = last[reached(second, last)][-1:]

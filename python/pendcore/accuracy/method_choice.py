@@ -11,10 +11,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import floor, log10
 
-from pendcore.accuracy.run import Start, carries
-from pendcore.effect_description import account_of
-from pendcore.methods import known_methods, pair_of
-from pendcore.scene import Scene
+from pendcore.run.call import Start, supports
+from pendcore.run.methods import known_methods, pair_of
+from pendcore.scene.effect_description import account_of
+from pendcore.scene.scene import SceneData
 
 LOOSEST, TIGHTEST = 1e-2, 1e-14
 """rtol. Beyond the tightest, smaller steps add more rounding than they take away truncation."""
@@ -47,13 +47,13 @@ def cheapest(start: Start, error: float) -> str:
     """Return the method that takes the least work for an error as a rule, if nothing is stiff."""
     share = SERIES_TO_DOP853 * series_work(start.scene, 1e-3)
     below = next((error for most, error in TAYLOR_BELOW if share <= most), 0.0)
-    if error < below and carries("taylor", start):
+    if error < below and supports("taylor", start):
         return "taylor"
     is_loose = error > DOPRI5_ABOVE.get(len(start.scene.links), DOPRI5_ABOVE_ELSE)
     return "dopri5" if is_loose else "dop853"
 
 
-def series_work(scene: Scene, rtol: float) -> float:
+def series_work(scene: SceneData, rtol: float) -> float:
     """Return how many right-hand sides take as long as the series of one step of ``taylor``.
 
     Its order, and so its work, grows with the digits asked for. Measured; the ratio is large where
@@ -103,4 +103,4 @@ def second_methods(start: Start, method: str, stiff: bool) -> Iterator[str]:
     elif stiff:
         implicit = ("radau5", pair_of("dopri5"))
         methods = implicit[::-1] if begins == "radau5" else implicit
-    yield from (name for name in methods if carries(name, start))
+    yield from (name for name in methods if supports(name, start))

@@ -17,9 +17,9 @@ from collections.abc import Iterable
 import numpy as np
 import numpy.typing as npt
 
-from pendcore.arguments import Floats
-from pendcore.scene import Scene
-from pendcore.solution import Solution
+from pendcore.messages.arguments import Floats
+from pendcore.run.result import RunResult
+from pendcore.scene.scene import SceneData
 
 POINTS = 101
 """Times of the fixed grid on which methods are compared, both ends among them."""
@@ -42,28 +42,28 @@ def time_grid(t_start: float, t_end: float, points: int = POINTS) -> Floats:
     return distinct
 
 
-def kept_times(solution: Solution) -> Floats:
+def kept_times(solution: RunResult) -> Floats:
     """Return the times that a solution kept, s, each once: at a jump it stands there twice."""
     t = solution.t
     distinct: Floats = t[np.append(True, np.diff(t) != 0)[: len(t)]]
     return distinct
 
 
-def times_within_steps(runs: Iterable[Solution]) -> Floats:
+def times_within_steps(runs: Iterable[RunResult]) -> Floats:
     """Return times inside every step of the first of the runs, s, and at those of the others.
 
     From their start to the nearest end.
     """
     solutions = [*runs]
-    begin = solutions[0]._run.arguments["t_start"]
-    ends = [one._run.t_reached for one in solutions]
+    begin = solutions[0].run.arguments["t_start"]
+    ends = [one.run.t_reached for one in solutions]
     direction = -1.0 if min(ends) < begin else 1.0
     end = direction * min(direction * one for one in ends)
-    nodes = np.unique(np.concatenate([direction * one._run.step_starts for one in solutions]))
+    nodes = np.unique(np.concatenate([direction * one.run.step_starts for one in solutions]))
     nodes = np.append(nodes[nodes < direction * end], direction * end)
     if len(nodes) == 1:
         return np.array([end])
-    own = np.searchsorted(direction * solutions[0]._run.step_starts, nodes[:-1], side="right")
+    own = np.searchsorted(direction * solutions[0].run.step_starts, nodes[:-1], side="right")
     few = np.bincount(own)[own] <= CUTS
     shares = np.arange(1, SAMPLES) / SAMPLES
     inside = nodes[:-1][few, np.newaxis] + np.diff(nodes)[few, np.newaxis] * shares
@@ -72,12 +72,12 @@ def times_within_steps(runs: Iterable[Solution]) -> Floats:
     return distinct
 
 
-def angles_at(solution: Solution, t: Floats) -> Floats:
+def angles_at(solution: RunResult, t: Floats) -> Floats:
     """Return the angles of a solution at times, rad, (n_t, n); see `states_at`."""
     return states_at(solution, t)[:, : len(solution.scene.links)]
 
 
-def states_at(solution: Solution, t: Floats) -> Floats:
+def states_at(solution: RunResult, t: Floats) -> Floats:
     """Return angles, rad, and rates, rad/s, at times, (n_t, 2n): kept ones, or interpolated.
 
     Raises
@@ -87,7 +87,7 @@ def states_at(solution: Solution, t: Floats) -> Floats:
     """
     if solution.store == "dense":
         return solution(t).T
-    run, kept = solution._run, np.hstack([solution.q, solution.qd])
+    run, kept = solution.run, np.hstack([solution.q, solution.qd])
     if len(solution.t) == len(t) and (solution.t == t).all():
         return kept
     if len(t) == 1 and t[0] == run.t_reached:
@@ -99,7 +99,7 @@ def states_at(solution: Solution, t: Floats) -> Floats:
     return kept[rows]
 
 
-def distances(scene: Scene, q: npt.ArrayLike, reference: npt.ArrayLike) -> Floats:
+def distances(scene: SceneData, q: npt.ArrayLike, reference: npt.ArrayLike) -> Floats:
     """Return how far apart two motions of a scene are over time.
 
     Parameters
@@ -124,7 +124,7 @@ def distances(scene: Scene, q: npt.ArrayLike, reference: npt.ArrayLike) -> Float
     return apart
 
 
-def position_error(solution: Solution, reference: Solution, t: Floats) -> float:
+def position_error(solution: RunResult, reference: RunResult, t: Floats) -> float:
     """Return the largest distance of two solutions of a scene at the times t (n_t,), s.
 
     As a share of the total length. NaN where a state is not finite; infinite where one of the two
@@ -136,8 +136,8 @@ def position_error(solution: Solution, reference: Solution, t: Floats) -> float:
     return float(distances(solution.scene, q, r).max(initial=0.0))
 
 
-def reached(solution: Solution, t: Floats) -> npt.NDArray[np.bool]:
+def reached(solution: RunResult, t: Floats) -> npt.NDArray[np.bool]:
     """Return at which of the times (n_t,), s, a run was."""
-    start, end = solution._run.arguments["t_start"], solution._run.t_reached
+    start, end = solution.run.arguments["t_start"], solution.run.t_reached
     there: npt.NDArray[np.bool] = (min(start, end) <= t) & (t <= max(start, end))
     return there

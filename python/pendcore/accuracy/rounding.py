@@ -11,9 +11,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from pendcore.accuracy.run import Start
-from pendcore.link import Link
-from pendcore.scene import Scene
+from pendcore.run.call import Start
+from pendcore.scene.link import Link
+from pendcore.scene.scene import SceneData
 
 CONSTANTS = ("mass", "length", "center", "inertia")
 LAST_BITS = 8 * np.finfo(np.float64).eps
@@ -40,7 +40,7 @@ def moved(start: Start, seed: int) -> Start:
         Link(**{name: getattr(one, name) * x for name, x in zip(CONSTANTS, by(4), strict=True)})
         for one in scene.links
     ]
-    nearby = Scene._unpickled(links, scene.gravity * by(1)[0], scene.effects)
+    nearby = SceneData._unpickled(links, scene.gravity * by(1)[0], scene.effects)
     if any(effect.description.bounds_joint for effect in scene.effects):
         return start._replace(scene=nearby)
     q = np.broadcast_to(np.asarray(start.q0, dtype=np.float64), len(links))

@@ -11,7 +11,6 @@ from typing import Any
 from pendcore.accuracy.estimate import (
     MORE_STEPS,
     SPARE_OF_SEVERAL,
-    ErrorEstimate,
     estimate,
     other_steps,
     second_times,
@@ -25,13 +24,14 @@ from pendcore.accuracy.method_choice import (
     rounded,
     series_work,
 )
-from pendcore.accuracy.report import Accuracy, Outcome, Paid
 from pendcore.accuracy.rounding import moved
-from pendcore.accuracy.run import Choice, Start, atol_beside, run, silent
-from pendcore.arguments import time_limit_of
-from pendcore.methods import pair_of
-from pendcore.solution import Solution
-from pendcore.warning import warn
+from pendcore.messages.arguments import time_limit_of
+from pendcore.messages.warning import warn
+from pendcore.run.accuracy import Accuracy, Outcome, Paid
+from pendcore.run.call import Choice, Start, atol_beside, resumed, run, silent
+from pendcore.run.error_estimate import ErrorEstimate
+from pendcore.run.methods import pair_of
+from pendcore.run.result import RunResult
 
 IMPLICIT = "radau5"
 """The method for what the first trial found to be stiff."""
@@ -47,7 +47,7 @@ _ADVANCE = 0.35
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Made:
+class TrialRun:
     """A run: how it was made, and what it took in right-hand sides.
 
     Its ``scale`` is its error where the scene is like most: it makes tolerances of methods
@@ -58,7 +58,7 @@ class Made:
     rtol: float
     scale: float
     work: float
-    solution: Solution
+    solution: RunResult
 
     @property
     def text(self) -> str:
@@ -89,9 +89,9 @@ class Trials:
         self.compensated: bool = options.pop("compensated", False)
         self.is_stiff = False
         self.too_loose = inf
-        self.trials: list[Made] = []
-        self.seconds: list[Made] = []
-        self.paid: list[Made] = []
+        self.trials: list[TrialRun] = []
+        self.seconds: list[TrialRun] = []
+        self.paid: list[TrialRun] = []
         self._estimates: dict[tuple[Any, ...], ErrorEstimate] = {}
         self._done = 0.0
 
@@ -106,7 +106,7 @@ class Trials:
         """
         return IMPLICIT if self.is_stiff else pair_of(cheapest(self.start, scale / FOR_BOTH))
 
-    def trial(self, scale: float, method: str) -> Made:
+    def trial(self, scale: float, method: str) -> TrialRun:
         """Run with all that was asked for."""
         rtol = rounded(scale / ERROR_OVER_RTOL[leading(method)], self.tightest)
         options = self.options
@@ -117,12 +117,12 @@ class Trials:
         self.seconds = [self._as_far_as(made, one) for one in self.seconds]
         return made
 
-    def drop(self, trial: Made) -> None:
+    def drop(self, trial: TrialRun) -> None:
         """Forget a trial that was too loose to come to its end, and try none as loose again."""
         self.trials.remove(trial)
         self.too_loose = min(self.too_loose, trial.scale)
 
-    def second(self, trial: Made, scale: float) -> Made:
+    def second(self, trial: TrialRun, scale: float) -> TrialRun:
         """Run better than a trial, with other steps, constants and start.
 
         The method is the trial's, or radau5 where the scene is stiff: by how much another one is
@@ -137,14 +137,14 @@ class Trials:
             "max_step": other_steps(trial.solution, self.options["max_step"]),
             "max_steps": self._most_steps(MORE_STEPS),
         }
-        ends = [one.solution._run.t_reached for one in self.trials]  # terminal events differ
+        ends = [one.solution.run.t_reached for one in self.trials]  # terminal events differ
         start = self.start._replace(t_end=max(ends, key=lambda t: abs(t - self.start.t_start)))
         made = self._run(moved(start, len(self.seconds)), method, rtol, options)
         self.seconds.append(made)
         return made
 
     def compared(
-        self, trial: Made, seconds: list[Made], share: float = SPARE_OF_SEVERAL
+        self, trial: TrialRun, seconds: list[TrialRun], share: float = SPARE_OF_SEVERAL
     ) -> ErrorEstimate:
         """Return the error of a trial as second runs tell it; see `estimate`."""
         key = (trial, *seconds, share)
@@ -154,21 +154,20 @@ class Trials:
             self._estimates[key] = estimate(trial.solution, solutions, text, share)
         return self._estimates[key]
 
-    def distance(self, trial: Made, second: Made) -> float:
+    def distance(self, trial: TrialRun, second: TrialRun) -> float:
         return self.compared(trial, [second], 0.0).largest
 
-    def best(self) -> Solution | None:
+    def best(self) -> RunResult | None:
         """Return the tightest of the trials that are whole."""
         whole = [one for one in self.trials if one.solution.success]
         return min(whole, key=lambda one: one.scale).solution if whole else None
 
     def labelled(
-        self, solution: Solution, outcome: Outcome, found: ErrorEstimate | None, why: str = ""
-    ) -> Solution:
+        self, solution: RunResult, outcome: Outcome, found: ErrorEstimate | None, why: str = ""
+    ) -> RunResult:
         """Attach to a trial what is known of its error; ``why`` if that is nothing."""
         begin = self.start.t_start
-        solution._error = found
-        solution._accuracy = Accuracy(
+        accuracy = Accuracy(
             asked=self.error,
             achieved=inf if found is None else found.largest,
             outcome=outcome,
@@ -178,10 +177,10 @@ class Trials:
             verified_by=why if found is None else found.verified_by,
             paid=self._bill(solution, found),
             seconds=monotonic() - self.began,
-        )  # fmt: skip
-        return solution
+        )
+        return solution.label(accuracy, found)
 
-    def _bill(self, solution: Solution, found: ErrorEstimate | None) -> tuple[Paid, ...]:
+    def _bill(self, solution: RunResult, found: ErrorEstimate | None) -> tuple[Paid, ...]:
         verifying = next((key[1:-1] for key, one in self._estimates.items() if one is found), ())
         paid = []
         for one in self.paid:
@@ -195,14 +194,14 @@ class Trials:
         enough = MOST_STEPS * max(self.trials[0].solution.stats.accepted, LEAST_STEPS)
         return min(times * int(self.options["max_steps"]), enough)
 
-    def _as_far_as(self, trial: Made, second: Made) -> Made:
+    def _as_far_as(self, trial: TrialRun, second: TrialRun) -> TrialRun:
         """Let a second run go on to where a trial came: a terminal event may come a bit later."""
-        end, begin, run = trial.solution._run.t_reached, self.start.t_start, second.solution._run
+        end, begin, run = trial.solution.run.t_reached, self.start.t_start, second.solution.run
         is_behind = abs(end - begin) > abs(run.t_reached - begin)
         if not (is_behind and second.solution.store == "dense" and second.solution.success):
             return second
-        longer = second.solution.resume(
-            end, max_steps=self._most_steps(MORE_STEPS), check=False,
+        longer = resumed(
+            second.solution, end, max_steps=self._most_steps(MORE_STEPS),
             time_limit=self._time_left(), progress=self._progress(),
         )  # fmt: skip
         work = second.work * longer.stats.nfev / max(second.solution.stats.nfev, 1)
@@ -210,7 +209,7 @@ class Trials:
         self.paid[self.paid.index(second)] = went_on
         return went_on
 
-    def _run(self, start: Start, method: str, rtol: float, options: dict[str, Any]) -> Made:
+    def _run(self, start: Start, method: str, rtol: float, options: dict[str, Any]) -> TrialRun:
         is_second = start.scene is not self.start.scene
         compensated = is_second or self.compensated or rtol < COMPENSATED_BELOW
         solution = run(
@@ -222,7 +221,7 @@ class Trials:
         if leading(method) == "taylor" and not solution.stats.stiff:
             work *= series_work(start.scene, rtol)
         scale = rtol * ERROR_OVER_RTOL[leading(method)]
-        made = Made(method, rtol, scale, work, solution)
+        made = TrialRun(method, rtol, scale, work, solution)
         self.paid.append(made)
         self._done += _ADVANCE * (1 - self._done)
         return made

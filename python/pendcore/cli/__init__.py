@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from pendcore import _core
 from pendcore.cli import cost, derive, explain, plot, run
 from pendcore.cli.usage import UsageError
-from pendcore.warning import PendcoreWarning
+from pendcore.messages.warning import PendcoreWarning
 
 _EXAMPLES = """
 examples:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from pendcore.case import Case
-from pendcore.case_file import read_case
+from pendcore.api.files import read_case
+from pendcore.api.solution import Case
 
 
 def add_case_and_folder(parser: argparse.ArgumentParser) -> None:

@@ -7,14 +7,12 @@ import json
 import sys
 from typing import Any
 
-from pendcore.case import Case
+from pendcore.api.solution import Case
+from pendcore.cases.whole_file import whole_file
 from pendcore.cli.case_and_folder import add_case_and_folder, case_of, folder_of
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder, written
-from pendcore.cost import AccuracyCost, accuracy_cost
-from pendcore.cost.sweep import REPEATS, TIME_LIMIT
-from pendcore.cost.table import text
-from pendcore.views.accuracy_cost import save_figure
-from pendcore.whole_file import whole_file
+from pendcore.cost.accuracy_cost import AccuracyCost, save_figure, text
+from pendcore.cost.sweep import REPEATS, TIME_LIMIT, accuracy_cost
 
 _EPILOG = """
 what is written into the folder:

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from pendcore.case import Case
+import pendcore
+from pendcore.api.solution import Case
+from pendcore.cases.whole_file import whole_file
 from pendcore.cli.case_and_folder import case_of, folder_of
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder, written
-from pendcore.whole_file import whole_file
-
-if TYPE_CHECKING:
-    from pendcore.derive import Derivation
 
 _EPILOG = """
 forms:
@@ -83,18 +82,17 @@ def execute(args: argparse.Namespace) -> int:
     return 0
 
 
-def _derived(case: Case) -> Derivation:
+def _derived(case: Case) -> Any:
     try:
-        from pendcore.derive import Derivation
+        return pendcore.derive.Derivation(case.scene)
     except ModuleNotFoundError as missing:
         raise UsageError(str(missing)) from None
-    return Derivation(case.scene)
 
 
-def _text(derivation: Derivation, args: argparse.Namespace) -> str:
+def _text(derivation: Any, args: argparse.Namespace) -> str:
     if args.to == "octave":  # the function is called what its file is called
-        return derivation.to_octave(args.out.stem if args.out else "RR")
-    made = {
+        return str(derivation.to_octave(args.out.stem if args.out else "RR"))
+    made: dict[str, Callable[[], str]] = {
         "text": derivation.__str__,
         "latex": derivation.latex,
         "inline": derivation.to_octave_inline,
@@ -104,11 +102,10 @@ def _text(derivation: Derivation, args: argparse.Namespace) -> str:
     return made[args.to]()
 
 
-def _report(derivation: Derivation, case: Case, args: argparse.Namespace) -> int:
-    from pendcore.derive.handout import write_handout
-
+def _report(derivation: Any, case: Case, args: argparse.Namespace) -> int:
     folder = folder_of(args)
+    write = pendcore.derive.report.write_report
     with new_folder(folder), blamed_on_usage():
-        made = write_handout(derivation, case, folder, with_worksheet=args.worksheet)
+        made = write(derivation, case, folder, with_worksheet=args.worksheet)
     print(f"written to {folder}: {', '.join(path.name for path in made.files)}", file=sys.stderr)
     return 1 if made.complaint else 0

@@ -7,9 +7,9 @@ import json
 from pathlib import Path
 from typing import Any
 
-from pendcore.case_file import read_case
+from pendcore.api.files import read_case
 from pendcore.cli.usage import blamed_on_usage
-from pendcore.warning import warn
+from pendcore.messages.warning import warn
 
 _EPILOG = """
 what is told:

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from pendcore.cases.whole_file import whole_file
 from pendcore.cli.usage import written
-from pendcore.whole_file import whole_file
 
 
 class FilesToWrite:

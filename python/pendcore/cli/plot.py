@@ -8,10 +8,10 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from pendcore.archive import load
+from pendcore.api.files import load
+from pendcore.cases.whole_file import whole_file
 from pendcore.cli.usage import blamed_on_usage, written
 from pendcore.views.plot import save_figure
-from pendcore.whole_file import whole_file
 
 _EPILOG = """
 example:

@@ -8,15 +8,14 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from pendcore.accuracy.report import AccuracyError
-from pendcore.archive import save
-from pendcore.case import Case
-from pendcore.case_file import with_line
+from pendcore.api.solution import Case, Solution
+from pendcore.cases.archive import save
+from pendcore.cases.case_file import with_line
 from pendcore.cli.case_and_folder import add_case_and_folder, case_of, folder_of
 from pendcore.cli.files_to_write import FilesToWrite
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder
-from pendcore.run_error import CAN_GO_ON
-from pendcore.solution import Solution
+from pendcore.run.accuracy import AccuracyError
+from pendcore.run.run_error import CAN_GO_ON
 from pendcore.views.plot import save_figure
 from pendcore.views.summary import facts, text
 
@@ -124,7 +123,7 @@ def _with_error(case: Case, error: float) -> Case:
 def _write(files: FilesToWrite, solution: Solution, refusal: str) -> dict[str, Any]:
     """Write what is small first; return the facts, if there was time to find them."""
     found: dict[str, Any] = {}
-    if (steps := len(solution._run.step_starts)) > _MANY_STEPS:
+    if (steps := len(solution.run.step_starts)) > _MANY_STEPS:
         print(f"writing {steps} steps to {files.folder}", file=sys.stderr)
     with files.needed_for("summary.txt", "summary.json"):
         found = facts(solution, refusal)

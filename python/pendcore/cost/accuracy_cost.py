@@ -8,11 +8,12 @@ from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from math import inf, isfinite
 from pathlib import Path
+from textwrap import shorten, wrap
 from typing import TYPE_CHECKING, Any
 
-from pendcore.arguments import number
-from pendcore.cost.point import Point, front, seconds_at
-from pendcore.cost.table import duration, text
+from pendcore.cost.figure import plot
+from pendcore.cost.point import Point, duration, front, seconds_at
+from pendcore.messages.arguments import number
 
 if TYPE_CHECKING:
     from matplotlib.lines import Line2D
@@ -116,14 +117,15 @@ class AccuracyCost:
         return f"{advice}; ten times the accuracy costs {there / here:.2g} times the time"
 
     def plot(self, ax: Any = None, *, y: str = "time", **line_properties: Any) -> list[Line2D]:
-        """Draw the work-precision diagram; see `pendcore.views.accuracy_cost.plot`.
+        """Draw the work-precision diagram; see `pendcore.cost.figure.plot`.
 
         ``ax`` is a matplotlib axes; ``y`` is ``"time"`` or ``"nfev"``; the rest are properties of
         matplotlib's ``Line2D``. The lines are returned, one per method.
         """
-        from pendcore.views.accuracy_cost import plot
-
-        return plot(self, ax, y=y, **line_properties)
+        start, end = self.t_span
+        title = f"{self.name or 'chain of links'}, {start:.4g} to {end:.4g} s"
+        front = self.pareto()
+        return plot(self.points, front, self.uncertainty, title, ax, y=y, **line_properties)
 
     def to_dict(self) -> dict[str, Any]:
         """Return everything as JSON can hold it: infinite numbers become None."""
@@ -147,6 +149,59 @@ class AccuracyCost:
 
     def __repr__(self) -> str:
         return text(self)
+
+
+def save_figure(cost: AccuracyCost, path: str | os.PathLike[str]) -> None:
+    """Draw a sweep into a file; the suffix says which kind (png, pdf, svg, ...)."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(7.6, 4.6), layout="constrained")
+    cost.plot(figure.subplots())
+    figure.savefig(path, dpi=160)
+
+
+def text(cost: AccuracyCost, error: float = 1e-6) -> str:
+    """Return everything that was measured, and what to take for an error."""
+    start, end = cost.t_span
+    head = [
+        f"What accuracy costs: {cost.name or 'chain of links'}, {start:.6g} ... {end:.6g} s",
+        *_wrapped(
+            "error",
+            f"largest distance of a joint or the tip from the reference at {cost.times} times, "
+            "as a share of the total length",
+        ),
+        *_wrapped("reference", f"{cost.references[0]}; the other way round {cost.references[1]}"),
+        *_wrapped("uncertainty", f"{cost.uncertainty:.1e}: the distance of the two"),
+        *_wrapped("time", cost.timed),
+        *_wrapped("machine", cost.machine),
+    ]
+    for remark in cost.remarks:
+        head += _wrapped("note", remark)
+    return "\n".join([*head, "", *_rows(cost), "", *wrap(cost.sentence(error), 96)]) + "\n"
+
+
+def _rows(cost: AccuracyCost) -> Iterator[str]:
+    best = cost.pareto()
+    yield "    method   setting           error      time    median  right-hand sides    steps"
+    for point in cost.points:
+        mark = "*" if point in best else " "
+        yield f"  {mark} {_row(point)}"
+    yield "  * no other is both more accurate and faster"
+    if any(point.method == "taylor" and not point.failure for point in cost.points):
+        yield "  of taylor it is series that are counted, each as long as many right-hand sides"
+
+
+def _row(point: Point) -> str:
+    name = f"{point.method:8} {point.setting:14}"
+    if point.failure:
+        return f"{name} {shorten(point.failure, 76, placeholder=' ...')}"
+    times = f"{duration(point.seconds):>9} {duration(point.median):>9}"
+    return f"{name} {point.error:8.1e} {times} {point.nfev:17d} {point.accepted:8d}"
+
+
+def _wrapped(name: str, sentence: str) -> list[str]:
+    first, *more = wrap(sentence, 82)
+    return [f"  {name:11} {first}", *(f"{'':14}{line}" for line in more)]
 
 
 def _asked(error: float) -> float:

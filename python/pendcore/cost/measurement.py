@@ -12,15 +12,16 @@ from time import monotonic, perf_counter
 import numpy as np
 
 from pendcore import _core
-from pendcore.accuracy.run import Choice, Start, carries, run
-from pendcore.arguments import Floats
+from pendcore.api.scene import Scene
+from pendcore.api.simulate import simulate
 from pendcore.cost.accuracy_cost import AccuracyCost
 from pendcore.cost.machine import processor
 from pendcore.cost.point import Point
 from pendcore.cost.reference import KNOWN, Reference, TooFarError, known_until, reference
-from pendcore.methods import has_error_estimate, known_methods, pair_of
-from pendcore.simulate import simulate
-from pendcore.solution import Solution
+from pendcore.messages.arguments import Floats
+from pendcore.run.call import Choice, Start, run, supports
+from pendcore.run.methods import has_error_estimate, known_methods, pair_of
+from pendcore.run.result import RunResult
 
 # The reference may have a third of the time limit, single runs a third; the rest is for repeats.
 SHARE = 1 / 3
@@ -68,6 +69,7 @@ class Contender:
 class Measurement:
     """The whole of it; it can be left at any time, and `result` tells what there is."""
 
+    scene: Scene
     start: Start
     name: str
     methods: list[str] | None
@@ -94,7 +96,7 @@ class Measurement:
             time_limit=max(PILOT_SHARE * self.time_limit, 1e-3),
         )  # fmt: skip
         if pilot.status == "time_limit":
-            self._cut(pilot._run.t_reached, self._too_little())
+            self._cut(pilot.run.t_reached, self._too_little())
         stiff = pilot.stats.stiff
         self._find_reference(stiff)
         self.report(0.2)
@@ -256,7 +258,7 @@ class Measurement:
                 f"than {self.time_limit:.3g} s has more"
             )
 
-    def _call(self, one: Contender, time_limit: float | None = None) -> tuple[Solution, float]:
+    def _call(self, one: Contender, time_limit: float | None = None) -> tuple[RunResult, float]:
         """Do what is timed."""
         start, times = self.start, self._times()
         options = (
@@ -267,7 +269,7 @@ class Measurement:
         span = (start.t_start, start.t_end)
         begin = perf_counter()
         solution = simulate(
-            start.scene, start.q0, start.qd0, span, method=one.method, t_eval=times,
+            self.scene, start.q0, start.qd0, span, method=one.method, t_eval=times,
             time_limit=time_limit, check=False, progress=False, **options,
         )  # fmt: skip
         return solution, perf_counter() - begin
@@ -276,7 +278,7 @@ class Measurement:
         if self.methods is not None:
             return self.methods
         known = [m for m, about in known_methods().items() if about["kind"] != "pair" or stiff]
-        return [method for method in known if carries(method, self.start, self._first_step(method))]
+        return [name for name in known if supports(name, self.start, self._first_step(name))]
 
     def _first_step(self, method: str) -> float | None:
         return None if has_error_estimate(method) else 1e-3

@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 from math import inf, log
 
+_UNITS = ((1e-3, 1e6, "us"), (1.0, 1e3, "ms"), (float("inf"), 1.0, "s"))
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Point:
@@ -81,3 +83,11 @@ def seconds_at(error: float, points: Sequence[Point], uncertainty: float) -> flo
             share = log(loose / error) / log(loose / tight)
             return float(cheap * (dear / cheap) ** share)
     raise AssertionError("unreachable: the error lies within the curve")
+
+
+def duration(seconds: float) -> str:
+    """Return a time in three digits and the unit that suits it."""
+    for below, factor, unit in _UNITS:
+        if seconds < below:
+            return f"{seconds * factor:.3g} {unit}"
+    return "-"

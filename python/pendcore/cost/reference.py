@@ -15,10 +15,10 @@ import numpy as np
 
 from pendcore.accuracy.method_choice import MOST_ACCURATE, TIGHTEST, TIGHTEST_IMPLICIT
 from pendcore.accuracy.position_error import angles_at, distances, reached, time_grid
-from pendcore.accuracy.run import Choice, Start, atol_beside, carries, run
-from pendcore.arguments import Floats
-from pendcore.methods import methods_of, pair_of
-from pendcore.solution import Solution
+from pendcore.messages.arguments import Floats
+from pendcore.run.call import Choice, Start, atol_beside, run, supports
+from pendcore.run.methods import methods_of, pair_of
+from pendcore.run.result import RunResult
 
 # Where the scene is stiff, an implicit method first.
 REFEREES_IF_STIFF = ("radau5", "dop853", pair_of("dopri5"))
@@ -44,8 +44,8 @@ class TooFarError(ValueError):
 class Reference(NamedTuple):
     """Two runs, the times on which they are compared (n_t,), s, and how far apart they are."""
 
-    first: Solution
-    second: Solution
+    first: RunResult
+    second: RunResult
     times: Floats
     apart: Floats
 
@@ -54,7 +54,7 @@ class Reference(NamedTuple):
         """The largest distance of the two, as a share of the total length."""
         return float(self.apart.max())
 
-    def error_of(self, solution: Solution) -> float:
+    def error_of(self, solution: RunResult) -> float:
         """Return the largest distance of a run from the one of the two that is not its like."""
         kin = methods_of(solution.method)
         other = self.second if self.first.method in kin else self.first
@@ -84,7 +84,7 @@ def reference(
         If no two methods get beyond the first of the times; it says why.
     """
     times = time_grid(start.t_start, start.t_end, points)
-    runs: list[Solution] = []
+    runs: list[RunResult] = []
     until = monotonic() + time_limit
     for choice in _choices(start, stiff):
         left = max(until - monotonic(), 1e-3) / 2
@@ -92,7 +92,7 @@ def reference(
         whole = [made for made in runs if made.success]
         if len(whole) == 2:
             return _compared(whole, times)
-    farthest = sorted(runs, key=lambda made: abs(made._run.t_reached - start.t_end))[:2]
+    farthest = sorted(runs, key=lambda made: abs(made.run.t_reached - start.t_end))[:2]
     count = min(len(made.t) for made in farthest)
     if count < 2:
         second = farthest[-1]
@@ -100,7 +100,7 @@ def reference(
         raise TooFarError(
             f"no reference: within {time_limit:.3g} s no two methods got beyond the first of the "
             f"{points} times ({second.method}: {second.message}){remedy}",
-            second._run.t_reached,
+            second.run.t_reached,
         )
     return _compared(farthest, times[:count])
 
@@ -114,18 +114,18 @@ def known_until(found: Reference) -> int:
 
 def _choices(start: Start, stiff: bool) -> Iterator[Choice]:
     for method in REFEREES_IF_STIFF if stiff else MOST_ACCURATE:
-        if carries(method, start):
+        if supports(method, start):
             rtol = TIGHTEST_IMPLICIT if "radau5" in methods_of(method) else TIGHTEST
             yield Choice(method, rtol, atol_beside(rtol), compensated=True)
 
 
-def _compared(runs: list[Solution], times: Floats) -> Reference:
+def _compared(runs: list[RunResult], times: Floats) -> Reference:
     first, second = runs
     count = len(times)
     apart = distances(first.scene, first.q[:count], second.q[:count])
     return Reference(first, second, times, np.where(np.isnan(apart), inf, apart))
 
 
-def _text(solution: Solution) -> str:
-    asked = solution._run.arguments
+def _text(solution: RunResult) -> str:
+    asked = solution.run.arguments
     return f"{solution.method} at rtol {float(asked['rtol']):.0e}, compensated"

@@ -10,8 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore.accuracy.position_error import POINTS
-from pendcore.accuracy.run import Start, atol_beside, forget_inner_runs
-from pendcore.arguments import (
+from pendcore.api.scene import Scene
+from pendcore.cost.accuracy_cost import AccuracyCost
+from pendcore.cost.measurement import Measurement
+from pendcore.messages.arguments import (
     finite_array,
     known_keywords,
     number,
@@ -20,12 +22,11 @@ from pendcore.arguments import (
     vector,
     whole_number,
 )
-from pendcore.cost.accuracy_cost import AccuracyCost
-from pendcore.cost.measurement import Measurement
-from pendcore.methods import methods_named
-from pendcore.progress import Progress, callback, close
-from pendcore.scene import Scene, require_start
-from pendcore.warning import PendcoreWarning, warn
+from pendcore.messages.progress import Progress, callback, close
+from pendcore.messages.warning import PendcoreWarning, warn
+from pendcore.run.call import Start, atol_beside, forget_inner_runs
+from pendcore.run.methods import methods_named
+from pendcore.scene.scene import require_start
 
 RTOL = tuple(float(f"1e-{k}") for k in range(2, 15))
 """The tolerances that are tried unless others are given."""
@@ -108,6 +109,7 @@ def accuracy_cost(
     tolerances = _positive("rtol", rtol, "", below=1.0)
     absolute = None if atol is None else number("atol", atol, "")
     measurement = Measurement(
+        scene=scene,
         start=start,
         name=name,
         methods=None if methods is None else methods_named(methods),

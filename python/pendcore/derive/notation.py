@@ -12,6 +12,7 @@ from typing import Any
 
 from sympy import Expr, Rational, Symbol
 
+from pendcore.api.scene import Scene
 from pendcore.derive.writing import (
     ACCELERATION,
     ANGLE,
@@ -24,7 +25,6 @@ from pendcore.derive.writing import (
     Latex,
     Text,
 )
-from pendcore.scene import Scene
 
 
 @dataclass(frozen=True, slots=True)

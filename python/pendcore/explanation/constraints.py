@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from pendcore.arguments import Floats
-from pendcore.scene import Scene
+from pendcore.messages.arguments import Floats
+from pendcore.scene.scene import SceneData
 
 
-def locks(scene: Scene) -> dict[int, float | None]:
+def locks(scene: SceneData) -> dict[int, float | None]:
     """Return the locked joints and their angles, rad; None: where they start."""
     return {
         getattr(effect, "joint"): getattr(effect, "angle")  # noqa: B009
@@ -21,7 +21,7 @@ def locks(scene: Scene) -> dict[int, float | None]:
     }
 
 
-def constraint_jacobian(scene: Scene, q: Floats) -> Floats:
+def constraint_jacobian(scene: SceneData, q: Floats) -> Floats:
     """Return the derivatives of the constraints by (x_1, y_1, q_1, x_2, ...), (rows, 3 n)."""
     rows = []
     for joint, link in enumerate(scene.links, start=1):
@@ -40,7 +40,7 @@ def constraint_jacobian(scene: Scene, q: Floats) -> Floats:
     return np.array(rows)
 
 
-def constraint_rank(scene: Scene) -> int:
+def constraint_rank(scene: SceneData) -> int:
     """Return the rank of the Jacobian in a pose where nothing lines up, by singular values.
 
     Lengths are measured in that of their link, so that a short one counts as much as a long one.

@@ -24,9 +24,9 @@ from typing import Literal, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from pendcore.arguments import Floats
 from pendcore.explanation.constraints import locks
-from pendcore.scene import Scene
+from pendcore.messages.arguments import Floats
+from pendcore.scene.scene import SceneData
 
 _STEP = 1e-5
 """rad and rad/s, of the differences: where truncation and rounding are about as large."""
@@ -102,7 +102,7 @@ class Equilibrium(NamedTuple):
 class FreeAngles:
     """The angles that are left to a chain whose locked joints do not turn."""
 
-    def __init__(self, scene: Scene, t: float, start: Floats) -> None:
+    def __init__(self, scene: SceneData, t: float, start: Floats) -> None:
         """A joint that is locked where it starts is locked as in ``start``, rad."""
         self._scene, self._t = scene, t
         locked, n = locks(scene), len(scene.links)
@@ -160,7 +160,7 @@ class FreeAngles:
 
 
 def find_equilibria(
-    scene: Scene, t: float, start: tuple[float, ...] | None, remarks: list[str]
+    scene: SceneData, t: float, start: tuple[float, ...] | None, remarks: list[str]
 ) -> Iterator[Equilibrium]:
     """Find those near hanging, upright and the start; put into the remarks what was not found.
 
@@ -173,7 +173,7 @@ def find_equilibria(
     smooth = [one for one in scene.effects if one.description.account not in _LEFT_OUT]
     present = {effect.description.account for effect in scene.effects}
     remarks += [remark for account, remark in _LEFT_OUT.items() if account in present]
-    scene = Scene._unpickled(scene.links, scene.gravity, smooth)
+    scene = SceneData._unpickled(scene.links, scene.gravity, smooth)
     unknown = [str(joint) for joint, angle in locks(scene).items() if angle is None]
     if start is None and unknown:
         remarks.append(

@@ -12,12 +12,20 @@ import numpy.typing as npt
 
 from pendcore import _core
 from pendcore.accuracy.position_error import time_grid
-from pendcore.arguments import Floats, known_keywords, number, numbers, time_span, whole_number
-from pendcore.progress import Progress, callback, close
-from pendcore.scene import Scene, require_start
-from pendcore.solution import Solution
-from pendcore.statistics import Statistics
-from pendcore.warning import warn
+from pendcore.horizon.figure import plot_exponents
+from pendcore.messages.arguments import (
+    Floats,
+    known_keywords,
+    number,
+    numbers,
+    time_span,
+    whole_number,
+)
+from pendcore.messages.progress import Progress, callback, close
+from pendcore.messages.warning import warn
+from pendcore.run.result import RunResult
+from pendcore.run.statistics import Statistics
+from pendcore.scene.scene import SceneData, require_start
 
 if TYPE_CHECKING:
     from matplotlib.lines import Line2D
@@ -105,18 +113,16 @@ class LyapunovExponents:
         return told if self.success else f"{told}; {self.status}: {self.message}"
 
     def plot(self, ax: Any = None, **line_properties: Any) -> list[Line2D]:
-        """Draw the finite-time exponents over time; see `pendcore.views.horizon`.
+        """Draw the finite-time exponents over time.
 
         ``ax`` is an axes of matplotlib's; the rest are properties of its ``Line2D``.
         """
-        from pendcore.views.horizon import plot_exponents
-
-        return plot_exponents(self, ax, **line_properties)
+        return plot_exponents(self.t, self.finite_time, ax, **line_properties)
 
 
 @known_keywords
 def lyapunov(
-    scene: Scene,
+    scene: SceneData,
     q0: npt.ArrayLike | None = None,
     qd0: npt.ArrayLike = 0.0,
     t_span: Iterable[float] | None = None,
@@ -205,21 +211,21 @@ def lyapunov(
 
 
 def lyapunov_of(
-    solution: Solution,
+    solution: RunResult,
     count: int | None,
     transient: float,
     t_eval: npt.ArrayLike | None,
     progress: Progress,
 ) -> LyapunovExponents:
     """Compute the exponents of a solution's motion, as far as it came, at its tolerances."""
-    asked = solution._run.arguments
-    if solution._run.t_reached == asked["t_start"]:
+    asked = solution.run.arguments
+    if solution.run.t_reached == asked["t_start"]:
         raise ValueError("lyapunov: the run ended where it began: nothing had time to grow")
     return lyapunov(
         solution.scene,
         asked["q0"],
         asked["qd0"],
-        (asked["t_start"], solution._run.t_reached),
+        (asked["t_start"], solution.run.t_reached),
         count=count,
         transient=transient,
         rtol=float(np.min(asked["rtol"])),
@@ -230,7 +236,7 @@ def lyapunov_of(
     )
 
 
-def _check_is_smooth(scene: Scene) -> None:
+def _check_is_smooth(scene: SceneData) -> None:
     for i, effect in enumerate(scene.effects, start=1):
         if effect.description.jumps_or_sticks:
             raise ValueError(
@@ -241,7 +247,7 @@ def _check_is_smooth(scene: Scene) -> None:
             )
 
 
-def _check_count(scene: Scene, count: int | None) -> None:
+def _check_count(scene: SceneData, count: int | None) -> None:
     if count is None:
         return
     given, most = whole_number("count", count), 2 * scene.mobility().degrees_of_freedom

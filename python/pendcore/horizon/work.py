@@ -7,25 +7,22 @@ is right for ln(10)/lambda seconds longer, whatever the method; what the digit c
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import inf, nan
-from textwrap import wrap
 from time import monotonic, perf_counter
-from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from pendcore.accuracy.estimate import ErrorEstimate, error_estimate
-from pendcore.accuracy.run import Choice, Start, atol_beside, carries, forget_inner_runs, run
-from pendcore.arguments import known_keywords, numbers, positive, time_limit_of, time_span
+from pendcore.accuracy.estimate import error_estimate
+from pendcore.horizon.horizon_work import HorizonPoint, HorizonWork
 from pendcore.horizon.lyapunov import LyapunovExponents, lyapunov
-from pendcore.methods import has_error_estimate, known_methods, methods_named
-from pendcore.progress import Progress, callback, close
-from pendcore.scene import Scene, require_start
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from pendcore.messages.arguments import known_keywords, numbers, positive, time_limit_of, time_span
+from pendcore.messages.progress import Progress, callback, close
+from pendcore.run.call import Choice, Start, atol_beside, forget_inner_runs, run, supports
+from pendcore.run.error_estimate import ErrorEstimate
+from pendcore.run.methods import has_error_estimate, known_methods, methods_named
+from pendcore.scene.scene import SceneData, require_start
 
 METHODS = ("dopri5", "dop853", "taylor")
 """That are tried where the scene can be carried by them."""
@@ -36,141 +33,9 @@ REPEATS = 5
 """Runs that are timed; the quickest counts."""
 
 
-class HorizonPoint(NamedTuple):
-    """One method at one tolerance.
-
-    Attributes
-    ----------
-    method : str
-    rtol : float
-    valid : float
-        s, from the start to where the estimated error passes the limit.
-    seconds : float
-        s of computing that a run takes so far, nothing stored.
-    nfev : int
-        Its right-hand sides.
-    early : float
-        rad, the error at the time ``HorizonWork.early``.
-    """
-
-    method: str
-    rtol: float
-    valid: float
-    seconds: float
-    nfev: int
-    early: float
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class HorizonWork:
-    """What `horizon_work` found.
-
-    Attributes
-    ----------
-    limit : float
-        rad, of the error of the angles.
-    t_span : (float, float)
-        s.
-    points : tuple of HorizonPoint
-        A method after the other, from loose to tight.
-    early : float
-        s after the start, the shortest of the horizons: where the errors of all runs are compared.
-    growth : LyapunovExponents or None
-        How fast neighbours part between the shortest and the longest of the horizons; None where
-        exponents mean nothing (dry friction, stops), where the horizons are one, and of what was
-        stopped before.
-    refusal : str
-        Why there is no exponent, where it was refused; else empty.
-    untried : tuple of (str, float)
-        The methods and tolerances that were left when the time was up, or at an interrupt.
-    """
-
-    limit: float
-    t_span: tuple[float, float]
-    points: tuple[HorizonPoint, ...]
-    early: float
-    growth: LyapunovExponents | None
-    refusal: str = ""
-    untried: tuple[tuple[str, float], ...] = ()
-
-    @property
-    def exponent(self) -> float:
-        """The largest Lyapunov exponent between these horizons, 1/s; NaN where there is none."""
-        return nan if self.growth is None else self.growth.largest
-
-    @property
-    def seconds_a_digit(self) -> float:
-        """ln(10)/exponent, s: what one more right digit is worth; inf where nothing grows."""
-        return float(np.log(10)) / self.exponent if self.exponent > 0 else inf
-
-    @property
-    def methods(self) -> list[str]:
-        """Names of the methods, as they come."""
-        return list(dict.fromkeys(point.method for point in self.points))
-
-    def of(self, method: str) -> list[HorizonPoint]:
-        """Return the points of a method."""
-        return [point for point in self.points if point.method == method]
-
-    def is_to_the_end(self, point: HorizonPoint) -> bool:
-        """Whether a point is valid to the end of the span: a longer one may find more."""
-        return point.valid >= abs(self.t_span[1] - self.t_span[0])
-
-    def measured(self, method: str) -> float:
-        """Return the slope that the points of a method have: s for each digit that is right early.
-
-        A line through those whose horizon lies within the run, by least squares; NaN of fewer than
-        three. Of one start it scatters by a tenth about ``seconds_a_digit``: neighbours do not part
-        evenly.
-        """
-        inside = [p for p in self.of(method) if not self.is_to_the_end(p) and p.early > 0]
-        if len(inside) < 3:
-            return nan
-        digits = -np.log10([point.early for point in inside])
-        return float(np.polyfit(digits, [point.valid for point in inside], 1)[0])
-
-    def plot(self) -> Figure:
-        """Draw seconds of validity against digits and against work; see `pendcore.views.horizon`.
-
-        Returns a new figure of pyplot's.
-        """
-        from pendcore.views.horizon import plot_work
-
-        return plot_work(self)
-
-    def __str__(self) -> str:
-        lines = [f"how long the angles stay within {self.limit:g} rad"]
-        lines.append(f"{'method':<8} {'rtol':>7} {'valid':>9} {'computing':>12}")
-        for point in self.points:
-            lines.append(
-                f"{point.method:<8} {point.rtol:>7.0e} {point.valid:>7.2f} s "
-                f"{1e6 * point.seconds:>9.0f} us{'  to the end' * self.is_to_the_end(point)}"
-            )
-        if self.exponent > 0:
-            lines.append(
-                f"Lyapunov exponent {self.exponent:.3g}/s: a digit more is worth "
-                f"{self.seconds_a_digit:.2g} s"
-            )
-        if self.refusal:
-            lines += wrap(f"no Lyapunov exponent: {self.refusal.partition(';')[0]}", 96)
-        if self.untried:
-            lines += wrap(f"not tried before it was stopped: {self._untried_by_method()}", 96)
-        return "\n".join(lines)
-
-    def _untried_by_method(self) -> str:
-        rows: dict[str, list[str]] = {}
-        for method, rtol in self.untried:
-            rows.setdefault(method, []).append(f"{rtol:.0e}")
-        tried = self.methods
-        return ", ".join(
-            f"{method} at rtol {', '.join(rtols)}" if method in tried else method
-            for method, rtols in rows.items()
-        )
-
-
 @known_keywords
 def horizon_work(
-    scene: Scene,
+    scene: SceneData,
     q0: npt.ArrayLike | None = None,
     qd0: npt.ArrayLike = 0.0,
     t_span: Iterable[float] | None = None,
@@ -252,7 +117,7 @@ def _nothing(start: Start, method: str) -> None:
 def _methods(given: Iterable[str] | str | None, start: Start) -> list[str]:
     """Return the methods to try, by their own names, each once."""
     if given is None:
-        return [method for method in METHODS if carries(method, start)]
+        return [method for method in METHODS if supports(method, start)]
     names = methods_named(given)
     for method in names:
         if not has_error_estimate(method):

@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from pendcore.effect_class import KINDS
-from pendcore.scene import Scene
-from pendcore.solution import Solution
+from pendcore.run.result import RunResult
+from pendcore.scene.effect_class import KINDS
+from pendcore.scene.scene import SceneData
 
 TOO_LARGE = "too large to trust this run: tighten rtol and atol (or the step)"
 
@@ -48,15 +48,15 @@ class EnergyDrift(NamedTuple):
     ledger: bool
 
 
-def has_every_step(solution: Solution) -> bool:
+def has_every_step(solution: RunResult) -> bool:
     """Whether the kept times are those of the steps, and not those asked for."""
-    asked_for = solution._run.arguments["t_eval"] is not None
+    asked_for = solution.run.arguments["t_eval"] is not None
     return solution.store in ("dense", "steps") and not asked_for
 
 
-def energy_drift(solution: Solution, every: int = 1) -> EnergyDrift:
+def energy_drift(solution: RunResult, every: int = 1) -> EnergyDrift:
     """Compute it from what was kept, or from one state in so many."""
-    run, asked = solution._run, solution._run.arguments
+    run, asked = solution.run, solution.run.arguments
     start = np.concatenate([asked["q0"], asked["qd0"]])
     states = np.vstack([start, run.states[::every], run.y_reached])
     times = np.concatenate([[asked["t_start"]], run.t[::every], [run.t_reached]])
@@ -82,21 +82,21 @@ def energy_drift(solution: Solution, every: int = 1) -> EnergyDrift:
     return EnergyDrift(*ends, drift, moving, share, too_large, working, asked["ledger"])
 
 
-def _kinds_that_do_work(scene: Scene) -> list[str]:
+def _kinds_that_do_work(scene: SceneData) -> list[str]:
     """Return the kinds of effects under which the total energy does not stay what it is."""
     present = {effect.kind for effect in scene.effects if effect.description.account != "none"}
     return [kind for kind in KINDS if kind in present]
 
 
-def _residual(solution: Solution) -> float | None:
+def _residual(solution: RunResult) -> float | None:
     """Return what the ledger leaves over at most, J."""
-    if not solution._run.arguments["ledger"]:
+    if not solution.run.arguments["ledger"]:
         return None
     ledger = solution.energy().ledger
     return None if ledger is None else float(np.abs(ledger.residual).max(initial=0.0))
 
 
-def _lowest_potential(scene: Scene) -> float:
+def _lowest_potential(scene: SceneData) -> float:
     """Return that of every link hanging (or standing, where its weight pulls that way), J.
 
     What springs keep is not below zero; if it is, they push, and nothing is the lowest.
@@ -105,7 +105,7 @@ def _lowest_potential(scene: Scene) -> float:
     all_pull_down = all(link.center >= 0 for link in scene.links)
     # Otherwise one link hangs at a time, and the others are level.
     q = np.full((1, n), pi / 2) if all_pull_down else np.eye(n) * (pi / 2)
-    weightless = Scene._unpickled(scene.links, 0.0, scene.effects)
+    weightless = SceneData._unpickled(scene.links, 0.0, scene.effects)
     _, whole = scene._compiled.energy(np.zeros(len(q)), q, np.zeros_like(q))
     _, springs = weightless._compiled.energy(np.zeros(len(q)), q, np.zeros_like(q))
     return np.inf if springs.min() < 0 else -float(np.abs(whole - springs).sum())

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Hashable
 from typing import TYPE_CHECKING, Any
 
-from pendcore.effect_class import OwnEffect
-from pendcore.events import Function
-from pendcore.solution import Solution
+from pendcore.cases.case import CaseData
+from pendcore.run.events import Function
+from pendcore.run.result import RunResult
+from pendcore.scene.effect_class import OwnEffect
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 _HINT = 'needs {}: pip install "pendcore[export]"'
 
 
-def to_pandas(solution: Solution) -> pd.DataFrame:
+def to_pandas(solution: RunResult) -> pd.DataFrame:
     """Return a row per time, index ``time`` (s), columns q_1.. (rad) and qd_1.. (rad/s).
 
     ``attrs`` holds ``units``, by column, and ``case``, the TOML of what was simulated, but for
@@ -41,7 +42,7 @@ def to_pandas(solution: Solution) -> pd.DataFrame:
     return frame
 
 
-def to_xarray(solution: Solution) -> xr.Dataset:
+def to_xarray(solution: RunResult) -> xr.Dataset:
     """Return ``q`` and ``qd`` over ``time`` and ``link``, each with ``attrs["units"]``.
 
     The set's ``attrs["case"]`` is the TOML of what was simulated, but for effects that are
@@ -69,9 +70,9 @@ def to_xarray(solution: Solution) -> xr.Dataset:
     )
 
 
-def _case(solution: Solution) -> dict[Hashable, Any]:
+def _case(solution: RunResult) -> dict[Hashable, Any]:
     """Return the case as TOML, which one with a function among effects or events has not."""
     acting = any(isinstance(effect, OwnEffect) for effect in solution.scene.effects)
-    if acting or any(isinstance(event, Function) for event in solution._events_asked_for()):
+    if acting or any(isinstance(event, Function) for event in solution.events_asked_for()):
         return {}
-    return {"case": solution.case().to_toml()}
+    return {"case": CaseData.of_solution(solution).to_toml()}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from io import BytesIO
 from math import ceil
 from pathlib import Path
@@ -11,17 +11,25 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pendcore.arguments import Floats, positive
-from pendcore.solution import Solution
-from pendcore.views.horizon import shade_past
+from pendcore.accuracy.estimate import error_of
+from pendcore.messages.arguments import Floats, positive
+from pendcore.run.result import RunResult
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
+    from matplotlib.patches import Rectangle
 
 _COLORS = ("r", "b", "g", "m", "c", "k")  # red and blue are the book's
 _STYLES = ("-", "--", "-.", ":")  # of one solution after another on the same axes
+_PAST: dict[str, Any] = {
+    "facecolor": "0.85",
+    "edgecolor": "0.45",
+    "hatch": "//",
+    "linewidth": 0,
+    "zorder": 0,
+}
 _FEW = 200
 """Points that are drawn as such where there is nothing between them."""
 _LEAST_SPAN = 0.1
@@ -29,7 +37,7 @@ _LEAST_SPAN = 0.1
 
 
 def plot(
-    solution: Solution,
+    solution: RunResult,
     ax: Any = None,
     *,
     label: str | None = None,
@@ -40,7 +48,7 @@ def plot(
 
     Parameters
     ----------
-    solution : Solution
+    solution : RunResult
         What to draw; with dense output the curves are smooth, otherwise the kept points are joined,
         and marked if they are few.
     ax : Axes or array of Axes, optional
@@ -97,11 +105,11 @@ def plot(
         if label is not None or len(axes) < n:
             axis.legend()
     if horizon is not None:
-        shade_past(axes, solution, horizon)
+        _shade_past(axes, solution, horizon)
     return lines
 
 
-def save_figure(solution: Solution, path: str | os.PathLike[str]) -> None:
+def save_figure(solution: RunResult, path: str | os.PathLike[str]) -> None:
     """Draw the same figure into a file; the suffix says which kind (png, pdf, svg, ...)."""
     from matplotlib.figure import Figure
 
@@ -111,6 +119,12 @@ def save_figure(solution: Solution, path: str | os.PathLike[str]) -> None:
     kind = Path(path).suffix.removeprefix(".")
     axes[0].figure.savefig(drawn, dpi=150, format=kind or None)
     Path(path).write_bytes(drawn.getvalue())
+
+
+def _shade_past(axes: Iterable[Axes], solution: RunResult, limit: float) -> list[Rectangle]:
+    """Shade what lies past `Solution.valid_until` (limit, rad) in each of the axes."""
+    valid, end = error_of(solution).valid_until(limit), solution.run.t_reached
+    return [] if valid == end else [axis.axvspan(valid, end, **_PAST) for axis in axes]
 
 
 def _axes(ax: Any, n: int) -> list[Axes]:
@@ -151,7 +165,7 @@ def _subplots(new_figure: Callable[..., Figure], n: int) -> Any:
     return figure.subplots(n, 1, squeeze=False)[:, 0]
 
 
-def _curves(solution: Solution) -> tuple[Floats, Floats]:
+def _curves(solution: RunResult) -> tuple[Floats, Floats]:
     """Return times (k,) and angles in degrees (n, k), close enough for the eye if it can be."""
     t, q = solution.t, solution.q
     if solution.store == "dense" and 1 < len(t) < 1000:

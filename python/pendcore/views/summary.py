@@ -11,10 +11,11 @@ from typing import Any
 import numpy as np
 
 from pendcore import _core
-from pendcore.accuracy.report import Accuracy
-from pendcore.effect_class import Effect, Part
-from pendcore.explanation.absence import absent
-from pendcore.solution import Solution
+from pendcore.cases.case import CaseData
+from pendcore.explanation.not_modelled import absent
+from pendcore.run.accuracy import Accuracy
+from pendcore.run.result import RunResult
+from pendcore.scene.effect_class import Effect, Part
 from pendcore.views import energy_drift
 from pendcore.views.table import evaluations, listed, outcome
 from pendcore.views.trusted_digits import rounded, trusted_digits
@@ -23,12 +24,12 @@ _MANY = 12
 """Links that a table for people has a row each of."""
 
 
-def facts(solution: Solution, refusal: str = "") -> dict[str, Any]:
+def facts(solution: RunResult, refusal: str = "") -> dict[str, Any]:
     """Return the facts as JSON can hold them: SI units, rad; None where there is no number.
 
     ``refusal`` is what an `AccuracyError` said, if the run comes from one.
     """
-    case, run = solution.case(), solution._run
+    case, run = CaseData.of_solution(solution), solution.run
     n = len(case.scene.links)
     drift = energy_drift.energy_drift(solution)
     found = {
@@ -81,15 +82,15 @@ def _effect(effect: Effect) -> dict[str, Any]:
     return {"kind": effect.kind, **values, "text": repr(effect)}
 
 
-def _events(solution: Solution) -> list[dict[str, Any]]:
+def _events(solution: RunResult) -> list[dict[str, Any]]:
     """Return each event asked for, and when it was found."""
     return [
         {"kind": event.kind, "text": repr(event), "times": [one.t for one in found]}
-        for event, found in zip(solution._events_asked_for(), solution.events, strict=True)
+        for event, found in zip(solution.events_asked_for(), solution.events, strict=True)
     ]
 
 
-def _ledger(solution: Solution) -> dict[str, float] | None:
+def _ledger(solution: RunResult) -> dict[str, float] | None:
     """Return its entries at the last of the kept times, if it was kept, J."""
     ledger = solution.energy().ledger
     if ledger is None or not len(solution.t):
@@ -97,10 +98,10 @@ def _ledger(solution: Solution) -> dict[str, float] | None:
     return {name: float(entry[-1]) for name, entry in ledger.items()}
 
 
-def _run_options(solution: Solution) -> dict[str, Any]:
-    asked = solution._run.arguments
+def _run_options(solution: RunResult) -> dict[str, Any]:
+    asked = solution.run.arguments
     always = {key: asked[key] for key in ("method", "rtol", "atol")}
-    options = always | dict(solution.case().options)
+    options = always | dict(CaseData.of_solution(solution).options)
     options.pop("events", None)
     if "step" in options:  # a fixed step takes the place of the tolerances
         del options["rtol"], options["atol"]

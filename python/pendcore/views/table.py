@@ -6,23 +6,23 @@ from collections import Counter
 from collections.abc import Sequence
 from html import escape
 
-from pendcore.arguments import Floats
-from pendcore.methods import known_methods, method_at_the_end
-from pendcore.solution import Solution
+from pendcore.messages.arguments import Floats
+from pendcore.run.methods import known_methods, method_at_the_end
+from pendcore.run.result import RunResult
 from pendcore.views import energy_drift
 
 _MANY = 4000
 """Times of which the energy is not worth the wait for a repr."""
 
 
-def text(solution: Solution) -> str:
+def text(solution: RunResult) -> str:
     """Return what was run, how it ended and where, a line each."""
     rows = _rows(solution)
     width = max(len(name) for name, _ in rows)
     return "\n".join(["Solution", *(f"  {name:{width}}  {value}" for name, value in rows)])
 
 
-def html(solution: Solution) -> str:
+def html(solution: RunResult) -> str:
     """Return the same as an HTML table."""
     rows = "".join(
         f"<tr><th style='text-align: left'>{escape(name)}</th><td>{escape(value)}</td></tr>"
@@ -53,7 +53,7 @@ def evaluations(method: str, message: str, nfev: int) -> str:
     return f"{nfev} series, each as long as many right-hand sides"
 
 
-def _rows(solution: Solution) -> list[tuple[str, str]]:
+def _rows(solution: RunResult) -> list[tuple[str, str]]:
     n, t, stats = len(solution.scene.links), solution.t, solution.stats
     rows = [
         ("status", outcome(solution.status, solution.message)),
@@ -77,11 +77,11 @@ def _rows(solution: Solution) -> list[tuple[str, str]]:
     return rows
 
 
-def _evaluations(solution: Solution) -> str:
+def _evaluations(solution: RunResult) -> str:
     return evaluations(solution.method, solution.message, solution.stats.nfev)
 
 
-def _effects(solution: Solution) -> str:
+def _effects(solution: RunResult) -> str:
     """Return the kinds, and how many of each there are."""
     count = Counter(effect.kind for effect in solution.scene.effects)
     return ", ".join(kind if k == 1 else f"{kind} ({k})" for kind, k in count.items())

@@ -6,7 +6,8 @@ from math import floor, isfinite, log10
 
 import numpy as np
 
-from pendcore.solution import Solution
+from pendcore.cases.case import CaseData
+from pendcore.run.result import RunResult
 from pendcore.views.energy_drift import EnergyDrift
 
 AMPLIFIED = 10.0
@@ -15,14 +16,14 @@ in a run, as they have in its drift already."""
 FEWEST, MOST = 2, 6
 
 
-def trusted_digits(solution: Solution, drift: EnergyDrift, most: int = MOST) -> int:
+def trusted_digits(solution: RunResult, drift: EnergyDrift, most: int = MOST) -> int:
     """Return how many, 2 to 6: by tolerance, energy drift and, if it was verified, the error.
 
     It tells nothing of a chaotic run past the time to which it is right: see `Solution.error`.
     """
-    asked, accuracy = solution._run.arguments, solution.accuracy
+    asked, accuracy = solution.run.arguments, solution.accuracy
     shares = [drift.relative_drift or 0.0]
-    if "step" not in solution.case().options:  # else tolerances set no step
+    if "step" not in CaseData.of_solution(solution).options:  # else tolerances set no step
         shares.append(AMPLIFIED * float(np.max(asked["rtol"])))
     if accuracy is not None and accuracy.times:
         shares.append(accuracy.achieved)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from pendcore.derive.algebra import Algebra
 from pendcore.derive.code.layout import (
     chain_in_words,
     constants,
@@ -16,9 +15,6 @@ from pendcore.derive.code.layout import (
 from pendcore.derive.code.printer import Cpp
 from pendcore.derive.code.quantities import Quantities
 from pendcore.derive.code.shared import Computation
-
-if TYPE_CHECKING:
-    from pendcore.derive.derivation import Derivation
 
 TAKEN = (
     *("links", "t", "y", "dydt", "q", "qd", "qdd", "force", "energy", "power", "square", "cube"),
@@ -115,7 +111,7 @@ FORCES = "std::array<Force, links>"
 POWER = {"square": "x * x", "cube": "x * x * x"}
 
 
-def header(derivation: Derivation, name: str = "Chain", namespace: str = "pendulum") -> str:
+def header(derivation: Algebra, name: str = "Chain", namespace: str = "pendulum") -> str:
     """Return the text of a C++17 header that needs the standard library alone.
 
     Its struct has the scene's numbers as defaults, and ``accelerations``, ``right_hand_side``,
@@ -123,7 +119,7 @@ def header(derivation: Derivation, name: str = "Chain", namespace: str = "pendul
 
     Parameters
     ----------
-    derivation : Derivation
+    derivation : Algebra
         Of any scene that can be derived.
     name, namespace : str, default "Chain" and "pendulum"
         Of the struct, and where it stands.
@@ -181,7 +177,7 @@ def _powers_struct(quantities: Quantities) -> str:
 
 
 def _function(
-    derivation: Derivation, writer: Cpp, result: str, name: str, computation: Computation
+    derivation: Algebra, writer: Cpp, result: str, name: str, computation: Computation
 ) -> str:
     """Write a member function of t, q, qd that returns the computation's results in braces."""
     s, needs = derivation.symbols, computation.needs

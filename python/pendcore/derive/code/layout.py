@@ -6,22 +6,19 @@ import re
 from collections.abc import Iterable, Iterator
 from keyword import iskeyword
 from textwrap import wrap
-from typing import TYPE_CHECKING
 
 import sympy
 from sympy import Symbol
 
 from pendcore import _core
+from pendcore.derive.algebra import Algebra
 from pendcore.derive.code.printer import Infix
-
-if TYPE_CHECKING:
-    from pendcore.derive.derivation import Derivation
-    from pendcore.derive.notation import Parameter
+from pendcore.derive.notation import Parameter
 
 COLUMNS = 100
 
 
-def origin(derivation: Derivation) -> Iterator[str]:
+def origin(derivation: Algebra) -> Iterator[str]:
     """Yield the lines that say what wrote a file, from which scene, and in which convention."""
     writer = f"pendcore {_core.__version__} (pendcore.derive, SymPy {sympy.__version__})"
     yield f"Written by {writer} from"
@@ -77,14 +74,12 @@ def identifiers(symbols: Iterable[Symbol], taken: Iterable[str]) -> dict[Symbol,
     return names
 
 
-def meanings(derivation: Derivation) -> dict[Symbol, str]:
+def meanings(derivation: Algebra) -> dict[Symbol, str]:
     """Return what the symbols of laws are that are assigned on the way, with their units."""
     return {known.symbol: known.meaning for known in derivation.equations.definitions}
 
 
-def constants(
-    derivation: Derivation, writer: Infix, name: str, value: str, remark: str
-) -> list[str]:
+def constants(derivation: Algebra, writer: Infix, name: str, value: str, remark: str) -> list[str]:
     """Return the scene's numbers as lines; the three patterns are a language's.
 
     What a number is stands behind it, or above where that would be too long.
@@ -108,7 +103,7 @@ def constants(
     return lines
 
 
-def chain_in_words(derivation: Derivation) -> str:
+def chain_in_words(derivation: Algebra) -> str:
     """Return what is simulated, in words."""
     kinds = {1: "a pendulum", 2: "a double pendulum", 3: "a triple pendulum"}
     return kinds.get(derivation.n, f"a chain of {derivation.n} links")

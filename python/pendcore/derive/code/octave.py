@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from sympy import Expr, Float, Rational, Symbol
 
+from pendcore.derive.algebra import Algebra
 from pendcore.derive.code.layout import (
     chain_in_words,
     constants,
@@ -16,9 +15,6 @@ from pendcore.derive.code.layout import (
 )
 from pendcore.derive.code.printer import Octave
 from pendcore.derive.code.shared import Computation, share
-
-if TYPE_CHECKING:
-    from pendcore.derive.derivation import Derivation
 
 TAKEN = ("t", "x", "dx", "g0", "i", "j", "e", "pi", "end", "function", "Inf", "NaN", "eps")
 """What the language, or the file, calls its own."""
@@ -31,14 +27,14 @@ KEYWORDS = {
 """What no function can be called, in Octave or in MATLAB."""
 
 
-def function_file(derivation: Derivation, name: str = "RR") -> str:
+def function_file(derivation: Algebra, name: str = "RR") -> str:
     """Return the text of a function file for ``ode45``, such as the textbook's RR.m.
 
     The scene's numbers stand at its top, by name, and what expressions share is computed once.
 
     Parameters
     ----------
-    derivation : Derivation
+    derivation : Algebra
         Of any scene that can be derived.
     name : str, default "RR"
         Of the function; the file has to be called so, with ``.m``.
@@ -59,7 +55,7 @@ def function_file(derivation: Derivation, name: str = "RR") -> str:
     return "\n".join(lines) + "\n"
 
 
-def written_out(derivation: Derivation, name: str = "RR") -> str:
+def written_out(derivation: Algebra, name: str = "RR") -> str:
     """Return a function file as the textbook's program writes it: numbers in, nothing shared.
 
     The expressions are those of `inline_function`, so that the two can be compared.
@@ -71,7 +67,7 @@ def written_out(derivation: Derivation, name: str = "RR") -> str:
     return "\n".join(lines) + "\n"
 
 
-def inline_function(derivation: Derivation, name: str = "g") -> str:
+def inline_function(derivation: Algebra, name: str = "g") -> str:
     """Return the statements that make the textbook's inline function, called `g` as there.
 
     An inline function is one expression: the scene's numbers are put in, and nothing is shared.
@@ -96,7 +92,7 @@ def inline_function(derivation: Derivation, name: str = "g") -> str:
     return "\n".join(lines) + "\n"
 
 
-def _head(derivation: Derivation, name: str) -> list[str]:
+def _head(derivation: Algebra, name: str) -> list[str]:
     start = " ".join(["pi/4 0", *["pi/3 0"] * (derivation.n - 1)])
     return [
         f"function dx = {name}(t,x)",
@@ -107,7 +103,7 @@ def _head(derivation: Derivation, name: str) -> list[str]:
     ]
 
 
-def _comment(derivation: Derivation) -> list[str]:
+def _comment(derivation: Algebra) -> list[str]:
     n = derivation.n
     state = "; ".join(f"q{i}; q{i}'" for i in range(1, n + 1))
     return [
@@ -119,13 +115,13 @@ def _comment(derivation: Derivation) -> list[str]:
     ]
 
 
-def _names(derivation: Derivation, computation: Computation) -> dict[Symbol, str]:
+def _names(derivation: Algebra, computation: Computation) -> dict[Symbol, str]:
     own = [symbol for symbol, _ in computation.assignments]
     parameters = [p.symbol for p in derivation.symbols.parameters]
     return identifiers([*parameters, *own], TAKEN) | _state(derivation)
 
 
-def _state(derivation: Derivation) -> dict[Symbol, str]:
+def _state(derivation: Algebra) -> dict[Symbol, str]:
     s = derivation.symbols
     places = {q: f"x({2 * i + 1})" for i, q in enumerate(s.q)}
     return places | {qd: f"x({2 * i + 2})" for i, qd in enumerate(s.qd)} | {s.t: "t"}
@@ -135,7 +131,7 @@ def _assignment(printer: Octave, name: str, value: Expr) -> list[str]:
     return wrapped(f"{name} = {printer.doprint(value)};", "", " ...")
 
 
-def _with_numbers(derivation: Derivation) -> list[str]:
+def _with_numbers(derivation: Algebra) -> list[str]:
     """The accelerations written out, in x(1), x(2), ... and numbers."""
     numbers = {symbol: _exact(value) for symbol, value in derivation.values.items()}
     printer = Octave(_state(derivation))

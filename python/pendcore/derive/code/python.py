@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from pendcore.derive.algebra import Algebra
 from pendcore.derive.code.layout import (
     chain_in_words,
     constants,
@@ -15,9 +14,6 @@ from pendcore.derive.code.layout import (
 from pendcore.derive.code.printer import NumPy
 from pendcore.derive.code.quantities import Quantities
 from pendcore.derive.code.shared import Computation
-
-if TYPE_CHECKING:
-    from pendcore.derive.derivation import Derivation
 
 TAKEN = (
     *("np", "n", "t", "y", "q", "qd", "qdd", "force", "kinetic", "potential"),
@@ -69,7 +65,7 @@ DOCUMENTATION = {
 }
 
 
-def module(derivation: Derivation) -> str:
+def module(derivation: Algebra) -> str:
     """Return the text of a Python module.
 
     The scene's numbers stand at its top, by name; ``right_hand_side(t, y)`` is for SciPy's
@@ -78,7 +74,7 @@ def module(derivation: Derivation) -> str:
 
     Parameters
     ----------
-    derivation : Derivation
+    derivation : Algebra
         Of any scene that can be derived.
     """
     n, quantities = derivation.n, Quantities.of(derivation, TAKEN)
@@ -111,7 +107,7 @@ def module(derivation: Derivation) -> str:
 
 
 def _function(
-    derivation: Derivation, writer: NumPy, name: str, computation: Computation,
+    derivation: Algebra, writer: NumPy, name: str, computation: Computation,
     made: list[str], results: list[str], returned: str,
 ) -> str:  # fmt: skip
     """Write a function of t, q, qd."""

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from sympy import Symbol
 
+from pendcore.derive.algebra import Algebra
 from pendcore.derive.code.shared import Computation, share
-
-if TYPE_CHECKING:
-    from pendcore.derive.derivation import Derivation
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +37,7 @@ class Quantities:
     power: Computation
 
     @classmethod
-    def of(cls, derivation: Derivation, taken: Iterable[str]) -> Quantities:
+    def of(cls, derivation: Algebra, taken: Iterable[str]) -> Quantities:
         """Collect them; `taken` are the names that the language needs for itself."""
         taken = {*taken, *(parameter.symbol.name for parameter in derivation.symbols.parameters)}
         laws = [(known.symbol, known.value) for known in derivation.equations.definitions]

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from pendcore.derive.algebra import Algebra
 from pendcore.derive.narration.elimination import elimination
 from pendcore.derive.narration.energy import energy
 from pendcore.derive.narration.first_order import first_order
@@ -13,13 +12,10 @@ from pendcore.derive.narration.newton_euler import newton_euler
 from pendcore.derive.narration.page import Page
 from pendcore.derive.step import Step
 
-if TYPE_CHECKING:
-    from pendcore.derive.derivation import Derivation
-
 PARTS = (kinematics, loads, newton_euler, elimination, first_order, energy)
 
 
-def steps(derivation: Derivation) -> tuple[Step, ...]:
+def steps(derivation: Algebra) -> tuple[Step, ...]:
     """Return the steps of a derivation."""
     page = Page(derivation)
     for part in PARTS:

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from sympy import Expr, Symbol
 
+from pendcore.derive.algebra import Algebra
+from pendcore.derive.laws import LinkLoad
 from pendcore.derive.step import Equation, Formula, Step
 from pendcore.derive.writing import ACCELERATION, ANGLE, MASS, RATE
-
-if TYPE_CHECKING:
-    from pendcore.derive.derivation import Derivation
-    from pendcore.derive.laws import LinkLoad
 
 
 class Page:
@@ -20,7 +18,7 @@ class Page:
 
     Attributes
     ----------
-    derivation : Derivation
+    derivation : Algebra
         What they are about.
     is_textbook : bool
         Whether the equations are the textbook's: two uniform rods and nothing else.
@@ -30,7 +28,7 @@ class Page:
         The number of the step with the equations of each link written so far.
     """
 
-    def __init__(self, derivation: Derivation) -> None:
+    def __init__(self, derivation: Algebra) -> None:
         self.derivation = derivation
         self.n = derivation.n
         self.s = derivation.symbols

@@ -1,0 +1,59 @@
+"""What is read from files: solutions and cases."""
+
+from __future__ import annotations
+
+import os
+
+from pendcore.api.scene import Scene
+from pendcore.api.solution import Case, Solution
+from pendcore.cases import archive
+from pendcore.cases.case_file import case_from
+
+
+def load(path: str | os.PathLike[str]) -> Solution:
+    """Read a solution that `Solution.save` wrote.
+
+    Parameters
+    ----------
+    path : path
+        The file.
+
+    Returns
+    -------
+    Solution
+        With every number of the saved one to the last bit; it evaluates and resumes as that did.
+
+    Raises
+    ------
+    ValueError
+        If the file is no such solution.
+    OSError
+        If the file cannot be read.
+    """
+    result = archive.load(path)
+    result.scene = Scene.of(result.scene)
+    return Solution.of(result)
+
+
+def read_case(source: str | os.PathLike[str]) -> Case:
+    """Read a case from TOML.
+
+    Parameters
+    ----------
+    source : path or str
+        A file, or the text itself: a string with a line break is text.
+
+    Returns
+    -------
+    Case
+
+    Raises
+    ------
+    ValueError
+        If the text is not TOML, a key is unknown or missing, or a value is not what its key asks
+        for. The message names the line and, for an unknown key, the nearest known one.
+    OSError
+        If the file cannot be read.
+    """
+    case = case_from(source)
+    return Case(**(case.values() | {"scene": Scene.of(case.scene)}))

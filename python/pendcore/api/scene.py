@@ -1,0 +1,65 @@
+"""The scene that a user holds: plain data and what is built on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy.typing as npt
+
+from pendcore.explanation.explain import explain
+from pendcore.explanation.explanation import Explanation
+from pendcore.messages.arguments import known_keywords, vector
+from pendcore.scene.scene import SceneData
+
+
+@dataclass(frozen=True, slots=True, init=False, repr=False, eq=False)
+class Scene(SceneData):
+    """A chain of links on a pivot, and what acts on it, ready to be simulated.
+
+    Parameters
+    ----------
+    links : iterable of Link
+        From the pivot outwards, one or more.
+    gravity : float, default 9.807
+        Downward, m/s^2; finite. 0 is allowed.
+    effects : iterable of pendcore.effects.Effect
+        What acts besides gravity, in any number and order. Nothing else is simulated:
+        `explain` says what is and what is not.
+
+    Raises
+    ------
+    ValueError, TypeError
+        If a value is out of its range; the message names link, value, range and unit.
+
+    Warns
+    -----
+    PendcoreWarning
+        If a value is allowed and implausible, such as more inertia than a link of that length
+        could have.
+
+    Notes
+    -----
+    A scene cannot be changed; ``scene.replace(gravity=1.62)`` makes another.
+    """
+
+    @known_keywords
+    def explain(self, t: float = 0.0, q: npt.ArrayLike | None = None) -> Explanation:
+        """Say what is simulated and what is not, what it costs, and how fast it moves.
+
+        Parameters
+        ----------
+        t : float, default 0
+            Time at which motors and pivot are looked at, s.
+        q : array_like, (n,), optional
+            Angles to look for equilibria from, besides hanging and upright, rad. A joint that is
+            locked where it starts is locked as it is here; without them, as it is in hanging and
+            in upright, and a remark says so.
+
+        Returns
+        -------
+        Explanation
+            Print it, or take its fields; ``to_dict()`` for JSON.
+        """
+        start = None if q is None else vector("q", q, len(self.links), "rad")
+        (time,) = vector("t", t, 1, "s")
+        return explain(self, time, start)

@@ -1,0 +1,256 @@
+"""A solution, and the case that it is of: each leads to the other, so they stand together."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from math import pi
+from typing import TYPE_CHECKING, Any
+
+import numpy.typing as npt
+
+from pendcore.accuracy.defect import Defect, defect
+from pendcore.accuracy.estimate import error_of
+from pendcore.api.scene import Scene
+from pendcore.api.solve import solve
+from pendcore.cases.archive import save
+from pendcore.cases.case import CaseData
+from pendcore.horizon.lyapunov import LyapunovExponents, lyapunov_of
+from pendcore.messages.progress import Progress
+from pendcore.run.call import resumed
+from pendcore.run.error_estimate import ErrorEstimate
+from pendcore.run.options import Options
+from pendcore.run.result import RunResult
+from pendcore.run.run_error import checked, require_check
+from pendcore.views.export import to_pandas, to_xarray
+from pendcore.views.plot import plot
+from pendcore.views.table import html, text
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+    from matplotlib.lines import Line2D
+
+
+class Solution(RunResult):
+    """The result of `simulate`.
+
+    Call it, ``sol(t)``, for the state between the steps. It pickles; `save` and `load` keep it all.
+
+    Attributes
+    ----------
+    scene : Scene
+        What moved.
+    name : str
+        For people; of the case, if there was one. It may be set.
+    """
+
+    __slots__ = ()
+    scene: Scene
+
+    def defect(self, *, progress: Progress = None) -> Defect:
+        """Return the spurious torques: what motors would have to add to make the curve exact.
+
+        See `pendcore.Defect` and, for what they tell, `docs/defect.md`; ``progress`` is as in
+        `simulate`. A ValueError if the run did not store its interpolants: ``store="dense"``.
+        """
+        return defect(self.scene, self.run, progress)
+
+    def error(self, *, time_limit: float | None = None, progress: Progress = None) -> ErrorEstimate:
+        """Estimate the error over time from independent second runs, made when first asked for.
+
+        They are of another method (of ``"radau5"`` too if a default run has changed over to it), at
+        tolerances a hundredth and less of this run's, with constants and start moved by some last
+        bits, and go on until they have nothing to do with it any more. For a run with an ``error``
+        that was asked for, the estimate is the one that verified it.
+
+        Parameters
+        ----------
+        time_limit : float, optional
+            s of the clock, > 0, after which the estimate ends where it is.
+        progress : as in `simulate`
+
+        Returns
+        -------
+        ErrorEstimate
+            ``.t`` (n_t,), s, ``.angle``, rad, ``.position``, a share of the total length.
+
+        Raises
+        ------
+        KeyboardInterrupt, or any exception of ``progress`` or of an effect's function
+            With what was found so far as the attribute ``estimate``, and this run as ``solution``.
+        """
+        return error_of(self, time_limit=time_limit, progress=progress)
+
+    def valid_until(
+        self, limit: float = 0.1, *, of: str = "angle", time_limit: float | None = None
+    ) -> float:
+        """Return how far to trust the run: the time at which its `error` passes a limit, s.
+
+        On the safe side; the end of the run where it does not. See `ErrorEstimate.valid_until`.
+
+        Parameters
+        ----------
+        limit : float, rad; with ``of="position"`` a share of the total length
+        of : {"angle", "position"}, of the links, or of joints and tip
+        time_limit : as in `error`; how far the run is known to hold by then
+        """
+        return self.error(time_limit=time_limit).valid_until(limit, of=of)
+
+    def lyapunov(
+        self,
+        *,
+        count: int | None = None,
+        transient: float = 0.0,
+        t_eval: npt.ArrayLike | None = None,
+        progress: Progress = None,
+    ) -> LyapunovExponents:
+        """Compute the Lyapunov exponents of this very run, 1/s; see `pendcore.lyapunov`."""
+        return lyapunov_of(self, count, transient, t_eval, progress)
+
+    def resume(
+        self,
+        t_end: float,
+        t_eval: npt.ArrayLike | None = None,
+        *,
+        max_steps: int = 10_000_000,
+        time_limit: float | None = None,
+        check: bool | None = None,
+        progress: Progress = None,
+    ) -> Solution:
+        """Continue to a later end, bitwise as if the run had never stopped.
+
+        Parameters
+        ----------
+        t_end : float
+            s; not before where this run ended, in its direction.
+        t_eval : array_like, (k,), optional
+            More times to keep, s: at or beyond where this run ended, and beyond those it was asked
+            for. Only for a run that had a ``t_eval``.
+        max_steps, time_limit, check, progress
+            As in `simulate`, for the continuation. It begins before the first attempt that the
+            earlier ``t_end`` cut short, as what came after that depends on it. To the same
+            ``t_end`` the attempts made since then are made again and do not count, so that a
+            ``max_steps`` of 1 gets on as well.
+
+        Returns
+        -------
+        Solution
+            The whole run, from its first start. This one stays as it is.
+
+        Raises
+        ------
+        ValueError, TypeError
+            If an argument is not what is asked for; the message names it.
+        """
+        require_check(check)
+        longer = resumed(
+            self, t_end, t_eval, max_steps=max_steps, time_limit=time_limit, progress=progress
+        )
+        return checked(longer, check)
+
+    def case(self) -> Case:
+        """Return what was asked for, ready to be run again or written as TOML."""
+        return Case.of_solution(self)
+
+    def save(self, path: str | os.PathLike[str], *, progress: Progress = None) -> None:
+        """Write everything to a file of NumPy's npz format; see `pendcore.load`.
+
+        It has its name only when it is whole. ``progress`` is as in `simulate`.
+        """
+        save(self, path, progress=progress)
+
+    def plot(
+        self,
+        ax: Any = None,
+        *,
+        label: str | None = None,
+        horizon: float | None = None,
+        **line_properties: Any,
+    ) -> list[Line2D]:
+        """Draw the angles over time, as in the textbook; see `pendcore.views.plot.plot`.
+
+        ``ax`` is one axes, or one for each link; ``label`` names the solution in the legend; what
+        is past `valid_until` (``horizon``), rad, is shaded; the rest are properties of matplotlib's
+        ``Line2D``. The lines are returned.
+        """
+        return plot(self, ax, label=label, horizon=horizon, **line_properties)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Return a table with a row per time and the columns q_1.., qd_1..; units in ``attrs``."""
+        return to_pandas(self)
+
+    def to_xarray(self) -> xr.Dataset:
+        """Return ``q`` and ``qd`` over time and link; units and the case in ``attrs``."""
+        return to_xarray(self)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        # The scene first: it says best that it cannot be pickled, if it cannot.
+        return type(self), (self.scene, self.run, self.name, self.accuracy, self.verified_error)
+
+    def __deepcopy__(self, memo: object) -> Solution:
+        # None of them ever changes.
+        return Solution(self.scene, self.run, self.name, self.accuracy, self.verified_error)
+
+    def __repr__(self) -> str:
+        return text(self)
+
+    def _repr_html_(self) -> str:
+        return html(self)
+
+
+@dataclass(frozen=True, slots=True, init=False, repr=False, eq=False)
+class Case(CaseData):
+    """A scene, where it starts, how long and how it is run. It cannot be changed, and hashes.
+
+    Parameters
+    ----------
+    scene : Scene
+        What moves.
+    q0 : array_like, (n,)
+        Absolute angles at the start, rad. A scalar holds for every link.
+    qd0 : array_like, (n,), default 0
+        Rates at the start, rad/s. A scalar holds for every link.
+    t_span : (float, float)
+        Start and end, s.
+    name : str
+        For people.
+    options : mapping
+        Keywords of `simulate`; those not given have its defaults. Kept as a read-only mapping.
+
+    Raises
+    ------
+    ValueError, TypeError
+        If q0, qd0 or t_span are not finite numbers of that shape, or an option is unknown.
+    """
+
+    scene: Scene
+
+    @classmethod
+    def textbook(cls) -> Case:
+        """Section 2.1 of the textbook: from rest at 45 and 60 degrees, for 5 s, by ode45."""
+        return cls(
+            name="double pendulum, section 2.1",
+            scene=Scene.textbook(),
+            q0=(pi / 4, pi / 3),
+            t_span=(0.0, 5.0),
+            options={"method": "ode45"},
+        )
+
+    def simulate(self, *, check: bool | None = None) -> Solution:
+        """Run it; see `pendcore.simulate`. The solution has the name of the case.
+
+        ``check`` takes the place of the case's own, if it is given.
+        """
+        options = Options(**self.options)
+        require_check(options.check)
+        if check is not None:
+            options = options._replace(check=check)
+        try:
+            solution = solve(Solution, self.scene, self.q0, self.qd0, self.t_span, options)
+        except BaseException as stop:
+            if isinstance(so_far := getattr(stop, "solution", None), Solution):
+                so_far.name = self.name
+            raise
+        solution.name = self.name
+        return solution

@@ -1,0 +1,1 @@
+"""Cases and runs as files: TOML and npz."""

@@ -1,0 +1,155 @@
+"""A case: a scene, where it starts, how it is run. It can be written as TOML."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, fields
+from types import MappingProxyType
+from typing import Any, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from pendcore.messages.arguments import finite_array, vector
+from pendcore.run.events import Event, Function, events_asked_for
+from pendcore.run.options import RUN_DEFAULTS
+from pendcore.run.result import RunResult
+from pendcore.scene.effect_class import Effect, OwnEffect, Part
+from pendcore.scene.scene import SceneData
+
+
+@dataclass(frozen=True, slots=True, init=False, repr=False)
+class CaseData:
+    """A case without what is built on it; `pendcore.Case` has its parameters and the rest."""
+
+    scene: SceneData
+    q0: tuple[float, ...]
+    qd0: tuple[float, ...]
+    t_span: tuple[float, float]
+    name: str
+    options: Mapping[str, Any]
+
+    def __init__(
+        self,
+        *,
+        scene: SceneData,
+        q0: npt.ArrayLike,
+        qd0: npt.ArrayLike = 0.0,
+        t_span: npt.ArrayLike,
+        name: str = "",
+        options: Mapping[str, Any] | None = None,
+    ) -> None:
+        n = len(scene.links)
+        given = {key: _plain(value) for key, value in (options or {}).items() if value is not None}
+        for key in given:
+            if key not in RUN_DEFAULTS:
+                known = ", ".join(RUN_DEFAULTS)
+                raise TypeError(f"options: simulate() has no keyword {key!r}: known are {known}")
+        if "events" in given:
+            given["events"] = events_asked_for(given["events"])
+        object.__setattr__(self, "scene", scene)
+        object.__setattr__(self, "q0", vector("q0", q0, n, "rad"))
+        object.__setattr__(self, "qd0", vector("qd0", qd0, n, "rad/s"))
+        object.__setattr__(self, "t_span", _pair("t_span", t_span, "s"))
+        object.__setattr__(self, "name", name)
+        object.__setattr__(self, "options", MappingProxyType(given))
+
+    @classmethod
+    def of_solution(cls, solution: RunResult) -> Self:
+        """Return what was asked for when a solution was computed."""
+        asked = {key: _plain(value) for key, value in solution.run.arguments.items()}
+        start = {key: asked.pop(key) for key in ("q0", "qd0")}
+        t_span = (asked.pop("t_start"), asked.pop("t_end"))
+        asked["events"] = tuple(solution.events_asked_for())
+        options = {key: value for key, value in asked.items() if value != RUN_DEFAULTS[key]}
+        return cls(
+            scene=solution.scene, **start, t_span=t_span, name=solution.name, options=options
+        )
+
+    def to_toml(self) -> str:
+        """Return the case as TOML; `pendcore.read_case` makes an equal one of it, to the last bit.
+
+        Raises
+        ------
+        TypeError
+            If an option, an effect or an event is a function, which TOML cannot hold.
+        """
+        t_start, t_end = self.t_span
+        options = dict(self.options)
+        events = options.pop("events", ())
+        tables: list[tuple[str, dict[str, Any]]] = [
+            ("", {"name": self.name, "gravity": self.scene.gravity}),
+            *(("[[link]]\n", link.particulars()) for link in self.scene.links),
+            *(("[[effect]]\n", _effect_table(effect)) for effect in self.scene.effects),
+            *(("[[event]]\n", _event_table(event)) for event in events),
+            ("[start]\n", {"q": self.q0, "qd": self.qd0}),
+            ("[run]\n", {"t_start": t_start, "t_end": t_end, **options}),
+        ]
+        return "\n".join(header + "".join(_lines(table)) for header, table in tables)
+
+    def values(self) -> dict[str, Any]:
+        """Return all that it is made of, by name."""
+        values = {field.name: getattr(self, field.name) for field in fields(self)}
+        return values | {"options": dict(self.options)}
+
+    def __repr__(self) -> str:
+        return f"Case({', '.join(f'{name}={x!r}' for name, x in self.values().items())})"
+
+    def __hash__(self) -> int:
+        return hash(tuple((self.values() | {"options": frozenset(self.options.items())}).values()))
+
+    def __reduce__(self) -> tuple[object, ...]:
+        # A read-only mapping does not pickle, so the case is made anew.
+        return _case, (type(self), self.values())
+
+
+def _case(cls: type[CaseData], values: dict[str, Any]) -> CaseData:
+    return cls(**values)
+
+
+def _pair(name: str, value: npt.ArrayLike, unit: str) -> tuple[float, float]:
+    array = finite_array(name, value, unit)
+    if array.shape != (2,):
+        raise ValueError(f"{name}: shape {array.shape}: must be (2,) ({unit})")
+    return float(array[0]), float(array[1])
+
+
+def _plain(value: Any) -> Any:
+    """Return NumPy's numbers and arrays as Python's own, lists as tuples."""
+    if isinstance(value, np.ndarray | np.generic):
+        value = value.tolist()
+    return tuple(map(_plain, value)) if isinstance(value, list | tuple) else value
+
+
+def _effect_table(effect: Effect) -> dict[str, Any]:
+    if isinstance(effect, OwnEffect):
+        raise effect.cannot_be("written as TOML")
+    return {"kind": effect.kind, **effect.particulars()}
+
+
+def _event_table(event: Event) -> dict[str, Any]:
+    if isinstance(event, Function):
+        raise event.cannot_be("written as TOML")
+    return {"kind": event.kind, **event.particulars()}
+
+
+def _lines(table: Mapping[str, Any]) -> Iterator[str]:
+    for key, value in table.items():
+        yield f"{key} = {_toml(key, value)}\n"
+
+
+def _toml(key: str, value: Any) -> str:
+    if isinstance(value, Part):
+        pairs = (f"{name} = {_toml(name, x)}" for name, x in value.particulars().items())
+        return f"{{{', '.join(pairs)}}}"
+    if isinstance(value, tuple):
+        return f"[{', '.join(_toml(key, x) for x in value)}]"
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, int | float):
+        return repr(value)
+    if isinstance(value, str):
+        # JSON's escapes are TOML's, but for the surrogate pairs that ensure_ascii would make.
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    raise TypeError(f"{key} = {value!r}: cannot be written as TOML; leave it out of the case")

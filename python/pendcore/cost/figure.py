@@ -1,0 +1,142 @@
+"""The work-precision diagram of a sweep: time against error, a line a method."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import inf
+from typing import TYPE_CHECKING, Any
+
+from pendcore.cost.point import Point
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
+
+# Colours differ in lightness too, dashes and markers differ: the figure survives a grey printer.
+STYLES: dict[str, dict[str, Any]] = {
+    "dopri5": {"color": "#1f5fa8", "linestyle": "-", "marker": "o"},
+    "dop853": {"color": "#c2410c", "linestyle": "--", "marker": "s"},
+    "taylor": {"color": "#000000", "linestyle": "-", "marker": "D"},
+    "radau5": {"color": "#5b8c3a", "linestyle": "-.", "marker": "^"},
+    "dopri5-radau5": {"color": "#8b6bb1", "linestyle": (0, (1, 1)), "marker": "v"},
+    "dop853-radau5": {"color": "#a8741a", "linestyle": (0, (3, 1, 1, 1)), "marker": "<"},
+    "taylor-radau5": {"color": "#3f3f5f", "linestyle": (0, (6, 2)), "marker": ">"},
+    "rk4": {"color": "#8a8a8a", "linestyle": ":", "marker": "P"},
+}
+OTHERS = {"color": "#444444", "linestyle": (0, (5, 1, 1, 1, 1, 1)), "marker": "*"}
+UNITS = ((1e-4, 1e6, "\N{MICRO SIGN}s"), (0.1, 1e3, "ms"), (inf, 1.0, "s"))
+
+
+def plot(
+    points: Sequence[Point],
+    best: Sequence[Point],
+    uncertainty: float,
+    title: str,
+    ax: Any = None,
+    *,
+    y: str = "time",
+    **line_properties: Any,
+) -> list[Line2D]:
+    """Draw time, or right-hand sides, against error; both axes logarithmic.
+
+    Filled marks lie on the Pareto front: no other point is both more accurate and faster. In the
+    shaded region errors cannot be told apart, as the reference is uncertain by as much.
+
+    Parameters
+    ----------
+    points : sequence of Point
+        What to draw.
+    best : sequence of Point
+        Those on the Pareto front.
+    uncertainty : float
+        What the reference is uncertain by.
+    title : str
+        Above the axes.
+    ax : Axes, optional
+        Default: a new figure of pyplot's, which is not shown.
+    y : {"time", "nfev"}
+        What is drawn upwards: the least time of a call, or right-hand sides.
+    **line_properties
+        Of matplotlib's ``Line2D``.
+
+    Returns
+    -------
+    list of Line2D
+        One per method.
+    """
+    from matplotlib.axes import Axes
+
+    if y not in ("time", "nfev"):
+        raise ValueError(f'y = {y!r}: must be "time" or "nfev"')
+    if ax is None:
+        import matplotlib.pyplot as plt
+
+        ax = plt.figure(figsize=(7.6, 4.6), layout="constrained").subplots()
+    if not isinstance(ax, Axes):
+        raise TypeError(f"ax = {ax!r}: must be matplotlib Axes")
+    drawn = [p for p in points if not p.failure and p.error > 0]
+    factor, unit = _unit(drawn) if y == "time" else (1.0, "")
+    lines = []
+    for method in dict.fromkeys(p.method for p in drawn):
+        ours = [p for p in drawn if p.method == method]
+        given = {"markersize": 5, **STYLES.get(method, OTHERS), "label": method, **line_properties}
+        height = [factor * p.seconds if y == "time" else p.nfev for p in ours]
+        (line,) = ax.plot([p.error for p in ours], height, **{"markerfacecolor": "white", **given})
+        lines.append(line)
+        on_front = [(p.error, h) for p, h in zip(ours, height, strict=True) if p in best]
+        if on_front and y == "time":
+            ax.plot(
+                *zip(*on_front, strict=True), linestyle="", marker=line.get_marker(),
+                color=line.get_color(), markersize=line.get_markersize() + 1.5, zorder=3,
+            )  # fmt: skip
+    _dress(ax, points, uncertainty, y, unit)
+    ax.set_title(title, fontsize=11)
+    return lines
+
+
+def _unit(points: list[Point]) -> tuple[float, str]:
+    least = min((p.seconds for p in points), default=1.0)
+    return next((factor, unit) for below, factor, unit in UNITS if least < below)
+
+
+def _dress(ax: Axes, points: Sequence[Point], uncertainty: float, y: str, unit: str) -> None:
+    from matplotlib.patches import Patch
+    from matplotlib.ticker import LogFormatter, LogLocator, NullFormatter
+
+    ax.set(xscale="log", yscale="log")
+    ax.set_xlabel("largest position error / total length (more accurate to the right)")
+    counted = "right-hand sides"
+    if any(p.method == "taylor" for p in points):
+        counted += " (of taylor: series)"
+    ax.set_ylabel(f"time of a run ({unit})" if y == "time" else counted)
+    if not ax.xaxis_inverted():
+        ax.invert_xaxis()
+    if is_known := uncertainty < inf:
+        left, right = ax.get_xlim()
+        edge = max(uncertainty, 1e-17)
+        right = min(right, edge / 3)
+        ax.set_xlim(left, right)
+        ax.axvspan(right, edge, color="0.88", zorder=0)
+    ax.xaxis.set_major_locator(LogLocator(base=100, numticks=20))
+    ax.xaxis.set_minor_formatter(NullFormatter())
+    if y == "time":  # plain numbers, between the powers of ten where there are few of these
+        ax.yaxis.set_major_formatter(LogFormatter())
+        ax.yaxis.set_minor_formatter(LogFormatter(labelOnlyBase=False, minor_thresholds=(1.5, 0.5)))
+    ax.grid(which="major", color="0.85", linewidth=0.6)
+    ax.set_axisbelow(True)
+    handles, _ = ax.get_legend_handles_labels()
+    unknown = Patch(color="0.88", label="the reference is\nuncertain by this")
+    if y == "time":
+        from matplotlib.lines import Line2D
+
+        filled = "filled: no other is\nboth better and faster"
+        handles.append(Line2D([], [], linestyle="", marker="o", color="0.2", label=filled))
+    handles += [unknown] * is_known
+    fine = {p.method for p in points if not p.failure}
+    if failed := [m for m in dict.fromkeys(p.method for p in points) if m not in fine]:
+        why = "too slow here, or failed:\n" + "\n".join(failed)
+        handles.append(Patch(color="none", label=why))
+    ax.legend(
+        handles=handles, loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False,
+        fontsize=9,
+    )  # fmt: skip

@@ -1,0 +1,195 @@
+"""The report: the derivation of a user's scene as a document to hand in or to teach from.
+
+It walks from the problem with its figure through the steps of the derivation, puts the numbers in,
+solves, draws angles and reactions, and checks by the energy. The worksheet is the same with blanks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+from pendcore import _core
+from pendcore.api.solution import Case, Solution
+from pendcore.cases.whole_file import whole_file
+from pendcore.derive import narration
+from pendcore.derive.algebra import Algebra
+from pendcore.derive.report import conversion, motion, numbers, problem, steps
+from pendcore.derive.report.blanks import concealed
+from pendcore.derive.report.document import Block, Document, Heading, Paragraph, Reader, Space
+from pendcore.derive.report.figures import Figures
+from pendcore.messages import progress as bars
+from pendcore.messages.progress import Progress
+from pendcore.messages.warning import warn
+
+
+class Report(NamedTuple):
+    """What came of writing a report.
+
+    Attributes
+    ----------
+    files : list of Path
+        What was written.
+    complaint : str
+        What is to be said against the run that it shows; empty if there is nothing.
+    """
+
+    files: list[Path]
+    complaint: str
+
+
+def report(derivation: Algebra, case: Case, solution: Solution, refusal: str = "") -> Document:
+    """Return the derivation of a case with its solution.
+
+    Parameters
+    ----------
+    derivation : Algebra
+        Of the scene of the case.
+    case : Case
+        With the start.
+    solution : Solution
+        Of the case, as `motion.solved` returns it.
+    refusal : str
+        What an `AccuracyError` said, if the solution comes from one.
+    """
+    figures = Figures(derivation, case.q0)
+    blocks = [
+        *problem.problem(derivation, case, figures),
+        Heading(2, "Derivation of the equations of motion"),
+        *steps.derivation_steps(derivation, narration.steps(derivation), figures),
+        *numbers.numbers_put_in(derivation),
+        *numbers.at_the_start(derivation, case),
+        *motion.numerical_solution(derivation, solution, figures, refusal),
+        *motion.energy_check(derivation, solution, figures),
+        Paragraph(f"*Derived with SymPy and solved by pendcore {_core.__version__}.*"),
+    ]
+    return Document(_title(derivation, case), tuple(blocks))
+
+
+def worksheet(derivation: Algebra, case: Case, solution: Solution) -> Document:
+    """Return the same problem with blanks: right sides, free bodies and curves are to be found."""
+    figures = Figures(derivation, case.q0)
+    blocks: list[Block] = [
+        *problem.problem(derivation, case, figures, by_hand=True),
+        Heading(2, "Derivation of the equations of motion"),
+        *steps.derivation_steps(derivation, concealed(derivation), figures, blanks=True),
+        *_questions(derivation, case, solution, figures),
+    ]
+    return Document(f"{_title(derivation, case)}: worksheet", tuple(blocks))
+
+
+def write_report(
+    derivation: Algebra,
+    case: Case,
+    folder: Path,
+    *,
+    with_worksheet: bool = False,
+    progress: Progress = None,
+) -> Report:
+    """Write the report of a case, and its worksheet, in every form that this machine can make.
+
+    Parameters
+    ----------
+    derivation : Algebra
+        Of the scene of the case.
+    case : Case
+        What is derived and solved.
+    folder : Path
+        Where to; it is there.
+    with_worksheet : bool
+        Whether to write ``worksheet`` beside ``report``.
+    progress : None, bool or callable
+        As of `pendcore.simulate`.
+
+    Returns
+    -------
+    Report
+        Its files, the report first: Markdown always, HTML where pandoc is, PDF where a LaTeX
+        engine is beside it; then the figures. And what is to be said against the run.
+    """
+    told = bars.callback(progress, "deriving") or (lambda fraction: None)
+    try:
+        return _written(derivation, case, folder, with_worksheet, told)
+    finally:
+        bars.close(told)
+
+
+def _written(
+    derivation: Algebra,
+    case: Case,
+    folder: Path,
+    with_worksheet: bool,
+    told: Callable[[float], object],
+) -> Report:
+    told(0.0)
+    solution, refusal = motion.solved_or_refused(case)
+    complaint = refusal
+    if not solution.success:
+        complaint = f"the run is not complete: {solution.message}"
+    if complaint:
+        warn(complaint)
+    told(0.05)
+    documents = {"report": report(derivation, case, solution, refusal)}
+    if with_worksheet:
+        documents["worksheet"] = worksheet(derivation, case, solution)
+    told(0.4)
+    texts: list[Path] = []
+    figures: dict[str, Path] = {}
+    for k, (name, document) in enumerate(documents.items()):
+        texts += _texts(document, folder, name)
+        for drawing in document.drawings:
+            figures[drawing.name] = drawing.save(folder, Reader.PEOPLE)
+        told(0.4 + 0.6 * (k + 1) / len(documents))
+    return Report([*texts, *figures.values()], complaint)
+
+
+def _texts(document: Document, folder: Path, name: str) -> Iterator[Path]:
+    """Write a document as what the machine has converters for; one that fails is told of."""
+    path = folder / f"{name}.md"
+    with whole_file(path) as unfinished:
+        unfinished.write_text(document.markdown(), encoding="utf-8")
+    yield path
+    if not conversion.has_pandoc():
+        return
+    try:
+        path = folder / f"{name}.html"
+        page = conversion.page(document)
+        with whole_file(path) as unfinished:
+            unfinished.write_text(page, encoding="utf-8")
+        yield path
+        if (engine := conversion.latex_engine()) is not None:
+            path = folder / f"{name}.pdf"
+            conversion.pdf(document, path, engine)
+            yield path
+    except conversion.ConversionError as error:
+        warn(f"{path.name} is not written: {error}")
+
+
+def _questions(
+    derivation: Algebra, case: Case, solution: Solution, figures: Figures
+) -> Iterator[Block]:
+    yield Heading(3, "The equations of motion with numbers")
+    yield Paragraph("Put the numbers of the table into the equations of motion. Give the units.")
+    yield Space(5)
+    yield Heading(3, "At the start")
+    yield Paragraph(
+        "Compute the angular accelerations and the joint reactions at the start. Which way does "
+        "each link begin to turn? Which way does each joint push?"
+    )
+    yield Space(7)
+    yield Heading(2, "Numerical solution")
+    yield Paragraph("Integrate the first-order system, and draw the angles.")
+    yield figures.empty_axes(solution)
+    yield Heading(2, "Check by the energy")
+    yield Paragraph(
+        "Write down kinetic and potential energy. What is their sum at the start, and how well "
+        "does your solution keep it?"
+    )
+    yield Space(6)
+
+
+def _title(derivation: Algebra, case: Case) -> str:
+    names = {1: "Pendulum", 2: "Double pendulum"}
+    name = case.name or names.get(derivation.n, f"Chain of {derivation.n} links")
+    return name[:1].upper() + name[1:]

@@ -1,0 +1,150 @@
+"""From Markdown to a page and to a PDF, by the converters that a machine has.
+
+pandoc makes a page of HTML that needs no other file and no network: equations are MathML, figures
+are in it. With a LaTeX engine beside it, it makes a PDF.
+"""
+
+from __future__ import annotations
+
+import base64
+import os
+import re
+import shutil
+import subprocess
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from pendcore.derive.report.document import Document, Reader
+
+ENGINES = ("xelatex", "lualatex", "pdflatex")
+"""LaTeX engines, in the order in which they are tried."""
+
+ACCENTS = {"\N{COMBINING DOT ABOVE}": "\N{DOT ABOVE}", "\N{COMBINING DIAERESIS}": "\N{DIAERESIS}"}
+"""Dots over letters: pandoc writes combining ones, which browsers draw beside their letter."""
+
+_STRETCHED = r'<mo stretchy="true" form="{}fix">'
+LOW_BRACKETS = re.compile(
+    f"<mrow>{_STRETCHED.format('pre')}\\(</mo>"
+    r'((?:(?!<mfrac|<mtable|<mo stretchy="true").)*?)'
+    f"{_STRETCHED.format('post')}\\)</mo></mrow>"
+)
+"""Brackets around what is no higher than a letter: they need not stretch, and are set closer."""
+
+STYLE = Path(__file__).with_name("page.css")
+PREAMBLE = r"""
+\usepackage{amsmath,amssymb,float,graphicx}
+\usepackage[a4paper,margin=24mm]{geometry}
+\usepackage[labelformat=empty,font=small]{caption}
+\floatplacement{figure}{!htbp}
+\renewcommand\topfraction{0.9}\renewcommand\bottomfraction{0.8}
+\renewcommand\textfraction{0.08}\renewcommand\floatpagefraction{0.75}
+\raggedbottom
+\setkeys{Gin}{width=0.8\linewidth,height=0.36\textheight,keepaspectratio}
+\setlength{\parindent}{0pt}\setlength{\parskip}{6pt}
+\AtBeginDocument{\ifdefined\symbf\renewcommand\boldsymbol[1]{\symbf{#1}}\fi}
+\newcommand\needroom[1]{\par\begingroup\dimen0=#1\relax\dimen2=\pagegoal\relax
+  \advance\dimen2 by -\pagetotal\relax
+  \ifdim\dimen0>\dimen2\relax\ifdim\dimen2>0pt\relax\newpage\fi\fi\endgroup}
+\IfFileExists{placeins.sty}{\usepackage{placeins}}{\newcommand\FloatBarrier{}}
+\let\headingofpart\subsection
+\renewcommand\subsection{\FloatBarrier\needroom{12\baselineskip}\headingofpart}
+\let\headingofstep\subsubsection
+\renewcommand\subsubsection{\needroom{9\baselineskip}\headingofstep}
+"""
+
+
+class ConversionError(RuntimeError):
+    """A converter is there, and failed."""
+
+
+def has_pandoc() -> bool:
+    """Whether pages can be made."""
+    return shutil.which("pandoc") is not None
+
+
+def latex_engine() -> str | None:
+    """Return the LaTeX engine that this machine has."""
+    return next((engine for engine in ENGINES if shutil.which(engine)), None)
+
+
+def page(document: Document) -> str:
+    """Return a document as one page of HTML.
+
+    Raises
+    ------
+    ConversionError
+        If pandoc fails.
+    """
+    with TemporaryDirectory() as place:
+        folder = Path(place)
+        for drawing in document.drawings:
+            drawing.save(folder, Reader.HTML)
+        header = folder / "style.html"
+        header.write_text(f"<style>\n{STYLE.read_text('utf-8')}</style>\n", encoding="utf-8")
+        made = _pandoc(
+            document, Reader.HTML, folder, "--to=html5", "--mathml", f"--include-in-header={header}"
+        )
+        text = made.read_text("utf-8")
+
+        def embedded(found: re.Match[str]) -> str:
+            picture = base64.b64encode((folder / found[1]).read_bytes()).decode()
+            return f'src="data:image/svg+xml;base64,{picture}"'
+
+        text = _for_browsers(text)
+        return re.sub(r'src="([\w-]+\.svg)"', embedded, text)
+
+
+def _for_browsers(text: str) -> str:
+    """Set MathML right where browsers are particular: dots, brackets, functions, commas."""
+    for combining, spacing in ACCENTS.items():
+        text = text.replace(f">{combining}</mo>", f">{spacing}</mo>")
+    known = ""
+    while known != text:  # from the inside out
+        known, text = text, LOW_BRACKETS.sub(
+            r'<mrow><mo stretchy="false">(</mo>\1<mo stretchy="false">)</mo></mrow>', text
+        )  # fmt: skip
+    text = re.sub(
+        r"<mo>(sin|cos)</mo>(?=<mrow><mo)", r'<mo lspace=".17em" rspace="0">\1</mo>', text
+    )
+    text = re.sub(r"<mo>(sin|cos)</mo>", r'<mo lspace=".17em" rspace=".17em">\1</mo>', text)
+    return re.sub(r"</math>(?=[,.;:])", "</math>\N{WORD JOINER}", text)
+
+
+def pdf(document: Document, path: Path, engine: str) -> None:
+    """Write a document as a PDF.
+
+    Raises
+    ------
+    ConversionError
+        If pandoc or the engine fails.
+    """
+    with TemporaryDirectory() as place:
+        folder = Path(place)
+        for drawing in document.drawings:
+            drawing.save(folder, Reader.LATEX)
+        (folder / "preamble.tex").write_text(PREAMBLE, encoding="utf-8")
+        made = _pandoc(
+            document, Reader.LATEX, folder, "--to=latex", f"--pdf-engine={engine}",
+            f"--include-in-header={folder / 'preamble.tex'}", suffix="pdf",
+        )  # fmt: skip
+        shutil.copyfile(made, path)
+
+
+def _pandoc(
+    document: Document, reader: Reader, folder: Path, *options: str, suffix: str = "html"
+) -> Path:
+    """Let pandoc write into a folder where the figures are; return the file."""
+    source, made = folder / "report.md", folder / f"report.{suffix}"
+    source.write_text(document.markdown(reader), encoding="utf-8")
+    command = [
+        "pandoc", "--standalone", "--from=markdown", "--columns=1000",
+        f"--metadata=pagetitle:{document.title}",
+        f"--metadata=title:{document.title}", "--metadata=lang:en", *options, f"--output={made}",
+        str(source),
+    ]  # fmt: skip
+    done = subprocess.run(
+        command, capture_output=True, text=True, cwd=folder, env={**os.environ, "LC_ALL": "C.UTF-8"}
+    )
+    if done.returncode:
+        raise ConversionError(f"pandoc: {done.stderr.strip() or 'failed without a word'}")
+    return made

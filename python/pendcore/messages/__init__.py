@@ -1,0 +1,1 @@
+"""What the package says to its user: refused arguments, warnings, progress."""

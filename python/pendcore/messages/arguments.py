@@ -1,0 +1,201 @@
+"""Checks of the numbers that a user hands over, for everything but a run (the core checks those).
+
+Booleans, strings and complex numbers are a TypeError; a wrong shape, and what is not finite, a
+ValueError.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from difflib import get_close_matches
+from functools import wraps
+from inspect import signature
+from math import inf
+from numbers import Real
+from operator import index
+from typing import Any, ParamSpec, TypeAlias, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+Floats: TypeAlias = npt.NDArray[np.float64]
+Taken = ParamSpec("Taken")
+Given = TypeVar("Given")
+
+OTHER_NAMES = {"t_span": ("t_end", "t_max", "t_stop", "t_final", "duration")}
+"""What other programs call a parameter whose own name is spelled otherwise; `_` may be missing."""
+
+
+def did_you_mean(name: str, known: Iterable[str]) -> str:
+    """Return the remedy for a name that is not known."""
+    names = [*known]
+    for meant, others in OTHER_NAMES.items():
+        if meant in names and name.replace("_", "") in [x.replace("_", "") for x in others]:
+            return f"did you mean {meant!r}?"
+    near = get_close_matches(name, names, n=1, cutoff=0.5)
+    return f"did you mean {near[0]!r}?" if near else f"known are {', '.join(names)}"
+
+
+def known_keywords(function: Callable[Taken, Given]) -> Callable[Taken, Given]:
+    """Make a function refuse a keyword that it does not have with the nearest that it has."""
+    known = [name for name in signature(function).parameters if name not in ("self", "cls")]
+
+    @wraps(function)
+    def called(*args: Taken.args, **named: Taken.kwargs) -> Given:
+        try:
+            return function(*args, **named)
+        except TypeError:  # looked at only then: a run of microseconds need not pay for it
+            for name in named:
+                if name not in known:
+                    remedy = did_you_mean(name, known)
+                    owner = _owner(function, args)
+                    raise TypeError(f"{owner}: has no parameter {name!r}: {remedy}") from None
+            raise
+
+    return called
+
+
+def _owner(function: Callable[..., object], args: tuple[object, ...]) -> str:
+    """Return what a user calls a function; a method may be inherited."""
+    if "." not in function.__qualname__ or not args:
+        return function.__qualname__
+    owner = args[0] if isinstance(args[0], type) else type(args[0])
+    name = function.__name__
+    return owner.__name__ if name == "__init__" else f"{owner.__name__}.{name}"
+
+
+def number(name: str, value: object, unit: str) -> float:
+    """Return one real number as a float."""
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise TypeError(f"{name} = {value!r}: must be a real number{in_unit(unit)}")
+    try:
+        return float(value)
+    except OverflowError:
+        raise _too_large(name, unit) from None
+
+
+def positive(name: str, value: object, unit: str) -> float:
+    """Return one real number above 0 as a float."""
+    given = number(name, value, unit)
+    if not given > 0:
+        raise ValueError(f"{name} = {given}: must be > 0{in_unit(unit)}")
+    return given
+
+
+def whole_number(name: str, value: Any, most: int = 2**31 - 1) -> int:
+    """Return a whole number up to ``most`` in size as an int."""
+    try:
+        if isinstance(value, bool | np.bool):
+            raise TypeError
+        whole = index(value)
+    except TypeError:
+        raise TypeError(f"{name} = {value!r}: must be a whole number") from None
+    if abs(whole) > most:
+        raise ValueError(f"{name}: is too large: must be at most {most}")
+    return whole
+
+
+def two_times(t_span: Any) -> tuple[Any, Any]:
+    """Return what is given as the start and the end of a run; the core checks them as times."""
+    if t_span is None:
+        raise TypeError("t_span is missing: give (t_start, t_end), in s")
+    try:
+        t_start, t_end = t_span
+    except (TypeError, ValueError):
+        raise _no_time_span(t_span) from None
+    return t_start, t_end
+
+
+def time_span(t_span: Any) -> tuple[float, float]:
+    """Return the start and the end of a run, finite, as two floats."""
+    given = two_times(t_span)
+    try:
+        t_start, t_end = (number("t_span", t, "s") for t in given)
+    except TypeError:
+        raise _no_time_span(t_span) from None
+    for i, t in enumerate((t_start, t_end)):
+        if not np.isfinite(t):
+            raise ValueError(f"t_span[{i}] = {t}: must be finite (s)")
+    if not np.isfinite(length := t_end - t_start):
+        raise ValueError(f"t_span = {t_span!r}: is {length} s long: must be below 1.8e308 (s)")
+    return t_start, t_end
+
+
+def _no_time_span(t_span: object) -> TypeError:
+    return TypeError(f"t_span = {t_span!r}: must be (t_start, t_end), in s")
+
+
+def time_limit_of(time_limit: object) -> float:
+    """Return how long something may take, s of the clock; inf for None."""
+    if time_limit is None:
+        return inf
+    return positive("time_limit", time_limit, "s")
+
+
+def in_unit(unit: str) -> str:
+    """Return how a message gives the unit, if there is one."""
+    return f" ({unit})" if unit not in ("", "1") else ""
+
+
+def finite_array(name: str, value: npt.ArrayLike, unit: str) -> Floats:
+    """Return finite real numbers of any shape as an array of floats."""
+    array = real_array(name, value, unit)
+    if not np.isfinite(array).all():
+        where = np.argwhere(~np.isfinite(array))[0]
+        place = "".join(f"[{i}]" for i in where)
+        raise ValueError(f"{name}{place} = {array[tuple(where)]}: must be finite{in_unit(unit)}")
+    return array
+
+
+def real_array(name: str, value: npt.ArrayLike, unit: str) -> Floats:
+    """Return real numbers of any shape, infinite ones too, as an array of floats."""
+    try:
+        array = np.asarray(value)
+    except ValueError:
+        raise ValueError(
+            f"{name}: rows of different lengths: must be an array{in_unit(unit)}"
+        ) from None
+    if array.dtype.kind == "O" and all(type(x) is int for x in array.flat):
+        try:  # integers beyond 64 bits
+            array = array.astype(np.float64)
+        except OverflowError:
+            raise _too_large(name, unit) from None
+    if array.dtype.kind not in "iuf":
+        held = {"U": "text", "O": "objects", "b": "truth values"}.get(array.dtype.kind, array.dtype)
+        raise TypeError(f"{name}: holds {held}: must hold real numbers{in_unit(unit)}")
+    return array.astype(np.float64, copy=False)
+
+
+def numbers(
+    name: str, value: Any, unit: str, count: int | None = None, finite: bool = True
+) -> tuple[float, ...]:
+    """Return numbers along one axis, as many as they are or ``count``."""
+    array = finite_array(name, value, unit) if finite else real_array(name, value, unit)
+    if array.ndim != 1 or count not in (None, len(array)):
+        wanted = "(k,)" if count is None else f"({count},), {count} numbers"
+        raise ValueError(f"{name}: shape {array.shape}: must be {wanted}{in_unit(unit)}")
+    return tuple(array.tolist())
+
+
+def vector(name: str, value: npt.ArrayLike, count: int, unit: str) -> tuple[float, ...]:
+    """Return as many finite numbers; a scalar holds for each of them."""
+    array = finite_array(name, value, unit)
+    if array.ndim == 0:
+        array = np.full(count, array)
+    if array.shape != (count,):
+        raise ValueError(f"{name}: shape {array.shape}: must be ({count},) ({unit})")
+    return tuple(array.tolist())
+
+
+def link_array(name: str, value: npt.ArrayLike, n: int, unit: str) -> Floats:
+    """Return an array whose last axis runs over the n links."""
+    array = finite_array(name, value, unit)
+    if array.ndim == 0 or array.shape[-1] != n:
+        raise ValueError(
+            f"{name}: shape {array.shape}: must be (..., {n}), one value per link ({unit})"
+        )
+    return array
+
+
+def _too_large(name: str, unit: str) -> ValueError:
+    return ValueError(f"{name}: is too large: must be below 1.8e308{in_unit(unit)}")

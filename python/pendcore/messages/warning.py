@@ -1,0 +1,22 @@
+"""The one class of warning that pendcore gives."""
+
+from __future__ import annotations
+
+import os
+import sys
+import warnings
+from pathlib import Path
+
+_PACKAGE = str(Path(__file__).parents[1]) + os.sep
+
+
+class PendcoreWarning(UserWarning):
+    """Something is allowed and looks wrong: the message names it, and why."""
+
+
+def warn(message: str) -> None:
+    """Give a warning that is blamed on the line of the user's that led to it."""
+    frame, level = sys._getframe(1), 2
+    while frame.f_back is not None and frame.f_code.co_filename.startswith(_PACKAGE):
+        frame, level = frame.f_back, level + 1
+    warnings.warn(message, PendcoreWarning, stacklevel=level)

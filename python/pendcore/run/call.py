@@ -1,0 +1,139 @@
+"""One run of a scene, as `simulate` makes it but in silence: warnings were given at the first."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from math import inf
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from pendcore import _core
+from pendcore.messages.progress import Progress, callback, close
+from pendcore.run.methods import known_methods
+from pendcore.run.result import Result, RunResult
+from pendcore.scene.scene import SceneData
+
+
+def silent(message: str) -> None:
+    """Say nothing."""
+
+
+class Start(NamedTuple):
+    """What is run: a scene, its angles (rad) and rates (rad/s), (n,) each, and when (s)."""
+
+    scene: SceneData
+    q0: npt.ArrayLike
+    qd0: npt.ArrayLike
+    t_start: float
+    t_end: float
+
+
+class Choice(NamedTuple):
+    """How it is run.
+
+    Attributes
+    ----------
+    method : str
+    rtol, atol : float or (2n,)
+        As in `simulate`; atol in rad and rad/s.
+    compensated : bool
+        Whether what rounding leaves over is carried on.
+    """
+
+    method: str
+    rtol: npt.ArrayLike
+    atol: npt.ArrayLike
+    compensated: bool = False
+
+
+def atol_beside(rtol: float) -> float:
+    """Return the absolute tolerance, rad and rad/s, of runs of which rtol alone is chosen."""
+    return float(f"{rtol / 1000:g}")
+
+
+def run(
+    start: Start,
+    choice: Choice,
+    t_eval: npt.ArrayLike | None = None,
+    *,
+    store: str | None = None,
+    first_step: float | None = None,
+    max_step: float = inf,
+    step: float | None = None,
+    max_steps: int = 10_000_000,
+    time_limit: float | None = None,
+    wanted: Sequence[tuple[str, dict[str, Any]]] = (),
+    ledger: bool = False,
+    progress: Progress = False,
+    warn: Callable[[str], object] = silent,
+) -> RunResult:
+    """Run; the keywords are those of `simulate`, and ``wanted`` are the core's events."""
+    report = callback(progress)
+    made = _core.simulate(
+        start.scene._compiled, start.q0, start.qd0, start.t_start, start.t_end,
+        choice.method, choice.rtol, choice.atol, t_eval, store,
+        first_step, max_step, step, max_steps, time_limit, wanted, ledger, choice.compensated,
+        report, warn,
+    )  # fmt: skip
+    return completed(RunResult(start.scene, made), report)
+
+
+def resumed(
+    result: Result,
+    t_end: float,
+    t_eval: npt.ArrayLike | None = None,
+    *,
+    max_steps: int = 10_000_000,
+    time_limit: float | None = None,
+    progress: Progress = None,
+) -> Result:
+    """Go on with a run; see `pendcore.Solution.resume`."""
+    report = callback(progress)
+    run = result.run.resume(t_end, t_eval, max_steps, time_limit, report)
+    return completed(type(result)(result.scene, run, result.name), report)
+
+
+def completed(result: Result, report: Callable[[float], object] | None) -> Result:
+    """End the bar of a run; if an exception broke it off, raise that with the run so far."""
+    close(report)
+    error = result.run.error
+    if error is not None:
+        error.solution = result  # type: ignore[attr-defined]
+        raise error
+    return result
+
+
+def start_of(solution: RunResult) -> Start:
+    """Return what a solution ran, as far as it came."""
+    asked = solution.run.arguments
+    end = solution.run.t_reached
+    return Start(solution.scene, asked["q0"], asked["qd0"], asked["t_start"], end)
+
+
+def supports(method: str, start: Start, step: float | None = None) -> bool:
+    """Whether a method supports a scene from its start: found by a run of no length.
+
+    ``step`` is for methods that need a fixed one, s.
+    """
+    if method not in known_methods():
+        return False
+    try:
+        run(start._replace(t_end=start.t_start), Choice(method, 1e-6, 1e-9), store="end", step=step)
+    except ValueError:
+        return False
+    return True
+
+
+def forget_inner_runs(stop: BaseException) -> None:
+    """Take from an exception what a run on the way handed over: the user asked for none of them."""
+    for name in ("solution", "estimate", "exponents"):
+        vars(stop).pop(name, None)
+
+
+def tightened(choice: Choice, factor: float, tightest: float) -> Choice:
+    """Divide both tolerances by a factor, or by as much as leaves rtol at the tightest."""
+    rtol, atol = np.asarray(choice.rtol), np.asarray(choice.atol)
+    factor = max(1.0, min(factor, float(rtol.min()) / tightest))
+    return choice._replace(rtol=rtol / factor, atol=atol / factor)

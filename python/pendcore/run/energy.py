@@ -1,0 +1,109 @@
+"""Energies over time, and where the energy went: work and loss of every effect."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from pendcore import _core
+from pendcore.messages.arguments import Floats
+
+LOSSES = frozenset(name for name, is_loss in _core.accounts().items() if is_loss)
+"""The entries that count what is lost; the others count work done on the chain."""
+
+
+class Ledger(Mapping[str, Floats]):
+    """Work and loss since the start, J, an entry for each kind that the scene has.
+
+    ``viscous``, ``dry``, ``drag`` and ``impact`` are losses, ``motor``, ``drive``, ``wind`` and
+    ``user`` work done on the chain. ``residual`` is what the balance leaves over, the error of the
+    run::
+
+        [T + V](t) - [T + V](0) = motor + drive + wind + user
+                                  - viscous - dry - drag - impact + residual
+
+    An entry is an attribute, ``ledger.viscous``, and an item, ``ledger["viscous"]``, (n_t,); one
+    that the scene has no effect for is not there.
+    """
+
+    __slots__ = ("_entries",)
+    _entries: dict[str, Floats]
+
+    def __init__(self, entries: Mapping[str, Floats], gain: Floats) -> None:
+        """Take the entries, and how much energy the chain has gained since the start, J."""
+        booked = sum(
+            (-x if name in LOSSES else x for name, x in entries.items()), np.zeros(len(gain))
+        )
+        residual = gain - booked
+        residual.flags.writeable = False
+        object.__setattr__(self, "_entries", {**entries, "residual": residual})
+
+    def __getitem__(self, name: str) -> Floats:
+        try:
+            return self._entries[name]
+        except KeyError:
+            raise KeyError(self._has_no(name)) from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._entries)
+
+    def __len__(self) -> int:
+        return len(self._entries)
+
+    def __getattr__(self, name: str) -> Floats:
+        try:
+            return self._entries[name]
+        except KeyError:
+            raise AttributeError(self._has_no(name)) from None
+
+    def _has_no(self, name: str) -> str:
+        return f"the ledger has no entry {name!r}: it has {', '.join(self._entries)}"
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"{name}: a ledger cannot be changed")
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self._entries]
+
+    __eq__ = object.__eq__  # a mapping's own would compare arrays
+    __hash__ = object.__hash__
+
+    def __reduce__(self) -> tuple[object, tuple[dict[str, Floats]]]:
+        return _again, (self._entries,)
+
+    def __repr__(self) -> str:
+        if not len(self.residual):
+            return f"<Ledger: {', '.join(self)} at no times>"
+        ends = ", ".join(f"{name} {entry[-1]:.6g}" for name, entry in self.items())
+        return f"<Ledger, J, at the last of {len(self.residual)} times: {ends}>"
+
+
+def _again(entries: dict[str, Floats]) -> Ledger:
+    ledger = object.__new__(Ledger)
+    object.__setattr__(ledger, "_entries", entries)
+    return ledger
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Energy:
+    """Energies over time. The potential energy is zero at the origin's height.
+
+    Attributes
+    ----------
+    kinetic, potential, total : ndarray, (n_t,)
+        J; springs are part of the potential energy, rotors and payload of the kinetic one.
+    ledger : Ledger or None
+        Work and loss of every effect, if the run kept them: ``simulate(..., ledger=True)``.
+    """
+
+    kinetic: Floats
+    potential: Floats
+    total: Floats
+    ledger: Ledger | None = None
+
+    def __repr__(self) -> str:
+        n_t = len(self.total)
+        ends = f", total {self.total[0]:.6g} ... {self.total[-1]:.6g} J" if n_t else ""
+        return f"<Energy: kinetic, potential, total at {n_t} times{ends}>"

@@ -1,0 +1,62 @@
+"""What the core found of the events that it looked for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+from pendcore.messages.arguments import Floats
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Found:
+    """An event that was found.
+
+    Attributes
+    ----------
+    t : float
+        s.
+    y : ndarray, (2n,)
+        The state: q_1..q_n (rad), qd_1..qd_n (rad/s); where it jumps, that after the jump.
+    direction : int
+        1: the function rose through zero; -1: it fell; 0: it touched zero and turned back.
+    y_before, y_after : ndarray, (2n,), or None
+        The states on both sides where the state jumps there.
+    """
+
+    t: float
+    y: Floats
+    direction: int
+    y_before: Floats | None = None
+
+    @property
+    def q(self) -> Floats:
+        """Absolute angles, rad, (n,)."""
+        return self.y[: len(self.y) // 2]
+
+    @property
+    def qd(self) -> Floats:
+        """Angular rates, rad/s, (n,)."""
+        return self.y[len(self.y) // 2 :]
+
+    @property
+    def y_after(self) -> Floats | None:
+        """The state after a jump, (2n,), or None."""
+        return None if self.y_before is None else self.y
+
+    def __repr__(self) -> str:
+        jump = ", the state jumps" if self.y_before is not None else ""
+        words = {1: "rising", -1: "falling", 0: "touching"}
+        return f"<Found: t = {self.t!r} s, {words[self.direction]}{jump}>"
+
+
+def found_events(count: int, found: Iterable[tuple[Any, ...]]) -> list[list[Found]]:
+    """Return a list for each of so many events, of what the core found."""
+    lists: list[list[Found]] = [[] for _ in range(count)]
+    for event, t, direction, y, y_before in found:
+        lists[event].append(Found(t, y, direction, y_before))
+    return lists
+
+
+Found.__module__ = "pendcore.events"  # where a user finds it

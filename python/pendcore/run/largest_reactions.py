@@ -1,0 +1,232 @@
+"""The largest joint forces of a run, found between its steps and on both sides of every jump."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import inf, pi
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from numpy.lib.stride_tricks import sliding_window_view
+
+from pendcore import _core
+from pendcore.messages.arguments import Floats
+from pendcore.messages.progress import Progress, callback, close
+from pendcore.scene.drives import fastest_drive
+from pendcore.scene.scene import SceneData
+
+IN_A_PIECE = 8
+"""Times at which forces are looked at first in each piece of a step; a step is one piece,"""
+PIECES_A_PERIOD = 2
+"""or where a drive is faster than the steps, so many in each of its periods,"""
+MOST_PIECES = 2**16
+"""but no more than this."""
+BEFORE_THE_END = 1e-6
+"""Share of a piece before its end at which, and at twice which, forces are taken to find what they
+tend to there: at the very end a law may have changed."""
+LAST_BITS = 8
+"""How many last bits of time this has to be at least."""
+ROUNDS = 16
+"""How often a peak is looked at more closely, each time between the neighbours of the highest of
+`IN_A_PIECE` + 1 times. The error is the square of what is left, so half as many often do."""
+ROUNDING = 1e-13
+"""Share of a force below which a difference is one of rounding."""
+JUMP = 1e-9
+"""Share beyond which a difference between the two sides of a time is a jump."""
+HELD = 4 * float(np.finfo(float).eps)
+"""Share of two links' rates below which their difference is one of rounding."""
+STEADY = 1e-12
+"""Share by which a force may vary that is the same throughout."""
+AT_ONCE = 2**18
+"""Numbers in the largest array."""
+
+
+class LargestReaction(NamedTuple):
+    """The largest size of a joint's force in a run.
+
+    Attributes
+    ----------
+    joint : int
+        From 1: where link ``joint`` begins.
+    force : float
+        N; inf where forces were beyond the range of doubles.
+    t : float
+        When, s.
+    just_before : bool
+        Whether it is what the force tends to just before ``t``, where it jumps: an impact, or a
+        joint that sticks or slides from then on.
+    steady : bool
+        Whether it is as large all the time.
+    """
+
+    joint: int
+    force: float
+    t: float
+    just_before: bool
+    steady: bool
+
+
+def largest_reactions(
+    scene: SceneData, run: _core.Run, progress: Progress = None
+) -> list[LargestReaction]:
+    """See `pendcore.Solution.largest_reactions`."""
+    search = _Search(scene, run)
+    if run.store != "dense":
+        search.take(run.t, search.sizes_at(run.t, run.states))
+        return search.found(is_over_time=len(set(run.t)) > 1)
+    report = callback(progress, "looking for the largest reactions")
+    starts, end = run.step_starts, run.t_reached
+    try:
+        for low, high in search.pieces():
+            search.look(low, high)
+            if report is not None:
+                report(abs(high[-1] - starts[0]) / abs(end - starts[0]))
+    finally:
+        close(report)
+    search.take(np.array([end]), search.sizes(np.array([end])))
+    return search.found()
+
+
+class _Search:
+    """The largest forces so far, (n,), and when they were."""
+
+    def __init__(self, scene: SceneData, run: _core.Run) -> None:
+        self.scene, self.run = scene, run
+        self.n = n = len(scene.links)
+        self.best, self.least = np.full(n, -inf), np.full(n, inf)
+        self.when, self.before = np.full(n, np.nan), np.zeros(n, dtype=bool)
+        self.at_once = max(AT_ONCE // (4 * IN_A_PIECE * n), 16)
+
+    def found(self, is_over_time: bool = True) -> list[LargestReaction]:
+        """Return what was found: nothing where there were no times."""
+        if np.isinf(self.least).all() and (self.best < 0).all():
+            return []
+        steady = (self.best < inf) & (self.least >= self.best * (1 - STEADY))
+        return [
+            LargestReaction(
+                joint=i + 1,
+                force=float(self.best[i]),
+                t=float(self.when[i]),
+                just_before=bool(self.before[i]),
+                steady=is_over_time and bool(steady[i]),
+            )
+            for i in range(self.n)
+        ]
+
+    def pieces(self) -> Iterator[tuple[Floats, Floats]]:
+        """Yield where pieces of steps begin and end, so many at once."""
+        starts, drive = self.run.step_starts, fastest_drive(self.scene)
+        for first in range(0, len(starts), self.at_once):
+            low = starts[first : first + self.at_once]
+            high = starts[first + 1 : first + 1 + self.at_once]
+            if len(high) < len(low):
+                high = np.append(high, self.run.t_reached)
+            periods = np.abs(high - low) / (2 * pi) * drive
+            count = np.clip(np.ceil(PIECES_A_PERIOD * periods), 1, MOST_PIECES).astype(int)
+            until = np.cumsum(count)
+            for begin in range(0, int(until[-1]), self.at_once):
+                k = np.arange(begin, min(begin + self.at_once, int(until[-1])))
+                of = np.searchsorted(until, k, side="right")
+                part = k - (until - count)[of]
+                length = ((high - low) / count)[of]
+                end = low[of] + (part + 1) * length
+                yield low[of] + part * length, np.where(part + 1 == count[of], high[of], end)
+
+    def sizes(self, t: Floats) -> Floats:
+        """Return sizes of the forces at times of the curve, N, (..., n)."""
+        found = self.sizes_at(t.ravel(), self.run.evaluate(t.ravel()))
+        return found.reshape(*t.shape, self.n)
+
+    def sizes_at(self, t: Floats, states: Floats) -> Floats:
+        """Return sizes of the forces at states, N, (k, n); inf where they are not finite."""
+        q, qd = states[:, : self.n], states[:, self.n : 2 * self.n].copy()
+        # The interpolant of a joint that is held may turn it by the last bits of its links' rates.
+        for j in range(1, self.n):
+            size = np.abs(qd[:, j]) + np.abs(qd[:, j - 1])
+            is_held = np.abs(qd[:, j] - qd[:, j - 1]) <= HELD * size
+            qd[is_held, j] = qd[is_held, j - 1]
+        with np.errstate(all="ignore"):
+            forces = self.scene._compiled.reactions(t, q, qd)
+            found: Floats = np.hypot(forces[..., 0], forces[..., 1])
+        return np.where(np.isfinite(found), found, inf)
+
+    def take(self, t: Floats, sizes: Floats) -> None:
+        """Keep what is larger than all before: at times (...), sizes (..., n)."""
+        if t.size:
+            sizes = sizes.reshape(t.size, self.n)
+            self.least = np.minimum(self.least, sizes.min(axis=0))
+            for i, k in enumerate(sizes.argmax(axis=0)):
+                self.take_one(i, float(t.flat[k]), float(sizes[k, i]))
+
+    def take_one(self, i: int, t: float, size: float, just_before: bool = False) -> None:
+        """Keep a force of one joint if it is larger than all before."""
+        if size > self.best[i]:
+            self.best[i], self.when[i], self.before[i] = size, t, just_before
+
+    def look(self, low: Floats, high: Floats) -> None:
+        """Look at pieces (m,) from ``low`` up to ``high``, where a law may change."""
+        bits = LAST_BITS * np.spacing(np.maximum(np.abs(low), np.abs(high)))
+        has_inside = np.abs(high - low) > 4 * bits
+        if not has_inside.all():
+            self.take(low, self.sizes(low))
+            low, high, bits = low[has_inside], high[has_inside], bits[has_inside]
+        if not len(low):
+            return
+        length = high - low
+        share = np.arange(IN_A_PIECE) / IN_A_PIECE
+        short = np.clip(bits / np.abs(length), BEFORE_THE_END, 0.25 / IN_A_PIECE) * length
+        t = low[:, None] + length[:, None] * share
+        ends = np.stack([high - 2 * short, high - short, high], axis=1)
+        grid, at_ends = self.sizes(t), self.sizes(ends)
+        self.take(t, grid)
+        last = self._limits(ends, at_ends)
+        times = np.concatenate([t, ends[:, 1:2]], axis=1)
+        self._polish(times, np.concatenate([grid, last[:, None]], axis=1))
+
+    def _limits(self, t: Floats, sizes: Floats) -> Floats:
+        """Return what sizes (m, 3, n) tend to at the last of times (m, 3), if they jump there."""
+        before, near, after = np.moveaxis(sizes, 1, 0)
+        ratio = ((t[:, 2] - t[:, 1]) / (t[:, 1] - t[:, 0]))[:, None]
+        with np.errstate(invalid="ignore"):
+            limit = np.where(np.isfinite(before + near), near + (near - before) * ratio, near)
+            jumps = np.abs(limit - after) > JUMP * np.maximum(limit, after)
+        for i in range(self.n):
+            k = int(np.where(jumps[:, i], limit[:, i], -inf).argmax())
+            if jumps[k, i]:
+                self.take_one(i, float(t[k, 2]), float(limit[k, i]), just_before=True)
+        found: Floats = np.where(jumps, limit, after)
+        return found
+
+    def _polish(self, times: Floats, grid: Floats) -> None:
+        """Look between the neighbours of peaks of a grid, times (m, k), sizes (m, k, n)."""
+        of, joint = np.divmod(np.arange(len(times) * self.n), self.n)
+        t, sizes = times[of], grid.transpose(0, 2, 1).reshape(len(of), -1)
+        share = np.arange(IN_A_PIECE + 1) / IN_A_PIECE
+        for _ in range(ROUNDS):
+            row, k = np.nonzero(_may_exceed(sizes, self.best[joint]))
+            if not len(row):
+                return
+            joint = joint[row]
+            low, high = t[row, np.maximum(k - 1, 0)], t[row, np.minimum(k + 1, IN_A_PIECE)]
+            t = low[:, None] + (high - low)[:, None] * share
+            sizes = np.take_along_axis(self.sizes(t), joint[:, None, None], axis=2)[..., 0]
+            highest = sizes.argmax(axis=1)
+            tops = sizes[np.arange(len(sizes)), highest]
+            for i in np.unique(joint):
+                best = int(np.where(joint == i, tops, -inf).argmax())
+                self.take_one(int(i), float(t[best, highest[best]]), float(tops[best]))
+
+
+def _may_exceed(sizes: Floats, best: Floats) -> npt.NDArray[np.bool_]:
+    """Return at which peaks of rows of sizes (m, k) the curve may come to more than ``best``, (m,).
+
+    A smooth curve rises above a sample by less than the sample is above its neighbours.
+    """
+    around = np.pad(sizes, ((0, 0), (2, 2)), constant_values=inf)
+    least = sliding_window_view(around, 5, axis=1).min(axis=-1)
+    beside = np.pad(sizes, ((0, 0), (1, 1)), constant_values=-inf)
+    is_peak = (sizes >= beside[:, :-2]) & (sizes >= beside[:, 2:]) & np.isfinite(sizes)
+    rise = np.where(is_peak, sizes - least, 0.0)
+    may: npt.NDArray[np.bool_] = (rise > ROUNDING * sizes) & (sizes + rise > best[:, None])
+    return may

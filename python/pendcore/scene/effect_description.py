@@ -1,0 +1,205 @@
+"""What is known of each kind of effect, as the core says it: law, source, parameters.
+
+From it come the classes of `pendcore.effects`, their docstrings and stubs, the keys of case files
+and the pages in docs/effects.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cache
+from textwrap import wrap
+from typing import Any, NamedTuple
+
+from pendcore import _core
+from pendcore.messages.arguments import in_unit
+
+NUMBERS = {"int", "float", "optional float", "pair", "floats"}
+"""The types of parameters that are numbers; the others are a part, an address or a function."""
+
+
+class Parameter(NamedTuple):
+    """One parameter of an effect, or of a part of one.
+
+    Attributes
+    ----------
+    name : str
+        As in Python and in case files.
+    symbol : str
+        As in the law; empty for what is no quantity.
+    unit : str
+        SI; empty for what has none, ``"1"`` for a ratio.
+    sentence : str
+        What it is.
+    type : str
+        ``"int"``, ``"float"``, ``"optional float"``, ``"pair"``, ``"floats"``, ``"address"``,
+        ``"function"``, or the name of a part.
+    range : str
+        Allowed values, in words.
+    required : bool
+        Whether it has no default.
+    default : object
+        None where there is none, and where leaving it out means something of its own.
+    """
+
+    name: str
+    symbol: str
+    unit: str
+    sentence: str
+    type: str
+    range: str
+    required: bool
+    default: Any
+
+    @property
+    def optional(self) -> bool:
+        """Whether it may be None."""
+        return not self.required and self.default is None
+
+    @property
+    def part(self) -> str | None:
+        """The class of its values, if they have parameters of their own."""
+        return self.type if self.type[0].isupper() else None
+
+
+class Description(NamedTuple):
+    """One kind of effect, or of a part of effects.
+
+    Attributes
+    ----------
+    name : str
+        Of the class.
+    sentence : str
+        What it is.
+    parameters : tuple of Parameter
+        The required ones first.
+    kind : str
+        As in case files; empty for a part.
+    law, source : str
+        The equation, and where it comes from.
+    account : str
+        Where the ledger books its work; ``"none"`` where there is none.
+    bounds_joint : bool
+        Whether a start next to one that it allows may be none that it allows.
+    jumps_or_sticks : bool
+        Whether the motion jumps or sticks under it, each time at an instant of its own.
+    """
+
+    name: str
+    sentence: str
+    parameters: tuple[Parameter, ...]
+    kind: str = ""
+    law: str = ""
+    source: str = ""
+    account: str = "none"
+    bounds_joint: bool = False
+    jumps_or_sticks: bool = False
+
+
+CAVEATS = {
+    "dry": "A joint that friction brings to rest sticks: its rate is 0.0, exactly, until the "
+    "torque that holds it exceeds `static`. A run in which nothing can move any more has the "
+    'status "at_rest".',
+    "impact": "A joint at rest at a stop is held there until what holds it would have to pull. "
+    'A run in which nothing can move any more has the status "at_rest".',
+}
+"""What is to be known of laws whose work the ledger books so."""
+
+USER = Description(
+    name="User",
+    kind="user",
+    sentence="An effect of the user's own, as a Python function of t, q and qd.",
+    law="Q += f(t, q, qd)",
+    source="the user's",
+    account="user",
+    parameters=(
+        Parameter(
+            name="function",
+            symbol="f",
+            unit="N m",
+            sentence="f(t, q, qd) of the time (s), the angles (n,) and the rates (n,) returns the "
+            "generalised forces (n,) of the absolute angles; the same for the same arguments. It "
+            "is called at every right-hand side, a few microseconds each",
+            type="function",
+            range="",
+            required=True,
+            default=None,
+        ),
+    ),
+)
+
+
+@cache
+def effects() -> tuple[Description, ...]:
+    """Return the kinds of effects: the core's in the order of its registry, and the user's."""
+    return (*map(_description, _core.effect_descriptors()), USER)
+
+
+@cache
+def parts() -> tuple[Description, ...]:
+    """Return the kinds of what parameters of effects hold that have parameters of their own."""
+    return tuple(map(_description, _core.part_descriptors()))
+
+
+def account_of(kind: str) -> str:
+    """Return where the ledger books the work of a kind of effects."""
+    return next(described.account for described in effects() if described.kind == kind)
+
+
+def _description(told: dict[str, Any]) -> Description:
+    parameters = [Parameter(**row) for row in told["parameters"]]
+    parameters.sort(key=lambda parameter: not parameter.required)
+    return Description(**(told | {"parameters": tuple(parameters)}))
+
+
+def type_in_words(parameter: Parameter) -> str:
+    """Return the type of a parameter as a docstring gives it."""
+    words = {
+        "optional float": "float",
+        "pair": "(float, float)",
+        "floats": "array_like, (k,)",
+        "function": "callable",
+        "address": "int, ctypes function or numba cfunc"
+        if parameter.required
+        else "int or ndarray",
+    }
+    word = words.get(parameter.type, parameter.type)
+    if parameter.required:
+        return word
+    return f"{word}, optional" if parameter.optional else f"{word}, default {parameter.default!r}"
+
+
+def docstring(described: Description) -> str:
+    """Return the docstring of a class."""
+    return "\n".join(_lines(described))
+
+
+def _lines(described: Description) -> Iterator[str]:
+    yield described.sentence
+    if described.law:
+        yield ""
+        yield "Law::"
+        yield ""
+        yield from wrap(described.law, 92, initial_indent="    ", subsequent_indent="        ")
+    yield from ("", "Parameters", "----------")
+    for parameter in described.parameters:
+        yield f"{parameter.name} : {type_in_words(parameter)}"
+        yield from wrap(_meaning(parameter), 92, initial_indent="    ", subsequent_indent="    ")
+    yield from ("", "Raises", "------", "ValueError, TypeError")
+    yield "    If a value is none that is allowed; the message names it, the range and the unit."
+    if described.source:
+        yield from ("", "Notes", "-----")
+        yield from wrap(f"Source: {described.source}.", 92)
+    if described.account in CAVEATS:
+        yield ""
+        yield from wrap(CAVEATS[described.account], 92)
+
+
+def _meaning(parameter: Parameter) -> str:
+    """Return what a parameter is, its symbol, its range and its unit."""
+    symbol = f"{parameter.symbol}: " if parameter.symbol else ""
+    sentence = (
+        parameter.sentence if symbol else parameter.sentence[:1].upper() + parameter.sentence[1:]
+    )
+    allowed = f"; {parameter.range}" if parameter.range else ""
+    return f"{symbol}{sentence}{allowed}{in_unit(parameter.unit)}."

@@ -1,0 +1,235 @@
+"""What is simulated: links in a chain, gravity, and the effects that the scene has. SI units.
+
+x points right, **y points down**, the origin is the pivot. The angle ``q_i`` of link i is absolute,
+from +x towards +y: 0 is horizontal, pi/2 hangs straight down. Links and joints count from 1; joint
+i is where link i begins.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field, fields
+from typing import NamedTuple, Self, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from pendcore import _core
+from pendcore.messages.arguments import (
+    Floats,
+    finite_array,
+    known_keywords,
+    link_array,
+    number,
+)
+from pendcore.messages.warning import warn
+from pendcore.scene.effect_class import Effect
+from pendcore.scene.link import Link
+
+Member = TypeVar("Member")
+
+
+class Mobility(NamedTuple):
+    """The textbook's count of the degrees of freedom: ``M = 3 links - 2 c5 - c4``.
+
+    Attributes
+    ----------
+    links : int
+        Moving links; those that a lock makes one are one.
+    c5 : int
+        Joints with one degree of freedom (hinges).
+    c4 : int
+        Joints with two degrees of freedom.
+    degrees_of_freedom : int
+        ``M``.
+    """
+
+    links: int
+    c5: int
+    c4: int
+    degrees_of_freedom: int
+
+
+@dataclass(frozen=True, slots=True, init=False, repr=False)
+class SceneData:
+    """A scene without what is built on it; `pendcore.Scene` has its parameters and the rest."""
+
+    links: tuple[Link, ...]
+    gravity: float = 9.807
+    effects: tuple[Effect, ...] = ()
+    _compiled: _core.Scene = field(init=False, compare=False)
+
+    @known_keywords
+    def __init__(
+        self, *, links: Iterable[Link], gravity: float = 9.807, effects: Iterable[Effect] = ()
+    ) -> None:
+        self._compile(links, gravity, effects)
+        self._warn()
+
+    def _compile(self, links: Iterable[Link], gravity: float, effects: Iterable[Effect]) -> None:
+        links = _tuple_of("link", Link, links, "pendcore.Link, from the pivot outwards")
+        effects = _tuple_of("effect", Effect, effects, "pendcore.effects")
+        gravity = number("gravity", gravity, "m/s^2")
+        acting = [effect._as_pair() for effect in effects]
+        rows = [(link.mass, link.length, link.center, link.inertia) for link in links]
+        object.__setattr__(self, "links", links)
+        object.__setattr__(self, "gravity", gravity)
+        object.__setattr__(self, "effects", effects)
+        object.__setattr__(self, "_compiled", _core.Scene(rows, gravity, acting))
+
+    def _warn(self) -> None:
+        for message in self._compiled.warnings:
+            warn(message)
+
+    @classmethod
+    def textbook(cls) -> Self:
+        """Section 2.1 of the textbook: two uniform rods of 1 kg and 1 m, g = 9.807 m/s^2."""
+        return cls(links=[Link(mass=1.0, length=1.0), Link(mass=1.0, length=1.0)])
+
+    @known_keywords
+    def replace(
+        self,
+        *,
+        links: Iterable[Link] | None = None,
+        gravity: float | None = None,
+        effects: Iterable[Effect] | None = None,
+    ) -> Self:
+        """Return a scene with other links, gravity or effects; what is not given stays.
+
+        Parameters
+        ----------
+        links, gravity, effects
+            As in `Scene`.
+        """
+        return type(self)(
+            links=self.links if links is None else links,
+            gravity=self.gravity if gravity is None else gravity,
+            effects=self.effects if effects is None else effects,
+        )
+
+    __replace__ = replace  # copy.replace() of Python 3.13
+
+    def accelerations(self, t: npt.ArrayLike, q: npt.ArrayLike, qd: npt.ArrayLike) -> Floats:
+        """Angular accelerations of the links: the right-hand side that is integrated.
+
+        What is smooth only in pieces, such as dry friction, is on the side that a forward run
+        would be on. A joint that is locked does not turn: its rate, ``qd_i - qd_{i-1}``, must be
+        zero, for what follows from any other is not the scene's.
+
+        Parameters
+        ----------
+        t : array_like, (...)
+            Time, s.
+        q, qd : array_like, (..., n)
+            Absolute angles, rad, and rates, rad/s. The leading axes broadcast.
+
+        Returns
+        -------
+        qdd : ndarray, (..., n)
+            rad/s^2.
+
+        Raises
+        ------
+        ValueError, TypeError
+            If an argument is not finite real numbers of that shape.
+        """
+        n = len(self.links)
+        times = finite_array("t", t, "s")
+        q, qd = link_array("q", q, n, "rad"), link_array("qd", qd, n, "rad/s")
+        try:
+            lead = np.broadcast_shapes(times.shape, q.shape[:-1], qd.shape[:-1])
+        except ValueError:
+            raise ValueError(
+                f"t, q, qd: shapes {times.shape}, {q.shape}, {qd.shape}: must broadcast, the last "
+                "axis of q and qd aside"
+            ) from None
+        return self._compiled.accelerations(
+            np.broadcast_to(times, lead).reshape(-1),
+            np.broadcast_to(q, (*lead, n)).reshape(-1, n),
+            np.broadcast_to(qd, (*lead, n)).reshape(-1, n),
+        ).reshape(*lead, n)
+
+    def mass_matrix(self, q: npt.ArrayLike) -> Floats:
+        """Mass matrix of the equations of motion, symmetric and positive definite.
+
+        Payloads and rotors are in it. Locks are not: it is that of the chain with all its joints
+        free, whatever is locked.
+
+        Parameters
+        ----------
+        q : array_like, (..., n)
+            Absolute angles, rad.
+
+        Returns
+        -------
+        ndarray, (..., n, n)
+            kg m^2.
+        """
+        n = len(self.links)
+        q = link_array("q", q, n, "rad")
+        return self._compiled.mass_matrix(q.reshape(-1, n)).reshape(*q.shape, n)
+
+    def mobility(self) -> Mobility:
+        """Count the degrees of freedom as the textbook does, ``M = 3 n - 2 c5 - c4``."""
+        return Mobility(*self._compiled.mobility())
+
+    def __repr__(self) -> str:
+        effects = f", effects={self.effects!r}" if self.effects else ""
+        return f"Scene(links={self.links!r}, gravity={self.gravity!r}{effects})"
+
+    @classmethod
+    def of(cls, scene: SceneData) -> Self:
+        """Return the same scene as one of this class."""
+        same = object.__new__(cls)
+        for member in fields(SceneData):
+            object.__setattr__(same, member.name, getattr(scene, member.name))
+        return same
+
+    @classmethod
+    def _unpickled(
+        cls, links: Iterable[Link], gravity: float, effects: Iterable[Effect] = ()
+    ) -> Self:
+        scene = object.__new__(cls)
+        scene._compile(links, gravity, effects)
+        return scene
+
+    def __reduce__(self) -> tuple[object, tuple[object, ...]]:
+        # The compiled scene is made anew; what is implausible was said when it was first made.
+        return type(self)._unpickled, (self.links, self.gravity, self.effects)
+
+
+_OBJECT = {
+    "link": "pendcore.Link object, such as Link(mass=1.0, length=1.0)",
+    "effect": "pendcore.effects object, such as ViscousJoint(joint=1, damping=0.1)",
+}
+
+
+def _tuple_of(
+    noun: str, kind: type[Member], values: Iterable[Member], what: str
+) -> tuple[Member, ...]:
+    remedy = f"must be a list of {what}"
+    try:
+        values = tuple(values)
+    except TypeError:
+        raise TypeError(f"{noun}s = {values!r}: {remedy}") from None
+    for i, value in enumerate(values, start=1):
+        if isinstance(value, type) and issubclass(value, kind):
+            raise TypeError(
+                f"{noun} {i} = {value.__name__}: must be a {_OBJECT[noun]}; got the class itself"
+            )
+        if not isinstance(value, kind):
+            raise TypeError(f"{noun} {i} = {value!r}: {remedy}")
+    return values
+
+
+def require_start(scene: object, q0: npt.ArrayLike | None) -> npt.ArrayLike:
+    """Return the angles at the start; TypeError unless there are some, and a scene."""
+    if not isinstance(scene, SceneData):
+        told, remedy = f"scene = {scene!r}", ""
+        if isinstance(getattr(scene, "scene", None), SceneData):
+            told = f"scene: is a {type(scene).__name__}"
+            remedy = "; case.simulate() runs a case" if hasattr(scene, "simulate") else ""
+        raise TypeError(f"{told}: must be a pendcore.Scene{remedy}")
+    if q0 is None:
+        raise TypeError("q0 is missing: give the angles at the start, one per link, in rad")
+    return q0
