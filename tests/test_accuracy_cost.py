@@ -16,6 +16,7 @@ from pendcore.cli import main
 from pendcore.cost.point import Point, front, seconds_at
 from pendcore.cost.reference import reference
 from pendcore.run.call import Start
+from pendcore.run.methods import known_methods, line_style
 
 BOOK = pc.Scene.textbook()
 START = ([np.pi / 4, np.pi / 3], 0, (0, 5))
@@ -189,10 +190,8 @@ def test_the_figure_has_a_line_a_method_units_and_a_legend_beside_the_data(book,
 
 
 def test_the_figures_lines_differ_without_colour():
-    from pendcore.cost.figure import STYLES
-
-    looks = {(str(style["linestyle"]), style["marker"]) for style in STYLES.values()}
-    assert len(looks) == len(STYLES)
+    styles = [line_style(method) for method in known_methods()]
+    assert len({(str(style["linestyle"]), style["marker"]) for style in styles}) == len(styles)
 
 
 @pytest.mark.parametrize(

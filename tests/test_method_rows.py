@@ -1,51 +1,32 @@
-"""Every method of the core has its rows in the tables of Python that name methods.
-
-CONTRIBUTING.md, "Add a method", step 4, says what they are for.
-"""
+"""What a method says of itself is complete, so that no other file need name it."""
 
 from __future__ import annotations
 
+import pendcore as pc
 import pytest
-from pendcore.accuracy.method_choice import ERROR_OVER_RTOL, MOST_ACCURATE
-from pendcore.accuracy.trials import IMPLICIT
-from pendcore.cost.figure import STYLES
-from pendcore.run.methods import known_methods
+from pendcore.run.methods import known_methods, line_style, most_accurate
 
 METHODS = known_methods()
-ONE_BY_ONE = [
-    name for name, m in METHODS.items() if m["kind"] in ("explicit", "implicit", "taylor")
-]
-"""Not those that change between others."""
-NEVER_CHOSEN = {"rk4": "takes fixed steps only: there is no tolerance to choose"}
-"""For an error that is asked for, and why."""
-STEP_4 = 'see step 4 of "Add a method" in CONTRIBUTING.md'
-
-
-@pytest.mark.parametrize("method", ONE_BY_ONE)
-def test_it_is_known_how_large_a_methods_error_is_or_why_not(method):
-    assert (method in ERROR_OVER_RTOL) != (method in NEVER_CHOSEN), (
-        f"{method}: measure its error at a tolerance and add it to ERROR_OVER_RTOL of "
-        f"method_choice.py, or say in NEVER_CHOSEN here why error= never takes it; {STEP_4}"
-    )
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_a_method_has_a_line_of_its_own_in_the_figures(method):
-    assert method in STYLES, (
-        f"{method}: is drawn as any other unknown: give it a colour, a dash and a marker in STYLES "
-        f"of views/accuracy_cost.py; {STEP_4}"
-    )
+def test_a_method_has_words_a_source_and_a_line_of_its_own(method: str) -> None:
+    known = METHODS[method]
+    assert known["sentence"].endswith(".")
+    assert known["citation"]
+    others = [line_style(other) for other in METHODS if other != method]
+    assert line_style(method) not in others
+    assert f'``"{method}"``' in (pc.simulate.__doc__ or "")
 
 
-@pytest.mark.parametrize(
-    ("table", "names"),
-    {
-        "accuracy.method_choice.ERROR_OVER_RTOL": ERROR_OVER_RTOL,
-        "accuracy.trials.IMPLICIT": [IMPLICIT],
-        "accuracy.method_choice.MOST_ACCURATE": MOST_ACCURATE,
-        "views.accuracy_cost.STYLES": STYLES,
-        "NEVER_CHOSEN": NEVER_CHOSEN,
-    }.items(),
-)
-def test_no_table_names_a_method_that_is_none(table, names):
-    assert set(names) <= set(METHODS), f"{table}: {set(names) - set(METHODS)}: the core has none"
+@pytest.mark.parametrize("method", METHODS)
+def test_a_method_that_chooses_its_steps_says_how_large_its_error_is(method: str) -> None:
+    """Fixed steps have no tolerance to choose: ``error=`` never takes them."""
+    known = METHODS[method]
+    assert (known["error_over_rtol"] > 0) == (known["error_order"] > 0)
+
+
+def test_no_two_methods_have_one_place_among_second_opinions() -> None:
+    places = [one["second_opinion"] for one in METHODS.values() if one["second_opinion"]]
+    assert sorted(places) == [*range(1, len(places) + 1)]
+    assert len(most_accurate()) == len(places)

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from math import floor, log10
 
 from pendcore.run.call import Start, supports
-from pendcore.run.methods import known_methods, pair_of
+from pendcore.run.methods import known_methods, most_accurate, pair_of
 from pendcore.scene.effect_description import account_of
 from pendcore.scene.scene import SceneData
 
@@ -23,8 +23,6 @@ TIGHTEST_SECOND = {"taylor": 1e-15}
 truncation is to be less than that of a run at the tightest."""
 TIGHTEST_IMPLICIT = 1e-13
 """The same of an implicit method, whose equations are not solved any better."""
-ERROR_OVER_RTOL = {"dopri5": 3.0, "dop853": 0.4, "taylor": 0.9, "radau5": 1.0}
-"""The largest position error of a run, typically, as a multiple of its rtol."""
 SERIES_TO_DOP853 = 0.092
 """Series that taylor takes at rtol 1e-3 for each right-hand side of dop853, typically."""
 TAYLOR_BELOW = ((0.9, 5e-3), (1.08, 2e-5), (1.2, 1e-6), (1.6, 3e-6), (4.0, 1e-10))
@@ -38,8 +36,6 @@ DOPRI5_ABOVE_ELSE = 3e-7
 """The same with any other number of links."""
 INERTIA_ALONE = {"payload", "rotor_inertia"}
 """Effects that change what the links weigh, and add no torque."""
-MOST_ACCURATE = ("taylor", "dop853", "dopri5", "radau5")
-"""Whom to ask for a second opinion: the first of these that can carry the scene and is another."""
 _DIGITS = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
 
 
@@ -97,7 +93,7 @@ def second_methods(start: Start, method: str, stiff: bool) -> Iterator[str]:
     """
     known = known_methods()[method]
     begins, goes_on = known["first"], known["second"]
-    methods: tuple[str, ...] = tuple(name for name in MOST_ACCURATE if name != begins)
+    methods: tuple[str, ...] = tuple(name for name in most_accurate() if name != begins)
     if stiff and goes_on:  # the second method made most of the run
         methods = (goes_on,)
     elif stiff:

@@ -16,7 +16,6 @@ from pendcore.accuracy.estimate import (
     second_times,
 )
 from pendcore.accuracy.method_choice import (
-    ERROR_OVER_RTOL,
     TIGHTEST,
     TIGHTEST_IMPLICIT,
     TIGHTEST_SECOND,
@@ -30,11 +29,9 @@ from pendcore.messages.warning import warn
 from pendcore.run.accuracy import Accuracy, Outcome, Paid
 from pendcore.run.call import Choice, Start, atol_beside, resumed, run, silent
 from pendcore.run.error_estimate import ErrorEstimate
-from pendcore.run.methods import pair_of
+from pendcore.run.methods import error_over_rtol, implicit_method, pair_of
 from pendcore.run.result import RunResult
 
-IMPLICIT = "radau5"
-"""The method for what the first trial found to be stiff."""
 FOR_BOTH = 5.0
 """A method is chosen that is good for a run and for a second one, which is better: for an error so
 many times less."""
@@ -104,11 +101,13 @@ class Trials:
 
         In most scenes, that is.
         """
-        return IMPLICIT if self.is_stiff else pair_of(cheapest(self.start, scale / FOR_BOTH))
+        return (
+            implicit_method() if self.is_stiff else pair_of(cheapest(self.start, scale / FOR_BOTH))
+        )
 
     def trial(self, scale: float, method: str) -> TrialRun:
         """Run with all that was asked for."""
-        rtol = rounded(scale / ERROR_OVER_RTOL[leading(method)], self.tightest)
+        rtol = rounded(scale / error_over_rtol(leading(method)), self.tightest)
         options = self.options
         if self.trials:
             options = options | {"max_steps": self._most_steps()}
@@ -128,9 +127,9 @@ class Trials:
         The method is the trial's, or radau5 where the scene is stiff: by how much another one is
         better would be a guess, as a scene may suit the one and not the other.
         """
-        method = IMPLICIT if self.is_stiff else trial.method
+        method = implicit_method() if self.is_stiff else trial.method
         tightest = TIGHTEST_SECOND.get(leading(method), self.tightest)
-        rtol = rounded(scale / ERROR_OVER_RTOL[leading(method)], tightest)
+        rtol = rounded(scale / error_over_rtol(leading(method)), tightest)
         ends_anywhere = any(values.get("terminal") for _, values in self.options["wanted"])
         options = {
             "t_eval": None if ends_anywhere else second_times(trial.solution),
@@ -220,7 +219,7 @@ class Trials:
         work = float(solution.stats.nfev)
         if leading(method) == "taylor" and not solution.stats.stiff:
             work *= series_work(start.scene, rtol)
-        scale = rtol * ERROR_OVER_RTOL[leading(method)]
+        scale = rtol * error_over_rtol(leading(method))
         made = TrialRun(method, rtol, scale, work, solution)
         self.paid.append(made)
         self._done += _ADVANCE * (1 - self._done)

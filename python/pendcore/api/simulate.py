@@ -13,6 +13,7 @@ from pendcore.api.solve import solve
 from pendcore.messages.arguments import known_keywords
 from pendcore.messages.progress import Progress
 from pendcore.run.events import Event
+from pendcore.run.methods import described_methods
 
 
 @known_keywords
@@ -59,14 +60,7 @@ def simulate(
         in all components ``"dopri5-radau5"``. Each of these pairs is its first method, to the last
         bit, and ``"radau5"`` from where stability is found to limit the steps and that one takes
         ten times longer ones.
-        ``"dopri5"`` (also ``"RK45"``, ``"ode45"``): Dormand-Prince 5(4) with dense output.
-        ``"dop853"`` (also ``"DOP853"``): Dormand-Prince 8(5,3) with dense output of order 7, for
-        tight tolerances. ``"taylor"``: Taylor series of an order that the tolerances choose, the
-        quickest from some 1e-6 down and right to the rounding limit; refuses scenes with rod drag,
-        Stribeck friction or functions of your own. ``"rk4"``: the classical method of order 4, in
-        fixed steps of ``step``.
-        ``"radau5"`` (also ``"Radau"``): Radau IIA of order 5, implicit, for stiff scenes: strong
-        damping, hard springs, stiff controllers.
+        {methods}
     rtol, atol : float or (2n,)
         The error of a step is kept below ``atol + rtol abs(y)``, in root mean square over
         ``y = (q, qd)``. A Taylor series estimates none: its last coefficients choose the step.
@@ -151,3 +145,6 @@ def simulate(
         events, ledger, compensated, error, check, progress,
     )  # fmt: skip
     return solve(Solution, scene, q0, qd0, t_span, options)
+
+
+simulate.__doc__ = described_methods(simulate.__doc__)

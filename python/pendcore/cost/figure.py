@@ -7,23 +7,12 @@ from math import inf
 from typing import TYPE_CHECKING, Any
 
 from pendcore.cost.point import Point
+from pendcore.run.methods import line_style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
 
-# Colours differ in lightness too, dashes and markers differ: the figure survives a grey printer.
-STYLES: dict[str, dict[str, Any]] = {
-    "dopri5": {"color": "#1f5fa8", "linestyle": "-", "marker": "o"},
-    "dop853": {"color": "#c2410c", "linestyle": "--", "marker": "s"},
-    "taylor": {"color": "#000000", "linestyle": "-", "marker": "D"},
-    "radau5": {"color": "#5b8c3a", "linestyle": "-.", "marker": "^"},
-    "dopri5-radau5": {"color": "#8b6bb1", "linestyle": (0, (1, 1)), "marker": "v"},
-    "dop853-radau5": {"color": "#a8741a", "linestyle": (0, (3, 1, 1, 1)), "marker": "<"},
-    "taylor-radau5": {"color": "#3f3f5f", "linestyle": (0, (6, 2)), "marker": ">"},
-    "rk4": {"color": "#8a8a8a", "linestyle": ":", "marker": "P"},
-}
-OTHERS = {"color": "#444444", "linestyle": (0, (5, 1, 1, 1, 1, 1)), "marker": "*"}
 UNITS = ((1e-4, 1e6, "\N{MICRO SIGN}s"), (0.1, 1e3, "ms"), (inf, 1.0, "s"))
 
 
@@ -79,7 +68,7 @@ def plot(
     lines = []
     for method in dict.fromkeys(p.method for p in drawn):
         ours = [p for p in drawn if p.method == method]
-        given = {"markersize": 5, **STYLES.get(method, OTHERS), "label": method, **line_properties}
+        given = {"markersize": 5, **line_style(method), "label": method, **line_properties}
         height = [factor * p.seconds if y == "time" else p.nfev for p in ours]
         (line,) = ax.plot([p.error for p in ours], height, **{"markerfacecolor": "white", **given})
         lines.append(line)

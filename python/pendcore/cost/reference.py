@@ -13,15 +13,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pendcore.accuracy.method_choice import MOST_ACCURATE, TIGHTEST, TIGHTEST_IMPLICIT
+from pendcore.accuracy.method_choice import TIGHTEST, TIGHTEST_IMPLICIT
 from pendcore.accuracy.position_error import angles_at, distances, reached, time_grid
 from pendcore.messages.arguments import Floats
 from pendcore.run.call import Choice, Start, atol_beside, run, supports
-from pendcore.run.methods import methods_of, pair_of
+from pendcore.run.methods import implicit_method, methods_of, most_accurate, pair_of
 from pendcore.run.result import RunResult
 
 # Where the scene is stiff, an implicit method first.
-REFEREES_IF_STIFF = ("radau5", "dop853", pair_of("dopri5"))
+REFEREES_IF_STIFF = (implicit_method(), "dop853", pair_of("dopri5"))
 TOO_UNCERTAIN = 1e-6
 """Beyond, the span is cut to where the two agree to `KNOWN`."""
 KNOWN = 1e-8
@@ -113,9 +113,9 @@ def known_until(found: Reference) -> int:
 
 
 def _choices(start: Start, stiff: bool) -> Iterator[Choice]:
-    for method in REFEREES_IF_STIFF if stiff else MOST_ACCURATE:
+    for method in REFEREES_IF_STIFF if stiff else most_accurate():
         if supports(method, start):
-            rtol = TIGHTEST_IMPLICIT if "radau5" in methods_of(method) else TIGHTEST
+            rtol = TIGHTEST_IMPLICIT if implicit_method() in methods_of(method) else TIGHTEST
             yield Choice(method, rtol, atol_beside(rtol), compensated=True)
 
 

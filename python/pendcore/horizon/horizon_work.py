@@ -10,17 +10,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from pendcore.horizon.lyapunov import LyapunovExponents
+from pendcore.run.methods import line_style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-# Read in grey too: a marker and a dash for each.
-_MARKS = {
-    "dopri5": ("o", "-", "C0"),
-    "dop853": ("s", "--", "C3"),
-    "taylor": ("^", "-.", "C2"),
-}
 NARROW, FEW_DECADES = 6, 200
 """Ranges of so much have hardly a number of one digit to label, and hardly a power of ten."""
 
@@ -164,9 +159,8 @@ def draw_work(work: HorizonWork, figure: Figure) -> None:
     by_digits, by_cost = figure.subplots(1, 2, sharey=True)
     for method in work.methods:
         points = work.of(method)
-        marker, style, color = _MARKS.get(method, ("x", ":", "k"))
         valid = [point.valid for point in points]
-        properties = {"marker": marker, "linestyle": style, "color": color, "markersize": 5}
+        properties = {**line_style(method), "markersize": 5}
         by_digits.plot([point.early for point in points], valid, label=method, **properties)
         by_cost.plot([1e6 * point.seconds for point in points], valid, **properties)
         to_the_end = [point for point in points if work.is_to_the_end(point)]

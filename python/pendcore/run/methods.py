@@ -1,8 +1,9 @@
-"""The methods of the core, and what it says of each."""
+"""The methods of the core, and what it says of each: nothing about one method stands elsewhere."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from textwrap import fill
 from typing import Any
 
 from pendcore import _core
@@ -11,6 +12,47 @@ from pendcore import _core
 def known_methods() -> dict[str, dict[str, Any]]:
     """Return the methods of the core by their names."""
     return {method["name"]: method for method in _core.methods()}
+
+
+def error_over_rtol(method: str) -> float:
+    """Return the largest position error of a run, typically, as a multiple of its rtol."""
+    return float(known_methods()[method]["error_over_rtol"])
+
+
+def most_accurate() -> tuple[str, ...]:
+    """Return the methods that give second opinions and serve as references, the best first."""
+    ranked = [(one["second_opinion"], one["name"]) for one in _core.methods()]
+    return tuple(name for rank, name in sorted(ranked) if rank)
+
+
+def implicit_method() -> str:
+    """Return the method for stiff scenes."""
+    return next(str(one["name"]) for one in _core.methods() if one["kind"] == "implicit")
+
+
+def line_style(method: str) -> dict[str, Any]:
+    """Return how figures draw a method: matplotlib's colour, dash and marker."""
+    color, dash, marker = known_methods()[method]["line"]
+    lengths = tuple(float(one) for one in dash.split()) if dash[0].isdigit() else None
+    linestyle = dash if lengths is None else (0, lengths)
+    return {"color": color, "linestyle": linestyle, "marker": marker}
+
+
+def described_methods(docstring: str | None) -> str | None:
+    """Return a docstring with a sentence on each method where it says ``{methods}``."""
+    if docstring is None:  # python -OO
+        return None
+    before = docstring.partition("{methods}")[0]
+    margin = " " * (len(before) - len(before.rstrip(" ")))
+    sentences = []
+    for one in _core.methods():
+        if one["kind"] != "pair":
+            names = ", ".join(f'``"{name}"``' for name in (one["name"], *one["aliases"]))
+            sentences.append(f"{names}: {one['sentence']}")
+    pairs = ", ".join(f'``"{one["name"]}"``' for one in _core.methods() if one["kind"] == "pair")
+    sentences.append(f"{pairs}: the first, and the second from where stability limits the steps.")
+    hanging = [fill(one, 100, initial_indent=margin, subsequent_indent=margin) for one in sentences]
+    return docstring.replace("{methods}", "\n".join(hanging).lstrip())
 
 
 def methods_named(methods: str | Iterable[str]) -> list[str]:

@@ -46,7 +46,8 @@ struct TaylorSeries {
 inline constexpr TaylorSeries taylor = {
     .info = {.name = "taylor",
              .sentence = "Taylor series of an order that the tolerances choose: the quickest from "
-                         "some 1e-6 down, right to the rounding limit.",
+                         "some 1e-6 down, right to the rounding limit; refuses rod drag, Stribeck "
+                         "friction and functions of your own.",
              .citation = "Jorba & Zou 2005",
              .kind = MethodKind::taylor_one,
              .order = 20,
