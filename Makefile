@@ -96,20 +96,20 @@ book-speed: $(DONE)/installed $(DONE)/bench-requirements  ## the book's claim of
 CASES ?= 100000
 SEED ?= 1
 fuzz: $(DONE)/installed $(DONE)/test-requirements  ## random cases (CASES, SEED); 100,000 and more write docs/fuzz.md
-	PYTHONPATH=tests python -m fuzz.campaign --cases $(CASES) --seed $(SEED) --page docs/fuzz.md
+	PYTHONPATH=tests:tests/models python -m fuzz.campaign --cases $(CASES) --seed $(SEED) --page docs/fuzz.md
 
 SEEDS ?= 0:5000
 FAMILIES ?= mixed damped chaotic stiff contact own short_links
 ERROR_WORKERS ?= 2
 test-error: $(DONE)/installed $(DONE)/error-requirements  ## true errors (SEEDS, FAMILIES) against references of more digits
-	PYTHONPATH=tests python -m true_error.campaign --seeds $(SEEDS) $(FAMILIES:%=--family %) \
+	PYTHONPATH=tests:tests/models python -m true_error.campaign --seeds $(SEEDS) $(FAMILIES:%=--family %) \
 	    --workers $(ERROR_WORKERS) --output out/true_error/scenes.json \
 	    --record $(or $(RECORD),out/true_error/record.json) $(PAGE:%=--page %)
 
 SECONDS_EACH ?= 60
 fuzz-readers: $(DONE)/installed $(DONE)/fuzz-requirements  ## damaged files and pickles, by coverage
 	for reader in case archive state scene; do \
-	    PYTHONPATH=tests python -m fuzz.guided $$reader out/fuzz/corpus -verbosity=0 \
+	    PYTHONPATH=tests:tests/models python -m fuzz.guided $$reader out/fuzz/corpus -verbosity=0 \
 	        -max_total_time=$(SECONDS_EACH) -artifact_prefix=out/fuzz/ || exit 1; \
 	done
 

@@ -5,7 +5,7 @@
 On 200 random regular scenes: the error against another method's most accurate run, the right-hand
 sides against those of the best of all methods and tolerances swept, and the same as interleaved
 times. It writes docs/asked_errors.json and the table of docs/accuracy_cost.md.
-tests/test_asked_errors.py runs the same without the clock.
+tests/accuracy/test_asked_errors.py runs the same without the clock.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ import numpy as np
 import pendcore as pc
 
 ROOT = Path(__file__).parents[1]
-sys.path.append(str(ROOT / "tests"))
+sys.path += [str(ROOT / "tests"), str(ROOT / "tests/models")]
 from regular_scenes import Regular, regular  # noqa: E402
 
 SCENES = range(1000, 1200)

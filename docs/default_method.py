@@ -23,7 +23,7 @@ import pendcore as pc
 from pendcore.accuracy.position_error import distances, time_grid
 
 ROOT = Path(__file__).parents[1]
-sys.path.append(str(ROOT / "tests"))
+sys.path += [str(ROOT / "tests"), str(ROOT / "tests/models")]
 from regular_scenes import EXACT, REGULAR, growth, scene_and_start  # noqa: E402
 
 SCENES = range(1200, 1400)

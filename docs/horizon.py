@@ -21,7 +21,7 @@ import pendcore as pc
 from numpy.typing import NDArray
 
 ROOT = Path(__file__).parents[1]
-sys.path.append(str(ROOT / "tests"))
+sys.path += [str(ROOT / "tests"), str(ROOT / "tests/models")]
 
 import chaotic_starts as record  # noqa: E402
 from pendcore.horizon.horizon_work import draw_work  # noqa: E402

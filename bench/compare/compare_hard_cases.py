@@ -21,7 +21,10 @@ from pathlib import Path
 from typing import Any
 
 PROJECT = Path(__file__).parents[2]
-sys.path.append(str(PROJECT / "tests"))  # the references that share no code with the core
+sys.path += [
+    str(PROJECT / "tests"),
+    str(PROJECT / "tests/models"),
+]  # references that share no code with the core
 
 from hard_cases import figures, page  # noqa: E402
 from hard_cases.case import Absent, HardCase, run_bounded  # noqa: E402

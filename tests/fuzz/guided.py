@@ -1,13 +1,13 @@
 """`make fuzz-readers`: damaged input that coverage guides (atheris), from the examples on.
 
-    PYTHONPATH=tests python -m fuzz.guided case out/fuzz/corpus -max_total_time=60
+    PYTHONPATH=tests:tests/models python -m fuzz.guided case out/fuzz/corpus -max_total_time=60
 
 What stands after the reader and the folder are libFuzzer's own flags. A case file and an archive
 are the fuzzer's bytes themselves; of a state, a scene, and of an archive's entries (whose checksums
 bytes alone would hardly meet) the bytes choose the damage. It stops at
 the first finding and leaves the bytes in a file `crash-...`, which read again:
 
-    PYTHONPATH=tests python -m fuzz.guided case out/fuzz/corpus crash-...
+    PYTHONPATH=tests:tests/models python -m fuzz.guided case out/fuzz/corpus crash-...
 """
 
 from __future__ import annotations

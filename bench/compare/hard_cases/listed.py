@@ -4,29 +4,29 @@ from __future__ import annotations
 
 from pathlib import Path
 
-HARD = "tests/test_hard_cases.py"
-STICK = "tests/test_hard_cases_stick.py"
-SLIP = "tests/test_hard_cases_stick_slip.py"
-JOINTS = "tests/test_hard_cases_stuck_joints.py"
-BOUNCES = "tests/test_hard_cases_bounces.py"
-BOUNCING = "tests/test_hard_cases_bounces_of_chains.py"
-CONTACT = "tests/test_hard_cases_contact.py"
-IMPACTS = "tests/test_hard_cases_impacts.py"
-CAPTURES = "tests/test_impacts_with_capture.py"
-CORNERS = "tests/test_corner_impacts.py"
-EVENTS = "tests/test_hard_cases_events.py"
-MORE = "tests/test_hard_cases_forces.py"
-CHAINS = "tests/test_hard_cases_contact_of_chains.py"
-COUNTS = "tests/test_hard_cases_counts.py"
-PULSES = "tests/test_hard_cases_pulses.py"
-TIMES = "tests/test_hard_cases_times.py"
-AT_ONCE = "tests/test_switching_at_once.py"
-RATIOS = "tests/test_hard_cases_ratios.py"
-LONG = "tests/test_long_runs.py"
+HARD = "tests/methods/test_hard_cases.py"
+STICK = "tests/switching/test_hard_cases_stick.py"
+SLIP = "tests/switching/test_hard_cases_stick_slip.py"
+JOINTS = "tests/switching/test_hard_cases_stuck_joints.py"
+BOUNCES = "tests/switching/test_hard_cases_bounces.py"
+BOUNCING = "tests/switching/test_hard_cases_bounces_of_chains.py"
+CONTACT = "tests/switching/test_hard_cases_contact.py"
+IMPACTS = "tests/switching/test_hard_cases_impacts.py"
+CAPTURES = "tests/switching/test_impacts_with_capture.py"
+CORNERS = "tests/switching/test_corner_impacts.py"
+EVENTS = "tests/events/test_hard_cases_events.py"
+MORE = "tests/methods/test_hard_cases_forces.py"
+CHAINS = "tests/switching/test_hard_cases_contact_of_chains.py"
+COUNTS = "tests/methods/test_hard_cases_counts.py"
+PULSES = "tests/methods/test_hard_cases_pulses.py"
+TIMES = "tests/methods/test_hard_cases_times.py"
+AT_ONCE = "tests/switching/test_switching_at_once.py"
+RATIOS = "tests/methods/test_hard_cases_ratios.py"
+LONG = "tests/core/test_long_runs.py"
 
 LISTED: dict[str, tuple[str, ...]] = {
     "an interval of no length, and of 100 units in the last place": (
-        "tests/test_simulate.py::test_a_run_of_no_length_is_its_start",
+        "tests/python_api/test_simulate.py::test_a_run_of_no_length_is_its_start",
         f"{HARD}::test_a_hundred_units_in_the_last_place_are_one_step",
     ),
     "t0 so large that t + h = t": (f"{HARD}::test_a_time_too_large_for_its_step_is_said_plainly",),
@@ -35,18 +35,18 @@ LISTED: dict[str, tuple[str, ...]] = {
         f"{HARD}::test_there_and_back_is_where_it_began",
     ),
     "at rest in both equilibria; upright, with the time of the fall": (
-        "tests/test_exact_answers.py::test_hanging_at_rest_it_stays",
+        "tests/core/test_exact_answers.py::test_hanging_at_rest_it_stays",
         f"{HARD}::test_upright_falls_when_theory_says",
     ),
     "at rest with all links horizontal": (
         f"{HARD}::test_all_links_horizontal_at_rest_begins_to_fall_at_once",
     ),
     "a start that is not finite": (
-        "tests/test_bad_input.py::test_a_start_that_is_not_finite_is_named_with_its_place",
+        "tests/python_api/test_bad_input.py::test_a_start_that_is_not_finite_is_named_with_its_place",
     ),
     "not a number in mid-run": (
         f"{MORE}::test_what_is_no_number_beyond_a_time_or_an_angle_ends_there",
-        "tests/test_stopped_runs.py::test_a_run_that_is_not_finite_says_which_rate_and_whose_force",
+        "tests/python_api/test_stopped_runs.py::test_a_run_that_is_not_finite_says_which_rate_and_whose_force",
     ),
     "blow-up in finite time": (f"{MORE}::test_a_blow_up_ends_at_its_pole",),
     "tolerances of 1e30, and below eps; atol 0 with a zero component": (
@@ -65,7 +65,7 @@ LISTED: dict[str, tuple[str, ...]] = {
         f"{HARD}::test_denormal_rates_are_not_lost",
     ),
     "no gravity; units of microns and of astronomy": (
-        "tests/test_exact_answers.py::test_without_gravity_energy_and_angular_momentum_stay",
+        "tests/core/test_exact_answers.py::test_without_gravity_energy_and_angular_momentum_stay",
         f"{HARD}::test_the_units_do_not_matter",
     ),
     "stiff damping and a stiff PD: bounded work, flagged": (
@@ -73,7 +73,7 @@ LISTED: dict[str, tuple[str, ...]] = {
         f"{MORE}::test_a_stiff_servo_ends_at_the_limit_of_steps_or_gets_there",
     ),
     "a shaken pivot at the border of stability": (
-        "tests/test_kapitza.py::test_the_border_of_stability_is_where_floquet_says",
+        "tests/core/test_kapitza.py::test_the_border_of_stability_is_where_floquet_says",
     ),
     "dry friction that holds a rod for 1e6 s": (
         f"{STICK}::test_a_rod_held_at_30_degrees_is_at_rest_for_good",
@@ -140,24 +140,24 @@ LISTED: dict[str, tuple[str, ...]] = {
         f"{HARD}::test_energy_drifts_with_the_tolerance_alone",
     ),
     "inputs that are read-only, strided, of the wrong shape or type": (
-        "tests/test_simulate.py::test_the_same_start_in_any_form_gives_the_same_bits",
-        "tests/test_bad_input.py::test_a_start_of_the_wrong_shape_is_refused_with_the_right_one",
-        "tests/test_bad_input.py::test_what_is_no_real_number_is_refused",
+        "tests/python_api/test_simulate.py::test_the_same_start_in_any_form_gives_the_same_bits",
+        "tests/python_api/test_bad_input.py::test_a_start_of_the_wrong_shape_is_refused_with_the_right_one",
+        "tests/python_api/test_bad_input.py::test_what_is_no_real_number_is_refused",
     ),
     "Ctrl-C within 0.1 s": (f"{HARD}::test_ctrl_c_is_heard_within_a_tenth_of_a_second",),
     "threads that share a scene; a fork": (
-        "tests/test_threads.py::"
+        "tests/core/test_threads.py::"
         "test_threads_on_one_scene_and_one_solution_compute_what_one_alone_does",
-        "tests/test_own_effects.py::test_threads_share_a_scene_with_a_function",
+        "tests/effects/test_own_effects.py::test_threads_share_a_scene_with_a_function",
         f"{HARD}::test_a_fork_may_simulate_too",
     ),
     "pickling of everything": (
-        "tests/test_solution.py::test_a_solution_comes_back_whole",
-        "tests/test_solution.py::test_what_a_solution_and_a_scene_tell_comes_back_from_pickle",
-        "tests/test_event_classes.py::test_an_event_comes_back_from_its_repr_pickle_copy_and_toml",
-        "tests/test_energy.py::test_a_run_with_a_ledger_comes_back_whole",
-        "tests/test_effect_round_trips.py::test_an_effect_comes_back_from_its_repr_and_from_pickle",
-        "tests/test_effect_round_trips.py::test_a_scene_comes_back_from_its_repr_and_from_pickle",
+        "tests/python_api/test_solution.py::test_a_solution_comes_back_whole",
+        "tests/python_api/test_solution.py::test_what_a_solution_and_a_scene_tell_comes_back_from_pickle",
+        "tests/events/test_event_classes.py::test_an_event_comes_back_from_its_repr_pickle_copy_and_toml",
+        "tests/core/test_energy.py::test_a_run_with_a_ledger_comes_back_whole",
+        "tests/effects/test_effect_round_trips.py::test_an_effect_comes_back_from_its_repr_and_from_pickle",
+        "tests/effects/test_effect_round_trips.py::test_a_scene_comes_back_from_its_repr_and_from_pickle",
     ),
 }
 

@@ -1,6 +1,6 @@
 """Two rods with dry friction in both joints under a slow motor: the joints stick and slide in turn.
 
-The right answer is solved mode by mode in tests/hybrid_chain.py, which tries every pattern of stick
+The right answer is solved mode by mode in tests/models/hybrid_chain.py, which tries every pattern of stick
 and slip at each switch.
 """
 
@@ -117,7 +117,7 @@ CASE = HardCase(
     ),
     answer=(
         "The angles over 9 s and 13 switches: solved mode by mode in 12th order, every pattern of "
-        "stick and slip tried at each switch, by 130 lines of one's own (tests/hybrid_chain.py). A "
+        "stick and slip tried at each switch, by 130 lines of one's own (tests/models/hybrid_chain.py). A "
         "loop around SciPy or Boost.odeint would be these lines once more: which joints hold is "
         "all that is hard here, and no part of either helps to decide it. So none is run as theirs."
     ),

@@ -3,7 +3,7 @@
 Over the tolerances that matter the largest position error is proportional to rtol. The factor
 between the two is the scene's: how fast it is, for how long, how far it drives neighbours apart. It
 is measured; what a method's own share in it is stands here, as it was found on four hundred scenes
-of tests/regular_scenes.py (seeds 200 to 599); docs/asked_errors.py tests others.
+of tests/models/regular_scenes.py (seeds 200 to 599); docs/asked_errors.py tests others.
 """
 
 from __future__ import annotations

@@ -1,0 +1,223 @@
+"""The defect: what torques would make a computed curve an exact motion."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import mpmath  # type: ignore[import-untyped]
+import numpy as np
+import pendcore as pc
+import pytest
+from pendcore import _core
+from pendcore import effects as fx
+from reference.inverse_dynamics import joint_couples
+from reference.newton_euler import Body
+
+METHODS = {method["name"]: method for method in _core.methods()}
+BOOK = pc.Scene.textbook()
+START = [np.pi / 4, np.pi / 3]
+UNEVEN = pc.Scene(
+    links=[
+        pc.Link(mass=1.3, length=0.8, center=0.3, inertia=0.11),
+        pc.Link(mass=0.4, length=1.1),
+        pc.Link(mass=2.1, length=0.5, center=0.45, inertia=0.04),
+    ],
+    gravity=9.81,
+)
+
+
+def bodies(scene: pc.Scene) -> list[Body]:
+    return [Body(one.mass, one.length, one.center, one.inertia) for one in scene.links]
+
+
+def run(scene: pc.Scene, method: str, t_end: float = 1.0, **options: Any) -> pc.Solution:
+    n = len(scene.links)
+    if not METHODS[method]["error_order"]:
+        options = {"step": 0.01}
+    q0, qd0 = [0.4, -0.9, 1.3][:n], [2.0, -1.0, 3.0][:n]
+    return pc.simulate(scene, q0, qd0, (0, t_end), method=method, **options)
+
+
+def value(coefficients: list[Any], theta: Any) -> Any:
+    return mpmath.polyval(coefficients[::-1], theta)
+
+
+def exact_couples(sol: pc.Solution) -> np.ndarray:
+    """Largest couples of each step of the same curve, on the same grid, in forty digits."""
+    state, n = sol.run.__getstate__(), len(sol.scene.links)
+    steps = len(state["dense_h"])
+    rows = np.asarray(state["dense_coefficients"]).reshape(steps, -1, 2 * n)
+    grid = 4 * rows.shape[1]
+    largest = np.zeros((steps, n))
+    with mpmath.workdps(40):
+        angles = [mpmath.mpf(x) for x in rows[0, 0, :n]]
+        for step, h in enumerate(map(mpmath.mpf, state["dense_h"])):
+            rates = [[mpmath.mpf(c) for c in rows[step, :, n + i]] for i in range(n)]
+            slopes = [[p * c for p, c in enumerate(w)][1:] for w in rates]
+            sums = [[0, *(c / (p + 1) for p, c in enumerate(w))] for w in rates]
+            for k in range(grid):
+                theta = mpmath.mpf(2 * k + 1) / (2 * grid)
+                q = [a + h * value(s, theta) for a, s in zip(angles, sums, strict=True)]
+                qd = [value(w, theta) for w in rates]
+                qdd = [value(s, theta) / h for s in slopes]
+                couples = joint_couples(bodies(sol.scene), sol.scene.gravity, q, qd, qdd)
+                largest[step] = np.maximum(largest[step], [float(abs(c)) for c in couples])
+            angles = [a + h * value(s, 1) for a, s in zip(angles, sums, strict=True)]
+    return largest
+
+
+@pytest.mark.parametrize("scene", [BOOK, UNEVEN], ids=["two", "three"])
+@pytest.mark.parametrize("method", METHODS)
+def test_it_is_what_the_equations_of_each_link_say_in_forty_digits(
+    method: str, scene: pc.Scene
+) -> None:
+    sol = run(scene, method, 0.25, rtol=1e-6, atol=1e-8)
+    found = sol.defect()
+    # of the slope of a rate of some rad/s, in steps of h, rounding leaves 1e-15/h
+    rounding = 1e-12 / np.diff(sol.t).min()
+    np.testing.assert_allclose(found.torque, exact_couples(sol), rtol=1e-7, atol=rounding)
+    assert found.largest > 100 * rounding
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_it_falls_at_the_order_of_the_interpolant(method: str) -> None:
+    is_series = method.startswith("taylor")  # the tolerances choose its order
+    how = {"rtol": 1e-3, "atol": 1e-3} if is_series else {"rtol": 1e-13, "atol": 1e-16}
+
+    def with_steps(count: int) -> pc.Defect:
+        sol = pc.simulate(BOOK, START, 0, (0, 0.5), method=method, step=0.5 / count, **how)
+        return sol.defect()
+
+    counts = np.array([6, 8, 10, 12, 14, 16, 20, 24] if is_series else [20, 28, 40])
+    found = [with_steps(n) for n in counts]
+    torques = np.log([one.largest for one in found])
+    slope = -np.polyfit(np.log(counts), torques, 1)[0]
+    assert found[0].order == (10 if is_series else METHODS[method]["interpolant_order"])
+    assert slope == pytest.approx(found[0].order, abs=0.35)
+    assert found[-1].largest > 1e-11  # above rounding
+
+
+@pytest.mark.parametrize("method", [name for name, m in METHODS.items() if m["kind"] == "pair"])
+def test_of_a_pair_that_changed_over_it_is_told_as_of_its_second(method: str) -> None:
+    """It is that of a run that ends before, and of one that is resumed past it."""
+    stiff = BOOK.replace(effects=[fx.ViscousJoint(joint=2, damping=1e6 / 3)])
+    first, second = method.split("-")
+    before = pc.simulate(stiff, [0.8, 1.0], 0.1, (0, 1e-5), method=method)
+    alone = pc.simulate(stiff, [0.8, 1.0], 0.1, (0, 1e-5), method=first).defect()
+    assert not before.stats.stiff
+    assert (before.defect().order, before.defect().is_bound) == (alone.order, alone.is_bound)
+    after = before.resume(1.0)
+    assert after.stats.stiff
+    assert after.success
+    found = after.defect()
+    assert found.order == METHODS[second]["interpolant_order"]
+    assert found.is_bound
+    assert f"with at most {found.largest:.1e} N m" in str(found)
+
+
+def test_an_exact_curve_has_none_but_rounding() -> None:
+    """A rod that turns freely, and one that a constant torque turns: polynomials."""
+    rod = pc.Scene(links=[pc.Link(mass=3, length=1)], gravity=0.0)
+    for effects in ([], [fx.Motor(joint=1, constant=2.0)]):
+        sol = pc.simulate(rod.replace(effects=effects), 0.3, 1.5, (0, 2), method="dopri5")
+        found = sol.defect()
+        assert found.largest < 1e-13
+        assert found.apart.max() < 1e-14
+        assert found.share == (0.0 if found.largest == 0 else np.inf)
+
+
+@pytest.mark.parametrize("link", [0, 1])
+def test_it_sees_a_wrong_coefficient(link: int) -> None:
+    """A rate off by 1e-6 theta^2 (1 - theta)^2 in one step: its slope times the inertia."""
+    sol = run(BOOK, "dop853", rtol=1e-12, atol=1e-14)
+    state = sol.run.__getstate__()
+    h = state["dense_h"][3]
+    wrong = np.array(state["dense_coefficients"]).reshape(len(state["dense_h"]), -1, 4)
+    wrong[3, 2:5, 2 + link] += 1e-6 * np.array([1, -2, 1])
+    again = _core.Run.__new__(_core.Run)
+    again.__setstate__(state | {"dense_coefficients": wrong.ravel()})
+    right, found = sol.defect(), pc.Solution(BOOK, again, "").defect()
+    theta = np.linspace(0, 1, 201)
+    slope = 1e-6 / h * np.abs(2 * theta - 6 * theta**2 + 4 * theta**3).max()
+    q = sol(sol.t[3] + h / 2)[:2]
+    expected = np.abs(BOOK.mass_matrix(q)[link:, link].sum()) * slope
+    assert found.torque[3, link] == pytest.approx(expected, rel=0.3)
+    # The rate's integral is off from then on, by h/30 of that, and with it gravity.
+    changed = np.abs(found.torque - right.torque).max(axis=1)
+    assert changed[:3].max() == 0.0
+    assert 0.0 < changed[4:].max() < 0.05 * changed[3]
+
+
+def test_tighter_tolerances_mean_less_torque_and_a_share_of_the_weight() -> None:
+    loose, tight = (run(BOOK, "dopri5", rtol=rtol, atol=rtol).defect() for rtol in (1e-5, 1e-9))
+    assert tight.largest < 1e-2 * loose.largest
+    assert loose.weight == pytest.approx(2 * 2 * BOOK.gravity)
+    assert loose.share == loose.largest / loose.weight
+    assert loose.is_bound
+    assert loose.torque[:, loose.joint - 1].max() == loose.largest
+    assert "at most" in str(loose)
+    assert f"{loose.largest:.1e} N m" in str(loose)
+
+
+def test_what_holds_a_joint_takes_any_torque() -> None:
+    """Stuck, pressed against a stop or locked: what the others lack is all that is told."""
+    stick = pc.Scene(
+        links=BOOK.links,
+        effects=[fx.DryJointFriction(joint=1, coulomb=30.0), fx.JointStop(2, range=(-0.5, 0.9))],
+    )
+    sol = pc.simulate(stick, [0.4, 0.8], [0.0, 2.0], (0, 3), rtol=1e-10, atol=1e-12)
+    found = sol.defect()
+    assert found.largest < 1e-5
+    held = np.abs(np.diff(sol(found.t + 1e-9).T[:, 2:], axis=1)) == 0
+    assert held.any()
+
+
+def test_a_run_that_an_event_ends_counts_as_far_as_it_went() -> None:
+    """What the last polynomial does beyond the end is no part of the curve."""
+    whole = pc.simulate(BOOK, START, 0, (0, 1), method="dop853", step=0.1)
+    here = pc.events.LinkAngle(2, float(whole(0.501)[1]), terminal=True)
+    sol = pc.simulate(BOOK, START, 0, (0, 1), method="dop853", step=0.1, events=[here])
+    cut = sol.defect().torque
+    assert sol.t[-1] == pytest.approx(0.501)
+    np.testing.assert_allclose(cut[:5], whole.defect().torque[:5], rtol=1e-9)
+    assert cut[5].max() < 0.5 * whole.defect().torque[5].max()
+
+
+def test_many_steps_are_added_up_as_a_few_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    sol = run(UNEVEN, "dopri5")
+    at_once = sol.defect()
+    monkeypatch.setattr("pendcore.accuracy.defect.STEPS_AT_ONCE", 7)
+    fractions: list[float] = []
+    in_parts = sol.defect(progress=fractions.append)
+    assert np.array_equal(at_once.torque, in_parts.torque)
+    assert np.array_equal(at_once.apart, in_parts.apart)
+    assert fractions[-1] == 1.0
+    assert len(fractions) == -(-len(at_once.t) // 7)
+
+
+def test_its_bar_says_what_it_does(capsys: pytest.CaptureFixture[str]) -> None:
+    run(BOOK, "dopri5").defect(progress=True)
+    shown = capsys.readouterr().err
+    assert "looking for torques" in shown
+    assert "simulating" not in shown
+
+
+@pytest.mark.parametrize("store", ["end", "steps"])
+def test_without_dense_output_it_says_so(store: str) -> None:
+    with pytest.raises(ValueError, match="defect: this solution keeps no dense output"):
+        pc.simulate(BOOK, START, 0, (0, 1), store=store).defect()
+
+
+def test_backward_is_the_mirror_of_forward() -> None:
+    forward = pc.simulate(BOOK, START, 0, (0, 1)).defect()
+    backward = pc.simulate(BOOK, START, 0, (0, -1)).defect()
+    np.testing.assert_allclose(backward.torque, forward.torque, rtol=1e-6, atol=1e-12)
+
+
+def test_its_page_tells_what_its_lines_print(capsys: pytest.CaptureFixture[str]) -> None:
+    page = (Path(__file__).parents[2] / "docs/defect.md").read_text()
+    code, told = re.search(r"```python\n(.*?)```\n\n```\n(.*?)```", page, re.DOTALL).groups()
+    exec(code, {})
+    assert capsys.readouterr().out == told

@@ -1,0 +1,202 @@
+"""The claims of `make test-error` on a few dozen scenes of each family, and that it sees mistakes.
+
+The whole of it is `make test-error`.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pendcore as pc
+import pytest
+
+pytest.importorskip("heyoka", reason="the references of true errors need heyoka")
+
+from true_error import campaign, report
+from true_error.drawn import Drawn
+from true_error.families import FAMILIES
+from true_error.judge import Verdict, judged
+from true_error.reference import Reference
+from true_error.trajectory import NoReferenceError
+
+pytestmark = pytest.mark.unsanitized
+SEEDS = range(100_000, 100_024)
+"""None of which `make test-error` has by default."""
+SECONDS = 60.0
+"""What an answer may take, s: among so few scenes none is to run out of time on a busy machine."""
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_no_run_is_farther_off_than_it_says(family: str) -> None:
+    found = list(campaign.verdicts([family], SEEDS, seconds=SECONDS))
+    assert not report.broken(found), report.offenders({family: found})
+    known = sum(verdict.true is not None for verdict in found)
+    assert known >= 0.9 * sum(verdict.outcome == "kept" for verdict in found) > 0
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_a_scene_is_its_seed(family: str) -> None:
+    one, again, other = (FAMILIES[family](seed) for seed in (7, 7, 8))
+    assert repr(one) == repr(again) != repr(other)
+
+
+def test_the_scenes_are_of_every_kind() -> None:
+    for family, draw in FAMILIES.items():
+        drawn = [draw(seed) for seed in range(200)]
+        assert {len(one.scene.links) for one in drawn} == {1, 2, 3, 4, 5}
+        assert {name for one in drawn for name in one.options} >= {"t_eval", "store", "events"}
+        assert any(one.t_start for one in drawn)
+        goes_back = any(one.t_end < one.t_start for one in drawn)
+        assert goes_back == (family not in ("contact", "stiff"))
+
+
+def test_the_page_shows_the_record() -> None:
+    docs = Path(__file__).parents[2] / "docs"
+    record = json.loads((docs / "true_error.json").read_text())
+    assert report.markdown(record) in (docs / "accuracy_cost.md").read_text()
+    assert set(record["families"]) == set(FAMILIES)
+    for of_it in record["families"].values():
+        assert not any(of_it[name] for name in ("above", "contradicted", "late", "exceptions"))
+
+
+# A deliberate mistake of each sort is seen -----------------------------------------------------
+
+
+class Claiming:
+    """A solution that says something else of itself than it would."""
+
+    def __init__(self, sol: pc.Solution, **claims: Any) -> None:
+        self._sol, self._claims = sol, claims
+
+    def __getattr__(self, name: str) -> Any:
+        return self._claims[name] if name in self._claims else getattr(self._sol, name)
+
+    def __call__(self, t: Any) -> Any:
+        return self._sol(t)
+
+
+def verdict_of(drawn: Drawn, **changed: Any) -> Verdict:
+    """Return the verdict on runs by ``simulate``, some of which are made otherwise."""
+
+    def simulate(*scene_and_start: Any, **options: Any) -> Any:
+        way = changed.get("error" if "error" in options else "rtol")
+        return (way or pc.simulate)(*scene_and_start, **options)
+
+    return judged(drawn, simulate)
+
+
+@pytest.fixture
+def drawn() -> Drawn:
+    """Return the textbook's scene, of which all is known."""
+    return Drawn(
+        family="mixed", seed=0, scene=pc.Scene.textbook(), q0=(0.8, 1.0), qd0=(0.0, 0.0),
+        t_start=0.0, t_end=5.0, error=1e-7, rtol=1e-6, limit=1e-3,
+    )  # fmt: skip
+
+
+def test_what_is_right_is_no_fault(drawn: Drawn) -> None:
+    found = verdict_of(drawn)
+    assert found.outcome == "kept"
+    assert found.faults == []
+    assert 0 < found.true < 1e-7  # type: ignore[operator]
+    assert found.limit_known
+
+
+@pytest.mark.parametrize("family", ["contact", "own"])
+def test_an_error_that_is_not_what_is_told_is_above(family: str) -> None:
+    def boasting(*scene_and_start: Any, error: float, **options: Any) -> Any:
+        sol = pc.simulate(*scene_and_start, error=1e3 * error, **options)
+        claims = {"asked": error, "achieved": error / 2, "outcome": "kept"}
+        return Claiming(sol, accuracy=replace(sol.accuracy, **claims))
+
+    scenes = [replace(FAMILIES[family](seed), error=1e-6) for seed in range(4)]
+    assert "above" in {fault for one in scenes for fault in verdict_of(one, error=boasting).faults}
+
+
+def test_an_error_between_the_times_that_are_even_is_above(drawn: Drawn) -> None:
+    """As where a period divides the run evenly."""
+
+    class Bent(Claiming):
+        def __call__(self, t: Any) -> Any:
+            y = self._sol(t).copy()
+            y[0] += 3e-7 * np.sin(20 * np.pi * t)  # zero at each of 101 even times
+            return y
+
+    def bent(*scene_and_start: Any, **options: Any) -> Any:
+        return Bent(pc.simulate(*scene_and_start, **options))
+
+    found = verdict_of(drawn, error=bent)
+    assert found.faults == ["above"]
+    assert found.true == pytest.approx(1.5e-7, rel=0.2)  # half of the length hangs on link 1
+
+
+def test_a_contradiction_is_seen(drawn: Drawn) -> None:
+    def denied(*scene_and_start: Any, **options: Any) -> Any:
+        sol = pc.simulate(*scene_and_start, **options)
+        estimate = sol.error()
+        worse = replace(estimate, position=estimate.position + 2e-7)
+        return Claiming(sol, error=lambda **_: worse)
+
+    assert verdict_of(drawn, error=denied).faults == ["contradicted"]
+
+
+def test_a_late_valid_until_is_seen(drawn: Drawn) -> None:
+    def trusting(*scene_and_start: Any, **options: Any) -> Any:
+        sol = pc.simulate(*scene_and_start, **options)
+        return Claiming(sol, valid_until=lambda limit, **_: 5.0)
+
+    found = verdict_of(replace(drawn, rtol=1e-4, limit=1e-7), rtol=trusting)
+    assert found.faults == ["late"]
+    assert 0 < found.first_past < 5.0  # type: ignore[operator]
+
+
+def test_an_exception_is_told_and_ends_nothing(drawn: Drawn) -> None:
+    def broken(*_: Any, **__: Any) -> Any:
+        raise RecursionError("too deep")
+
+    for which in ("error", "rtol"):
+        found = verdict_of(drawn, **{which: broken})
+        assert found.faults == ["exception"]
+        assert found.says == "RecursionError: too deep"
+
+
+def test_what_hangs_is_told_and_ends_nothing(drawn: Drawn, monkeypatch: pytest.MonkeyPatch) -> None:
+    def hanging(*_: Any, **__: Any) -> Any:
+        while True:
+            pass
+
+    monkeypatch.setattr("true_error.judge.PATIENCE", 0.02)
+    found = verdict_of(drawn, error=hanging)
+    assert found.says.startswith("TimeoutError")
+
+
+def test_a_reference_that_is_not_good_enough_says_so(drawn: Drawn) -> None:
+    """Long doubles have lost it by the end, and there is no time for more digits."""
+    links = [pc.Link(mass=1.0, length=0.5)] * 3
+    far = replace(
+        drawn, scene=pc.Scene(links=links), q0=(-1.5, -1.2, -1.0), qd0=(0.0,) * 3, t_end=40.0,
+        error=1e-4, options={"store": "end"},
+    )  # fmt: skip
+    t = np.array([40.0])
+    assert Reference(far, 10.0).angles(t).unsure[0] > 1e-4
+    with pytest.raises(NoReferenceError, match="the time was up"):
+        Reference(far, 0.0).angles(t, finest=True)
+
+
+def test_the_campaign_lists_what_repeats_an_offender(
+    tmp_path: Any, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    worse = {"outcome": "kept", "true": 3.0, "achieved": 0.5, "asked": 1.0}
+    monkeypatch.setattr(campaign, "of_case", lambda case: Verdict(case[0], case[1], 2, **worse))
+    out, record = tmp_path / "o.json", tmp_path / "r.json"
+    asked = ["--family", "mixed", "--seeds", "5:7", "--workers", "1"]
+    assert campaign.main([*asked, "--output", str(out), "--record", str(record)]) == 1
+    told = capsys.readouterr().out
+    assert "--family mixed --seeds 6:7" in told
+    assert "mixed: 2 above what was asked" in told
+    assert '"above": 2' in record.read_text()
+    assert out.read_text().count('"faults"') == 2

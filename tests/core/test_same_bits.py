@@ -1,0 +1,223 @@
+"""The same scene gives the same bits: on any processor, from any build, whatever is stored."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from pathlib import Path
+
+import cmake
+import numpy as np
+import pendcore as pc
+import pytest
+from pendcore import _core
+
+ROOT = Path(__file__).parents[2]
+CMAKE = Path(cmake.CMAKE_BIN_DIR) / "cmake"
+BOOK = pc.Scene.textbook()
+ERROR_ORDERS = {method["name"]: method["error_order"] for method in _core.methods()}
+METHODS = list(ERROR_ORDERS)
+SETS = ["baseline", "x86-64-v3", "x86-64-v4"]
+
+RECORDED = (ROOT / "tests/cpp/trajectory_hash.txt").read_text()
+
+SCENES = """
+import ctypes, ctypes.util, hashlib, numpy as np, pendcore as pc
+from pendcore import _core
+book = pc.Scene.textbook()
+rod = pc.Scene(links=[pc.Link(mass=1.3, length=0.8)], gravity=9.80665)
+floating = pc.Scene(links=book.links, gravity=0.0)
+fx = pc.effects
+bouncing = pc.Scene(links=[pc.Link(mass=1.0, length=0.7)] * 2, effects=[
+    fx.JointStop(1, range=(-0.4, 1.9), restitution=0.7), fx.JointStop(2, range=(-0.5, 0.9)),
+    fx.DryJointFriction(2, coulomb=0.1, static=0.2)])
+stopped = pc.Scene(links=bouncing.links, effects=bouncing.effects[:2])
+driven = pc.Scene(links=[rod.links[0]] * 5, effects=[
+    fx.DrivenPivot(x=fx.Sinusoid(0.1, 7.0)), fx.RotorInertia(4, 0.1), fx.Lock(3),
+    fx.ViscousJoint(2, 0.1, 0.2, 0.3), fx.Motor(1, sinusoid=fx.Sinusoid(2.0, 3.0))])
+damped = pc.Scene(links=bouncing.links, effects=[fx.ViscousJoint(2, damping=1e5)])
+events = [pc.events.LinkAngle(2, 1.5), pc.events.TipLine(point=(0.3, 0.9), normal=(1.0, 0.5))]
+"""
+# Angles near and far, a chaotic start, denormal rates; everything that a run leaves behind.
+RUNS = """
+runs = [
+    pc.simulate(book, [0.7853981633974483, 1.0471975511965976], 0, (0, 60)),
+    pc.simulate(book, [-1.4, -1.1], 0, (0, 30), rtol=1e-12),
+    pc.simulate(book, [3e8, -2e7], [30, -70], (5, 0)),
+    pc.simulate(rod, -1.2, 0, (0, 30), rtol=1e-6),
+    pc.simulate(floating, [0.3, 0.9], [3e-160, -1e-160], (0, 1e159)),
+    pc.simulate(floating, [0.3, 0.9], [4e-310, -1e-310], (0, 1e-3), atol=0),
+    pc.simulate(book, [-1.4, -1.1], 0, (0, 30), max_step=1e-2, compensated=True),
+    *(pc.simulate(book, [0.8, 1.0], 0, (0, 5), method=method["name"], step=0.01)
+      for method in _core.methods()),
+    *(pc.simulate(bouncing, [0.4, 0.8], [2, -3], (0, 4), events=events, method=method["name"])
+      for method in _core.methods() if method["error_order"] and "taylor" not in method["name"]),
+    pc.simulate(stopped, [0.4, 0.8], [2, -3], (0, 4), events=events, method="taylor"),
+    *(pc.simulate(driven, 0.4, 0, (0, 4), method="taylor", rtol=rtol) for rtol in (1e-3, 1e-13)),
+    *(pc.simulate(damped, [0.8, 1.0], 0, (0, 1), events=events, method=method, compensated=True)
+      for method in ("radau5", "dopri5-radau5", "dop853-radau5", "taylor-radau5")),
+]
+print(_core.instruction_set())
+for sol in runs:
+    assert sol.success
+    digest = hashlib.sha256()
+    energy, dense = sol.energy(), sol.run.__getstate__()["dense_coefficients"]
+    for part in (sol.t, sol.y, dense, sol.accelerations(), sol.reactions(), sol.positions(),
+                 energy.kinetic, energy.potential):
+        digest.update(np.ascontiguousarray(part).tobytes())
+    for one in [one for found in sol.events or () for one in found]:
+        digest.update(np.array([one.t, *one.y]).tobytes())
+    print(sol.method, digest.hexdigest())
+"""
+
+
+def hash_of_runs(between: str = "", after: str = "", **environment: str) -> tuple[str, list[str]]:
+    """In a process of its own, run them: the instruction set that it used, and a hash of each."""
+    done = subprocess.run(
+        [sys.executable, "-c", SCENES + between + RUNS + after],
+        env=os.environ | environment, text=True, capture_output=True, check=True,
+    )  # fmt: skip
+    used, *hashes = done.stdout.splitlines()
+    return used, [f"run {i}, {line}" for i, line in enumerate(hashes)]
+
+
+def test_every_instruction_set_gives_the_same_bits():
+    best = SETS.index(_core.instruction_set())
+    found = [hash_of_runs(PENDCORE_INSTRUCTION_SET=name) for name in SETS[: best + 1]]
+    assert [used for used, _ in found] == SETS[: best + 1]
+    for _, hashes in found:
+        assert hashes == found[0][1]
+
+
+def test_a_library_that_flushes_denormals_to_zero_changes_no_bit(tmp_path):
+    source, library = tmp_path / "fast.c", tmp_path / "fast.so"
+    source.write_text("double half(double x) { return 0.5 * x; }\n")
+    subprocess.run(
+        ["g++", "-x", "c", "-ffast-math", "-shared", "-fPIC", source, "-o", library], check=True
+    )
+    load = f"""
+half = ctypes.CDLL({str(library)!r}).half
+half.restype, half.argtypes = ctypes.c_double, [ctypes.c_double]
+assert half(1e-310) == 0.0, "the processor does not flush to zero"
+"""
+    still = "\nassert half(1e-310) == 0.0, 'what the run found was not put back'\n"
+    assert hash_of_runs(load, still) == hash_of_runs()
+
+
+def test_another_rounding_of_the_host_program_changes_no_bit():
+    upward = """
+libm = ctypes.CDLL(ctypes.util.find_library("m"))
+assert libm.fesetround(0x800) == 0
+"""
+    still = "\nassert libm.fegetround() == 0x800, 'what the run found was not put back'\n"
+    assert hash_of_runs(upward, still) == hash_of_runs()
+
+
+@pytest.mark.parametrize("used", SETS)
+def test_the_long_doubles_of_the_host_program_are_left_alone(used):
+    """Registers of MMX are those of x87: a kernel that touches one leaves its stack full."""
+    script = """
+import numpy as np, pendcore as pc
+wave = pc.effects.Sinusoid(amplitude=1.0, angular_frequency=3.0)
+effects = [pc.effects.Motor(joint=1, sinusoid=wave), pc.effects.ViscousJoint(joint=2, damping=0.1),
+           pc.effects.RodDrag(link=2, drag_coefficient=1.2, diameter=0.05)]
+for n in (1, 2, 3):
+    for some in ([], effects[:1], effects[: n], effects[: n + 1]):
+        scene = pc.Scene(links=[pc.Link(mass=1, length=1)] * n, effects=some[: 2 * n - 1])
+        for method in ("dopri5", "radau5"):
+            pc.simulate(scene, 0.8, 0, (0, 0.1), method=method)
+        assert np.longdouble(2) * np.longdouble(3) == 6
+"""
+    environment = os.environ | {"PENDCORE_INSTRUCTION_SET": used}
+    subprocess.run([sys.executable, "-W", "ignore", "-c", script], env=environment, check=True)
+
+
+@pytest.mark.outside_build
+@pytest.mark.parametrize(
+    ("flags", "options", "sets"),
+    [
+        # Warnings of the baseline alone no other build shows; one is wrong at -O1 (GCC 12).
+        (
+            "-O1 -Wno-maybe-uninitialized -DPENDCORE_BASELINE_ONLY",
+            ["-DPENDCORE_WARNINGS_AS_ERRORS=ON"],
+            SETS[:1],
+        ),
+        ("-O3", [], SETS),
+    ],
+    ids=["O1, the baseline alone", "O3"],
+)
+def test_every_optimisation_gives_the_same_bits(flags, options, sets, tmp_path):
+    """As -O2 and, in the sanitizers' builds, -Og: there ctest compares the same lines."""
+    always = ["-DPENDCORE_PYTHON=OFF", "-DPENDCORE_TESTS=ON", "-DCMAKE_BUILD_TYPE=None"]
+    given = [*always, *options, f"-DCMAKE_CXX_FLAGS={flags}"]
+    configure = [CMAKE, "-S", ROOT, "-B", tmp_path, *given]
+    build = [CMAKE, "--build", tmp_path, "--target", "trajectory_hash", "-j", "2"]
+    for command in (configure, build):
+        subprocess.run(command, capture_output=True, text=True, check=True)
+    for used in sets[: SETS.index(_core.instruction_set()) + 1]:
+        printed = subprocess.run(
+            [tmp_path / "tests/cpp/trajectory_hash"], text=True, capture_output=True, check=True,
+            env=os.environ | {"PENDCORE_INSTRUCTION_SET": used},
+        ).stdout  # fmt: skip
+        assert printed == RECORDED, used
+
+
+@pytest.mark.parametrize("method", ["dopri5", "taylor", "radau5"])
+def test_what_is_stored_or_sampled_changes_no_step(method):
+    span, grid = (0.0, 20.0), np.linspace(0.0, 20.0, 777)
+    run = partial(pc.simulate, BOOK, [-1.4, -1.1], 0, span, method=method)
+    dense = run()
+    steps = run(store="steps")
+    end = run(store="end")
+    times = run(t_eval=grid)
+    both = run(t_eval=grid, store="dense")
+    assert np.array_equal(dense.t, steps.t)
+    assert np.array_equal(dense.y, steps.y)
+    assert np.array_equal(end.y[:, -1], dense.y[:, -1])
+    assert np.array_equal(times.y, dense(grid))
+    assert np.array_equal(times.y, both.y)
+    assert dense.stats == steps.stats == end.stats == times.stats == both.stats
+
+
+def test_threads_that_share_a_scene_do_not_disturb_each_other():
+    starts = [[0.1 * k, 1.0 - 0.2 * k] for k in range(40)]
+    alone = [pc.simulate(BOOK, q0, 0, (0, 20)).y for q0 in starts]
+    with ThreadPoolExecutor(8) as pool:
+        together = list(pool.map(lambda q0: pc.simulate(BOOK, q0, 0, (0, 20)).y, starts))
+    assert all(np.array_equal(a, b) for a, b in zip(alone, together, strict=True))
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("store", ["end", "times", "steps", "dense"])
+@pytest.mark.parametrize("stop", [0.0, 1e-4, 3.21, 9.999])
+def test_a_resumed_run_has_the_bits_of_one_that_never_stopped(method, store, stop):
+    grid = np.linspace(0, 10, 101)
+    early, late = grid[grid <= stop], grid[grid > stop]
+    how = {"method": method, "store": store, "step": None if ERROR_ORDERS[method] else 0.01}
+    sampled = store == "times"
+    whole = pc.simulate(BOOK, [-1.4, -1.1], 0, (0, 10), t_eval=grid if sampled else None, **how)
+    begun = pc.simulate(BOOK, [-1.4, -1.1], 0, (0, stop), t_eval=early if sampled else None, **how)
+    resumed = begun.resume(10, t_eval=late if sampled else None)
+    assert np.array_equal(whole.t, resumed.t)
+    assert np.array_equal(whole.y, resumed.y)
+    assert whole.stats == resumed.stats
+    if store == "dense":
+        assert np.array_equal(whole(grid), resumed(grid))
+
+
+def test_mirrored_starts_move_as_mirror_images():
+    # without gravity the plane may be turned over about the horizontal, q -> -q
+    floating = pc.Scene(links=BOOK.links, gravity=0.0)
+    one = pc.simulate(floating, [0.3, 1.1], [2.0, -1.0], (0, 10))
+    other = pc.simulate(floating, [-0.3, -1.1], [-2.0, 1.0], (0, 10))
+    assert np.array_equal(one.t, other.t)
+    assert np.array_equal(one.y, -other.y)
+
+
+def test_a_misspelt_instruction_set_is_refused():
+    with pytest.raises(subprocess.CalledProcessError) as failed:
+        hash_of_runs(PENDCORE_INSTRUCTION_SET="avx2")
+    assert "must be baseline, x86-64-v3 or x86-64-v4" in failed.value.stderr

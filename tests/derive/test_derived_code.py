@@ -1,0 +1,387 @@
+"""The code that is generated from a derivation computes what the core does."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import sys
+import types
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pendcore as pc
+import pytest
+from derived_scenes import SCENES, STATES, Floats, Known, known
+from pendcore.cli import main
+from pendcore.derive import Derivation
+from pendcore.derive.code.cpp import header
+from pendcore.derive.code.octave import inline_function, written_out
+
+pytestmark = pytest.mark.unsanitized
+
+WARNINGS = ("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror")
+EXAMPLES = Path(__file__).parents[2] / "examples"
+START, TIMES = [np.pi / 4, np.pi / 3], (0.0, 5.0)
+octave = pytest.mark.skipif(
+    not shutil.which("octave-cli"),
+    reason="Octave is not installed: sh setup/debian_packages.sh octave",
+)
+compiler = pytest.mark.skipif(not shutil.which("g++"), reason="there is no g++")
+scenes = pytest.mark.parametrize("name", SCENES)
+
+
+@cache
+def derived(name: str) -> Derivation:
+    return Derivation(SCENES[name])
+
+
+@cache
+def asked(name: str) -> Known:
+    return known(SCENES[name])
+
+
+def module(name: str) -> types.ModuleType:
+    made = types.ModuleType(name)
+    exec(derived(name).to_python(), made.__dict__)
+    return made
+
+
+def assert_close(found: Floats, wanted: Floats) -> None:
+    """To 1e-13 of the largest number of a state."""
+    found, wanted = np.reshape(found, (STATES, -1)), np.reshape(wanted, (STATES, -1))
+    off = np.abs(found - wanted).max(axis=1) / np.abs(wanted).max(axis=1)
+    assert off.max() < 1e-13
+
+
+@scenes
+def test_python_says_what_the_core_does(name: str) -> None:
+    made, core = module(name), asked(name)
+    q, qd = core.q.T, core.qd.T
+    assert_close(made.accelerations(core.t, q, qd).T, core.qdd)
+    assert_close(np.moveaxis(made.reactions(core.t, q, qd), -1, 0), core.forces)
+    assert_close(np.transpose(made.energies(core.t, q, qd)), core.energies)
+    rates = made.right_hand_side(core.t, np.concatenate([q, qd]))
+    assert_close(rates.T, np.hstack([core.qd, core.qdd]))
+
+
+@scenes
+def test_python_takes_one_state_or_axes_of_many(name: str) -> None:
+    made, core, n = module(name), asked(name), len(SCENES[name].links)
+    q, qd = core.q.T, core.qd.T
+    one = made.reactions(core.t[3], core.q[3], core.qd[3])
+    assert one.shape == (n, 2)
+    many = made.reactions(core.t, q, qd)
+    assert many.shape == (n, 2, STATES)
+    folded = made.reactions(core.t.reshape(3, -1), q.reshape(n, 3, -1), qd.reshape(n, 3, -1))
+    assert np.array_equal(folded, many.reshape(n, 2, 3, -1))
+    np.testing.assert_allclose(one, many[..., 3], rtol=0, atol=1e-13 * np.abs(one).max())
+
+
+@scenes
+def test_powers_are_the_rate_of_the_energy(name: str) -> None:
+    """In small steps along the motion."""
+    made, core = module(name), asked(name)
+    q, qd, h = core.q.T, core.qd.T, 1e-5
+    qdd = made.accelerations(core.t, q, qd)
+
+    def total(k: float) -> Floats:
+        return sum(made.energies(core.t + k * h, q + k * h * qd, qd + k * h * qdd))
+
+    rate = (8 * (total(1) - total(-1)) - (total(2) - total(-2))) / (12 * h)
+    power = sum(made.powers(core.t, q, qd).values()) if derived(name).powers else 0.0
+    np.testing.assert_allclose(rate, power, rtol=0, atol=1e-8 * np.abs(core.energies).max())
+
+
+def test_the_powers_are_named_by_kind_and_place() -> None:
+    assert [*module("effects_2").powers(0.0, [0.3, 0.4], [1.0, 2.0])] == [
+        "viscous_joint_1", "rod_drag_2", "rod_drag_2_2", "motor_1", "motor_2", "motor_1_2",
+        "driven_pivot",
+    ]  # fmt: skip
+    assert not hasattr(module("textbook"), "powers")
+
+
+def test_numbers_of_a_module_may_be_changed() -> None:
+    made = module("textbook")
+    made.L2, made.g = 0.6, 1.62
+    links = [pc.Link(mass=1.0, length=1.0), pc.Link(mass=1.0, length=0.6)]
+    other = pc.Scene(links=links, gravity=1.62)
+    wanted = other.accelerations(0.0, START, [1.0, 2.0])
+    np.testing.assert_allclose(made.accelerations(0.0, START, [1.0, 2.0]), wanted, rtol=1e-13)
+
+
+def test_python_runs_in_scipy() -> None:
+    integrate = pytest.importorskip("scipy.integrate")
+    made, how = module("effects_2"), {"rtol": 1e-11, "atol": 1e-12, "method": "DOP853"}
+    run = pc.simulate(SCENES["effects_2"], START, 0.0, TIMES, rtol=1e-12, atol=1e-13)
+    for vectorized in (False, True):
+        found = integrate.solve_ivp(
+            made.right_hand_side, TIMES, [*START, 0.0, 0.0], vectorized=vectorized, **how
+        )
+        np.testing.assert_allclose(found.y[:, -1], run.y[:, -1], rtol=0, atol=1e-8)
+
+
+MAIN = """
+#include <cstdio>
+#include <iostream>
+{includes}
+void show(double number) {{ std::printf("%.17g ", number); }}
+
+template <class Chain>
+void tell(const char* name) {{
+  const Chain chain;
+  typename Chain::Angles q{{}}, qd{{}};
+  std::string head;
+  double t = 0.0;
+  while (std::cin >> head && head == name) {{
+    std::cin >> t;
+    typename Chain::State y{{}};
+    for (std::size_t i = 0; i < 2 * Chain::links; ++i) std::cin >> y[i];
+    for (std::size_t i = 0; i < Chain::links; ++i) q[i] = y[i], qd[i] = y[Chain::links + i];
+    typename Chain::State dydt{{}};
+    chain(y, dydt, t);
+    for (double number : dydt) show(number);
+    for (const auto& force : chain.reactions(t, q, qd)) show(force.x), show(force.y);
+    const auto energy = chain.energy(t, q, qd);
+    show(energy.kinetic), show(energy.potential);
+    std::printf("\\n");
+  }}
+}}
+
+int main() {{
+{calls}
+}}
+"""
+
+
+@pytest.fixture(scope="module")
+def told_by_cpp(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Floats]:
+    """Rows of dy/dt, forces and energies: all headers in one program, no warning allowed."""
+    folder = tmp_path_factory.mktemp("headers")
+    for name in SCENES:
+        (folder / f"{name}.hpp").write_text(header(derived(name), "Chain", name))
+    (folder / "main.cpp").write_text(
+        MAIN.format(
+            includes="\n".join(f'#include "{name}.hpp"' for name in SCENES),
+            calls="\n".join(f'  tell<{name}::Chain>("{name}");' for name in SCENES),
+        )
+    )
+    command = ["g++", "-std=c++17", "-O1", *WARNINGS, "main.cpp", "-o", "main"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    lines = []
+    for name in SCENES:
+        core = asked(name)
+        for row in np.column_stack([core.t, core.q, core.qd]):
+            lines.append(" ".join([name, *map(repr, row.tolist())]))
+        lines.append("end")
+    said = subprocess.run(
+        [folder / "main"], input="\n".join(lines), capture_output=True, text=True, check=True
+    ).stdout
+    rows = iter(said.splitlines())
+    return {name: np.array([next(rows).split() for _ in range(STATES)], float) for name in SCENES}
+
+
+@compiler
+@pytest.mark.outside_build
+@scenes
+def test_cpp_compiles_without_a_warning_and_says_what_the_core_does(
+    name: str, told_by_cpp: dict[str, Floats]
+) -> None:
+    core, told, n = asked(name), told_by_cpp[name], len(SCENES[name].links)
+    assert_close(told[:, : 2 * n], np.hstack([core.qd, core.qdd]))
+    assert_close(told[:, 2 * n : 4 * n], core.forces)
+    assert_close(told[:, 4 * n :], core.energies)
+
+
+def in_octave(script: str, folder: Path) -> list[list[float]]:
+    """Run a script in a folder; return the numbers that it prints, by lines."""
+    (folder / "script.m").write_text("warning('off', 'all');\n" + script)
+    done = subprocess.run(
+        ["octave-cli", "--quiet", "--no-init-file", "script.m"],
+        cwd=folder, capture_output=True, text=True,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    return [[float(word) for word in line.split()] for line in done.stdout.splitlines()]
+
+
+def woven(q: Floats, qd: Floats) -> Floats:
+    """The textbook's order, q1, q1', q2, q2', ..."""
+    return np.stack([q, qd], axis=-1).reshape(*np.shape(q)[:-1], -1)
+
+
+@pytest.fixture(scope="module")
+def told_by_octave(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Floats]:
+    """Rows of dx, of the function file, of the file written out, and of the inline function."""
+    folder = tmp_path_factory.mktemp("octave")
+    script = ["1;"]
+    for name in SCENES:
+        core, derivation = asked(name), derived(name)
+        (folder / f"{name}.m").write_text(derivation.to_octave(name))
+        (folder / f"{name}_long.m").write_text(written_out(derivation, f"{name}_long"))
+        states = np.column_stack([core.t, woven(core.q, core.qd)]).tolist()
+        rows = "\n".join(" ".join(map(repr, row)) for row in states)
+        script += [
+            inline_function(derivation, "f"),
+            f"for state = [{rows}]'",
+            "  t = state(1); x = state(2:end);",
+            f"  printf('%.17g ', {name}(t,x), {name}_long(t,x), f(t,x)); printf('\\n');",
+            "end",
+        ]
+    rows = iter(in_octave("\n".join(script) + "\n", folder))
+    return {name: np.array([next(rows) for _ in range(STATES)]) for name in SCENES}
+
+
+@octave
+@pytest.mark.outside_build
+@scenes
+def test_octave_says_what_the_core_does(name: str, told_by_octave: dict[str, Floats]) -> None:
+    core, told = asked(name), told_by_octave[name]
+    wanted = woven(core.qd, core.qdd)
+    for form in np.split(told, 3, axis=1):
+        assert_close(form, wanted)
+
+
+@octave
+@pytest.mark.outside_build
+def test_the_book_s_lines_give_the_book_s_figure(tmp_path: Path) -> None:
+    """RR.m with ode45 as printed there; then at tolerances at which digits can be compared."""
+    (tmp_path / "RR.m").write_text(Derivation.textbook().to_octave())
+    (tmp_path / "g.m").write_text(Derivation.textbook().to_octave_inline())
+    said = in_octave(
+        """
+        t0 = 0; tf = 5; time = [0 tf];
+        x0 = [pi/4 0 pi/3 0];
+        [t,xs] = ode45(@RR, time, x0);
+        printf('%.17g ', [t xs]'); printf('\\n');
+        fine = odeset('RelTol', 1e-10, 'AbsTol', 1e-12);
+        [t,xs] = ode45(@RR, time, x0, fine);
+        printf('%.17g ', xs(end,:)); printf('\\n');
+        g
+        [t,xs] = ode45(@(t,x) g(t,x), time, x0, fine);
+        printf('%.17g ', xs(end,:)); printf('\\n');
+        """.replace("        g\n", "        run('g.m');\n"),
+        tmp_path,
+    )
+    run = pc.simulate(pc.Scene.textbook(), START, 0.0, TIMES)
+    drawn = np.reshape(said[0], (-1, 5))
+    assert len(drawn) > 30
+    off = np.degrees(drawn[:, 1::2] - np.array([run(t)[:2] for t in drawn[:, 0]]))
+    assert np.abs(off).max() < 1.0  # degrees, of curves that span 180: no wider than their lines
+    for end in said[1:]:
+        np.testing.assert_allclose(end, woven(run.q[-1], run.qd[-1]), rtol=0, atol=1e-7)
+
+
+@scenes
+def test_generated_code_says_what_wrote_it_from_what(name: str) -> None:
+    derivation = derived(name)
+    for text in (
+        derivation.to_octave(),
+        derivation.to_octave_inline(),
+        derivation.to_python(),
+        derivation.to_cpp(),
+    ):
+        assert f"Written by pendcore {pc.__version__} (pendcore.derive, SymPy" in text
+        words = text.replace("%", " ").replace("///", " ").split()
+        assert repr(SCENES[name]) in " ".join(words)
+        assert "y points DOWN" in text
+
+
+def test_the_textbook_s_file_begins_as_the_book_s_does() -> None:
+    lines = Derivation.textbook().to_octave().splitlines()
+    assert lines[0] == "function dx = RR(t,x)"
+    assert [line for line in lines if line.startswith("dx")][:2] == [
+        "dx = zeros(4,1);",
+        "dx(1) = x(2);",
+    ]
+    assert "dx(3) = x(4);" in lines
+
+
+@pytest.mark.parametrize("name", ["2RR", "R R", "R-R", "", "while", "_R", "end", "dx"])
+def test_names_that_a_language_refuses_are_refused(name: str) -> None:
+    with pytest.raises(ValueError, match="must be a name that Octave allows"):
+        derived("textbook").to_octave(name)
+    if name not in ("_R", "end", "dx"):
+        for given in ({"name": name}, {"namespace": name}):
+            with pytest.raises(ValueError, match=r"must be a name that C\+\+ allows"):
+                header(derived("textbook"), **given)
+
+
+@pytest.mark.parametrize("given", [{"name": "State"}, {"name": "energy"}, {"namespace": "std"}])
+def test_a_header_is_not_called_as_what_is_in_it(given: dict[str, str]) -> None:
+    with pytest.raises(ValueError, match="is taken"):
+        header(derived("textbook"), **given)
+
+
+def test_lines_fit_a_page() -> None:
+    for name in SCENES:
+        for text in (derived(name).to_octave(), derived(name).to_python(), derived(name).to_cpp()):
+            assert max(map(len, text.splitlines())) <= 100
+
+
+def test_the_example_s_header_is_what_is_written_now() -> None:
+    """With the versions that wrote it; others may share other subexpressions."""
+    kept = (EXAMPLES / "10_generated_header.hpp").read_text()
+    case = pc.read_case(EXAMPLES / "10_generated_header.toml")
+    written = Derivation(case.scene).to_cpp()
+    (line,) = (line for line in written.splitlines() if "Written by" in line)
+    if line not in kept:
+        pytest.skip(f"another version than this wrote it: {line}")
+    assert written == kept
+
+
+def blocks(language: str) -> list[str]:
+    """The code on the engineer's page."""
+    page = (EXAMPLES.parent / "docs/derive_engineer.md").read_text()
+    return re.findall(rf"```{language}\n(.*?)```", page, re.DOTALL)
+
+
+@pytest.fixture
+def as_the_page_says(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The engineer's folder: the case file that the page shows, and what its commands write."""
+    page = (EXAMPLES.parent / "docs/derive_engineer.md").read_text()
+    (shown,) = blocks("toml")
+    (tmp_path / "arm.toml").write_text(shown)
+    monkeypatch.chdir(tmp_path)
+    commands = re.findall(r"^    pendcore (derive .*)$", page, re.MULTILINE)
+    assert len(commands) == 3
+    for command in commands:
+        assert main(command.split()) == 0
+    return tmp_path
+
+
+def test_the_engineer_is_shown_the_example() -> None:
+    (shown,) = blocks("toml")
+    assert (EXAMPLES / "10_generated_header.toml").read_text().endswith(f"\n{shown}")
+
+
+def test_the_engineer_s_lines_of_python_run(
+    as_the_page_says: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("scipy")
+    written = (as_the_page_says / "arm.hpp").read_text()
+    monkeypatch.syspath_prepend(as_the_page_says)
+    first, second = blocks("python")
+    names: dict[str, Any] = {}
+    exec(first, names)
+    again = (as_the_page_says / "arm.hpp").read_text()
+    assert again[again.index("struct Chain") :] == written[written.index("struct Chain") :]
+    exec(second, names)
+    run = pc.read_case(as_the_page_says / "arm.toml").simulate()
+    np.testing.assert_allclose(names["force"][..., -1], run.reactions()[-1], rtol=0, atol=1e-3)
+    np.testing.assert_allclose(names["kinetic"][-1], run.energy().kinetic[-1], rtol=1e-5)
+    sys.modules.pop("arm")
+
+
+@compiler
+@pytest.mark.outside_build
+def test_the_engineer_s_lines_of_cpp_compile_and_run(as_the_page_says: Path) -> None:
+    (block,) = blocks("cpp")
+    (as_the_page_says / "main.cpp").write_text(block)
+    for command in (["g++", "-std=c++17", *WARNINGS, "main.cpp", "-o", "main"], ["./main"]):
+        done = subprocess.run(command, cwd=as_the_page_says, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+    rate, acceleration, *_ = map(float, done.stdout.split())
+    assert rate == acceleration != 0.0

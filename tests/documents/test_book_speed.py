@@ -1,0 +1,104 @@
+"""What docs/book_speed.md compares solves the same case, and what it says is in its record."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pendcore as pc
+import pytest
+
+DOCS = Path(__file__).parents[2] / "docs"
+sys.path.append(str(DOCS))
+import book_speed  # noqa: E402
+
+octave = pytest.mark.skipif(
+    not shutil.which("octave-cli"),
+    reason="Octave is not installed: sh setup/debian_packages.sh octave",
+)
+
+
+@pytest.fixture(scope="module")
+def kept() -> dict[str, Any]:
+    """What the last `make book-speed` wrote."""
+    return json.loads((DOCS / "book_speed.json").read_text())
+
+
+def least(kept: dict[str, Any], tolerance: str) -> dict[str, float]:
+    return {row["way"]: row["least"] for row in kept["solves"] if row["tolerance"] == tolerance}
+
+
+@octave
+@pytest.mark.outside_build
+def test_all_ways_solve_the_book_s_case(tmp_path: Path) -> None:
+    pytest.importorskip("scipy")
+    program = book_speed.begin_octave(tmp_path)
+    try:
+        looked = book_speed.looked_at(program, book_speed.solvers(book_speed.numpy_module()))
+        for way in ("inline", "file", "shared"):
+            assert float(program.ask(f"solve {way} 1e-3 1e-6")) > 0.0
+            assert float(program.ask(f"call {way} 3")) > 0.0
+    finally:
+        program.close()
+    assert {way for way, _ in looked} == {*book_speed.WAYS}
+    for (_, tolerance), facts in looked.items():
+        assert facts["error"] < 30 * float(tolerance)
+        assert facts["right_hand_sides"] > 30
+    for tolerance in book_speed.TOLERANCES:  # one function in three forms: the same steps
+        counts = {
+            looked[way, tolerance]["right_hand_sides"] for way in ("inline", "file", "shared")
+        }
+        assert len(counts) == 1
+
+
+@pytest.mark.skipif(not shutil.which("g++"), reason="there is no g++")
+@pytest.mark.outside_build
+def test_the_program_of_the_header_answers(tmp_path: Path) -> None:
+    program = book_speed.begin_cpp(tmp_path)
+    try:
+        assert float(program.ask("call 1000")) > 0.0
+    finally:
+        program.close()
+
+
+def test_numpy_s_module_is_the_core_s_right_hand_side() -> None:
+    q, qd = np.array([0.3, 0.9]), np.array([1.0, -2.0])
+    core = pc.Scene.textbook().accelerations(0.0, q, qd)
+    found = book_speed.numpy_module()["accelerations"](0.0, q, qd)
+    np.testing.assert_allclose(found, core, rtol=1e-13)
+
+
+@pytest.mark.parametrize("name", book_speed.TABLES)
+def test_the_page_has_the_tables_of_the_record(name: str, kept: dict[str, Any]) -> None:
+    begin, end = book_speed.BEGIN.format(name), book_speed.END.format(name)
+    table = book_speed.TABLES[name](kept)
+    assert begin + table + end in (DOCS / "book_speed.md").read_text()
+
+
+def test_the_record_bears_out_what_the_page_says(kept: dict[str, Any]) -> None:
+    for tolerance in book_speed.TOLERANCES:
+        seconds = least(kept, tolerance)
+        assert 3.5 < seconds["inline"] / seconds["file"] < 6.0  # a quarter to a fifth
+        assert seconds["shared"] < seconds["file"]
+        assert 6.0 < seconds["shared"] / seconds["numpy"] < 12.0  # eight to nine times
+        assert 5e3 < seconds["inline"] / seconds["core"] < 3e4  # about ten thousand
+    errors = {(row["way"], row["tolerance"]): row["error"] for row in kept["solves"]}
+    assert max(errors[way, "1e-3"] for way in book_speed.WAYS) == errors["core", "1e-3"]
+    calls = {(row["way"], row["states"]): row["least"] for row in kept["right_hand_sides"]}
+    assert calls["numpy", 1] < calls["core", 1]
+    assert calls["core", 100_000] < calls["core", 1] * 100_000 / 100
+    assert calls["core", 100_000] < calls["numpy", 100_000]
+    assert kept["once"]["octave"] < kept["once"]["solve"]
+
+
+def test_numbers_are_written_in_three_digits() -> None:
+    assert [book_speed.in_words(x) for x in (1.0, 0.0926, 1.14e-5, 2.87e-8, 123.4)] == [
+        "1.00 s", "92.6 ms", "11.4 us", "28.7 ns", "123 s",
+    ]  # fmt: skip
+    assert [book_speed.of_times(x) for x in (1.0, 4.333, 46.6, 8634.0)] == [
+        "1.00", "4.33", "47", "8,600",
+    ]  # fmt: skip

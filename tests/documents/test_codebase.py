@@ -1,0 +1,180 @@
+"""The project keeps its house rules, and each rule finds a breach of it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import house_rules as rules
+import pendcore
+import pytest
+from house_rules import Rule
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.mark.parametrize("rule", rules.RULES, ids=lambda rule: rule.__name__)
+def test_in_this_project(rule: Rule) -> None:
+    breaches = "\n".join(rule(ROOT))
+    assert not breaches, breaches
+
+
+CORE = "cpp/include/pendcore"
+PACKAGE = "python/pendcore"
+OF = "Of"
+SCENE = '#include "pendcore/scene/scene.hpp"'
+BREACHES = {
+    rules.includes_follow_the_flow: [
+        (f"{CORE}/integrate/loop/step.hpp", SCENE, "(integrate) includes pendcore/scene"),
+        (
+            f"{CORE}/integrate/step.hpp",
+            "#include <pendcore/dynamics/a.hpp>",
+            "(integrate) includes",
+        ),
+        (f"{CORE}/dynamics/a.hpp", '#include "pendcore/integrate/a.hpp"', "(dynamics) includes"),
+        (f"{CORE}/arithmetic/pack.hpp", SCENE, "(arithmetic) includes"),
+        (f"{CORE}/scene/scene.hpp", '#include "pendcore/dynamics/a.hpp"', "(scene) includes"),
+        (f"{CORE}/attic/a.hpp", SCENE, "stands in no folder of the flow"),
+        (f"{CORE}/scene.hpp", "", "stands in no folder of the flow"),
+        (
+            f"{CORE}/simulate/a.hpp",
+            '#include "pendcore/pendcore.hpp"',
+            "includes pendcore/pendcore",
+        ),
+        ("cpp/src/scene/a.cpp", '#include "pendcore/simulate/solution.hpp"', "(scene) includes"),
+        ("cpp/src/simulate/a.cpp", '#include "../bindings/arrays.hpp"', "not by its place"),
+    ],
+    rules.sources_stand_where_their_headers_do: [
+        ("cpp/src/dynamics/chain.cpp", "", "has no folder dynamics"),
+    ],
+    rules.imports_go_down: [
+        (f"{PACKAGE}/scene/scene.py", "from pendcore.run.result import RunResult", "above it"),
+        (f"{PACKAGE}/run/result.py", "import pendcore.views.plot", "above it"),
+        (f"{PACKAGE}/views/plot.py", "from pendcore import api", "(views) imports pendcore.api"),
+        (f"{PACKAGE}/cases/case.py", "from pendcore import simulate", "above it"),
+        (f"{PACKAGE}/__init__.py", "from pendcore.cli import main", "(pendcore) imports"),
+        (
+            f"{PACKAGE}/api/solution.py",
+            "def plot():\n    from pendcore.views.plot import plot",
+            "imports pendcore.views.plot.plot in a function",
+        ),
+        (
+            f"{PACKAGE}/views/plot.py",
+            "if TYPE_CHECKING:\n    from pendcore.run.result import RunResult",
+            "for types alone",
+        ),
+        (
+            f"{PACKAGE}/views/plot.py",
+            "class A:\n    if typing.TYPE_CHECKING:\n        import pendcore.scene.link",
+            "for types alone",
+        ),
+        (f"{PACKAGE}/views/plot.py", "from ..run import result", "has a relative import"),
+        (f"{PACKAGE}/cli/run.py", "x = import_module('pendcore.derive')", "by its name"),
+        (f"{PACKAGE}/attic/link.py", "", "attic/link.py is in no layer"),
+    ],
+    rules.imports_form_no_circle: [
+        (f"{PACKAGE}/run/result.py", "import pendcore.run.result", "a circle of imports"),
+    ],
+    rules.names_say_what_a_file_holds: [
+        ("cpp/src/string_utils.cpp", "", "'utils'"),
+        ("tests/helpers/angles.py", "", "'helpers'"),
+    ],
+    rules.files_are_short: [
+        ("tests/test_long.py", "pass\n" * 401, "401 lines"),
+        ("tests/test_all_long.py", "pass\n" * 301, "one file in twenty"),
+        ("tests/test_half_long.py", "pass\n" * 121, "half of the files"),
+        ("tests/test_wide.py", "x" * 101, "101 columns"),
+    ],
+    rules.comments_have_a_subject: [
+        (f"{CORE}/dynamics/chain.hpp", f"/// {OF} each link: its inertia.", ':1 begins with "Of"'),
+        (
+            "cpp/src/scene/scene.cpp",
+            f"double mass;  ///< {OF} the links, kg",
+            ':1 begins with "Of"',
+        ),
+        ("tests/test_all.py", f'def f():\n    """{OF} no use."""', ':2 begins with "Of"'),
+        ("python/pendcore/scene.py", f"x = 1\n# {OF} no use", ':2 begins with "Of"'),
+    ],
+    rules.kernels_call_no_libm: [
+        (f"{CORE}/dynamics/chain.hpp", "auto s = std::sin(q);", "std::sin"),
+        (f"{CORE}/arithmetic/power.hpp", "return pow(x, y);", "pow"),
+        (f"{CORE}/integrate/control.hpp", "x = -__builtin_expf (y);", "__builtin_expf"),
+        ("cpp/src/simulate/simulate.cpp", "sincos(q, &s, &c);", "sincos"),
+    ],
+    rules.builds_use_no_flag_that_changes_bits: [
+        ("CMakeLists.txt", "add_compile_options(-march=native)", "-march=native"),
+        ("cpp/cmake/speed.cmake", "set(fast -O3 -ffast-math)", "-ffast-math"),
+        ("CMakePresets.json", '"CMAKE_CXX_FLAGS": "-Ofast"', "-Ofast"),
+    ],
+}
+CASES = [(rule, *breach) for rule, breaches in BREACHES.items() for breach in breaches]
+
+
+def write(path: Path, text: str) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text)
+
+
+@pytest.mark.parametrize(("rule", "path", "text", "sentence"), CASES)
+def test_a_breach_is_found(rule: Rule, path: str, text: str, sentence: str, tmp_path: Path) -> None:
+    write(tmp_path / path, text)
+    assert [found for found in rule(tmp_path) if sentence in found]
+
+
+def test_a_source_in_another_folder_than_its_header_is_found(tmp_path: Path) -> None:
+    write(tmp_path / CORE / "dynamics/chain/chain.hpp", "")
+    write(tmp_path / CORE / "dynamics/energetics/energy.hpp", "")
+    write(tmp_path / "cpp/src/dynamics/energetics/chain.cpp", "")
+    (found,) = rules.sources_stand_where_their_headers_do(tmp_path)
+    assert "stands in another folder than chain.hpp" in found
+
+
+def test_a_circle_of_imports_is_found(tmp_path: Path) -> None:
+    package = tmp_path / PACKAGE
+    write(package / "derive/__init__.py", "from pendcore.derive.algebra import Algebra")
+    write(package / "derive/algebra.py", "from pendcore.derive import laws")
+    write(package / "derive/laws/__init__.py", "import pendcore.derive.algebra")
+    (found,) = rules.imports_form_no_circle(tmp_path)
+    assert "pendcore.derive.algebra" in found
+    assert "pendcore.derive.laws" in found
+
+
+@pytest.mark.parametrize(
+    ("project", "citation", "sentence"),
+    [
+        (pendcore.__version__, "9.9.9", "CITATION.cff has version 9.9.9"),
+        ("9.9.9", "9.9.9", "the built core has version"),
+    ],
+)
+def test_a_second_version_is_found(
+    project: str, citation: str, sentence: str, tmp_path: Path
+) -> None:
+    write(tmp_path / "pyproject.toml", f'[project]\nversion = "{project}"\n')
+    write(tmp_path / "CITATION.cff", f"version: {citation}\n")
+    (found,) = rules.version_is_the_same_everywhere(tmp_path)
+    assert sentence in found
+
+
+def test_what_the_rules_allow_is_no_breach(tmp_path: Path) -> None:
+    write(
+        tmp_path / CORE / "dynamics/chain/chain.hpp",
+        '#include "pendcore/arithmetic/sine_cosine.hpp"\n'
+        "// std::sin(q) differs from machine to machine\n"
+        "x = std::sqrt(sine_cosine(q).sine);",
+    )
+    write(
+        tmp_path / "cpp/bindings/module.cpp",
+        '#include "arrays.hpp"\n'
+        '#include "pendcore/simulate/solution.hpp"\n'
+        "#include <pybind11/numpy.h>",
+    )
+    package = tmp_path / PACKAGE
+    write(package / "__main__.py", "from pendcore.cli import main")
+    write(package / "cli/derive.py", "import pendcore\nfrom pendcore import _core")
+    write(
+        package / "views/plot.py",
+        "from pendcore.run.result import RunResult\nif TYPE_CHECKING:\n    import matplotlib\n"
+        "def plot():\n    import matplotlib",
+    )
+    write(package / "run/result.py", "from pendcore import scene\nfrom pendcore.run import call")
+    write(package / "run/call.py", "from pendcore.scene.link import Link")
+    assert [found for rule in BREACHES for found in rule(tmp_path)] == []

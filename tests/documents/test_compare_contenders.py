@@ -1,0 +1,214 @@
+"""The contenders of the comparison solve the case that they are given, and no other."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "bench" / "compare"))
+
+import contenders
+import stiff
+from cases import Array, Case, read_case
+from contenders import compiled
+from contenders.contender import Contender, Unsupported
+from contenders.conversation import find_executable
+from contenders.equations import fill, jacobian, rates
+from contenders.pendcore_python import scene_of
+from trajectory_error import position_error
+
+BARE, DAMPED, THREE = (read_case(name) for name in ("textbook", "damped_textbook", "three_links"))
+LOADED = replace(BARE, damping=(0.3, 2.0), stiffness=(5.0, 11.0), rest=(0.2, -0.4))
+CASES = {"bare": BARE, "damped": DAMPED, "loaded": LOADED, "three": THREE}
+
+
+def dense(case: Case, y: Array) -> Array:
+    """Solve the equations of motion of uniform rods as a linear system: (qd, qdd)."""
+    n, (q, w) = case.n, np.split(y, 2)
+    m, length = np.array(case.masses), np.array(case.lengths)
+    beyond = np.append(np.cumsum(m[::-1])[::-1][1:], 0.0)
+    moment = length * (m / 2 + beyond)
+    near, far = (f.outer(range(n), range(n)) for f in (np.minimum, np.maximum))
+    inertia = length[near] * moment[far]
+    np.fill_diagonal(inertia, length**2 * (m / 3 + beyond))
+    apart = q[:, None] - q
+    turned, turning = np.diff(q, prepend=0.0), np.diff(w, prepend=0.0)
+    torque = -np.array(case.stiffness) * (turned - case.rest) - np.array(case.damping) * turning
+    forces = case.gravity * moment * np.cos(q) + torque - np.append(torque[1:], 0.0)
+    forces -= (inertia * np.sin(apart)) @ w**2
+    return np.concatenate([w, np.linalg.solve(inertia * np.cos(apart), forces)])
+
+
+def by_filling(case: Case) -> Callable[[Array], Array]:
+    filled = fill(case, lambda function: function)
+
+    def rates_of(y: Array) -> Array:
+        out = np.empty(2 * case.n)
+        filled(out, y)
+        return out
+
+    return rates_of
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_right_hand_sides_of_the_peers_solve_the_equations_of_motion(name: str) -> None:
+    case = CASES[name]
+    scene = scene_of(case)
+    for y in np.random.default_rng(7).uniform(-4, 4, (20, 2 * case.n)):
+        expected = dense(case, y)
+        np.testing.assert_allclose(rates(case)(0.0, y), expected, rtol=1e-11)
+        np.testing.assert_allclose(by_filling(case)(y), expected, rtol=1e-11)
+        core = scene.accelerations(0.0, y[: case.n], y[case.n :])
+        np.testing.assert_allclose(core, expected[case.n :], rtol=1e-11)
+
+
+@pytest.mark.parametrize("name", ["bare", "damped", "loaded"])
+def test_jacobians_of_the_peers_are_the_derivatives_of_the_rates(name: str) -> None:
+    case = CASES[name]
+    derivatives = jacobian(case)
+    assert derivatives is not None
+    for y in np.random.default_rng(8).uniform(-2, 2, (5, 4)):
+        differences = [
+            (dense(case, y + step) - dense(case, y - step)) / 2e-6 for step in 1e-6 * np.eye(4)
+        ]
+        np.testing.assert_allclose(derivatives(0.0, y), np.transpose(differences), atol=1e-6)
+
+
+def test_a_controller_is_a_motor_and_the_same_law() -> None:
+    y = np.array([0.3, 1.1, -0.7, 0.4])
+    motors = replace(LOADED, controller=True)
+    assert [type(effect).__name__ for effect in scene_of(motors).effects] == ["Motor", "Motor"]
+    for case in (LOADED, motors):
+        core = scene_of(case).accelerations(0.0, y[:2], y[2:])
+        np.testing.assert_allclose(core, dense(case, y)[2:], rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        replace(BARE, masses=(1.0, 2.0)),
+        replace(BARE, lengths=(1.0, 0.5)),
+        replace(BARE, gravity=9.81),
+        replace(THREE, damping=(0.1, 0.0, 0.0)),
+        read_case("single_rod"),
+    ],
+    ids=lambda case: f"{case.masses} {case.lengths} {case.gravity} {case.damping}",
+)
+def test_a_case_that_no_closed_form_is_of_is_refused(case: Case) -> None:
+    with pytest.raises(Unsupported):
+        rates(case)
+
+
+CARRIED = {"damped": DAMPED, "three": THREE, "bare": BARE}
+# Right to a thousandth of the length at a middling setting: no contender is given another case.
+SETTINGS = {"tolerance": 1e-7, "step": 2e-3}
+
+
+@pytest.fixture(scope="module")
+def found() -> Iterator[list[Contender]]:
+    """All contenders that are here: at least pendcore's own."""
+    entrants, _ = contenders.installed()
+    assert any(who.name == "pendcore_dopri5" for who in entrants)
+    yield entrants
+    compiled.end_conversations()
+
+
+@pytest.mark.outside_build
+@pytest.mark.parametrize("name", CARRIED)
+def test_every_contender_solves_the_case_that_it_is_given(
+    found: list[Contender], name: str
+) -> None:
+    case = CARRIED[name]
+    n, lengths = case.n, np.array(case.lengths)
+    for who in found:
+        states = who.prepare(case, SETTINGS[who.setting]).outcome().states
+        assert states.shape == case.reference.shape, who.name
+        np.testing.assert_allclose(states[0], case.start, atol=1e-14, err_msg=who.name)
+        assert position_error(states[:, :n], case.reference[:, :n], lengths) < 1e-3, who.name
+        last, known = states[-1, n:], case.reference[-1, n:]
+        np.testing.assert_allclose(last, known, atol=2e-2, err_msg=who.name)
+
+
+@pytest.mark.outside_build
+@pytest.mark.parametrize("name", stiff.LOADS)
+def test_contenders_of_stiff_scenes_solve_them(found: list[Contender], name: str) -> None:
+    case = stiff.read_scene(name)
+    entrants = [who for who in found if stiff.takes_part(who.name)]
+    implicit = [who for who in entrants if "dopri5" not in who.name and "scipy" not in who.name]
+    assert len(implicit) >= 2
+    for who in implicit:
+        states = who.prepare(case, 1e-5).outcome().states
+        assert position_error(states[:, :2], case.reference[:, :2], np.ones(2)) < 2e-3, who.name
+
+
+@pytest.mark.parametrize("name", stiff.LOADS)
+def test_references_of_stiff_scenes_are_known_better_than_what_is_compared(name: str) -> None:
+    case = stiff.read_scene(name)
+    np.testing.assert_allclose(case.reference[0], case.start)
+    assert case.reference.shape == (len(case.times), 4)
+    assert case.uncertainty < 1e-9
+
+
+@pytest.mark.outside_build
+@pytest.mark.parametrize("order", [3, 12, 20])
+def test_heyokas_tolerances_are_one_for_each_order(order: int) -> None:
+    heyoka = pytest.importorskip("heyoka")
+    from contenders.heyoka_taylor import system, tolerance_of
+
+    orders = [
+        heyoka.taylor_adaptive(system(BARE), BARE.start, tol=tolerance).order
+        for tolerance in (tolerance_of(order), tolerance_of(order) * (1 - 1e-6))
+    ]
+    assert orders == [order, order + 1]
+
+
+@pytest.mark.outside_build
+def test_a_failed_run_says_why(found: list[Contender]) -> None:
+    for who in found:
+        if who.name in ("pendcore_dopri5", "pendcore_dopri5_cpp"):
+            with pytest.raises(RuntimeError, match="the step fell below"):
+                who.prepare(read_case("high_energy"), 1e-1).outcome()
+
+
+@pytest.mark.outside_build
+def test_one_that_is_missing_is_named_and_the_others_are_there(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("SOLVES_ODEINT", str(tmp_path / "nowhere"))
+    monkeypatch.setitem(sys.modules, "contenders.heyoka_taylor", None)
+    present, absent = contenders.installed()
+    assert "not built" in absent["solves_odeint"]
+    assert "heyoka_taylor" in absent
+    names = {who.name for who in present}
+    assert "pendcore_dopri5" in names
+    assert not any(name.startswith(("odeint", "heyoka")) for name in names)
+
+
+@pytest.mark.outside_build
+def test_pendcore_runs_with_the_instruction_set_that_its_label_says() -> None:
+    try:
+        find_executable("solves_pendcore", "SOLVES_PENDCORE")
+    except ImportError as absence:
+        pytest.skip(str(absence))
+    own = compiled.of_program("solves_pendcore")
+    for who in own:
+        assert ("(x86-64-v3)" in who.label) == who.name.endswith("_v3")
+        if who.name.endswith("_v3"):
+            assert ", x86-64-v3, " in who.about
+    wide = [who for who in own if ", x86-64-v4, " in who.about]
+    assert bool(wide) == any(who.name.endswith("_v3") for who in own)
+
+
+@pytest.mark.outside_build
+def test_narrower_instructions_give_the_same_bits(found: list[Contender]) -> None:
+    by_name = {who.name: who for who in found}
+    for name, who in by_name.items():
+        if f"{name}_v3" in by_name:
+            setting = SETTINGS[who.setting]
+            both = (each.prepare(BARE, setting).outcome() for each in (who, by_name[f"{name}_v3"]))
+            np.testing.assert_array_equal(*(outcome.states for outcome in both), err_msg=name)

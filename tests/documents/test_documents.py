@@ -1,0 +1,152 @@
+"""What the documents say is what the project does."""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import matplotlib.image
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).parents[2]
+DOCUMENTS = [*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")]
+COMPARISON = ROOT / "docs/comparison/textbook.json"
+
+sys.path.append(str(ROOT / "bench/compare"))
+import excerpts  # noqa: E402
+
+
+@pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: str(path.relative_to(ROOT)))
+def test_links_lead_somewhere(path):
+    for target in re.findall(r"\]\(([^)#]+)[^)]*\)", path.read_text()):
+        if not target.startswith("https://"):
+            assert (path.parent / target).exists(), f"{path.name} links to {target}"
+
+
+@pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: str(path.relative_to(ROOT)))
+def test_a_page_imports_what_its_lines_use(path):
+    """What stands there can be pasted, from the top."""
+    above = ""
+    for code in re.findall(r"```python\n(.*?)```", path.read_text(), re.DOTALL):
+        above += code
+        for name, module in (("np", "numpy"), ("pc", "pendcore")):
+            if re.search(rf"\b{name}\.", code):
+                assert f"import {module} as {name}\n" in above
+
+
+def test_the_readmes_lines_run(tmp_path, monkeypatch, capsys):
+    mpl.use("Agg")
+    monkeypatch.chdir(tmp_path)
+    (dozen,) = blocks_of("README.md")
+    names: dict[str, object] = {}
+    exec(dozen, names)
+    assert names["longer"].t[-1] == 10.0
+    assert (tmp_path / "run.npz").exists()
+
+
+def blocks_of(document: str) -> list[str]:
+    return re.findall(r"```python\n(.*?)```", (ROOT / document).read_text(), re.DOTALL)
+
+
+def test_the_lines_of_the_first_steps_run(tmp_path, monkeypatch, capsys):
+    mpl.use("Agg")
+    monkeypatch.chdir(tmp_path)
+    chains, rubbed = blocks_of("docs/first_steps.md")
+    names: dict[str, object] = {}
+    exec(chains, names)
+    assert names["run"].success
+    ledger = names["run"].energy().ledger
+    assert [*ledger] == ["viscous", "drag", "motor", "wind", "user", "residual"]
+    assert abs(ledger.residual).max() < 1e-6
+    assert "PD(kp=20.0" in capsys.readouterr().out
+    assert rubbed == hard_case()
+
+
+def test_the_readmes_counts_are_those_of_the_records():
+    readme = " ".join((ROOT / "README.md").read_text().split())
+    hard = (ROOT / "docs/hard_cases.md").read_text()
+    (told,) = re.findall(r"^Right, of (\d+) cases: (.*)\.$", hard, re.MULTILINE)
+    right = dict(re.findall(r"(pendcore|SciPy|MuJoCo|Boost\.odeint) (\d+)", told[1]))
+    assert f"Of [{told[0]} cases that break simulators]" in readme
+    assert (
+        f"pendcore gets {right['pendcore']} right, SciPy {right['SciPy']}, "
+        f"MuJoCo {right['MuJoCo']} and Boost.odeint {right['Boost.odeint']}." in readme
+    )
+    families = json.loads((ROOT / "docs/true_error.json").read_text())["families"].values()
+    assert f"Of [{sum(one['scenes'] for one in families):,} random scenes]" in readme
+    assert sum(one["above"] for one in families) == 0
+
+
+def hard_case() -> str:
+    """Return the lines of the first steps that draw their hard case."""
+    return next(block for block in blocks_of("docs/first_steps.md") if "stick_slip.png" in block)
+
+
+def test_ten_lines_draw_the_hard_case_of_the_first_steps(tmp_path, monkeypatch):
+    """The picture that stands there is theirs, and the grey in it is exact rest."""
+    mpl.use("Agg")
+    monkeypatch.chdir(tmp_path)
+    lines = [line for line in hard_case().splitlines() if line.strip()]
+    assert len(lines) <= 10
+    assert lines[-1].endswith('.savefig("stick_slip.png")')
+    names: dict[str, Any] = {}
+    exec(hard_case(), names)
+    drawn, kept = (
+        matplotlib.image.imread(path)
+        for path in (tmp_path / "stick_slip.png", ROOT / "docs/figures/stick_slip.png")
+    )
+    assert drawn.shape == kept.shape
+    assert np.abs(drawn - kept).mean() < 0.01  # what another font changes is less
+    # At first the motor of 10 sin t has to overcome 5 N m; later the second joint stops when
+    # tests/models/hybrid_chain.py says, and the first lets go when it no longer holds motor and weights.
+    slow = names["slow"]
+    resting = np.flatnonzero((slow.qd == 0).all(axis=1))
+    first, later = (
+        [i for i in resting if low <= slow.t[i] <= high] for low, high in ((0, 1), (5, 7))
+    )
+    assert first == [*range(first[-1] + 1)]
+    assert later == [*range(later[0], later[-1] + 1)]
+    assert slow.t[first[-1]] == pytest.approx(np.arcsin(0.5), abs=1e-12)
+    assert slow.t[later[0]] == pytest.approx(5.5431723449428, abs=1e-10)
+    q1, q2 = slow(5.8)[:2]
+    held = 5.0 - 9.807 * (1.5 * np.cos(q1) + 0.5 * np.cos(q2))
+    assert slow.t[later[-1]] == pytest.approx(2 * np.pi + np.arcsin(held / 10), abs=1e-10)
+    assert (slow.q[first] == np.pi / 2).all()
+    assert (slow.q[later] == (q1, q2)).all()
+    assert (slow(np.linspace(5.55, 6.04, 50)) == slow(5.8)[:, None]).all()
+
+
+def test_a_ledger_is_as_good_as_its_steps_and_trust_says_how_good(capsys):
+    (code,) = re.findall(r"```python\n(.*?)```", (ROOT / "docs/trust.md").read_text(), re.DOTALL)
+    exec(code, {})
+    residuals = [float(line.split()[1]) for line in capsys.readouterr().out.splitlines()]
+    (told,) = re.findall(r"# (.*)$", code, re.MULTILINE)
+    for residual, order in zip(residuals, re.findall(r"([\de-]+) J", told), strict=True):
+        assert float(order) / 2 < residual < 2 * float(order)
+
+
+def test_events_are_what_their_page_says(capsys):
+    (code,) = re.findall(r"```python\n(.*?)```", (ROOT / "docs/events.md").read_text(), re.DOTALL)
+    names: dict[str, object] = {}
+    exec(code, names)
+    (told,) = re.findall(r"# (stopped at .*)$", code, re.MULTILINE)
+    assert capsys.readouterr().out.startswith(told + "\n<Found: t = ")
+    assert names["longer"].status == "event"
+
+
+@pytest.mark.parametrize("document", excerpts.EXCERPTS)
+def test_quoted_figures_are_those_of_the_record(document):
+    name, excerpt = excerpts.EXCERPTS[document]
+    text = (ROOT / document).read_text()
+    assert f"<!-- {name}: begin -->" in text
+    assert excerpts.insert(text, name, excerpt(json.loads(COMPARISON.read_text()))) == text
+
+
+def test_an_excerpt_takes_the_place_of_the_one_before():
+    text = "a\n<!-- x: begin -->\nold\n<!-- x: end -->\nb\n"
+    assert excerpts.insert(text, "x", "new\n") == text.replace("old", "new")

@@ -1,0 +1,146 @@
+"""What docs/add_an_effect.md has you write is an effect, and stands where it says."""
+
+from __future__ import annotations
+
+import re
+import runpy
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import cmake
+import pendcore as pc
+import pytest
+from hypothesis import strategies as st
+from reference.instant import Instant
+from reference.loads import Loads
+from reference.newton_euler import uniform_rod
+from reference.random_rigs import between
+
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs/add_an_effect.md").read_text()
+STEPS, OTHER_LAWS = PAGE.split("## Other kinds of law")
+HEADER, *LINES_OF_CPP = re.findall(r"```cpp\n(.*?)```", STEPS, re.DOTALL)
+LAW, *LINES_OF_PYTHON = re.findall(r"```python\n(.*?)```", STEPS, re.DOTALL)
+PROJECT = """
+cmake_minimum_required(VERSION 3.25)
+project(effect LANGUAGES CXX)
+find_package(pendcore REQUIRED)
+add_executable(effect effect.cpp)
+target_link_libraries(effect PRIVATE pendcore::pendcore)
+"""
+PROGRAM = """
+#include <cstdio>
+#include <pendcore/pendcore.hpp>
+#include <pendcore/dynamics/row.hpp>
+#include "magnetic_brake.hpp"
+using namespace pendcore;
+
+template <class Row>
+void print(double qd) {
+  const MagneticBrake brake{.joint = 1, .peak = 0.3, .critical_rate = 2.0};
+  MagneticBrake::Law<Row> law;
+  brake.put(law, 0, LinkConstants{});
+  const RowAt<Row> at{.t = 0.0, .q = Constants<Row>::of(1.0), .qd = Constants<Row>::of(qd)};
+  RowLoads<Row> loads;
+  law.add(at, loads);
+  std::printf("%a\\n", lane(loads.couples, 0));
+}
+
+int main() {
+  for (const double qd : {-5.0, 0.0, 2.0}) {
+    print<double>(qd);
+    print<Pair>(qd);
+  }
+  try {
+    check_parameters("effect 1: ", MagneticBrake{.joint = 1, .peak = -1.0, .critical_rate = 1.0});
+  } catch (const std::invalid_argument& refused) {
+    std::puts(refused.what());
+  }
+}
+"""
+
+
+@pytest.fixture
+def torque(tmp_path: Path) -> Callable[[float], float]:
+    """The law of the page for the reference, of the rate of its joint."""
+    path = tmp_path / "magnetic_brake.py"
+    path.write_text(LAW)
+    brake = runpy.run_path(str(path))["MagneticBrake"](joint=1, peak=0.3, critical_rate=2.0)
+
+    def of_rate(rate: float) -> float:
+        loads, rod = Loads(1), uniform_rod(1.0, 1.0)
+        brake.act(Instant(bodies=[rod], gravity=0.0, q=[1.0], qd=[rate]), loads)
+        return float(loads.couples[0].value)
+
+    return of_rate
+
+
+def test_its_law_in_the_reference_brakes_hardest_at_the_critical_rate(
+    torque: Callable[[float], float],
+) -> None:
+    assert torque(2.0) == pytest.approx(-0.3)
+    assert torque(0.0) == 0.0
+    assert torque(-1.9) == pytest.approx(-torque(1.9))
+    assert max(abs(torque(rate)) for rate in (1.9, 2.1)) < 0.3
+
+
+def test_the_lines_to_add_stand_where_it_says() -> None:
+    registry = (ROOT / "cpp/include/pendcore/effects/registry.hpp").read_text()
+    laws = (ROOT / "tests/reference/effects/__init__.py").read_text()
+    include, name = LINES_OF_CPP
+    assert include.replace("magnetic_brake", "motor") in registry
+    assert name.split()[0].replace("MagneticBrake", "Motor") in registry.split()
+    line, drawn, balanced = LINES_OF_PYTHON
+    assert line.replace("magnetic_brake", "motor").replace("MagneticBrake", "Motor") in laws
+    names = {"fixed": st.fixed_dictionaries, "between": between, "at": {"joint": st.just(1)}}
+    strategy = eval(f"{{{drawn}}}", names)["magnetic_brake"]
+    assert isinstance(strategy, st.SearchStrategy)
+    ((kind, told),) = eval(f"[{balanced}]")
+    assert kind == "magnetic_brake"
+    assert {*told} == set(re.findall(r"\.name = \"(\w+)\"", HEADER)) - {"MagneticBrake"} | {"joint"}
+    assert "SMOOTH" in (ROOT / "tests/effects/test_ledger.py").read_text()
+
+
+ELSEWHERE = {
+    "BOOKED": "docs/effect_pages.py",
+    "LOSSES": "tests/reference/rig.py",
+    "SMOOTH": "tests/effects/test_ledger.py",
+}
+
+
+def test_the_parts_of_the_contract_that_it_names_are_there() -> None:
+    headers = "".join(p.read_text() for p in (ROOT / "cpp/include/pendcore/effects").glob("*.hpp"))
+    named = set(re.findall(r"`(\w+)[(`]", OTHER_LAWS)) - {"put"}
+    assert {"couple", "potential", "warnings", "next_mode"} <= named
+    for name in named:
+        assert re.search(rf"\b{name}\b", headers) or name in ELSEWHERE, name
+    for name, file in ELSEWHERE.items():
+        assert name in (ROOT / file).read_text()
+    for file in re.findall(r"`(\w+\.hpp)`", OTHER_LAWS):
+        assert (ROOT / "cpp/include/pendcore/effects" / file).exists(), file
+
+
+@pytest.mark.outside_build
+def test_its_header_compiles_and_says_the_same_as_the_reference(
+    torque: Callable[[float], float], tmp_path: Path
+) -> None:
+    # Under another name: whoever has followed the page has one in the core.
+    for file, text in (("magnetic_brake.hpp", HEADER), ("effect.cpp", PROGRAM)):
+        (tmp_path / file).write_text(text.replace("MagneticBrake", "BrakeOfThePage"))
+    (tmp_path / "CMakeLists.txt").write_text(PROJECT)
+    program = str(Path(cmake.CMAKE_BIN_DIR) / "cmake")
+    where = [f"-Dpendcore_ROOT={Path(pc.__file__).parent}", f"-DPython_EXECUTABLE={sys.executable}"]
+    build = str(tmp_path / "build")
+    for command in (
+        [program, "-S", str(tmp_path), "-B", build, *where],
+        [program, "--build", build],
+        [f"{build}/effect"],
+    ):
+        done = subprocess.run(command, capture_output=True, text=True)
+        assert done.returncode == 0, done.stdout + done.stderr
+    *couples, refused = done.stdout.splitlines()
+    expected = [torque(rate) for rate in (-5.0, -5.0, 0.0, 0.0, 2.0, 2.0)]
+    assert [float.fromhex(word) for word in couples] == pytest.approx(expected, rel=1e-15)
+    assert refused == "effect 1: peak = -1.0: must be finite and >= 0 (N m)"

@@ -1,0 +1,281 @@
+"""Effects of the user's own: functions of Python and compiled ones, and what becomes of them."""
+
+from __future__ import annotations
+
+import copy
+import ctypes
+import gc
+import pickle
+import re
+import subprocess
+import threading
+import weakref
+from pathlib import Path
+
+import numpy as np
+import pendcore as pc
+import pytest
+from compiled_functions import DOUBLES, FORCES
+from pendcore import effects as fx
+
+ROD = pc.Link(mass=1, length=1)
+START = {"q0": [0.5, 1.0], "qd0": [1.0, -1.0], "t_span": (0, 2)}
+
+
+def scene(*effects):
+    return pc.Scene(links=[ROD, ROD], effects=effects)
+
+
+def damp(t, q, qd):
+    return -0.1 * qd
+
+
+@FORCES
+def compiled_damp(t, n, q, qd, forces, data):
+    for i in range(n):
+        forces[i] -= 0.1 * qd[i]
+
+
+@FORCES
+def compiled_damp_by_data(t, n, q, qd, forces, data):
+    coefficient = ctypes.cast(data, DOUBLES)[0]
+    for i in range(n):
+        forces[i] -= coefficient * qd[i]
+
+
+def same_motion(*scenes):
+    first, *others = (pc.simulate(one, **START, ledger=True) for one in scenes)
+    for run in others:
+        assert np.array_equal(run.y, first.y)
+        assert np.array_equal(run.energy().ledger.user, first.energy().ledger.user)
+    return first
+
+
+def test_a_function_moves_a_scene_the_same_from_python_and_compiled():
+    run = same_motion(
+        scene(fx.User(damp)),
+        scene(fx.CompiledUser(compiled_damp)),
+        scene(fx.CompiledUser(ctypes.cast(compiled_damp, ctypes.c_void_p).value)),
+        scene(fx.CompiledUser(compiled_damp_by_data, data=np.array([0.1]))),
+    )
+    assert run.energy().ledger.user[-1] < -0.1
+    assert np.abs(run.energy().ledger.residual).max() < 1e-7
+    assert not np.array_equal(run.y[:, -1], pc.simulate(scene(), **START).y[:, -1])
+
+
+def test_numbas_functions_are_taken_as_they_are():
+    numba = pytest.importorskip("numba")
+    types = numba.types
+    doubles = types.CPointer(types.double)
+    signature = types.void(types.double, types.int32, doubles, doubles, doubles, types.voidptr)
+
+    @numba.cfunc(signature)
+    def damped(t, n, q, qd, forces, data):
+        for i in range(n):
+            forces[i] -= 0.1 * qd[i]
+
+    same_motion(scene(fx.User(damp)), scene(fx.CompiledUser(damped)))
+
+
+@pytest.mark.outside_build
+def test_a_library_of_the_users_own_is_taken_as_its_page_says(tmp_path):
+    page = (Path(__file__).parents[2] / "docs/effects/compiled_user.md").read_text()
+    (code,) = re.findall(r"```cpp\n(.*?)```", page, re.DOTALL)
+    (command,) = re.findall(r"^    (g\+\+ .*)$", page, re.MULTILINE)
+    (tmp_path / "laws.cpp").write_text(code)
+    subprocess.run(command.split(), cwd=tmp_path, check=True)
+    library = ctypes.CDLL(str(tmp_path / "laws.so"))
+    compiled = scene(fx.CompiledUser(library.damp))
+    same_motion(scene(fx.User(damp)), compiled)
+    _, of_python, _ = scene(fx.User(damp)).explain().costs
+    _, of_library, _ = compiled.explain().costs
+    assert of_library.nanoseconds < of_python.nanoseconds / 10
+
+
+def test_a_function_gets_time_angles_and_rates_as_fresh_arrays():
+    seen = []
+
+    def look(t, q, qd):
+        seen.append((t, q.copy(), qd.copy()))
+        q[:] = qd[:] = 99.0  # its own
+        return np.zeros(2)
+
+    own, bare = scene(fx.User(look)), scene()
+    state = (0.25, [1.0, 2.0], [3.0, 4.0])
+    assert np.array_equal(own.accelerations(*state), bare.accelerations(*state))
+    t, q, qd = seen[-1]
+    assert (t, q.tolist(), qd.tolist()) == (0.25, [1.0, 2.0], [3.0, 4.0])
+
+
+@pytest.mark.parametrize("forces", [[1, 2], (1.0, 2.0), np.array([1, 2]), np.float32([1, 2])])
+def test_forces_may_be_any_numbers(forces):
+    own, state = scene(fx.User(lambda *_: forces)), (0, [1, 2], [0, 0])
+    expected = scene(fx.User(lambda *_: np.array([1.0, 2.0]))).accelerations(*state)
+    assert np.array_equal(own.accelerations(*state), expected)
+
+
+@pytest.mark.parametrize(
+    ("forces", "kind", "message"),
+    [
+        (None, TypeError, r"User: .*answer\(t, q, qd\) = None: must be real numbers"),
+        ("ab", TypeError, r"User: .*answer\(t, q, qd\) = 'ab': must be real numbers"),
+        (5.0, ValueError, r"User: .*answer\(t, q, qd\).*must be \(2,\), the generalised forces"),
+        ([1, 2, 3], ValueError, r"User: .*answer.*: shape \(3,\): must be \(2,\), the generalised"),
+        (np.eye(2), ValueError, r"User: .*answer.*: shape \(2, 2\): must be \(2,\)"),
+    ],
+)
+def test_what_is_no_force_is_refused_by_the_functions_name(forces, kind, message):
+    def answer(t, q, qd):
+        return forces
+
+    own = scene(fx.User(answer))
+    with pytest.raises(kind, match=message):
+        own.accelerations(0, [1, 2], [0, 0])
+    with pytest.raises(kind, match=message):
+        pc.simulate(own, **START)
+
+
+class OutOfAirError(Exception):
+    pass
+
+
+def breaks_off(t, q, qd):
+    if t > 1.0:
+        raise OutOfAirError(t)
+    return damp(t, q, qd)
+
+
+@pytest.mark.parametrize("store", ["dense", "end"])
+def test_an_exception_passes_through_with_the_run_so_far(store):
+    with pytest.raises(OutOfAirError) as stop:
+        pc.simulate(scene(fx.User(breaks_off)), **START, store=store)
+    run = stop.value.solution
+    assert run.status == "callback_error"
+    assert run.message.startswith("a function of the user's raised an exception")
+    assert not run.success
+    assert 0.5 < run.t[-1] <= 1.0
+    whole = pc.simulate(scene(fx.User(damp)), **START)
+    if store == "dense":
+        assert np.array_equal(run.y, whole.y[:, : len(run.t)])
+    assert stop.traceback[-1].name == "breaks_off"
+
+
+def test_a_run_that_its_function_broke_off_can_be_resumed():
+    patient = {"patience": 1.0}
+
+    def impatient(t, q, qd):
+        if t > patient["patience"]:
+            raise OutOfAirError
+        return damp(t, q, qd)
+
+    with pytest.raises(OutOfAirError) as stop:
+        pc.simulate(scene(fx.User(impatient)), **START)
+    patient["patience"] = 9.0
+    whole = pc.simulate(scene(fx.User(damp)), **START)
+    assert np.array_equal(stop.value.solution.resume(2.0).y, whole.y)
+
+
+def test_ctrl_c_in_a_function_interrupts():
+    def stop(t, q, qd):
+        if t > 0.5:
+            raise KeyboardInterrupt
+        return damp(t, q, qd)
+
+    with pytest.raises(KeyboardInterrupt) as interrupt:
+        pc.simulate(scene(fx.User(stop)), **START)
+    run = interrupt.value.solution
+    assert run.status == "interrupted"
+    assert run.message.startswith("interrupted: ")
+
+
+def test_an_exception_at_the_start_carries_the_start():
+    with pytest.raises(OutOfAirError) as stop:
+        pc.simulate(scene(fx.User(breaks_off)), **{**START, "t_span": (2, 3)})
+    run = getattr(stop.value, "solution", None)
+    assert run is None or len(run.t) <= 1
+
+
+def test_forces_that_are_no_numbers_end_the_run_and_say_when():
+    own = scene(fx.User(lambda t, q, qd: damp(t, q, qd) if t < 1 else [np.nan, 0.0]))
+    run = pc.simulate(own, **START, check=False)
+    assert run.status in ("non_finite", "step_too_small")
+    assert 0.9 < run.t[-1] < 1.1
+
+
+def test_a_function_lives_as_long_as_what_runs_under_it():
+    def make():
+        def own(t, q, qd):
+            return damp(t, q, qd)
+
+        return own, weakref.ref(own)
+
+    function, alive = make()
+    run = pc.simulate(scene(fx.User(function)), **START)
+    core = run.run
+    del function
+    gc.collect()
+    expected = pc.simulate(scene(fx.User(damp)), **START).resume(3.0)
+    longer = run.resume(3.0)
+    del run
+    gc.collect()
+    assert alive() is not None
+    assert np.array_equal(longer.y, expected.y)
+    del longer
+    gc.collect()
+    assert alive() is not None  # the core's run could go on
+    assert core.resume(2.5, None, 100, None, None).t_reached > 2
+    del core
+    gc.collect()
+    assert alive() is None
+
+
+def test_a_compiled_function_is_kept_alive_through_replace():
+    kept = fx.CompiledUser(FORCES(lambda *_: None))
+    alive = weakref.ref(kept._origins["address"])
+    varied = kept.replace(data=5)
+    del kept
+    gc.collect()
+    assert alive() is not None
+    assert varied.data == 5
+
+
+def test_threads_share_a_scene_with_a_function():
+    shared, results = scene(fx.User(damp)), []
+    threads = [
+        threading.Thread(target=lambda: results.append(pc.simulate(shared, **START).y))
+        for _ in range(3)
+    ]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(results) == 3
+    assert all(np.array_equal(y, results[0]) for y in results)
+
+
+@pytest.mark.parametrize("effect", [fx.User(damp), fx.CompiledUser(compiled_damp)], ids=["py", "c"])
+def test_what_cannot_be_kept_says_so_by_name(effect, tmp_path):
+    own, name = scene(effect), type(effect).__name__
+    run = pc.simulate(own, **START)
+    case = pc.Case(scene=own, **START)
+    for keep in (
+        lambda: pickle.dumps(effect),
+        lambda: pickle.dumps(own),
+        lambda: pickle.dumps(run),
+        lambda: case.to_toml(),
+        lambda: run.save(tmp_path / "run.npz"),
+    ):
+        with pytest.raises(TypeError, match=rf"{name}.*function"):
+            keep()
+    assert [*tmp_path.iterdir()] == []
+    with pytest.raises(SyntaxError):
+        eval(repr(effect))
+    assert copy.deepcopy(own) == copy.copy(own) == own
+    assert hash(own) == hash(scene(effect))
+
+
+def test_tables_have_no_case_of_a_function():
+    pytest.importorskip("pandas")
+    run = pc.simulate(scene(fx.User(damp)), **START)
+    assert "case" not in run.to_pandas().attrs
+    assert "case" in pc.simulate(scene(), **START).to_pandas().attrs
