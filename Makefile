@@ -102,7 +102,7 @@ SEEDS ?= 0:5000
 FAMILIES ?= mixed damped chaotic stiff contact own short_links
 ERROR_WORKERS ?= 2
 test-error: $(DONE)/installed $(DONE)/error-requirements  ## true errors (SEEDS, FAMILIES) against references of more digits
-	PYTHONPATH=tests:tests/models python -m true_error.campaign --seeds $(SEEDS) $(FAMILIES:%=--family %) \
+	PYTHONPATH=tests python -m true_error.campaign --seeds $(SEEDS) $(FAMILIES:%=--family %) \
 	    --workers $(ERROR_WORKERS) --output out/true_error/scenes.json \
 	    --record $(or $(RECORD),out/true_error/record.json) $(PAGE:%=--page %)
 

@@ -3,8 +3,8 @@
     make long
 
 It runs both, checks what docs/long_runs.md promises, and writes docs/long_runs.json, the figure
-docs/figures/long_runs.png and the tables of the page. tests/core/test_long_runs.py runs the same in a
-reduced form.
+docs/figures/long_runs.png and the tables of the page. tests/core/test_long_runs.py runs the
+same in a reduced form.
 """
 
 from __future__ import annotations

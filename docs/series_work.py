@@ -4,8 +4,8 @@
 
 Measured in turns, in right-hand sides of dop853 of the same scene, and divided by what
 `series_work` of `pendcore.accuracy.method_choice` says. It prints, and fails where one of them is
-not within a factor of two. No test measures times; tests/methods/test_series_work.py sees that every kind
-of effect is measured here.
+not within a factor of two. No test measures times;
+tests/methods/test_series_work.py sees that every kind of effect is measured here.
 """
 
 from __future__ import annotations

@@ -103,7 +103,7 @@ def test_ten_lines_draw_the_hard_case_of_the_first_steps(tmp_path, monkeypatch):
     assert drawn.shape == kept.shape
     assert np.abs(drawn - kept).mean() < 0.01  # what another font changes is less
     # At first the motor of 10 sin t has to overcome 5 N m; later the second joint stops when
-    # tests/models/hybrid_chain.py says, and the first lets go when it no longer holds motor and weights.
+    # hybrid_chain.py says, and the first lets go when it no longer holds motor and weights.
     slow = names["slow"]
     resting = np.flatnonzero((slow.qd == 0).all(axis=1))
     first, later = (

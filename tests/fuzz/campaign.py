@@ -1,7 +1,7 @@
 """`make fuzz`: random cases by the hundred thousand, in processes that are watched.
 
     PYTHONPATH=tests:tests/models python -m fuzz.campaign --cases 100000 --seed 1
-    PYTHONPATH=tests:tests/models python -m fuzz.campaign --seed 1 --only 4711      # that case again, made small
+    PYTHONPATH=tests:tests/models python -m fuzz.campaign --seed 1 --only 4711  # again, made small
 
 Every case is bounded in steps and in time. It fails where its process dies or falls silent, and
 where it breaks a claim of `fuzz.claims`. The report says what became of them; exit 1 if any failed.

@@ -31,7 +31,8 @@ class Worker:
     def _start(self) -> None:
         self.errors = tempfile.TemporaryFile()  # noqa: SIM115  (closed by _ended)
         numbers = [str(x) for x in (self.next, self.end, self.stride)]
-        paths = [str(Path(__file__).parents[1]), os.environ.get("PYTHONPATH", "")]
+        tests = Path(__file__).parents[1]
+        paths = [str(tests), str(tests / "models"), os.environ.get("PYTHONPATH", "")]
         self.process = subprocess.Popen(
             [*self.command, *numbers],
             stdout=subprocess.PIPE,

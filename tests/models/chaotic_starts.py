@@ -1,7 +1,7 @@
 """Fifty chaotic motions in many digits, and how the distance of a neighbour grows.
 
-`python tests/models/chaotic_starts.py` computes anew what tests/data/chaotic_starts.json holds, from its
-starts, with the Taylor series of reference/taylor_series.py; it takes half an hour.
+`python tests/models/chaotic_starts.py` computes anew what tests/data/chaotic_starts.json holds,
+from its starts, with the Taylor series of reference/taylor_series.py; it takes half an hour.
 tests/data/README.md says what a case holds, and how the starts were drawn.
 """
 

@@ -1,8 +1,8 @@
 """Chains whose joints strike their stops in turn, ever faster, in many digits.
 
-`python tests/models/corner_impacts.py` computes anew what tests/data/corner_impacts.json holds, from its
-starts, event by event (reference/stopped_rods.py). With `--scan 200` it draws two hundred scenes
-and prints which of them the core ends elsewhere, and how far.
+`python tests/models/corner_impacts.py` computes anew what tests/data/corner_impacts.json holds,
+from its starts, event by event (reference/stopped_rods.py). With `--scan 200` it draws two hundred
+scenes and prints which of them the core ends elsewhere, and how far.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """`make test-error`: scenes by the thousand, each held against a reference of more digits.
 
-    PYTHONPATH=tests:tests/models python -m true_error.campaign --family mixed --seeds 0:5000 --workers 2
-    PYTHONPATH=tests:tests/models python -m true_error.campaign --family mixed --seeds 4711:4712    # that one
+    PYTHONPATH=tests python -m true_error.campaign --family mixed --seeds 0:5000 --workers 2
+    PYTHONPATH=tests python -m true_error.campaign --family mixed --seeds 4711:4712    # that one
 
 Every scene is bounded in time. What breaks a claim is listed with the command that repeats it; the
 exit status is then 1.

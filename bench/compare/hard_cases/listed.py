@@ -4,6 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
+BAD_INPUT = "tests/python_api/test_bad_input.py"
+STOPPED = "tests/python_api/test_stopped_runs.py"
+SOLUTION = "tests/python_api/test_solution.py"
+EVENT_CLASSES = "tests/events/test_event_classes.py"
+ROUND_TRIPS = "tests/effects/test_effect_round_trips.py"
+SIMULATE = "tests/python_api/test_simulate.py"
 HARD = "tests/methods/test_hard_cases.py"
 STICK = "tests/switching/test_hard_cases_stick.py"
 SLIP = "tests/switching/test_hard_cases_stick_slip.py"
@@ -26,7 +32,7 @@ LONG = "tests/core/test_long_runs.py"
 
 LISTED: dict[str, tuple[str, ...]] = {
     "an interval of no length, and of 100 units in the last place": (
-        "tests/python_api/test_simulate.py::test_a_run_of_no_length_is_its_start",
+        f"{SIMULATE}::test_a_run_of_no_length_is_its_start",
         f"{HARD}::test_a_hundred_units_in_the_last_place_are_one_step",
     ),
     "t0 so large that t + h = t": (f"{HARD}::test_a_time_too_large_for_its_step_is_said_plainly",),
@@ -42,11 +48,11 @@ LISTED: dict[str, tuple[str, ...]] = {
         f"{HARD}::test_all_links_horizontal_at_rest_begins_to_fall_at_once",
     ),
     "a start that is not finite": (
-        "tests/python_api/test_bad_input.py::test_a_start_that_is_not_finite_is_named_with_its_place",
+        f"{BAD_INPUT}::test_a_start_that_is_not_finite_is_named_with_its_place",
     ),
     "not a number in mid-run": (
         f"{MORE}::test_what_is_no_number_beyond_a_time_or_an_angle_ends_there",
-        "tests/python_api/test_stopped_runs.py::test_a_run_that_is_not_finite_says_which_rate_and_whose_force",
+        f"{STOPPED}::test_a_run_that_is_not_finite_says_which_rate_and_whose_force",
     ),
     "blow-up in finite time": (f"{MORE}::test_a_blow_up_ends_at_its_pole",),
     "tolerances of 1e30, and below eps; atol 0 with a zero component": (
@@ -140,9 +146,9 @@ LISTED: dict[str, tuple[str, ...]] = {
         f"{HARD}::test_energy_drifts_with_the_tolerance_alone",
     ),
     "inputs that are read-only, strided, of the wrong shape or type": (
-        "tests/python_api/test_simulate.py::test_the_same_start_in_any_form_gives_the_same_bits",
-        "tests/python_api/test_bad_input.py::test_a_start_of_the_wrong_shape_is_refused_with_the_right_one",
-        "tests/python_api/test_bad_input.py::test_what_is_no_real_number_is_refused",
+        f"{SIMULATE}::test_the_same_start_in_any_form_gives_the_same_bits",
+        f"{BAD_INPUT}::test_a_start_of_the_wrong_shape_is_refused_with_the_right_one",
+        f"{BAD_INPUT}::test_what_is_no_real_number_is_refused",
     ),
     "Ctrl-C within 0.1 s": (f"{HARD}::test_ctrl_c_is_heard_within_a_tenth_of_a_second",),
     "threads that share a scene; a fork": (
@@ -152,12 +158,12 @@ LISTED: dict[str, tuple[str, ...]] = {
         f"{HARD}::test_a_fork_may_simulate_too",
     ),
     "pickling of everything": (
-        "tests/python_api/test_solution.py::test_a_solution_comes_back_whole",
-        "tests/python_api/test_solution.py::test_what_a_solution_and_a_scene_tell_comes_back_from_pickle",
-        "tests/events/test_event_classes.py::test_an_event_comes_back_from_its_repr_pickle_copy_and_toml",
+        f"{SOLUTION}::test_a_solution_comes_back_whole",
+        f"{SOLUTION}::test_what_a_solution_and_a_scene_tell_comes_back_from_pickle",
+        f"{EVENT_CLASSES}::test_an_event_comes_back_from_its_repr_pickle_copy_and_toml",
         "tests/core/test_energy.py::test_a_run_with_a_ledger_comes_back_whole",
-        "tests/effects/test_effect_round_trips.py::test_an_effect_comes_back_from_its_repr_and_from_pickle",
-        "tests/effects/test_effect_round_trips.py::test_a_scene_comes_back_from_its_repr_and_from_pickle",
+        f"{ROUND_TRIPS}::test_an_effect_comes_back_from_its_repr_and_from_pickle",
+        f"{ROUND_TRIPS}::test_a_scene_comes_back_from_its_repr_and_from_pickle",
     ),
 }
 

@@ -1,7 +1,7 @@
 """Two rods with dry friction in both joints under a slow motor: the joints stick and slide in turn.
 
-The right answer is solved mode by mode in tests/models/hybrid_chain.py, which tries every pattern of stick
-and slip at each switch.
+The right answer is solved mode by mode in tests/models/hybrid_chain.py, which tries every pattern
+of stick and slip at each switch.
 """
 
 from __future__ import annotations
@@ -117,9 +117,10 @@ CASE = HardCase(
     ),
     answer=(
         "The angles over 9 s and 13 switches: solved mode by mode in 12th order, every pattern of "
-        "stick and slip tried at each switch, by 130 lines of one's own (tests/models/hybrid_chain.py). A "
-        "loop around SciPy or Boost.odeint would be these lines once more: which joints hold is "
-        "all that is hard here, and no part of either helps to decide it. So none is run as theirs."
+        "stick and slip tried at each switch, by 130 lines of one's own "
+        "(tests/models/hybrid_chain.py). A loop around SciPy or Boost.odeint would be these lines "
+        "once more: which joints hold is all that is hard here, and no part of either helps to "
+        "decide it. So none is run as theirs."
     ),
     unit="rad",
     allowed=1e-8,
