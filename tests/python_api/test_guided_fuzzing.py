@@ -37,7 +37,7 @@ def test_what_coverage_damages_is_refused_in_words_or_used(reader: str, tmp_path
             sys.executable, "-m", "fuzz.guided", reader, tmp_path / "corpus", f"-runs={RUNS}",
             "-seed=1", f"-artifact_prefix={tmp_path}/",
         ],
-        cwd=TESTS, env=os.environ | {"PYTHONPATH": str(TESTS)}, capture_output=True, text=True,
+        cwd=TESTS, env=os.environ | {"PYTHONPATH": f"{TESTS}{os.pathsep}{TESTS / 'models'}"}, capture_output=True, text=True,
         check=False,
     )  # fmt: skip
     told = done.stdout + done.stderr
