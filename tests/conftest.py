@@ -1,4 +1,4 @@
-"""What several tests share: the methods, the multiple-precision trajectories, a Ctrl-C heard."""
+"""What tests share: reduced sweeps, the methods, trajectories in many digits, a Ctrl-C heard."""
 
 from __future__ import annotations
 
@@ -11,16 +11,54 @@ from carried import is_refusal_of_series
 from hypothesis import settings
 from pendcore import _core
 from reference.trajectories import Trajectory, trajectory
+from sweeps import every, few
+
+VALUES = 6
+"""Values of each parameter that a reduced sweep meets."""
 
 # A busy machine is no failure.
 settings.register_profile("untimed", deadline=None)
 settings.load_profile("untimed")
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    group = parser.getgroup("sweeps")
+    group.addoption("--full", action="store_true", help="run all cases of every test")
+    group.addoption("--values", type=int, default=VALUES, help="of each parameter, without --full")
+    group.addoption("--share", type=int, default=1, help="run one test function of so many")
+
+
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Among several processes what builds programs begins first, lest one end with it alone."""
+    """Reduce sweeps, unless one test is asked for by name or all are.
+
+    Among several processes what builds programs begins first, lest one end with it alone.
+    """
+    if not config.getoption("full") and not any("::" in name for name in config.args):
+        _reduce(config, items)
     if hasattr(config, "workerinput"):
         items.sort(key=lambda item: item.get_closest_marker("outside_build") is None)
+
+
+def _reduce(config: pytest.Config, items: list[pytest.Item]) -> None:
+    functions: dict[str, list[Case]] = {}
+    for item in items:
+        if item.get_closest_marker("whole") is None:
+            functions.setdefault(item.nodeid.partition("[")[0], []).append(Case(item))
+    chosen = every(functions, config.getoption("share"))
+    kept = {
+        case.nodeid for name in chosen for case in few(functions[name], config.getoption("values"))
+    }
+    config.hook.pytest_deselected(items=[item for item in items if item.nodeid not in kept])
+    items[:] = [item for item in items if item.nodeid in kept]
+
+
+class Case:
+    """A test as `few` sees it."""
+
+    def __init__(self, item: pytest.Item) -> None:
+        self.nodeid = item.nodeid
+        callspec = getattr(item, "callspec", None)
+        self.indices: dict[str, int] = dict(callspec.indices) if callspec else {}
 
 
 @pytest.hookimpl(wrapper=True)

@@ -32,13 +32,14 @@ def test_the_seeds_hold_every_method_events_stops_and_compensated_steps() -> Non
 def test_what_coverage_damages_is_refused_in_words_or_used(reader: str, tmp_path: Path) -> None:
     if importlib.util.find_spec("atheris") is None:
         pytest.skip("atheris is missing: make fuzz-readers installs it")
+    paths = [str(TESTS), str(TESTS / "models")]
     done = subprocess.run(
         [
             sys.executable, "-m", "fuzz.guided", reader, tmp_path / "corpus", f"-runs={RUNS}",
             "-seed=1", f"-artifact_prefix={tmp_path}/",
         ],
-        cwd=TESTS, env=os.environ | {"PYTHONPATH": f"{TESTS}{os.pathsep}{TESTS / 'models'}"}, capture_output=True, text=True,
-        check=False,
+        cwd=TESTS, env=os.environ | {"PYTHONPATH": os.pathsep.join(paths)}, capture_output=True,
+        text=True, check=False,
     )  # fmt: skip
     told = done.stdout + done.stderr
     assert done.returncode == 0, told

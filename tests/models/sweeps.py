@@ -1,0 +1,66 @@
+"""Which cases of a parametrised test are run: all of them, or few that meet every parameter.
+
+`make test` runs few, so that a newcomer need not wait; `make test-all` runs all. No test function
+is left out: a reduced sweep keeps some values of each parameter, and each of these at least once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from hashlib import sha256
+from typing import Protocol
+
+
+class Case(Protocol):
+    """A case of a parametrised test: its name, and the number of its value for each parameter."""
+
+    nodeid: str
+
+    @property
+    def indices(self) -> dict[str, int]: ...
+
+
+def few(cases: Sequence[Case], values: int) -> list[Case]:
+    """Return cases that meet up to so many values of each parameter, each value at least once.
+
+    The choice depends on nothing but the names of the cases and their order.
+    """
+    if not cases[0].indices:
+        return list(cases)
+    kept = {
+        name: set(spread(sorted({case.indices[name] for case in cases}), values))
+        for name in cases[0].indices
+    }
+    within = [
+        case for case in cases if all(case.indices[name] in some for name, some in kept.items())
+    ]
+    missed = {(name, value) for name, some in kept.items() for value in some}
+    chosen = set()
+    for case in (*sorted(within, key=shuffled), *sorted(cases, key=shuffled)):
+        met = missed & set(case.indices.items())
+        if met:
+            chosen.add(case.nodeid)
+            missed -= met
+    return [case for case in cases if case.nodeid in chosen]
+
+
+def spread(values: Sequence[int], count: int) -> list[int]:
+    """Return so many of some values, the first and the last among them."""
+    if len(values) <= count:
+        return list(values)
+    if count == 1:
+        return [values[0]]
+    return [values[round(k * (len(values) - 1) / (count - 1))] for k in range(count)]
+
+
+def every(names: Iterable[str], share: int) -> list[str]:
+    """Return one name of so many, the same ones each time."""
+    return [name for name in names if digest(name) % share == 0]
+
+
+def digest(text: str) -> int:
+    return int.from_bytes(sha256(text.encode()).digest()[:8], "big")
+
+
+def shuffled(case: Case) -> int:
+    return digest(case.nodeid)
