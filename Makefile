@@ -21,19 +21,31 @@ BUILT := build/installed
 SOURCES := pyproject.toml CMakeLists.txt $(shell find cpp python ! -path '*__pycache__*')
 
 .DEFAULT_GOAL := help
-.PHONY: demo test compare hard-cases bench build-bench lint tidy sanitize threads long horizon \
-    asked-errors default-method book-speed fuzz fuzz-readers test-error clean help
+.PHONY: demo test test-all compare hard-cases bench build-bench lint tidy sanitize sanitize-few \
+    sanitized threads long horizon asked-errors default-method book-speed fuzz fuzz-readers \
+    test-error clean help
 
 demo: $(DONE)/installed  ## build, run the textbook's case, say where its figure and summary are
 	pendcore run -o out/textbook
 	@echo "figure:  out/textbook/angles.png"
 	@echo "summary: out/textbook/summary.txt"
 
-test: $(DONE)/installed $(DONE)/test-requirements  ## build and run all tests
-	cmake -B $(BUILT) -DPENDCORE_TESTS=ON
-	cmake --build $(BUILT) --target pendcore_tests pendcore_threads trajectory_hash
-	ctest --test-dir $(BUILT) --output-on-failure --no-tests=error
+test: $(DONE)/installed $(DONE)/test-requirements  ## build and run the tests: every claim, sweeps reduced to a few cases
+	$(CPP_TESTS)
 	$(PYTEST)
+
+# The programs that count instructions and those that are compared with pendcore are built first, or
+# their tests are skipped.
+test-all: lint tidy build-bench $(DONE)/test-requirements  ## everything: full sweeps, sanitizers, other builds, random cases
+	$(CPP_TESTS)
+	$(PYTEST) --full
+	$(MAKE) sanitize threads fuzz-readers fuzz CASES=20000
+
+define CPP_TESTS
+cmake -B $(BUILT) -DPENDCORE_TESTS=ON
+cmake --build $(BUILT) --target pendcore_tests pendcore_threads trajectory_hash
+ctest --test-dir $(BUILT) --output-on-failure --no-tests=error
+endef
 
 compare: build-bench  ## accuracy and speed beside other solvers
 	python bench/compare/compare.py
@@ -61,14 +73,21 @@ tidy: $(DONE)/build-requirements $(DONE)/lint-requirements  ## clang-tidy over t
 SANITIZED := $(CURDIR)/build/sanitizer/site
 PRELOAD = $(shell g++ -print-file-name=libasan.so) $(shell g++ -print-file-name=libstdc++.so)
 
-sanitize: $(DONE)/installed $(DONE)/test-requirements  ## all tests under sanitizers
+sanitize: SWEEP = --full
+sanitize: sanitized  ## all tests under sanitizers
+
+# One case of one Python test in three, from every area.
+sanitize-few: SWEEP = --values 1 --share 3
+sanitize-few: sanitized  ## the C++ tests and a few hundred Python tests under sanitizers
+
+sanitized: $(DONE)/installed $(DONE)/test-requirements
 	cmake --preset sanitizer -Dpybind11_DIR=$$(pybind11-config --cmakedir)
 	cmake --build --preset sanitizer
 	ctest --preset sanitizer
 	rm -rf $(SANITIZED) && mkdir -p $(SANITIZED) && cp -r python/pendcore $(SANITIZED)
 	cmake --install build/sanitizer --prefix $(SANITIZED)/pendcore
 	PYTHONPATH=$(SANITIZED) LD_PRELOAD="$(PRELOAD)" ASAN_OPTIONS=detect_leaks=0 \
-	    $(PYTEST) -m "not outside_build and not unsanitized"
+	    $(PYTEST) $(SWEEP) -m "not outside_build and not unsanitized"
 
 threads: $(DONE)/build-requirements  ## threads that share a scene, under the thread sanitizer
 	@sh setup/debian_packages.sh doctest

@@ -166,7 +166,8 @@ class Trials:
     ) -> RunResult:
         """Attach to a trial what is known of its error; ``why`` if that is nothing."""
         begin = self.start.t_start
-        accuracy = Accuracy(
+        solution.known_error = found
+        solution.accuracy = Accuracy(
             asked=self.error,
             achieved=inf if found is None else found.largest,
             outcome=outcome,
@@ -177,7 +178,7 @@ class Trials:
             paid=self._bill(solution, found),
             seconds=monotonic() - self.began,
         )
-        return solution.label(accuracy, found)
+        return solution
 
     def _bill(self, solution: RunResult, found: ErrorEstimate | None) -> tuple[Paid, ...]:
         verifying = next((key[1:-1] for key, one in self._estimates.items() if one is found), ())

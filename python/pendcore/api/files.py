@@ -6,8 +6,10 @@ import os
 
 from pendcore.api.scene import Scene
 from pendcore.api.solution import Case, Solution
+from pendcore.api.solve import result_as
 from pendcore.cases import archive
 from pendcore.cases.case_file import case_from
+from pendcore.scene.scene import SceneData
 
 
 def load(path: str | os.PathLike[str]) -> Solution:
@@ -31,8 +33,8 @@ def load(path: str | os.PathLike[str]) -> Solution:
         If the file cannot be read.
     """
     result = archive.load(path)
-    result.scene = Scene.of(result.scene)
-    return Solution.of(result)
+    result.scene = _public(result.scene)
+    return result_as(Solution, result)
 
 
 def read_case(source: str | os.PathLike[str]) -> Case:
@@ -56,4 +58,11 @@ def read_case(source: str | os.PathLike[str]) -> Case:
         If the file cannot be read.
     """
     case = case_from(source)
-    return Case(**(case.values() | {"scene": Scene.of(case.scene)}))
+    return Case(
+        scene=_public(case.scene), q0=case.q0, qd0=case.qd0, t_span=case.t_span, name=case.name,
+        options=case.options,
+    )  # fmt: skip
+
+
+def _public(scene: SceneData) -> Scene:
+    return Scene._unpickled(scene.links, scene.gravity, scene.effects)

@@ -43,6 +43,10 @@ class Solution(RunResult):
         What moved.
     name : str
         For people; of the case, if there was one. It may be set.
+    accuracy : Accuracy or None
+        What ``simulate(error=...)`` asked for, reached and paid; else None. Its ``asked`` and
+        ``achieved`` are shares of the total length, ``paid`` are the runs. It is of this run: one
+        that was resumed, or run again from its `case`, has none.
     """
 
     __slots__ = ()
@@ -186,11 +190,13 @@ class Solution(RunResult):
 
     def __reduce__(self) -> tuple[object, ...]:
         # The scene first: it says best that it cannot be pickled, if it cannot.
-        return type(self), (self.scene, self.run, self.name, self.accuracy, self.verified_error)
+        verified = None if self.accuracy is None else self.known_error
+        return type(self), (self.scene, self.run, self.name, self.accuracy, verified)
 
     def __deepcopy__(self, memo: object) -> Solution:
         # None of them ever changes.
-        return Solution(self.scene, self.run, self.name, self.accuracy, self.verified_error)
+        verified = None if self.accuracy is None else self.known_error
+        return Solution(self.scene, self.run, self.name, self.accuracy, verified)
 
     def __repr__(self) -> str:
         return text(self)

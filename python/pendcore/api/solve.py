@@ -52,6 +52,11 @@ def solve(
     return checked(completed(kind(scene, run), report), check)
 
 
+def result_as(kind: type[Result], result: RunResult) -> Result:
+    """Return the same result as one of a class."""
+    return kind(result.scene, result.run, result.name, result.accuracy, result.known_error)
+
+
 def _solved_to_error(
     kind: type[Result], start: Start, options: Options, wanted: list[tuple[str, dict[str, Any]]]
 ) -> Result:
@@ -59,10 +64,10 @@ def _solved_to_error(
     error = _error_asked_for(asked.pop("error"), **{name: asked.pop(name) for name in CHOSEN})
     del asked["events"], asked["check"]
     try:
-        return kind.of(run_to_error(start, error, asked | {"wanted": wanted}))
+        return result_as(kind, run_to_error(start, error, asked | {"wanted": wanted}))
     except BaseException as stop:
         if isinstance(so_far := getattr(stop, "solution", None), RunResult):
-            stop.solution = kind.of(so_far)  # type: ignore[attr-defined]
+            stop.solution = result_as(kind, so_far)  # type: ignore[attr-defined]
         raise
 
 

@@ -55,7 +55,7 @@ def save(solution: RunResult, path: str | os.PathLike[str], *, progress: Progres
     }
     if solution.accuracy is not None:
         entries["accuracy"] = json.dumps(solution.accuracy.to_dict())
-        if (error := solution.verified_error) is not None:
+        if (error := solution.known_error) is not None:
             entries |= {_ERROR + one.name: getattr(error, one.name) for one in fields(error)}
     report = callback(progress, f"writing {os.fspath(path)}")
     try:

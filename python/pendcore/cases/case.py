@@ -88,20 +88,19 @@ class CaseData:
         ]
         return "\n".join(header + "".join(_lines(table)) for header, table in tables)
 
-    def values(self) -> dict[str, Any]:
-        """Return all that it is made of, by name."""
+    def _values(self) -> dict[str, Any]:
         values = {field.name: getattr(self, field.name) for field in fields(self)}
         return values | {"options": dict(self.options)}
 
     def __repr__(self) -> str:
-        return f"Case({', '.join(f'{name}={x!r}' for name, x in self.values().items())})"
+        return f"Case({', '.join(f'{name}={x!r}' for name, x in self._values().items())})"
 
     def __hash__(self) -> int:
-        return hash(tuple((self.values() | {"options": frozenset(self.options.items())}).values()))
+        return hash(tuple((self._values() | {"options": frozenset(self.options.items())}).values()))
 
     def __reduce__(self) -> tuple[object, ...]:
         # A read-only mapping does not pickle, so the case is made anew.
-        return _case, (type(self), self.values())
+        return _case, (type(self), self._values())
 
 
 def _case(cls: type[CaseData], values: dict[str, Any]) -> CaseData:

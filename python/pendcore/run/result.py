@@ -6,7 +6,7 @@ y points **down**. Nothing is computed before it is asked for.
 
 from __future__ import annotations
 
-from typing import Self, TypeVar
+from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -37,11 +37,13 @@ class RunResult:
         The core's: what was asked for, what was kept, and what is needed to resume.
     name : str
         For people.
+    accuracy : Accuracy or None
+        What ``simulate(error=...)`` asked for, reached and paid; else None.
     known_error : ErrorEstimate or None
         How far off it is, once something has estimated that.
     """
 
-    __slots__ = ("_accuracy", "_events", "known_error", "name", "run", "scene")
+    __slots__ = ("_events", "accuracy", "known_error", "name", "run", "scene")
 
     def __init__(
         self,
@@ -52,13 +54,8 @@ class RunResult:
         error: ErrorEstimate | None = None,
     ) -> None:
         self.scene, self.run, self.name = scene, run, name
-        self._accuracy, self.known_error = accuracy, error
+        self.accuracy, self.known_error = accuracy, error
         self._events: list[list[Found]] | None = None
-
-    @classmethod
-    def of(cls, result: RunResult) -> Self:
-        """Return the same result as one of this class."""
-        return cls(result.scene, result.run, result.name, result.accuracy, result.known_error)
 
     @property
     def t(self) -> Floats:
@@ -133,25 +130,6 @@ class RunResult:
     def stats(self) -> Statistics:
         """What the run took: right-hand sides, steps, and what limited them."""
         return Statistics(**self.run.statistics)
-
-    @property
-    def accuracy(self) -> Accuracy | None:
-        """What ``simulate(error=...)`` asked for, reached and paid; else None.
-
-        Its ``asked`` and ``achieved`` are shares of the total length, ``paid`` are the runs. It is
-        of this run: one that was resumed, or run again from its `case`, has none.
-        """
-        return self._accuracy
-
-    @property
-    def verified_error(self) -> ErrorEstimate | None:
-        """The estimate behind `accuracy`; another is made anew where it is asked for."""
-        return None if self._accuracy is None else self.known_error
-
-    def label(self, accuracy: Accuracy, error: ErrorEstimate | None) -> Self:
-        """Attach what became of an error that was asked for, and what is known of it."""
-        self._accuracy, self.known_error = accuracy, error
-        return self
 
     @property
     def events(self) -> list[list[Found]]:

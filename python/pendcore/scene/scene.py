@@ -8,7 +8,7 @@ i is where link i begins.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from typing import NamedTuple, Self, TypeVar
 
 import numpy as np
@@ -176,14 +176,6 @@ class SceneData:
     def __repr__(self) -> str:
         effects = f", effects={self.effects!r}" if self.effects else ""
         return f"Scene(links={self.links!r}, gravity={self.gravity!r}{effects})"
-
-    @classmethod
-    def of(cls, scene: SceneData) -> Self:
-        """Return the same scene as one of this class."""
-        same = object.__new__(cls)
-        for member in fields(SceneData):
-            object.__setattr__(same, member.name, getattr(scene, member.name))
-        return same
 
     @classmethod
     def _unpickled(
