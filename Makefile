@@ -25,10 +25,13 @@ SOURCES := pyproject.toml CMakeLists.txt $(shell find cpp python ! -path '*__pyc
     sanitized threads long horizon asked-errors default-method book-speed fuzz fuzz-readers \
     test-error clean help
 
-demo: $(DONE)/installed  ## build, run the textbook's case, say where its figure and summary are
+demo: $(DONE)/installed $(DONE)/symbolic-requirements  ## build, run the textbook's case, say where its figure and summary are
 	pendcore run -o out/textbook
-	@echo "figure:  out/textbook/angles.png"
-	@echo "summary: out/textbook/summary.txt"
+	@echo
+	@echo "figure:   out/textbook/angles.png"
+	@echo "summary:  out/textbook/summary.txt"
+	@echo "command:  .venv/bin/pendcore --help (or first: . .venv/bin/activate)"
+	@echo "next:     .venv/bin/pendcore derive; .venv/bin/pendcore run examples/03_case_file.toml"
 
 test: $(DONE)/installed $(DONE)/test-requirements  ## build and run the tests: every claim, sweeps reduced to a few cases
 	$(CPP_TESTS)
@@ -145,18 +148,24 @@ $(DONE)/venv:
 
 # Without pip's build isolation a rebuild compiles what has changed and nothing else.
 $(DONE)/build-requirements: pyproject.toml | $(DONE)/venv
-	python setup/requirements.py build | $(PIP_INSTALL) cmake ninja -r /dev/stdin
+	@echo "pip installs what the build needs into .venv"
+	@python setup/requirements.py build | $(PIP_INSTALL) cmake ninja -r /dev/stdin
 	@touch $@
 
 # What is edited while it builds is newer than the stamp, and built the next time.
 $(DONE)/installed: $(SOURCES) $(DONE)/build-requirements
 	@touch $@.begun
+	@echo "pip compiles the core and installs it into .venv: one to two minutes the first time"
 	$(PIP_INSTALL) --no-build-isolation --config-settings build-dir=$(BUILT) .
 	@mv $@.begun $@
 
 $(DONE)/test-requirements: pyproject.toml | $(DONE)/build-requirements
 	@sh setup/debian_packages.sh doctest
 	python setup/requirements.py test export symbolic | $(PIP_INSTALL) -r /dev/stdin
+	@touch $@
+
+$(DONE)/symbolic-requirements: pyproject.toml | $(DONE)/build-requirements
+	python setup/requirements.py symbolic | $(PIP_INSTALL) -r /dev/stdin
 	@touch $@
 
 $(DONE)/error-requirements: pyproject.toml | $(DONE)/test-requirements

@@ -15,6 +15,8 @@ from sweeps import every, few
 
 VALUES = 6
 """Values of each parameter that a reduced sweep meets."""
+WHOLE = "tests/documents/"
+"""Tests of pages and of the code base are quick, and each page is a case."""
 
 # A busy machine is no failure.
 settings.register_profile("untimed", deadline=None)
@@ -44,10 +46,13 @@ def _reduce(config: pytest.Config, items: list[pytest.Item]) -> None:
     for item in items:
         if item.get_closest_marker("whole") is None:
             functions.setdefault(item.nodeid.partition("[")[0], []).append(Case(item))
-    chosen = every(functions, config.getoption("share"))
-    kept = {
-        case.nodeid for name in chosen for case in few(functions[name], config.getoption("values"))
-    }
+    values, share = config.getoption("values"), config.getoption("share")
+    kept = set()
+    for name in every(functions, share):
+        is_whole = share == 1 and name.startswith(WHOLE)
+        kept |= {
+            case.nodeid for case in (functions[name] if is_whole else few(functions[name], values))
+        }
     config.hook.pytest_deselected(items=[item for item in items if item.nodeid not in kept])
     items[:] = [item for item in items if item.nodeid in kept]
 

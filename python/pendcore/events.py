@@ -13,6 +13,15 @@ what is not.
 from __future__ import annotations
 
 from pendcore.run.events import Event, Function, JointAngle, LinkAngle, RateZero, TipLine
-from pendcore.run.found_events import Found
+from pendcore.run.found_events import Found, FoundEvents
 
-__all__ = ["Event", "Found", "Function", "JointAngle", "LinkAngle", "RateZero", "TipLine"]
+__all__ = [
+    "Event",
+    "Found",
+    "FoundEvents",
+    "Function",
+    "JointAngle",
+    "LinkAngle",
+    "RateZero",
+    "TipLine",
+]

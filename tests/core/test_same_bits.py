@@ -135,6 +135,7 @@ for n in (1, 2, 3):
     subprocess.run([sys.executable, "-W", "ignore", "-c", script], env=environment, check=True)
 
 
+@pytest.mark.whole
 @pytest.mark.outside_build
 @pytest.mark.parametrize(
     ("flags", "options", "sets"),

@@ -233,7 +233,7 @@ def test_what_a_solution_and_a_scene_tell_comes_back_from_pickle():
         assert type(again) is type(one)
         assert repr(again) == repr(one)
     assert [type(one).__name__ for one in told] == [
-        "Energy", "Ledger", "Statistics", "list", "Explanation", "Mobility"
+        "Energy", "Ledger", "Statistics", "FoundEvents", "Explanation", "Mobility"
     ]  # fmt: skip
     again = pickle.loads(pickle.dumps(energy))
     assert np.array_equal(again.total, energy.total)

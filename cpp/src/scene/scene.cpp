@@ -90,7 +90,8 @@ void warn_of_degrees(const std::string& where, const ParameterInfo& info, double
   if (info.unit != "rad" || info.name == "phase" || std::fmod(x, 5.0) != 0.0) return;
   if (std::abs(x) < 15.0 || std::abs(x) > 720.0) return;
   warnings.push_back(where + std::string(info.name) + " = " + text(x) + " rad: that is " +
-                     text(x * (180.0 / pi)) + " degrees: angles are in radians");
+                     std::to_string(std::lround(x * (180.0 / pi))) +
+                     " degrees: angles are in radians");
 }
 
 /// The same of each angle among the parameters of an effect, or of its parts.

@@ -121,7 +121,8 @@ std::vector<std::string> run_warnings(const Scene& scene, const std::vector<doub
   const auto large = std::ranges::find_if(q0, [](double q) { return std::abs(q) >= 15.0; });
   if (as_degrees && large != q0.end()) {
     warnings.push_back("q0[" + std::to_string(large - q0.begin()) + "] = " + text(*large) +
-                       " rad: that is " + text(*large * (180.0 / 3.14159265358979323846)) +
+                       " rad: that is " +
+                       std::to_string(std::lround(*large * (180.0 / 3.14159265358979323846))) +
                        " degrees: angles are in radians");
   }
   const double first = std::min(t0, t_end);

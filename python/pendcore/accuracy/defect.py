@@ -15,7 +15,7 @@ from pendcore.scene.scene import SceneData
 STEPS_AT_ONCE = 2000
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Defect:
     """The torques that would make a computed curve an exact motion.
 
@@ -63,6 +63,9 @@ class Defect:
     def joint(self) -> int:
         """The joint of the largest torque, from 1."""
         return int(self.torque.max(axis=0, initial=0.0).argmax()) + 1
+
+    def __repr__(self) -> str:
+        return str(self)
 
     def __str__(self) -> str:
         at_most = "at most " if self.is_bound else ""

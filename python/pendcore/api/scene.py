@@ -9,9 +9,11 @@ import numpy.typing as npt
 from pendcore.explanation.explain import explain
 from pendcore.explanation.explanation import Explanation
 from pendcore.messages.arguments import known_keywords, vector
+from pendcore.messages.frozen_state import frozen_state
 from pendcore.scene.scene import SceneData
 
 
+@frozen_state
 @dataclass(frozen=True, slots=True, init=False, repr=False, eq=False)
 class Scene(SceneData):
     """A chain of links on a pivot, and what acts on it, ready to be simulated.

@@ -16,6 +16,7 @@ from pendcore.api.solve import solve
 from pendcore.cases.archive import save
 from pendcore.cases.case import CaseData
 from pendcore.horizon.lyapunov import LyapunovExponents, lyapunov_of
+from pendcore.messages.frozen_state import frozen_state
 from pendcore.messages.progress import Progress
 from pendcore.run.call import resumed
 from pendcore.run.error_estimate import ErrorEstimate
@@ -172,7 +173,7 @@ class Solution(RunResult):
         horizon: float | None = None,
         **line_properties: Any,
     ) -> list[Line2D]:
-        """Draw the angles over time, as in the textbook; see `pendcore.views.plot.plot`.
+        """Draw the angles over time, as in the textbook; one axes for each link.
 
         ``ax`` is one axes, or one for each link; ``label`` names the solution in the legend; what
         is past `valid_until` (``horizon``), rad, is shaded; the rest are properties of matplotlib's
@@ -205,6 +206,7 @@ class Solution(RunResult):
         return html(self)
 
 
+@frozen_state
 @dataclass(frozen=True, slots=True, init=False, repr=False, eq=False)
 class Case(CaseData):
     """A scene, where it starts, how long and how it is run. It cannot be changed, and hashes.

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore.messages.arguments import finite_array, vector
+from pendcore.messages.frozen_state import frozen_state
 from pendcore.run.events import Event, Function, events_asked_for
 from pendcore.run.options import RUN_DEFAULTS
 from pendcore.run.result import RunResult
@@ -19,6 +20,7 @@ from pendcore.scene.effect_class import Effect, OwnEffect, Part
 from pendcore.scene.scene import SceneData
 
 
+@frozen_state
 @dataclass(frozen=True, slots=True, init=False, repr=False)
 class CaseData:
     """A case without what is built on it; `pendcore.Case` has its parameters and the rest."""

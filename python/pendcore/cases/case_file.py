@@ -37,6 +37,8 @@ from math import radians
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from pendcore.cases.case import CaseData
 from pendcore.cases.toml_text import Place, TomlText
 from pendcore.messages.arguments import vector
@@ -56,6 +58,9 @@ KEYS = {
     "run": ("t_start", "t_end", *(key for key in RUN_DEFAULTS if key != "events")),
 }
 """The known keys of every kind of table; "" stands for what is above all tables."""
+
+MOST_TIMES = 10_000_000
+"""That ``t_eval`` of a file may stand for: 80 MB of times."""
 
 
 EFFECT_KEYS = {
@@ -122,6 +127,8 @@ def case_from_text(content: str, name: str) -> CaseData:
 
 def _scene(text: TomlText) -> SceneData:
     tables = text.value(("link",))
+    if isinstance(tables, dict):
+        raise text.error(("link",), "[link] is one table: write [[link]], once for each link")
     if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
         raise text.error(("link",), "links are needed: a table [[link]] for each")
     links = []
@@ -243,11 +250,26 @@ def _run(text: TomlText) -> tuple[tuple[float, float], dict[str, Any]]:
     t_start = text.number(("run", "t_start")) if "t_start" in run else 0.0
     options = {key: value for key, value in run.items() if key in RUN_DEFAULTS}
     for key, value in options.items():
-        if isinstance(value, list):
+        if key == "t_eval" and isinstance(value, dict):
+            options[key] = _even_times(text, value)
+        elif isinstance(value, list):
             text.numbers(("run", key))
         elif not isinstance(value, int | float | str):
             raise text.error(("run", key), f"{key} = {value!r}: must be a number, text or a list")
     return (t_start, text.number(("run", "t_end"))), options
+
+
+def _even_times(text: TomlText, table: dict[str, Any]) -> list[float]:
+    """Return the times that ``t_eval = {start = 0.0, stop = 5.0, count = 101}`` stands for."""
+    place = ("run", "t_eval")
+    if set(table) != {"start", "stop", "count"}:
+        raise text.error(place, "t_eval: must be a list, or a table with start, stop (s) and count")
+    start, stop = (text.number((*place, key)) for key in ("start", "stop"))
+    count = table["count"]
+    if isinstance(count, bool) or not isinstance(count, int) or not 2 <= count <= MOST_TIMES:
+        complaint = f"t_eval.count = {count!r}: must be a whole number from 2 to {MOST_TIMES:,}"
+        raise text.error(place, complaint)
+    return [float(t) for t in np.linspace(start, stop, count)]
 
 
 def _place(message: str) -> Place:

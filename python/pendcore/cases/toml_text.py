@@ -40,7 +40,9 @@ class TomlText:
         try:
             self.content: dict[str, Any] = tomllib.loads(text)
         except ValueError as error:  # TOMLDecodeError, and an integer of too many digits
-            raise ValueError(f"{name}: {error}") from None
+            twice = "twice" in str(error) and _HEADER.search(text)
+            remedy = ": a table that is there more than once is [[link]], in two brackets"
+            raise ValueError(f"{name}: {error}{remedy if twice else ''}") from None
 
     def error(self, place: Place, complaint: str) -> ValueError:
         """Return an error that names the line of the place, or of what it stands in."""

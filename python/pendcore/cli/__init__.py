@@ -9,7 +9,7 @@ import warnings
 from collections.abc import Sequence
 
 from pendcore import _core
-from pendcore.cli import cost, derive, explain, plot, run
+from pendcore.cli import cost, derive, explain, plot, run, trust
 from pendcore.cli.usage import UsageError
 from pendcore.messages.warning import PendcoreWarning
 
@@ -20,6 +20,7 @@ examples:
   pendcore run swing.toml --json | jq .energy
   pendcore explain swing.toml             what it simulates, what not, how fast it moves
   pendcore plot out/swing/solution.npz -o swing.pdf
+  pendcore trust out/swing/solution.npz   until when the run is right, how fast its errors grow
   pendcore cost swing.toml                what accuracy costs on it: error and time of every method
   pendcore derive swing.toml              its equations of motion in symbols, as code, as a report
 
@@ -76,7 +77,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"pendcore {_core.__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for command in (run, explain, plot, cost, derive):
+    for command in (run, explain, plot, trust, cost, derive):
         command.add_parser(commands)
     return parser
 

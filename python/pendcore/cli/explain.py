@@ -7,7 +7,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from pendcore.api.files import read_case
+from pendcore.cli.case_and_folder import case_of
 from pendcore.cli.usage import blamed_on_usage
 from pendcore.messages.warning import warn
 
@@ -32,7 +32,9 @@ def add_parser(commands: Any) -> None:
         epilog=_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("case", type=Path, metavar="CASE.toml", help="what to explain")
+    parser.add_argument(
+        "case", nargs="?", type=Path, metavar="CASE.toml", help="default: the textbook's case"
+    )
     parser.add_argument("--json", action="store_true", help="print the same as JSON")
     parser.set_defaults(execute=execute)
 
@@ -40,7 +42,7 @@ def add_parser(commands: Any) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Do it; return the exit status."""
     with blamed_on_usage():
-        case = read_case(args.case)
+        case = case_of(args)
     for message in case.scene._compiled.run_warnings(case.q0, *case.t_span):
         warn(message)
     told = case.scene.explain(t=case.t_span[0], q=case.q0)

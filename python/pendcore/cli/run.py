@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from pathlib import Path
 from typing import Any
 
 from pendcore.api.solution import Case, Solution
@@ -50,6 +49,10 @@ a case:
 FILES = ("summary.txt", "summary.json", "angles.png", "solution.npz")
 _MANY_STEPS = 100_000
 """What takes seconds to write."""
+LIMIT = 0.1
+"""rad; a run counts as right until the error of an angle passes it."""
+MOST_WORK, PATIENCE = 1_000_000, 10.0
+"""Right-hand sides of a run whose horizon is estimated unasked, and s of computing for that."""
 
 
 def add_parser(commands: Any) -> None:
@@ -69,6 +72,11 @@ def add_parser(commands: Any) -> None:
         help="largest position error / total length to keep: method and tolerances are chosen, and "
         "the run is verified",
     )
+    parser.add_argument(
+        "--no-horizon",
+        action="store_true",
+        help="do not estimate until when the run is right: that takes second runs",
+    )
     parser.add_argument("--json", action="store_true", help="print the summary as JSON")
     parser.set_defaults(execute=execute)
 
@@ -80,9 +88,10 @@ def execute(args: argparse.Namespace) -> int:
         case = case if args.error is None else _with_error(case, args.error)
     folder = folder_of(args)
     with new_folder(folder):
-        solution, complaint, refusal = _simulated(case, args.case)
+        solution, complaint, refusal = _simulated(case, args)
         files = FilesToWrite(folder, FILES)
-        found = _write(files, solution, refusal)
+        horizon = None if args.no_horizon else _horizon(solution)
+        found = _write(files, solution, refusal, horizon)
         print(files.outcome(), file=sys.stderr)
         if not solution.success:
             complaint = f"the run is not complete: {solution.message}"
@@ -98,12 +107,15 @@ def execute(args: argparse.Namespace) -> int:
     return 1 if complaint or files.left_out else 0
 
 
-def _simulated(case: Case, file: Path | None) -> tuple[Solution, str, str]:
+def _simulated(case: Case, args: argparse.Namespace) -> tuple[Solution, str, str]:
     """Return the run, what is to be said against it, and of that what its error was refused for."""
     try:
         return case.simulate(check=False), "", ""  # what is to be said is said once, at the end
     except (ValueError, TypeError) as error:
-        raise UsageError(with_line(file, str(error)) if file else str(error)) from None
+        is_of_the_command = args.error is not None and str(error).startswith("error =")
+        if args.case is None or is_of_the_command:
+            raise UsageError(f"--{error}" if is_of_the_command else str(error)) from None
+        raise UsageError(with_line(args.case, str(error))) from None
     except (KeyboardInterrupt, AccuracyError) as stop:
         if isinstance(so_far := getattr(stop, "solution", None), Solution):
             return so_far, str(stop) or "interrupted", str(stop)
@@ -120,20 +132,38 @@ def _with_error(case: Case, error: float) -> Case:
     )  # fmt: skip
 
 
-def _write(files: FilesToWrite, solution: Solution, refusal: str) -> dict[str, Any]:
+def _horizon(solution: Solution) -> float | None:
+    """Return until when the run is right to `LIMIT`, s; None where nothing is known of it.
+
+    Second runs take a few times as long as the run. Where they took longer than anybody waits for
+    unasked, `pendcore trust` tells.
+    """
+    if solution.store != "dense" or solution.stats.nfev > MOST_WORK:
+        return None
+    try:
+        estimate = solution.error(time_limit=PATIENCE)
+    except (ValueError, KeyboardInterrupt):
+        return None
+    until = estimate.valid_until(LIMIT)
+    return until if estimate.is_complete or until < estimate.t[-1] else None
+
+
+def _write(
+    files: FilesToWrite, solution: Solution, refusal: str, horizon: float | None
+) -> dict[str, Any]:
     """Write what is small first; return the facts, if there was time to find them."""
     found: dict[str, Any] = {}
     if (steps := len(solution.run.step_starts)) > _MANY_STEPS:
         print(f"writing {steps} steps to {files.folder}", file=sys.stderr)
     with files.needed_for("summary.txt", "summary.json"):
-        found = facts(solution, refusal)
+        found = facts(solution, refusal) | {"valid_until": horizon}
     if found:
         with files.one("summary.txt") as path:
             path.write_text(text(found), encoding="utf-8")
         with files.one("summary.json") as path:
             path.write_text(json.dumps(found, indent=2) + "\n", encoding="utf-8")
     with files.one("angles.png") as path:
-        save_figure(solution, path)
+        save_figure(solution, path, None if horizon is None else LIMIT)
     with files.needed_for("solution.npz"):
         save(solution, files.folder / "solution.npz")
     return found

@@ -45,7 +45,7 @@ class HorizonPoint(NamedTuple):
     early: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class HorizonWork:
     """What `horizon_work` found.
 
@@ -123,6 +123,9 @@ class HorizonWork:
         figure = plt.figure(figsize=(9.6, 4.2), layout="constrained")
         draw_work(self, figure)
         return figure
+
+    def __repr__(self) -> str:
+        return str(self)
 
     def __str__(self) -> str:
         lines = [f"how long the angles stay within {self.limit:g} rad"]

@@ -34,7 +34,7 @@ TIMES = 201
 """How many times the result has, unless they are given."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class LyapunovExponents:
     """What `lyapunov` found; k exponents at n_t times.
 
@@ -99,6 +99,9 @@ class LyapunovExponents:
     def seconds_a_digit(self) -> float:
         """ln(10)/largest, s: so much longer is right a run that is right to one more digit."""
         return float(np.log(10)) * self.time
+
+    def __repr__(self) -> str:
+        return str(self)
 
     def __str__(self) -> str:
         if not self.growth.shape[1]:

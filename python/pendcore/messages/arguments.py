@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from difflib import get_close_matches
 from functools import wraps
-from inspect import signature
+from inspect import Parameter, signature
 from math import inf
 from numbers import Real
 from operator import index
@@ -50,9 +50,31 @@ def known_keywords(function: Callable[Taken, Given]) -> Callable[Taken, Given]:
                     remedy = did_you_mean(name, known)
                     owner = _owner(function, args)
                     raise TypeError(f"{owner}: has no parameter {name!r}: {remedy}") from None
+            if complaint := _call_complaint(function, args, named):
+                raise TypeError(complaint) from None
             raise
 
     return called
+
+
+def _call_complaint(
+    function: Callable[..., object], args: tuple[object, ...], named: dict[str, object]
+) -> str:
+    """Return what is wrong with how a function was called; nothing if its own code complained."""
+    parameters = [*signature(function).parameters.values()]
+    by_place = [one for one in parameters if one.kind is not Parameter.KEYWORD_ONLY]
+    owner = _owner(function, args)
+    own = [one.name for one in parameters if one.name not in ("self", "cls")]
+    given = {one.name for one, _ in zip(by_place, args, strict=False)} | set(named)
+    missing = [one.name for one in parameters if one.default is Parameter.empty]
+    missing = [name for name in missing if name not in given and name in own]
+    if len(args) > len(by_place):
+        by_name = ", ".join(f"{name}=..." for name in own if name not in given)
+        return f"{owner}: takes what it is given by name: {owner}({by_name})"
+    if missing:
+        call = ", ".join(f"{name}=..." for name in own if name in missing or name in given)
+        return f"{owner}: needs {' and '.join(missing)}: {owner}({call})"
+    return ""
 
 
 def _owner(function: Callable[..., object], args: tuple[object, ...]) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 from pendcore.messages.arguments import Floats, positive
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class ErrorEstimate:
     """How far a run is off, estimated from above.
 
@@ -80,6 +80,9 @@ class ErrorEstimate:
         is_past[-1:] |= self.is_lost
         within = np.argmax(is_past) if is_past.any() else len(self.t)
         return float(self.t[within - 1]) if within else self.begin
+
+    def __repr__(self) -> str:
+        return str(self)
 
     def __str__(self) -> str:
         until = self.t[-1] if len(self.t) else self.begin

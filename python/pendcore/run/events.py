@@ -11,8 +11,10 @@ import numpy as np
 
 from pendcore import _core
 from pendcore.messages.arguments import Floats, known_keywords, number, numbers, whole_number
+from pendcore.messages.frozen_state import frozen_state
 
 
+@frozen_state
 @dataclass(frozen=True, slots=True, repr=False)
 class Event:
     """What every kind of event has.
@@ -90,6 +92,7 @@ class Event:
 _COMMON = tuple(f.name for f in fields(Event))
 
 
+@frozen_state
 @dataclass(frozen=True, slots=True, repr=False)
 class JointAngle(Event):
     """The angle of a joint, phi_j = q_j - q_{j-1}, passes a value.
@@ -116,6 +119,7 @@ class JointAngle(Event):
         self._take_angle(where, "joint")
 
 
+@frozen_state
 @dataclass(frozen=True, slots=True, repr=False)
 class LinkAngle(Event):
     """The absolute angle of a link passes a value.
@@ -141,6 +145,7 @@ class LinkAngle(Event):
         self._take_angle(where, "link")
 
 
+@frozen_state
 @dataclass(frozen=True, slots=True, repr=False)
 class RateZero(Event):
     """A joint or a link turns back: its rate is zero. A joint that comes to stick is found once.
@@ -163,6 +168,7 @@ class RateZero(Event):
                 self._set(name, whole_number(where + name, value))
 
 
+@frozen_state
 @dataclass(frozen=True, slots=True, repr=False)
 class TipLine(Event):
     """The tip crosses a straight line: ``normal . (tip - point)`` is zero.
@@ -186,6 +192,7 @@ class TipLine(Event):
         self._set("normal", numbers(where + "normal", self.normal, "1", 2))
 
 
+@frozen_state
 @dataclass(frozen=True, slots=True, repr=False)
 class Function(Event):
     """A function of one's own passes zero.

@@ -6,6 +6,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+import numpy.typing as npt
+
 from pendcore.messages.arguments import Floats
 
 
@@ -51,12 +54,52 @@ class Found:
         return f"<Found: t = {self.t!r} s, {words[self.direction]}{jump}>"
 
 
-def found_events(count: int, found: Iterable[tuple[Any, ...]]) -> list[list[Found]]:
-    """Return a list for each of so many events, of what the core found."""
-    lists: list[list[Found]] = [[] for _ in range(count)]
+class FoundEvents(list[Found]):
+    """All that was found of one event, in the order of the run: a list that has arrays, too.
+
+    Attributes
+    ----------
+    t : ndarray, (k,)
+        s.
+    y : ndarray, (k, 2n)
+        The states: q_1..q_n (rad), qd_1..qd_n (rad/s); where they jump, those after the jump.
+    q, qd : ndarray, (k, n)
+        Angles, rad, and rates, rad/s.
+    direction : ndarray, (k,), int
+        1: the function rose through zero; -1: it fell; 0: it touched zero and turned back.
+    """
+
+    def __init__(self, links: int, found: Iterable[Found] = ()) -> None:
+        super().__init__(found)
+        self._links = links
+
+    @property
+    def t(self) -> Floats:
+        return np.array([one.t for one in self], dtype=np.float64)
+
+    @property
+    def y(self) -> Floats:
+        return np.array([one.y for one in self], dtype=np.float64).reshape(-1, 2 * self._links)
+
+    @property
+    def q(self) -> Floats:
+        return self.y[:, : self._links]
+
+    @property
+    def qd(self) -> Floats:
+        return self.y[:, self._links :]
+
+    @property
+    def direction(self) -> npt.NDArray[np.int_]:
+        return np.array([one.direction for one in self], dtype=np.int_)
+
+
+def found_events(count: int, links: int, found: Iterable[tuple[Any, ...]]) -> list[FoundEvents]:
+    """Return what the core found of each of so many events."""
+    lists = [FoundEvents(links) for _ in range(count)]
     for event, t, direction, y, y_before in found:
         lists[event].append(Found(t, y, direction, y_before))
     return lists
 
 
-Found.__module__ = "pendcore.events"  # where a user finds it
+Found.__module__ = FoundEvents.__module__ = "pendcore.events"  # where a user finds them

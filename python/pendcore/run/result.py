@@ -18,7 +18,7 @@ from pendcore.run.accuracy import Accuracy
 from pendcore.run.energy import Energy, Ledger
 from pendcore.run.error_estimate import ErrorEstimate
 from pendcore.run.events import Event, event_of
-from pendcore.run.found_events import Found, found_events
+from pendcore.run.found_events import FoundEvents, found_events
 from pendcore.run.largest_reactions import LargestReaction, largest_reactions
 from pendcore.run.statistics import Statistics
 from pendcore.scene.scene import SceneData
@@ -55,7 +55,7 @@ class RunResult:
     ) -> None:
         self.scene, self.run, self.name = scene, run, name
         self.accuracy, self.known_error = accuracy, error
-        self._events: list[list[Found]] | None = None
+        self._events: list[FoundEvents] | None = None
 
     @property
     def t(self) -> Floats:
@@ -132,14 +132,16 @@ class RunResult:
         return Statistics(**self.run.statistics)
 
     @property
-    def events(self) -> list[list[Found]]:
-        """What was found of each event asked for, along the run: ``.t``, ``.q``, ``.qd``, ``.y``.
+    def events(self) -> list[FoundEvents]:
+        """What was found of each event asked for: a list for each, with arrays ``t, q, qd, y``.
 
         Their states are the method's interpolant at the very place in the step; ``sol(event.t)``
-        differs by the rounding of t. See `pendcore.events.Found`.
+        differs by the rounding of t. See `pendcore.events.FoundEvents`.
         """
         if self._events is None:
-            self._events = found_events(len(self.events_asked_for()), self.run.found)
+            self._events = found_events(
+                len(self.events_asked_for()), len(self.scene.links), self.run.found
+            )
         return self._events
 
     def events_asked_for(self) -> list[Event]:

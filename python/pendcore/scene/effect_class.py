@@ -18,6 +18,7 @@ import numpy as np
 
 from pendcore import _core
 from pendcore.messages.arguments import did_you_mean, in_unit, number, numbers, whole_number
+from pendcore.messages.frozen_state import frozen_state
 from pendcore.scene.effect_description import Description, Parameter, docstring, effects, parts
 
 
@@ -190,10 +191,17 @@ def _class(told: Description, base: type[Any]) -> type[Any]:
         "__signature__": Signature(arguments),
         "description": told,
     } | ({"kind": told.kind} if told.kind else {})
-    return make_dataclass(
-        told.name, fields, bases=(base,), namespace=names, frozen=True, slots=True,
-        init=False, repr=False,
-    )  # fmt: skip
+    made = make_dataclass(
+        told.name,
+        fields,
+        bases=(base,),
+        namespace=names,
+        frozen=True,
+        slots=True,
+        init=False,
+        repr=False,
+    )
+    return frozen_state(made)  # fmt: skip
 
 
 def _bound(told: Description, values: tuple[Any, ...], named: dict[str, Any]) -> dict[str, Any]:

@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from pendcore.messages.arguments import known_keywords, number
+from pendcore.messages.frozen_state import frozen_state
 
 
+@frozen_state
 @dataclass(frozen=True, slots=True, init=False, repr=False)
 class Link:
     """One rigid link of the chain; a uniform rod unless said otherwise.

@@ -22,6 +22,7 @@ from pendcore.messages.arguments import (
     link_array,
     number,
 )
+from pendcore.messages.frozen_state import frozen_state
 from pendcore.messages.warning import warn
 from pendcore.scene.effect_class import Effect
 from pendcore.scene.link import Link
@@ -50,6 +51,7 @@ class Mobility(NamedTuple):
     degrees_of_freedom: int
 
 
+@frozen_state
 @dataclass(frozen=True, slots=True, init=False, repr=False)
 class SceneData:
     """A scene without what is built on it; `pendcore.Scene` has its parameters and the rest."""
@@ -109,6 +111,7 @@ class SceneData:
 
     __replace__ = replace  # copy.replace() of Python 3.13
 
+    @known_keywords
     def accelerations(self, t: npt.ArrayLike, q: npt.ArrayLike, qd: npt.ArrayLike) -> Floats:
         """Angular accelerations of the links: the right-hand side that is integrated.
 

@@ -109,12 +109,14 @@ def plot(
     return lines
 
 
-def save_figure(solution: RunResult, path: str | os.PathLike[str]) -> None:
+def save_figure(
+    solution: RunResult, path: str | os.PathLike[str], horizon: float | None = None
+) -> None:
     """Draw the same figure into a file; the suffix says which kind (png, pdf, svg, ...)."""
     from matplotlib.figure import Figure
 
     axes = _subplots(Figure, len(solution.scene.links))
-    plot(solution, axes)
+    plot(solution, axes, horizon=horizon)
     drawn = BytesIO()  # matplotlib's PDF breaks off with an error of its own if the disk is full
     kind = Path(path).suffix.removeprefix(".")
     axes[0].figure.savefig(drawn, dpi=150, format=kind or None)

@@ -1,0 +1,101 @@
+"""`pendcore trust`: until when a run is right, how fast errors grow, how far it is from exact."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+from pendcore.api.files import load, read_case
+from pendcore.api.solution import Case, Solution
+from pendcore.cli.usage import blamed_on_usage
+
+_EPILOG = """
+what is told:
+  until when every angle is right to 0.1 rad, from independent second runs (sol.valid_until)
+  the largest error of the angles and of the positions as far as it is known (sol.error)
+  the largest Lyapunov exponent, and the seconds that one more right digit is worth (sol.lyapunov)
+  the largest torque that would make the run an exact motion (sol.defect)
+
+example:
+  pendcore trust out/swing/solution.npz --limit 0.01
+"""
+
+
+def add_parser(commands: Any) -> None:
+    """Add the sub-command and its arguments."""
+    parser = commands.add_parser(
+        "trust",
+        help="say until when a run is right",
+        description="Say how far a run is to be trusted: a saved one, or that of a case.",
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "what",
+        nargs="?",
+        type=Path,
+        metavar="RUN.npz|CASE.toml",
+        help="a solution that `pendcore run` wrote, or a case; default: the textbook's case",
+    )
+    parser.add_argument(
+        "--limit", type=float, default=0.1, metavar="RAD", help="of an angle; default: 0.1 rad"
+    )
+    parser.add_argument(
+        "--time-limit", type=float, metavar="S", help="s of computing for the second runs"
+    )
+    parser.add_argument("--json", action="store_true", help="print the same as JSON")
+    parser.set_defaults(execute=execute)
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Do it; return the exit status."""
+    with blamed_on_usage():
+        solution = _solution(args.what)
+        found = trust(solution, args.limit, args.time_limit)
+    if args.json:
+        print(json.dumps({key: x for key, (x, _) in found.items()}, indent=2))
+    else:
+        for _, sentence in found.values():
+            print(sentence)
+    return 0
+
+
+def _solution(what: Path | None) -> Solution:
+    if what is not None and what.suffix == ".npz":
+        return load(what)
+    case = Case.textbook() if what is None else read_case(what)
+    return case.simulate(check=False)
+
+
+def trust(
+    solution: Solution, limit: float, time_limit: float | None
+) -> dict[str, tuple[float | None, str]]:
+    """Return each number, None where there is none, with a sentence."""
+    until = solution.valid_until(limit, time_limit=time_limit)
+    estimate = solution.error(time_limit=time_limit)
+    end = solution.run.t_reached
+    right = f"right to {limit:g} rad until t = {until:.6g} s"
+    if until == end:
+        right += ", its end"
+    found: dict[str, tuple[float | None, str]] = {
+        "valid_until": (until, right),
+        "largest_error": (_number(estimate.largest), str(estimate)),
+    }
+    try:
+        growth = solution.lyapunov()
+        found["lyapunov_exponent"] = (_number(growth.largest), str(growth))
+    except ValueError as refusal:  # dry friction and stops: neighbours part at no rate
+        found["lyapunov_exponent"] = (None, f"no Lyapunov exponent: {refusal}")
+    try:
+        defect = solution.defect()
+        found["defect"] = (_number(defect.largest), str(defect))
+    except ValueError as refusal:
+        found["defect"] = (None, f"no defect: {refusal}")
+    return found
+
+
+def _number(x: float) -> float | None:
+    return x if isfinite(x) else None

@@ -1,0 +1,146 @@
+"""What newcomers met, and what it says now."""
+
+from __future__ import annotations
+
+import json
+import pydoc
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pendcore as pc
+import pytest
+from pendcore.cli import main
+from pendcore.derive.report import conversion
+
+ROD = "[[link]]\nmass = 1.0\nlength = 1.0\n"
+CHAOS = f"{ROD}{ROD}[start]\nq_deg = [-85, -80]\n[run]\nt_end = 40.0\n"
+
+
+@pytest.mark.parametrize(
+    ("call", "sentence"),
+    [
+        (lambda: pc.Link(1, 1), "Link: takes what it is given by name: Link(mass=..., length="),
+        (lambda: pc.Link(mass=1), "Link: needs length: Link(mass=..., length=...)"),
+        (lambda: pc.Scene([]), "Scene: takes what it is given by name: Scene(links=..., "),
+        (
+            lambda: pc.Scene.textbook().accelerations([0, 0], [0, 0]),
+            "Scene.accelerations: needs qd: Scene.accelerations(t=..., q=..., qd=...)",
+        ),
+    ],
+)
+def test_a_call_that_does_not_fit_says_how_it_goes(call: Callable[[], Any], sentence: str) -> None:
+    with pytest.raises(TypeError) as told:
+        call()
+    assert str(told.value).startswith(sentence)
+
+
+def test_what_is_printed_of_a_result_fits_on_a_screen() -> None:
+    sol = pc.simulate(pc.Scene.textbook(), [0.8, 1.0], t_span=(0, 20))
+    for result in (sol.defect(), sol.lyapunov(), sol.error()):
+        assert len(repr(result)) < 600
+        assert repr(result) == str(result)
+
+
+def test_found_events_are_a_list_that_has_arrays() -> None:
+    event = pc.events.RateZero(link=1)
+    sol = pc.simulate(pc.Scene.textbook(), [0.8, 1.0], t_span=(0, 5), events=[event])
+    found = sol.events[0]
+    assert len(found) > 2
+    assert found.t.tolist() == [one.t for one in found]
+    assert found.q.shape == found.qd.shape == (len(found), 2)
+    assert np.array_equal(found.y, [one.y for one in found])
+    assert found.direction.tolist() == [one.direction for one in found]
+    none = pc.simulate(pc.Scene.textbook(), [0.8, 1.0], t_span=(0, 1e-3), events=[event]).events[0]
+    assert none.q.shape == (0, 2)
+
+
+@pytest.mark.parametrize("cls", [pc.Scene, pc.Link, pc.Case, pc.effects.Motor])
+def test_help_holds_no_remark_of_pythons_makers(cls: type) -> None:
+    assert "another day" not in pydoc.plain(pydoc.render_doc(cls))
+
+
+def test_a_chaotic_run_says_until_when_it_is_right(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    case = tmp_path / "chaos.toml"
+    case.write_text(CHAOS)
+    assert main(["run", str(case), "-o", str(tmp_path / "a"), "--json"]) == 0
+    until = json.loads(capsys.readouterr().out)["valid_until"]
+    sol = pc.load(tmp_path / "a/solution.npz")
+    assert until == sol.valid_until(0.1) < 40.0
+    assert f"until t = {until:.6g} s, and lost" in (tmp_path / "a/summary.txt").read_text()
+    assert main(["run", str(case), "-o", str(tmp_path / "b"), "--no-horizon"]) == 0
+    assert "right to" not in (tmp_path / "b/summary.txt").read_text()
+    drawn, plain = ((tmp_path / name / "angles.png").read_bytes() for name in "ab")
+    assert drawn != plain
+
+
+def test_trust_tells_horizon_exponent_and_defect(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    case = tmp_path / "chaos.toml"
+    case.write_text(CHAOS)
+    sol = pc.read_case(case).simulate()
+    sol.save(tmp_path / "run.npz")
+    for what in (case, tmp_path / "run.npz"):
+        assert main(["trust", str(what), "--limit", "0.01", "--json"]) == 0
+        told = json.loads(capsys.readouterr().out)
+        assert told["valid_until"] == sol.valid_until(0.01)
+        assert told["lyapunov_exponent"] == pytest.approx(sol.lyapunov().largest)
+        assert told["defect"] == sol.defect().largest
+    assert main(["trust", str(case)]) == 0
+    assert "right to 0.1 rad until t = " in capsys.readouterr().out
+
+
+def test_an_error_of_the_command_line_is_not_blamed_on_the_file(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    case = tmp_path / "chaos.toml"
+    case.write_text(CHAOS)
+    assert main(["run", str(case), "--error", "0", "-o", str(tmp_path / "out")]) == 2
+    told = capsys.readouterr().err
+    assert "--error = 0" in told
+    assert "line" not in told
+
+
+def test_explain_takes_the_textbooks_case(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["explain"]) == 0
+    assert "2 links" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("links", "remedy"),
+    [
+        ("[link]\nmass = 1.0\nlength = 1.0\n", r"write \[\[link\]\]"),
+        ("[link]\nmass = 1.0\n[link]\nmass = 1.0\n", r"\[\[link\]\], in two brackets"),
+    ],
+)
+def test_single_brackets_hint_at_double_ones(links: str, remedy: str) -> None:
+    with pytest.raises(ValueError, match=remedy):
+        pc.read_case(f"{links}[start]\nq = [0.0]\n[run]\nt_end = 1.0\n")
+
+
+def test_even_times_need_not_be_listed() -> None:
+    begin = f"{ROD}[start]\nq = [0.5]\n[run]\nt_end = 2.0\n"
+    case = pc.read_case(f"{begin}t_eval = {{start = 0.0, stop = 2.0, count = 5}}\n")
+    assert [*case.options["t_eval"]] == [0.0, 0.5, 1.0, 1.5, 2.0]
+    assert pc.read_case(case.to_toml()) == case
+    with pytest.raises(ValueError, match=r"count = 1: must be a whole number from 2"):
+        pc.read_case(f"{begin}t_eval = {{start = 0.0, stop = 2.0, count = 1}}\n")
+    with pytest.raises(ValueError, match="a table with start, stop"):
+        pc.read_case(f"{begin}t_eval = {{begin = 0.0, stop = 2.0}}\n")
+
+
+def test_degrees_are_told_without_noise() -> None:
+    with pytest.warns(pc.PendcoreWarning, match=r"that is 2578 degrees"):
+        pc.simulate(pc.Scene.textbook(), [45.0, 60.0], t_span=(0, 0.01))
+
+
+def test_without_pandoc_the_report_says_why_there_is_no_page(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(conversion, "has_pandoc", lambda: False)
+    main(["derive", "--to", "report", "-o", str(tmp_path)])
+    assert "takes pandoc" in capsys.readouterr().err
