@@ -70,13 +70,16 @@ COLLECT = """
 import sys
 import pytest
 
+def functions(items):
+    return {item.nodeid.partition("[")[0] for item in items}
+
 class Reduction:
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_collection_modifyitems(self, items):
-        every = {item.nodeid.partition("[")[0] for item in items}
-        whole = {item.nodeid.partition("[")[0] for item in items if item.get_closest_marker("whole")}
+        every = functions(items)
+        whole = functions(item for item in items if item.get_closest_marker("whole"))
         yield
-        left = every - {item.nodeid.partition("[")[0] for item in items}
+        left = every - functions(items)
         for name in sorted(every):
             print("function", name)
         for name in sorted(left):
