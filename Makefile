@@ -37,9 +37,12 @@ test: $(DONE)/installed $(DONE)/test-requirements  ## build and run the tests: e
 	$(CPP_TESTS)
 	$(PYTEST)
 
-# The programs that count instructions and those that are compared with pendcore are built first, or
-# their tests are skipped.
-test-all: lint tidy build-bench $(DONE)/test-requirements  ## everything: full sweeps, sanitizers, other builds, random cases
+# What tests are about and skip without is there first: the programs that count instructions, those
+# that are compared with pendcore, the fuzzer of the readers, Octave and pandoc. As in .ci/run, the
+# compiler's first warning is an error.
+test-all: export SKBUILD_CMAKE_DEFINE = PENDCORE_WARNINGS_AS_ERRORS=ON
+test-all: lint tidy build-bench $(DONE)/test-requirements $(DONE)/fuzz-requirements  ## everything: full sweeps, sanitizers, other builds, random cases
+	@sh setup/debian_packages.sh octave pandoc
 	$(CPP_TESTS)
 	$(PYTEST) --full
 	$(MAKE) sanitize threads fuzz-readers fuzz CASES=20000
@@ -71,7 +74,7 @@ tidy: $(DONE)/build-requirements $(DONE)/lint-requirements  ## clang-tidy over t
 	run-clang-tidy.py -quiet -hide-progress -p build/tidy
 
 # What sanitizers look for lies in the code, not in how often it runs: what is slow for other reasons
-# is marked, and left to `make test`. Python itself is not built with the sanitizers, so their
+# is marked, and left to other commands. Python itself is not built with the sanitizers, so their
 # libraries are loaded before it; what it never frees is not reported.
 SANITIZED := $(CURDIR)/build/sanitizer/site
 PRELOAD = $(shell g++ -print-file-name=libasan.so) $(shell g++ -print-file-name=libstdc++.so)
@@ -79,7 +82,7 @@ PRELOAD = $(shell g++ -print-file-name=libasan.so) $(shell g++ -print-file-name=
 sanitize: SWEEP = --full
 sanitize: sanitized  ## all tests under sanitizers
 
-# One case of one Python test in three, from every area.
+# One case of one Python test in three, and at least one test of every file.
 sanitize-few: SWEEP = --values 1 --share 3
 sanitize-few: sanitized  ## the C++ tests and a few hundred Python tests under sanitizers
 

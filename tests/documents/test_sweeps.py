@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from dataclasses import dataclass, field
 from itertools import product
+from pathlib import Path
 
 import pytest
 from sweeps import every, few, spread
+
+ROOT = Path(__file__).parents[2]
 
 
 @dataclass
@@ -46,7 +51,53 @@ def test_values_that_never_meet_are_met_all_the_same() -> None:
 
 
 def test_a_share_of_all_tests_is_the_same_each_time() -> None:
-    names = [f"test_{i}" for i in range(1000)]
+    names = [f"test_file.py::test_{i}" for i in range(1000)]
     assert every(names, 1) == names
     assert 150 < len(every(names, 5)) < 250
     assert every(names, 5) == every(names, 5)
+
+
+def test_a_share_has_a_test_of_every_file() -> None:
+    names = [f"test_{i}.py::test_{j}" for i in range(100) for j in range(3)]
+    assert {name.partition("::")[0] for name in every(names, 1000)} == {
+        name.partition("::")[0] for name in names
+    }
+
+
+# Says which test functions the reduction leaves out of all that are collected, and which of these
+# are marked to be left out.
+COLLECT = """
+import sys
+import pytest
+
+def functions(items):
+    return {item.nodeid.partition("[")[0] for item in items}
+
+class Reduction:
+    @pytest.hookimpl(wrapper=True, tryfirst=True)
+    def pytest_collection_modifyitems(self, items):
+        every = functions(items)
+        whole = functions(item for item in items if item.get_closest_marker("whole"))
+        yield
+        left = every - functions(items)
+        for name in sorted(every):
+            print("function", name)
+        for name in sorted(left):
+            print("marked" if name in whole else "lost", name)
+
+sys.exit(pytest.main(["--collect-only", "-qq", *sys.argv[1:]], plugins=[Reduction()]))
+"""
+
+
+@pytest.mark.outside_build
+def test_no_test_is_left_to_test_all_unless_it_is_marked() -> None:
+    """What `make test` leaves out whole is marked, and takes a build of its own."""
+    told = subprocess.run(
+        [sys.executable, "-c", COLLECT, "-p", "no:cacheprovider"],
+        cwd=ROOT, capture_output=True, text=True, check=True,
+    ).stdout.splitlines()  # fmt: skip
+    assert sum(line.startswith("function ") for line in told) > 1000
+    assert [line for line in told if line.startswith("lost ")] == []
+    # Two builds of the core with other optimisation.
+    builds = "tests/core/test_same_bits.py::test_every_optimisation_gives_the_same_bits"
+    assert {line for line in told if line.startswith("marked ")} <= {f"marked {builds}"}

@@ -54,8 +54,13 @@ def spread(values: Sequence[int], count: int) -> list[int]:
 
 
 def every(names: Iterable[str], share: int) -> list[str]:
-    """Return one name of so many, the same ones each time."""
-    return [name for name in names if digest(name) % share == 0]
+    """Return one name of so many, the same ones each time, and at least one of every file."""
+    names = list(names)
+    first: dict[str, str] = {}
+    for name in sorted(names, key=digest):
+        first.setdefault(name.partition("::")[0], name)
+    kept = set(first.values())
+    return [name for name in names if name in kept or digest(name) % share == 0]
 
 
 def digest(text: str) -> int:
