@@ -93,7 +93,7 @@ namespace {
 /// The number from 0 of the joint or link that an effect acts on.
 template <class Kind>
 int place_of(const Kind& effect) {
-  if constexpr (requires { effect.joint; }) {
+  if constexpr (OnJoint<Kind>) {
     return effect.joint - 1;
   } else {
     return effect.link - 1;
@@ -102,7 +102,7 @@ int place_of(const Kind& effect) {
 
 template <class Kind>
 double group_of(const Kind& effect) {
-  if constexpr (requires { effect.group(); }) {
+  if constexpr (HasGroup<Kind>) {
     return effect.group();
   } else {
     return 0.0;
@@ -130,7 +130,7 @@ bool calls_force(const Law& law) {
 
 template <class Kind>
 bool is_couple(const Kind& effect) {
-  if constexpr (requires { effect.couple(0); }) {
+  if constexpr (HasCouple<Kind>) {
     return effect.couple(0).has_value();
   } else {
     return false;
@@ -153,19 +153,19 @@ ActingEffects<Row>::ActingEffects(const Scene& scene)
   for (std::size_t i = 0; i < effects.size(); ++i) {
     std::visit(
         [&]<class Kind>(const Kind& effect) {
-          if constexpr (requires { effect.wave(); }) {
+          if constexpr (HasWave<Kind>) {
             if (const auto wave = effect.wave()) number_of_wave[i] = add_wave(*wave);
           }
           if constexpr (std::is_same_v<Kind, DrivenPivot>) {
             places_[i].law = pivots[pivots_so_far++].get();
           }
-          if constexpr (requires { effect.couple(0); }) {
+          if constexpr (HasCouple<Kind>) {
             const int row = place_of(effect) / width;
             const bool is_new =
                 std::ranges::find(couples, row, &Couples<Row>::row) == couples.end();
             if (is_couple(effect) && is_new) couples.push_back({.row = row});
           }
-          if constexpr (requires { typename Kind::template Law<Row>; }) {
+          if constexpr (HasLaw<Kind>) {
             if (is_couple(effect)) return;
             using KindLaw = typename Kind::template Law<Row>;
             const int place = place_of(effect);
@@ -201,8 +201,8 @@ ActingEffects<Row>::ActingEffects(const Scene& scene)
   if constexpr (width == 2) find_two_waves(scene);
   for (std::size_t i = 0; i < effects.size(); ++i) {
     std::visit(
-        [&](const auto& effect) {
-          if constexpr (requires { effect.has_modes(); }) {
+        [&]<class Kind>(const Kind& effect) {
+          if constexpr (HasModes<Kind>) {
             has_modes |= effect.has_modes();
             put_mode(i, effect.mode_at(0.0, 0.0, 0.0, true));
           } else if (is_couple(effect)) {
@@ -221,16 +221,13 @@ void ActingEffects<Row>::put_mode(std::size_t i, int mode) {
         if constexpr (std::is_same_v<Kind, DrivenPivot>) {
           effect.put_mode(*static_cast<DrivenPivot::Law*>(places_[i].law), 0, mode);
         }
-        if constexpr (requires { effect.couple(0); }) {
+        if constexpr (HasCouple<Kind>) {
           if (is_couple(effect)) {
             sum_couples(place_of(effect));
             return;
           }
         }
-        if constexpr (requires {
-                        typename Kind::template Law<Row>;
-                        effect.has_modes();
-                      }) {
+        if constexpr (HasLaw<Kind> && HasModes<Kind>) {
           using KindLaw = typename Kind::template Law<Row>;
           effect.put_mode(*static_cast<KindLaw*>(places_[i].law), places_[i].lane, mode);
         }
@@ -246,8 +243,8 @@ void ActingEffects<Row>::sum_couples(int joint) {
   std::erase_if(joint_waves, [&](const JointWave& wave) { return wave.joint == joint; });
   for (std::size_t i = 0; i < effects.size(); ++i) {
     std::visit(
-        [&](const auto& effect) {
-          if constexpr (requires { effect.couple(0); }) {
+        [&]<class Kind>(const Kind& effect) {
+          if constexpr (HasCouple<Kind>) {
             if (place_of(effect) != joint || !is_couple(effect)) return;
             const Couple one = *effect.couple(modes[i]);
             if (one.slope != 0.0 || one.start != 0.0) {

@@ -150,7 +150,7 @@ class ActingEffects final : public EffectsInForce {
   template <std::size_t kind, class Visit>
   PENDCORE_INLINE static void visit_if(const Entry& entry, Visit& visit) {
     using Kind = std::variant_alternative_t<kind, Effect>;
-    if constexpr (requires { typename Kind::template Law<Row>; }) {
+    if constexpr (HasLaw<Kind>) {
       if (entry.kind == static_cast<int>(kind)) {
         visit(*static_cast<const typename Kind::template Law<Row>*>(entry.law));
       }
