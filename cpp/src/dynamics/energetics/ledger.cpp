@@ -27,10 +27,10 @@ void for_each_law(const EffectsInForce& effects, double t, const LinkMemory& lin
       visit_rows<Pack<4>>(effects, t, links, visit);
 }
 
-Account account_of(int kind) {
+Account account_of(std::size_t kind) {
   return [kind]<std::size_t... kinds>(std::index_sequence<kinds...>) {
     constexpr std::array accounts = {std::variant_alternative_t<kinds, Effect>::info.account...};
-    return accounts[static_cast<std::size_t>(kind)];
+    return accounts[kind];
   }(std::make_index_sequence<std::variant_size_v<Effect>>{});
 }
 
@@ -112,7 +112,7 @@ void Ledger::add_laws(double t, Powers& power) {
         loads.couples * at.phid() + loads.moments * at.qd + loads.fx * at.vx() + loads.fy * at.vy();
     force_x_ += sum_of_lanes(loads.fx);
     force_y_ += sum_of_lanes(loads.fy);
-    const Account account = account_of(entry.kind);
+    const Account account = account_of(entry.kind());
     double value = sum_of_lanes(all);
     ActingEffects<Row>::visit(entry, [&]<class Law>(const Law& law) {
       if constexpr (Dissipates<Law>) {
