@@ -8,10 +8,6 @@
 namespace pendcore::bindings {
 namespace {
 
-/// A part of an effect with parameters of its own, such as a Sinusoid.
-template <class Value>
-concept OptionalPart = requires { Value::value_type::parameters; };
-
 /// What Python calls a parameter's type; a part by its name.
 template <class Value>
 std::string_view type_name() {

@@ -151,7 +151,7 @@ void visit(Archive& io, AnySolution& s) {
   io("position_stiff_hits", p.stiff_hits);
   io("position_stiff_misses", p.stiff_misses);
   io("position_stiff_since", p.stiff_since);
-  visit_statistics(io, "integrator_", p.statistics);
+  visit_statistics(io, "position_", p.statistics);
   io("position_stepper", p.stepper);
   io("position_breaks", p.discontinuities);
   io("position_y", p.y);

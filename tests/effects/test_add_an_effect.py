@@ -37,6 +37,8 @@ PROGRAM = """
 #include "magnetic_brake.hpp"
 using namespace pendcore;
 
+static_assert(hooks_are_named<std::variant<MagneticBrake>>);
+
 template <class Row>
 void print(double qd) {
   const MagneticBrake brake{.joint = 1, .peak = 0.3, .critical_rate = 2.0};

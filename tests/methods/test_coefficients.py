@@ -56,6 +56,6 @@ def test_the_parts_of_half_pi_add_up():
 
 
 def test_the_bits_of_two_over_pi_are_all_there():
-    source = (CPP / "src/sine_cosine.cpp").read_text()
+    source = (CPP / "src/arithmetic/sine_cosine.cpp").read_text()
     with mp.workprec(1400):
         assert all(f"0x{word:016x}" in source for word in minimax.two_over_pi_words(20))

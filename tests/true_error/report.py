@@ -36,7 +36,7 @@ def record_of(verdicts: list[Verdict]) -> dict[str, Any]:
         "refused_though_doubles_know": sum(is_needless(verdict) for verdict in refused),
         "ended_early": outcomes["ended early"],
         "unverified": outcomes["unverified"],
-        "exceptions": outcomes["exception"],
+        "exceptions": faults["exception"],
         "no_reference": sum(verdict.is_unknown for verdict in verdicts),
         "limit_not_known": sum(not verdict.limit_known for verdict in verdicts),
         "ratios": {
@@ -109,7 +109,8 @@ def line_of(verdict: Verdict, fault: str) -> str:
         "late": f"valid_until {verdict.valid_until}, past {verdict.limit} at {verdict.first_past}",
     }.get(fault, "")
     repeat = f"--family {verdict.family} --seeds {verdict.seed}:{verdict.seed + 1}"
-    return f"{repeat}  n = {verdict.n}, {verdict.method}: {what} {verdict.says}"[:200]
+    says = verdict.exception or verdict.says
+    return f"{repeat}  n = {verdict.n}, {verdict.method}: {what} {says}"[:200]
 
 
 def times(value: float | None, asked: float) -> str:
@@ -128,8 +129,8 @@ def markdown(record: dict[str, Any]) -> str:
         shares = [f"{ratios[share]:.2f}" if ratios else "-" for share in ("50", "100")]
         cells = [family, *(str(of_it[name]) for name in names), *shares]
         lines.append(f"| {' | '.join(cells)} |")
-    first, end = record["seeds"]
-    lines.append(f"\nSeeds {first} to {end - 1} of each family, {record['date']}.")
+    first, _ = record["seeds"]
+    lines.append(f"\nSeeds from {first} on, {record['date']}.")
     return "\n".join(lines) + "\n"
 
 

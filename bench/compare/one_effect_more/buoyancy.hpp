@@ -6,8 +6,7 @@
 /// with B the weight of the displaced fluid. y points down.
 #pragma once
 
-#include "pendcore/effects/effect.hpp"
-#include "pendcore/effects/law.hpp"
+#include "pendcore/effects/hooks.hpp"
 
 namespace pendcore {
 
@@ -21,6 +20,7 @@ struct Buoyancy {
                                    .law = "F = -B e_y",
                                    .source = "Archimedes, On Floating Bodies",
                                    .account = Account::user};
+  static constexpr Hooks hooks{.law = true};
   static constexpr auto parameters = std::tuple{
       parameter(&Buoyancy::link, link_number),
       parameter(&Buoyancy::uplift, {.name = "uplift",

@@ -93,7 +93,7 @@ namespace {
 /// The number from 0 of the joint or link that an effect acts on.
 template <class Kind>
 int place_of(const Kind& effect) {
-  if constexpr (requires { effect.joint; }) {
+  if constexpr (OnJoint<Kind>) {
     return effect.joint - 1;
   } else {
     return effect.link - 1;
@@ -102,7 +102,7 @@ int place_of(const Kind& effect) {
 
 template <class Kind>
 double group_of(const Kind& effect) {
-  if constexpr (requires { effect.group(); }) {
+  if constexpr (HasGroup<Kind>) {
     return effect.group();
   } else {
     return 0.0;
@@ -130,7 +130,7 @@ bool calls_force(const Law& law) {
 
 template <class Kind>
 bool is_couple(const Kind& effect) {
-  if constexpr (requires { effect.couple(0); }) {
+  if constexpr (HasCouple<Kind>) {
     return effect.couple(0).has_value();
   } else {
     return false;
@@ -142,67 +142,33 @@ bool is_couple(const Kind& effect) {
 template <class Row>
 ActingEffects<Row>::ActingEffects(const Scene& scene)
     : EffectsInForce(scene), places_(effects.size()) {
-  struct Shared {  // a law that effects of one kind and group on one row share
-    int kind, row;
-    double group;
-    unsigned taken;  // lanes
-    void* law;
-  };
-  std::vector<Shared> laws;
   std::size_t pivots_so_far = 0;
   for (std::size_t i = 0; i < effects.size(); ++i) {
     std::visit(
         [&]<class Kind>(const Kind& effect) {
-          if constexpr (requires { effect.wave(); }) {
+          if constexpr (HasWave<Kind>) {
             if (const auto wave = effect.wave()) number_of_wave[i] = add_wave(*wave);
           }
-          if constexpr (std::is_same_v<Kind, DrivenPivot>) {
-            places_[i].law = pivots[pivots_so_far++].get();
-          }
-          if constexpr (requires { effect.couple(0); }) {
-            const int row = place_of(effect) / width;
-            const bool is_new =
-                std::ranges::find(couples, row, &Couples<Row>::row) == couples.end();
-            if (is_couple(effect) && is_new) couples.push_back({.row = row});
-          }
-          if constexpr (requires { typename Kind::template Law<Row>; }) {
-            if (is_couple(effect)) return;
-            using KindLaw = typename Kind::template Law<Row>;
-            const int place = place_of(effect);
-            const Shared wanted{static_cast<int>(effects[i].index()), place / width,
-                                group_of(effect), 1U << (place % width), nullptr};
-            auto found = std::ranges::find_if(laws, [&](const Shared& law) {
-              return law.kind == wanted.kind && law.row == wanted.row &&
-                     law.group == wanted.group && (law.taken & wanted.taken) == 0;
-            });
-            if (found == laws.end()) {
-              struct alignas(sizeof(Row)) Aligned {  // see Couples
-                KindLaw law;
-              };
-              auto aligned = std::make_shared<Aligned>();
-              laws_.push_back(aligned);
-              laws.push_back(wanted);
-              found = laws.end() - 1;
-              found->law = &aligned->law;
-              found->taken = 0;
+          if constexpr (std::is_same_v<Kind, DrivenPivot>) places_[i].number = pivots_so_far++;
+          if constexpr (HasCouple<Kind>) {
+            if (is_couple(effect)) {
+              const int row = place_of(effect) / width;
+              const bool is_new =
+                  std::ranges::find(couples, row, &Couples<Row>::row) == couples.end();
+              if (is_new) couples.push_back({.row = row});
+              return;
             }
-            found->taken |= wanted.taken;
-            places_[i] = {found->law, place % width};
-            auto& law = *static_cast<KindLaw*>(found->law);
-            const Link& link = scene.links[place];
-            effect.put(law, place % width, {link.mass, link.length, link.center, scene.gravity});
-            has_forces |= calls_force<Row>(law);
           }
+          if constexpr (HasLaw<Kind>) add_law(i, effect, scene);
         },
         effects[i]);
   }
-  for (const Shared& law : laws) entries.push_back({law.kind, law.row, law.law});
   finish_waves();
   if constexpr (width == 2) find_two_waves(scene);
   for (std::size_t i = 0; i < effects.size(); ++i) {
     std::visit(
-        [&](const auto& effect) {
-          if constexpr (requires { effect.has_modes(); }) {
+        [&]<class Kind>(const Kind& effect) {
+          if constexpr (HasModes<Kind>) {
             has_modes |= effect.has_modes();
             put_mode(i, effect.mode_at(0.0, 0.0, 0.0, true));
           } else if (is_couple(effect)) {
@@ -213,26 +179,48 @@ ActingEffects<Row>::ActingEffects(const Scene& scene)
   }
 }
 
+/// Puts effect number i into a free lane of a law that it can share, or else of a new one.
+template <class Row>
+template <class Kind>
+void ActingEffects<Row>::add_law(std::size_t i, const Kind& effect, const Scene& scene) {
+  const int place = place_of(effect);
+  const int row = place / width;
+  const int lane = place % width;
+  const unsigned wanted = 1U << lane;
+  const double group = group_of(effect);
+  std::vector<SharedLaw<Kind, Row>>& laws = laws_of<Kind>();
+  auto found = std::ranges::find_if(laws, [&](const SharedLaw<Kind, Row>& one) {
+    return one.row == row && one.group == group && (one.taken & wanted) == 0;
+  });
+  if (found == laws.end()) {
+    laws.reserve(effects.size());  // entries point to them
+    found = laws.insert(laws.end(), {.law = {}, .row = row, .group = group});
+    entries.push_back({.law = &*found, .row = row});
+  }
+  found->taken |= wanted;
+  places_[i] = {static_cast<std::size_t>(found - laws.begin()), lane};
+  const Link& link = scene.links[place];
+  effect.put(found->law, lane, {link.mass, link.length, link.center, scene.gravity});
+  has_forces |= calls_force<Row>(found->law);
+}
+
 template <class Row>
 void ActingEffects<Row>::put_mode(std::size_t i, int mode) {
   modes[i] = mode;
   std::visit(
       [&]<class Kind>(const Kind& effect) {
         if constexpr (std::is_same_v<Kind, DrivenPivot>) {
-          effect.put_mode(*static_cast<DrivenPivot::Law*>(places_[i].law), 0, mode);
+          effect.put_mode(*pivots[places_[i].number], 0, mode);
         }
-        if constexpr (requires { effect.couple(0); }) {
+        if constexpr (HasCouple<Kind>) {
           if (is_couple(effect)) {
             sum_couples(place_of(effect));
             return;
           }
         }
-        if constexpr (requires {
-                        typename Kind::template Law<Row>;
-                        effect.has_modes();
-                      }) {
-          using KindLaw = typename Kind::template Law<Row>;
-          effect.put_mode(*static_cast<KindLaw*>(places_[i].law), places_[i].lane, mode);
+        if constexpr (HasLaw<Kind> && HasModes<Kind>) {
+          const auto [number, lane] = places_[i];
+          effect.put_mode(laws_of<Kind>()[number].law, lane, mode);
         }
       },
       effects[i]);
@@ -246,8 +234,8 @@ void ActingEffects<Row>::sum_couples(int joint) {
   std::erase_if(joint_waves, [&](const JointWave& wave) { return wave.joint == joint; });
   for (std::size_t i = 0; i < effects.size(); ++i) {
     std::visit(
-        [&](const auto& effect) {
-          if constexpr (requires { effect.couple(0); }) {
+        [&]<class Kind>(const Kind& effect) {
+          if constexpr (HasCouple<Kind>) {
             if (place_of(effect) != joint || !is_couple(effect)) return;
             const Couple one = *effect.couple(modes[i]);
             if (one.slope != 0.0 || one.start != 0.0) {

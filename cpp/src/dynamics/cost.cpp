@@ -41,22 +41,22 @@ std::optional<int> operations_of(const Kind& effect) {
   double waves[8] = {};
   const RowAt<Counted> at{0.0, 0.5, 1.0, 0.6, 0.8, 1.0, 0.1, 0.2};
   RowLoads<Counted> loads;
-  if constexpr (requires { effect.couple(0); }) {
+  if constexpr (HasCouple<Kind>) {
     if (effect.couple(0)) {
       loads.couple(Couples<double>{}.torque(at));
       return counted;
     }
   }
-  if constexpr (requires { typename Kind::template Law<double>; }) {
+  if constexpr (HasLaw<Kind>) {
     typename Kind::template Law<double> law;
     effect.put(law, 0, {.mass = 1.0, .length = 1.0, .center = 0.5, .gravity = 9.807});
-    if constexpr (requires { effect.put_mode(law, 0, 1); }) {
+    if constexpr (HasModes<Kind>) {
       effect.put_mode(law, 0, effect.mode_at(0.0, 0.0, 0.0, true));
     }
     law.add(at, loads);
     return counted;
-  } else if constexpr (requires { typename Kind::Law; }) {
-    typename Kind::Law law;
+  } else if constexpr (std::is_same_v<Kind, DrivenPivot>) {
+    const DrivenPivot::Law law;
     Counted x, y;
     law.add_acceleration(0.0, waves, x, y);
     return counted;
@@ -100,8 +100,8 @@ class Contender {
     double t = 0.0;
     for (const Effect& effect : scene.effects) {
       std::visit(
-          [&](const auto& one) {
-            if constexpr (requires { one.first_time(); }) t = std::max(t, one.first_time());
+          [&]<class Kind>(const Kind& one) {
+            if constexpr (HasSpan<Kind>) t = std::max(t, one.first_time());
           },
           effect);
     }

@@ -78,10 +78,10 @@ void choose_modes(EffectsInForce& effects, double t, const double* q, const doub
   for (std::size_t i = 0; i < effects.effects.size(); ++i) {
     std::visit(
         [&]<class Kind>(const Kind& effect) {
-          if constexpr (requires { effect.has_modes(); }) {
+          if constexpr (HasModes<Kind>) {
             double phi = 0.0;
             double phid = 0.0;
-            if constexpr (requires { effect.joint; }) {
+            if constexpr (OnJoint<Kind>) {
               phi = relative(q, effect.joint);
               phid = relative(qd, effect.joint);
             }

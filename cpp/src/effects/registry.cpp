@@ -31,8 +31,8 @@ Effect effect_of_kind(std::string_view kind) {
 
 std::optional<double> holding_torque(const Effect& effect) {
   return std::visit(
-      [](const auto& one) -> std::optional<double> {
-        if constexpr (requires { one.holding_torque(); }) return one.holding_torque();
+      []<class Kind>(const Kind& one) -> std::optional<double> {
+        if constexpr (HasHoldingTorque<Kind>) return one.holding_torque();
         return std::nullopt;
       },
       effect);

@@ -50,10 +50,8 @@ void check_effects(const Scene& scene) {
     check_effect(where, scene.effects[i]);
     std::visit(
         [&]<class Kind>(const Kind& effect) {
-          if constexpr (requires { effect.joint; }) {
-            check_place(where, "joint", effect.joint, n);
-          }
-          if constexpr (requires { effect.link; }) check_place(where, "link", effect.link, n);
+          if constexpr (OnJoint<Kind>) check_place(where, "joint", effect.joint, n);
+          if constexpr (OnLink<Kind>) check_place(where, "link", effect.link, n);
           if constexpr (std::is_same_v<Kind, JointStop>) {
             std::array<double, 2>& left = ranges[effect.joint - 1];
             left = {std::max(left[0], effect.range[0]), std::min(left[1], effect.range[1])};
@@ -103,7 +101,7 @@ void warn_of_degrees(const std::string& where, const Struct& effect,
       warn_of_degrees(where, info, std::optional<double>(value).value_or(0.0), warnings);
     } else if constexpr (std::is_same_v<Value, std::array<double, 2>>) {
       for (const double x : value) warn_of_degrees(where, info, x, warnings);
-    } else if constexpr (requires { value->parameters; }) {
+    } else if constexpr (OptionalPart<Value>) {
       if (value) warn_of_degrees(where + std::string(info.name) + ".", *value, warnings);
     }
   });
@@ -167,8 +165,8 @@ std::string effect_name(const Scene& scene, std::size_t i) {
 Scene compiled(Scene scene) {
   for (Effect& effect : scene.effects) {
     std::visit(
-        [](auto& one) {
-          if constexpr (requires { one.compiled(); }) one = one.compiled();
+        []<class Kind>(Kind& one) {
+          if constexpr (HasCompiled<Kind>) one = one.compiled();
         },
         effect);
   }
@@ -219,9 +217,9 @@ std::vector<std::string> plausibility_warnings(const Scene& scene) {
   }
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
     std::visit(
-        [&](const auto& effect) {
+        [&]<class Kind>(const Kind& effect) {
           warn_of_degrees(effect_name(scene, i) + ": ", effect, warnings);
-          if constexpr (requires { effect.warnings(); }) {
+          if constexpr (HasWarnings<Kind>) {
             for (const std::string& warning : effect.warnings()) {
               warnings.push_back(effect_name(scene, i) + ": " + warning);
             }

@@ -44,9 +44,9 @@ bool EventFinder::may_end() const {
   return std::ranges::any_of(events_, [](const Event& event) {
     if (event.terminal > 0) return true;
     return std::visit(
-        [](const auto& one) {
-          if constexpr (requires { one.every_turn; }) return one.every_turn;
-          return std::is_same_v<decltype(one), const events::Function&>;
+        []<class Kind>(const Kind& one) {
+          if constexpr (events::CountsTurns<Kind>) return one.every_turn;
+          return std::is_same_v<Kind, events::Function>;
         },
         event.function);
   });

@@ -121,7 +121,7 @@ std::optional<FastMode> fast_mode(const Scene& scene, const EquationsOfMotion& e
   if (mode.effect) {
     std::visit(
         [&]<class Kind>(const Kind& one) {
-          if constexpr (requires { one.joint; }) mode.joint = one.joint;
+          if constexpr (OnJoint<Kind>) mode.joint = one.joint;
         },
         scene.effects[*mode.effect]);
   }

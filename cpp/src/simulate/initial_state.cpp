@@ -85,8 +85,8 @@ void check_start(const Scene& scene, const std::vector<double>& q0, const std::v
 
 bool is_outside_table(const Effect& effect, double t, bool forward) {
   return std::visit(
-      [=](const auto& one) {
-        if constexpr (requires { one.last_time(); }) {
+      [=]<class Kind>(const Kind& one) {
+        if constexpr (HasSpan<Kind>) {
           const double first = one.first_time();
           const double last = one.last_time();
           return forward ? t < first || t >= last : t <= first || t > last;
@@ -99,10 +99,9 @@ bool is_outside_table(const Effect& effect, double t, bool forward) {
 
 std::string span_of(const Effect& effect) {
   return std::visit(
-      [](const auto& one) -> std::string {
-        if constexpr (requires { one.last_time(); }) {
-          std::string what = "table";
-          if constexpr (requires { one.spline; }) what = "spline";
+      []<class Kind>(const Kind& one) -> std::string {
+        if constexpr (HasSpan<Kind>) {
+          const std::string what = std::is_same_v<Kind, DrivenPivot> ? "spline" : "table";
           return "its " + what + " goes from " + text(one.first_time()) + " to " +
                  text(one.last_time()) + " s";
         }
@@ -129,8 +128,8 @@ std::vector<std::string> run_warnings(const Scene& scene, const std::vector<doub
   const double last = std::max(t0, t_end);
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
     std::visit(
-        [&](const auto& effect) {
-          if constexpr (requires { effect.last_time(); }) {
+        [&]<class Kind>(const Kind& effect) {
+          if constexpr (HasSpan<Kind>) {
             if (effect.first_time() <= first && last <= effect.last_time()) return;
             warnings.push_back(effect_name(scene, i) + ": " + span_of(scene.effects[i]) +
                                ", the run from " + text(t0) + " to " + text(t_end) +

@@ -29,7 +29,7 @@ bool Switching::is_needed(const Scene& scene) {
     return std::visit(
         []<class Kind>(const Kind& one) {
           if constexpr (std::is_same_v<Kind, Lock> || std::is_same_v<Kind, JointStop>) return true;
-          if constexpr (requires { one.has_modes(); }) return one.has_modes();
+          if constexpr (HasModes<Kind>) return one.has_modes();
           return false;
         },
         effect);
@@ -80,11 +80,8 @@ void Switching::choose_sides(double t, const double* q, const double* qd) {
   std::vector<double> qdd;
   for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
     std::visit(
-        [&](const auto& one) {
-          if constexpr (requires {
-                          one.has_modes();
-                          one.joint;
-                        }) {
+        [&]<class Kind>(const Kind& one) {
+          if constexpr (HasModes<Kind> && OnJoint<Kind>) {
             if (holding_torque(scene_.effects[i])) return;  // as choose() has decided
             if (relative(qd, one.joint) != 0.0 || joints_.is_held(one.joint - 1)) return;
             const int mode = equations_.effects->modes[i];
@@ -114,8 +111,8 @@ double Switching::next_time(double t) const {
   next_time_ = forward_ ? never : -never;
   for (const Effect& effect : scene_.effects) {
     std::visit(
-        [&](const auto& one) {
-          if constexpr (requires { one.next_time(t, true); }) {
+        [&]<class Kind>(const Kind& one) {
+          if constexpr (HasNextTime<Kind>) {
             const double next = one.next_time(t, forward_);
             next_time_ = forward_ ? std::min(next_time_, next) : std::max(next_time_, next);
           }
@@ -238,8 +235,8 @@ void Switching::come_to_rest(int k, double t, double* y) {
 /// A law that has its sides apart is on the next.
 void Switching::change_side(const Watch& watch) {
   std::visit(
-      [&](const auto& one) {
-        if constexpr (requires { one.has_modes(); }) {
+      [&]<class Kind>(const Kind& one) {
+        if constexpr (HasModes<Kind>) {
           const int mode = equations_.effects->modes[watch.effect];
           put_mode(watch.effect, one.next_mode(mode, watch.number));
         }
@@ -260,8 +257,8 @@ void Switching::choose(double t, const double* y, int joint) {
 void Switching::cross_time(double t) {
   for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
     std::visit(
-        [&](const auto& one) {
-          if constexpr (requires { one.next_time(t, true); }) {
+        [&]<class Kind>(const Kind& one) {
+          if constexpr (HasNextTime<Kind>) {
             if (!one.has_modes() || one.guards(equations_.effects->modes[i]).size() > 0) return;
             const bool is_outside = is_outside_table(scene_.effects[i], t, forward_);
             put_mode(i, is_outside ? -1 : one.mode_at(t, 0.0, 0.0, forward_));
@@ -276,11 +273,11 @@ void Switching::cross_time(double t) {
 bool Switching::is_for_good() const {
   return std::ranges::none_of(scene_.effects, [](const Effect& effect) {
     return std::visit(
-        [](const auto& one) {
-          if constexpr (requires { one.wave(); }) {
+        []<class Kind>(const Kind& one) {
+          if constexpr (HasWave<Kind>) {
             if (one.wave()) return true;
           }
-          if constexpr (requires { one.last_time(); }) {
+          if constexpr (HasSpan<Kind>) {
             if (one.last_time() < never) return true;
           }
           return one.info.account == Account::drive || one.info.account == Account::user;

@@ -12,11 +12,8 @@ void Switching::collect_guards(const double* y) {
   guards_.clear();
   for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
     std::visit(
-        [&](const auto& one) {
-          if constexpr (requires {
-                          one.has_modes();
-                          one.joint;
-                        }) {
+        [&]<class Kind>(const Kind& one) {
+          if constexpr (HasModes<Kind> && OnJoint<Kind>) {
             const int joint = one.joint - 1;
             if (!one.has_modes() || equations_.effects->held[joint] != 0) return;
             const std::vector<Guard> guards = one.guards(equations_.effects->modes[i]);

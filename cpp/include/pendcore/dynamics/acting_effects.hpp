@@ -7,6 +7,9 @@
 #pragma once
 
 #include <memory>
+#include <tuple>
+#include <variant>
+#include <vector>
 
 #include "pendcore/arithmetic/dual.hpp"
 #include "pendcore/arithmetic/sine_cosine.hpp"
@@ -95,19 +98,45 @@ class EffectsInForce {
   mutable std::vector<double> user_room_;
 };
 
+/// A law, and which effects share it: those of one kind and group on its row, a lane each. It is
+/// aligned as Couples are, and empty for a kind of effect without a law.
+template <class Kind, class Row>
+struct alignas(sizeof(Row)) SharedLaw {};
+template <HasLaw Kind, class Row>
+struct alignas(sizeof(Row)) SharedLaw<Kind, Row> {
+  typename Kind::template Law<Row> law;
+  int row;
+  double group;
+  unsigned taken = 0;  ///< lanes
+};
+
+/// The laws of a scene, kind by kind in the order of the registry, and one of them.
+template <class Registry, class Row>
+struct LawsOf;
+template <class... Kinds, class Row>
+struct LawsOf<std::variant<Kinds...>, Row> {
+  using Storage = std::tuple<std::vector<SharedLaw<Kinds, Row>>...>;
+  using Pointer = std::variant<const SharedLaw<Kinds, Row>*...>;
+};
+
 /// For rows of that width.
 template <class Row>
 class ActingEffects final : public EffectsInForce {
  public:
   static constexpr int width = Lanes<Row>::width;
 
+  using Laws = LawsOf<Effect, Row>;
+
   struct Entry {
-    int kind;  ///< its place in the registry
+    typename Laws::Pointer law;
     int row;
-    const void* law;
+
+    std::size_t kind() const { return law.index(); }  ///< its place in the registry
   };
 
   explicit ActingEffects(const Scene& scene);
+  ActingEffects(const ActingEffects&) = delete;  // its entries point to its own laws
+  ActingEffects& operator=(const ActingEffects&) = delete;
   void put_mode(std::size_t i, int mode) override;
 
   /// Calls visit(law) for the law of an entry, of its own type.
@@ -123,7 +152,7 @@ class ActingEffects final : public EffectsInForce {
   }
 
   std::vector<Couples<Row>> couples;  ///< of the rows that have some
-  std::vector<Entry> entries;
+  std::vector<Entry> entries;         ///< in the order in which the scene has them first
 
   /// The same through a pointer, on the instruction set of this processor: for forms in which the
   /// list is rare.
@@ -150,19 +179,24 @@ class ActingEffects final : public EffectsInForce {
   template <std::size_t kind, class Visit>
   PENDCORE_INLINE static void visit_if(const Entry& entry, Visit& visit) {
     using Kind = std::variant_alternative_t<kind, Effect>;
-    if constexpr (requires { typename Kind::template Law<Row>; }) {
-      if (entry.kind == static_cast<int>(kind)) {
-        visit(*static_cast<const typename Kind::template Law<Row>*>(entry.law));
-      }
+    if constexpr (HasLaw<Kind>) {
+      if (entry.law.index() == kind) visit(std::get<kind>(entry.law)->law);
     }
   }
 
+  template <class Kind>
+  std::vector<SharedLaw<Kind, Row>>& laws_of() {
+    return std::get<std::vector<SharedLaw<Kind, Row>>>(laws_);
+  }
+  template <class Kind>
+  void add_law(std::size_t i, const Kind& effect, const Scene& scene);
+
   struct Place {
-    void* law = nullptr;
+    std::size_t number = 0;  ///< among the laws of its kind, or among the pivots
     int lane = 0;
   };
-  std::vector<Place> places_;                ///< of each effect of the scene that has a law
-  std::vector<std::shared_ptr<void>> laws_;  ///< kept alive
+  std::vector<Place> places_;  ///< of each effect of the scene
+  typename Laws::Storage laws_;
 };
 
 /// What the functions of a user add up to, N m.

@@ -8,9 +8,7 @@
 /// F_01 . v_0, the work of what drives the pivot.
 #pragma once
 
-#include "pendcore/effects/effect.hpp"
-#include "pendcore/effects/law.hpp"
-#include "pendcore/effects/wave.hpp"
+#include "pendcore/effects/hooks.hpp"
 
 namespace pendcore {
 
@@ -34,6 +32,8 @@ struct DrivenPivot {
       .source = "d'Alembert's principle",
       .account = Account::drive,
       .has_series = true};
+  static constexpr Hooks hooks{
+      .modes = true, .next_time = true, .span = true, .compiled = true, .check = true};
   static constexpr auto parameters = std::tuple{
       parameter(&DrivenPivot::x,
                 {.name = "x", .symbol = "x_0", .unit = "m", .sentence = "motion to the right"}),

@@ -9,8 +9,7 @@
 #pragma once
 
 #include "pendcore/arithmetic/exponential.hpp"
-#include "pendcore/effects/effect.hpp"
-#include "pendcore/effects/law.hpp"
+#include "pendcore/effects/hooks.hpp"
 
 namespace pendcore {
 
@@ -29,6 +28,12 @@ struct DryJointFriction {
       .source = "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083, section 3",
       .account = Account::dry,
       .jumps_or_sticks = true};
+  static constexpr Hooks hooks{.couple = true,
+                               .law = true,
+                               .group = true,
+                               .modes = true,
+                               .holding_torque = true,
+                               .check = true};
   static constexpr auto parameters = std::tuple{
       parameter(&DryJointFriction::joint, joint_number),
       parameter(&DryJointFriction::coulomb, {.name = "coulomb",

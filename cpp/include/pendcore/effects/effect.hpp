@@ -1,41 +1,11 @@
 /// \file
-/// THE CONTRACT OF AN EFFECT: what a file in this folder holds, and who reads it.
-///
-/// An effect is a plain struct of parameters. Its file opens with the law; the struct has
-///
-///     info         its name, a sentence, the source, where the ledger books its work, and what
-///                  else others must know of its kind
-///     parameters   a tuple of `parameter(&Struct::field, {...})`: symbol, unit, range, a sentence
-///
-/// and, of what follows, the parts that the effect has:
-///
-///     couple(mode)                  its torque on a joint, where that is a polynomial: see law.hpp
-///     Law<Row>                      any other couples at joints, and forces along links
-///     put(law, lane, on)            its parameters into the lane of its joint or link
-///     put_mode(law, lane, mode)     the same of what a mode changes
-///     dissipation(at)               of a law: the part of its power that is lost (has_wind() says
-///                                   whether there is another, the wind's)
-///     group()                       effects on one row share a law if this number is the same
-///     wave()                        the sinusoid that drives it, if one does
-///     has_modes(), mode_at(t, phi, phid, forward), guards(mode), next_mode(mode, guard)
-///                                   where the law is smooth only in pieces: see law.hpp
-///     next_time(t, forward)         the next time at which a mode changes
-///     first_time(), last_time()     where its tables begin and end
-///     holding_torque()              with which it can hold its joint at rest
-///     compiled()                    the same effect, with what need be computed only once
-///     potential(phi)                energy kept in the joint, J
-///     check(where)                  what the ranges of single parameters do not say
-///     warnings()                    what is possible but hardly meant, a sentence each
-///
-/// registry.hpp has the list of all effects, a line each. Nothing else names an effect that is a
-/// law; those that change the mass matrix, the joints or the pivot (payload, rotor, lock, stop,
-/// driven pivot) are part of the equations of motion, which do.
-/// From `info` and `parameters` come the Python class, the TOML keys, the repr, the checks and
-/// their messages, the page of documentation, and the tests.
+/// What an effect says of itself, `info` and `parameters` (hooks.hpp has the whole contract), and
+/// the checks that follow from it.
 #pragma once
 
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -155,6 +125,16 @@ void for_each_parameter(Struct& effect, Visitor visit) {
              std::remove_cvref_t<Struct>::parameters);
 }
 
+/// A part of an effect with parameters of its own, such as a Sinusoid, that may be left out.
+template <class Value>
+concept OptionalPart = requires { Value::value_type::parameters; };
+
+/// The hook `check` (hooks.hpp), which parts may have too.
+template <class Struct>
+concept HasCheck = requires(const Struct& one, const std::string& where) {
+  { one.check(where) } -> std::same_as<void>;
+};
+
 /// Throws std::invalid_argument for a parameter out of its range, naming it after `where`, as in
 /// "effect 2 (viscous_joint): ".
 void check_value(const std::string& where, const ParameterInfo& info, double value);
@@ -178,11 +158,11 @@ void check_parameters(const std::string& where, const Struct& effect) {
         element.name = name;
         check_value(where, element, value[i]);
       }
-    } else if constexpr (requires { value->parameters; }) {
+    } else if constexpr (OptionalPart<Value>) {
       if (value) check_parameters(where + std::string(info.name) + ".", *value);
     }
   });
-  if constexpr (requires { effect.check(where); }) effect.check(where);
+  if constexpr (HasCheck<Struct>) effect.check(where);
 }
 
 }  // namespace pendcore

@@ -9,8 +9,7 @@
 /// section 4.1 (Newton's law of restitution) and 5.2 (several contacts).
 #pragma once
 
-#include "pendcore/effects/effect.hpp"
-#include "pendcore/effects/law.hpp"
+#include "pendcore/effects/hooks.hpp"
 
 namespace pendcore {
 
@@ -30,6 +29,7 @@ struct JointStop {
       .bounds_joint = true,
       .jumps_or_sticks = true,
       .has_series = true};
+  static constexpr Hooks hooks{.check = true};
   static constexpr auto parameters = std::tuple{
       parameter(&JointStop::joint, joint_number),
       parameter(&JointStop::range, {.name = "range",

@@ -7,7 +7,7 @@
 /// step, so that no rounding lets them wander. Does no work.
 #pragma once
 
-#include "pendcore/effects/effect.hpp"
+#include "pendcore/effects/hooks.hpp"
 
 namespace pendcore {
 
@@ -23,6 +23,7 @@ struct Lock {
       .source = "the textbook's mobility, 3 n - 2 c5 - c4, with two links made one",
       .bounds_joint = true,
       .has_series = true};
+  static constexpr Hooks hooks{};
   static constexpr auto parameters = std::tuple{
       parameter(&Lock::joint, joint_number),
       parameter(&Lock::angle, {.name = "angle",

@@ -13,9 +13,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pendcore/effects/effect.hpp"
-#include "pendcore/effects/law.hpp"
-#include "pendcore/effects/wave.hpp"
+#include "pendcore/effects/hooks.hpp"
 
 namespace pendcore {
 
@@ -38,6 +36,13 @@ struct Motor {
           "Spong, Hutchinson, Vidyasagar, Robot Modeling and Control (2006), section 6.3, "
           "for PD control",
       .account = Account::motor};
+  static constexpr Hooks hooks{.couple = true,
+                               .modes = true,
+                               .next_time = true,
+                               .span = true,
+                               .wave = true,
+                               .compiled = true,
+                               .check = true};
   static constexpr auto parameters = std::tuple{
       parameter(&Motor::joint, joint_number),
       parameter(

@@ -6,7 +6,7 @@
 /// Source: the parallel axis theorem. Constants alone; its weight and its energy count.
 #pragma once
 
-#include "pendcore/effects/effect.hpp"
+#include "pendcore/effects/hooks.hpp"
 
 namespace pendcore {
 
@@ -20,6 +20,7 @@ struct Payload {
                                    .law = "S_i += m_p,  A_nn += m_p L_n^2 + I_p",
                                    .source = "the parallel axis theorem",
                                    .has_series = true};
+  static constexpr Hooks hooks{};
   static constexpr auto parameters = std::tuple{
       parameter(&Payload::mass, {.name = "mass",
                                  .symbol = "m_p",

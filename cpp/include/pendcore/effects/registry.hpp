@@ -31,11 +31,13 @@ using Effect = std::variant<  //
     DrivenPivot,              //
     CompiledUser>;
 
+static_assert(hooks_are_named<Effect>);
+
 /// Whether the recurrences of the equations' Taylor series hold what the effect does.
 inline bool has_series(const Effect& effect) {
   return std::visit(
       []<class Kind>(const Kind& one) {
-        if constexpr (requires { one.couple(0); }) {
+        if constexpr (HasCouple<Kind>) {
           return one.couple(0).has_value();
         } else {
           return Kind::info.has_series;

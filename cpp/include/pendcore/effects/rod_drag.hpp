@@ -15,8 +15,7 @@
 /// loses is the integral of k |w|^3; the rest of its power is the wind's.
 #pragma once
 
-#include "pendcore/effects/effect.hpp"
-#include "pendcore/effects/law.hpp"
+#include "pendcore/effects/hooks.hpp"
 
 namespace pendcore {
 
@@ -36,6 +35,7 @@ struct RodDrag {
           "wind",
       .source = "Hoerner, Fluid-Dynamic Drag (1965), chapter 3, the cross-flow principle",
       .account = Account::drag};
+  static constexpr Hooks hooks{.law = true, .wind = true};
   static constexpr auto parameters = std::tuple{
       parameter(&RodDrag::link, link_number),
       parameter(&RodDrag::drag_coefficient,

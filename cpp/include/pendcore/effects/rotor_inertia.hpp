@@ -6,7 +6,7 @@
 /// Source: Featherstone, Rigid Body Dynamics Algorithms (2008), section 9.6. Constants alone.
 #pragma once
 
-#include "pendcore/effects/effect.hpp"
+#include "pendcore/effects/hooks.hpp"
 
 namespace pendcore {
 
@@ -21,6 +21,7 @@ struct RotorInertia {
       .law = "T += J phid^2 / 2",
       .source = "Featherstone, Rigid Body Dynamics Algorithms (2008), section 9.6",
       .has_series = true};
+  static constexpr Hooks hooks{};
   static constexpr auto parameters = std::tuple{
       parameter(&RotorInertia::joint, joint_number),
       parameter(&RotorInertia::armature, {.name = "armature",

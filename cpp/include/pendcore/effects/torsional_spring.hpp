@@ -6,8 +6,7 @@
 /// Source: Hooke's law. Its energy is part of the potential energy.
 #pragma once
 
-#include "pendcore/effects/effect.hpp"
-#include "pendcore/effects/law.hpp"
+#include "pendcore/effects/hooks.hpp"
 
 namespace pendcore {
 
@@ -21,6 +20,7 @@ struct TorsionalSpring {
                                    .sentence = "A linear torsional spring in a joint.",
                                    .law = "tau = -k (phi - phi_0),  V = k (phi - phi_0)^2 / 2",
                                    .source = "Hooke's law"};
+  static constexpr Hooks hooks{.couple = true, .potential = true};
   static constexpr auto parameters = std::tuple{
       parameter(&TorsionalSpring::joint, joint_number),
       parameter(&TorsionalSpring::stiffness,

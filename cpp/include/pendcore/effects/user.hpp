@@ -17,7 +17,7 @@
 #include <cstdint>
 #include <span>
 
-#include "pendcore/effects/effect.hpp"
+#include "pendcore/effects/hooks.hpp"
 
 namespace pendcore {
 
@@ -35,6 +35,7 @@ struct CompiledUser {
       .law = "Q += f(t, q, qd)",
       .source = "the user's",
       .account = Account::user};
+  static constexpr Hooks hooks{.check = true};
   static constexpr auto parameters = std::tuple{
       parameter(&CompiledUser::address,
                 {.name = "address",

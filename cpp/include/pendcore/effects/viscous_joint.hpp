@@ -10,8 +10,7 @@
 /// |w| has a corner at w = 0: where b2 is not 0, the sign of w is the mode, +1 or -1.
 #pragma once
 
-#include "pendcore/effects/effect.hpp"
-#include "pendcore/effects/law.hpp"
+#include "pendcore/effects/hooks.hpp"
 
 namespace pendcore {
 
@@ -28,6 +27,7 @@ struct ViscousJoint {
       .law = "tau = -(b w + b2 w abs(w) + b3 w^3),  w = phid",
       .source = "Rayleigh, The Theory of Sound I (1877), section 81, for the linear term",
       .account = Account::viscous};
+  static constexpr Hooks hooks{.couple = true, .modes = true, .warnings = true};
   static constexpr auto parameters = std::tuple{
       parameter(&ViscousJoint::joint, joint_number),
       parameter(&ViscousJoint::damping,

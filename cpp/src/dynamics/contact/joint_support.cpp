@@ -9,8 +9,8 @@ namespace {
 /// What the law of an effect adds up, in the joint that it acts on.
 void add_law(const Effect& effect, std::vector<JointSupport>& supports) {
   std::visit(
-      [&](const auto& one) {
-        if constexpr (requires { one.couple(0); }) {
+      [&]<class Kind>(const Kind& one) {
+        if constexpr (HasCouple<Kind>) {
           const auto couple = one.couple(0);
           if (!couple) return;
           const double torque = std::abs(couple->held) + std::abs(couple->gain);
@@ -59,8 +59,8 @@ std::vector<JointSupport> joint_supports(const Scene& scene, const Inertia& iner
     if (const auto* lock = std::get_if<Lock>(&effect)) supports[lock->joint - 1].is_locked = true;
     if (const auto torque = holding_torque(effect)) {
       std::visit(
-          [&](const auto& one) {
-            if constexpr (requires { one.joint; }) {
+          [&]<class Kind>(const Kind& one) {
+            if constexpr (OnJoint<Kind>) {
               supports[one.joint - 1].friction += *torque;
               supports[one.joint - 1].friction_effects.push_back(i);
             }

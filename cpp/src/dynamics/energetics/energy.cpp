@@ -49,9 +49,8 @@ double potential_energy(const Scene& scene, double t, std::span<const double> q)
   double kept = 0.0;
   for (const Effect& effect : scene.effects) {
     std::visit(
-        [&](const auto& one) {
-          if constexpr (requires { one.potential(0.0); })
-            kept += one.potential(relative(q.data(), one.joint));
+        [&]<class Kind>(const Kind& one) {
+          if constexpr (HasPotential<Kind>) kept += one.potential(relative(q.data(), one.joint));
         },
         effect);
   }

@@ -27,17 +27,17 @@ void for_each_law(const EffectsInForce& effects, double t, const LinkMemory& lin
       visit_rows<Pack<4>>(effects, t, links, visit);
 }
 
-Account account_of(int kind) {
+Account account_of(std::size_t kind) {
   return [kind]<std::size_t... kinds>(std::index_sequence<kinds...>) {
     constexpr std::array accounts = {std::variant_alternative_t<kinds, Effect>::info.account...};
-    return accounts[static_cast<std::size_t>(kind)];
+    return accounts[kind];
   }(std::make_index_sequence<std::variant_size_v<Effect>>{});
 }
 
 bool has_wind(const Effect& effect) {
   return std::visit(
-      [](const auto& one) {
-        if constexpr (requires { one.has_wind(); }) return one.has_wind();
+      []<class Kind>(const Kind& one) {
+        if constexpr (HasWind<Kind>) return one.has_wind();
         return false;
       },
       effect);
@@ -112,10 +112,10 @@ void Ledger::add_laws(double t, Powers& power) {
         loads.couples * at.phid() + loads.moments * at.qd + loads.fx * at.vx() + loads.fy * at.vy();
     force_x_ += sum_of_lanes(loads.fx);
     force_y_ += sum_of_lanes(loads.fy);
-    const Account account = account_of(entry.kind);
+    const Account account = account_of(entry.kind());
     double value = sum_of_lanes(all);
-    ActingEffects<Row>::visit(entry, [&](const auto& law) {
-      if constexpr (requires { law.dissipation(at); }) {
+    ActingEffects<Row>::visit(entry, [&]<class Law>(const Law& law) {
+      if constexpr (Dissipates<Law>) {
         const double lost = sum_of_lanes(law.dissipation(at));
         book(power, Account::wind, value + lost);
         value = -lost;
@@ -129,7 +129,7 @@ void Ledger::add_couples(double t, Powers& power) const {
   for (std::size_t i = 0; i < effects_->effects.size(); ++i) {
     std::visit(
         [&]<class Kind>(const Kind& effect) {
-          if constexpr (requires { effect.couple(0); }) {
+          if constexpr (HasCouple<Kind>) {
             const auto couple = effect.couple(effects_->modes[i]);
             if (!couple) return;
             const double phi = relative(&links_.q[1], effect.joint);

@@ -16,6 +16,7 @@
 #pragma once
 
 #include <array>
+#include <concepts>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -63,6 +64,12 @@ struct Function {
   int samples = 8;
   double max_step = std::numeric_limits<double>::infinity();  ///< s
   static constexpr std::string_view kind = "function";
+};
+
+/// Whether a kind of event can be asked for at every turn.
+template <class Kind>
+concept CountsTurns = requires(const Kind& one) {
+  { one.every_turn } -> std::same_as<const bool&>;
 };
 
 }  // namespace events
