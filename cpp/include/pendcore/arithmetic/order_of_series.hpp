@@ -1,8 +1,10 @@
 /// \file
-/// How far a Taylor series goes, and the divisors of its recurrences.
+/// How far a Taylor series goes, the divisors of its recurrences, and products of series.
 #pragma once
 
 #include <array>
+
+#include "pendcore/arithmetic/pair.hpp"
 
 namespace pendcore {
 
@@ -14,5 +16,13 @@ inline constexpr auto inverse_of = [] {
   for (int k = 1; k < static_cast<int>(table.size()); ++k) table[k] = 1.0 / k;
   return table;
 }();
+
+/// Order k of the product of two series, which are functions of the order: sum_j a(j) b(k - j).
+template <class First, class Second>
+PENDCORE_INLINE auto order_of_product(int k, const First& a, const Second& b) {
+  decltype(a(0)) sum{};
+  for (int j = 0; j <= k; ++j) sum = fma(a(j), b(k - j), sum);
+  return sum;
+}
 
 }  // namespace pendcore

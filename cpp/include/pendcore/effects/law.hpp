@@ -79,11 +79,20 @@ struct alignas(sizeof(Row)) Couples {
   PENDCORE_INLINE typename At::Value torque(const At& at) const {
     using V = typename At::Value;
     const V w = at.phid();
-    const V in_time = fma(Constants<V>::of(slope), Constants<V>::of(broadcast<Row>(at.t) - start),
-                          Constants<V>::of(held));
     const V of_rate = fma(fma(Constants<V>::of(on_phid3), w, Constants<V>::of(on_phid2)), w,
                           Constants<V>::of(on_phid));
-    return fma(of_rate, w, fma(Constants<V>::of(on_phi), at.phi(), in_time));
+    return fma(of_rate, w, fma(Constants<V>::of(on_phi), at.phi(), in_time<V>(at.t)));
+  }
+
+  /// held + slope (t - start)
+  template <class V>
+  PENDCORE_INLINE V in_time(double t) const {
+    return fma(Constants<V>::of(slope), Constants<V>::of(broadcast<Row>(t) - start),
+               Constants<V>::of(held));
+  }
+  /// Whether some torque has the square or the cube of its rate.
+  PENDCORE_INLINE bool has_powers() const {
+    return sum_of_lanes(Row(absolute(on_phid2) + absolute(on_phid3))) != 0.0;
   }
 };
 

@@ -26,25 +26,11 @@ ChainOf<Number>::ChainOf(const Scene& scene, std::shared_ptr<ActingEffects<Pack<
   response_.resize(n_);
   for (int i = 0; i < n_; ++i) {
     const Link& link = scene.links[i];
-    const double m = link.mass;
-    const double L = link.length;
-    const double I = link.inertia + (i + 1 == n_ ? inertia.payload_inertia : 0.0);
-    const double about_joint = I + m * link.center * link.center;
-    const double apart = L - link.center;
-    in(length_)[i] = L;
-    in(mass_moment_)[i] = m * link.center;
-    links_.push_back({.m = m,
-                      .L = L,
-                      .mc = m * link.center,
-                      .I = I,
-                      .Io = about_joint,
-                      .LL = L * L,
-                      .turn = about_joint - m * link.center * L,
-                      .across = I + m * apart * apart});
+    in(length_)[i] = link.length;
+    in(mass_moment_)[i] = link.mass * link.center;
   }
-  // The first rotor turns against the ground: part of the link.
-  links_[0].Io += rotor_[0];
-  rotor_[0] = 0.0;
+  links_ = chain_links(scene, inertia);
+  rotor_[0] = 0.0;  // part of the first link
 }
 
 template class ChainOf<double>;

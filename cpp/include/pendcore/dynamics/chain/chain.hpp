@@ -32,7 +32,7 @@
 #include <memory>
 
 #include "pendcore/dynamics/acting_effects.hpp"
-#include "pendcore/dynamics/inertia.hpp"
+#include "pendcore/dynamics/chain/chain_link.hpp"
 
 namespace pendcore {
 
@@ -84,10 +84,7 @@ class ChainOf {
   bool loaded_;              ///< effects other than constants
   std::shared_ptr<ActingEffects<Pack<4>>> effects_;
 
-  struct Constants {
-    double m, L, mc, I, Io, LL, turn, across;  // turn: I_o - m c L, across: I + m (L - c)^2
-  };
-  std::vector<Constants> links_;
+  std::vector<ChainLink> links_;
   std::vector<double> length_, mass_moment_;  // L, m c
   std::vector<double> rotor_;                 // J
   // of one right-hand side

@@ -121,23 +121,21 @@ template <class Number>
 template <bool loaded, int size>
 PENDCORE_INLINE void ChainOf<Number>::tip_to_base() const {
   const int n = size > 0 ? size : n_;
-  Number Buu = payload_mass_;
-  Number Bun = 0.0;
-  Number Bnn = payload_mass_;
+  ForcePerAcceleration<Number> B{payload_mass_, 0.0, payload_mass_};
   Number b_u = 0.0;
   Number b_n = 0.0;
 #pragma GCC unroll 3
   for (int i = n - 1; i >= 0; --i) {
-    const Constants& k = links_[i];
-    const Number D = fma(k.LL, Bnn, k.Io);
+    const ChainLink& k = links_[i];
+    const Number D = fma(k.LL, B.nn, k.Io);
     const Number r = 1.0 / D;
     const Number speed = in(centripetal_)[i];
-    const Number pu = fma(-speed, Buu, b_u);
-    const Number pn = fma(-speed, Bun, b_n);
+    const Number pu = fma(-speed, B.uu, b_u);
+    const Number pn = fma(-speed, B.un, b_n);
     const Number torque = loaded ? fma(-k.L, pn, in(torque_)[i]) : -k.L * pn;
     const Number free = torque * r;
-    const Number wu = k.L * Bun;
-    const Number wn = fma(k.L, Bnn, k.mc);
+    const Number wu = k.L * B.un;
+    const Number wn = fma(k.L, B.nn, k.mc);
     Number fu = pu - in(center_)[i];
     Number fn = pn;
     if constexpr (loaded) {
@@ -150,18 +148,8 @@ PENDCORE_INLINE void ChainOf<Number>::tip_to_base() const {
     const Number c = in(c_)[i];
     response_[i] = {free, r * fma(wu, c, -(wn * s)), r * fma(wu, s, wn * c), 0.0};
 
-    // Into the frame of the link before. What waits for the division comes in last.
-    const Number mass = k.m + Buu;
-    const Number uu = wu * wu;
-    const Number un = Bun * k.turn;
-    const Number nn = fma(Bnn, k.across, k.m * k.I);
-    const Number cc = in(cc_)[i];
-    const Number ss = in(ss_)[i];
-    const Number sc = in(sc_)[i];
-    const Number both = sc + sc;
-    Bnn = fma(r, fma(-ss, uu, fma(both, un, cc * nn)), ss * mass);
-    Bun = fma(r, fma(-sc, uu + nn, (cc - ss) * un), sc * mass);
-    Buu = fma(r, fma(-cc, uu, fma(-both, un, ss * nn)), cc * mass);
+    // Into the frame of the link before.
+    B.add_free(k, r, wu, in(cc_)[i], in(ss_)[i], in(sc_)[i]);
     b_u = fma(fu, in(cos_)[i], -(fn * in(sin_)[i]));
     b_n = fma(fu, in(sin_)[i], fn * in(cos_)[i]);
   }
@@ -189,9 +177,7 @@ PENDCORE_INLINE void ChainOf<Number>::base_to_tip(Number ax, Number ay, Number* 
 
 template <class Number>
 PENDCORE_INLINE void ChainOf<Number>::tip_to_base_coupled() const {
-  Number Buu = payload_mass_;
-  Number Bun = 0.0;
-  Number Bnn = payload_mass_;
+  ForcePerAcceleration<Number> B{payload_mass_, 0.0, payload_mass_};
   Number b_u = 0.0;
   Number b_n = 0.0;
   Number beta_u = 0.0;  // force per angular acceleration of the link before
@@ -199,17 +185,17 @@ PENDCORE_INLINE void ChainOf<Number>::tip_to_base_coupled() const {
   Number kappa = 0.0;  // torque per angular acceleration
   Number t = 0.0;      // the rest of the torque
   for (int i = n_ - 1; i >= 0; --i) {
-    const Constants& k = links_[i];
+    const ChainLink& k = links_[i];
     const Number speed = in(centripetal_)[i];
-    const Number pu = fma(-speed, Buu, b_u);
-    const Number pn = fma(-speed, Bun, b_n);
-    const Number D = fma(k.LL, Bnn, k.Io) + fma(2.0 * k.L, beta_n, kappa);
+    const Number pu = fma(-speed, B.uu, b_u);
+    const Number pn = fma(-speed, B.un, b_n);
+    const Number D = fma(k.LL, B.nn, k.Io) + fma(2.0 * k.L, beta_n, kappa);
     const double J = rotor_[i];
     const bool is_held = effects_->held[i];
     const Number r = is_held ? Number(0.0) : 1.0 / (D + J);
     const Number share = is_held ? Number(1.0) : J * r;
-    const Number wu = fma(k.L, Bun, beta_u);
-    const Number wn = fma(k.L, Bnn, k.mc) + beta_n;
+    const Number wu = fma(k.L, B.un, beta_u);
+    const Number wn = fma(k.L, B.nn, k.mc) + beta_n;
     const Number torque = in(torque_)[i] - fma(k.L, pn, fma(-speed, beta_u, t));
     const Number free = r * torque;
     const Number fu = fma(wu, free, pu - in(center_)[i] - in(fx_)[i]);
@@ -218,17 +204,9 @@ PENDCORE_INLINE void ChainOf<Number>::tip_to_base_coupled() const {
     const Number c = in(c_)[i];
     response_[i] = {free, r * fma(wu, c, -(wn * s)), r * fma(wu, s, wn * c), share};
 
-    const Number uu = fma(-r * wu, wu, k.m + Buu);
-    const Number un = fma(-r * wu, wn, Bun);
-    const Number nn = fma(-r * wn, wn, k.m + Bnn);
-    const Number cc = in(cc_)[i];
-    const Number ss = in(ss_)[i];
-    const Number sc = in(sc_)[i];
+    B.add_coupled(k, r, wu, wn, in(cc_)[i], in(ss_)[i], in(sc_)[i]);
     const Number cos = in(cos_)[i];
     const Number sin = in(sin_)[i];
-    Bnn = fma(ss, uu, fma(2.0 * sc, un, cc * nn));
-    Bun = fma(sc, uu - nn, (cc - ss) * un);
-    Buu = fma(cc, uu, fma(-2.0 * sc, un, ss * nn));
     b_u = fma(fu, cos, -(fn * sin));
     b_n = fma(fu, sin, fn * cos);
     beta_u = share * fma(wu, cos, -(wn * sin));

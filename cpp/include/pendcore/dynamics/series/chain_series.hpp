@@ -25,6 +25,7 @@
 
 #include "pendcore/arithmetic/order_of_series.hpp"
 #include "pendcore/dynamics/acting_effects.hpp"
+#include "pendcore/dynamics/chain/chain_link.hpp"
 
 namespace pendcore {
 
@@ -50,10 +51,6 @@ class ChainSeries {
                               double* coefficients) const;
 
  private:
-  /// What one link has for all orders.
-  struct Link {
-    double m, L, mc, I, Io, LL, turn, across, rotor;  // as in chain.hpp
-  };
   /// What one link has in its place, for the orders of one series.
   struct Factors {
     double nx, ny;         ///< across the link
@@ -87,7 +84,8 @@ class ChainSeries {
   double payload_mass_;
   bool has_rotors_ = false;
   std::shared_ptr<const ActingEffects<Row>> effects_;
-  std::vector<Link> links_;
+  std::vector<ChainLink> links_;
+  std::vector<double> rotor_;  ///< of the joints beyond the first
   // of one series
   std::size_t room_ = 0;
   mutable std::vector<double> series_;

@@ -2,7 +2,8 @@
 /// The recurrences of chain_series.hpp.
 #pragma once
 
-#include "pendcore/dynamics/inertia.hpp"
+#include <algorithm>
+
 #include "pendcore/dynamics/series/chain_series.hpp"
 
 namespace pendcore {
@@ -23,29 +24,10 @@ ChainSeries<Row>::ChainSeries(const Scene& scene, std::shared_ptr<const ActingEf
       passing_(n_) {
   const Inertia inertia(scene);
   payload_mass_ = inertia.payload_mass;
-  for (int i = 0; i < n_; ++i) {
-    const pendcore::Link& link = scene.links[i];
-    const double m = link.mass;
-    const double L = link.length;
-    const double mc = m * link.center;
-    const double rotor = inertia.rotor[i];
-    const double payload = i + 1 == n_ ? inertia.payload_inertia : 0.0;
-    const bool is_first = i == 0;
-    const double I = link.inertia + payload;
-    const double Io = I + m * link.center * link.center;
-    const double rest = L - link.center;
-    // The first rotor turns against the ground: part of the link.
-    links_.push_back({.m = m,
-                      .L = L,
-                      .mc = mc,
-                      .I = I,
-                      .Io = is_first ? Io + rotor : Io,
-                      .LL = L * L,
-                      .turn = Io - mc * L,
-                      .across = I + m * rest * rest,
-                      .rotor = is_first ? 0.0 : rotor});
-    has_rotors_ = has_rotors_ || links_.back().rotor > 0.0;
-  }
+  links_ = chain_links(scene, inertia);
+  rotor_ = inertia.rotor;
+  rotor_[0] = 0.0;  // part of the first link
+  has_rotors_ = std::ranges::any_of(rotor_, [](double J) { return J > 0.0; });
   for (auto* array : {&beta_x_, &beta_y_, &torque_, &alpha_, &hx_, &hy_}) array->resize(row_);
   const std::size_t room = row_ + 2 * static_cast<std::size_t>(chain_series_detail::margin);
   for (auto* array : {&couple_, &angle_, &speed_}) array->resize(room);
@@ -65,30 +47,28 @@ void ChainSeries<Row>::set_order(int order) {
 template <class Row>
 PENDCORE_INLINE void ChainSeries<Row>::factor() const {
   const bool coupled = has_rotors_ || (effects_ && effects_->any_held);
-  double Buu = payload_mass_;
-  double Bun = 0.0;
-  double Bnn = payload_mass_;
+  ForcePerAcceleration<double> B{payload_mass_, 0.0, payload_mass_};
   double fu = 0.0;
   double fn = 0.0;
   double kappa = 0.0;
   for (int i = n_ - 1; i >= 0; --i) {
-    const Link& k = links_[i];
+    const ChainLink& k = links_[i];
     const double c = of(cosine_of, i / width)[i % width];
     const double s = of(sine_of, i / width)[i % width];
     Factors& here = factors_[i];
     here.nx = -s;
     here.ny = c;
-    here.Bxx = fma(c * c, Buu, fma(-2.0 * c * s, Bun, s * s * Bnn));
-    here.Byy = fma(s * s, Buu, fma(2.0 * c * s, Bun, c * c * Bnn));
-    here.Bxy = fma(c * s, Buu - Bnn, (c * c - s * s) * Bun);
+    here.Bxx = fma(c * c, B.uu, fma(-2.0 * c * s, B.un, s * s * B.nn));
+    here.Byy = fma(s * s, B.uu, fma(2.0 * c * s, B.un, c * c * B.nn));
+    here.Bxy = fma(c * s, B.uu - B.nn, (c * c - s * s) * B.un);
     here.fx = fma(fu, c, -(fn * s));
     here.fy = fma(fu, s, fn * c);
-    const double D = fma(k.LL, Bnn, k.Io) + fma(2.0 * k.L, fn, kappa);
-    const double wu = fma(k.L, Bun, fu);
-    const double wn = fma(k.L, Bnn, k.mc) + fn;
+    const double D = fma(k.LL, B.nn, k.Io) + fma(2.0 * k.L, fn, kappa);
+    const double wu = fma(k.L, B.un, fu);
+    const double wn = fma(k.L, B.nn, k.mc) + fn;
     const bool is_held = effects_ && effects_->held[i];
-    here.r = is_held ? 0.0 : 1.0 / (D + k.rotor);
-    here.s = is_held ? 1.0 : k.rotor * here.r;
+    here.r = is_held ? 0.0 : 1.0 / (D + rotor_[i]);
+    here.s = is_held ? 1.0 : rotor_[i] * here.r;
     here.wx = fma(wu, c, -(wn * s));
     here.wy = fma(wu, s, wn * c);
     if (i == 0) break;
@@ -100,20 +80,9 @@ PENDCORE_INLINE void ChainSeries<Row>::factor() const {
     const double ss = sin * sin;
     const double sc = sin * cos;
     if (!coupled) {
-      const double mass = k.m + Buu;
-      const double uu = wu * wu;
-      const double un = Bun * k.turn;
-      const double nn = fma(Bnn, k.across, k.m * k.I);
-      Bnn = fma(here.r, fma(-ss, uu, fma(2.0 * sc, un, cc * nn)), ss * mass);
-      Bun = fma(here.r, fma(-sc, uu + nn, (cc - ss) * un), sc * mass);
-      Buu = fma(here.r, fma(-cc, uu, fma(-2.0 * sc, un, ss * nn)), cc * mass);
+      B.add_free(k, here.r, wu, cc, ss, sc);
     } else {
-      const double uu = fma(-here.r * wu, wu, k.m + Buu);
-      const double un = fma(-here.r * wu, wn, Bun);
-      const double nn = fma(-here.r * wn, wn, k.m + Bnn);
-      Bnn = fma(ss, uu, fma(2.0 * sc, un, cc * nn));
-      Bun = fma(sc, uu - nn, (cc - ss) * un);
-      Buu = fma(cc, uu, fma(-2.0 * sc, un, ss * nn));
+      B.add_coupled(k, here.r, wu, wn, cc, ss, sc);
       fu = here.s * fma(wu, cos, -(wn * sin));
       fn = here.s * fma(wu, sin, wn * cos);
       kappa = here.s * D;
@@ -174,24 +143,21 @@ PENDCORE_INLINE void ChainSeries<Row>::add_couples(double t, double sigma, int k
     const Row w = load<Row>(&speed_[margin + at]) - load<Row>(&speed_[margin + at - 1]);
     const double square = sigma * sigma;
     Row torque = fma(square * one.on_phi, phi, sigma * one.on_phid * w);
-    if (k == 0) torque = torque + square * fma(one.slope, broadcast<Row>(t) - one.start, one.held);
+    if (k == 0) torque = torque + square * one.template in_time<Row>(t);
     if (k == 1) torque = torque + square * sigma * one.slope;
-    if (sum_of_lanes(Row(absolute(one.on_phid2) + absolute(one.on_phid3))) != 0.0) {
-      // Products of the rate with itself.
+    if (one.has_powers()) {
       double* const rates = of(relative_of, one.row);
       double* const squares = of(square_of, one.row);
+      const auto rate = [rates](int j) __attribute__((always_inline)) {
+        return load<Row>(rates + static_cast<std::ptrdiff_t>(j) * width);
+      };
+      const auto square_of_rate = [squares](int j) __attribute__((always_inline)) {
+        return load<Row>(squares + static_cast<std::ptrdiff_t>(j) * width);
+      };
       store(rates + static_cast<std::ptrdiff_t>(k) * width, w);
-      Row w2{};
-      Row w3{};
-      for (int j = 0; j <= k; ++j) {
-        w2 = fma(load<Row>(rates + static_cast<std::ptrdiff_t>(j) * width),
-                 load<Row>(rates + static_cast<std::ptrdiff_t>(k - j) * width), w2);
-      }
+      const Row w2 = order_of_product(k, rate, rate);
       store(squares + static_cast<std::ptrdiff_t>(k) * width, w2);
-      for (int j = 0; j <= k; ++j) {
-        w3 = fma(load<Row>(squares + static_cast<std::ptrdiff_t>(j) * width),
-                 load<Row>(rates + static_cast<std::ptrdiff_t>(k - j) * width), w3);
-      }
+      const Row w3 = order_of_product(k, square_of_rate, rate);
       torque = fma(one.on_phid2, w2, fma(one.on_phid3 / sigma, w3, torque));
     }
     store(couple + at, torque);
@@ -212,7 +178,7 @@ PENDCORE_INLINE void ChainSeries<Row>::solve(double ax, double ay) const {
   double by = 0.0;
   double t = 0.0;
   for (int i = n_ - 1; i >= 0; --i) {
-    const Link& k = links_[i];
+    const ChainLink& k = links_[i];
     const Factors& here = factors_[i];
     const double x = beta_x_[i];
     const double y = beta_y_[i];
@@ -228,7 +194,7 @@ PENDCORE_INLINE void ChainSeries<Row>::solve(double ax, double ay) const {
   }
   double before = 0.0;
   for (int i = 0; i < n_; ++i) {
-    const Link& k = links_[i];
+    const ChainLink& k = links_[i];
     const Factors& here = factors_[i];
     const Passing& passing = passing_[i];
     const double alpha =

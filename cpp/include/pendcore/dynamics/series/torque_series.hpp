@@ -38,9 +38,8 @@ class CoupleTorque {
       const ActingEffects<Pair>& effects = *laws.effects_;
       if (!effects.couples.empty()) {
         couples_ = &effects.couples.front();
-        const Pair powers = absolute(couples_->on_phid2) + absolute(couples_->on_phid3);
-        has_powers_ = powers[0] != 0.0 || powers[1] != 0.0;
-        in_time_ = fma(couples_->slope, Pair{t, t} - couples_->start, couples_->held);
+        has_powers_ = couples_->has_powers();
+        in_time_ = couples_->in_time<Pair>(t);
       }
       if (effects.waves == 0) return;
       has_waves_ = true;
@@ -74,13 +73,12 @@ class CoupleTorque {
 
    private:
     PENDCORE_INLINE Pair of_powers(int k, const Pair& w) {
+      const auto rate = [this](int j) { return rates_[j]; };
+      const auto square = [this](int j) { return squares_[j]; };
       rates_[k] = w;
-      Pair square{};
-      for (int j = 0; j <= k; ++j) square = fma(rates_[j], rates_[k - j], square);
-      squares_[k] = square;
-      Pair cube{};
-      for (int j = 0; j <= k; ++j) cube = fma(squares_[j], rates_[k - j], cube);
-      return fma(couples_->on_phid2, square, couples_->on_phid3 * cube);
+      squares_[k] = order_of_product(k, rate, rate);
+      const Pair cube = order_of_product(k, square, rate);
+      return fma(couples_->on_phid2, squares_[k], couples_->on_phid3 * cube);
     }
 
     const Couples<Pair>* couples_ = nullptr;

@@ -1,0 +1,54 @@
+/// \file
+/// One link in the recursion of chain.hpp: its constants, and how B passes from link to link, for
+/// the accelerations (chain_recursion.hpp) and their series (chain_series_recurrence.hpp) alike.
+#pragma once
+
+#include <vector>
+
+#include "pendcore/arithmetic/pair.hpp"
+#include "pendcore/dynamics/inertia.hpp"
+
+namespace pendcore {
+
+struct ChainLink {
+  double m, L, mc, I, Io, LL, turn, across;  // turn: I_o - m c L, across: I + m (L - c)^2
+};
+
+/// The links of a scene, with its payload and the rotor of the first joint, which turns against the
+/// ground and so is part of the link. Rotors of other joints couple two links.
+std::vector<ChainLink> chain_links(const Scene& scene, const Inertia& inertia);
+
+/// B: the force that the links beyond a joint need there, per acceleration of the joint, in the
+/// frame (u, n) of a link. `cc`, `ss` and `sc` are the products of cosine and sine of the angle
+/// between this link and the one before, `wu` and `wn` the w of chain.hpp.
+template <class Number>
+struct ForcePerAcceleration {
+  Number uu, un, nn;
+
+  /// Adds a link that turns freely, and goes into the frame of the link before. What waits for the
+  /// division, r = 1/D, comes in last.
+  PENDCORE_INLINE void add_free(const ChainLink& k, Number r, Number wu, Number cc, Number ss,
+                                Number sc) {
+    const Number mass = k.m + uu;
+    const Number along = wu * wu;
+    const Number mixed = un * k.turn;
+    const Number across = fma(nn, k.across, k.m * k.I);
+    const Number both = sc + sc;
+    nn = fma(r, fma(-ss, along, fma(both, mixed, cc * across)), ss * mass);
+    un = fma(r, fma(-sc, along + across, (cc - ss) * mixed), sc * mass);
+    uu = fma(r, fma(-cc, along, fma(-both, mixed, ss * across)), cc * mass);
+  }
+
+  /// The same of a link whose turning a rotor or a joint that is held couples with the one before.
+  PENDCORE_INLINE void add_coupled(const ChainLink& k, Number r, Number wu, Number wn, Number cc,
+                                   Number ss, Number sc) {
+    const Number along = fma(-r * wu, wu, k.m + uu);
+    const Number mixed = fma(-r * wu, wn, un);
+    const Number across = fma(-r * wn, wn, k.m + nn);
+    nn = fma(ss, along, fma(2.0 * sc, mixed, cc * across));
+    un = fma(sc, along - across, (cc - ss) * mixed);
+    uu = fma(cc, along, fma(-2.0 * sc, mixed, ss * across));
+  }
+};
+
+}  // namespace pendcore
