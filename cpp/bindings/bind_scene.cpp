@@ -1,6 +1,8 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <span>
 
 #include "arguments.hpp"
@@ -75,6 +77,22 @@ Array acceleration_rows(const Scene& scene, const Array& t, const Array& q, cons
   return result;
 }
 
+/// The accelerations of one state, without the array conversions that many states need. Nothing
+/// where an argument has another shape or is not finite: the caller then says which.
+std::optional<Array> acceleration_of_state(const Scene& scene, double t, const Array& q,
+                                           const Array& qd) {
+  const FloatingPointEnvironment ieee;
+  const auto n = static_cast<py::ssize_t>(scene.links.size());
+  const auto is_finite = [](double x) { return std::isfinite(x); };
+  const bool fits = q.ndim() == 1 && qd.ndim() == 1 && q.size() == n && qd.size() == n &&
+                    std::isfinite(t) && std::all_of(q.data(), q.data() + n, is_finite) &&
+                    std::all_of(qd.data(), qd.data() + n, is_finite);
+  if (!fits) return std::nullopt;
+  Array result(n);
+  accelerations(equations_of_motion(scene), t, q.data(), qd.data(), result.mutable_data());
+  return result;
+}
+
 /// The derivatives of the accelerations by the angles and by the rates, (m, n, n) each.
 py::tuple jacobian_rows(const Scene& scene, const Array& t, const Array& q, const Array& qd) {
   const FloatingPointEnvironment ieee;
@@ -119,6 +137,8 @@ void bind_scene(py::module_& module) {
       .def_property_readonly("warnings", &plausibility_warnings)
       .def("run_warnings", &run_warnings, py::arg("q0"), py::arg("t0"), py::arg("t_end"))
       .def("accelerations", &acceleration_rows, py::arg("t"), py::arg("q"), py::arg("qd"))
+      .def("acceleration_of_state", &acceleration_of_state, py::arg("t"), py::arg("q"),
+           py::arg("qd"))
       .def("jacobian", &jacobian_rows, py::arg("t"), py::arg("q"), py::arg("qd"))
       .def("reactions", &reaction_forces, py::arg("t"), py::arg("q"), py::arg("qd"))
       .def(

@@ -28,6 +28,9 @@ class Scene:
         q: npt.NDArray[np.float64],
         qd: npt.NDArray[np.float64],
     ) -> npt.NDArray[np.float64]: ...
+    def acceleration_of_state(
+        self, t: float, q: npt.NDArray[np.float64], qd: npt.NDArray[np.float64]
+    ) -> npt.NDArray[np.float64] | None: ...
     def jacobian(
         self,
         t: npt.NDArray[np.float64],

@@ -144,3 +144,16 @@ def test_without_pandoc_the_report_says_why_there_is_no_page(
     monkeypatch.setattr(conversion, "has_pandoc", lambda: False)
     main(["derive", "--to", "report", "-o", str(tmp_path)])
     assert "takes pandoc" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("n", [1, 2, 5])
+def test_one_state_has_the_accelerations_of_a_row_of_many(n: int) -> None:
+    link = pc.Link(mass=1.0, length=0.5)
+    rub = [pc.effects.DryJointFriction(joint=1, coulomb=0.1), pc.effects.ViscousJoint(n, 0.2)]
+    scene = pc.Scene(links=[link] * n, effects=rub)
+    q, qd = np.linspace(0.3, 1.0, n), np.linspace(-1.0, 2.0, n)
+    alone = scene.accelerations(0.5, q, qd)
+    assert alone.shape == (n,)
+    assert np.array_equal(alone, scene.accelerations([0.5], [q], [qd])[0])
+    with pytest.raises(ValueError, match=r"qd\[0\] = nan: must be finite"):
+        scene.accelerations(0.5, q, np.full(n, np.nan))
