@@ -59,8 +59,8 @@ reaches the error.
   higher orders in longer steps.
 * Outside the series a step computes its size (two logarithms, a power) and the new state (a
   polynomial), which takes a fifth of its time (`make bench`, `step/latency/taylor` beside
-  `series`); the loop and the samples come on top. At 1e-2 its time is close to that of `dopri5`, whose
-  steps wait for six right-hand sides one by one.
+  `series`); the loop and the samples come on top. At 1e-2 its time is close to that of `dopri5`,
+  whose steps wait for six right-hand sides one by one.
 
 ## How it was measured
 
