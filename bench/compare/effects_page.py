@@ -187,7 +187,8 @@ def losses(record: Record) -> list[str]:
     ]
     if shares:
         lines.append(
-            f"* As a share of its own bare scene, which takes less, in a step: {'; '.join(shares)}."
+            "* In a step, as a share of pendcore's own bare scene, which takes less time than "
+            f"MuJoCo's: {'; '.join(shares)}."
         )
     compared = any(
         added(record, effect, CORE) is not None and added(record, effect, PEER) is not None
