@@ -47,15 +47,15 @@ EXAMPLES: dict[str, list[str]] = {
 }
 
 BOOKED = {
-    "none": "Nothing: it does no work, or keeps it as energy that `sol.energy()` counts.",
-    "viscous": "`viscous`: what it takes out of the motion, J.",
-    "dry": "`dry`: what it takes out of the motion, J.",
-    "impact": "`impact`: what impacts take out of the motion, J.",
-    "drag": "`drag`: what the rod loses, the integral of k |w|^3 along it, J, never negative. The "
-    "rest of what the air does is the `wind`'s, J: none without wind.",
-    "motor": "`motor`: the work that it does, torque times rate of the joint, J.",
-    "drive": "`drive`: the work of what drives the pivot, F_01 . v_0, J.",
-    "user": "`user`: the work that it does, Q . qd, J.",
+    "none": "Nothing: the effect does no work, or stores it as energy that `sol.energy()` counts.",
+    "viscous": "`viscous`: the energy that the effect takes out of the motion, J.",
+    "dry": "`dry`: the energy that the effect takes out of the motion, J.",
+    "impact": "`impact`: the energy that impacts take out of the motion, J.",
+    "drag": "`drag`: the energy that the rod loses, the integral of k |w|^3 along it, J, never "
+    "negative. The remaining work of the air is in `wind`, J: none without wind.",
+    "motor": "`motor`: the work of the motor, the integral of torque times rate of the joint, J.",
+    "drive": "`drive`: the work done by moving the pivot, the integral of F_01 . v_0, J.",
+    "user": "`user`: the work of the effect, the integral of Q . qd, J.",
 }
 
 
@@ -198,17 +198,17 @@ def _index() -> str:
 
 <!-- Written by docs/write_effects.py from the core's list of effects. -->
 
-A scene simulates gravity and the effects that it lists, and nothing else; an effect that it does
-not list costs nothing. Each may act on any joint or link, and there may be several of a kind. The
-torque `tau_j` at joint j acts on link j, and `-tau_j` on link j-1; `phi_j = q_j - q_(j-1)` is the
-angle of joint j, `w` its rate. `scene.explain()` says what a scene has and has not, and what each
-effect costs.
+A scene simulates gravity and the effects that it lists, and nothing else; unlisted effects cost
+nothing. Each effect may act on any joint or link, and a scene may have several effects of one
+kind. The torque `tau_j` at joint j acts on link j, and `-tau_j` on link j-1;
+`phi_j = q_j - q_(j-1)` is the angle of joint j, `w` its rate. `scene.explain()` says what a scene
+simulates, what it leaves out, and what each effect costs.
 
 {table}
 
 With `pc.simulate(..., ledger=True)`, `sol.energy().ledger` tells where the energy went: {losses}
-are losses, the other entries work done on the chain, and `residual` is what the balance leaves
-over.
+are losses, the other entries are work done on the chain, and `residual` is the remainder of the
+balance.
 
-[add_an_effect.md](../add_an_effect.md) says how to add one to the core.
+[add_an_effect.md](../add_an_effect.md) says how to add an effect to the core.
 """

@@ -29,13 +29,14 @@ sol = pc.simulate(scene, q0=[0.5, 1.0], t_span=(0, 1), ledger=True)
 print(sol.energy().ledger)
 ```
 
-`Q` comes zeroed and counts as generalised forces of the absolute angles, N m. `data` is handed on
-as it is: an address, or a NumPy array, whose memory it then is: C-contiguous float64, anything else
-is refused. Nothing checks the address: a wrong one ends the process.
+`Q` is zero when the function is called; its entries are generalised forces of the absolute angles,
+N m. `data` is passed on unchanged. It is an address or a NumPy array; the function gets the
+array's memory, so the array has to be C-contiguous float64, and any other is refused. Nothing
+checks the address: a wrong address crashes the process.
 
-An exception in a ctypes callback that is written in Python never gets here: ctypes prints it and
-drops it, and the run goes on with the forces that were there so far, zero as a rule. A law in
-Python is better a [`User`](user.md), whose exception ends the run.
+An exception in a ctypes callback that is written in Python never reaches pendcore: ctypes prints
+the exception and drops it, and the run goes on with the forces written so far, as a rule zero. For
+a law in Python use [`User`](user.md), where an exception ends the run.
 
 A function of C or C++ comes from a library of your own,
 `CompiledUser(ctypes.CDLL("./laws.so").damp)`:
@@ -50,16 +51,16 @@ extern "C" void damp(double t, int n, const double* q, const double* qd, double*
 
 ## In C++
 
-`pendcore::CompiledUser::of(f)` makes an effect of anything that can be called with time, angles,
+`pendcore::CompiledUser::of(f)` makes an effect from anything that can be called with time, angles,
 rates and forces, the last three as `std::span`; `f` has to outlive the scene.
-[examples/05_own_effect.cpp](../../examples/05_own_effect.cpp) has one.
+[examples/05_own_effect.cpp](../../examples/05_own_effect.cpp) has an example.
 """
 
 MOVING_END = """## A moving end
 
-The rest angle does not change in time. A spring whose far end moves, to tow a joint or to shake it,
-is a [function of your own](user.md). It gives forces of the **absolute** angles: a torque `tau` in
-joint j is `tau` on link j and `-tau` on link j-1.
+The rest angle does not change in time. For a spring whose far end moves, to tow a joint or to
+shake it, write a [function of your own](user.md). The function returns forces of the **absolute**
+angles: a torque `tau` in joint j is `tau` on link j and `-tau` on link j-1.
 
 ```python
 import numpy as np
@@ -75,7 +76,8 @@ run = pc.simulate(towed, q0=[0.5, 0.5], t_span=(0, 1), ledger=True)
 print(run.energy().ledger.user[-1])  # the work of the spring on the rods, J
 ```
 
-What such a spring keeps is not in `sol.energy()`; its work is all in the ledger's `user`.
+`sol.energy()` does not include the energy stored in such a spring; all its work is in the ledger's
+`user`.
 """
 
 IMPACTS = """## Counting impacts
@@ -90,9 +92,10 @@ k = np.flatnonzero(np.diff(sol.t) == 0)
 print(sol.t[k], sol.qd[k], sol.qd[k + 1])  # times, rates before, rates after
 ```
 
-These are the impacts of all stops, where the steps are kept: not with `t_eval` or `store="end"`.
-An event counts something else. A `JointAngle` at the stop has the impacts that a zero of the angle
-leads into, which the shortest bounces lack; a `RateZero` has the turns between bounces too.
+This counts the impacts at all stops. It needs the kept steps, so it does not work with `t_eval` or
+`store="end"`. Events count something else. A `JointAngle` at the stop finds only impacts that
+follow a zero of the angle, so it misses the shortest bounces; a `RateZero` also finds the turns
+between bounces.
 """
 
 MORE = {"torsional_spring": MOVING_END, "joint_stop": IMPACTS}

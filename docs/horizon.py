@@ -122,8 +122,9 @@ def table(found: dict[str, Any]) -> str:
     work = found["work"]
     lines += [
         "",
-        f"A digit of this start is worth {work['seconds_a_digit']:.2f} s by the exponent between "
-        "its horizons. Measured, and as a share of the exponent's over all of the record's starts:",
+        f"For this start a digit is worth {work['seconds_a_digit']:.2f} s by the exponent between "
+        "its horizons. The table has the measured seconds, and their share of the exponent's "
+        "seconds over all starts of the record:",
         "",
         "| method | this start | starts | share, mean (99.9 %) | from start to start | of that, "
         "neighbours | error at the limit |",
@@ -142,9 +143,9 @@ def table(found: dict[str, Any]) -> str:
     lines += [
         "",
         f"Exponents of this start over {found['long']:.0f} s: {exponents}, in 1/s. "
-        f"Of {len(largest)} starts within 1e-10 rad of it the largest is "
+        f"For {len(largest)} starts within 1e-10 rad of it the largest is "
         f"{np.mean(largest):.2f} with a standard deviation of {np.std(largest, ddof=1):.2f}: "
-        "so much is known of it after that time.",
+        "the exponent is known no better after that time.",
     ]
     return "\n".join(lines) + "\n"
 

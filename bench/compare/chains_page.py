@@ -19,19 +19,19 @@ Made by `make compare`; the raw figures are in [chains.json](chains.json). Do no
 
 ![Time and memory of a right-hand side against the number of links](chains.png)
 
-The accelerations of a planar chain of n rods, C++ beside C++, in **nanoseconds a call**: the least
-over {rounds} rounds in which every contender at every n had its turn, in an order drawn anew;
-medians in parentheses where a ratio is formed. Every call waits for the last one's accelerations,
-on states that change from call to call; *in a step* is a right-hand side's share of an attempted
-step of dopri5. Up to n = {checked} every contender's accelerations were compared with those of the
-dense equations: the largest difference was {disagreement:.0e} of the largest acceleration.
-Pinocchio and MuJoCo carry spatial motion, trees and many kinds of joints; pendcore carries planar
-chains.
+This page compares the time that C++ programs take for the accelerations of a planar chain of n
+rods, in **nanoseconds a call**. Each figure is the least over {rounds} rounds in which every
+contender at every n had its turn, in an order drawn anew; where a ratio is formed, the ratio of
+medians is in parentheses. Every call waits for the accelerations of the previous call, on states
+that change from call to call; *in a step* is a right-hand side's share of an attempted step of
+dopri5. Up to n = {checked} every contender's accelerations were compared with those of the dense
+equations: the largest difference was {disagreement:.0e} of the largest acceleration. Pinocchio and
+MuJoCo support spatial motion, trees and many kinds of joints; pendcore supports planar chains.
 
 ## Beside the fastest peer
 
-A ratio is pendcore's time over the fastest peer's of that row, of minima and, in parentheses, of
-medians: below 1 pendcore is quicker.
+A ratio is pendcore's time divided by the time of the fastest peer in that row, for minima and, in
+parentheses, for medians. Below 1 pendcore is quicker.
 
 {fastest}
 {bars}
@@ -45,9 +45,9 @@ Nanoseconds a call, minima.
 {everybody}
 ## Memory
 
-Bytes of the heap **a link** that a prepared contender holds. The angles and rates of the states
-that its calls go through are among them: 256 angles in all, but at least two states. MuJoCo's
-include the arena that it reserves.
+The table has the heap memory that a prepared contender holds, in bytes **a link**. It includes the
+angles and rates of the states that the calls go through: 256 angles in all, but at least two
+states. MuJoCo's memory includes the arena that it reserves.
 
 {memory}
 {held}

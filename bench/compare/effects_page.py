@@ -18,21 +18,22 @@ Made by `make compare`; the raw figures are in [effects.json](effects.json). Do 
 
 ![What each effect adds to a right-hand side, pendcore beside MuJoCo](effects.png)
 
-Two rods, with one effect and without, C++ beside C++: what the effect **adds to a right-hand
-side**, in nanoseconds, each side against its own scene without it. A *call* is the right-hand side
-alone, waiting for the last one's accelerations; *in a step* is its share of an attempted step of
-dopri5; *in a run* is a whole run's time, divided by its right-hand sides (pendcore: dopri5, with
-what watches for the points where a law changes; MuJoCo: its RK4, four a step). Times are the least
-over {rounds} rounds in which every scene had its turn, in an order drawn anew; differences of a few
-parts in a hundred of the bare scene are noise. In parentheses: the share of the same side's bare
-scene. Where both sides have the same law their accelerations differ by at most {disagreement:.0e}
-of the largest.
+Two rods ran with one effect and without effects, in C++ programs. The figures are the nanoseconds
+that the effect **adds to a right-hand side**, each program compared with its own bare scene. A
+*call* is the right-hand side alone, waiting for the accelerations of the previous call; *in a
+step* is its share of an attempted step of dopri5; *in a run* is the time of a whole run, divided
+by the number of its right-hand sides (pendcore: dopri5, including the search for points where a
+law changes; MuJoCo: its RK4, four right-hand sides a step). Times are the least over {rounds}
+rounds in which every scene had its turn, in an order drawn anew; differences of a few parts in a
+hundred of the bare scene are noise. The number in parentheses is the share of the same program's
+bare scene. Where both programs have the same law, their accelerations differ by at most
+{disagreement:.0e} of the largest.
 
 The bare scene takes {bare}.
 
 {beside}
-MuJoCo's own set-up is at its best: what the scene has not is disabled, bodies have no shapes.
-Both sides act at joint 2; drag acts on both links.
+MuJoCo is set up at its best: features that the scene does not need are disabled, and bodies have
+no shapes. In both programs the effects act at joint 2; drag acts on both links.
 
 ## Absent costs nothing
 
@@ -41,9 +42,9 @@ Both sides act at joint 2; drag acts on both links.
 ## Present costs its arithmetic
 
 Each smooth effect adds at most 60 instructions (drag 150) and 6 ns (drag 15, a sinusoid 10) to a
-right-hand side. Instructions are those of the kernels for x86-64-v3, counted by callgrind: in a
-call, and within steps of dopri5. All couples on a joint are summed when the scene is compiled, so
-that several cost what one does.
+right-hand side. Instructions are those of the kernels for x86-64-v3, counted by callgrind in a
+call and within steps of dopri5. All couples on a joint are summed when the scene is compiled, so
+several couples cost no more than one.
 
 {promised}
 ## Where pendcore loses
@@ -158,8 +159,9 @@ def absent(record: Record) -> str:
     alike = counted["scene"] == counted["kernel"] == counted["one_effect_more"]
     return (
         f"A right-hand side of the bare scene executes {counted['scene']:.1f} instructions within "
-        "a step,\nthe kernel that is named by its type and knows of no effect "
-        f"{counted['kernel']:.1f}, and in a core that\nhas one effect more in its registry it is "
+        "a step,\nand the kernel that is named by its type and knows of no effect executes "
+        f"{counted['kernel']:.1f}.\nIn a core with one effect more in its registry the bare scene "
+        "executes "
         f"{counted['one_effect_more']:.1f}: {'kept' if alike else '**missed**'}."
     )
 
@@ -185,7 +187,8 @@ def losses(record: Record) -> list[str]:
     ]
     if shares:
         lines.append(
-            f"* As a share of its own bare scene, which takes less, in a step: {'; '.join(shares)}."
+            "* In a step, as a share of pendcore's own bare scene, which takes less time than "
+            f"MuJoCo's: {'; '.join(shares)}."
         )
     compared = any(
         added(record, effect, CORE) is not None and added(record, effect, PEER) is not None

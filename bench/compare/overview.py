@@ -11,26 +11,28 @@ from tables import number, power, short, table
 
 PAGE = """# What accuracy costs, beside other solvers
 
-Made by `make compare` of the records beside it. Do not edit: run again. The pages of the cases have
-every contender's figures: {cases}. Other questions have pages of their own: [effects](effects.md)
-(what each costs), [chains](chains.md) (forward dynamics of n links).
+Made by `make compare` from the records beside it. Do not edit: run again. The pages of the cases
+have every contender's figures: {cases}. Two more pages answer other questions:
+[effects](effects.md) (what each effect costs) and [chains](chains.md) (forward dynamics of n
+links).
 
 ## What to choose
 
 {choice}
 * **Stiff scenes** (strong damping, hard springs, stiff controllers): `radau5`, or the default,
   which changes over to it.
-* **Fixed steps** (`rk4`) are the yardstick: what many users write by hand. Nothing in it tells how
-  wrong it is.
-* **Chaotic motions** lose a digit every second or so: a tolerance that is enough for 5 s is not for
-  10. `high_energy` is such a motion; it loses eight digits on its way, and at about 1e-8 double
-  precision ends: who gets further there has luck with its roundings.
+* **Fixed steps** (`rk4`) are the yardstick, because many users write this method by hand. Nothing
+  in the method tells how wrong its result is.
+* **Chaotic motions** lose a digit every second or so: a tolerance that is enough for 5 s is not
+  enough for 10 s. `high_energy` is such a motion; it loses eight digits on its way, and at about
+  1e-8 double precision ends: smaller errors there are rounding luck.
 
 ## Best against best
 
-The time of pendcore's best method as a share of the best peer's at the same achieved error, below 1
-where pendcore is quicker. The goal on the textbook's case is 0.5, and 0.6 in C++ at errors above
-1e-5, where the best peer has the same coefficients. A dash: nobody gets there.
+The tables have the time of pendcore's best method divided by the time of the best peer at the same
+achieved error; below 1 pendcore is quicker. The goal on the textbook's case is 0.5, and 0.6 in C++
+at errors above 1e-5, where the best peer has the same coefficients. A dash means that nobody
+reaches the error.
 
 {tables}
 {narrow}
@@ -42,40 +44,44 @@ where pendcore is quicker. The goal on the textbook's case is 0.5, and 0.6 in C+
 ## What bounds the rest
 
 * **From Python** a solve of the textbook's case takes {own_call} more than in C++ (the median over
-  `dopri5` and `taylor` at all settings): arguments are checked, a result object is made and handed
-  over. Where the C++ side keeps the goal and this one does not, that is why.
-* **In C++** it is `taylor` from some 1e-4 on. Counted in `dynamics/series/series.hpp`, order k
-  of its series is 2 (k - 3) + 30 products of rows of four numbers: k + 12 cycles of a processor
-  with two multipliers. An order waits for the one before it 9 cycles (two products, a change of
-  places), for the one before that 44 (two sums, both halves of a row, the two by two system), so
-  22 an order.
-  Neither is what it takes: `make bench` (`series/order`) has some 35 cycles an order at order 12
-  and 56 at 28, for one order's instructions, 140 by callgrind at order 18, fill half the window
-  in which a processor looks for something else to do. Tried without gain: orders written out one
-  by one (the same time, a minute more of compiling), four sums in place of two, instructions put
-  in another order by the compiler, higher orders in longer steps.
-* Around the series a step owes its size (two logarithms, a power) and the new state (a polynomial),
-  a fifth of its time (`make bench`, `step/latency/taylor` beside `series`), and then the loop and
-  the samples. At 1e-2 it meets `dopri5`, whose steps wait for six right-hand sides one by one.
+  `dopri5` and `taylor` at all settings), because pendcore checks its arguments and makes and
+  returns a result object. This is why some errors reach the goal in C++ and miss it from Python.
+* **In C++** `taylor` is the best method from errors of some 1e-4 down. By count in
+  `dynamics/series/series.hpp`, order k of its series takes 2 (k - 3) + 30 products of rows of four
+  numbers, or k + 12 cycles of a processor with two multipliers. By latency, an order waits 9
+  cycles for the order before it (two products, a change of places) and 44 cycles for the order
+  before that one (two sums, both halves of a row, the two by two system), which makes 22 cycles an
+  order. In fact an order takes longer than either bound: `make bench` (`series/order`) measures
+  some 35 cycles an order at order 12 and 56 at order 28. The reason is that the instructions of
+  one order, 140 by callgrind at order 18, fill half the window in which a processor looks for
+  independent work. We tried without gain: orders written out one by one (the same time, a minute
+  more of compiling), four sums in place of two, instructions in another order by the compiler,
+  higher orders in longer steps.
+* Outside the series a step computes its size (two logarithms, a power) and the new state (a
+  polynomial), which takes a fifth of its time (`make bench`, `step/latency/taylor` beside
+  `series`); the loop and the samples come on top. At 1e-2 its time is close to that of `dopri5`,
+  whose steps wait for six right-hand sides one by one.
 
 ## How it was measured
 
 * **Error** is the largest distance, over fixed times of the case, between computed and reference
-  joints and tip, divided by the total length. References are in multiple precision, of a program
-  that takes no part (the stiff scenes': SciPy's, far tighter than anything compared).
-* **Time** is that of the call which made the error, the states at all times in hand at its end.
-  What can be built beforehand is not in it; compiling is listed apart. All contenders take turns
-  at all settings, in an order drawn anew in each of 30 rounds; the least counts, and medians stand
-  beside it. What takes longer than 20 ms a call has fewer turns, three at least, and what takes
-  half a second is not tried at tighter settings. Settings are tolerances, rtol = atol, four a
-  decade, or steps. Between them, log time is interpolated over log error, on the points that no
-  other beats in both.
-* **Peers at their best**, by experiment: closed forms of two and of three unit rods with literal
-  constants, where pendcore takes any masses and lengths; Boost.odeint compiled with -O3
-  -march=native, its loop written out; SUNDIALS with its memory made once; heyoka with fast_math and
-  a form of the equations that saves it a fifth; CyRK with the address of compiled code; SciPy with
-  its right-hand sides in Python and compiled by numba. pendcore checks its arguments and makes a
-  result object in every call, and is compiled so that its bits are the same on every processor.
+  joints and tip, divided by the total length. The references are computed in multiple precision by
+  a program that takes no part in the comparison (for the stiff scenes by SciPy, at tolerances far
+  tighter than any in the comparison).
+* **Time** is the time of the call that made the error; at its end the caller has the states at all
+  times. Whatever can be built beforehand is not included; compile times are listed separately. All
+  contenders take turns at all settings, in an order drawn anew in each of 30 rounds; the least
+  time counts, and the median is given beside it. Calls longer than 20 ms have fewer turns, at
+  least three, and a contender that takes half a second is not tried at tighter settings. Settings
+  are tolerances, rtol = atol, four a decade, or steps. Between settings, log time is interpolated
+  over log error, on the points that no other point beats in both.
+* **Peers run at their best**, found by experiment: closed forms of two and of three unit rods with
+  literal constants, where pendcore takes any masses and lengths; Boost.odeint compiled with -O3
+  -march=native, its loop written out; SUNDIALS with its memory made once; heyoka with fast_math
+  and a form of the equations that saves it a fifth of its time; CyRK with the address of compiled
+  code; SciPy with its right-hand sides in Python and compiled by numba. pendcore checks its
+  arguments and makes a result object in every call, and is compiled so that its bits are the same
+  on every processor.
 * **heyoka** is called from Python in both columns: {heyoka} of its time is the call's own cost.
 
 {machines}
@@ -108,7 +114,7 @@ def span(errors: list[float]) -> str:
 
 def choice(records: Mapping[str, Record]) -> str:
     """Say for each case which method is the quickest at which achieved errors."""
-    lines = ["* The quickest of pendcore's methods, by the error that is wanted (C++):"]
+    lines = ["* The quickest of pendcore's methods, by the error that you want (C++):"]
     for case, name in NAMES.items():
         if case in records:
             listed = [f"`{who}` {span(at)}" for who, at in spans(compare(records[case], SIDES[0]))]
@@ -147,9 +153,9 @@ def narrow(records: Mapping[str, Record]) -> str:
     if not found:
         return "pendcore's best times use no AVX-512 here, or were measured with one set alone."
     return (
-        "pendcore chose its kernels for x86-64-v4 (AVX-512). Held back to x86-64-v3 its best\n"
+        "pendcore chose its kernels for x86-64-v4 (AVX-512). Held back to x86-64-v3, its best\n"
         f"method takes {min(found):.2f} to {max(found):.2f} times as long; the pages of the cases "
-        "have the\ntables. The peers keep the processor's own instructions in both."
+        "have the\ntables. In both comparisons the peers keep the processor's own instructions."
     )
 
 
@@ -187,21 +193,22 @@ def worst(places: list[Comparison]) -> str:
 REASONS = {
     "heyoka": (
         "It compiles the equations of one scene, masses and lengths as constants, at one order, "
-        "into straight machine code for Taylor series: no loop, no branch, nothing of what another "
-        "scene may have. That takes {compiling}, as long as thousands of its solves, and again for "
-        "another scene or tolerance. Where pendcore answers with a Runge-Kutta method, heyoka has "
-        "the higher order as well."
+        "into straight machine code for Taylor series, without loops, branches or anything that "
+        "only other scenes need. Compiling takes {compiling}, as long as thousands of its solves, "
+        "and is needed again for another scene or tolerance. Where pendcore's best is a "
+        "Runge-Kutta method, heyoka has the higher order as well."
     ),
     "Boost.odeint": (
         "Its right-hand side is written by hand for rods of 1 kg and 1 m. For three links pendcore "
-        "has no closed form: any masses, lengths and effects go through the recursion for n links."
+        "has no closed form: it uses the recursion for n links, with any masses, lengths and "
+        "effects."
     ),
     "CyRK": (
-        "The closed form for unit rods, compiled, is called without Python on the way; a call of "
-        "pendcore's costs a few microseconds more, for checks and its result object."
+        "It calls the compiled closed form for unit rods without Python in between; a call of "
+        "pendcore costs a few microseconds more, for checks and its result object."
     ),
     "CVODE": "A multistep method needs fewer right-hand sides and factors its Jacobian seldom.",
-    "SciPy": "Its methods are the same; a stiff scene may suit another order better.",
+    "SciPy": "It has the same methods; on some stiff scenes another order is better.",
 }
 
 

@@ -26,10 +26,11 @@ does.
 
 ![Work against precision]({case}.png)
 
-Above, the time of a solve at an achieved error: a line a contender, a marker a decade of tolerance
-(of heyoka and rk4: every third setting), a cross where tighter settings failed or were not run.
-Below, the time of pendcore's best method over that of the best peer: shaded where the peer is the
-quicker one. SciPy with right-hand sides in Python is in the tables alone.
+The upper half shows the time of a solve at an achieved error. Each contender has a line, with a
+marker for each decade of tolerance (for heyoka and rk4: every third setting) and a cross where
+tighter settings failed or were not run. The lower half shows the time of pendcore's best method
+divided by that of the best peer, shaded where the peer is quicker. SciPy with right-hand sides in
+Python is only in the tables.
 
 {sides}
 ## Each contender at equal achieved error
@@ -37,14 +38,15 @@ quicker one. SciPy with right-hand sides in Python is in the tables alone.
 {everybody}
 ## At equal tolerance
 
-The energy's error is its largest drift, as a share of what the whole mass gains falling the whole
-length. A right-hand side's nanoseconds are the whole call's time, divided by their number. heyoka
-is tried with a tolerance for each order, pendcore's rk4 with fixed steps: they are not here.
+The error of the energy is its largest drift, as a share of the energy that the whole mass gains by
+falling the whole length. The nanoseconds of a right-hand side are the time of the whole call,
+divided by the number of right-hand sides. heyoka and pendcore's rk4 are not in these tables:
+heyoka ran with one tolerance for each order, rk4 with fixed steps.
 
 {tolerances}
 ## Fixed cost of a call
 
-An interval that one step covers.
+The time of a call whose interval one step covers.
 
 {fixed}
 ## Where pendcore loses

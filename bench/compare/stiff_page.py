@@ -18,11 +18,12 @@ Made by `make compare`; the raw figures are in [stiff.json](stiff.json). Do not 
 
 ![Error against time on three stiff scenes](stiff.png)
 
-Two rods of 1 kg and 1 m for 5 s, released from rest; in joint 2 a damper, a spring or a controller
-that is far faster than the pendulum. Every peer has the closed form of the rates compiled, and,
-where it takes one, the Jacobian in closed form; pendcore makes its own by dual numbers. CVODE and
-pendcore's core are called from C++, the others from Python. The reference is SciPy's, at tolerances
-far tighter than any here. Steps count the rejected ones where the solver tells them.
+Two rods of 1 kg and 1 m are released from rest and swing for 5 s; joint 2 has a damper, a spring
+or a controller that is far faster than the pendulum. Every peer has the closed form of the rates
+compiled, and, where it uses one, the Jacobian in closed form; pendcore computes its own Jacobian
+by dual numbers. CVODE and pendcore's core are called from C++, the others from Python. The
+reference is computed by SciPy, at tolerances far tighter than any here. Steps include rejected
+ones where the solver reports them.
 
 {scenes}
 ## Runs that failed or were not made

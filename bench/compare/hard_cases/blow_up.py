@@ -68,8 +68,8 @@ def mujoco_watched() -> Outcome:
 CASE = HardCase(
     name="blow_up",
     title="Blow-up in finite time",
-    scene="One rod without gravity whose damping is negative, w' = w^3 from 1 rad/s.",
-    answer=f"The rate is infinite at {POLE} s: the run ends there, and says so.",
+    scene="One rod without gravity and with negative damping, w' = w^3 from 1 rad/s.",
+    answer=f"The rate is infinite at {POLE} s: the run ends there, and a message says so.",
     unit="s",
     allowed=1e-3,
     contenders=(

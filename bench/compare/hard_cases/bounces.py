@@ -114,10 +114,10 @@ CASE = HardCase(
     name="bounces",
     title="Accumulating bounces",
     scene=(
-        "One rod without gravity, pressed against a stop by 2 N m from 0.4 rad, restitution 0.8: "
-        "infinitely many bounces in a finite time."
+        "One rod without gravity, pressed against a stop by 2 N m from 0.4 rad, with restitution "
+        "0.8: infinitely many bounces in a finite time."
     ),
-    answer=f"At rest on the stop from t_1 (1 + 2 e/(1 - e)) = {T_LAST:.9f} s on.",
+    answer=f"The rod rests on the stop from t_1 (1 + 2 e/(1 - e)) = {T_LAST:.9f} s on.",
     unit="s",
     allowed=2e-8,
     reference=lambda: {"before": BEFORE.tolist()},

@@ -79,8 +79,11 @@ def mujoco_creep(dt: float, joint: str, seconds: float = 10.0) -> Outcome:
 CASE = HardCase(
     name="held_rod",
     title="A rod held by friction for 1e6 s",
-    scene="One rod at 30 degrees below the horizontal, friction of twice what its weight asks for.",
-    answer="It does not move at all.",
+    scene=(
+        "One rod at 30 degrees below the horizontal, with friction of twice the torque "
+        "of its weight."
+    ),
+    answer="The rod does not move at all.",
     unit="rad",
     allowed=0.0,
     reference=lambda: {"t": TRACED.tolist()},

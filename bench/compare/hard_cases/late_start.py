@@ -59,8 +59,8 @@ def judged(heard: dict[str, list[float]]) -> Outcome:
 CASE = HardCase(
     name="late_start",
     title="A time too large for its step",
-    scene="The textbook's two rods from t = 1e17 s, where doubles are 16 s apart, for 160 s.",
-    answer="It cannot be done, and is said so.",
+    scene="The textbook's two rods for 160 s from t = 1e17 s, where doubles are 16 s apart.",
+    answer="The run is impossible, and a message says so.",
     unit="",
     allowed=0.0,
     contenders=(

@@ -128,10 +128,13 @@ def mujoco(dt: float, integrator: str) -> Outcome:
 CASE = HardCase(
     name="let_go",
     title="A chain of 100 links let go",
-    scene="100 rods, 1 m and 1 kg in all, horizontal and at rest; 1 s, with the crack of the tip.",
+    scene=(
+        "100 rods, 1 m and 1 kg in all, start horizontal and at rest; 1 s, with the "
+        "crack of the tip."
+    ),
     answer=(
-        "Where the tip is at the end: by the equations of force and torque of each link, with the "
-        "joints' forces as unknowns, in 12th order, to 2e-10 m."
+        "The position of the tip at the end, to 2e-10 m, by the equations of force and torque of "
+        "each link, with the joints' forces as unknowns, in 12th order."
     ),
     unit="m",
     allowed=1e-6,

@@ -69,10 +69,10 @@ CASE = HardCase(
     name="not_a_number",
     title="Not a number in mid-run",
     scene=(
-        "One rod that turns freely at 1 rad/s under a user's couple 0 sqrt(0.5 - q), which is no "
-        "number from 0.5 rad on."
+        "One rod turns freely at 1 rad/s under a user's couple 0 sqrt(0.5 - q), which is not a "
+        "number beyond 0.5 rad."
     ),
-    answer="The run ends at 0.5 s with a finite state, and says so.",
+    answer="The run ends at 0.5 s with a finite state, and a message says so.",
     unit="s",
     allowed=0.01,
     contenders=(

@@ -14,16 +14,18 @@ PAGE = """# Hard cases
 Made by `make hard-cases`; the raw figures are in [hard_cases.json](hard_cases.json). Do not edit:
 run again.
 
-The same case, in pendcore and in three programs that one might take instead, each at its best: what
-its able user writes, in more ways than one where there is a choice. A case states its right answer
-from a closed form or from a solution that shares no code with any of them. What is asked is whether
-the answer is right; times are another page ([comparison](comparison/textbook.md)).
+This page runs the same cases in pendcore and in three programs that you might use instead, each at
+its best: as an able user would write the case, in several ways where there is a choice. Each case
+states its right answer, from a closed form or from a solution that shares no code with any of the
+programs. The question here is only whether the answer is right; [another
+page](comparison/textbook.md) compares times.
 
 ## At a glance
 
-Of each program the way that does best; **bold** is right. *Own loop*: modes, switches or events are
-a program of the user's own, the library integrates between them. *Own loop: not run*: such a
-program might be right and is not among those that were run; the case says why.
+The table has the best result of each program; a **bold** result is right. *Own loop* means that
+the user's own program handles modes, switches or events, and the library only integrates between
+them. *Own loop: not run* means that such a program might be right but was not run; the case says
+why.
 
 {glance}
 {summary}
@@ -33,8 +35,8 @@ program might be right and is not among those that were run; the case says why.
 {sections}
 ## Where pendcore loses
 
-Cases that it has not right, and those where another program's right answer is ten times closer, or
-there where pendcore has but words.
+The list has the cases that pendcore does not get right, and those where another program's right
+answer is ten times closer, or exists where pendcore gives only a message.
 
 {losses}
 
@@ -44,7 +46,8 @@ there where pendcore has but words.
 
 ## What every release passes
 
-The list of cases that break simulators, and the test that each has. All of them run in `make test`.
+This is the list of cases that break simulators, with the tests of each case. All of them run in
+`make test`.
 
 {listed}
 """

@@ -131,13 +131,14 @@ CASE = HardCase(
     name="payload",
     title="A payload of a million links",
     scene=(
-        "The textbook's two rods with 1e6 kg at the tip, set out with "
-        f"{AMPLITUDE:g} rad of the slow mode and as much of the fast one, which turns "
-        f"{float(modes()[1][0] / modes()[0][0]):.0f} times as fast; a period of the slow one."
+        "The textbook's two rods with 1e6 kg at the tip, over a period of the slow mode. They "
+        "start "
+        f"with {AMPLITUDE:g} rad of the slow mode and as much of the fast mode, whose frequency is "
+        f"{float(modes()[1][0] / modes()[0][0]):.0f} times as high."
     ),
     answer=(
-        "The angles at the end, by Hamilton's equations in 12th order. (The programs have the "
-        "equations of Lagrange, or their own.)"
+        "The angles at the end, by Hamilton's equations in 12th order. (The programs solve "
+        "Lagrange's equations, or their own.)"
     ),
     unit="rad",
     allowed=1e-6,

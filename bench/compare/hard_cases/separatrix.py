@@ -57,7 +57,7 @@ CASE = HardCase(
     name="separatrix",
     title="A swing next to the separatrix",
     scene="One rod released 0.16 degrees short of upright: elliptic modulus 0.999999.",
-    answer=f"Back where it began after 4 K(k) sqrt(2L/3g) = {PERIOD:.9f} s.",
+    answer=f"The rod is back where it began after 4 K(k) sqrt(2L/3g) = {PERIOD:.9f} s.",
     unit="rad",
     allowed=1e-7,
     contenders=(

@@ -98,12 +98,12 @@ CASE = HardCase(
     name="shaken_pivot",
     title="The border at which a shaken pivot holds a rod up",
     scene=(
-        "One rod upright, its pivot shaken up and down by 0.2 of its length: from which angular "
-        "frequency on does it stand?"
+        "One rod upright, its pivot shaken up and down by 0.2 of its length: above which angular "
+        "frequency does the rod stand?"
     ),
     answer=(
         f"{border():.10f} rad/s, where -6 g/(L w^2) is the characteristic value a_0 of Mathieu's "
-        "equation. The error is a share of it."
+        "equation. The error is a share of this frequency."
     ),
     unit="of the frequency",
     allowed=1e-8,

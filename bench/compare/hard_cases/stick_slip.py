@@ -112,10 +112,11 @@ CASE = HardCase(
     name="stick_slip",
     title="Stick and slip under a hum",
     scene=(
-        "One rod of moment of inertia 1 kg m^2 without gravity, the torque 0.4 + 0.5 sin 2t N m, "
-        f"friction 0.7 N m: {STAIRS} slides with rests between them."
+        "One rod of moment of inertia 1 kg m^2 without gravity, under the torque 0.4 + 0.5 sin "
+        "2t N m "
+        f"and friction of 0.7 N m: {STAIRS} slides with rests between them."
     ),
-    answer="Exact rest between slides; the angle at the end by closed form.",
+    answer="Exact rest between slides, and the angle at the end by a closed form.",
     unit="rad",
     allowed=1e-9,
     reference=reference,

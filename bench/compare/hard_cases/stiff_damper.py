@@ -89,12 +89,13 @@ CASE = HardCase(
     name="stiff_damper",
     title="A stiff damper",
     scene=(
-        "The textbook's two rods, joint 2 damped by 1e5 N m s: a mode that decays a million times "
-        "a second beside swings of seconds; 5 s."
+        "The textbook's two rods for 5 s, with joint 2 damped by 1e5 N m s: one mode decays a "
+        "million "
+        "times a second, beside swings of seconds."
     ),
     answer=(
-        "The angles at 5 s (here: of SciPy's Radau at rtol 1e-12), or to be told that the problem "
-        "is stiff."
+        "The angles at 5 s (here by SciPy's Radau at rtol 1e-12), or a message that the problem is "
+        "stiff."
     ),
     unit="rad",
     allowed=1e-5,

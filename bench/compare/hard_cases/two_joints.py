@@ -112,15 +112,15 @@ CASE = HardCase(
     name="two_joints",
     title="Joints that stick and slide in turn",
     scene=(
-        "The textbook's two rods, hanging, dry friction of 5 and 1.5 N m in their joints, a motor "
-        "of 10 sin t N m in the first: each joint holds or slides, whatever the other lets it."
+        "The textbook's two rods, hanging, with dry friction of 5 and 1.5 N m in their joints "
+        "and a motor of 10 sin t N m in the first: each joint sticks or slips depending on the other."
     ),
     answer=(
-        "The angles over 9 s and 13 switches: solved mode by mode in 12th order, every pattern of "
-        "stick and slip tried at each switch, by 130 lines of one's own "
-        "(tests/models/hybrid_chain.py). A loop around SciPy or Boost.odeint would be these lines "
-        "once more: which joints hold is all that is hard here, and no part of either helps to "
-        "decide it. So none is run as theirs."
+        "The angles over 9 s and 13 switches, solved mode by mode in 12th order. The solution "
+        "tries every pattern of stick and slip at each switch, in 130 lines of its own "
+        "(tests/models/hybrid_chain.py). A loop around SciPy or Boost.odeint would repeat these "
+        "lines: the only hard question here is which joints hold, and neither library helps to "
+        "decide it. So no such loop is run."
     ),
     unit="rad",
     allowed=1e-8,

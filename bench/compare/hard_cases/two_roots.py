@@ -95,8 +95,8 @@ CASE = HardCase(
     name="two_roots",
     title="Two events in one step",
     scene=(
-        f"One rod that swings by {AMPLITUDE} rad, {SWINGS} times, and a mark at {MARK} rad that it "
-        "passes 1.3 ms before and after each turn on one side."
+        f"One rod swings by {AMPLITUDE} rad, {SWINGS} times, and passes a mark at {MARK} rad "
+        "1.3 ms before and after each turn on one side."
     ),
     answer="Every passage, twice in each swing, at the times of the elliptic integral.",
     unit="s",

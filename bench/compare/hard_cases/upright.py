@@ -97,8 +97,8 @@ def mujoco() -> Outcome:
 CASE = HardCase(
     name="upright",
     title="The fall from upright",
-    scene="The textbook's two rods at rest 1e-9 rad off upright: when has a link fallen by 1 rad?",
-    answer="The time in 25 digits; a double's last bits leave it 1e-8 s.",
+    scene="The textbook's two rods at rest, 1e-9 rad off upright: when has a link fallen by 1 rad?",
+    answer="The time, known in 25 digits; the last bits of a double leave it uncertain by 1e-8 s.",
     unit="s",
     allowed=1e-6,
     reference=reference,

@@ -137,11 +137,10 @@ class SceneData:
             If an argument is not finite real numbers of that shape.
         """
         n = len(self.links)
-        if type(t) is float and type(q) is type(qd) is np.ndarray and q.shape == qd.shape == (n,):
-            if q.dtype == qd.dtype == np.float64:  # one state costs microseconds, as in a loop
-                found = self._compiled.acceleration_of_state(t, q, qd)
-                if found is not None:
-                    return found
+        if _is_one_state(t, q, qd, n):  # which is to cost a microsecond or two
+            found = self._compiled.acceleration_of_state(t, q, qd)  # type: ignore[arg-type]
+            if found is not None:
+                return found
         times = finite_array("t", t, "s")
         q, qd = link_array("q", q, n, "rad"), link_array("qd", qd, n, "rad/s")
         try:
@@ -196,6 +195,16 @@ class SceneData:
     def __reduce__(self) -> tuple[object, tuple[object, ...]]:
         # The compiled scene is made anew; what is implausible was said when it was first made.
         return type(self)._unpickled, (self.links, self.gravity, self.effects)
+
+
+def _is_one_state(t: object, q: object, qd: object, n: int) -> bool:
+    return (
+        type(t) is float
+        and isinstance(q, np.ndarray)
+        and isinstance(qd, np.ndarray)
+        and q.shape == qd.shape == (n,)
+        and q.dtype == qd.dtype == np.float64
+    )
 
 
 _OBJECT = {
