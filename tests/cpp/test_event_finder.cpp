@@ -46,7 +46,8 @@ TEST_CASE("a jump through zero is an event with the states on both sides") {
   };
   std::vector<FoundEvent> found;
   EventFinder finder(turning.scene, events, found, {});
-  CHECK(finder.look(*turning.stepper, turning.rows.data(), {0.0, 0.0}, 1.0, 1.0) > 1.0);
+  const StepEnd end = finder.look(*turning.stepper, turning.rows.data(), {0.0, 0.0}, 1.0, 1.0);
+  CHECK(end.kind == StepEnd::Kind::whole);
   REQUIRE(found.size() == 2);  // angle 0.5 within the step, angle 1 at its end
   CHECK(found[0].event == 3);
   CHECK(found[1].event == 2);

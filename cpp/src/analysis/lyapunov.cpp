@@ -81,7 +81,7 @@ class GrowthRecorder final : public Observer {
   void start(double t, const std::vector<double>& y) {
     if (next_ < times_.size() && times_[next_] == t) keep(t, y);
   }
-  double step_accepted(Stepper& stepper, const TwoDouble& t_old, double h, double t_new) override {
+  StepEnd step_accepted(Stepper& stepper, const TwoDouble& t_old, double h, double t_new) override {
     has_polynomial_ = false;
     was_stepped_ = true;
     while (next_ < times_.size() && (times_[next_] - t_new) * h <= 0.0) {
@@ -93,7 +93,7 @@ class GrowthRecorder final : public Observer {
       }
       keep(t, state_);
     }
-    return 2.0;
+    return {};
   }
   void state_jumped(double, const double*, const double*) override {}
   void restarts_here() override {}

@@ -201,8 +201,8 @@ void EventFinder::find(std::size_t k, const Step& step) {
   }
 }
 
-double EventFinder::look(const Stepper& stepper, const double* rows, const TwoDouble& t_old,
-                         double h, double t_new) {
+StepEnd EventFinder::look(const Stepper& stepper, const double* rows, const TwoDouble& t_old,
+                          double h, double t_new) {
   y_new_.resize(stepper.dimension());
   y_.resize(stepper.dimension());
   stepper.get_new_state(y_new_.data());
@@ -210,13 +210,13 @@ double EventFinder::look(const Stepper& stepper, const double* rows, const TwoDo
   candidates_.clear();
   at_the_end_.clear();
   for (std::size_t k = 0; k < events_.size() && !has_too_many_; ++k) find(k, step);
-  if (has_too_many_) return 0.0;
+  if (has_too_many_) return StepEnd::too_many_turns();
   node_t_ = t_new;
   std::copy_n(y_new_.begin(), node_y_.size(), node_y_.begin());
   std::ranges::sort(candidates_, [](const Candidate& a, const Candidate& b) {
     return a.theta != b.theta ? a.theta < b.theta : a.event < b.event;
   });
-  double stop = 2.0;
+  double stop = 1.0;
   for (const Candidate& candidate : candidates_) {
     if (candidate.theta > stop) break;  // what happens at the same time is found
     if (candidate.theta == 1.0) {
@@ -228,7 +228,7 @@ double EventFinder::look(const Stepper& stepper, const double* rows, const TwoDo
     }
     if (ended_by_ >= 0) stop = candidate.theta;
   }
-  return stop;
+  return StepEnd::at(stop);
 }
 
 void EventFinder::append(const Candidate& candidate, double t, const double* y) {

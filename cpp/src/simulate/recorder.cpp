@@ -29,15 +29,15 @@ void Recorder::start(double t, const std::vector<double>& y) {
   if (keeps_steps_ || asked_for) std::ranges::copy(y, append(t));
 }
 
-double Recorder::step_accepted(Stepper& stepper, const TwoDouble& t_old, double h, double t_new) {
-  double end = 2.0;
+StepEnd Recorder::step_accepted(Stepper& stepper, const TwoDouble& t_old, double h, double t_new) {
+  StepEnd end;
   // Before anything is kept: it may ask for right-hand sides, and one of the user's may raise.
   if (finder_ || keeps_polynomials_) stepper.interpolant(h, polynomial_.data());
   if (finder_) {
     end = finder_->look(stepper, polynomial_.data(), t_old, h, t_new);
-    if (end == 0.0) return end;
+    if (end.has_too_many_turns()) return end;
   }
-  const double t_end = end < 1.0 ? time_in_step(t_old, h, end, t_new).high : t_new;
+  const double t_end = end.is_within() ? time_in_step(t_old, h, end.theta, t_new).high : t_new;
   if (keeps_polynomials_ && t_end != t_old.high) {
     DenseOutput& dense = solution_.dense;
     dense.start.push_back(t_old.high);
@@ -45,8 +45,8 @@ double Recorder::step_accepted(Stepper& stepper, const TwoDouble& t_old, double 
     dense.h.push_back(h);
     dense.coefficients.insert(dense.coefficients.end(), polynomial_.begin(), polynomial_.end());
   }
-  if (end < 1.0) {
-    keep_clipped(stepper, t_old, h, end, t_end);
+  if (end.is_within()) {
+    keep_clipped(stepper, t_old, h, end.theta, t_end);
   } else if (keeps_steps_) {
     stepper.get_new_state(append(t_new));
   } else {

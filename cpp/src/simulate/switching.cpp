@@ -1,28 +1,14 @@
 #include "pendcore/simulate/switching.hpp"
 
 #include <algorithm>
-#include <climits>
-#include <stdexcept>
+#include <utility>
 
 #include "pendcore/arithmetic/epsilon.hpp"
 #include "pendcore/dynamics/kinematics.hpp"
 #include "pendcore/simulate/initial_state.hpp"
-#include "pendcore/text/message.hpp"
+#include "pendcore/simulate/switching_state.hpp"
 
 namespace pendcore {
-namespace {
-
-void require(bool fits) {
-  if (!fits) throw std::invalid_argument("the modes of this solution are not those of its scene");
-}
-
-/// A whole number of a memory, which may come from a damaged file.
-int whole(double x, int least, int most) {
-  require(x >= least && x <= most);
-  return static_cast<int>(x);
-}
-
-}  // namespace
 
 bool Switching::is_needed(const Scene& scene) {
   return std::ranges::any_of(scene.effects, [](const Effect& effect) {
@@ -296,42 +282,48 @@ void Switching::see_whether_all_rests(const double* y) {
 }
 
 std::vector<double> Switching::saved_state() const {
-  const std::vector<int>& modes = equations_.effects->modes;
-  std::vector<double> memory(modes.begin(), modes.end());
-  memory.push_back(time_of_change_);
-  memory.push_back(changes_at_once_);
-  memory.push_back(order_lost_);
-  memory.push_back(time_of_impact_);
-  memory.insert(memory.end(), struck_.begin(), struck_.end());
-  memory.insert(memory.end(), release_direction_.begin(), release_direction_.end());
-  const std::vector<double> holds = joints_.saved_state();
-  memory.insert(memory.end(), holds.begin(), holds.end());
-  for (const Watch& watch : guards_) memory.push_back(watch.zeros_at_start);
-  return memory;
+  SwitchingState state{.modes = equations_.effects->modes,
+                       .time_of_change = time_of_change_,
+                       .changes_at_once = changes_at_once_,
+                       .order_lost = order_lost_,
+                       .time_of_impact = time_of_impact_,
+                       .struck = struck_,
+                       .release_direction = release_direction_,
+                       .holds = joints_.saved_state(),
+                       .zeros_at_start = {}};
+  for (const Watch& watch : guards_) state.zeros_at_start.push_back(watch.zeros_at_start);
+  NumbersWriter io;
+  visit(io, state);
+  return std::move(io.numbers);
 }
 
 void Switching::restore(const std::vector<double>& memory, double t, const double* y,
                         bool forward) {
   forward_ = forward;
   joints_.set_direction(forward);
-  const std::size_t effects = scene_.effects.size();
   const std::size_t joints = scene_.links.size();
-  require(memory.size() >= effects + 4 + (2 + HeldJoints::numbers_in_memory) * joints);
-  for (std::size_t i = 0; i < effects; ++i) put_mode(i, whole(memory[i], -1, INT_MAX));
+  SwitchingState state;
+  state.modes.resize(scene_.effects.size());
+  state.struck.resize(joints);
+  state.release_direction.resize(joints);
+  state.holds.resize(joints);
+  NumbersReader io(memory);
+  visit(io, state);
+  for (std::size_t i = 0; i < state.modes.size(); ++i) put_mode(i, state.modes[i]);
   is_over_ = std::ranges::any_of(
       scene_.effects, [&](const Effect& one) { return is_outside_table(one, t, forward_); });
-  std::size_t from = joints_.restore(*equations_.effects, memory, effects + 4 + 2 * joints);
-  time_of_change_ = memory[effects];
-  changes_at_once_ = whole(memory[effects + 1], 0, INT_MAX);
-  order_lost_ = memory[effects + 2];
-  time_of_impact_ = memory[effects + 3];
-  for (std::size_t j = 0; j < joints; ++j) {
-    struck_[j] = whole(memory[effects + 4 + j], 0, 1);
-    release_direction_[j] = whole(memory[effects + 4 + joints + j], -1, 1);
-  }
+  joints_.restore(*equations_.effects, state.holds);
+  time_of_change_ = state.time_of_change;
+  changes_at_once_ = state.changes_at_once;
+  order_lost_ = state.order_lost;
+  time_of_impact_ = state.time_of_impact;
+  struck_ = state.struck;
+  release_direction_ = state.release_direction;
   collect_guards(y);
-  require(memory.size() == from + guards_.size());
-  for (Watch& watch : guards_) watch.zeros_at_start = whole(memory[from++], 0, 3);
+  require_modes_fit(state.zeros_at_start.size() == guards_.size());
+  for (std::size_t k = 0; k < guards_.size(); ++k) {
+    guards_[k].zeros_at_start = state.zeros_at_start[k];
+  }
 }
 
 }  // namespace pendcore

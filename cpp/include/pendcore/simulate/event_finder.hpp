@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "pendcore/integrate/events/event.hpp"
+#include "pendcore/integrate/loop/step_end.hpp"
 #include "pendcore/integrate/stepper.hpp"
 #include "pendcore/simulate/tip_line.hpp"
 
@@ -27,10 +28,10 @@ class EventFinder {
   /// Whether an event may end the run: a terminal one, a function that may throw, too many turns.
   bool may_end() const;
 
-  /// Looks at an accepted step, with its dense output in `rows`. Returns the share of the step at
-  /// which the run ends; 2 if it goes on. 0: its turns are too many, and nothing was found in it.
-  double look(const Stepper& stepper, const double* rows, const TwoDouble& t_old, double h,
-              double t_new);
+  /// Looks at an accepted step, with its dense output in `rows`. Returns where in the step a
+  /// terminal event ends the run, if one does.
+  StepEnd look(const Stepper& stepper, const double* rows, const TwoDouble& t_old, double h,
+               double t_new);
 
   /// The state jumped at the end of that step.
   void jump(double t, const double* before, const double* after);

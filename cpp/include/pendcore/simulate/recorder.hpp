@@ -17,7 +17,7 @@ class Recorder final : public Observer {
            const std::vector<long long>& passed_events);
 
   void start(double t, const std::vector<double>& y);
-  double step_accepted(Stepper& stepper, const TwoDouble& t_old, double h, double t_new) override;
+  StepEnd step_accepted(Stepper& stepper, const TwoDouble& t_old, double h, double t_new) override;
   void state_jumped(double t, const double* before, const double* after) override;
   void state_settled(double t, const double* after) override;
   void restarts_here() override { count(kept()); }

@@ -179,26 +179,18 @@ bool HeldJoints::settle(double* q, double* qd) const {
   return changed;
 }
 
-std::vector<double> HeldJoints::saved_state() const {
-  std::vector<double> memory;
-  for (int j = 0; j < n_; ++j) {
-    const Hold& hold = holds_[j];
-    memory.insert(memory.end(),
-                  {hold.is_held ? 1.0 : 0.0, hold.angle, hold.least, hold.most, size_[j]});
-  }
-  return memory;
+std::vector<SavedHold> HeldJoints::saved_state() const {
+  std::vector<SavedHold> saved(holds_.size());
+  for (int j = 0; j < n_; ++j) saved[j] = {.hold = holds_[j], .torque_size = size_[j]};
+  return saved;
 }
 
-std::size_t HeldJoints::restore(EffectsInForce& effects, const std::vector<double>& memory,
-                                std::size_t from) {
+void HeldJoints::restore(EffectsInForce& effects, const std::vector<SavedHold>& saved) {
   for (int j = 0; j < n_; ++j) {
-    const double* const at = memory.data() + from;
-    from += numbers_in_memory;
-    holds_[j] = {.is_held = at[0] != 0.0, .angle = at[1], .least = at[2], .most = at[3]};
-    size_[j] = at[4];
+    holds_[j] = saved[j].hold;
+    size_[j] = saved[j].torque_size;
     effects.hold(j, is_held(j));
   }
-  return from;
 }
 
 }  // namespace pendcore

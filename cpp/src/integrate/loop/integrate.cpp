@@ -134,9 +134,9 @@ class Run {
     resume_.cut_from_here();
     integrator_.crossings_at_once = 0;
     stepper_.stay();
-    const double last = observer_.step_accepted(stepper_, integrator_.t, left, limits_.t_end);
-    if (last == 0.0) return end(Status::max_turns);
-    if (last < 1.0) return end_within_step(last, left, limits_.t_end);
+    const StepEnd last = observer_.step_accepted(stepper_, integrator_.t, left, limits_.t_end);
+    if (last.has_too_many_turns()) return end(Status::max_turns);
+    if (last.is_within()) return end_within_step(last.theta, left, limits_.t_end);
     stepper_.accept(limits_.t_end);
     integrator_.t = {limits_.t_end, 0.0};
     return end(Status::at_rest);
@@ -189,14 +189,14 @@ class Run {
       stepper_.get_new_state(state_.data());
       if (discontinuities_->settle(guard, state_.data())) stepper_.set_new_state(state_.data());
     }
-    const double last = observer_.step_accepted(stepper_, integrator_.t, h, t_new.high);
-    if (last == 0.0) {
+    const StepEnd last = observer_.step_accepted(stepper_, integrator_.t, h, t_new.high);
+    if (last.has_too_many_turns()) {
       resume_.restart_at_step_start();
       return end(Status::max_turns);
     }
     const bool is_cut = target.is_in_reach || h != integrator_.h || law_changes;
     count_accepted(integrator_.statistics, h, is_cut, integrator_.h_is_max_step);
-    if (last < 1.0) return end_within_step(last, h, t_new.high);
+    if (last.is_within()) return end_within_step(last.theta, h, t_new.high);
     stepper_.accept(t_new.high);
     integrator_.t = t_new;
     if (!law_changes) {

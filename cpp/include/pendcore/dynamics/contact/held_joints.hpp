@@ -36,6 +36,12 @@ struct Hold {
   double least = 0.0, most = 0.0;  ///< the torques between which it stays held
 };
 
+/// What a run that goes on needs of a joint, held or not.
+struct SavedHold {
+  Hold hold;
+  double torque_size = 0.0;  ///< HeldJoints::torque_size
+};
+
 /// Belongs to one run and one thread, as the effects whose joints it holds. Joints count from 0.
 class HeldJoints {
  public:
@@ -113,10 +119,8 @@ class HeldJoints {
   /// Puts held joints exactly where they are held. Whether that changed something.
   bool settle(double* q, double* qd) const;
 
-  static constexpr std::size_t numbers_in_memory = 5;  ///< of each joint
-  std::vector<double> saved_state() const;
-  /// From that number of a memory on; returns how far was read.
-  std::size_t restore(EffectsInForce& effects, const std::vector<double>& memory, std::size_t from);
+  std::vector<SavedHold> saved_state() const;  ///< (n)
+  void restore(EffectsInForce& effects, const std::vector<SavedHold>& saved);
 
  private:
   void put_friction(EffectsInForce& effects, int joint, int mode);

@@ -15,6 +15,7 @@
 #include "pendcore/integrate/loop/statistics.hpp"
 #include "pendcore/integrate/loop/status.hpp"
 #include "pendcore/integrate/loop/step_control.hpp"
+#include "pendcore/integrate/loop/step_end.hpp"
 #include "pendcore/integrate/stepper.hpp"
 
 namespace pendcore {
@@ -55,10 +56,9 @@ struct Limits {
 class Observer {
  public:
   virtual ~Observer() = default;
-  /// Returns where in the step the run is to end, as a share of it: above 1, it goes on; at 0,
-  /// nothing was kept of the step, whose events take too many turns.
-  virtual double step_accepted(Stepper& stepper, const TwoDouble& t_old, double h,
-                               double t_new) = 0;
+  /// Returns where in the step the run is to end, if an event ends it there.
+  virtual StepEnd step_accepted(Stepper& stepper, const TwoDouble& t_old, double h,
+                                double t_new) = 0;
   /// At the end of that step, time t, the state jumped.
   virtual void state_jumped(double t, const double* before, const double* after) = 0;
   /// There, its last bits were set to what holds exactly.
