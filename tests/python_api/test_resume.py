@@ -123,7 +123,7 @@ def test_sampled_states_are_those_of_the_motion():
         {"status": "splendid"},
         {"dense_degree": 3},
         {"t": [0.0]},
-        {"integrator_nfev": -(2**63)},
+        {"position_nfev": -(2**63)},
         {"statistics_accepted": 2**62},
         {"position_stiff_hits": -1},
         {"position_log2_error_before": 1e300},

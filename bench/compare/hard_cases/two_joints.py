@@ -113,7 +113,8 @@ CASE = HardCase(
     title="Joints that stick and slide in turn",
     scene=(
         "The textbook's two rods, hanging, with dry friction of 5 and 1.5 N m in their joints "
-        "and a motor of 10 sin t N m in the first: each joint sticks or slips depending on the other."
+        "and a motor of 10 sin t N m in the first: each joint sticks or slips depending on the "
+        "other."
     ),
     answer=(
         "The angles over 9 s and 13 switches, solved mode by mode in 12th order. The solution "
