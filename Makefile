@@ -22,7 +22,7 @@ SOURCES := pyproject.toml CMakeLists.txt $(shell find cpp python ! -path '*__pyc
 
 .DEFAULT_GOAL := help
 .PHONY: demo test test-all compare hard-cases bench build-bench lint tidy sanitize sanitize-few \
-    sanitized threads long horizon asked-errors default-method book-speed fuzz fuzz-readers \
+    sanitized references threads long horizon asked-errors default-method book-speed fuzz fuzz-readers \
     test-error clean help
 
 demo: $(DONE)/installed $(DONE)/symbolic-requirements  ## build, run the textbook's case, say where its figure and summary are
@@ -46,6 +46,9 @@ test-all: lint tidy build-bench $(DONE)/test-requirements $(DONE)/fuzz-requireme
 	$(CPP_TESTS)
 	$(PYTEST) --full
 	$(MAKE) sanitize threads fuzz-readers fuzz CASES=20000
+
+# Where these are missing, tests that compare with them are skipped.
+references: $(DONE)/error-requirements $(DONE)/bench-requirements  ## installs what tests compare pendcore with
 
 define CPP_TESTS
 cmake -B $(BUILT) -DPENDCORE_TESTS=ON

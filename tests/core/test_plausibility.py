@@ -41,7 +41,7 @@ SCENES = {
     "a lock in degrees": (
         [ROD],
         [fx.Lock(1, angle=90)],
-        r"effect 1 \(lock\): angle = 90\.0 rad: that is 5156\.\d+ degrees: angles are in radians",
+        r"effect 1 \(lock\): angle = 90\.0 rad: that is 5157 degrees: angles are in radians",
     ),
     "a stop in degrees": (
         [ROD],
@@ -63,7 +63,7 @@ RUNS = {
     "degrees": (
         [],
         {"q0": [45, 60]},
-        r"q0\[0\] = 45\.0 rad: that is 2578\.\d+ degrees: angles are in radians",
+        r"q0\[0\] = 45\.0 rad: that is 2578 degrees: angles are in radians",
     ),
     "degrees, one of them zero": ([], {"q0": [0, -90]}, r"q0\[1\] = -90\.0 rad: .* in radians"),
     "degrees, small ones": ([], {"q0": [5, 15]}, r"q0\[1\] = 15\.0 rad: .* in radians"),

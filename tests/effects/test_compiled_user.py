@@ -58,4 +58,6 @@ def test_an_exception_in_a_ctypes_callback_is_lost_as_its_page_says():
     assert run.success
     assert np.array_equal(run.y, pc.simulate(scene(), **START, method="dop853").y)
     page = (Path(__file__).parents[2] / "docs/effects/compiled_user.md").read_text()
-    assert "An exception in a ctypes callback that is written in Python never gets here" in page
+    assert (
+        "An exception in a ctypes callback that is written in Python never reaches pendcore" in page
+    )

@@ -143,7 +143,7 @@ def test_without_pandoc_the_report_says_why_there_is_no_page(
 ) -> None:
     monkeypatch.setattr(conversion, "has_pandoc", lambda: False)
     main(["derive", "--to", "report", "-o", str(tmp_path)])
-    assert "takes pandoc" in capsys.readouterr().err
+    assert "these take pandoc" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("n", [1, 2, 5])

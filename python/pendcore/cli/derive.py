@@ -108,4 +108,6 @@ def _report(derivation: Any, case: Case, args: argparse.Namespace) -> int:
     with new_folder(folder), blamed_on_usage():
         made = write(derivation, case, folder, with_worksheet=args.worksheet)
     print(f"written to {folder}: {', '.join(path.name for path in made.files)}", file=sys.stderr)
+    if not pendcore.derive.report.conversion.has_pandoc():
+        print("no .html and .pdf: these take pandoc, which is not installed", file=sys.stderr)
     return 1 if made.complaint else 0

@@ -151,7 +151,6 @@ def _texts(document: Document, folder: Path, name: str) -> Iterator[Path]:
         unfinished.write_text(document.markdown(), encoding="utf-8")
     yield path
     if not conversion.has_pandoc():
-        warn(f"{name}.html is not written: it takes pandoc, which is not installed")
         return
     try:
         path = folder / f"{name}.html"
