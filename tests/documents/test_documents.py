@@ -10,7 +10,9 @@ from typing import Any
 
 import matplotlib as mpl
 import matplotlib.image
+import mpmath
 import numpy as np
+import pendcore as pc
 import pytest
 
 ROOT = Path(__file__).parents[2]
@@ -56,7 +58,7 @@ def blocks_of(document: str) -> list[str]:
 def test_the_lines_of_the_first_steps_run(tmp_path, monkeypatch, capsys):
     mpl.use("Agg")
     monkeypatch.chdir(tmp_path)
-    chains, rubbed = blocks_of("docs/first_steps.md")
+    chains, rubbed, threads = blocks_of("docs/first_steps.md")
     names: dict[str, object] = {}
     exec(chains, names)
     assert names["run"].success
@@ -65,6 +67,29 @@ def test_the_lines_of_the_first_steps_run(tmp_path, monkeypatch, capsys):
     assert abs(ledger.residual).max() < 1e-6
     assert "PD(kp=20.0" in capsys.readouterr().out
     assert rubbed == hard_case()
+    names = {}
+    exec(threads, names)
+    alone = pc.simulate(names["scene"], names["starts"][3], t_span=(0, 5))
+    assert np.array_equal(names["runs"][3].y, alone.y)
+
+
+def test_the_page_by_hand_has_the_numbers_of_its_formulas(capsys):
+    """In 25 digits, without the core; the core prints the last two."""
+    page = (ROOT / "docs/by_hand.md").read_text()
+    told = re.findall(r"\| (-?[\d.]+) \|$", page, re.MULTILINE)
+    with mpmath.workdps(25):
+        q1, q2 = mpmath.radians(45), mpmath.radians(60)
+        c = mpmath.cos(q1 - q2)
+        m1, m2 = (x * mpmath.mpf("9.807") / 2 for x in (3 * mpmath.cos(q1), mpmath.cos(q2)))
+        d = mpmath.mpf(4) / 9 - c * c / 4
+        found = [c, m1, m2, d, (m1 / 3 - c * m2 / 2) / d, (4 * m2 / 3 - c * m1 / 2) / d]
+    for value, digits in zip(found, told, strict=True):
+        decimals = len(digits.partition(".")[2])
+        assert abs(value - mpmath.mpf(digits)) <= mpmath.mpf(10) ** -decimals / 2
+    (code,) = blocks_of("docs/by_hand.md")
+    exec(code, {})
+    printed, commented = capsys.readouterr().out.strip(), code.strip().rpartition("# ")[2]
+    assert printed == commented == f"[{told[-2]} {told[-1]}]"
 
 
 def test_the_readmes_counts_are_those_of_the_records():
