@@ -1,6 +1,6 @@
 # The README's two commands are `make demo` and `make test`; `make help` lists the others.
 #
-# Each command does its own set-up and nothing twice: Debian's packages where something is missing,
+# Each command does its own set-up and skips what is already installed: Debian's packages where something is missing,
 # a virtual environment in .venv, pip install. The files in .venv/done remember what has been done.
 
 PYTHON ?= python3

@@ -19,9 +19,10 @@ STEPS_AT_ONCE = 2000
 class Defect:
     """The torques that would make a computed curve an exact motion.
 
-    The curve is made of the rates of the dense output, and of their integral from the first angles
-    on. With motors in the joints that add these torques, it would obey the equations of motion
-    exactly. Where a joint is held (lock, friction, stop), what holds it takes any torque: 0.
+    The curve consists of the rates of the dense output and of their integral, which begins at the
+    first angles. With motors in the joints that add these torques, the curve would obey the
+    equations of motion exactly. A joint that is held (lock, friction, stop) needs no torque,
+    because its hold takes any.
 
     Attributes
     ----------
@@ -30,12 +31,12 @@ class Defect:
     torque : ndarray, (n_steps, n)
         The largest torque at each joint within each step, N m, >= 0.
     apart : ndarray, (n_steps,)
-        How far the curve's angles come from those of ``sol(t)``, rad.
+        The largest distance of the curve's angles from those of ``sol(t)``, rad.
     weight : float
         m g L, N m: the links' masses times gravity times the length of all; 0 without gravity.
     order : int
-        Of the torque, in the size of the steps: that of the dense output. Of a pair of methods that
-        has changed over, that of its second.
+        The order of the torque in the size of the steps, which is that of the dense output. If a
+        pair of methods has switched, it is the order of the second method.
     is_bound : bool
         Whether the method's order is higher: other curves through the same steps need less torque.
     """
@@ -54,7 +55,7 @@ class Defect:
 
     @property
     def share(self) -> float:
-        """The largest torque in units of m g L; inf without gravity, where any is large."""
+        """The largest torque in units of m g L; inf without gravity."""
         if self.weight == 0.0:
             return 0.0 if self.largest == 0.0 else float("inf")
         return self.largest / self.weight
@@ -78,10 +79,10 @@ class Defect:
 def defect(scene: SceneData, run: _core.Run, progress: Progress = None) -> Defect:
     """Return the torques at the joints that would make a run exact.
 
-    The rates of ``sol(t)``, and the angles that their integral gives, obey the equations of motion
-    of the scene with these torques at the joints. A number to hold against what a model leaves out:
-    bearing friction, air, a motor's ripple. It tells nothing of how far a chaotic motion has moved
-    away from the one that was meant.
+    The rates of ``sol(t)`` and the angles that their integral gives obey the equations of motion of
+    the scene with these torques at the joints. Compare the torques with what a model leaves out:
+    bearing friction, air, a motor's ripple. They say nothing about how far a chaotic motion has
+    moved away from the exact one.
     """
     report = callback(progress, "looking for torques")
     n = len(scene.links)

@@ -54,85 +54,88 @@ def simulate(
         Start and end, s. The end may lie before the start: the run then goes
         backward (refused with dry friction or inelastic stops, whose past is not unique).
     method : str
-        ``"auto"``: chosen by scene and tolerances; ``sol.method`` tells what it came to be.
-        In fixed steps ``"dopri5"``. Else ``"taylor-radau5"`` for two links or more whose effects
-        have Taylor series; else ``"dop853-radau5"``, or where ``max(rtol, atol)`` is 1e-6 or more
-        in all components ``"dopri5-radau5"``. Each of these pairs is its first method, to the last
-        bit, and ``"radau5"`` from where stability is found to limit the steps and that one takes
-        ten times longer ones.
+        ``"auto"`` chooses by scene and tolerances; ``sol.method`` says which method it chose. A run
+        in fixed steps takes ``"dopri5"``. Two links or more whose effects all have Taylor series
+        take ``"taylor-radau5"``. Other scenes take ``"dop853-radau5"``, or ``"dopri5-radau5"``
+        where ``max(rtol, atol)`` is 1e-6 or more in all components. Each of these pairs gives the
+        bits of its first method until stability limits the steps and ``"radau5"`` can take steps
+        ten times as long; the run then continues with ``"radau5"``.
         {methods}
     rtol, atol : float or (2n,)
         The error of a step is kept below ``atol + rtol abs(y)``, in root mean square over
-        ``y = (q, qd)``. A Taylor series estimates none: its last coefficients choose the step.
+        ``y = (q, qd)``. A Taylor series has no error estimate: its last coefficients choose the
+        step.
     t_eval : array_like, (k,), optional
         Times of the result, s, one or more, within the run and in its order. They do not change
-        the steps. Those that a run does not reach are not in the result.
+        the steps. Times that the run does not reach are missing from the result.
     store : {"dense", "steps", "times", "end"}, optional
-        What is kept: every step with its interpolant, every step, ``t_eval`` alone, the end alone;
-        the last two in constant memory. Default: ``"times"`` with a ``t_eval``, else ``"dense"``.
+        What is kept: every step with its interpolant, every step, only ``t_eval``, or only the
+        end. The last two take constant memory. Default: ``"times"`` with a ``t_eval``, otherwise
+        ``"dense"``.
     first_step : float, optional
-        s, > 0. Default: chosen from the start by Hairer's rule, or by the first Taylor series.
+        s, > 0. Default: Hairer's rule chooses it from the start, or the first Taylor series does.
     max_step : float
         s, > 0.
     step : float, optional
-        A fixed step, s, > 0, in place of the tolerances; not together with ``first_step`` or a
-        smaller ``max_step``. An implicit method solves its equations to the tolerances.
+        A fixed step, s, > 0, in place of the tolerances. It excludes ``first_step`` and a smaller
+        ``max_step``. An implicit method still solves its equations to the tolerances.
     max_steps : int
-        The run ends with status ``max_steps`` after as many attempts.
+        The run ends with status ``max_steps`` after this many attempted steps.
     time_limit : float, optional
-        s of the clock; the run then ends with status ``time_limit``.
+        s of wall-clock time, after which the run ends with status ``time_limit``.
     events : iterable of pendcore.events.Event
-        What to look for: ``sol.events`` has a list for each. They change no step; those that are
-        ``terminal`` end the run, with status ``event``.
+        Events to look for; ``sol.events`` has a list for each. Events change no step. A
+        ``terminal`` event ends the run, with status ``event``.
     ledger : bool
-        Whether ``sol.energy().ledger`` tells work and loss of every effect. They are integrated
-        beside the state, and change no bit of it.
+        Whether ``sol.energy().ledger`` has the work and loss of every effect. They are integrated
+        beside the state and change no bit of it.
     compensated : bool
-        For long runs at small steps: what the rounding of the state leaves over at each step is
-        carried on to the next, not lost (compensated summation). ``docs/long_runs.md`` says when it
+        Whether each step carries the rounding error of the state over to the next step
+        (compensated summation), for long runs at small steps. ``docs/long_runs.md`` says when that
         pays.
     error : float, optional
-        The largest error of the positions to keep, as a share of the total length, in place of
-        ``method``, ``rtol``, ``atol`` and ``step``: they are chosen, and the run is verified by
-        independent ones. The error is the distance of a joint or the tip from where it ought to be,
-        the largest over the whole curve of a run with dense output, else over the times that it
-        keeps. ``sol.accuracy`` tells what was reached and what it took;
+        The largest allowed error of the positions, as a share of the total length. It takes the
+        place of ``method``, ``rtol``, ``atol`` and ``step``: pendcore chooses these and verifies
+        the run by independent runs. The error is the largest distance of a joint or the tip from
+        its true place, over the whole curve of a run with dense output, otherwise over the times
+        that the run keeps. ``sol.accuracy`` says what was reached and what it cost;
         ``docs/accuracy_cost.md`` says what is promised.
     check : bool, optional
-        What to do where the run does not get to its end, or the time limit is up before it is
-        verified to have the ``error`` asked for. None: give a warning. True: raise a
-        `RunError`. False: say nothing; look at ``sol.success`` then.
+        What to do if the run does not reach its end, or if the time limit is up before the
+        ``error`` is verified. None gives a warning, True raises a `RunError`, False says nothing:
+        look at ``sol.success`` then.
     progress : None, bool or callable
-        None: a bar after a second, on a terminal. A callable gets the fraction done, in 0...1.
+        None shows a bar after a second, on a terminal. A callable receives the fraction done, from
+        0 to 1.
 
     Returns
     -------
     Solution
-        What happened, also if the run could not be finished: see its ``status`` and ``message``
-        (and ``check``). It is then shorter than was asked for.
-        Where friction and stops bring all to rest for good, its status is ``at_rest``, a success:
-        the message says since when, and the last step goes from there to ``t_end``.
+        The run, also if it could not be finished: it is then shorter than ``t_span``, and its
+        ``status`` and ``message`` say why. If friction and stops bring all links to rest for good,
+        the status is ``at_rest``, which is a success: the message says since when, and the last
+        step goes from there to ``t_end``.
 
     Raises
     ------
     ValueError, TypeError
-        If an argument is not what is asked for; the message names it.
+        If an argument is out of its range or of the wrong type; the message names it.
     AccuracyError
-        If ``error`` is less than double precision can keep on this scene, or could not be verified.
-        Its attribute ``solution`` has the most accurate run, ``least`` the least error that can be
-        kept.
+        If double precision cannot keep the ``error`` on this scene, or if the error could not be
+        verified. The attribute ``solution`` is the most accurate run, ``least`` the least error
+        that can be kept.
     RunError
-        With ``check=True``, if the run does not get to its end, for whatever reason. Its attribute
-        ``solution`` has the run so far.
+        With ``check=True``, if the run does not reach its end, for whatever reason. The attribute
+        ``solution`` is the run so far.
     KeyboardInterrupt, or any exception of ``progress`` or of an effect's or event's function
-        With the run so far as the attribute ``solution``; with an ``error`` the tightest run so
+        The attribute ``solution`` is the run so far; with an ``error`` it is the tightest run so
         far, and its ``accuracy`` says that it is not verified.
 
     Warns
     -----
     PendcoreWarning
-        If the start or the interval look wrong, such as angles in degrees; and if the run does not
-        get to its end, unless ``check`` is given.
+        If the start or the interval looks wrong, such as angles in degrees, or if the run does not
+        reach its end and ``check`` is not given.
 
     Notes
     -----

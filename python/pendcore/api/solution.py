@@ -43,11 +43,11 @@ class Solution(RunResult):
     scene : Scene
         What moved.
     name : str
-        For people; of the case, if there was one. It may be set.
+        A name for people: that of the case, if there was one. It may be set.
     accuracy : Accuracy or None
-        What ``simulate(error=...)`` asked for, reached and paid; else None. Its ``asked`` and
-        ``achieved`` are shares of the total length, ``paid`` are the runs. It is of this run: one
-        that was resumed, or run again from its `case`, has none.
+        What ``simulate(error=...)`` asked for, reached and paid; None for other runs. Its ``asked``
+        and ``achieved`` are shares of the total length, and ``paid`` lists the runs that were made.
+        A run that was resumed, or run again from its `case`, has none.
     """
 
     __slots__ = ()
@@ -56,23 +56,24 @@ class Solution(RunResult):
     def defect(self, *, progress: Progress = None) -> Defect:
         """Return the spurious torques: what motors would have to add to make the curve exact.
 
-        See `pendcore.Defect` and, for what they tell, `docs/defect.md`; ``progress`` is as in
-        `simulate`. A ValueError if the run did not store its interpolants: ``store="dense"``.
+        See `pendcore.Defect`; `docs/defect.md` says how to read them. ``progress`` is as in
+        `simulate`. Raises a ValueError if the run did not store its interpolants
+        (``store="dense"``).
         """
         return defect(self.scene, self.run, progress)
 
     def error(self, *, time_limit: float | None = None, progress: Progress = None) -> ErrorEstimate:
         """Estimate the error over time from independent second runs, made when first asked for.
 
-        They are of another method (of ``"radau5"`` too if a default run has changed over to it), at
-        tolerances a hundredth and less of this run's, with constants and start moved by some last
-        bits, and go on until they have nothing to do with it any more. For a run with an ``error``
-        that was asked for, the estimate is the one that verified it.
+        The second runs use another method, at a hundredth of this run's tolerances or less, with
+        constants and start moved by some last bits. If the run switched to ``"radau5"``, second
+        runs use ``"radau5"`` too. They end where they have nothing in common with this run any
+        more. A run that kept an ``error`` has the estimate that verified it.
 
         Parameters
         ----------
         time_limit : float, optional
-            s of the clock, > 0, after which the estimate ends where it is.
+            s of wall-clock time, > 0, after which the estimate ends where it is.
         progress : as in `simulate`
 
         Returns
@@ -83,7 +84,7 @@ class Solution(RunResult):
         Raises
         ------
         KeyboardInterrupt, or any exception of ``progress`` or of an effect's function
-            With what was found so far as the attribute ``estimate``, and this run as ``solution``.
+            The attribute ``estimate`` is what was found so far, ``solution`` is this run.
         """
         return error_of(self, time_limit=time_limit, progress=progress)
 
@@ -92,7 +93,8 @@ class Solution(RunResult):
     ) -> float:
         """Return how far to trust the run: the time at which its `error` passes a limit, s.
 
-        On the safe side; the end of the run where it does not. See `ErrorEstimate.valid_until`.
+        The answer errs on the safe side; it is the end of the run if the error stays within the
+        limit. See `ErrorEstimate.valid_until`.
 
         Parameters
         ----------
@@ -128,25 +130,25 @@ class Solution(RunResult):
         Parameters
         ----------
         t_end : float
-            s; not before where this run ended, in its direction.
+            s; not before the end of this run, in its direction.
         t_eval : array_like, (k,), optional
-            More times to keep, s: at or beyond where this run ended, and beyond those it was asked
-            for. Only for a run that had a ``t_eval``.
+            More times to keep, s: at or beyond the end of this run, and beyond its own ``t_eval``.
+            Only a run that had a ``t_eval`` takes it.
         max_steps, time_limit, check, progress
             As in `simulate`, for the continuation. It begins before the first attempt that the
-            earlier ``t_end`` cut short, as what came after that depends on it. To the same
-            ``t_end`` the attempts made since then are made again and do not count, so that a
-            ``max_steps`` of 1 gets on as well.
+            earlier ``t_end`` cut short, because all later steps depend on that cut. Attempts that
+            are repeated to the same ``t_end`` do not count, so a ``max_steps`` of 1 makes progress,
+            too.
 
         Returns
         -------
         Solution
-            The whole run, from its first start. This one stays as it is.
+            The whole run, from its first start. This solution does not change.
 
         Raises
         ------
         ValueError, TypeError
-            If an argument is not what is asked for; the message names it.
+            If an argument is out of its range or of the wrong type; the message names it.
         """
         require_check(check)
         longer = resumed(
@@ -155,13 +157,13 @@ class Solution(RunResult):
         return checked(longer, check)
 
     def case(self) -> Case:
-        """Return what was asked for, ready to be run again or written as TOML."""
+        """Return the case of this run, ready to be run again or written as TOML."""
         return Case.of_solution(self)
 
     def save(self, path: str | os.PathLike[str], *, progress: Progress = None) -> None:
         """Write everything to a file of NumPy's npz format; see `pendcore.load`.
 
-        It has its name only when it is whole. ``progress`` is as in `simulate`.
+        The file is complete or absent. ``progress`` is as in `simulate`.
         """
         save(self, path, progress=progress)
 
@@ -175,9 +177,9 @@ class Solution(RunResult):
     ) -> list[Line2D]:
         """Draw the angles over time, as in the textbook; one axes for each link.
 
-        ``ax`` is one axes, or one for each link; ``label`` names the solution in the legend; what
-        is past `valid_until` (``horizon``), rad, is shaded; the rest are properties of matplotlib's
-        ``Line2D``. The lines are returned.
+        ``ax`` is one axes, or one for each link. ``label`` names the solution in the legend. With a
+        ``horizon`` in rad the figure is shaded after `valid_until` (``horizon``). Other keywords
+        are properties of matplotlib's ``Line2D``. Returns the lines.
         """
         return plot(self, ax, label=label, horizon=horizon, **line_properties)
 
@@ -209,7 +211,7 @@ class Solution(RunResult):
 @frozen_state
 @dataclass(frozen=True, slots=True, init=False, repr=False, eq=False)
 class Case(CaseData):
-    """A scene, where it starts, how long and how it is run. It cannot be changed, and hashes.
+    """A scene with its start, its time span and the options of its run; immutable and hashable.
 
     Parameters
     ----------
@@ -222,9 +224,9 @@ class Case(CaseData):
     t_span : (float, float)
         Start and end, s.
     name : str
-        For people.
+        A name for people.
     options : mapping
-        Keywords of `simulate`; those not given have its defaults. Kept as a read-only mapping.
+        Keywords of `simulate`; missing ones have its defaults. Kept as a read-only mapping.
 
     Raises
     ------
@@ -246,9 +248,9 @@ class Case(CaseData):
         )
 
     def simulate(self, *, check: bool | None = None) -> Solution:
-        """Run it; see `pendcore.simulate`. The solution has the name of the case.
+        """Run the case; see `pendcore.simulate`. The solution has the name of the case.
 
-        ``check`` takes the place of the case's own, if it is given.
+        If ``check`` is given, it replaces that of the case.
         """
         options = Options(**self.options)
         require_check(options.check)

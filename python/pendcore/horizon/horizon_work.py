@@ -47,7 +47,7 @@ class HorizonPoint(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class HorizonWork:
-    """What `horizon_work` found.
+    """The result of `horizon_work`.
 
     Attributes
     ----------
@@ -56,17 +56,17 @@ class HorizonWork:
     t_span : (float, float)
         s.
     points : tuple of HorizonPoint
-        A method after the other, from loose to tight.
+        One method after the other, from loose to tight tolerances.
     early : float
-        s after the start, the shortest of the horizons: where the errors of all runs are compared.
+        The shortest of the horizons, s after the start, where the errors of all runs are compared.
     growth : LyapunovExponents or None
         How fast neighbours part between the shortest and the longest of the horizons; None where
         exponents mean nothing (dry friction, stops), where the horizons are one, and of what was
         stopped before.
     refusal : str
-        Why there is no exponent, where it was refused; else empty.
+        Why the exponent was refused; else empty.
     untried : tuple of (str, float)
-        The methods and tolerances that were left when the time was up, or at an interrupt.
+        The methods and tolerances that were left when the time was up or the work was interrupted.
     """
 
     limit: float
@@ -84,7 +84,7 @@ class HorizonWork:
 
     @property
     def seconds_a_digit(self) -> float:
-        """ln(10)/exponent, s: what one more right digit is worth; inf where nothing grows."""
+        """ln(10)/exponent, s: the time that one more right digit buys; inf if no error grows."""
         return float(np.log(10)) / self.exponent if self.exponent > 0 else inf
 
     @property

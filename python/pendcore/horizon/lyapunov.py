@@ -36,25 +36,26 @@ TIMES = 201
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class LyapunovExponents:
-    """What `lyapunov` found; k exponents at n_t times.
+    """The result of `lyapunov`: k exponents at n_t times.
 
     Attributes
     ----------
     t : ndarray, (n_t,)
         s.
     growth : ndarray, (n_t, k)
-        ln of how many times longer the k changes of the state have become since ``since``, without
-        a unit: of the first one, of the area of the first two over that, and so on.
+        The logarithm of the factors by which the k changes of the state have grown since ``since``,
+        without a unit: the length of the first change, then the area of the first two over that
+        length, and so on.
     since : float
-        s, from which growth counts.
+        The time from which growth counts, s.
     q, qd : ndarray, (n_t, n)
         The motion, rad and rad/s.
     status, message : str
         How the run ended, as of a `Solution`.
     success : bool
-        Whether it got to the end.
+        Whether the run reached its end.
     stats : Statistics
-        What it took; ``nfev`` counts right-hand sides with all k changes.
+        What the run took; ``nfev`` counts right-hand sides with all k changes.
     """
 
     t: Floats
@@ -86,7 +87,7 @@ class LyapunovExponents:
     def largest(self) -> float:
         """The largest exponent, 1/s: above 0 in a chaotic motion, the longer the run the surer.
 
-        NaN where there is none: of a scene whose joints are all locked, or before time has passed.
+        NaN if there is none: all joints are locked, or no time has passed.
         """
         return float(self.exponents[0]) if self.exponents.size else nan
 
@@ -97,7 +98,7 @@ class LyapunovExponents:
 
     @property
     def seconds_a_digit(self) -> float:
-        """ln(10)/largest, s: so much longer is right a run that is right to one more digit."""
+        """ln(10)/largest, s: how much longer a run is right that has one more right digit."""
         return float(np.log(10)) * self.time
 
     def __repr__(self) -> str:
@@ -140,27 +141,27 @@ def lyapunov(
     time_limit: float | None = None,
     progress: Progress = None,
 ) -> LyapunovExponents:
-    """Compute the Lyapunov exponents of a motion, as they are in finite time.
+    """Compute the finite-time Lyapunov exponents of a motion.
 
     Parameters
     ----------
     scene : Scene
-        What moves. Without dry friction and stops: the motion must not jump.
+        What moves, without dry friction and stops: the motion must not jump.
     q0, qd0 : array_like, (n,)
         Absolute angles and rates at the start, rad and rad/s.
     t_span : (float, float)
-        Start and end, s. Backward in time, what shrinks forward grows.
+        Start and end, s. Changes that shrink forward in time grow backward.
     count : int, optional
-        How many of the exponents, the largest. Default: the whole spectrum, 2n less 2 for each
-        locked joint, so none where all are. One is up to 2n times as fast.
+        How many exponents to compute, the largest first. Default: the whole spectrum, 2n less 2 for
+        each locked joint, so none if all joints are locked. One exponent is up to 2n times as fast.
     transient : float
-        s; this long the changes turn into their directions before growth counts. For the
-        exponents of the attractor or the chaotic sea; 0 for those of this very run.
+        The time, s, in which the changes turn into their directions before growth counts. Use it
+        for the exponents of an attractor or a chaotic sea, and 0 for those of this very run.
     rtol, atol : float
         As in `simulate`; the changes are integrated to a relative ``rtol`` too.
     t_eval : array_like, (k,), optional
-        Times of the result, s; that from which growth counts comes before them. Default: 201 times,
-        evenly.
+        Times of the result, s. The time from which growth counts is put first if it is not among
+        them. Default: 201 even times.
     max_step, max_steps, time_limit, progress
         As in `simulate`.
 
@@ -220,7 +221,7 @@ def lyapunov_of(
     t_eval: npt.ArrayLike | None,
     progress: Progress,
 ) -> LyapunovExponents:
-    """Compute the exponents of a solution's motion, as far as it came, at its tolerances."""
+    """Compute the exponents of a solution's motion to its end, at its tolerances."""
     asked = solution.run.arguments
     if solution.run.t_reached == asked["t_start"]:
         raise ValueError("lyapunov: the run ended where it began: nothing had time to grow")

@@ -20,7 +20,7 @@ class Paid(NamedTuple):
     method : str
     rtol : float
     nfev : int
-        Right-hand sides; of ``taylor``, series.
+        Right-hand sides; for ``taylor`` series.
     work : float
         In right-hand sides, a series counted as the many that take as long.
     """
@@ -34,10 +34,11 @@ class Paid(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Accuracy:
-    """The error that was asked for, and what came of it.
+    """The error that was asked for, and what was reached.
 
-    Errors are the largest distance of a joint or the tip from where it ought to be, as a share of
-    the total length: over the whole curve of a run with dense output, else over the times it kept.
+    An error is the largest distance of a joint or the tip from its true place, as a share of the
+    total length: over the whole curve of a run with dense output, otherwise over the times that the
+    run kept.
 
     Attributes
     ----------
@@ -46,20 +47,20 @@ class Accuracy:
     achieved : float
         The error of the run, estimated from above; infinite where nothing verified it.
     outcome : {"kept", "refused", "ended early"}
-        Whether the error is kept; could not be shown to be kept; or the run did not get to its end,
-        and ``achieved`` and ``until`` tell of what there is.
+        ``"kept"``: the error is kept. ``"refused"``: that could not be shown. ``"ended early"``:
+        the run did not reach its end; ``achieved`` and ``until`` describe the part that there is.
     until : float
-        Until when the error is kept, s.
+        The time until which the error is kept, s.
     times : int
-        At how many times the runs were compared.
+        The number of times at which the runs were compared.
     everywhere : bool
-        Whether these lie within every step, so that the error is that of the whole curve.
+        Whether these times lie within every step, so that the error is that of the whole curve.
     verified_by : str
-        How the verifying runs were made; why there is none, where ``times`` is 0.
+        How the verifying runs were made, or why there is none if ``times`` is 0.
     paid : tuple of Paid
         All the runs, in their order.
     seconds : float
-        What all of it took, s.
+        The time that all runs took together, s.
     """
 
     asked: float
@@ -91,13 +92,13 @@ class Accuracy:
 
     @classmethod
     def from_dict(cls, values: dict[str, Any]) -> Accuracy:
-        """Make it again from what `to_dict` returned."""
+        """Return the object that `to_dict` described."""
         achieved = inf if values["achieved"] is None else values["achieved"]
         paid = tuple(Paid(**p) for p in values["paid"])
         return cls(**(values | {"achieved": achieved, "paid": paid}))
 
     def text(self) -> str:
-        """Return what was asked for and what came of it, without what it took."""
+        """Return what was asked for and what was reached, without the cost."""
         asked = f"asked {self.asked:.1e}"
         if not self.times:
             return f"{asked}, not verified: {self.verified_by}"
@@ -123,7 +124,7 @@ class Accuracy:
 
 
 class AccuracyError(ArithmeticError):
-    """An error was asked for that could not be reached, or not be verified.
+    """The error that was asked for could not be reached, or not be verified.
 
     Attributes
     ----------

@@ -18,14 +18,14 @@ class Ledger(Mapping[str, Floats]):
     """Work and loss since the start, J, an entry for each kind that the scene has.
 
     ``viscous``, ``dry``, ``drag`` and ``impact`` are losses, ``motor``, ``drive``, ``wind`` and
-    ``user`` work done on the chain. ``residual`` is what the balance leaves over, the error of the
-    run::
+    ``user`` are work done on the chain. ``residual`` is the remainder of the balance, which is the
+    error of the run::
 
         [T + V](t) - [T + V](0) = motor + drive + wind + user
                                   - viscous - dry - drag - impact + residual
 
-    An entry is an attribute, ``ledger.viscous``, and an item, ``ledger["viscous"]``, (n_t,); one
-    that the scene has no effect for is not there.
+    An entry is an attribute, ``ledger.viscous``, and an item, ``ledger["viscous"]``, (n_t,).
+    Entries for which the scene has no effect are missing.
     """
 
     __slots__ = ("_entries",)
@@ -88,7 +88,7 @@ def _again(entries: dict[str, Floats]) -> Ledger:
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Energy:
-    """Energies over time. The potential energy is zero at the origin's height.
+    """Energies over time; the potential energy is zero at the height of the origin.
 
     Attributes
     ----------

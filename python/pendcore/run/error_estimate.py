@@ -19,9 +19,9 @@ class ErrorEstimate:
     begin : float
         s, the start of the run.
     t : ndarray, (n_t,)
-        s: several in every step of a run with dense output, else the times that it kept. They end
-        before the run does where a second run has nothing to do with it any more, or did not get
-        further.
+        Times, s: several in every step of a run with dense output, otherwise those that the run
+        kept. They end before the run does if a second run has nothing in common with it any more,
+        or did not get further.
     angle : ndarray, (n_t,)
         The largest error over the links, rad.
     position : ndarray, (n_t,)
@@ -29,9 +29,9 @@ class ErrorEstimate:
     verified_by : str
         How the second runs were made.
     is_lost : bool
-        Whether they had nothing to do with the run any more at the last of the times.
+        Whether the second runs had nothing in common with the run any more at the last time.
     is_complete : bool
-        Whether the times go as far as that, or to the end of the run.
+        Whether the times go that far, or to the end of the run.
     is_dense : bool
         Whether the times cover the whole curve.
     """
@@ -69,8 +69,8 @@ class ErrorEstimate:
         Returns
         -------
         float
-            The end of the run where the limit is not passed before; its start where it is passed
-            at the first time that was compared, or none was. The error is taken never to shrink.
+            The end of the run if the error stays within the limit; its start if the first error is
+            beyond the limit, or none is known. The error is assumed never to shrink.
         """
         if of not in ("angle", "position"):
             raise ValueError(f'of = {of!r}: must be "angle" (rad) or "position" (a share)')

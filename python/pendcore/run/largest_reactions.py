@@ -48,16 +48,16 @@ class LargestReaction(NamedTuple):
     Attributes
     ----------
     joint : int
-        From 1: where link ``joint`` begins.
+        Number of the joint, from 1: link ``joint`` begins there.
     force : float
         N; inf where forces were beyond the range of doubles.
     t : float
         When, s.
     just_before : bool
-        Whether it is what the force tends to just before ``t``, where it jumps: an impact, or a
-        joint that sticks or slides from then on.
+        Whether the force has this size just before ``t``, where it jumps: an impact, or a joint
+        that begins to stick or slide.
     steady : bool
-        Whether it is as large all the time.
+        Whether the force has this size all the time.
     """
 
     joint: int

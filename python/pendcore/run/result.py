@@ -34,13 +34,13 @@ class RunResult:
     scene : SceneData
         What moved.
     run : pendcore._core.Run
-        The core's: what was asked for, what was kept, and what is needed to resume.
+        The core's run: what was asked for, what was kept, and what is needed to resume.
     name : str
-        For people.
+        A name for people.
     accuracy : Accuracy or None
         What ``simulate(error=...)`` asked for, reached and paid; else None.
     known_error : ErrorEstimate or None
-        How far off it is, once something has estimated that.
+        How far off the run is, once it has been estimated.
     """
 
     __slots__ = ("_events", "accuracy", "known_error", "name", "run", "scene")
@@ -113,7 +113,7 @@ class RunResult:
 
     @property
     def success(self) -> bool:
-        """Whether the run got where it was to go."""
+        """Whether the run reached its end, or an event ended it as asked."""
         return self.run.success
 
     @property
@@ -135,8 +135,8 @@ class RunResult:
     def events(self) -> list[FoundEvents]:
         """What was found of each event asked for: a list for each, with arrays ``t, q, qd, y``.
 
-        Their states are the method's interpolant at the very place in the step; ``sol(event.t)``
-        differs by the rounding of t. See `pendcore.events.FoundEvents`.
+        The states come from the method's interpolant at the exact place in the step;
+        ``sol(event.t)`` differs by the rounding of t. See `pendcore.events.FoundEvents`.
         """
         if self._events is None:
             self._events = found_events(
@@ -145,7 +145,7 @@ class RunResult:
         return self._events
 
     def events_asked_for(self) -> list[Event]:
-        """Return what was looked for."""
+        """Return the events that the run looked for."""
         return [event_of(kind, values) for kind, values in self.run.arguments["events"]]
 
     def relative_angles(self) -> Floats:
@@ -189,8 +189,9 @@ class RunResult:
     def largest_reactions(self, *, progress: Progress = None) -> list[LargestReaction]:
         """Return the largest force of each joint: ``.joint``, ``.force`` (N), ``.t`` (s).
 
-        Of a run with its interpolants it is that of the whole curve, between the steps too and on
-        both sides of every jump; of others the largest at the kept times. What an impact does in no
-        time is no force. See `pendcore.LargestReaction`; ``progress`` is as in `simulate`.
+        A run that stored its interpolants gives the largest force on the whole curve, also between
+        steps and on both sides of every jump; other runs give the largest at the kept times. The
+        impulse of an impact is not a force. See `pendcore.LargestReaction`; ``progress`` is as in
+        `simulate`.
         """
         return largest_reactions(self.scene, self.run, progress)

@@ -1,4 +1,4 @@
-"""What a run took."""
+"""The work of a run."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ class Statistics(NamedTuple):
     Attributes
     ----------
     nfev : int
-        Right-hand sides; of ``taylor``, series, each as long as many of them.
+        Right-hand sides; for ``taylor`` series, each of which takes as long as many of them.
     njev : int
         Jacobians.
     nlu : int
@@ -25,9 +25,9 @@ class Statistics(NamedTuple):
     limited_by_max_step : int
         Accepted steps of the size of ``max_step``, or of a fixed step.
     limited_by_break : int
-        Accepted steps that the end of the run cut short, or a point where a law changes.
+        Accepted steps that ended early, at the end of the run or where a law changes.
     min_step, max_step : float
-        Sizes of the accepted steps, those cut short aside, s.
+        Sizes of the accepted steps, s, except those that ended early.
     stiff : bool
         Whether stability rather than accuracy limited the steps.
     """

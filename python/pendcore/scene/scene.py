@@ -36,7 +36,7 @@ class Mobility(NamedTuple):
     Attributes
     ----------
     links : int
-        Moving links; those that a lock makes one are one.
+        Moving links; links that a lock joins count as one.
     c5 : int
         Joints with one degree of freedom (hinges).
     c4 : int
@@ -96,7 +96,7 @@ class SceneData:
         gravity: float | None = None,
         effects: Iterable[Effect] | None = None,
     ) -> Self:
-        """Return a scene with other links, gravity or effects; what is not given stays.
+        """Return a scene with other links, gravity or effects; the rest stays as it is.
 
         Parameters
         ----------
@@ -115,9 +115,9 @@ class SceneData:
     def accelerations(self, t: npt.ArrayLike, q: npt.ArrayLike, qd: npt.ArrayLike) -> Floats:
         """Angular accelerations of the links: the right-hand side that is integrated.
 
-        What is smooth only in pieces, such as dry friction, is on the side that a forward run
-        would be on. A joint that is locked does not turn: its rate, ``qd_i - qd_{i-1}``, must be
-        zero, for what follows from any other is not the scene's.
+        A law that is smooth only in pieces, such as dry friction, is on the side that a forward run
+        would take. A locked joint does not turn: its rate, ``qd_i - qd_{i-1}``, must be zero; the
+        accelerations of any other state are not those of the scene.
 
         Parameters
         ----------
@@ -159,8 +159,8 @@ class SceneData:
     def mass_matrix(self, q: npt.ArrayLike) -> Floats:
         """Mass matrix of the equations of motion, symmetric and positive definite.
 
-        Payloads and rotors are in it. Locks are not: it is that of the chain with all its joints
-        free, whatever is locked.
+        It includes payloads and rotors. It ignores locks: it is the matrix of the chain with all
+        its joints free.
 
         Parameters
         ----------

@@ -20,7 +20,7 @@ struct LineStyle {
 struct MethodInfo {
   std::string_view name;
   std::span<const std::string_view> aliases = {};
-  std::string_view sentence;  ///< what it is, and what for
+  std::string_view sentence = {};  ///< what it is, and what for
   std::string_view citation;
   MethodKind kind = MethodKind::explicit_one;
   int order;              ///< of y_new

@@ -211,7 +211,7 @@ class Run {
     return lands && target.is_break ? change_law(-1) : true;
   }
 
-  /// An event lies within the step: what is left there is a view, and nothing goes on from it.
+  /// An event lies within the step: the clipped state is output only; resume repeats the step.
   bool end_within_step(double theta, double h, double t_new) {
     const TwoDouble t = time_in_step(integrator_.t, h, theta, t_new);
     // Within the last bits of its start no time has passed: there is one state at one time.

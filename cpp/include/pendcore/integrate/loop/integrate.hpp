@@ -52,7 +52,7 @@ struct Limits {
   bool begins_anew = false;  ///< a run that goes on does so from the start, not from later
 };
 
-/// Is shown each accepted step before it becomes the past.
+/// Called for each accepted step before the state advances.
 class Observer {
  public:
   virtual ~Observer() = default;

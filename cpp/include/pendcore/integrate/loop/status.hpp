@@ -36,15 +36,13 @@ inline constexpr std::array<StatusText, 11> status_texts = {{
     {"max_turns", false, "events with every_turn were looked for in too many turns"},
     {"step_too_small", false,
      "the step fell below what time can resolve: the motion blows up here (or rtol and atol are "
-     "too "
-     "loose to follow it), they are too tight, or t0 is so large that t + h = t"},
+     "too loose to follow it), they are too tight, or t0 is so large that t + h = t"},
     {"not_converged", false,
-     "the equations of a step could not be solved: a shorter step, or none, for one that the "
-     "method chooses"},
+     "the equations of a step could not be solved: use a smaller step, or omit step for adaptive "
+     "stepping"},
     {"non_finite", false,
      "the motion stopped being finite: check parameters and start, and that step, rtol and atol "
-     "are "
-     "not too coarse"},
+     "are not too coarse"},
     {"time_limit", false, "the time limit was reached: raise time_limit, or resume the solution"},
     {"interrupted", false, "interrupted: what was computed so far is kept and can be resumed"},
     {"callback_error", false, "a function of the user's raised an exception"},
