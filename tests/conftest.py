@@ -13,7 +13,7 @@ from pendcore import _core
 from reference.trajectories import Trajectory, trajectory
 from sweeps import every, few
 
-VALUES = 6
+VALUES = 5
 """Values of each parameter that a reduced sweep meets."""
 WHOLE = "tests/documents/"
 """Tests of pages and of the code base are quick, and each page is a case."""

@@ -178,5 +178,5 @@ def test_a_lock_is_not_in_the_mass_matrix_and_what_locked_joints_need_is_said():
     assert not np.array_equal(free.mass_matrix(q), free.replace(effects=[]).mass_matrix(q))
     qdd = locked.accelerations(0.0, q, [2.0, 2.0])
     assert qdd[0] == qdd[1]
-    assert "Locks are not" in (pc.Scene.mass_matrix.__doc__ or "")
+    assert "It ignores locks" in (pc.Scene.mass_matrix.__doc__ or "")
     assert "its rate, ``qd_i - qd_{i-1}``, must be" in (pc.Scene.accelerations.__doc__ or "")

@@ -150,7 +150,7 @@ def test_a_fixed_step_whose_equations_are_not_solved_says_so(step: float) -> Non
         pc.Scene.textbook(), *start, (0, 100), method="radau5", step=step, check=False
     )
     assert (sol.status, sol.success) == ("not_converged", False)
-    assert "a shorter step" in sol.message
+    assert "use a smaller step" in sol.message
     assert np.isfinite(sol.y).all()
 
 
