@@ -157,3 +157,33 @@ def test_one_state_has_the_accelerations_of_a_row_of_many(n: int) -> None:
     assert np.array_equal(alone, scene.accelerations([0.5], [q], [qd])[0])
     with pytest.raises(ValueError, match=r"qd\[0\] = nan: must be finite"):
         scene.accelerations(0.5, q, np.full(n, np.nan))
+
+
+@pytest.mark.parametrize("n", [1, 2, 5])
+def test_one_state_of_plain_numbers_makes_no_arrays_of_rows(
+    n: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scene = pc.Scene(links=[pc.Link(mass=1.0, length=0.5)] * n)
+    q, qd = np.linspace(0.3, 1.0, n), np.linspace(-1.0, 2.0, n)
+    row = scene.accelerations([2.0], [q], [qd])
+    assert row.shape == scene.accelerations([2.0], q, qd).shape == (1, n)
+    backward = np.stack([q, qd])[:, ::-1][:, ::-1]  # neither is contiguous to look at
+    assert np.array_equal(scene.accelerations(2.0, *backward), row[0])
+    with pytest.raises(ValueError, match="must be finite"):
+        scene.accelerations(float("inf"), q, qd)
+    with pytest.raises(ValueError, match="is too large"):
+        scene.accelerations(0.0, [10**400] * n, qd)
+    with pytest.raises(TypeError, match="holds truth values"):
+        scene.accelerations(0.0, [True] * n, qd)
+    with pytest.raises(ValueError, match=r"q: shape \(\): must be"):
+        scene.accelerations(0.0, 0.5, 0.0)
+
+    def no_conversion(*_: object) -> None:
+        raise AssertionError("one state went through the checks of many")
+
+    monkeypatch.setattr("pendcore.scene.scene.finite_array", no_conversion)
+    for t in (2.0, 2, np.float64(2.0)):
+        for of in (np.array, list, tuple):
+            one = scene.accelerations(t, of(q), of(qd))
+            assert one.shape == (n,)
+            assert np.array_equal(one, row[0])
