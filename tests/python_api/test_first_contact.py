@@ -5,12 +5,14 @@ from __future__ import annotations
 import json
 import pydoc
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pendcore as pc
 import pytest
+from pendcore.accuracy.estimate import error_estimate
 from pendcore.cli import main
 from pendcore.derive.report import conversion
 
@@ -75,6 +77,72 @@ def test_a_chaotic_run_says_until_when_it_is_right(
     assert "right to" not in (tmp_path / "b/summary.txt").read_text()
     drawn, plain = ((tmp_path / name / "angles.png").read_bytes() for name in "ab")
     assert drawn != plain
+
+
+EVEN = "t_eval = {start = 0.0, stop = 30.0, count = 301}\n"
+
+
+@pytest.mark.parametrize(
+    ("run", "until", "sentence"),
+    [
+        (f"t_end = 40.0\n{EVEN}", 19.3, "until t = 19.3 s, and lost after that"),
+        ('t_end = 40.0\nstore = "steps"\n', None, "until t = 1"),
+        ("t_end = 40.0\nt_eval = [1.0, 2.0]\n", 2.0, "until t = 2 s, the last time that was kept"),
+        ("t_end = 2.0\n", 2.0, "until its end"),
+        ('t_end = 2.0\nstore = "end"\n', 2.0, "until its end"),
+        ('t_end = 40.0\nstore = "end"\n', None, "not known: wrong at its end, and no other time"),
+        ("t_end = 2.0\nt_eval = [2.0]\nmax_steps = 3\n", None, "not known: error: the run ended"),
+    ],
+)
+def test_every_summary_says_until_when_or_why_not(
+    run: str, until: float | None, sentence: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    case = tmp_path / "chaos.toml"
+    case.write_text(CHAOS.replace("t_end = 40.0\n", run))
+    main(["run", str(case), "-o", str(tmp_path / "out"), "--json"])
+    found = json.loads(capsys.readouterr().out)
+    assert found["horizon"].startswith(sentence)
+    assert until is None or found["valid_until"] == pytest.approx(until, rel=1e-12)
+    assert found["horizon"] in " ".join((tmp_path / "out/summary.txt").read_text().split())
+
+
+@pytest.mark.parametrize("compared", [5.0, 20.0])
+def test_second_runs_that_nobody_asked_for_are_stopped(
+    compared: float,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    limits = []
+
+    def stopped(*args: Any, time_limit: float | None = None, **named: Any) -> Any:
+        limits.append(time_limit)
+        whole = error_estimate(*args, **named)
+        so_far = {name: getattr(whole, name)[whole.t < compared] for name in ("angle", "position")}
+        t = whole.t[whole.t < compared]
+        return replace(whole, t=t, **so_far, is_lost=False, is_complete=False)
+
+    monkeypatch.setattr("pendcore.accuracy.estimate.error_estimate", stopped)
+    case = tmp_path / "chaos.toml"
+    case.write_text(CHAOS)
+    main(["run", str(case), "-o", str(tmp_path), "--json"])
+    found = json.loads(capsys.readouterr().out)
+    assert limits == [10.0], "the figure estimates it no second time, without end"
+    if compared == 20.0:
+        assert found["horizon"].startswith("until t = 19.2923 s, and lost")
+    else:
+        assert found["valid_until"] is None
+        assert found["horizon"].startswith("at least until t = 4.9")
+        assert "`pendcore trust` tells how much longer" in found["horizon"]
+
+
+def test_a_run_of_many_steps_gets_no_second_runs_unasked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("pendcore.cli.horizon.MOST_WORK", 10)
+    assert main(["run", "-o", str(tmp_path)]) == 0
+    told = " ".join(capsys.readouterr().out.split())
+    assert "not known: second runs take a while; `pendcore trust` tells" in told
 
 
 def test_trust_tells_horizon_exponent_and_defect(

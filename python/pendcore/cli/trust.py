@@ -10,6 +10,7 @@ from typing import Any
 
 from pendcore.api.files import load, read_case
 from pendcore.api.solution import Case, Solution
+from pendcore.cli.horizon import LIMIT, horizon_of
 from pendcore.cli.usage import blamed_on_usage
 
 _EPILOG = """
@@ -41,7 +42,7 @@ def add_parser(commands: Any) -> None:
         help="a solution that `pendcore run` wrote, or a case; default: the textbook's case",
     )
     parser.add_argument(
-        "--limit", type=float, default=0.1, metavar="RAD", help="of an angle; default: 0.1 rad"
+        "--limit", type=float, default=LIMIT, metavar="RAD", help="of an angle; default: 0.1 rad"
     )
     parser.add_argument(
         "--time-limit", type=float, metavar="S", help="s of computing for the second runs"
@@ -74,14 +75,10 @@ def trust(
     solution: Solution, limit: float, time_limit: float | None
 ) -> dict[str, tuple[float | None, str]]:
     """Return each number, None where there is none, with a sentence."""
-    until = solution.valid_until(limit, time_limit=time_limit)
     estimate = solution.error(time_limit=time_limit)
-    end = solution.run.t_reached
-    right = f"right to {limit:g} rad until t = {until:.6g} s"
-    if until == end:
-        right += ", its end"
+    horizon = horizon_of(solution, estimate, limit)
     found: dict[str, tuple[float | None, str]] = {
-        "valid_until": (until, right),
+        "valid_until": (horizon.valid_until, f"right to {limit:g} rad {horizon.sentence}"),
         "largest_error": (_number(estimate.largest), str(estimate)),
     }
     try:
