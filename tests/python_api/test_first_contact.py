@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+import pickle
 import pydoc
+import subprocess
+import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -17,6 +20,7 @@ from pendcore.cli import main
 from pendcore.derive.report import conversion
 
 ROD = "[[link]]\nmass = 1.0\nlength = 1.0\n"
+RUN = pc.simulate(pc.Scene.textbook(), 1.0, t_span=(0, 0.01))
 CHAOS = f"{ROD}{ROD}[start]\nq_deg = [-85, -80]\n[run]\nt_end = 40.0\n"
 
 
@@ -29,6 +33,21 @@ CHAOS = f"{ROD}{ROD}[start]\nq_deg = [-85, -80]\n[run]\nt_end = 40.0\n"
         (
             lambda: pc.Scene.textbook().accelerations([0, 0], [0, 0]),
             "Scene.accelerations: needs qd: Scene.accelerations(t=..., q=..., qd=...)",
+        ),
+        (lambda: pc.Scene.textbook().mass_matrix(), "Scene.mass_matrix: needs q: Scene.mass_"),
+        (
+            lambda: pc.Case(pc.Scene.textbook(), [1, 1]),
+            "Case: takes what it is given by name: Case(",
+        ),
+        (
+            lambda: pc.simulate(pc.Scene.textbook(), 1.0, 0.0, (0, 1), "dopri5"),
+            "simulate: takes scene, q0, qd0, t_span by position, and by name: method=..., rtol=",
+        ),
+        (lambda: RUN.resume(), "Solution.resume: needs t_end: Solution.resume(t_end=...)"),
+        (lambda: RUN.defect(True), "Solution.defect: takes what it is given by name: Solution.def"),
+        (
+            lambda: RUN.valid_until(0.1, "position"),
+            "Solution.valid_until: takes limit by position, and by name: of=..., time_limit=...",
         ),
     ],
 )
@@ -54,6 +73,9 @@ def test_found_events_are_a_list_that_has_arrays() -> None:
     assert found.q.shape == found.qd.shape == (len(found), 2)
     assert np.array_equal(found.y, [one.y for one in found])
     assert found.direction.tolist() == [one.direction for one in found]
+    assert np.array_equal(found[1:].q, found.q[1:])
+    assert found[::-1][0] is found[-1]
+    assert np.array_equal(pickle.loads(pickle.dumps(found))[:1].y, found.y[:1])
     none = pc.simulate(pc.Scene.textbook(), [0.8, 1.0], t_span=(0, 1e-3), events=[event]).events[0]
     assert none.q.shape == (0, 2)
 
@@ -160,6 +182,43 @@ def test_trust_tells_horizon_exponent_and_defect(
         assert told["defect"] == sol.defect().largest
     assert main(["trust", str(case)]) == 0
     assert "right to 0.1 rad until t = " in capsys.readouterr().out
+
+
+def test_trust_tells_of_the_best_run_where_an_error_was_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    case = tmp_path / "chaos.toml"
+    case.write_text(f"{CHAOS}error = 1e-6\n")
+    assert main(["trust", str(case)]) == 0
+    told = capsys.readouterr()
+    assert "not reached" in told.err
+    assert "and lost after that" in told.out
+
+
+def test_trust_names_its_options_and_says_once_what_it_has_not(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for command, option in (("trust", "--limit"), ("trust", "--time-limit"), ("cost", "--repeats")):
+        assert main([command, option, "0"]) == 2
+        assert f"pendcore {command}: {option} = 0" in capsys.readouterr().err
+    case = tmp_path / "chaos.toml"
+    case.write_text(f'{CHAOS}store = "end"\n')
+    assert main(["trust", str(case)]) == 0
+    told = capsys.readouterr().out
+    assert "right to 0.1 rad not known: wrong at its end" in told
+    assert "at 1 time from" in told
+    assert "no defect: this solution keeps no dense output" in told
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
+def test_a_full_disk_names_what_is_printed() -> None:
+    with Path("/dev/full").open("w") as full:
+        made = subprocess.run(
+            [sys.executable, "-m", "pendcore", "explain"],
+            stdout=full, stderr=subprocess.PIPE, text=True, check=False,
+        )  # fmt: skip
+    assert made.returncode == 1
+    assert made.stderr == "pendcore explain: standard output: No space left on device\n"
 
 
 def test_an_error_of_the_command_line_is_not_blamed_on_the_file(

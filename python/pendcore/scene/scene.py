@@ -155,6 +155,7 @@ class SceneData:
             np.broadcast_to(qd, (*lead, n)).reshape(-1, n),
         ).reshape(*lead, n)
 
+    @known_keywords
     def mass_matrix(self, q: npt.ArrayLike) -> Floats:
         """Mass matrix of the equations of motion, symmetric and positive definite.
 
