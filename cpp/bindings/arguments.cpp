@@ -1,5 +1,8 @@
 #include "arguments.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace pendcore::bindings {
 namespace {
 
@@ -91,6 +94,33 @@ std::vector<double> numbers(const char* name, py::handle value, const std::strin
                           wanted);
   }
   return {array->data(), array->data() + array->size()};
+}
+
+bool take_plain(py::handle value, double& x) {
+  if (!is_plain_number(value)) return false;
+  x = PyFloat_AsDouble(value.ptr());
+  if (x == -1.0 && PyErr_Occurred() != nullptr) {  // an integer beyond the range of doubles
+    PyErr_Clear();
+    return false;
+  }
+  return std::isfinite(x);
+}
+
+bool take_plain(py::handle value, std::span<double> into) {
+  if (PyList_Check(value.ptr()) || PyTuple_Check(value.ptr())) {
+    const auto size = static_cast<std::size_t>(PySequence_Fast_GET_SIZE(value.ptr()));
+    if (size != into.size()) return false;
+    PyObject* const* items = PySequence_Fast_ITEMS(value.ptr());
+    for (std::size_t i = 0; i < size; ++i) {
+      if (!take_plain(items[i], into[i])) return false;
+    }
+    return true;
+  }
+  if (!Array::check_(value)) return false;
+  const auto array = py::reinterpret_borrow<Array>(value);
+  if (array.ndim() != 1 || static_cast<std::size_t>(array.size()) != into.size()) return false;
+  std::copy_n(array.data(), into.size(), into.begin());
+  return std::ranges::all_of(into, [](double x) { return std::isfinite(x); });
 }
 
 py::array view(const std::vector<double>& numbers, std::vector<py::ssize_t> shape,

@@ -6,6 +6,7 @@
 #include <pybind11/pybind11.h>
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,6 +35,12 @@ bool truth(const char* name, py::handle value);
 /// real numbers, ValueError for more axes, which says the shape that is `wanted`.
 std::vector<double> numbers(const char* name, py::handle value, const std::string& wanted = "(k,)",
                             std::size_t copies = 1);
+
+/// Takes what needs no conversion, and raises nothing for anything else: who called says what is
+/// wrong with that. `x` is a finite number alone; `into` takes as many of them as it has room for,
+/// from a list, a tuple, or an array of doubles with one axis.
+bool take_plain(py::handle value, double& x);
+bool take_plain(py::handle value, std::span<double> into);
 
 /// A read-only array of that shape over numbers that `owner` keeps alive.
 py::array view(const std::vector<double>& numbers, std::vector<py::ssize_t> shape,

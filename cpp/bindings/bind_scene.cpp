@@ -1,9 +1,9 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "arguments.hpp"
 #include "bind_effects.hpp"
@@ -77,19 +77,22 @@ Array acceleration_rows(const Scene& scene, const Array& t, const Array& q, cons
   return result;
 }
 
-/// The accelerations of one state, without the array conversions that many states need. Nothing
-/// where an argument has another shape or is not finite: the caller then says which.
-std::optional<Array> acceleration_of_state(const Scene& scene, double t, const Array& q,
-                                           const Array& qd) {
+/// The accelerations of one state, without the conversions to arrays of rows that many states need.
+/// Nothing where t is no finite number, or q or qd are not n of them: the caller then says which.
+std::optional<Array> acceleration_of_state(const Scene& scene, py::handle t, py::handle q,
+                                           py::handle qd) {
   const FloatingPointEnvironment ieee;
-  const auto n = static_cast<py::ssize_t>(scene.links.size());
-  const auto is_finite = [](double x) { return std::isfinite(x); };
-  const bool fits = q.ndim() == 1 && qd.ndim() == 1 && q.size() == n && qd.size() == n &&
-                    std::isfinite(t) && std::all_of(q.data(), q.data() + n, is_finite) &&
-                    std::all_of(qd.data(), qd.data() + n, is_finite);
-  if (!fits) return std::nullopt;
-  Array result(n);
-  accelerations(equations_of_motion(scene), t, q.data(), qd.data(), result.mutable_data());
+  const std::size_t n = scene.links.size();
+  double time = 0.0;
+  std::vector<double> state(2 * n);
+  const std::span<double> angles(state.data(), n);
+  const std::span<double> rates(state.data() + n, n);
+  if (!take_plain(t, time) || !take_plain(q, angles) || !take_plain(qd, rates)) {
+    return std::nullopt;
+  }
+  Array result(static_cast<py::ssize_t>(n));
+  accelerations(equations_of_motion(scene), time, angles.data(), rates.data(),
+                result.mutable_data());
   return result;
 }
 

@@ -29,7 +29,7 @@ class Scene:
         qd: npt.NDArray[np.float64],
     ) -> npt.NDArray[np.float64]: ...
     def acceleration_of_state(
-        self, t: float, q: npt.NDArray[np.float64], qd: npt.NDArray[np.float64]
+        self, t: npt.ArrayLike, q: npt.ArrayLike, qd: npt.ArrayLike
     ) -> npt.NDArray[np.float64] | None: ...
     def jacobian(
         self,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import subprocess
 import sys
 from pathlib import Path
 from typing import Any
@@ -71,6 +72,19 @@ def test_the_lines_of_the_first_steps_run(tmp_path, monkeypatch, capsys):
     exec(threads, names)
     alone = pc.simulate(names["scene"], names["starts"][3], t_span=(0, 5))
     assert np.array_equal(names["runs"][3].y, alone.y)
+
+
+def test_make_demo_says_where_the_command_is_what_takes_long_and_brings_what_comes_next():
+    told = subprocess.run(
+        ["make", "--always-make", "--dry-run", "demo"],
+        cwd=ROOT, capture_output=True, text=True, check=True,
+    ).stdout  # fmt: skip
+    assert ".venv/bin/pendcore --help" in told
+    assert "compiles the core" in told
+    assert "requirements.py symbolic" in told, "pendcore derive is what comes next"
+    readme = (ROOT / "README.md").read_text()
+    assert re.search(r"compiles the\s+core", readme)
+    assert re.search(r"`pip install \.` in a clone compiles", readme)
 
 
 def test_the_page_by_hand_has_the_numbers_of_its_formulas(capsys):

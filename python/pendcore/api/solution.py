@@ -16,6 +16,7 @@ from pendcore.api.solve import solve
 from pendcore.cases.archive import save
 from pendcore.cases.case import CaseData
 from pendcore.horizon.lyapunov import LyapunovExponents, lyapunov_of
+from pendcore.messages.arguments import known_keywords
 from pendcore.messages.frozen_state import frozen_state
 from pendcore.messages.progress import Progress
 from pendcore.run.call import resumed
@@ -53,6 +54,7 @@ class Solution(RunResult):
     __slots__ = ()
     scene: Scene
 
+    @known_keywords
     def defect(self, *, progress: Progress = None) -> Defect:
         """Return the spurious torques: what motors would have to add to make the curve exact.
 
@@ -62,6 +64,7 @@ class Solution(RunResult):
         """
         return defect(self.scene, self.run, progress)
 
+    @known_keywords
     def error(self, *, time_limit: float | None = None, progress: Progress = None) -> ErrorEstimate:
         """Estimate the error over time from independent second runs, made when first asked for.
 
@@ -88,6 +91,7 @@ class Solution(RunResult):
         """
         return error_of(self, time_limit=time_limit, progress=progress)
 
+    @known_keywords
     def valid_until(
         self, limit: float = 0.1, *, of: str = "angle", time_limit: float | None = None
     ) -> float:
@@ -104,6 +108,7 @@ class Solution(RunResult):
         """
         return self.error(time_limit=time_limit).valid_until(limit, of=of)
 
+    @known_keywords
     def lyapunov(
         self,
         *,
@@ -115,6 +120,7 @@ class Solution(RunResult):
         """Compute the Lyapunov exponents of this very run, 1/s; see `pendcore.lyapunov`."""
         return lyapunov_of(self, count, transient, t_eval, progress)
 
+    @known_keywords
     def resume(
         self,
         t_end: float,
@@ -160,6 +166,7 @@ class Solution(RunResult):
         """Return the case of this run, ready to be run again or written as TOML."""
         return Case.of_solution(self)
 
+    @known_keywords
     def save(self, path: str | os.PathLike[str], *, progress: Progress = None) -> None:
         """Write everything to a file of NumPy's npz format; see `pendcore.load`.
 

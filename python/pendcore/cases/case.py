@@ -11,7 +11,7 @@ from typing import Any, Self
 import numpy as np
 import numpy.typing as npt
 
-from pendcore.messages.arguments import finite_array, vector
+from pendcore.messages.arguments import finite_array, known_keywords, vector
 from pendcore.messages.frozen_state import frozen_state
 from pendcore.run.events import Event, Function, events_asked_for
 from pendcore.run.options import RUN_DEFAULTS
@@ -32,6 +32,7 @@ class CaseData:
     name: str
     options: Mapping[str, Any]
 
+    @known_keywords
     def __init__(
         self,
         *,

@@ -64,7 +64,9 @@ def main(argv: Sequence[str] | None = None) -> int:
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             return 141
         except OSError as error:
-            print(f"pendcore {args.command}: {error}", file=sys.stderr)
+            # Whatever writes a file names it: what has no name is what is printed.
+            told = error if error.filename else f"standard output: {error.strerror or error}"
+            print(f"pendcore {args.command}: {told}", file=sys.stderr)
             return 1
 
 

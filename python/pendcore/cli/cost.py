@@ -69,6 +69,10 @@ def execute(args: argparse.Namespace) -> int:
     """Do it; return the exit status."""
     if not args.error > 0:
         raise UsageError(f"--error = {args.error!r}: must be > 0, a share of the total length")
+    if not args.time_limit > 0:
+        raise UsageError(f"--time-limit = {args.time_limit!r}: must be > 0 (s)")
+    if args.repeats < 1:
+        raise UsageError(f"--repeats = {args.repeats}: must be >= 1")
     with blamed_on_usage():
         case = case_of(args)
     folder = folder_of(args)

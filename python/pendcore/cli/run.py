@@ -12,6 +12,7 @@ from pendcore.cases.archive import save
 from pendcore.cases.case_file import with_line
 from pendcore.cli.case_and_folder import add_case_and_folder, case_of, folder_of
 from pendcore.cli.files_to_write import FilesToWrite
+from pendcore.cli.horizon import Horizon, unasked_horizon
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder
 from pendcore.run.accuracy import AccuracyError
 from pendcore.run.run_error import CAN_GO_ON
@@ -49,10 +50,6 @@ a case:
 FILES = ("summary.txt", "summary.json", "angles.png", "solution.npz")
 _MANY_STEPS = 100_000
 """What takes seconds to write."""
-LIMIT = 0.1
-"""rad; a run counts as right until the error of an angle passes it."""
-MOST_WORK, PATIENCE = 1_000_000, 10.0
-"""Right-hand sides of a run whose horizon is estimated unasked, and s of computing for that."""
 
 
 def add_parser(commands: Any) -> None:
@@ -90,7 +87,7 @@ def execute(args: argparse.Namespace) -> int:
     with new_folder(folder):
         solution, complaint, refusal = _simulated(case, args)
         files = FilesToWrite(folder, FILES)
-        horizon = None if args.no_horizon else _horizon(solution)
+        horizon = None if args.no_horizon else unasked_horizon(solution)
         found = _write(files, solution, refusal, horizon)
         print(files.outcome(), file=sys.stderr)
         if not solution.success:
@@ -132,38 +129,24 @@ def _with_error(case: Case, error: float) -> Case:
     )  # fmt: skip
 
 
-def _horizon(solution: Solution) -> float | None:
-    """Return until when the run is right to `LIMIT`, s; None where nothing is known of it.
-
-    Second runs take a few times as long as the run. Where they took longer than anybody waits for
-    unasked, `pendcore trust` tells.
-    """
-    if solution.store != "dense" or solution.stats.nfev > MOST_WORK:
-        return None
-    try:
-        estimate = solution.error(time_limit=PATIENCE)
-    except (ValueError, KeyboardInterrupt):
-        return None
-    until = estimate.valid_until(LIMIT)
-    return until if estimate.is_complete or until < estimate.t[-1] else None
-
-
 def _write(
-    files: FilesToWrite, solution: Solution, refusal: str, horizon: float | None
+    files: FilesToWrite, solution: Solution, refusal: str, horizon: Horizon | None
 ) -> dict[str, Any]:
     """Write what is small first; return the facts, if there was time to find them."""
     found: dict[str, Any] = {}
+    until = None if horizon is None else horizon.valid_until
     if (steps := len(solution.run.step_starts)) > _MANY_STEPS:
         print(f"writing {steps} steps to {files.folder}", file=sys.stderr)
     with files.needed_for("summary.txt", "summary.json"):
-        found = facts(solution, refusal) | {"valid_until": horizon}
+        found = facts(solution, refusal)
+        found |= {"valid_until": until, "horizon": horizon and horizon.sentence}
     if found:
         with files.one("summary.txt") as path:
             path.write_text(text(found), encoding="utf-8")
         with files.one("summary.json") as path:
             path.write_text(json.dumps(found, indent=2) + "\n", encoding="utf-8")
     with files.one("angles.png") as path:
-        save_figure(solution, path, None if horizon is None else LIMIT)
+        save_figure(solution, path, until)
     with files.needed_for("solution.npz"):
         save(solution, files.folder / "solution.npz")
     return found

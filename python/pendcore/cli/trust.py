@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import argparse
 import json
+import sys
 from math import isfinite
 from pathlib import Path
 from typing import Any
 
 from pendcore.api.files import load, read_case
 from pendcore.api.solution import Case, Solution
-from pendcore.cli.usage import blamed_on_usage
+from pendcore.cli.horizon import LIMIT, horizon_of
+from pendcore.cli.usage import UsageError, blamed_on_usage
+from pendcore.run.accuracy import AccuracyError
 
 _EPILOG = """
 what is told:
@@ -41,7 +44,7 @@ def add_parser(commands: Any) -> None:
         help="a solution that `pendcore run` wrote, or a case; default: the textbook's case",
     )
     parser.add_argument(
-        "--limit", type=float, default=0.1, metavar="RAD", help="of an angle; default: 0.1 rad"
+        "--limit", type=float, default=LIMIT, metavar="RAD", help="of an angle; default: 0.1 rad"
     )
     parser.add_argument(
         "--time-limit", type=float, metavar="S", help="s of computing for the second runs"
@@ -52,6 +55,10 @@ def add_parser(commands: Any) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Do it; return the exit status."""
+    if not args.limit > 0:
+        raise UsageError(f"--limit = {args.limit!r}: must be > 0 (rad)")
+    if args.time_limit is not None and not args.time_limit > 0:
+        raise UsageError(f"--time-limit = {args.time_limit!r}: must be > 0 (s)")
     with blamed_on_usage():
         solution = _solution(args.what)
         found = trust(solution, args.limit, args.time_limit)
@@ -67,34 +74,41 @@ def _solution(what: Path | None) -> Solution:
     if what is not None and what.suffix == ".npz":
         return load(what)
     case = Case.textbook() if what is None else read_case(what)
-    return case.simulate(check=False)
+    try:
+        return case.simulate(check=False)
+    except AccuracyError as refusal:
+        if not isinstance(refusal.solution, Solution):
+            raise UsageError(str(refusal)) from None
+        print(f"{refusal}; what follows is of the most accurate run", file=sys.stderr)
+        return refusal.solution
 
 
 def trust(
     solution: Solution, limit: float, time_limit: float | None
 ) -> dict[str, tuple[float | None, str]]:
     """Return each number, None where there is none, with a sentence."""
-    until = solution.valid_until(limit, time_limit=time_limit)
     estimate = solution.error(time_limit=time_limit)
-    end = solution.run.t_reached
-    right = f"right to {limit:g} rad until t = {until:.6g} s"
-    if until == end:
-        right += ", its end"
+    horizon = horizon_of(solution, estimate, limit)
     found: dict[str, tuple[float | None, str]] = {
-        "valid_until": (until, right),
+        "valid_until": (horizon.valid_until, f"right to {limit:g} rad {horizon.sentence}"),
         "largest_error": (_number(estimate.largest), str(estimate)),
     }
     try:
         growth = solution.lyapunov()
         found["lyapunov_exponent"] = (_number(growth.largest), str(growth))
     except ValueError as refusal:  # dry friction and stops: neighbours part at no rate
-        found["lyapunov_exponent"] = (None, f"no Lyapunov exponent: {refusal}")
+        found["lyapunov_exponent"] = (None, f"no Lyapunov exponent: {_without_name(refusal)}")
     try:
         defect = solution.defect()
         found["defect"] = (_number(defect.largest), str(defect))
     except ValueError as refusal:
-        found["defect"] = (None, f"no defect: {refusal}")
+        found["defect"] = (None, f"no defect: {_without_name(refusal)}")
     return found
+
+
+def _without_name(refusal: ValueError) -> str:
+    """Return a complaint without the name of the method that it begins with."""
+    return str(refusal).removeprefix("lyapunov: ").removeprefix("defect: ")
 
 
 def _number(x: float) -> float | None:

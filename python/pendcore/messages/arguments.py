@@ -70,6 +70,9 @@ def _call_complaint(
     missing = [name for name in missing if name not in given and name in own]
     if len(args) > len(by_place):
         by_name = ", ".join(f"{name}=..." for name in own if name not in given)
+        by_itself = ", ".join(one.name for one in by_place if one.name in own)
+        if by_itself:
+            return f"{owner}: takes {by_itself} by position, and by name: {by_name or 'no more'}"
         return f"{owner}: takes what it is given by name: {owner}({by_name})"
     if missing:
         call = ", ".join(f"{name}=..." for name in own if name in missing or name in given)

@@ -86,7 +86,7 @@ class ErrorEstimate:
 
     def __str__(self) -> str:
         until = self.t[-1] if len(self.t) else self.begin
-        where = "everywhere" if self.is_dense else f"at {len(self.t)} times"
+        where = "everywhere" if self.is_dense else f"at {len(self.t)} time{'s'[: len(self.t) != 1]}"
         ends = ""
         if self.is_lost:
             ends = "; past that the runs have nothing to do with each other any more"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Self, SupportsIndex, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -72,6 +72,15 @@ class FoundEvents(list[Found]):
     def __init__(self, links: int, found: Iterable[Found] = ()) -> None:
         super().__init__(found)
         self._links = links
+
+    @overload
+    def __getitem__(self, place: SupportsIndex) -> Found: ...
+    @overload
+    def __getitem__(self, place: slice) -> Self: ...
+    def __getitem__(self, place: SupportsIndex | slice) -> Found | Self:
+        if isinstance(place, slice):
+            return type(self)(self._links, super().__getitem__(place))
+        return super().__getitem__(place)
 
     @property
     def t(self) -> Floats:

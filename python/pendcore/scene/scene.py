@@ -137,10 +137,9 @@ class SceneData:
             If an argument is not finite real numbers of that shape.
         """
         n = len(self.links)
-        if _is_one_state(t, q, qd, n):  # which is to cost a microsecond or two
-            found = self._compiled.acceleration_of_state(t, q, qd)  # type: ignore[arg-type]
-            if found is not None:
-                return found
+        found = self._compiled.acceleration_of_state(t, q, qd)
+        if found is not None:  # one state of plain numbers costs a microsecond, as in a loop
+            return found
         times = finite_array("t", t, "s")
         q, qd = link_array("q", q, n, "rad"), link_array("qd", qd, n, "rad/s")
         try:
@@ -156,6 +155,7 @@ class SceneData:
             np.broadcast_to(qd, (*lead, n)).reshape(-1, n),
         ).reshape(*lead, n)
 
+    @known_keywords
     def mass_matrix(self, q: npt.ArrayLike) -> Floats:
         """Mass matrix of the equations of motion, symmetric and positive definite.
 
@@ -195,16 +195,6 @@ class SceneData:
     def __reduce__(self) -> tuple[object, tuple[object, ...]]:
         # The compiled scene is made anew; what is implausible was said when it was first made.
         return type(self)._unpickled, (self.links, self.gravity, self.effects)
-
-
-def _is_one_state(t: object, q: object, qd: object, n: int) -> bool:
-    return (
-        type(t) is float
-        and isinstance(q, np.ndarray)
-        and isinstance(qd, np.ndarray)
-        and q.shape == qd.shape == (n,)
-        and q.dtype == qd.dtype == np.float64
-    )
 
 
 _OBJECT = {

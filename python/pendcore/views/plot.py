@@ -105,27 +105,32 @@ def plot(
         if label is not None or len(axes) < n:
             axis.legend()
     if horizon is not None:
-        _shade_past(axes, solution, horizon)
+        _shade_past(axes, error_of(solution).valid_until(horizon), solution)
     return lines
 
 
 def save_figure(
-    solution: RunResult, path: str | os.PathLike[str], horizon: float | None = None
+    solution: RunResult, path: str | os.PathLike[str], valid_until: float | None = None
 ) -> None:
-    """Draw the same figure into a file; the suffix says which kind (png, pdf, svg, ...)."""
+    """Draw the same figure into a file; the suffix says which kind (png, pdf, svg, ...).
+
+    What is past ``valid_until``, s, is shaded, if that is known.
+    """
     from matplotlib.figure import Figure
 
     axes = _subplots(Figure, len(solution.scene.links))
-    plot(solution, axes, horizon=horizon)
+    plot(solution, axes)
+    if valid_until is not None:
+        _shade_past(axes, valid_until, solution)
     drawn = BytesIO()  # matplotlib's PDF breaks off with an error of its own if the disk is full
     kind = Path(path).suffix.removeprefix(".")
     axes[0].figure.savefig(drawn, dpi=150, format=kind or None)
     Path(path).write_bytes(drawn.getvalue())
 
 
-def _shade_past(axes: Iterable[Axes], solution: RunResult, limit: float) -> list[Rectangle]:
-    """Shade what lies past `Solution.valid_until` (limit, rad) in each of the axes."""
-    valid, end = error_of(solution).valid_until(limit), solution.run.t_reached
+def _shade_past(axes: Iterable[Axes], valid: float, solution: RunResult) -> list[Rectangle]:
+    """Shade what lies past a time, s, in each of the axes."""
+    end = solution.run.t_reached
     return [] if valid == end else [axis.axvspan(valid, end, **_PAST) for axis in axes]
 
 

@@ -148,10 +148,8 @@ def _happened(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
     yield "work", evaluations(method, found["message"], stats["nfev"])
     if found["accuracy"] is not None:
         yield "accuracy", str(Accuracy.from_dict(found["accuracy"]))
-    until = found.get("valid_until")
-    if until is not None:
-        where = "its end" if until == end["t"] else f"t = {until:.6g} s, and lost after that"
-        yield "right to 0.1 rad", f"until {where}"
+    if found.get("horizon") is not None:
+        yield "right to 0.1 rad", found["horizon"]
     yield "energy drift", energy_drift.text(energy)
     for i, (name, value) in enumerate((found["ledger"] or {}).items()):
         yield "" if i else "ledger", f"{name} {value:.6g} J"

@@ -1,0 +1,65 @@
+"""Until when a run is right, in words: for the summary of `pendcore run`, and `pendcore trust`."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from pendcore.api.solution import Solution
+from pendcore.run.error_estimate import ErrorEstimate
+
+LIMIT = 0.1
+"""rad; a run counts as right until the error of an angle passes it."""
+MOST_WORK, PATIENCE = 1_000_000, 10.0
+"""Right-hand sides of a run whose horizon is estimated unasked, and s of computing for that."""
+
+
+class Horizon(NamedTuple):
+    """Until when a run is right.
+
+    Attributes
+    ----------
+    valid_until : float or None
+        s; None where it is not known.
+    sentence : str
+        The same in words, or why it is not known.
+    may_be_later : bool
+        Whether the estimate was stopped before it came to what it looks for.
+    """
+
+    valid_until: float | None
+    sentence: str
+    may_be_later: bool = False
+
+
+def horizon_of(solution: Solution, estimate: ErrorEstimate, limit: float) -> Horizon:
+    """Return what an estimate tells of a run."""
+    until = estimate.valid_until(limit)
+    compared = float(estimate.t[-1]) if len(estimate.t) else estimate.begin
+    if until != compared or estimate.is_lost:
+        if solution.store == "end":
+            return Horizon(None, "not known: wrong at its end, and no other time was kept")
+        return Horizon(until, f"until t = {until:.6g} s, and lost after that")
+    if not estimate.is_complete:
+        return Horizon(until, f"at least until t = {until:.6g} s", may_be_later=True)
+    if until == solution.run.t_reached:
+        return Horizon(until, "until its end")
+    return Horizon(until, f"until t = {until:.6g} s, the last time that was kept")
+
+
+def unasked_horizon(solution: Solution) -> Horizon:
+    """Return the horizon of a run if nobody has to wait long for it; else say what tells it.
+
+    Second runs take a few times as long as the run.
+    """
+    ask = "`pendcore trust` tells"
+    if solution.stats.nfev > MOST_WORK:
+        return Horizon(None, f"not known: second runs take a while; {ask}")
+    try:
+        found = horizon_of(solution, solution.error(time_limit=PATIENCE), LIMIT)
+    except ValueError as refusal:
+        return Horizon(None, f"not known: {refusal}")
+    except KeyboardInterrupt:
+        return Horizon(None, f"not known: interrupted; {ask}")
+    if found.may_be_later:
+        return Horizon(None, f"{found.sentence}; {ask} how much longer")
+    return found
