@@ -15,7 +15,7 @@ from sweeps import every, few
 
 VALUES = 5
 """Values of each parameter that a reduced sweep meets."""
-WHOLE = "tests/documents/"
+NOT_REDUCED = "tests/documents/"
 """Tests of pages and of the code base are quick, and each page is a case."""
 
 # A busy machine is no failure.
@@ -49,9 +49,9 @@ def _reduce(config: pytest.Config, items: list[pytest.Item]) -> None:
     values, share = config.getoption("values"), config.getoption("share")
     kept = set()
     for name in every(functions, share):
-        is_whole = share == 1 and name.startswith(WHOLE)
+        keeps_all = share == 1 and name.startswith(NOT_REDUCED)
         kept |= {
-            case.nodeid for case in (functions[name] if is_whole else few(functions[name], values))
+            case.nodeid for case in (functions[name] if keeps_all else few(functions[name], values))
         }
     config.hook.pytest_deselected(items=[item for item in items if item.nodeid not in kept])
     items[:] = [item for item in items if item.nodeid in kept]

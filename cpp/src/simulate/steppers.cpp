@@ -1,4 +1,4 @@
-// Every method in the list with every form of the equations of motion.
+// Makes the stepper of a method in the list for a scene, whatever form its equations have.
 #include "pendcore/integrate/methods.hpp"
 #include "pendcore/integrate/radau/implicit_runge_kutta.hpp"
 #include "pendcore/simulate/explicit_stepper.hpp"
@@ -7,7 +7,7 @@
 namespace pendcore {
 namespace {
 
-/// Any form alike: the form is not what an implicit step costs.
+/// One stepper serves all forms: the form hardly changes what an implicit step costs.
 std::unique_ptr<Stepper> implicit(const Collocation& method, const Scene& scene,
                                   const EquationsOfMotion& equations, bool keeps_ledger,
                                   bool compensated) {

@@ -1,4 +1,4 @@
-"""What is read from files: solutions and cases."""
+"""Functions that read solutions and cases from files."""
 
 from __future__ import annotations
 

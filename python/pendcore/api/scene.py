@@ -9,7 +9,7 @@ import numpy.typing as npt
 from pendcore.explanation.explain import explain
 from pendcore.explanation.explanation import Explanation
 from pendcore.messages.arguments import known_keywords, vector
-from pendcore.messages.frozen_state import frozen_state
+from pendcore.scene.frozen_state import frozen_state
 from pendcore.scene.scene import SceneData
 
 

@@ -69,8 +69,9 @@ def simulate(
         Times of the result, s, one or more, within the run and in its order. They do not change
         the steps. Times that the run does not reach are missing from the result.
     store : {"dense", "steps", "times", "end"}, optional
-        What is kept: every step with its interpolant, every step, only ``t_eval``, or only the
-        end. The last two take constant memory. Default: ``"times"`` with a ``t_eval``, otherwise
+        Which states the run keeps. ``"dense"`` keeps every step with its interpolant, ``"steps"``
+        every step, ``"times"`` only those of ``t_eval``, and ``"end"`` only the last. The last two
+        take constant memory. Default: ``"times"`` with a ``t_eval``, otherwise
         ``"dense"``.
     first_step : float, optional
         s, > 0. Default: Hairer's rule chooses it from the start, or the first Taylor series does.

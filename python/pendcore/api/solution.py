@@ -17,13 +17,13 @@ from pendcore.cases.archive import save
 from pendcore.cases.case import CaseData
 from pendcore.horizon.lyapunov import LyapunovExponents, lyapunov_of
 from pendcore.messages.arguments import known_keywords
-from pendcore.messages.frozen_state import frozen_state
 from pendcore.messages.progress import Progress
 from pendcore.run.call import resumed
 from pendcore.run.error_estimate import ErrorEstimate
 from pendcore.run.options import Options
 from pendcore.run.result import RunResult
 from pendcore.run.run_error import checked, require_check
+from pendcore.scene.frozen_state import frozen_state
 from pendcore.views.export import to_pandas, to_xarray
 from pendcore.views.plot import plot
 from pendcore.views.table import html, text

@@ -12,11 +12,11 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore.messages.arguments import finite_array, known_keywords, vector
-from pendcore.messages.frozen_state import frozen_state
 from pendcore.run.events import Event, Function, events_asked_for
 from pendcore.run.options import RUN_DEFAULTS
 from pendcore.run.result import RunResult
 from pendcore.scene.effect_class import Effect, OwnEffect, Part
+from pendcore.scene.frozen_state import frozen_state
 from pendcore.scene.scene import SceneData
 
 

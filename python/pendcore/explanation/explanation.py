@@ -46,7 +46,7 @@ class Explanation:
     Attributes
     ----------
     scene : Scene
-        What is explained.
+        The scene that is explained.
     t : float
         Time at which motors and pivot were looked at, s.
     costs : tuple of Cost

@@ -1,4 +1,4 @@
-"""One run of a scene, as `simulate` makes it but in silence: warnings were given at the first."""
+"""A run of a scene as `simulate` makes it, without warnings: the first run has given them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is known of the error of a run over its curve."""
+"""The estimated error of a run over its whole curve."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from pendcore import _core
 from pendcore.messages.arguments import Floats, known_keywords, number, numbers, whole_number
-from pendcore.messages.frozen_state import frozen_state
+from pendcore.scene.frozen_state import frozen_state
 
 
 @frozen_state

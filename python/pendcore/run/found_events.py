@@ -55,7 +55,7 @@ class Found:
 
 
 class FoundEvents(list[Found]):
-    """All that was found of one event, in the order of the run: a list that has arrays, too.
+    """The times at which one event happened, in the order of the run: a list with arrays.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""The methods of the core, and what it says of each: nothing about one method stands elsewhere."""
+"""The methods of the core, as their descriptors in ``method_info.hpp`` describe them."""
 
 from __future__ import annotations
 
@@ -44,13 +44,11 @@ def described_methods(docstring: str | None) -> str | None:
         return None
     before = docstring.partition("{methods}")[0]
     margin = " " * (len(before) - len(before.rstrip(" ")))
-    sentences = []
+    names_of: dict[str, list[str]] = {}  # one sentence may describe several, such as the pairs
     for one in _core.methods():
-        if one["kind"] != "pair":
-            names = ", ".join(f'``"{name}"``' for name in (one["name"], *one["aliases"]))
-            sentences.append(f"{names}: {one['sentence']}")
-    pairs = ", ".join(f'``"{one["name"]}"``' for one in _core.methods() if one["kind"] == "pair")
-    sentences.append(f"{pairs}: the first, and the second from where stability limits the steps.")
+        names = [f'``"{name}"``' for name in (one["name"], *one["aliases"])]
+        names_of.setdefault(one["sentence"], []).extend(names)
+    sentences = [f"{', '.join(names)}: {sentence}" for sentence, names in names_of.items()]
     hanging = [fill(one, 100, initial_indent=margin, subsequent_indent=margin) for one in sentences]
     return docstring.replace("{methods}", "\n".join(hanging).lstrip())
 

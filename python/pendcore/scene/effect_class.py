@@ -18,8 +18,8 @@ import numpy as np
 
 from pendcore import _core
 from pendcore.messages.arguments import did_you_mean, in_unit, number, numbers, whole_number
-from pendcore.messages.frozen_state import frozen_state
 from pendcore.scene.effect_description import Description, Parameter, docstring, effects, parts
+from pendcore.scene.frozen_state import frozen_state
 
 
 class Described:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from pendcore.messages.arguments import known_keywords, number
-from pendcore.messages.frozen_state import frozen_state
+from pendcore.scene.frozen_state import frozen_state
 
 
 @frozen_state

@@ -22,9 +22,9 @@ from pendcore.messages.arguments import (
     link_array,
     number,
 )
-from pendcore.messages.frozen_state import frozen_state
 from pendcore.messages.warning import warn
 from pendcore.scene.effect_class import Effect
+from pendcore.scene.frozen_state import frozen_state
 from pendcore.scene.link import Link
 
 Member = TypeVar("Member")

@@ -1,5 +1,6 @@
 /// \file
-/// What is known of a method: the one place that the core, Python, figures and pages read.
+/// The descriptor of a method. The core, Python, figures and pages read all that they say of a
+/// method from here.
 #pragma once
 
 #include <span>
