@@ -4,6 +4,7 @@
 
 #include "arguments.hpp"
 #include "bind_events.hpp"
+#include "bind_options.hpp"
 #include "python_monitor.hpp"
 #include "run_state.hpp"
 
@@ -15,16 +16,6 @@ py::ssize_t size(const std::vector<double>& numbers) {
 }
 
 py::array copy_flat(const std::vector<double>& numbers) { return copy(numbers, {size(numbers)}); }
-
-py::object one_or_many(const std::vector<double>& numbers) {
-  if (numbers.size() == 1) return py::float_(numbers[0]);
-  return copy_flat(numbers);
-}
-
-template <class Number>
-py::object or_none(bool given, Number value) {
-  return given ? py::cast(value) : py::none();
-}
 
 /// Every event that was asked for, as (kind, values).
 py::tuple event_pairs(const Run& run) {
@@ -52,26 +43,12 @@ py::list found(const Run& run) {
 py::dict arguments(const Run& run) {
   const Solution& s = run.solution;
   const std::ptrdiff_t n = s.n;
-  const bool times = !s.options.t_eval.empty();
-  py::dict result;
+  py::dict result = as_python(s.options);
   result["q0"] = copy_flat({s.start.begin(), s.start.begin() + n});
   result["qd0"] = copy_flat({s.start.begin() + n, s.start.begin() + 2 * n});
   result["t_start"] = s.t0;
   result["t_end"] = s.t_end;
-  result["method"] = s.options.method;
-  result["rtol"] = one_or_many(s.options.rtol);
-  result["atol"] = one_or_many(s.options.atol);
-  result["t_eval"] = times ? py::object(copy_flat(s.options.t_eval)) : py::none();
-  const Store usual = times ? Store::times : Store::dense;
-  result["store"] = or_none(s.options.store != usual, store_name(s.options.store));
-  result["first_step"] = s.options.first_step;
-  result["max_step"] = s.options.max_step;
-  result["step"] = s.options.step;
-  result["max_steps"] = s.options.max_steps;
   result["events"] = event_pairs(run);
-  result["ledger"] = s.options.ledger;
-  result["compensated"] = s.options.compensated;
-  result["time_limit"] = or_none(std::isfinite(s.options.time_limit), s.options.time_limit);
   return result;
 }
 
@@ -82,8 +59,7 @@ Run resume_run(const Run& run, py::handle t_end, py::handle t_eval, py::handle m
   const std::vector<double> times =
       t_eval.is_none() ? std::vector<double>{} : numbers("t_eval", t_eval);
   const long long most = whole_number("max_steps", max_steps);
-  const double limit =
-      optional_number("time_limit", time_limit).value_or(std::numeric_limits<double>::infinity());
+  const std::optional<double> limit = optional_number("time_limit", time_limit);
   Run longer{.scene = run.scene,
              .solution = {},
              .python_scene = run.python_scene,
@@ -165,8 +141,8 @@ void bind_run(py::module_& module) {
       .def_property_readonly("success",
                              [](const Run& run) { return text(run.solution.status).success; })
       .def_property_readonly("method", [](const Run& run) { return run.solution.options.method; })
-      .def_property_readonly("store",
-                             [](const Run& run) { return store_name(run.solution.options.store); })
+      .def_property_readonly(
+          "store", [](const Run& run) { return store_name(run.solution.options.store.value()); })
       .def_property_readonly("statistics",
                              [](const Run& run) { return statistics(run.solution.statistics); })
       .def_property_readonly("arguments", &arguments)

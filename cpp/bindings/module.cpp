@@ -7,6 +7,7 @@ void bind_effects(pybind11::module_& module);
 void bind_events(pybind11::module_& module);
 void bind_scene(pybind11::module_& module);
 void bind_run(pybind11::module_& module);
+void bind_options(pybind11::module_& module);
 void bind_simulate(pybind11::module_& module);
 void bind_lyapunov(pybind11::module_& module);
 void bind_methods(pybind11::module_& module);
@@ -22,6 +23,7 @@ PYBIND11_MODULE(_core, module, pybind11::mod_gil_not_used()) {
   bind_events(module);
   bind_scene(module);
   bind_run(module);
+  bind_options(module);
   bind_simulate(module);
   bind_lyapunov(module);
   bind_methods(module);

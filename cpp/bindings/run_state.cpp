@@ -33,8 +33,8 @@ class Writer {
     const std::string_view word = text(status).name;
     fields[py::str(key)] = py::str(word.data(), word.size());
   }
-  void operator()(const std::string& key, Store store) {
-    (*this)(key, std::string(store_name(store)));
+  void operator()(const std::string& key, const std::optional<Store>& store) {
+    (*this)(key, std::string(store_name(store.value())));
   }
 };
 
@@ -70,7 +70,7 @@ class Reader {
     }
     throw py::value_error("status = \"" + word + "\": is none");
   }
-  void operator()(const std::string& key, Store& store) const {
+  void operator()(const std::string& key, std::optional<Store>& store) const {
     std::string word;
     (*this)(key, word);
     for (std::size_t i = 0; i < store_names.size(); ++i) {
@@ -119,18 +119,11 @@ void visit(Archive& io, AnySolution& s) {
   io("dense_start_low", s.dense.start_low);
   io("dense_h", s.dense.h);
   io("dense_coefficients", s.dense.coefficients);
-  io("method", s.options.method);
-  io("rtol", s.options.rtol);
-  io("atol", s.options.atol);
-  io("store", s.options.store);
-  io("t_eval", s.options.t_eval);
-  io("first_step", s.options.first_step);
-  io("max_step", s.options.max_step);
-  io("step", s.options.step);
-  io("max_steps", s.options.max_steps);
-  io("time_limit", s.options.time_limit);
-  io("ledger", s.options.ledger);
-  io("compensated", s.options.compensated);
+  Options::for_each([&]<class Option>() {
+    if constexpr (!std::same_as<Option, EventsOption>) {  // event_state.hpp has these
+      io(std::string(Option::info.name), s.options.*Option::field);
+    }
+  });
   io("t_start", s.t0);
   io("t_end", s.t_end);
   io("start", s.start);

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -115,19 +115,7 @@ def simulate(
     qd0: npt.ArrayLike,
     t0: float,
     t_end: float,
-    method: str,
-    rtol: npt.ArrayLike,
-    atol: npt.ArrayLike,
-    t_eval: npt.ArrayLike | None,
-    store: str | None,
-    first_step: float | None,
-    max_step: float,
-    step: float | None,
-    max_steps: int,
-    time_limit: float | None,
-    events: Sequence[tuple[str, dict[str, Any]]],
-    ledger: bool,
-    compensated: bool,
+    options: Mapping[str, Any],
     progress: Callable[[float], object] | None,
     warn: Callable[[str], object],
 ) -> Run: ...
@@ -153,6 +141,7 @@ def accounts() -> dict[str, bool]: ...
 def check_effect(where: str, kind_and_values: tuple[str, Any]) -> None: ...
 def check_part(where: str, name: str, values: dict[str, Any]) -> None: ...
 def check_event(where: str, kind_and_values: tuple[str, dict[str, Any]]) -> None: ...
+def run_options() -> list[dict[str, Any]]: ...
 def methods() -> list[dict[str, Any]]: ...
 def tableau(method: str) -> dict[str, Any]: ...
 def sine_cosine(

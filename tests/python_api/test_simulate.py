@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import re
 import signal
 import sys
 import threading
 import time
 from functools import partial
 from inspect import signature
+from pathlib import Path
 
 import numpy as np
 import pendcore as pc
 import pytest
 from pendcore.messages.progress import ProgressBar
-from pendcore.run.options import RUN_DEFAULTS
+from pendcore.run.options import OPTIONS, RUN_DEFAULTS
+
+sys.path.append(str(Path(__file__).parents[2] / "docs"))
+import write_options
 
 Q0 = (np.pi / 4, np.pi / 3)
 textbook = partial(pc.simulate, pc.Scene.textbook(), Q0, 0.0, (0, 5))
@@ -21,10 +26,34 @@ endless = partial(pc.simulate, pc.Scene.textbook(), Q0, 0.0, (0, 1e9), store="en
 """Would take hours."""
 
 
-def test_cases_know_the_keywords_of_simulate_and_their_defaults():
+def test_the_signature_of_simulate_has_every_option_and_its_default():
     parameters = signature(pc.simulate).parameters.values()
     keywords = [(one.name, one.default) for one in parameters if one.kind is one.KEYWORD_ONLY]
     assert keywords == list(RUN_DEFAULTS.items())
+    assert keywords[:3] == [("method", "auto"), ("rtol", 1e-9), ("atol", 1e-12)]
+
+
+def test_the_docstring_of_simulate_describes_every_option():
+    for name, option in OPTIONS.items():
+        line, text = re.search(rf"^ *{name} : (.*)\n +(.*)", pc.simulate.__doc__, re.M).groups()
+        assert line
+        about = ", ".join(filter(None, (option.unit, option.range)))
+        assert f"{about}. {option.sentence}".removeprefix(". ").startswith(text[:40])
+        assert len(option.sentence) > 15
+
+
+@pytest.mark.parametrize("name", [one.name for one in OPTIONS.values() if one.range])
+def test_a_number_out_of_the_range_of_its_option_is_refused_in_its_words(name):
+    option = OPTIONS[name]
+    least = re.search(r">=? (\d+)", option.range)
+    value = int(least[1]) - 1
+    with pytest.raises(ValueError, match=rf"^{name} = {value}(\.0)?: must be {option.range}"):
+        textbook(**{name: value})
+
+
+def test_what_is_written_from_the_descriptors_of_options_is_what_is_there():
+    for path, text in write_options.written().items():
+        assert path.read_text() == text, f"{path.name}: run: python docs/write_options.py"
 
 
 def same_bits(a, b):

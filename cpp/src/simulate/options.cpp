@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <optional>
+#include <string>
 
 #include "pendcore/arithmetic/epsilon.hpp"
 #include "pendcore/integrate/methods.hpp"
@@ -11,35 +12,57 @@
 namespace pendcore {
 namespace {
 
+bool is_within(const NumberRange& range, double value) {
+  if (!(range.includes_infinity || std::isfinite(value))) return false;
+  return value > range.least || (range.includes_least && value == range.least);
+}
+
 /// One number for all components or one for each, none below `least`.
-std::vector<double> tolerances(const char* name, const std::vector<double>& given,
-                               std::size_t dimension, bool zero_allowed, double least) {
+std::vector<double> tolerances(const OptionInfo& info, const std::vector<double>& given,
+                               std::size_t dimension, double least) {
+  const std::string name(info.name);
   if (given.size() != 1 && given.size() != dimension) {
-    throw std::invalid_argument(std::string(name) + ": has " + std::to_string(given.size()) +
+    throw std::invalid_argument(name + ": has " + std::to_string(given.size()) +
                                 " numbers: must have 1, or " + std::to_string(dimension) +
                                 " (q_1 .. q_n, qd_1 .. qd_n)");
   }
   std::vector<double> result(dimension);
   for (std::size_t i = 0; i < dimension; ++i) {
     const double value = given[given.size() == 1 ? 0 : i];
-    if (!(std::isfinite(value) && (value > 0.0 || (zero_allowed && value == 0.0)))) {
+    if (!is_within(info.range, value)) {
       const std::string index = given.size() == 1 ? "" : "[" + std::to_string(i) + "]";
-      refuse(name + index, value, zero_allowed ? "finite and >= 0" : "finite and > 0");
+      refuse(name + index, value, range_with_unit(info));
     }
     result[i] = std::max(value, least);
   }
   return result;
 }
 
+void check_range(const OptionInfo& info, double value) {
+  if (!is_within(info.range, value)) refuse(std::string(info.name), value, range_with_unit(info));
+}
+
+void check_range(const OptionInfo& info, const std::optional<double>& value) {
+  if (value) check_range(info, *value);
+}
+
+void check_range(const OptionInfo& info, long long value) {
+  if (is_within(info.range, static_cast<double>(value))) return;
+  throw std::invalid_argument(std::string(info.name) + " = " + std::to_string(value) +
+                              ": must be " + range_with_unit(info));
+}
+
+template <class Other>
+void check_range(const OptionInfo& /*info*/, const Other& /*value*/) {}
+
 }  // namespace
 
 std::vector<double> relative_tolerances(const Options& options, std::size_t n) {
-  const double least = 10 * epsilon;
-  return tolerances("rtol", options.rtol, 2 * n, false, least);
+  return tolerances(RtolOption::info, options.rtol, 2 * n, 10 * epsilon);
 }
 
 std::vector<double> absolute_tolerances(const Options& options, std::size_t n) {
-  return tolerances("atol", options.atol, 2 * n, true, 1e-150);
+  return tolerances(AtolOption::info, options.atol, 2 * n, 1e-150);
 }
 
 void check_times(const std::vector<double>& times, double t0, double t_end) {
@@ -66,26 +89,16 @@ void check_times(const std::vector<double>& times, double t0, double t_end) {
 }
 
 void check(const Options& options) {
-  if (!(options.max_step > 0.0)) refuse("max_step", options.max_step, "> 0 (s)");
-  for (const auto& [field, value] :
-       {std::pair{"first_step", options.first_step}, std::pair{"step", options.step}}) {
-    if (value && !(*value > 0.0 && std::isfinite(*value))) {
-      refuse(field, *value, "finite and > 0 (s)");
-    }
-  }
+  Options::for_each([&]<class Option>() { check_range(Option::info, options.*Option::field); });
   if (options.step && options.first_step) {
     throw std::invalid_argument("first_step: a fixed step is given as step: leave one of them out");
   }
   if (options.step && *options.step > options.max_step) {
     refuse("step", *options.step, "<= max_step = " + text(options.max_step) + " (s)");
   }
-  if (!(options.time_limit > 0.0)) refuse("time_limit", options.time_limit, "> 0 (s)");
-  if (options.max_steps < 1) {
-    throw std::invalid_argument("max_steps = " + std::to_string(options.max_steps) +
-                                ": must be >= 1");
-  }
-  const bool takes_times = options.store == Store::times || options.store == Store::dense;
-  if (options.store == Store::times && options.t_eval.empty()) {
+  const Store store = options.store.value_or(usual_store(options));
+  const bool takes_times = store == Store::times || store == Store::dense;
+  if (store == Store::times && options.t_eval.empty()) {
     throw std::invalid_argument("t_eval: none given: store = \"times\" keeps the times in it (s)");
   }
   if (!options.t_eval.empty() && !takes_times) {

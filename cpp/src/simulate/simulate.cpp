@@ -190,12 +190,9 @@ long long attempts(const Statistics& statistics) {
 }
 
 Limits limits_of(const Options& options, double t_end) {
-  return {.t_end = t_end,
-          .max_step = options.max_step,
-          .fixed_step = options.step.has_value(),
-          .max_steps = options.max_steps,
-          .time_limit = options.time_limit,
-          .monitor = options.monitor};
+  Limits limits{.t_end = t_end, .monitor = options.monitor};
+  options.limit(limits);
+  return limits;
 }
 
 }  // namespace
@@ -216,6 +213,7 @@ Solution simulate(const Scene& scene, const std::vector<double>& q0, const std::
   Solution solution;
   solution.options = options;
   solution.options.method = chosen_method(scene, options);
+  solution.options.store = options.store.value_or(usual_store(options));
   solution.options.monitor = nullptr;
   solution.t0 = t0;
   solution.t_end = t_end;
@@ -235,8 +233,8 @@ Solution simulate(const Scene& scene, const std::vector<double>& q0, const std::
 }
 
 Solution resume(const Scene& scene, const Solution& solution, double t_end,
-                const std::vector<double>& t_eval, long long max_steps, double time_limit,
-                const Monitor& monitor) {
+                const std::vector<double>& t_eval, long long max_steps,
+                std::optional<double> time_limit, const Monitor& monitor) {
   const FloatingPointEnvironment ieee;
   Solution longer = solution;
   Options& options = longer.options;

@@ -130,7 +130,7 @@ class Trials:
         method = implicit_method() if self.is_stiff else trial.method
         tightest = TIGHTEST_SECOND.get(leading(method), self.tightest)
         rtol = rounded(scale / error_over_rtol(leading(method)), tightest)
-        ends_anywhere = any(values.get("terminal") for _, values in self.options["wanted"])
+        ends_anywhere = any(values.get("terminal") for _, values in self.options["events"])
         options = {
             "t_eval": None if ends_anywhere else second_times(trial.solution),
             "max_step": other_steps(trial.solution, self.options["max_step"]),

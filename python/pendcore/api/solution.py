@@ -20,7 +20,6 @@ from pendcore.messages.arguments import known_keywords
 from pendcore.messages.progress import Progress
 from pendcore.run.call import resumed
 from pendcore.run.error_estimate import ErrorEstimate
-from pendcore.run.options import Options
 from pendcore.run.result import RunResult
 from pendcore.run.run_error import checked, require_check
 from pendcore.scene.frozen_state import frozen_state
@@ -259,10 +258,10 @@ class Case(CaseData):
 
         If ``check`` is given, it replaces that of the case.
         """
-        options = Options(**self.options)
-        require_check(options.check)
+        options = dict(self.options)
+        require_check(options.get("check"))
         if check is not None:
-            options = options._replace(check=check)
+            options["check"] = check
         try:
             solution = solve(Solution, self.scene, self.q0, self.qd0, self.t_span, options)
         except BaseException as stop:

@@ -13,6 +13,7 @@ from pendcore.cli.case_and_folder import add_case_and_folder, case_of, folder_of
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder, written
 from pendcore.cost.accuracy_cost import AccuracyCost, save_figure, text
 from pendcore.cost.sweep import REPEATS, TIME_LIMIT, accuracy_cost
+from pendcore.run.options import OPTIONS, limits_of_every_method
 
 _EPILOG = """
 what is written into the folder:
@@ -95,7 +96,9 @@ def execute(args: argparse.Namespace) -> int:
 
 def _measured(case: Case, args: argparse.Namespace) -> tuple[AccuracyCost, bool]:
     """Return what was measured, and whether it was all."""
-    options = {key: case.options[key] for key in ("max_step",) if key in case.options}
+    options = {
+        name: value for name, value in case.options.items() if limits_of_every_method(OPTIONS[name])
+    }
     try:
         return accuracy_cost(
             case.scene, case.q0, case.qd0, case.t_span,

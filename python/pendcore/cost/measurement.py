@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from math import inf
 from statistics import median
 from time import monotonic, perf_counter
+from typing import Any
 
 import numpy as np
 
@@ -75,7 +76,7 @@ class Measurement:
     methods: list[str] | None
     tolerances: list[tuple[float, float]]
     steps: list[float] | None
-    max_step: float
+    limits: dict[str, Any]
     points: int
     repeats: int
     time_limit: float
@@ -92,8 +93,8 @@ class Measurement:
         self.asked_t_span = (self.start.t_start, self.start.t_end)
         self.report(0.0)
         pilot = run(
-            self.start, PILOT, store="end", max_step=self.max_step,
-            time_limit=max(PILOT_SHARE * self.time_limit, 1e-3),
+            self.start, PILOT, store="end",
+            time_limit=max(PILOT_SHARE * self.time_limit, 1e-3), **self.limits,
         )  # fmt: skip
         if pilot.status == "time_limit":
             self._cut(pilot.run.t_reached, self._too_little())
@@ -177,8 +178,8 @@ class Measurement:
         while True:
             try:
                 return reference(
-                    self.start, stiff=stiff, points=self.points, max_step=self.max_step,
-                    time_limit=SHARE * self._left(),
+                    self.start, stiff=stiff, points=self.points,
+                    time_limit=SHARE * self._left(), **self.limits,
                 )  # fmt: skip
             except TooFarError as reason:
                 begin = self.start.t_start
@@ -262,7 +263,7 @@ class Measurement:
         """Do what is timed."""
         start, times = self.start, self._times()
         options = (
-            {"rtol": one.rtol, "atol": one.atol, "max_step": self.max_step}
+            {"rtol": one.rtol, "atol": one.atol, **self.limits}
             if one.step is None
             else {"step": one.step}
         )
@@ -293,8 +294,8 @@ class Measurement:
 
     def _halved_steps(self) -> list[float]:
         """Return steps from twice those of a loose run on, halved down to a ten thousandth."""
-        loose = run(self.start, Choice("dopri5", 1e-3, 1e-6), store="end", max_step=self.max_step,
-                    time_limit=0.1 * self._left())  # fmt: skip
+        loose = run(self.start, Choice("dopri5", 1e-3, 1e-6), store="end",
+                    time_limit=0.1 * self._left(), **self.limits)  # fmt: skip
         span = abs(self.start.t_end - self.start.t_start)
         longest = span / max(1.0, np.ceil(loose.stats.accepted / 2))
         return [float(longest / 2**k) for k in range(14)]

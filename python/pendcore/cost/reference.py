@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import inf
 from time import monotonic
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -74,7 +74,7 @@ class Reference(NamedTuple):
 
 
 def reference(
-    start: Start, *, stiff: bool, points: int, max_step: float = inf, time_limit: float
+    start: Start, *, stiff: bool, points: int, time_limit: float, **limits: Any
 ) -> Reference:
     """Run two methods as accurately as doubles allow, each in its share of the time.
 
@@ -88,7 +88,7 @@ def reference(
     until = monotonic() + time_limit
     for choice in _choices(start, stiff):
         left = max(until - monotonic(), 1e-3) / 2
-        runs.append(run(start, choice, times, max_step=max_step, time_limit=left))
+        runs.append(run(start, choice, times, time_limit=left, **limits))
         whole = [made for made in runs if made.success]
         if len(whole) == 2:
             return _compared(whole, times)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterable
 from math import inf
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -26,6 +27,7 @@ from pendcore.messages.progress import Progress, callback, close
 from pendcore.messages.warning import PendcoreWarning, warn
 from pendcore.run.call import Start, atol_beside, forget_inner_runs
 from pendcore.run.methods import methods_named
+from pendcore.run.options import limits_of_every_method, require_options, with_options
 from pendcore.scene.scene import require_start
 
 RTOL = tuple(float(f"1e-{k}") for k in range(2, 15))
@@ -36,6 +38,7 @@ REPEATS = 30
 
 
 @known_keywords
+@with_options(limits_of_every_method)
 def accuracy_cost(
     scene: Scene,
     q0: npt.ArrayLike,
@@ -46,12 +49,12 @@ def accuracy_cost(
     rtol: npt.ArrayLike = RTOL,
     atol: float | None = None,
     step: npt.ArrayLike | None = None,
-    max_step: float = inf,
     points: int = POINTS,
     repeats: int = REPEATS,
     time_limit: float = TIME_LIMIT,
     name: str = "",
     progress: Progress = None,
+    **limits: Any,
 ) -> AccuracyCost:
     """Measure what accuracy costs on a scene: every method at every tolerance, error and time.
 
@@ -70,8 +73,6 @@ def accuracy_cost(
     step : array_like, (k,), optional
         Steps of methods without an error estimate (``"rk4"``), s. Default: halved from the longest
         that the scene allows until one run takes too long.
-    max_step : float
-        s, > 0, of every run.
     points : int
         >= 2. Times, evenly spaced, on which errors are measured. All runs have them as ``t_eval``.
     repeats : int
@@ -85,6 +86,7 @@ def accuracy_cost(
         For people.
     progress
         As in `simulate`.
+    {options}
 
     Returns
     -------
@@ -99,6 +101,7 @@ def accuracy_cost(
         With what was measured so far as the attribute ``accuracy_cost``: no points before there is
         a reference.
     """
+    require_options(limits, limits_of_every_method)
     require_start(scene, q0)
     n = len(scene.links)
     span = time_span(t_span)
@@ -115,7 +118,7 @@ def accuracy_cost(
         methods=None if methods is None else methods_named(methods),
         tolerances=[(r, atol_beside(r) if absolute is None else absolute) for r in tolerances],
         steps=None if step is None else _positive("step", step, "s"),
-        max_step=max_step,
+        limits=limits,
         points=_at_least(2, "points", points),
         repeats=_at_least(1, "repeats", repeats),
         time_limit=time_limit_of(time_limit),

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from math import inf
+from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -58,26 +57,29 @@ def run(
     choice: Choice,
     t_eval: npt.ArrayLike | None = None,
     *,
-    store: str | None = None,
-    first_step: float | None = None,
-    max_step: float = inf,
-    step: float | None = None,
-    max_steps: int = 10_000_000,
-    time_limit: float | None = None,
-    wanted: Sequence[tuple[str, dict[str, Any]]] = (),
-    ledger: bool = False,
     progress: Progress = False,
     warn: Callable[[str], object] = silent,
+    **options: Any,
 ) -> RunResult:
-    """Run; the keywords are those of `simulate`, and ``wanted`` are the core's events."""
-    report = callback(progress)
-    made = _core.simulate(
-        start.scene._compiled, start.q0, start.qd0, start.t_start, start.t_end,
-        choice.method, choice.rtol, choice.atol, t_eval, store,
-        first_step, max_step, step, max_steps, time_limit, wanted, ledger, choice.compensated,
+    """Run; the keywords are those of `simulate`, but that ``events`` are the core's."""
+    return called(
+        RunResult, start, options | choice._asdict() | {"t_eval": t_eval}, callback(progress), warn
+    )
+
+
+def called(
+    kind: type[Result],
+    start: Start,
+    options: Mapping[str, Any],
+    report: Callable[[float], object] | None,
+    warn: Callable[[str], object],
+) -> Result:
+    """Call the core, and return the result as one of a class."""
+    run = _core.simulate(
+        start.scene._compiled, start.q0, start.qd0, start.t_start, start.t_end, options,
         report, warn,
     )  # fmt: skip
-    return completed(RunResult(start.scene, made), report)
+    return completed(kind(start.scene, run), report)
 
 
 def resumed(

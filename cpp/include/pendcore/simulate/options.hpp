@@ -2,52 +2,38 @@
 /// How a run is made: method, tolerances, what is kept, and where it ends at the latest.
 #pragma once
 
-#include <array>
-#include <limits>
-#include <optional>
-#include <string>
-#include <string_view>
 #include <vector>
 
-#include "pendcore/integrate/events/event.hpp"
-#include "pendcore/integrate/loop/integrate.hpp"
+#include "pendcore/simulate/options/atol.hpp"
+#include "pendcore/simulate/options/compensated.hpp"
+#include "pendcore/simulate/options/events.hpp"
+#include "pendcore/simulate/options/first_step.hpp"
+#include "pendcore/simulate/options/ledger.hpp"
+#include "pendcore/simulate/options/max_step.hpp"
+#include "pendcore/simulate/options/max_steps.hpp"
+#include "pendcore/simulate/options/method.hpp"
+#include "pendcore/simulate/options/rtol.hpp"
+#include "pendcore/simulate/options/step.hpp"
+#include "pendcore/simulate/options/store.hpp"
+#include "pendcore/simulate/options/t_eval.hpp"
+#include "pendcore/simulate/options/time_limit.hpp"
 
 namespace pendcore {
 
-/// What is kept of a run. The last mode keeps all, the first two need constant memory.
-enum class Store {
-  end,    ///< the end
-  times,  ///< the times asked for
-  steps,  ///< every accepted step
-  dense,  ///< the polynomials; and the times asked for, or else every accepted step
-};
-
-inline constexpr std::array<std::string_view, 4> store_names = {"end", "times", "steps", "dense"};
-
-constexpr std::string_view store_name(Store store) {
-  return store_names[static_cast<std::size_t>(store)];
-}
-
-/// The method of a run that names none: method_choice.hpp has the rule.
-inline constexpr std::string_view automatic = "auto";
+/// In the order of Python's signature. A new option is one file and its name here.
+using AllOptions = OptionList<MethodOption, RtolOption, AtolOption, TEvalOption, StoreOption,
+                              FirstStepOption, MaxStepOption, StepOption, MaxStepsOption,
+                              TimeLimitOption, EventsOption, LedgerOption, CompensatedOption>;
 
 /// Kept with the solution, so that it can be resumed.
-struct Options {
-  std::string method{automatic};
-  std::vector<double> rtol = {1e-9};   ///< 1 number, or one for each of the 2n components
-  std::vector<double> atol = {1e-12};  ///< likewise; rad and rad/s
-  Store store = Store::dense;
-  std::vector<double> t_eval;        ///< s, the times asked for, strictly monotone along the run
-  std::optional<double> first_step;  ///< s; chosen from the tolerances unless given
-  std::vector<Event> events;         ///< to look for; they change no step
-  bool ledger = false;               ///< keep the work and the losses beside the state
-  bool compensated = false;          ///< carry on what the rounding of each step leaves over
-  double max_step = std::numeric_limits<double>::infinity();    ///< s
-  std::optional<double> step;                                   ///< s, a fixed step
-  long long max_steps = 10'000'000;                             ///< attempted ones
-  double time_limit = std::numeric_limits<double>::infinity();  ///< s of computing
+struct Options : AllOptions {
   Monitor monitor;
 };
+
+/// What is kept of a run whose `store` is not given.
+inline Store usual_store(const Options& options) {
+  return options.t_eval.empty() ? Store::dense : Store::times;
+}
 
 /// Throws std::invalid_argument for options out of their range or at odds with each other, but for
 /// tolerances and the order of times.

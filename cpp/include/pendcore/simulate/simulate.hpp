@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "pendcore/dynamics/equations_of_motion.hpp"
 #include "pendcore/integrate/stepper.hpp"
@@ -34,7 +35,7 @@ Solution simulate(const Scene& scene, const std::vector<double>& q0, const std::
 /// names further times of a run that was asked for times; max_steps, time_limit and monitor count
 /// for this leg. Throws std::invalid_argument for an end, or times, that the run has passed.
 Solution resume(const Scene& scene, const Solution& solution, double t_end,
-                const std::vector<double>& t_eval, long long max_steps, double time_limit,
-                const Monitor& monitor);
+                const std::vector<double>& t_eval, long long max_steps,
+                std::optional<double> time_limit, const Monitor& monitor);
 
 }  // namespace pendcore

@@ -93,7 +93,8 @@ class Run {
     }
     const Target target = next_target(left);
     double h = integrator_.h;
-    const bool is_too_small = std::abs(h) <= few * epsilon * std::abs(t) || std::abs(h) < 1e-300;
+    const bool is_too_small =
+        std::abs(h) <= few * epsilon * std::abs(t) || std::abs(h) < limits_.least_step;
     // Where the target is the next time that there is, a step there may be tried, once.
     if (is_too_small && (!target.is_in_reach || integrator_.control.after_rejection)) {
       const bool is_coarse = integrator_.trial_was_finite || was_stretched_;

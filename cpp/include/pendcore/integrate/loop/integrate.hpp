@@ -44,6 +44,7 @@ using Monitor = std::function<bool(double fraction)>;
 
 struct Limits {
   double t_end;
+  double least_step = 1e-300;  ///< s, below which a step is too small
   double max_step = std::numeric_limits<double>::infinity();  ///< s
   bool fixed_step = false;  ///< keep the position's h, whatever the error
   long long max_steps = std::numeric_limits<long long>::max();  ///< attempted, accepted or not

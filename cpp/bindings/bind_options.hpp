@@ -1,0 +1,20 @@
+/// \file
+/// The options of a run as Python's values, and back.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include "pendcore/simulate/options.hpp"
+
+namespace pendcore::bindings {
+
+namespace py = pybind11;
+
+/// Options by their names, for a chain of n links; those that are missing, or None where that is
+/// allowed, have their defaults. TypeError and ValueError for what is not of an option's type.
+Options options_of(const py::dict& given, std::size_t n);
+
+/// All options by their names, as `options_of` takes them; of events there are none.
+py::dict as_python(const Options& options);
+
+}  // namespace pendcore::bindings

@@ -1,0 +1,89 @@
+"""Writes what is made from the descriptors of a run's options: run it after adding one.
+
+    python docs/write_options.py
+
+It writes python/pendcore/run/keywords.py, and the table of `[run]` in docs/case_files.md. A test
+compares them with what it would write.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import inf
+from pathlib import Path
+
+from pendcore.run.options import OPTIONS, RunOption
+
+ROOT = Path(__file__).parents[1]
+BEGIN, END = "<!-- options: begin -->\n", "<!-- options: end -->"
+HEAD = """\
+| key | unit | default | meaning |
+|---|---|---|---|
+| `t_start` | s | `0.0` | start |
+| `t_end` | s | needed | end; before `t_start` the run goes backward |
+"""
+KEYWORDS = '''"""The keywords of a run, for type checkers and editors.
+
+Written by docs/write_options.py from the descriptors of the options.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TypedDict
+
+import numpy.typing as npt
+
+from pendcore.messages.progress import Progress
+from pendcore.run.events import Event
+
+
+class RunKeywords(TypedDict, total=False):
+    """What `pendcore.simulate` takes by name."""
+
+'''
+
+
+def keywords() -> str:
+    """Return the module with the type of every option."""
+    return KEYWORDS + "".join(f"    {one.name}: {one.annotation}\n" for one in OPTIONS.values())
+
+
+def table() -> str:
+    """Return the rows of the table, a key in each."""
+    rows = (_row(one) for one in OPTIONS.values() if one.name != "events")  # tables of their own
+    return HEAD + "".join(f"| {' | '.join(cells)} |\n" for cells in rows)
+
+
+def _row(one: RunOption) -> Iterator[str]:
+    meaning = one.sentence.partition("\n")[0].replace("``", "`")
+    yield f"`{one.name}`"
+    yield one.unit
+    yield one.if_none.replace("``", "`") if one.default is None else f"`{_toml(one.default)}`"
+    yield f"{one.range}. {meaning}" if one.range else meaning
+
+
+def _toml(value: object) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        return f'"{value}"'
+    if isinstance(value, int):
+        return f"{value:_}"
+    return "inf" if value == inf else f"{value:g}".replace("e-0", "e-")
+
+
+def written() -> dict[Path, str]:
+    """Return every file and its text."""
+    page = ROOT / "docs/case_files.md"
+    before, rest = page.read_text().split(BEGIN)
+    return {
+        ROOT / "python/pendcore/run/keywords.py": keywords(),
+        page: before + BEGIN + table() + END + rest.split(END)[1],
+    }
+
+
+if __name__ == "__main__":
+    for path, text in written().items():
+        path.write_text(text)
+        print(path.relative_to(ROOT))
