@@ -6,34 +6,21 @@
 
 #include "pendcore/arithmetic/floating_point_environment.hpp"
 #include "pendcore/arithmetic/pack.hpp"
+#include "pendcore/integrate/horner.hpp"
 #include "pendcore/integrate/methods.hpp"
 #include "pendcore/integrate/taylor/taylor_step.hpp"
 #include "pendcore/text/message.hpp"
 
 namespace pendcore {
-namespace {
-
-/// Horner's scheme as in step.hpp, for any degree and dimension: the same bits.
-PENDCORE_INLINE void sample_polynomial(const double* coefficients, int degree, int dimension,
-                                       double theta, double* y) {
-  for (int i = 0; i < dimension; ++i) y[i] = coefficients[degree * dimension + i];
-  for (int p = degree - 1; p >= 0; --p) {
-    for (int i = 0; i < dimension; ++i) y[i] = fma(theta, y[i], coefficients[p * dimension + i]);
-  }
-}
-
-}  // namespace
-
 std::vector<double> Solution::at(const std::vector<double>& times) const {
   const FloatingPointEnvironment ieee;
   if (options.store != Store::dense) {
     throw std::invalid_argument(
         "t: this solution keeps no dense output: simulate with store=\"dense\"");
   }
-  static const auto sample = fastest<&sample_polynomial>();
-  static const auto sample_of_series = fastest<&sample_series>();
-  // As the run itself: of a pair, all steps are evaluated as those of its first.
+  // As in the run itself: all steps of a pair are evaluated as those of its first method.
   const bool is_series = find_method(options.method).dense_output_is_series;
+  const auto sample = is_series ? fastest<&sample_series>() : fastest<&sample_rows>();
   const double direction = t_reached < t0 ? -1.0 : 1.0;
   const std::size_t row = static_cast<std::size_t>((dense.degree + 1) * dimension);
   std::vector<double> result(times.size() * static_cast<std::size_t>(dimension));
@@ -50,14 +37,11 @@ std::vector<double> Solution::at(const std::vector<double>& times) const {
           [direction](double a, double b) { return direction * a < direction * b; });
       const auto step = static_cast<std::size_t>(after - dense.start.begin()) - 1;
       const double* coefficients = dense.coefficients.data() + step * row;
-      const double theta = ((time - dense.start[step]) - dense.start_low[step]) / dense.h[step];
       if (time == dense.start[step]) {
         std::copy_n(coefficients, dimension, y);
-      } else if (is_series) {
-        sample_of_series(coefficients, {dense.start[step], dense.start_low[step]}, dense.h[step],
-                         &time, 1, y, dimension, dense.degree);
       } else {
-        sample(coefficients, dense.degree, dimension, theta, y);
+        sample(coefficients, {dense.start[step], dense.start_low[step]}, dense.h[step], &time, 1, y,
+               dimension, dense.degree);
       }
     }
     y += dimension;

@@ -6,6 +6,8 @@
 #include <stdexcept>
 
 #include "pendcore/arithmetic/epsilon.hpp"
+#include "pendcore/integrate/horner.hpp"
+#include "pendcore/integrate/runge_kutta/compensation.hpp"
 
 namespace pendcore {
 namespace {
@@ -54,17 +56,10 @@ void ImplicitRungeKutta::set_tolerances(const double* rtol, const double* atol) 
   newton_tolerance_ = std::max(10.0 * epsilon / smallest, std::min(0.03, std::sqrt(smallest)));
 }
 
-/// The low part of components that are given another value.
-void ImplicitRungeKutta::forget(const double* y, const Rows& instead_of, Rows& low) {
-  for (std::size_t i = 0; i < low.size(); ++i) {
-    if (y[i] != instead_of[i]) low[i] = 0.0;
-  }
-}
-
 void ImplicitRungeKutta::start(const double* y, const double* dydt) {
   // Only now: a pair may never come to need it.
   systems_.resize(n_);
-  forget(y, y_, low_);
+  drop_changed(y, y_.data(), static_cast<int>(low_.size()), low_.data());
   std::copy_n(y, size_, y_.begin());
   std::copy_n(dydt, size_, dydt_.begin());
   has_jacobian_ = false;
@@ -76,7 +71,7 @@ void ImplicitRungeKutta::get_state(double* y) const { std::ranges::copy(y_, y); 
 void ImplicitRungeKutta::get_derivative(double* dydt) const { std::ranges::copy(dydt_, dydt); }
 void ImplicitRungeKutta::get_new_state(double* y) const { std::ranges::copy(y_new_, y); }
 void ImplicitRungeKutta::set_new_state(const double* y) {
-  forget(y, y_new_, low_new_);
+  drop_changed(y, y_new_.data(), static_cast<int>(low_new_.size()), low_new_.data());
   std::copy_n(y, size_, y_new_.begin());
 }
 void ImplicitRungeKutta::evaluate(double t, const double* y, double* dydt) {
@@ -341,8 +336,9 @@ void ImplicitRungeKutta::interpolant(double /*h*/, double* coefficients) {
 
 void ImplicitRungeKutta::sample(const double* coefficients, const TwoDouble& start, double h,
                                 const double* times, int count, double* states) const {
-  static const auto sample_on_this_processor = fastest<&sample_rows<Collocation::degree>>();
-  sample_on_this_processor(coefficients, start, h, times, count, states, size_);
+  static const auto sample_on_this_processor = fastest<&sample_rows>();
+  sample_on_this_processor(coefficients, start, h, times, count, states, size_,
+                           Collocation::degree);
 }
 
 std::vector<double> ImplicitRungeKutta::saved_state() const {

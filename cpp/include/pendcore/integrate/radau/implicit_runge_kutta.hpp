@@ -75,7 +75,6 @@ class ImplicitRungeKutta final : public Stepper {
   bool is_rounding(double h) const;
   void polish(double h);
   void advance();
-  static void forget(const double* y, const Rows& instead_of, Rows& low);
   void integrate_quadratures(double t, double h);
   double squared_norm(const double* error) const;
   double scale(int i) const;

@@ -2,7 +2,8 @@
 /// What the rounding of the state leaves over, as compensated steps carry it along: a low part for
 /// each component, so that y + low is the state to about 106 bits.
 ///
-/// A component that something else than a step sets, as a joint's rate where it comes to rest, is
+/// A compensated step forms the increment h sum b_k k on its own, on top of the low part of y, and
+/// splits its sum with y without error. A component that something else than a step sets, as a joint's rate where it comes to rest, is
 /// exactly what it is set to: its low part is dropped.
 ///
 /// Sources: S. Gill, A process for the step-by-step integration of differential equations in an
@@ -13,16 +14,27 @@
 #include <stdexcept>
 #include <vector>
 
+#include "pendcore/integrate/runge_kutta/step.hpp"
+
 namespace pendcore {
 
-template <class Block, int blocks, bool kept>
-struct Compensation {};
+/// y + (low + h sum b_k k), rounded; `after` becomes what that leaves over.
+template <class Block, class Weights, class Stage>
+PENDCORE_INLINE Block advance_compensated(const Block& y, const Block& low, double h,
+                                          const Weights& weights, const Stage& k, int count,
+                                          Block& after) {
+  const Block increment = advance(low, h, weights, k, count);
+  const Block sum = y + increment;
+  after = left_over(y, increment, sum);
+  return sum;
+}
 
-template <class Block, int blocks>
-struct Compensation<Block, blocks, true> {
-  Block before[blocks] = {};  ///< of y,
-  Block after[blocks] = {};   ///< and of y_new
-};
+/// Drops the low part of those components that are no longer what they were.
+inline void drop_changed(const double* y, const double* before, int count, double* low) {
+  for (int i = 0; i < count; ++i) {
+    if (y[i] != before[i]) low[i] = 0.0;
+  }
+}
 
 /// Whether a stepper's memory holds a low part: that of a run that took no step may be empty.
 /// Throws std::invalid_argument if it is that of another state.

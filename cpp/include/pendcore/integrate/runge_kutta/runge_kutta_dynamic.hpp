@@ -9,9 +9,12 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <tuple>
 #include <utility>
 #include <vector>
 
+#include "pendcore/integrate/horner.hpp"
+#include "pendcore/integrate/runge_kutta/compensation.hpp"
 #include "pendcore/integrate/runge_kutta/step.hpp"
 #include "pendcore/integrate/stepper.hpp"
 
@@ -145,23 +148,6 @@ PENDCORE_INLINE void interpolant_in_memory(const GeneralMemory* memory, double h
   }
 }
 
-/// Horner's scheme as in sample_interpolant, on rows of `dimension` numbers.
-template <int degree>
-PENDCORE_INLINE void sample_rows(const double* coefficients, TwoDouble start, double h,
-                                 const double* times, int count, double* states, int dimension) {
-  for (int k = 0; k < count; ++k) {
-    const double theta = ((times[k] - start.high) - start.low) / h;
-    for (int i = 0; i < dimension; ++i) {
-      double value = coefficients[degree * dimension + i];
-#pragma GCC unroll 16
-      for (int p = degree - 1; p >= 0; --p) {
-        value = fma(theta, value, coefficients[p * dimension + i]);
-      }
-      states[k * dimension + i] = value;
-    }
-  }
-}
-
 /// The numbers of a state stand close together for the loop: (n, n, quadratures). In memory each
 /// row is filled up to whole blocks.
 template <const auto& method, class Block, bool compensated = false>
@@ -207,7 +193,7 @@ class RungeKuttaDynamic final : public Stepper {
     read_rows(atol, memory_.atol);
   }
   void start(const double* y, const double* dydt) override {
-    if constexpr (compensated) forget(y, memory_.y, memory_.low);
+    if constexpr (compensated) drop_low_parts(y, memory_.y, memory_.low);
     read(y, memory_.y);
     read(dydt, memory_.k);
   }
@@ -215,7 +201,7 @@ class RungeKuttaDynamic final : public Stepper {
   void get_derivative(double* dydt) const override { write(memory_.k, dydt); }
   void get_new_state(double* y) const override { write(memory_.y_new, y); }
   void set_new_state(const double* y) override {
-    if constexpr (compensated) forget(y, memory_.y_new, memory_.low_new);
+    if constexpr (compensated) drop_low_parts(y, memory_.y_new, memory_.low_new);
     read(y, memory_.y_new);
   }
 
@@ -263,7 +249,7 @@ class RungeKuttaDynamic final : public Stepper {
   }
   void sample(const double* coefficients, const TwoDouble& start, double h, const double* times,
               int count, double* states) const override {
-    sample_(coefficients, start, h, times, count, states, dimension());
+    sample_(coefficients, start, h, times, count, states, dimension(), degree);
   }
   std::vector<double> saved_state() const override {
     std::vector<double> low;
@@ -282,31 +268,19 @@ class RungeKuttaDynamic final : public Stepper {
     if constexpr (method.info.stability == 0.0) {
       return 0.0;
     } else {
-      static_assert(method.first_same_as_last && stages >= 3 && method.c[stages - 2].value() == 1.0,
-                    "the test for stiffness needs two stages at the end of the step");
-      double rates = 0.0;
-      double states = 0.0;
-      for (int i = 0; i < memory_.error_blocks; ++i) {
+      return stiffness_of_step<method>(h, memory_.error_blocks, [this](int i) {
         const int at = i * width;
-        const Block before = advance(load<Block>(memory_.y + at), h, method.a[stages - 2],
-                                     StageInMemory<Block>{memory_.k + at, size_}, stages - 2);
-        const Block dk = load<Block>(memory_.k + (stages - 1) * size_ + at) -
-                         load<Block>(memory_.k + (stages - 2) * size_ + at);
-        const Block dy = load<Block>(memory_.y_new + at) - before;
-        rates += sum_of_lanes(Block(dk * dk));
-        states += sum_of_lanes(Block(dy * dy));
-      }
-      return states > 0.0 ? std::abs(h) * std::sqrt(rates / states) : 0.0;
+        return std::tuple(load<Block>(memory_.y + at), load<Block>(memory_.y_new + at),
+                          StageInMemory<Block>{memory_.k + at, size_});
+      });
     }
   }
 
  private:
-  /// Forgets what belongs to components that are given another value.
-  void forget(const double* y, const double* instead_of, double* low) const {
-    for (int i = 0; i < dimension(); ++i) {
-      const int at = i < n_ ? i : i < 2 * n_ ? row_ + i - n_ : 2 * (row_ - n_) + i;
-      if (y[i] != instead_of[at]) low[at] = 0.0;
-    }
+  void drop_low_parts(const double* y, const double* before, double* low) const {
+    drop_changed(y, before, n_, low);
+    drop_changed(y + n_, before + row_, n_, low + row_);
+    drop_changed(y + 2 * n_, before + 2 * row_, system_->quadratures, low + 2 * row_);
   }
   void read_rows(const double* from, double* to) const {
     for (int i = 0; i < n_; ++i) {
@@ -341,8 +315,8 @@ class RungeKuttaDynamic final : public Stepper {
       fastest<&dense_stages_in_memory<method, Block>, best_for(width)>();
   void (*interpolant_)(const GeneralMemory*, double,
                        double*) = fastest<&interpolant_in_memory<method, Block>, best_for(width)>();
-  void (*sample_)(const double*, TwoDouble, double, const double*, int, double*,
-                  int) = fastest<&sample_rows<degree>, best_for(width)>();
+  void (*sample_)(const double*, TwoDouble, double, const double*, int, double*, int,
+                  int) = fastest<&sample_rows>();
 };
 
 }  // namespace pendcore

@@ -7,13 +7,10 @@
 ///
 /// A system is a type with `Block` (a double or a pack), `blocks` (how many make a state) and
 /// operator()(t, y, dydt) on blocks.
-///
-/// A `compensated` step carries on what the rounding of y_new leaves over (compensation.hpp): the
-/// increment h sum b_k k is formed on its own, on top of the low part of y, and its sum with y is
-/// split without error.
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <type_traits>
 
@@ -22,19 +19,17 @@
 #include "pendcore/arithmetic/two_double.hpp"
 #include "pendcore/integrate/loop/attempt.hpp"
 #include "pendcore/integrate/loop/step_control.hpp"
-#include "pendcore/integrate/runge_kutta/compensation.hpp"
 #include "pendcore/integrate/runge_kutta/tableau.hpp"
 
 namespace pendcore {
 
-template <const auto& method, class System, bool is_compensated = false>
+template <const auto& method, class System>
 struct StepMemory {
   using Block = typename System::Block;
   static constexpr int blocks = System::blocks;
   static constexpr int stages = std::remove_cvref_t<decltype(method)>::stages;
   static constexpr int all_stages = std::remove_cvref_t<decltype(method)>::all_stages;
   static constexpr int degree = std::remove_cvref_t<decltype(method)>::degree;
-  static constexpr bool compensated = is_compensated;
 
   System system;
   Block y[blocks] = {};
@@ -42,7 +37,6 @@ struct StepMemory {
   Block k[all_stages][blocks] = {};
   Block rtol[blocks] = {};
   Block atol[blocks] = {};
-  [[no_unique_address]] Compensation<Block, blocks, compensated> low = {};
 };
 
 /// start + h (sum of weights[j] k(j) over the first `count` stages); terms with weight zero are
@@ -91,17 +85,6 @@ struct StageBlock {
 };
 template <class Block, int blocks>
 StageBlock(const Block (*)[blocks], int) -> StageBlock<Block, blocks>;
-
-/// y + (low + h sum b_k k), rounded; `after` becomes what that leaves over.
-template <class Block, class Weights, class Stage>
-PENDCORE_INLINE Block advance_compensated(const Block& y, const Block& low, double h,
-                                          const Weights& weights, const Stage& k, int count,
-                                          Block& after) {
-  const Block increment = advance(low, h, weights, k, count);
-  const Block sum = y + increment;
-  after = left_over(y, increment, sum);
-  return sum;
-}
 
 /// The squares of the error over the components, in units of what the tolerances allow.
 template <const auto& method, class Block>
@@ -173,10 +156,10 @@ PENDCORE_INLINE void evaluate_stages(const System& system, double t, double h,
 }
 
 /// Tries a step of size h at time t, as Stepper::attempt says.
-template <const auto& method, class System, bool compensated>
-PENDCORE_INLINE Attempt attempt_step(StepMemory<method, System, compensated>* memory, double t,
-                                     double h, double gain) {
-  using Memory = StepMemory<method, System, compensated>;
+template <const auto& method, class System>
+PENDCORE_INLINE Attempt attempt_step(StepMemory<method, System>* memory, double t, double h,
+                                     double gain) {
+  using Memory = StepMemory<method, System>;
   using Block = typename Memory::Block;
   constexpr int blocks = Memory::blocks;
   constexpr int stages = Memory::stages;
@@ -193,17 +176,8 @@ PENDCORE_INLINE Attempt attempt_step(StepMemory<method, System, compensated>* me
     y[i] = memory->y[i];
     k[0][i] = memory->k[0][i];
   }
-  // Compensated, a stage at the new state comes on its own.
-  constexpr int before_end = stages - (compensated && method.first_same_as_last ? 1 : 0);
-  evaluate_stages<method, 1, before_end>(system, t, h, y, k, z);
-  if constexpr (compensated) {
-#pragma GCC unroll 16
-    for (int i = 0; i < blocks; ++i) {
-      z[i] = advance_compensated(y[i], memory->low.before[i], h, method.b, StageBlock(k, i),
-                                 before_end, memory->low.after[i]);
-    }
-    if constexpr (method.first_same_as_last) system(t + h, z, k[stages - 1]);
-  } else if constexpr (!method.first_same_as_last) {
+  evaluate_stages<method, 1, stages>(system, t, h, y, k, z);
+  if constexpr (!method.first_same_as_last) {
 #pragma GCC unroll 16
     for (int i = 0; i < blocks; ++i) z[i] = advance(y[i], h, method.b, StageBlock(k, i), stages);
   }
@@ -229,10 +203,9 @@ PENDCORE_INLINE Attempt attempt_step(StepMemory<method, System, compensated>* me
 }
 
 /// The stages of the attempted step, from time t, that the dense output alone asks for.
-template <const auto& method, class System, bool compensated>
-PENDCORE_INLINE void dense_stages_of_step(StepMemory<method, System, compensated>* memory, double t,
-                                          double h) {
-  using Memory = StepMemory<method, System, compensated>;
+template <const auto& method, class System>
+PENDCORE_INLINE void dense_stages_of_step(StepMemory<method, System>* memory, double t, double h) {
+  using Memory = StepMemory<method, System>;
   if constexpr (Memory::all_stages > Memory::stages) {
     typename Memory::Block z[Memory::blocks];
     evaluate_stages<method, Memory::stages, Memory::all_stages>(memory->system, t, h, memory->y,
@@ -292,23 +265,26 @@ PENDCORE_INLINE void interpolant_of_step(const Block* y, const Block (*k)[blocks
   }
 }
 
-/// Horner's scheme in theta = (time - start) / h, at `count` times.
-template <class Block, int blocks, int degree>
-PENDCORE_INLINE void sample_interpolant(const double* coefficients, TwoDouble start, double h,
-                                        const double* times, int count, double* states) {
-  constexpr int width = Lanes<Block>::width;
-  for (int k = 0; k < count; ++k) {
-    const double theta = ((times[k] - start.high) - start.low) / h;
-#pragma GCC unroll 16
-    for (int i = 0; i < blocks; ++i) {
-      Block value = load<Block>(coefficients + (degree * blocks + i) * width);
-#pragma GCC unroll 16
-      for (int p = degree - 1; p >= 0; --p) {
-        value = fma(theta, value, load<Block>(coefficients + (p * blocks + i) * width));
-      }
-      store(states + (k * blocks + i) * width, value);
-    }
+/// |h| |k_last - k_before| / |y_last - y_before|, both stages at the end of the step: an estimate of
+/// h |lambda| (Hairer and Wanner II, IV.2). `block` is called with a number below `blocks` and gives
+/// three: y, y_new and the stages there.
+template <const auto& method, class Blocks>
+double stiffness_of_step(double h, int blocks, const Blocks& block) {
+  using Method = std::remove_cvref_t<decltype(method)>;
+  constexpr int stages = Method::stages;
+  static_assert(method.first_same_as_last && stages >= 3 && method.c[stages - 2].value() == 1.0,
+                "the test for stiffness needs two stages at the end of the step");
+  double rates = 0.0;
+  double states = 0.0;
+  for (int i = 0; i < blocks; ++i) {
+    const auto& [y, y_new, k] = block(i);
+    const auto before = advance(y, h, method.a[stages - 2], k, stages - 2);
+    const auto dk = k(stages - 1) - k(stages - 2);
+    const auto dy = y_new - before;
+    rates += sum_of_lanes(dk * dk);
+    states += sum_of_lanes(dy * dy);
   }
+  return states > 0.0 ? std::abs(h) * std::sqrt(rates / states) : 0.0;
 }
 
 }  // namespace pendcore

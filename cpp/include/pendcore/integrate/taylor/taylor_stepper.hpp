@@ -59,7 +59,7 @@ class Taylor final : public Stepper {
   }
 
   void start(const double* y, const double* dydt) override {
-    if constexpr (compensated) forget(y, memory_.y, memory_.low);
+    if constexpr (compensated) drop_low_parts(y, memory_.y, memory_.low);
     read(y, memory_.y, sums_);
     std::copy_n(dydt, dimension(), given_rates_.begin());
     double rate = 0.0;  // squared, of the motion: 1/s^2
@@ -82,7 +82,7 @@ class Taylor final : public Stepper {
   }
   void get_new_state(double* y) const override { write(memory_.y_new, sums_new_, y); }
   void set_new_state(const double* y) override {
-    if constexpr (compensated) forget(y, memory_.y_new, memory_.low_new);
+    if constexpr (compensated) drop_low_parts(y, memory_.y_new, memory_.low_new);
     read(y, memory_.y_new, sums_new_);
     has_new_series_ = false;
   }
@@ -223,12 +223,9 @@ class Taylor final : public Stepper {
     has_series_ = has_new_series_ = false;
   }
 
-  /// Forgets what belongs to components that are given another value.
-  void forget(const double* y, const double* instead_of, double* low) const {
-    for (int i = 0; i < n_; ++i) {
-      if (y[i] != instead_of[i]) low[i] = 0.0;
-      if (y[n_ + i] != instead_of[row_ + i]) low[row_ + i] = 0.0;
-    }
+  void drop_low_parts(const double* y, const double* before, double* low) const {
+    drop_changed(y, before, n_, low);
+    drop_changed(y + n_, before + row_, n_, low + row_);
   }
   void read_rows(const double* from, double* to) const {
     std::copy_n(from, n_, to);
