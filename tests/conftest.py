@@ -64,6 +64,8 @@ class Case:
         self.nodeid = item.nodeid
         callspec = getattr(item, "callspec", None)
         self.indices: dict[str, int] = dict(callspec.indices) if callspec else {}
+        marks = item.iter_markers("every_value")
+        self.kept_whole = frozenset(name for mark in marks for name in mark.args)
 
 
 @pytest.hookimpl(wrapper=True)

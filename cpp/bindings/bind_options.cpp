@@ -150,9 +150,8 @@ Options options_of(const py::dict& given, std::size_t n) {
 
 py::dict as_python(const Options& options) {
   py::dict result;
-  Options::for_each([&]<class Option>() {
-    result[string(Option::info.name)] = given<Option>(options);
-  });
+  Options::for_each(
+      [&]<class Option>() { result[string(Option::info.name)] = given<Option>(options); });
   return result;
 }
 

@@ -230,7 +230,7 @@ def test_the_second_runs_are_made_once(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_an_estimate_that_takes_too_long_ends_where_it_is() -> None:
-    run = pc.simulate(pc.Scene.textbook(), [1.0, 1.0], 0, (0, 5000), max_step=0.05)
+    run = pc.simulate(pc.Scene.textbook(), [1.0, 1.0], 0, (0, 600), max_step=0.05)
     some = run.error(time_limit=0.01)
     assert not some.is_complete
     assert some.t[-1] < 5000

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import product
 from pathlib import Path
 
@@ -18,6 +18,7 @@ ROOT = Path(__file__).parents[2]
 class Case:
     nodeid: str
     indices: dict[str, int] = field(default_factory=dict)
+    kept_whole: frozenset[str] = frozenset()
 
 
 def cases(**counts: int) -> list[Case]:
@@ -40,6 +41,14 @@ def test_each_value_that_is_kept_is_met(values: int) -> None:
 def test_a_sweep_that_is_small_or_has_no_parameters_is_whole() -> None:
     assert few(cases(method=4), 6) == cases(method=4)
     assert few([Case("test_one")], 1) == [Case("test_one")]
+
+
+def test_every_value_of_a_parameter_is_met_that_is_kept_whole() -> None:
+    sweep = [replace(case, kept_whole=frozenset({"joint"})) for case in cases(method=7, joint=20)]
+    kept = few(sweep, 3)
+    assert {case.indices["joint"] for case in kept} == set(range(20))
+    assert {case.indices["method"] for case in kept} == {0, 3, 6}
+    assert len(kept) < 24
 
 
 def test_values_that_never_meet_are_met_all_the_same() -> None:

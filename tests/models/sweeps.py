@@ -19,6 +19,11 @@ class Case(Protocol):
     @property
     def indices(self) -> dict[str, int]: ...
 
+    @property
+    def kept_whole(self) -> frozenset[str]:
+        """Parameters of which every value is met."""
+        ...
+
 
 def few(cases: Sequence[Case], values: int) -> list[Case]:
     """Return cases that meet up to so many values of each parameter, each value at least once.
@@ -27,10 +32,11 @@ def few(cases: Sequence[Case], values: int) -> list[Case]:
     """
     if not cases[0].indices:
         return list(cases)
-    kept = {
-        name: set(spread(sorted({case.indices[name] for case in cases}), values))
-        for name in cases[0].indices
-    }
+    kept = {}
+    for name in cases[0].indices:
+        all_values = sorted({case.indices[name] for case in cases})
+        count = len(all_values) if name in cases[0].kept_whole else values
+        kept[name] = set(spread(all_values, count))
     within = [
         case for case in cases if all(case.indices[name] in some for name, some in kept.items())
     ]

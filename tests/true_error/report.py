@@ -11,7 +11,8 @@ from true_error.judge import Verdict
 
 SHARES = (5, 25, 50, 75, 95, 99, 100)
 NO_REFERENCE, MANY = 0.02, 20
-"""The share of scenes that may lack a reference; of so many scenes one at least is kept."""
+"""The share of scenes that may lack a reference; of how many scenes at least one is kept, and the
+median tells something."""
 UNVERIFIED = 1 / 100
 """The share of scenes that may end unverified."""
 MEDIAN = (0.05, 0.8)
@@ -80,7 +81,7 @@ def broken(verdicts: list[Verdict]) -> list[str]:
     if record["unverified"] > UNVERIFIED * len(verdicts):
         found.append(f"{record['unverified']} of {len(verdicts)} unverified")
     low, high = MEDIAN
-    if record["ratios"] and not low <= record["ratios"]["50"] <= high:
+    if len(verdicts) >= MANY and record["ratios"] and not low <= record["ratios"]["50"] <= high:
         found.append(f"the median of true over asked is {record['ratios']['50']}")
     return found
 

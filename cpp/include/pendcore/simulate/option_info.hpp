@@ -22,11 +22,11 @@ struct NumberRange {
 struct OptionInfo {
   std::string_view name;
   std::string_view unit = {};
-  NumberRange range = {};              ///< of an option that is a number
-  std::string_view type = {};    ///< as docstrings give it, unless the type of the field says it
+  NumberRange range = {};         ///< of an option that is a number
+  std::string_view type = {};     ///< as docstrings give it, unless the type of the field says it
   std::string_view if_none = {};  ///< what a run does if the option is not given and has no default
   std::string_view sentence;
-  bool chosen_for_error = false;  ///< `simulate(error=...)` chooses it
+  bool chosen_for_error = false;     ///< `simulate(error=...)` chooses it
   bool limits_every_method = false;  ///< a comparison of methods gives it to each of them
 };
 

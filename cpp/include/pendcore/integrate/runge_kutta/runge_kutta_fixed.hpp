@@ -58,9 +58,7 @@ class RungeKuttaFixed final : public Stepper {
   void get_derivative(double* dydt) const override { write(memory_.k[0], dydt); }
   void get_new_state(double* y) const override { write(memory_.y_new, y); }
 
-  void set_new_state(const double* y) override {
-    read(y, memory_.y_new);
-  }
+  void set_new_state(const double* y) override { read(y, memory_.y_new); }
 
   void evaluate(double t, const double* y, double* dydt) override {
     evaluate_(&memory_.system, t, y, dydt);
@@ -131,10 +129,10 @@ class RungeKuttaFixed final : public Stepper {
   std::shared_ptr<const void> owner_;
   double t_ = 0.0;  ///< of the attempt
   bool has_dense_stages_ = false;
-  Attempt (*attempt_)(Memory*, double, double, double) =
-      fastest<&attempt_step<method, System>, best_for(width)>();
-  void (*dense_stages_)(Memory*, double, double) =
-      fastest<&dense_stages_of_step<method, System>, best_for(width)>();
+  Attempt (*attempt_)(Memory*, double, double,
+                      double) = fastest<&attempt_step<method, System>, best_for(width)>();
+  void (*dense_stages_)(Memory*, double,
+                        double) = fastest<&dense_stages_of_step<method, System>, best_for(width)>();
   void (*interpolant_)(const Block*, const Block (*)[blocks], double, double*) =
       fastest<&interpolant_of_step<method, Block, blocks>, best_for(width)>();
   void (*sample_)(const double*, TwoDouble, double, const double*, int, double*) =
