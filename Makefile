@@ -11,7 +11,8 @@ export VIRTUAL_ENV := $(CURDIR)/.venv
 export PATH := $(VIRTUAL_ENV)/bin:$(PATH)
 
 DONE := .venv/done
-PIP_INSTALL := python -m pip install --quiet --disable-pip-version-check
+# Python compiles what it imports, and no more, when it does.
+PIP_INSTALL := python -m pip install --quiet --disable-pip-version-check --no-compile
 # On all processors: who runs out of tests takes over half of what another has left.
 PYTEST := pytest -n auto --dist worksteal
 # Where pip builds. The C++ tests and the benchmarks join it there: they are of the very core that is

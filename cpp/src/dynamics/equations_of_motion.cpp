@@ -100,7 +100,7 @@ void accelerations_in_force(const EquationsOfMotion& equations, double t, const 
           static const auto compute = fastest<&of_chain>();
           compute(form.get(), t, q, qd, qdd);
         } else {
-          static const auto compute = fastest<&of_links<Form>>();
+          static const auto compute = fastest<&of_links<Form>, best_for(2)>();
           compute(&form, t, q, qd, qdd);
         }
       },

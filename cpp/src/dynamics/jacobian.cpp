@@ -45,7 +45,7 @@ void Jacobian::compute(double t) const {
           static const auto accelerations = fastest<&of_chain>();
           accelerations(chain_.get(), t, q_.data(), qd_.data(), qdd_.data());
         } else {
-          static const auto accelerations = fastest<&of_links<Form>>();
+          static const auto accelerations = fastest<&of_links<Form>, best_for(2)>();
           accelerations(&form, t, q_.data(), qd_.data(), qdd_.data());
         }
       },

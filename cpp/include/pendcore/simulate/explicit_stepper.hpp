@@ -16,15 +16,25 @@
 
 namespace pendcore {
 
-template <const auto& table, bool compensated>
+template <const auto& table, class Block, bool compensated>
 std::unique_ptr<Stepper> dynamic_stepper(const Scene& scene, const EquationsOfMotion& equations,
                                          bool keeps_ledger) {
-  using Block = Pack<4>;
   constexpr int width = Lanes<Block>::width;
   const int n = static_cast<int>(scene.links.size());
   const int row = (n + width - 1) / width * width;
   return std::make_unique<RungeKuttaDynamic<table, Block, compensated>>(
       std::make_unique<SceneSystem>(scene, equations, row, keeps_ledger), n);
+}
+
+/// Runs that verify others are compensated: few links are worth packs of their own width.
+template <const auto& table>
+std::unique_ptr<Stepper> compensated_stepper(const Scene& scene, const EquationsOfMotion& equations,
+                                             bool keeps_ledger) {
+  switch (scene.links.size()) {
+    case 1: return dynamic_stepper<table, double, true>(scene, equations, keeps_ledger);
+    case 2: return dynamic_stepper<table, Pair, true>(scene, equations, keeps_ledger);
+    default: return dynamic_stepper<table, Pack<4>, true>(scene, equations, keeps_ledger);
+  }
 }
 
 /// The stepper of an explicit Runge-Kutta method. One that is written for the form of the equations
@@ -33,12 +43,12 @@ std::unique_ptr<Stepper> dynamic_stepper(const Scene& scene, const EquationsOfMo
 template <const auto& table>
 std::unique_ptr<Stepper> explicit_stepper(const Scene& scene, const EquationsOfMotion& equations,
                                           bool keeps_ledger, bool compensated) {
-  if (compensated) return dynamic_stepper<table, true>(scene, equations, keeps_ledger);
-  if (keeps_ledger) return dynamic_stepper<table, false>(scene, equations, true);
+  if (compensated) return compensated_stepper<table>(scene, equations, keeps_ledger);
+  if (keeps_ledger) return dynamic_stepper<table, Pack<4>, false>(scene, equations, true);
   return std::visit(
       [&]<class Form>(const Form& form) -> std::unique_ptr<Stepper> {
         if constexpr (std::is_same_v<Form, std::shared_ptr<Chain>>) {
-          return dynamic_stepper<table, false>(scene, equations, false);
+          return dynamic_stepper<table, Pack<4>, false>(scene, equations, false);
         } else {
           using System = FirstOrder<Form>;
           return std::make_unique<RungeKuttaFixed<table, System>>(System{form}, equations.effects);

@@ -22,6 +22,7 @@ class Taylor final : public Stepper {
   using Memory = TaylorMemory<Series>;
   using Block = typename Series::Block;
   static constexpr int width = Lanes<Block>::width;
+  static constexpr InstructionSet best = best_for(width);
 
  public:
   Taylor(Series series, Rates rates, int quadratures)
@@ -187,10 +188,10 @@ class Taylor final : public Stepper {
  private:
   Attempt attempt_(double t, double h) {
     if constexpr (Series::is_short) {
-      static const auto whole = fastest<&attempt_short_series<Series, compensated>>();
+      static const auto whole = fastest<&attempt_short_series<Series, compensated>, best>();
       return whole(&memory_, t, h);
     } else {
-      static const auto advance = fastest<&advance_series<Series, compensated>>();
+      static const auto advance = fastest<&advance_series<Series, compensated>, best>();
       return attempt_series(&memory_, t, h, advance, expand_);
     }
   }
@@ -290,9 +291,9 @@ class Taylor final : public Stepper {
   DominantEigenvalue eigenvalue_;
   std::vector<double> state_ = std::vector<double>(static_cast<std::size_t>(dimension()));
   bool (*expand_)(Memory*, double, const double*, double*, double&,
-                  double&) = fastest<&taylor_detail::expand<Series>>();
+                  double&) = fastest<&taylor_detail::expand<Series>, best>();
   void (*powers_of_step_)(const Memory*, double, int, int, int,
-                          double*) = fastest<&powers_of_step<Series>>();
+                          double*) = fastest<&powers_of_step<Series>, best>();
   void (*sample_)(const double*, TwoDouble, double, const double*, int, double*, int,
                   int) = fastest<&sample_series>();
 };
