@@ -1,4 +1,4 @@
-"""What the commands share that read a case and write into a folder."""
+"""The arguments of commands that read a case and write into a folder."""
 
 from __future__ import annotations
 
@@ -23,5 +23,5 @@ def case_of(args: argparse.Namespace) -> Case:
 
 
 def folder_of(args: argparse.Namespace) -> Path:
-    """Return the folder that was named, or one of the case's name."""
+    """Return the folder that was named, or one named after the case."""
     return args.out or Path("out", args.case.stem if args.case else "textbook")

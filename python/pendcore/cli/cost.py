@@ -66,7 +66,7 @@ def add_parser(commands: Any) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Do it; return the exit status."""
+    """Run the sub-command; return its exit status."""
     if not args.error > 0:
         raise UsageError(f"--error = {args.error!r}: must be > 0, a share of the total length")
     if not args.time_limit > 0:
@@ -94,7 +94,7 @@ def execute(args: argparse.Namespace) -> int:
 
 
 def _measured(case: Case, args: argparse.Namespace) -> tuple[AccuracyCost, bool]:
-    """Return what was measured, and whether it was all."""
+    """Return what was measured, and whether the measurement is complete."""
     options = {key: case.options[key] for key in ("max_step",) if key in case.options}
     try:
         return accuracy_cost(

@@ -79,7 +79,7 @@ def add_parser(commands: Any) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Do it; return the exit status."""
+    """Run the sub-command; return its exit status."""
     with blamed_on_usage():
         case = case_of(args)
         case = case if args.error is None else _with_error(case, args.error)
