@@ -180,11 +180,11 @@ class Trials:
         estimates = self._estimates.items()
         verifying = next((key[1:-1] for key, value in estimates if value is error), ())
         paid = []
-        for run in self.paid:
-            purpose = "verify" if run in verifying else "choose"
-            if run.solution is solution:
+        for made in self.paid:
+            purpose = "verify" if made in verifying else "choose"
+            if made.solution is solution:
                 purpose = "run"
-            paid.append(Paid(purpose, run.method, run.rtol, run.solution.stats.nfev, run.work))
+            paid.append(Paid(purpose, made.method, made.rtol, made.solution.stats.nfev, made.work))
         return tuple(paid)
 
     def _most_steps(self, times: int = 1) -> int:
