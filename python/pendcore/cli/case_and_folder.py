@@ -10,7 +10,7 @@ from pendcore.api.solution import Case
 
 
 def add_case_and_folder(parser: argparse.ArgumentParser) -> None:
-    """Add the two arguments."""
+    """Add the arguments for the case and the folder."""
     parser.add_argument("case", nargs="?", type=Path, metavar="CASE.toml", help="what to simulate")
     parser.add_argument(
         "-o", "--out", type=Path, metavar="FOLDER", help="default: out/ and the name of the case"
