@@ -1,4 +1,4 @@
-"""What a case asks, and what came of it in one program."""
+"""The question of a hard case, and the result in one program."""
 
 from __future__ import annotations
 
