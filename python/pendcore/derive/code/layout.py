@@ -33,7 +33,7 @@ def origin(derivation: Algebra) -> Iterator[str]:
     yield "m, s, rad, N, J."
     yield ""
     yield "M qdd = f are the equations of motion, M11 and f1 entries of both; D1, l21, h1, a2 come"
-    yield "of the elimination, M = L D L^T. cos_q1_q2 is the cosine of q1 - q2; e1, e2, ... is what"
+    yield "from elimination, M = L D L^T. cos_q1_q2 is the cosine of q1 - q2; e1, e2, ... are what"
     yield "several lines share."
 
 
