@@ -1,5 +1,5 @@
 #!/bin/sh
-# Installs the missing ones of the Debian packages that a step of the Makefile needs. When nothing is
+# Installs what is missing of the Debian packages that a step of the Makefile needs. When nothing is
 # missing it does nothing and asks for no password. The step can do without the packages after
 # `also`; they are installed with the others so that a password is asked for only once.
 #

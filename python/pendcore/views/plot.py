@@ -31,7 +31,7 @@ _PAST: dict[str, Any] = {
     "zorder": 0,
 }
 _FEW = 200
-"""Without dense output, up to this many points are marked."""
+"""Without dense output, points are marked if they are fewer than this."""
 _LEAST_SPAN = 0.1
 """deg, the least span of the angle axis, so that rest does not look like its last bits."""
 

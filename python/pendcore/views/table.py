@@ -12,7 +12,7 @@ from pendcore.run.result import RunResult
 from pendcore.views import energy_drift
 
 _MANY = 4000
-"""With more times than this, a repr does not wait for all energies."""
+"""With more times than this, a repr computes the energy at some of them only."""
 
 
 def text(solution: RunResult) -> str:
