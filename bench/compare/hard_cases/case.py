@@ -14,7 +14,7 @@ from multiprocessing.connection import Connection
 
 LONGEST = 60  # s of computing for one contender; whoever takes longer has not returned
 NO_RETURN = "does not return (ended after {} s of computing)"
-PATIENCE = 10  # wall-clock limit as a multiple: the machine may be busy
+PATIENCE = 10  # times LONGEST by the wall clock: the machine may be busy
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -39,11 +39,12 @@ AIM = 0.65
 LEAST_CHANGE, FARTHER = 1.5, 100.0
 """Factors by which the next trial is tighter: at least, and after a failed or chaotic one."""
 LOOSER, NEXT_LOOSER, APART = 50.0, 8.0, 1.9
-"""LOOSER is the factor by which a trial is looser that is made to measure an exponent, NEXT_LOOSER
-the second choice. APART is the least ratio of its scale to that of any other trial."""
+"""A trial that measures an exponent is looser by the factor LOOSER, or else NEXT_LOOSER. Its scale
+differs from that of every other trial by at least the factor APART."""
 BETTER, BETTER_SERIES, SPARED = 25.0, 100.0, 1.6
-"""The least factors by which a second run is tighter than its trial. BETTER_SERIES is that of
-`taylor`, whose order changes with the tolerance. SPARED is a margin on top of either."""
+"""The least factors by which a second run is tighter than its trial. BETTER_SERIES is for `taylor`,
+to which a digit more costs little, and whose order changes with the tolerance. SPARED is a further
+factor that most second runs are tighter by, which lets them verify slightly tighter trials too."""
 FAR_BETTER = 1000.0
 """The same factor for the first second run of `taylor`, which can verify tighter trials too."""
 BETTER_STILL = 8.0
@@ -56,8 +57,8 @@ LIKELY = 0.9
 RATIO = 5.0
 """The least ratio of two scales from which an exponent is measured."""
 FOLLOWS, FOLLOWS_AT_FEW_TIMES, FEW = 2.0, 1.4, 50
-"""The largest believable exponents of the error over the tolerance; one is for fewer than FEW
-times, where an error that is small by chance looks as if it fell faster."""
+"""The largest exponents of the tolerance with which an error may seem to fall. The second is for
+fewer than FEW times, where an error that is small by chance looks as if it fell faster."""
 CAUTION = 0.6
 """The share of a measured exponent that is trusted at tolerances beyond those measured."""
 SHARE, SPARE = 0.35, 0.35
