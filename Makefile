@@ -11,14 +11,14 @@ export VIRTUAL_ENV := $(CURDIR)/.venv
 export PATH := $(VIRTUAL_ENV)/bin:$(PATH)
 
 DONE := .venv/done
-# Python compiles what it imports, and no more, when it does.
+# pip compiles no bytecode: Python does that itself, for what it imports.
 PIP_INSTALL := python -m pip install --quiet --disable-pip-version-check --no-compile
-# On all processors: who runs out of tests takes over half of what another has left.
+# Tests run on all processors; a process without tests takes over half of another's remaining ones.
 PYTEST := pytest -n auto --dist worksteal
-# Where pip builds. The C++ tests and the benchmarks join it there: they are of the very core that is
-# installed, which is compiled once for all of them.
+# The folder where pip builds. The C++ tests and the benchmarks are built there too: so they test the
+# core that is installed, and it is compiled only once.
 BUILT := build/installed
-# Folders too: a file that is added or removed changes its folder.
+# These include folders, which change when a file is added or removed.
 SOURCES := pyproject.toml CMakeLists.txt $(shell find cpp python ! -path '*__pycache__*')
 
 .DEFAULT_GOAL := help
@@ -38,9 +38,9 @@ test: $(DONE)/installed $(DONE)/test-requirements  ## build and run the tests: e
 	$(CPP_TESTS)
 	$(PYTEST)
 
-# What tests are about and skip without is there first: the programs that count instructions, those
-# that are compared with pendcore, the fuzzer of the readers, Octave and pandoc. As in .ci/run, the
-# compiler's first warning is an error.
+# Programs without which tests are skipped are installed first: those that count instructions, those
+# that are compared with pendcore, the fuzzer of the readers, Octave and pandoc. As in .ci/run,
+# compiler warnings are errors.
 test-all: export SKBUILD_CMAKE_DEFINE = PENDCORE_WARNINGS_AS_ERRORS=ON
 test-all: lint tidy build-bench $(DONE)/test-requirements $(DONE)/fuzz-requirements  ## everything: full sweeps, sanitizers, other builds, random cases
 	@sh setup/debian_packages.sh octave pandoc
@@ -77,9 +77,9 @@ tidy: $(DONE)/build-requirements $(DONE)/lint-requirements  ## clang-tidy over t
 	cmake --preset tidy
 	run-clang-tidy.py -quiet -hide-progress -p build/tidy
 
-# What sanitizers look for lies in the code, not in how often it runs: what is slow for other reasons
-# is marked, and left to other commands. Python itself is not built with the sanitizers, so their
-# libraries are loaded before it; what it never frees is not reported.
+# Sanitizers need each line of code to run once, not often: tests that are slow for other reasons are
+# marked `unsanitized` and left out. Python itself is not built with the sanitizers, so their
+# libraries are loaded before it; memory that Python never frees is not reported.
 SANITIZED := $(CURDIR)/build/sanitizer/site
 PRELOAD = $(shell g++ -print-file-name=libasan.so) $(shell g++ -print-file-name=libstdc++.so)
 
@@ -159,7 +159,7 @@ $(DONE)/build-requirements: pyproject.toml | $(DONE)/venv
 	@python setup/requirements.py build | $(PIP_INSTALL) cmake ninja -r /dev/stdin
 	@touch $@
 
-# What is edited while it builds is newer than the stamp, and built the next time.
+# A source that is edited during the build is newer than the stamp, so the next call builds it.
 $(DONE)/installed: $(SOURCES) $(DONE)/build-requirements
 	@touch $@.begun
 	@echo "pip compiles the core and installs it into .venv: one to two minutes the first time"

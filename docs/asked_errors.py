@@ -41,7 +41,7 @@ ROWS: list[tuple[str, str, float | None]] = [
 
 
 def outcome(one: Regular) -> dict[str, Any]:
-    """Ask for the error of a scene; return what came of it as multiples of what is best."""
+    """Ask for the error of a scene; return error and work as multiples of error asked and best."""
     solution = one.run(error=one.error)
     told = solution.accuracy
     assert told is not None

@@ -1,4 +1,4 @@
-"""What `simulate` takes when it is told neither method nor tolerance, and what that is taken from.
+"""The method and tolerances that `simulate` takes by default, and the measurements behind them.
 
     make default-method
 
@@ -27,7 +27,7 @@ sys.path += [str(ROOT / "tests"), str(ROOT / "tests/models")]
 from regular_scenes import EXACT, REGULAR, growth, scene_and_start  # noqa: E402
 
 SCENES = range(1200, 1400)
-"""Seeds that had no part in choosing anything: those of accuracy/method_choice.py are others."""
+"""Seeds other than those from which the bounds of accuracy/method_choice.py were measured."""
 ROUNDS = 7
 DEFAULT = "the default"
 WAYS: dict[str, dict[str, Any]] = {

@@ -1,4 +1,4 @@
-"""Draws docs/figures/defect.png: what torque is missing over time, of a few methods."""
+"""Draws docs/figures/defect.png: the torque that is missing over time, for a few methods."""
 
 from __future__ import annotations
 

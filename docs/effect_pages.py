@@ -1,8 +1,8 @@
 """The pages in docs/effects, from the descriptions of the effects.
 
-docs/write_effects.py writes them; what they have beyond is in effect_sections.py. An example needs
-values that make sense together: EXAMPLES has them for the effects that are here; one without some
-is shown with values that its ranges allow.
+docs/write_effects.py writes them; further sections are in effect_sections.py. An example needs
+values that make sense together: EXAMPLES has them for the present effects, and an effect without an
+example is shown with values that its ranges allow.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What pages in docs/effects have beyond what the core says of their effects."""
+"""Sections of the pages in docs/effects that do not come from the descriptions of the core."""
 
 from __future__ import annotations
 
@@ -99,4 +99,4 @@ between bounces.
 """
 
 MORE = {"torsional_spring": MOVING_END, "joint_stop": IMPACTS}
-"""What a page has beyond what the core says: it goes on from the page's example."""
+"""Further sections by kind; each goes on from the example of its page."""

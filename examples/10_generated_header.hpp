@@ -16,7 +16,7 @@
 /// m, s, rad, N, J.
 ///
 /// M qdd = f are the equations of motion, M11 and f1 entries of both; D1, l21, h1, a2 come
-/// of the elimination, M = L D L^T. cos_q1_q2 is the cosine of q1 - q2; e1, e2, ... is what
+/// from elimination, M = L D L^T. cos_q1_q2 is the cosine of q1 - q2; e1, e2, ... are what
 /// several lines share.
 ///
 ///     M(q) qdd = f(t, q, qd)          M the mass matrix (2 x 2), kg m^2; f in N m

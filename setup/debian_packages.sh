@@ -1,7 +1,7 @@
 #!/bin/sh
-# Installs those of the Debian packages that a step of the Makefile needs which are missing; when
-# nothing is missing it does nothing and asks for no right. What stands after `also` the step can do
-# without, but asking once for everything is kinder.
+# Installs what is missing of the Debian packages that a step of the Makefile needs. When nothing is
+# missing it does nothing and asks for no password. The step can do without the packages after
+# `also`; they are installed with the others so that a password is asked for only once.
 #
 #   setup/debian_packages.sh [python] [compiler] [eigen] [doctest] [benchmark] [boost] [sundials]
 #                            [valgrind] [octave] [pandoc] [also ...]

@@ -1,4 +1,4 @@
-"""On what the figures were measured: without it they mean nothing."""
+"""The machine on which figures were measured: without it they mean nothing."""
 
 from __future__ import annotations
 

@@ -75,7 +75,7 @@ def test_it_is_what_the_equations_of_each_link_say_in_forty_digits(
 ) -> None:
     sol = run(scene, method, 0.25, rtol=1e-6, atol=1e-8)
     found = sol.defect()
-    # of the slope of a rate of some rad/s, in steps of h, rounding leaves 1e-15/h
+    # the slope of a rate of some rad/s, in steps of h, has a rounding error of 1e-15/h
     rounding = 1e-12 / np.diff(sol.t).min()
     np.testing.assert_allclose(found.torque, exact_couples(sol), rtol=1e-7, atol=rounding)
     assert found.largest > 100 * rounding
@@ -100,8 +100,8 @@ def test_it_falls_at_the_order_of_the_interpolant(method: str) -> None:
 
 
 @pytest.mark.parametrize("method", [name for name, m in METHODS.items() if m["kind"] == "pair"])
-def test_of_a_pair_that_changed_over_it_is_told_as_of_its_second(method: str) -> None:
-    """It is that of a run that ends before, and of one that is resumed past it."""
+def test_the_defect_of_a_pair_that_changed_over_is_that_of_its_second_method(method: str) -> None:
+    """Runs that end before the change, and runs resumed past it, say so too."""
     stiff = BOOK.replace(effects=[fx.ViscousJoint(joint=2, damping=1e6 / 3)])
     first, second = method.split("-")
     before = pc.simulate(stiff, [0.8, 1.0], 0.1, (0, 1e-5), method=method)
@@ -175,7 +175,7 @@ def test_what_holds_a_joint_takes_any_torque() -> None:
 
 
 def test_a_run_that_an_event_ends_counts_as_far_as_it_went() -> None:
-    """What the last polynomial does beyond the end is no part of the curve."""
+    """The last polynomial goes on beyond the end; that part does not belong to the curve."""
     whole = pc.simulate(BOOK, START, 0, (0, 1), method="dop853", step=0.1)
     here = pc.events.LinkAngle(2, float(whole(0.501)[1]), terminal=True)
     sol = pc.simulate(BOOK, START, 0, (0, 1), method="dop853", step=0.1, events=[here])

@@ -1,4 +1,4 @@
-"""What a digit is worth: seconds of validity against work, and what the exponents say of it."""
+"""How long runs stay valid for their work, and how that agrees with the Lyapunov exponents."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def test_its_text_says_it_all(work: pc.HorizonWork) -> None:
     assert re.fullmatch(r"Lyapunov exponent [\d.]+/s: a digit more is worth [\d.]+ s", lines[-1])
 
 
-def test_it_is_drawn(work: pc.HorizonWork) -> None:
+def test_horizon_work_is_drawn(work: pc.HorizonWork) -> None:
     mpl.use("Agg")
     sheet = Figure()
     draw_work(work, sheet)

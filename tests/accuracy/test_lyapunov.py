@@ -140,7 +140,7 @@ def spread_of_roundings(case: ChaoticStart) -> NDArray[np.float64]:
 
 @pytest.mark.parametrize("case", chaotic_starts(), ids=lambda case: str(case.q0))
 def test_a_neighbour_in_many_digits_parts_at_that_rate(case: ChaoticStart) -> None:
-    """To the twelve decimals of the record, and what rounding makes of the run itself."""
+    """They agree to the twelve decimals of the record and the rounding of the run itself."""
     assert len(case.growth) == 2 * T_END
     assert EACH % 2 == 0
     exact = np.array(case.growth)
@@ -184,7 +184,7 @@ SMOOTH: dict[str, Callable[[], list[pc.effects.Effect]]] = {
 @pytest.mark.parametrize("n", [2, 3])
 def test_under_effects_neighbours_part_at_that_rate(name: str, n: int) -> None:
     if (name, n) == ("user", 3):
-        pytest.skip("its law is of two links")
+        pytest.skip("the law acts on two links")
     scene, q0 = rods(n, *SMOOTH[name]()), [0.3, 1.1, 0.7][:n]
     found = pc.lyapunov(scene, q0, t_span=(0, 2.0), rtol=1e-11)
     assert found.growth[-1, 0] == pytest.approx(differences(scene, q0, 2.0), abs=2e-5)
@@ -258,7 +258,7 @@ def test_growth_counts_from_the_end_of_the_transient() -> None:
     assert np.isnan(later.finite_time[0]).all()
 
 
-def test_of_a_solution() -> None:
+def test_exponents_of_a_solution_follow_its_run() -> None:
     sol = pc.simulate(rods(2), [-2.0, -1.0], 0, (0, 10), method="dop853")
     found = sol.lyapunov(count=2)
     assert found.growth == pytest.approx(

@@ -1,4 +1,4 @@
-"""What broke the promise of simulate(error=...) once, and holds now."""
+"""Scenes on which simulate(error=...) once broke its promise; now it holds."""
 
 from __future__ import annotations
 
@@ -124,7 +124,7 @@ def test_the_last_bit_of_a_time_is_a_part_of_the_error(t_start: float, error: fl
 
 
 def test_a_run_is_verified_to_the_event_that_ends_it() -> None:
-    """It may come later in a looser trial than in the one for which a second run was made."""
+    """The event may come later in a looser trial than in the one that has a second run."""
 
     def stop(t: float, q: Any, qd: Any) -> Any:
         return [-208.01800826101422 * max(q[0] + 0.47352738352278734, 0.0)]

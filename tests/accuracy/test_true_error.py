@@ -123,7 +123,7 @@ def test_an_error_that_is_not_what_is_told_is_above(family: str) -> None:
 
 
 def test_an_error_between_the_times_that_are_even_is_above(drawn: Drawn) -> None:
-    """As where a period divides the run evenly."""
+    """Such an error arises where a period divides the run evenly."""
 
     class Bent(Claiming):
         def __call__(self, t: Any) -> Any:

@@ -1,4 +1,4 @@
-"""What is told of a state in contact is what the run does there, to the last bits of the angle."""
+"""Accelerations told for a state in contact are those of the run, to the last bits of the angle."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What can be said exactly about one rod and two: the core has to say the same.
+"""The core agrees with the exact answers for one rod and two.
 
 Two equal uniform rods of mass M and length L hang on a fixed pivot, unless a test says otherwise.
 """

@@ -1,4 +1,4 @@
-"""What the core does to the processor's registers, the rest of the program does not notice.
+"""The core's use of the processor's registers does not disturb the rest of the program.
 
 An MMX register that is used and not cleared makes a NaN of every long double, and of what LAPACK
 computes with them; only some kernels of some instruction sets would do that, so all are called.

@@ -16,13 +16,13 @@ import long_runs  # noqa: E402
 
 @pytest.fixture(scope="module")
 def kept() -> dict:
-    """What the last `make long` wrote."""
+    """Return the record that the last `make long` wrote."""
     return json.loads((DOCS / "long_runs.json").read_text())
 
 
 def test_over_half_a_million_steps_the_energy_keeps_to_the_methods_own_error():
     rounded, compensated = (long_runs.drift(500_000, c) for c in (False, True))
-    assert compensated["of_kinetic"] < 5e-14  # a twentieth of 1e-12, as of the steps of 1e7
+    assert compensated["of_kinetic"] < 5e-14  # 1e-12 / 20, for 1e7 / 20 steps
     assert rounded["of_kinetic"] > 1.2 * compensated["of_kinetic"]
 
 

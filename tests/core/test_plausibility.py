@@ -1,4 +1,4 @@
-"""What is allowed and looks wrong is warned of, with the reason, and blamed on the user's line."""
+"""Values that are allowed but look wrong give a warning with the reason, at the user's line."""
 
 from __future__ import annotations
 

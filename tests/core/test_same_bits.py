@@ -151,7 +151,7 @@ for n in (1, 2, 3):
     ids=["O1, the baseline alone", "O3"],
 )
 def test_every_optimisation_gives_the_same_bits(flags, options, sets, tmp_path):
-    """As -O2 and, in the sanitizers' builds, -Og: there ctest compares the same lines."""
+    """In ctest the same lines are compared in builds with -O2 and, under sanitizers, -Og."""
     always = ["-DPENDCORE_PYTHON=OFF", "-DPENDCORE_TESTS=ON", "-DCMAKE_BUILD_TYPE=None"]
     given = [*always, *options, f"-DCMAKE_CXX_FLAGS={flags}"]
     configure = [CMAKE, "-S", ROOT, "-B", tmp_path, *given]

@@ -140,7 +140,7 @@ def test_without_losses_the_past_is_the_future_of_the_reversed_start(
 
 
 def near(found: np.ndarray, wanted: np.ndarray) -> None:
-    """As close as the tolerances of two runs, grown for a second, let them be."""
+    """Compare within the tolerances of two runs whose errors grew for a second."""
     assert_allclose(found, wanted, rtol=0, atol=1e-6 * max(1.0, np.abs(wanted).max()))
 
 

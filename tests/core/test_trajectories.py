@@ -44,7 +44,7 @@ def solve(case: Trajectory, t_end: float, tolerance: float, **options: Any) -> p
 
 
 def written_out(case: Trajectory, t_end: float, tolerance: float, **options: Any) -> Run:
-    """The same in Python."""
+    """Return the same run by the method written out in Python."""
     start, span = (case.q0, case.qd0), (0.0, t_end)
     return chain.simulate(
         case.bodies, case.gravity, *start, span, rtol=tolerance, atol=tolerance, **options

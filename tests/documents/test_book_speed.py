@@ -24,7 +24,7 @@ octave = pytest.mark.skipif(
 
 @pytest.fixture(scope="module")
 def kept() -> dict[str, Any]:
-    """What the last `make book-speed` wrote."""
+    """Return the record that the last `make book-speed` wrote."""
     return json.loads((DOCS / "book_speed.json").read_text())
 
 

@@ -13,7 +13,7 @@ ROOT = Path(__file__).parents[2]
 
 
 @pytest.mark.parametrize("rule", rules.RULES, ids=lambda rule: rule.__name__)
-def test_in_this_project(rule: Rule) -> None:
+def test_the_project_keeps_every_house_rule(rule: Rule) -> None:
     breaches = "\n".join(rule(ROOT))
     assert not breaches, breaches
 

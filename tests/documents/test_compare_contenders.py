@@ -111,7 +111,7 @@ SETTINGS = {"tolerance": 1e-7, "step": 2e-3}
 
 @pytest.fixture(scope="module")
 def found() -> Iterator[list[Contender]]:
-    """All contenders that are here: at least pendcore's own."""
+    """Return all contenders that are installed: at least pendcore's own."""
     entrants, _ = contenders.installed()
     assert any(who.name == "pendcore_dopri5" for who in entrants)
     yield entrants

@@ -1,4 +1,4 @@
-"""What can be said exactly about a rod with an effect: the core has to say the same.
+"""The core agrees with the exact answers for a rod with an effect.
 
 One uniform rod of mass M and length L on a fixed pivot, without gravity, unless a test says
 otherwise; J is its moment of inertia about the pivot.

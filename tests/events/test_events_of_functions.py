@@ -127,7 +127,7 @@ def test_what_is_no_number_is_told(value: Any, error: type[Exception], message: 
 
 
 @pytest.mark.parametrize("value", [1, True, np.float32(1), np.int64(3), np.array(2.0), np.inf])
-def test_what_is_a_number_will_do(value: Any) -> None:
+def test_any_kind_of_number_is_accepted(value: Any) -> None:
     if value is True:
         with pytest.raises(TypeError, match="must be a real number"):
             run(ev.Function(lambda t, q, qd: value))

@@ -219,7 +219,7 @@ ALWAYS: tuple[Claim, ...] = (
     dense_output_meets_the_steps,
     events_are_where_they_are_told,
 )
-"""What is looked at in every case."""
+"""The claims that are checked in every case."""
 
 SOMETIMES: tuple[Claim, ...] = (
     storing_changes_nothing,
@@ -228,4 +228,4 @@ SOMETIMES: tuple[Claim, ...] = (
     comes_back_from_a_pickle,
     views_do_not_fail,
 )
-"""What costs another run, or as much: one of them in every other case."""
+"""Claims that take another run or as much work; every other case checks one of them."""

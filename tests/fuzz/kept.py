@@ -1,4 +1,4 @@
-"""What a full campaign leaves for docs/fuzz.md: its numbers, and the tables of the page."""
+"""The record of a full campaign for docs/fuzz.md: its numbers, and the tables of the page."""
 
 from __future__ import annotations
 

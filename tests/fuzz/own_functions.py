@@ -9,7 +9,7 @@ import pendcore as pc
 
 
 class Raised(Exception):
-    """What a function of the user's raises."""
+    """The exception that a user's function raises."""
 
 
 class Forces:

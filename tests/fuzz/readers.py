@@ -1,4 +1,4 @@
-"""What reads: each takes choices, damages something whole, reads it, and uses what comes out.
+"""The readers: each takes choices, damages valid input, reads it, and uses the result.
 
 A reader either works or raises one of `REFUSALS` with a message; anything else is a finding.
 """

@@ -1,4 +1,4 @@
-"""One case from its seed: what became of it, and every claim that it breaks."""
+"""The result of one case from its seed, and every claim that it breaks."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from fuzz.own_functions import Forces, Raised, Watched
 
 @dataclass
 class Verdict:
-    """What became of a case: a status, "refused: ..." or "not drawn", and what it broke."""
+    """The result of a case: a status, "refused: ..." or "not drawn", and what it broke."""
 
     outcome: str
     breaches: list[str] = field(default_factory=list)

@@ -42,7 +42,7 @@ def test_a_hundred_thousand_increments_add_up_to_the_last_bit(method: str) -> No
 
 
 def increment_of_step(method: str, rate: float = 0.75, h: float = 2.0**-5) -> Fraction:
-    """As a step forms it: of all weights but the last each sum is rounded, in their order."""
+    """Return a sum as a step forms it: in the order of weights, rounded after each but the last."""
     begins = METHODS[method]["first"]  # nothing is stiff here
     numbers = _core.tableau(begins)["b"] if begins in EXPLICIT else [(1, 1, 0)]
     *first, last = (Fraction(n / d) * Fraction(rate) for n, d, _ in numbers if n)
@@ -164,12 +164,12 @@ def test_methods_that_cannot_are_refused_by_name() -> None:
 
 
 @pytest.mark.parametrize("wrong", [1, "yes", None, np.array([True])])
-def test_it_is_true_or_false(wrong: object) -> None:
+def test_compensated_must_be_true_or_false(wrong: object) -> None:
     with pytest.raises(TypeError, match=r"^compensated = "):
         pc.simulate(BOOK, 0.8, 0, (0, 0.1), compensated=wrong)
 
 
-def test_a_case_keeps_it(tmp_path) -> None:
+def test_a_case_keeps_compensated(tmp_path) -> None:
     case = pc.Case(scene=BOOK, q0=0.8, t_span=(0, 1), options={"compensated": True})
     assert "compensated = true\n" in case.to_toml()
     sol = case.simulate()

@@ -1,4 +1,4 @@
-"""Where simulators break: each case states its right answer from theory."""
+"""Cases that break simulators, each with its right answer from theory."""
 
 from __future__ import annotations
 
@@ -134,7 +134,7 @@ def test_absurd_tolerances_end_in_a_solution(method):
         pc.simulate(BOOK, [0.8, 1.0], 0, (0, 0.1), rtol=rtol, **how)
         for rtol in (1e-13, least, 1e-20)
     )
-    # of the root mean square over four components one may be twice as much
+    # a component may be twice the root mean square of four
     np.testing.assert_allclose(too_fine.y[:, -1], fine.y[:, -1], rtol=0, atol=2e-13)
     assert np.array_equal(too_fine.y, finest.y)  # doubles resolve no more
     more_steps = (1e-13 / least) ** (1 / ORDERS[method])
@@ -210,7 +210,7 @@ def test_denormal_rates_are_not_lost():
 
 @pytest.mark.parametrize("scale", [1e-9, 1e11])
 def test_the_units_do_not_matter(scale):
-    # lengths times s and times times sqrt(s) at the same gravity: the same motion
+    # lengths scaled by s and times by sqrt(s), at the same gravity, give the same motion
     scene = pc.Scene(links=[pc.Link(mass=3e4, length=scale), pc.Link(mass=3e4, length=scale)])
     scaled = pc.simulate(scene, [0.8, 1.0], 0, (0, 5 * np.sqrt(scale)), rtol=1e-11, atol=1e-300)
     plain = pc.simulate(BOOK, [0.8, 1.0], 0, (0, 5), rtol=1e-11)

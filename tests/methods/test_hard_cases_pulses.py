@@ -37,7 +37,7 @@ def test_a_narrow_pulse_of_a_table_gives_a_turning_rod_its_impulse(
 
 
 def test_pulses_of_both_signs_move_a_rod_a_step_and_leave_it_there(method: str) -> None:
-    """What a table has within one long step, twice: without either, the rod is elsewhere."""
+    """A table has two pulses within one long step; without either, the rod is elsewhere."""
     there_and_back = [pulse(3.0, 1e-6), pulse(7.0, 1e-6, -1.0)]
     sol = pc.simulate(rod(*there_and_back), 0, 0, (0, 12), method=method)
     assert sol.status == "finished"

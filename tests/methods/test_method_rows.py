@@ -1,4 +1,4 @@
-"""What a method says of itself is complete, so that no other file need name it."""
+"""The descriptor of every method is complete, so that no other file need name the method."""
 
 from __future__ import annotations
 

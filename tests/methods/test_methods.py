@@ -17,7 +17,7 @@ METHODS = {method["name"]: method for method in _core.methods()}
 EXPLICIT = [name for name, method in METHODS.items() if method["kind"] == "explicit"]
 BOOK = pc.Scene.textbook()
 START = [np.pi / 4, np.pi / 3]
-# of "taylor" the tolerances choose the order: tests/methods/test_taylor.py
+# tolerances choose the order of "taylor": tests/methods/test_taylor.py
 OF_ONE_ORDER = [name for name in METHODS if not name.startswith("taylor")]
 
 
@@ -49,7 +49,7 @@ def explicit(request: pytest.FixtureRequest) -> dict[str, Any]:
 def tableau(explicit: dict[str, Any]) -> dict[str, Any]:
     table = {key: exact(rows) for key, rows in _core.tableau(explicit["name"]).items()}
     stages = range(len(table["a"]))
-    # of each stage the coefficients of theta, theta^2, ...
+    # the coefficients of theta, theta^2, ... for each stage
     functions = list(zip(table.pop("functions"), table.pop("basis"), strict=True))
     powers = range(len(functions))
     table["interpolant"] = [

@@ -102,7 +102,7 @@ def test_steps_whose_stages_are_not_found_are_halved(rate: float, tolerance: flo
 def test_errors_are_those_of_the_method_written_out_in_python(
     steps: int, reference_case: ReferenceCase
 ) -> None:
-    """What a run keeps in order to go on has the last error, or 1e-4 if it is less."""
+    """The state for resuming a run holds the last error, or 1e-4 if the error is less."""
     case = reference_case("textbook")
     how = {"rtol": 1e-4, "atol": 1e-4}
     run = written_out(case, 2.0, **how)

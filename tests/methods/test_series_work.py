@@ -1,4 +1,4 @@
-"""What a series of taylor costs is measured with every kind of effect: docs/series_work.py does.
+"""docs/series_work.py measures the cost of a series of taylor with every kind of effect.
 
 An effect that is added must be drawn there, or `pendcore.accuracy.method_choice.series_work` knows
 nothing of it. That the forecast grows with the digits, and never falls to nothing, is counted here.

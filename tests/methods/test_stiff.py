@@ -183,7 +183,7 @@ def test_a_stiff_run_goes_on_bit_by_bit(method: str, stop: float, compensated: b
 
 
 @pytest.mark.parametrize("method", ["radau5", *PAIRS])
-@pytest.mark.parametrize("cap", [1, 10, 108, 114])  # about the hundredth step it is asked
+@pytest.mark.parametrize("cap", [1, 10, 108, 114])  # stiffness: tested about step 100
 def test_a_run_stopped_by_its_cap_goes_on_bit_by_bit(method: str, cap: int) -> None:
     scene, how = two_rods(CONTROLLER), {"method": method, "rtol": 1e-9}
     whole = pc.simulate(scene, [0.8, 1.1], 0, (0, 2), **how)

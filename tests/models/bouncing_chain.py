@@ -62,7 +62,7 @@ class BouncingChain:
         return np.cumsum(of_joints)
 
     def of_gap(self, values: Array, bound: float = 0.0) -> Array:
-        """Those of joints and gap, from those of the links."""
+        """Return the values of joints and gap from the values of the links."""
         of_joints = joints(self.chain.n) @ values
         of_joints[self.joint] = self.side * (bound - of_joints[self.joint])
         return of_joints

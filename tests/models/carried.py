@@ -1,4 +1,4 @@
-"""Which scenes a method can carry: Taylor series need an equation that has one."""
+"""The scenes that a method supports: Taylor series need equations that have a series."""
 
 from __future__ import annotations
 

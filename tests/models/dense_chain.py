@@ -47,7 +47,7 @@ class DenseChain:
         return self.couplings * np.cos(q[:, None] - q)
 
     def forces(self, q: Array, qd: Array, torques: Array) -> Array:
-        """What M qdd equals under these torques at the joints, without what holds them."""
+        """Return M qdd under these torques at the joints, without the torques that hold joints."""
         spun = (self.couplings * np.sin(q[:, None] - q)) @ qd**2
         return self.moments * self.gravity * np.cos(q) - spun + joints(self.n).T @ torques
 

@@ -57,7 +57,7 @@ SCENES["locked"] = pc.Scene(
 
 @dataclass(frozen=True)
 class Known:
-    """What the core says of random states, the links along the last axis but that of forces."""
+    """Values of the core for random states; links lie along the last axis, but for forces."""
 
     t: Floats
     q: Floats

@@ -31,7 +31,7 @@ RANGES: dict[str, st.SearchStrategy[float]] = {
 
 
 def value(parameter: Parameter, n: int, points: int) -> st.SearchStrategy[Any]:
-    """What a parameter may be, of an effect in a chain of n links or of a part with points."""
+    """Draw a parameter of an effect in a chain of n links, or of a part with points."""
     if parameter.part:
         return st.integers(2, 5).flatmap(
             lambda k: made(getattr(pc.effects, str(parameter.part)), n, k)
@@ -51,7 +51,7 @@ def value(parameter: Parameter, n: int, points: int) -> st.SearchStrategy[Any]:
 
 @st.composite
 def made(draw: st.DrawFn, cls: type[Any], n: int, points: int = 2) -> Any:
-    """One of a class; what may be left out is, half of the time."""
+    """Draw an object of a class; optional parameters are left out half of the time."""
     told: Description = cls.description
     values = {
         p.name: draw(value(p, n, points))

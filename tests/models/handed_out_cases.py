@@ -1,4 +1,4 @@
-"""Cases of which handouts are written and drawn."""
+"""The cases of the handouts in the tests."""
 
 from __future__ import annotations
 

@@ -80,7 +80,7 @@ class HybridChain:
         return found[:n], holding
 
     def margins(self, mode: Array, t: float, y: Array) -> Array:
-        """What is positive as long as the mode lasts, for each joint."""
+        """Return for each joint a margin that is positive as long as the mode lasts."""
         n = self.chain.n
         _, holding = self.solved(mode, t, y)
         least, most = self.ranges(y).T

@@ -1,4 +1,4 @@
-"""Which cases of a parametrised test are run: all of them, or few that meet every parameter.
+"""The cases of a parametrised test that run: all of them, or few that meet every parameter.
 
 `make test` runs few, so that a newcomer need not wait; `make test-all` runs all. No test function
 is left out: a reduced sweep keeps some values of each parameter, and each of these at least once.

@@ -1,4 +1,4 @@
-"""The same motion in other clothes: other units, a mirror, a run backward, turns more.
+"""The same motion in other units, in a mirror, run backward, or with whole turns added.
 
 Each function makes of what was drawn another run, whose motion follows from the first one's.
 """

@@ -1,4 +1,4 @@
-"""A saved solution is a plain npz, and what is none, or was tampered with, is told by name."""
+"""A saved solution is a plain npz; other files and damaged ones are refused by name."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What cannot be simulated is refused in words: the field, its value, the range, the remedy."""
+"""Messages of refused input name the field, its value, the range and the remedy."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What newcomers met, and what it says now."""
+"""Mistakes that newcomers made, and the messages that they get now."""
 
 from __future__ import annotations
 

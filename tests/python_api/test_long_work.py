@@ -1,4 +1,4 @@
-"""Which joints of a long chain hold is work that is no step: it can be broken off all the same."""
+"""The search for joints of a long chain that hold takes long in one step; it can be stopped."""
 
 from __future__ import annotations
 

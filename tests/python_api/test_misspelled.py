@@ -1,4 +1,4 @@
-"""What is misspelled, or is not the kind of thing it should be, is met with what is meant."""
+"""Misspelled names and wrong kinds of objects are refused with a hint at what is meant."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A run goes on from where it ended; what cannot be is refused by name."""
+"""A run goes on from where it ended; impossible requests are refused by name."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ def same(a, b):
     )
 
 
-def test_shapes(sol):
+def test_arrays_have_the_documented_shapes(sol):
     n_t = len(sol.t)
     assert sol.q.shape == sol.qd.shape == (n_t, 2)
     assert sol.y.shape == (4, n_t)

@@ -1,4 +1,4 @@
-"""What becomes of a run that comes to rest, and who is told."""
+"""Runs that come to rest: how they end, and who is told."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is stopped while files are written leaves none in part, and says which are missing."""
+"""A command stopped while it writes leaves no partial file, and says which files are missing."""
 
 from __future__ import annotations
 

@@ -161,9 +161,9 @@ def test_two_stops_that_are_reached_a_hair_apart_are_hit_in_their_order(
 
 
 def test_an_impact_sets_a_stuck_joint_free_and_friction_gives_no_impulse(fine: Any) -> None:
-    """Friction holds joint 1 until link 2 hits its stop: the impulse is that of a free joint 1.
+    """Friction holds joint 1 until link 2 hits its stop; the impulse is as if joint 1 were free.
 
-    It slides from there, against its friction.
+    From then on joint 1 slides against its friction.
     """
     chain = DenseChain(masses=np.array([2.0, 1.0]), lengths=np.array([1.0, 0.8]), gravity=0.0)
     effects = [

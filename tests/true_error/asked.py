@@ -1,4 +1,4 @@
-"""What is asked of a drawn scene: span, error, the times that are kept, step limits, events."""
+"""The run of a drawn scene that is asked for: span, error, kept times, step limits, events."""
 
 from __future__ import annotations
 

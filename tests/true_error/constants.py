@@ -15,7 +15,7 @@ from fractions import Fraction
 import pendcore as pc
 
 Parameters = dict[str, Fraction]
-"""What a compiled system is told, by the names that `equations` gives."""
+"""The parameters of a compiled system, by the names that `equations` gives."""
 
 
 def inertia(scene: pc.Scene) -> Parameters:

@@ -1,4 +1,4 @@
-"""What became of a drawn scene: pendcore's answers beside the truth."""
+"""The verdict on a drawn scene: pendcore's answers beside the truth."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ from true_error.reference import Reference, Truth
 from true_error.trajectory import NoReferenceError
 
 SECONDS = 10.0
-"""What a run, its estimate of error and the reference may take, each, s."""
+"""The time limit of a run, of its error estimate and of the reference, each, s."""
 PATIENCE = 4.0
-"""How many times as long an answer may take until it counts as hung."""
+"""The factor by which an answer may exceed its time limit before it counts as hung."""
 SURE = 1 / 20
-"""How much better than what is judged a reference is, at least."""
+"""The largest uncertainty of a reference, as a share of the error or limit that is asked for."""
 
 Simulate = Callable[..., pc.Solution]
 
 
 @dataclass
 class Verdict:
-    """What became of a scene.
+    """The verdict on a scene.
 
     Attributes
     ----------
@@ -130,7 +130,7 @@ class Verdict:
 
 
 class UnexpectedError(Exception):
-    """What pendcore raised, and should not have."""
+    """An exception that pendcore should not have raised."""
 
 
 def judged(drawn: Drawn, simulate: Simulate = pc.simulate, seconds: float = SECONDS) -> Verdict:

@@ -1,4 +1,4 @@
-"""CyRK, by two of its doors.
+"""CyRK, called in two ways.
 
 pysolve_ivp calls a function that numba compiled and that fills its output. nbsolve2_ivp, newer and
 called experimental, is itself called from compiled code with the address of a compiled function:

@@ -4,7 +4,7 @@ At its best, by experiment: `fast_math` saves a fifth and costs no accuracy here
 twice as slow, slp_vectorize, force_avx512 and high_accuracy bring nothing on a state so small.
 A tolerance decides the order and nothing else, so there is one setting for each order. The time is
 that of the call from Python, of which it spends a few microseconds outside compiled code (the fixed
-cost of a call says how many); there is no other door to heyoka here.
+cost of a call says how many); heyoka offers no other interface here.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What a case asks, and what came of it in one program."""
+"""The question of a hard case, and the result in one program."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from multiprocessing.connection import Connection
 
 LONGEST = 60  # s of computing for one contender; whoever takes longer has not returned
 NO_RETURN = "does not return (ended after {} s of computing)"
-PATIENCE = 10  # times as long by the clock: the machine may be busy
+PATIENCE = 10  # times LONGEST by the wall clock: the machine may be busy
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,11 +65,11 @@ class HardCase:
 
 
 class Absent(Exception):
-    """What the contender needs is not installed, not built, or not there yet."""
+    """A program that the contender needs is not installed, not built, or not there yet."""
 
 
 class NoReturn(Exception):
-    """The time was over."""
+    """The time limit of a contender was over."""
 
 
 def _report(run: Callable[[], Outcome], pipe: Connection, seconds: int) -> None:

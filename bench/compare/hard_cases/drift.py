@@ -1,4 +1,4 @@
-"""The textbook's case for 2000 s: what becomes of its energy."""
+"""The energy of the textbook's case over 2000 s."""
 
 from __future__ import annotations
 

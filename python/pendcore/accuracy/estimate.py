@@ -1,20 +1,20 @@
-"""The error of a run over its whole curve: the one estimate behind all that is said of errors.
+"""The estimate of a run's error over its whole curve.
 
 `Solution.error`, `Solution.valid_until` and what ``simulate(error=...)`` verifies come from here.
-The run is compared with second runs that are better by a factor which is known, for they
-are compared with each other as well. Those of `Solution.error` take another method where one can
-carry the scene, at tolerances a hundredth and less, as far as doubles allow; those of
-``simulate(error=...)`` take the trial's own (`pendcore.accuracy.target_error`). All take other
-steps, and each has its constants and its start moved by a few last bits of its own
-(`pendcore.accuracy.rounding`). With runs r_1, r_2, ... the error is at most
+The run is compared with better second runs. How good these are is known, as they are compared with
+each other as well. Those of `Solution.error` take another method where one supports the scene, at
+tolerances a hundredth and less, as far as doubles allow; those of ``simulate(error=...)`` take the
+trial's own (`pendcore.accuracy.target_error`). All take other steps, and the constants and the
+start of each are moved by a few last bits (`pendcore.accuracy.rounding`). With the second runs
+r_1, r_2, ... the error is at most
 
     (1 + share) max_i |run - r_i| + max_ij |r_i - r_j|
 
-(the first part times ``BETWEEN`` on a dense curve) if the best is no worse than the distance
-of the others from it; and what the chain moves in half of the last bit of a time, as a state of the
-run is kept under the double next to its time. In a chaotic motion all that is off is off along one
-direction, so that two errors of one size may cancel; several runs, each moved another way, do not
-all agree with one that is wrong.
+(the first part times ``BETWEEN`` on a dense curve), if the error of the best second run is at most
+its distance from the others. To this is added how far the chain moves in half of the last bit of a
+time, as the time of a kept state is rounded to a double. In a chaotic motion all errors lie along
+one direction, so that two errors of one size may cancel; several runs, each moved another way, do
+not all agree with a run that is wrong.
 """
 
 from __future__ import annotations
@@ -46,27 +46,27 @@ from pendcore.run.result import RunResult
 Report: TypeAlias = Callable[[float], object]
 
 TIGHTER = (100.0, 1000.0, 1000.0)
-"""By what factors the tolerances of the second runs are tighter."""
+"""The factors by which the tolerances of the second runs are tighter than the run's."""
 ROUNDING_MATTERS = 1e-11
-"""rtol below which a third second run tells what rounding does: truncation may be less."""
+"""The rtol below which a third second run is made, as rounding may exceed truncation."""
 FOR_FIXED_STEPS = 1e-10
-"""What counts as the tolerance of a run in fixed steps."""
+"""The rtol and atol that a run in fixed steps is taken to have."""
 MORE_STEPS = 10
-"""How many times the steps that were allowed to the first run they may take."""
+"""The factor by which a second run's max_steps is larger than the run's."""
 OTHER_STEPS = 0.6
-"""How long their steps are at most, in mean steps of a run that tolerances did not limit."""
+"""The longest step of a second run in mean steps of the run, if tolerances did not limit these."""
 LEAST_STEPS = 5
-"""So many steps a run may take until they are as long as the tolerance lets them be."""
+"""A run of fewer steps may be over before its steps have grown to what the tolerance allows."""
 LOST = np.pi
 """rad; runs that are farther apart have nothing to do with each other."""
 LEGS, STEPS_A_LEG = 32, 200
-"""In as many parts at most a second run is made; it ends with that in which it is lost."""
+"""The most legs of a second run, and the run's steps in each; a lost run ends with its leg."""
 SPARE_OF_SEVERAL = 0.05
-"""What share is added to a distance from several second runs: none of them is exact."""
+"""The share that is added to a distance from several second runs, as none of them is exact."""
 BETWEEN = 1.1
-"""By what factor the error between the times that are compared may be larger than at them."""
+"""The factor by which the error may be larger between the compared times than at them."""
 AT_ONCE = 100_000
-"""Times that are compared at once, which bounds the memory."""
+"""The number of times that are compared at once, which bounds the memory."""
 
 
 def estimate(
@@ -75,25 +75,25 @@ def estimate(
     verified_by: str,
     share: float = SPARE_OF_SEVERAL,
 ) -> ErrorEstimate:
-    """Compare a run with second runs, as far as all of them came.
+    """Return the error of a run, compared with second runs up to the first end among them all.
 
     Parameters
     ----------
     solution : RunResult
-        Whose error is estimated.
+        The run whose error is estimated.
     seconds : sequence of RunResult
-        Better runs of the same, dense or with the times that the solution kept.
+        Better runs of the same motion, dense or with the times that the solution kept.
     verified_by : str
-        How they were made.
+        How the second runs were made.
     share : float
-        What the error of a single second run is at most, as a share of the distance from it.
+        The largest error of a single second run, as a share of the distance from it.
     """
     angles, positions = [np.empty(0)], [np.empty(0)]
     t = _common_times(solution, seconds)
     factor = (1 + share) * (BETWEEN if solution.store == "dense" else 1.0)
-    for some in np.array_split(t, len(t) // AT_ONCE + 1):
-        q, qd = np.hsplit(states_at(solution, some), 2)
-        others = [angles_at(second, some) for second in seconds]
+    for times in np.array_split(t, len(t) // AT_ONCE + 1):
+        q, qd = np.hsplit(states_at(solution, times), 2)
+        others = [angles_at(second, times) for second in seconds]
         angle = factor * np.max([_apart(q, r) for r in others], axis=0)
         position = factor * np.max([distances(solution.scene, q, r) for r in others], axis=0)
         pairs = [*combinations(others, 2)]
@@ -101,7 +101,7 @@ def estimate(
             angle += np.max([_apart(r, s) for r, s in pairs], axis=0)
             position += np.max([distances(solution.scene, r, s) for r, s in pairs], axis=0)
         rounding = np.finfo(np.float64).eps * np.abs(q).max(axis=-1)  # the state is a double
-        rounding += np.spacing(np.abs(some)) / 2 * np.abs(qd).max(axis=-1)  # and so is its time
+        rounding += np.spacing(np.abs(times)) / 2 * np.abs(qd).max(axis=-1)  # and so is its time
         angles.append(angle + rounding)
         positions.append(position + rounding)
     angle, position = np.concatenate(angles), np.concatenate(positions)
@@ -125,12 +125,12 @@ def error_of(
     solution: RunResult, *, time_limit: float | None = None, progress: Progress = None
 ) -> ErrorEstimate:
     """Return the error of a run, estimated when first asked for; see `pendcore.Solution.error`."""
-    time_limit_of(time_limit)  # also where it is known already
+    time_limit_of(time_limit)  # a wrong one is refused even where the error is known already
     if solution.known_error is None:
-        found = error_estimate(solution, time_limit=time_limit, progress=progress)
-        if not found.is_complete:
-            return found  # another time there may be more time
-        solution.known_error = found
+        error = error_estimate(solution, time_limit=time_limit, progress=progress)
+        if not error.is_complete:
+            return error  # a later call with more time may complete it
+        solution.known_error = error
     return solution.known_error
 
 
@@ -148,10 +148,10 @@ def error_estimate(
     farthest: ErrorEstimate | None = None
     try:
         for method in second_methods(start_of(solution), solution.method, solution.stats.stiff):
-            found = _compared(solution, method, until, report)
-            if farthest is None or len(found.t) > len(farthest.t):
-                farthest = found
-            if found.is_complete or monotonic() > until:
+            error = _compared(solution, method, until, report)
+            if farthest is None or len(error.t) > len(farthest.t):
+                farthest = error
+            if error.is_complete or monotonic() > until:
                 break
     except BaseException as stop:
         stop.solution = solution  # type: ignore[attr-defined]
@@ -163,10 +163,10 @@ def error_estimate(
 
 
 def other_steps(solution: RunResult, max_step: float) -> float:
-    """Return a max_step, s, with which a second run takes other steps than the first.
+    """Return a max_step, s, with which a second run takes other steps than the run.
 
-    Tighter tolerances see to that where they set the steps, but not where max_step does, or points
-    at which laws change, or where a run is over before its steps have grown.
+    Tighter tolerances suffice where tolerances set the steps, but not where max_step sets them, or
+    points at which laws change, nor where a run is over before its steps have grown.
     """
     stats, run = solution.stats, solution.run
     if stats.limited_by_max_step:
@@ -178,7 +178,7 @@ def other_steps(solution: RunResult, max_step: float) -> float:
 
 
 def second_times(solution: RunResult) -> Floats | None:
-    """Return the times that a second run is to keep, s; None for all, densely."""
+    """Return the times that a second run is to keep, s; None for dense output."""
     if solution.store in ("dense", "steps"):
         return None
     return kept_times(solution) if len(solution.t) else np.array([solution.run.t_reached])
@@ -187,7 +187,7 @@ def second_times(solution: RunResult) -> Floats | None:
 def _compared(
     solution: RunResult, method: str, until: float, report: Report | None
 ) -> ErrorEstimate:
-    """Compare with second runs by a method, until they and the solution are lost."""
+    """Return the error of a solution, compared with second runs by a method."""
     asked, first = solution.run.arguments, _choice_of(solution)
     tight = float(np.min(first.rtol)) < ROUNDING_MATTERS or asked["step"] is not None
     tight |= other_steps(solution, inf) < inf
@@ -227,7 +227,7 @@ def _compared(
 def _legs(
     solution: RunResult, start: Start, choice: Choice, until: float, report: Report
 ) -> Iterator[RunResult]:
-    """Yield a second run as it gets on, part by part."""
+    """Yield a second run after each of its legs."""
     asked = solution.run.arguments
     max_steps = MORE_STEPS * asked["max_steps"]
     max_step = other_steps(solution, asked["max_step"])
@@ -243,7 +243,7 @@ def _legs(
         def share(fraction: float, done: int = done) -> None:
             report((done + fraction) / count)
 
-        share(0.0)  # parts may be shorter than what the core calls after
+        share(0.0)  # a leg may be over before the core first reports
         if part is not None:
             if not len(part):
                 return
@@ -263,7 +263,7 @@ def _legs(
 
 
 def _choice_of(solution: RunResult) -> Choice:
-    """Return how a solution was made; a fixed step counts as a tight tolerance."""
+    """Return the method and tolerances of a solution; a fixed step counts as a tight tolerance."""
     asked = solution.run.arguments
     if asked["step"] is not None:
         return Choice(solution.method, FOR_FIXED_STEPS, FOR_FIXED_STEPS)
@@ -271,7 +271,7 @@ def _choice_of(solution: RunResult) -> Choice:
 
 
 def _common_times(solution: RunResult, seconds: Sequence[RunResult]) -> Floats:
-    """Return the times at which to compare: in all steps, or those kept that all came to."""
+    """Return the times to compare at: some in every step, or the kept ones that all reached."""
     if solution.store == "dense":
         return times_within_steps([solution, *seconds])
     times = kept_times(solution)
@@ -281,7 +281,7 @@ def _common_times(solution: RunResult, seconds: Sequence[RunResult]) -> Floats:
 
 
 def _is_lost(solution: RunResult, second: RunResult) -> bool:
-    """Whether they have nothing to do with each other any more where the second one ended."""
+    """Return whether two runs have nothing to do with each other where the second one ended."""
     last = np.array([second.run.t_reached])
     if solution.store != "dense":
         last = kept_times(solution)

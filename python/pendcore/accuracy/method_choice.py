@@ -1,9 +1,8 @@
-"""What is known of a method before it runs: which one to take for an error, and which to verify it.
+"""Which method is likely the cheapest for an error, and which methods verify a run.
 
-Over the tolerances that matter the largest position error is proportional to rtol. The factor
-between the two is the scene's: how fast it is, for how long, how far it drives neighbours apart. It
-is measured; what a method's own share in it is stands here, as it was found on four hundred scenes
-of tests/models/regular_scenes.py (seeds 200 to 599); docs/asked_errors.py tests others.
+The bounds below were measured on four hundred scenes of tests/models/regular_scenes.py (seeds 200
+to 599); docs/asked_errors.py tests others. Over the tolerances that matter the largest position
+error of a run is proportional to rtol, by a factor that depends on the scene and the method.
 """
 
 from __future__ import annotations
@@ -17,30 +16,30 @@ from pendcore.scene.effect_description import account_of
 from pendcore.scene.scene import SceneData
 
 LOOSEST, TIGHTEST = 1e-2, 1e-14
-"""rtol. Beyond the tightest, smaller steps add more rounding than they take away truncation."""
+"""Bounds of rtol. Below the tightest, smaller steps add more rounding than they save truncation."""
 TIGHTEST_SECOND = {"taylor": 1e-15}
-"""The same of a second run of ``taylor``, which estimates no errors that rounding could fool: its
-truncation is to be less than that of a run at the tightest."""
+"""The tightest rtol of a second run of ``taylor``, whose truncation is to be less than a trial's.
+Rounding cannot mislead its step size, as it has no error estimate."""
 TIGHTEST_IMPLICIT = 1e-13
-"""The same of an implicit method, whose equations are not solved any better."""
+"""The tightest rtol of an implicit method; its equations are not solved more exactly."""
 SERIES_TO_DOP853 = 0.092
-"""Series that taylor takes at rtol 1e-3 for each right-hand side of dop853, typically."""
+"""The typical number of series of taylor for each right-hand side of dop853, at rtol 1e-3."""
 TAYLOR_BELOW = ((0.9, 5e-3), (1.08, 2e-5), (1.2, 1e-6), (1.6, 3e-6), (4.0, 1e-10))
-"""Below which error taylor takes the least work, if at 1e-3 it takes so many times dop853's.
-
-The rows stand for the kinds of scenes that `series_work` tells apart, so they need not fall.
+"""Pairs: where taylor at 1e-3 takes up to this multiple of dop853's work, it takes less work than
+the others for errors below this bound. Each row stands for a kind of scene that `series_work` tells
+apart, so the bounds need not fall.
 """
 DOPRI5_ABOVE = {1: 1e-3}
-"""Above which error dopri5 takes less work than dop853, with so many links."""
+"""By number of links, the error above which dopri5 takes less work than dop853."""
 DOPRI5_ABOVE_ELSE = 3e-7
-"""The same with any other number of links."""
+"""The same bound with any other number of links."""
 INERTIA_ALONE = {"payload", "rotor_inertia"}
-"""Effects that change what the links weigh, and add no torque."""
+"""Effects that change the mass matrix and add no torque of their own."""
 _DIGITS = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
 
 
 def cheapest(start: Start, error: float) -> str:
-    """Return the method that takes the least work for an error as a rule, if nothing is stiff."""
+    """Return the method that typically takes the least work for an error, if nothing is stiff."""
     share = SERIES_TO_DOP853 * series_work(start.scene, 1e-3)
     below = next((error for most, error in TAYLOR_BELOW if share <= most), 0.0)
     if error < below and supports("taylor", start):
@@ -52,16 +51,16 @@ def cheapest(start: Start, error: float) -> str:
 def series_work(scene: SceneData, rtol: float) -> float:
     """Return how many right-hand sides take as long as the series of one step of ``taylor``.
 
-    Its order, and so its work, grows with the digits asked for. Measured; the ratio is large where
-    the right-hand side has a closed form and the series has not. docs/series_work.py measures it
-    again, for every kind of effect.
+    The order of the series, and so its work, grows with the digits asked for. The ratio is large
+    where the right-hand side has a closed form and the series has none. docs/series_work.py
+    measures it for every kind of effect.
     """
     n, free = len(scene.links), scene._compiled.mobility()[-1]
     moving = any(account_of(effect.kind) == "drive" for effect in scene.effects)
     waves = sum(getattr(effect, "sinusoid", None) is not None for effect in scene.effects)
-    if n == 1:  # where time enters, its sines are the larger part of the right-hand side
+    if n == 1:  # where time enters, its sines are most of the right-hand side
         base, exponent = (14.2, 0.035) if moving or waves else (26.0, 0.036)
-    elif n == 2 and (moving or waves > 2 or free < n):  # have the series of longer chains
+    elif n == 2 and (moving or waves > 2 or free < n):  # these take the series of longer chains
         base, exponent = 26.0, 0.037
     elif n == 2:
         bare = all(effect.kind in INERTIA_ALONE for effect in scene.effects)
@@ -74,7 +73,7 @@ def series_work(scene: SceneData, rtol: float) -> float:
 
 
 def rounded(rtol: float, tightest: float = TIGHTEST) -> float:
-    """Return a tolerance as people write it, not above, within what makes sense."""
+    """Return the next tolerance of few digits at or below one, within the bounds of rtol."""
     if not rtol > tightest:
         return tightest
     if rtol >= LOOSEST:
@@ -85,11 +84,11 @@ def rounded(rtol: float, tightest: float = TIGHTEST) -> float:
 
 
 def second_methods(start: Start, method: str, stiff: bool) -> Iterator[str]:
-    """Yield with which methods a run may be verified, the best one first.
+    """Yield the methods by which a run may be verified, the best one first.
 
-    What one method gets wrong, such as a step size that is fooled or a wrong coefficient, another
-    does not get wrong in the same way. Where stability limited the steps, an explicit method may
-    take too many; an implicit one is taken then, perhaps the run's own.
+    A wrong step size or coefficient of one method does not make the same error in another. Where
+    stability limited the steps, an explicit method may take too many; then the method is implicit,
+    perhaps the run's own.
     """
     known = known_methods()[method]
     begins, goes_on = known["first"], known["second"]

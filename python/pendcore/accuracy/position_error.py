@@ -1,13 +1,13 @@
 """How far apart two computed motions are, and at which times to look.
 
-The measure is the distance between the same joint, or the tip, in both, the largest over the joints
-and the tip, divided by the total length: of the order of 1 where the two have nothing in common any
-more, and 0 for angles that differ by whole turns. Of link i with the length L_i it is
+The measure is the distance between the places of the same joint, or of the tip, in both motions,
+the largest over the joints and the tip, divided by the total length. It is of the order of 1 where
+the motions have nothing in common any more, and 0 for angles that differ by whole turns. A link of
+the length L adds to the distance, in the complex plane and from the pivot outwards,
 
-    L_i (exp(i q) - exp(i r)) = 2 i L_i sin((q - r)/2) exp(i (q + r)/2)
+    L (exp(i q) - exp(i r)) = 2 i L sin((q - r)/2) exp(i (q + r)/2),
 
-in the complex plane, summed from the pivot outwards; the right-hand side loses no digits where q
-and r are close.
+whose right-hand side loses no digits where q and r are close.
 """
 
 from __future__ import annotations
@@ -22,13 +22,11 @@ from pendcore.run.result import RunResult
 from pendcore.scene.scene import SceneData
 
 POINTS = 101
-"""Times of the fixed grid on which methods are compared, both ends among them."""
+"""The number of times on the fixed grid on which methods are compared, both ends included."""
 SAMPLES, CUTS = 6, 60
-"""Times in each interval between two steps of any of the runs that are compared; into how many
-intervals a step of the run itself may be cut for that.
-
-It is cut by the steps of the others, so that it holds ten times and more; the error within a step
-is a polynomial of low degree there. Where it is cut into more, one time in each does as well.
+"""The steps of the other runs cut a step of the run into intervals. Each interval holds SAMPLES
+times, or a single one where it is one of more than CUTS: the error within a step is a polynomial of
+low degree.
 """
 
 
@@ -50,9 +48,9 @@ def kept_times(solution: RunResult) -> Floats:
 
 
 def times_within_steps(runs: Iterable[RunResult]) -> Floats:
-    """Return times inside every step of the first of the runs, s, and at those of the others.
+    """Return times inside every step of the first run and at the steps of the others, s.
 
-    From their start to the nearest end.
+    They go from the start of the runs to the end that comes first.
     """
     solutions = [*runs]
     begin = solutions[0].run.arguments["t_start"]
@@ -105,7 +103,7 @@ def distances(scene: SceneData, q: npt.ArrayLike, reference: npt.ArrayLike) -> F
     Parameters
     ----------
     scene : Scene
-        Whose lengths; a pivot that is driven moves alike in both.
+        Its lengths are used; a driven pivot moves alike in both motions.
     q, reference : array_like, (..., n)
         Absolute angles, rad.
 
@@ -125,10 +123,10 @@ def distances(scene: SceneData, q: npt.ArrayLike, reference: npt.ArrayLike) -> F
 
 
 def position_error(solution: RunResult, reference: RunResult, t: Floats) -> float:
-    """Return the largest distance of two solutions of a scene at the times t (n_t,), s.
+    """Return the largest distance of two solutions at times t (n_t,), s, as a share of the length.
 
-    As a share of the total length. NaN where a state is not finite; infinite where one of the two
-    does not reach the last of the times.
+    It is NaN where a state is not finite, and infinite where a solution does not reach the last
+    time.
     """
     if not (reached(solution, t[-1:]).all() and reached(reference, t[-1:]).all()):
         return np.inf

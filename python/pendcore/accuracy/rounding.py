@@ -1,10 +1,10 @@
-"""What rounding may do to a run: the same run with its constants and start moved a little.
+"""How much rounding may change a run: the same run with its constants and start moved a little.
 
-Runs in doubles share more than they seem to: the constants of the mass matrix are rounded before
-the first step, and alike in all of them. So runs agree with each other and not with the truth
-where a motion makes much of a last bit. A run that verifies another one therefore begins with
-masses, lengths, mass centres, inertias, gravity and angles that are a few last bits off, each by a
-random share of its own. What comes of that is several times what rounding itself can have done.
+All runs in doubles share some rounding errors, as the constants of the mass matrix are rounded
+before the first step. So runs may agree with each other and not with the truth where a motion
+amplifies a last bit. A run that verifies another one therefore begins with masses, lengths, mass
+centres, inertias, gravity and angles that are a few last bits off, each by a random share. This
+changes the run several times as much as rounding itself can.
 """
 
 from __future__ import annotations
@@ -17,17 +17,16 @@ from pendcore.scene.scene import SceneData
 
 CONSTANTS = ("mass", "length", "center", "inertia")
 LAST_BITS = 8 * np.finfo(np.float64).eps
-"""How far a number is moved at most, relatively; an angle below 1 rad by so many radians.
+"""The largest relative change of a number; an angle below 1 rad changes by up to as many radians.
 
 Constants are formed in two or three operations, each of which is off by half a last bit at most.
 """
 
 
 def moved(start: Start, seed: int) -> Start:
-    """Return what is run with its constants and angles some last bits off, others for each seed.
+    """Return a start with constants and angles moved by a few last bits, drawn from a seed.
 
-    Angles stay where effects say where they may be (stops, locks); a constant that is zero stays
-    zero.
+    Angles stay where they are if effects bound them (stops, locks); a constant of zero stays zero.
     """
     scene = start.scene
     rng = np.random.default_rng(seed)

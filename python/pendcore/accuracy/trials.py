@@ -33,22 +33,21 @@ from pendcore.run.methods import error_over_rtol, implicit_method, pair_of
 from pendcore.run.result import RunResult
 
 FOR_BOTH = 5.0
-"""A method is chosen that is good for a run and for a second one, which is better: for an error so
-many times less."""
+"""A method is chosen for an error smaller by this factor, as second runs take the same method."""
 COMPENSATED_BELOW = 1e-12
-"""rtol, from which on what the rounding of the state leaves over is carried on."""
+"""The rtol below which trials use compensated sums of the state."""
 MOST_STEPS, LEAST_STEPS = 300, 100
-"""How many times the steps of the first run a later one may take, if that took so many at least."""
+"""A later run may take MOST_STEPS times the steps of the first trial, or times LEAST_STEPS if the
+first trial took fewer."""
 _ADVANCE = 0.35
-"""How much of what is left on the bar a run moves it."""
+"""The share of what is left of the progress bar that a run fills."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TrialRun:
-    """A run: how it was made, and what it took in right-hand sides.
+    """A run: how it was made, and its work in right-hand sides.
 
-    Its ``scale`` is its error where the scene is like most: it makes tolerances of methods
-    comparable.
+    Its ``scale`` is its typical error, which makes tolerances of different methods comparable.
     """
 
     method: str
@@ -97,24 +96,21 @@ class Trials:
         return TIGHTEST_IMPLICIT if self.is_stiff else TIGHTEST
 
     def method_for(self, scale: float) -> str:
-        """Return the method that takes the least work for an error of that size, and to verify it.
-
-        In most scenes, that is.
-        """
+        """Return the method that typically takes the least work to reach an error and verify it."""
         return (
             implicit_method() if self.is_stiff else pair_of(cheapest(self.start, scale / FOR_BOTH))
         )
 
     def trial(self, scale: float, method: str) -> TrialRun:
-        """Run with all that was asked for."""
+        """Make a run with all the options that the user gave."""
         rtol = rounded(scale / error_over_rtol(leading(method)), self.tightest)
         options = self.options
         if self.trials:
             options = options | {"max_steps": self._most_steps()}
-        made = self._run(self.start, method, rtol, options)
-        self.trials.append(made)
-        self.seconds = [self._as_far_as(made, one) for one in self.seconds]
-        return made
+        trial = self._run(self.start, method, rtol, options)
+        self.trials.append(trial)
+        self.seconds = [self._as_far_as(trial, second) for second in self.seconds]
+        return trial
 
     def drop(self, trial: TrialRun) -> None:
         """Forget a trial that was too loose to come to its end, and try none as loose again."""
@@ -122,10 +118,10 @@ class Trials:
         self.too_loose = min(self.too_loose, trial.scale)
 
     def second(self, trial: TrialRun, scale: float) -> TrialRun:
-        """Run better than a trial, with other steps, constants and start.
+        """Make a run that is better than a trial, with other steps, constants and start.
 
-        The method is the trial's, or radau5 where the scene is stiff: by how much another one is
-        better would be a guess, as a scene may suit the one and not the other.
+        The method is the trial's, or radau5 where the scene is stiff. By how much another method is
+        better could only be guessed, as a scene may suit one method and not another.
         """
         method = implicit_method() if self.is_stiff else trial.method
         tightest = TIGHTEST_SECOND.get(leading(method), self.tightest)
@@ -136,20 +132,20 @@ class Trials:
             "max_step": other_steps(trial.solution, self.options["max_step"]),
             "max_steps": self._most_steps(MORE_STEPS),
         }
-        ends = [one.solution.run.t_reached for one in self.trials]  # terminal events differ
+        ends = [each.solution.run.t_reached for each in self.trials]  # terminal events differ
         start = self.start._replace(t_end=max(ends, key=lambda t: abs(t - self.start.t_start)))
-        made = self._run(moved(start, len(self.seconds)), method, rtol, options)
-        self.seconds.append(made)
-        return made
+        second = self._run(moved(start, len(self.seconds)), method, rtol, options)
+        self.seconds.append(second)
+        return second
 
     def compared(
         self, trial: TrialRun, seconds: list[TrialRun], share: float = SPARE_OF_SEVERAL
     ) -> ErrorEstimate:
-        """Return the error of a trial as second runs tell it; see `estimate`."""
+        """Return the error of a trial as estimated from second runs; see `estimate`."""
         key = (trial, *seconds, share)
         if key not in self._estimates:
-            text = " and ".join(dict.fromkeys(one.text for one in seconds))
-            solutions = [one.solution for one in seconds]
+            text = " and ".join(dict.fromkeys(second.text for second in seconds))
+            solutions = [second.solution for second in seconds]
             self._estimates[key] = estimate(trial.solution, solutions, text, share)
         return self._estimates[key]
 
@@ -157,37 +153,38 @@ class Trials:
         return self.compared(trial, [second], 0.0).largest
 
     def best(self) -> RunResult | None:
-        """Return the tightest of the trials that are whole."""
-        whole = [one for one in self.trials if one.solution.success]
-        return min(whole, key=lambda one: one.scale).solution if whole else None
+        """Return the tightest of the trials that came to their end."""
+        complete = [trial for trial in self.trials if trial.solution.success]
+        return min(complete, key=lambda trial: trial.scale).solution if complete else None
 
     def labelled(
-        self, solution: RunResult, outcome: Outcome, found: ErrorEstimate | None, why: str = ""
+        self, solution: RunResult, outcome: Outcome, error: ErrorEstimate | None, why: str = ""
     ) -> RunResult:
-        """Attach to a trial what is known of its error; ``why`` if that is nothing."""
+        """Attach to a trial what is known of its error, or ``why`` nothing is known."""
         begin = self.start.t_start
-        solution.known_error = found
+        solution.known_error = error
         solution.accuracy = Accuracy(
             asked=self.error,
-            achieved=inf if found is None else found.largest,
+            achieved=inf if error is None else error.largest,
             outcome=outcome,
-            until=begin if found is None else found.valid_until(self.error, of="position"),
-            times=0 if found is None else len(found.t),
-            everywhere=found is not None and found.is_dense and not found.is_lost,
-            verified_by=why if found is None else found.verified_by,
-            paid=self._bill(solution, found),
+            until=begin if error is None else error.valid_until(self.error, of="position"),
+            times=0 if error is None else len(error.t),
+            everywhere=error is not None and error.is_dense and not error.is_lost,
+            verified_by=why if error is None else error.verified_by,
+            paid=self._bill(solution, error),
             seconds=monotonic() - self.began,
         )
         return solution
 
-    def _bill(self, solution: RunResult, found: ErrorEstimate | None) -> tuple[Paid, ...]:
-        verifying = next((key[1:-1] for key, one in self._estimates.items() if one is found), ())
+    def _bill(self, solution: RunResult, error: ErrorEstimate | None) -> tuple[Paid, ...]:
+        estimates = self._estimates.items()
+        verifying = next((key[1:-1] for key, value in estimates if value is error), ())
         paid = []
-        for one in self.paid:
-            purpose = "verify" if one in verifying else "choose"
-            if one.solution is solution:
+        for made in self.paid:
+            purpose = "verify" if made in verifying else "choose"
+            if made.solution is solution:
                 purpose = "run"
-            paid.append(Paid(purpose, one.method, one.rtol, one.solution.stats.nfev, one.work))
+            paid.append(Paid(purpose, made.method, made.rtol, made.solution.stats.nfev, made.work))
         return tuple(paid)
 
     def _most_steps(self, times: int = 1) -> int:
@@ -195,7 +192,7 @@ class Trials:
         return min(times * int(self.options["max_steps"]), enough)
 
     def _as_far_as(self, trial: TrialRun, second: TrialRun) -> TrialRun:
-        """Let a second run go on to where a trial came: a terminal event may come a bit later."""
+        """Continue a second run to the end of a trial: a terminal event may come a bit later."""
         end, begin, run = trial.solution.run.t_reached, self.start.t_start, second.solution.run
         is_behind = abs(end - begin) > abs(run.t_reached - begin)
         if not (is_behind and second.solution.store == "dense" and second.solution.success):
@@ -221,10 +218,10 @@ class Trials:
         if leading(method) == "taylor" and not solution.stats.stiff:
             work *= series_work(start.scene, rtol)
         scale = rtol * error_over_rtol(leading(method))
-        made = TrialRun(method, rtol, scale, work, solution)
-        self.paid.append(made)
+        trial = TrialRun(method, rtol, scale, work, solution)
+        self.paid.append(trial)
         self._done += _ADVANCE * (1 - self._done)
-        return made
+        return trial
 
     def _time_left(self) -> float | None:
         if self.time_limit == inf:

@@ -69,7 +69,7 @@ def save(solution: RunResult, path: str | os.PathLike[str], *, progress: Progres
 def _write(
     file: BinaryIO, entries: dict[str, Any], report: Callable[[float], object] | None
 ) -> None:
-    """Do what `numpy.savez` does, and tell what share is written."""
+    """Write arrays as `numpy.savez` does, and report the share that is written."""
     arrays = {key: np.asanyarray(value) for key, value in entries.items()}
     told = _Told(report, sum(array.nbytes for array in arrays.values()))
     with zipfile.ZipFile(file, "w") as archive:
@@ -79,7 +79,7 @@ def _write(
 
 
 class _Told:
-    """An entry of an archive that tells what share of all is written: NumPy writes in pieces."""
+    """An entry of an archive that reports the share of all that is written, piece by piece."""
 
     entry: IO[bytes]
 
@@ -89,7 +89,7 @@ class _Told:
         self.written = 0
 
     def write(self, piece: bytes) -> None:
-        """Write it, and tell."""
+        """Write a piece, and report."""
         self.entry.write(piece)
         self.written += len(piece)
         if self.report is not None:  # the heads of the arrays count as well
@@ -124,7 +124,7 @@ def _loaded(file: BinaryIO) -> RunResult:
 
 
 def _group(entries: Any, prefix: str) -> dict[str, Any]:
-    """Return what stands under a prefix; numbers and strings are arrays without axes there."""
+    """Return the entries under a prefix; numbers and strings are arrays without axes there."""
     found = {key.removeprefix(prefix): entries[key] for key in entries if key.startswith(prefix)}
     return {key: one.item() if one.ndim == 0 else one for key, one in found.items()}
 

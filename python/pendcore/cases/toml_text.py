@@ -45,7 +45,7 @@ class TomlText:
             raise ValueError(f"{name}: {error}{remedy if twice else ''}") from None
 
     def error(self, place: Place, complaint: str) -> ValueError:
-        """Return an error that names the line of the place, or of what it stands in."""
+        """Return an error that names the line of the place, or of the table that holds it."""
         for length in range(len(place), 0, -1):
             if place[:length] in self._lines:
                 return ValueError(f"{self.name}, line {self._lines[place[:length]]}: {complaint}")
@@ -73,7 +73,7 @@ class TomlText:
             raise self.error((*place, key), f"unknown key {key!r}{where}: {remedy}")
 
     def value(self, place: Place) -> Any:
-        """Return what stands at a place; None if there is nothing."""
+        """Return the value at a place; None if there is none."""
         found: Any = self.content
         for step in place:
             found = found.get(step) if isinstance(step, str) else found[step]

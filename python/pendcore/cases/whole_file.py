@@ -12,8 +12,8 @@ from pathlib import Path
 def whole_file(path: str | os.PathLike[str]) -> Iterator[Path]:
     """Yield the name under which to write a file; it gets its own when all of it is written.
 
-    If that fails or is interrupted, nothing new is left, and an earlier file of that name is what
-    it was. An `OSError` names the file, also where the system does not: a full disk. Devices and
+    If that fails or is interrupted, no new file is left, and an earlier file of that name stays as
+    it was. An `OSError` names the file, also where the system does not (a full disk). Devices and
     pipes, and files in a folder that takes no new ones, are written in place.
     """
     path = Path(path)

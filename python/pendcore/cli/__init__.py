@@ -57,14 +57,14 @@ def main(argv: Sequence[str] | None = None) -> int:
         except UsageError as error:
             print(f"pendcore {args.command}: {error}", file=sys.stderr)
             return 2
-        except KeyboardInterrupt:  # outside the run, which would have kept what it had
+        except KeyboardInterrupt:  # outside the run, which handles its own
             print(f"pendcore {args.command}: interrupted", file=sys.stderr)
             return 1
-        except BrokenPipeError:  # whoever read has what they wanted
+        except BrokenPipeError:  # the reader of our output has stopped reading
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             return 141
         except OSError as error:
-            # Whatever writes a file names it: what has no name is what is printed.
+            # Errors of files name the file, so an error without a name is one of printing.
             told = error if error.filename else f"standard output: {error.strerror or error}"
             print(f"pendcore {args.command}: {told}", file=sys.stderr)
             return 1

@@ -1,4 +1,4 @@
-"""What the commands share that read a case and write into a folder."""
+"""The arguments of commands that read a case and write into a folder."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pendcore.api.solution import Case
 
 
 def add_case_and_folder(parser: argparse.ArgumentParser) -> None:
-    """Add the two arguments."""
+    """Add the arguments for the case and the folder."""
     parser.add_argument("case", nargs="?", type=Path, metavar="CASE.toml", help="what to simulate")
     parser.add_argument(
         "-o", "--out", type=Path, metavar="FOLDER", help="default: out/ and the name of the case"
@@ -23,5 +23,5 @@ def case_of(args: argparse.Namespace) -> Case:
 
 
 def folder_of(args: argparse.Namespace) -> Path:
-    """Return the folder that was named, or one of the case's name."""
+    """Return the folder that was named, or one named after the case."""
     return args.out or Path("out", args.case.stem if args.case else "textbook")

@@ -67,7 +67,7 @@ def add_parser(commands: Any) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Do it; return the exit status."""
+    """Run the sub-command; return its exit status."""
     if not args.error > 0:
         raise UsageError(f"--error = {args.error!r}: must be > 0, a share of the total length")
     if not args.time_limit > 0:
@@ -95,7 +95,7 @@ def execute(args: argparse.Namespace) -> int:
 
 
 def _measured(case: Case, args: argparse.Namespace) -> tuple[AccuracyCost, bool]:
-    """Return what was measured, and whether it was all."""
+    """Return what was measured, and whether the measurement is complete."""
     options = {
         name: value for name, value in case.options.items() if limits_of_every_method(OPTIONS[name])
     }

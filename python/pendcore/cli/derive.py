@@ -60,7 +60,7 @@ def add_parser(commands: Any) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Do it; return the exit status."""
+    """Run the sub-command; return its exit status."""
     if args.worksheet and args.to != "report":
         raise UsageError("--worksheet: is of a report: add --to report")
     with blamed_on_usage():

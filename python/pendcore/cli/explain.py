@@ -40,7 +40,7 @@ def add_parser(commands: Any) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Do it; return the exit status."""
+    """Run the sub-command; return its exit status."""
     with blamed_on_usage():
         case = case_of(args)
     for message in case.scene._compiled.run_warnings(case.q0, *case.t_span):

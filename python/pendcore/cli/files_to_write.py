@@ -1,4 +1,4 @@
-"""The files of a command, each of which is written whatever becomes of the others."""
+"""The files of a command, each of which is written even if others cannot be."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from pendcore.cli.usage import written
 
 
 class FilesToWrite:
-    """Files of a folder, to be written one after the other; each is there whole or not at all.
+    """Files of a folder, to be written one after the other, each whole or not at all.
 
-    Ctrl-C and what the system refuses leave out the file that is being written, with a line that
-    says so at once.
+    Ctrl-C or an error of the system leaves out the file that is being written; a line on standard
+    error says so at once.
     """
 
     def __init__(self, folder: Path, names: Iterable[str]) -> None:
@@ -27,7 +27,7 @@ class FilesToWrite:
 
     @contextmanager
     def needed_for(self, *names: str) -> Iterator[None]:
-        """Within, what is stopped leaves out these files."""
+        """Leave out these files if the body of the `with` statement is interrupted or fails."""
         try:
             yield
         except (KeyboardInterrupt, OSError) as stop:

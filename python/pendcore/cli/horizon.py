@@ -10,7 +10,7 @@ from pendcore.run.error_estimate import ErrorEstimate
 LIMIT = 0.1
 """rad; a run counts as right until the error of an angle passes it."""
 MOST_WORK, PATIENCE = 1_000_000, 10.0
-"""Right-hand sides of a run whose horizon is estimated unasked, and s of computing for that."""
+"""The most right-hand sides of a run whose horizon is estimated unasked, and the time limit, s."""
 
 
 class Horizon(NamedTuple):
@@ -23,7 +23,7 @@ class Horizon(NamedTuple):
     sentence : str
         The same in words, or why it is not known.
     may_be_later : bool
-        Whether the estimate was stopped before it came to what it looks for.
+        Whether the estimate was stopped before it reached the limit of the error.
     """
 
     valid_until: float | None
@@ -32,7 +32,7 @@ class Horizon(NamedTuple):
 
 
 def horizon_of(solution: Solution, estimate: ErrorEstimate, limit: float) -> Horizon:
-    """Return what an estimate tells of a run."""
+    """Return the horizon of a run from an estimate of its error."""
     until = estimate.valid_until(limit)
     compared = float(estimate.t[-1]) if len(estimate.t) else estimate.begin
     if until != compared or estimate.is_lost:

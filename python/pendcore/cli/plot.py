@@ -41,7 +41,7 @@ def add_parser(commands: Any) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Do it; return the exit status."""
+    """Run the sub-command; return its exit status."""
     out = args.out or args.solution
     if args.out is None or not out.suffix:
         out = out.with_suffix(".png")

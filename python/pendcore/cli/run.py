@@ -49,7 +49,7 @@ a case:
 
 FILES = ("summary.txt", "summary.json", "angles.png", "solution.npz")
 _MANY_STEPS = 100_000
-"""What takes seconds to write."""
+"""The number of steps above which writing the solution takes seconds."""
 
 
 def add_parser(commands: Any) -> None:
@@ -79,7 +79,7 @@ def add_parser(commands: Any) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Do it; return the exit status."""
+    """Run the sub-command; return its exit status."""
     with blamed_on_usage():
         case = case_of(args)
         case = case if args.error is None else _with_error(case, args.error)
@@ -105,9 +105,9 @@ def execute(args: argparse.Namespace) -> int:
 
 
 def _simulated(case: Case, args: argparse.Namespace) -> tuple[Solution, str, str]:
-    """Return the run, what is to be said against it, and of that what its error was refused for."""
+    """Return the run, the complaint about it, and the refusal of the error in that complaint."""
     try:
-        return case.simulate(check=False), "", ""  # what is to be said is said once, at the end
+        return case.simulate(check=False), "", ""  # the complaint comes once, at the end
     except (ValueError, TypeError) as error:
         is_of_the_command = args.error is not None and str(error).startswith("error =")
         if args.case is None or is_of_the_command:
@@ -132,7 +132,7 @@ def _with_error(case: Case, error: float) -> Case:
 def _write(
     files: FilesToWrite, solution: Solution, refusal: str, horizon: Horizon | None
 ) -> dict[str, Any]:
-    """Write what is small first; return the facts, if there was time to find them."""
+    """Write small files first; return the facts, if there was time to find them."""
     found: dict[str, Any] = {}
     until = None if horizon is None else horizon.valid_until
     if (steps := len(solution.run.step_starts)) > _MANY_STEPS:

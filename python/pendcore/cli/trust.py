@@ -32,7 +32,7 @@ def add_parser(commands: Any) -> None:
     parser = commands.add_parser(
         "trust",
         help="say until when a run is right",
-        description="Say how far a run is to be trusted: a saved one, or that of a case.",
+        description="Say how far to trust a run: a saved run, or the run of a case.",
         epilog=_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -54,7 +54,7 @@ def add_parser(commands: Any) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Do it; return the exit status."""
+    """Run the sub-command; return its exit status."""
     if not args.limit > 0:
         raise UsageError(f"--limit = {args.limit!r}: must be > 0 (rad)")
     if args.time_limit is not None and not args.time_limit > 0:

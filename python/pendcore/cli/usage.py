@@ -1,4 +1,4 @@
-"""What a user did wrong, told in a line and without a traceback."""
+"""Mistakes of the user, told in a line and without a traceback."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ class UsageError(Exception):
 
 @contextmanager
 def blamed_on_usage(what: str = "") -> Iterator[None]:
-    """Within, files that cannot be opened and values out of range are the user's."""
+    """Turn errors of files and values in the body of the `with` statement into `UsageError`."""
     try:
         yield
     except OSError as error:
@@ -30,7 +30,7 @@ def written(to: Path, files: Iterable[Path]) -> str:
 
 @contextmanager
 def new_folder(folder: Path) -> Iterator[None]:
-    """Make the folder before a run may take hours, and leave none behind if nothing comes of it."""
+    """Make the folder before a run that may take hours; remove it if nothing is written."""
     new = [path for path in (folder, *folder.parents) if not path.exists()]
     with blamed_on_usage():
         folder.mkdir(parents=True, exist_ok=True)

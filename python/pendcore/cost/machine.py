@@ -1,4 +1,4 @@
-"""On what times were measured: without it they mean nothing."""
+"""The machine on which times were measured: without it they mean nothing."""
 
 from __future__ import annotations
 

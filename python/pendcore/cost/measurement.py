@@ -24,12 +24,12 @@ from pendcore.run.call import Choice, Start, run, supports
 from pendcore.run.methods import has_error_estimate, known_methods, pair_of
 from pendcore.run.result import RunResult
 
-# The reference may have a third of the time limit, single runs a third; the rest is for repeats.
+# A third of the time limit is for the reference and a third for single runs; the rest for repeats.
 SHARE = 1 / 3
 PILOT_SHARE = 1 / 200
-"""And a loose run: where that takes longer, tight ones would not get to the end."""
+"""The share of a first loose run; if that takes longer, tight runs would not get to the end."""
 SHORTER = 0.6
-"""By what factor the span is cut again where the references did not get so far."""
+"""The factor by which the span is cut again where the references did not get so far."""
 PILOT = Choice(pair_of("dopri5"), 1e-6, 1e-9)
 
 
@@ -49,12 +49,12 @@ class Contender:
 
     @property
     def text(self) -> str:
-        """It and those that are tighter, for people."""
+        """The setting and all tighter ones, for people."""
         how = f"steps of {self.step:.3g} s" if self.rtol is None else f"rtol {self.rtol:.3g}"
         return f"{self.method} at {how} and below"
 
     def point(self) -> Point:
-        """Return it as it is kept."""
+        """Return the point that the result keeps."""
         fine = not self.failure
         return Point(
             method=self.method, rtol=self.rtol, atol=self.atol, step=self.step,
@@ -68,7 +68,7 @@ class Contender:
 
 @dataclass(slots=True, kw_only=True)
 class Measurement:
-    """The whole of it; it can be left at any time, and `result` tells what there is."""
+    """A sweep; it can be interrupted at any time, and `result` returns what was measured so far."""
 
     scene: Scene
     start: Start
@@ -89,7 +89,7 @@ class Measurement:
     cut: str = ""
 
     def measure(self) -> None:
-        """Do all of it."""
+        """Make the whole measurement."""
         self.asked_t_span = (self.start.t_start, self.start.t_end)
         self.report(0.0)
         pilot = run(
@@ -106,7 +106,7 @@ class Measurement:
         self.report(1.0)
 
     def result(self) -> AccuracyCost:
-        """Return what was measured; without a reference, of which nothing is known, no points."""
+        """Return what was measured; there are no points without a reference."""
         found = self.reference
         tried = [c.point() for c in self.contenders if c.seconds or c.failure]
         order = list(known_methods())
@@ -134,7 +134,7 @@ class Measurement:
         )
 
     def _left(self, share: float = 1.0) -> float:
-        """Return what is left of a share of the time since the beginning, s."""
+        """Return how much is left of a share of the time limit, s."""
         return max(self.began + share * self.time_limit - monotonic(), 1e-3)
 
     def _times(self) -> Floats:
@@ -142,7 +142,7 @@ class Measurement:
         return self.reference.times
 
     def _find_reference(self, stiff: bool) -> None:
-        """Run it, and again over the shorter span where the whole one cannot be followed."""
+        """Run the reference, and again over a shorter span if the whole one cannot be followed."""
         for _ in range(3):
             found = self._reference(stiff)
             end, known = float(found.times[-1]), known_until(found)
@@ -221,11 +221,11 @@ class Measurement:
             )
 
     def _is_short_enough(self, row: list[Contender], allowed: float) -> bool:
-        """Whether to halve a fixed step no more: nothing was gained by it, or too dear."""
+        """Return whether halving a fixed step is over: it gained nothing, or is too dear."""
         assert self.reference is not None
         one, before = row[-1], row[-2].error if len(row) > 1 else inf
         gained = one.error > 2 * self.reference.uncertainty
-        gained &= one.error < before / 2 or before > KNOWN  # beyond are steps that are unstable
+        gained &= one.error < before / 2 or before > KNOWN  # larger errors may be of unstable steps
         dear = sum(one.seconds) > allowed / self.repeats
         return one.step is not None and (dear or not gained)
 
@@ -260,7 +260,7 @@ class Measurement:
             )
 
     def _call(self, one: Contender, time_limit: float | None = None) -> tuple[RunResult, float]:
-        """Do what is timed."""
+        """Make the call that is timed."""
         start, times = self.start, self._times()
         options = (
             {"rtol": one.rtol, "atol": one.atol, **self.limits}

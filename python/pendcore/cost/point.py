@@ -62,7 +62,7 @@ class Point:
 def front(points: Iterable[Point], uncertainty: float) -> list[Point]:
     """Return the points that no other beats in both error and time, the cheapest first.
 
-    Errors below the uncertainty of the reference count as that: they are not told apart.
+    Errors below the uncertainty of the reference count as equal to it.
     """
     kept: list[Point] = []
     for point in sorted(points, key=lambda p: (max(p.error, uncertainty), p.seconds)):

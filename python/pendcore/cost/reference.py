@@ -20,20 +20,20 @@ from pendcore.run.call import Choice, Start, atol_beside, run, supports
 from pendcore.run.methods import implicit_method, methods_of, most_accurate, pair_of
 from pendcore.run.result import RunResult
 
-# Where the scene is stiff, an implicit method first.
+# In a stiff scene an implicit method comes first.
 REFEREES_IF_STIFF = (implicit_method(), "dop853", pair_of("dopri5"))
 TOO_UNCERTAIN = 1e-6
-"""Beyond, the span is cut to where the two agree to `KNOWN`."""
+"""The uncertainty beyond which the span is cut to where both methods agree to `KNOWN`."""
 KNOWN = 1e-8
 
 
 class TooFarError(ValueError):
-    """No two methods got anywhere.
+    """No two methods got beyond the first of the times.
 
     Attributes
     ----------
     reached : float
-        s; how far one of the two came, and the other farther.
+        The time that the second farthest run reached, s.
     """
 
     def __init__(self, message: str, reached: float) -> None:
@@ -55,7 +55,7 @@ class Reference(NamedTuple):
         return float(self.apart.max())
 
     def error_of(self, solution: RunResult) -> float:
-        """Return the largest distance of a run from the one of the two that is not its like."""
+        """Return the largest distance of a run from the reference run by another method."""
         kin = methods_of(solution.method)
         other = self.second if self.first.method in kin else self.first
         if not (solution.success and reached(solution, self.times[-1:]).all()):
@@ -65,11 +65,11 @@ class Reference(NamedTuple):
         return error if error == error else inf
 
     def first_times(self, count: int) -> Reference:
-        """Return it on the first of the times alone."""
+        """Return the reference on the first of its times alone."""
         return self._replace(times=self.times[:count], apart=self.apart[:count])
 
     def texts(self) -> tuple[str, str]:
-        """Return how the two were made, for people."""
+        """Return how the two runs were made, for people."""
         return _text(self.first), _text(self.second)
 
 

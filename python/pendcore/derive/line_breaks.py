@@ -119,7 +119,7 @@ def aligned(lines: list[str]) -> str:
 
 
 def _pieces(expression: Expr, notation: Notation, room: float, depth: int = 0) -> list[str]:
-    """Return what must stay together, in order; signs stand at the beginning."""
+    """Return the pieces that must not be broken, in order; each begins with its sign."""
     write = notation.latex
     if expression.is_Add:
         return _pieces_of_sum(expression, notation, room, depth)

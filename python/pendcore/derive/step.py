@@ -103,7 +103,7 @@ class Step:
     title, text : str
         What is done, and why. The text holds inline LaTeX between ``$``.
     equations : tuple of Equation
-        What comes of it.
+        The results of the step.
     """
 
     number: int

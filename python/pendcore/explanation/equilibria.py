@@ -29,21 +29,21 @@ from pendcore.messages.arguments import Floats
 from pendcore.scene.scene import SceneData
 
 _STEP = 1e-5
-"""rad and rad/s, of the differences: where truncation and rounding are about as large."""
+"""rad and rad/s, the step of the differences, at which truncation and rounding are about equal."""
 _LONGEST = 0.5
-"""rad, of an iteration of Newton's method: it shall not leap to a distant equilibrium."""
+"""rad, the largest step of Newton's method, which is not to reach a distant equilibrium."""
 _NOISE = 1e-5
-"""What the differences leave of a growth that is zero, as a share of the mode's own size."""
+"""The growth that counts as zero, as a share of the mode's size: differences are that inexact."""
 _SLOW = 1e-3
 """The share of the stiffest rate below which a rate comes from the inverse."""
 _SINGULAR = 1e-12
-"""Least singular value of A, as a share of the largest, of what nothing turns back."""
+"""The share of A's largest singular value below which one means that nothing turns back."""
 _LEFT_OUT = {
     "dry": "dry friction is left out of the equilibria: it can hold the scene near them",
     "impact": "stops are left out of the equilibria: the scene can rest against them, and not "
     "beyond them",
 }
-"""What has no slope about a state of rest, by the account that it is booked on."""
+"""Effects without a slope about a state of rest, by the account on which their work is booked."""
 
 
 Complexes = npt.NDArray[np.complex128]
@@ -186,7 +186,7 @@ def find_equilibria(
         free = FreeAngles(scene, t, pose if start is None else np.array(start))
         z = pose[free.leaders]
         balanced = free.balanced_near(z)
-        # Damping beyond all measure: an equilibrium, whose modes are no numbers.
+        # Damping so large that the modes of an equilibrium are not finite.
         if balanced is None or not all(np.isfinite(x).all() for x in free.linearised(balanced)):
             remarks.append(f"no equilibrium was found from {name} at t = {t:.6g} s")
             continue

@@ -14,12 +14,12 @@ from pendcore.scene.drives import changes_with_time, fastest_drive, outside_of_t
 from pendcore.scene.scene import SceneData
 
 MANY = 60
-"""Links beyond which no matrix of them is made."""
+"""The number of links beyond which matrices of the chain would be too large."""
 
 
 @np.errstate(all="ignore")  # what overflows is told as not found
 def explain(scene: SceneData, t: float, start: tuple[float, ...] | None) -> Explanation:
-    """Find it all; see `Scene.explain`."""
+    """Return the explanation of a scene; see `Scene.explain`."""
     remarks: list[str] = []
     equilibria: tuple[Equilibrium, ...] = ()
     rank = None

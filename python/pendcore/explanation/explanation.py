@@ -14,8 +14,8 @@ from pendcore.scene.drives import changes_with_time
 from pendcore.scene.scene import Mobility, SceneData
 
 STEPS_A_PERIOD = 500
-"""How many steps a period of the fastest oscillation takes without a rejected one, from a start at
-rest up to half a radian from an equilibrium, at the tolerances that `simulate` has by default."""
+"""The number of steps in a period of the fastest oscillation that avoids rejected steps, at the
+default tolerances of `simulate`, from a start at rest up to half a radian from an equilibrium."""
 _WIDTH = 80
 _NAME = 58
 

@@ -1,4 +1,4 @@
-"""Horizons of runs against the work that they take: as numbers, as a table, as a figure."""
+"""The horizons of runs against their work: as numbers, as a table, as a figure."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 NARROW, FEW_DECADES = 6, 200
-"""Ranges of so much have hardly a number of one digit to label, and hardly a power of ten."""
+"""Axes that span a smaller factor than these show few one-digit numbers, or few powers of ten."""
 
 
 class HorizonPoint(NamedTuple):
@@ -30,9 +30,9 @@ class HorizonPoint(NamedTuple):
     valid : float
         s, from the start to where the estimated error passes the limit.
     seconds : float
-        s of computing that a run takes so far, nothing stored.
+        s of computing that a run takes to its horizon, with nothing stored.
     nfev : int
-        Its right-hand sides.
+        The number of right-hand sides of that run.
     early : float
         rad, the error at the time ``HorizonWork.early``.
     """
@@ -60,9 +60,9 @@ class HorizonWork:
     early : float
         The shortest of the horizons, s after the start, where the errors of all runs are compared.
     growth : LyapunovExponents or None
-        How fast neighbours part between the shortest and the longest of the horizons; None where
-        exponents mean nothing (dry friction, stops), where the horizons are one, and of what was
-        stopped before.
+        How fast neighbours part between the shortest and the longest of the horizons. None where
+        exponents mean nothing (dry friction, stops), where all horizons are equal, and where the
+        work was stopped before.
     refusal : str
         Why the exponent was refused; else empty.
     untried : tuple of (str, float)
@@ -89,7 +89,7 @@ class HorizonWork:
 
     @property
     def methods(self) -> list[str]:
-        """Names of the methods, as they come."""
+        """Names of the methods, in the order of the points."""
         return list(dict.fromkeys(point.method for point in self.points))
 
     def of(self, method: str) -> list[HorizonPoint]:
@@ -101,11 +101,11 @@ class HorizonWork:
         return point.valid >= abs(self.t_span[1] - self.t_span[0])
 
     def measured(self, method: str) -> float:
-        """Return the slope that the points of a method have: s for each digit that is right early.
+        """Return the slope of a method's points: s of horizon per right digit of the early error.
 
-        A line through those whose horizon lies within the run, by least squares; NaN of fewer than
-        three. Of one start it scatters by a tenth about ``seconds_a_digit``: neighbours do not part
-        evenly.
+        It is fitted by least squares to the points whose horizon lies within the run; NaN for fewer
+        than three. For a single start it scatters by a tenth about ``seconds_a_digit``, as
+        neighbours do not part evenly.
         """
         inside = [p for p in self.of(method) if not self.is_to_the_end(p) and p.early > 0]
         if len(inside) < 3:
@@ -158,7 +158,7 @@ class HorizonWork:
 
 
 def draw_work(work: HorizonWork, figure: Figure) -> None:
-    """Draw it into an empty figure, legends beside the data."""
+    """Draw the work into an empty figure, with legends beside the data."""
     by_digits, by_cost = figure.subplots(1, 2, sharey=True)
     for method in work.methods:
         points = work.of(method)
@@ -192,7 +192,7 @@ def draw_work(work: HorizonWork, figure: Figure) -> None:
 
 
 def _few_ticks(axis: Axes) -> None:
-    """Label a few round numbers where there are hardly any powers of ten to label."""
+    """Label a few round numbers where an axis shows hardly any powers of ten."""
     from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
     low, high = sorted(axis.get_xlim())
@@ -205,9 +205,9 @@ def _few_ticks(axis: Axes) -> None:
 
 
 def _as_neighbours_part(axis: Axes, work: HorizonWork) -> None:
-    """How the early error of a run depends on its horizon by the variational equations.
+    """Draw how the early error of a run depends on its horizon by the variational equations.
 
-    But for a factor, the middle one of the points: an exponent says how fast, not how much.
+    Their curve has a free factor, for which the median of the points is taken.
     """
     assert work.growth is not None
     horizons = np.abs(work.growth.t - work.t_span[0])

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
 
 TIMES = 201
-"""How many times the result has, unless they are given."""
+"""The number of times in the result, unless they are given."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -262,7 +262,7 @@ def _check_count(scene: SceneData, count: int | None) -> None:
 
 
 def _times(t_eval: npt.ArrayLike | None, since: float, t_end: float) -> Floats:
-    """Return the times to keep; the first is that from which growth counts."""
+    """Return the times to keep; growth counts from the first."""
     if t_eval is None:
         return time_grid(since, t_end, TIMES)
     given = np.array(numbers("t_eval", t_eval, "s"))

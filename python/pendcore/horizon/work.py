@@ -1,7 +1,7 @@
-"""What a digit is worth: seconds of validity against the work that they take.
+"""How much longer a run stays valid with one more digit, and what that digit costs.
 
 In a chaotic motion an error e grows like e exp(lambda t). So a run that is right to one more digit
-is right for ln(10)/lambda seconds longer, whatever the method; what the digit costs depends on it.
+is right for ln(10)/lambda seconds longer, whatever the method. The method decides what it costs.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from pendcore.run.methods import has_error_estimate, known_methods, methods_name
 from pendcore.scene.scene import SceneData, require_start
 
 METHODS = ("dopri5", "dop853", "taylor")
-"""That are tried where the scene can be carried by them."""
+"""The methods that are tried by default, where they support the scene."""
 RTOLS = tuple(10.0**-k for k in range(3, 15))
 TIGHT = 1e-14
-"""rtol of the exponent: it is to follow the true motion for as long as any of the runs."""
+"""The rtol of the exponent's run, which must be right for as long as any of the runs."""
 REPEATS = 5
-"""Runs that are timed; the quickest counts."""
+"""The number of timed runs at each point; the quickest counts."""
 
 
 @known_keywords
@@ -79,7 +79,7 @@ def horizon_work(
     """
     q0 = require_start(scene, q0)
     start = Start(scene, q0, qd0, *time_span(t_span))
-    _nothing(start, "dopri5")  # checks what it starts from
+    _check_start(start, "dopri5")
     limit = positive("limit", limit, "rad")
     names = _methods(methods, start)
     tolerances = numbers("rtols", rtols, "")
@@ -99,7 +99,7 @@ def horizon_work(
         work = _work(start, limit, choices, found)
         try:
             return replace(work, growth=_growth(start, work))
-        except ValueError as refusal:  # dry friction, stops: what jumps has none
+        except ValueError as refusal:  # dry friction and stops have no exponents
             return replace(work, refusal=str(refusal))
     except BaseException as stopped:
         forget_inner_runs(stopped)
@@ -109,13 +109,13 @@ def horizon_work(
         close(report)
 
 
-def _nothing(start: Start, method: str) -> None:
-    """Run no length at all: it is refused where the start is, or the method."""
+def _check_start(start: Start, method: str) -> None:
+    """Run for no time at all, which raises what is wrong with the start or the method."""
     run(start._replace(t_end=start.t_start), Choice(method, 1e-6, 1e-9), store="end")
 
 
 def _methods(given: Iterable[str] | str | None, start: Start) -> list[str]:
-    """Return the methods to try, by their own names, each once."""
+    """Return the names of the methods to try, without aliases and each once."""
     if given is None:
         return [method for method in METHODS if supports(method, start)]
     names = methods_named(given)
@@ -126,7 +126,7 @@ def _methods(given: Iterable[str] | str | None, start: Start) -> list[str]:
                 f"methods: {method!r} takes fixed steps and has no tolerance to vary: must be of "
                 f"{', '.join(known)}; pendcore.accuracy_cost measures it too"
             )
-        _nothing(start, method)
+        _check_start(start, method)
     return names
 
 
@@ -150,7 +150,7 @@ def _work(
     choices: list[Choice],
     found: list[tuple[ErrorEstimate, HorizonPoint]],
 ) -> HorizonWork:
-    """Return what the points tell; the exponent is yet to come."""
+    """Return the result without its exponent, which is computed from it."""
     early = min((point.valid for _, point in found), default=0.0)
     points = [
         point._replace(early=float(error.angle[np.abs(error.t - start.t_start) <= early].max()))

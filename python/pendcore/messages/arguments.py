@@ -23,7 +23,7 @@ Taken = ParamSpec("Taken")
 Given = TypeVar("Given")
 
 OTHER_NAMES = {"t_span": ("t_end", "t_max", "t_stop", "t_final", "duration")}
-"""What other programs call a parameter whose own name is spelled otherwise; `_` may be missing."""
+"""Our names of parameters, and those of other programs for them; `_` may be missing."""
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:

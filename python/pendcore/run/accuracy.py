@@ -1,4 +1,4 @@
-"""What became of an error that was asked for: what was reached, how it was checked, the cost."""
+"""The error that was asked for, the error that was reached, how it was checked, and the cost."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ class Paid(NamedTuple):
     method : str
     rtol : float
     nfev : int
-        Right-hand sides; for ``taylor`` series.
+        The number of right-hand sides, or of series for ``taylor``.
     work : float
-        In right-hand sides, a series counted as the many that take as long.
+        The same in right-hand sides; a series counts as the many that take as long.
     """
 
     purpose: str
@@ -86,7 +86,7 @@ class Accuracy:
         return sum(p.work for p in self.paid if purpose in (None, p.purpose))
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the same for JSON."""
+        """Return the fields as JSON can hold them."""
         achieved = self.achieved if self.achieved < inf else None
         return asdict(self) | {"achieved": achieved, "paid": [p._asdict() for p in self.paid]}
 

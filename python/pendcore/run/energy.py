@@ -67,7 +67,7 @@ class Ledger(Mapping[str, Floats]):
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self._entries]
 
-    __eq__ = object.__eq__  # a mapping's own would compare arrays
+    __eq__ = object.__eq__  # Mapping.__eq__ would compare arrays
     __hash__ = object.__hash__
 
     def __reduce__(self) -> tuple[object, tuple[dict[str, Floats]]]:

@@ -12,7 +12,7 @@ from pendcore.messages.arguments import Floats, positive
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class ErrorEstimate:
-    """How far a run is off, estimated from above.
+    """The error of a run over time, estimated from above.
 
     Attributes
     ----------
@@ -20,7 +20,7 @@ class ErrorEstimate:
         s, the start of the run.
     t : ndarray, (n_t,)
         Times, s: several in every step of a run with dense output, otherwise those that the run
-        kept. They end before the run does if a second run has nothing in common with it any more,
+        kept. They end before the run does if a second run had nothing in common with it any more,
         or did not get further.
     angle : ndarray, (n_t,)
         The largest error over the links, rad.
@@ -31,7 +31,7 @@ class ErrorEstimate:
     is_lost : bool
         Whether the second runs had nothing in common with the run any more at the last time.
     is_complete : bool
-        Whether the times go that far, or to the end of the run.
+        Whether the times go to where the runs part, or to the end of the run.
     is_dense : bool
         Whether the times cover the whole curve.
     """

@@ -53,7 +53,7 @@ class Event:
         _core.check_event(where, self._as_pair())
 
     def _take(self, where: str) -> None:
-        """Make the parameters of this kind what they are to be."""
+        """Check and convert the parameters of a kind of event."""
         raise NotImplementedError
 
     def _set(self, name: str, value: object) -> None:
@@ -68,19 +68,19 @@ class Event:
             raise TypeError(f"{where}every_turn = {values.every_turn!r}: must be True or False")
 
     def particulars(self) -> dict[str, Any]:
-        """Return the parameters that are not as by default: all it is made from."""
+        """Return the parameters that differ from their defaults, enough to make it again."""
         return {
             f.name: value for f in fields(self) if (value := getattr(self, f.name)) != f.default
         }
 
     def replace(self, **changes: Any) -> Self:
-        """Return one with other parameters; what is not given stays."""
+        """Return an event with other parameters; those not given stay."""
         return type(self)(**{**self.particulars(), **changes})
 
     __replace__ = replace  # copy.replace() of Python 3.13
 
     def _as_pair(self) -> tuple[str, dict[str, Any]]:
-        """Return what the core makes an event of."""
+        """Return the values from which the core makes an event."""
         values = {f.name: getattr(self, f.name) for f in fields(self)}
         return self.kind, values | {"terminal": int(self.terminal), "name": self.name or ""}
 
@@ -176,9 +176,9 @@ class TipLine(Event):
     Parameters
     ----------
     point : (float, float)
-        Of the line, m; x right, y down, the origin where the pivot is, or is before it is driven.
+        A point of the line, m; x right, y down, the origin at the undriven pivot.
     normal : (float, float)
-        Across the line, of any length: the function rises where the tip goes this way.
+        A vector across the line, of any length: the function rises where the tip goes this way.
     direction, terminal, name
         As in `Event`.
     """
@@ -197,9 +197,9 @@ class TipLine(Event):
 class Function(Event):
     """A function of one's own passes zero.
 
-    It is looked at at the ends of each step and in between, and a change of sign is then located;
-    what comes and goes between two samples is not seen. It must return the same for the same
-    arguments. It cannot be pickled, saved or written in a case file.
+    The function is sampled at the ends of each step and in between, and every change of sign is
+    located; two changes between neighbouring samples are not seen. The function must return the
+    same for the same arguments. It cannot be pickled, saved or written in a case file.
 
     Parameters
     ----------
@@ -208,7 +208,7 @@ class Function(Event):
     samples : int
         In each step, >= 1.
     max_step : float
-        Between two samples, s, > 0. It changes no step of the run.
+        The longest time between two samples, s, > 0. It changes no step of the run.
     direction, terminal, name
         As in `Event`.
     """
@@ -243,13 +243,13 @@ for cls in KINDS.values():
 
 
 def event_of(kind: str, values: Mapping[str, Any]) -> Event:
-    """Make an event of what the core keeps of it."""
+    """Return an event from the values that the core keeps."""
     terminal = {0: False, 1: True}.get(values["terminal"], values["terminal"])
     return KINDS[kind](**{**values, "terminal": terminal, "name": values["name"] or None})
 
 
 def events_asked_for(events: Iterable[Event]) -> tuple[Event, ...]:
-    """Return what was given to look for, or say what is none."""
+    """Return the events to look for; raise TypeError for anything else."""
     if type(events) is tuple and not events:
         return ()
     remedy = "must be a list of pendcore.events"

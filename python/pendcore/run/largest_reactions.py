@@ -17,29 +17,29 @@ from pendcore.scene.drives import fastest_drive
 from pendcore.scene.scene import SceneData
 
 IN_A_PIECE = 8
-"""Times at which forces are looked at first in each piece of a step; a step is one piece,"""
+"""The number of times in each piece of a step at which forces are computed first."""
 PIECES_A_PERIOD = 2
-"""or where a drive is faster than the steps, so many in each of its periods,"""
+"""The number of pieces in each period of a drive; a step without a faster drive is one piece."""
 MOST_PIECES = 2**16
-"""but no more than this."""
+"""The most pieces of one step."""
 BEFORE_THE_END = 1e-6
-"""Share of a piece before its end at which, and at twice which, forces are taken to find what they
-tend to there: at the very end a law may have changed."""
+"""Forces are extrapolated to the end of a piece, where a law may change, from times this share of
+the piece and twice this share before the end."""
 LAST_BITS = 8
-"""How many last bits of time this has to be at least."""
+"""The least distance of these times from the end, in last bits of the time."""
 ROUNDS = 16
-"""How often a peak is looked at more closely, each time between the neighbours of the highest of
-`IN_A_PIECE` + 1 times. The error is the square of what is left, so half as many often do."""
+"""The most refinements of a peak, each between the neighbours of the highest of `IN_A_PIECE` + 1
+times. The error falls as the square of their distance, so half as many rounds often suffice."""
 ROUNDING = 1e-13
-"""Share of a force below which a difference is one of rounding."""
+"""The share of a force below which a difference is rounding."""
 JUMP = 1e-9
-"""Share beyond which a difference between the two sides of a time is a jump."""
+"""The share of a force beyond which a difference between the two sides of a time is a jump."""
 HELD = 4 * float(np.finfo(float).eps)
-"""Share of two links' rates below which their difference is one of rounding."""
+"""The share of two links' rates below which their difference is rounding."""
 STEADY = 1e-12
-"""Share by which a force may vary that is the same throughout."""
+"""The share by which a force may vary that counts as constant."""
 AT_ONCE = 2**18
-"""Numbers in the largest array."""
+"""The most numbers in an array."""
 
 
 class LargestReaction(NamedTuple):
@@ -99,7 +99,7 @@ class _Search:
         self.at_once = max(AT_ONCE // (4 * IN_A_PIECE * n), 16)
 
     def found(self, is_over_time: bool = True) -> list[LargestReaction]:
-        """Return what was found: nothing where there were no times."""
+        """Return the largest forces; an empty list where there were no times."""
         if np.isinf(self.least).all() and (self.best < 0).all():
             return []
         steady = (self.best < inf) & (self.least >= self.best * (1 - STEADY))
@@ -115,7 +115,7 @@ class _Search:
         ]
 
     def pieces(self) -> Iterator[tuple[Floats, Floats]]:
-        """Yield where pieces of steps begin and end, so many at once."""
+        """Yield the times at which pieces of steps begin and end, in blocks of bounded size."""
         starts, drive = self.run.step_starts, fastest_drive(self.scene)
         for first in range(0, len(starts), self.at_once):
             low = starts[first : first + self.at_once]
@@ -141,7 +141,7 @@ class _Search:
     def sizes_at(self, t: Floats, states: Floats) -> Floats:
         """Return sizes of the forces at states, N, (k, n); inf where they are not finite."""
         q, qd = states[:, : self.n], states[:, self.n : 2 * self.n].copy()
-        # The interpolant of a joint that is held may turn it by the last bits of its links' rates.
+        # In the interpolant, a held joint may turn by the last bits of its links' rates.
         for j in range(1, self.n):
             size = np.abs(qd[:, j]) + np.abs(qd[:, j - 1])
             is_held = np.abs(qd[:, j] - qd[:, j - 1]) <= HELD * size
@@ -152,7 +152,7 @@ class _Search:
         return np.where(np.isfinite(found), found, inf)
 
     def take(self, t: Floats, sizes: Floats) -> None:
-        """Keep what is larger than all before: at times (...), sizes (..., n)."""
+        """Keep the sizes (..., n) at times (...) that are larger than all before."""
         if t.size:
             sizes = sizes.reshape(t.size, self.n)
             self.least = np.minimum(self.least, sizes.min(axis=0))
@@ -165,7 +165,7 @@ class _Search:
             self.best[i], self.when[i], self.before[i] = size, t, just_before
 
     def look(self, low: Floats, high: Floats) -> None:
-        """Look at pieces (m,) from ``low`` up to ``high``, where a law may change."""
+        """Search pieces (m,) from ``low`` up to ``high``, where a law may change."""
         bits = LAST_BITS * np.spacing(np.maximum(np.abs(low), np.abs(high)))
         has_inside = np.abs(high - low) > 4 * bits
         if not has_inside.all():
@@ -185,7 +185,7 @@ class _Search:
         self._polish(times, np.concatenate([grid, last[:, None]], axis=1))
 
     def _limits(self, t: Floats, sizes: Floats) -> Floats:
-        """Return what sizes (m, 3, n) tend to at the last of times (m, 3), if they jump there."""
+        """Return the limits of sizes (m, 3, n) at the last of times (m, 3), before a jump there."""
         before, near, after = np.moveaxis(sizes, 1, 0)
         ratio = ((t[:, 2] - t[:, 1]) / (t[:, 1] - t[:, 0]))[:, None]
         with np.errstate(invalid="ignore"):
@@ -199,7 +199,7 @@ class _Search:
         return found
 
     def _polish(self, times: Floats, grid: Floats) -> None:
-        """Look between the neighbours of peaks of a grid, times (m, k), sizes (m, k, n)."""
+        """Refine the peaks of a grid of times (m, k) and sizes (m, k, n)."""
         of, joint = np.divmod(np.arange(len(times) * self.n), self.n)
         t, sizes = times[of], grid.transpose(0, 2, 1).reshape(len(of), -1)
         share = np.arange(IN_A_PIECE + 1) / IN_A_PIECE
@@ -219,7 +219,7 @@ class _Search:
 
 
 def _may_exceed(sizes: Floats, best: Floats) -> npt.NDArray[np.bool_]:
-    """Return at which peaks of rows of sizes (m, k) the curve may come to more than ``best``, (m,).
+    """Return at which peaks of rows of sizes (m, k) the curve may exceed ``best``, (m,).
 
     A smooth curve rises above a sample by less than the sample is above its neighbours.
     """

@@ -15,7 +15,7 @@ def known_methods() -> dict[str, dict[str, Any]]:
 
 
 def error_over_rtol(method: str) -> float:
-    """Return the largest position error of a run, typically, as a multiple of its rtol."""
+    """Return the typical largest position error of a run, as a multiple of its rtol."""
     return float(known_methods()[method]["error_over_rtol"])
 
 
@@ -39,7 +39,7 @@ def line_style(method: str) -> dict[str, Any]:
 
 
 def described_methods(docstring: str | None) -> str | None:
-    """Return a docstring with a sentence on each method where it says ``{methods}``."""
+    """Return a docstring with ``{methods}`` replaced by a sentence on each method."""
     if docstring is None:  # python -OO
         return None
     before = docstring.partition("{methods}")[0]
@@ -54,9 +54,9 @@ def described_methods(docstring: str | None) -> str | None:
 
 
 def methods_named(methods: str | Iterable[str]) -> list[str]:
-    """Return methods to compare by their own names, each once.
+    """Return the names of methods to compare, without aliases and each once.
 
-    ``"auto"`` is refused: it may be one method at one tolerance, and another at the next.
+    ``"auto"`` is refused: it may choose a different method at each tolerance.
     """
     names = {alias: name for name, m in known_methods().items() for alias in (name, *m["aliases"])}
     try:
@@ -73,13 +73,13 @@ def methods_named(methods: str | Iterable[str]) -> list[str]:
 
 
 def methods_of(method: str) -> set[str]:
-    """Return a method's name and, of a pair, those of its two."""
+    """Return a method's name and, for a pair, the names of its two methods."""
     known = known_methods()[method]
     return {method, known["first"], known["second"]} - {""}
 
 
 def has_error_estimate(method: str) -> bool:
-    """Whether a method chooses its steps from tolerances."""
+    """Return whether a method chooses its steps from tolerances."""
     return bool(known_methods()[method]["error_order"])
 
 
@@ -90,9 +90,9 @@ def pair_of(first: str) -> str:
 
 
 def method_at_the_end(method: str, message: str) -> str:
-    """Return the method that a run ended with: of a pair that has changed over, the second.
+    """Return the method that a run ended with: the second of a pair that has changed over.
 
-    ``message`` is the run's, which tells that it has.
+    ``message`` is the message of the run, which says whether it has.
     """
     known = known_methods()[method]
     has_changed = known["second"] and f"went on with {known['second']}" in message

@@ -1,4 +1,4 @@
-"""What becomes of a run that did not get where it was to go: a warning, an error, or nothing."""
+"""What follows if a run does not get to its end: a warning, an exception, or nothing."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from pendcore.messages.warning import PendcoreWarning, warn
 from pendcore.run.result import Result, RunResult
 
 CAN_GO_ON = frozenset({"max_steps", "max_turns", "time_limit", "interrupted"})
-"""Statuses after which `Solution.resume` gets further; also that of a loaded run, whose functions
-are gone."""
+"""The statuses after which `Solution.resume` gets further, even in a loaded run without its
+functions."""
 
 
 class RunError(RuntimeError):
-    """A run ended before it got where it was to go, and ``check=True`` asked for an exception.
+    """A run ended before it got to its end, and ``check=True`` asked for an exception.
 
     Attributes
     ----------
@@ -30,7 +30,7 @@ class RunError(RuntimeError):
 
 
 def require_check(check: object) -> None:
-    """Refuse what is no answer to whether a run is to be checked, before it takes an hour."""
+    """Raise TypeError for a wrong ``check``, before a run that may take an hour."""
     if check is not None and not isinstance(check, bool):
         raise TypeError(
             f"check = {check!r}: must be None (warn if the run does not get to its end), True "
@@ -39,7 +39,7 @@ def require_check(check: object) -> None:
 
 
 def checked(solution: Result, check: bool | None) -> Result:
-    """Return a solution; of one that is no success warn, or raise, or say nothing."""
+    """Return a solution; unless it is a success, warn or raise as ``check`` says."""
     accuracy = solution.accuracy
     is_verified = accuracy is None or accuracy.outcome != "ended early"
     if check is False or (solution.success and is_verified):

@@ -1,4 +1,4 @@
-"""What moves a scene by the clock: sinusoids, tables and splines of its effects."""
+"""What depends on time in a scene: the sinusoids, tables and splines of its effects."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def fastest_drive(scene: SceneData) -> float:
 
 
 def parts(scene: SceneData) -> Iterator[Part]:
-    """What the effects hold that has parameters of its own."""
+    """Yield the parts of effects: tables, splines and sinusoids among them."""
     for effect in scene.effects:
         for parameter in effect.description.parameters:
             value = getattr(effect, parameter.name)
@@ -23,13 +23,13 @@ def parts(scene: SceneData) -> Iterator[Part]:
 
 
 def changes_with_time(scene: SceneData) -> bool:
-    """Whether an effect has a table, a spline or a sinusoid."""
+    """Return whether an effect has a table, a spline or a sinusoid."""
     names = {p.name for part in parts(scene) for p in part.description.parameters}
     return not names.isdisjoint({"t", "angular_frequency"})
 
 
 def outside_of_tables(scene: SceneData, t: float) -> str:
-    """Return whose table or spline does not reach to a time, and where it is; empty if none."""
+    """Name the table or spline that does not reach to a time, and its effect; empty if none."""
     for i, effect in enumerate(scene.effects, start=1):
         for parameter in effect.description.parameters:
             value = getattr(effect, parameter.name)

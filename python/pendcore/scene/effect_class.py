@@ -44,13 +44,13 @@ class Described:
         raise NotImplementedError
 
     def replace(self, **changes: Any) -> Self:
-        """Return one with other parameters; what is not given stays."""
+        """Return an object with other parameters; those not given stay."""
         return type(self)(**{**self.particulars(), **changes})
 
     __replace__ = replace  # copy.replace() of Python 3.13
 
     def particulars(self) -> dict[str, Any]:
-        """Return the parameters that are not as by default: all it is made from."""
+        """Return the parameters that differ from their defaults, enough to make it again."""
         values = {p.name: (p, getattr(self, p.name)) for p in self.description.parameters}
         return {
             name: value for name, (p, value) in values.items() if p.required or value != p.default
@@ -103,7 +103,7 @@ class Effect(Described):
         _core.check_effect(where, self._as_pair())
 
     def _as_pair(self) -> tuple[str, Any]:
-        """Return what the core makes an effect of."""
+        """Return the values from which the core makes an effect."""
         return self.kind, self._for_the_core()
 
 
@@ -249,7 +249,7 @@ def _plain(name: str, parameter: Parameter, value: Any) -> Any:
 
 
 def _address(name: str, value: Any, of_function: bool) -> int:
-    """Return where in memory a function is, or what a function is handed."""
+    """Return the memory address of a function, or of the data that it is handed."""
     if isinstance(value, CFuncPtr):
         value = ctypes.cast(value, ctypes.c_void_p).value or 0
     elif isinstance(value, np.ndarray) and not of_function:

@@ -80,7 +80,7 @@ class Description(NamedTuple):
     account : str
         Where the ledger books its work; ``"none"`` where there is none.
     bounds_joint : bool
-        Whether a start next to one that it allows may be none that it allows.
+        Whether the effect may forbid a start that is next to one that it allows.
     jumps_or_sticks : bool
         Whether the motion jumps or sticks under it, each time at an instant of its own.
     """
@@ -103,7 +103,7 @@ CAVEATS = {
     "impact": "A joint at rest at a stop is held there until what holds it would have to pull. "
     'A run in which nothing can move any more has the status "at_rest".',
 }
-"""What is to be known of laws whose work the ledger books so."""
+"""Notes on the laws whose work the ledger books on an account, by that account."""
 
 USER = Description(
     name="User",

@@ -1,7 +1,7 @@
 """What pickle keeps of a frozen dataclass with slots: the values of its fields.
 
-Python adds the same two functions by itself, with a comment of its makers in place of a docstring,
-which `help` shows.
+Python adds the same two functions by itself, but without docstrings: `help` would show a comment of
+the standard library.
 """
 
 from __future__ import annotations

@@ -91,7 +91,7 @@ class Link:
     __replace__ = replace  # copy.replace() of Python 3.13
 
     def particulars(self) -> dict[str, float]:
-        """Return mass, length, and what is not as in a uniform rod: all it is made from."""
+        """Return mass, length, and what differs from a uniform rod, enough to make it again."""
         rod = Link(mass=self.mass, length=self.length)
         values = {"mass": self.mass, "length": self.length}
         if self.center != rod.center:

@@ -1,4 +1,4 @@
-"""How well a run kept its energy: the one thing that it can say about its own error."""
+"""How well a run kept its energy, which tells of its error without further runs."""
 
 from __future__ import annotations
 
@@ -83,13 +83,13 @@ def energy_drift(solution: RunResult, every: int = 1) -> EnergyDrift:
 
 
 def _kinds_that_do_work(scene: SceneData) -> list[str]:
-    """Return the kinds of effects under which the total energy does not stay what it is."""
+    """Return the kinds of effects that change the total energy."""
     present = {effect.kind for effect in scene.effects if effect.description.account != "none"}
     return [kind for kind in KINDS if kind in present]
 
 
 def _residual(solution: RunResult) -> float | None:
-    """Return what the ledger leaves over at most, J."""
+    """Return the largest residual of the ledger, J."""
     if not solution.run.arguments["ledger"]:
         return None
     ledger = solution.energy().ledger
@@ -97,9 +97,9 @@ def _residual(solution: RunResult) -> float | None:
 
 
 def _lowest_potential(scene: SceneData) -> float:
-    """Return that of every link hanging (or standing, where its weight pulls that way), J.
+    """Return the lowest potential energy: every link hangs, or stands if its weight pulls up, J.
 
-    What springs keep is not below zero; if it is, they push, and nothing is the lowest.
+    It is inf if a spring has negative energy, as its stiffness is: then no pose is the lowest.
     """
     n = len(scene.links)
     all_pull_down = all(link.center >= 0 for link in scene.links)
@@ -126,7 +126,7 @@ def text(drift: Mapping[str, Any]) -> str:
 
 
 def is_untold(drift: Mapping[str, Any]) -> bool:
-    """Whether effects change the energy and no ledger tells by how much."""
+    """Return whether effects change the energy and no ledger tells by how much."""
     return bool(drift["changed_by"]) and not drift["ledger"]
 
 

@@ -31,9 +31,9 @@ _PAST: dict[str, Any] = {
     "zorder": 0,
 }
 _FEW = 200
-"""Points that are drawn as such where there is nothing between them."""
+"""Without dense output, points are marked if they are fewer than this."""
 _LEAST_SPAN = 0.1
-"""deg: rest must look like rest, not like its last bits."""
+"""deg, the least span of the angle axis, so that rest does not look like its last bits."""
 
 
 def plot(

@@ -21,7 +21,7 @@ from pendcore.views.table import evaluations, listed, outcome
 from pendcore.views.trusted_digits import rounded, trusted_digits
 
 _MANY = 12
-"""Links that a table for people has a row each of."""
+"""The number of links up to which a table for people has a row for each."""
 
 
 def facts(solution: RunResult, refusal: str = "") -> dict[str, Any]:
@@ -91,7 +91,7 @@ def _events(solution: RunResult) -> list[dict[str, Any]]:
 
 
 def _ledger(solution: RunResult) -> dict[str, float] | None:
-    """Return its entries at the last of the kept times, if it was kept, J."""
+    """Return the entries of the ledger at the last kept time, J, if the run kept a ledger."""
     ledger = solution.energy().ledger
     if ledger is None or not len(solution.t):
         return None

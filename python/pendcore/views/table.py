@@ -12,18 +12,18 @@ from pendcore.run.result import RunResult
 from pendcore.views import energy_drift
 
 _MANY = 4000
-"""Times of which the energy is not worth the wait for a repr."""
+"""With more times than this, a repr computes the energy at some of them only."""
 
 
 def text(solution: RunResult) -> str:
-    """Return what was run, how it ended and where, a line each."""
+    """Return lines that say what was run, how it ended and where."""
     rows = _rows(solution)
     width = max(len(name) for name, _ in rows)
     return "\n".join(["Solution", *(f"  {name:{width}}  {value}" for name, value in rows)])
 
 
 def html(solution: RunResult) -> str:
-    """Return the same as an HTML table."""
+    """Return these lines as an HTML table."""
     rows = "".join(
         f"<tr><th style='text-align: left'>{escape(name)}</th><td>{escape(value)}</td></tr>"
         for name, value in _rows(solution)
@@ -38,12 +38,12 @@ def listed(values: Sequence[float] | Floats, most: int = 6) -> str:
 
 
 def outcome(status: str, message: str) -> str:
-    """Return the word and the sentence, and no word twice."""
+    """Return status and message, without the status twice."""
     return message if message.startswith(f"{status}:") else f"{status}: {message}"
 
 
 def evaluations(method: str, message: str, nfev: int) -> str:
-    """Return how often what was evaluated: series by Taylor's, right-hand sides by others."""
+    """Return the number of evaluations: series of Taylor's method, right-hand sides of others."""
     known = known_methods()
     first = known[method]["first"] or method
     if not known[first]["dense_output_is_series"]:

@@ -11,15 +11,15 @@ from pendcore.run.result import RunResult
 from pendcore.views.energy_drift import EnergyDrift
 
 AMPLIFIED = 10.0
-"""How much larger the error of a force may be, as a share, than a tolerance: errors of steps add up
-in a run, as they have in its drift already."""
+"""The ratio of a force's relative error to the tolerance, at most: errors of steps add up in a run,
+as they have in its drift already."""
 FEWEST, MOST = 2, 6
 
 
 def trusted_digits(solution: RunResult, drift: EnergyDrift, most: int = MOST) -> int:
-    """Return how many, 2 to 6: by tolerance, energy drift and, if it was verified, the error.
+    """Return the number of digits, 2 to 6: by tolerance, energy drift and any verified error.
 
-    It tells nothing of a chaotic run past the time to which it is right: see `Solution.error`.
+    It does not hold past the time to which a chaotic run is right: see `Solution.error`.
     """
     asked, accuracy = solution.run.arguments, solution.accuracy
     shares = [drift.relative_drift or 0.0]

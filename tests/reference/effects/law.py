@@ -1,4 +1,4 @@
-"""What a law may say; most say one thing of these."""
+"""The interface of the reference laws; most laws define one of its parts."""
 
 from __future__ import annotations
 

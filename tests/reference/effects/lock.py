@@ -1,4 +1,4 @@
-"""A joint that does not turn, whatever it takes; where it stands is the state's affair."""
+"""A joint that does not turn; the state says at which angle it is."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A couple at a joint that a motor is told to give; never more than its limit.
+"""The couple of a motor at a joint, never more than its limit.
 
 Constant; a sinusoid of time; a table of time, linear between its points; or
 tau = kp (reference - phi) - kd phid.

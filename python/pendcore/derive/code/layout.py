@@ -1,4 +1,4 @@
-"""What generated files have in common: what wrote them from what, names, lines of a page."""
+"""The common parts of generated files: the lines on their origin, names, lines of a page."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def origin(derivation: Algebra) -> Iterator[str]:
     yield "m, s, rad, N, J."
     yield ""
     yield "M qdd = f are the equations of motion, M11 and f1 entries of both; D1, l21, h1, a2 come"
-    yield "of the elimination, M = L D L^T. cos_q1_q2 is the cosine of q1 - q2; e1, e2, ... is what"
+    yield "from elimination, M = L D L^T. cos_q1_q2 is the cosine of q1 - q2; e1, e2, ... are what"
     yield "several lines share."
 
 
@@ -75,14 +75,14 @@ def identifiers(symbols: Iterable[Symbol], taken: Iterable[str]) -> dict[Symbol,
 
 
 def meanings(derivation: Algebra) -> dict[Symbol, str]:
-    """Return what the symbols of laws are that are assigned on the way, with their units."""
+    """Return the meanings, with units, of the symbols that laws define."""
     return {known.symbol: known.meaning for known in derivation.equations.definitions}
 
 
 def constants(derivation: Algebra, writer: Infix, name: str, value: str, remark: str) -> list[str]:
     """Return the scene's numbers as lines; the three patterns are a language's.
 
-    What a number is stands behind it, or above where that would be too long.
+    The meaning of a number stands behind it, or above it where the line would be too long.
     """
     rows = [
         (

@@ -1,4 +1,4 @@
-"""What every generated file computes, ready to be written in a language."""
+"""The computations of every generated file, ready to be written in a language."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class Quantities:
         )
 
     def symbols(self) -> list[Symbol]:
-        """Return what they assign on the way."""
+        """Return the assignments of these computations."""
         every = (self.accelerations, self.reactions, self.energies, self.power)
         return list(dict.fromkeys(symbol for one in every for symbol, _ in one.assignments))
 

@@ -43,7 +43,7 @@ WITHOUT_LAW: dict[str, tuple[str, str]] = {
     ),
     "user": (OWN, USE_A_LAW),
 }
-"""Why the kinds that are not smooth have none, and what to use instead."""
+"""Why the kinds that are not smooth have no law in symbols, and what to use instead."""
 
 
 def laws_of(effects: Sequence[Any], notation: Notation) -> list[Law]:

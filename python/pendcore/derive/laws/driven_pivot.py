@@ -29,7 +29,7 @@ class DrivenPivot(Law):
         self.path = self._axis("x"), self._axis("y")
 
     def sentence(self, notation: Notation) -> str:
-        """Say what it does."""
+        """Return the words and formulas of the law."""
         return "The pivot is moved along a given path."
 
     def _axis(self, axis: str) -> Expr:

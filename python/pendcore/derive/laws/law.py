@@ -1,4 +1,4 @@
-"""What the law of a smooth effect may say, in symbols; most say one thing of these."""
+"""The interface of the laws of smooth effects, in symbols; most laws define one of its parts."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Definition(NamedTuple):
 
 
 class Law:
-    """An effect that does nothing; the laws say what they do.
+    """An effect that does nothing; the laws override what they do.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ class Law:
         self.notation = notation
 
     def sentence(self, notation: Notation) -> str:
-        """Return what the reader of a derivation is told of it; formulas between dollars."""
+        """Return what a derivation says of the effect; formulas between dollars."""
         raise NotImplementedError
 
     def pivot(self) -> Vector | None:

@@ -9,12 +9,12 @@ from pendcore.derive.notation import Notation
 class Lock(Law):
     """See the core's effect of that name.
 
-    Its couple Lambda_j does no work; qdd_j = qdd_(j-1) is one equation more. At which angle it is
-    locked is the state's affair.
+    Its couple Lambda_j does no work; qdd_j = qdd_(j-1) is one more equation. The angle at which the
+    joint is locked comes from the state.
     """
 
     def sentence(self, notation: Notation) -> str:
-        """Say what it does."""
+        """Return the words and formulas of the law."""
         joint = self.effect.joint
         return (
             f"A lock keeps the angle of joint {joint} constant by the couple "

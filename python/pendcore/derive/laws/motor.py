@@ -44,7 +44,7 @@ class Motor(Law):
             self.reference = parameter(name, latex, pd.reference, "rad", f"angle aimed at {motor}")
 
     def sentence(self, notation: Notation) -> str:
-        """Say what it does."""
+        """Return the words and formulas of the law."""
         return f"A motor turns joint {self.effect.joint}."
 
     def couple(self, chain: Chain) -> Expr:

@@ -26,7 +26,7 @@ class Payload(Law):
             self.inertia = notation.parameter("I_p", "I_{p}", effect.inertia, "kg m^2", words, rank)
 
     def sentence(self, notation: Notation) -> str:
-        """Say what it does."""
+        """Return the words and formulas of the law."""
         if any(p.symbol.name == "m_p__2" for p in notation.parameters):
             return "The payloads are fixed to the tip, and move as one body."
         return "A payload is fixed to the tip."

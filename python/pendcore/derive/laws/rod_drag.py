@@ -8,8 +8,8 @@ integrals, with D = abs(w_0) + abs(w_1), whatever the signs:
     T = -k L^2 ((w_0 abs(w_0)^3 + w_1 w_1^2 (4 abs(w_0) + 3 abs(w_1)))/D^2
                 + 2 (w_0 w_1 + abs(w_0 w_1)) (w_0 + w_1)/D) / 12
 
-They are smooth as the law is: once, also where a speed changes its sign. As in the core, D is never
-quite 0: 1e-100 m/s is added, so that a rod at rest has no drag instead of 0/0.
+They are as smooth as the law: differentiable once, also where a speed changes its sign. As in the
+core, 1e-100 m/s is added to D, so that a rod at rest has no drag instead of 0/0.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class RodDrag(Law):
         self._names: dict[str, Symbol] = {}
 
     def sentence(self, notation: Notation) -> str:
-        """Say what it does."""
+        """Return the words and formulas of the law."""
         i = self.effect.link
         return (
             f"The air resists the motion of link {i} across itself: the force on a length of rod "

@@ -21,7 +21,7 @@ class RotorInertia(Law):
         )
 
     def sentence(self, notation: Notation) -> str:
-        """Say what it does."""
+        """Return the words and formulas of the law."""
         joint = self.effect.joint
         return (
             f"A rotor turns with joint {joint}: to turn it faster takes the moment of inertia "

@@ -28,7 +28,7 @@ class TorsionalSpring(Law):
             )
 
     def sentence(self, notation: Notation) -> str:
-        """Say what it does."""
+        """Return the words and formulas of the law."""
         return f"A torsional spring turns joint {self.effect.joint} to its rest angle."
 
     def couple(self, chain: Chain) -> Expr:

@@ -35,7 +35,7 @@ class ViscousJoint(Law):
                 )
 
     def sentence(self, notation: Notation) -> str:
-        """Say what it does."""
+        """Return the words and formulas of the law."""
         return f"Viscous damping at joint {self.effect.joint} opposes its rate."
 
     def couple(self, chain: Chain) -> Expr:

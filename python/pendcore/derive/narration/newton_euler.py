@@ -88,7 +88,7 @@ def _opposite(i: int) -> str:
 
 
 def _turning_with(page: Page, i: int) -> str:
-    """Say what a payload with a moment of inertia takes of the link at whose end it is."""
+    """Return the sentence on the couple that a payload with inertia takes from the last link."""
     payload = page.equations.payload
     if i < page.n or payload is None or payload.inertia == 0:
         return ""

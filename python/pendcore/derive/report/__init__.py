@@ -25,14 +25,14 @@ from pendcore.messages.warning import warn
 
 
 class Report(NamedTuple):
-    """What came of writing a report.
+    """The result of writing a report.
 
     Attributes
     ----------
     files : list of Path
         What was written.
     complaint : str
-        What is to be said against the run that it shows; empty if there is nothing.
+        A complaint about the run that the report shows; empty if there is none.
     """
 
     files: list[Path]
@@ -106,7 +106,7 @@ def write_report(
     -------
     Report
         Its files, the report first: Markdown always, HTML where pandoc is, PDF where a LaTeX
-        engine is beside it; then the figures. And what is to be said against the run.
+        engine is beside it; then the figures. And the complaint about the run.
     """
     told = bars.callback(progress, "deriving") or (lambda fraction: None)
     try:
@@ -145,7 +145,7 @@ def _written(
 
 
 def _texts(document: Document, folder: Path, name: str) -> Iterator[Path]:
-    """Write a document as what the machine has converters for; one that fails is told of."""
+    """Write a document in every form that the machine can make; report converters that fail."""
     path = folder / f"{name}.md"
     with whole_file(path) as unfinished:
         unfinished.write_text(document.markdown(), encoding="utf-8")

@@ -36,7 +36,7 @@ _FONT: Any = {
 
 
 def lettering() -> AbstractContextManager[None]:
-    """Within, figures are drawn with letters as in the equations, and saved the same every time."""
+    """Draw figures with letters as in the equations, and save them the same every time."""
     import matplotlib as mpl
 
     return mpl.rc_context(_FONT)

@@ -99,7 +99,7 @@ def _joint_angles(derivation: Algebra) -> str:
 
 
 def _torques(derivation: Algebra) -> Iterator[str]:
-    """Yield, for every joint with a torque, of what it is the sum."""
+    """Yield, for every joint with a torque, the sum that the torque is."""
     s = derivation.symbols
     chain = cast("Chain", JointsByName(s))
     for joint in sorted(int(d.symbol.name[3:]) for d in derivation.equations.torques):

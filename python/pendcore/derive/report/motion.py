@@ -87,7 +87,7 @@ def takes_time(solution: Solution) -> bool:
 def numerical_solution(
     derivation: Algebra, solution: Solution, figures: Figures, refusal: str = ""
 ) -> Iterator[Block]:
-    """Yield how the equations were integrated, and what came of it."""
+    """Yield how the equations were integrated, and with what result."""
     yield Heading(2, "Numerical solution")
     yield Paragraph(_how(solution))
     if not solution.success:
