@@ -141,6 +141,7 @@ void bind_run(py::module_& module) {
       .def_property_readonly("success",
                              [](const Run& run) { return text(run.solution.status).success; })
       .def_property_readonly("method", [](const Run& run) { return run.solution.options.method; })
+      .def_property_readonly("last_method", [](const Run& run) { return run.solution.last_method; })
       .def_property_readonly(
           "store", [](const Run& run) { return store_name(run.solution.options.store.value()); })
       .def_property_readonly("statistics",

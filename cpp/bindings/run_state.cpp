@@ -111,6 +111,7 @@ template <class Archive, class AnySolution>
 void visit(Archive& io, AnySolution& s) {
   io("status", s.status);
   io("message", s.message);
+  io("last_method", s.last_method);
   visit_statistics(io, "statistics_", s.statistics);
   io("t", s.t);
   io("states", s.states);

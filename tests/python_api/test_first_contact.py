@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 import pickle
 import pydoc
+import re
 import subprocess
 import sys
 from collections.abc import Callable
@@ -314,3 +316,43 @@ def test_one_state_of_plain_numbers_makes_no_arrays_of_rows(
             one = scene.accelerations(t, of(q), of(qd))
             assert one.shape == (n,)
             assert np.array_equal(one, row[0])
+
+
+EVENTS = [one for one in vars(pc.events).values() if hasattr(one, "kind")]
+MADE = (pc.Scene, pc.Link, pc.Case, *pc.effects.kinds().values(), *EVENTS)
+"""Classes of what users make; all others are of what is returned or raised."""
+CASE = pc.Case.textbook()
+OWNERS = (RUN, RUN.scene, RUN.scene.links[0], CASE)
+CALLED = {
+    **{
+        name: value
+        for name, value in vars(pc).items()
+        if name in pc.__all__ and inspect.isfunction(value)
+    },
+    **{one.__qualname__: one for one in MADE},
+    **{
+        f"{type(owner).__name__}.{name}": getattr(owner, name)
+        for owner in OWNERS
+        for name in dir(type(owner))
+        if inspect.isroutine(getattr(type(owner), name)) and not name.startswith("_")
+    },
+    "Solution.__call__": RUN,
+}
+
+
+@pytest.mark.every_value("name")
+@pytest.mark.parametrize("name", CALLED)
+def test_every_public_call_that_python_refuses_is_refused_in_words(name: str) -> None:
+    called = CALLED[name]
+    taken = [*inspect.signature(called).parameters.values()]
+    takes_any = [one for one in taken if one.kind is one.VAR_KEYWORD]
+    wrong: list[Callable[[], object]] = [lambda: called(*[0.5] * 40)]
+    if not takes_any:
+        wrong.append(lambda: called(no_such_name=1))
+    if any(one.default is one.empty for one in taken if one not in takes_any):
+        wrong.append(called)
+    for call in wrong:
+        with pytest.raises((TypeError, ValueError)) as raised:
+            call()
+        told = str(raised.value)
+        assert not re.search(r"positional argument|unexpected keyword|got multiple", told), told

@@ -176,6 +176,7 @@ void run(const Scene& scene, Solution& solution, double t_end, Limits limits, Be
   solution.message = ending_message(ending, scene, solution, integrator,
                                     switching ? switching->remark() : "", recorder.ended_by());
   if (switching) solution.message += switching->remark_on_impacts();
+  solution.last_method = stepper->info().name;
   solution.message += remark_on_steps(scene, equations, integrator, find_method(options.method),
                                       stepper->info(), options.step.has_value(), solution.t0);
   solution.error = ending.error;

@@ -9,7 +9,7 @@ import numpy as np
 from pendcore import _core
 from pendcore.messages.arguments import Floats
 from pendcore.messages.progress import Progress, callback, close
-from pendcore.run.methods import known_methods, method_at_the_end
+from pendcore.run.methods import known_methods
 from pendcore.scene.scene import SceneData
 
 STEPS_AT_ONCE = 2000
@@ -98,7 +98,7 @@ def defect(scene: SceneData, run: _core.Run, progress: Progress = None) -> Defec
                 report(some.stop / max(len(starts), 1))
     finally:
         close(report)
-    method = known_methods()[method_at_the_end(run.method, run.message)]
+    method = known_methods()[run.last_method]
     is_series = method["dense_output_is_series"]  # whose order the tolerances choose
     return Defect(
         t=starts,

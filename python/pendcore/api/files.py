@@ -9,9 +9,11 @@ from pendcore.api.solution import Case, Solution
 from pendcore.api.solve import result_as
 from pendcore.cases import archive
 from pendcore.cases.case_file import case_from
+from pendcore.messages.arguments import known_keywords
 from pendcore.scene.scene import SceneData
 
 
+@known_keywords
 def load(path: str | os.PathLike[str]) -> Solution:
     """Read a solution that `Solution.save` wrote.
 
@@ -37,6 +39,7 @@ def load(path: str | os.PathLike[str]) -> Solution:
     return result_as(Solution, result)
 
 
+@known_keywords
 def read_case(source: str | os.PathLike[str]) -> Case:
     """Read a case from TOML.
 

@@ -161,6 +161,7 @@ class Solution(RunResult):
         )
         return checked(longer, check)
 
+    @known_keywords
     def case(self) -> Case:
         """Return the case of this run, ready to be run again or written as TOML."""
         return Case.of_solution(self)
@@ -173,6 +174,7 @@ class Solution(RunResult):
         """
         save(self, path, progress=progress)
 
+    @known_keywords
     def plot(
         self,
         ax: Any = None,
@@ -189,10 +191,12 @@ class Solution(RunResult):
         """
         return plot(self, ax, label=label, horizon=horizon, **line_properties)
 
+    @known_keywords
     def to_pandas(self) -> pd.DataFrame:
         """Return a table with a row per time and the columns q_1.., qd_1..; units in ``attrs``."""
         return to_pandas(self)
 
+    @known_keywords
     def to_xarray(self) -> xr.Dataset:
         """Return ``q`` and ``qd`` over time and link; units and the case in ``attrs``."""
         return to_xarray(self)
@@ -243,6 +247,7 @@ class Case(CaseData):
     scene: Scene
 
     @classmethod
+    @known_keywords
     def textbook(cls) -> Case:
         """Section 2.1 of the textbook: from rest at 45 and 60 degrees, for 5 s, by ode45."""
         return cls(
@@ -253,6 +258,7 @@ class Case(CaseData):
             options={"method": "ode45"},
         )
 
+    @known_keywords
     def simulate(self, *, check: bool | None = None) -> Solution:
         """Run the case; see `pendcore.simulate`. The solution has the name of the case.
 

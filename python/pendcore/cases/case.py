@@ -59,6 +59,7 @@ class CaseData:
         object.__setattr__(self, "options", MappingProxyType(given))
 
     @classmethod
+    @known_keywords
     def of_solution(cls, solution: RunResult) -> Self:
         """Return what was asked for when a solution was computed."""
         asked = {key: _plain(value) for key, value in solution.run.arguments.items()}
@@ -70,6 +71,7 @@ class CaseData:
             scene=solution.scene, **start, t_span=t_span, name=solution.name, options=options
         )
 
+    @known_keywords
     def to_toml(self) -> str:
         """Return the case as TOML; `pendcore.read_case` makes an equal one of it, to the last bit.
 

@@ -38,7 +38,9 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
 
 def known_keywords(function: Callable[Taken, Given]) -> Callable[Taken, Given]:
     """Make a function refuse a keyword that it does not have with the nearest that it has."""
-    known = [name for name in signature(function).parameters if name not in ("self", "cls")]
+    parameters = signature(function).parameters
+    known = [name for name in parameters if name not in ("self", "cls")]
+    takes_any = any(one.kind is Parameter.VAR_KEYWORD for one in parameters.values())
 
     @wraps(function)
     def called(*args: Taken.args, **named: Taken.kwargs) -> Given:
@@ -46,7 +48,7 @@ def known_keywords(function: Callable[Taken, Given]) -> Callable[Taken, Given]:
             return function(*args, **named)
         except TypeError:  # looked at only then: a run of microseconds need not pay for it
             for name in named:
-                if name not in known:
+                if name not in known and not takes_any:
                     remedy = did_you_mean(name, known)
                     owner = _owner(function, args)
                     raise TypeError(f"{owner}: has no parameter {name!r}: {remedy}") from None
@@ -61,7 +63,8 @@ def _call_complaint(
     function: Callable[..., object], args: tuple[object, ...], named: dict[str, object]
 ) -> str:
     """Return what is wrong with how a function was called; nothing if its own code complained."""
-    parameters = [*signature(function).parameters.values()]
+    various = (Parameter.VAR_KEYWORD, Parameter.VAR_POSITIONAL)
+    parameters = [x for x in signature(function).parameters.values() if x.kind not in various]
     by_place = [one for one in parameters if one.kind is not Parameter.KEYWORD_ONLY]
     owner = _owner(function, args)
     own = [one.name for one in parameters if one.name not in ("self", "cls")]
@@ -86,6 +89,8 @@ def _owner(function: Callable[..., object], args: tuple[object, ...]) -> str:
         return function.__qualname__
     owner = args[0] if isinstance(args[0], type) else type(args[0])
     name = function.__name__
+    if name == "__call__":
+        return owner.__name__.lower()  # what is called is an object
     return owner.__name__ if name == "__init__" else f"{owner.__name__}.{name}"
 
 

@@ -87,13 +87,3 @@ def pair_of(first: str) -> str:
     """Return the pair that begins with a method."""
     pairs = [one for one in _core.methods() if one["kind"] == "pair"]
     return str(next(pair["name"] for pair in pairs if pair["first"] == first))
-
-
-def method_at_the_end(method: str, message: str) -> str:
-    """Return the method that a run ended with: the second of a pair that has changed over.
-
-    ``message`` is the message of the run, which says whether it has.
-    """
-    known = known_methods()[method]
-    has_changed = known["second"] and f"went on with {known['second']}" in message
-    return str(known["second"] if has_changed else known["first"] or method)

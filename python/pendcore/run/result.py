@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore import _core
-from pendcore.messages.arguments import Floats, finite_array
+from pendcore.messages.arguments import Floats, finite_array, known_keywords
 from pendcore.messages.progress import Progress
 from pendcore.run.accuracy import Accuracy
 from pendcore.run.energy import Energy, Ledger
@@ -77,6 +77,7 @@ class RunResult:
         """States as SciPy lays them out, (2n, n_t): q_1..q_n (rad), then qd_1..qd_n (rad/s)."""
         return self.run.states.T
 
+    @known_keywords
     def __call__(self, t: npt.ArrayLike) -> Floats:
         """State at any time within the run, from the method's own interpolant.
 
@@ -144,26 +145,32 @@ class RunResult:
             )
         return self._events
 
+    @known_keywords
     def events_asked_for(self) -> list[Event]:
         """Return the events that the run looked for."""
         return [event_of(kind, values) for kind, values in self.run.arguments["events"]]
 
+    @known_keywords
     def relative_angles(self) -> Floats:
         """Angles of the joints, phi_i = q_i - q_{i-1} with q_0 = 0, rad, (n_t, n)."""
         return np.diff(self.q, prepend=0.0)
 
+    @known_keywords
     def accelerations(self) -> Floats:
         """Angular accelerations, rad/s^2, (n_t, n)."""
         return self.scene.accelerations(self.t, self.q, self.qd)
 
+    @known_keywords
     def positions(self) -> Floats:
         """Pivot, joints and tip, m, (n_t, n+1, 2): x right, y down; a driven pivot moves."""
         return self.scene._compiled.positions(self.t, self.q)
 
+    @known_keywords
     def mass_centers(self) -> Floats:
         """Mass centres of the links, a payload excluded, m, (n_t, n, 2): x right, y down."""
         return self.scene._compiled.mass_centers(self.t, self.q)
 
+    @known_keywords
     def reactions(self) -> Floats:
         """Force on each link at the joint where it begins, N, (n_t, n, 2): x right, y down.
 
@@ -171,6 +178,7 @@ class RunResult:
         """
         return self.scene._compiled.reactions(self.t, self.q, self.qd)
 
+    @known_keywords
     def energy(self) -> Energy:
         """Kinetic, potential and total energy, J, each (n_t,), and the ledger if one was kept."""
         kinetic, potential = self.scene._compiled.energy(self.t, self.q, self.qd)
@@ -186,6 +194,7 @@ class RunResult:
             gain = total - sum(start)
             return Energy(kinetic, potential, total, Ledger(self.run.ledger, gain))
 
+    @known_keywords
     def largest_reactions(self, *, progress: Progress = None) -> list[LargestReaction]:
         """Return the largest force of each joint: ``.joint``, ``.force`` (N), ``.t`` (s).
 

@@ -12,9 +12,10 @@ from typing import Any
 
 import numpy.typing as npt
 
-from pendcore.messages.arguments import finite_array
+from pendcore.messages.arguments import finite_array, known_keywords
 
 
+@known_keywords
 def angles_from_vertical(theta: npt.ArrayLike) -> Any:
     """Turn angles from the hanging vertical into pendcore's.
 
@@ -36,6 +37,7 @@ def angles_from_vertical(theta: npt.ArrayLike) -> Any:
     return pi / 2 - finite_array("theta", theta, "rad")
 
 
+@known_keywords
 def angles_to_vertical(q: npt.ArrayLike) -> Any:
     """Turn pendcore's angles into angles from the hanging vertical.
 

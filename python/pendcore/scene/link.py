@@ -77,6 +77,7 @@ class Link:
         """
         return cls(mass=mass, length=length, center=length, inertia=0.0)
 
+    @known_keywords
     def replace(self, **changes: float | None) -> Link:
         """Return a link of other properties; what is as in a uniform rod stays as in one.
 
@@ -90,6 +91,7 @@ class Link:
 
     __replace__ = replace  # copy.replace() of Python 3.13
 
+    @known_keywords
     def particulars(self) -> dict[str, float]:
         """Return mass, length, and what differs from a uniform rod, enough to make it again."""
         rod = Link(mass=self.mass, length=self.length)

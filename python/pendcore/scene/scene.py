@@ -84,6 +84,7 @@ class SceneData:
             warn(message)
 
     @classmethod
+    @known_keywords
     def textbook(cls) -> Self:
         """Section 2.1 of the textbook: two uniform rods of 1 kg and 1 m, g = 9.807 m/s^2."""
         return cls(links=[Link(mass=1.0, length=1.0), Link(mass=1.0, length=1.0)])
@@ -176,6 +177,7 @@ class SceneData:
         q = link_array("q", q, n, "rad")
         return self._compiled.mass_matrix(q.reshape(-1, n)).reshape(*q.shape, n)
 
+    @known_keywords
     def mobility(self) -> Mobility:
         """Count the degrees of freedom as the textbook does, ``M = 3 n - 2 c5 - c4``."""
         return Mobility(*self._compiled.mobility())

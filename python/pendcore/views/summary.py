@@ -43,6 +43,7 @@ def facts(solution: RunResult, refusal: str = "") -> dict[str, Any]:
         "events": _events(solution),
         "status": solution.status,
         "message": solution.message,
+        "last_method": solution.run.last_method,
         "success": solution.success,
         "refusal": refusal or None,
         "end": {"t": run.t_reached, "q": run.y_reached[:n], "qd": run.y_reached[n:]},
@@ -145,7 +146,7 @@ def _happened(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
     yield "steps", f"{stats['accepted']} accepted, {stats['rejected']} rejected"
     yield "", f"{stats['min_step']:.3g} ... {stats['max_step']:.3g} s long"
     method = found["run"]["method"]
-    yield "work", evaluations(method, found["message"], stats["nfev"])
+    yield "work", evaluations(method, found["last_method"], stats["nfev"])
     if found["accuracy"] is not None:
         yield "accuracy", str(Accuracy.from_dict(found["accuracy"]))
     if found.get("horizon") is not None:

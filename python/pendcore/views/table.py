@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from html import escape
 
 from pendcore.messages.arguments import Floats
-from pendcore.run.methods import known_methods, method_at_the_end
+from pendcore.run.methods import known_methods
 from pendcore.run.result import RunResult
 from pendcore.views import energy_drift
 
@@ -42,13 +42,13 @@ def outcome(status: str, message: str) -> str:
     return message if message.startswith(f"{status}:") else f"{status}: {message}"
 
 
-def evaluations(method: str, message: str, nfev: int) -> str:
+def evaluations(method: str, last_method: str, nfev: int) -> str:
     """Return the number of evaluations: series of Taylor's method, right-hand sides of others."""
     known = known_methods()
     first = known[method]["first"] or method
     if not known[first]["dense_output_is_series"]:
         return f"{nfev} right-hand sides"
-    if method_at_the_end(method, message) != first:
+    if last_method != first:
         return f"{nfev} series and right-hand sides"
     return f"{nfev} series, each as long as many right-hand sides"
 
@@ -78,7 +78,7 @@ def _rows(solution: RunResult) -> list[tuple[str, str]]:
 
 
 def _evaluations(solution: RunResult) -> str:
-    return evaluations(solution.method, solution.message, solution.stats.nfev)
+    return evaluations(solution.method, solution.run.last_method, solution.stats.nfev)
 
 
 def _effects(solution: RunResult) -> str:

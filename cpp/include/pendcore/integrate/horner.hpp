@@ -1,8 +1,8 @@
 /// \file
 /// The dense output of a step at given times, by Horner's scheme in theta = (time - start) / h.
 ///
-/// Coefficients are (degree + 1) rows of numbers, those of theta^0 first; each column is evaluated by
-/// itself, so that the bits do not depend on how many go together.
+/// Coefficients are (degree + 1) rows of numbers, those of theta^0 first. Each column is evaluated
+/// by itself, so that the bits do not depend on how many are evaluated together.
 #pragma once
 
 #include <cstddef>

@@ -23,6 +23,7 @@ struct DenseOutput {
 struct Solution {
   Status status = Status::finished;
   std::string message;
+  std::string last_method;  ///< with which the run ended: of a pair, one of its two
   Statistics statistics;
   std::vector<double> t;  ///< s, (n_t)
   /// (n_t, dimension) row-major: q_1 .. q_n (rad), qd_1 .. qd_n (rad/s), the accounts (J)

@@ -3,8 +3,8 @@
 /// each component, so that y + low is the state to about 106 bits.
 ///
 /// A compensated step forms the increment h sum b_k k on its own, on top of the low part of y, and
-/// splits its sum with y without error. A component that something else than a step sets, as a joint's rate where it comes to rest, is
-/// exactly what it is set to: its low part is dropped.
+/// splits its sum with y without error. A component that something else than a step sets, as a
+/// joint's rate where it comes to rest, is exactly what it is set to: its low part is dropped.
 ///
 /// Sources: S. Gill, A process for the step-by-step integration of differential equations in an
 /// automatic digital computing machine, Proc. Camb. Phil. Soc. 47 (1951); O. Moeller, Quasi

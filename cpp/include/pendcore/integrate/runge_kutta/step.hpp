@@ -265,9 +265,9 @@ PENDCORE_INLINE void interpolant_of_step(const Block* y, const Block (*k)[blocks
   }
 }
 
-/// |h| |k_last - k_before| / |y_last - y_before|, both stages at the end of the step: an estimate of
-/// h |lambda| (Hairer and Wanner II, IV.2). `block` is called with a number below `blocks` and gives
-/// three: y, y_new and the stages there.
+/// |h| |k_last - k_before| / |y_last - y_before|, both stages at the end of the step: an estimate
+/// of h |lambda| (Hairer and Wanner II, IV.2). `block(i)` returns y, y_new and the stages of block
+/// i.
 template <const auto& method, class Blocks>
 double stiffness_of_step(double h, int blocks, const Blocks& block) {
   using Method = std::remove_cvref_t<decltype(method)>;
