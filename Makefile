@@ -160,9 +160,11 @@ $(DONE)/build-requirements: pyproject.toml | $(DONE)/venv
 	@touch $@
 
 # A source that is edited during the build is newer than the stamp, so the next call builds it.
+# scikit-build-core imports the installed package: one that cannot be imported is removed first.
 $(DONE)/installed: $(SOURCES) $(DONE)/build-requirements
 	@touch $@.begun
 	@echo "pip compiles the core and installs it into .venv: one to two minutes the first time"
+	@python -c "import pendcore" 2>/dev/null || python -m pip uninstall --quiet --yes pendcore 2>/dev/null
 	$(PIP_INSTALL) --no-build-isolation --config-settings build-dir=$(BUILT) .
 	@mv $@.begun $@
 

@@ -75,7 +75,7 @@ def simulate(
     Differential Equations I*, II.4; a Taylor series sets its steps by its coefficients. The same
     arguments give the same bits on every x86-64 machine, whatever is stored.
     """
-    return solve(Solution, scene, q0, qd0, t_span, dict(options))
+    return solve(Solution, scene, q0, qd0, t_span, options)  # type: ignore[arg-type]
 
 
 simulate.__doc__ = described_methods(simulate.__doc__)
