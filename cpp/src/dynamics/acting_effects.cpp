@@ -43,7 +43,7 @@ void EffectsInForce::call(const CompiledUser& user, double t, const Dual<double>
   double* const angles = user_room_.data();
   double* const rates = angles + n;
   double* const forces = rates + n;
-  double size = 1.0;  // of what changes
+  double size = 1.0;  // the largest of the values that change
   for (std::size_t i = 0; i < n; ++i) {
     if (q[i].slope != 0.0) size = std::max(size, std::abs(q[i].value));
     if (qd[i].slope != 0.0) size = std::max(size, std::abs(qd[i].value));
@@ -65,7 +65,7 @@ void EffectsInForce::call(const CompiledUser& user, double t, const Dual<double>
   for (std::size_t i = 0; i < n; ++i) {
     const double ahead = Q[i].slope;
     Q[i].slope = (ahead - forces[i]) / (2.0 * step);
-    if (std::isfinite(Q[i].slope)) continue;  // else from the side that has numbers
+    if (std::isfinite(Q[i].slope)) continue;  // else a one-sided difference
     Q[i].slope = (std::isfinite(ahead) ? ahead - Q[i].value : Q[i].value - forces[i]) / step;
   }
 }
@@ -90,7 +90,7 @@ void EffectsInForce::finish_waves() {
 
 namespace {
 
-/// The number from 0 of the joint or link that an effect acts on.
+/// The joint or link that an effect acts on, counted from 0.
 template <class Kind>
 int place_of(const Kind& effect) {
   if constexpr (OnJoint<Kind>) {
@@ -179,7 +179,7 @@ ActingEffects<Row>::ActingEffects(const Scene& scene)
   }
 }
 
-/// Puts effect number i into a free lane of a law that it can share, or else of a new one.
+/// Puts effect number i into a free lane of a law that it can share, or else into a new law.
 template <class Row>
 template <class Kind>
 void ActingEffects<Row>::add_law(std::size_t i, const Kind& effect, const Scene& scene) {
@@ -226,7 +226,7 @@ void ActingEffects<Row>::put_mode(std::size_t i, int mode) {
       effects[i]);
 }
 
-/// The couples of all effects on one joint, added up into its lane.
+/// Adds up the couples of all effects on one joint, in its lane.
 template <class Row>
 void ActingEffects<Row>::sum_couples(int joint) {
   Couple sum;
@@ -239,7 +239,8 @@ void ActingEffects<Row>::sum_couples(int joint) {
             if (place_of(effect) != joint || !is_couple(effect)) return;
             const Couple one = *effect.couple(modes[i]);
             if (one.slope != 0.0 || one.start != 0.0) {
-              // The latest, negative or not: so far from a start of its own a torque is not taken.
+              // The common start is the latest, also where starts are negative: it keeps t - start
+              // small.
               const double start = has_start ? std::max(sum.start, one.start) : one.start;
               sum.held +=
                   sum.slope * (start - sum.start) + one.held + one.slope * (start - one.start);
@@ -278,7 +279,7 @@ void ActingEffects<Row>::sum_couples(int joint) {
   set_lane(row.on_phid3, lane, sum.on_phid3);
 }
 
-/// What moves the pivot, of the first two waves; the motors' is found with the couples.
+/// Finds what the first two waves do to the pivot; sum_couples() does this for motors.
 template <class Row>
 void ActingEffects<Row>::find_two_waves(const Scene& scene) {
   const Inertia inertia(scene);

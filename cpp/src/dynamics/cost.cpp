@@ -34,7 +34,7 @@ Counted exponential(Counted a) { return count(pendcore::exponential(a.value), 20
 Counted power(Counted a, double p) { return count(pendcore::power(a.value, p), p == 2.0 ? 1 : 45); }
 Counted before(Counted /*x*/) { return {}; }
 
-/// What the laws of one effect do in a right-hand side.
+/// The number of operations of one effect in a right-hand side.
 template <class Kind>
 std::optional<int> operations_of(const Kind& effect) {
   counted = 0;
@@ -84,15 +84,15 @@ class Contender {
   double nanoseconds() const { return 1e9 * least_; }
 
  private:
-  /// Each call starts from what the one before returned, as the stages of a step do.
+  /// Each call depends on the result of the call before, as the stages of a step do.
   double seconds(long long calls) {
-    using RunLimits = std::chrono::steady_clock;
-    const RunLimits::time_point start = RunLimits::now();
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point start = Clock::now();
     for (long long i = 0; i < calls; ++i) {
       accelerations_in_force(equations_, t_, q_.data(), qd_.data(), qdd_.data());
       q_[0] = 0.5 + 1e-12 * qdd_[0];
     }
-    return std::chrono::duration<double>(RunLimits::now() - start).count();
+    return std::chrono::duration<double>(Clock::now() - start).count();
   }
 
   /// One that its tables have.

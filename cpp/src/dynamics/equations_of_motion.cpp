@@ -26,7 +26,7 @@ PENDCORE_INLINE void of_chain(const Chain* chain, double t, const double* q, con
   chain->accelerations(t, q, qd, qdd);
 }
 
-/// Whether the scene has more than constants of the mass matrix of the closed form.
+/// Whether all effects of the scene only change constants of the bare closed form.
 bool is_bare(const Scene& scene) {
   return std::ranges::all_of(scene.effects, [](const Effect& effect) {
     const auto* rotor = std::get_if<RotorInertia>(&effect);

@@ -50,7 +50,7 @@ void Jacobian::compute(double t) const {
         }
       },
       equations_.form);
-  // What is held turns with the link before, to the last bit.
+  // The link after a held joint turns with the link before it, to the last bit.
   for (int i = 0; i < n_; ++i) {
     if (!equations_.effects || equations_.effects->held[i] == 0) continue;
     qdd_[i].slope = i > 0 ? qdd_[i - 1].slope : 0.0;

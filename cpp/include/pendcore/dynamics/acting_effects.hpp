@@ -1,9 +1,9 @@
 /// \file
-/// The effects of a scene, compiled: the couples on each row of joints, summed, and a list of laws
-/// for the rest; nothing for what the scene does not have.
+/// The compiled effects of a scene: the sum of the couples on each row of joints, and a list of the
+/// other laws. What a scene does not have costs nothing.
 ///
-/// All couples of a row cost what one does, and effects of one kind on different joints of a row
-/// share a law. Constants of the mass matrix are not here (inertia.hpp).
+/// All couples of a row together cost as much as one, and effects of one kind on different joints
+/// of a row share a law. Effects that only change constants of the mass matrix are in inertia.hpp.
 #pragma once
 
 #include <memory>
@@ -17,17 +17,18 @@
 
 namespace pendcore {
 
-/// The first two waves of a pendulum of two links, on its equations:
+/// The first two waves that act on a double pendulum, and what they add to its equations:
 /// Q += sum_k sin(wave k) (torque_k + on_sine_k sin q + on_cosine_k cos q).
 struct TwoWaves {
   Pair angular_frequency{}, phase{};
-  Pair torque[2]{};     ///< of motors
-  Pair on_sine[2]{};    ///< of the pivot: a xdd_0
-  Pair on_cosine[2]{};  ///< and -a ydd_0
+  Pair torque[2]{};     ///< amplitudes of motors
+  Pair on_sine[2]{};    ///< amplitudes of a xdd_0 of the pivot
+  Pair on_cosine[2]{};  ///< amplitudes of -a ydd_0 of the pivot
 };
 
-/// What does not depend on the width of a row: the modes of the effects, the waves that they
-/// share, and what moves the pivot. Belongs to one run, and to one thread: modes change along it.
+/// The part of the compiled effects that does not depend on the width of a row: modes, waves, and
+/// the motion of the pivot. An object belongs to one run and one thread, because modes change along
+/// the run.
 class EffectsInForce {
  public:
   virtual ~EffectsInForce() = default;
@@ -35,10 +36,10 @@ class EffectsInForce {
   /// Freezes effect number i (from 0) to a mode.
   virtual void put_mode(std::size_t i, int mode) = 0;
 
-  /// Eliminates a joint (from 0), or sets it free.
+  /// Eliminates a joint (counted from 0), or sets it free.
   void hold(int joint, bool is_held);
 
-  /// Sine and cosine of the waves from number `known` on, at time t.
+  /// Computes sine and cosine of the waves from number `known` on, at time t.
   PENDCORE_INLINE void compute_waves(double t, int known) const {
     for (int k = known; k < waves; k += 4) {
       Pack<4> s, c;
@@ -52,7 +53,7 @@ class EffectsInForce {
     return fma(load<Real>(&angular_frequency[k]), broadcast<Real>(t), load<Real>(&phase[k]));
   }
 
-  /// Acceleration (m/s^2) and velocity (m/s) of the pivot, once the waves are known.
+  /// The acceleration (m/s^2) and the velocity (m/s) of the pivot. compute_waves() comes first.
   PENDCORE_INLINE void pivot_acceleration(double t, double& x, double& y) const {
     x = y = 0.0;
     for (const auto& law : pivots) law->add_acceleration(t, wave_sine.data(), x, y);
@@ -62,44 +63,45 @@ class EffectsInForce {
     for (const auto& law : pivots) law->add_velocity(t, wave_cosine.data(), x, y);
   }
 
-  /// What a function of the user's adds to Q (n), which comes zeroed.
+  /// Computes what a user's function adds to Q (n); Q is zero on entry.
   PENDCORE_INLINE void call(const CompiledUser& user, double t, const double* q, const double* qd,
                             double* Q) const {
     user(t, static_cast<int>(held.size()), q, qd, Q);
   }
-  /// With its change along the slopes, by central differences: it is a function of doubles.
+  /// The same with the derivative along the slopes. It is taken by central differences, because the
+  /// function takes doubles.
   void call(const CompiledUser& user, double t, const Dual<double>* q, const Dual<double>* qd,
             Dual<double>* Q) const;
 
   std::vector<Effect> effects;      ///< compiled
-  std::vector<int> modes;           ///< of each effect
-  std::vector<int> number_of_wave;  ///< of each effect that a wave drives
+  std::vector<int> modes;           ///< the mode of each effect
+  std::vector<int> number_of_wave;  ///< the wave that drives each effect, or -1
   std::vector<JointWave> joint_waves;
-  std::vector<char> held;  ///< of each joint: it does not turn, and is eliminated
+  std::vector<char> held;  ///< whether each joint is eliminated, as it does not turn
   std::vector<std::shared_ptr<DrivenPivot::Law>> pivots;
   std::vector<CompiledUser> users;
-  bool has_modes = false;   ///< some law is smooth only in pieces
-  bool has_forces = false;  ///< some law adds forces, not couples alone
+  bool has_modes = false;   ///< some law is only piecewise smooth
+  bool has_forces = false;  ///< some law adds forces, not only couples
   bool any_held = false;
 
   int waves = 0;
   TwoWaves two_waves;
-  std::vector<double> angular_frequency;  ///< of the waves, filled up to whole packs
+  std::vector<double> angular_frequency;  ///< one for each wave, padded to whole packs
   std::vector<double> phase;
   mutable std::vector<double> wave_sine;
   mutable std::vector<double> wave_cosine;
 
  protected:
   explicit EffectsInForce(const Scene& scene);
-  int add_wave(const Sinusoid& wave);  ///< its number
+  int add_wave(const Sinusoid& wave);  ///< returns its number
   void finish_waves();
 
  private:
   mutable std::vector<double> user_room_;
 };
 
-/// A law, and which effects share it: those of one kind and group on its row, a lane each. It is
-/// aligned as Couples are, and empty for a kind of effect without a law.
+/// A law that effects of one kind and group on one row share, with a lane for each. Its alignment
+/// is the one of Couples. It is empty for a kind of effect without a law.
 template <class Kind, class Row>
 struct alignas(sizeof(Row)) SharedLaw {};
 template <HasLaw Kind, class Row>
@@ -107,10 +109,11 @@ struct alignas(sizeof(Row)) SharedLaw<Kind, Row> {
   typename Kind::template Law<Row> law;
   int row;
   double group;
-  unsigned taken = 0;  ///< lanes
+  unsigned taken = 0;  ///< a bit for each lane in use
 };
 
-/// The laws of a scene, kind by kind in the order of the registry, and one of them.
+/// The laws of a scene, a vector for each kind in the order of the registry, and a pointer to one
+/// law.
 template <class Registry, class Row>
 struct LawsOf;
 template <class... Kinds, class Row>
@@ -119,7 +122,7 @@ struct LawsOf<std::variant<Kinds...>, Row> {
   using Pointer = std::variant<const SharedLaw<Kinds, Row>*...>;
 };
 
-/// For rows of that width.
+/// The compiled effects of a scene whose links are taken in rows of `width`.
 template <class Row>
 class ActingEffects final : public EffectsInForce {
  public:
@@ -139,23 +142,23 @@ class ActingEffects final : public EffectsInForce {
   ActingEffects& operator=(const ActingEffects&) = delete;
   void put_mode(std::size_t i, int mode) override;
 
-  /// Calls visit(law) for the law of an entry, of its own type.
+  /// Calls visit(law) with the law of an entry in its own type.
   template <class Visit>
   PENDCORE_INLINE static void visit(const Entry& entry, Visit visit) {
     visit_one_of(entry, visit, std::make_index_sequence<std::variant_size_v<Effect>>{});
   }
 
-  /// Adds what an entry does to the loads of its row.
+  /// Adds the law of an entry to the loads of its row.
   template <class At, class Loads>
   PENDCORE_INLINE static void add(const Entry& entry, const At& at, Loads& loads) {
     visit(entry, [&](const auto& law) __attribute__((always_inline)) { law.add(at, loads); });
   }
 
-  std::vector<Couples<Row>> couples;  ///< of the rows that have some
-  std::vector<Entry> entries;         ///< in the order in which the scene has them first
+  std::vector<Couples<Row>> couples;  ///< one for each row that has couples
+  std::vector<Entry> entries;         ///< in the order of their first effects in the scene
 
-  /// The same through a pointer, on the instruction set of this processor: for forms in which the
-  /// list is rare.
+  /// Adds all entries, compiled for the instruction set of this processor. It is for forms of the
+  /// equations that rarely have entries.
   template <class At, class Loads>
   static void add_all(const ActingEffects* effects, const At* at, Loads* loads) {
     static const auto add_on_this_processor = fastest<&add_in_turn<At, Loads>>();
@@ -195,15 +198,15 @@ class ActingEffects final : public EffectsInForce {
     std::size_t number = 0;  ///< among the laws of its kind, or among the pivots
     int lane = 0;
   };
-  std::vector<Place> places_;  ///< of each effect of the scene
+  std::vector<Place> places_;  ///< one for each effect of the scene
   typename Laws::Storage laws_;
 };
 
-/// What the functions of a user add up to, N m.
+/// The sum of what the users' functions add, N m.
 template <class Row>
 Row of_users(const EffectsInForce& effects, double t, const Row& q, const Row& qd);
 
-/// For a chain of that scene's length.
+/// Compiles the effects of a scene, with the width of a row that its number of links calls for.
 std::shared_ptr<EffectsInForce> effects_in_force(const Scene& scene);
 
 }  // namespace pendcore

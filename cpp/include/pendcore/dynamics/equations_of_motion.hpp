@@ -1,9 +1,9 @@
 /// \file
-/// Which form of the equations of motion a scene calls for.
+/// The form of the equations of motion that a scene calls for.
 ///
-/// A scene is compiled once, into a kernel that holds what the scene has and nothing else: the
-/// closed form of one or two links, bare where the scene has no effect but a payload and a rotor in
-/// joint 1, with room for effects otherwise; the recursion of a chain for more.
+/// A scene is compiled once, into a kernel that computes what the scene has and nothing else. One
+/// or two links have a closed form, which is bare where the scene has no effects but payloads and
+/// rotors in joint 1. More links take the recursion of a chain.
 #pragma once
 
 #include <variant>
@@ -22,27 +22,28 @@ struct EquationsOfMotion {
                DoublePendulumWithEffects<Parts::laws>, DoublePendulumWithEffects<Parts::everything>,
                std::shared_ptr<Chain>>
       form;
-  std::shared_ptr<EffectsInForce> effects = nullptr;  ///< none for a bare form
-  std::shared_ptr<HeldJoints> held_joints = nullptr;  ///< likewise
+  std::shared_ptr<EffectsInForce> effects = nullptr;  ///< null for a bare form
+  std::shared_ptr<HeldJoints> held_joints = nullptr;  ///< null for a bare form
 };
 
 /// The equations of a scene that check() passed.
 EquationsOfMotion equations_of_motion(const Scene& scene);
 
-/// qdd (rad/s^2) from the time (s), angles (rad) and rates (rad/s), (n) each; the same bits as in
-/// a run. Effects are in the modes that the state calls for, and joints at rest are held where
-/// friction and stops can hold them. Cost: a right-hand side, and where the scene has friction or
-/// stops a decision of HeldJoints. Throws what a user's function throws.
+/// Computes qdd (rad/s^2) from the time (s), angles (rad) and rates (rad/s), (n) each, with the
+/// same bits as in a run. Effects are put in the modes that the state calls for, and joints at rest
+/// are held where friction and stops can hold them. Cost: a right-hand side, and a decision of
+/// HeldJoints where the scene has friction or stops. Throws what a user's function throws.
 /// Equations with effects serve one thread at a time, and so do their copies: they share modes and
-/// room for the computation.
+/// memory for the computation.
 void accelerations(const EquationsOfMotion& equations, double t, const double* q, const double* qd,
                    double* qdd);
 
-/// The same in the modes that are in force.
+/// The same in the current modes and with the joints that are held now.
 void accelerations_in_force(const EquationsOfMotion& equations, double t, const double* q,
                             const double* qd, double* qdd);
 
-/// Freezes every effect to the mode that a state calls for; `forward` decides where two meet.
+/// Freezes every effect to the mode that a state calls for. Where two modes meet, `forward`, the
+/// direction of time, decides.
 void choose_modes(EffectsInForce& effects, double t, const double* q, const double* qd,
                   bool forward);
 

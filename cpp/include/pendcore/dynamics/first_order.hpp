@@ -12,7 +12,7 @@ struct FirstOrder {
   using Block = typename Dynamics::Links;  ///< what one instruction works on
   static constexpr int blocks = 2;         ///< q and qd
 
-  /// Bare equations, which know no time, have no effects in them.
+  /// Whether the equations are bare: they do not depend on time, and have no effects.
   static constexpr bool is_short =
       requires(const Dynamics& bare, const Block& y) { bare.accelerations(y, y); };
 

@@ -5,9 +5,9 @@
 ///     a_i = m_i c_i + L_i S_i            first moment about joint i, kg m
 ///     A_ii = I_i + m_i c_i^2 + L_i^2 S_i (+ I_p for i = n)   A_ij = L_min(i,j) a_max(i,j)   kg m^2
 ///
-/// so that T = 1/2 sum_ij A_ij cos(q_i - q_j) qd_i qd_j and V = -g sum_i a_i sin q_i. A rotor J_j
+/// They give T = 1/2 sum_ij A_ij cos(q_i - q_j) qd_i qd_j and V = -g sum_i a_i sin q_i. A rotor J_j
 /// in joint j adds J_j to M_jj and M_{j-1,j-1} and -J_j to M_{j,j-1}.
-/// Cost: O(n) to make, O(n^2) for the matrix. The scene is one that check() passed.
+/// Cost: O(n) for the constants, O(n^2) for the matrix. The scene must have passed check().
 /// Every effect that only changes constants (a payload, a rotor's inertia) changes them here.
 #pragma once
 
@@ -27,7 +27,7 @@ struct Inertia {
   double payload_inertia = 0.0;      ///< I_p
 
   explicit Inertia(const Scene& scene);
-  double coupling(std::size_t i, std::size_t j) const;  ///< A_ij, i != j, from 0
+  double coupling(std::size_t i, std::size_t j) const;  ///< A_ij, i != j, counted from 0
 };
 
 /// M_ij, that is A_ij cos(q_i - q_j) and the rotors, (n, n), kg m^2, from the sines and cosines of

@@ -3,12 +3,12 @@
 ///
 ///     by_q[i][j] = d qdd_i / d q_j  (1/s^2)      by_qd[i][j] = d qdd_i / d qd_j  (1/s)
 ///
-/// exact to rounding: the right-hand side itself on dual numbers, once for each of the 2n
-/// directions, in the modes that are in force. A function of the user's knows no dual numbers:
-/// what it adds is differentiated by central differences, good to ten digits.
+/// They are exact to rounding: the right-hand side is evaluated on dual numbers, once for each of
+/// the 2n directions, in the current modes. A user's function does not take dual numbers: its part
+/// is differentiated by central differences, which are accurate to about ten digits.
 ///
-/// The state's derivative y' = (qd, qdd) has the Jacobian ((0, 1), (by_q, by_qd)).
-/// Cost: 2n right-hand sides, each two to three times as dear; no allocation. Throws what a user's
+/// The state's derivative y' = (qd, qdd) has the Jacobian ((0, 1), (by_q, by_qd)). Cost: 2n
+/// right-hand sides, each two to three times as expensive; no allocation. Throws what a user's
 /// function throws.
 #pragma once
 
@@ -26,21 +26,21 @@ class Jacobian {
   /// by_q and by_qd, (n, n) row-major, from the time (s), angles (rad) and rates (rad/s), (n) each.
   void operator()(double t, const double* q, const double* qd, double* by_q, double* by_qd) const;
 
-  /// Along one direction alone: qdd at (q, qd), and its change (n) per unit of a small change
-  /// (dq, dqd) of the state, by_q dq + by_qd dqd. Cost: two to three right-hand sides.
+  /// Computes qdd at (q, qd), and its derivative (n) along one direction (dq, dqd) of the state,
+  /// by_q dq + by_qd dqd. Cost: two to three right-hand sides.
   void along(double t, const double* q, const double* qd, const double* dq, const double* dqd,
              double* qdd, double* change) const;
 
-  /// Whether functions of the user's have a part in it.
+  /// Whether central differences of users' functions are a part of it.
   bool has_differences() const;
 
  private:
-  /// Into qdd_, from q_ and qd_.
+  /// Computes qdd_ from q_ and qd_.
   void compute(double t) const;
 
   int n_;
   EquationsOfMotion equations_;
-  std::shared_ptr<ChainOf<Dual<double>>> chain_;  ///< of the form's links, if it is a chain
+  std::shared_ptr<ChainOf<Dual<double>>> chain_;  ///< on dual numbers, if the form is a chain
   mutable std::vector<Dual<double>> q_, qd_, qdd_;
 };
 

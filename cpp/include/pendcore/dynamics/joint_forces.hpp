@@ -1,7 +1,8 @@
 /// \file
-/// Torques or impulses in some of the joints, that hold only so far, and what they do to the chain.
+/// Torques or impulses in some of the joints, each between bounds, and how the chain responds to
+/// them.
 ///
-/// With phidd = J qdd of those joints, W = J M^-1 J^T makes one problem of them all
+/// With phidd = J qdd in these joints, W = J M^-1 J^T gives one problem for all of them
 /// (complementarity.hpp). Cost: O(n^3).
 #pragma once
 
@@ -14,17 +15,17 @@ namespace pendcore {
 
 struct JointForces {
   Inertia inertia;
-  std::vector<int> joints;           ///< that are in the problem, in ascending order, from 0
-  ForcesBetweenBounds problem;       ///< a row for each of them
+  std::vector<int> joints;           ///< the joints in the problem, ascending, from 0
+  ForcesBetweenBounds problem;       ///< it has a row for each of these joints
   std::vector<double> mass;          ///< M, (n, n), row-major
-  std::vector<double> sine, cosine;  ///< of the angles that M was computed from, (n)
+  std::vector<double> sine, cosine;  ///< functions of the angles of M, (n)
 
   explicit JointForces(const Scene& scene) : inertia(scene) {}
 
   void set_mass_matrix(const double* q);
-  /// W of `joints`, from M; a and the bounds of the problem are left to be filled in.
+  /// Computes W for `joints` from M. The caller fills in a and the bounds of the problem.
   void set_up();
-  /// Adds M^-1 J^T lambda, (n).
+  /// Adds M^-1 J^T lambda to x, (n).
   void add_response(double* x) const;
 
  private:

@@ -1,6 +1,6 @@
 /// \file
-/// What the laws of effects see, and what they add to (effects/law.hpp has the contract): of a
-/// chain that is one row, one link or a pair, in registers; of any other in arrays.
+/// What the laws of effects see, and what they add to (effects/law.hpp has the contract). A chain
+/// of one or two links is a single row in registers; a longer chain is in arrays.
 #pragma once
 
 #include "pendcore/arithmetic/dual.hpp"
@@ -46,7 +46,7 @@ struct RowLoads {
   }
 };
 
-/// Numbers over the links, zeros before and after them.
+/// Arrays over the links; q and qd have zeros before and after them.
 template <class Number>
 struct ArraysOver {
   const Number *q, *qd, *s, *c;

@@ -1,9 +1,10 @@
 /// \file
-/// Small changes (dq, dqd) of a chain's state: which there are, and how long they are.
+/// The tangent space of a chain's state: the small changes (dq, dqd) that locks allow, and their
+/// lengths.
 ///
-/// The links that locks make one turn alike, those locked to the ground not at all. So the changes
-/// that there are have an orthonormal basis of the m groups of links that turn together: a change
-/// of the group's angles, or of its rates.
+/// Links that are locked to each other turn together; those locked to the ground do not turn. The m
+/// groups of links that turn together give an orthonormal basis: a change of each group's angles,
+/// and a change of its rates.
 #pragma once
 
 #include <vector>
@@ -12,13 +13,14 @@
 
 namespace pendcore {
 
-/// Orthonormal changes, (2m, 2n) row-major, a row (dq, dqd) each: first those of the angles.
+/// An orthonormal basis, (2m, 2n) row-major, each row a change (dq, dqd). Changes of angles come
+/// first.
 std::vector<double> tangent_basis(const Scene& scene);
 
-/// Makes the rows of `vectors`, (k, 2n) row-major, orthonormal, one after the other (Gram and
-/// Schmidt, twice, which is exact to rounding), and multiplies the same combinations into the rows
-/// of `alike`. `length` (k) becomes what each was long, less what lay along those before it: the
-/// diagonal of R.
+/// Makes the rows of `vectors`, (k, size) row-major, orthonormal by the Gram-Schmidt process,
+/// applied twice so that it is exact to rounding. The rows of `alike` go through the same linear
+/// combinations. `length` (k) becomes the diagonal of R: the length of each row without its
+/// components along the rows before.
 void orthonormalise(int k, int size, double* vectors, double* alike, double* length);
 
 }  // namespace pendcore

@@ -11,7 +11,7 @@ DoublePendulum::DoublePendulum(const Scene& scene, const Inertia& inertia) {
   }
   product = coupling[0] * coupling[1];
   // A_11 A_22 - A_12^2 = (I_1 + m_1 c_1^2) A_22 + L_1^2 m_2 I_2, and with a payload
-  // L_1^2 ((m_2 + m_p)(I_2 + I_p) + m_2 m_p (L_2 - c_2)^2) at its end: no difference is taken.
+  // L_1^2 ((m_2 + m_p)(I_2 + I_p) + m_2 m_p (L_2 - c_2)^2) at its end: all terms are positive.
   const double about_joint = first.inertia_about_joint() + inertia.rotor[0];
   const double hung = first.length * first.length * (second.mass + inertia.payload_mass);
   const double apart = second.length - second.center;

@@ -14,9 +14,9 @@ DoublePendulumWithEffects<parts>::DoublePendulumWithEffects(const Scene& scene,
                                                             const ActingEffects<Pair>* in_force)
     : couples(in_force->couples.empty() ? &no_couples : in_force->couples.data()),
       effects(in_force) {
-  // With A' what A is without rotor 2: A_11 A_22 - (A_12 C - J)^2
+  // Let A' be A without the rotor in joint 2. Then A_11 A_22 - (A_12 C - J)^2
   //   = (A'_11 A'_22 - A_12^2) + A_12^2 S^2 + J (A'_11 + A'_22 + 2 A_12 C),
-  // sums of what is positive.
+  // a sum of positive terms.
   Scene without = scene;
   std::erase_if(without.effects, [](const Effect& effect) {
     const auto* one = std::get_if<RotorInertia>(&effect);

@@ -21,7 +21,7 @@ void factor_symmetric(int n, double* a) {
   std::vector<double> column(n);
   for (int k = 0; k < n; ++k) {
     for (int i = k + 1; i < n; ++i) column[i] = a[place(i, k, n)] / a[place(k, k, n)];
-    for (int i = k + 1; i < n; ++i) {  // what is left of A, row by row
+    for (int i = k + 1; i < n; ++i) {  // the remaining part of A, row by row
       double* const row = a + place(i, 0, n);
       const double of_both = row[k];  // L D
       for (int j = k + 1; j <= i; ++j) row[j] -= of_both * column[j];
@@ -51,7 +51,7 @@ void ForcesBetweenBounds::resize(int count) {
   at.assign(n, Bound::between);
 }
 
-/// lambda where it is between the bounds, so that w = 0 there; and all w.
+/// Solves for the forces between the bounds, such that w = 0 there, and computes all w.
 void ForcesBetweenBounds::solve_between() {
   if (look) look();
   free_.clear();
@@ -80,8 +80,9 @@ void ForcesBetweenBounds::solve_between() {
   }
 }
 
-/// Which way force i is wrong where it is: below its range -1, above it 1, or what its bound says
-/// of its w; 0 where it is right.
+/// How force i violates its condition; 0 if it does not. Between the bounds: -1 below the range, 1
+/// above it. At a bound, the sign of the change of lambda that w calls for: 1 at the lower, -1 at
+/// the upper.
 int ForcesBetweenBounds::wrong(int i) const {
   switch (at[i]) {
     case Bound::between: return lambda[i] < lower[i] ? -1 : lambda[i] > upper[i] ? 1 : 0;
@@ -110,10 +111,10 @@ bool ForcesBetweenBounds::solve() {
   return descend();
 }
 
-/// From forces within the bounds downhill: towards what would be the least without the bounds that
-/// are not in the way, along them where they are met, half as far until it goes down enough.
+/// Goes downhill from forces within the bounds. Each step leads towards the minimum over the forces
+/// that are free to move, is projected on the bounds, and is halved until it descends enough.
 bool ForcesBetweenBounds::descend() {
-  constexpr int most_halvings = 52;  // as far as a double can tell
+  constexpr int most_halvings = 52;  // the digits of a double
   for (int i = 0; i < size; ++i) lambda[i] = std::clamp(lambda[i], lower[i], upper[i]);
   std::vector<double> from(lambda);
   std::vector<double> slope(lambda.size());
@@ -142,7 +143,7 @@ bool ForcesBetweenBounds::descend() {
       }
       is_lower = goes_down(from, slope);
     }
-    if (!is_lower) {  // by what doubles can tell it is the least
+    if (!is_lower) {  // this is the minimum in double precision
       lambda = std::move(from);
       w = std::move(slope);
       return true;
@@ -151,7 +152,7 @@ bool ForcesBetweenBounds::descend() {
   return false;
 }
 
-/// W x + a, the slope of 1/2 x.W x + a.x
+/// Computes W x + a, the gradient of 1/2 x.W x + a.x.
 void ForcesBetweenBounds::slope_at(const std::vector<double>& x, std::vector<double>& slope) const {
   for (int i = 0; i < size; ++i) {
     slope[i] = a[i];
@@ -159,7 +160,8 @@ void ForcesBetweenBounds::slope_at(const std::vector<double>& x, std::vector<dou
   }
 }
 
-/// Whether lambda is lower than `from`, by a tenth at least of what the slope there promises.
+/// Whether the objective is lower at lambda than at `from`, by at least a tenth of what the
+/// gradient at `from` predicts.
 bool ForcesBetweenBounds::goes_down(const std::vector<double>& from,
                                     const std::vector<double>& slope) const {
   double promised = 0.0;

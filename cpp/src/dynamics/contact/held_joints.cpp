@@ -56,7 +56,8 @@ void HeldJoints::release(EffectsInForce& effects, int joint, int direction) {
   put_friction(effects, joint, direction);
 }
 
-/// The range of a joint ends within the last bits of its angle.
+/// A joint touches a stop if its angle is within a few roundings of the end of its range, or beyond
+/// it.
 Side HeldJoints::contact(int joint, const double* q) const {
   const double phi = relative(q, joint + 1);
   const double size = std::abs(q[joint]) + (joint > 0 ? std::abs(q[joint - 1]) : 0.0);
@@ -109,7 +110,8 @@ void HeldJoints::choose(const EquationsOfMotion& equations, double t, const doub
   }
   for (int r = 0; r < static_cast<int>(joints.size()); ++r) {
     const int j = joints[r];
-    // At a stop exactly there: its last bits may be of angles that were larger.
+    // A joint at a stop is held at exactly the stop's angle: the last bits of its own angle may
+    // come from the rounding of larger angles.
     const Side side = contact(j, q);
     const double angle = supports_[j].is_locked ? holds_[j].angle
                          : side != Side::none   ? supports_[j].stop(side).angle
@@ -123,8 +125,8 @@ void HeldJoints::choose(const EquationsOfMotion& equations, double t, const doub
   if (any) set_slack(equations, t, q, qd);
 }
 
-/// The torques at which the joints are let go: a rounding beyond their range, so that a joint that
-/// is held is not let go by the next evaluation of the same torque.
+/// Sets the torques at which held joints are released. They are a rounding error beyond the range,
+/// so that the next evaluation of the same torque does not release a joint.
 void HeldJoints::set_slack(const EquationsOfMotion& equations, double t, const double* q,
                            const double* qd) {
   const ForcesBetweenBounds& problem = forces_.problem;
@@ -147,7 +149,7 @@ void HeldJoints::torques(const EquationsOfMotion& equations, double t, const dou
   for (int j = 0; j < n_; ++j) effects.hold(j, is_held(j));
   forces_.set_mass_matrix(q);
   double sum = 0.0;
-  double size = 0.0;  // with what cancels within the laws, an eighth: they take few operations
+  double size = 0.0;  // an eighth of the laws' terms is enough: they take few operations
   for (int j = 0; j < n_; ++j) {
     const JointSupport& joint = supports_[j];
     const double before = j > 0 ? std::abs(q[j - 1]) : 0.0;
@@ -170,7 +172,7 @@ bool HeldJoints::settle(double* q, double* qd) const {
   bool changed = false;
   for (int j = 0; j < n_; ++j) {
     const double rate_before = j > 0 ? qd[j - 1] : 0.0;
-    // What does not turn at all is where it was.
+    // A joint whose links do not turn is where it was.
     if (!is_held(j) || (rate_before == 0.0 && qd[j] == 0.0)) continue;
     set_relative(q, j + 1, holds_[j].angle);
     set_relative(qd, j + 1, 0.0);

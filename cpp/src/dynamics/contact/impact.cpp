@@ -24,8 +24,8 @@ void HeldJoints::begin_impact(const double* q) {
   std::ranges::fill(bounced_, 0);
 }
 
-/// A row of the problem for each joint that is locked or takes part: what it would do without
-/// impulses, and which of them its stop can give.
+/// Sets up a row of the problem for each joint that is locked or takes part: its rate without
+/// impulses, and the range of impulses that its stop can give.
 template <class TakesPart>
 void HeldJoints::set_up_impact(const double* q, const double* qd, TakesPart takes_part) {
   std::vector<int>& joints = forces_.joints;
@@ -46,9 +46,9 @@ void HeldJoints::set_up_impact(const double* q, const double* qd, TakesPart take
   }
 }
 
-/// The impulses, and the rates after them, exactly zero where a joint is stopped and where rounding
-/// would leave it going into its stop; what they took of the energy. `before` are the rates of the
-/// rows.
+/// Computes the impulses and the rates after them, and returns the loss of energy. A rate is
+/// exactly zero where a joint is stopped, and where rounding would leave it moving into its stop.
+/// `before` has the rates of the rows before the impact.
 double HeldJoints::solve_impact(const std::vector<double>& before, const double* q, double* qd) {
   const ForcesBetweenBounds& problem = forces_.problem;
   solve();
@@ -62,7 +62,7 @@ double HeldJoints::solve_impact(const std::vector<double>& before, const double*
     if (stops || into(j, q, qd) > 0.0) set_relative(qd, j + 1, 0.0);
     loss -= 0.5 * problem.lambda[r] * (before[r] + direction_ * relative(qd, j + 1));
   }
-  return std::max(loss, 0.0);  // rounding may make an elastic one negative
+  return std::max(loss, 0.0);  // rounding may make it negative in an elastic impact
 }
 
 double HeldJoints::bounce(const double* q, double* qd, bool is_plastic, bool with_all_at_rest) {

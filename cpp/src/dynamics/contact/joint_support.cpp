@@ -6,7 +6,7 @@
 namespace pendcore {
 namespace {
 
-/// What the law of an effect adds up, in the joint that it acts on.
+/// Adds the couple of an effect to the joint that it acts on.
 void add_law(const Effect& effect, std::vector<JointSupport>& supports) {
   std::visit(
       [&]<class Kind>(const Kind& one) {

@@ -7,7 +7,8 @@
 namespace pendcore {
 namespace {
 
-/// Calls visit(entry, at, loads) for each law of the effects, if its rows have that width.
+/// Calls visit(entry, at, loads) for each law of the effects, if their rows are of type Row.
+/// Returns whether they are.
 template <class Row, class Visit>
 bool visit_rows(const EffectsInForce& effects, double t, const LinkMemory& links, Visit& visit) {
   const auto* acting = dynamic_cast<const ActingEffects<Row>*>(&effects);
@@ -103,7 +104,7 @@ void Ledger::powers(double t, const double* q, const double* qd, const double* q
   }
 }
 
-/// M . qd + F . v of the laws, and tau phid.
+/// Adds the powers of the laws: M . qd + F . v, and tau phid.
 void Ledger::add_laws(double t, Powers& power) {
   force_x_ = force_y_ = 0.0;
   for_each_law(*effects_, t, links_, [&](const auto& entry, const auto& at, const auto& loads) {
@@ -153,7 +154,8 @@ void Ledger::add_users(double t, const double* q, const double* qd, Powers& powe
   }
 }
 
-/// F_01 . v_0, F_01 being what moves the mass centres (reactions.hpp) less the laws' forces.
+/// Adds F_01 . v_0, where F_01 is the force that accelerates the mass centres (reactions.hpp) less
+/// the forces of the laws.
 void Ledger::add_drive(double t, const double* qdd, Powers& power) const {
   double ax, ay;
   effects_->pivot_acceleration(t, ax, ay);

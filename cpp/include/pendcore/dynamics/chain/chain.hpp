@@ -1,9 +1,11 @@
 /// \file
-/// A chain of n links, in O(n): the tridiagonal structure of the joint forces.
+/// The accelerations of a chain of n links in O(n), because the system of its joint forces is block
+/// tridiagonal.
 ///
-/// From the tip to the base, the force that link i needs at its joint is an affine function of that
-/// joint's acceleration a (gravity and the pivot's own are in a):  F_i = B_i a + b_i.  In the frame
-/// (u, n) of link i, with B and p of the links beyond it, p including the centripetal part,
+/// From the tip to the base, the force on link i at its joint is an affine function of the
+/// acceleration a of this joint, F_i = B_i a + b_i, where a includes gravity and the acceleration
+/// of the pivot. In the frame (u, n) of link i, B and p are those of the links beyond it, and p
+/// includes the centripetal part:
 ///
 ///     p_u = b_u - L qd^2 B_uu      p_n = b_n - L qd^2 B_un      (the rest of F_{i+1})
 ///     D   = I_o + L^2 B_nn         I_o = I + m c^2
@@ -11,22 +13,23 @@
 ///     qdd = (Q - L p_n - w . a) / D
 ///     B_i = m + B - w w^T / D      b_i = p - m c qd^2 u - F_ext + w (Q - L p_n) / D
 ///
-/// and the components of B_i are summed without a difference where one would hurt:
+/// The components of B_i are computed in a form without harmful cancellation:
 ///
 ///     D B_un = B_un (I_o - m c L)      D B_nn = m I + B_nn (I + m (L - c)^2)
 ///
-/// then turned into the frame of link i - 1. At the tip B = m_p. From the base to the tip,
+/// B_i is then rotated into the frame of link i - 1. At the tip B = m_p. From the base to the tip,
 /// a_0 = (xdd_0, ydd_0 - g) and a_i = a_{i-1} + L (qdd n - qd^2 u).
 ///
-/// A rotor or a joint that is held couples the turning of two links: then torque and angular
-/// acceleration join force and acceleration (the terms beta, kappa and t), with J the rotor's
-/// inertia and r and s
+/// A rotor or a held joint couples the rotations of two links. Then the affine function also
+/// relates torque and angular acceleration (the terms beta, kappa and t). With J the inertia of the
+/// rotor:
 ///
 ///     r = 1/(D + J), s = J r          held: r = 0, s = 1
 ///     qdd_i = r (Q - L p_n - t - w . a) + s qdd_{i-1}
 ///
-/// Source: Featherstone, Rigid Body Dynamics Algorithms (2008), chapter 7, for the plane.
-/// Cost: some 60 operations a link and a quarter of a pack of sines and cosines; no allocation.
+/// Source: Featherstone, Rigid Body Dynamics Algorithms (2008), chapter 7, here for the plane.
+/// Cost: some 60 operations and a quarter of a pack of sines and cosines for each link; no
+/// allocation.
 #pragma once
 
 #include <memory>
@@ -36,8 +39,8 @@
 
 namespace pendcore {
 
-/// A chain as the recursion takes it, and room for one right-hand side: one thread at a time.
-/// `Number` is what it computes with, a double or a dual number.
+/// The constants of a chain for the recursion, and memory for one right-hand side: only one thread
+/// may use it at a time. `Number` is the type of the computation, a double or a dual number.
 template <class Number>
 class ChainOf {
  public:
@@ -66,7 +69,8 @@ class ChainOf {
   PENDCORE_INLINE void tip_to_base_coupled() const;
   PENDCORE_INLINE void base_to_tip_coupled(Number ax, Number ay, Number* qdd) const;
 
-  /// Arrays over the links have a pack of zeros before and after them.
+  /// Arrays over the links have a pack of zeros before and after them, except that the cosine
+  /// before the first link is 1.
   template <class Any>
   static Any* in(std::vector<Any>& a) {
     return a.data() + 4;
@@ -77,21 +81,21 @@ class ChainOf {
   }
 
   int n_;
-  int padded_;  ///< links, filled up to whole packs
+  int padded_;  ///< the number of links, rounded up to whole packs
   double gravity_;
   double payload_mass_;
-  bool has_rotors_ = false;  ///< beyond joint 1
-  bool loaded_;              ///< effects other than constants
+  bool has_rotors_ = false;  ///< in joints after the first
+  bool loaded_;              ///< has effects that add loads
   std::shared_ptr<ActingEffects<Pack<4>>> effects_;
 
   std::vector<ChainLink> links_;
   std::vector<double> length_, mass_moment_;  // L, m c
   std::vector<double> rotor_;                 // J
-  // of one right-hand side
+  // Values of one right-hand side:
   mutable std::vector<Number> q_, qd_, s_, c_;
   mutable std::vector<Number> centripetal_;               // L qd^2
   mutable std::vector<Number> center_;                    // m c qd^2
-  mutable std::vector<Number> cc_, ss_, sc_, cos_, sin_;  // of q_i - q_{i-1}
+  mutable std::vector<Number> cc_, ss_, sc_, cos_, sin_;  // products and cos, sin of q_i - q_{i-1}
   mutable std::vector<Number> couple_, torque_, fx_, fy_, vx_, vy_, user_;
   struct Response {
     Number free, x, y, from_before;  // qdd = free - (x, y) . a + from_before qdd_{i-1}

@@ -1,6 +1,7 @@
 /// \file
-/// One link in the recursion of chain.hpp: its constants, and how B passes from link to link, for
-/// the accelerations (chain_recursion.hpp) and their series (chain_series_recurrence.hpp) alike.
+/// One link in the recursion of chain.hpp: its constants, and the step that takes B from a link to
+/// the link before. The accelerations (chain_recursion.hpp) and their series
+/// (chain_series_recurrence.hpp) both use it.
 #pragma once
 
 #include <vector>
@@ -14,19 +15,20 @@ struct ChainLink {
   double m, L, mc, I, Io, LL, turn, across;  // turn: I_o - m c L, across: I + m (L - c)^2
 };
 
-/// The links of a scene, with its payload and the rotor of the first joint, which turns against the
-/// ground and so is part of the link. Rotors of other joints couple two links.
+/// The links of a scene. The last link has the moment of inertia of the payload. The first link has
+/// the rotor of joint 1, which turns against the ground; rotors of other joints couple two links
+/// and are not included.
 std::vector<ChainLink> chain_links(const Scene& scene, const Inertia& inertia);
 
-/// B: the force that the links beyond a joint need there, per acceleration of the joint, in the
-/// frame (u, n) of a link. `cc`, `ss` and `sc` are the products of cosine and sine of the angle
-/// between this link and the one before, `wu` and `wn` the w of chain.hpp.
+/// The matrix B of chain.hpp: the force at a joint per acceleration of the joint, in the frame (u,
+/// n) of a link. `cc`, `ss` and `sc` are the products of cosine and sine of the angle between this
+/// link and the link before; `wu` and `wn` are w of chain.hpp.
 template <class Number>
 struct ForcePerAcceleration {
   Number uu, un, nn;
 
-  /// Adds a link that turns freely, and goes into the frame of the link before. What waits for the
-  /// division, r = 1/D, comes in last.
+  /// Adds a link that turns freely, and rotates B into the frame of the link before. The factor r =
+  /// 1/D enters last, so that the other operations do not wait for the division.
   PENDCORE_INLINE void add_free(const ChainLink& k, Number r, Number wu, Number cc, Number ss,
                                 Number sc) {
     const Number mass = k.m + uu;
@@ -39,7 +41,8 @@ struct ForcePerAcceleration {
     uu = fma(r, fma(-cc, along, fma(-both, mixed, ss * across)), cc * mass);
   }
 
-  /// The same of a link whose turning a rotor or a joint that is held couples with the one before.
+  /// The same for a link whose rotation is coupled with the link before, by a rotor or a held
+  /// joint.
   PENDCORE_INLINE void add_coupled(const ChainLink& k, Number r, Number wu, Number wn, Number cc,
                                    Number ss, Number sc) {
     const Number along = fma(-r * wu, wu, k.m + uu);

@@ -38,7 +38,7 @@ PENDCORE_INLINE void ChainOf<Number>::prepare(const Number* q, const Number* qd)
   }
 }
 
-/// What a law of four links adds to.
+/// The loads that a law adds on a row of four links.
 template <class Row>
 struct ChainLoads {
   using Number = typename Lanes<Row>::Number;
@@ -53,7 +53,7 @@ struct ChainLoads {
   }
 };
 
-/// The torque on each link and, turned into its frame, the force.
+/// Collects the torque on each link, and the force on it in its own frame.
 template <class Number>
 PENDCORE_INLINE void ChainOf<Number>::collect_loads(double t) const {
   using Effects = ActingEffects<Pack<4>>;
@@ -148,7 +148,7 @@ PENDCORE_INLINE void ChainOf<Number>::tip_to_base() const {
     const Number c = in(c_)[i];
     response_[i] = {free, r * fma(wu, c, -(wn * s)), r * fma(wu, s, wn * c), 0.0};
 
-    // Into the frame of the link before.
+    // B and b are rotated into the frame of the link before.
     B.add_free(k, r, wu, in(cc_)[i], in(ss_)[i], in(sc_)[i]);
     b_u = fma(fu, in(cos_)[i], -(fn * in(sin_)[i]));
     b_n = fma(fu, in(sin_)[i], fn * in(cos_)[i]);

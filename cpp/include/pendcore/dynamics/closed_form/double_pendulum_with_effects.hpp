@@ -5,11 +5,12 @@
 ///     qdd      = (alone - kappa alone') / D,   kappa = rho C - sigma,   D = 1 - kappa kappa'
 ///              = delta + rho rho' S^2 + epsilon C
 ///
-/// sigma = J_2/A is that of a rotor in joint 2; with it delta = 1 - rho rho' - sigma sigma' and
-/// epsilon = rho sigma' + rho' sigma (again no difference is taken). Q is what the list of effects
-/// adds up to. A joint that is held is eliminated: both links turn alike, or the first stands.
+/// A rotor in joint 2 gives sigma = J_2/A. Then delta = 1 - rho rho' - sigma sigma' and epsilon =
+/// rho sigma' + rho' sigma; delta is again a sum of positive terms. Q is the sum of the effects'
+/// torques. A held joint is eliminated: with joint 2 held both links turn together, with joint 1
+/// held the first link does not turn.
 ///
-/// Cost: the bare equations, 10 operations, and what is in the list. Throws what a user's function
+/// Cost: the bare equations, 10 more operations, and the effects. Throws what a user's function
 /// throws.
 #pragma once
 
@@ -19,12 +20,12 @@
 
 namespace pendcore {
 
-/// What the equations have room for: a form has no instruction for what it does not name.
+/// The effects that a form of the equations supports. It has no instructions for any others.
 enum class Parts {
   couples,     ///< rotors, and couples that need no list
-  waves,       ///< and two waves at most, of motors and of the pivot
+  waves,       ///< couples, and at most two waves of motors and the pivot
   laws,        ///< couples and the list of laws
-  everything,  ///< any number of waves, a moving pivot, functions of the user's
+  everything,  ///< any number of waves, any motion of the pivot, users' functions
 };
 
 template <Parts parts>
@@ -41,7 +42,7 @@ struct DoublePendulumWithEffects {
   double product;         ///< rho rho'
   double delta;
   double epsilon;
-  const Couples<Pair>* couples;  ///< of this row
+  const Couples<Pair>* couples;  ///< the couples on both joints
   const ActingEffects<Pair>* effects;
 
   DoublePendulumWithEffects(const Scene& scene, const Inertia& inertia,
@@ -108,7 +109,8 @@ struct DoublePendulumWithEffects {
   }
 
  private:
-  /// The sines of the links and of the first two waves; one trajectory has both in a pack.
+  /// Computes the sines of the links and of the first two waves. For a single trajectory they fit
+  /// into one pack.
   PENDCORE_INLINE Pair sines(double t, const Pair& q, Pair& s, Pair& c) const {
     const TwoWaves& two = effects->two_waves;
     const Pair wave = fma(two.angular_frequency, Pair{t, t}, two.phase);
@@ -139,7 +141,8 @@ struct DoublePendulumWithEffects {
     loads.couple(Constants<V>::of(torque));
   }
 
-  /// Joint 2 held: (A_1 f_1 + A_2 f_2)/(A_1 + A_2 + 2 M_12) for both. Joint 1 held: 0 and f_2.
+  /// With joint 2 held, qdd is (A_1 f_1 + A_2 f_2)/(A_1 + A_2 + 2 M_12) for both links. With joint
+  /// 1 held, it is 0 and f_2.
   template <class V>
   PENDCORE_INLINE V with_joints_held(const V& alone, const V& kappa) const {
     using Constant = Constants<V>;

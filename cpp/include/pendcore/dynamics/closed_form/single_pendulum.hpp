@@ -1,7 +1,8 @@
 /// \file
 /// One link: qdd = (a_1 g / A_11) cos q.
 ///
-/// The textbook's Eq. (2.1) without a second link, y downward. Cost: one cosine and one product.
+/// This is the textbook's Eq. (2.1) without a second link, y downward. Cost: one cosine and one
+/// product.
 #pragma once
 
 #include "pendcore/arithmetic/pair.hpp"

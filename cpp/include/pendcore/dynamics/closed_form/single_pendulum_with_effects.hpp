@@ -1,8 +1,8 @@
 /// \file
-/// One link with effects: qdd = (a_1 (g cos q + xdd_0 sin q - ydd_0 cos q) + Q) / A_11, or 0 where
-/// its joint is held.
+/// One link with effects: qdd = (a_1 (g cos q + xdd_0 sin q - ydd_0 cos q) + Q) / A_11, or 0 if its
+/// joint is held.
 ///
-/// Cost: the bare equation, 4 operations, and what is in the list of effects.
+/// Cost: the bare equation, 4 more operations, and the effects.
 #pragma once
 
 #include "pendcore/dynamics/acting_effects.hpp"
@@ -52,7 +52,7 @@ struct SinglePendulumWithEffects {
   }
 
  private:
-  /// The link shares its sine with the first three waves.
+  /// Computes the sine of the link in one pack with the first three waves.
   PENDCORE_INLINE void sines(double t, double q, double& s, double& c) const {
     if (effects->waves == 0) {
       sine_cosine(q, s, c);

@@ -1,15 +1,16 @@
 /// \file
-/// Forces that hold only so far: of what the joints at rest could do, what they do.
+/// Forces between bounds: the complementarity problem that decides which joints stay at rest.
 ///
 ///     w = a + W lambda,   lower <= lambda <= upper
 ///     w_i = 0 where lambda_i is between its bounds, w_i >= 0 at the lower, w_i <= 0 at the upper
 ///
-/// With W positive definite there is one answer, the least of 1/2 lambda.W lambda + a.lambda
-/// between the bounds. With a and w accelerations of joints and lambda the torques of friction and
-/// stops it says which joints stay at rest; with rates and impulses, how an impact ends.
-/// All that is wrong is changed at once (Judice and Pires, Computers & Operations Research 21
-/// (1994) 587); where that leads in circles, always downhill between the bounds (Bertsekas, SIAM
-/// J. Control and Optimization 20 (1982) 221: Newton's method with projections).
+/// Since W is positive definite there is exactly one solution, the minimum of 1/2 lambda.W lambda +
+/// a.lambda between the bounds. With a and w accelerations of joints and lambda the torques of
+/// friction and stops, the solution says which joints stay at rest; with rates and impulses, it
+/// says how an impact ends. The solver changes all forces that violate their conditions at once
+/// (Judice and Pires, Computers & Operations Research 21 (1994) 587). Where this cycles, it
+/// descends between the bounds by Newton's method with projections (Bertsekas, SIAM J. Control and
+/// Optimization 20 (1982) 221).
 #pragma once
 
 #include <functional>
@@ -23,14 +24,14 @@ struct ForcesBetweenBounds {
   int size = 0;
   std::vector<double> W;  ///< (size, size), symmetric, positive definite
   std::vector<double> a, lower, upper;
-  std::vector<double> lambda, w;  ///< the answer
-  std::vector<Bound> at;          ///< and where each force is
+  std::vector<double> lambda, w;  ///< the solution
+  std::vector<Bound> at;          ///< where each force of the solution is
 
-  /// Is called now and then in what takes long, and may throw.
+  /// Called from time to time in long computations; it may throw.
   std::function<void()> look;
 
   void resize(int count);
-  /// False where it has not found the answer.
+  /// Returns false if it has not found the solution.
   bool solve();
 
  private:
@@ -39,15 +40,17 @@ struct ForcesBetweenBounds {
   bool descend();
   void slope_at(const std::vector<double>& x, std::vector<double>& slope) const;
   bool goes_down(const std::vector<double>& from, const std::vector<double>& slope) const;
-  double rounding(int i) const;  ///< of w
+  double rounding(int i) const;  ///< what rounding may add to w_i
   std::vector<double> factor_;
   std::vector<int> free_;
 };
 
-/// A = L D L^T, in place of the lower half of A, (n, n) row-major, D on the diagonal; in one order
-/// of operations, without square roots: in units twice as large each bit is the same.
+/// Computes A = L D L^T in place of the lower half of A, (n, n) row-major, with D on the diagonal.
+/// The order of operations is fixed and there are no square roots, so that with units twice as
+/// large every bit of the digits is the same.
 void factor_symmetric(int n, double* a);
-/// x becomes L^-1 x, and L^-T D^-1 x; x is zero before `first`.
+/// solve_lower() replaces x, which is zero before `first`, by L^-1 x; solve_upper() replaces x by
+/// L^-T D^-1 x.
 void solve_lower(int n, const double* factor, double* x, int first = 0);
 void solve_upper(int n, const double* factor, double* x);
 

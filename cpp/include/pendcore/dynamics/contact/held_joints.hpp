@@ -1,20 +1,22 @@
 /// \file
 /// The joints that do not turn: locked, stuck under dry friction, or pushed against a stop.
 ///
-/// A joint at rest is held while the torque lambda that this takes stays within a range: +-t_s of
-/// friction, and what a stop can push without end. Which joints that are comes out of one problem
-/// over all that are at rest (joint_forces.hpp),
+/// A joint at rest is held while the torque lambda that holds it stays within a range: +-t_s from
+/// friction, and any torque that pushes away from a stop. One problem for all joints at rest
+/// (joint_forces.hpp) decides which of them are held,
 ///
-///     phidd = a + W lambda,    a: what they would do if nothing held them
+///     phidd = a + W lambda,    a: the accelerations if nothing held the joints
 ///
-/// the same as minimising 1/2 (x - x_0)^T M (x - x_0) + sum t_s |phidd| over accelerations x. The
-/// torques of the joints that are held follow from the right-hand sides with them and without,
+/// This is the same as minimising 1/2 (x - x_0)^T M (x - x_0) + sum t_s |phidd| over accelerations
+/// x, where x_0 are the accelerations if nothing held the joints. The torques in the held joints
+/// follow from the accelerations with and without the holds,
 ///
 ///     lambda_j = sum over i >= j of (M (qdd_held - qdd_free))_i
 ///
-/// An impact is such a problem too: impact.hpp.
-/// Source: Brogliato, Nonsmooth Mechanics (2016), chapter 5.
-/// Cost of a decision or an impact: a right-hand side and O(n^3); of the torques: two and O(n^2).
+/// An impact is a problem of the same kind (impact.hpp). Source: Brogliato, Nonsmooth Mechanics
+/// (2016), chapter 5.
+/// Cost: three right-hand sides and O(n^3) for a decision, O(n^3) for an impact, two right-hand
+/// sides and O(n^2) for the torques.
 #pragma once
 
 #include <cmath>
@@ -33,44 +35,47 @@ class EffectsInForce;
 struct Hold {
   bool is_held = false;
   double angle = 0.0;              ///< phi
-  double least = 0.0, most = 0.0;  ///< the torques between which it stays held
+  double least = 0.0, most = 0.0;  ///< it stays held between these torques
 };
 
-/// What a run that goes on needs of a joint, held or not.
+/// What a continued run needs to know of a joint, held or not.
 struct SavedHold {
   Hold hold;
   double torque_size = 0.0;  ///< HeldJoints::torque_size
 };
 
-/// Belongs to one run and one thread, as the effects whose joints it holds. Joints count from 0.
+/// The joints that are held in a run. An object belongs to one run and one thread, like the effects
+/// whose joints it holds. Joints are counted from 0.
 class HeldJoints {
  public:
   explicit HeldJoints(const Scene& scene);
 
   void look_up_in_long_work(const std::function<void()>& look) { forces_.problem.look = look; }
 
-  /// Whether the scene has friction or stops, that can hold a joint for a while.
+  /// Whether the scene has friction or stops, which can hold a joint for a while.
   bool can_hold() const { return can_hold_; }
 
-  /// Which way time runs: what moves into a stop is another matter backward.
+  /// Sets the direction of time, which decides whether a rate leads into a stop or away from it.
   void set_direction(bool forward) { direction_ = forward ? 1.0 : -1.0; }
 
-  /// A decision or an impact had no finite answer: the mass matrix is singular to double precision.
+  /// Whether a decision or an impact had no finite solution, because the mass matrix is singular in
+  /// double precision.
   bool has_failed() const { return has_failed_; }
 
   const std::vector<JointSupport>& supports() const { return supports_; }
   const std::vector<Hold>& holds() const { return holds_; }
   bool is_held(int joint) const { return holds_[joint].is_held; }
-  bool any_held_for_now() const;  ///< by other than a lock
-  /// The inertia of each link with all that hangs on it, at its joint, kg m^2, (n).
+  bool any_held_for_now() const;  ///< by anything but a lock
+  /// The inertia about its joint of each link and everything beyond it, kg m^2, (n): the diagonal
+  /// of M.
   const std::vector<double>& inertia() const { return forces_.inertia.diagonal; }
-  double natural_speed() const { return natural_speed_; }  ///< rad/s, of the fastest joint
+  double natural_speed() const { return natural_speed_; }  ///< the highest of all joints, rad/s
 
-  /// A lock: at that angle from now on, in the state too.
+  /// Locks a joint at an angle from now on, and sets this angle in the state.
   void lock(int joint, double angle, double* q);
 
-  /// At a state: which joints at rest are held, and which way the others slide. Joint `surely`, if
-  /// at rest, is held whatever the problem says.
+  /// Decides at a state which joints at rest are held, and in which direction the others slide.
+  /// Joint `surely`, if it is at rest, is held whatever the solution of the problem is.
   void choose(const EquationsOfMotion& equations, double t, const double* q, const double* qd,
               int surely = -1);
 
@@ -78,19 +83,20 @@ class HeldJoints {
   void torques(const EquationsOfMotion& equations, double t, const double* q, const double* qd,
                double* torque);
 
-  /// The size of what the torque of a joint was added up from, N m.
+  /// The sum of the magnitudes of the terms of a joint's torque, N m.
   double torque_size(int joint) const { return size_[joint]; }
 
-  /// What share of the size of a torque its rounding is at most: thousands of sums enter into it.
+  /// The largest rounding error of a torque as a share of its size: thousands of sums enter into
+  /// it.
   static constexpr double rounding_of_torque = 1e4 * epsilon;
 
-  /// Whether an acceleration of a joint is no more than the rounding of its torque.
+  /// Whether an acceleration of a joint is no more than the rounding error of its torque.
   bool is_rounding(int joint, double phidd) const {
     return forces_.inertia.diagonal[joint] * std::abs(phidd) <=
            rounding_of_torque * (size_[joint] + supports_[joint].friction);
   }
 
-  /// Lets a joint go, to slide up or down its angle (1 or -1).
+  /// Releases a joint, which then slides towards larger (1) or smaller (-1) angles.
   void release(EffectsInForce& effects, int joint, int direction);
 
   /// The stop that a joint touches.
@@ -98,25 +104,28 @@ class HeldJoints {
 
   /// How fast a joint that touches a stop moves into it, rad/s; 0 where it touches none.
   double into(int joint, const double* q, const double* qd) const;
-  /// The fastest of those that do, or 0.
+  /// The highest rate into a stop among all joints, or 0.
   double fastest_strike(const double* q, const double* qd) const;
 
-  /// An impact at these angles, by the laws of impact.hpp.
+  /// Begins an impact at these angles, by the laws of impact.hpp.
   void begin_impact(const double* q);
-  /// Newton's law for all joints that do not leave their stops; what it took of the energy. Joints
-  /// at rest there take part if they are held, or all. Without restitution if `is_plastic`.
+  /// Applies Newton's law of impact to all joints that move into their stops, and returns the loss
+  /// of energy. Joints at rest at a stop take part if they are held, or all of them if
+  /// `with_all_at_rest`. If `is_plastic`, there is no restitution.
   double bounce(const double* q, double* qd, bool is_plastic, bool with_all_at_rest);
   bool has_bounced(int joint) const { return bounced_[joint] != 0; }  ///< in this impact
-  /// A joint that leaves its stop is to stay there.
+  /// Captures a joint: it is to stay at its stop.
   void capture(int joint) { captured_[joint] = 1; }
   bool is_captured(int joint) const { return captured_[joint] != 0; }
-  /// Joints that are captured stop, no other moves into its stop; what that took of the energy.
+  /// Stops the captured joints and lets no other joint move into its stop; returns the loss of
+  /// energy.
   double stay_at_stops(const double* q, double* qd);
-  /// What moves the pivot does work against the impulses at it, J, as the rates change.
+  /// The work that the drive of the pivot does in an impact, J, from the rates before and after it.
   double work_of_drive(const EquationsOfMotion& equations, double t,
                        const std::vector<double>& before, const double* after) const;
 
-  /// Puts held joints exactly where they are held. Whether that changed something.
+  /// Sets held joints to the angles at which they are held, and to rest. Returns whether it set
+  /// any.
   bool settle(double* q, double* qd) const;
 
   std::vector<SavedHold> saved_state() const;  ///< (n)
@@ -140,7 +149,7 @@ class HeldJoints {
   double direction_ = 1.0;
   bool has_failed_ = false;
   std::vector<char> captured_, bounced_;
-  std::vector<char> bounces_;  ///< of each row of the problem of an impact
+  std::vector<char> bounces_;  ///< whether each row of an impact's problem bounces
   std::vector<Hold> holds_;
   std::vector<double> held_qdd_, free_qdd_, torque_, size_;
 };

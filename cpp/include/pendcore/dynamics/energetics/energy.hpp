@@ -3,9 +3,9 @@
 ///
 ///     T = sum_i (m_i v_{C_i}^2 + I_i qd_i^2)/2 + sum_j J_j phid_j^2/2     V = -g sum_i m_i y_{C_i}
 ///
-/// with a payload as one more body, velocities with that of a moving pivot, and in V what springs
-/// keep; J, V = 0 at the origin. Angles (rad) and rates (rad/s) are (n). Cost: O(n). A span
-/// of another size is refused with std::invalid_argument.
+/// A payload is one more body. Velocities include the velocity of a moving pivot, and V includes
+/// the energy of springs. T and V are in J, V = 0 at the origin. Angles (rad) and rates (rad/s) are
+/// (n). Cost: O(n). A span of another size is refused with std::invalid_argument.
 #pragma once
 
 #include "pendcore/dynamics/kinematics.hpp"

@@ -17,8 +17,8 @@ namespace pendcore {
 void reactions(const Scene& scene, double t, std::span<const double> q, std::span<const double> qd,
                std::span<const double> qdd, std::span<double> forces);
 
-/// The same for many states of a scene: its effects are compiled once, by effects_in_force(scene).
-/// They are put in the modes of each state.
+/// The same for many states of a scene, whose effects are compiled once, by
+/// effects_in_force(scene). They are put in the modes of the state.
 void reactions(const Scene& scene, EffectsInForce& effects, double t, std::span<const double> q,
                std::span<const double> qd, std::span<const double> qdd, std::span<double> forces);
 

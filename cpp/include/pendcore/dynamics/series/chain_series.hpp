@@ -1,23 +1,26 @@
 /// \file
 /// The equations of a chain of n links, with smooth effects, as recurrences of Taylor series.
 ///
-/// As in series.hpp, u_i lies along link i, n_i across it, and u_i' = qd_i n_i. With a_i the
-/// acceleration of joint i less gravity and F_{i+1} the force at the next joint, both sums of u'',
+/// As in series.hpp, u_i lies along link i, n_i across it, and u_i' = qd_i n_i. Let a_i be the
+/// acceleration of joint i minus gravity, and F_{i+1} the force at the next joint; both are sums of
+/// u'':
 ///
 ///     a_{i+1} = a_i + L u_i'',    F_i = m a_i + m c u_i'' + F_{i+1},    F_{n+1} = m_p a_{n+1}
 ///     I_o qdd_i + n_i . H_i = tau_i,   H_i = m c a_i + L F_{i+1}
 ///
-/// the only products are qd_i n_i and n_i . H_i. Order k of the last line holds the newest
-/// alpha = (k + 1) qd_{k+1} along n_0 alone,  u''_k = alpha n_0 + beta, so that every order is the
-/// same linear system, that of a chain at rest at the angles q_0: chain.hpp's recursion from the
-/// tip to the base and back, whose factors are computed once for the whole series,
+/// The only products are qd_i n_i and n_i . H_i. In order k of the last line, the newest unknown
+/// alpha = (k + 1) qd_{k+1} appears along n_0 alone, u''_k = alpha n_0 + beta. So every order is
+/// the same linear system, the one of a chain at rest at the angles q_0. It is solved by the
+/// recursion of chain.hpp from the tip to the base and back, whose factors are computed once for
+/// the whole series:
 ///
 ///     F = B a + b + beta_F alpha_before         (B, w, r, s: chain.hpp, here along x and y)
 ///     alpha = r (tau - L n . p - t - w . a) + s alpha_before,    p = b + L B beta
 ///
-/// Torques of effects are those that have a Couple (effects/law.hpp), polynomials of time, angle
-/// and rate, and waves. Source: series.hpp's. Cost: four sums of products a link and order, and
-/// some 40 operations; a sine and cosine, a division and some 60 operations a link and series.
+/// The effects are those that have a Couple (effects/law.hpp): polynomials of time, angle and rate,
+/// and waves. The source is the one of series.hpp. Cost: four sums of products and some 40
+/// operations for each link and order; a sine and cosine, a division and some 60 operations for
+/// each link and series.
 #pragma once
 
 #include <memory>
@@ -29,7 +32,8 @@
 
 namespace pendcore {
 
-/// One series at a time, and one thread: it has the room for it. `Row` is that of its effects.
+/// Computes one series at a time, in one thread, in memory of its own. `Row` is the type of its
+/// effects' rows.
 template <class Row>
 class ChainSeries {
  public:
@@ -39,26 +43,27 @@ class ChainSeries {
   static constexpr bool is_short = false;
   static constexpr int width = Lanes<Row>::width;
 
-  /// `effects` may be null: a chain without any.
+  /// `effects` is null for a chain without effects.
   ChainSeries(const Scene& scene, std::shared_ptr<const ActingEffects<Row>> effects);
 
   int links() const { return n_; }
   int row() const { return row_; }
   void set_order(int order);
 
-  /// Rows 1 .. order of `coefficients`, (q, qd) filled up to whole blocks each, in units of sigma.
+  /// Fills rows 1 .. order of `coefficients`, each (q, qd), both padded to whole blocks, with time
+  /// in units of sigma.
   PENDCORE_INLINE void expand(double t, const double* y, double sigma, int order,
                               double* coefficients) const;
 
  private:
-  /// What one link has in its place, for the orders of one series.
+  /// The factors of one link, which are the same for all orders of a series.
   struct Factors {
     double nx, ny;         ///< across the link
-    double Bxx, Bxy, Byy;  ///< of the links beyond
-    double fx, fy;         ///< beta_F of the joint beyond
+    double Bxx, Bxy, Byy;  ///< B of the links beyond
+    double fx, fy;         ///< beta_F of the next joint
     double wx, wy, r, s;
   };
-  /// What one order takes from the tip to the base.
+  /// What the pass from the tip to the base keeps of one link, for one order.
   struct Passing {
     double bx, by, t, free;
   };
@@ -85,14 +90,14 @@ class ChainSeries {
   bool has_rotors_ = false;
   std::shared_ptr<const ActingEffects<Row>> effects_;
   std::vector<ChainLink> links_;
-  std::vector<double> rotor_;  ///< of the joints beyond the first
-  // of one series
+  std::vector<double> rotor_;  ///< of the joints after the first; rotor_[0] is 0
+  // Memory for one series:
   std::size_t room_ = 0;
   mutable std::vector<double> series_;
   mutable std::vector<Factors> factors_;
   mutable std::vector<Passing> passing_;
   mutable std::vector<double> beta_x_, beta_y_, torque_, alpha_, hx_, hy_;
-  mutable std::vector<double> couple_, angle_, speed_;  ///< with room before and after
+  mutable std::vector<double> couple_, angle_, speed_;  ///< with a margin before and after
   mutable std::vector<double> wave_sine_, wave_cosine_;
 };
 

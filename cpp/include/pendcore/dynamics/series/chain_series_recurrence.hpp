@@ -43,7 +43,8 @@ void ChainSeries<Row>::set_order(int order) {
   series_.assign(static_cast<std::size_t>(groups_) * quantities * room_, 0.0);
 }
 
-/// chain.hpp's recursion without loads: B and p in the frame of each link, kept along x and y.
+/// Computes the factors of chain.hpp's recursion without loads. B is in the frame of each link;
+/// what is kept is along x and y.
 template <class Row>
 PENDCORE_INLINE void ChainSeries<Row>::factor() const {
   const bool coupled = has_rotors_ || (effects_ && effects_->any_held);
@@ -100,7 +101,7 @@ PENDCORE_INLINE void ChainSeries<Row>::start_waves(double t) const {
   }
 }
 
-/// From order k to the next: sin(phase + omega sigma theta).
+/// Takes the waves sin(phase + omega sigma theta) from order k to the next.
 template <class Row>
 PENDCORE_INLINE void ChainSeries<Row>::advance_waves(double sigma, int k) const {
   if (!effects_) return;
@@ -171,7 +172,7 @@ PENDCORE_INLINE void ChainSeries<Row>::add_couples(double t, double sigma, int k
   }
 }
 
-/// alpha and H of every link from the torques, the beta and the acceleration of the pivot.
+/// Computes alpha and H of every link from the torques, beta, and the acceleration of the pivot.
 template <class Row>
 PENDCORE_INLINE void ChainSeries<Row>::solve(double ax, double ay) const {
   double bx = 0.0;

@@ -1,10 +1,10 @@
 /// \file
-/// The equations of the textbook's double pendulum as recurrences of Taylor series: q and qd to any
-/// order, from one state.
+/// The equations of the textbook's double pendulum as recurrences of Taylor series: they give q and
+/// qd to any order from one state.
 ///
 /// Each link has u = (cos q, sin q) along it and n = (-sin q, cos q) across it, so that u' = qd n.
-/// double_pendulum.hpp's equations, divided by their A_ii, read for both links at once (x' of the
-/// other link, rho = A_12/A, gamma = a g/A)
+/// The equations of double_pendulum.hpp, divided by their A_ii, read for both links at once (x' is
+/// a quantity of the other link, rho = A_12/A, gamma = a g/A)
 ///
 ///     qdd + rho n . u''(other) = gamma cos q
 ///
@@ -13,26 +13,27 @@
 ///     (k + 2) u_{k+2} = sum_{j<=k+1} qd_j n_{k+1-j}  =  qd_{k+1} n_0 + v
 ///     (k + 1) qd_{k+1} + rho sum_{j<=k} n_{k-j} . u''_j(other) = gamma c_k
 ///
-/// The newest u''_k holds the qd_{k+1} that is looked for; n_0 . n_0(other) = cos(q - q') = C makes
-/// of that the equations' own two by two system, the same for every order:
+/// The newest u''_k contains the unknown qd_{k+1}. Because n_0 . n_0(other) = cos(q - q') = C, the
+/// unknowns of both links solve the two by two system of the equations themselves, the same for
+/// every order:
 ///
 ///     alpha + kappa alpha' = f,   alpha = (k + 1) qd_{k+1}:   alpha = (f - kappa f') / D
 ///
-/// with kappa = rho C - sigma and D = 1 - kappa kappa' where there is a rotor in joint 2
-/// (double_pendulum_with_effects.hpp). Torques on the joints add to f; a `Torque` knows their
-/// series (torque_series.hpp): of the bare pendulum there is none.
+/// Here kappa = rho C - J_2/A and D = 1 - kappa kappa', with J_2 the rotor in joint 2 (the sigma of
+/// double_pendulum_with_effects.hpp is J_2/A). Torques on the joints add to f; a `Torque` computes
+/// their series (torque_series.hpp). The bare pendulum has none.
 ///
-/// No sine, cosine, product or quotient needs a series of its own: an order is two sums of
+/// No sine, cosine, product or quotient needs a series of its own: each order is two sums of
 /// products of rows of four, (c, c', s, s').
 ///
-/// What bounds an order is how long it waits for those before it. The last of them, qd_k, is in
-/// u_{k+1}; what was known before is in u_k and qd_{k-1}; each multiplies what the start of the
-/// step has determined, with k, k^2 beside it. With those factors put together once a step, order
-/// k + 1 is
+/// The time of an order is mostly the time that it waits for the orders before it. The last of
+/// them, qd_k, is in u_{k+1}; the one before it is in u_k and qd_{k-1}. Each multiplies factors
+/// that the start of the step determines, and k and k^2. With these factors computed once in a
+/// step, order k + 1 is
 ///
 ///     qd_{k+1} = older + by_u (u_k, u_k') + by_rate_before qd_{k-1}' + by_rate (qd_k, qd_k')
 ///
-/// in the places of f, and `older`, all of the two sums but their ends, is there long before.
+/// instead of f. `older` has all terms of the two sums but the last ones, and is known long before.
 ///
 /// Source: the recurrences of automatic differentiation (Moore, Interval Analysis, 1966, chapter
 /// 11; Jorba and Zou, Exp. Math. 14, 2005); the elimination is this project's.
@@ -54,11 +55,11 @@ struct NoTorque {
   static constexpr bool depends_on_time = false;
 };
 
-/// What double_pendulum.hpp and double_pendulum_with_effects.hpp have in common.
+/// The constants that double_pendulum.hpp and double_pendulum_with_effects.hpp have in common.
 struct DoublePendulumConstants {
   Pair weight;     ///< gamma
   Pair coupling;   ///< rho
-  Pair rotor;      ///< sigma of joint 2
+  Pair rotor;      ///< J_2/A
   double product;  ///< rho rho'
   double delta;
   double epsilon;
@@ -80,8 +81,8 @@ class DoublePendulumSeries {
   static constexpr int links() { return 2; }
   void set_order(int /*order*/) {}
 
-  /// y(t + theta sigma) = sum_k theta^k y_k: rows 1 .. order of `coefficients`, from the state y;
-  /// an even order, `lowest_order` or more.
+  /// Fills rows 1 .. order of `coefficients` with y_k of y(t + theta sigma) = sum_k theta^k y_k,
+  /// from the state y. The order is even, and at least `lowest_order`.
   PENDCORE_INLINE void expand(double t, const double* y, double sigma, int order,
                               double* coefficients) const;
 
@@ -90,27 +91,27 @@ class DoublePendulumSeries {
   Torque torque_;
 };
 
-/// The orders of one series. Rows are (c, c', s, s') or, of rates and what has no direction, the
-/// pair twice.
+/// The orders of one series. Rows are (c, c', s, s'); for rates and other numbers without a
+/// direction, a row is the pair twice.
 struct DoublePendulumOrders {
   double per_sigma;
-  Pairs own, cross;  ///< of the two by two system: 1/D and -kappa/D
-  Pairs pull;        ///< gamma sigma^2, on c
+  Pairs own, cross;  ///< 1/D and -kappa/D of the two by two system
+  Pairs pull;        ///< gamma sigma^2, the factor of c
   Pairs minus_rho;
   Pairs n0, n1, n2, rate0, rate1;
-  // In f, which counts the halves of a row together: (first + k second) (k + 1) with u_{k+1},
-  // (k + 1) by_rest with what u_{k+2} has of older orders.
+  // Factors in f, in which the halves of a row are added: (k + 1) (first + k second) of u_{k+1},
+  // and (k + 1) by_rest of the terms of older orders in u_{k+2}.
   Pairs first, second, by_rest;
-  Pairs by_rate[2];         ///< with qd_k: [0] + k [1]
-  Pairs by_rate_before[2];  ///< with qd_{k-1}
-  Pairs by_u[3];            ///< with u_k of the other link: [0] + k [1] + k^2 [2]
+  Pairs by_rate[2];         ///< factor of qd_k: [0] + k [1]
+  Pairs by_rate_before[2];  ///< factor of qd_{k-1}: [0] + k [1]
+  Pairs by_u[3];            ///< factor of u_k of the other link: [0] + k [1] + k^2 [2]
   Pairs by_own_u;
 
-  // What the order before leaves, and the one before that.
-  Pairs u_before, u;        ///< u_k and u_{k+1}
-  Pairs rate_before, rate;  ///< qd_{k-1} and qd_k; rate0 has its own places, here it is 0
-  Pairs rest_before;        ///< of u_{k+1}, what it had of older orders
-  Pairs u_without_rate;     ///< u_{k+1} but for qd_k
+  // What the last two orders leave for the next.
+  Pairs u_before, u;                   ///< u_k and u_{k+1}
+  Pairs rate_before, rate;             ///< qd_{k-1} and qd_k; 0 instead of qd_0, which is in rate0
+  Pairs rest_before;                   ///< the terms of older orders in u_{k+1}
+  Pairs u_without_rate;                ///< u_{k+1} without its term in qd_k
   Pair angle_of_order, rate_of_order;  ///< q_k and qd_k
 
   Pairs pulls[highest_order];  ///< -rho u'' of the other link
@@ -119,18 +120,19 @@ struct DoublePendulumOrders {
 
   PENDCORE_INLINE DoublePendulumOrders(const DoublePendulumConstants& constants, const double* y,
                                        double sigma);
-  /// Orders 0, 1 and 2, whose sums have no ends of their own.
+  /// Computes orders 0, 1 and 2, whose sums are too short to have last terms apart from others.
   template <class TorqueOrders>
   PENDCORE_INLINE void begin(TorqueOrders& torque, double* coefficients);
-  /// Order k >= 3 from the older terms of both sums: of pulls_j n_{k-j} those from j = 1 to k - 3,
-  /// of qd_j n_{k+1-j} from 2 to k - 2.
+  /// Computes order k >= 3 from the older terms of both sums: pulls_j n_{k-j} from j = 1 to k - 3,
+  /// and qd_j n_{k+1-j} from j = 2 to k - 2.
   template <class TorqueOrders>
   PENDCORE_INLINE void next(int k, const Pairs& sum, const Pairs& rest, TorqueOrders& torque,
                             double* coefficients);
 
  private:
   PENDCORE_INLINE void put_factors_together();
-  /// Order k from f but for the part of qd_k, and from what u_{k+2} has of older orders.
+  /// Computes order k from f without the part of qd_k, and from the terms of older orders in
+  /// u_{k+2}.
   template <class TorqueOrders>
   PENDCORE_INLINE void finish(int k, Pairs f, const Pairs& rest, TorqueOrders& torque,
                               double* coefficients);
@@ -169,9 +171,9 @@ PENDCORE_INLINE DoublePendulumOrders::DoublePendulumOrders(const DoublePendulumC
   rates[0] = rate0;
 }
 
-/// What u_{k+1} = (qd_0 n_k + qd_{k-1} n_1 + rest + qd_k n_0)/(k + 1) and the ends of both sums
-/// make of u_k and qd_{k-1}: n_k is u_k turned, and a row times a turned one, its halves counted
-/// together, is minus the turned row times the other.
+/// Computes the factors of u_k and qd_{k-1} that come from u_{k+1} = (qd_0 n_k + qd_{k-1} n_1 +
+/// rest + qd_k n_0)/(k + 1) and from the last terms of both sums. n_k is u_k turned; where the
+/// halves are added, a row times a turned row is minus the turned first row times the second.
 PENDCORE_INLINE void DoublePendulumOrders::put_factors_together() {
   n2 = n[2];
   rate1 = rates[1];
@@ -262,9 +264,9 @@ PENDCORE_INLINE void DoublePendulumSeries<Torque>::expand(double t, const double
   }();
   orders.begin(torque, coefficients);
   orders.next(3, Pairs{}, Pairs{}, torque, coefficients);
-  // Two orders at a time: what they share is loaded once.
+  // Two orders are computed at a time, so that what they share is loaded once.
   for (int k = 4; k < order; k += 2) {
-    Pairs sum{}, sum_even{}, rest{}, rest_even{};  // of order k, odd and even j
+    Pairs sum{}, sum_even{}, rest{}, rest_even{};  // sums of order k over odd and even j
     Pairs next_sum{}, next_sum_even{}, next_rest{}, next_rest_even{};
     Pairs n_before = orders.n[k];
     for (int j = 1; j < k - 3; j += 2) {

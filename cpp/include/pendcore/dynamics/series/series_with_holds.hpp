@@ -1,6 +1,6 @@
 /// \file
-/// The series of a double pendulum whose joints may be held: of both joints free the closed form's
-/// (series.hpp), and where one is held the chain's (chain_series.hpp).
+/// The series of a double pendulum whose joints may be held. The closed form (series.hpp) gives it
+/// while both joints are free, the chain (chain_series.hpp) while one is held.
 #pragma once
 
 #include <memory>

@@ -1,16 +1,17 @@
 /// \file
-/// The torques of effects on a double pendulum, as Taylor series: those that are couples
-/// (effects/law.hpp), polynomials of time, angle and rate of a joint, and up to two waves.
+/// The Taylor series of the torques of effects on a double pendulum. The effects are couples
+/// (effects/law.hpp): polynomials of the time and of the angle and rate of a joint, and up to two
+/// waves.
 ///
 ///     tau = held + slope (t - start) + on_phi phi + on_phid w + on_phid2 w^2 + on_phid3 w^3
 ///           + gain sin(omega t + phase)
 ///
-/// Time is in units of sigma, and what is returned is tau sigma^2/A of each link. Squares and cubes
-/// of the rate are sums of products; a wave's orders come one from the other,
+/// Time is in units of sigma, and the result is tau sigma^2/A for each link. Squares and cubes of
+/// the rate are sums of products. Each order of a wave follows from the order before,
 ///
 ///     s_{k+1} = omega sigma c_k/(k + 1),    c_{k+1} = -omega sigma s_k/(k + 1)
 ///
-/// Cost: some 10 operations an order, and k products where a square or cube is there.
+/// Cost: some 10 operations for each order, and k products for each square or cube.
 #pragma once
 
 #include <memory>
@@ -26,7 +27,7 @@ class CoupleTorque {
   static constexpr bool is_there = true;
   static constexpr bool depends_on_time = true;
 
-  /// The effects neither hold a joint nor move the pivot, and have two waves at most.
+  /// The effects must neither hold a joint nor move the pivot, and have at most two waves.
   CoupleTorque(std::shared_ptr<const ActingEffects<Pair>> effects, const Pair& inverse_diagonal)
       : effects_(std::move(effects)), inverse_diagonal_(inverse_diagonal) {}
 
@@ -46,11 +47,12 @@ class CoupleTorque {
       const TwoWaves& two = effects.two_waves;
       sine_cosine(fma(two.angular_frequency, Pair{t, t}, two.phase), sine_, cosine_);
       turn_ = sigma * two.angular_frequency;
-      // Not for good: a motor at its limit has no wave.
+      // The gains may differ from series to series: a motor at its limit has no wave.
       for (const JointWave& one : effects.joint_waves) gain_[one.wave][one.joint] += one.gain;
     }
 
-    /// Order k from the angles and rates of order k; one after the other, from 0.
+    /// Order k from the angles and rates of order k. The orders are called one after the other,
+    /// from 0.
     PENDCORE_INLINE Pair next(int k, const Pair& angle, const Pair& rate) {
       Pair couple{};
       if (couples_ != nullptr) {
@@ -88,7 +90,7 @@ class CoupleTorque {
     Pair by_;         ///< sigma^2/A
     Pair in_time_{};  ///< held + slope (t - start)
     Pair sine_{}, cosine_{}, turn_{};
-    Pair gain_[2]{};  ///< of each wave, on the joints
+    Pair gain_[2]{};  ///< the gain of each wave on the joints
     Pair rates_[highest_order];
     Pair squares_[highest_order];
   };
