@@ -25,6 +25,7 @@ from pathlib import Path
 from chain_scenes import ChainScene, chain_scene
 from contenders.conversation import find_executable
 from contenders.forward_dynamics import described
+from effect_list import BARE, EFFECTS
 from tqdm import tqdm
 
 PROGRAM = "forward_dynamics_pendcore"
@@ -105,8 +106,6 @@ def count_bare() -> dict[str, float]:
 
 
 def main(effects: list[str]) -> int:
-    from effects import BARE, EFFECTS
-
     names = effects or [effect.name for effect in EFFECTS if effect.ours]
     counted = count_effects([BARE.name, *names])
     bare = counted.get(BARE.name)

@@ -20,7 +20,7 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "bench" / "compare"))
 import count_instructions
 from chain_scenes import chain_scene
 from contenders.forward_dynamics import described
-from effects import EFFECTS, Effect
+from effect_list import EFFECTS, Effect
 
 pytestmark = pytest.mark.outside_build
 
