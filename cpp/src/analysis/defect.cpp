@@ -25,7 +25,7 @@ class Curve {
 
   double h() const { return h_; }
   double time(double theta) const { return start_ + std::fma(theta, h_, start_low_); }
-  /// As far as the run used it.
+  /// The theta up to which the run used the step.
   double end(double t_reached) const {
     return std::min(1.0, ((t_reached - start_) - start_low_) / h_);
   }
@@ -45,8 +45,8 @@ class Curve {
   }
 
  private:
-  /// sum over p >= 1 of theta^(p-1) c_p, each times p, 1 or 1/(p+1): of a derivative, of the
-  /// polynomial, of its integral.
+  /// The sum over p >= 1 of theta^(p-1) c_p, with a factor in each term: p for the derivative, 1
+  /// for the polynomial, 1/(p+1) for the integral.
   double sum(std::size_t column, double theta, int derivatives) const {
     double total = 0.0;
     for (int p = degree_; p >= 1; --p) {
@@ -63,17 +63,18 @@ class Curve {
   const double* rows_;
 };
 
-/// The equations of motion with what is missing in them.
+/// The torques that are missing in the equations of motion.
 class Torques {
  public:
   Torques(const Scene& scene, std::size_t n)
       : equations_(equations_of_motion(scene)), forces_(scene), n_(n), qdd_(n) {}
 
-  /// One mode rules a whole step, as steps end where a law changes: that of its middle.
+  /// Chooses the modes in the middle of a step. They hold for the whole step, because steps end
+  /// where a law changes.
   void choose_modes(double t, const std::vector<double>& q, const std::vector<double>& qd) {
     accelerations(equations_, t, q.data(), qd.data(), qdd_.data());
   }
-  /// |tau_j| where it is larger than what is there.
+  /// Raises `largest` to |tau_j| where that is larger.
   void raise(double t, const std::vector<double>& q, const std::vector<double>& qd,
              const std::vector<double>& slope, double* largest) {
     accelerations_in_force(equations_, t, q.data(), qd.data(), qdd_.data());

@@ -46,8 +46,8 @@ class TangentSystem final : public GeneralSystem {
   }
 
  private:
-  /// Laws of pieces that meet without a jump are the piece that the state calls for; a table is its
-  /// last piece where the run ends with it.
+  /// A law whose pieces meet without a jump takes the piece that the state calls for. A table takes
+  /// its last piece where the run ends with the table.
   void choose_laws(double t, const double* q, const double* qd) const {
     if (!equations_.effects || !equations_.effects->has_modes) return;
     const bool is_within = forward_ ? t < t_end_ : t > t_end_;
@@ -62,7 +62,7 @@ class TangentSystem final : public GeneralSystem {
   bool forward_;
 };
 
-/// Sums up the growth, and keeps it at the times asked for.
+/// Sums up the growth, and records it at the times asked for.
 class GrowthRecorder final : public Observer {
  public:
   GrowthRecorder(Stepper& stepper, int n, const std::vector<double>& times, TangentGrowth& result)
@@ -98,7 +98,8 @@ class GrowthRecorder final : public Observer {
   void state_jumped(double, const double*, const double*) override {}
   void restarts_here() override {}
 
-  /// The loop asks for it before each step, where the state that was reached is the stepper's.
+  /// The loop then calls step_begins() before each step, where the stepper has the state that was
+  /// reached.
   bool may_end() const override { return true; }
   void step_begins() override {
     if (!was_stepped_) return;
@@ -107,7 +108,8 @@ class GrowthRecorder final : public Observer {
     stepper_.get_derivative(rate_.data());
     gather(state_, changes_);
     gather(rate_, slopes_);
-    // Their derivatives are linear in them: nothing need be evaluated anew.
+    // The derivatives of the changes are linear in the changes, so nothing needs to be evaluated
+    // again.
     orthonormalise(k_, 2 * n_, changes_.data(), slopes_.data(), lengths_.data());
     for (int i = 0; i < k_; ++i) sums_[i] += logarithm(lengths_[i]);
     scatter(changes_, state_);
@@ -138,7 +140,8 @@ class GrowthRecorder final : public Observer {
     ++next_;
   }
   std::ptrdiff_t half() const { return static_cast<std::ptrdiff_t>(n_) * (1 + k_); }
-  /// A row (dq, dqd) for each change, from the two halves of a state and back.
+  /// gather() copies the changes from the two halves of a state to rows (dq, dqd); scatter() copies
+  /// them back.
   void gather(const std::vector<double>& y, std::vector<double>& rows) const {
     for (int i = 0; i < k_; ++i) {
       const auto dq = y.begin() + static_cast<std::ptrdiff_t>(i + 1) * n_;
@@ -173,14 +176,14 @@ class GrowthRecorder final : public Observer {
 void check_is_smooth(const Scene& scene) {
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
     if (!info_of(scene.effects[i]).jumps_or_sticks) continue;
-    throw std::invalid_argument(effect_name(scene, i) +
-                                ": jumps, and with it what the variational equations would follow: "
-                                "there are Lyapunov exponents of scenes without dry friction and "
-                                "stops alone");
+    throw std::invalid_argument(
+        effect_name(scene, i) +
+        ": makes the motion jump or stick, where the variational equations do not hold: only "
+        "scenes without dry friction and stops have Lyapunov exponents");
   }
 }
 
-/// The same as of a simulation, checked like those.
+/// The options of the run, checked like the options of a simulation.
 Options options_of_run(const LyapunovOptions& options) {
   Options run;
   run.rtol = {options.rtol};
@@ -265,7 +268,7 @@ TangentGrowth lyapunov(const Scene& scene, const std::vector<double>& q0,
     }
   } catch (const std::bad_alloc&) {
     throw;
-  } catch (...) {  // what a function of the user's throws
+  } catch (...) {  // what a user's function throws
     ending.status = Status::callback_error;
     ending.error = std::current_exception();
   }

@@ -59,8 +59,8 @@ void sine_cosine_exact(double x, double& sine, double& cosine) {
     sine_cosine(x, sine, cosine);
     return;
   }
-  // |x| = mantissa 2^exponent. Bits of 2/pi worth 4/2^exponent or more only add multiples of 4
-  // to |x| 2/pi, and 192 bits from there on leave 128 below the point.
+  // |x| = mantissa 2^exponent. The bits of 2/pi that are worth 4/2^exponent or more only add
+  // multiples of 4 to |x| 2/pi. The next 192 bits leave 128 bits below the binary point.
   int exponent;
   const double significand = std::frexp(std::abs(x), &exponent);
   const auto mantissa = static_cast<std::uint64_t>(std::ldexp(significand, 53));
@@ -74,7 +74,7 @@ void sine_cosine_exact(double x, double& sine, double& cosine) {
   Wide fraction = (Wide{high} << 66) | (Wide{static_cast<std::uint64_t>(middle)} << 2) |
                   (static_cast<std::uint64_t>(low) >> 62);
 
-  double sign = 1.0;  // of the fraction once it is the distance to the nearest multiple
+  double sign = 1.0;  // the sign of the distance to the nearest multiple
   if ((fraction >> 127) != 0) {
     fraction = -fraction;
     sign = -1.0;

@@ -7,7 +7,8 @@ namespace {
 
 double sign_of(int mode) { return static_cast<double>(mode); }
 
-/// In 0 <= x < 1, by Newton's method on the sine that the laws use: the same bits everywhere.
+/// The arc sine for 0 <= x < 1, by Newton's method on the sine that the laws use, so that it has
+/// the same bits everywhere.
 double arc_sine(double x) {
   double angle = x;
   for (int i = 0; i < 60; ++i) {
@@ -88,7 +89,7 @@ int Motor::mode_at(double t, double phi, double phid, bool forward) const {
     return torque > limit ? 1 : torque < -limit ? -1 : 0;
   }
   if (!sinusoid || !is_clipped()) return 0;
-  // Halfway to where the mode changes next, as t may be such a time itself.
+  // The mode is the one halfway to the next change, because t may itself be a time of change.
   const double next = next_time(t, forward);
   const double middle = std::isfinite(next) ? 0.5 * (t + next) : t;
   double sine, cosine;
@@ -99,7 +100,7 @@ int Motor::mode_at(double t, double phi, double phid, bool forward) const {
 
 std::vector<Guard> Motor::guards(int mode) const {
   if (!pd || !std::isfinite(limit)) return {};
-  auto guard = [&](double sign, double offset) {  // of the torque without the limit
+  auto guard = [&](double sign, double offset) {  // on the torque without the limit
     return Guard{.offset = sign * pd->kp * pd->reference + offset,
                  .on_phi = -sign * pd->kp,
                  .on_phid = -sign * pd->kd};

@@ -37,7 +37,7 @@ void Spline::check(const std::string& where) const {
   check_count(where + "y", y, t.size());
 }
 
-/// The natural spline's tridiagonal system, eliminated forward and back.
+/// Solves the tridiagonal system of the natural spline by elimination.
 std::vector<double> Spline::second_derivatives(const std::vector<double>& values) const {
   const std::size_t n = t.size();
   std::vector<double> second(n, 0.0);

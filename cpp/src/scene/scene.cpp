@@ -44,7 +44,7 @@ void check_effects(const Scene& scene) {
   if (scene.effects.empty()) return;
   const int n = static_cast<int>(scene.links.size());
   std::vector<bool> locked(n);
-  std::vector<std::array<double, 2>> ranges(n, {-never, never});  // that stops leave
+  std::vector<std::array<double, 2>> ranges(n, {-never, never});  // what the stops leave
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
     const std::string where = effect_name(scene, i) + ": ";
     check_effect(where, scene.effects[i]);
@@ -81,8 +81,8 @@ bool has_rotor(const Scene& scene, std::size_t joint) {
 
 constexpr double pi = 3.14159265358979323846;
 
-/// A sentence for an angle that looks as if it were in degrees: a multiple of five from fifteen up
-/// to two turns. A phase may well be large: it moves a wave in time.
+/// Adds a sentence for an angle that seems to be in degrees: a multiple of five from fifteen to 720
+/// (two turns). A phase may be that large, because it moves a wave in time.
 void warn_of_degrees(const std::string& where, const ParameterInfo& info, double x,
                      std::vector<std::string>& warnings) {
   if (info.unit != "rad" || info.name == "phase" || std::fmod(x, 5.0) != 0.0) return;
@@ -92,7 +92,7 @@ void warn_of_degrees(const std::string& where, const ParameterInfo& info, double
                      " degrees: angles are in radians");
 }
 
-/// The same of each angle among the parameters of an effect, or of its parts.
+/// The same for each angle among the parameters of an effect, or of its parts.
 template <class Struct>
 void warn_of_degrees(const std::string& where, const Struct& effect,
                      std::vector<std::string>& warnings) {
@@ -128,8 +128,9 @@ void check(const Scene& scene) {
   for (std::size_t i = 0; i < n; ++i) check_link(scene.links[i], i, i + 1 == n);
 
   check_effects(scene);
-  // Straight or folded, a chain resists turning least: beta is the mass that the joint of link i
-  // feels across it then, D the inertia of link i about its joint (chain.hpp: D B_nn).
+  // A straight or folded chain resists rotation least. There, beta is the mass that the joint of
+  // link i feels across the link, and D is the inertia of link i about its joint (chain.hpp: D
+  // B_nn).
   double carried = 0.0;
   double payload_inertia = 0.0;
   for (const Payload& payload : effects_of<Payload>(scene)) {

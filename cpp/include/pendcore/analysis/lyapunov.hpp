@@ -1,17 +1,18 @@
 /// \file
-/// Lyapunov exponents: how fast motions that begin close together part, from the variational
+/// Lyapunov exponents: how fast motions that begin close together separate, from the variational
 /// equations along one motion.
 ///
 ///     d(dq)/dt = dqd,   d(dqd)/dt = (d qdd/d q) dq + (d qdd/d qd) dqd
 ///
-/// for k small changes (dq, dqd) of the state at once, integrated beside it, with exact derivatives
-/// of the right-hand side (dynamics/jacobian.hpp) and in the error norm as the state is. After each
-/// step they are made orthonormal again, Phi = Q R, and what the diagonal of R took away is summed:
+/// They are integrated beside the state for k small changes (dq, dqd) of it at once, with exact
+/// derivatives of the right-hand side (dynamics/jacobian.hpp). The changes are part of the error
+/// norm, as the state is. After each step they are made orthonormal again, Phi = Q R, and the
+/// logarithms of the diagonal of R are summed:
 ///
 ///     growth_i(t) = sum of ln R_ii        exponent_i = growth_i/(t - t_0), in 1/s
 ///
-/// The length of a change is that of its 2n numbers in rad and rad/s. Changes of joints that are
-/// locked do not exist: a chain with m free joints has 2m exponents.
+/// The length of a change is the length of the vector of its 2n numbers in rad and rad/s. Locked
+/// joints have no changes: a chain with m free joints has 2m exponents.
 ///
 /// Source: Benettin, Galgani, Giorgilli, Strelcyn, Meccanica 15 (1980), 9-20.
 /// Cost: each step of dop853 takes 12 right-hand sides, on dual numbers, for each of the k changes.
@@ -27,8 +28,8 @@
 namespace pendcore {
 
 struct LyapunovOptions {
-  int count = 0;               ///< k, of exponents; 0: all there are
-  double rtol = 1e-9;          ///< of the state
+  int count = 0;               ///< k, the number of exponents; 0 for all
+  double rtol = 1e-9;          ///< relative tolerance of the state
   double atol = 1e-12;         ///< rad and rad/s; the changes have `rtol` of their length
   std::vector<double> t_eval;  ///< s, strictly monotone along the run; empty: the end alone
   double max_step = std::numeric_limits<double>::infinity();  ///< s
@@ -47,14 +48,14 @@ struct TangentGrowth {
   std::vector<double> growth;  ///< (n_t, k) row-major, without a unit
   std::vector<double> states;  ///< (n_t, 2n) row-major: the motion itself
   double t_reached = 0.0;      ///< s
-  std::exception_ptr error;    ///< what a function of the user's threw, if it ended the run
+  std::exception_ptr error;    ///< what a user's function threw, if it ended the run
 };
 
-/// How many exponents a scene has: twice its degrees of freedom.
+/// The number of exponents of a scene: twice its degrees of freedom.
 int lyapunov_count(const Scene& scene);
 
-/// Throws std::invalid_argument for bad input, and for effects under which the motion jumps or its
-/// law does, so that the variational equations say nothing: dry friction and stops.
+/// Throws std::invalid_argument for bad input, and for effects that make the motion or the law of
+/// motion jump (dry friction and stops), because the variational equations do not hold there.
 TangentGrowth lyapunov(const Scene& scene, const std::vector<double>& q0,
                        const std::vector<double>& qd0, double t0, double t_end,
                        const LyapunovOptions& options);

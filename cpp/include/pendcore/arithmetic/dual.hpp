@@ -3,11 +3,11 @@
 ///
 ///     (x + x' e)(y + y' e) = x y + (x y' + x' y) e,   e^2 = 0
 ///
-/// Whatever is written for a row of numbers (a double, a pair, a pack) runs on a dual row as it is,
-/// and gives the exact derivative beside the value, which has the bits that it has without.
+/// Code for a row of numbers (a double, a pair, a pack) runs unchanged on a dual row. It gives the
+/// exact derivative beside the value, and the value has the same bits as without the derivative.
 ///
-/// Source: Griewank and Walther, Evaluating Derivatives (2008), chapter 3, the forward mode.
-/// Cost: two to three times that of the row. A corner of |x| counts as part of x > 0.
+/// Source: Griewank and Walther, Evaluating Derivatives (2008), chapter 3, the forward mode. Cost:
+/// two to three times the cost of the row. At x = 0, |x| has the derivative that it has for x > 0.
 #pragma once
 
 #include "pendcore/arithmetic/exponential.hpp"
@@ -63,7 +63,7 @@ struct Constants<Dual<Row>> {
   }
 };
 
-/// A row from consecutive numbers in memory, and back. Plain numbers are constants.
+/// Loads a row from consecutive numbers in memory, or stores it. Plain numbers are constants.
 template <class DualRow>
   requires requires(DualRow x) { x.slope; }
 PENDCORE_INLINE DualRow load(const double* from) {

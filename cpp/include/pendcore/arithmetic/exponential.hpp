@@ -1,12 +1,12 @@
 /// \file
-/// Exponential, logarithm and power for laws of force, the same bits on every processor.
+/// Exponential, logarithm and power for laws of force, with the same bits on every processor.
 ///
 ///     exp x = 2^k exp r,  r = x - k ln 2,  |r| <= ln(2)/2:  Taylor's series to r^13
 ///     log x = k ln 2 + 2 (f + f^3/3 + f^5/5 + ...),  f = (m - 1)/(m + 1),  x = 2^k m
 ///     x^p   = exp(p log x), and x x for p = 2
 ///
-/// Within 2e-15 of the true value, relatively (x^p: of p log x, absolutely). Cost: 20 operations a
-/// lane for exp, 25 for log. Throws nothing.
+/// exp and log are within 2e-15 of the true value, relatively. The error of p log x, absolutely, is
+/// the relative error of x^p. Cost: 20 operations a lane for exp, 25 for log. Throws nothing.
 #pragma once
 
 #include <bit>

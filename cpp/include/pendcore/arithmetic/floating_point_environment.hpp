@@ -1,12 +1,13 @@
 /// \file
-/// Rounding to nearest, denormal numbers kept, while an object of this class lives.
+/// While an object of this class lives, its thread rounds to nearest and keeps denormal numbers.
 ///
 /// A library built with -ffast-math switches the processor to flushing denormals to zero in every
 /// thread that loads it, and a host program may have set another rounding. `simulate`, `resume`,
 /// `Solution::at` and the bindings set the IEEE defaults and put back what they found.
 ///
-/// x87 has a rounding of its own, which `fesetround` sets beside that of SSE. Long doubles round by
-/// it: those of a method's coefficients, where the compiler left them to the program.
+/// The x87 unit has its own rounding mode, which `fesetround` sets beside the mode of SSE. It
+/// applies to long doubles: the coefficients of a method, where the compiler left their evaluation
+/// to the program.
 #pragma once
 
 #if defined(__x86_64__)
@@ -36,7 +37,7 @@ class FloatingPointEnvironment {
   static constexpr unsigned ieee_defaults = 0x1f80;  // nearest, no flushing, exceptions masked
   static constexpr unsigned short ieee_defaults_x87 = 0x037f;  // nearest, 64 bits, masked
 
-  /// Where a host left the defaults alone nothing is loaded, which takes long.
+  /// Loads nothing where the host left the defaults unchanged, because loading takes long.
   void set_x87(unsigned short control) const {
     if (found_x87_ != ieee_defaults_x87) asm volatile("fldcw %0" : : "m"(control));
   }

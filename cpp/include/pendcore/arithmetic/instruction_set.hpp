@@ -1,19 +1,19 @@
 /// \file
-/// The same operations at the width that the processor offers, chosen while the program runs.
+/// The same operations at the width that the processor offers, chosen at run time.
 ///
-/// A kernel is an ordinary always-inline function. `fastest<kernel>()` hands out one of its clones:
-/// compiled for any x86-64 processor, for x86-64-v3 (AVX2 and fused multiply-add, from 2013 on)
-/// or for x86-64-v4 (AVX-512). All clones come from one source with contraction off, so that they
-/// return the same bits; they differ in speed alone. No file is compiled with -march: inline
-/// functions that such files share would be merged by the linker, into whichever copy it meets.
+/// A kernel is an ordinary always-inline function. `fastest<kernel>()` returns one of its clones:
+/// compiled for any x86-64 processor, for x86-64-v3 (AVX2 and fused multiply-add, from 2013 on) or
+/// for x86-64-v4 (AVX-512). All clones come from one source with contraction off, so that they
+/// return the same bits and differ only in speed. No file is compiled with -march: the linker would
+/// merge inline functions that such files share, and keep whichever copy it meets first.
 ///
 /// The environment variable PENDCORE_INSTRUCTION_SET (baseline, x86-64-v3, x86-64-v4) chooses a
-/// lower one, which is how the tests compare them.
+/// lower instruction set; the tests compare them in this way.
 #pragma once
 
 #define PENDCORE_INLINE [[gnu::always_inline]] inline
 
-// A build that is given -march for AVX2 or more is for that processor alone: it needs no clones.
+// A build with -march for AVX2 or more is for that processor alone and needs no clones.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__AVX2__) && \
     !defined(PENDCORE_BASELINE_ONLY)
 #define PENDCORE_CLONES 1
@@ -25,8 +25,8 @@ namespace pendcore {
 
 enum class InstructionSet { baseline, x86_64_v3, x86_64_v4 };
 
-/// The best that this processor has, or the lower one that the environment asks for. Throws
-/// std::invalid_argument where the environment names none of the three.
+/// The highest instruction set of this processor, or the lower one that the environment asks for.
+/// Throws std::invalid_argument if the environment names none of the three.
 InstructionSet instruction_set();
 
 /// Its name: "baseline", "x86-64-v3" or "x86-64-v4".
@@ -50,8 +50,8 @@ struct Clones<kernel> {
 #endif
 };
 
-/// The clone of `kernel` for this processor. `best` is the highest instruction set that pays:
-/// kernels on packs of one or two numbers are as fast on x86-64-v3, which saves a clone.
+/// The clone of `kernel` for this processor. `best` is the highest instruction set that is worth a
+/// clone: kernels on packs of one or two numbers are as fast on x86-64-v3 as on x86-64-v4.
 template <auto kernel, InstructionSet best = InstructionSet::x86_64_v4>
 typename Clones<kernel>::Function fastest() {
 #if PENDCORE_CLONES
@@ -64,7 +64,7 @@ typename Clones<kernel>::Function fastest() {
   return Clones<kernel>::baseline;
 }
 
-/// The highest instruction set that pays for a kernel on packs of that many numbers.
+/// The highest instruction set that is worth a clone for a kernel on packs of `width` numbers.
 constexpr InstructionSet best_for(int width) {
   return width >= 4 ? InstructionSet::x86_64_v4 : InstructionSet::x86_64_v3;
 }

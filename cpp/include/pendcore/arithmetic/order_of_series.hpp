@@ -1,5 +1,5 @@
 /// \file
-/// How far a Taylor series goes, the divisors of its recurrences, and products of series.
+/// The highest order of a Taylor series, the divisors of its recurrences, and products of series.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace pendcore {
 
-inline constexpr int highest_order = 32;  ///< that there is room for; tolerances ask for less
+inline constexpr int highest_order = 32;  ///< memory is for so many; tolerances need fewer
 
 /// 1/k
 inline constexpr auto inverse_of = [] {

@@ -8,13 +8,13 @@
 
 #include "pendcore/arithmetic/instruction_set.hpp"
 
-// Only inlined functions pass packs to each other: how a call would is of no concern.
+// Only inlined functions pass packs to each other, so that the calling convention does not matter.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 namespace pendcore {
 
-/// How many numbers a `Real` holds, and the integers of the same shape. GCC takes the size of a
-/// vector as a literal only, hence one specialisation a width.
+/// The number of lanes of a `Real`, and the integers of the same shape. GCC takes the size of a
+/// vector only as a literal, so there is one specialisation for each width.
 template <class Real>
 struct Lanes {
   static constexpr int width = 1;
@@ -89,7 +89,7 @@ PENDCORE_INLINE void set_lane(Real& x, int index, double value) {
   }
 }
 
-/// A pack from consecutive numbers in memory, and back; any alignment.
+/// Loads a pack from consecutive numbers in memory, or stores it; any alignment.
 template <class Real>
 PENDCORE_INLINE Real load(const double* from) {
   Real x;
@@ -101,14 +101,14 @@ PENDCORE_INLINE void store(double* to, const Real& x) {
   __builtin_memcpy(to, &x, sizeof x);
 }
 
-/// Two packs of two as one of four, and back.
+/// Joins two packs of two into one of four, or takes a half of it.
 PENDCORE_INLINE Pack<4> joined(const Pack<2>& low, const Pack<2>& high) {
   return __builtin_shufflevector(low, high, 0, 1, 2, 3);
 }
 PENDCORE_INLINE Pack<2> low_half(const Pack<4>& x) { return __builtin_shufflevector(x, x, 0, 1); }
 PENDCORE_INLINE Pack<2> high_half(const Pack<4>& x) { return __builtin_shufflevector(x, x, 2, 3); }
 
-/// a b + c, rounded once: correctly rounded by definition, hence the same on every processor.
+/// a b + c, rounded once. It is correctly rounded by definition, hence the same on every processor.
 template <class Real>
 PENDCORE_INLINE Real fma(const Real& a, const Real& b, const Real& c) {
   Real result;
@@ -136,14 +136,15 @@ PENDCORE_INLINE Real larger(const Real& a, const Real& b) {
   return a > b ? a : b;
 }
 
-/// The lanes added up, from the first to the last.
+/// The sum of the lanes, from the first to the last.
 template <class Real>
 PENDCORE_INLINE double sum_of_lanes(const Real& x) {
   double sum = lane(x, 0);
   for (int i = 1; i < Lanes<Real>::width; ++i) sum += lane(x, i);
   return sum;
 }
-/// The sum of a pack of four, halves first: what is waited for is shorter.
+/// The sum of a pack. A pack of four adds its halves first, which shortens the chain of dependent
+/// operations.
 template <class Real>
 PENDCORE_INLINE double sum_by_halves(const Real& x) {
   if constexpr (Lanes<Real>::width == 4) {

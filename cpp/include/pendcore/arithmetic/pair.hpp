@@ -1,10 +1,10 @@
 /// \file
 /// A quantity of link 1 beside the same quantity of link 2.
 ///
-/// The equations of a double pendulum read the same for both links once the other link has a name:
-/// they are written for a pair, and `other` changes its places. For one trajectory the pair is a
-/// pack of two, so that both links cost one instruction. For any other number type (a pack that
-/// holds many trajectories, a dual number) it is two of them.
+/// The equations of a double pendulum are the same for both links in terms of a link and the other
+/// link. They are written for a pair, and `other` exchanges its two numbers. For one trajectory the
+/// pair is a pack of two, so that both links cost one instruction. For any other number type (a
+/// pack that holds many trajectories, a dual number) the pair is two of these numbers.
 #pragma once
 
 #include <bit>
@@ -39,7 +39,7 @@ PENDCORE_INLINE Pairs halves_swapped(const Pairs& x) {
 }
 /// x + y in both halves.
 PENDCORE_INLINE Pairs halves_added(const Pairs& x) { return x + halves_swapped(x); }
-/// (-y, x): vectors in the plane, a quarter turn on.
+/// (-y, x): vectors in the plane, turned by a right angle.
 PENDCORE_INLINE Pairs turned(const Pairs& x) {
   using Integers = Lanes<Pairs>::Integers;
   constexpr long long minus = 1LL << 63;
@@ -47,7 +47,8 @@ PENDCORE_INLINE Pairs turned(const Pairs& x) {
                               Integers{minus, minus, 0, 0});
 }
 
-/// Constants as the number type that is computed with: one for all, or a row of them.
+/// Converts constants to the number type of a computation: one number for all lanes, or a row of
+/// them.
 template <class Links>
 struct Constants {
   PENDCORE_INLINE static Links of(const Links& x) { return x; }
@@ -65,7 +66,7 @@ struct Constants<Two<Real>> {
   PENDCORE_INLINE static Two<Real> of(double x) { return {broadcast<Real>(x), broadcast<Real>(x)}; }
 };
 
-/// The value of the joint before, that of the joint after, and 0 beyond the ends of the chain:
+/// The value at the joint before, and at the joint after; 0 beyond the ends of the chain.
 /// phi_j = q_j - q_{j-1} is q - before(q), tau_j - tau_{j+1} is tau - after(tau).
 PENDCORE_INLINE double before(double) { return 0.0; }
 PENDCORE_INLINE double after(double) { return 0.0; }

@@ -1,9 +1,10 @@
 /// \file
-/// Powers for the step control, the same bits on every processor.
+/// Powers for the step control, with the same bits on every processor.
 ///
-/// A step size needs few digits, but must not depend on a library: minimax polynomials
-/// (tests/reference/minimax.py) of the mantissa. `approximate_log2` and `approximate_exp2` fuse
-/// nothing: they serve in code that is not cloned, where a fused product would be a call.
+/// A step size needs few digits, but must not depend on a library. So these functions are minimax
+/// polynomials of the mantissa (tests/reference/minimax.py). `approximate_log2` and
+/// `approximate_exp2` do not use fma: code that is not cloned calls them, and there fma would be a
+/// call.
 #pragma once
 
 #include <array>
@@ -65,7 +66,8 @@ PENDCORE_INLINE double approximate_exp2(double x) {
   return std::bit_cast<double>(std::bit_cast<std::int64_t>(low + high * (f2 * f2)) + exponent);
 }
 
-/// log2(x) within 0.05, for x > 0 that is neither denormal nor infinite: the mantissa in a line.
+/// log2(x) within 0.05, for x > 0 that is neither denormal nor infinite. The mantissa's logarithm
+/// is approximated by a straight line.
 PENDCORE_INLINE double coarse_log2(double x) {
   constexpr double middle = 1023.0 - 0.043;
   return static_cast<double>(std::bit_cast<std::int64_t>(x)) * 0x1p-52 - middle;
@@ -81,9 +83,9 @@ PENDCORE_INLINE double coarse_exp2(double x) {
   return std::bit_cast<double>(std::bit_cast<std::int64_t>(of_fraction) + exponent);
 }
 
-/// 2^gain x^power within a relative 1e-9, for |power| <= 0.25: what the next step waits for, hence
-/// short. The exponent of x goes through exp2 while the mantissa's small power, 2^w with
-/// w = power log2(1 + u), is summed.
+/// 2^gain x^power within a relative 1e-9, for |power| <= 0.25. The next step waits for it, so its
+/// chain of operations is short. The exponent of x goes through exp2 while the small power of the
+/// mantissa, 2^w with w = power log2(1 + u), is summed.
 PENDCORE_INLINE double scaled_power(double x, double power, double gain) {
   const auto& c = power_detail::log2_of_mantissa;
   const auto [exponent, u] = power_detail::split(x);

@@ -1,12 +1,12 @@
 /// \file
-/// Sine and cosine of every lane of a pack of angles, the same bits on every processor.
+/// Sine and cosine of every lane of a pack of angles, with the same bits on every processor.
 ///
 ///     x = n pi/2 + r,  |r| <= pi/4:   sin x and cos x are +-sin r or +-cos r, by n modulo 4
 ///
 /// For |x| <= 1e6 the reduction subtracts n times three parts of pi/2 (33, 53 and 53 bits: the
-/// first product is exact, the rounding error of the second is kept), so that r carries a tail;
-/// sin r and cos r are polynomials of degree 13 and 14. At most 0.85 ulp. Beyond 1e6, and for
-/// infinities and NaN, `sine_cosine_exact` reduces with as many bits of 2/pi as it takes.
+/// first product is exact, the rounding error of the second is kept), so that r carries a tail; sin
+/// r and cos r are polynomials of degree 13 and 14. The error is at most 0.85 ulp. Beyond 1e6, and
+/// for infinities and NaN, `sine_cosine_exact` reduces with as many bits of 2/pi as are needed.
 ///
 /// Cost: 45 operations a pack. Throws nothing.
 ///
@@ -26,8 +26,8 @@ namespace pendcore {
 /// Infinities and NaN give NaN.
 void sine_cosine_exact(double x, double& sine, double& cosine);
 
-/// Sine and cosine of m angles (rad), in packs on the instruction set of this processor; the same
-/// bits as one by one.
+/// Sine and cosine of m angles (rad), in packs on the instruction set of this processor, with the
+/// same bits as one by one.
 void sine_cosine(const double* x, long long m, double* sine, double* cosine);
 
 namespace sine_cosine_detail {
@@ -37,7 +37,7 @@ inline constexpr double half_pi_1 = 0x1.921fb544p+0;        // pi/2: its leading
 inline constexpr double half_pi_2 = 0x1.0b4611a626331p-34;  // the next 53,
 inline constexpr double half_pi_3 = 0x1.1701b839a2520p-88;  // and the next
 inline constexpr double two_over_pi = 0x1.45f306dc9c883p-1;
-inline constexpr double to_integer = 0x1.8p52;  // added to x, leaves no room for a fraction
+inline constexpr double to_integer = 0x1.8p52;  // adding it to x rounds x to an integer
 
 inline constexpr std::array sine = {-0x1.555555555554dp-3,  0x1.111111110fb4dp-7,
                                     -0x1.a01a019c3050bp-13, 0x1.71de356f10fb5p-19,
@@ -46,7 +46,7 @@ inline constexpr std::array cosine = {0x1.5555555555553p-5,  -0x1.6c16c16c16132p
                                       0x1.a01a019e24bc8p-16, -0x1.27e4f903dba05p-22,
                                       0x1.1eea8935afc8fp-29, -0x1.8ff9c523984f2p-37};
 
-/// Degree 5, in pairs of terms: products that do not wait for each other.
+/// A polynomial of degree 5, summed in pairs of terms whose products do not wait for each other.
 template <class Real>
 PENDCORE_INLINE Real polynomial(const std::array<double, 6>& c, Real z, Real z2) {
   const Real low = fma(broadcast<Real>(c[1]), z, broadcast<Real>(c[0]));
@@ -67,7 +67,7 @@ PENDCORE_INLINE void reduced(Real r, Real tail, Real& sine_of_r, Real& cosine_of
   cosine_of_r = leading + fma(z2, polynomial(cosine, z, z2), fma(-r, tail, left_over));
 }
 
-/// sin and cos of n pi/2 + r from those of r; n modulo 4 is in the low bits of `quadrant`.
+/// sin and cos of n pi/2 + r from sin r and cos r; n modulo 4 is in the low bits of `quadrant`.
 template <class Real, class Integers>
 PENDCORE_INLINE void rotate(Integers quadrant, Real s, Real c, Real& sine_of_x, Real& cosine_of_x) {
   const auto odd = (quadrant & 1) == 1;
@@ -104,7 +104,7 @@ PENDCORE_INLINE void sine_cosine(const Real& x, Real& sine_of_x, Real& cosine_of
   detail::reduced(r, tail, s, c);
   detail::rotate(std::bit_cast<Integers>(shifted), s, c, sine_of_x, cosine_of_x);
 
-  // As a rule one comparison does for all lanes.
+  // One comparison is usually enough for all lanes.
   if (sum_by_halves(absolute(x)) <= detail::largest) [[likely]]
     return;
   for (int i = 0; i < Lanes<Real>::width; ++i) {

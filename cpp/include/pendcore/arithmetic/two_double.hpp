@@ -1,9 +1,9 @@
 /// \file
 /// A number carried as the unevaluated sum of two doubles: about 106 bits.
 ///
-/// Time is kept so: ten million rounded additions of 0.1 end 1.6e-4 beside a million, and a step
-/// below the last bit of t would be lost. The sums are those of
-/// Knuth, The Art of Computer Programming, volume 2, section 4.2.2 (TwoSum) and Dekker (1971).
+/// Time is kept in this form: ten million rounded additions of 0.1 miss a million by 1.6e-4, and a
+/// step below the last bit of t would be lost. The sums are from Knuth, The Art of Computer
+/// Programming, volume 2, section 4.2.2 (TwoSum) and Dekker (1971).
 #pragma once
 
 #include "pendcore/arithmetic/instruction_set.hpp"
@@ -12,7 +12,7 @@ namespace pendcore {
 
 struct TwoDouble {
   double high = 0.0;  ///< the sum, rounded to a double
-  double low = 0.0;   ///< what the rounding left over
+  double low = 0.0;   ///< the rounding error of `high`
 };
 
 /// a + b - sum, exactly, where sum is a + b rounded.

@@ -4,8 +4,8 @@
 ///     g -> (-xdd_0, g - ydd_0)
 ///
 /// for gravity. The path is a sinusoid for each axis or a natural cubic spline through points; its
-/// velocity and acceleration are the exact derivatives. Source: d'Alembert's principle. Power:
-/// F_01 . v_0, the work of what drives the pivot.
+/// velocity and acceleration are the exact derivatives. Source: d'Alembert's principle. Power: F_01
+/// . v_0, the work of the drive of the pivot.
 #pragma once
 
 #include "pendcore/effects/hooks.hpp"
@@ -48,11 +48,12 @@ struct DrivenPivot {
 
   PivotMotion at(double t) const;  ///< for energies, views and the ledger
 
-  /// One axis, or the piece of a spline: x'' = held + slope (t - start) + gain sin(wave).
+  /// Each axis in one piece of a spline, or a sinusoid: x'' = held + slope (t - start) + gain
+  /// sin(wave).
   struct Law {
     struct Axis {
-      double held = 0.0, slope = 0.0;  // of the acceleration
-      double velocity = 0.0;           // at the start of the piece
+      double held = 0.0, slope = 0.0;  // the acceleration in a piece
+      double velocity = 0.0;           // the velocity at its start
       double gain = 0.0, swing = 0.0;  // -A omega^2 and A omega
       int wave = 0;
     };
@@ -80,7 +81,7 @@ struct DrivenPivot {
   std::vector<Guard> guards(int /*mode*/) const { return {}; }
   int next_mode(int mode, std::size_t /*guard*/) const { return mode; }
   void put_mode(Law& law, int lane, int mode) const;
-  DrivenPivot compiled() const;  ///< its spline with second derivatives
+  DrivenPivot compiled() const;  ///< with the second derivatives of its spline
 
   double next_time(double t, bool forward) const {
     if (!spline) return forward ? never : -never;

@@ -16,7 +16,7 @@ namespace pendcore {
 struct DryJointFriction {
   int joint = 0;
   double coulomb = 0.0;
-  std::optional<double> static_ = {};  ///< as coulomb unless given
+  std::optional<double> static_ = {};  ///< equal to coulomb unless given
   double stribeck_velocity = 0.1;
   double exponent = 2.0;
 
@@ -69,7 +69,7 @@ struct DryJointFriction {
     }
   }
 
-  /// Coulomb's law alone; with a peak it is the law below.
+  /// The torque of Coulomb's law, if there is no static peak. With a peak, Law has the torque.
   std::optional<Couple> couple(int mode) const {
     if (peak() > 0) return std::nullopt;
     return Couple{.held = -mode * coulomb};
@@ -77,7 +77,7 @@ struct DryJointFriction {
 
   template <class Row>
   struct Law {
-    Row coulomb{};  // with the sign of w, as the others
+    Row coulomb{};  // has the sign of w, like the others
     Row peak{};
     Row inverse_velocity{};
     double exponent = 2.0;
@@ -91,7 +91,7 @@ struct DryJointFriction {
     }
   };
 
-  /// Joints of one row share a law only where they share the exponent.
+  /// Joints of one row share a law only if they have the same exponent.
   double group() const { return exponent; }
 
   template <class Row>

@@ -18,7 +18,7 @@ namespace pendcore {
 
 /// Where the ledger books the work of an effect (J, positive as the name says).
 enum class Account {
-  none,     ///< it does none, or keeps it as energy
+  none,     ///< the effect does no work, or stores it as energy
   viscous,  ///< loss
   dry,      ///< loss
   drag,     ///< loss; what the wind adds is booked as `wind`
@@ -49,12 +49,12 @@ struct EffectInfo {
   std::string_view law;       ///< the equation, in plain text
   std::string_view source;    ///< where the law comes from
   Account account = Account::none;
-  bool bounds_joint = false;  ///< a start next to one that it allows may be none that it allows
-  /// Under it the motion jumps or sticks, each time at an instant of its own: two motions that are
-  /// neighbours part there at no rate.
+  bool bounds_joint = false;  ///< it may forbid a start that is close to an allowed one
+  /// The effect makes the motion jump or stick, at instants that depend on the motion. There, the
+  /// distance between neighbouring motions has no rate of growth.
   bool jumps_or_sticks = false;
-  /// Whether the Taylor series hold one that is part of the equations of motion. Among those
-  /// that are laws, couples have a series and no others.
+  /// Whether the Taylor series support the effect, if it is part of the equations of motion. Among
+  /// effects that are laws, couples have a series and others do not.
   bool has_series = false;
 };
 
@@ -89,11 +89,11 @@ inline bool holds(Range range, double x) {
 
 struct ParameterInfo {
   std::string_view name;    ///< as in Python and TOML
-  std::string_view symbol;  ///< as in the law; empty for what is no quantity
+  std::string_view symbol;  ///< as in the law; empty if it is not a quantity
   std::string_view unit;
   std::string_view sentence;
   Range range = Range::any;
-  bool required = false;  ///< otherwise its default is the struct's own
+  bool required = false;  ///< if not, the struct has the default
 };
 
 template <class Struct, class Value>

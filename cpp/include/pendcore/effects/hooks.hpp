@@ -1,5 +1,5 @@
 /// \file
-/// THE CONTRACT OF AN EFFECT: what a file in this folder holds, and a check that it does.
+/// The contract of an effect: what a file in this folder contains, and a check that it does.
 ///
 /// An effect is a plain struct of parameters. Its file opens with the law; the struct has
 ///
@@ -17,26 +17,26 @@
 ///     wind            has_wind(), and of its law dissipation(at): the part of its power that is
 ///                     lost; the rest is the wind's
 ///     modes           has_modes(), mode_at(t, phi, phid, forward), guards(mode),
-///                     next_mode(mode, guard): where the law is smooth only in pieces, see law.hpp;
+///                     next_mode(mode, guard): if the law is only piecewise smooth, see law.hpp;
 ///                     with a law put_mode(law, lane, mode): what a mode changes in its lane
 ///     next_time       next_time(t, forward): the next time at which a mode changes
 ///     span            first_time(), last_time(): where its tables begin and end
 ///     wave            wave(): the sinusoid that drives its couple, if one does
 ///     holding_torque  holding_torque(): with which it can hold its joint at rest
-///     compiled        compiled(): the same effect, with what need be computed only once
+///     compiled        compiled(): the same effect, with what is computed only once
 ///     potential       potential(phi): energy kept in the joint, J
 ///     check           check(where): what the ranges of single parameters do not say
-///     warnings        warnings(): what is possible but hardly meant, a sentence each
+///     warnings        warnings(): what is possible but hardly intended, a sentence each
 ///
-/// registry.hpp has the list of all effects, a line each. Nothing else names an effect that is a
-/// law; those that change the mass matrix, the joints or the pivot (payload, rotor, lock, stop,
-/// driven pivot) are part of the equations of motion, which do.
-/// From `info` and `parameters` come the Python class, the TOML keys, the repr, the checks and
-/// their messages, the page of documentation, and the tests.
+/// registry.hpp has the list of all effects, a line for each. No other code names an effect that is
+/// a law. Effects that change the mass matrix, the joints or the pivot (payload, rotor, lock, stop,
+/// driven pivot) are part of the equations of motion, which name them.
+/// The Python class, the TOML keys, the repr, the checks and their messages, the page of
+/// documentation and the tests come from `info` and `parameters`.
 ///
-/// Whoever calls a hook asks by its concept whether an effect has it: HasCouple for `couple`. A
-/// hook that is misspelt would be one that the effect does not have; that is why `hooks` names
-/// them, and a registry with an effect whose hooks are others does not compile (CheckedHooks).
+/// Code that calls a hook asks by a concept whether an effect has it, such as HasCouple for
+/// `couple`. A misspelt hook would be a hook that the effect does not have. Therefore `hooks` names
+/// them, and a registry does not compile if an effect has other hooks than it names (CheckedHooks).
 #pragma once
 
 #include <concepts>
@@ -78,7 +78,7 @@ concept OnLink = requires(const Kind& one) {
 
 namespace hooks_detail {
 
-/// What a concept hands to a law in place of the rows of an equation.
+/// What a concept passes to a law instead of the rows of an equation.
 struct At {
   using Value = double;
 };
@@ -105,7 +105,7 @@ concept HasGroup = HasLaw<Kind> && requires(const Kind& one) {
   { one.group() } -> std::same_as<double>;
 };
 
-/// Whether a law tells what of its power is lost.
+/// Whether a law computes the part of its power that is lost.
 template <class Law>
 concept Dissipates = requires(const Law& law, const hooks_detail::At& at) {
   { law.dissipation(at) } -> std::same_as<double>;
@@ -169,8 +169,8 @@ concept HasWarnings = requires(const Kind& one) {
 
 namespace hooks_detail {
 
-/// The names of all hooks. Where an effect has a member of that name too, whatever it is, the name
-/// is ambiguous in Beside: so even a hook is found that could not be called.
+/// The names of all hooks. If an effect has any member with one of these names, the name is
+/// ambiguous in Beside. So even a hook that could not be called is found.
 struct Names {
   int couple, put, group, has_wind, has_modes, mode_at, guards, next_mode, put_mode, next_time,
       first_time, last_time, wave, holding_torque, compiled, potential, check, warnings;
@@ -178,7 +178,7 @@ struct Names {
 template <class Kind>
 struct Beside : Kind, Names {};
 
-/// Which hooks an effect has something of.
+/// The hooks of which an effect has at least one member.
 template <class Kind>
 consteval Hooks begun() {
   using Both = Beside<Kind>;
@@ -214,7 +214,7 @@ consteval Hooks named() {
 
 }  // namespace hooks_detail
 
-/// Does not compile for an effect that has other hooks than those it names; the message says which.
+/// Does not compile if an effect has other hooks than it names; the message says which.
 template <class Kind>
 struct CheckedHooks {
   static_assert(
@@ -266,8 +266,7 @@ struct CheckedHooks {
                 "warnings() const");
 };
 
-/// Whether the hooks of all effects of a registry are those that they name; if not, this does not
-/// compile.
+/// Whether all effects of a registry have the hooks that they name. If not, this does not compile.
 template <class Registry>
 inline constexpr bool hooks_are_named = false;
 template <class... Kinds>

@@ -3,9 +3,9 @@
 ///
 ///     lo <= phi <= hi;   at an impact phid+ = -e phid-, by an impulse in the joint
 ///
-/// Slower than the capture speed the joint stays at the stop (e = 0) and is held there until the
-/// torque that holds it would pull. Loss at an impact of one stop: (1 - e^2) phid^2 over twice
-/// J M^-1 J^T; several at once: impact.hpp. Source: Brogliato, Nonsmooth Mechanics (2016),
+/// Below the capture speed the joint stays at the stop (e = 0), and is held there until the torque
+/// that holds it would have to pull. An impact on one stop loses (1 - e^2) phid^2 / (2 J M^-1 J^T);
+/// impact.hpp has impacts on several stops at once. Source: Brogliato, Nonsmooth Mechanics (2016),
 /// section 4.1 (Newton's law of restitution) and 5.2 (several contacts).
 #pragma once
 

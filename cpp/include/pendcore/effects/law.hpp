@@ -1,18 +1,18 @@
 /// \file
 /// What a law sees, what it adds to, and when it changes.
 ///
-/// A law is written once, for a row of joints or links: `Row` is double for a chain of one link,
-/// a Pair for two, a Pack<4> for every four of a longer one. Its fields are rows of parameters,
-/// neutral (mostly 0) where a joint does not have the effect. The number type V that it computes
-/// with is the same row, or one that holds more than a number for each joint (pair.hpp).
+/// A law is written once, for a row of joints or links: `Row` is double for a chain of one link, a
+/// Pair for two links, and a Pack<4> for every four links of a longer chain. Its fields are rows of
+/// parameters, neutral (mostly 0) where a joint does not have the effect. The number type V of its
+/// computation is the same row, or a row with more than one number for each joint (pair.hpp).
 ///
-/// `at` has, of each link or joint of the row:
+/// `at` has, for each link or joint of the row:
 ///
 ///     at.t                    time, s
 ///     at.q, at.qd             absolute angle and rate of the link, rad, rad/s
 ///     at.s, at.c              sin q and cos q: u = (c, s) along the link, n = (-s, c) across it
 ///     at.phi(), at.phid()     angle and rate of the joint, phi_j = q_j - q_{j-1}
-///     at.length()             of the link, m
+///     at.length()             length of the link, m
 ///     at.vx(), at.vy()        velocity of the joint where the link begins, m/s
 ///
 /// and `loads` takes
@@ -22,9 +22,9 @@
 ///                                  the joint where the link begins (N m): x fy - y fx of its point
 ///     loads.generalised(Q)         N m, on the absolute angle of each link
 ///
-/// **Modes.** Where a law is smooth only in pieces it is frozen to one of them, its mode, while a
-/// step is taken, so that the integrator never sees a corner. A guard is positive as long as the
-/// mode holds; the step that would cross its zero is cut to end there, and `next_mode` follows.
+/// **Modes.** A law that is only piecewise smooth is frozen to one of its pieces, the mode, during
+/// a step, so that the integrator never sees a corner. A guard is positive as long as the mode
+/// holds; the step that would cross its zero is cut to end there, and `next_mode` follows.
 #pragma once
 
 #include <limits>
@@ -40,7 +40,7 @@ struct Guard {
   double on_phi = 0.0;
   double on_phid = 0.0;
 
-  /// Whether its zero is that of the rate.
+  /// Whether its zero is a zero of the rate.
   bool is_on_rate() const { return on_phi == 0.0 && offset == 0.0; }
 };
 
@@ -50,8 +50,8 @@ struct Guard {
 ///     tau = held + slope (t - start) + on_phi phi + on_phid w + on_phid2 w^2 + on_phid3 w^3
 ///           + gain sin(wave)
 ///
-/// Such effects need no Law: those on one joint are summed once, when the scene is compiled or a
-/// mode changes, and together cost what one does.
+/// Such effects need no Law. All of them on one joint are summed once, when the scene is compiled
+/// or a mode changes, and together cost as much as one.
 struct Couple {
   double held = 0.0;
   double slope = 0.0;
@@ -68,8 +68,8 @@ struct Couple {
   }
 };
 
-/// The sums of the couples on a row of joints. Aligned here: GCC reports the alignment of a wide
-/// pack as that of the baseline, and its clones rely on the true one.
+/// The sums of the couples on a row of joints. The alignment is set here: GCC reports the alignment
+/// of a wide pack as on the baseline, and its clones rely on the true alignment.
 template <class Row>
 struct alignas(sizeof(Row)) Couples {
   int row = 0;
@@ -90,7 +90,7 @@ struct alignas(sizeof(Row)) Couples {
     return fma(Constants<V>::of(slope), Constants<V>::of(broadcast<Row>(t) - start),
                Constants<V>::of(held));
   }
-  /// Whether some torque has the square or the cube of its rate.
+  /// Whether some torque depends on the square or the cube of its rate.
   PENDCORE_INLINE bool has_powers() const {
     return sum_of_lanes(Row(absolute(on_phid2) + absolute(on_phid3))) != 0.0;
   }
@@ -98,18 +98,18 @@ struct alignas(sizeof(Row)) Couples {
 
 /// A wave that drives a joint: tau += gain sin(wave).
 struct JointWave {
-  int joint;  ///< from 0
+  int joint;  ///< counted from 0
   int wave;
   double gain;
 };
 
-/// The link on which an effect acts, or which begins with its joint, for constants of its law.
+/// Constants for a law, from the link on which its effect acts or which begins at its joint.
 struct LinkConstants {
   double mass, length, center;
-  double gravity;  ///< of the scene
+  double gravity;  ///< the scene's
 };
 
-/// The end of time: no time of change.
+/// A time that never comes, or a bound that does not exist.
 inline constexpr double never = std::numeric_limits<double>::infinity();
 
 }  // namespace pendcore

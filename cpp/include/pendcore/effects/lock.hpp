@@ -3,8 +3,8 @@
 ///
 ///     phi_j = constant,   phid_j = phidd_j = 0
 ///
-/// The joint is eliminated from the equations; its angle and rate are set anew at the end of each
-/// step, so that no rounding lets them wander. Does no work.
+/// The joint is eliminated from the equations. Its angle and rate are set anew at the end of each
+/// step, so that rounding does not make them drift. A lock does no work.
 #pragma once
 
 #include "pendcore/effects/hooks.hpp"
@@ -13,7 +13,7 @@ namespace pendcore {
 
 struct Lock {
   int joint = 0;
-  std::optional<double> angle = {};  ///< where it starts, unless given
+  std::optional<double> angle = {};  ///< the angle at the start, unless given
 
   static constexpr EffectInfo info{
       .name = "Lock",

@@ -6,8 +6,9 @@
 ///     table       tau linear between given points; the run ends where the table does
 ///     pd          tau = kp (reference - phi) - kd w
 ///
-/// Power: tau w. Modes: the piece of the table between two of its points; free or clipped. Where a
-/// sinusoid is clipped is known beforehand: at omega t + phase = k pi +- asin(limit/|A|).
+/// Power: tau w. The modes are the pieces of the table between two of its points, and free or
+/// clipped. The times at which a sinusoid is clipped are known in advance: omega t + phase = k pi
+/// +- asin(limit/|A|).
 #pragma once
 
 #include <algorithm>
@@ -77,7 +78,7 @@ struct Motor {
   double next_time(double t, bool forward) const;
   double first_time() const { return table ? table->t.front() : -never; }
   double last_time() const { return table ? table->t.back() : never; }
-  Motor compiled() const;  ///< its table clipped, with points where it meets the limit
+  Motor compiled() const;  ///< its table is clipped, with points at the limit
 
  private:
   bool is_clipped() const { return sinusoid && std::abs(sinusoid->amplitude) > limit; }

@@ -3,7 +3,8 @@
 ///
 ///     S_i += m_p,   A_nn += m_p L_n^2 + I_p
 ///
-/// Source: the parallel axis theorem. Constants alone; its weight and its energy count.
+/// Source: the parallel axis theorem. The payload only changes constants of the equations and of
+/// the energy.
 #pragma once
 
 #include "pendcore/effects/hooks.hpp"

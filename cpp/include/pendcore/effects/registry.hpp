@@ -1,5 +1,5 @@
 /// \file
-/// THE LIST OF EFFECTS, a line each: a file in this folder, and its name here.
+/// The list of effects. Each effect is a file in this folder, and a line here.
 #pragma once
 
 #include <variant>
@@ -33,7 +33,7 @@ using Effect = std::variant<  //
 
 static_assert(hooks_are_named<Effect>);
 
-/// Whether the recurrences of the equations' Taylor series hold what the effect does.
+/// Whether the recurrences of the Taylor series of the equations support the effect.
 inline bool has_series(const Effect& effect) {
   return std::visit(
       []<class Kind>(const Kind& one) {
@@ -51,11 +51,11 @@ inline const EffectInfo& info_of(const Effect& effect) {
                     effect);
 }
 
-/// The torque with which an effect can hold its joint at rest, N m, if it is one that can.
+/// The torque with which an effect can hold its joint at rest, N m; none if it cannot.
 std::optional<double> holding_torque(const Effect& effect);
 
-/// The effect of that kind as it is by default, for filling in; throws std::invalid_argument for
-/// an unknown kind.
+/// The effect of a kind with its default parameters, to be filled in. Throws std::invalid_argument
+/// for an unknown kind.
 Effect effect_of_kind(std::string_view kind);
 
 /// Throws std::invalid_argument for parameters out of their ranges; `where` begins the message.

@@ -4,15 +4,16 @@
 ///     f(s) = -k |w(s)| w(s) n,   k = rho C_d d / 2,   w(s) = w_0 + (w_1 - w_0) s/L
 ///     w_0 = n . (v - wind),  w_1 = w_0 + L qd         at the near and at the far end
 ///
-/// v is the velocity of the joint where the link begins. Integrated along the rod, its resultant F
-/// (along n) and its moment T about that joint are, with D = |w_0| + |w_1|, whatever the signs,
+/// v is the velocity of the joint where the link begins. The integrals along the rod are its
+/// resultant F (along n) and its moment T about that joint. With D = |w_0| + |w_1| they are, for
+/// all signs,
 ///
 ///     F = -k L   (w_0 + w_1)/D (w_0^2 + |w_0 w_1| + w_1^2) / 3
 ///     T = -k L^2 ((w_0 |w_0|^3 + w_1 w_1^2 (4 |w_0| + 3 |w_1|))/D^2
 ///                 + 2 (w_0 w_1 + |w_0 w_1|) (w_0 + w_1)/D) / 12
 ///
-/// Source: the cross-flow principle, Hoerner, Fluid-Dynamic Drag (1965), chapter 3. What the rod
-/// loses is the integral of k |w|^3; the rest of its power is the wind's.
+/// Source: the cross-flow principle, Hoerner, Fluid-Dynamic Drag (1965), chapter 3. The loss of the
+/// rod is the integral of k |w|^3; the rest of the drag's power is the wind's.
 #pragma once
 
 #include "pendcore/effects/hooks.hpp"
@@ -88,7 +89,7 @@ struct RodDrag {
       speeds(at, wind_x, wind_y, w0, w1);
       const V size0 = absolute(w0);
       const V size1 = absolute(w1);
-      const V size = size0 + size1 + Constants<V>::of(1e-100);  // D; at rest: not 0/0
+      const V size = size0 + size1 + Constants<V>::of(1e-100);  // D; no 0/0 at rest
       const V inverse = 1.0 / size;
       const V direction = (w0 + w1) * inverse;
       const V size_of_product = size0 * size1;
@@ -113,7 +114,7 @@ struct RodDrag {
       const V product = w0 * w1;
       const V fourth = fma(w0 * w0, w0 * w0, (w1 * w1) * (w1 * w1));
       const V size_of_product = absolute(product);
-      // (a^2 + b^2)(a + b) / 4 where both ends move alike, (a^4 + b^4)/(a + b) / 4 where not
+      // (a^2 + b^2)(a + b) / 4 if both ends move in one direction, (a^4 + b^4)/(a + b) / 4 if not
       const V alike = (product + size_of_product) * (fma(w0, w0, w1 * w1) + size_of_product);
       const V inverse = 1.0 / (size0 + size1 + Constants<V>::of(1e-300));
       return Constants<V>::of(-0.75) * Constants<V>::of(minus_k) * ((fourth + alike) * inverse);

@@ -1,9 +1,11 @@
 /// \file
-/// The inertia of a rotor in a joint, as a geared motor has it seen from its output:
+/// The inertia of a rotor in a joint, such as the inertia of a geared motor as seen from its
+/// output:
 ///
 ///     T += J phid^2 / 2:   M_jj += J,  M_{j-1,j-1} += J,  M_{j,j-1} -= J
 ///
-/// Source: Featherstone, Rigid Body Dynamics Algorithms (2008), section 9.6. Constants alone.
+/// Source: Featherstone, Rigid Body Dynamics Algorithms (2008), section 9.6. The rotor only changes
+/// constants of the mass matrix.
 #pragma once
 
 #include "pendcore/effects/hooks.hpp"

@@ -3,11 +3,11 @@
 ///
 ///     void f(double t, int n, const double* q, const double* qd, double* Q, void* data)
 ///
-/// of the absolute angles, Q (n), N m; Q comes zeroed, and is added to the equations. The address
-/// may be that of a C or C++ function, of one that numba compiled, or of a ctypes callback; the
-/// function must return the same for the same arguments. Power: Q . qd. Joint reactions take Q for
-/// couples: they know of no force that it may stand for. In C++ anything that can be
-/// called will do:
+/// for the absolute angles, Q (n), N m. Q is zero on entry, and the result is added to the
+/// equations. The address may be that of a C or C++ function, of a function that numba compiled, or
+/// of a ctypes callback. The function must return the same for the same arguments. Power: Q . qd.
+/// The joint reactions treat Q as couples, because they do not know what forces Q may stand for. In
+/// C++, any callable object can be used:
 ///
 ///     auto magnet = [&](double t, std::span<const double> q, std::span<const double> qd,
 ///                       std::span<double> Q) { Q[0] -= strength * std::sin(q[0]); };
@@ -49,8 +49,8 @@ struct CompiledUser {
                                       .unit = "",
                                       .sentence = "handed to the function as it is"}),
   };
-  /// Calls f(t, q, qd, Q) with spans, (n) each; f is not copied. What it throws ends the run; what
-  /// it throws before the first step passes through simulate().
+  /// Calls f(t, q, qd, Q) with spans, (n) each; f is not copied. An exception in f ends the run;
+  /// before the first step, it passes through simulate().
   template <class Function>
   static CompiledUser of(Function& f) {
     const UserFunction call = [](double t, int n, const double* q, const double* qd, double* Q,

@@ -4,10 +4,10 @@
 ///     tau = -(b w + b2 w |w| + b3 w^3),   w = phid
 ///
 /// Source: the linear term is Rayleigh's dissipation (Theory of Sound I, 81); the quadratic and
-/// cubic ones are the next of an odd law. Power: -tau w is lost. Negative coefficients feed the
+/// cubic terms are the next in an odd law. Power: -tau w is lost. Negative coefficients feed the
 /// motion, which may then blow up in finite time.
 ///
-/// |w| has a corner at w = 0: where b2 is not 0, the sign of w is the mode, +1 or -1.
+/// |w| has a corner at w = 0. Where b2 is not 0, the sign of w is the mode, +1 or -1.
 #pragma once
 
 #include "pendcore/effects/hooks.hpp"

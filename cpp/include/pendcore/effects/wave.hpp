@@ -5,8 +5,8 @@
 ///     Table     linear between its points
 ///     Spline    natural cubic through its points: x'' is linear between them, 0 at both ends
 ///
-/// A table and a spline end where their points end: beyond, there is no value (NaN), and a run
-/// ends there. Between two points they are a polynomial of the time since the first of the two.
+/// A table and a spline end where their points end. Beyond, they have no value (NaN), and a run
+/// ends there. Between two points they are a polynomial in the time since the first of the two.
 #pragma once
 
 #include "pendcore/effects/effect.hpp"
@@ -115,22 +115,23 @@ struct Spline {
   };
   void check(const std::string& where) const;
 
-  /// Second derivatives at the points, of one of the two.
+  /// The second derivatives at the points, for the values of x or of y.
   std::vector<double> second_derivatives(const std::vector<double>& values) const;
 
-  std::vector<double> xdd = {};  ///< those of x and y, once compiled
+  std::vector<double> xdd = {};  ///< second derivatives of x and y, once compiled
   std::vector<double> ydd = {};
 };
 
-/// The piece k of t_0 < t_1 < ... that a run at time t is in: t_k <= t < t_{k+1} forward,
-/// t_k < t <= t_{k+1} backward, and the last (first) one where the times end. -1 before the first
-/// time and size - 1 after the last.
+/// The piece k of t_0 < t_1 < ... that a run at time t is in: t_k <= t < t_{k+1} forward, t_k < t
+/// <= t_{k+1} backward. The end of the times in the direction of the run belongs to the last
+/// (first) piece. The result is -1 before the first time and size - 1 after the last.
 int piece_at(const std::vector<double>& times, double t, bool forward);
 
-/// The first of t_0 < t_1 < ... after t, or before it; infinite if there is none.
+/// The first of t_0 < t_1 < ... after t, or the last before t if not `forward`; infinite if there
+/// is none.
 double next_of(const std::vector<double>& times, double t, bool forward);
 
-/// Throws unless there are two times or more, and they increase.
+/// Throws unless there are at least two times and they increase.
 void check_times(const std::string& where, const std::vector<double>& times);
 void check_count(const std::string& where, const std::vector<double>& values, std::size_t count);
 

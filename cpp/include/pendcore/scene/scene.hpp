@@ -1,5 +1,5 @@
 /// \file
-/// What is simulated: plain data, in SI units.
+/// The scene that is simulated: plain data, in SI units.
 ///
 /// **The angle convention.** x points right, y points **down**, the origin is the pivot. `q_i` is
 /// the absolute angle of link i from +x towards +y: q = 0 is horizontal, q = pi/2 hangs straight
@@ -32,7 +32,7 @@ struct Link {
   double center;   ///< c, m, from the proximal joint to the mass centre, along the link
   double inertia;  ///< I, kg m^2, about the mass centre; >= 0
 
-  /// About its own joint, without what hangs on it, kg m^2: I + m c^2.
+  /// The inertia about its own joint without the links beyond it, kg m^2: I + m c^2.
   double inertia_about_joint() const { return inertia + mass * center * center; }
 
   static Link uniform_rod(double mass, double length);  ///< c = L/2, I = m L^2/12
@@ -43,7 +43,7 @@ struct Link {
 struct Scene {
   std::vector<Link> links;
   double gravity = 9.807;            ///< g, m/s^2, downward (+y)
-  std::vector<Effect> effects = {};  ///< each acts, in any number and order
+  std::vector<Effect> effects = {};  ///< all of them act, in any number and order
 
   /// The double pendulum of section 2.1: two rods of 1 kg and 1 m, g = 9.807 m/s^2.
   static Scene textbook();
@@ -58,17 +58,17 @@ auto effects_of(const Scene& scene) {
              [](const Effect& one) -> const Kind& { return std::get<Kind>(one); });
 }
 
-/// The same scene with what its effects compute only once, as the curvature of a spline: what is
-/// asked of a scene at many times is answered sooner.
+/// The same scene with the values that its effects need to compute only once, such as the curvature
+/// of a spline. This saves time where a scene is evaluated at many times.
 Scene compiled(Scene scene);
 
 /// "effect 2 (viscous_joint)".
 std::string effect_name(const Scene& scene, std::size_t i);
 
-/// Where the pivot is, and how it moves: the sum of what drives it.
+/// The position and the motion of the pivot: the sum over all driven pivots.
 PivotMotion pivot_motion(const Scene& scene, double t);
 
-/// The number of the first effect that has no Taylor series, from 0 on.
+/// The number of the first effect that has no Taylor series, counted from 0.
 std::optional<std::size_t> without_series(const Scene& scene);
 
 /// Whether a Lock holds each joint.
@@ -79,7 +79,7 @@ std::vector<bool> locked_joints(const Scene& scene);
 /// mass matrix that is not positive definite.
 void check(const Scene& scene);
 
-/// What is possible in the equations but hardly in a workshop, a sentence each.
+/// Warnings of values that the equations allow but a workshop hardly has, a sentence each.
 std::vector<std::string> plausibility_warnings(const Scene& scene);
 
 /// The textbook's count of freedom, M = 3 n - 2 c5 - c4.

@@ -1,5 +1,5 @@
 /// \file
-/// How a bad value is refused: the field, the value, the allowed range, the remedy.
+/// The messages for bad values: the field, the value, the allowed range, the remedy.
 #pragma once
 
 #include <charconv>
@@ -23,7 +23,7 @@ inline std::string text(double x) {
   throw std::invalid_argument(field + " = " + text(value) + ": must be " + range);
 }
 
-/// Throws std::invalid_argument unless there are that many numbers.
+/// Throws std::invalid_argument unless there are `size` numbers.
 inline void require_size(const char* name, std::span<const double> numbers, std::size_t size) {
   if (numbers.size() == size) return;
   throw std::invalid_argument(std::string(name) + ": has " + std::to_string(numbers.size()) +
