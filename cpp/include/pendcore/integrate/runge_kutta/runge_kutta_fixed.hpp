@@ -151,7 +151,7 @@ class RungeKuttaFixed final : public Stepper {
   }
 
  private:
-  /// Forgets what belongs to components that are given another value.
+  /// Drops the low part of components that are set to another value.
   static void forget(const double* y, const Block* instead_of, Block* low) {
     for (int i = 0; i < blocks; ++i) {
       for (int j = 0; j < width; ++j) {
@@ -168,7 +168,7 @@ class RungeKuttaFixed final : public Stepper {
 
   Memory memory_;
   std::shared_ptr<const void> owner_;
-  double t_ = 0.0;  ///< of the attempt
+  double t_ = 0.0;  ///< the time of the attempt
   bool has_dense_stages_ = false;
   Attempt (*attempt_)(Memory*, double, double, double) =
       fastest<&attempt_step<method, System, compensated>, best_for(width)>();
