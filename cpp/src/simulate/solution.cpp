@@ -13,7 +13,7 @@
 namespace pendcore {
 namespace {
 
-/// Horner's scheme as in step.hpp, for any degree and dimension: the same bits.
+/// Horner's scheme as in step.hpp, for any degree and dimension, with the same bits.
 PENDCORE_INLINE void sample_polynomial(const double* coefficients, int degree, int dimension,
                                        double theta, double* y) {
   for (int i = 0; i < dimension; ++i) y[i] = coefficients[degree * dimension + i];
@@ -32,7 +32,7 @@ std::vector<double> Solution::at(const std::vector<double>& times) const {
   }
   static const auto sample = fastest<&sample_polynomial>();
   static const auto sample_of_series = fastest<&sample_series>();
-  // As the run itself: of a pair, all steps are evaluated as those of its first.
+  // As in the run itself: for a pair, all steps are evaluated like steps of its first method.
   const bool is_series = find_method(options.method).dense_output_is_series;
   const double direction = t_reached < t0 ? -1.0 : 1.0;
   const std::size_t row = static_cast<std::size_t>((dense.degree + 1) * dimension);
