@@ -103,7 +103,7 @@ class StiffSwitchingStepper final : public Stepper {
   std::unique_ptr<Stepper> implicit_;
   Make make_implicit_;
   std::vector<double> rtol_, atol_;
-  MethodInfo info_;       ///< of the current method, under its own name
+  MethodInfo info_;       ///< the current method's, under its own name
   double h_ = 0.0;        ///< the size of the last attempt
   double h_asked_ = 0.0;  ///< the size that the implicit method is to try; 0: none
   bool takes_over_ = false;

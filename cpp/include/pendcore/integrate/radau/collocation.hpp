@@ -26,7 +26,7 @@ namespace pendcore {
 struct Collocation {
   using Row = std::array<double, 3>;
   using Matrix = std::array<Row, 3>;
-  static constexpr int degree = 4;  ///< of the dense output
+  static constexpr int degree = 4;  ///< the degree of the dense output
 
   MethodInfo info;
   Row c;
