@@ -49,7 +49,7 @@ void check_continuation(const Solution& solution, double t_end, const std::vecto
   }
 }
 
-/// What a continued solution has: a solution without steps has no direction yet either.
+/// What a solution has before a run: nothing, a start without a direction of time, or steps.
 enum class Before { nothing, a_start, steps };
 
 /// The laws, the rates and the first step at the beginning of a run. If a user's function throws,
