@@ -1,5 +1,5 @@
-# find_in_wheel(VARIABLE distribution path): where the active Python has this path of a wheel's, as
-# pip has installed it; empty where the wheel is missing. Headers and libraries come with wheels.
+# find_in_wheel(VARIABLE distribution path): the place of this path of a wheel in the active Python,
+# as pip has installed it; empty if the wheel is missing. Headers and libraries come with wheels.
 find_package(Python QUIET COMPONENTS Interpreter)
 
 function(find_in_wheel variable distribution path)

@@ -1,4 +1,4 @@
-// What one call costs, where a benchmark makes many in one go.
+// The cost of one call in a benchmark that makes many calls at a time.
 #pragma once
 
 #include <benchmark/benchmark.h>

@@ -1,4 +1,4 @@
-// The right-hand side of a chain of n links: by itself, and within a step of dopri5, a sixth of it.
+// The right-hand side of a chain of n links: by itself, and as a sixth of a step of dopri5.
 #include <benchmark/benchmark.h>
 #include <pendcore/pendcore.hpp>
 #include <vector>
@@ -49,7 +49,7 @@ void step(benchmark::State& state) {
   set_calls(state, 6.0 * n);
 }
 
-// The column "a call" is the time of a link.
+// The column "a call" is the time for one link.
 void lengths(benchmark::internal::Benchmark* benchmark) {
   for (const int n : {2, 3, 10, 100, 1000, 10000}) benchmark->Arg(n);
   benchmark->ArgName("links");

@@ -1,5 +1,5 @@
-// What an effect costs in the right-hand side of two links, within an attempted step of dopri5: the
-// column "a call" is a sixth of the step.
+// The cost of an effect in the right-hand side of two links, within an attempted step of dopri5:
+// the column "a call" is a sixth of the step.
 #include <benchmark/benchmark.h>
 #include <pendcore/pendcore.hpp>
 #include <vector>

@@ -1,5 +1,5 @@
 // The right-hand side of the textbook's double pendulum.
-// latency: each call waits for the last one's accelerations, as the stages of a step do.
+// latency: each call waits for the accelerations of the call before, as the stages of a step do.
 // throughput: calls on states that do not depend on each other.
 #include <benchmark/benchmark.h>
 #include <pendcore/dynamics/closed_form/double_pendulum.hpp>

@@ -1,5 +1,5 @@
-// The Taylor series of the textbook's double pendulum alone, by order: what an order more takes.
-// Each begins where it can only when the one before has ended, as steps do.
+// The Taylor series of the textbook's double pendulum alone, by order: the cost of one more order.
+// Each series can only begin when the one before has ended, as in steps.
 #include <benchmark/benchmark.h>
 
 #include <pendcore/arithmetic/instruction_set.hpp>

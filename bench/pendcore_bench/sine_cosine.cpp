@@ -1,5 +1,5 @@
 // Sine and cosine of a pack of angles, beside the C library's.
-// latency: each angle waits for the last one's sine. throughput: angles that wait for none.
+// latency: each angle waits for the sine of the angle before. throughput: no angle waits.
 #include <benchmark/benchmark.h>
 #include <cmath>
 #include <pendcore/arithmetic/sine_cosine.hpp>

@@ -8,7 +8,7 @@
 namespace pendcore::bindings {
 namespace {
 
-/// What Python calls a parameter's type; a part by its name.
+/// The name of a parameter's type in Python; a part has its own name.
 template <class Value>
 std::string_view type_name() {
   if constexpr (std::is_same_v<Value, int>) {
@@ -74,7 +74,7 @@ void fill(Struct& filled, const py::dict& values) {
   });
 }
 
-/// Calls visit(info, value) for the parameters of each kind of effect, as they are by default.
+/// Calls visit(effect) for an effect of each kind with its default parameters.
 template <class Visitor, std::size_t... i>
 void for_each_kind(Visitor visit, std::index_sequence<i...>) {
   (visit(std::variant_alternative_t<i, Effect>{}), ...);
@@ -84,7 +84,8 @@ void for_each_kind(Visitor visit) {
   for_each_kind(visit, std::make_index_sequence<std::variant_size_v<Effect>>{});
 }
 
-/// Calls visit(part) for each part of any effect, as it is by default; more than once, maybe.
+/// Calls visit(part) for each part of any effect, with its default parameters, possibly more than
+/// once.
 template <class Visitor>
 void for_each_part(Visitor visit) {
   for_each_kind([&](const auto& effect) {
@@ -173,7 +174,7 @@ Effect make_effect(py::handle kind_and_values) {
 
 py::tuple kind_and_values(const std::string& where, const Effect& effect) {
   if (std::holds_alternative<CompiledUser>(effect)) {
-    throw py::type_error(where + "is a function: a run under it cannot be pickled or saved");
+    throw py::type_error(where + "is a function: a run with it cannot be pickled or saved");
   }
   const py::dict values = std::visit([](const auto& one) { return values_of(one); }, effect);
   return py::make_tuple(string(info_of(effect).kind), values);
@@ -181,9 +182,9 @@ py::tuple kind_and_values(const std::string& where, const Effect& effect) {
 
 void bind_effects(py::module_& module) {
   module.def("effect_descriptors", &effect_descriptors,
-             "What is known of each kind of effect, a dictionary each.");
+             "A dictionary for each kind of effect, with what is known of it.");
   module.def("part_descriptors", &part_descriptors,
-             "The same of what parameters of effects hold that have parameters of their own.");
+             "The same for parts of effects that have parameters of their own.");
   module.def("accounts", &accounts,
              "The entries that a ledger may have, and whether each is a loss or work done.");
   module.def(

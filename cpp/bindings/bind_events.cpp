@@ -40,7 +40,7 @@ EventFunction make_function(const std::string& kind, const py::dict& values) {
                             .samples = value_of<int>(values, "samples"),
                             .max_step = value_of<double>(values, "max_step")};
   }
-  throw py::value_error("events: kind = \"" + kind + "\": is none");
+  throw py::value_error("events: kind = \"" + kind + "\": there is no such event");
 }
 
 void put(py::dict& values, const events::JointAngle& event) {

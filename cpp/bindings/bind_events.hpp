@@ -1,5 +1,6 @@
 /// \file
-/// Events as Python's numbers, and back: a pair (kind, values), values by their names.
+/// Converts events to Python's numbers, and back: a pair (kind, values), with values by their
+/// names.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -10,14 +11,14 @@ namespace pendcore::bindings {
 
 namespace py = pybind11;
 
-/// The event of a pair. The kind "function" has a Python function as `f`, which whoever holds the
-/// event keeps alive.
+/// The event of a pair. The kind "function" has a Python function as `f`; whoever holds the event
+/// must keep it alive.
 Event make_event(py::handle kind_and_values);
 
-/// The pair of an event; of a function, with `f`.
+/// The pair of an event; for a function, with `f`.
 py::tuple kind_and_values(const Event& event, const py::object& f);
 
-/// The same for a pickle or a file. TypeError for a function, of which there is nothing to keep.
+/// The same for a pickle or a file. Raises TypeError for a function, which cannot be kept.
 py::tuple saved_event(const Event& event, std::size_t i);
 
 /// The Python function of each event, or None.

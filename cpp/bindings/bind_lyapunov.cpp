@@ -15,7 +15,7 @@ py::dict exponents(const Scene& scene, py::handle q0, py::handle qd0, py::handle
   PythonMonitor monitor(progress);
   LyapunovOptions options;
   if (!count.is_none()) {
-    // 0 is the core's word for all.
+    // In the core, 0 means all exponents.
     const long long given = whole_number("count", count);
     options.count = static_cast<int>(std::clamp<long long>(given == 0 ? -1 : given, -1, 1 << 20));
   }

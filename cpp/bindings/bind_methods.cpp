@@ -103,15 +103,16 @@ void bind_methods(py::module_& module) {
         for (const MethodInfo* info : Methods::infos) result.append(describe(*info));
         return result;
       },
-      "What is known of each method, a dictionary each.");
+      "A dictionary for each method, with what is known of it.");
   module.def(
       "tableau",
       [](const std::string& method) { return tableau_named(Methods{}, find_method(method).name); },
       py::arg("method"),
       "The coefficients c, a, b, e, d of a method, and its dense output's functions (function,\n"
       "stage) and their basis (function, power), each a number (numerator, denominator, root of\n"
-      "6): (numerator + root sqrt(6)) / denominator. Of an implicit one, numbers; of pairs and "
-      "series, none.");
+      "6): (numerator + root sqrt(6)) / denominator. Plain numbers for an implicit method; "
+      "nothing\n"
+      "for pairs and series.");
 }
 
 }  // namespace pendcore::bindings

@@ -26,7 +26,7 @@ Scene make_scene(const std::vector<LinkNumbers>& links, double gravity, const py
   return scene;
 }
 
-/// Rows of n numbers each, seen as vectors; (m, n) arrays of the Python layer.
+/// The rows of an (m, n) array of the Python layer, seen as vectors of n numbers.
 class Rows {
  public:
   Rows(const Scene& scene, const char* name, const Array& array)
@@ -52,7 +52,7 @@ std::span<double> row(Array& array, py::ssize_t i) {
 
 using Points = void(const Scene&, double t, std::span<const double> q, std::span<double>);
 
-/// positions() or mass_centers() of each row of angles, with `count` points each.
+/// positions() or mass_centers() for each row of angles, with `count` points each.
 Array points_of_rows(Points compute, const Scene& scene, const Array& t, const Array& q,
                      std::size_t count) {
   const FloatingPointEnvironment ieee;
@@ -78,7 +78,8 @@ Array acceleration_rows(const Scene& scene, const Array& t, const Array& q, cons
 }
 
 /// The accelerations of one state, without the conversions to arrays of rows that many states need.
-/// Nothing where t is no finite number, or q or qd are not n of them: the caller then says which.
+/// Returns nothing if t is not a finite number, or if q or qd are not n finite numbers: the caller
+/// then says which.
 std::optional<Array> acceleration_of_state(const Scene& scene, py::handle t, py::handle q,
                                            py::handle qd) {
   const FloatingPointEnvironment ieee;

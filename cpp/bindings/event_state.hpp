@@ -6,11 +6,11 @@
 
 namespace pendcore::bindings {
 
-/// Adds them to the fields of a state. TypeError for an event that is a function.
+/// Adds the events to the fields of a state. Raises TypeError for an event that is a function.
 void put_events(py::dict& fields, const Solution& solution);
 
-/// Takes them out. Throws ValueError for what does not fit together, and for a function: a file
-/// that could name one could have anything called.
+/// Reads the events from the fields of a state. Raises ValueError for what does not fit together,
+/// and for a function: a file that could name a function could have any function called.
 void take_events(const py::dict& fields, Solution& solution);
 
 }  // namespace pendcore::bindings

@@ -1,5 +1,6 @@
 /// \file
-/// A Python function as the core calls it: with its lock, and with the arrays that it is promised.
+/// A Python function as the core calls it: with Python's lock, and with the arrays that the
+/// function is promised.
 #pragma once
 
 #include <pybind11/pybind11.h>

@@ -34,7 +34,7 @@ py::object PythonMonitor::close(Status& status, std::string& message,
                                 std::exception_ptr& error) const {
   if (error) *error_ = python_exception(std::exchange(error, nullptr));
   if (!*error_) {
-    // Ctrl-C after the core has looked for it last: the run is whole, and is not lost.
+    // Ctrl-C came after the core last looked for it: the run is complete, and is not lost.
     if (PyErr_CheckSignals() == 0) return py::none();
     keep_error();
     return *error_;

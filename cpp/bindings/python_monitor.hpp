@@ -1,6 +1,7 @@
 /// \file
-/// Calls Python about every 50 ms while the core computes without its lock: for Ctrl-C, and to show
-/// the progress. An exception stops the run and is kept, as is one of a function that is an effect.
+/// Calls Python about every 50 ms while the core computes without Python's lock: for Ctrl-C, and to
+/// show the progress. An exception stops the run and is kept, like an exception in a user's
+/// function.
 #pragma once
 
 #include <memory>

@@ -1,6 +1,6 @@
 /// \file
-/// A solution as Python holds it: with its scene, so that it can go on, and with the exception that
-/// broke it off, if one did.
+/// A solution as Python holds it: with its scene, so that it can be resumed, and with the exception
+/// that ended it, if there was one.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -15,7 +15,7 @@ struct Run {
   Scene scene;
   Solution solution;
   py::object python_scene = py::none();  ///< keeps the functions among its effects alive
-  py::list event_functions{};            ///< of each event: its Python function, or None
+  py::list event_functions{};            ///< the Python function of each event, or None
   py::object error = py::none();
 };
 

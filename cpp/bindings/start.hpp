@@ -1,5 +1,5 @@
 /// \file
-/// Where and when a run begins and ends, from what Python gives.
+/// The start and the interval of a run, from what Python gives.
 #pragma once
 
 #include "arguments.hpp"
@@ -7,14 +7,14 @@
 
 namespace pendcore::bindings {
 
-/// Angles (rad) and rates (rad/s), one a link, and the interval (s).
+/// Angles (rad) and rates (rad/s), one for each link, and the interval (s).
 struct Start {
   std::vector<double> q0, qd0;
   double t0, t_end;
 };
 
-/// One number of angles or rates counts for all links. `warn` is called with each sentence about
-/// what is hardly meant; what is wrong is the core's to say.
+/// A single angle or rate counts for all links. `warn` is called with a sentence for each value
+/// that is hardly intended; the core reports what is wrong.
 inline Start start_of(const Scene& scene, py::handle q0, py::handle qd0, py::handle t0,
                       py::handle t_end, py::handle warn) {
   const std::size_t n = scene.links.size();

@@ -1,5 +1,5 @@
-# Eigen 3.4's headers as Eigen3::Eigen: the system's (Debian: libeigen3-dev), else those that PyPI's
-# cmeel-eigen has put beside the Python that is found.
+# Provides Eigen 3.4's headers as Eigen3::Eigen: the system's (Debian: libeigen3-dev), or else those
+# that PyPI's cmeel-eigen has installed for the Python that is found.
 find_package(Eigen3 3.4 CONFIG QUIET)
 
 if(NOT TARGET Eigen3::Eigen)

@@ -1,5 +1,5 @@
 # Installs headers, library and the package for find_package(pendcore). In a wheel the prefix is the
-# Python package itself, named to CMake by the entry point cmake.root.
+# Python package itself; the entry point cmake.root tells CMake where it is.
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/pendcore)

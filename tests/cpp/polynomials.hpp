@@ -1,4 +1,4 @@
-// Polynomials of known roots.
+// Polynomials with known roots.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
-// No step allocates: a long run asks for memory as often as a short one. And no run asks for a
-// matrix that it does not come to need.
+// No step allocates: a long run asks for memory as often as a short one. And no run allocates a
+// matrix that it never needs.
 #include <doctest/doctest.h>
 
 #include <atomic>
@@ -13,7 +13,7 @@ std::atomic<long long> allocations = 0;
 std::atomic<long long> bytes = 0;
 }  // namespace
 
-// Not inlined, lest GCC see a delete of what malloc gave.
+// This is not inlined, so that GCC does not see a delete of what malloc returned.
 [[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocations;
   bytes += static_cast<long long>(size);
@@ -73,7 +73,7 @@ TEST_CASE("events that are not found ask for no memory either") {
   CHECK(count_to(20.0) == count_to(2.0));
 }
 
-// Under the address sanitizer, where it takes a minute, the count is no other.
+// This is skipped under the address sanitizer, where it takes a minute and the count is the same.
 TEST_CASE("the number of allocations does not depend on the number of steps" *
           doctest::skip(sanitized)) {
   const std::vector<Effect> effects = {
@@ -93,7 +93,8 @@ TEST_CASE("the number of allocations does not depend on the number of steps" *
     for (const Store store : {Store::end, Store::times}) {
       for (const bool ledger : {false, true}) {
         for (const bool compensated : {false, true}) {
-          // After a thousand steps of a scene with effects the message looks for a fast mode.
+          // After a thousand steps of a scene with effects, the message at the end looks for a fast
+          // mode.
           const double t_end = scene.effects.empty() ? 0.5 : 60.0;
           const long long few = count(scene, store, t_end, ledger, compensated);
           CHECK(few > 0);

@@ -20,7 +20,7 @@ std::unique_ptr<Stepper> after_a_step(const Scene& scene, bool ledger) {
   return stepper;
 }
 
-/// Every kernel that a compensated step has.
+/// Steppers with every kernel that a compensated step has.
 template <class Check>
 void for_each_kernel(Check check) {
   for (const std::size_t n : {1, 2, 3, 5}) {
@@ -56,7 +56,7 @@ TEST_CASE("a component that is set at the end of a step has no low part, the oth
   });
 }
 
-TEST_CASE("a start elsewhere drops the low part of what is elsewhere, and a restart none") {
+TEST_CASE("a start drops the low part of components that differ, and a restart drops none") {
   for_each_kernel([](const Scene& scene, bool ledger) {
     auto stepper = after_a_step(scene, ledger);
     stepper->accept(1e-3);
@@ -75,7 +75,7 @@ TEST_CASE("a start elsewhere drops the low part of what is elsewhere, and a rest
   });
 }
 
-TEST_CASE("a low part is restored, and that of another state is refused") {
+TEST_CASE("a low part is restored, and the low part of another state is refused") {
   for_each_kernel([](const Scene& scene, bool ledger) {
     auto stepper = after_a_step(scene, ledger);
     stepper->accept(1e-3);

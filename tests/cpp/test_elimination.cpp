@@ -1,4 +1,4 @@
-// Gaussian elimination: the solution solves, whatever has to be exchanged.
+// Gaussian elimination: the solution solves the system, whatever rows have to be exchanged.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@
 
 using namespace pendcore;
 
-TEST_CASE("real systems of any size are solved, with zeros on the diagonal as well") {
+TEST_CASE("real systems of any size are solved, also with zeros on the diagonal") {
   std::mt19937_64 random(11);
   std::uniform_real_distribution any(-1.0, 1.0);
   for (int n = 1; n < 12; ++n) {

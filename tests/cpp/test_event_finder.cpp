@@ -63,12 +63,12 @@ TEST_CASE("a jump through zero is an event with the states on both sides") {
     CHECK(found[i].y == Times{1.0, -0.5});
     CHECK(found[i].y_before == Times{1.0, 1.0});
   }
-  CHECK(found[2].event == 0);  // the rate falls: not event 1
+  CHECK(found[2].event == 0);  // the rate falls, so this is not event 1
   CHECK(found[3].event == 4);
   CHECK(found[2].direction == -1);
 }
 
-TEST_CASE("a jump into zero is one event, and one from zero none") {
+TEST_CASE("a jump into zero is an event, and a jump from zero is not") {
   Turning turning;
   const std::vector<Event> events = {{.function = events::RateZero{.joint = 1, .link = {}}}};
   std::vector<FoundEvent> found;
@@ -118,7 +118,7 @@ TEST_CASE("after a jump a step begins with the value that the jump left") {
   CHECK(found[0].t == 0.5);
 }
 
-TEST_CASE("events are refused by name where they are out of range") {
+TEST_CASE("events that are out of range are refused by name") {
   const Event event{.function = events::LinkAngle{.link = 3, .value = 0.0}, .name = "far"};
   CHECK(event_name(event, 1) == "event 2 (link_angle, 'far')");
   CHECK_THROWS_WITH_AS(check_event("here: ", event, 2), "here: link = 3: must be 1 to 2",

@@ -1,4 +1,4 @@
-// Exponential, logarithm and power against the machine's own, which are good to an ulp or so.
+// Exponential, logarithm and power against the C library's, which are accurate to an ulp or so.
 #include <doctest/doctest.h>
 
 #include <cmath>

@@ -1,4 +1,5 @@
-// All zeros of a function in a step: each once, with its direction, whatever lies at the ends.
+// All zeros of a function in a step are found, each once and with its direction, whatever lies at
+// the ends.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -38,7 +39,7 @@ TEST_CASE("every root is found, in order, with its direction") {
   }
 }
 
-TEST_CASE("two roots close together are two, down to where rounding makes one of them") {
+TEST_CASE("two roots close together are both found, until rounding makes them one") {
   for (const double gap : {1e-2, 1e-4, 1e-6}) {
     const auto found = roots_of(with_roots({0.4321, 0.4321 + gap, -0.5}, 1.0));
     REQUIRE(found.size() == 2);
@@ -63,13 +64,13 @@ TEST_CASE("a double root touches, a triple one crosses") {
   CHECK(thrice[0].theta == doctest::Approx(0.5).epsilon(1e-4));  // flat: 1e-15^(1/3)
 }
 
-TEST_CASE("a turn that stays clear of zero is none") {
+TEST_CASE("a turning point that stays clear of zero is not a root") {
   CHECK(roots_of({0.25 + 1e-12, -1.0, 1.0}).empty());
   CHECK(roots_of({0.25, -1.0, 1.0}).size() == 1);
   CHECK(roots_of({0.25 - 1e-12, -1.0, 1.0}).size() == 2);
 }
 
-TEST_CASE("a zero at the start is none, and one at the end is") {
+TEST_CASE("a zero at the start is not a root, and a zero at the end is") {
   CHECK(roots_of({0.0, 1.0}).empty());
   CHECK(roots_of({0.0, 0.0, 0.0}).empty());
   const auto leaves_and_returns = roots_of({0.0, 1.0, -1.0});
@@ -81,21 +82,21 @@ TEST_CASE("a zero at the start is none, and one at the end is") {
   CHECK(between[0].theta == doctest::Approx(0.5).epsilon(1e-15));
 }
 
-TEST_CASE("the state at the end has the last word on its sign") {
-  const std::vector<double> rises{-1.0, 1.0};  // zero at 1 by itself
+TEST_CASE("the state at the end decides the sign there") {
+  const std::vector<double> rises{-1.0, 1.0};  // zero at 1
   CHECK(roots_of(rises, -1e-17).empty());
   CHECK(roots_of(rises, 0.0).size() == 1);
   REQUIRE(roots_of(rises, 1e-17).size() == 1);
   CHECK(roots_of(rises, 1e-17)[0].theta == 1.0);
-  // A root that the polynomial has just before the end, and the state has not.
+  // A root that the polynomial has just before the end, and the state does not have.
   CHECK(roots_of({-1.0 + 1e-16, 1.0}, -1e-17).empty());
-  // And one that it has not: it lies at the end.
+  // A root that the polynomial does not have: it lies at the end.
   const auto missing = roots_of({-1.0 - 1e-15, 1.0}, 1e-17);
   REQUIRE(missing.size() == 1);
   CHECK(missing[0].theta == doctest::Approx(1.0).epsilon(1e-15));
 }
 
-TEST_CASE("what is zero but for rounding all along has no root") {
+TEST_CASE("a function that is zero within rounding everywhere has no root") {
   CHECK(roots_of({0.0, 1e-17, -3e-17, 2e-17}, 0.0).empty());
   CHECK(roots_of({0.0, 1e-10, -3e-10, 2e-10}, 0.0, 1e-15).size() == 2);  // 0.5, and the end
 }
@@ -115,7 +116,7 @@ TEST_CASE("random polynomials of any degree: as many roots as samples see, where
       is_clear &= std::abs(roots[i]) > 0.02 && std::abs(roots[i] - 1.0) > 0.02;
       if (roots[i] > 0.0 && roots[i] < 1.0) inside.push_back(roots[i]);
     }
-    if (!is_clear || degree > 9) continue;  // beyond, coefficients say little of such roots
+    if (!is_clear || degree > 9) continue;  // beyond, coefficients hardly determine the roots
     const auto found = roots_of(with_roots(roots, 1.0));
     REQUIRE(found.size() == inside.size());
     for (std::size_t i = 0; i < inside.size(); ++i) {

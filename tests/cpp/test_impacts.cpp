@@ -1,4 +1,4 @@
-// Impacts at several stops at once, by the hundred thousand: what must hold of each.
+// Impacts at several stops at once, by the hundred thousand: the properties that each must have.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 using Row = std::vector<double>;
 
-/// Rods whose joints are all at a stop, and move any way.
+/// Rods whose joints are all at a stop and have any rates.
 struct Drawn {
   Scene scene{.links = {}, .gravity = 9.81};
   Row q, phid;
@@ -36,7 +36,7 @@ Drawn draw(int n, std::mt19937_64& random) {
     const double phi = relative(drawn.q.data(), j + 1);
     drawn.sides.push_back(unit(random) < 0.5 ? -1 : 1);
     drawn.phid.push_back(unit(random) < 0.2 ? 0.0 : between(-5.0, 5.0));
-    const double rather = between(-0.3, 1.3);  // 0 and 1 as often as not
+    const double rather = between(-0.3, 1.3);  // clamped to 0 or 1 in three of eight draws
     if (j == 0 || unit(random) < 0.7) capture = std::pow(10.0, between(-6.0, 2.0));
     JointStop stop{.joint = j + 1,
                    .restitution = std::clamp(rather, 0.0, 1.0),
@@ -109,7 +109,7 @@ TEST_CASE("no impact adds energy or leads out of a stop, whatever restitutions a
     const Struck struck = strike(drawn);
     const double before = kinetic_energy(drawn, drawn.phid);
     const double lost = before - kinetic_energy(drawn, struck.phid);
-    const double rounding = 1e-11 * before;  // of ill-conditioned mass matrices
+    const double rounding = 1e-11 * before;  // for ill-conditioned mass matrices
     jumps += struck.jumped ? 1 : 0;
     bool was_captured = false;
     bool is_right = struck.loss >= 0.0 && std::abs(struck.loss - lost) <= rounding;
@@ -126,7 +126,7 @@ TEST_CASE("no impact adds energy or leads out of a stop, whatever restitutions a
   CHECK(captures > 10'000);
 }
 
-TEST_CASE("an impact at one stop is Newton's: the joint turns to e times its rate, or stays") {
+TEST_CASE("an impact at one stop is Newton's: the joint leaves with e times its rate, or stays") {
   std::mt19937_64 random(7);
   for (int i = 0; i < 2000; ++i) {
     Drawn drawn = draw(1 + i % 6, random);
@@ -153,7 +153,7 @@ TEST_CASE("with one restitution for all, an impact goes beyond the plastic one b
     const double e = drawn.stop(0).restitution;
     for (int j = 0; j < drawn.n(); ++j) {
       drawn.stop(j).capture_speed = 0.0;
-      drawn.phid[j] = drawn.sides[j] * std::abs(drawn.phid[j]);  // none leaves its stop
+      drawn.phid[j] = drawn.sides[j] * std::abs(drawn.phid[j]);  // no joint leaves its stop
     }
     Drawn plastic = drawn;
     for (int j = 0; j < drawn.n(); ++j) {

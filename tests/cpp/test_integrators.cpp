@@ -15,7 +15,8 @@ using namespace pendcore;
 
 namespace tested {
 
-/// Kutta's classical method, unlike rk4 of the list not first-same-as-last: no stage at the end.
+/// Kutta's classical method. Unlike rk4 in the list it is not first-same-as-last: it has no stage
+/// at the end.
 inline constexpr Tableau<4, 3> classical_4 = {
     .info = {.name = "classical",
              .citation = "Kutta 1901; interpolant: Hairer, Norsett & Wanner 1993, II.6",
@@ -48,7 +49,7 @@ struct Scalar {
   }
 };
 
-/// The same of the rate: q'' = f(t, q'), for methods that know of angles and rates.
+/// The same for the rate: q'' = f(t, q'), for methods that need angles and rates.
 template <Function f>
 class OfTheRate final : public DifferentiableSystem {
  public:
@@ -178,7 +179,7 @@ TEST_CASE("the error falls with the order of the method, time-dependent rates in
       return std::abs(solve<method, growing>({.t_end = 2.0, .tolerance = 1e-13, .step = h}).y -
                       exact);
     };
-    // In short steps a high order leaves nothing but rounding.
+    // In short steps of a high order only rounding errors are left.
     const double coarse = method.info.order > 5 ? 1.0 : 0.2;
     const int halvings = method.info.order > 5 ? 2 : 3;
     const double order = std::log2(error(coarse) / error(std::ldexp(coarse, -halvings))) / halvings;
@@ -191,7 +192,7 @@ TEST_CASE("class A of DETEST ends within ten tolerances of its closed forms, or 
   for_each_method(methods, []<const auto & method>() {
     if (method.info.error_order == 0) return;
     CAPTURE(method.info.name);
-    // SciPy's DOP853, another program of that table, ends 21 of the finest off.
+    // SciPy's DOP853, another program with that table, is off by 21 times the finest tolerance.
     const double most = method.info.order > 5 ? 30 : 10;
     for (const double tolerance : {1e-3, 1e-6, 1e-9, 1e-12}) {
       CAPTURE(tolerance);
@@ -242,8 +243,9 @@ TEST_CASE("a rate that is not a number is never accepted") {
     CHECK(from_one.t <= 1.0);
     CHECK(from_one.t == doctest::Approx(1.0).epsilon(1e-9));
     CHECK(from_one.y == doctest::Approx(2.0).epsilon(1e-9));
-    // The state of a pair is (q, qd). The rate is not finite; nor is the angle, which comes first,
-    // but where the stages beyond 1 are those alone that no later one moves on from: dop853's.
+    // The state of a pair is (q, qd). The rate is not finite, and neither is the angle, which comes
+    // first. dop853 is the exception: only stages beyond t = 1 are not finite there, and no later
+    // stage uses them.
     const bool is_pair = method.info.kind == MethodKind::pair;
     CHECK(from_one.bad == (is_pair && method.info.first() == "dop853" ? 1 : 0));
     const Result infinite = solve<method, infinite_from_one>({.t_end = 2.0});
@@ -253,7 +255,8 @@ TEST_CASE("a rate that is not a number is never accepted") {
     const Result from_the_start = solve<method, undefined>({});
     CHECK(from_the_start.status == Status::non_finite);
     CHECK(from_the_start.statistics.accepted == 0);
-    // a trial stage beyond the border alone is a shorter step, not the end
+    // If only a trial stage is beyond the border, the step becomes shorter, and the run does not
+    // end.
     const Result border = solve<method, undefined_over_half>({.t_end = -1.0, .y0 = 0.49});
     CHECK(border.status == Status::finished);
     const Result beyond = solve<method, undefined_over_half>({.t_end = 1.0, .y0 = 0.4});
@@ -274,7 +277,7 @@ TEST_CASE("a fixed step that is not finite ends the run") {
   });
 }
 
-TEST_CASE("time too large for the step is said plainly") {
+TEST_CASE("a time that is too large for the step is reported plainly") {
   for_each_method(methods, []<const auto & method>() {
     CAPTURE(method.info.name);
     const Result result =

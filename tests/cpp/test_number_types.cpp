@@ -1,4 +1,4 @@
-// The right-hand side is written once: packs of trajectories and dual numbers use it as it is.
+// The right-hand side is written once: packs of trajectories and dual numbers use it unchanged.
 #include <doctest/doctest.h>
 
 #include <bit>
@@ -19,7 +19,7 @@ const Scene uneven{.links = {Link::uniform_rod(2.5, 0.7), Link::point_mass(0.4, 
 
 }  // namespace
 
-TEST_CASE("four trajectories in a pack have the bits of each alone") {
+TEST_CASE("four trajectories in a pack have the same bits as each alone") {
   const DoublePendulum pendulum(uneven, Inertia(uneven));
   std::mt19937_64 random(3);
   std::uniform_real_distribution any(-10.0, 10.0);
@@ -41,7 +41,7 @@ TEST_CASE("four trajectories in a pack have the bits of each alone") {
   }
 }
 
-TEST_CASE("a dual number has the bits of its value, and the derivative beside it") {
+TEST_CASE("a dual number has the same bits in its value, and the derivative beside it") {
   std::mt19937_64 random(7);
   std::uniform_real_distribution any(0.1, 3.0);
   auto check = [&](auto f) {
@@ -70,7 +70,7 @@ TEST_CASE("a dual number has the bits of its value, and the derivative beside it
   }
 }
 
-TEST_CASE("one link in a pack has the bits of one alone") {
+TEST_CASE("one link in a pack has the same bits as one alone") {
   const Scene rod{.links = {Link::uniform_rod(1.3, 0.8)}, .gravity = 9.81};
   const SinglePendulum pendulum(Inertia(rod), rod.gravity);
   const Pack<4> q{0.1, -2.0, 3.0, 1e4};
@@ -81,7 +81,7 @@ TEST_CASE("one link in a pack has the bits of one alone") {
   }
 }
 
-TEST_CASE("with effects, too, trajectories in a pack have the bits of each alone") {
+TEST_CASE("with effects, too, trajectories in a pack have the same bits as each alone") {
   Scene scene = uneven;
   scene.effects = {ViscousJoint{.joint = 2, .damping = 0.3, .damping2 = 0.2, .damping3 = 0.1},
                    TorsionalSpring{.joint = 1, .stiffness = 2.0, .rest_angle = 0.4},

@@ -1,4 +1,4 @@
-// An effect of the user's own, in C++: what can be called with spans acts as what is built in.
+// A user's own effect in C++: what can be called with spans acts like a built-in effect.
 #include <doctest/doctest.h>
 
 #include <stdexcept>
@@ -37,7 +37,7 @@ TEST_CASE("a callable acts as the effect that it computes, whatever the number o
   }
 }
 
-TEST_CASE("what a callable throws ends the run and is kept with what was computed") {
+TEST_CASE("an exception in a callable ends the run and is kept with what was computed") {
   auto fail = [](double t, std::span<const double>, std::span<const double>, std::span<double>) {
     if (t > 1.0) throw std::runtime_error("out of reach");
   };

@@ -1,4 +1,4 @@
-// The root locator: every sign change is seen, and placed to the last bits.
+// Root location: every sign change is found, and located to the last bits.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ TEST_CASE("one root is found to the last bits") {
   CHECK(first(with_roots({0.7, 2.0, -1.0, 3.0}, -1.0)) == doctest::Approx(0.7).epsilon(1e-14));
 }
 
-TEST_CASE("two roots in one step are both seen") {
+TEST_CASE("two roots in one step are both found") {
   for (const double gap : {0.3, 1e-2, 1e-4, 1e-6}) {
     const double low = 0.4321;
     const auto c = with_roots({low, low + gap, -0.5, 1.7}, -1.0);
@@ -38,7 +38,7 @@ TEST_CASE("no root is found where there is none, outside the step or where it on
   CHECK(first(with_roots({0.5, 0.5}, 1.0)) > 1.0);
 }
 
-TEST_CASE("what starts at zero turns negative where it does so next") {
+TEST_CASE("a function that starts at zero turns negative where it does so next") {
   CHECK(first(with_roots({0.0, 0.6}, -1.0)) == doctest::Approx(0.6).epsilon(1e-14));
   CHECK(first({1e-18, 1.0, -2.0}) == doctest::Approx(0.5).epsilon(1e-14));
   CHECK(first({-1e-18, 1.0, -2.0}) == doctest::Approx(0.5).epsilon(1e-14));
@@ -50,7 +50,7 @@ TEST_CASE("a root at the end of the step counts where the sign has changed") {
   CHECK(first({1.0 - 1e-12, -1.0}) == doctest::Approx(1.0));
 }
 
-TEST_CASE("random polynomials: as many samples see it") {
+TEST_CASE("random polynomials: the result agrees with many samples") {
   std::mt19937_64 random(7);
   std::uniform_real_distribution any(-1.0, 1.0);
   for (int round = 0; round < 5000; ++round) {

@@ -20,7 +20,7 @@ double error_in_ulp(double value, long double exact) {
   return static_cast<double>(std::abs(static_cast<long double>(value) - exact) / ulp);
 }
 
-/// Angles up to `range`: uniform ones, doubles next to multiples of pi/2, and small ones.
+/// Angles up to `range`: uniformly drawn ones, doubles next to multiples of pi/2, and small ones.
 double angle(std::mt19937_64& random, double range, int i) {
   const double x = std::uniform_real_distribution(-range, range)(random);
   if (i % 3 == 1) return std::nearbyint(x * 0.6366197723675814) * 1.5707963267948966;
@@ -44,11 +44,11 @@ TEST_CASE("sine and cosine are within one unit in the last place") {
                         error_in_ulp(c, std::cos(static_cast<long double>(x)))});
     }
     CHECK(worst < 0.85);
-    CHECK(worst > 0.5);  // or it is not measured
+    CHECK(worst > 0.5);  // otherwise it is not measured
   }
 }
 
-TEST_CASE("every lane of every width has the bits of the number alone") {
+TEST_CASE("every lane of every width has the same bits as the number alone") {
   std::mt19937_64 random(7);
   for (int i = 0; i < 20'000; ++i) {
     Pack<8> x, s8, c8;
@@ -69,7 +69,7 @@ TEST_CASE("every lane of every width has the bits of the number alone") {
   }
 }
 
-TEST_CASE("the exact reduction and the quick one meet at their border") {
+TEST_CASE("the exact and the quick reduction agree at their border") {
   for (double x = 999'000.0; x < 1e6; x += 0.7310585) {
     double quick_sine, quick_cosine, above_sine, above_cosine;
     sine_cosine(x, quick_sine, quick_cosine);
@@ -80,7 +80,7 @@ TEST_CASE("the exact reduction and the quick one meet at their border") {
   }
 }
 
-TEST_CASE("infinities and NaN give NaN, zero and denormal numbers themselves") {
+TEST_CASE("infinities and NaN give NaN; zero and denormal numbers give themselves") {
   using Limits = std::numeric_limits<double>;
   double s, c;
   for (const double x : {Limits::infinity(), -Limits::infinity(), Limits::quiet_NaN()}) {

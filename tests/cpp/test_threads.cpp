@@ -1,5 +1,6 @@
 // Many threads share scenes and solutions: they simulate, resume, sample and evaluate all at once,
-// and each gets the bits of one that is alone. The preset thread-sanitizer also looks for races.
+// and each gets the same bits as a thread that is alone. The preset thread-sanitizer also looks for
+// races.
 #include <doctest/doctest.h>
 
 #include <atomic>
@@ -17,7 +18,7 @@ constexpr auto own_torque = [](double /*t*/, std::span<const double> /*q*/,
                                std::span<const double> qd,
                                std::span<double> Q) { Q[0] -= 0.01 * qd[0]; };
 
-/// Scenes with all that a run keeps for itself: modes, places in tables, locks.
+/// Scenes with everything that a run keeps for itself: modes, places in tables, locks.
 std::vector<Scene> shared_scenes() {
   const std::vector<Link> links(3, Link::uniform_rod(1.0, 0.7));
   return {
@@ -35,7 +36,7 @@ std::vector<Scene> shared_scenes() {
   };
 }
 
-/// Scenes with modes that change by themselves, and with what the implicit method keeps: each
+/// Scenes with modes that change by themselves, and with what the implicit method keeps. Each
 /// method runs them.
 std::vector<Scene> scenes_for_every_method() {
   const std::vector<Link> links(2, Link::uniform_rod(1.0, 0.7));
@@ -58,7 +59,7 @@ Options options_of(const std::string& method, bool ledger) {
   return options;
 }
 
-/// What is shared: a scene, and a run of it that stopped half-way.
+/// The shared objects: a scene, and a run of it that stopped half-way.
 struct Shared {
   Scene scene;
   std::vector<double> q0, qd0;
@@ -96,7 +97,7 @@ std::vector<Shared> everything() {
   return all;
 }
 
-/// All that is computed from one of them, by one thread.
+/// Everything that one thread computes from one of them.
 std::vector<double> all_of(const Shared& shared) {
   std::vector<double> found;
   const auto keep = [&found](const std::vector<double>& x) {

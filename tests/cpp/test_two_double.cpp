@@ -18,10 +18,10 @@ TEST_CASE("ten million steps of a tenth end where they should") {
   const double exact_excess = 10'000'000 * 5.5511151231257827e-18;
   CHECK(t.high == 1e6);
   CHECK(t.low == doctest::Approx(exact_excess).epsilon(1e-6));
-  CHECK(std::abs(plain - 1e6) > 1e-5);  // what it is there for
+  CHECK(std::abs(plain - 1e6) > 1e-5);  // what two doubles are there for
 }
 
-TEST_CASE("a difference keeps what is below the last bit") {
+TEST_CASE("a difference keeps digits below the last bit") {
   const TwoDouble t = TwoDouble{1e17, 0.0} + 0.25;
   CHECK(t.high == 1e17);
   CHECK(difference(1e17, t) == -0.25);

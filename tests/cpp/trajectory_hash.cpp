@@ -1,7 +1,7 @@
 // A line for each of a few runs: its name and a hash of every bit of its times and states, and of
-// the events that were found. trajectory_hash.txt has them all. Up to `tiny` they are from before
-// there were effects: scenes without keep every bit. Who changes a method's steps or an effect's
-// law changes lines of it, and says so in CHANGELOG.md.
+// the events that were found. trajectory_hash.txt has all lines. The lines up to `tiny` are older
+// than the effects: scenes without effects keep every bit. If you change a method's steps or an
+// effect's law, you change lines of that file; say so in CHANGELOG.md.
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
@@ -33,7 +33,7 @@ void print(const char* name, const Solution& solution) {
   std::printf("%s %016" PRIx64 "\n", name, h);
 }
 
-/// What tables beside the first one make of closed forms, and of any number of links.
+/// Runs with tables other than the first, in closed forms and with any number of links.
 void print_explicit_runs() {
   const Scene chain{.links = std::vector<Link>(7, Link::uniform_rod(0.4, 0.3))};
   for (const std::string_view method : {"dop853", "rk4"}) {
@@ -52,7 +52,7 @@ void print_explicit_runs() {
   }
 }
 
-/// Rods that bounce and rub, one that sticks and is torn loose, and dampers, watched.
+/// Rods that bounce and rub, a rod that sticks and is torn loose, and dampers, with events.
 void print_switching_and_stiff_runs() {
   const std::vector<Link> rods(2, Link::uniform_rod(1.0, 0.7));
   const Scene bouncing{.links = rods,
@@ -77,7 +77,7 @@ void print_switching_and_stiff_runs() {
     print(name("bouncing").c_str(), simulate(bouncing, {0.4, 0.8}, {2.0, -3.0}, 0, 4, options));
     print(name("stick").c_str(), simulate(stick, {0.4, 0.8}, {0.0, 0.5}, 0, 8, options));
     if (method == "dopri5") continue;
-    if (method == "radau5" || method == "dopri5-radau5") {  // the damper would keep others for long
+    if (method == "radau5" || method == "dopri5-radau5") {  // with the damper, others take long
       print(name("damper").c_str(), simulate(damper, {0.8, 1.0}, {0, 0}, 0, 2, options));
     }
     options.compensated = options.ledger = true;
@@ -87,7 +87,7 @@ void print_switching_and_stiff_runs() {
   }
 }
 
-/// What a run is that names no method: each branch of the rule, and where it turns out to be stiff.
+/// Runs that name no method: each branch of the rule, and a run that turns out to be stiff.
 void print_runs_without_a_method() {
   const std::vector<Link> rods(2, Link::uniform_rod(1.0, 0.7));
   print("default textbook", simulate(Scene::textbook(), {-1.4, -1.1}, {0, 0}, 0, 60));

@@ -1,5 +1,5 @@
-// What a C++ contender of the comparison is. A program of contenders is solves.cpp with a file that
-// defines `contenders`: to add one, write such a file and name it in ../CMakeLists.txt and in
+// A C++ contender of the comparison. A program of contenders is solves.cpp with a file that defines
+// `contenders`: to add a program, write such a file and name it in ../CMakeLists.txt and in
 // compiled.py.
 #pragma once
 
@@ -14,8 +14,8 @@
 namespace contenders {
 
 // A chain of uniform rods: masses (kg), lengths (m), gravity (m/s^2). In joint j acts the torque
-// -stiffness (phi - rest) - damping dphi/dt, which `controller` calls a motor's and not a spring's
-// and a damper's. start = q_1..q_n, qd_1..qd_n; times rising.
+// -stiffness (phi - rest) - damping dphi/dt. If `controller` is true it belongs to a motor,
+// otherwise to a spring and a damper. start = q_1..q_n, qd_1..qd_n; times rising.
 struct Case {
   std::vector<double> masses, lengths;
   double gravity = 0;
@@ -24,13 +24,13 @@ struct Case {
   std::vector<double> start, times;
 };
 
-// What one solve took: right-hand sides and attempted steps; < 0 where nobody counts.
+// The cost of one solve: right-hand sides and attempted steps; < 0 if they are not counted.
 struct Counts {
   long long evaluations = -1, steps = -1;
 };
 
-// A case at a setting: a tolerance, relative and absolute alike, or a fixed step in s. `solve` is
-// what is timed; states, counts and what was said may be asked for afterwards.
+// A case at a setting: a tolerance, both relative and absolute, or a fixed step in s. `solve` is
+// timed; states, counts and the failure may be asked for afterwards.
 class Run {
  public:
   virtual ~Run() = default;
@@ -41,8 +41,9 @@ class Run {
   virtual std::string failure() const { return "it did not reach the end"; }
 };
 
-// `label` names it in tables, `about` says version and settings. `prepare` builds all that can be
-// built before the clock starts, and throws Unsupported for a case that it does not carry.
+// `label` names the contender in tables, `about` says version and settings. `prepare` builds
+// everything that can be built before the clock starts, and throws Unsupported for a case that the
+// contender does not support.
 struct Contender {
   std::string name, label, about;
   std::function<std::unique_ptr<Run>(const Case&, double setting)> prepare;

@@ -1,5 +1,5 @@
-// How a program of contenders is spoken to: a request is a line, the answer is a line, `ok ...`,
-// `unsupported ...` or `error ...`. So the bursts of several programs take turns.
+// The protocol of a program of contenders: a request is a line, and the answer is a line, `ok ...`,
+// `unsupported ...` or `error ...`. So the bursts of several programs can take turns.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace contenders {
 
-// Thrown by a contender that does not carry what it is asked for.
+// Thrown by a contender that does not support what it is asked for.
 struct Unsupported : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -20,10 +20,10 @@ double read_number(std::istream& in);
 std::size_t read_count(std::istream& in);
 std::vector<double> read_numbers(std::istream& in, std::size_t count);
 
-// Numbers as words that read back as the same doubles, a space before each.
+// Numbers as text that reads back as the same doubles, with a space before each.
 std::string words(const std::vector<double>& numbers);
 
-// The element of that name; both sides' elements have a `name`.
+// The element of that name; the elements of both programs have a `name`.
 template <class Element>
 const Element& find(const std::vector<Element>& all, const std::string& name) {
   for (const Element& element : all)
@@ -31,7 +31,7 @@ const Element& find(const std::vector<Element>& all, const std::string& name) {
   throw std::invalid_argument("nothing of the name " + name);
 }
 
-// The answers to what the programs have in common, `names` and `about NAME`.
+// The answers to the requests that all programs have, `names` and `about NAME`.
 template <class Element>
 std::string names(const std::vector<Element>& all) {
   std::string line;
@@ -44,7 +44,7 @@ std::string about(const std::vector<Element>& all, const std::string& name) {
   return element.label + ": " + element.about;
 }
 
-// Answers every line of the standard input, until it ends.
+// Answers every line of the standard input until it ends.
 int converse(const std::function<std::string(std::istream&)>& answer);
 
 }  // namespace contenders

@@ -4,8 +4,8 @@
 //   about NAME               label: version and settings
 //   prepare NAME EFFECT n states masses lengths gravity q qd      the number of the calls
 //   accelerations CALLS      qdd at the first state
-//   bytes CALLS              of the heap that the preparation has left them with, 0 if unknown
-//   make CALLS COUNT         makes so many calls; the right-hand sides of one
+//   bytes CALLS              heap in use after the preparation of the calls, 0 if unknown
+//   make CALLS COUNT         makes so many calls; answers the right-hand sides of one
 //   burst CALLS SECONDS      nanoseconds of a right-hand side, one number for each batch of calls
 #include "forward_dynamics.hpp"
 
@@ -19,8 +19,8 @@
 namespace {
 
 using namespace contenders;
-using RunLimits = std::chrono::steady_clock;
-constexpr double batch_seconds = 1e-5;  // long beside what reading the clock takes
+using Clock = std::chrono::steady_clock;
+constexpr double batch_seconds = 1e-5;  // long compared with reading the clock
 
 struct Prepared {
   std::unique_ptr<Calls> calls;
@@ -28,7 +28,7 @@ struct Prepared {
   int count = 0;  // in a batch
 };
 
-// What has been asked of the heap and not given back, by whatever library; 0 where it is unknown.
+// The bytes of the heap that are in use, by any library; 0 if unknown.
 std::size_t bytes_in_use() {
 #ifdef __GLIBC__
   const auto heap = mallinfo2();
@@ -39,9 +39,9 @@ std::size_t bytes_in_use() {
 }
 
 double seconds_of(Calls& calls, int count) {
-  const auto before = RunLimits::now();
+  const auto before = Clock::now();
   calls.make(count);
-  return std::chrono::duration<double>(RunLimits::now() - before).count();
+  return std::chrono::duration<double>(Clock::now() - before).count();
 }
 
 Scene read_scene(std::istream& in) {
@@ -58,7 +58,7 @@ Scene read_scene(std::istream& in) {
 
 std::string burst(Prepared& prepared, double seconds) {
   Calls& calls = *prepared.calls;
-  const auto begin = RunLimits::now();
+  const auto begin = Clock::now();
   double taken = seconds_of(calls, prepared.count > 0 ? prepared.count : 1);  // warms up
   for (int count = 1; prepared.count == 0; count *= 2) {
     taken = seconds_of(calls, count);
@@ -70,7 +70,7 @@ std::string burst(Prepared& prepared, double seconds) {
     taken = seconds_of(calls, prepared.count) / (prepared.count * calls.right_hand_sides());
     std::snprintf(word, sizeof word, "%.4g ", 1e9 * taken);
     line += word;
-  } while (std::chrono::duration<double>(RunLimits::now() - begin).count() < seconds);
+  } while (std::chrono::duration<double>(Clock::now() - begin).count() < seconds);
   return line;
 }
 

@@ -1,7 +1,6 @@
-// What a contender of forward dynamics is: it prepares calls that give the accelerations of a
-// scene. Each side is a program of its own, so that the linker mixes up no inline function of two
-// headers or of two builds: a .cpp file that defines forward_dynamics(), linked with
-// forward_dynamics.cpp.
+// A contender of forward dynamics prepares calls that compute the accelerations of a scene. Each
+// side is a program of its own, so that the linker does not mix inline functions of two headers or
+// of two builds: a .cpp file that defines forward_dynamics(), linked with forward_dynamics.cpp.
 #pragma once
 
 #include <cstddef>
@@ -15,9 +14,10 @@
 
 namespace contenders {
 
-// A chain of uniform rods (kg, m, m/s^2) with an effect (effect_parameters.hpp, or "none"), and
-// the states that the calls go through in turn, a power of two of them: q of the first state, q of
-// the second ..., absolute angles from +x towards +y, y down; qd likewise.
+// A chain of uniform rods (kg, m, m/s^2) with an effect (effect_parameters.hpp, or "none"), and the
+// states that the calls go through in turn. The number of states is a power of two. q of the first
+// state is followed by q of the second, and so on, in absolute angles from +x towards +y, y down;
+// qd likewise.
 struct Scene {
   std::vector<double> masses, lengths;
   double gravity = 0;
@@ -31,9 +31,9 @@ struct Scene {
 class Calls {
  public:
   virtual ~Calls() = default;
-  virtual void make(int count) = 0;                 // what is timed: each waits for the last one
+  virtual void make(int count) = 0;                 // is timed: each call waits for the one before
   virtual std::vector<double> accelerations() = 0;  // qdd (n) at the first state
-  virtual double right_hand_sides() { return 1; }   // that one call takes
+  virtual double right_hand_sides() { return 1; }   // in one call
 };
 
 struct ForwardDynamics {
@@ -43,14 +43,14 @@ struct ForwardDynamics {
 
 std::vector<ForwardDynamics> forward_dynamics();
 
-// The state that comes next. It is never NaN that decides, but the processor has to wait for the
-// accelerations to know, as the next stage of a step has to.
+// The next state. The acceleration is never NaN here, but the processor has to wait for it, as the
+// next stage of a step has to.
 inline std::size_t next(std::size_t state, double acceleration, std::size_t states) {
   const std::size_t is_nan = acceleration != acceleration ? 1 : 0;
   return (state + 1 + is_nan) & (states - 1);
 }
 
-// Angles of the joints from those of the links, state by state, and back for one state.
+// Converts angles of links to angles of joints, for all states, and back for one state.
 inline std::vector<double> at_joints(const std::vector<double>& of_links, std::size_t n) {
   std::vector<double> result = of_links;
   for (std::size_t i = 0; i < result.size(); ++i)

@@ -1,8 +1,8 @@
-// Boost.odeint on the hard cases, as its able user would write them: dopri5 with dense output or
-// integrate_adaptive, fehlberg78 where much is asked, rosenbrock4 where it is stiff. Called with
-// the name of a case and numbers; prints lines of a name and numbers. bench/compare/hard_cases/
-// says what each case is about.
-// C++17: Boost 1.74's ublas, which rosenbrock4 needs, uses what C++20 has taken away.
+// Boost.odeint on the hard cases, as an experienced user would write them: dopri5 with dense output
+// or integrate_adaptive, fehlberg78 for high accuracy, rosenbrock4 for stiff cases. The program is
+// called with the name of a case and numbers, and prints lines of a name and numbers.
+// bench/compare/hard_cases/ says what each case is about.
+// C++17, because Boost 1.74's ublas, which rosenbrock4 needs, uses what C++20 has removed.
 #include <algorithm>
 #include <array>
 #include <boost/numeric/odeint.hpp>
@@ -39,7 +39,7 @@ auto dense_dopri5(double atol, double rtol) {
   return ode::make_dense_output(atol, rtol, ode::runge_kutta_dopri5<State>());
 }
 
-// The time in [low, high] where the sign of `value` changes.
+// The time in [low, high] at which the sign of `value` changes.
 double bisect(double low, double high, const std::function<double(double)>& value) {
   const bool above = value(low) > 0;
   for (int k = 0; k < 80; ++k) {
@@ -49,7 +49,7 @@ double bisect(double low, double high, const std::function<double(double)>& valu
   return high;
 }
 
-// One rod under a torque, friction with a smoothed sign; its Jacobian.
+// One rod under a torque and friction with a smoothed sign, and its Jacobian.
 struct Rubbed {
   double friction, soft;
   std::function<double(double, double)> torque, torque_by_angle, torque_by_time;
@@ -88,7 +88,7 @@ void held_rod(const Numbers&) {
   tell("q", {y[0]});
 }
 
-// Number: a time in a rest.
+// Number: a time at which the rod rests.
 void stick_slip(const Numbers& numbers) {
   const Rubbed rod{0.7, 1e-4, [](double t, double) { return 0.4 + 0.5 * std::sin(2 * t); },
                    [](double, double) { return 0.0; },
@@ -113,7 +113,7 @@ void bounces(const Numbers&) {
   double t = 0;
   while (t < t_end) {
     auto stepper = dense_dopri5<Two>(1e-13, 1e-11);
-    const double flight = y[1] > 0 ? y[1] : 1.0;  // a first step within the flight, of 2 y[1]/2 s
+    const double flight = y[1] > 0 ? y[1] : 1.0;  // the flight takes 2 y[1]/2 s: begin within it
     stepper.initialize(y, t, 0.25 * flight);
     do {
       stepper.do_step(rates);
@@ -188,7 +188,7 @@ void two_roots(const Numbers& numbers) {
   tell("t", found);
 }
 
-// A right-hand side of four, with its derivatives by differences.
+// A right-hand side of four components, with derivatives by differences.
 template <class Rates>
 auto with_differences(const Rates& rates) {
   return std::make_pair(rates, [rates](const Stiff& y, Matrix& j, const double& t, Stiff& by_time) {
@@ -227,7 +227,7 @@ void stiff_damper(const Numbers&) {
   tell("steps", {static_cast<double>(steps)});
 }
 
-// Numbers: the times to tell the states at.
+// Numbers: the times at which to print the states.
 void two_joints(const Numbers& times) {
   const auto rates = [](const Stiff& y, Stiff& f, double t) {
     const double soft = 1e-3;
@@ -248,7 +248,7 @@ void two_joints(const Numbers& times) {
   tell("states", states);
 }
 
-// Numbers: the start, upright, the tolerances.
+// Numbers: the start (upright), the tolerances.
 void upright(const Numbers& numbers) {
   const double start = numbers[0], top = numbers[1];
   auto stepper = dense_dopri5<Four>(numbers[3], numbers[2]);

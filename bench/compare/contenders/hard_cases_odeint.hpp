@@ -1,4 +1,4 @@
-// What the files of hard_cases_odeint share.
+// Declarations that the files of hard_cases_odeint share.
 #pragma once
 
 #include <boost/numeric/odeint.hpp>
@@ -22,7 +22,7 @@ auto controlled_dopri5(double atol, double rtol) {
       atol, rtol, boost::numeric::odeint::runge_kutta_dopri5<State>());
 }
 
-// Rates of two rods of 1 kg and 1 m, with couples at the joints.
+// The rates of two rods of 1 kg and 1 m, with couples at the joints.
 template <class State>
 void textbook(const State& y, State& f, double first = 0, double second = 0) {
   constexpr double g = 9.807;

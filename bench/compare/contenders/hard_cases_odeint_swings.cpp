@@ -1,4 +1,4 @@
-// Boost.odeint on swings: of a heavy payload, of a chain, over long times, on a shaken pivot.
+// Boost.odeint on oscillations: of a heavy payload, of a chain, over long times, on a shaken pivot.
 #include <array>
 #include <boost/numeric/odeint.hpp>
 #include <cmath>
@@ -57,7 +57,7 @@ class Chain {
   }
 
  private:
-  // L L' in place, and the forces become the accelerations.
+  // The matrix is factored in place as L L', and the forces become the accelerations.
   void solve() {
     for (std::size_t i = 0; i < n_; ++i) {
       double* const row = &matrix_[i * n_];
@@ -82,7 +82,7 @@ class Chain {
 
 }  // namespace
 
-// Numbers: the payload, the angles from hanging at the start, the end.
+// Numbers: the payload, the start's angles from hanging, the end.
 void payload(const Numbers& numbers) {
   const double p = numbers[0], g = 9.807;
   const auto rates = [=](const Four& y, Four& f, double) {
@@ -111,8 +111,8 @@ void chain(const Numbers& numbers) {
   tell("steps", {static_cast<double>(steps)});
 }
 
-// Numbers: 5 or 8 for the order, the tolerances, the start's angles, the times to tell the states
-// at.
+// Numbers: 5 or 8 for the order, the tolerances, the start's angles, the times at which to print
+// the states.
 void drift(const Numbers& numbers) {
   const auto rates = [](const Four& x, Four& f, double) { textbook(x, f); };
   const std::vector<double> times(numbers.begin() + 5, numbers.end());

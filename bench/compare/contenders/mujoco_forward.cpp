@@ -1,5 +1,5 @@
-// MuJoCo's forward dynamics at its best, three ways: mj_forward without its sensors; the parts of
-// it that a bare chain needs, called one by one; and whole runs of its Runge-Kutta method, four
+// MuJoCo's forward dynamics at its best, in three ways: mj_forward without its sensors; its parts
+// that a bare chain needs, called one by one; and whole runs of its Runge-Kutta method, with four
 // right-hand sides a step.
 #include <algorithm>
 #include <utility>
@@ -12,7 +12,7 @@ namespace contenders {
 namespace {
 
 constexpr std::size_t longest = 1000;
-constexpr int steps = 50;  // of a run
+constexpr int steps = 50;  // steps in a run
 
 class MujocoCalls : public Calls {
  public:
@@ -28,7 +28,7 @@ class MujocoCalls : public Calls {
   }
 
   void make(int count) override {
-    // Other calls of this program may want others.
+    // Other calls of this program may need other callbacks.
     mjcb_passive = callbacks_.passive;
     mjcb_control = callbacks_.control;
     for (; count > 0; --count) state_ = next(state_, call(state_), states_);

@@ -19,7 +19,7 @@ mjsJoint* add_link(mjsBody*& body, double begins_at, double mass, double length)
   const double inertia = mass * length * length / 12;
   fill(body->pos, begins_at, 0, 0);
   fill(body->ipos, length / 2, 0, 0);
-  // Exactly slender it could not be compiled; what turns about its own axis is never felt.
+  // MuJoCo would not compile an exactly slender rod. The inertia about its own axis has no effect.
   fill(body->inertia, 1e-6 * inertia, inertia, inertia);
   body->mass = mass;
   body->explicitinertial = 1;
@@ -69,7 +69,7 @@ void add_effect(mjSpec* spec, mjsBody* tip, double length, mjsJoint* joint,
   } else if (effect == "rotor_inertia") {
     joint->armature = armature;
   } else if (effect == "payload") {
-    // As one body, which is less work than one fixed to another.
+    // One body is less work than a body that is fixed to another.
     const double mass = tip->mass + payload_mass, center = tip->ipos[0];
     const double moved = payload_mass / mass * (length - center);
     tip->inertia[1] += tip->mass * moved * (length - center) + payload_inertia;
@@ -110,7 +110,7 @@ Callbacks callbacks_of(const std::string& effect) {
   Callbacks callbacks;
   if (effect == "user") {
     callbacks.passive = [](const mjModel* /*model*/, mjData* data) {
-      // On the rate of link 2, hence on both joints' angles.
+      // It acts on the rate of link 2, and so on the angles of both joints.
       const double couple = -user_damping * (data->qvel[0] + data->qvel[1]);
       data->qfrc_passive[0] += couple;
       data->qfrc_passive[1] += couple;

@@ -1,4 +1,5 @@
-// Scenes as MuJoCo's models: bodies without shapes, and nothing computed that the scene has not.
+// Scenes as MuJoCo's models: bodies without shapes, with everything switched off that the scene
+// does not have.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -18,16 +19,16 @@ using Spec = std::unique_ptr<mjSpec, Delete>;
 using Model = std::unique_ptr<mjModel, Delete>;
 using Data = std::unique_ptr<mjData, Delete>;
 
-// Throws Unsupported for an effect that MuJoCo has no counterpart of.
+// Throws Unsupported for an effect without a counterpart in MuJoCo.
 Model model_of(const Scene& scene);
 
-// What MuJoCo calls back for the effect of that name; nothing for most.
+// The callbacks of MuJoCo for the effect of that name; empty for most effects.
 struct Callbacks {
   mjfGeneric passive = nullptr, control = nullptr;
 };
 Callbacks callbacks_of(const std::string& effect);
 
-// What its actuator is set to, once for all calls.
+// The value of the actuator for the effect, set once for all calls.
 double control_of(const std::string& effect);
 
 }  // namespace contenders

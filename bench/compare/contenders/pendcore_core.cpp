@@ -1,5 +1,5 @@
-// pendcore's own core as a C++ user calls it: pendcore::simulate, states at the given times, result
-// object included.
+// pendcore's own core as a C++ user calls it: pendcore::simulate with states at the given times,
+// including the result object.
 #include <cstddef>
 #include <pendcore/integrate/methods.hpp>
 #include <pendcore/pendcore.hpp>

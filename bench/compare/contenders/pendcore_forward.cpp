@@ -16,7 +16,7 @@ void damp_second_link(double /*t*/, int /*n*/, const double* /*q*/, const double
   Q[1] -= user_damping * qd[1];
 }
 
-// A name that ends with _0 is of the same effect with a coefficient of 0.
+// A name that ends with _0 stands for the same effect with a coefficient of 0.
 std::vector<pendcore::Effect> effects_of(const std::string& name) {
   using namespace pendcore;
   if (name == "viscous_joint_0") return {ViscousJoint{.joint = 2, .damping = 0.0}};
@@ -147,7 +147,7 @@ class Steps : public Calls {
   }
   double right_hand_sides() override { return 6.0; }
   std::vector<double> accelerations() override {
-    throw Unsupported("a step says nothing of the accelerations");
+    throw Unsupported("a step does not give the accelerations");
   }
 
  private:
@@ -155,11 +155,12 @@ class Steps : public Calls {
   double error_ = 0;
 };
 
-// The kernel of the bare double pendulum, named by its type: it has never heard of an effect.
+// The kernel of the bare double pendulum, named by its type, without any code for effects.
 std::unique_ptr<Calls> steps_of_kernel(const Scene& given) {
   using namespace pendcore;
   using System = FirstOrder<DoublePendulum>;
-  if (given.n() != 2 || given.effect != "none") throw Unsupported("it is that of two bare links");
+  if (given.n() != 2 || given.effect != "none")
+    throw Unsupported("this kernel is for two bare links");
   const pendcore::Scene scene = scene_of(given);
   return std::make_unique<Steps>(given, std::make_unique<RungeKuttaFixed<dormand_prince_5, System>>(
                                             System{DoublePendulum(scene, Inertia(scene))}));

@@ -1,5 +1,5 @@
-// Pinocchio's articulated-body algorithm at its best: a joint type known while compiling, in a
-// collection of its own (a fifth quicker than the default one of twenty-five types), headers alone.
+// Pinocchio's articulated-body algorithm at its best: the joint type is known at compile time, in a
+// collection of its own (a fifth quicker than the default one of twenty-five types), header-only.
 #include <pinocchio/algorithm/aba.hpp>
 #include <utility>
 
@@ -16,7 +16,7 @@ struct Hinges {
   static constexpr int Options = options;
   using JointModelRZ = pin::JointModelRevoluteTpl<Scalar, Options, 2>;
   using JointDataRZ = pin::JointDataRevoluteTpl<Scalar, Options, 2>;
-  // Checks of the library name this one.
+  // The library's checks require this name.
   using JointModelMimic = pin::JointModelMimicTpl<Scalar, Options, contenders::Hinges>;
   using JointDataMimic = pin::JointDataMimicTpl<Scalar, Options, contenders::Hinges>;
   using JointModelVariant = boost::variant<JointModelRZ, boost::recursive_wrapper<JointModelMimic>>;

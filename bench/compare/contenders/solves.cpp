@@ -5,7 +5,7 @@
 //   prepare NAME SETTING n masses lengths gravity damping stiffness rest controller start n_t times
 //                            the number of the run
 //   outcome RUN              right-hand sides, steps, then the states; or failed and why
-//   burst RUN SECONDS        nanoseconds of each call; a first of several only warms up
+//   burst RUN SECONDS        nanoseconds of each call; the first of several only warms up
 #include <chrono>
 #include <cstddef>
 #include <string>
@@ -47,13 +47,13 @@ std::string outcome(Run& run) {
 }
 
 std::string burst(Run& run, double seconds) {
-  using RunLimits = std::chrono::steady_clock;
+  using Clock = std::chrono::steady_clock;
   std::vector<long long> taken;
-  const auto begin = RunLimits::now();
+  const auto begin = Clock::now();
   for (;;) {
-    const auto before = RunLimits::now();
+    const auto before = Clock::now();
     run.solve();
-    const auto after = RunLimits::now();
+    const auto after = Clock::now();
     taken.push_back(std::chrono::duration_cast<std::chrono::nanoseconds>(after - before).count());
     if (std::chrono::duration<double>(after - begin).count() >= seconds) break;
   }

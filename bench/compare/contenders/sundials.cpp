@@ -1,9 +1,10 @@
-// SUNDIALS at its best, by experiment: memory made once and set back for each solve (quicker than
-// anew), the closed form with its constants in place, no output but the states. Of ARKODE's
-// explicit tables the fifth order takes its own dense output, Hermite's of degree 4; degree 5 costs
-// more and brings no more here. The others are of higher order than any dense output it has: their
-// steps end at the times asked for. CVODE's Adams iterates by fixed point; BDF has Newton's method,
-// and where joints have springs and dampers the analytic Jacobian.
+// SUNDIALS at its best, as found by experiment: memory is made once and reset for each solve
+// (quicker than making it anew), the closed form has its constants in place, and there is no output
+// but the states. Among ARKODE's explicit tables, the fifth order takes its own dense output,
+// Hermite's of degree 4; degree 5 costs more without any gain here. The other tables are of higher
+// order than any dense output of ARKODE: their steps end at the times asked for. CVODE's Adams
+// method iterates by fixed point; BDF has Newton's method, with the analytic Jacobian where joints
+// have springs and dampers.
 #include <arkode/arkode_erkstep.h>
 #include <cvode/cvode.h>
 #include <nvector/nvector_serial.h>
@@ -43,7 +44,7 @@ void done(int flag) {
 
 void be_silent(int, const char*, const char*, char*, void*) {}
 
-// What both packages need; and the walk along the times.
+// What both packages need, and the loop over the times.
 template <class Rods>
 class SundialsRun : public Run {
  public:
@@ -190,7 +191,7 @@ class CvodeRun : public SundialsRun<Rods> {
   SUNMatrix matrix_ = nullptr;
 };
 
-// `Kind` is the template of runs, `choice` what tells its contenders apart.
+// `Kind` is the template of runs; `choice` distinguishes its contenders.
 template <template <class> class Kind, class Choice>
 Contender sundials(const std::string& name, const std::string& label, const std::string& how,
                    Choice choice) {

@@ -1,6 +1,7 @@
-// The rates of change of two or three rods of 1 kg and 1 m, for contenders that bring no mechanics:
-// the closed form with its constants in place, as its reader would write it for speed. Eliminated
-// from the tip, so that the accelerations need one division. (equations.py has the like.)
+// The rates of change of two or three rods of 1 kg and 1 m, for contenders without mechanics of
+// their own: the closed form with its constants in place, as a reader of it would write it for
+// speed. The elimination begins at the tip, so that the accelerations need one division.
+// (equations.py has the same.)
 #pragma once
 
 #include <algorithm>
@@ -31,7 +32,7 @@ struct TwoRods {
   }
 };
 
-// With springs and dampers in the joints.
+// The same rods with springs and dampers in the joints.
 struct LoadedRods : TwoRods {
   double b1, b2, k1, k2, rest1, rest2;
   explicit LoadedRods(const Case& given)

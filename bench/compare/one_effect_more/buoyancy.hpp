@@ -3,7 +3,7 @@
 ///
 ///     F = -B e_y
 ///
-/// with B the weight of the displaced fluid. y points down.
+/// with B the weight of the displaced fluid; y points down.
 #pragma once
 
 #include "pendcore/effects/hooks.hpp"

@@ -10,14 +10,14 @@
 namespace pendcore {
 namespace {
 
-/// On 1 to 30 links a step of radau5 costs 1 to 6 series, 2 to 13 steps of dop853, 3 to 16 of
-/// dopri5.
+/// On 1 to 30 links a step of radau5 costs as much as 1 to 6 series, 2 to 13 steps of dop853, or 3
+/// to 16 steps of dopri5.
 constexpr double longer = 10.0;
 
-/// What a memory ends in.
+/// The last number of a saved state.
 constexpr double is_first = 0.0;
 constexpr double is_second = 1.0;
-constexpr double is_asked = 2.0;  ///< the first; the size of the step comes before
+constexpr double is_asked = 2.0;  ///< the first method; the size to try comes before
 
 }  // namespace
 
@@ -67,7 +67,8 @@ Attempt StiffSwitchingStepper::attempt(double t, double h, double gain) {
   return attempt;
 }
 
-/// Whether the implicit method's step is within the tolerances; no answer where it was given up.
+/// Whether the implicit method's step is within the tolerances; no answer if the attempt was given
+/// up.
 std::optional<bool> StiffSwitchingStepper::pays(double t) {
   begin_implicit();
   bool is_given_up = false;
@@ -82,7 +83,7 @@ std::optional<bool> StiffSwitchingStepper::pays(double t) {
     throw;
   } catch (const Stopped&) {
     throw;
-  } catch (...) {  // a function of the user's, that steps of the run itself may never ask so far
+  } catch (...) {  // a user's function, which the run's own steps may never call there
     squared_error = std::numeric_limits<double>::infinity();
   }
   implicit_->keep_going = nullptr;
@@ -96,7 +97,7 @@ void StiffSwitchingStepper::accept(double t_new) {
   count();
 }
 
-/// The implicit method begins where the first stands.
+/// Starts the implicit method from the state of the first.
 void StiffSwitchingStepper::begin_implicit() {
   std::vector<double> y(dimension());
   std::vector<double> dydt(dimension());

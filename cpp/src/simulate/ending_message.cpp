@@ -13,7 +13,7 @@ std::string component_name(int i, int n) {
   return i < n ? "q_" + std::to_string(i + 1) : "qd_" + std::to_string(i - n + 1);
 }
 
-/// What is told where a table or spline does not go on at time t, in the run's direction.
+/// The message if a table or spline ends at time t, in the run's direction.
 std::string table_that_ends(const Scene& scene, double t, bool forward) {
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
     if (!is_outside_table(scene.effects[i], t, forward)) continue;
@@ -23,7 +23,7 @@ std::string table_that_ends(const Scene& scene, double t, bool forward) {
   return {};
 }
 
-/// Where a user's law jumps, every step across it is rejected.
+/// Whether a user's law seems to jump: every step across a jump is rejected.
 bool jumps_under_users(const Scene& scene, const Statistics& statistics) {
   return !effects_of<CompiledUser>(scene).empty() && statistics.rejected > statistics.accepted;
 }
@@ -36,7 +36,7 @@ std::string ending_message(const Ending& ending, const Scene& scene, const Solut
   std::string message(text(ending.status).sentence);
   const Statistics& statistics = integrator.statistics;
   const bool wants_another_method = statistics.stiff && statistics.njev == 0;
-  // What helps there is told with the stiffness: a method, not more steps.
+  // For a stiff run, the remark on stiffness has the advice: another method, not more steps.
   if (ending.status == Status::max_steps && wants_another_method) message.resize(message.find(':'));
   if (ending.status == Status::at_rest) {
     const double since = solution.resumable.t.high;
@@ -76,8 +76,8 @@ std::string ending_message(const Ending& ending, const Scene& scene, const Solut
   message += at;
   if (ending.status == Status::max_steps && jumps_under_users(scene, statistics)) {
     message +=
-        "; most steps were rejected: a law of yours that jumps, as sign(w) does, is no "
-        "friction that rests: DryJointFriction is";
+        "; most steps were rejected: a law of yours that jumps, as sign(w) does, is not "
+        "friction that can hold a joint at rest: use DryJointFriction";
     return message + ')';
   }
   if (ending.status != Status::non_finite) return message + ')';

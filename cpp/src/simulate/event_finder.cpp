@@ -12,7 +12,7 @@ namespace pendcore {
 namespace {
 
 constexpr double turn = 6.283185307179586;
-constexpr double most_turns = 1e6;  // seconds of work, and what a list can hold
+constexpr double most_turns = 1e6;  // these take seconds, and fit into a list
 
 }  // namespace
 
@@ -28,7 +28,7 @@ EventFinder::EventFinder(const Scene& scene, const std::vector<Event>& events,
       node_values_(events.size()) {
   passed_.resize(events.size());
   for (const FoundEvent& one : found) ++counts_[one.event];
-  // A run that goes on may do so between two changes at one time.
+  // A continued run may begin between two changes at one time.
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (found[i].t == found.back().t) at_the_end_.push_back(i);
   }
@@ -91,7 +91,7 @@ EventFinder::Levels EventFinder::levels_between(const Difference& difference, do
   return {value, first, std::floor(to + margin) - first + 1.0};
 }
 
-/// The levels that the difference may pass, as far as its polynomial comes.
+/// The levels that the difference may pass, within the bounds of its polynomial.
 EventFinder::Levels EventFinder::levels_along(const Difference& difference, int degree, double end,
                                               double noise) {
   if (!difference.every_turn) return levels_between(difference, 0.0, 0.0);
@@ -119,11 +119,11 @@ void EventFinder::find_difference(std::size_t k, const Step& step) {
     moved += std::abs(polynomial_[p]);
     moved_with_its_links = std::max(moved_with_its_links, size_of_row);
   }
-  // A joint that is held passes nothing, whatever the last bits of its links' angles do.
+  // A held joint passes no level, whatever the last bits of its links' angles do.
   if (moved <= 64.0 * epsilon * moved_with_its_links) return;
   const double end = difference.of(y_new_.data());
   const Levels levels = levels_along(difference, degree, end, 8.0 * epsilon * size);
-  // A turn a step is bounded by the number of steps.
+  // One turn in each step is bounded by the number of steps.
   if (!(levels.count <= 1.0)) turns_ += levels.count - 1.0;
   if (!(turns_ <= most_turns)) {
     has_too_many_ = true;
@@ -160,8 +160,8 @@ void EventFinder::find_function(std::size_t k, const events::Function& event, co
              roots_);
 }
 
-/// The values at both ends of a step of what costs more than a difference: the first is known from
-/// the step before.
+/// The values at both ends of a step, for functions that cost more than a difference. The value at
+/// the start is known from the step before.
 void EventFinder::node_values(std::size_t k, const Step& step, double& start, double& end) {
   const bool is_known =
       node_t_ == step.t_old.high && std::equal(node_y_.begin(), node_y_.end(), step.rows);
@@ -218,7 +218,7 @@ StepEnd EventFinder::look(const Stepper& stepper, const double* rows, const TwoD
   });
   double stop = 1.0;
   for (const Candidate& candidate : candidates_) {
-    if (candidate.theta > stop) break;  // what happens at the same time is found
+    if (candidate.theta > stop) break;  // events at the same time are still found
     if (candidate.theta == 1.0) {
       at_the_end_.push_back(found_.size());
       append(candidate, t_new, y_new_.data());
@@ -273,7 +273,8 @@ void EventFinder::jump(double t, const double* before, const double* after) {
   std::copy_n(after, node_y_.size(), node_y_.begin());
 }
 
-/// A change of sign by a jump is an event; one that begins at zero was found, or never armed.
+/// A change of sign by a jump is an event. A change that begins at zero was found before, or was
+/// never armed.
 void EventFinder::cross(std::size_t k, double before, double after, double t,
                         const double* y_before, const double* y_after) {
   const int from = sign(before);

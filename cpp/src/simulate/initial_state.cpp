@@ -39,7 +39,7 @@ void check_stop(const JointStop& stop, const std::string& where, const std::vect
   }
 }
 
-/// What the effects of a scene ask of a start and of an interval.
+/// Checks what the effects of a scene require of a start and of an interval.
 void check_effects_at_start(const Scene& scene, const std::vector<double>& q0,
                             const std::vector<double>& qd0, double t0, double t_end) {
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
@@ -113,8 +113,8 @@ std::string span_of(const Effect& effect) {
 std::vector<std::string> run_warnings(const Scene& scene, const std::vector<double>& q0, double t0,
                                       double t_end) {
   std::vector<std::string> warnings;
-  // Who writes degrees writes multiples of five, and hardly beyond two turns; in radians such
-  // numbers are next to none but 0, 5 and 10.
+  // Angles in degrees are usually multiples of five, and hardly more than two turns. In radians
+  // such numbers are rare, except for 0, 5 and 10.
   const bool as_degrees = std::ranges::all_of(
       q0, [](double q) { return std::fmod(q, 5.0) == 0.0 && std::abs(q) <= 720.0; });
   const auto large = std::ranges::find_if(q0, [](double q) { return std::abs(q) >= 15.0; });

@@ -7,7 +7,7 @@
 namespace pendcore {
 namespace {
 
-/// From here on down dop853 takes less time than dopri5 for the same error.
+/// Below this tolerance dop853 takes less time than dopri5 for the same error.
 constexpr double tight = 1e-6;
 
 }  // namespace
@@ -15,9 +15,9 @@ constexpr double tight = 1e-6;
 std::string_view chosen_method(const Scene& scene, const Options& options) {
   if (options.method != automatic) return find_method(options.method, automatic).name;
   const std::size_t n = scene.links.size();
-  // Longer than a series carries a fixed step may be, and no stability test makes it shorter.
+  // A fixed step may be longer than a series is valid, and no stability test shortens it.
   if (options.step) return dormand_prince_5.info.name;
-  // A single link is cheap to evaluate.
+  // A single link is cheap to evaluate, so that a series does not save time.
   if (n > 1 && !without_series(scene)) return taylor_radau5.info.name;
   const std::vector<double> rtol = relative_tolerances(options, n);
   const std::vector<double> atol = absolute_tolerances(options, n);

@@ -40,7 +40,7 @@ NotFinite find_what_is_not_finite(const Scene& scene, const IntegratorState& int
     try {
       const NotFinite found = look_at(scene, integrator.t.high + h, y);
       if (found.component >= 0) return found;
-    } catch (...) {  // by a function of the user's: what it raises here was not asked for
+    } catch (...) {  // a user's function threw, which the run did not call here
       return {};
     }
   }

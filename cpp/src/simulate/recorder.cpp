@@ -31,7 +31,8 @@ void Recorder::start(double t, const std::vector<double>& y) {
 
 StepEnd Recorder::step_accepted(Stepper& stepper, const TwoDouble& t_old, double h, double t_new) {
   StepEnd end;
-  // Before anything is kept: it may ask for right-hand sides, and one of the user's may raise.
+  // This comes before anything is kept: it may evaluate right-hand sides, and a user's function may
+  // throw.
   if (finder_ || keeps_polynomials_) stepper.interpolant(h, polynomial_.data());
   if (finder_) {
     end = finder_->look(stepper, polynomial_.data(), t_old, h, t_new);
@@ -55,7 +56,7 @@ StepEnd Recorder::step_accepted(Stepper& stepper, const TwoDouble& t_old, double
   return end;
 }
 
-/// The step up to an event within it, at time t.
+/// Keeps the step up to an event within it, at time t.
 void Recorder::keep_clipped(Stepper& stepper, const TwoDouble& t_old, double h, double theta,
                             double t) {
   const std::vector<double>& samples = solution_.options.t_eval;
@@ -68,8 +69,8 @@ void Recorder::keep_clipped(Stepper& stepper, const TwoDouble& t_old, double h, 
   if (is_kept && is_new) stepper.sample(polynomial_.data(), {}, 1.0, &theta, 1, append(t));
 }
 
-/// Both states are kept, with the same time; of times asked for, the state after. An impact that
-/// changes no rate is no jump.
+/// Keeps both states, with the same time; at a time that was asked for, only the state after the
+/// jump. An impact that changes no rate is not a jump.
 void Recorder::state_jumped(double t, const double* before, const double* after) {
   if (std::equal(before, before + 2 * solution_.n, after)) return state_settled(t, after);
   if (finder_) finder_->jump(t, before, after);

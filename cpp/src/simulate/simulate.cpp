@@ -22,10 +22,10 @@
 namespace pendcore {
 namespace {
 
-/// A run goes on from where it ended, to times that it has not been asked for.
+/// Checks that a run is continued from where it ended, to times that it has not been asked for.
 void check_continuation(const Solution& solution, double t_end, const std::vector<double>& t_eval) {
   const double reached = solution.t_reached;
-  // A run of no length has no direction yet: it takes that of what follows.
+  // A run of no length has no direction yet: it takes the direction of its continuation.
   const bool has_length = solution.t_end != solution.t0;
   const double span = (has_length ? solution.t_end : t_end) - solution.t0;
   auto before = [span](double a, double b) { return span < 0.0 ? b < a : span > 0.0 && a < b; };
@@ -49,11 +49,11 @@ void check_continuation(const Solution& solution, double t_end, const std::vecto
   }
 }
 
-/// What a solution that goes on has: one that has no length yet has no direction either.
+/// What a solution has before a run: nothing, a start without a direction of time, or steps.
 enum class Before { nothing, a_start, steps };
 
-/// The laws, the rates and the first step of a run that begins. Where a function of the user's
-/// raises, or an impact is not finite, nothing of that is kept: a run that goes on begins anew.
+/// The laws, the rates and the first step at the beginning of a run. If a user's function throws,
+/// or an impact is not finite, nothing of this is kept, and a continued run begins anew.
 struct Beginning {
   const Options& options;
   Stepper& stepper;
@@ -61,9 +61,9 @@ struct Beginning {
   Recorder& recorder;
   const std::vector<double>& rtol;
   const std::vector<double>& atol;
-  bool depends_on_end = false;  ///< the first step does: of a longer run it is another one
+  bool depends_on_end = false;  ///< the first step does: a longer run has another one
 
-  /// `integrator` is of no use where the ending is cut.
+  /// `integrator` is not valid if the ending is cut.
   Ending make(IntegratorState& integrator, double t_end) {
     recorder.restarts_here();
     Ending ending{.status = Status::finished, .cut = false};
@@ -118,7 +118,7 @@ struct Beginning {
   }
 };
 
-/// From the solution's resumable position to t_end.
+/// Runs from the solution's resumable position to t_end.
 void run(const Scene& scene, Solution& solution, double t_end, Limits limits, Before before,
          const std::vector<long long>& passed_events = {}) {
   const Options& options = solution.options;
@@ -141,7 +141,7 @@ void run(const Scene& scene, Solution& solution, double t_end, Limits limits, Be
   if (before == Before::nothing) recorder.start(integrator.t.high, integrator.y);
   Switching* const discontinuities = switching ? &*switching : nullptr;
   RunLimits clock(limits, integrator.t.high);
-  if (switching) {  // which joints hold is no step, and takes long in a long chain
+  if (switching) {  // deciding which joints are held is not a step, and takes long in a long chain
     switching->look_up_in_long_work([&clock, &integrator] {
       const Status status = clock.look(integrator.t.high);
       if (status != Status::finished) throw Stopped{status};
@@ -246,7 +246,7 @@ Solution resume(const Scene& scene, const Solution& solution, double t_end,
   check(options);
 
   longer.t_end = t_end;
-  // What has no step yet begins anew.
+  // A run without steps begins anew.
   const bool has_begun = solution.resumable.h != 0.0;
   if (!has_begun) {
     const auto middle = solution.start.begin() + solution.n;
@@ -266,7 +266,8 @@ Solution resume(const Scene& scene, const Solution& solution, double t_end,
   longer.dense.coefficients.resize(longer.resumable_steps * (degree + 1) * dimension);
   Limits limits = limits_of(options, t_end);
   limits.monitor = monitor;
-  // To the same end, the run does again what it did since: that is no step of the continuation.
+  // If the end is the same, the run repeats what it did since the resumable position. That is not
+  // counted as steps of the continuation.
   if (t_end == solution.t_end) {
     const long long again = attempts(solution.statistics) - attempts(solution.resumable.statistics);
     const long long most = std::numeric_limits<long long>::max() - max_steps;

@@ -60,8 +60,9 @@ void Switching::choose_modes_from(double t, const double* q, const double* qd) {
   }
 }
 
-/// A law that has its sides apart at the rate zero is on the one that a joint at rest sets out to:
-/// that of its acceleration, or the one it was let go to while it has none.
+/// For joints at rest, chooses the modes of laws that differ on the two sides of the rate zero. A
+/// joint that was just released takes the side of its release; any other joint takes the side to
+/// which its acceleration leads.
 void Switching::choose_sides(double t, const double* q, const double* qd) {
   std::vector<double> qdd;
   for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
@@ -108,7 +109,8 @@ double Switching::next_time(double t) const {
   return next_time_;
 }
 
-/// An eighth of the fastest wave, where a joint is held that it could set free.
+/// Sets the longest step to an eighth of a period of the fastest wave, where a joint is held that
+/// the wave could release. Users' functions have a limit of their own.
 void Switching::set_longest_step() {
   constexpr double eighth_turn = 0.785398163397448;
   longest_step_ = never;
@@ -122,8 +124,8 @@ void Switching::set_longest_step() {
   }
 }
 
-/// Whether a joint that was let go has no acceleration yet, but for the last bits of its torque and
-/// of time: other changes at the same time may have given it one.
+/// Whether a released joint has no acceleration yet, apart from the last bits of its torque and of
+/// time. Other changes at the same time may have given it one.
 bool Switching::is_at_its_border(int joint, double t, const double* y) const {
   std::vector<double> qdd(n_);
   accelerations_in_force(equations_, t, y, y + n_, qdd.data());
@@ -185,19 +187,20 @@ void Switching::release(const HeldGuard& guard, double t, const double* y) {
   joints_.release(*equations_.effects, guard.joint, release_direction_[guard.joint]);
 }
 
-/// Whether the state jumped.
+/// Returns whether the state jumped.
 bool Switching::reach_stop(int k, double t, double* y) {
   settle(k, y);
   const int joint = guards_[k].joint;
   double* const qd = y + n_;
   if (std::abs(relative(qd, joint + 1)) <= epsilon * joints_.supports()[joint].natural_speed) {
-    // No impact: it would set joints in motion that friction holds, at a rate below all rounding.
+    // This is not an impact: an impact would set joints in motion that friction holds, at a rate
+    // below all rounding.
     set_relative(qd, joint + 1, 0.0);
     joints_.settle(y, qd);
     choose(t, y, joint);
     return false;
   }
-  // Or it was leaving, and is back too soon to be told: captured.
+  // Or the joint was leaving the stop, and is back too soon for time to resolve it: it is captured.
   const std::vector<double> before(qd, qd + n_);
   strike(t, y, false);
   return !std::equal(before.begin(), before.end(), qd);
@@ -210,7 +213,7 @@ bool Switching::is_of_friction(const Watch& watch) const {
 void Switching::come_to_rest(int k, double t, double* y) {
   settle(k, y);
   const int joint = guards_[k].joint;
-  // Where the torques begin to hold it just now, rounding has no say in whether they do.
+  // If the torques begin to hold the joint just now, rounding must not decide whether they do.
   if (joints_.is_rounding(joint, slope_at_rest(k, t, y))) {
     joints_.choose(equations_, t, y, y + n_, joint);
   } else {
@@ -218,7 +221,7 @@ void Switching::come_to_rest(int k, double t, double* y) {
   }
 }
 
-/// A law that has its sides apart is on the next.
+/// Changes a law to its next mode.
 void Switching::change_side(const Watch& watch) {
   std::visit(
       [&]<class Kind>(const Kind& one) {
@@ -234,7 +237,8 @@ double Switching::shortest_moment(double t) const {
   return 64.0 * epsilon * std::max(std::abs(t), 1.0 / joints_.natural_speed());
 }
 
-/// Which joints are held; in the end, what changed last.
+/// Chooses which joints are held. After too many changes at one time, the joint that changed last
+/// is held in any case.
 void Switching::choose(double t, const double* y, int joint) {
   const bool is_hopeless = changes_at_once_ > 3 * many_at_once;
   joints_.choose(equations_, t, y, y + n_, is_hopeless ? joint : -1);
@@ -255,7 +259,7 @@ void Switching::cross_time(double t) {
   }
 }
 
-/// Whether what holds now holds for ever.
+/// Whether no effect changes with time, so that what holds the joints now holds them for ever.
 bool Switching::is_for_good() const {
   return std::ranges::none_of(scene_.effects, [](const Effect& effect) {
     return std::visit(

@@ -32,7 +32,8 @@ void Switching::collect_guards(const double* y) {
     if (joints_.holds()[j].most < never) held_guards_.push_back({j, true});
   }
   for (Watch& watch : guards_) {
-    const bool was_released = release_direction_[watch.joint] != 0;  // its acceleration is zero too
+    const bool was_released =
+        release_direction_[watch.joint] != 0;  // then its acceleration is zero too
     if (watch.stop == Side::none && watch.guard.is_on_rate()) {
       const bool is_zero = relative(y + n_, watch.joint + 1) == 0.0;
       watch.zeros_at_start = is_zero ? 1 + (was_released ? 1 : 0) : 0;
@@ -47,7 +48,7 @@ void Switching::collect_stops(const double* y) {
     const JointSupport& support = joints_.supports()[j];
     if (equations_.effects->held[j] != 0) continue;
     const Side touches = joints_.contact(j, y);
-    // So are its rate and acceleration where it was held until now.
+    // The rate and the acceleration of a joint that was held until now are zero too.
     const bool is_doubtful = changes_at_once_ > many_at_once;
     const bool is_still = relative(y + n_, j + 1) == 0.0;
     const int zeros = is_still && (release_direction_[j] != 0 || is_doubtful) ? 3 : 1;
@@ -72,7 +73,8 @@ double Switching::guard(int k, const double* y) const {
   return g.offset + g.on_phi * relative(y, joint) + g.on_phid * relative(y + n_, joint);
 }
 
-/// The links beyond the joint go with it: what dampers between them do is as before.
+/// The links beyond the joint get the same change of rate, so that dampers between them act as
+/// before.
 double Switching::slope_at_rest(int k, double t, const double* y) {
   if (k >= linear_guards()) return std::nan("");
   const Watch& watch = guards_[k];
@@ -116,8 +118,9 @@ void Switching::other_guards(double t, const double* y, double* values) {
   }
 }
 
-/// Where the next joint has a strong damper, the links beyond go with it: what the rate was off by
-/// would give that damper a torque which nothing in the motion has.
+/// Stops a joint. If the next joint has a strong damper, the links beyond get the same change of
+/// rate: otherwise the error of the rate would give that damper a torque that the motion does not
+/// have.
 void Switching::stop_joint(int joint, double* qd) const {
   const double rate = relative(qd, joint + 1);
   set_relative(qd, joint + 1, 0.0);
@@ -139,11 +142,11 @@ bool Switching::settle(int k, double* y) const {
       set_relative(q, j + 1, joints_.supports()[j].stop(watch.stop).angle);
       changed = true;
     } else if (watch.guard.is_on_rate()) {
-      stop_joint(j, qd);  // on a rate alone: it is zero there
+      stop_joint(j, qd);  // the guard is on the rate alone, which is zero there
       changed = true;
     }
   }
-  // Joints beyond it that are held go with it.
+  // Held joints beyond it move with it.
   return (changed && joints_.settle(q, qd)) || changed;
 }
 

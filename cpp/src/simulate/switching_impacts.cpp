@@ -9,8 +9,8 @@
 #include "pendcore/text/message.hpp"
 
 namespace pendcore {
-/// An impact, and what the joints do after it: rates have jumped, so that every law that has sides
-/// may be on another one.
+/// Computes an impact and what the joints do after it. Rates have jumped, so that every law with
+/// modes may be in another mode.
 void Switching::strike(double t, double* y, bool begins) {
   double* const qd = y + n_;
   const std::vector<double> before(qd, qd + n_);
@@ -26,9 +26,10 @@ void Switching::strike(double t, double* y, bool begins) {
   book(Account::drive, joints_.work_of_drive(equations_, t, before, qd), y);
 }
 
-/// Impacts at one time until no joint moves into its stop; what they take of the energy. Joints at
-/// rest that nothing pushes on their stops are leaving them, as far as more exact numbers could
-/// tell; where a run begins, all that touch their stops share the first impacts.
+/// Computes impacts at one time until no joint moves into its stop, and returns the loss of energy.
+/// A joint at rest that nothing pushes against its stop counts as leaving it, which more exact
+/// numbers might show. At the beginning of a run, all joints that touch their stops take part in
+/// the first impacts.
 double Switching::bounce_in_turn(double t, double* y, bool begins) {
   double* const qd = y + n_;
   const bool is_plastic = changes_at_once_ > many_at_once;
@@ -49,9 +50,9 @@ double Switching::bounce_in_turn(double t, double* y, bool begins) {
   return loss;
 }
 
-/// Whether the order cannot be told of what strikes now and has struck at this time: in a corner of
-/// two stops each impact says which is next, whatever is left of the gaps; not so in one of three,
-/// nor where two joints are on their way to their stops at once.
+/// Whether the order of the joints that strike now and have struck at this time is unknown. In a
+/// corner of two stops each impact determines the next, whatever is left of the gaps. In a corner
+/// of three stops this is not so, and neither if two joints move into their stops at once.
 bool Switching::loses_order_of(const double* y) {
   int at_once = 0;
   for (int j = 0; j < n_; ++j) {
@@ -62,7 +63,8 @@ bool Switching::loses_order_of(const double* y) {
   return at_once > 1 || std::ranges::count(struck_, 1) > 2;
 }
 
-/// Whether some of them go on: if the impacts have brought all to rest, another order does as well.
+/// Whether some of the joints that struck go on moving. If the impacts have brought all of them to
+/// rest, another order would do the same.
 bool Switching::any_struck_leaves(const double* y) const {
   for (int j = 0; j < n_; ++j) {
     const double away = std::abs(relative(y + n_, j + 1));
@@ -74,8 +76,8 @@ bool Switching::any_struck_leaves(const double* y) const {
 std::string Switching::remark_on_impacts() const {
   if (std::isnan(order_lost_)) return {};
   return "; at t = " + text(order_lost_) +
-         " s stops were struck within the last bits of one time: in which order, and with it what "
-         "follows, rounding has decided";
+         " s stops were struck within the last bits of one time: rounding has decided their order, "
+         "and with it what follows";
 }
 
 void Switching::choose_all_modes(double t, const double* y) {
@@ -84,8 +86,9 @@ void Switching::choose_all_modes(double t, const double* y) {
   choose_sides(t, y, y + n_);
 }
 
-/// Whether there are joints that leave a stop and are pushed back, and are there again before time
-/// can resolve it, or did not bounce there and are slower than the capture speed.
+/// Captures joints that leave a stop and are pushed back to it, and that either return before time
+/// can resolve it, or did not bounce and are slower than the capture speed. Returns whether there
+/// are any.
 bool Switching::capture(double t, const double* q, const double* qd) {
   bool any = false;
   std::vector<double> qdd(n_);

@@ -15,7 +15,8 @@ double largest_size(const std::vector<double>& values) {
   return largest;
 }
 
-/// No pivot that drives the scene accelerates more: A omega^2, and a spline at its points.
+/// An upper bound of the acceleration of the pivot: A omega^2, or the largest at the points of a
+/// spline.
 double largest_acceleration(const Scene& scene) {
   double sum = 0.0;
   for (const DrivenPivot& pivot : effects_of<DrivenPivot>(scene)) {
@@ -120,7 +121,7 @@ void TipLine::search(double low, double high, int depth) {
   const Point point = along(middle);
   const double slope = std::abs(point.slope);
   const double bend = 0.5 * curvature_ * width;
-  const double change = 0.5 * width * (slope + 0.5 * bend);  // at most, from the middle
+  const double change = 0.5 * width * (slope + 0.5 * bend);  // the largest change from the middle
   const bool has_no_zero = std::abs(point.value) > change + 2.0 * noise_;
   const bool is_unresolved = change <= noise_ || depth == 26 || --points_left_ < 0;
   if (has_no_zero || slope > bend || is_unresolved) {
@@ -141,7 +142,7 @@ void TipLine::find(const double* rows, int degree, int dimension, double t, doub
   h_ = h;
   bound_curvature();
   points_.clear();
-  points_left_ = 100'000;  // a step of so many turns is none
+  points_left_ = 100'000;  // no sensible step has so many turns
   search(0.0, 1.0, 0);
   find_roots([this](double theta) { return along(theta).value; }, start, points_, end, noise_,
              found);

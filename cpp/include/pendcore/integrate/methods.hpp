@@ -1,6 +1,6 @@
 /// \file
-/// THE LIST of methods. A new one is a file with its table and a line here (CONTRIBUTING.md); the
-/// Python layer and the tests of order conditions, convergence, dense output and bits find it.
+/// The list of methods. A new method is a file with its table, and a line here (CONTRIBUTING.md).
+/// The Python layer and the tests of order conditions, convergence, dense output and bits find it.
 #pragma once
 
 #include "pendcore/integrate/radau/radau_5.hpp"
@@ -22,13 +22,13 @@ using Methods = MethodList<dormand_prince_5,  // order 5(4): the textbook's ode4
                            taylor,            // order by the tolerance: to the rounding limit
                            runge_kutta_4,     // order 4, fixed steps: the yardstick
                            radau_5,           // order 5, implicit: stiff scenes
-                           dopri5_radau5,     // the first, and the second once it is stiff
+                           dopri5_radau5,     // dopri5, and radau5 from where the run is stiff
                            dop853_radau5,     // the same, for tight tolerances
                            taylor_radau5      // the same, where there is a series
                            >;
 
-/// The method of that name or alias; throws std::invalid_argument that lists those there are, after
-/// what else the caller takes. "auto" is a rule and no method: method_choice.hpp.
+/// The method of a name or alias. Throws std::invalid_argument with a list of all methods, after
+/// `or_else`, what else the caller takes. "auto" is a rule, not a method: method_choice.hpp.
 const MethodInfo& find_method(std::string_view name, std::string_view or_else = {});
 
 }  // namespace pendcore

@@ -20,10 +20,10 @@ class Stepper {
 
   virtual const MethodInfo& info() const = 0;
   virtual int dimension() const = 0;                      ///< numbers in a state
-  virtual int controlled() const { return dimension(); }  ///< how many of them, the first, count
-  virtual int interpolant_degree() const = 0;             ///< of the polynomial in theta
+  virtual int controlled() const { return dimension(); }  ///< the first so many count in errors
+  virtual int interpolant_degree() const = 0;             ///< the degree of the polynomial in theta
 
-  /// The tolerances of each component that counts (controlled() numbers each).
+  /// Sets the tolerances of each component that counts (controlled() numbers each).
   virtual void set_tolerances(const double* rtol, const double* atol) = 0;
 
   /// Begins at y, where the right-hand side is dydt.
@@ -32,50 +32,51 @@ class Stepper {
   virtual void get_state(double* y) const = 0;          ///< y at the start of the step
   virtual void get_derivative(double* dydt) const = 0;  ///< its derivative
   virtual void get_new_state(double* y) const = 0;      ///< y at the end of the attempted step
-  virtual void set_new_state(const double* y) = 0;      ///< puts another in its place
+  virtual void set_new_state(const double* y) = 0;      ///< replaces it
   virtual void evaluate(double t, const double* y, double* dydt) = 0;  ///< the right-hand side
 
-  /// Is asked now and then in an attempt that takes long; at false the attempt is given up, and
-  /// nothing that the next one depends on has changed.
+  /// Called from time to time in a long attempt. If it returns false, the attempt is given up, and
+  /// nothing that the next attempt depends on has changed.
   std::function<bool()> keep_going;
 
-  /// With which a run, from the state at time t, begins: s, of a method that knows; 0 of others.
+  /// The step, s, with which a run begins from the state at time t, if the method knows one; else
+  /// 0.
   virtual double own_first_step(double /*t*/) { return 0.0; }
 
-  /// Tries a step of size h from the state at time t; `gain` is the control's.
+  /// Tries a step of size h from the state at time t; `gain` is the one of the step control.
   virtual Attempt attempt(double t, double h, double gain) = 0;
 
-  /// In place of an attempt: a step in which nothing moves.
+  /// Replaces an attempt by a step in which nothing moves.
   virtual void stay() = 0;
 
-  /// Makes the attempted step the past: y becomes y_new.
+  /// Accepts the attempted step: y becomes y_new.
   virtual void accept(double t_new) = 0;
 
   /// The dense output of the attempted step, (degree + 1, dimension) row-major,
   /// y(t + theta h) = sum_p theta^p coefficient[p].
   virtual void interpolant(double h, double* coefficients) = 0;
 
-  /// The values of such a polynomial, of a step of size h from `start`, at `count` times:
-  /// (count, dimension) row-major.
+  /// The values of such a polynomial for a step of size h from `start`, at `count` times: (count,
+  /// dimension) row-major.
   virtual void sample(const double* coefficients, const TwoDouble& start, double h,
                       const double* times, int count, double* states) const = 0;
 
-  /// An estimate of h |lambda|, lambda the eigenvalue of largest size, from the attempted step
-  /// (Hairer and Wanner, volume II, IV.2); of a series, over its order.
+  /// An estimate of h |lambda|, with lambda the eigenvalue of largest size, from the attempted step
+  /// (Hairer and Wanner, volume II, IV.2); for a series, divided by its order.
   virtual double stiffness(double h) = 0;
 
-  /// Is told when the steps are found to be limited by stability, and whether their size is given:
-  /// fixed, or the longest allowed. Returns whether it is to be told again of as many hits more.
+  /// Called when stability is found to limit the steps. `size_is_given` says whether their size is
+  /// fixed, or is the longest allowed. Returns whether to call it again after as many more hits.
   virtual bool stiffness_found(bool /*size_is_given*/) { return false; }
 
-  /// What the next step depends on beside y and dydt: nothing, of most methods.
+  /// What the next step depends on beside y and dydt: nothing for most methods.
   virtual std::vector<double> saved_state() const { return {}; }
-  /// Goes on from there, in place of what start() left.
+  /// Continues from a saved state, instead of from what start() left.
   virtual void restore(const std::vector<double>& /*memory*/) {}
 
   long long evaluations = 0;     ///< right-hand sides so far
-  long long jacobians = 0;       ///< and of an implicit method, derivatives of them
-  long long factorisations = 0;  ///< and matrices that were factored
+  long long jacobians = 0;       ///< derivatives of them so far, for implicit methods
+  long long factorisations = 0;  ///< matrices factored so far
 };
 
 }  // namespace pendcore

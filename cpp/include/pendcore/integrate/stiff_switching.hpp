@@ -1,16 +1,18 @@
 /// \file
-/// A run that begins with one method, and goes on with an implicit one from where that pays. Until
-/// then it is the first, to the last bit.
+/// A run that begins with one method and goes on with an implicit one from where that is faster.
+/// Until then it has every bit of a run with the first method.
 ///
-/// Where the steps of the first are found to be limited by stability (stiffness.hpp), the implicit
-/// one tries a step ten times as long, about what its steps cost more. If that is within the
-/// tolerances, the run goes on with it, by steps that grow from the size of the first's. If not,
-/// accuracy allows hardly longer steps than stability does: the first stays, and the question is
-/// asked again after another fifteen hits. Steps whose size is given cannot grow: there the
-/// implicit one, which stays bounded, takes over at once.
+/// Where stability is found to limit the steps of the first method (stiffness.hpp), the implicit
+/// method tries a step that is ten times as long, which is about the ratio of the costs of their
+/// steps. If the error of that step is within the tolerances, the run goes on with the implicit
+/// method, with steps that grow from the size of the first's. If not, accuracy hardly allows longer
+/// steps than stability does: the first method stays, and the question is asked again after another
+/// fifteen hits. Steps of a given size cannot grow. There the implicit method, which stays bounded,
+/// takes over at once.
 ///
-/// It changes once: what was stiff may stay so, and an implicit step is right anywhere. Of the
-/// dense output all steps have the first method's degree; the implicit one's end in zeros.
+/// The run changes its method only once: a stiff run may stay stiff, and an implicit step is right
+/// anywhere. The dense output of all steps has the degree of the first method, and the highest
+/// coefficients of implicit steps are zero.
 #pragma once
 
 #include <functional>
@@ -26,7 +28,7 @@
 
 namespace pendcore {
 
-/// Names two methods; order and interpolant are those that a run begins with.
+/// Names two methods. The order and the interpolant are those of the first.
 template <const auto& first_method, const auto& second_method>
 struct StiffSwitching {
   static constexpr const auto& first = first_method;
@@ -57,7 +59,7 @@ class StiffSwitchingStepper final : public Stepper {
  public:
   using Make = std::function<std::unique_ptr<Stepper>()>;
 
-  /// The second is made where it is called for: most runs never do.
+  /// The second method is made when it is needed; most runs never need it.
   StiffSwitchingStepper(std::unique_ptr<Stepper> first, Make make_implicit);
 
   const MethodInfo& info() const override { return info_; }
@@ -84,8 +86,8 @@ class StiffSwitchingStepper final : public Stepper {
   double stiffness(double h) override { return now().stiffness(h); }
   bool stiffness_found(bool size_is_given) override;
 
-  /// The memory of the method in force, and whether it has changed, or is to ask at its next
-  /// attempt whether to, with the size of the step that it asks about.
+  /// The memory of the current method, and whether the method has changed, or is to try the
+  /// implicit one at its next attempt; then also the size of the step to be tried.
   std::vector<double> saved_state() const override;
   void restore(const std::vector<double>& memory) override;
 
@@ -101,9 +103,9 @@ class StiffSwitchingStepper final : public Stepper {
   std::unique_ptr<Stepper> implicit_;
   Make make_implicit_;
   std::vector<double> rtol_, atol_;
-  MethodInfo info_;       ///< of the method in force, by its own name
-  double h_ = 0.0;        ///< of the last attempt
-  double h_asked_ = 0.0;  ///< of the step that the implicit one is to try; 0: of none
+  MethodInfo info_;       ///< the current method's, under its own name
+  double h_ = 0.0;        ///< the size of the last attempt
+  double h_asked_ = 0.0;  ///< the size that the implicit method is to try; 0: none
   bool takes_over_ = false;
   bool has_changed_ = false;
 };

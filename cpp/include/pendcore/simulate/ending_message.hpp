@@ -1,5 +1,5 @@
 /// \file
-/// What a run says of how it ended.
+/// The message at the end of a run.
 #pragma once
 
 #include <string>
@@ -8,8 +8,9 @@
 
 namespace pendcore {
 
-/// What happened, with advice; of a run that failed, where. `remark` is what holds a scene at rest,
-/// `ended_by` the number of the event that ended the run, from 0; `integrator` is where it stands.
+/// Says what happened, with advice, and where a failed run ended. `remark` says what holds a scene
+/// at rest; `ended_by` is the number of the event that ended the run, from 0; `integrator` is the
+/// state of the run at its end.
 std::string ending_message(const Ending& ending, const Scene& scene, const Solution& solution,
                            const IntegratorState& integrator, const std::string& remark,
                            int ended_by);

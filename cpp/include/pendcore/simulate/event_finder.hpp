@@ -20,8 +20,8 @@ namespace pendcore {
 
 class EventFinder {
  public:
-  /// Adds to `found`, which may hold events already. Of event number k the first passed[k]
-  /// occurrences end no run: one that ended there went on.
+  /// Adds events to `found`, which may have some already. The first passed[k] occurrences of event
+  /// number k do not end the run: a run that ended there was continued.
   EventFinder(const Scene& scene, const std::vector<Event>& events, std::vector<FoundEvent>& found,
               std::vector<long long> passed);
 
@@ -45,15 +45,15 @@ class EventFinder {
     int direction;
     int event;
   };
-  /// y[plus] - y[minus], the latter left out if negative: an angle or a rate. It is looked at
-  /// where it is `value`, or that and every turn more.
+  /// An angle or a rate: y[plus] - y[minus], or y[plus] alone if `minus` is negative. The event is
+  /// where it is `value`, or where it is `value` plus any number of turns.
   struct Difference {
     int plus;
     int minus;
     double value = 0.0;
     bool every_turn = false;
     double of(const double* y) const { return minus < 0 ? y[plus] : y[plus] - y[minus]; }
-    /// Less a level; within the rounding of the state it is there.
+    /// The difference minus a level; 0 within the rounding of the state.
     double from(double level, const double* y) const;
   };
   struct Step {
@@ -88,20 +88,20 @@ class EventFinder {
   std::vector<long long> passed_;
   std::vector<long long> counts_;
   std::vector<TipLine> tip_lines_;
-  std::vector<int> tip_line_of_;  ///< of each event, its number among them, or -1
+  std::vector<int> tip_line_of_;  ///< the number of each event's tip line, or -1
   int n_;
   int ended_by_ = -1;
-  double turns_ = 0.0;         ///< that steps went through, beyond one each
-  bool has_too_many_ = false;  ///< of them
+  double turns_ = 0.0;         ///< turns that steps went through, beyond one each
+  bool has_too_many_ = false;  ///< whether there are too many turns
   std::vector<Root> roots_;
   std::vector<TurningPoint> samples_;
   std::vector<Candidate> candidates_;
-  std::vector<std::size_t> at_the_end_;  ///< those found at the end of the last step
+  std::vector<std::size_t> at_the_end_;  ///< the events found at the end of the last step
   std::vector<double> polynomial_;
   std::vector<double> bernstein_;
   std::vector<double> y_new_;
   std::vector<double> y_;
-  // What was computed at the end of the last step, to be taken again at the start of the next.
+  // Values at the end of the last step, which are used again at the start of the next.
   double node_t_ = 0.0;
   std::vector<double> node_y_;
   std::vector<double> node_values_;

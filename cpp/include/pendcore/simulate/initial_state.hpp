@@ -1,5 +1,5 @@
 /// \file
-/// What the start and the interval of a run must satisfy.
+/// The conditions that the start and the interval of a run must satisfy.
 #pragma once
 
 #include <string>
@@ -10,21 +10,21 @@
 namespace pendcore {
 
 /// Throws std::invalid_argument, naming the argument, for angles and rates that are not one finite
-/// number a link, times that are not finite, and what the effects of the scene do not allow: a
-/// locked joint that turns, a joint beyond its stops, time that runs backward where the past is not
-/// unique.
+/// number for each link, for times that are not finite, and for what the effects of the scene do
+/// not allow: a locked joint that turns, a joint beyond its stops, time that runs backward where
+/// the past is not unique.
 void check_start(const Scene& scene, const std::vector<double>& q0, const std::vector<double>& qd0,
                  double t0, double t_end);
 
-/// What is possible in a run but hardly meant, a sentence each: a start that looks like degrees, a
-/// table that ends before the run does.
+/// Warnings of what is possible in a run but hardly intended, a sentence each: a start that looks
+/// like degrees, a table that ends before the run does.
 std::vector<std::string> run_warnings(const Scene& scene, const std::vector<double>& q0, double t0,
                                       double t_end);
 
-/// Whether time t is not inside the table or spline of an effect, seen along the run.
+/// Whether time t is outside the table or spline of an effect, in the direction of the run.
 bool is_outside_table(const Effect& effect, double t, bool forward);
 
-/// "its table goes from 0 to 1 s"; empty for an effect that has none.
+/// "its table goes from 0 to 1 s"; empty for an effect without a table or spline.
 std::string span_of(const Effect& effect);
 
 }  // namespace pendcore

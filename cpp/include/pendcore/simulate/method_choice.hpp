@@ -1,14 +1,15 @@
 /// \file
-/// The method of a run that names none, `"auto"`: a rule of the scene and the tolerances, so that
-/// the same scene is run by the same method wherever it starts and ends.
+/// The method of a run that leaves it to `"auto"`. The rule depends on the scene, the tolerances
+/// and whether steps are fixed, so that the same scene is run by the same method wherever it starts
+/// and ends.
 ///
-///     dopri5          fixed steps, whatever the tolerances, which have no say in them
-///     taylor-radau5   else two links or more, where every effect has a Taylor series
-///     dop853-radau5   else, where of any component max(rtol, atol) is below 1e-6
+///     dopri5          for fixed steps, which tolerances do not affect
+///     taylor-radau5   else for two links or more, if every effect has a Taylor series
+///     dop853-radau5   else if max(rtol, atol) of any component is below 1e-6
 ///     dopri5-radau5   else
 ///
-/// The pairs change over to radau5 where that pays, at whatever time (stiff_switching.hpp).
-/// docs/accuracy_cost.md has what the rule is taken from.
+/// The pairs change to radau5 where that is faster, at any time (stiff_switching.hpp).
+/// docs/accuracy_cost.md has the measurements behind the rule.
 #pragma once
 
 #include <string_view>
@@ -18,8 +19,8 @@
 
 namespace pendcore {
 
-/// The name of the method, or of the one that the rule gives for `"auto"`. The scene and the
-/// options are checked ones.
+/// The name of the method, or for `"auto"` the name of the method that the rule gives. The scene
+/// and the options must have passed check().
 std::string_view chosen_method(const Scene& scene, const Options& options);
 
 }  // namespace pendcore

@@ -1,5 +1,5 @@
 /// \file
-/// Where numbers stop being finite: which rate, and by whose force.
+/// Where numbers stop being finite: in which component, and by which effect.
 #pragma once
 
 #include "pendcore/integrate/loop/integrate.hpp"
@@ -8,12 +8,12 @@
 namespace pendcore {
 
 struct NotFinite {
-  int component = -1;  ///< of (q, qd)
-  int effect = -1;     ///< of the scene, that gives no number by itself; -1: none does
+  int component = -1;  ///< the component of (q, qd), or -1
+  int effect = -1;     ///< the effect that is not finite by itself, or -1
 };
 
-/// Looks ahead along the slope at which a run has ended, as far as its last steps tried, each
-/// longer than the next; not beyond t_end.
+/// Looks ahead along the slope at the end of a run, as far as the run's last attempts reached: each
+/// attempt was longer than the next. It does not look beyond t_end.
 NotFinite find_what_is_not_finite(const Scene& scene, const IntegratorState& integrator,
                                   double t_end);
 

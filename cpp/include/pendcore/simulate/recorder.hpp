@@ -1,5 +1,5 @@
 /// \file
-/// Keeps of the steps what the options ask for, and the events that are found on them.
+/// Records what the options ask for of each step, and the events that are found on the steps.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,8 @@ namespace pendcore {
 
 class Recorder final : public Observer {
  public:
-  /// How many occurrences of each event no longer end the run: it ended there, and goes on.
+  /// `passed_events` are the numbers of occurrences of each event that do not end the run: it ended
+  /// there, and was continued.
   Recorder(Solution& solution, const Stepper& stepper, const Scene& scene,
            const std::vector<long long>& passed_events);
 
@@ -34,20 +35,20 @@ class Recorder final : public Observer {
     std::size_t t, steps, found;
   };
   Kept kept() const;
-  void count(const Kept& kept);  ///< so much an unstopped run has as well
+  void count(const Kept& kept);  ///< so much is also in a run that never stopped
   void sample_step(Stepper& stepper, const TwoDouble& t_old, double h, double t_new,
                    bool with_end = true);
   void keep_clipped(Stepper& stepper, const TwoDouble& t_old, double h, double theta, double t);
-  double* append(double t);  ///< room for the state at t
+  double* append(double t);  ///< returns memory for the state at t
 
   Solution& solution_;
   std::optional<EventFinder> finder_;
-  bool may_throw_;  ///< functions of the user's
+  bool may_throw_;  ///< whether there are users' functions
   Kept at_step_start_{};
   bool keeps_polynomials_;
   bool keeps_steps_;
   std::size_t dimension_;
-  std::vector<double> polynomial_;  ///< of one step
+  std::vector<double> polynomial_;  ///< the dense output of one step
 };
 
 }  // namespace pendcore

@@ -1,5 +1,5 @@
 /// \file
-/// What a run leaves behind: times, states, dense output, statistics, and where to go on from.
+/// The result of a run: times, states, dense output, statistics, and the position to resume from.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ namespace pendcore {
 struct DenseOutput {
   int degree = 0;
   std::vector<double> start;         ///< s, (n_steps)
-  std::vector<double> start_low;     ///< s, (n_steps), what its double leaves over of the time
+  std::vector<double> start_low;     ///< s, (n_steps), the part of the time below the double
   std::vector<double> h;             ///< s, (n_steps), negative in a backward run
   std::vector<double> coefficients;  ///< (n_steps, degree + 1, dimension) row-major
 };
@@ -39,12 +39,12 @@ struct Solution {
   std::vector<Account> accounts;  ///< the ledger's, if it is kept
   double t_reached = 0.0;         ///< s; before t_end if the run failed
   std::vector<double> y_reached;  ///< (dimension), the state there
-  std::vector<FoundEvent> found;  ///< of the events asked for, along the run
-  std::exception_ptr error;       ///< what a function of the user's threw, if it ended the run
+  std::vector<FoundEvent> found;  ///< the events found along the run
+  std::exception_ptr error;       ///< what a user's function threw, if it ended the run
 
-  /// Where a resumed run goes on: before the first step that the end of this one cut short.
+  /// Where a resumed run continues: before the first step that the end of this run cut short.
   IntegratorState resumable;
-  std::size_t resumable_t = 0;      ///< so many of `t` an unstopped run has as well,
+  std::size_t resumable_t = 0;      ///< so many of `t` are also in a run that never stopped,
   std::size_t resumable_steps = 0;  ///< and so many polynomials
   std::size_t resumable_found = 0;  ///< and so many events
 

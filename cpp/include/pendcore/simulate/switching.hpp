@@ -3,14 +3,14 @@
 ///
 /// Dynamics and integration meet here. The loop sees discontinuities
 /// (integrate/loop/discontinuities.hpp), the laws see the mode that they are frozen to
-/// (effects/law.hpp), and joints that are held are eliminated from the equations
+/// (effects/law.hpp), and held joints are eliminated from the equations
 /// (dynamics/contact/held_joints.hpp). The angles of held joints are set anew at the end of each
-/// step, so that no rounding lets them wander.
+/// step, so that rounding does not make them drift.
 ///
 /// * The rate of a joint with dry friction reaches zero: it sticks, or goes on in the other
 ///   direction, as all joints at rest decide together.
-/// * A joint reaches a stop: an impact, after which it bounces or stays.
-/// * The torque that holds a joint leaves its range: the joint is let go.
+/// * A joint reaches a stop: there is an impact, after which the joint bounces or stays.
+/// * The torque that holds a joint leaves its range: the joint is released.
 #pragma once
 
 #include <cmath>
@@ -24,11 +24,12 @@ namespace pendcore {
 
 class Switching final : public Discontinuities {
  public:
-  /// `accounts` are those of a ledger that the state has beside angles and rates, if it is kept.
+  /// `accounts` are the accounts of the ledger, which the state has after angles and rates if the
+  /// ledger is kept.
   Switching(const Scene& scene, const EquationsOfMotion& equations,
             const std::vector<Account>& accounts);
 
-  /// Whether the scene has anything for it to do.
+  /// Whether the scene needs an object of this class.
   static bool is_needed(const Scene& scene);
 
   bool begin(double t, double* y, bool forward) override;
@@ -51,41 +52,41 @@ class Switching final : public Discontinuities {
   bool rests() const override { return rests_; }
   std::vector<double> saved_state() const override;
 
-  /// In place of begin() for a run that goes on.
+  /// Replaces begin() in a continued run.
   void restore(const std::vector<double>& memory, double t, const double* y, bool forward);
 
-  /// `look` is called now and then where it works long on which joints hold, and may throw.
+  /// `look` is called from time to time in long decisions on which joints are held, and may throw.
   void look_up_in_long_work(const std::function<void()>& look) {
     joints_.look_up_in_long_work(look);
   }
 
-  /// What a run says that ended at rest; empty if nothing.
+  /// The remark of a run that ended at rest, or empty.
   const std::string& remark() const { return remark_; }
-  /// What it says where the order of impacts was lost; empty if nothing.
+  /// The remark of a run in which the order of impacts was lost, or empty.
   std::string remark_on_impacts() const;
 
  private:
-  /// What a guard is on: a mode of an effect, or a stop.
+  /// What a guard watches: a mode of an effect, or a stop.
   struct Watch {
     std::size_t effect;
     std::size_t number;  ///< among the guards of the effect's mode
-    int joint;           ///< from 0
+    int joint;           ///< counted from 0
     Guard guard;
     Side stop;
     int zeros_at_start;
   };
-  /// The torque that holds a joint, on the side where its range ends.
+  /// A guard on the torque that holds a joint, at one end of its range.
   struct HeldGuard {
     int joint;
     bool is_most;
   };
-  /// Changes at one time of which rounding may be the cause.
+  /// More changes than this at one time may be caused by rounding.
   static constexpr int many_at_once = 8;
   void put_mode(std::size_t i, int mode) { equations_.effects->put_mode(i, mode); }
-  /// The modes that hold from time t on: those of the state, and none where a table has ended.
+  /// Chooses the modes from time t on: by the state, and -1 where a table has ended.
   void choose_modes_from(double t, const double* q, const double* qd);
   void choose_sides(double t, const double* q, const double* qd);
-  /// What cross() does on a time, and on each kind of guard.
+  /// The parts of cross(): for a time, and for each kind of guard.
   void cross_time(double t);
   void release(const HeldGuard& guard, double t, const double* y);
   bool reach_stop(int k, double t, double* y);
@@ -93,7 +94,7 @@ class Switching final : public Discontinuities {
   void stop_joint(int joint, double* qd) const;
   void change_side(const Watch& watch);
   bool is_of_friction(const Watch& watch) const;
-  double shortest_moment(double t) const;  ///< s, that time resolves
+  double shortest_moment(double t) const;  ///< s, the shortest that time resolves
   void choose(double t, const double* y, int joint);
   void strike(double t, double* y, bool begins);
   double bounce_in_turn(double t, double* y, bool begins);
@@ -104,7 +105,7 @@ class Switching final : public Discontinuities {
   void count_at_once(double t);
   bool is_at_its_border(int joint, double t, const double* y) const;
   void forget_releases_away_from_the_border(double t, const double* y);
-  /// After modes and holds have changed.
+  /// Collects the guards after modes and holds have changed.
   void collect_guards(const double* y);
   void collect_stops(const double* y);
   void see_whether_all_rests(const double* y);
@@ -122,24 +123,25 @@ class Switching final : public Discontinuities {
   bool is_over_ = false;  ///< a table or a spline has ended
   bool rests_ = false;
   double longest_step_ = never;
-  mutable double next_time_ = 0.0;  ///< after the time asked for last
+  mutable double next_time_ = 0.0;  ///< the next time after asked_
   mutable double asked_ = std::numeric_limits<double>::quiet_NaN();
   std::vector<Watch> guards_;
   std::vector<HeldGuard> held_guards_;
-  std::vector<double> torque_;  ///< that holds the joints
+  std::vector<double> torque_;  ///< the torques that hold the joints
   std::vector<double> still_;   ///< a state in which a joint is at rest
   std::vector<double> qdd_;
   double time_of_change_ = std::numeric_limits<double>::quiet_NaN();
   int changes_at_once_ = 0;
-  /// The last impact, and the joints that struck then and in those before it that time hardly
-  /// tells apart.
+  /// The time of the last impact, and the joints that struck then or in impacts just before that
+  /// time hardly tells apart.
   double time_of_impact_ = std::numeric_limits<double>::quiet_NaN();
   std::vector<int> struck_;
-  bool loses_order_ = false;  ///< the impact at hand
-  /// When impacts first came so near each other that their order is not known; or not a number.
+  bool loses_order_ = false;  ///< whether the current impact does
+  /// The time at which impacts first came so close together that their order is not known; NaN if
+  /// it always was.
   double order_lost_ = std::numeric_limits<double>::quiet_NaN();
-  /// Whether the rate of each joint that was held until this time is to go up (1) or down (-1)
-  /// from zero; 0 of all others. Joints that can be let go are held forward in time alone.
+  /// Whether the rate of each joint that was held until this time is to rise (1) or fall (-1) from
+  /// zero; 0 for all other joints. Only runs forward in time hold joints that can be released.
   std::vector<int> release_direction_;
   std::string remark_;
 };

@@ -1,6 +1,6 @@
 /// \file
-/// What a run that goes on needs of the modes of its scene's effects, and how it is kept: as plain
-/// numbers, which may come back out of a damaged file.
+/// What a continued run needs to know of the modes of its effects. It is saved as plain numbers,
+/// which may come back from a damaged file.
 #pragma once
 
 #include <climits>
@@ -18,13 +18,13 @@ struct SwitchingState {
   int changes_at_once = 0;             ///< at that time, after the first
   double order_lost = 0.0;             ///< s, NaN while the order of impacts is known
   double time_of_impact = 0.0;         ///< s, NaN before the first
-  std::vector<int> struck;             ///< (n), whether the joint did in the last impacts
+  std::vector<int> struck;             ///< (n), whether the joint struck in the last impacts
   std::vector<int> release_direction;  ///< (n), 1, -1, or 0 where none was released
   std::vector<SavedHold> holds;        ///< (n)
-  std::vector<int> zeros_at_start;     ///< of each linear guard that these modes have
+  std::vector<int> zeros_at_start;     ///< one for each linear guard of these modes
 };
 
-/// Every field, for writing and for reading: whole numbers with their range.
+/// Visits every field, for writing and for reading; whole numbers come with their range.
 template <class Archive, class State>
 void visit(Archive& io, State& s) {
   for (auto& mode : s.modes) io(mode, -1, INT_MAX);
@@ -60,7 +60,7 @@ class NumbersWriter {
   }
 };
 
-/// Refuses what is too short, and whole numbers out of their range.
+/// Refuses lists that are too short, and whole numbers out of their range.
 class NumbersReader {
  public:
   explicit NumbersReader(const std::vector<double>& numbers) : numbers_(numbers) {}

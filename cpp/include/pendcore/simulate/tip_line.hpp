@@ -1,15 +1,15 @@
 /// \file
-/// How far the tip is from a line, at a state and along the dense output of a step.
+/// The distance of the tip from a line, at a state and along the dense output of a step.
 ///
 ///     g = n . (P_0(t) + sum_i L_i u_i(q_i) - point)                                         m
 ///     g' = n . (h v_0 + sum_i L_i q_i' n_i)                                    ' is d/dtheta
 ///     |g''| <= |n| (h^2 |a_0| + sum_i L_i sqrt(max |q_i''|^2 + max |q_i'|^4))
 ///
-/// n is the line's normal; a moving pivot counts. The angles are polynomials in theta, and the
-/// maxima over the step bounds by Bernstein's form. On an interval of width w about m, Taylor's
-/// theorem then proves that g has no zero, |g(m)| > |g'(m)| w/2 + |g''| w^2/8, or that it is
-/// monotone, |g'(m)| > |g''| w/2; halving the others leads to one or the other but where g touches
-/// zero. Cost: a sine and a cosine a link at each point.
+/// n is the normal of the line; P_0 is the pivot, which may move. The angles are polynomials in
+/// theta, and the maxima over the step are bounded in Bernstein form. On an interval of width w
+/// about m, Taylor's theorem then proves that g has no zero, |g(m)| > |g'(m)| w/2 + |g''| w^2/8, or
+/// that it is monotone, |g'(m)| > |g''| w/2. Other intervals are halved until one of the two holds,
+/// except where g touches zero. Cost: a sine and a cosine of each link at each point.
 #pragma once
 
 #include <span>
@@ -40,14 +40,14 @@ class TipLine {
     double slope;
   };
   Point along(double theta);
-  double of_directions(double t);  ///< g from the sines and cosines in place
+  double of_directions(double t);  ///< g from the current sines and cosines
   void bound_curvature();
   void search(double low, double high, int depth);
 
   Scene scene_;
   events::TipLine line_;
   double size_of_normal_;
-  double pivot_acceleration_;  ///< m/s^2, a bound
+  double pivot_acceleration_;  ///< m/s^2, an upper bound
   const double* rows_ = nullptr;
   int degree_ = 0;
   int dimension_ = 0;

@@ -8,7 +8,7 @@ namespace pendcore {
 namespace {
 
 constexpr double none = 2.0;
-/// Room for a degree below that: most polynomials need the smaller one.
+/// Memory for a degree below `room`; most polynomials only need the smaller one.
 template <std::size_t room>
 using Bernstein = std::array<double, room>;
 constexpr std::size_t small = 16;
@@ -44,7 +44,7 @@ Bernstein<room> bernstein(const double* c, int degree) {
   return b;
 }
 
-/// A sign change between low and high, p(low) >= 0 > p(high), to the last bits of theta.
+/// Finds a sign change between low and high, p(low) >= 0 > p(high), to the last bits of theta.
 double bisect(const double* c, int degree, double low, double high) {
   while (true) {
     const double middle = 0.5 * (low + high);
@@ -63,8 +63,8 @@ double search(const double* c, int degree, const Bernstein<room>& b, double low,
   for (int i = 1; i <= degree; ++i) changes += (b[i] < 0.0) != (b[i - 1] < 0.0);
   if (changes == 0) return low;
   if (changes == 1 && b[0] >= 0.0) return bisect(c, degree, low, high);
-  if (depth == 50) return value(c, degree, high) < 0.0 ? high : none;  // touches zero, no more
-  // de Casteljau: both halves
+  if (depth == 50) return value(c, degree, high) < 0.0 ? high : none;  // it only touches zero
+  // de Casteljau's algorithm for both halves
   Bernstein<room> left{};
   Bernstein<room> right = b;
   for (int i = 0; i <= degree; ++i) {
@@ -79,7 +79,7 @@ double search(const double* c, int degree, const Bernstein<room>& b, double low,
 }  // namespace
 
 double first_negative(const double* coefficients, int degree) {
-  double least = coefficients[0];  // a bound
+  double least = coefficients[0];  // a lower bound
   for (int k = 1; k <= degree; ++k) least += std::min(coefficients[k], 0.0);
   if (least > 0.0) return none;
   double largest = 0.0;
@@ -105,8 +105,9 @@ void halve(LongForm& left, LongForm& right, int degree) {
   }
 }
 
-/// Where the polynomial with derivative b on low .. high turns. Closer together than 2^-30 of the
-/// step, turning points differ by less than rounding: one stands for them.
+/// Finds the turning points of a polynomial on low .. high from the Bernstein form b of its
+/// derivative. Turning points that are closer together than 2^-30 of the step differ by less than
+/// rounding, and one of them stands for all.
 class TurningPoints {
  public:
   TurningPoints(const double* c, int degree, std::vector<TurningPoint>& found)
@@ -165,7 +166,7 @@ void bernstein_form(const double* coefficients, int degree, double* bernstein) {
 void find_roots(const double* coefficients, int degree, double end, double noise,
                 std::vector<Root>& found) {
   const double start = coefficients[0];
-  double reach = noise;  // a bound
+  double reach = noise;  // an upper bound of |p(theta) - p(0)|
   for (int k = 1; k <= degree; ++k) reach += std::abs(coefficients[k]);
   if (std::abs(start) > reach && sign(start) == sign(end)) return;
   LongForm b{};

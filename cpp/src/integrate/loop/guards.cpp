@@ -12,11 +12,11 @@ namespace pendcore {
 namespace {
 
 constexpr int points = 9;
-/// Halvings after which a step is believed about a guard's start: that the slope and the curvature
-/// do not tell, and that its value does not.
+/// Halvings after which a step is believed about the start of a guard: if its slope and curvature
+/// do not decide, and if its value does not.
 constexpr int halvings_without_sign = 10;
 constexpr int most_halvings = 50;
-/// How often the share of a step is halved in looking for where a polynomial strays.
+/// How often the share of a step is halved in the search for an error of the dense output.
 constexpr int shares = 30;
 
 /// sin^2(i pi / 16)
@@ -25,8 +25,8 @@ constexpr std::array<double, points> nodes = {
     0.5, 0.6913417161825449,  0.8535533905932737,  0.9619397662556434,
     1.0};
 
-/// Values at the nodes become the coefficients of the polynomial through them: Newton's divided
-/// differences, then powers of theta. Both are `stride` apart.
+/// Replaces values at the nodes by the coefficients of the polynomial through them, by Newton's
+/// divided differences and then in powers of theta. Both are `stride` apart.
 void interpolate(double* values, int stride) {
   for (int order = 1; order < points; ++order) {
     for (int i = points - 1; i >= order; --i) {
@@ -77,8 +77,8 @@ Guards::Guards(Stepper& stepper, Discontinuities& discontinuities)
       polynomial_(static_cast<std::size_t>(std::max(degree_ + 1, points))),
       slopes_(points) {}
 
-/// polynomial_ becomes guard k, in theta; its degree is returned. One that is not linear has been
-/// interpolated.
+/// Sets polynomial_ to guard k in theta, and returns its degree. A guard that is not linear has
+/// been interpolated.
 int Guards::along_step(int k) {
   const int other = k - discontinuities_.linear_guards();
   if (other < 0) {
@@ -92,7 +92,7 @@ int Guards::along_step(int k) {
   return points - 1;
 }
 
-/// state_ becomes the dense output at theta.
+/// Sets state_ to the dense output at theta.
 void Guards::sample(double theta) {
   for (int c = 0; c < dimension_; ++c) {
     double value = rows_[static_cast<std::size_t>(degree_) * dimension_ + c];
@@ -103,7 +103,7 @@ void Guards::sample(double theta) {
   }
 }
 
-/// samples_ gets a polynomial for each guard that is not linear.
+/// Sets samples_ to a polynomial for each guard that is not linear.
 void Guards::interpolate_others(double t, double h) {
   const int others = discontinuities_.guards() - discontinuities_.linear_guards();
   samples_.resize(static_cast<std::size_t>(points) * others);
@@ -131,7 +131,7 @@ Crossing Guards::first(double t, double h, bool from_rest_too) {
   return found;
 }
 
-/// slopes_ becomes the polynomial of the slope at rest between `from` and the end of the step, in
+/// Sets slopes_ to the polynomial of the slope at rest between `from` and the end of the step, in
 /// units of that part.
 void Guards::slopes_along_step(int k, double t, double h, double from) {
   const double direction = std::copysign(1.0, h);
@@ -143,8 +143,9 @@ void Guards::slopes_along_step(int k, double t, double h, double from) {
   interpolate(slopes_.data(), 1);
 }
 
-/// A rate that a strong damper has made small is lost in the errors of a step, and its sign with
-/// it. The crossing of polynomial_ that is no such error, or where the slope makes it one.
+/// A rate that a strong damper has made small is lost in the errors of a step, and so is its sign.
+/// Returns the first crossing of polynomial_ that is not such an error, or where the slope at rest
+/// makes the guard fall.
 Crossing Guards::where_slope_allows(Crossing crossing, double t, double h, int degree) {
   const int k = crossing.guard;
   const bool was_released =
@@ -152,7 +153,7 @@ Crossing Guards::where_slope_allows(Crossing crossing, double t, double h, int d
   for (int dips = 0; dips < points; ++dips) {
     const double theta = crossing.theta;
     const bool at_start = theta * std::abs(h) <= 4.0 * epsilon * std::abs(t);
-    if (!(was_released && at_start)) {  // as a rule
+    if (!(was_released && at_start)) {  // the usual case
       sample(theta);
       const double slope = discontinuities_.slope_at_rest(k, t + theta * h, state_.data());
       if (!(slope * h > 0.0)) return crossing;
@@ -164,12 +165,12 @@ Crossing Guards::where_slope_allows(Crossing crossing, double t, double h, int d
     const double share = first_negative(slopes_.data(), points - 1);
     if (share > 1.0) return {};
     const double turns = from + share * (1.0 - from);
-    double dip = 0.0;  // what the errors come to
+    double dip = 0.0;  // the depth to which the errors reach
     for (const double node : nodes) {
       dip = std::min(dip, value_of(polynomial_.data(), degree, from + node * (turns - from)));
     }
     if (value_of(polynomial_.data(), degree, turns) <= -dip) return {k, turns, true};
-    // It has risen above them: its own zero is the next.
+    // The guard has risen above the errors: its next zero is its own.
     const std::vector<double> rest = beyond(polynomial_.data(), degree, turns);
     const double next = first_negative(rest.data(), degree);
     if (next > 1.0) return {};
@@ -188,8 +189,8 @@ double Guards::value_at(int k, double t) {
   return samples_[other];
 }
 
-/// A linear guard's value, slope and curvature (half the second derivative) where the step begins,
-/// as the law has them: 1, 1/s, 1/s^2. A guard on a rate has no second derivative that is known.
+/// The value, slope and curvature (half the second derivative) of a linear guard at the start of
+/// the step, from the law: 1, 1/s, 1/s^2. The second derivative of a guard on a rate is not known.
 std::array<double, 3> Guards::start_of(int k) {
   const int n = stepper_.controlled() / 2;
   std::vector<double> rows(3 * static_cast<std::size_t>(dimension_), 0.0);
@@ -202,8 +203,8 @@ std::array<double, 3> Guards::start_of(int k) {
   return along;
 }
 
-/// How a guard that begins at zero rises: its slope as the law has it or, where that is zero too,
-/// its curvature; 0 where neither tells.
+/// How a guard that begins at zero rises: its slope from the law or, where that is zero too, its
+/// curvature; 0 where neither is known.
 double Guards::rise_at_start(int k, double h) {
   const std::array<double, 3> along = start_of(k);
   for (int order = discontinuities_.zeros_at_start(k); order <= 2; ++order) {
@@ -213,7 +214,7 @@ double Guards::rise_at_start(int k, double h) {
   return 0.0;
 }
 
-/// Whether guard k is of a joint that touches its stop at rest, and is pushed away.
+/// Whether guard k belongs to a joint that rests on its stop and is pushed away from it.
 bool Guards::rises_from_rest(int k) {
   if (k >= discontinuities_.linear_guards() || discontinuities_.zeros_at_start(k) == 0)
     return false;
@@ -226,7 +227,7 @@ bool Guards::falls_at_start(int k, double t, double h, int halvings) {
   stepper_.get_state(state_.data());
   const int zeros = k < discontinuities_.linear_guards() ? discontinuities_.zeros_at_start(k) : 0;
   if (zeros == 0) {
-    const double value = value_at(k, t);  // and first of all, as it knows what it is rounded by
+    const double value = value_at(k, t);  // comes first, because rounding() refers to it
     return value <= discontinuities_.rounding(k, state_.data());
   }
   const double rise = rise_at_start(k, h);
@@ -237,8 +238,8 @@ bool Guards::contradicts_law_at_start(const Crossing& crossing, double h) {
   return is_of_error(crossing, h) || goes_below(crossing.theta);
 }
 
-/// Whether the guard, with the slope and the curvature that the law has, is zero only after twice
-/// the crossing's share of the step: then the crossing is an error of the dense output.
+/// Whether the guard, with the slope and the curvature from the law, has its zero only after twice
+/// the crossing's share of the step. Then the crossing is an error of the dense output.
 bool Guards::is_of_error(const Crossing& crossing, double h) {
   const int k = crossing.guard;
   if (k < 0 || k >= discontinuities_.linear_guards() || discontinuities_.zeros_at_start(k) == 0)
@@ -288,7 +289,7 @@ Guards::Miss Guards::miss(const Crossing& crossing, double t, double h) {
   if (slope == 0.0) return {0.0, 0.0};
   double g = 0.0;
   if (other < 0 && discontinuities_.zeros_at_start(k) > 0) {
-    // What the state has grown by, without the rounding of the state itself.
+    // The growth since the start of the step, without the rounding of the state itself.
     for (int p = degree; p > 0; --p) g += polynomial_[p];
     return {g / slope, 0.0};
   }
@@ -308,10 +309,10 @@ Guards::Located Guards::locate(const Crossing& crossing, double t, double whole,
     const double correction = miss.share * h;
     const double size = std::abs(correction);
     if (!(size <= 0.5 * std::abs(h))) break;
-    const bool is_found =
-        size <= 4.0 * epsilon * std::max(std::abs(t), std::abs(h)) ||
-        // The guard's own rounding can be more than that, where it crosses zero slowly.
-        size <= miss.rounding * std::abs(h) || (size <= 1e-6 * std::abs(h) && size >= 0.5 * before);
+    const bool is_found = size <= 4.0 * epsilon * std::max(std::abs(t), std::abs(h)) ||
+                          // The guard's own rounding can be larger, where it crosses zero slowly.
+                          size <= miss.rounding * std::abs(h) ||
+                          (size <= 1e-6 * std::abs(h) && size >= 0.5 * before);
     if (is_found) return {true, h, attempt};
     before = size;
     h -= correction;

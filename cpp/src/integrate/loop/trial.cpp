@@ -8,9 +8,11 @@
 namespace pendcore {
 namespace {
 
-/// Halvings after which a dense output is believed that strays where a guard begins at zero.
+/// Halvings after which a dense output is believed although it contradicts the law where a guard
+/// begins at zero.
 constexpr int most_halvings = 20;
-/// Where the dense output of a fixed step puts a guard's zero says little: shortened to no less.
+/// The dense output of a fixed step locates a guard's zero only roughly: the step is not shortened
+/// below this share at once.
 constexpr double least_share_of_fixed = 0.1;
 
 /// The component of the attempted step whose new value, or new rate, is not finite, or -1.
@@ -19,7 +21,7 @@ int bad_component_of(Stepper& stepper, double t_new) {
   std::vector<double> dydt(stepper.dimension());
   stepper.get_new_state(y.data());
   stepper.evaluate(t_new, y.data(), dydt.data());
-  y.resize(stepper.controlled());  // quadratures have no say in the steps
+  y.resize(stepper.controlled());  // quadratures do not affect the steps
   dydt.resize(stepper.controlled());
   return std::max(bad_component(y), bad_component(dydt));
 }
@@ -52,8 +54,8 @@ Trial::Verdict Trial::judge(bool is_shortest, bool at_any_error) {
   return guards_ && !is_shortest ? follow_guards() : Verdict::accepted;
 }
 
-/// Shortens the step so that it ends where the first guard is zero, or where no guard is. One that
-/// coarse steps do not locate, shorter ones do.
+/// Shortens the step so that it ends at the first zero of a guard, or before any zero. Zeros that
+/// coarse steps do not locate are located by shorter ones.
 Trial::Verdict Trial::follow_guards() {
   while (true) {
     const Verdict found = verify_guard_start();
@@ -70,7 +72,7 @@ Trial::Verdict Trial::follow_guards() {
       look_for_bad_component();
       if (integrator_.trial_was_finite) return Verdict::accepted;
     }
-    // What the whole step strode over, the shorter one may see: friction's peak at rest.
+    // A shorter step may resolve what the whole step passed over, such as friction's peak at rest.
     h_ *= std::max(0.5 * crossing_.theta, fixed_step_ ? least_share_of_fixed : 0.0);
     if (std::abs(h_) <= few * last_bits(t_, t_ + h_)) return Verdict::changes_at_start;
     if (!fixed_step_) return Verdict::is_tried_again;
@@ -78,8 +80,8 @@ Trial::Verdict Trial::follow_guards() {
   }
 }
 
-/// The step is halved until its dense output begins as the law has it: what a coarse one says of
-/// its start, its own error may have made.
+/// Halves the step until its dense output begins as the law says. The start of a coarse dense
+/// output may be wrong by its own error.
 Trial::Verdict Trial::verify_guard_start() {
   for (int halvings = 0;; ++halvings) {
     const bool is_short = std::abs(h_) <= few * last_bits(t_, t_);
@@ -99,8 +101,8 @@ Trial::Verdict Trial::verify_guard_start() {
   }
 }
 
-/// Attempts the step at its new length. Whether it stands; a part of a fixed step may become as
-/// short as it takes.
+/// Attempts the step at its new length, and returns whether it is accepted. A part of a fixed step
+/// may become as short as necessary.
 bool Trial::take_again() {
   while (true) {
     attempt(h_);
@@ -112,7 +114,7 @@ bool Trial::take_again() {
   }
 }
 
-/// Another of size h is tried, where steps are not all of one.
+/// Lets a step of size h be tried next, unless all steps have a fixed size.
 Trial::Verdict Trial::give_up(double h) {
   if (fixed_step_) return Verdict::fails;
   h_ = h;
@@ -122,14 +124,14 @@ Trial::Verdict Trial::give_up(double h) {
 void Trial::look_for_bad_component() {
   const double error = attempt_.squared_error;
   bad_ = -1;
-  // Beyond the square root of the largest double the norm overflows, and nothing is wrong.
+  // The norm overflows beyond the square root of the largest double; this alone is not an error.
   if (!std::isfinite(error)) bad_ = bad_component_of(stepper_, t_ + h_);
-  // A fixed step is taken whatever its error.
+  // A fixed step is accepted whatever its error is.
   if (bad_ < 0 && fixed_step_ && is_far_off()) bad_ = bad_component_between();
   integrator_.trial_was_finite = bad_ < 0 && !std::isnan(error);
 }
 
-/// Rates enter by their squares: four stages on, such numbers may overflow.
+/// Whether some component is so large that the squares of rates may overflow within four stages.
 bool Trial::is_far_off() {
   constexpr double far = 1e15;
   new_state_.resize(stepper_.dimension());
@@ -137,14 +139,14 @@ bool Trial::is_far_off() {
   return std::ranges::any_of(new_state_, [](double x) { return std::abs(x) > far; });
 }
 
-/// The same of the dense output, which may have stages of its own.
+/// The same for the dense output, which may have stages of its own.
 int Trial::bad_component_between() {
   const int size = stepper_.dimension();
   polynomial_.resize(static_cast<std::size_t>(stepper_.interpolant_degree() + 1) * size);
   stepper_.interpolant(h_, polynomial_.data());
   for (std::size_t i = 0; i < polynomial_.size(); ++i) {
     const int component = static_cast<int>(i) % size;
-    const bool error_controlled = component < stepper_.controlled();  // quadratures have none
+    const bool error_controlled = component < stepper_.controlled();  // quadratures are not
     if (error_controlled && !std::isfinite(polynomial_[i])) return component;
   }
   return -1;

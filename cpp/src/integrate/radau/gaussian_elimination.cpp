@@ -11,7 +11,7 @@ double size(const Complex& x) { return std::abs(x.re) + std::abs(x.im); }
 
 double inverse(double x) { return 1.0 / x; }
 Complex inverse(const Complex& x) {
-  // Divided by the larger part first (Smith 1962): no square overflows.
+  // Dividing by the larger part first (Smith 1962) avoids squares that overflow.
   if (std::abs(x.re) >= std::abs(x.im)) {
     const double ratio = x.im / x.re;
     const double scale = 1.0 / (x.re + x.im * ratio);

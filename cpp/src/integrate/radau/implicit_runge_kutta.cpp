@@ -14,7 +14,7 @@ namespace {
 
 constexpr int most_iterations = 20;  // a fixed step may be long
 constexpr int usual_iterations = 7;  // more than these make the next step shorter
-constexpr double log2_smallest_error = -6.643856189774724;  // of 1e-2
+constexpr double log2_smallest_error = -6.643856189774724;  // log2(1e-2)
 
 /// x^p for x > 0, the same on every machine.
 double small_power(double x, double p) { return approximate_exp2(p * approximate_log2(x)); }
@@ -57,7 +57,7 @@ void ImplicitRungeKutta::set_tolerances(const double* rtol, const double* atol) 
 }
 
 void ImplicitRungeKutta::start(const double* y, const double* dydt) {
-  // Only now: a pair may never come to need it.
+  // The systems are allocated only here, because a pair of methods may never need them.
   systems_.resize(n_);
   drop_changed(y, y_.data(), static_cast<int>(low_.size()), low_.data());
   std::copy_n(y, size_, y_.begin());
@@ -81,7 +81,7 @@ void ImplicitRungeKutta::evaluate(double t, const double* y, double* dydt) {
 
 double ImplicitRungeKutta::scale(int i) const {
   const double largest = std::max(std::abs(y_[i]), std::abs(y_new_[i]));
-  return atol_[i] + rtol_[i] * largest + 1e-300;  // 0/0 is no error
+  return atol_[i] + rtol_[i] * largest + 1e-300;  // avoids 0/0
 }
 double ImplicitRungeKutta::squared_norm(const double* error) const {
   double sum = 0.0;
@@ -92,7 +92,8 @@ double ImplicitRungeKutta::squared_norm(const double* error) const {
   return sum / state_;
 }
 
-/// The polynomial of the step before, continued: Z_i = u(1 + x) - u(1), x = c_i h/h_before.
+/// Predicts the stages by continuing the polynomial of the step before: Z_i = u(1 + x) - u(1), x =
+/// c_i h/h_before.
 void ImplicitRungeKutta::predict(double h) {
   for (int k = 0; k < 3; ++k) {
     const double x = h_before_ == 0.0 ? 0.0 : method_.c[k] * (h / h_before_);
@@ -113,7 +114,7 @@ void ImplicitRungeKutta::predict(double h) {
   }
 }
 
-/// Whether the last increment is no more than what the rates and states are rounded by.
+/// Whether the last increment is no larger than the rounding errors of rates and states.
 bool ImplicitRungeKutta::is_rounding(double h) const {
   for (int i = 0; i < state_; ++i) {
     double size = std::abs(y_[i]) + std::abs(y_new_[i]);
@@ -127,7 +128,7 @@ bool ImplicitRungeKutta::is_rounding(double h) const {
   return true;
 }
 
-/// Newton's iteration. False where it does not converge.
+/// Newton's iteration. Returns false if it does not converge.
 bool ImplicitRungeKutta::iterate(double t, double h) {
   double* const w = transformed_.data();
   double* const d = increment_.data();
@@ -188,8 +189,8 @@ bool ImplicitRungeKutta::iterate(double t, double h) {
   return false;
 }
 
-/// Z = h a q' of the angles, from the rates that were found: digits that T costs come back. A rate
-/// that nothing changes, of a joint that is held, stays as it is to the last bit.
+/// Computes Z = h a q' for the angles from the rates that were found, which restores digits that
+/// the transformation T costs. A rate that nothing changes, as in a held joint, keeps its last bit.
 void ImplicitRungeKutta::polish(double h) {
   for (int i = n_; i < state_; ++i) {
     if (rates_[i] != 0.0 || rates_[size_ + i] != 0.0 || rates_[2 * size_ + i] != 0.0) continue;
@@ -206,7 +207,7 @@ void ImplicitRungeKutta::polish(double h) {
   }
 }
 
-/// y + Z_3, with what the rounding left over if it is carried along.
+/// Computes y + Z_3, with the rounding error if the method is compensated.
 void ImplicitRungeKutta::advance() {
   const double* const change = &stages_[2 * static_cast<std::size_t>(size_)];
   for (int i = 0; i < size_; ++i) {
@@ -216,7 +217,8 @@ void ImplicitRungeKutta::advance() {
   }
 }
 
-/// Z = h a P of the stages that were found: outside of the iteration and of the error.
+/// Computes Z = h a P for the quadratures from their rates P at the stages that were found.
+/// Quadratures take no part in the iteration and in the error.
 void ImplicitRungeKutta::integrate_quadratures(double t, double h) {
   for (int k = 0; k < 3; ++k) {
     for (int i = 0; i < state_; ++i) trial_[i] = y_[i] + stages_[k * size_ + i];
@@ -240,7 +242,7 @@ Attempt ImplicitRungeKutta::attempt(double t, double h, double /*gain*/) {
   constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
   if (!systems_.factor(method_, h, keep_going)) return {undefined, 0.0};
   predict(h);
-  const bool converges = iterate(t, h);  // or a function of the user's raises: nothing was tried
+  const bool converges = iterate(t, h);  // if a user's function throws here, nothing was tried
   const bool is_careful = is_retry_ || h_before_ == 0.0;
   if (!is_retry_) ++jacobians;
   factorisations += 2;
@@ -258,7 +260,7 @@ Attempt ImplicitRungeKutta::attempt(double t, double h, double /*gain*/) {
   squared_error_ = filter(dydt_.data());
   set_slope(h);
   if (is_careful && squared_error_ >= 1.0) {
-    // Filtered once more: a fast transient that is damped away is no error.
+    // The error is filtered once more: a fast transient that is damped away is not an error.
     for (int i = 0; i < state_; ++i) trial_[i] = y_[i] + error_[i];
     evaluate(t, trial_.data(), rates_.data());
     squared_error_ = filter(rates_.data());
@@ -274,9 +276,10 @@ Attempt ImplicitRungeKutta::attempt(double t, double h, double /*gain*/) {
   return {squared_error_, factor};
 }
 
-/// h times the slope of the polynomial at its start: h f(t, y), so that sol(t) has no corners, but
-/// no further from the slope that the stages have than the error allows. What is stiff and has died
-/// out would make of the last bits of its state a slope that nothing in the step has.
+/// Sets h times the slope of the polynomial at its start. This is h f(t, y), so that sol(t) has no
+/// corners, unless it differs from the slope of the stages by more than the error allows. A stiff
+/// component that has died out would otherwise turn the last bits of its state into a slope that
+/// nothing in the step has.
 void ImplicitRungeKutta::set_slope(double h) {
   bool all_are_exact = true;
   for (int i = 0; i < size_; ++i) {
@@ -293,7 +296,7 @@ void ImplicitRungeKutta::set_slope(double h) {
   }
 }
 
-/// Whatever its length: of one of some 1e-300 s the matrices are infinite.
+/// The length of the step does not matter; for some 1e-300 s the matrices would be infinite.
 void ImplicitRungeKutta::stay() {
   y_new_ = y_;
   low_new_ = low_;
@@ -349,7 +352,8 @@ std::vector<double> ImplicitRungeKutta::saved_state() const {
 }
 void ImplicitRungeKutta::restore(const std::vector<double>& memory) {
   if (memory.size() != polynomial_.size() + 4 + low_.size()) {
-    throw std::invalid_argument("what the method kept of its last step is not of this scene");
+    throw std::invalid_argument(
+        "what the method kept of its last step does not belong to this scene");
   }
   std::copy_n(memory.begin(), low_.size(), low_.begin());
   const double* const past = memory.data() + low_.size();

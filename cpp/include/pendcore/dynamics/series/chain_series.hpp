@@ -90,7 +90,7 @@ class ChainSeries {
   bool has_rotors_ = false;
   std::shared_ptr<const ActingEffects<Row>> effects_;
   std::vector<ChainLink> links_;
-  std::vector<double> rotor_;  ///< of the joints after the first; rotor_[0] is 0
+  std::vector<double> rotor_;  ///< rotors in joints after the first; rotor_[0] is 0
   // Memory for one series:
   std::size_t room_ = 0;
   mutable std::vector<double> series_;

@@ -1,5 +1,6 @@
 /// \file
-/// EVENTS: zeros of a function of time and state, looked for along a run and never changing it.
+/// Events: zeros of a function of time and state. They are looked for along a run and never change
+/// it.
 ///
 ///     JointAngle    phi_j - value                  phi_j = q_j - q_{j-1}
 ///     LinkAngle     q_i - value
@@ -7,12 +8,14 @@
 ///     TipLine       normal . (tip(t) - point)      m, in units of the normal
 ///     Function      f(t, q, qd)
 ///
-/// Angles and rates: every sign change on the dense output is found, which is a polynomial; so it
-/// is for the tip's line, by bounds on its second derivative. A Function is sampled.
+/// For angles and rates, every sign change on the dense output is found, because it is a
+/// polynomial. For the line of the tip, every sign change is found by bounds on the second
+/// derivative. A Function is only sampled.
 ///
-/// A zero at the start is no event: an event arms when its function leaves zero. A zero at the end
-/// of a step, and of the run, is one. After an event its function must leave zero. The sign at the
-/// end of a step is that of the state there; the time of an event is its share of the step.
+/// A zero at the start is not an event: an event is armed when its function leaves zero. A zero at
+/// the end of a step, or of the run, is an event. After an event, its function must leave zero
+/// again. The sign at the end of a step is the sign at the state there; the time of an event comes
+/// from its share of the step.
 #pragma once
 
 #include <array>
@@ -52,13 +55,13 @@ struct RateZero {
 };
 
 struct TipLine {
-  std::array<double, 2> point = {};   ///< of the line, m; x right, y down
+  std::array<double, 2> point = {};   ///< a point of the line, m; x right, y down
   std::array<double, 2> normal = {};  ///< across the line
   static constexpr std::string_view kind = "tip_line";
 };
 
-/// Sign changes between samples are found: so many in a step, and one at least every max_step. That
-/// is a distance of samples alone, never of steps.
+/// Sign changes between samples are found. A step has `samples` of them, and there is one at least
+/// every `max_step`, which is a distance of samples only, never of steps.
 struct Function {
   std::function<double(double t, std::span<const double> q, std::span<const double> qd)> f;
   int samples = 8;
@@ -80,23 +83,24 @@ using EventFunction = std::variant<events::JointAngle, events::LinkAngle, events
 struct Event {
   EventFunction function;
   int direction = 0;       ///< 1: where it rises; -1: where it falls; 0: both, and where it touches
-  long long terminal = 0;  ///< the run ends at every so many occurrences; 0: never
+  long long terminal = 0;  ///< the run ends whenever so many have occurred; 0: never
   std::string name = {};
 };
 
 /// An event that was found.
 struct FoundEvent {
-  int event = 0;                 ///< which, in the order asked for
+  int event = 0;                 ///< its number in the order asked for, from 0
   double t = 0.0;                ///< s
   int direction = 0;             ///< 1: rises; -1: falls; 0: touches zero and turns back
-  std::vector<double> y;         ///< (2n); where the state jumps, that after
+  std::vector<double> y;         ///< (2n); after the jump, if the state jumps
   std::vector<double> y_before;  ///< (2n) where the state jumps, else empty
 };
 
 /// "event 2 (link_angle, 'bottom')"
 std::string event_name(const Event& event, std::size_t i);
 
-/// Throws std::invalid_argument, after `where`, for what is out of its range in a chain of n links.
+/// Throws std::invalid_argument for what is out of its range in a chain of n links. The message
+/// begins with `where`.
 void check_event(const std::string& where, const Event& event, int n);
 
 }  // namespace pendcore

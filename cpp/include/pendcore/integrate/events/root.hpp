@@ -1,13 +1,15 @@
 /// \file
-/// THE ROOT LOCATOR: where a function first turns negative in 0 < theta <= 1, or all zeros there.
+/// Root location: where a function first becomes negative in 0 < theta <= 1, or all its zeros
+/// there.
 ///
-/// A polynomial is isolated in Bernstein's form: with coefficients b_i on an interval, no sign
-/// change among them means no root, one means one root; halving the interval separates the rest, so
-/// that two roots close together are both seen.
+/// The roots of a polynomial are isolated in Bernstein form. No sign change among its coefficients
+/// b_i on an interval means no root, and one sign change means one root. Otherwise the interval is
+/// halved, so that two roots close together are both found.
 ///
-/// All zeros are found by a walk along turning points: between two of them in a row the function is
-/// monotone or has no zero. Those of a polynomial are the roots of its derivative. What lies within
-/// the noise of rounding at a turning point is a zero that the function touches.
+/// To find all zeros, the turning points are taken in order: between two neighbours the function is
+/// monotone or has no zero. The turning points of a polynomial are the roots of its derivative. A
+/// value at a turning point that is within the noise of rounding is a zero that the function
+/// touches.
 ///
 /// Source: Lane and Riesenfeld, BIT 21 (1981) 112. Cost: 20 operations where there is no root.
 #pragma once
@@ -18,18 +20,19 @@
 namespace pendcore {
 
 /// The least theta in (0, 1] from which p(theta) = sum_k coefficients[k] theta^k is negative, to
-/// the last bits; above 1 if there is none. What is called begins where the function is positive or
-/// has just been zero: a value at 0 that is below 1e-13 of the other coefficients counts as zero,
-/// and the polynomial turns negative where it does so next. Degree at most 35.
+/// the last bits; above 1 if there is none. At 0 the function must be positive, or have just been
+/// zero: a value there that is below 1e-13 of the other coefficients counts as zero, and the result
+/// is where the polynomial becomes negative next. The degree is at most 35.
 double first_negative(const double* coefficients, int degree);
 
-inline constexpr int highest_degree = 63;  ///< of a polynomial whose zeros are asked for
+inline constexpr int highest_degree = 63;  ///< the highest degree for find_roots()
 
-/// The coefficients of Bernstein's form on [0, 1]: (degree + 1). The polynomial lies between the
+/// The coefficients of the Bernstein form on [0, 1], (degree + 1). The polynomial lies between the
 /// least and the largest of them.
 void bernstein_form(const double* coefficients, int degree, double* bernstein);
 
-/// A zero in 0 < theta <= 1. Direction 1: rises through it; -1: falls; 0: touches and turns back.
+/// A zero in 0 < theta <= 1. Direction 1: the function rises through it; -1: it falls; 0: it
+/// touches zero and turns back.
 struct Root {
   double theta;
   int direction;
@@ -55,10 +58,10 @@ double bisect(const Function& f, double low, double high, int after) {
   return high;
 }
 
-/// The zeros of f in 0 < theta <= 1, in their order, added to `found`. At the ends f is what is
-/// given as `start` and `end`, whatever it computes there, so that two steps that meet agree on the
-/// sign between them. A zero at 0 is none, and one at 1 is; values up to `noise` at a turning point
-/// count as zero.
+/// Adds the zeros of f in 0 < theta <= 1 to `found`, in their order. At the ends, the values
+/// `start` and `end` replace what f computes, so that two neighbouring steps agree on the sign
+/// between them. A zero at 0 does not count, and one at 1 does. Values up to `noise` at a turning
+/// point count as zero.
 template <class Function>
 void find_roots(const Function& f, double start, const std::vector<TurningPoint>& turning_points,
                 double end, double noise, std::vector<Root>& found) {
@@ -92,7 +95,8 @@ void find_roots(const Function& f, double start, const std::vector<TurningPoint>
   }
 }
 
-/// The same of p(theta) = sum_k coefficients[k] theta^k, which is `end` at 1. Degree up to 63.
+/// The same for p(theta) = sum_k coefficients[k] theta^k, with the value `end` at 1. The degree is
+/// at most 63.
 void find_roots(const double* coefficients, int degree, double end, double noise,
                 std::vector<Root>& found);
 

@@ -1,6 +1,6 @@
 /// \file
 /// Where a right-hand side is not smooth, as the loop sees it: times that no step may cross, and
-/// guards, functions of time and state that stay positive until the law changes.
+/// guards, which are functions of time and state that stay positive until the law changes.
 ///
 /// While a step is taken the law is frozen, so that method and error estimate see a smooth
 /// function. The loop cuts the step that would make a guard negative at the guard's zero, redoes it
@@ -15,52 +15,53 @@ class Discontinuities {
  public:
   virtual ~Discontinuities() = default;
 
-  /// Chooses the laws for a start at time t; may adjust the state. Whether the state jumped.
+  /// Chooses the laws for a start at time t, and may adjust the state. Returns whether the state
+  /// jumped.
   virtual bool begin(double t, double* y, bool forward) = 0;
 
   /// The next time after t, in the run's direction, that no step may cross; infinite if none.
   virtual double next_time(double t) const = 0;
-  /// The longest step that cannot stride unseen over what sets a guard off: what drives a joint
-  /// that is held does not show in the error of a step. Infinite where nothing does so.
+  /// The longest step that cannot miss the cause of a guard's change: the load on a held joint does
+  /// not show in the error of a step. Infinite if there is no such load.
   virtual double longest_step() const = 0;
 
   /// Guards are numbered from 0; the first `linear_guards()` of them are linear in the state.
   virtual int guards() const = 0;
   virtual int linear_guards() const = 0;
-  /// How many of the guard, its slope, its curvature are zero where the next step begins, whatever
-  /// rounding says.
+  /// How many of a guard's value, slope and curvature are zero at the start of the next step,
+  /// whatever rounding makes of them.
   virtual int zeros_at_start(int k) const = 0;
   /// The coefficients of a linear guard along the dense output, a polynomial given by (degree + 1)
   /// rows of `dimension` numbers.
   virtual void polynomial(int k, const double* rows, int degree, int dimension,
                           double* coefficients) const = 0;
   virtual double guard(int k, const double* y) const = 0;
-  /// The slope that a guard on a rate has where the joint is at rest, 1/s, though it be turning in
-  /// the state given; NaN of any other guard. Errors of the rate have no part in it: a guard that
-  /// would rise there cannot have fallen through zero.
+  /// The slope, 1/s, that a guard on a rate would have if the joint were at rest, even if it turns
+  /// in the given state; NaN for any other guard. Errors of the rate do not affect this slope. If
+  /// the guard would rise there, it cannot have fallen through zero.
   virtual double slope_at_rest(int k, double t, const double* y) = 0;
   /// How far a guard's value can be off by the rounding of the state.
   virtual double rounding(int k, const double* y) const = 0;
-  /// The values of the others.
+  /// Computes the values of the other guards.
   virtual void other_guards(double t, const double* y, double* values) = 0;
 
-  /// Whether settle() is wanted at the end of every step, not on guards alone.
+  /// Whether settle() is to be called at the end of every step, not only at guards.
   virtual bool settles_every_step() const = 0;
-  /// Adjusts the state at a step's end: what holds exactly there, as a guard's zero (k, or -1 if
-  /// the step ends at none). Whether something was changed.
+  /// Adjusts the state at the end of a step to what holds there exactly, such as the zero of guard
+  /// k (-1 if the step ends at no guard). Returns whether it changed the state.
   virtual bool settle(int k, double* y) const = 0;
-  /// A step was taken, and no law changed at its end.
+  /// Called when a step was taken and no law changed at its end.
   virtual void step_taken() = 0;
 
-  /// The law that follows on guard k, or on a time (-1). Whether the state jumped.
+  /// Changes to the law that follows guard k, or a time (-1). Returns whether the state jumped.
   virtual bool cross(int k, double t, double* y) = 0;
 
-  /// Whether a law does not go on from here.
+  /// Whether some law ends here.
   virtual bool is_over() const = 0;
-  /// Whether nothing moves, nor ever will.
+  /// Whether nothing moves, now and for ever.
   virtual bool rests() const = 0;
 
-  /// Which laws are in force, and all else that the next step depends on.
+  /// The current laws, and everything else that the next step depends on.
   virtual std::vector<double> saved_state() const = 0;
 };
 

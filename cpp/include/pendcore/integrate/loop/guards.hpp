@@ -2,8 +2,8 @@
 /// Finds where along an attempted step the law changes: the guards of Discontinuities, evaluated on
 /// the dense output.
 ///
-/// A guard that is linear in the state is a polynomial there. Any other is taken at nine points of
-/// the step (Chebyshev's) and interpolated; where it is zero is then found from its own values.
+/// A guard that is linear in the state is a polynomial there. Any other guard is sampled at nine
+/// Chebyshev points of the step and interpolated; its zero is then located by its own values.
 #pragma once
 
 #include <array>
@@ -14,12 +14,13 @@
 
 namespace pendcore {
 
-/// The first guard that the attempted step would make negative, and where in the step; none: -1.
+/// The first guard that the attempted step would make negative, and where in the step. If there is
+/// none, `guard` is -1.
 struct Crossing {
   int guard = -1;
   double theta = 2.0;
-  /// The guard had fallen below zero by an error, and its slope follows there: what a rate is that
-  /// is lost in errors, the torques on the joint still tell.
+  /// The guard had fallen below zero only by an error, and the crossing is where its slope becomes
+  /// negative: where errors hide a rate, the torques on the joint still give its slope.
   bool is_of_slope = false;
 };
 
@@ -27,17 +28,18 @@ class Guards {
  public:
   Guards(Stepper& stepper, Discontinuities& discontinuities);
 
-  /// In the attempted step of size h from time t. The dense output of a few last bits of time says
-  /// nothing of what sets out from rest: not `from_rest_too`.
+  /// Finds the crossing in the attempted step of size h from time t. Over a few last bits of time,
+  /// the dense output does not show how a guard leaves zero from rest; such a step is asked without
+  /// `from_rest_too`.
   Crossing first(double t, double h, bool from_rest_too = true);
 
-  /// Whether a guard that the dense output makes negative where the step begins is so: one that is
-  /// positive there, or rises from zero, is not. Where that is not known, a step that was halved
-  /// ten times is believed.
+  /// Whether a guard that the dense output makes negative at the start of the step does fall there.
+  /// A guard that is positive there, or rises from zero, does not. Where this is not known, the
+  /// dense output is believed once the step was halved ten times.
   bool falls_at_start(int k, double t, double h, int halvings);
 
-  /// Whether a guard that begins at zero is made negative by the error of the dense output: before
-  /// the crossing, more than by rounding, or at the crossing itself.
+  /// Whether the error of the dense output makes a guard that begins at zero negative: at the
+  /// crossing itself, or before it by more than rounding.
   bool contradicts_law_at_start(const Crossing& crossing, double h);
 
   /// The attempted step that ends where the guard is zero, to the last bits of time.
@@ -46,8 +48,9 @@ class Guards {
     double h;
     Attempt attempt;
   };
-  /// Redoes the step of size `whole` for it: the state there comes from the method, not from the
-  /// interpolant. `gain` is the control's; `last_bits` are those of time.
+  /// Attempts the step of size `whole` again so that it ends there: the state at its end comes from
+  /// the method, not from the interpolant. `gain` is the one of the step control; `last_bits` are
+  /// those of time.
   Located locate(const Crossing& crossing, double t, double whole, double gain, double last_bits);
 
  private:
@@ -76,9 +79,9 @@ class Guards {
   int degree_;
   std::vector<double> rows_;  ///< the dense output of the step
   std::vector<double> state_;
-  std::vector<double> polynomial_;  ///< of a guard, in theta
-  std::vector<double> slopes_;      ///< of a guard on a rate, were the joint at rest; in theta
-  std::vector<double> samples_;     ///< (points, others), and then the same as polynomials
+  std::vector<double> polynomial_;  ///< a guard as a polynomial in theta
+  std::vector<double> slopes_;      ///< a guard's slope if the joint were at rest, in theta
+  std::vector<double> samples_;     ///< (points, others): values, then coefficients
 };
 
 }  // namespace pendcore

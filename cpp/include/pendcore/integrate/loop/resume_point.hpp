@@ -1,5 +1,5 @@
 /// \file
-/// Where a run that goes on restarts, whatever has ended it.
+/// Where a continued run restarts, whatever has ended it.
 ///
 /// That is the last position before which nothing was arbitrary: no step was cut for the end of the
 /// interval or by an event, and no change of law was left half done.
@@ -11,22 +11,22 @@ namespace pendcore {
 
 class ResumePoint {
  public:
-  /// `resumable` becomes the state to resume from, `integrator` is that of the run;
+  /// `resumable` becomes the state to resume from; `integrator` is the state of the run.
   /// `discontinuities` may be null.
   ResumePoint(const Stepper& stepper, IntegratorState& integrator, IntegratorState& resumable,
               Observer& observer, const Discontinuities* discontinuities, bool begins_anew);
 
-  /// Where the observer may end the run within a step, each step is written down first.
+  /// If the observer may end the run within a step, the state at the start of each step is saved.
   void step_begins();
-  /// The step is taken again, whole.
+  /// A continued run takes the whole step again.
   void restart_at_step_start();
 
-  /// Until end_change(), what a function of the user's may raise leaves the law half changed.
+  /// Until end_change(), an exception in a user's function leaves the law half changed.
   void begin_change();
-  void change_goes_on() { law_is_changing_ = true; }  ///< a second one, at the same time
+  void change_goes_on() { law_is_changing_ = true; }  ///< a second change at the same time
   void end_change() { law_is_changing_ = false; }
 
-  /// What comes now depends on where the run ends.
+  /// What follows depends on where the run ends.
   void cut_from_here();
   /// The resumable position stays what it is.
   void cut() { is_cut_ = true; }

@@ -1,5 +1,5 @@
 /// \file
-/// The clock on the wall, as the loop sees it: when to stop, when to report.
+/// The wall clock for the loop: when to stop, and when to report.
 #pragma once
 
 #include <chrono>
@@ -9,19 +9,19 @@
 
 namespace pendcore {
 
-/// Is thrown out of work that is not done in steps: why the run is to end.
+/// Thrown out of work that is not done in steps; says why the run is to end.
 struct Stopped : std::exception {
   explicit Stopped(Status why) : status(why) {}
   Status status;
 };
 
-/// Looks at the clock seldom, yet often enough: the time limit is kept within a few milliseconds
-/// and the monitor is called about every 50.
+/// Looks at the clock seldom, but often enough: the time limit is kept within a few milliseconds,
+/// and the monitor is called about every 50 ms.
 class RunLimits {
  public:
   RunLimits(const Limits& limits, double t0) : limits_(limits), t0_(t0) {}
 
-  /// Status::finished means: go on.
+  /// Status::finished means that the run goes on.
   Status look(double t);
 
  private:

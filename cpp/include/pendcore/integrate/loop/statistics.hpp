@@ -1,5 +1,5 @@
 /// \file
-/// What a run cost.
+/// The cost of a run.
 #pragma once
 
 namespace pendcore {
@@ -15,10 +15,11 @@ struct Statistics {
   long long limited_by_break = 0;      ///< accepted steps cut by the end or by a break point
   double min_step = 0.0;               ///< s, the smallest accepted step, not cut (unless all are)
   double max_step = 0.0;               ///< s, the largest, likewise
-  bool stiff = false;                  ///< the steps were found limited by stability: stiffness.hpp
+  bool stiff = false;                  ///< stability was found to limit the steps: stiffness.hpp
 };
 
-/// One step more, of size h; one that was cut has no say in the smallest and the largest.
+/// Counts an accepted step of size h. A step that was cut does not count for the smallest and the
+/// largest step.
 void count_accepted(Statistics& statistics, double h, bool cut, bool at_max_step);
 
 }  // namespace pendcore

@@ -3,12 +3,13 @@
 ///
 ///     h_next = h clamp(safety err^-(1/k - 3/4 beta) err_before^beta),  k = error_order + 1
 ///
-/// After a rejection: h_next = h max(shrink, safety err^-(1/k - 3/4 beta)), and no growth straight
-/// after it. Source: Hairer and Wanner, Solving Ordinary Differential Equations II (1996), IV.2,
-/// (2.43c), with the constants of their program DOPRI5.
+/// After a rejection h_next = h max(shrink, safety err^-(1/k - 3/4 beta)), and the step after it
+/// does not grow. Source: Hairer and Wanner, Solving Ordinary Differential Equations II (1996),
+/// IV.2, (2.43c), with the constants of their program DOPRI5.
 ///
-/// Where a step begins, all of this is known but err: 2^gain = safety err_before^beta. The step's
-/// kernel returns 2^gain err^-exponent with the error, as the next step waits for it.
+/// At the start of a step everything but err is known: 2^gain = safety err_before^beta. The kernel
+/// of the step returns 2^gain err^-exponent together with the error, because the next step waits
+/// for it.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +27,7 @@ constexpr double exponent(const MethodInfo& method) {
 }
 
 struct StepControl {
-  static constexpr double log2_smallest_error = -13.287712379549449;  // of 1e-4
+  static constexpr double log2_smallest_error = -13.287712379549449;  // log2(1e-4)
 
   double log2_error_before = log2_smallest_error;
   bool after_rejection = false;
@@ -44,7 +45,7 @@ struct StepControl {
     return std::clamp(attempt.factor, method.shrink, largest);
   }
 
-  /// The factor for the retry of a rejected step; the smallest where the error is not finite.
+  /// The factor for the retry of a rejected step; the method's `retry` if the error is not finite.
   double reject(const MethodInfo& method, const Attempt& attempt) {
     after_rejection = true;
     if (!std::isfinite(attempt.squared_error)) return method.retry;

@@ -1,5 +1,5 @@
 /// \file
-/// What an Observer answers to an accepted step: where in the step the run is to end, if it is.
+/// The answer of an Observer to an accepted step: where in the step the run is to end, if anywhere.
 #pragma once
 
 namespace pendcore {

@@ -6,11 +6,11 @@
 
 namespace pendcore {
 
-/// Hairer's test, of an attempted step of size h: after a hundred accepted steps, every thousandth
-/// from there, and after each suspicious one. Fifteen hits, not interrupted by six misses, and the
-/// problem is called stiff (Hairer and Wanner, IV.2): the statistics, and the stepper, are told.
-/// The eigenvalue is that of two stages of a Runge-Kutta step; of a Taylor series, of
-/// dominant_eigenvalue.hpp.
+/// Applies Hairer's test to an attempted step of size h: after a hundred accepted steps, after
+/// every thousandth step from there, and after each suspicious step. After fifteen hits without six
+/// misses in a row between them, the problem is called stiff (Hairer and Wanner, IV.2); the
+/// statistics and the stepper are told. The eigenvalue comes from two stages of a Runge-Kutta step,
+/// or for a Taylor series from dominant_eigenvalue.hpp.
 void test_stiffness(Stepper& stepper, double h, IntegratorState& integrator);
 
 }  // namespace pendcore

@@ -1,10 +1,10 @@
 /// \file
-/// A step as it is tried: shortened, where the law changes along it, to the time at which it does.
+/// The trial of a step. If the law changes along the step, it is shortened to end at this time.
 ///
-/// The law is frozen while the method tries a step, and Guards says where along it that was not
-/// allowed. The step is then taken again to that time, so that the state there comes from the
-/// method, not from the dense output. What a step says of guards that coarse steps cannot tell, a
-/// shorter one is asked.
+/// The law is frozen while the method tries a step, and Guards finds where along the step this was
+/// not allowed. The step is then taken again up to that time, so that the state there comes from
+/// the method, not from the dense output. Where a coarse step does not decide about a guard, a
+/// shorter one is tried.
 #pragma once
 
 #include <memory>
@@ -15,29 +15,29 @@
 
 namespace pendcore {
 
-/// How far apart doubles are about there, and a little more: times within that are the same.
+/// A few times the spacing of doubles at these times: times within this distance count as the same.
 double last_bits(double t, double t_new);
-/// How many of the last bits of time a step has that resolves nothing, at most.
+/// A step of at most this many last bits of time resolves nothing.
 inline constexpr double few = 10.0;
 
 class Trial {
  public:
-  /// What is to become of the step.
+  /// What happens with the step.
   enum class Verdict {
-    accepted,          ///< of size h(); at its end the law changes if guard() is not -1
-    is_tried_again,    ///< from its start, of size h()
+    accepted,          ///< with size h(); the law changes at its end if guard() is not -1
+    is_tried_again,    ///< from its start, with size h()
     changes_at_start,  ///< guard() is negative as soon as the step begins
-    fails              ///< and no other size is to be tried
+    fails              ///< and no other size is tried
   };
 
-  /// Steps of `integrator`, whose `trial_was_finite` it keeps; `discontinuities` may be null.
+  /// Tries steps of `integrator` and sets its `trial_was_finite`; `discontinuities` may be null.
   Trial(Stepper& stepper, IntegratorState& integrator, bool fixed_step,
         Discontinuities* discontinuities);
 
-  /// The method's attempt at a step of size h.
+  /// Lets the method attempt a step of size h.
   void attempt(double h);
-  /// What follows from it. The shortest of all steps cannot be shortened; where longer ones are
-  /// what the error calls for, that of this one is that of its times, and it stands `at_any_error`.
+  /// Decides what follows from the attempt. The shortest of all steps cannot be shortened. If the
+  /// error of such a step only comes from the rounding of its times, it is accepted `at_any_error`.
   Verdict judge(bool is_shortest, bool at_any_error);
 
   double h() const { return h_; }
@@ -58,14 +58,14 @@ class Trial {
   Stepper& stepper_;
   IntegratorState& integrator_;
   bool fixed_step_;
-  std::unique_ptr<Guards> guards_;  ///< null where nothing discontinuities
+  std::unique_ptr<Guards> guards_;  ///< null without discontinuities
   double t_ = 0.0;
   double h_ = 0.0;
   Attempt attempt_{};
   Crossing crossing_;
   int bad_ = -1;
   std::vector<double> new_state_;
-  std::vector<double> polynomial_;  ///< of a fixed step
+  std::vector<double> polynomial_;  ///< the dense output of a fixed step
 };
 
 }  // namespace pendcore

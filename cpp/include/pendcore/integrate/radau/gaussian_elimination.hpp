@@ -1,9 +1,9 @@
 /// \file
-/// Gaussian elimination with partial pivoting, real and complex, in an order that nothing changes.
+/// Gaussian elimination with partial pivoting, real and complex, in a fixed order of operations.
 ///
-/// Complex numbers are written out in reals, and a pivot is chosen by |re| + |im|. Source: Golub
-/// and Van Loan, Matrix Computations, 3.4. Cost: n^3/3 multiplications of the number, and n^2 for
-/// each right side. Allocates once; a singular matrix gives what is not finite.
+/// Complex numbers are written out as reals, and a pivot is chosen by |re| + |im|. Source: Golub
+/// and Van Loan, Matrix Computations, 3.4. Cost: n^3/3 multiplications of the number type, and n^2
+/// for each right side. It allocates once. A singular matrix gives numbers that are not finite.
 #pragma once
 
 #include <functional>
@@ -27,11 +27,12 @@ class GaussianElimination {
     pivots_.resize(n);
   }
 
-  /// (n, n) row-major: filled in here, and then factored in place.
+  /// The matrix, (n, n) row-major. The caller fills it in, and factor() replaces it by its factors.
   Number* matrix() { return matrix_.data(); }
-  /// Asks now and then whether to go on, if that is given; false where it was told not to.
+  /// Factors the matrix. Calls `keep_going` from time to time, if it is given; returns false if
+  /// that did.
   bool factor(const std::function<bool()>& keep_going = nullptr);
-  /// From a right side (n) to the solution, in place.
+  /// Replaces a right side (n) by the solution.
   void solve(Number* x) const;
 
  private:

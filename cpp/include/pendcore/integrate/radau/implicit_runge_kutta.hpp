@@ -7,17 +7,17 @@
 ///     (g - J) dW_1 = T^-1 F - g W_1,   g = real/h;    (g - J)(dW_2 + i dW_3) alike, g = (alpha +
 ///     i beta)/h
 ///
-/// which are solved in half their size (newton_systems.hpp).
+/// They are solved as systems of half the size (newton_systems.hpp).
 ///
-/// The error is (g - J)^-1 (f(t, y) - u'(t)), g = real/h, with u the polynomial of the step: of
-/// order 3, and damped where J is. Tolerances are those of the step's own error, of order 5: the
-/// estimate is held against 0.1 rtol^(2/3), and atol in proportion.
+/// The error is (g - J)^-1 (f(t, y) - u'(t)), g = real/h, with u the polynomial of the step. It is
+/// of order 3, and damped where J is. The tolerances are for the error of the step itself, which is
+/// of order 5. Therefore the estimate is compared with 0.1 rtol^(2/3), and with atol in proportion.
 ///
 /// Source: Hairer and Wanner, Solving Ordinary Differential Equations II (1996), IV.8: the
 /// iteration and where it stops, error (8.20), starting values (8.5), predictive control (8.25).
-/// Unlike their program, J and its factors are made for every step: exact and cheap here, and a
-/// step depends on nothing but where it starts, the polynomial and the size of the one before.
-/// Cost: three right-hand sides an iteration, of which there are two to four, and one J.
+/// Unlike in their program, J and its factors are made for every step. This is exact and cheap
+/// here, and a step depends only on its start and on what saved_state() has of the step before.
+/// Cost: three right-hand sides for each of two to four iterations, and one J.
 #pragma once
 
 #include <memory>
@@ -28,7 +28,7 @@
 
 namespace pendcore {
 
-/// A system of two rows (q and qd) that knows the derivatives of qdd, (row, row) each.
+/// A system of two rows (q and qd) that also computes the derivatives of qdd, (row, row) each.
 class DifferentiableSystem : public GeneralSystem {
  public:
   using GeneralSystem::GeneralSystem;
@@ -53,17 +53,17 @@ class ImplicitRungeKutta final : public Stepper {
   void set_new_state(const double* y) override;
   void evaluate(double t, const double* y, double* dydt) override;
 
-  /// Where the iteration does not converge the error is NaN: the step is not accepted.
+  /// If the iteration does not converge, the error is NaN, so that the step is not accepted.
   Attempt attempt(double t, double h, double gain) override;
   void stay() override;
   void accept(double t_new) override;
   void interpolant(double h, double* coefficients) override;
   void sample(const double* coefficients, const TwoDouble& start, double h, const double* times,
               int count, double* states) const override;
-  double stiffness(double /*h*/) override { return 0.0; }  // no bound to stability
+  double stiffness(double /*h*/) override { return 0.0; }  // stability limits no step
 
-  /// The low part of the state, if compensated. Of the accepted step, its polynomial and size, its
-  /// error, the iteration's contraction. Whether a step from here was tried already.
+  /// The low part of the state, if compensated. The polynomial, size and error of the accepted
+  /// step, and the contraction of its iteration. Whether a step from here was tried already.
   std::vector<double> saved_state() const override;
   void restore(const std::vector<double>& memory) override;
 
@@ -96,19 +96,19 @@ class ImplicitRungeKutta final : public Stepper {
   Rows y_, dydt_, y_new_;
   bool has_jacobian_ = false;
   Rows stages_, transformed_, rates_, increment_, trial_, error_;  ///< (3, size) or (size)
-  Rows slope_;                                                     ///< h u'(t) of what is shown
+  Rows slope_;                                                     ///< h u'(t) of the dense output
   NewtonSystems systems_;
-  int iterations_ = 0;  ///< that the last attempt took
-  double h_ = 0.0;      ///< and its size
+  int iterations_ = 0;  ///< iterations of the last attempt
+  double h_ = 0.0;      ///< the size of the last attempt
   double squared_error_ = 0.0;
   double contraction_of_attempt_ = 1.0;
-  // What the next step takes from the one before; h_before_ = 0: there is none.
+  // What the next step takes from the step before; h_before_ is 0 if there is none.
   Rows polynomial_;  ///< powers 1 to 3
   double h_before_ = 0.0;
   double log2_error_before_ = 0.0;
   double contraction_ = 1.0;
   bool is_retry_ = false;
-  Rows low_, low_new_;  ///< what the rounding of y and y_new left over, if compensated
+  Rows low_, low_new_;  ///< the rounding errors of y and y_new, if compensated
 };
 
 }  // namespace pendcore

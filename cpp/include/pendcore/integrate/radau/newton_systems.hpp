@@ -1,10 +1,10 @@
 /// \file
-/// The linear systems of an implicit method's iteration, of q'' = a(q, q'):
+/// The linear systems in the iteration of an implicit method for q'' = a(q, q'):
 ///
 ///     (g - J)(x, y) = (r, s),  J = ((0, 1), (A, B)):
 ///     (1 - h B - h^2 A) y = h (s + h A r),    x = h (r + y),    h = 1/g
 ///
-/// for a real h and a complex one. Cost: two eliminations of half the size of J.
+/// for a real and for a complex h. Cost: two eliminations of half the size of J.
 #pragma once
 
 #include "pendcore/integrate/radau/collocation.hpp"
@@ -16,17 +16,17 @@ class NewtonSystems {
  public:
   void resize(int n);
 
-  /// A and B, (n, n) each: filled in here.
+  /// A and B, (n, n) each. The caller fills them in.
   double* by_q() { return by_q_.data(); }
   double* by_qd() { return by_qd_.data(); }
 
-  /// Makes both systems for a step of size h: g = real/h, and (alpha + i beta)/h. Asks now and then
-  /// whether to go on; false where it was told not to.
+  /// Factors both systems for a step of size h: g = real/h, and (alpha + i beta)/h. Calls
+  /// `keep_going` from time to time; returns false if that did.
   bool factor(const Collocation& method, double h, const std::function<bool()>& keep_going);
   double real() const { return g_; }              ///< g
   Complex complex() const { return complex_g_; }  ///< g
 
-  /// From (r, s) to (x, y), (2n) numbers, in place.
+  /// Replaces (r, s) by (x, y), 2n numbers.
   void solve_real(double* x);
   void solve_complex(double* re, double* im);
 

@@ -5,12 +5,12 @@
 ///
 ///     c = ((4 - sqrt 6)/10, (4 + sqrt 6)/10, 1),
 ///
-/// the last at the end of the step. Order 5, stiffly accurate, L-stable: what is damped
-/// faster than a step is long is gone after it. The polynomial is of order 4.
+/// the last at the end of the step. It is of order 5, stiffly accurate and L-stable: a component
+/// that decays much faster than the step is gone after it. The polynomial is of order 4.
 ///
 /// Source: Hairer and Wanner, Solving Ordinary Differential Equations II (1996), IV.5 and IV.8, as
-/// the program RADAU5 has it. The numbers are derived in sixty digits by
-/// tests/reference/radau_iia.py and rounded once; eigenvectors are scaled to end in 1.
+/// in the program RADAU5. The numbers are derived in sixty digits by tests/reference/radau_iia.py
+/// and rounded once; eigenvectors are scaled to end in 1.
 #pragma once
 
 #include "pendcore/integrate/radau/collocation.hpp"

@@ -1,6 +1,6 @@
 /// \file
-/// What the rounding of the state leaves over, as compensated steps carry it along: a low part for
-/// each component, so that y + low is the state to about 106 bits.
+/// The rounding error of the state, which compensated steps carry along: a low part for each
+/// component, so that y + low is the state to about 106 bits.
 ///
 /// A compensated step forms the increment h sum b_k k on its own, on top of the low part of y, and
 /// splits its sum with y without error. A component that something else than a step sets, as a
@@ -36,11 +36,12 @@ inline void drop_changed(const double* y, const double* before, int count, doubl
   }
 }
 
-/// Whether a stepper's memory holds a low part: that of a run that took no step may be empty.
-/// Throws std::invalid_argument if it is that of another state.
+/// Whether a stepper's memory has a low part; the memory of a run that took no step may be empty.
+/// Throws std::invalid_argument if the memory belongs to another state.
 inline bool has_low_part(const std::vector<double>& memory, int dimension) {
   if (!memory.empty() && memory.size() != static_cast<std::size_t>(dimension)) {
-    throw std::invalid_argument("what rounding left over in this solution is not of its state");
+    throw std::invalid_argument(
+        "the rounding errors kept in this solution do not belong to its state");
   }
   return !memory.empty();
 }

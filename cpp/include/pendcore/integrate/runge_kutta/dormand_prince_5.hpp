@@ -6,7 +6,7 @@
 ///
 /// Sources: Dormand and Prince, A family of embedded Runge-Kutta formulae, J. Comp. Appl. Math. 6
 /// (1980), 19-26, table 2. Interpolant: Hairer, Norsett, Wanner, Solving Ordinary Differential
-/// Equations I (1993), II.6, as the program DOPRI5 has it (Shampine 1986), here in powers of theta.
+/// Equations I (1993), II.6, as in the program DOPRI5 (Shampine 1986), here in powers of theta.
 /// Step control: ibid. II.4 and, with beta, Hairer and Wanner, volume II (1996), IV.2.
 #pragma once
 

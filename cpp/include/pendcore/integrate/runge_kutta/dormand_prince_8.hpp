@@ -1,20 +1,21 @@
 /// \file
-/// Dormand-Prince 8(5,3): of order 8, for tight tolerances.
+/// Dormand-Prince 8(5,3): a method of order 8, for tight tolerances.
 ///
-/// Thirteen stages, the last of which is the first of the next step; two embedded methods, of
-/// orders 5 and 3, that make one estimate of order 7; a continuous extension of order 7 that costs
-/// three stages more, where it is asked for.
+/// Thirteen stages, the last of which is the first of the next step; two embedded methods of orders
+/// 5 and 3, which give one error estimate of order 7; a continuous extension of order 7 that costs
+/// three more stages, where it is asked for.
 ///
 /// Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), II.5 and
-/// II.10, whose program DOP853 gives the coefficients in up to thirty digits. They are exact here,
-/// in Q(sqrt(6)): found from those digits as fractions, or from the conditions that hold for them
-/// (sum_j a_ij c_j^q = c_i^(q+1) / (q + 1), and of order 7 for the dense output, which have one
-/// solution). Of some, the last digits of that program are not right.
+/// II.10, whose program DOP853 gives the coefficients in up to thirty digits. Here they are exact,
+/// in Q(sqrt(6)). They were found from those digits as fractions, or from the conditions that they
+/// satisfy (sum_j a_ij c_j^q = c_i^(q+1) / (q + 1), and the conditions of order 7 for the dense
+/// output), which have one solution. The last digits of some numbers in that program are not right.
 ///
-/// beta and the safety factor are this project's: on the textbook's case, high_energy, damped and
-/// three links and 40 drawn scenes, tolerances of 1e-4 to 1e-12, these take 5 to 21 % fewer
-/// attempts for the same error than the program's 0 and 0.9 (13 % on average), beta = 0.02 and 0.04
-/// with 0.75 to 0.85 nearly as many; from 0.06 on the steps grow too timidly.
+/// beta and the safety factor are this project's own. They were chosen on the textbook's case,
+/// high_energy, damped and three links and 40 drawn scenes, with tolerances of 1e-4 to 1e-12. For
+/// the same error they take 5 to 21 % fewer attempts (13 % on average) than the program's 0 and
+/// 0.9. beta = 0.02 and 0.04 with safety factors of 0.75 to 0.85 save nearly as many; from 0.06 on
+/// the steps grow too slowly.
 #pragma once
 
 #include "pendcore/integrate/runge_kutta/tableau.hpp"
@@ -32,7 +33,7 @@ inline constexpr Tableau<13, 7, 3> dormand_prince_8 = {
              .error_order = 7,
              .interpolant_order = 7,
              .beta = 0.03,
-             .log2_safety = -0.3219280948873623,  // of 0.8
+             .log2_safety = -0.3219280948873623,  // log2(0.8)
              .shrink = 1.0 / 3.0,
              .growth = 6.0,
              .stability = 6.1,

@@ -1,9 +1,9 @@
 /// \file
 /// The classical method of Runge and Kutta, of order 4: what many write by hand.
 ///
-/// Four stages and no error estimate: its steps are all of one size, that the user gives. A fifth
-/// stage is the first of the next step, and makes the dense output: Hermite's cubic through both
-/// ends and the slopes there, of order 3.
+/// It has four stages and no error estimate. All its steps have one size, which the user gives. A
+/// fifth stage is the first of the next step, and makes the dense output: Hermite's cubic through
+/// both ends and the slopes there, of order 3.
 ///
 /// Source: Kutta, Beitrag zur naeherungsweisen Integration totaler Differentialgleichungen,
 /// Zeitschrift fuer Mathematik und Physik 46 (1901), 435-453; Hairer, Norsett, Wanner, Solving

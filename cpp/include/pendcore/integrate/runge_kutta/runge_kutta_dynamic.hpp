@@ -1,9 +1,9 @@
 /// \file
 /// An explicit Runge-Kutta method on a state of any size, in memory.
 ///
-/// The same step as step.hpp, operation for operation, where the size of the state or the system
-/// is not known to the compiler: long chains, and runs with quadratures beside the state, which
-/// count for nothing in the error norm. `Block` is the pack that the arrays are worked on with.
+/// The same step as in step.hpp, operation for operation, for a state or a system whose size the
+/// compiler does not know: long chains, and runs with quadratures beside the state, which do not
+/// count in the error norm. `Block` is the pack in which the arrays are worked on.
 #pragma once
 
 #include <algorithm>
@@ -27,21 +27,21 @@ class GeneralSystem {
       : row(row_size), quadratures(quadrature_count) {}
   virtual ~GeneralSystem() = default;
 
-  /// From the state (row, row) to its derivative (row, row, quadratures).
+  /// Computes the derivative (row, row, quadratures) of the state (row, row).
   virtual void operator()(double t, const double* y, double* dydt) const = 0;
 
   const int row;
   const int quadratures;
 };
 
-/// What one step works on: rows of blocks, `stages` of them for k.
+/// The data of one step: rows of blocks, `stages` of them for k.
 struct GeneralMemory {
   const GeneralSystem* system;
-  int blocks;        ///< of the state,
-  int error_blocks;  ///< and of its part in the error norm
+  int blocks;        ///< blocks of the state
+  int error_blocks;  ///< blocks of its part in the error norm
   double count;      ///< numbers in that part
   double *y, *y_new, *k, *rtol, *atol;
-  double *low, *low_new;  ///< of y and y_new, if the step is compensated
+  double *low, *low_new;  ///< rounding errors of y and y_new, if compensated
 };
 
 /// One block of the stages k, rows of `size` numbers.
@@ -120,8 +120,8 @@ PENDCORE_INLINE Attempt attempt_in_memory(const GeneralMemory* memory, double t,
   return {squared_error, scaled_power(squared_error, -0.5 * exponent(method.info), gain)};
 }
 
-/// The stages of the attempted step, from time t, that the dense output alone asks for; `z` is room
-/// for a state.
+/// Computes the stages of the attempted step, from time t, that only the dense output needs; `z` is
+/// memory for a state.
 template <const auto& method, class Block>
 PENDCORE_INLINE void dense_stages_in_memory(const GeneralMemory* memory, double t, double h,
                                             double* z) {
@@ -180,7 +180,7 @@ class RungeKuttaDynamic final : public Stepper {
         compensated ? memory_.k + static_cast<std::ptrdiff_t>(all_stages) * size_ : nullptr;
     memory_.low_new = compensated ? memory_.low + size_ : nullptr;
     rows_ = numbers_.data() + static_cast<std::ptrdiff_t>(rows) * size_;
-    for (int i = 0; i < size_; ++i) memory_.atol[i] = 1.0;  // where there is no component
+    for (int i = 0; i < size_; ++i) memory_.atol[i] = 1.0;  // places without a component
   }
 
   const MethodInfo& info() const override { return method.info; }
@@ -305,9 +305,9 @@ class RungeKuttaDynamic final : public Stepper {
   int row_;
   int size_;
   std::vector<double> numbers_;
-  double* rows_;  ///< of an interpolant
+  double* rows_;  ///< the rows of an interpolant
   GeneralMemory memory_;
-  double t_ = 0.0;  ///< of the attempt
+  double t_ = 0.0;  ///< the time of the attempt
   bool has_dense_stages_ = false;
   Attempt (*attempt_)(const GeneralMemory*, double, double, double) =
       fastest<&attempt_in_memory<method, Block, compensated>, best_for(width)>();

@@ -127,7 +127,7 @@ class RungeKuttaFixed final : public Stepper {
 
   Memory memory_;
   std::shared_ptr<const void> owner_;
-  double t_ = 0.0;  ///< of the attempt
+  double t_ = 0.0;  ///< the time of the attempt
   bool has_dense_stages_ = false;
   Attempt (*attempt_)(Memory*, double, double,
                       double) = fastest<&attempt_step<method, System>, best_for(width)>();

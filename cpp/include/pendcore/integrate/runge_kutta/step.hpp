@@ -1,8 +1,8 @@
 /// \file
-/// WHERE IS THE STEPPER: one step of an explicit Runge-Kutta method, from its table.
+/// The stepper: one step of an explicit Runge-Kutta method, from its table.
 ///
 /// `attempt_step` is the kernel: the stages, the new state and its error norm, unrolled for the
-/// table and the system at compile time. It allocates nothing and branches on nothing itself.
+/// table and the system at compile time. It does not allocate, and has no branches of its own.
 /// runge_kutta_fixed.hpp clones it for each instruction set and hands it to the loop.
 ///
 /// A system is a type with `Block` (a double or a pack), `blocks` (how many make a state) and
@@ -40,8 +40,8 @@ struct StepMemory {
 };
 
 /// start + h (sum of weights[j] k(j) over the first `count` stages); terms with weight zero are
-/// left out. The last stage is the one that is waited for: it comes in last, its weight times h
-/// ready.
+/// left out. The last stage is known last. So it is added last, with its weight times h computed
+/// before.
 template <class Block, class Scale, class Weights, class Stage>
 PENDCORE_INLINE Block advance(const Block& start, const Scale& h, const Weights& weights,
                               const Stage& k, int count) {
@@ -61,7 +61,7 @@ PENDCORE_INLINE Block advance(const Block& start, const Scale& h, const Weights&
   return fma(h * weights[last].value(), k(last), known);
 }
 
-/// The same sum, to the bit, with weights that are read as a loop goes.
+/// The same sum, bit for bit, with weights that a loop reads.
 template <class Block, class Stage>
 PENDCORE_INLINE Block advance(const Block& start, double h, const StageRow& row, const Stage& k) {
   if (row.count == 0) return start;
@@ -94,11 +94,11 @@ class SquaredErrors {
       std::ranges::any_of(method.d, [](const Fraction& weight) { return !weight.is_zero(); });
 
  public:
-  /// Those of one block; `scale` is h over what is allowed.
+  /// Adds the squares of one block; `scale` is h divided by what is allowed.
   template <class Stage>
   PENDCORE_INLINE void add(const Block& y_new, const Block& scale, const Stage& k, bool is_first) {
-    // Without a stage at the new state, or an estimate that has it in, nothing else says that they
-    // are finite: 0, or NaN.
+    // Where no stage is at the new state, or no estimate contains that stage, nothing else shows
+    // whether they are finite. So 0 is added, or NaN if they are not.
     Block start{};
     if constexpr (!method.first_same_as_last) start = y_new - y_new;
     if constexpr (method.first_same_as_last && method.info.error_order == 0) {
@@ -121,18 +121,20 @@ class SquaredErrors {
 
  private:
   Block squares_{};
-  std::conditional_t<has_second, Block, char> others_{};  // never read without
+  std::conditional_t<has_second, Block, char> others_{};  // never read without a second method
 };
 
-/// Whether the stages are compiled one after the other, each with its copy of the right-hand side:
-/// the fastest step. Otherwise they are a loop around one, which compiles in a fifth of the time.
+/// Whether the stages are compiled one after the other, each with its own copy of the right-hand
+/// side, which is the fastest step. Otherwise they are a loop around one copy, which compiles in a
+/// fifth of the time.
 template <const auto& method, class System>
 constexpr bool is_written_out = [] {
   if constexpr (requires { System::is_short; }) return method.written_out || System::is_short;
   return method.written_out;
 }();
 
-/// Stages first .. end - 1, into k, which has those before; z becomes the last one's state.
+/// Computes stages first .. end - 1 into k, which has the stages before them; z becomes the state
+/// of the last one.
 template <const auto& method, int first, int end, class System, class Block, int blocks>
 PENDCORE_INLINE void evaluate_stages(const System& system, double t, double h,
                                      const Block (&y)[blocks], Block (*k)[blocks],
@@ -164,7 +166,8 @@ PENDCORE_INLINE Attempt attempt_step(StepMemory<method, System>* memory, double 
   constexpr int blocks = Memory::blocks;
   constexpr int stages = Memory::stages;
 
-  // Local copies stay in registers; memory is written once, at the end. Stages of a loop do not.
+  // Local copies stay in registers, and memory is written once, at the end. The stages of a loop
+  // stay in memory.
   const System system = memory->system;
   Block y[blocks];
   Block z[blocks];
@@ -182,7 +185,7 @@ PENDCORE_INLINE Attempt attempt_step(StepMemory<method, System>* memory, double 
     for (int i = 0; i < blocks; ++i) z[i] = advance(y[i], h, method.b, StageBlock(k, i), stages);
   }
 
-  // The scales wait for y_new only, so their division is done before the last stage is.
+  // The scales only wait for y_new, so their division is done before the last stage is.
   SquaredErrors<method, Block> squares;
 #pragma GCC unroll 16
   for (int i = 0; i < blocks; ++i) {
@@ -246,8 +249,8 @@ PENDCORE_INLINE void interpolant_of_block(double h, const Stage& k, Block* power
   }
 }
 
-/// coefficient[p] theta^p for p = 1 .. degree, and coefficient[0] = y: the dense output of a step
-/// from y with the stages k, (degree + 1) rows of a state each. Of any system.
+/// Computes coefficient[p] of theta^p for p = 1 .. degree, and coefficient[0] = y: the dense output
+/// of a step from y with the stages k, (degree + 1) rows of a state each. It works for any system.
 template <const auto& method, class Block, int blocks>
 PENDCORE_INLINE void interpolant_of_step(const Block* y, const Block (*k)[blocks], double h,
                                          double* coefficients) {

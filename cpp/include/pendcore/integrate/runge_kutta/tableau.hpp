@@ -1,21 +1,21 @@
 /// \file
-/// What an explicit Runge-Kutta method is: a table.
+/// The table of an explicit Runge-Kutta method.
 ///
 ///     k_s = f(t + c_s h, y + h sum_j a_sj k_j),     y_new = y + h sum_s b_s k_s
 ///     err = h sum_s e_s k_s                          the difference to the embedded method
 ///     y(t + theta h) = y + h sum_i f_i(theta) sum_s D_is k_s,    0 <= theta <= 1
 ///
 /// with polynomials f_i(theta) = sum_p F_ip theta^p, p = 1 .. degree: powers of theta, unless the
-/// table says otherwise. The dense output may ask for stages of its own, after those of the step.
+/// table says otherwise. The dense output may need stages of its own, after those of the step.
 ///
-/// A second embedded method makes err less trusting where the first is good by chance (Hairer,
-/// Norsett and Wanner, II.10): with the norms of both, |e| of order p and |d| of order q,
+/// A second embedded method makes err more careful where the first is good by chance (Hairer,
+/// Norsett and Wanner, II.10). With the norms of both, |e| of order p and |d| of order q,
 ///
 ///     |err| = |e|^2 / sqrt(|e|^2 + 0.01 |d|^2)       of order 2 p - q
 ///
 /// Coefficients are exact, (numerator + root sqrt(6)) / denominator, and rounded once, by the
 /// compiler. The order conditions of b, of b - e and of the interpolant are tested exactly, for
-/// every method there is.
+/// every method.
 #pragma once
 
 #include <array>
@@ -28,8 +28,9 @@ namespace pendcore {
 struct Fraction {
   long long numerator = 0;
   long long denominator = 1;
-  long long root = 0;  ///< of 6
-  /// Rounded once; where more than one operation is needed, in extended precision before that.
+  long long root = 0;  ///< factor of sqrt(6)
+  /// The value, rounded once; where it takes more than one operation, these are in extended
+  /// precision.
   constexpr double value() const {
     constexpr long long exact = 1LL << 53;
     if (root == 0 && -exact < numerator && numerator < exact && denominator < exact) {
@@ -42,7 +43,7 @@ struct Fraction {
   constexpr bool is_zero() const { return numerator == 0 && root == 0; }
 };
 
-/// Rows of an identity: powers of theta.
+/// The rows of an identity matrix: powers of theta.
 template <int degree>
 constexpr std::array<std::array<int, degree>, degree> powers() {
   std::array<std::array<int, degree>, degree> rows{};
@@ -53,7 +54,7 @@ constexpr std::array<std::array<int, degree>, degree> powers() {
 template <int stage_count, int interpolant_degree, int dense_stage_count = 0>
 struct Tableau {
   static constexpr int stages = stage_count;
-  static constexpr int dense_stages = dense_stage_count;  ///< more, for the dense output alone
+  static constexpr int dense_stages = dense_stage_count;  ///< additional, only for the dense output
   static constexpr int all_stages = stage_count + dense_stage_count;
   static constexpr int degree = interpolant_degree;
   using Row = std::array<Fraction, stage_count>;
@@ -61,18 +62,18 @@ struct Tableau {
 
   MethodInfo info;
   bool first_same_as_last;   ///< the last stage is the first of the next step
-  bool written_out = false;  ///< stage by stage for all equations, not the short ones alone
+  bool written_out = false;  ///< stage by stage for all equations, not only the short ones
   LongRow c;
   std::array<LongRow, all_stages> a;
   Row b;
   Row e;       ///< b minus the weights of the embedded method
-  Row d = {};  ///< and of the second, if there is one
+  Row d = {};  ///< b minus the weights of the second, if there is one
   std::array<LongRow, interpolant_degree> interpolant;  ///< D
   std::array<std::array<int, interpolant_degree>, interpolant_degree> basis =
       powers<interpolant_degree>();  ///< F
 };
 
-/// A stage as a loop over them reads it: c_s, and the weights a_sj that are not zero.
+/// A stage as a loop over stages reads it: c_s, and the weights a_sj that are not zero.
 struct StageRow {
   double node = 0.0;
   int count = 0;

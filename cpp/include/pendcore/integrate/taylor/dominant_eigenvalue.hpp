@@ -1,14 +1,15 @@
 /// \file
-/// How fast the fastest part of a direction is: with the Jacobian J of y' = f(t, y), y = (q, qd),
+/// The rate of the fastest part of a direction v: with the Jacobian J of y' = f(t, y), y = (q, qd),
 ///
 ///     |lambda| = (|J J v| / |v|)^(1/2)      (1/s)
 ///
-/// The high coefficients of a Taylor series are such a direction: each is J times the one before,
-/// over its number, so that what is fastest outgrows the rest (power iteration). Twice J, as a pair
-/// of conjugate eigenvalues turns v in its plane: J J v = -omega^2 v where nothing is damped.
+/// The high coefficients of a Taylor series are good directions: each is J times the coefficient
+/// before, divided by its order, so that the fastest part outgrows the rest (power iteration). J is
+/// applied twice because a pair of conjugate eigenvalues turns v in its plane: J J v = -omega^2 v
+/// without damping.
 ///
-/// J v is a central difference over a millionth of a radian: an estimate, of which two digits
-/// count. Cost: four right-hand sides; no allocation.
+/// J v is a central difference over a millionth of a radian, which is good enough for an estimate
+/// of two digits. Cost: four right-hand sides; no allocation.
 #pragma once
 
 #include <vector>
@@ -21,18 +22,18 @@ class DominantEigenvalue {
  public:
   static constexpr int evaluations = 4;
 
-  /// The state has n angles, n rates and that many quadratures, which have no say.
+  /// The state has n angles, n rates and some quadratures, which are left out of account.
   DominantEigenvalue(int n, int quadratures);
 
   /// The direction, 2n numbers, to be filled in: rad, rad/s.
   double* direction() { return v_.data(); }
 
-  /// At time t (s) and state y; `rate` (1/s) says how many rad/s weigh as much as a radian. 0 of a
-  /// direction that is none.
+  /// Computes |lambda| at time t (s) and state y; `rate` (1/s) says how many rad/s weigh as much as
+  /// a radian. Returns 0 if the direction is zero or not finite.
   double operator()(const Rates& rates, double t, const double* y, double rate);
 
  private:
-  /// v becomes J v, divided by its own size; returns that.
+  /// Replaces v by J v divided by its size, and returns that size.
   double multiply(const Rates& rates, double t, const double* y, double rate);
   double norm(double rate) const;
 

@@ -4,8 +4,8 @@
 ///     y(theta) = h integral of f from 0 to theta,    f(theta) = sum_k p_k P_k(2 theta - 1)
 ///     p_k = (2 k + 1) sum_j w_j f(theta_j) P_k(2 theta_j - 1),   k < 8
 ///
-/// with Legendre's polynomials P_k: at theta = 1 of order 16, between of order 8. It serves what is
-/// only integrated along a step, where the step itself has a polynomial of high order.
+/// with Legendre's polynomials P_k. It is of order 16 at theta = 1, and of order 8 in between. It
+/// is for quantities that are only integrated along a step whose own polynomial is of high order.
 ///
 /// Source: Abramowitz and Stegun, Handbook of Mathematical Functions (1964), 25.4.29 and 22.3.8.
 #pragma once
@@ -32,14 +32,14 @@ struct GaussQuadrature {
     return sum;
   }
 
-  /// And the integral up to theta, as a polynomial: the coefficients of theta, ... theta^8.
+  /// The integral up to theta as a polynomial: the coefficients of theta, ... theta^8.
   static std::array<double, points> powers(const double* values) {
     std::array<double, points> result{};
     for (int k = 0; k < points; ++k) {
       double p = 0.0;
       for (int j = 0; j < points; ++j) p += weight[j] * values[j] * legendre(k, theta[j]);
       p *= 2 * k + 1;
-      double coefficient = k % 2 == 0 ? 1.0 : -1.0;  // of theta^i in P_k(2 theta - 1)
+      double coefficient = k % 2 == 0 ? 1.0 : -1.0;  // factor of theta^i in P_k(2 theta - 1)
       for (int i = 0; i <= k; ++i) {
         result[i] += p * coefficient / (i + 1);
         coefficient *= -static_cast<double>((k + i + 1) * (k - i)) / ((i + 1) * (i + 1));

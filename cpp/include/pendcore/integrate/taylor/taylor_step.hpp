@@ -1,13 +1,13 @@
 /// \file
 /// One step of the method of Taylor series (taylor.hpp): the kernels.
 ///
-/// A system is a `Series`: it has the size of its rows, `links()` and `row()`, what a processor
-/// works on, `Block` and `blocks` (0: known at run time only), and
+/// A system is a `Series`. It has the size of its rows, `links()` and `row()`; what a processor
+/// works on, `Block` and `blocks` (0 if known only at run time); and
 ///
 ///     expand(t, y, sigma, order, coefficients)
 ///
-/// that fills rows 1 .. order with y_k, y(t + theta sigma) = sum_k theta^k y_k. The step knows no
-/// pendulum.
+/// expand() fills rows 1 .. order with y_k, y(t + theta sigma) = sum_k theta^k y_k. The step knows
+/// nothing of pendulums.
 #pragma once
 
 #include <algorithm>
@@ -25,15 +25,15 @@
 
 namespace pendcore {
 
-/// What one step works on: rows of `blocks` blocks, a row for each power.
+/// The data of one step: rows of `blocks` blocks, a row for each power.
 template <class Series>
 struct TaylorMemory {
   Series series;
   int order = lowest_taylor_order;
   int blocks = 1;
-  double log2_count = 0.0;  ///< of the numbers in a state
+  double log2_count = 0.0;  ///< log2 of the count of numbers in a state
   double *y = nullptr, *y_new = nullptr, *rtol = nullptr, *atol = nullptr;
-  double *low = nullptr, *low_new = nullptr;    ///< of y and y_new, if the step is compensated
+  double *low = nullptr, *low_new = nullptr;    ///< rounding errors of y and y_new, if compensated
   double *rows = nullptr, *rows_new = nullptr;  ///< the series from y and y_new: order + 1 rows
   double sigma = 1.0, sigma_new = 1.0;
   double largest = 1.0, largest_new = 1.0;  ///< the step that the tolerances allow, s
@@ -41,7 +41,7 @@ struct TaylorMemory {
 
 namespace taylor_detail {
 
-/// 2^k <= x < 2^(k+1), within what leaves room for its powers.
+/// The power 2^k <= x < 2^(k+1), within limits that leave room for its powers.
 PENDCORE_INLINE double power_of_two_below(double x) {
   const double within = std::min(std::max(x, 0x1p-400), 0x1p400);
   return std::bit_cast<double>(std::bit_cast<std::uint64_t>(within) & 0x7ff0000000000000U);
@@ -56,7 +56,8 @@ PENDCORE_INLINE int blocks_of(const TaylorMemory<Series>* memory) {
   }
 }
 
-/// sum_{k >= 1} x^k y_k of one block, even and odd powers beside each other; an even order.
+/// sum_{k >= 1} x^k y_k for one block, with even and odd powers summed side by side. The order is
+/// even.
 template <class Block>
 PENDCORE_INLINE Block increment(const double* rows, int size, int order, double x) {
   const double square = x * x;
@@ -71,8 +72,8 @@ PENDCORE_INLINE Block increment(const double* rows, int size, int order, double 
   return x * fma(broadcast<Block>(x), even, odd);
 }
 
-/// log2 of the step over sigma that the tolerances allow to the series from y; NaN where it is not
-/// finite, infinite where it has no high powers.
+/// log2 of the step, in units of sigma, that the tolerances allow for the series from y; NaN if it
+/// is not finite, infinite if it has no high powers.
 template <class Series>
 PENDCORE_INLINE double log2_of_step(const TaylorMemory<Series>* memory, const double* y,
                                     const double* rows) {
@@ -119,8 +120,9 @@ PENDCORE_INLINE double log2_of_step(const TaylorMemory<Series>* memory, const do
   return -0.5 * inverse_of[memory->order] * log2_error;
 }
 
-/// The series from y at time t, in units of `sigma`, which is chosen anew where it is far from the
-/// step that follows; `largest` becomes that. Returns false where it is not finite.
+/// Computes the series from y at time t in units of `sigma`. `largest` becomes the step that the
+/// tolerances allow, and sigma is chosen anew if it is far from this step. Returns false if the
+/// series is not finite.
 template <class Series>
 PENDCORE_INLINE bool expand(TaylorMemory<Series>* memory, double t, const double* y, double* rows,
                             double& sigma, double& largest) {
@@ -145,7 +147,7 @@ PENDCORE_INLINE bool expand(TaylorMemory<Series>* memory, double t, const double
 
 }  // namespace taylor_detail
 
-/// y_new: the series at the end of a step of size h.
+/// Computes y_new, the series at the end of a step of size h.
 template <class Series, bool compensated>
 PENDCORE_INLINE void advance_series(TaylorMemory<Series>* memory, double h) {
   namespace detail = taylor_detail;
@@ -167,14 +169,14 @@ PENDCORE_INLINE void advance_series(TaylorMemory<Series>* memory, double h) {
   }
 }
 
-/// The step of size h, and the series that goes on from there: `advance`, and then `expand`.
+/// Takes the step of size h by `advance`, and computes the series from its end by `expand`.
 template <class Series, class Advance, class Expand>
 PENDCORE_INLINE Attempt attempt_series(TaylorMemory<Series>* memory, double t, double h,
                                        const Advance& advance, const Expand& expand) {
   namespace detail = taylor_detail;
   advance(memory, h);
   const double size_of_step = std::abs(h);
-  // As if of order 8, for what the control makes of a step that is too long.
+  // The error is reported as of order 8, for what the control makes of a step that is too long.
   const double share = size_of_step / memory->largest;
   const double square = share * share;
   const double of_order = (square * square) * (square * square);
@@ -186,12 +188,12 @@ PENDCORE_INLINE Attempt attempt_series(TaylorMemory<Series>* memory, double t, d
               memory->largest_new)) {
     return {std::numeric_limits<double>::quiet_NaN(), 0.0};
   }
-  constexpr double safety = 0.95;  // of the size: a last step may be a hundredth longer
+  constexpr double safety = 0.95;  // in size, as a last step may be a hundredth longer
   return {squared_error, (safety / size_of_step) * memory->largest_new};
 }
 
-/// The same in one kernel: a twentieth faster where the series is short. Longer ones are compiled
-/// once, as a kernel of their own.
+/// The same in one kernel, which is a twentieth faster where the series is short. Longer series are
+/// compiled once, as a kernel of their own.
 template <class Series, bool compensated>
 PENDCORE_INLINE Attempt attempt_short_series(TaylorMemory<Series>* memory, double t, double h) {
   auto advance = [](TaylorMemory<Series>* all, double step) __attribute__((always_inline)) {
@@ -222,7 +224,8 @@ PENDCORE_INLINE void sample_series(const double* coefficients, TwoDouble start, 
   }
 }
 
-/// Rows x^k y_k, k >= 1, of the series from y, in rows of `dimension` numbers: n angles, n rates.
+/// Writes rows x^k y_k, k >= 1, of the series from y, in rows of `dimension` numbers: n angles, n
+/// rates.
 template <class Series>
 PENDCORE_INLINE void powers_of_step(const TaylorMemory<Series>* memory, double x, int n, int row,
                                     int dimension, double* coefficients) {
@@ -233,7 +236,7 @@ PENDCORE_INLINE void powers_of_step(const TaylorMemory<Series>* memory, double x
     const double* const from = memory->rows + static_cast<std::ptrdiff_t>(k) * size;
     double* const to = coefficients + static_cast<std::ptrdiff_t>(k) * dimension;
     power *= x;
-    if constexpr (Series::blocks == 1) {  // of as many links as a block has room for
+    if constexpr (Series::blocks == 1) {  // a row of the series has no padding
       store(to, Block(power * load<Block>(from)));
     } else if (row == n) {
       for (int at = 0; at < size; at += Lanes<Block>::width) {

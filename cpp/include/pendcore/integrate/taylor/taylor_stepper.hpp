@@ -63,7 +63,7 @@ class Taylor final : public Stepper {
     if constexpr (compensated) drop_low_parts(y, memory_.y, memory_.low);
     read(y, memory_.y, sums_);
     std::copy_n(dydt, dimension(), given_rates_.begin());
-    double rate = 0.0;  // squared, of the motion: 1/s^2
+    double rate = 0.0;  // the squared rate of the motion, 1/s^2
     for (int i = 0; i < n_; ++i) {
       rate = std::max({rate, dydt[i] * dydt[i], std::abs(dydt[n_ + i])});
     }
@@ -96,7 +96,7 @@ class Taylor final : public Stepper {
 
   Attempt attempt(double t, double h, double /*gain*/) override {
     stays_ = false;
-    // A step that is given is the only time there is, where nothing moves yet.
+    // Where nothing moves yet, the given step is the only time scale.
     if (std::exchange(starts_at_rest_, false) && !has_series_) {
       memory_.sigma = taylor_detail::power_of_two_below(std::abs(h));
     }
@@ -151,20 +151,20 @@ class Taylor final : public Stepper {
               int count, double* states) const override {
     sample_(coefficients, start, h, times, count, states, dimension(), memory_.order);
   }
-  /// The stiffness of the part that dominates the last coefficient of the series where the attempt
-  /// starts.
+  /// The stiffness of the part that dominates the last coefficient of the series at the start of
+  /// the attempt.
   double stiffness(double h) override {
     write_rows(memory_.rows + static_cast<std::ptrdiff_t>(memory_.order) * size_,
                eigenvalue_.direction());
     get_state(state_.data());
     evaluations += DominantEigenvalue::evaluations;
-    // Where stability limits the steps, h |lambda| is about this share of the order.
+    // Where stability limits the steps, |lambda| is about this rate.
     const double rate = taylor.info.stability * memory_.order / std::abs(h);
     const double lambda = eigenvalue_(rates_, t_new_ - h, state_.data(), rate);
     return std::abs(h) * lambda / memory_.order;
   }
 
-  /// The low part of the state, if compensated, and sigma: with another one, the size of a step
+  /// The low part of the state, if compensated, and sigma: with another sigma, the size of a step
   /// would have other last bits.
   std::vector<double> saved_state() const override {
     std::vector<double> memory;
@@ -196,7 +196,7 @@ class Taylor final : public Stepper {
     }
   }
 
-  /// Makes the series from y at time t, if there is none yet.
+  /// Computes the series from y at time t, if there is none yet.
   bool begin(double t) {
     if (has_series_) return true;
     has_series_ = expand_(&memory_, t, memory_.y, memory_.rows, memory_.sigma, memory_.largest);
@@ -207,7 +207,7 @@ class Taylor final : public Stepper {
     memory_.order = order;
     memory_.series.set_order(order);
     const std::size_t rows = 6 + 2 * (static_cast<std::size_t>(order) + 1);
-    // Rows of four that begin with a cache line do not lie across two of them.
+    // Rows of four that begin at a cache line do not cross into the next line.
     constexpr std::size_t line = 64;
     numbers_.assign(rows * size_ + line / sizeof(double), 0.0);
     void* start = numbers_.data();
@@ -218,7 +218,7 @@ class Taylor final : public Stepper {
       *one = at;
       at += size_;
     }
-    for (int i = 0; i < size_; ++i) memory_.atol[i] = 1.0;  // where there is no component
+    for (int i = 0; i < size_; ++i) memory_.atol[i] = 1.0;  // places without a component
     memory_.rows = at;
     memory_.rows_new = at + (static_cast<std::size_t>(order) + 1) * size_;
     has_series_ = has_new_series_ = false;
@@ -245,7 +245,8 @@ class Taylor final : public Stepper {
     std::ranges::copy(sums, to + controlled());
   }
 
-  /// The series of a step of size h in powers of theta, from the first on, in rows of that many.
+  /// Writes the series of a step of size h in powers of theta, from the first on, in rows of
+  /// `dimension` numbers.
   void write_powers(double h, int dimension, double* coefficients) const {
     powers_of_step_(&memory_, stays_ ? 0.0 : h / memory_.sigma, n_, row_, dimension, coefficients);
   }
@@ -279,7 +280,7 @@ class Taylor final : public Stepper {
   int n_;
   int row_;
   int size_;
-  std::vector<double> given_rates_;      ///< where a run, or a part of it, starts; of sums_ always
+  std::vector<double> given_rates_;      ///< at the start of a run or part of it; of sums_ always
   std::vector<double> sums_, sums_new_;  ///< quadratures
   std::vector<double> powers_;           ///< their rates along the attempt, (sum, point)
   std::vector<double> numbers_;
@@ -287,7 +288,7 @@ class Taylor final : public Stepper {
   bool has_series_ = false;
   bool has_new_series_ = false;
   bool stays_ = false;
-  double t_new_ = 0.0;  ///< of the attempt's end
+  double t_new_ = 0.0;  ///< the end of the attempt
   DominantEigenvalue eigenvalue_;
   std::vector<double> state_ = std::vector<double>(static_cast<std::size_t>(dimension()));
   bool (*expand_)(Memory*, double, const double*, double*, double&,
