@@ -25,6 +25,7 @@ def test_without_time_for_repeats_it_says_so():
 
 
 @pytest.mark.parametrize("span", [(0, 1e7), (1e7, 0), (-3.0, 1e9)], ids=str)
+@pytest.mark.unsanitized
 def test_a_span_too_long_for_its_time_is_cut_and_says_so(span):
     begin = time.monotonic()
     found = pc.accuracy_cost(BOOK, [1.5, 1.5], 0, span, time_limit=1.0)

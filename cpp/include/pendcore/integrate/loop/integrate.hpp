@@ -1,8 +1,8 @@
 /// \file
-/// WHERE IS THE LOOP: steps from where a run stands to the end of its interval.
+/// The loop over steps, from where a run stands to the end of its interval.
 ///
-/// The loop knows no method (a Stepper does) and no pendulum; what is kept of the steps is an
-/// Observer's affair and changes none of them.
+/// The loop knows no method (a Stepper does) and no pendulum. An Observer keeps what is asked for
+/// of the steps, and changes none of them.
 #pragma once
 
 #include <exception>
