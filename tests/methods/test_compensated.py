@@ -122,7 +122,7 @@ def test_a_low_part_of_another_state_is_refused() -> None:
     state = begun.run.__getstate__() | {"position_stepper": [1e-20]}
     run = _core.Run.__new__(_core.Run)
     run.__setstate__(state)
-    with pytest.raises(ValueError, match=r"what rounding left over"):
+    with pytest.raises(ValueError, match=r"the rounding errors kept"):
         run.resume(2.0, None, 1000, None, None)
 
 
