@@ -11,8 +11,7 @@ export VIRTUAL_ENV := $(CURDIR)/.venv
 export PATH := $(VIRTUAL_ENV)/bin:$(PATH)
 
 DONE := .venv/done
-# pip compiles no bytecode: Python does that itself, for what it imports.
-PIP_INSTALL := python -m pip install --quiet --disable-pip-version-check --no-compile
+PIP_INSTALL := python -m pip install --quiet --disable-pip-version-check
 # Tests run on all processors; a process without tests takes over half of another's remaining ones.
 PYTEST := pytest -n auto --dist worksteal
 # The folder where pip builds. The C++ tests and the benchmarks are built there too: so they test the
