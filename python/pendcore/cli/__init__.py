@@ -61,13 +61,20 @@ def main(argv: Sequence[str] | None = None) -> int:
             print(f"pendcore {args.command}: interrupted", file=sys.stderr)
             return 1
         except BrokenPipeError:  # the reader of our output has stopped reading
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            _print_no_more()
             return 141
         except OSError as error:
             # Errors of files name the file, so an error without a name is one of printing.
             told = error if error.filename else f"standard output: {error.strerror or error}"
             print(f"pendcore {args.command}: {told}", file=sys.stderr)
+            if not error.filename:
+                _print_no_more()
             return 1
+
+
+def _print_no_more() -> None:
+    """Let what is left to print go nowhere, lest Python fail to print it at its end."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _parser() -> argparse.ArgumentParser:
