@@ -16,6 +16,11 @@ endif()
 # The kernels say themselves what is unrolled; -O3 made their steps slower (GCC 12).
 set(pendcore_optimisation $<$<CONFIG:Release>:-O2>)
 
+# GCC collects its garbage later: a twelfth of the time of compilation, for 200 MB more of memory.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  list(APPEND pendcore_optimisation --param=ggc-min-heapsize=500000)
+endif()
+
 set(pendcore_warnings
     -Wall -Wextra -Wpedantic -Wshadow -Wold-style-cast -Wconversion -Wno-sign-conversion
     -Wnon-virtual-dtor -Woverloaded-virtual -Wundef

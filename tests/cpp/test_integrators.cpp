@@ -10,6 +10,7 @@
 #include "pendcore/integrate/methods.hpp"
 #include "pendcore/integrate/radau/implicit_runge_kutta.hpp"
 #include "pendcore/integrate/runge_kutta/runge_kutta_fixed.hpp"
+#include "pendcore/integrate/runge_kutta/runge_kutta_in_memory.hpp"
 
 using namespace pendcore;
 
@@ -74,8 +75,7 @@ std::unique_ptr<Stepper> make_stepper() {
     return implicit(method);
   } else if constexpr (method.info.kind == MethodKind::pair) {
     return std::make_unique<StiffSwitchingStepper>(
-        std::make_unique<RungeKuttaDynamic<method.first, double>>(std::make_unique<OfTheRate<f>>(),
-                                                                  1),
+        runge_kutta_in_memory(method.first.info.name, std::make_unique<OfTheRate<f>>(), 1),
         [=] { return implicit(method.second); });
   } else {
     return std::make_unique<RungeKuttaFixed<method, Scalar<f>>>(Scalar<f>{});

@@ -11,22 +11,21 @@
 #include "pendcore/dynamics/tangent_space.hpp"
 #include "pendcore/integrate/loop/first_step.hpp"
 #include "pendcore/integrate/runge_kutta/dormand_prince_8.hpp"
-#include "pendcore/integrate/runge_kutta/runge_kutta_dynamic.hpp"
+#include "pendcore/integrate/runge_kutta/runge_kutta_in_memory.hpp"
 #include "pendcore/simulate/initial_state.hpp"
 #include "pendcore/simulate/options.hpp"
 #include "pendcore/text/message.hpp"
 
 namespace pendcore {
+
 namespace {
 
 /// The state and k changes of it as one second-order system: rows (q, dq_1 .. dq_k) and
 /// (qd, dqd_1 .. dqd_k).
 class TangentSystem final : public GeneralSystem {
  public:
-  static int row_of(int numbers) { return (numbers + 3) / 4 * 4; }
-
   TangentSystem(const Scene& scene, int count, double t_end, bool forward)
-      : GeneralSystem(row_of(static_cast<int>(scene.links.size()) * (1 + count)), 0),
+      : GeneralSystem(row_in_memory(static_cast<int>(scene.links.size()) * (1 + count), false), 0),
         equations_(equations_of_motion(scene)),
         jacobian_(scene, equations_),
         n_(static_cast<int>(scene.links.size())),
@@ -224,8 +223,10 @@ TangentGrowth lyapunov(const Scene& scene, const std::vector<double>& q0,
   TangentGrowth result;
   result.count = options.count == 0 ? all : options.count;
   const int numbers = n * (1 + result.count);
-  RungeKuttaDynamic<dormand_prince_8, Pack<4>> stepper(
+  const std::unique_ptr<Stepper> in_memory = runge_kutta_in_memory(
+      dormand_prince_8.info.name,
       std::make_unique<TangentSystem>(scene, result.count, t_end, !(t_end < t0)), numbers);
+  Stepper& stepper = *in_memory;
 
   IntegratorState integrator;
   integrator.t = {t0, 0.0};

@@ -2,29 +2,12 @@
 
 #include <algorithm>
 
+#include "pendcore/dynamics/accelerations_kernel.hpp"
 #include "pendcore/dynamics/chain/chain_recursion.hpp"
 #include "pendcore/dynamics/kinematics.hpp"
 
 namespace pendcore {
 namespace {
-
-template <class Dynamics>
-PENDCORE_INLINE void of_links(const Dynamics* dynamics, double t, const double* q, const double* qd,
-                              double* qdd) {
-  using Links = typename Dynamics::Links;
-  const Links angles = load<Links>(q);
-  const Links rates = load<Links>(qd);
-  if constexpr (requires { dynamics->accelerations(t, angles, rates); }) {
-    store(qdd, dynamics->accelerations(t, angles, rates));
-  } else {
-    store(qdd, dynamics->accelerations(angles, rates));
-  }
-}
-
-PENDCORE_INLINE void of_chain(const Chain* chain, double t, const double* q, const double* qd,
-                              double* qdd) {
-  chain->accelerations(t, q, qd, qdd);
-}
 
 /// Whether all effects of the scene only change constants of the bare closed form.
 bool is_bare(const Scene& scene) {
@@ -97,10 +80,11 @@ void accelerations_in_force(const EquationsOfMotion& equations, double t, const 
   std::visit(
       [=]<class Form>(const Form& form) {
         if constexpr (std::is_same_v<Form, std::shared_ptr<Chain>>) {
-          static const auto compute = fastest<&of_chain>();
+          static const auto compute = fastest<&accelerations_in_memory<Chain, double>>();
           compute(form.get(), t, q, qd, qdd);
         } else {
-          static const auto compute = fastest<&of_links<Form>, best_for(2)>();
+          static const auto compute =
+              fastest<&accelerations_in_memory<Form, double>, best_for(2)>();
           compute(&form, t, q, qd, qdd);
         }
       },

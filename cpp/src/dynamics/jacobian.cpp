@@ -1,31 +1,9 @@
 #include "pendcore/dynamics/jacobian.hpp"
 
+#include "pendcore/dynamics/accelerations_kernel.hpp"
 #include "pendcore/dynamics/chain/chain_recursion.hpp"
 
 namespace pendcore {
-namespace {
-
-/// The accelerations and their change along the slopes of q and qd, (n) each.
-template <class Dynamics>
-PENDCORE_INLINE void of_links(const Dynamics* dynamics, double t, const Dual<double>* q,
-                              const Dual<double>* qd, Dual<double>* qdd) {
-  using Links = Dual<typename Dynamics::Links>;
-  const Links angles = load<Links>(q);
-  const Links rates = load<Links>(qd);
-  if constexpr (requires { dynamics->accelerations(t, angles, rates); }) {
-    store(qdd, dynamics->accelerations(t, angles, rates));
-  } else {
-    store(qdd, dynamics->accelerations(angles, rates));
-  }
-}
-
-PENDCORE_INLINE void of_chain(const ChainOf<Dual<double>>* chain, double t, const Dual<double>* q,
-                              const Dual<double>* qd, Dual<double>* qdd) {
-  chain->accelerations(t, q, qd, qdd);
-}
-
-}  // namespace
-
 Jacobian::Jacobian(const Scene& scene, const EquationsOfMotion& equations)
     : n_(static_cast<int>(scene.links.size())), equations_(equations), q_(n_), qd_(n_), qdd_(n_) {
   if (std::holds_alternative<std::shared_ptr<Chain>>(equations.form)) {
@@ -42,10 +20,12 @@ void Jacobian::compute(double t) const {
   std::visit(
       [&]<class Form>(const Form& form) {
         if constexpr (std::is_same_v<Form, std::shared_ptr<Chain>>) {
-          static const auto accelerations = fastest<&of_chain>();
+          static const auto accelerations =
+              fastest<&accelerations_in_memory<ChainOf<Dual<double>>, Dual<double>>>();
           accelerations(chain_.get(), t, q_.data(), qd_.data(), qdd_.data());
         } else {
-          static const auto accelerations = fastest<&of_links<Form>, best_for(2)>();
+          static const auto accelerations =
+              fastest<&accelerations_in_memory<Form, Dual<double>>, best_for(2)>();
           accelerations(&form, t, q_.data(), qd_.data(), qdd_.data());
         }
       },

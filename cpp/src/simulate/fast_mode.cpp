@@ -1,39 +1,59 @@
 #include "pendcore/simulate/fast_mode.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <cstdio>
-#include <Eigen/Eigenvalues>
+#include <vector>
 
+#include "pendcore/arithmetic/eigenvalues.hpp"
 #include "pendcore/dynamics/jacobian.hpp"
 #include "pendcore/text/message.hpp"
 
 namespace pendcore {
 namespace {
 
-using Matrix = Eigen::MatrixXd;
-using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+/// A and B of qdd = A q + B qd about a state, row by row.
+struct Linearized {
+  std::vector<double> by_q;
+  std::vector<double> by_qd;
+};
+
+Linearized linearized(const Scene& scene, const EquationsOfMotion& equations, double t,
+                      const double* q, const double* qd) {
+  const std::size_t n = scene.links.size();
+  Linearized result{std::vector<double>(n * n), std::vector<double>(n * n)};
+  Jacobian(scene, equations)(t, q, qd, result.by_q.data(), result.by_qd.data());
+  return result;
+}
 
 /// ((0, 1), (A, B))
-Matrix first_order(const Scene& scene, const EquationsOfMotion& equations, double t,
-                   const double* q, const double* qd) {
-  const auto n = static_cast<Eigen::Index>(scene.links.size());
-  Rows by_q(n, n);
-  Rows by_qd(n, n);
-  Jacobian(scene, equations)(t, q, qd, by_q.data(), by_qd.data());
-  Matrix whole = Matrix::Zero(2 * n, 2 * n);
-  whole.topRightCorner(n, n).setIdentity();
-  whole.bottomLeftCorner(n, n) = by_q;
-  whole.bottomRightCorner(n, n) = by_qd;
+std::vector<double> first_order(const Linearized& second_order, std::size_t n) {
+  std::vector<double> whole(4 * n * n);
+  for (std::size_t i = 0; i < n; ++i) {
+    whole[2 * n * i + n + i] = 1.0;
+    double* const row = &whole[2 * n * (n + i)];
+    std::copy_n(&second_order.by_q[n * i], n, row);
+    std::copy_n(&second_order.by_qd[n * i], n, row + n);
+  }
   return whole;
 }
 
-/// No |lambda| is larger: |lambda|^2 <= |B| |lambda| + |A|, in the norm of the largest row sum.
-double bound_of(const Matrix& whole) {
-  const Eigen::Index n = whole.rows() / 2;
-  auto norm = [&](const auto& block) { return block.cwiseAbs().rowwise().sum().maxCoeff(); };
-  const double of_q = norm(whole.bottomLeftCorner(n, n));
-  const double of_qd = norm(whole.bottomRightCorner(n, n));
+/// The largest sum of the sizes in a row.
+double norm(const std::vector<double>& matrix, std::size_t n) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    double sum = 0.0;
+    for (std::size_t j = 0; j < n; ++j) sum += std::abs(matrix[n * i + j]);
+    largest = std::max(largest, sum);
+  }
+  return largest;
+}
+
+/// No |lambda| is larger: |lambda|^2 <= |B| |lambda| + |A|.
+double bound_of(const Linearized& second_order, std::size_t n) {
+  const double of_q = norm(second_order.by_q, n);
+  const double of_qd = norm(second_order.by_qd, n);
   return 0.5 * (of_qd + std::sqrt(of_qd * of_qd + 4.0 * of_q));
 }
 
@@ -41,7 +61,7 @@ double bound_of(const Matrix& whole) {
 double bound_of(const Scene& scene, double t, const double* q, const double* qd) {
   const EquationsOfMotion equations = equations_of_motion(scene);
   if (equations.effects) choose_modes(*equations.effects, t, q, qd, true);
-  return bound_of(first_order(scene, equations, t, q, qd));
+  return bound_of(linearized(scene, equations, t, q, qd), scene.links.size());
 }
 
 std::string short_text(double x) {
@@ -65,28 +85,39 @@ constexpr std::size_t many_links = 100;
 
 std::optional<FastMode> fast_mode(const Scene& scene, const EquationsOfMotion& equations, double t,
                                   const double* q, const double* qd) {
-  const Matrix whole = first_order(scene, equations, t, q, qd);
-  if (!whole.allFinite()) return std::nullopt;
+  const std::size_t n = scene.links.size();
+  const Linearized whole = linearized(scene, equations, t, q, qd);
+  const auto is_finite = [](double x) { return std::isfinite(x); };
+  if (!std::ranges::all_of(whole.by_q, is_finite) || !std::ranges::all_of(whole.by_qd, is_finite)) {
+    return std::nullopt;
+  }
   const Scene links{.links = scene.links, .gravity = scene.gravity};
   const double slow = far_faster * bound_of(links, t, q, qd);
-  if (!(bound_of(whole) > slow)) return std::nullopt;  // as a rule: no eigenvalue is needed
-  const Eigen::EigenSolver<Matrix> solver(whole);
-  const Eigen::VectorXcd& values = solver.eigenvalues();
-  const Eigen::MatrixXcd vectors = solver.eigenvectors();
-  const Eigen::Index n = whole.rows() / 2;
-  Eigen::Index first = 0;
-  if (!(values.cwiseAbs().maxCoeff(&first) > slow)) return std::nullopt;
+  if (!(bound_of(whole, n) > slow)) return std::nullopt;  // as a rule: no eigenvalue is needed
+  const auto [values, vectors] = eigenpairs(first_order(whole, n), static_cast<int>(2 * n));
+  const auto sizes = [](std::complex<double> a, std::complex<double> b) {
+    return std::abs(a) < std::abs(b);
+  };
+  const std::size_t first = std::ranges::max_element(values, sizes) - values.begin();
+  if (!(std::abs(values[first]) > slow)) return std::nullopt;
 
   // Its partner: the conjugate, or the real one that moves the links most alike.
-  Eigen::Index second = first;
+  const auto angles_of = [&, &vectors = vectors](std::size_t k) { return &vectors[2 * n * k]; };
+  const auto product = [n](const std::complex<double>* a, const std::complex<double>* b) {
+    std::complex<double> sum = 0.0;
+    for (std::size_t i = 0; i < n; ++i) sum += std::conj(a[i]) * b[i];
+    return std::abs(sum);
+  };
+  const std::complex<double>* const fastest = angles_of(first);
+  std::size_t second = first;
   double most_alike = -1.0;
-  for (Eigen::Index k = 0; k < values.size(); ++k) {
+  for (std::size_t k = 0; k < values.size(); ++k) {
     if (k == first) continue;
     const bool is_conjugate = values[k] == std::conj(values[first]) && values[k].imag() != 0.0;
-    const std::complex<double> product = vectors.col(k).head(n).dot(vectors.col(first).head(n));
-    const double size = vectors.col(k).head(n).norm() * vectors.col(first).head(n).norm();
+    const std::complex<double>* const other = angles_of(k);
+    const double size = std::sqrt(product(other, other) * product(fastest, fastest));
     const bool is_real = values[k].imag() == 0.0 && values[first].imag() == 0.0;
-    const double alike = is_conjugate ? 2.0 : is_real ? std::abs(product) / size : -1.0;
+    const double alike = is_conjugate ? 2.0 : is_real ? product(other, fastest) / size : -1.0;
     if (alike > most_alike) {
       most_alike = alike;
       second = k;
@@ -99,15 +130,15 @@ std::optional<FastMode> fast_mode(const Scene& scene, const EquationsOfMotion& e
                 .joint = 1,
                 .effect = std::nullopt};
   double largest = 0.0;
-  for (Eigen::Index j = 0; j < n; ++j) {
-    const std::complex<double> before = j > 0 ? vectors(j - 1, first) : 0.0;
-    const double turn = std::abs(vectors(j, first) - before);
+  for (std::size_t j = 0; j < n; ++j) {
+    const std::complex<double> before = j > 0 ? fastest[j - 1] : 0.0;
+    const double turn = std::abs(fastest[j] - before);
     if (turn > largest) {
       largest = turn;
       mode.joint = static_cast<int>(j) + 1;
     }
   }
-  double slowest = 0.5 * bound_of(whole);
+  double slowest = 0.5 * bound_of(whole, n);
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
     Scene without = scene;
     without.effects.erase(without.effects.begin() + static_cast<std::ptrdiff_t>(i));

@@ -1,11 +1,43 @@
 // Makes the stepper of a method in the list for a scene, whatever form its equations have.
+#include "pendcore/dynamics/first_order.hpp"
 #include "pendcore/integrate/methods.hpp"
 #include "pendcore/integrate/radau/implicit_runge_kutta.hpp"
-#include "pendcore/simulate/explicit_stepper.hpp"
+#include "pendcore/integrate/runge_kutta/runge_kutta_fixed.hpp"
+#include "pendcore/integrate/runge_kutta/runge_kutta_in_memory.hpp"
+#include "pendcore/simulate/scene_system.hpp"
 #include "pendcore/simulate/simulate.hpp"
 
 namespace pendcore {
+
 namespace {
+
+/// Steppers that are written for the form of the equations are the fastest. What is rarer has its
+/// state in memory, with the same bits: long chains, compensated steps, runs that keep the ledger,
+/// and processors from before 2013.
+template <const auto& table>
+std::unique_ptr<Stepper> explicit_stepper(const Scene& scene, const EquationsOfMotion& equations,
+                                          bool keeps_ledger, bool compensated) {
+  constexpr InstructionSet least = least_of_special_kernels;
+  auto in_memory = [&]() -> std::unique_ptr<Stepper> {
+    const int n = static_cast<int>(scene.links.size());
+    return runge_kutta_in_memory(table.info.name,
+                                 std::make_unique<SceneSystem>(
+                                     scene, equations, row_in_memory(n, compensated), keeps_ledger),
+                                 n, compensated);
+  };
+  if (compensated || keeps_ledger || instruction_set() < least) return in_memory();
+  return std::visit(
+      [&]<class Form>(const Form& form) -> std::unique_ptr<Stepper> {
+        if constexpr (std::is_same_v<Form, std::shared_ptr<Chain>>) {
+          return in_memory();
+        } else {
+          using System = FirstOrder<Form>;
+          return std::make_unique<RungeKuttaFixed<table, System, least>>(System{form},
+                                                                         equations.effects);
+        }
+      },
+      equations.form);
+}
 
 /// One stepper serves all forms: the form hardly changes what an implicit step costs.
 std::unique_ptr<Stepper> implicit(const Collocation& method, const Scene& scene,

@@ -18,22 +18,14 @@ void check_series(const Scene& scene) {
                               " has no Taylor series: choose \"dop853\", or \"auto\"");
 }
 
-template <class Series>
-std::unique_ptr<Stepper> stepper_of_series(Series series, Rates rates, int quadratures,
-                                           bool compensated) {
-  if (compensated) {
-    return std::make_unique<Taylor<Series, true>>(std::move(series), std::move(rates), quadratures);
-  }
-  return std::make_unique<Taylor<Series>>(std::move(series), std::move(rates), quadratures);
-}
-
 }  // namespace
 
 std::unique_ptr<Stepper> make_taylor_stepper(const Scene& scene, const EquationsOfMotion& equations,
                                              Rates rates, int quadratures, bool compensated) {
   check_series(scene);
-  auto of = [&](auto series) {
-    return stepper_of_series(std::move(series), std::move(rates), quadratures, compensated);
+  auto of = [&]<class Series>(Series series) -> std::unique_ptr<Stepper> {
+    return std::make_unique<Taylor<Series>>(std::move(series), std::move(rates), quadratures,
+                                            compensated);
   };
   auto chain = [&]<class Row>() {
     return ChainSeries<Row>(scene,
@@ -49,7 +41,7 @@ std::unique_ptr<Stepper> make_taylor_stepper(const Scene& scene, const Equations
         {one.weight, one.coupling, one.rotor, one.product, one.delta, one.epsilon},
         CoupleTorque(std::move(effects), one.inverse_diagonal));
     const bool may_hold = equations.held_joints->can_hold() || equations.effects->any_held;
-    if (!may_hold) return of(free);
+    if (!may_hold && instruction_set() >= free.least) return of(free);
     return of(SeriesWithHolds(free, chain.template operator()<Pair>(), equations.effects));
   };
   if (const auto* one = std::get_if<DoublePendulumWithEffects<Parts::couples>>(&equations.form)) {

@@ -51,18 +51,29 @@ struct Clones<kernel> {
 };
 
 /// The clone of `kernel` for this processor. `best` is the highest instruction set that is worth a
-/// clone: kernels on packs of one or two numbers are as fast on x86-64-v3 as on x86-64-v4.
-template <auto kernel, InstructionSet best = InstructionSet::x86_64_v4>
+/// clone: kernels on packs of one or two numbers are as fast on x86-64-v3 as on x86-64-v4. `least`
+/// is the lowest instruction set on which the caller asks: the kernel has no clone for lower ones.
+template <auto kernel, InstructionSet best = InstructionSet::x86_64_v4,
+          InstructionSet least = InstructionSet::baseline>
 typename Clones<kernel>::Function fastest() {
 #if PENDCORE_CLONES
   const InstructionSet offered = instruction_set();
   if constexpr (best == InstructionSet::x86_64_v4) {
     if (offered == InstructionSet::x86_64_v4) return Clones<kernel>::v4;
   }
-  if (offered != InstructionSet::baseline) return Clones<kernel>::v3;
-#endif
+  if constexpr (least == InstructionSet::baseline) {
+    if (offered == InstructionSet::baseline) return Clones<kernel>::baseline;
+  }
+  return Clones<kernel>::v3;
+#else
   return Clones<kernel>::baseline;
+#endif
 }
+
+/// The lowest instruction set for which a kernel is compiled that has the same bits as a general one
+/// and is only faster: a processor from before 2013 runs the general one.
+constexpr InstructionSet least_of_special_kernels =
+    PENDCORE_CLONES != 0 ? InstructionSet::x86_64_v3 : InstructionSet::baseline;
 
 /// The highest instruction set that is worth a clone for a kernel on packs of `width` numbers.
 constexpr InstructionSet best_for(int width) {

@@ -111,7 +111,7 @@ PENDCORE_INLINE Pack<2> high_half(const Pack<4>& x) { return __builtin_shuffleve
 /// a b + c, rounded once. It is correctly rounded by definition, hence the same on every processor.
 template <class Real>
 PENDCORE_INLINE Real fma(const Real& a, const Real& b, const Real& c) {
-  Real result;
+  Real result = c;
   for (int i = 0; i < Lanes<Real>::width; ++i) {
     set_lane(result, i, __builtin_fma(lane(a, i), lane(b, i), lane(c, i)));
   }
@@ -125,7 +125,7 @@ PENDCORE_INLINE Real fma(double a, const Real& b, const Real& c) {
 
 template <class Real>
 PENDCORE_INLINE Real absolute(const Real& x) {
-  Real result;
+  Real result = x;
   for (int i = 0; i < Lanes<Real>::width; ++i) set_lane(result, i, __builtin_fabs(lane(x, i)));
   return result;
 }

@@ -3,7 +3,7 @@
 /// dy/dt = (qd, qdd).
 #pragma once
 
-#include "pendcore/arithmetic/pack.hpp"
+#include "pendcore/dynamics/accelerations_kernel.hpp"
 
 namespace pendcore {
 
@@ -16,16 +16,15 @@ struct FirstOrder {
   static constexpr bool is_short =
       requires(const Dynamics& bare, const Block& y) { bare.accelerations(y, y); };
 
+  /// Whether the equations have a list of laws.
+  static constexpr bool is_long = requires { requires Dynamics::has_laws; };
+
   Dynamics dynamics;
 
   /// The derivative dydt (rad/s, rad/s^2) of the state y (rad, rad/s) at time t (s).
   PENDCORE_INLINE void operator()(double t, const Block* y, Block* dydt) const {
     dydt[0] = y[1];
-    if constexpr (requires { dynamics.accelerations(t, y[0], y[1]); }) {
-      dydt[1] = dynamics.accelerations(t, y[0], y[1]);
-    } else {
-      dydt[1] = dynamics.accelerations(y[0], y[1]);
-    }
+    dydt[1] = accelerations_at(dynamics, t, y[0], y[1]);
   }
 };
 

@@ -33,7 +33,8 @@ ChainOf<Number>::ChainOf(const Scene& scene, std::shared_ptr<ActingEffects<Pack<
   rotor_[0] = 0.0;  // part of the first link
 }
 
-template class ChainOf<double>;
-template class ChainOf<Dual<double>>;
+// The kernels instantiate the rest.
+template ChainOf<double>::ChainOf(const Scene&, std::shared_ptr<ActingEffects<Pack<4>>>);
+template ChainOf<Dual<double>>::ChainOf(const Scene&, std::shared_ptr<ActingEffects<Pack<4>>>);
 
 }  // namespace pendcore

@@ -40,9 +40,14 @@ DoublePendulumWithEffects<parts>::DoublePendulumWithEffects(const Scene& scene,
   epsilon = coupling[0] * rotor[1] + coupling[1] * rotor[0];
 }
 
-template struct DoublePendulumWithEffects<Parts::couples>;
-template struct DoublePendulumWithEffects<Parts::waves>;
-template struct DoublePendulumWithEffects<Parts::laws>;
-template struct DoublePendulumWithEffects<Parts::everything>;
+// The kernels instantiate the rest.
+template DoublePendulumWithEffects<Parts::couples>::DoublePendulumWithEffects(
+    const Scene&, const Inertia&, const ActingEffects<Pair>*);
+template DoublePendulumWithEffects<Parts::waves>::DoublePendulumWithEffects(
+    const Scene&, const Inertia&, const ActingEffects<Pair>*);
+template DoublePendulumWithEffects<Parts::laws>::DoublePendulumWithEffects(
+    const Scene&, const Inertia&, const ActingEffects<Pair>*);
+template DoublePendulumWithEffects<Parts::everything>::DoublePendulumWithEffects(
+    const Scene&, const Inertia&, const ActingEffects<Pair>*);
 
 }  // namespace pendcore

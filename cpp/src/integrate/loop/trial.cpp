@@ -10,7 +10,7 @@ namespace {
 
 /// Halvings after which a dense output is believed although it contradicts the law where a guard
 /// begins at zero.
-constexpr int most_halvings = 20;
+constexpr int most_halvings_of_step = 20;
 /// The dense output of a fixed step locates a guard's zero only roughly: the step is not shortened
 /// below this share at once.
 constexpr double least_share_of_fixed = 0.1;
@@ -92,7 +92,7 @@ Trial::Verdict Trial::verify_guard_start() {
           guards_->falls_at_start(crossing_.guard, t_, h_, halvings)) {
         return Verdict::changes_at_start;
       }
-    } else if (is_short || halvings == most_halvings ||
+    } else if (is_short || halvings == most_halvings_of_step ||
                !guards_->contradicts_law_at_start(crossing_, h_)) {
       return Verdict::accepted;
     }

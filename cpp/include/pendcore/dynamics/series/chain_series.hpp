@@ -41,6 +41,8 @@ class ChainSeries {
   static constexpr int blocks = 0;  ///< known at run time only
   static constexpr bool depends_on_time = true;
   static constexpr bool is_short = false;
+  static constexpr InstructionSet best = InstructionSet::x86_64_v3;
+  static constexpr InstructionSet least = InstructionSet::baseline;
   static constexpr int width = Lanes<Row>::width;
 
   /// `effects` is null for a chain without effects.

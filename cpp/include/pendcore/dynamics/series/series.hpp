@@ -73,6 +73,10 @@ class DoublePendulumSeries {
   static constexpr int blocks = 1;
   static constexpr bool depends_on_time = Torque::depends_on_time;
   static constexpr bool is_short = !depends_on_time;  ///< bare, without a torque
+  static constexpr InstructionSet best = best_for(is_short ? 4 : 2);
+  /// Where it has no clone, series_with_holds.hpp has the same bits.
+  static constexpr InstructionSet least =
+      is_short ? InstructionSet::baseline : least_of_special_kernels;
 
   DoublePendulumSeries(const DoublePendulumConstants& constants, Torque torque)
       : constants_(constants), torque_(std::move(torque)) {}

@@ -22,9 +22,9 @@
 
 #include <memory>
 
+#include "pendcore/integrate/general_system.hpp"
 #include "pendcore/integrate/radau/collocation.hpp"
 #include "pendcore/integrate/radau/newton_systems.hpp"
-#include "pendcore/integrate/runge_kutta/runge_kutta_dynamic.hpp"
 
 namespace pendcore {
 

@@ -27,12 +27,14 @@ PENDCORE_INLINE void evaluate_system(const System* system, double t, const doubl
   for (int i = 0; i < System::blocks; ++i) store(dydt + i * width, rate[i]);
 }
 
-template <const auto& method, class System>
+/// `least` is the lowest instruction set that it is compiled for.
+template <const auto& method, class System, InstructionSet least = InstructionSet::baseline>
 class RungeKuttaFixed final : public Stepper {
   using Memory = StepMemory<method, System>;
   using Block = typename Memory::Block;
   static constexpr int blocks = Memory::blocks;
   static constexpr int width = Lanes<Block>::width;
+  static constexpr InstructionSet best = best_for(width);
   static constexpr int stages = Memory::stages;
 
  public:
@@ -130,15 +132,15 @@ class RungeKuttaFixed final : public Stepper {
   double t_ = 0.0;  ///< the time of the attempt
   bool has_dense_stages_ = false;
   Attempt (*attempt_)(Memory*, double, double,
-                      double) = fastest<&attempt_step<method, System>, best_for(width)>();
+                      double) = fastest<&attempt_step<method, System>, best, least>();
   void (*dense_stages_)(Memory*, double,
-                        double) = fastest<&dense_stages_of_step<method, System>, best_for(width)>();
+                        double) = fastest<&dense_stages_of_step<method, System>, best, least>();
   void (*interpolant_)(const Block*, const Block (*)[blocks], double, double*) =
-      fastest<&interpolant_of_step<method, Block, blocks>, best_for(width)>();
-  void (*sample_)(const double*, TwoDouble, double, const double*, int, double*) =
-      fastest<&sample_blocks<Block, blocks, Memory::degree>, best_for(width)>();
+      fastest<&interpolant_of_step<method, Block, blocks>, best, least>();
+  void (*sample_)(const double*, TwoDouble, double, const double*, int,
+                  double*) = fastest<&sample_blocks<Block, blocks, Memory::degree>, best, least>();
   void (*evaluate_)(const System*, double, const double*,
-                    double*) = fastest<&evaluate_system<System>, best_for(width)>();
+                    double*) = fastest<&evaluate_system<System>, best, least>();
 };
 
 }  // namespace pendcore

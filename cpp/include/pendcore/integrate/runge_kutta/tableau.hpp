@@ -62,7 +62,7 @@ struct Tableau {
 
   MethodInfo info;
   bool first_same_as_last;   ///< the last stage is the first of the next step
-  bool written_out = false;  ///< stage by stage for all equations, not only the short ones
+  bool written_out = false;  ///< stage by stage for all but long equations, not only short ones
   LongRow c;
   std::array<LongRow, all_stages> a;
   Row b;

@@ -17,16 +17,18 @@
 
 namespace pendcore {
 
-template <class Series, bool compensated = false>
+template <class Series>
 class Taylor final : public Stepper {
   using Memory = TaylorMemory<Series>;
   using Block = typename Series::Block;
   static constexpr int width = Lanes<Block>::width;
-  static constexpr InstructionSet best = best_for(width);
+  static constexpr InstructionSet best = Series::best;
+  static constexpr InstructionSet least = Series::least;
 
  public:
-  Taylor(Series series, Rates rates, int quadratures)
+  Taylor(Series series, Rates rates, int quadratures, bool compensated = false)
       : memory_{.series = std::move(series)},
+        compensated_(compensated),
         rates_(std::move(rates)),
         n_(memory_.series.links()),
         row_(memory_.series.row()),
@@ -52,15 +54,16 @@ class Taylor final : public Stepper {
   int interpolant_degree() const override { return memory_.order; }
 
   void set_tolerances(const double* rtol, const double* atol) override {
-    double least = 1.0;
-    for (int i = 0; i < controlled(); ++i) least = std::min(least, std::max(rtol[i], atol[i]));
-    make_room(taylor_order(least));
+    double tightest = 1.0;
+    for (int i = 0; i < controlled(); ++i)
+      tightest = std::min(tightest, std::max(rtol[i], atol[i]));
+    make_room(taylor_order(tightest));
     read_rows(rtol, memory_.rtol);
     read_rows(atol, memory_.atol);
   }
 
   void start(const double* y, const double* dydt) override {
-    if constexpr (compensated) drop_low_parts(y, memory_.y, memory_.low);
+    if (compensated_) drop_low_parts(y, memory_.y, memory_.low);
     read(y, memory_.y, sums_);
     std::copy_n(dydt, dimension(), given_rates_.begin());
     double rate = 0.0;  // the squared rate of the motion, 1/s^2
@@ -83,7 +86,7 @@ class Taylor final : public Stepper {
   }
   void get_new_state(double* y) const override { write(memory_.y_new, sums_new_, y); }
   void set_new_state(const double* y) override {
-    if constexpr (compensated) drop_low_parts(y, memory_.y_new, memory_.low_new);
+    if (compensated_) drop_low_parts(y, memory_.y_new, memory_.low_new);
     read(y, memory_.y_new, sums_new_);
     has_new_series_ = false;
   }
@@ -104,14 +107,14 @@ class Taylor final : public Stepper {
     ++evaluations;
     t_new_ = t + h;
     has_new_series_ = true;
-    const Attempt attempt = attempt_(t, h);
+    const Attempt attempt = attempt_(&memory_, t, h);
     if (!sums_.empty()) integrate_quadratures(t, h);
     return attempt;
   }
   void stay() override {
     const std::size_t bytes = size_ * sizeof(double);
     __builtin_memcpy(memory_.y_new, memory_.y, bytes);
-    if constexpr (compensated) __builtin_memcpy(memory_.low_new, memory_.low, bytes);
+    if (compensated_) __builtin_memcpy(memory_.low_new, memory_.low, bytes);
     sums_new_ = sums_;
     std::ranges::fill(powers_, 0.0);
     has_new_series_ = false;
@@ -168,7 +171,7 @@ class Taylor final : public Stepper {
   /// would have other last bits.
   std::vector<double> saved_state() const override {
     std::vector<double> memory;
-    if constexpr (compensated) {
+    if (compensated_) {
       memory.resize(dimension());
       write_rows(memory_.low, memory.data());
     }
@@ -178,7 +181,7 @@ class Taylor final : public Stepper {
   void restore(const std::vector<double>& memory) override {
     if (memory.empty()) return;
     std::vector<double> low(memory.begin(), memory.end() - 1);
-    if constexpr (compensated) {
+    if (compensated_) {
       if (has_low_part(low, dimension())) read_rows(low.data(), memory_.low);
     }
     memory_.sigma = memory.back();
@@ -186,13 +189,21 @@ class Taylor final : public Stepper {
   }
 
  private:
-  Attempt attempt_(double t, double h) {
+  /// Without the kernel for short series, where that is not compiled.
+  template <bool compensated>
+  static Attempt attempt_in_parts(Memory* memory, double t, double h) {
+    static const auto advance = fastest<&advance_series<Series, compensated>, best, least>();
+    static const auto expand = fastest<&taylor_detail::expand<Series>, best, least>();
+    return attempt_series(memory, t, h, advance, expand);
+  }
+  template <bool compensated>
+  static auto attempt_kernel() {
     if constexpr (Series::is_short) {
-      static const auto whole = fastest<&attempt_short_series<Series, compensated>, best>();
-      return whole(&memory_, t, h);
+      constexpr InstructionSet special = least_of_special_kernels;
+      if (instruction_set() < special) return &Taylor::attempt_in_parts<compensated>;
+      return fastest<&attempt_short_series<Series, compensated>, best, special>();
     } else {
-      static const auto advance = fastest<&advance_series<Series, compensated>, best>();
-      return attempt_series(&memory_, t, h, advance, expand_);
+      return &Taylor::attempt_in_parts<compensated>;
     }
   }
 
@@ -276,6 +287,7 @@ class Taylor final : public Stepper {
   }
 
   Memory memory_;
+  bool compensated_;
   Rates rates_;
   int n_;
   int row_;
@@ -291,10 +303,12 @@ class Taylor final : public Stepper {
   double t_new_ = 0.0;  ///< the end of the attempt
   DominantEigenvalue eigenvalue_;
   std::vector<double> state_ = std::vector<double>(static_cast<std::size_t>(dimension()));
+  Attempt (*attempt_)(Memory*, double, double) = compensated_ ? attempt_kernel<true>()
+                                                              : attempt_kernel<false>();
   bool (*expand_)(Memory*, double, const double*, double*, double&,
-                  double&) = fastest<&taylor_detail::expand<Series>, best>();
+                  double&) = fastest<&taylor_detail::expand<Series>, best, least>();
   void (*powers_of_step_)(const Memory*, double, int, int, int,
-                          double*) = fastest<&powers_of_step<Series>, best>();
+                          double*) = fastest<&powers_of_step<Series>, best, least>();
   void (*sample_)(const double*, TwoDouble, double, const double*, int, double*, int,
                   int) = fastest<&sample_series>();
 };

@@ -1,41 +1,21 @@
-/// \file
-/// An explicit Runge-Kutta method on a state of any size, in memory.
-///
-/// The same step as in step.hpp, operation for operation, for a state or a system whose size the
-/// compiler does not know: long chains, and runs with quadratures beside the state, which do not
-/// count in the error norm. `Block` is the pack in which the arrays are worked on.
-#pragma once
+#include "pendcore/integrate/runge_kutta/runge_kutta_in_memory.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "pendcore/integrate/horner.hpp"
+#include "pendcore/integrate/methods.hpp"
 #include "pendcore/integrate/runge_kutta/compensation.hpp"
 #include "pendcore/integrate/runge_kutta/step.hpp"
-#include "pendcore/integrate/stepper.hpp"
 
 namespace pendcore {
-
-/// dy/dt of a state in memory: two rows (q and qd) of `row` numbers each, and then quadratures.
-class GeneralSystem {
- public:
-  GeneralSystem(int row_size, int quadrature_count)
-      : row(row_size), quadratures(quadrature_count) {}
-  virtual ~GeneralSystem() = default;
-
-  /// Computes the derivative (row, row, quadratures) of the state (row, row).
-  virtual void operator()(double t, const double* y, double* dydt) const = 0;
-
-  const int row;
-  const int quadratures;
-};
+namespace {
 
 /// The data of one step: rows of blocks, `stages` of them for k.
-struct GeneralMemory {
+struct StepInMemory {
   const GeneralSystem* system;
   int blocks;        ///< blocks of the state
   int error_blocks;  ///< blocks of its part in the error norm
@@ -54,7 +34,7 @@ struct StageInMemory {
 
 /// Stages first .. end - 1, as in step.hpp.
 template <const auto& method, class Block, int first, int end>
-PENDCORE_INLINE void stages_in_memory(const GeneralMemory* memory, double t, double h, double* z) {
+PENDCORE_INLINE void stages_in_memory(const StepInMemory* memory, double t, double h, double* z) {
   constexpr int width = Lanes<Block>::width;
   const int size = memory->blocks * width;
   const auto block = [=](int at) { return StageInMemory<Block>{memory->k + at, size}; };
@@ -79,7 +59,7 @@ PENDCORE_INLINE void stages_in_memory(const GeneralMemory* memory, double t, dou
 }
 
 template <const auto& method, class Block, bool compensated>
-PENDCORE_INLINE Attempt attempt_in_memory(const GeneralMemory* memory, double t, double h,
+PENDCORE_INLINE Attempt attempt_in_memory(const StepInMemory* memory, double t, double h,
                                           double gain) {
   constexpr int width = Lanes<Block>::width;
   constexpr int stages = std::remove_cvref_t<decltype(method)>::stages;
@@ -123,7 +103,7 @@ PENDCORE_INLINE Attempt attempt_in_memory(const GeneralMemory* memory, double t,
 /// Computes the stages of the attempted step, from time t, that only the dense output needs; `z` is
 /// memory for a state.
 template <const auto& method, class Block>
-PENDCORE_INLINE void dense_stages_in_memory(const GeneralMemory* memory, double t, double h,
+PENDCORE_INLINE void dense_stages_in_memory(const StepInMemory* memory, double t, double h,
                                             double* z) {
   using Method = std::remove_cvref_t<decltype(method)>;
   if constexpr (Method::all_stages > Method::stages) {
@@ -132,7 +112,7 @@ PENDCORE_INLINE void dense_stages_in_memory(const GeneralMemory* memory, double 
 }
 
 template <const auto& method, class Block>
-PENDCORE_INLINE void interpolant_in_memory(const GeneralMemory* memory, double h,
+PENDCORE_INLINE void interpolant_in_memory(const StepInMemory* memory, double h,
                                            double* coefficients) {
   using Method = std::remove_cvref_t<decltype(method)>;
   constexpr int width = Lanes<Block>::width;
@@ -150,19 +130,21 @@ PENDCORE_INLINE void interpolant_in_memory(const GeneralMemory* memory, double h
 
 /// The numbers of a state stand close together for the loop: (n, n, quadratures). In memory each
 /// row is filled up to whole blocks.
-template <const auto& method, class Block, bool compensated = false>
-class RungeKuttaDynamic final : public Stepper {
+template <const auto& method, class Block>
+class RungeKuttaInMemory final : public Stepper {
   using Method = std::remove_cvref_t<decltype(method)>;
   static constexpr int width = Lanes<Block>::width;
+  static constexpr InstructionSet best = best_for(width);
   static constexpr int stages = Method::stages;
   static constexpr int all_stages = Method::all_stages;
   static constexpr int degree = Method::degree;
-  static constexpr int rows = 4 + all_stages + (compensated ? 2 : 0);
+  static constexpr int rows = 4 + all_stages + 2;
   static_assert(degree <= 15, "as root.hpp has it");
 
  public:
-  RungeKuttaDynamic(std::unique_ptr<GeneralSystem> system, int n)
+  RungeKuttaInMemory(std::unique_ptr<GeneralSystem> system, int n, bool compensated = false)
       : system_(std::move(system)),
+        compensated_(compensated),
         n_(n),
         row_(system_->row),
         size_(2 * row_ + (system_->quadratures + width - 1) / width * width),
@@ -176,9 +158,8 @@ class RungeKuttaDynamic final : public Stepper {
     memory_.rtol = memory_.y_new + size_;
     memory_.atol = memory_.rtol + size_;
     memory_.k = memory_.atol + size_;
-    memory_.low =
-        compensated ? memory_.k + static_cast<std::ptrdiff_t>(all_stages) * size_ : nullptr;
-    memory_.low_new = compensated ? memory_.low + size_ : nullptr;
+    memory_.low = memory_.k + static_cast<std::ptrdiff_t>(all_stages) * size_;
+    memory_.low_new = memory_.low + size_;
     rows_ = numbers_.data() + static_cast<std::ptrdiff_t>(rows) * size_;
     for (int i = 0; i < size_; ++i) memory_.atol[i] = 1.0;  // places without a component
   }
@@ -193,7 +174,7 @@ class RungeKuttaDynamic final : public Stepper {
     read_rows(atol, memory_.atol);
   }
   void start(const double* y, const double* dydt) override {
-    if constexpr (compensated) drop_low_parts(y, memory_.y, memory_.low);
+    if (compensated_) drop_low_parts(y, memory_.y, memory_.low);
     read(y, memory_.y);
     read(dydt, memory_.k);
   }
@@ -201,7 +182,7 @@ class RungeKuttaDynamic final : public Stepper {
   void get_derivative(double* dydt) const override { write(memory_.k, dydt); }
   void get_new_state(double* y) const override { write(memory_.y_new, y); }
   void set_new_state(const double* y) override {
-    if constexpr (compensated) drop_low_parts(y, memory_.y_new, memory_.low_new);
+    if (compensated_) drop_low_parts(y, memory_.y_new, memory_.low_new);
     read(y, memory_.y_new);
   }
 
@@ -222,14 +203,14 @@ class RungeKuttaDynamic final : public Stepper {
   void stay() override {
     const std::size_t bytes = size_ * sizeof(double);
     __builtin_memcpy(memory_.y_new, memory_.y, bytes);
-    if constexpr (compensated) __builtin_memcpy(memory_.low_new, memory_.low, bytes);
+    if (compensated_) __builtin_memcpy(memory_.low_new, memory_.low, bytes);
     std::fill_n(memory_.k, static_cast<std::ptrdiff_t>(all_stages) * size_, 0.0);
     has_dense_stages_ = true;
   }
   void accept(double t_new) override {
     const std::size_t bytes = size_ * sizeof(double);
     __builtin_memcpy(memory_.y, memory_.y_new, bytes);
-    if constexpr (compensated) __builtin_memcpy(memory_.low, memory_.low_new, bytes);
+    if (compensated_) __builtin_memcpy(memory_.low, memory_.low_new, bytes);
     if constexpr (method.first_same_as_last) {
       __builtin_memcpy(memory_.k, memory_.k + static_cast<std::ptrdiff_t>(stages - 1) * size_,
                        bytes);
@@ -253,14 +234,14 @@ class RungeKuttaDynamic final : public Stepper {
   }
   std::vector<double> saved_state() const override {
     std::vector<double> low;
-    if constexpr (compensated) {
+    if (compensated_) {
       low.resize(dimension());
       write(memory_.low, low.data());
     }
     return low;
   }
   void restore(const std::vector<double>& memory) override {
-    if constexpr (compensated) {
+    if (compensated_) {
       if (has_low_part(memory, dimension())) read(memory.data(), memory_.low);
     }
   }
@@ -301,22 +282,63 @@ class RungeKuttaDynamic final : public Stepper {
   }
 
   std::unique_ptr<GeneralSystem> system_;
+  bool compensated_;
   int n_;
   int row_;
   int size_;
   std::vector<double> numbers_;
   double* rows_;  ///< the rows of an interpolant
-  GeneralMemory memory_;
+  StepInMemory memory_;
   double t_ = 0.0;  ///< the time of the attempt
   bool has_dense_stages_ = false;
-  Attempt (*attempt_)(const GeneralMemory*, double, double, double) =
-      fastest<&attempt_in_memory<method, Block, compensated>, best_for(width)>();
-  void (*dense_stages_)(const GeneralMemory*, double, double, double*) =
-      fastest<&dense_stages_in_memory<method, Block>, best_for(width)>();
-  void (*interpolant_)(const GeneralMemory*, double,
-                       double*) = fastest<&interpolant_in_memory<method, Block>, best_for(width)>();
+  Attempt (*attempt_)(const StepInMemory*, double, double,
+                      double) = compensated_
+                                    ? fastest<&attempt_in_memory<method, Block, true>, best>()
+                                    : fastest<&attempt_in_memory<method, Block, false>, best>();
+  void (*dense_stages_)(const StepInMemory*, double, double,
+                        double*) = fastest<&dense_stages_in_memory<method, Block>, best>();
+  void (*interpolant_)(const StepInMemory*, double,
+                       double*) = fastest<&interpolant_in_memory<method, Block>, best>();
   void (*sample_)(const double*, TwoDouble, double, const double*, int, double*, int,
                   int) = fastest<&sample_rows>();
 };
+
+template <const auto& method>
+std::unique_ptr<Stepper> stepper_of(std::unique_ptr<GeneralSystem> system, int n,
+                                    bool compensated) {
+  switch (system->row) {
+    case 1:
+      return std::make_unique<RungeKuttaInMemory<method, double>>(std::move(system), n,
+                                                                  compensated);
+    case 2:
+      return std::make_unique<RungeKuttaInMemory<method, Pack<2>>>(std::move(system), n,
+                                                                   compensated);
+    default:
+      return std::make_unique<RungeKuttaInMemory<method, Pack<4>>>(std::move(system), n,
+                                                                   compensated);
+  }
+}
+
+template <const auto&... methods>
+std::unique_ptr<Stepper> stepper_of(MethodList<methods...>, std::string_view name,
+                                    std::unique_ptr<GeneralSystem> system, int n,
+                                    bool compensated) {
+  std::unique_ptr<Stepper> stepper;
+  const auto take = [&]<const auto & method>() {
+    if constexpr (method.info.kind == MethodKind::explicit_one) {
+      if (method.info.name == name) stepper = stepper_of<method>(std::move(system), n, compensated);
+    }
+  };
+  (take.template operator()<methods>(), ...);
+  return stepper;
+}
+
+}  // namespace
+
+std::unique_ptr<Stepper> runge_kutta_in_memory(std::string_view method,
+                                               std::unique_ptr<GeneralSystem> system, int n,
+                                               bool compensated) {
+  return stepper_of(Methods{}, method, std::move(system), n, compensated);
+}
 
 }  // namespace pendcore

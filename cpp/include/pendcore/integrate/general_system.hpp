@@ -1,0 +1,21 @@
+/// \file
+/// A system whose size the compiler does not know, for steppers that have their state in memory.
+#pragma once
+
+namespace pendcore {
+
+/// dy/dt of a state in memory: two rows (q and qd) of `row` numbers each, and then quadratures.
+class GeneralSystem {
+ public:
+  GeneralSystem(int row_size, int quadrature_count)
+      : row(row_size), quadratures(quadrature_count) {}
+  virtual ~GeneralSystem() = default;
+
+  /// Computes the derivative (row, row, quadratures) of the state (row, row).
+  virtual void operator()(double t, const double* y, double* dydt) const = 0;
+
+  const int row;
+  const int quadratures;
+};
+
+}  // namespace pendcore

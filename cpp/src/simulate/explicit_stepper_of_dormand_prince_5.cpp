@@ -1,9 +1,0 @@
-#include "pendcore/simulate/explicit_stepper.hpp"
-
-namespace pendcore {
-
-template std::unique_ptr<Stepper> explicit_stepper<dormand_prince_5>(const Scene&,
-                                                                     const EquationsOfMotion&, bool,
-                                                                     bool);
-
-}  // namespace pendcore
