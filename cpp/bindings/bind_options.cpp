@@ -47,6 +47,11 @@ struct Taken {
   }
 
   void into(std::vector<double>& tolerances) const {
+    double alone = 0.0;
+    if (take_plain(value, alone)) {
+      tolerances.assign(1, alone);
+      return;
+    }
     tolerances = numbers(name, value, "a number or (" + std::to_string(2 * n) + ",)");
   }
 
@@ -137,11 +142,10 @@ Options options_of(const py::dict& given, std::size_t n) {
   Options options;
   for (const auto& [key, value] : given) {
     const auto name = key.cast<std::string_view>();
-    bool is_known = false;
-    Options::for_each([&]<class Option>() {
-      if (Option::info.name != name) return;
+    const bool is_known = Options::any_of([&, &value = value]<class Option>() {
+      if (Option::info.name != name) return false;
       take<Option>(options, value, n);
-      is_known = true;
+      return true;
     });
     if (!is_known) throw py::type_error("no option of a run is called " + std::string(name));
   }

@@ -13,11 +13,12 @@ Run simulate_run(const py::object& python_scene, py::handle q0, py::handle qd0, 
   Options options = options_of(given, scene.links.size());
   options.monitor = monitor;
   const Start start = start_of(scene, q0, qd0, t0, t_end, warn);
-  const char* const events = EventsOption::info.name.data();
   Run run{.scene = scene,
           .solution = {},
           .python_scene = python_scene,
-          .event_functions = given.contains(events) ? functions_of(given[events]) : py::list()};
+          .event_functions = options.events.empty()
+                                 ? py::list()
+                                 : functions_of(given[EventsOption::info.name.data()])};
   {
     const py::gil_scoped_release without_lock;
     run.solution = simulate(run.scene, start.q0, start.qd0, start.t0, start.t_end, options);

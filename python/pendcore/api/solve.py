@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from pendcore import _core
 from pendcore.accuracy.target_error import run_to_error
 from pendcore.messages.arguments import number, two_times
-from pendcore.messages.progress import callback
+from pendcore.messages.progress import callback, close
 from pendcore.messages.warning import warn
-from pendcore.run.call import Start, called
+from pendcore.run.call import Start, completed
 from pendcore.run.events import events_asked_for
 from pendcore.run.options import CHECK, ERROR, OPTIONS, RUN_DEFAULTS
 from pendcore.run.result import Result, RunResult
@@ -28,17 +29,28 @@ def solve(
     t_span: Iterable[float] | None,
     options: dict[str, Any],
 ) -> Result:
-    """Run, and return the result as one of a class; `options` are used up."""
-    q0 = require_start(scene, q0)
+    """Run, and return the result as one of a class; `options` are used up.
+
+    A short run takes two microseconds, and so may this: what is as usual is not called for.
+    """
+    if q0 is None or not isinstance(scene, SceneData):
+        q0 = require_start(scene, q0)
     check, error = options.pop("check", None), options.pop("error", None)
-    require_check(check)
-    start = Start(scene, q0, qd0, *two_times(t_span))
+    if check is not None:
+        require_check(check)
+    t_start, t_end = two_times(t_span)
     if "events" in options:
         options["events"] = [event._as_pair() for event in events_asked_for(options["events"])]
     if error is not None:
+        start = Start(scene, q0, qd0, t_start, t_end)
         return checked(_solved_to_error(kind, start, error, options), check)
     report = callback(options.pop("progress", None))
-    return checked(called(kind, start, options, report, warn), check)
+    run = _core.simulate(scene._compiled, q0, qd0, t_start, t_end, options, report, warn)
+    result = kind(scene, run)
+    if run.success:
+        close(report)
+        return result
+    return checked(completed(result, report), check)
 
 
 def result_as(kind: type[Result], result: RunResult) -> Result:

@@ -23,11 +23,10 @@ class ProgressBar:
 
     patience = 1.0
     """s."""
+    what = "simulating"
+    """What the bar says is done."""
     _since: float | None = None
     _bar: tqdm[Any] | None = None
-
-    def __init__(self, what: str = "simulating") -> None:
-        self.what = what
 
     def __call__(self, fraction: float) -> None:
         if self._since is None:
@@ -67,10 +66,11 @@ def _new_bar(what: str) -> tqdm[Any]:
 
 def callback(progress: Progress, what: str = "simulating") -> Callable[[float], object] | None:
     """Return what the core is to call, or None; a bar says what is done."""
-    if progress is None:
-        return ProgressBar(what)
-    if progress is True:
-        return ImmediateBar(what)
+    if progress is None or progress is True:
+        bar = ProgressBar() if progress is None else ImmediateBar()
+        if what != bar.what:
+            bar.what = what
+        return bar
     if progress is False:
         return None
     if not callable(progress):

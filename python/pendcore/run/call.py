@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -62,24 +62,11 @@ def run(
     **options: Any,
 ) -> RunResult:
     """Run; the keywords are those of `simulate`, but that ``events`` are the core's."""
-    return called(
-        RunResult, start, options | choice._asdict() | {"t_eval": t_eval}, callback(progress), warn
-    )
-
-
-def called(
-    kind: type[Result],
-    start: Start,
-    options: Mapping[str, Any],
-    report: Callable[[float], object] | None,
-    warn: Callable[[str], object],
-) -> Result:
-    """Call the core, and return the result as one of a class."""
-    run = _core.simulate(
-        start.scene._compiled, start.q0, start.qd0, start.t_start, start.t_end, options,
-        report, warn,
-    )  # fmt: skip
-    return completed(kind(start.scene, run), report)
+    report = callback(progress)
+    options |= choice._asdict() | {"t_eval": t_eval}
+    scene, q0, qd0, t_start, t_end = start
+    run = _core.simulate(scene._compiled, q0, qd0, t_start, t_end, options, report, warn)
+    return completed(RunResult(scene, run), report)
 
 
 def resumed(

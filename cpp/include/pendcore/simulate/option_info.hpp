@@ -59,6 +59,11 @@ struct OptionList : Listed... {
   static void for_each(Visit visit) {
     (visit.template operator()<Listed>(), ...);
   }
+  /// Whether is<Option>() holds for one of them; it is asked until it does.
+  template <class Is>
+  static bool any_of(Is is) {
+    return (is.template operator()<Listed>() || ...);
+  }
 
   void limit(Limits& limits) const { (limit_by<Listed>(limits), ...); }
 

@@ -105,16 +105,16 @@ def _collected(page: Page) -> None:
     law, locked = page.motion.law, page.motion.locking
     if page.n > 1:
         text += (
-            "What they have of the accelerations is collected on the left, with $\\sin^{2} + "
+            "The terms with accelerations are collected on the left, with $\\sin^{2} + "
             "\\cos^{2} = 1$ and the sine and cosine of a difference: "
             f"${law}$, with a symmetric matrix $M$."
         )
     else:
-        text += f"What they have of the acceleration is collected on the left: ${law}$."
+        text += f"The terms with the acceleration are collected on the left: ${law}$."
     if locked:
         text += (
-            " $f$ has all but the unknown couples of locks; these are in $\\lambda$, on the link "
-            "beyond a joint and the opposite on the link before."
+            " The unknown couples of locks are in $\\lambda$, and everything else is in $f$: such "
+            "a couple acts on the link beyond its joint, and its opposite on the link before."
         )
     named = page.motion.named.entries | locked
     page.step(

@@ -19,14 +19,14 @@ def energy(page: Page) -> None:
     powers = of.powers_with(page.equations.forces[0])
     told = []
     for i, (effect, power) in enumerate(powers.items(), start=1):
-        told.append(f"$P_{{{i}}}$ of the {_named(effect)}")
+        told.append(f"$P_{{{i}}}$ is that of the {_named(effect)}")
         names.append(page.symbol(f"P{i}", f"P_{{{i}}}"))
         found.append(page.equation(names[-1], power))
     rate = page.symbol("d(T + V)/dt", r"\frac{\mathrm{d}}{\mathrm{d}t} (T + V)")
-    text = "The motion conserves the energy, which no step above has made use of"
+    text = "The motion conserves the energy; no step above has used this"
     if names:
         text = (
-            "The energy changes at the rate of the powers of the effects, and by nothing else: "
+            "Only the effects change the energy, at the rate of the sum of their powers: "
             f"{', '.join(told)}"
         )
     page.step("Energy", f"{text}.", *found, page.equation(rate, sum(names)))

@@ -29,7 +29,7 @@ def _solution(page: Page) -> None:
         matrix, right, first = "M", "f", ", with $D_{1} = M_{11}$ and $h_{1} = f_{1}$"
     found = list[Equation]()
     if unknowns >= BY_ELIMINATION:
-        kept = "what turns as one, $\\dot{q} = B r$, is one unknown, and " * bool(
+        kept = "links that turn as one share an unknown, $\\dot{q} = B r$, and " * bool(
             page.equations.locked
         )
         text += (

@@ -74,7 +74,7 @@ def _mobility(page: Page) -> None:
     text += f": $n = {k}$, $c_{{5}} = {k}$, $c_{{4}} = 0$."
     if locked:
         joints = f"joint{'s' if len(locked) > 1 else ''} {_listed(map(str, locked))}"
-        text += f" The lock of {joints} makes one of the bodies that it joins."
+        text += f" The lock of {joints} makes one body of the two that it joins."
     symbol = page.symbol("M", "M")
     count = Formula(f"3*{k} - 2*{k} - 0 = {k}", rf"3 \cdot {k} - 2 \cdot {k} - 0 = {k}")
     general = Formula("3 n - 2 c5 - c4", r"3 n - 2 c_{5} - c_{4}")

@@ -32,11 +32,21 @@ def _moments_of_inertia(page: Page) -> None:
         if value != name:
             found.append(page.equation(name, value))
     if page.n == 1:
-        text = f"That of {'a uniform rod' if page.is_uniform else 'the link'} about its mass centre"
+        text = (
+            f"{'A uniform rod' if page.is_uniform else 'The link'} has this moment of inertia "
+            "about its mass centre"
+        )
     else:
-        whose = "uniform rods" if page.is_uniform else "the links"
-        text = f"Those of {whose} about their mass centres"
-    text += ", where they are not given" if len(found) < page.n else ""
+        whose = "Uniform rods" if page.is_uniform else "The links"
+        text = f"{whose} have these moments of inertia about their mass centres"
+    if not found:
+        text = (
+            "The moments of inertia about the mass centres are given"
+            if page.n > 1
+            else "The moment of inertia about the mass centre is given"
+        )
+    elif len(found) < page.n:
+        text += ", where they are not given"
     if page.chain.pivot_is_fixed:
         text += "; link 1 turns about the fixed point $A$, and there the parallel axis theorem"
         text += " gives $I_{A}$"

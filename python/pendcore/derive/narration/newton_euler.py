@@ -102,8 +102,8 @@ def _first(page: Page, link: LinkEquations) -> None:
     _, far = _forces(page, 1)
     text = "$\\mathbf{F}_{01}$ is the joint reaction of the ground 0 on link 1 at $A$"
     if far is not None:
-        whose = f"link {2}" if page.n > 1 else "the payload"
-        text += f", ${far.latex}$ that of {whose} on link 1 at ${end.latex}$"
+        whose = "link 2" if page.n > 1 else "the payload"
+        text += f", and ${far.latex}$ is the force of {whose} on link 1 at ${end.latex}$"
     weight = page.equations.weight(page.s.masses[0])
     arm = page.coordinate("x", center), page.coordinate("y", center)
     moments = [page.determinant(arm, weight)]
@@ -115,8 +115,8 @@ def _first(page: Page, link: LinkEquations) -> None:
     page.step(
         "Newton-Euler equations of link 1",
         f"{text}. As link 1 turns about the fixed point $A$, the sum of the moments about $A$ "
-        "equals the moment of inertia about $A$ times the angular acceleration: "
-        f"$\\mathbf{{F}}_{{01}}$ has no part in it.{_turning_with(page, 1)}",
+        "equals the moment of inertia about $A$ times the angular acceleration, and "
+        f"$\\mathbf{{F}}_{{01}}$ has no moment.{_turning_with(page, 1)}",
         _newton(page, 1, None),
         _euler(page, 1, center, None),
         _euler(page, 1, begin, "2.1"),
@@ -145,8 +145,8 @@ def _other(page: Page, i: int, link: LinkEquations) -> None:
     determinant = [_determinant(page, link)] if own and page.n == 2 else []
     page.step(
         f"Newton-Euler equations of link {i}",
-        "Mass times acceleration is the sum of the forces, moment of inertia times angular "
-        f"acceleration the sum of the moments about ${center.latex}$."
+        "Mass times acceleration is the sum of the forces, and moment of inertia times angular "
+        f"acceleration is the sum of the moments about ${center.latex}$."
         f"{_opposite(i)}{payload}",
         _newton(page, i, "2.3" if own else None),
         _euler(page, i, center, "2.4" if own else None),
