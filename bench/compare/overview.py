@@ -47,7 +47,7 @@ reaches the error.
   `dopri5` and `taylor` at all settings), because pendcore checks its arguments and makes and
   returns a result object. This is why some errors reach the goal in C++ and miss it from Python.
 * **In C++** `taylor` is the best method from errors of some 1e-4 down. By count in
-  `dynamics/series/series.hpp`, order k of its series takes 2 (k - 3) + 30 products of rows of four
+  `double_pendulum_series.hpp`, order k of its series takes 2 (k - 3) + 30 products of rows of four
   numbers, or k + 12 cycles of a processor with two multipliers. By latency, an order waits 9
   cycles for the order before it (two products, a change of places) and 44 cycles for the order
   before that one (two sums, both halves of a row, the two by two system), which makes 22 cycles an

@@ -4,7 +4,7 @@
 
 #include <pendcore/arithmetic/instruction_set.hpp>
 #include <pendcore/dynamics/equations_of_motion.hpp>
-#include <pendcore/dynamics/series/series.hpp>
+#include <pendcore/dynamics/series/double_pendulum_series.hpp>
 #include <variant>
 
 namespace {

@@ -132,7 +132,7 @@ def test_a_report_is_written_of_the_run_whose_error_is_not_reached(
 def test_a_worksheet_needs_a_report(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["derive", "--worksheet"]) == 2
     assert capsys.readouterr().err == (
-        "pendcore derive: --worksheet: is of a report: add --to report\n"
+        "pendcore derive: --worksheet: belongs to a report: add --to report\n"
     )
 
 

@@ -52,7 +52,7 @@ def says_how_it_ended(drawn: Drawn, sol: pc.Solution, _: Choices) -> Iterator[st
         yield f"status {sol.status!r} is none that this run could have"
     if sol.success != (sol.status in SUCCESSES):
         yield f"success = {sol.success} with status {sol.status!r}"
-    if sol.message.startswith("no step leads on") and is_ordinary(drawn, sol):
+    if sol.message.startswith("no step gets further") and is_ordinary(drawn, sol):
         yield f"the law chatters: {sol.message}"
     if len(sol.message) < 10:
         yield f"message {sol.message!r} says nothing"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pendcore/scene/degrees.hpp"
 #include "pendcore/text/message.hpp"
 
 namespace pendcore {
@@ -79,17 +80,13 @@ bool has_rotor(const Scene& scene, std::size_t joint) {
   });
 }
 
-constexpr double pi = 3.14159265358979323846;
-
-/// Adds a sentence for an angle that seems to be in degrees: a multiple of five from fifteen to 720
-/// (two turns). A phase may be that large, because it moves a wave in time.
+/// Adds a sentence for an angle that seems to be in degrees. A phase may be that large, because it
+/// moves a wave in time.
 void warn_of_degrees(const std::string& where, const ParameterInfo& info, double x,
                      std::vector<std::string>& warnings) {
-  if (info.unit != "rad" || info.name == "phase" || std::fmod(x, 5.0) != 0.0) return;
-  if (std::abs(x) < 15.0 || std::abs(x) > 720.0) return;
-  warnings.push_back(where + std::string(info.name) + " = " + text(x) + " rad: that is " +
-                     std::to_string(std::lround(x * (180.0 / pi))) +
-                     " degrees: angles are in radians");
+  if (info.unit != "rad" || info.name == "phase") return;
+  if (!may_be_degrees(x) || !is_large_angle(x)) return;
+  warnings.push_back(warning_of_degrees(where + std::string(info.name), x));
 }
 
 /// The same for each angle among the parameters of an effect, or of its parts.

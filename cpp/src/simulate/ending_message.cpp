@@ -50,14 +50,15 @@ std::string ending_message(const Ending& ending, const Scene& scene, const Solut
   if (ending.status == Status::max_turns) {
     return event_name(solution.options.events[ended_by], ended_by) +
            ": every_turn = true: the steps of this run went through more than a million turns, "
-           "beyond one each (at t = " +
+           "not counting one a step (at t = " +
            text(solution.t_reached) +
            " s): leave every_turn out, or keep the steps below a turn by max_step; resume goes on "
            "with another million";
   }
   if (text(ending.status).success) return message;
   if (ending.chatters) {
-    return "no step leads on: the law changes back and forth (at t = " + text(solution.t_reached) +
+    return "no step gets further: the law changes back and forth (at t = " +
+           text(solution.t_reached) +
            " s): dry friction that reverses at once, or two limits that meet: set one a little "
            "apart, "
            "or give the joint some damping";

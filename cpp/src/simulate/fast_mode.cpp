@@ -57,7 +57,7 @@ double bound_of(const Linearized& second_order, std::size_t n) {
   return 0.5 * (of_qd + std::sqrt(of_qd * of_qd + 4.0 * of_q));
 }
 
-/// The same of a scene of its own, in the modes that the state calls for.
+/// The same for a scene alone, in the modes that the state calls for.
 double bound_of(const Scene& scene, double t, const double* q, const double* qd) {
   const EquationsOfMotion equations = equations_of_motion(scene);
   if (equations.effects) choose_modes(*equations.effects, t, q, qd, true);
@@ -191,7 +191,7 @@ std::string remark_on_steps(const Scene& scene, const EquationsOfMotion& equatio
   const double* const y = integrator.y.data();
   const double h = std::abs(integrator.t.high - t0) / static_cast<double>(statistics.accepted);
   const auto mode = fast_mode(scene, equations, integrator.t.high, y, y + n);
-  // What the steps were made for is about a radian a step, or the border of stability.
+  // The mode that set the steps turns by about a radian a step, or is at the border of stability.
   if (!mode || !(0.01 < h * mode->fastest && h * mode->fastest < 10.0)) return remark;
   remark += "; a fast mode set " + std::to_string(statistics.limited_by_tolerance) +
             " steps: " + measure_of(*mode) + ", in joint " + std::to_string(mode->joint);

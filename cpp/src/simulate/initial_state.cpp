@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "pendcore/dynamics/kinematics.hpp"
+#include "pendcore/scene/degrees.hpp"
 #include "pendcore/text/message.hpp"
 
 namespace pendcore {
@@ -113,16 +114,10 @@ std::string span_of(const Effect& effect) {
 std::vector<std::string> run_warnings(const Scene& scene, const std::vector<double>& q0, double t0,
                                       double t_end) {
   std::vector<std::string> warnings;
-  // Angles in degrees are usually multiples of five, and hardly more than two turns. In radians
-  // such numbers are rare, except for 0, 5 and 10.
-  const bool as_degrees = std::ranges::all_of(
-      q0, [](double q) { return std::fmod(q, 5.0) == 0.0 && std::abs(q) <= 720.0; });
-  const auto large = std::ranges::find_if(q0, [](double q) { return std::abs(q) >= 15.0; });
-  if (as_degrees && large != q0.end()) {
-    warnings.push_back("q0[" + std::to_string(large - q0.begin()) + "] = " + text(*large) +
-                       " rad: that is " +
-                       std::to_string(std::lround(*large * (180.0 / 3.14159265358979323846))) +
-                       " degrees: angles are in radians");
+  const auto large = std::ranges::find_if(q0, is_large_angle);
+  if (std::ranges::all_of(q0, may_be_degrees) && large != q0.end()) {
+    const std::string name = "q0[" + std::to_string(large - q0.begin()) + "]";
+    warnings.push_back(warning_of_degrees(name, *large));
   }
   const double first = std::min(t0, t_end);
   const double last = std::max(t0, t_end);

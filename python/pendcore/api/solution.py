@@ -20,6 +20,7 @@ from pendcore.messages.arguments import known_keywords
 from pendcore.messages.progress import Progress
 from pendcore.run.call import resumed
 from pendcore.run.error_estimate import ErrorEstimate
+from pendcore.run.options import RUN_DEFAULTS
 from pendcore.run.result import RunResult
 from pendcore.run.run_error import checked, require_check
 from pendcore.scene.frozen_state import frozen_state
@@ -125,7 +126,7 @@ class Solution(RunResult):
         t_end: float,
         t_eval: npt.ArrayLike | None = None,
         *,
-        max_steps: int = 10_000_000,
+        max_steps: int = RUN_DEFAULTS["max_steps"],
         time_limit: float | None = None,
         check: bool | None = None,
         progress: Progress = None,

@@ -62,7 +62,7 @@ def add_parser(commands: Any) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Run the sub-command; return its exit status."""
     if args.worksheet and args.to != "report":
-        raise UsageError("--worksheet: is of a report: add --to report")
+        raise UsageError("--worksheet: belongs to a report: add --to report")
     with blamed_on_usage():
         case = case_of(args)
         derivation = _derived(case)

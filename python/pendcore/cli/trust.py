@@ -96,7 +96,7 @@ def trust(
     try:
         growth = solution.lyapunov()
         found["lyapunov_exponent"] = (_number(growth.largest), str(growth))
-    except ValueError as refusal:  # dry friction and stops: neighbours part at no rate
+    except ValueError as refusal:  # dry friction and stops: neighbours do not diverge at a rate
         found["lyapunov_exponent"] = (None, f"no Lyapunov exponent: {_without_name(refusal)}")
     try:
         defect = solution.defect()

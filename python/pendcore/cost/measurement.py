@@ -147,7 +147,7 @@ class Measurement:
             found = self._reference(stiff)
             end, known = float(found.times[-1]), known_until(found)
             if known < 2:
-                self.remarks.append("the two references part at once: no error here means a thing")
+                self.remarks.append("the two references part at once: no error here has a meaning")
                 break
             if known < len(found.times):
                 self.cut = ""  # of the two reasons, the one that more time would not mend

@@ -136,7 +136,7 @@ class Step:
         return "\n".join(parts)
 
     def _groups(self) -> list[list[Equation]]:
-        """The equations, those that are shown together together: a remark ends a group."""
+        """The equations in groups that are shown together; a remark ends a group."""
         groups: list[list[Equation]] = []
         for equation in self.equations:
             if not groups or groups[-1][-1].remark:

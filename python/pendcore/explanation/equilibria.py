@@ -177,9 +177,9 @@ def find_equilibria(
     unknown = [str(joint) for joint, angle in locks(scene).items() if angle is None]
     if start is None and unknown:
         remarks.append(
-            f"joint{'s'[: len(unknown) > 1]} {', '.join(unknown)}: locked where the run starts, "
-            "and no start was given: hanging and upright are as if it started there; "
-            "explain(q=...) says where it does"
+            f"joint{'s'[: len(unknown) > 1]} {', '.join(unknown)}: a lock takes its angle from the "
+            "start, and none was given: hanging and upright are taken as starts; give yours with "
+            "explain(q=...)"
         )
     found: list[Floats] = []
     for name, pose in poses.items():

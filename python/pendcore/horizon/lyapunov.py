@@ -23,6 +23,7 @@ from pendcore.messages.arguments import (
 )
 from pendcore.messages.progress import Progress, callback, close
 from pendcore.messages.warning import warn
+from pendcore.run.options import RUN_DEFAULTS
 from pendcore.run.result import RunResult
 from pendcore.run.statistics import Statistics
 from pendcore.scene.scene import SceneData, require_start
@@ -137,7 +138,7 @@ def lyapunov(
     atol: float = 1e-12,
     t_eval: npt.ArrayLike | None = None,
     max_step: float = inf,
-    max_steps: int = 10_000_000,
+    max_steps: int = RUN_DEFAULTS["max_steps"],
     time_limit: float | None = None,
     progress: Progress = None,
 ) -> LyapunovExponents:
@@ -245,9 +246,9 @@ def _check_is_smooth(scene: SceneData) -> None:
         if effect.description.jumps_or_sticks:
             raise ValueError(
                 f"effect {i} ({effect.kind}): motions jump or stick under it, each at a time of "
-                "its own, so that neighbours part at no rate: leave dry friction and stops out "
-                "for exponents; sol.valid_until() and pendcore.horizon_work tell with them too "
-                "how long a run is right"
+                "its own, so neighbouring motions do not diverge at a rate: remove dry friction "
+                "and stops to get exponents; sol.valid_until() and pendcore.horizon_work tell how "
+                "long a run is right with them, too"
             )
 
 

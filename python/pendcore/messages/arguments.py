@@ -37,7 +37,7 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
 
 
 def known_keywords(function: Callable[Taken, Given]) -> Callable[Taken, Given]:
-    """Make a function refuse a keyword that it does not have with the nearest that it has."""
+    """Make a function refuse unknown keywords, and suggest the nearest known one."""
     parameters = signature(function).parameters
     known = [name for name in parameters if name not in ("self", "cls")]
     takes_any = any(one.kind is Parameter.VAR_KEYWORD for one in parameters.values())

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from pendcore import _core
 from pendcore.messages.progress import Progress, callback, close
 from pendcore.run.methods import known_methods
+from pendcore.run.options import RUN_DEFAULTS
 from pendcore.run.result import Result, RunResult
 from pendcore.scene.scene import SceneData
 
@@ -74,7 +75,7 @@ def resumed(
     t_end: float,
     t_eval: npt.ArrayLike | None = None,
     *,
-    max_steps: int = 10_000_000,
+    max_steps: int = RUN_DEFAULTS["max_steps"],
     time_limit: float | None = None,
     progress: Progress = None,
 ) -> Result:

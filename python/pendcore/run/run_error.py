@@ -64,7 +64,7 @@ def _complaint(solution: RunResult) -> str:
         f"{message.removeprefix(f'{solution.status}: ')}"
     )
     if solution.accuracy is not None:
-        return f"{complaint}; it is no run of the error asked for: {solution.accuracy.text()}"
+        return f"{complaint}; the error asked for was not verified: {solution.accuracy.text()}"
     if solution.status in CAN_GO_ON and "resume" not in message:
-        complaint += f"; its resume({t_end!r}) goes on"
+        complaint += f"; solution.resume({t_end!r}) continues it"
     return complaint

@@ -186,7 +186,7 @@ def _lines(described: Description) -> Iterator[str]:
         yield f"{parameter.name} : {type_in_words(parameter)}"
         yield from wrap(_meaning(parameter), 92, initial_indent="    ", subsequent_indent="    ")
     yield from ("", "Raises", "------", "ValueError, TypeError")
-    yield "    If a value is none that is allowed; the message names it, the range and the unit."
+    yield "    If a value is not allowed; the message gives the value, its range and its unit."
     if described.source:
         yield from ("", "Notes", "-----")
         yield from wrap(f"Source: {described.source}.", 92)

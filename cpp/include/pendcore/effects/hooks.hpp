@@ -264,6 +264,8 @@ struct CheckedHooks {
   static_assert(named.warnings ? HasWarnings<Kind> : !begun.warnings,
                 "hook warnings: .warnings = true in hooks goes with std::vector<std::string> "
                 "warnings() const");
+
+  static constexpr bool is_complete = true;  ///< asked for, so that the checks above are compiled
 };
 
 /// Whether all effects of a registry have the hooks that they name. If not, this does not compile.
@@ -271,6 +273,6 @@ template <class Registry>
 inline constexpr bool hooks_are_named = false;
 template <class... Kinds>
 inline constexpr bool hooks_are_named<std::variant<Kinds...>> =
-    (... && (sizeof(CheckedHooks<Kinds>) > 0));
+    (... && CheckedHooks<Kinds>::is_complete);
 
 }  // namespace pendcore

@@ -91,7 +91,7 @@ class EventFinder {
   std::vector<int> tip_line_of_;  ///< the number of each event's tip line, or -1
   int n_;
   int ended_by_ = -1;
-  double turns_ = 0.0;         ///< turns that steps went through, beyond one each
+  double turns_ = 0.0;         ///< turns that steps went through, not counting one a step
   bool has_too_many_ = false;  ///< whether there are too many turns
   std::vector<Root> roots_;
   std::vector<TurningPoint> samples_;

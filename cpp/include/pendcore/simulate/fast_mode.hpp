@@ -32,9 +32,9 @@ struct FastMode {
 std::optional<FastMode> fast_mode(const Scene& scene, const EquationsOfMotion& equations, double t,
                                   const double* q, const double* qd);
 
-/// What a run's message is to say of its steps, "; ..." or nothing: that they were limited by
-/// stability, since when, and what to do; which mode set them, if one did for long; that a run
-/// changed its method, to the one in force, or did not; whose derivatives are differences.
+/// What a run's message says about its steps, "; ..." or nothing: whether stability limited them,
+/// since when, and what to do; which mode set them, if one did for long; whether the run changed its
+/// method to the one in force; which effects were differentiated numerically.
 std::string remark_on_steps(const Scene& scene, const EquationsOfMotion& equations,
                             const IntegratorState& integrator, const MethodInfo& method,
                             const MethodInfo& in_force, bool fixed_step, double t0);

@@ -78,8 +78,8 @@ class Run {
 
   bool step() {
     const double t = integrator_.t.high;
-    // A run that goes on may be asked to go no further: what is less than the last bit of its time
-    // would be a step of its own, and as like as not a backward one.
+    // A continued run may be asked to go no further: the rest of less than the last bit of its time
+    // would be a step of its own, perhaps a backward one.
     if (t == limits_.t_end) return end(Status::finished);
     const double left = difference(limits_.t_end, integrator_.t);
     if (attempts_ == limits_.max_steps) return end(Status::max_steps);

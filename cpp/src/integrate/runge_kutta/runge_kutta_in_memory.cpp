@@ -319,18 +319,19 @@ std::unique_ptr<Stepper> stepper_of(std::unique_ptr<GeneralSystem> system, int n
   }
 }
 
+using Maker = std::unique_ptr<Stepper> (*)(std::unique_ptr<GeneralSystem>, int, bool);
+
+template <const auto& method>
+constexpr Maker maker_of() {
+  if constexpr (method.info.kind == MethodKind::explicit_one) return &stepper_of<method>;
+  return nullptr;
+}
+
 template <const auto&... methods>
-std::unique_ptr<Stepper> stepper_of(MethodList<methods...>, std::string_view name,
-                                    std::unique_ptr<GeneralSystem> system, int n,
-                                    bool compensated) {
-  std::unique_ptr<Stepper> stepper;
-  const auto take = [&]<const auto & method>() {
-    if constexpr (method.info.kind == MethodKind::explicit_one) {
-      if (method.info.name == name) stepper = stepper_of<method>(std::move(system), n, compensated);
-    }
-  };
-  (take.template operator()<methods>(), ...);
-  return stepper;
+Maker maker_of(MethodList<methods...>, std::string_view name) {
+  Maker maker = nullptr;
+  ((methods.info.name == name ? void(maker = maker_of<methods>()) : void()), ...);
+  return maker;
 }
 
 }  // namespace
@@ -338,7 +339,7 @@ std::unique_ptr<Stepper> stepper_of(MethodList<methods...>, std::string_view nam
 std::unique_ptr<Stepper> runge_kutta_in_memory(std::string_view method,
                                                std::unique_ptr<GeneralSystem> system, int n,
                                                bool compensated) {
-  return stepper_of(Methods{}, method, std::move(system), n, compensated);
+  return maker_of(Methods{}, method)(std::move(system), n, compensated);
 }
 
 }  // namespace pendcore

@@ -1,7 +1,7 @@
 /// \file
 /// The equations of a chain of n links, with smooth effects, as recurrences of Taylor series.
 ///
-/// As in series.hpp, u_i lies along link i, n_i across it, and u_i' = qd_i n_i. Let a_i be the
+/// As in double_pendulum_series.hpp, u_i lies along link i, n_i across it, and u_i' = qd_i n_i. Let a_i be the
 /// acceleration of joint i minus gravity, and F_{i+1} the force at the next joint; both are sums of
 /// u'':
 ///
@@ -18,7 +18,7 @@
 ///     alpha = r (tau - L n . p - t - w . a) + s alpha_before,    p = b + L B beta
 ///
 /// The effects are those that have a Couple (effects/law.hpp): polynomials of time, angle and rate,
-/// and waves. The source is the one of series.hpp. Cost: four sums of products and some 40
+/// and waves. The source is the one of double_pendulum_series.hpp. Cost: four sums of products and some 40
 /// operations for each link and order; a sine and cosine, a division and some 60 operations for
 /// each link and series.
 #pragma once

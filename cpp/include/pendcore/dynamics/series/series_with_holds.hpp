@@ -1,5 +1,5 @@
 /// \file
-/// The series of a double pendulum whose joints may be held. The closed form (series.hpp) gives it
+/// The series of a double pendulum whose joints may be held. The closed form (double_pendulum_series.hpp) gives it
 /// while both joints are free, the chain (chain_series.hpp) while one is held.
 #pragma once
 
@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "pendcore/dynamics/series/chain_series_recurrence.hpp"
-#include "pendcore/dynamics/series/series.hpp"
+#include "pendcore/dynamics/series/double_pendulum_series.hpp"
 #include "pendcore/dynamics/series/torque_series.hpp"
 
 namespace pendcore {

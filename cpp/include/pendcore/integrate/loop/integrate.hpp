@@ -64,7 +64,7 @@ class Observer {
   virtual void state_jumped(double t, const double* before, const double* after) = 0;
   /// There, its last bits were set to what holds exactly.
   virtual void state_settled(double /*t*/, const double* /*after*/) {}
-  /// Should the run end now, one that goes on restarts here: what comes may be cut or undone.
+  /// If the run ends now, a continued run restarts here, because later steps may be cut or undone.
   virtual void restarts_here() = 0;
 
   /// Whether it may end the run, by an event or an exception: each step then begins by writing down
@@ -87,7 +87,7 @@ struct Ending {
   bool cut;      ///< the last step, or one before it, was cut to end at t_end
   int bad = -1;  ///< of status non_finite: the component that is not finite, if it is known
   std::exception_ptr error = nullptr;  ///< of status callback_error
-  bool chatters = false;  ///< the law changes back and forth at one time: no step leads on
+  bool chatters = false;  ///< the law changes back and forth at one time: no step gets further
 };
 
 /// The first component that is not finite, or -1.

@@ -21,10 +21,12 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "pendcore/integrate/general_system.hpp"
 #include "pendcore/integrate/radau/collocation.hpp"
 #include "pendcore/integrate/radau/newton_systems.hpp"
+#include "pendcore/integrate/stepper.hpp"
 
 namespace pendcore {
 

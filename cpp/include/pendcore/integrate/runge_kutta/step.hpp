@@ -1,5 +1,5 @@
 /// \file
-/// The stepper: one step of an explicit Runge-Kutta method, from its table.
+/// One step of an explicit Runge-Kutta method, from its table.
 ///
 /// `attempt_step` is the kernel: the stages, the new state and its error norm, unrolled for the
 /// table and the system at compile time. It does not allocate, and has no branches of its own.

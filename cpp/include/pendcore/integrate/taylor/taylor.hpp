@@ -32,7 +32,7 @@
 /// Source: Jorba and Zou, A software package for the numerical integration of ODEs by means of
 /// high-order Taylor methods, Exp. Math. 14 (2005), for the method; the order and the step size are
 /// this project's own, from its measurements. Cost: one series a step, which counts as one
-/// right-hand side in the statistics (the recurrences: dynamics/series/series.hpp).
+/// right-hand side in the statistics (the recurrences: dynamics/series/double_pendulum_series.hpp).
 #pragma once
 
 #include "pendcore/integrate/runge_kutta/tableau.hpp"
