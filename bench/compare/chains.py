@@ -17,7 +17,7 @@ from tqdm import tqdm
 LENGTHS = (2, 3, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000)
 QUICK_LENGTHS = (2, 10, 100, 500)
 BURST_SECONDS = 2e-3
-CHECKED_UP_TO = 200  # links: beyond, the dense solution below is no better than what it checks
+CHECKED_UP_TO = 200  # links: with more, the dense solution is no better than what it checks
 ALLOWED_DISAGREEMENT = 1e-6  # relative angles are badly conditioned in long chains
 
 Key = tuple[str, int]  # contender and links
@@ -55,7 +55,7 @@ def nanoseconds(timing: Timing) -> dict[str, float | int]:
 def prepare(
     entrants: list[ForwardDynamics], lengths: tuple[int, ...]
 ) -> tuple[dict[Key, Calls], dict[Key, float], dict[str, str]]:
-    """Prepare all calls; with them how far each is from the dense equations, and why some stop."""
+    """Prepare all calls; say how far each is from the dense equations, and why some stop."""
     calls: dict[Key, Calls] = {}
     errors: dict[Key, float] = {}
     stops: dict[str, str] = {}
@@ -83,7 +83,7 @@ def prepare(
 
 
 def measure(*, quick: bool, rounds: int) -> dict[str, Any]:
-    """Measure all there is, and say on what: the record, as JSON holds it."""
+    """Measure everything that is here; return the record, with the machine, as JSON holds it."""
     with contenders() as found:
         entrants = [one for one in found if not one.name.endswith(("_run", "_kernel"))]
         return measure_these(entrants, quick, rounds)

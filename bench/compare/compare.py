@@ -2,7 +2,7 @@
 
 Solves of five cases (what accuracy costs), `stiff` (implicit steps), `chains` (forward dynamics of
 n links) and `effects` (what each adds). Each writes into docs/comparison a .json (raw figures,
-machine, versions, flags), a .md (tables) and a .png; README.md there is of all solves together.
+machine, versions, flags), a .md (tables) and a .png; README.md there covers all solves.
 `make compare` builds what is needed and calls this; by hand:
 
     python bench/compare/compare.py                        twenty minutes

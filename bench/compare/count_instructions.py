@@ -42,7 +42,7 @@ class NotCounted(Exception):
 
 
 def programs() -> tuple[Path, Path]:
-    """Find the program and that of the core with one effect more; NotCounted says what lacks."""
+    """Find the program and that of the core with one effect more; NotCounted says what is missing."""
     if shutil.which("valgrind") is None:
         raise NotCounted("valgrind is missing (Debian: valgrind)")
     try:
@@ -80,7 +80,7 @@ def count(program: Path, effect: str, contender: str) -> float:
 
 
 def count_effects(effects: list[str]) -> dict[str, dict[str, float]]:
-    """Count a right-hand side with each, both ways; nothing, said on stderr, where it cannot be."""
+    """Count a right-hand side with each, both ways; stderr says why where none can be counted."""
     try:
         program, _ = programs()
     except NotCounted as reason:

@@ -30,7 +30,7 @@ Key = tuple[str, str]  # effect and contender
 
 
 def prepare(entrants: list[ForwardDynamics]) -> tuple[dict[Key, Calls], dict[str, float]]:
-    """Prepare all calls; with them how far both sides' accelerations are apart."""
+    """Prepare all calls; say how far both sides' accelerations are apart."""
     calls: dict[Key, Calls] = {}
     apart: dict[str, float] = {}
     bare: dict[str, Array] = {}
@@ -58,7 +58,7 @@ def prepare(entrants: list[ForwardDynamics]) -> tuple[dict[Key, Calls], dict[str
 
 
 def measure(*, quick: bool, rounds: int) -> dict[str, Any]:
-    """Measure all there is, and say on what: the record, as JSON holds it."""
+    """Measure everything that is here; return the record, with the machine, as JSON holds it."""
     with contenders() as found:
         entrants = [one for one in found if one.name in SIDES]
         return measure_these(entrants, quick, rounds)

@@ -101,7 +101,7 @@ def measure(
     takes_part: Callable[[str], bool] = for_any_scene,
     tightest: float = 0.0,
 ) -> Record:
-    """Measure all there is, and say on what: the record, as JSON holds it.
+    """Measure everything that is here; return the record, with the machine, as JSON holds it.
 
     `takes_part` chooses contenders by name; settings below the `tightest` are not tried.
     """

@@ -62,7 +62,7 @@ def read_scene(name: str) -> Case:
 
 
 def measure(*, quick: bool, rounds: int) -> solves.Record:
-    """Measure all there is, and say on what: the record, as JSON holds it."""
+    """Measure everything that is here; return the record, with the machine, as JSON holds it."""
     begin = time.perf_counter()
     records = [
         solves.measure(

@@ -18,7 +18,7 @@ def couple(q: Array) -> Array:
 
 
 def told(t: float, q: float, words: str, *, says: bool) -> Outcome:
-    """Right who ends it, says so, and near where it happens."""
+    """A program is right that ends the run near where it happens, and says so."""
     near = abs(t - EDGE / RATE) < 0.01 and np.isfinite(q)
     return Outcome(
         error=abs(t - EDGE / RATE), said=f"{words}, last t = {t:.6g} s, q = {q:.6g} rad",

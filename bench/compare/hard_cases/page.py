@@ -115,7 +115,7 @@ def anchor(title: str) -> str:
 
 
 def unasked(case: Any) -> str:
-    """Say of whom no loop of one's own was run."""
+    """Name those for which no loop of one's own was run."""
     programs = " and ".join(PROGRAMS[program] for program in loops_not_run(case))
     return f" (no loop of one's own was run around {programs})" if programs else ""
 
@@ -172,7 +172,7 @@ def section(case: Any) -> str:
 def losses(record: Record) -> list[str]:
     """Name each case that pendcore has not right, and each where a peer has more to give.
 
-    That is an answer where pendcore has but words, or one that is ten times closer.
+    More is an answer where pendcore has only words, or one that is ten times closer.
     """
     lines = []
     for case in record["cases"]:

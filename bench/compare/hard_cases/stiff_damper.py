@@ -30,7 +30,7 @@ def rates(t: float, y: Array) -> Array:
 
 @cache
 def reference_end() -> tuple[float, ...]:
-    """SciPy's Radau as tight as it goes: what else there is would take five million steps."""
+    """SciPy's Radau as tight as it goes: any other method would take five million steps."""
     from scipy.integrate import solve_ivp
 
     sol = solve_ivp(rates, (0, T_END), START, "Radau", rtol=1e-12, atol=1e-14)
