@@ -42,7 +42,7 @@ class NotCounted(Exception):
 
 
 def programs() -> tuple[Path, Path]:
-    """Find the program and that of the core with one effect more; NotCounted says what is missing."""
+    """Find the program, and that with one effect more; NotCounted says what is missing."""
     if shutil.which("valgrind") is None:
         raise NotCounted("valgrind is missing (Debian: valgrind)")
     try:

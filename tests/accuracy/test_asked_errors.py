@@ -214,7 +214,9 @@ def test_a_run_that_fails_is_returned_as_ever():
 
 
 def test_a_run_that_the_cap_on_steps_ends_is_labelled():
-    with pytest.raises(pc.RunError, match=r"status max_steps: .* no run of the error") as end:
+    with pytest.raises(
+        pc.RunError, match=r"status max_steps: .* asked for was not verified"
+    ) as end:
         pc.simulate(BOOK, *START, error=1e-6, max_steps=30, check=True)
     sol = end.value.solution
     assert sol.status == "max_steps"

@@ -220,7 +220,7 @@ def test_what_is_locked_has_no_exponents() -> None:
 def test_effects_that_jump_are_refused_by_name(effect: pc.effects.Effect, name: str) -> None:
     scene = rods(2, E.ViscousJoint(joint=1, damping=0.1), effect)
     with pytest.raises(
-        ValueError, match=rf"effect 2 \({name}\): motions jump .*: leave dry friction and stops out"
+        ValueError, match=rf"effect 2 \({name}\): motions jump .*: remove dry friction and stops"
     ):
         pc.lyapunov(scene, [1.0, 1.0], t_span=(0, 1))
 

@@ -200,7 +200,7 @@ MISTAKES = {
     "no links": (("[[link]]\nmass = 1.0\nlength = 1.0\n", ""), "links are needed: a table [["),
     "links as one table": (
         ("[[link]]\nmass = 1.0\nlength = 1.0\n[[link]]", "[link]"),
-        "line 3: links are needed: a table [[link]]",
+        "line 3: [link] is one table: write [[link]], once for each link",
     ),
     "no start": (("q = [0.7853981633974483, 1.0471975511965976]\n", ""), "line 9: [start] needs q"),
     "two starts": (("qd = [0.0, 0.0]", "q_deg = [0.0, 0.0]"), "line 9: [start] needs q"),

@@ -47,7 +47,7 @@ def test_equilibria_have_their_locked_joints_where_they_are_locked(effects, star
 def test_a_lock_whose_angle_nobody_gave_is_told():
     told = rods(3, fx.Lock(1), fx.Lock(3)).explain()
     (remark,) = told.remarks
-    assert remark.startswith("joints 1, 3: locked where the run starts, and no start was given")
+    assert remark.startswith("joints 1, 3: a lock takes its angle from the start")
     assert "explain(q=...)" in remark
     assert rods(2, fx.Lock(2, angle=0.0)).explain().remarks == ()
 

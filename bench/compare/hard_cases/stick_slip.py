@@ -72,7 +72,7 @@ def scipy_smoothed() -> Outcome:
 
 
 def scipy_events() -> Outcome:
-    """Two modes, a loop, and an event for each way out; max_step keeps a step from striding over a rest."""
+    """Two modes, a loop, an event for each way out; max_step keeps steps within a rest."""
     from scipy.integrate import solve_ivp
 
     def event(function: Callable[[float, Array], float], direction: int = 0) -> Any:

@@ -70,8 +70,8 @@ typename Clones<kernel>::Function fastest() {
 #endif
 }
 
-/// The lowest instruction set for which a kernel is compiled that has the same bits as a general one
-/// and is only faster: a processor from before 2013 runs the general one.
+/// The lowest instruction set for which a kernel is compiled that has the same bits as a general
+/// one and is only faster: a processor from before 2013 runs the general one.
 constexpr InstructionSet least_of_special_kernels =
     PENDCORE_CLONES != 0 ? InstructionSet::x86_64_v3 : InstructionSet::baseline;
 

@@ -16,8 +16,8 @@ struct FirstOrder {
   static constexpr bool is_short =
       requires(const Dynamics& bare, const Block& y) { bare.accelerations(y, y); };
 
-  /// Whether the equations have a list of laws.
-  static constexpr bool is_long = requires { requires Dynamics::has_laws; };
+  /// Whether the equations support any effects at all.
+  static constexpr bool is_long = requires { requires Dynamics::is_long; };
 
   Dynamics dynamics;
 

@@ -33,8 +33,8 @@ std::optional<FastMode> fast_mode(const Scene& scene, const EquationsOfMotion& e
                                   const double* q, const double* qd);
 
 /// What a run's message says about its steps, "; ..." or nothing: whether stability limited them,
-/// since when, and what to do; which mode set them, if one did for long; whether the run changed its
-/// method to the one in force; which effects were differentiated numerically.
+/// since when, and what to do; which mode set them, if one did for long; whether the run changed
+/// its method to the one in force; which effects were differentiated numerically.
 std::string remark_on_steps(const Scene& scene, const EquationsOfMotion& equations,
                             const IntegratorState& integrator, const MethodInfo& method,
                             const MethodInfo& in_force, bool fixed_step, double t0);

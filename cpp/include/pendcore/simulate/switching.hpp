@@ -132,8 +132,8 @@ class Switching final : public Discontinuities {
   std::vector<double> qdd_;
   double time_of_change_ = std::numeric_limits<double>::quiet_NaN();
   int changes_at_once_ = 0;
-  /// The time of the last impact, and the joints that struck then, or so shortly before that doubles
-  /// hardly distinguish the times.
+  /// The time of the last impact, and the joints that struck then, or so shortly before that
+  /// doubles hardly distinguish the times.
   double time_of_impact_ = std::numeric_limits<double>::quiet_NaN();
   std::vector<int> struck_;
   bool loses_order_ = false;  ///< whether the current impact does

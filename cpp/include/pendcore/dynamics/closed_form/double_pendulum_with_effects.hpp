@@ -31,7 +31,7 @@ enum class Parts {
 template <Parts parts>
 struct DoublePendulumWithEffects {
   using Links = Pair;
-  static constexpr bool has_laws = parts == Parts::laws || parts == Parts::everything;
+  static constexpr bool is_long = parts == Parts::everything;
 
   Pair length;
   Pair diagonal;          ///< A, kg m^2
@@ -85,7 +85,7 @@ struct DoublePendulumWithEffects {
       for (const auto& entry : effects->entries) ActingEffects<Pair>::add(entry, at, loads);
     }
     V torque = loads.torque_of_couples();
-    if constexpr (has_laws) torque = torque + loads.moments;
+    if constexpr (parts == Parts::laws || everything) torque = torque + loads.moments;
     if constexpr (parts == Parts::waves) {
       const TwoWaves& two = effects->two_waves;
 #pragma GCC unroll 2
@@ -95,7 +95,7 @@ struct DoublePendulumWithEffects {
         torque = fma(Constant::of(wave[k]), size, torque);
       }
     }
-    if constexpr (has_laws) {
+    if constexpr (parts == Parts::laws || everything) {
       if (effects->has_forces) torque = torque + loads.torque_of_forces(at);
     }
 

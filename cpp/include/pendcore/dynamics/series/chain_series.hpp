@@ -1,9 +1,9 @@
 /// \file
 /// The equations of a chain of n links, with smooth effects, as recurrences of Taylor series.
 ///
-/// As in double_pendulum_series.hpp, u_i lies along link i, n_i across it, and u_i' = qd_i n_i. Let a_i be the
-/// acceleration of joint i minus gravity, and F_{i+1} the force at the next joint; both are sums of
-/// u'':
+/// As in double_pendulum_series.hpp, u_i lies along link i, n_i across it, and u_i' = qd_i n_i. Let
+/// a_i be the acceleration of joint i minus gravity, and F_{i+1} the force at the next joint; both
+/// are sums of u'':
 ///
 ///     a_{i+1} = a_i + L u_i'',    F_i = m a_i + m c u_i'' + F_{i+1},    F_{n+1} = m_p a_{n+1}
 ///     I_o qdd_i + n_i . H_i = tau_i,   H_i = m c a_i + L F_{i+1}
@@ -18,9 +18,9 @@
 ///     alpha = r (tau - L n . p - t - w . a) + s alpha_before,    p = b + L B beta
 ///
 /// The effects are those that have a Couple (effects/law.hpp): polynomials of time, angle and rate,
-/// and waves. The source is the one of double_pendulum_series.hpp. Cost: four sums of products and some 40
-/// operations for each link and order; a sine and cosine, a division and some 60 operations for
-/// each link and series.
+/// and waves. The source is the one of double_pendulum_series.hpp. Cost: four sums of products and
+/// some 40 operations for each link and order; a sine and cosine, a division and some 60 operations
+/// for each link and series.
 #pragma once
 
 #include <memory>

@@ -1,6 +1,7 @@
 /// \file
-/// The series of a double pendulum whose joints may be held. The closed form (double_pendulum_series.hpp) gives it
-/// while both joints are free, the chain (chain_series.hpp) while one is held.
+/// The series of a double pendulum whose joints may be held. The closed form
+/// (double_pendulum_series.hpp) gives it while both joints are free, the chain (chain_series.hpp)
+/// while one is held.
 #pragma once
 
 #include <memory>
