@@ -206,7 +206,7 @@ def test_a_law_that_is_not_smooth_is_never_called_kept():
 
 def test_a_run_that_fails_is_returned_as_ever():
     scene = pc.Scene.textbook().replace(effects=[E.User(lambda t, q, qd: [np.nan, 0.0])])
-    with pytest.warns(pc.PendcoreWarning, match=r"status non_finite: .*; it is no run of"):
+    with pytest.warns(pc.PendcoreWarning, match=r"status non_finite: .*; the error asked for"):
         sol = pc.simulate(scene, *START, error=1e-3)
     assert sol.status == "non_finite"
     assert sol.accuracy.outcome == "ended early"
