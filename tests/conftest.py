@@ -18,7 +18,7 @@ VALUES = 5
 NOT_REDUCED = "tests/documents/"
 """Tests of pages and of the code base are quick, and each page is a case."""
 
-# A busy machine is no failure.
+# A busy machine is not a failure.
 settings.register_profile("untimed", deadline=None)
 settings.load_profile("untimed")
 
@@ -58,7 +58,7 @@ def _reduce(config: pytest.Config, items: list[pytest.Item]) -> None:
 
 
 class Case:
-    """A test as `few` sees it."""
+    """Describe a test as `few` needs it."""
 
     def __init__(self, item: pytest.Item) -> None:
         self.nodeid = item.nodeid

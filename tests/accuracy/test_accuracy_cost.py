@@ -1,4 +1,4 @@
-"""What `pc.accuracy_cost` and `pendcore cost` say of errors, times and choices is so."""
+"""What `pc.accuracy_cost` and `pendcore cost` say about errors, times and choices is true."""
 
 from __future__ import annotations
 

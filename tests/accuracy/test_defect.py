@@ -101,7 +101,7 @@ def test_it_falls_at_the_order_of_the_interpolant(method: str) -> None:
 
 @pytest.mark.parametrize("method", [name for name, m in METHODS.items() if m["kind"] == "pair"])
 def test_the_defect_of_a_pair_that_changed_over_is_that_of_its_second_method(method: str) -> None:
-    """Runs that end before the change, and runs resumed past it, say so too."""
+    """Runs that end before the change are right about it, and so are runs resumed past it."""
     stiff = BOOK.replace(effects=[fx.ViscousJoint(joint=2, damping=1e6 / 3)])
     first, second = method.split("-")
     before = pc.simulate(stiff, [0.8, 1.0], 0.1, (0, 1e-5), method=method)
@@ -130,7 +130,7 @@ def test_an_exact_curve_has_none_but_rounding() -> None:
 
 @pytest.mark.parametrize("link", [0, 1])
 def test_it_sees_a_wrong_coefficient(link: int) -> None:
-    """A rate off by 1e-6 theta^2 (1 - theta)^2 in one step: its slope times the inertia."""
+    """A rate is off by 1e-6 theta^2 (1 - theta)^2 in one step: the defect is its slope times I."""
     sol = run(BOOK, "dop853", rtol=1e-12, atol=1e-14)
     state = sol.run.__getstate__()
     h = state["dense_h"][3]
@@ -162,7 +162,7 @@ def test_tighter_tolerances_mean_less_torque_and_a_share_of_the_weight() -> None
 
 
 def test_what_holds_a_joint_takes_any_torque() -> None:
-    """Stuck, pressed against a stop or locked: what the others lack is all that is told."""
+    """Where a joint sticks, rests on a stop or is locked, only the others have a defect."""
     stick = pc.Scene(
         links=BOOK.links,
         effects=[fx.DryJointFriction(joint=1, coulomb=30.0), fx.JointStop(2, range=(-0.5, 0.9))],

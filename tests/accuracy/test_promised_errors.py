@@ -59,7 +59,7 @@ def test_what_ended_in_a_recursion_error_is_kept(q0, t_end, error):
     ],
 )
 def test_near_the_end_of_double_precision_rounded_constants_are_seen(error, t_end, q0):
-    """Runs that share them agree with each other and are 10 to 136 times as far from the truth."""
+    """Runs that share rounded constants agree, and are 10 to 136 times as far from the truth."""
     with pytest.raises(pc.AccuracyError, match="not reached") as caught:
         pc.simulate(BOOK, q0, 0, (0, t_end), error=error)
     assert caught.value.least > error
@@ -142,7 +142,7 @@ def test_a_run_is_verified_to_the_event_that_ends_it() -> None:
 
 
 def test_second_runs_of_a_series_are_tighter_than_the_tightest_trial() -> None:
-    """All at rtol 1e-14 have the same truncation here, 5.6e-11: more than they are told to have."""
+    """All runs at rtol 1e-14 share a truncation error of 5.6e-11 here, more than was reported."""
     links = [
         pc.Link(
             mass=0.04602293018960736, length=0.16517151492763457, center=0.09491503985719417,

@@ -25,7 +25,7 @@ from true_error.trajectory import NoReferenceError
 
 pytestmark = pytest.mark.unsanitized
 SEEDS = [range(begin, begin + 8) for begin in (100_000, 100_008, 100_016)]
-"""None of which `make test-error` has by default."""
+"""These seeds are not among the defaults of `make test-error`."""
 SECONDS = 60.0
 """What an answer may take, s: among so few scenes none is to run out of time on a busy machine."""
 
@@ -72,7 +72,7 @@ def test_the_page_shows_the_record() -> None:
 
 
 class Claiming:
-    """A solution that says something else of itself than it would."""
+    """A solution whose statements about itself are replaced."""
 
     def __init__(self, sol: pc.Solution, **claims: Any) -> None:
         self._sol, self._claims = sol, claims
@@ -96,7 +96,7 @@ def verdict_of(drawn: Drawn, **changed: Any) -> Verdict:
 
 @pytest.fixture
 def drawn() -> Drawn:
-    """Return the textbook's scene, of which all is known."""
+    """Return the textbook's scene, about which everything is known."""
     return Drawn(
         family="mixed", seed=0, scene=pc.Scene.textbook(), q0=(0.8, 1.0), qd0=(0.0, 0.0),
         t_start=0.0, t_end=5.0, error=1e-7, rtol=1e-6, limit=1e-3,

@@ -148,7 +148,7 @@ def test_energy_is_kept() -> None:
 
 @pytest.mark.parametrize("family", sorted(set(FAMILIES) - {"stiff"}))
 def test_the_reference_knows_its_own_error(family: str) -> None:
-    """Beside yet more digits; of few links, since these take long."""
+    """Compare with yet more digits, for few links, since these take long."""
     few = [of for of in map(FAMILIES[family], range(30)) if len(of.q0) <= 2]
     for of in few[:2]:
         t = np.linspace(of.t_start, of.t_start + 0.3 * (of.t_end - of.t_start), 20)
@@ -218,7 +218,7 @@ def test_a_rod_that_is_pushed_against_a_stop_bounces_as_it_must(restitution: flo
 
 
 def test_an_impact_of_a_chain_keeps_what_it_must() -> None:
-    """The momentum of every other joint; and the energy, where the stop is elastic."""
+    """The momentum of every other joint is conserved, and the energy where the stop is elastic."""
     stop = E.JointStop(2, (-2.0, 0.5), restitution=1.0, capture_speed=1e-3)
     of = drawn([stop], (0.3, 0.4, 0.0), (0.0, 3.0, 1.0), 1.0)
     found = SwitchedTrajectory(of, LONG)
@@ -243,7 +243,7 @@ def test_joints_that_could_as_well_hold_as_slide_are_refused() -> None:
 
 
 def test_a_joint_holds_to_the_last_bit_and_gives_way() -> None:
-    """Under a slow motor: until its torque is what friction holds."""
+    """A slow motor turns the joint once its torque is what friction holds."""
     drive = E.Motor(1, sinusoid=E.Sinusoid(1.0, 0.5))
     of = drawn([E.DryJointFriction(1, 0.25, static=0.6), drive], (0.3,), (0.0,), 4.0)
     gives_way = np.arcsin(0.6) / 0.5

@@ -30,8 +30,8 @@ def test_by_default_fifty_chaotic_runs_are_never_trusted_too_long() -> None:
     runs = [pc.simulate(case.scene, case.q0, case.qd0, (0, T_END)) for case in cases]
     valid = np.array([run.valid_until(LIMIT) for run in runs])
     right = np.array([case.last_right(run, LIMIT) for case, run in zip(cases, runs, strict=True)])
-    assert (right < T_END).all()  # they all are wrong in the end
-    assert (valid < right + 1 / EACH).all()  # the next state that is known is wrong
+    assert (right < T_END).all()  # all of them are wrong in the end
+    assert (valid < right + 1 / EACH).all()  # the next known state is wrong
     assert np.median(valid / right) >= 0.7
     assert (valid / right).min() >= 0.5
 
@@ -43,7 +43,7 @@ def test_at_any_tolerance_runs_are_never_trusted_too_long(method: str, rtol: flo
     runs = [solved(case, method, rtol) for case in cases]
     valid = np.array([run.valid_until(LIMIT) for run in runs])
     right = np.array([case.last_right(run, LIMIT) for case, run in zip(cases, runs, strict=True)])
-    assert (valid < right + 1 / EACH).all()  # the next state that is known is wrong
+    assert (valid < right + 1 / EACH).all()  # the next known state is wrong
     assert np.median(valid / right) >= 0.7
 
 
@@ -56,7 +56,7 @@ def test_other_limits(limit: float) -> None:
 
 @pytest.mark.parametrize("case", chaotic_starts()[1:16:7], ids=lambda case: str(case.q0))
 def test_the_record_is_what_its_script_makes(case: ChaoticStart) -> None:
-    """The first three seconds, with other digits and so with other orders and steps."""
+    """Run the first three seconds with other digits, and so with other orders and steps."""
     chain = RodChain(case.masses, case.lengths, GRAVITY)
     grid = [Fraction(k, EACH) for k in range(0, 3 * EACH + 1, EACH)]
     made = motion(chain, case.q0, case.qd0, grid, digits=30)
@@ -85,7 +85,7 @@ def test_the_error_over_time_is_what_the_reference_says() -> None:
     found = run.error()
     true = np.abs(run(known.t)[:2].T - known.q).max(axis=1)
     near = np.interp(known.t, found.t, found.angle)
-    # From above, and not by much: what lies between the times, and the second runs' own errors.
+    # Larger, but not by much: errors between the times, and those of the second runs.
     assert (true[1:] <= near[1:]).all()
     assert near[1:] == pytest.approx(1.2 * true[1:], rel=0.1, abs=2e-9)
     assert (found.t[0], found.t[-1]) == (0.0, 5.0)
@@ -134,7 +134,7 @@ def test_past_the_horizon_nothing_is_estimated() -> None:
 
 
 def test_both_second_runs_together_are_never_fooled_by_one() -> None:
-    """Errors that cancel: a second run that makes the very error of the first estimates none."""
+    """A second run that makes the very error of the first one shows no error."""
     case = chaotic_starts()[1]
     run = solved(case, "dopri5", 1e-13)
     t, q = times(), np.array(case.q)

@@ -19,7 +19,7 @@ DOWN = np.pi / 2
 
 
 def rods(n: int, length: float = 1.0, mass: float = 1.0, **options: Any) -> pc.Scene:
-    """Equal rods of that length and mass in all."""
+    """Return a chain of n equal rods of this length and mass in all."""
     return pc.Scene(links=[pc.Link(mass=mass / n, length=length / n)] * n, **options)
 
 
@@ -51,7 +51,7 @@ def test_angles_follow_the_multiple_precision_ones(
     assert np.abs(sol(case.t)[:n].T - case.q).max() < 1e-9
 
 
-# What a chain keeps -----------------------------------------------------------------------------
+# What a chain conserves -------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(

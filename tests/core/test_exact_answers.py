@@ -117,7 +117,7 @@ def test_upright_at_rest_it_falls_from_where_the_start_rounds_to(tolerance: floa
 
 
 def test_upright_at_rest_it_stands_in_steps_too_short_for_any_push() -> None:
-    """Each step would move it by less than half of its last bit; carried on, the pushes add up."""
+    """A step moves the state by less than half of its last bit; compensated, the moves add up."""
     how = {"method": "dopri5", "rtol": 1e-13, "atol": 1e-20, "max_steps": 100_000}
     sol = pc.simulate(ONE, UPRIGHT, 0.0, (0.0, 20.0), **how)
     assert sol.success

@@ -27,7 +27,7 @@ pytestmark = pytest.mark.outside_build
 CORE = Path(__file__).parents[2] / "cpp"
 CPU_INFO = Path("/proc/cpuinfo")
 SMOOTH = [effect for effect in EFFECTS if effect.most_instructions is not None]
-# What the core still owes: each fails as long as it is more than promised, and here once it is not.
+# What the core still owes: each is an expected failure, and fails here once it is kept.
 OWED = {
     "motor_sinusoid": "a quarter too many: registers spilled around a pack of four",
     "driven_pivot": "a quarter too many: registers spilled around a pack of four",
@@ -36,7 +36,7 @@ OWED = {
 
 @pytest.fixture(scope="module")
 def programs() -> tuple[Path, Path]:
-    """Pendcore's program, and the one of a core that has one effect more in its registry."""
+    """Return pendcore's program, and that of a core with one effect more in its registry."""
     if not CPU_INFO.exists() or "avx2" not in CPU_INFO.read_text():
         pytest.skip("the kernels that are counted, for x86-64-v3, do not run here")
     try:

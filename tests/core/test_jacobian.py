@@ -73,7 +73,7 @@ def exact_and_size(drawn: DrawnRig) -> tuple[NDArray[np.float64], NDArray[np.flo
 
 
 def derivatives(ahead: Sequence[Any], behind: Sequence[Any]) -> NDArray[np.float64]:
-    """From the values a step further and a step back."""
+    """Differentiate, from the values a step ahead and a step back."""
     return np.array([float((a - b) / (2 * STEP)) for a, b in zip(ahead, behind, strict=True)])
 
 

@@ -1,4 +1,4 @@
-"""What docs/long_runs.md says of ten million steps, reduced: `make long` has the full form."""
+"""What docs/long_runs.md says about ten million steps, reduced: `make long` has the full form."""
 
 from __future__ import annotations
 

@@ -75,7 +75,7 @@ for sol in runs:
 
 
 def hash_of_runs(between: str = "", after: str = "", **environment: str) -> tuple[str, list[str]]:
-    """In a process of its own, run them: the instruction set that it used, and a hash of each."""
+    """Run them in a process of its own; return its instruction set and a hash of each run."""
     done = subprocess.run(
         [sys.executable, "-c", SCENES + between + RUNS + after],
         env=os.environ | environment, text=True, capture_output=True, check=True,

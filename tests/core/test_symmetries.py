@@ -50,7 +50,7 @@ powers = st.tuples(*[st.integers(-30, 30)] * 3).map(as_given)
 
 
 def same_steps(one: pc.Solution, other: pc.Solution, signs: float = 1.0, s: float = 1.0) -> None:
-    """Equal to the last bit, with angles and rates times a sign and times in another unit."""
+    """Compare to the last bit, with angles and rates times a sign and times in another unit."""
     n = len(one.scene.links)
     assert other.status == one.status
     assert other.stats.accepted == one.stats.accepted
@@ -67,7 +67,7 @@ def same_steps(one: pc.Solution, other: pc.Solution, signs: float = 1.0, s: floa
 def test_other_units_of_mass_and_length_change_no_bit(
     method: str, run: Drawn, powers: list[float]
 ) -> None:
-    """Nothing in the equations or the step control is a mass or a length of its own."""
+    """Neither the equations nor the step control has a mass or a length of its own."""
     kg, m, _ = powers
     same_steps(run.simulate(method=method), in_units(run, Units(kg, m)).simulate(method=method))
 
@@ -91,7 +91,7 @@ def test_other_units_of_time_change_no_bit(method: str, run: Drawn, powers: list
 def test_other_units_change_no_bit_of_impacts_and_contact(
     method: str, run: Drawn, powers: list[float]
 ) -> None:
-    """Where nothing drives the joints, their speed is compared with 1 rad/s: a time of its own."""
+    """Where nothing drives the joints, their speed is compared with 1 rad/s, which sets a time."""
     kg, m, s = powers if run.scene.gravity else (*powers[:2], 1.0)
     run.options |= {"first_step": 2.0**-10, "method": method}
     same_steps(run.simulate(), in_units(run, Units(kg, m, s)).simulate(), s=s)
@@ -115,7 +115,7 @@ def test_upside_down_changes_no_bit(method: str, run: Drawn) -> None:
 
 @pytest.mark.parametrize("kind", sorted(MIRRORED & set(KINDS)))
 def test_every_kind_of_effect_has_its_mirror_images(kind: str) -> None:
-    """Also those that hypothesis seldom meets, such as one of the modes of a motor."""
+    """The scenes include those that hypothesis seldom meets, such as each mode of a motor."""
     for seed in range(25):
         run = motion_of_seed(f"{kind}/{seed}", kind)
         n = len(run.q0)

@@ -1,4 +1,4 @@
-"""Threads of Python share scenes and solutions, at the same time, and each gets the bits of one."""
+"""Threads share scenes and solutions at the same time, and each gets the bits of a run alone."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def test_threads_on_one_scene_and_one_solution_compute_what_one_alone_does(scene
 
 
 def test_others_run_while_the_core_computes() -> None:
-    """A run holds no lock of Python's: a thread beside it is not held up for its length."""
+    """A run releases Python's lock, so another thread does not wait for its end."""
     longest = 0.0
     over = threading.Event()
 

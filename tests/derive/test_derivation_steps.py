@@ -93,7 +93,7 @@ def test_every_printed_equation_holds_on_a_motion_of_the_core(name: str, n: int)
 
 
 def check_first_order(n: int, known: dict[Any, float], now: pc.Solution) -> None:
-    """The textbook's order of states: x(1) = q1, x(2) = qd1, and so on."""
+    """States have the textbook's order: x(1) = q1, x(2) = qd1, and so on."""
     named = {symbol.name: x for symbol, x in known.items()}
     order = np.arange(2 * n).reshape(2, n).T.ravel()
     rates = np.concatenate([now.qd[0], now.accelerations()[0]])[order]
@@ -102,7 +102,7 @@ def check_first_order(n: int, known: dict[Any, float], now: pc.Solution) -> None
 
 
 def check_energy(derivation: Derivation, known: dict[Any, float], now: pc.Solution) -> None:
-    """Energies are the core's, and the powers that are told of add up to their change."""
+    """Energies are the core's, and the powers that are named add up to their change."""
     named = {symbol.name: x for symbol, x in known.items()}
     kinetic, potential = now.energy().kinetic[0], now.energy().potential[0]
     assert named["T"] == pytest.approx(kinetic, rel=1e-13)

@@ -50,7 +50,7 @@ def module(name: str) -> types.ModuleType:
 
 
 def assert_close(found: Floats, wanted: Floats) -> None:
-    """To 1e-13 of the largest number of a state."""
+    """Compare to 1e-13 of the largest number of a state."""
     found, wanted = np.reshape(found, (STATES, -1)), np.reshape(wanted, (STATES, -1))
     off = np.abs(found - wanted).max(axis=1) / np.abs(wanted).max(axis=1)
     assert off.max() < 1e-13
@@ -158,7 +158,7 @@ int main() {{
 
 @pytest.fixture(scope="module")
 def told_by_cpp(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Floats]:
-    """Rows of dy/dt, forces and energies: all headers in one program, no warning allowed."""
+    """Return rows of dy/dt, forces and energies of a program with all headers and no warning."""
     folder = tmp_path_factory.mktemp("headers")
     for name in SCENES:
         (folder / f"{name}.hpp").write_text(header(derived(name), "Chain", name))

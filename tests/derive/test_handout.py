@@ -1,4 +1,4 @@
-"""The report and the worksheet of a case say what is so, with units, and are whole."""
+"""The report and the worksheet of a case are right and complete, and have units."""
 
 from __future__ import annotations
 
@@ -291,7 +291,7 @@ def test_pandoc_and_people_read_the_same_figures() -> None:
 
 
 def test_no_table_is_parted_by_the_end_of_a_page() -> None:
-    """Room for it is asked for before it, or before the paragraph that leads to it."""
+    """The page break comes before it, or before the paragraph that leads to it."""
     document = report(Derivation(LEVEL.scene), LEVEL, motion.solved(LEVEL))
     paragraphs = document.markdown(Reader.LATEX).split("\n\n")
     tables = [i for i, text in enumerate(paragraphs) if text.startswith("| ")]

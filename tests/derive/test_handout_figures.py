@@ -1,4 +1,4 @@
-"""The figures of the handout: which way arrows point, and that names lie on nothing."""
+"""In the figures of the handout arrows point the right way, and names cover nothing."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def test_the_mechanism_is_drawn_as_it_starts_with_y_down(name: str) -> None:
 
 @pytest.mark.parametrize("seed", range(30))
 def test_names_in_figures_lie_on_nothing(seed: int) -> None:
-    """Not on each other, nor on a link: measured where they are drawn."""
+    """Names lie neither on each other nor on a link; this is measured where they are drawn."""
     rng = np.random.default_rng(seed)
     n = 1 + seed % 4
     q = np.radians(rng.choice([0.0, 15.0, 30.0, 70.0, 90.0, 110.0, 180.0, -40.0], n))

@@ -24,7 +24,7 @@ IN_CPP, HELD_BACK, IN_PYTHON = SIDES
 def contender(
     name: str, times: dict[float, float], sides: tuple[str, ...], **other: Any
 ) -> dict[str, Any]:
-    """Make one whose settings are its errors; of peers the median is four minima, of ours two."""
+    """Make a contender whose settings are its errors; a median is four minima, of ours two."""
     ours = name.startswith("pendcore")
     return {
         "name": name,

@@ -33,7 +33,7 @@ def test_links_lead_somewhere(path):
 
 @pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: str(path.relative_to(ROOT)))
 def test_a_page_imports_what_its_lines_use(path):
-    """What stands there can be pasted, from the top."""
+    """What the page shows can be pasted, from the top."""
     above = ""
     for code in re.findall(r"```python\n(.*?)```", path.read_text(), re.DOTALL):
         above += code
@@ -127,7 +127,7 @@ def hard_case() -> str:
 
 
 def test_ten_lines_draw_the_hard_case_of_the_first_steps(tmp_path, monkeypatch):
-    """The picture that stands there is theirs, and the grey in it is exact rest."""
+    """The picture on the page is drawn by these lines, and the grey in it is exact rest."""
     mpl.use("Agg")
     monkeypatch.chdir(tmp_path)
     lines = [line for line in hard_case().splitlines() if line.strip()]

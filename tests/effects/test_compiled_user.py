@@ -1,4 +1,4 @@
-"""What a compiled function is handed is what it reads, and what ctypes drops is told."""
+"""A compiled function reads what it is handed, and a message tells what ctypes drops."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ def assert_rests(sol: pc.Solution) -> None:
 
 
 def time_of_rest(sol: pc.Solution) -> float:
-    """The last step goes from there to the end."""
+    """Return the time from which the rod rests: the last step goes from there to the end."""
     return float(sol.t[-2])
 
 
@@ -67,7 +67,7 @@ def test_constant_friction_stops_the_rod_after_its_momentum_over_the_friction(
 def test_with_stribecks_law_it_stops_a_little_sooner(
     static: float, stribeck_velocity: float, exponent: float, rtol: float, method: str
 ) -> None:
-    """A step that strides over the last stretch, where friction rises, comes too late.
+    """A step over the last stretch, where friction rises, ends too late.
 
     At the finest tolerances it stops within 1e-10 with every method.
     """

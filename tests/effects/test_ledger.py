@@ -100,7 +100,7 @@ def entries(ledger: Any) -> dict[str, Array]:
 
 
 def exchanged(ledger: Any) -> float:
-    """All the energy that went in or out, however often."""
+    """Return all the energy that went in or out, each time it did."""
     return sum(float(np.abs(np.diff(entry)).sum()) for entry in entries(ledger).values())
 
 
@@ -156,7 +156,7 @@ def test_what_is_lost_is_lost_for_good(kind: str) -> None:
 
 
 def test_every_entry_is_the_integral_of_its_power() -> None:
-    """Along the motion that was found, by Gauss-Legendre quadrature of the reference's powers."""
+    """Integrate the reference's powers along the motion that was found, by Gauss and Legendre."""
     sol = simulate(ALL, t_end=2.0)
     rig = Rig(bodies=BODIES, gravity=G, effects=[law(one) for one in ALL])
     # Breaks of a power, in its derivative at least: the table's, and where the servo meets its
@@ -261,7 +261,7 @@ def test_a_drive_along_the_rod_gives_the_rod_its_speed() -> None:
 
 
 def test_wind_blows_a_rod_up_to_speed() -> None:
-    """What the wind gives and the drag takes is apart: the drag's loss is never negative."""
+    """The ledger keeps wind and drag apart: the drag's loss is never negative."""
     sol = turning("rod_drag", link=1, drag_coefficient=1.2, diameter=0.5, wind=(0.0, 9.0), w0=0.0)
     ledger = sol.energy().ledger
     assert ledger.wind[-1] > ledger.drag[-1] > 0

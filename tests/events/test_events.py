@@ -77,7 +77,7 @@ CLOCKS = {
 @pytest.mark.parametrize("direction", [-1, 0, 1])
 @pytest.mark.parametrize("forward", [True, False])
 def test_a_zero_that_lies_just_there(method: str, zero: str, direction: int, forward: bool) -> None:
-    """Zeros at t0 are none; at the end of a step, or of the run, they are, once, at that time."""
+    """A zero at t0 is no event; one at the end of a step or of the run is one, at that time."""
     sense = 1 if forward else -1
     at, found = CLOCKS[zero]
     clock = ev.Function(lambda t, q, qd: t - sense * at, direction=direction)
@@ -144,7 +144,7 @@ def test_a_mode_of_small_oscillations_passes_the_vertical_at_its_frequency() -> 
 def test_sections_are_where_the_multiple_precision_references_are(
     name: str, reference_case: Callable[[str], Any]
 ) -> None:
-    """An angle that the reference has at a time is passed then."""
+    """An angle that the reference has at some time is passed at that time."""
     case = reference_case(name)
     links = [pc.Link(mass=m, length=L) for m, L in zip(case.masses, case.lengths, strict=True)]
     scene = pc.Scene(links=links, gravity=case.gravity)

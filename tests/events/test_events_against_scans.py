@@ -19,7 +19,7 @@ METHODS = [m["name"] for m in _core.methods() if m["error_order"] and m["kind"] 
 """Those that have an interpolant of their own."""
 
 CLEAR = 1e-6
-"""Nearer to each other, in shares of a step, roots are for one method and not for the other."""
+"""Roots that are nearer to each other (shares of a step) may exist for one method alone."""
 
 
 def pieces(sol: pc.Solution) -> Iterator[tuple[float, float, Array]]:

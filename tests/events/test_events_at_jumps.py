@@ -57,7 +57,7 @@ def test_the_angle_touches_its_stop_once_an_impact() -> None:
 def test_a_mark_at_the_very_angle_of_a_stop_is_met_once_an_impact(
     joint: int, e: float, method: str
 ) -> None:
-    """The angle of such a joint is a difference, whose last bits are not those of the stop's."""
+    """The angle of such a joint is a difference, whose last bits differ from the stop's."""
     impacts = 0
     for k in range(12):
         bound = 0.3 + 0.07 * k

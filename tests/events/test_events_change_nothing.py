@@ -52,7 +52,7 @@ def run(scene: pc.Scene = BOOK, t_end: float = 10.0, **options: Any) -> pc.Solut
 
 
 def but_for_dense_stages(stats: pc.Statistics) -> pc.Statistics:
-    """The same without the right-hand sides, of which a dense output may ask for its own."""
+    """Compare all but the count of right-hand sides, as a dense output may ask for some."""
     return stats._replace(nfev=0)
 
 

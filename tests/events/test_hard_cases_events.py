@@ -96,7 +96,7 @@ def test_a_rate_that_is_zero_at_the_start_is_no_event(sign: int, fine: Any) -> N
 
 
 def test_a_rate_that_is_zero_at_the_end_is_an_event(fine: Any) -> None:
-    """Stopped by friction, to the bit, after 2 s; a step that ends there may be the last."""
+    """Friction stops the rod after 2 s, to the bit; a step that ends there may be the last."""
     scene = rod(pc.effects.DryJointFriction(joint=1, coulomb=0.5))
     whole = pc.simulate(scene, 0, 1, (0, 3), **fine)
     stopped = float(whole.t[np.flatnonzero(whole.qd[:, 0] == 0)[0]])

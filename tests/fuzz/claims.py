@@ -119,7 +119,7 @@ def storing_changes_nothing(drawn: Drawn, sol: pc.Solution, choices: Choices) ->
 
 
 def resuming_changes_nothing(drawn: Drawn, sol: pc.Solution, choices: Choices) -> Iterator[str]:
-    """Cut short by its steps or its end, and gone on with."""
+    """Cut a run short by max_steps or t_end, and continue it."""
     if "t_eval" in drawn.options or sol.status == "time_limit":
         return
     start, end = drawn.t_span
@@ -134,7 +134,7 @@ def resuming_changes_nothing(drawn: Drawn, sol: pc.Solution, choices: Choices) -
         return
     whole = part.resume(end, max_steps=most, time_limit=drawn.options["time_limit"], check=False)
     if sol.status in ("max_steps", "max_turns") or "time_limit" in (part.status, whole.status):
-        return  # the whole one has been given more steps, or turns
+        return  # the whole run was given more steps, or turns
     if (whole.status, whole.run.t_reached) != (sol.status, sol.run.t_reached):
         yield f"resumed after {_end(part)}: {_end(whole)}, not {_end(sol)}"
     elif not same(whole.t, sol.t) or not same(whole.y, sol.y):
