@@ -16,7 +16,7 @@ from pendcore.horizon.lyapunov import _check_is_smooth
 E = pc.effects
 GRAVITY = 9.807
 FAST, SLOW = (np.sqrt(GRAVITY * (3 + sign * 6 / np.sqrt(7))) for sign in (1, -1))
-"""Return the growth rates of two upright equal rods of 1 m; hanging, they are frequencies."""
+"""Two equal upright rods of 1 m grow at these rates; hanging, they have these frequencies."""
 
 
 def rods(n: int, *effects: pc.effects.Effect, gravity: float = GRAVITY) -> pc.Scene:

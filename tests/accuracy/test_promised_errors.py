@@ -142,7 +142,7 @@ def test_a_run_is_verified_to_the_event_that_ends_it() -> None:
 
 
 def test_second_runs_of_a_series_are_tighter_than_the_tightest_trial() -> None:
-    """Runs at rtol 1e-14 share a truncation error of 5.6e-11 here, more than they were asked for."""
+    """Runs at rtol 1e-14 share a truncation of 5.6e-11 here, more than the error asked for."""
     links = [
         pc.Link(
             mass=0.04602293018960736, length=0.16517151492763457, center=0.09491503985719417,

@@ -27,7 +27,8 @@ pytestmark = pytest.mark.outside_build
 CORE = Path(__file__).parents[2] / "cpp"
 CPU_INFO = Path("/proc/cpuinfo")
 SMOOTH = [effect for effect in EFFECTS if effect.most_instructions is not None]
-# What the core still owes: each fails as long as it is more than promised, and here once it is not.
+# The core still owes these: a test fails as long as its effect costs more than promised, and its
+# entry here fails once it does not.
 OWED = {
     "motor_sinusoid": "a quarter too many: registers spilled around a pack of four",
     "driven_pivot": "a quarter too many: registers spilled around a pack of four",
@@ -36,7 +37,7 @@ OWED = {
 
 @pytest.fixture(scope="module")
 def programs() -> tuple[Path, Path]:
-    """Pendcore's program, and the one of a core that has one effect more in its registry."""
+    """Return pendcore's program, and that of a core with one effect more in its registry."""
     if not CPU_INFO.exists() or "avx2" not in CPU_INFO.read_text():
         pytest.skip("the kernels that are counted, for x86-64-v3, do not run here")
     try:
@@ -93,7 +94,7 @@ def test_dry_friction_that_slides_costs_one_torque(programs: tuple[Path, Path]) 
 def test_a_stop_that_is_never_reached_costs_a_run_no_more_than_to_watch_it(
     programs: tuple[Path, Path],
 ) -> None:
-    """The same steps: each has the torques' kernel, its polynomial, and bounds of one angle."""
+    """The steps stay the same: the torques' kernel, a polynomial, and bounds of one angle."""
 
     def in_run(effect: str) -> float:
         requests = [f"prepare pendcore_run {described(chain_scene(2, effect))}", "make 0 3"]

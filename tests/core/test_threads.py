@@ -56,7 +56,7 @@ def test_threads_on_one_scene_and_one_solution_compute_what_one_alone_does(scene
 
 
 def test_others_run_while_the_core_computes() -> None:
-    """A run holds no lock of Python's: a thread beside it is not held up for its length."""
+    """A run holds no lock of Python's, so no thread beside it has to wait until the run ends."""
     longest = 0.0
     over = threading.Event()
 

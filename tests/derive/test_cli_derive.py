@@ -88,7 +88,7 @@ def test_what_cannot_be_derived_is_told_in_a_line(
 def test_a_report_is_written_into_a_folder(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setenv("PATH", "")  # no converter: Markdown and its figures
+    monkeypatch.setenv("PATH", "")  # without a converter Markdown and figures are left
     assert main(["derive", "--to", "report"]) == 0
     out, err = capsys.readouterr()
     assert out == ""
