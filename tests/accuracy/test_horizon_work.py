@@ -36,7 +36,7 @@ def test_a_digit_buys_ln_10_over_lambda_seconds_on_average() -> None:
     """Neighbours do not part evenly, so one start says little; the mean over many has to be 1.
 
     The bound is Student's: the mean of so many numbers of that scatter lies within it of the true
-    one with a probability of 99.9 %. It has to be so narrow that an exponent wrong by a tenth shows.
+    one with a probability of 99.9 %. It has to be so narrow that an exponent off by a tenth shows.
     """
     student = 3.75  # 24 degrees of freedom
     shares: dict[str, list[float]] = {}

@@ -164,7 +164,7 @@ def test_left_to_right_is_the_mirrored_motion(method: str, run: Drawn) -> None:
 def test_left_to_right_impacts_and_contact_are_the_mirrored_ones(method: str, seed: int) -> None:
     """The motions are the same each time, as one in thousands meets two stops within rounding.
 
-    Which blow comes first then decides what follows, and in the mirror image rounding may swap them.
+    Which blow comes first then decides what follows, and the mirror image may round them otherwise.
     """
     run = stopped_motion_of_seed(f"stopped/{seed}")
     n = len(run.q0)

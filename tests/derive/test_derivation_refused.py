@@ -104,7 +104,7 @@ def test_the_growth_is_what_the_message_says(n: int) -> None:
     derivation = derive(n=n)
     assert sum(a.count_ops() for a in derivation.accelerations) == WRITTEN_OUT[n - 1]
     shared = [value for _, value in derivation.shared] + list(derivation.shared_accelerations)
-    assert sum(value.count_ops() for value in shared) < 10 * n**3  # growth by a power of n, not exponential
+    assert sum(value.count_ops() for value in shared) < 10 * n**3  # polynomial, not exponential
 
 
 def test_a_report_is_of_a_case_of_its_scene(tmp_path: object) -> None:
