@@ -152,7 +152,7 @@ for n in (1, 2, 3):
     ids=["O1, the baseline alone", "O3"],
 )
 def test_every_optimisation_gives_the_same_bits(flags, options, sets, tmp_path):
-    """ctest compares the same lines in builds with -O2 and, under sanitizers, with -Og."""
+    """The same lines are compared by ctest in builds with -O2 and, under sanitizers, with -Og."""
     always = ["-DPENDCORE_PYTHON=OFF", "-DPENDCORE_TESTS=ON", "-DCMAKE_BUILD_TYPE=None"]
     given = [*always, *options, f"-DCMAKE_CXX_FLAGS={flags}"]
     configure = [CMAKE, "-S", ROOT, "-B", tmp_path, *given]

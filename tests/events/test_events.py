@@ -45,7 +45,7 @@ def parabola(t_0: float, t_end: float, step: float, method: str, *wanted: ev.Eve
 def test_roots_in_one_step_or_at_its_ends_are_found_once_each(
     method: str, step: float, backward: bool
 ) -> None:
-    """q is -1/2 at 0.5 and 1: both in one step, each at the end of a step, or anywhere."""
+    """The angle is -1/2 at 0.5 and 1: both in one step, each at the end of a step, or anywhere."""
     span = (2.0, 0.0) if backward else (0.0, 2.0)
     wanted = [ev.LinkAngle(1, -0.5), ev.JointAngle(1, -0.5), ev.RateZero(link=1)]
     wanted += [ev.Function(lambda t, q, qd: q[0] + 0.5, samples=16), ev.RateZero(joint=1)]
