@@ -1,4 +1,4 @@
-"""Chains of n links: reference motions, what they keep, and chains that are each other's equal."""
+"""Chains of n links follow reference motions, keep what they must, and equal their equivalents."""
 
 from __future__ import annotations
 

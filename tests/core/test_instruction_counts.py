@@ -1,7 +1,7 @@
-"""What effects cost, by callgrind's count of instructions: the same on every run.
+"""Absent effects cost nothing, present ones their arithmetic, by callgrind's instruction counts.
 
-Absent ones cost nothing, present ones their arithmetic. Skipped where valgrind is missing or where
-the programs that `make build-bench` builds are, or are older than the core.
+The counts are the same on every run. The tests are skipped where valgrind is missing, or where the
+programs that `make build-bench` builds are missing or older than the core.
 PENDCORE_FORWARD_DYNAMICS may name the folder of these programs.
 """
 

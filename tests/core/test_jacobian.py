@@ -1,4 +1,4 @@
-"""The derivatives of the accelerations, against the reference differentiated in many digits.
+"""The accelerations' derivatives agree with the reference's, differentiated in many digits.
 
 The reference has no derivatives of its own: it is differentiated by central differences of 10^-30
 in eighty digits, which leaves fifty of them. An error is measured against the size of what the

@@ -1,4 +1,4 @@
-"""Two rods upright on a pivot that shakes up and down: stable between two borders.
+"""Two rods upright on a pivot that shakes up and down are stable between two borders.
 
 The borders are those of the linear equations, in units where the rods' mass, their length and
 gravity are 1; w is the angular frequency of the shaking, eps its amplitude. Whether a drive is

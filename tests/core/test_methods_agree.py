@@ -1,4 +1,4 @@
-"""Whatever the method, the motion is the same: where stops end a phase, and where they do not."""
+"""Whatever the method, the motion is the same, whether stops end a phase or not."""
 
 from __future__ import annotations
 

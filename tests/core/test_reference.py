@@ -1,4 +1,4 @@
-"""The pure-Python reference itself: right before anything is compared with it. No core needed."""
+"""The pure-Python reference is right before anything is compared with it; no core is needed."""
 
 from __future__ import annotations
 

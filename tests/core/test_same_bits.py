@@ -211,7 +211,7 @@ def test_a_resumed_run_has_the_bits_of_one_that_never_stopped(method, store, sto
 
 
 def test_mirrored_starts_move_as_mirror_images():
-    # without gravity the plane may be turned over about the horizontal, q -> -q
+    # without gravity the plane may be turned over about the horizontal: q becomes -q
     floating = pc.Scene(links=BOOK.links, gravity=0.0)
     one = pc.simulate(floating, [0.3, 1.1], [2.0, -1.0], (0, 10))
     other = pc.simulate(floating, [-0.3, -1.1], [-2.0, 1.0], (0, 10))

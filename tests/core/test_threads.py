@@ -1,4 +1,4 @@
-"""Threads of Python share scenes and solutions, at the same time, and each gets the bits of one."""
+"""Threads of Python share scenes and solutions at once, and each gets the bits of a lone one."""
 
 from __future__ import annotations
 

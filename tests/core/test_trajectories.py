@@ -1,4 +1,4 @@
-"""Whole motions: against multiple precision, Octave, and the method written out in Python."""
+"""Whole motions agree with multiple precision, Octave, and the method written out in Python."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`pendcore derive`: every form to the screen or into a file; mistakes in a line."""
+"""`pendcore derive` writes every form to the screen or a file, and tells mistakes in a line."""
 
 from __future__ import annotations
 

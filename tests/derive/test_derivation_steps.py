@@ -40,7 +40,7 @@ def scalars(derivation: Derivation) -> list[Equation]:
 
 
 def motion(name: str, n: int, seed: int) -> tuple[dict[Any, float], pc.Solution]:
-    """A state of a scene with what the core says of it, by the symbols of the derivation."""
+    """Return what the core says of a state, by the derivation's symbols, and its solution."""
     drawn = scene(name, n, seed)
     (state,) = states(drawn, seed, count=1)
     now = pc.simulate(drawn, state.q, state.qd, t_span=(state.t, state.t), store="steps")

@@ -1,4 +1,4 @@
-"""The report and the worksheet of a case say what is so, with units, and are whole."""
+"""The report and the worksheet of a case say what is true, with units, and are whole."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The figures of the handout: which way arrows point, and that names lie on nothing."""
+"""In the figures of the handout arrows point the right way, and names lie on nothing."""
 
 from __future__ import annotations
 

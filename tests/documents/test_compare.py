@@ -1,4 +1,4 @@
-"""What the comparison rests on: the measure of error, the interpolation, the turns taken."""
+"""The comparison rests on these: the measure of error, the interpolation, the turns taken."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the comparison of effects rests on: differences to the bare scene, and the verdicts."""
+"""The comparison of effects rests on differences from the bare scene, and on the verdicts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The comparison as a whole: each alone, its pages made of the record and of nothing else."""
+"""Each part of the comparison runs alone; pages are made of the record and nothing else."""
 
 from __future__ import annotations
 

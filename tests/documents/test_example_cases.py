@@ -1,4 +1,4 @@
-"""Each case in examples/cases does what the comment at its head says."""
+"""Each case in examples/cases does what the comment at the head of its file says."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reduced sweeps leave out cases, and no claim."""
+"""Reduced sweeps leave out cases, but no claim."""
 
 from __future__ import annotations
 

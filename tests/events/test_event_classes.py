@@ -1,4 +1,4 @@
-"""Events as objects: what they refuse, how they print, compare, pickle and stand in a case file."""
+"""Events refuse what is wrong, print, compare, pickle, and stand in a case file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The contract of events: what is found where, once each, on every method, forward and backward."""
+"""Events are found where they are, once each, by every method, forward and backward."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Every event against a scan that shares no code: NumPy's roots of the polynomials of the run."""
+"""Events agree with a scan that shares no code: NumPy's roots of the run's polynomials."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Events where the state jumps, or stays: impacts, bounces, stick; both states, once each."""
+"""Where the state jumps or stays (impacts, bounces, stick), events tell both states, once each."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Events at elastic impacts of runs that go backward: along the run, as forward."""
+"""Events at elastic impacts are told along the run in backward runs, just as in forward ones."""
 
 from __future__ import annotations
 

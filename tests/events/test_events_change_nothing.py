@@ -1,4 +1,4 @@
-"""Watching changes no bit of a run; one that an event ended goes on as if it never had."""
+"""Watching changes no bit of a run; a run that an event ended goes on as if it never had."""
 
 from __future__ import annotations
 

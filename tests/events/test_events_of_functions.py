@@ -1,4 +1,4 @@
-"""Events that are Python functions: what they see, what they may return, how they fail."""
+"""Python functions may be events: what they see, what they may return, how they fail."""
 
 from __future__ import annotations
 

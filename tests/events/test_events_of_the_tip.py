@@ -1,4 +1,4 @@
-"""The tip's line: no crossing of the interpolant is missed, whatever moves."""
+"""No crossing of the tip's line by the interpolant is missed, whatever moves."""
 
 from __future__ import annotations
 

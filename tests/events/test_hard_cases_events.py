@@ -1,4 +1,4 @@
-"""Events where event finders go wrong: two in a step, at the start, at the end, at a step's end."""
+"""Event finders often fail at these: two in a step, at the start, at the end, at a step's end."""
 
 from __future__ import annotations
 
