@@ -1,4 +1,4 @@
-"""Threads of Python share scenes and solutions at once, and each gets what one alone would."""
+"""Threads of Python share scenes and solutions at once, and each gets the bits of one alone."""
 
 from __future__ import annotations
 
