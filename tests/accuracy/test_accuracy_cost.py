@@ -94,7 +94,7 @@ def test_no_method_is_its_own_reference():
 def test_every_method_is_there_at_every_tolerance(book):
     methods = {p.method for p in book}
     assert {"dopri5", "dop853", "rk4", "radau5"} <= methods
-    assert "dopri5-radau5" not in methods  # it is dopri5 here, to the last bit
+    assert "dopri5-radau5" not in methods  # the pair is dopri5 here, to the last bit
     for method in methods - {"rk4"}:
         assert [p.rtol for p in book if p.method == method] == [10.0**-k for k in range(2, 15)]
     steps = [p.step for p in book if p.method == "rk4"]
@@ -231,7 +231,7 @@ def test_a_stiff_scene_is_measured_and_what_takes_too_long_says_so():
     failed = {p.method: p for p in found if p.failure}
     assert "took more than" in failed["dopri5"].failure
     assert failed["dopri5"].error == math.inf
-    assert len([p for p in found if p.method == "dopri5"]) == 1  # the tighter ones take longer
+    assert len([p for p in found if p.method == "dopri5"]) == 1  # tighter runs would take longer
     assert any("tried: dopri5 at rtol 1e-06 and below, " in remark for remark in found.remarks)
     assert found.best(1e-5).method in ("radau5", *PAIRS)
     assert {"radau5", *PAIRS} <= {p.method for p in found if not p.failure}

@@ -1,4 +1,4 @@
-"""`pc.accuracy_cost` keeps to its time, measures what fits, and names what it cannot measure."""
+"""`pc.accuracy_cost` keeps its time limit, measures what fits, and names what it could not."""
 
 from __future__ import annotations
 

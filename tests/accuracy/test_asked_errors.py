@@ -191,7 +191,7 @@ def test_it_is_refused_as_well_when_no_round_is_left(monkeypatch):
 
 
 def test_a_law_that_is_not_smooth_is_never_called_kept():
-    """The law is noise: every step is too long for it, and no two runs agree."""
+    """For noise every step is too long, however short, and no second run is like the first."""
     noise = np.random.default_rng(5)
     scene = BOOK.replace(effects=[E.User(lambda t, q, qd: 1e-6 * noise.normal(size=2))])
     is_refused = False
@@ -228,7 +228,7 @@ def test_a_run_that_the_cap_on_steps_ends_is_labelled():
 
 @pytest.mark.parametrize("max_step", [0.1, 0.02, 0.01])
 def test_steps_that_are_not_set_by_the_tolerance_are_verified_by_other_steps(max_step):
-    """A tighter run of the same method would take the same steps, and show no error."""
+    """A tighter run of the same method would take the same steps and report no error."""
     start = ([-0.6, -0.4], 0, (0, 5))
     times = np.linspace(0, 5, 101)
     sol = pc.simulate(BOOK, *start, t_eval=times, error=1e-6, max_step=max_step)
@@ -239,7 +239,7 @@ def test_steps_that_are_not_set_by_the_tolerance_are_verified_by_other_steps(max
 
 
 def test_a_stiff_run_in_steps_of_max_step_is_verified_by_shorter_ones():
-    """No other method gets to the end, so the method verifies itself."""
+    """No other method gets through, so the method verifies itself."""
     stiff = pc.Scene(links=[ROD, ROD], effects=[E.ViscousJoint(2, damping=1e5)])
     start, times = ([0.7, 1.0], 0, (0, 2)), np.linspace(0, 2, 41)
     sol = pc.simulate(stiff, *start, t_eval=times, error=1e-6, max_step=0.05)
@@ -282,7 +282,7 @@ def test_a_first_step_of_the_whole_span_is_made_shorter_by_tighter_tolerances():
 
 @pytest.mark.parametrize("times", [[3.0, 4.0], [0.2, 4.0]], ids=str)
 def test_a_terminal_event_may_come_before_the_times(times):
-    """The ends are compared, and no times are kept, as in a run without an error."""
+    """Then the ends of the runs are compared; no more states are kept than without `error`."""
     ends = pc.events.LinkAngle(1, 1.0, terminal=True)
     sol = pc.simulate(BOOK, *START, events=[ends], t_eval=times, error=1e-8)
     assert sol.status == "event"
@@ -313,7 +313,7 @@ def test_an_interrupt_hands_over_the_best_run_so_far_and_says_what_it_is(at, sta
             raise KeyboardInterrupt
 
     def law(t, q, qd):
-        time.sleep(2e-5)  # every run is to report often, on any machine
+        time.sleep(2e-5)  # so that every run reports often, on any machine
         return 0 * q
 
     slow = pc.Scene(links=[ROD], effects=[E.User(law)])

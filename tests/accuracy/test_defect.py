@@ -1,4 +1,4 @@
-"""The defect: what torques would make a computed curve an exact motion."""
+"""The defect is the torques that would make a computed curve an exact motion."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def value(coefficients: list[Any], theta: Any) -> Any:
 
 
 def exact_couples(sol: pc.Solution) -> np.ndarray:
-    """Largest couples of each step of the same curve, on the same grid, in forty digits."""
+    """Return each step's largest couples on the same curve and grid, in forty digits."""
     state, n = sol.run.__getstate__(), len(sol.scene.links)
     steps = len(state["dense_h"])
     rows = np.asarray(state["dense_coefficients"]).reshape(steps, -1, 2 * n)
@@ -83,7 +83,7 @@ def test_it_is_what_the_equations_of_each_link_say_in_forty_digits(
 
 @pytest.mark.parametrize("method", METHODS)
 def test_it_falls_at_the_order_of_the_interpolant(method: str) -> None:
-    is_series = method.startswith("taylor")  # the tolerances choose its order
+    is_series = method.startswith("taylor")  # a series chooses its order by the tolerances
     how = {"rtol": 1e-3, "atol": 1e-3} if is_series else {"rtol": 1e-13, "atol": 1e-16}
 
     def with_steps(count: int) -> pc.Defect:
@@ -96,12 +96,12 @@ def test_it_falls_at_the_order_of_the_interpolant(method: str) -> None:
     slope = -np.polyfit(np.log(counts), torques, 1)[0]
     assert found[0].order == (10 if is_series else METHODS[method]["interpolant_order"])
     assert slope == pytest.approx(found[0].order, abs=0.35)
-    assert found[-1].largest > 1e-11  # above rounding
+    assert found[-1].largest > 1e-11  # well above rounding
 
 
 @pytest.mark.parametrize("method", [name for name, m in METHODS.items() if m["kind"] == "pair"])
 def test_the_defect_of_a_pair_that_changed_over_is_that_of_its_second_method(method: str) -> None:
-    """Runs that end before the change are right about it, and so are runs resumed past it."""
+    """A run that ends before the change has the first method's; resumed past it, the second's."""
     stiff = BOOK.replace(effects=[fx.ViscousJoint(joint=2, damping=1e6 / 3)])
     first, second = method.split("-")
     before = pc.simulate(stiff, [0.8, 1.0], 0.1, (0, 1e-5), method=method)
@@ -118,7 +118,7 @@ def test_the_defect_of_a_pair_that_changed_over_is_that_of_its_second_method(met
 
 
 def test_an_exact_curve_has_none_but_rounding() -> None:
-    """A rod that turns freely, and one that a constant torque turns: polynomials."""
+    """Rods turning freely or under a constant torque move along polynomials."""
     rod = pc.Scene(links=[pc.Link(mass=3, length=1)], gravity=0.0)
     for effects in ([], [fx.Motor(joint=1, constant=2.0)]):
         sol = pc.simulate(rod.replace(effects=effects), 0.3, 1.5, (0, 2), method="dopri5")
@@ -130,7 +130,7 @@ def test_an_exact_curve_has_none_but_rounding() -> None:
 
 @pytest.mark.parametrize("link", [0, 1])
 def test_it_sees_a_wrong_coefficient(link: int) -> None:
-    """A rate is off by 1e-6 theta^2 (1 - theta)^2 in one step: the defect is its slope times I."""
+    """A rate wrong by 1e-6 theta^2 (1 - theta)^2 in a step costs its slope times the inertia."""
     sol = run(BOOK, "dop853", rtol=1e-12, atol=1e-14)
     state = sol.run.__getstate__()
     h = state["dense_h"][3]
@@ -144,7 +144,7 @@ def test_it_sees_a_wrong_coefficient(link: int) -> None:
     q = sol(sol.t[3] + h / 2)[:2]
     expected = np.abs(BOOK.mass_matrix(q)[link:, link].sum()) * slope
     assert found.torque[3, link] == pytest.approx(expected, rel=0.3)
-    # The rate's integral is off from then on, by h/30 of that, and with it gravity.
+    # From then on the angle, the rate's integral, is off by 1e-6 h/30; so is gravity's torque.
     changed = np.abs(found.torque - right.torque).max(axis=1)
     assert changed[:3].max() == 0.0
     assert 0.0 < changed[4:].max() < 0.05 * changed[3]
@@ -162,7 +162,7 @@ def test_tighter_tolerances_mean_less_torque_and_a_share_of_the_weight() -> None
 
 
 def test_what_holds_a_joint_takes_any_torque() -> None:
-    """Where a joint sticks, rests on a stop or is locked, only the others have a defect."""
+    """Where a joint is stuck, at a stop or locked, only what the other joints lack is told."""
     stick = pc.Scene(
         links=BOOK.links,
         effects=[fx.DryJointFriction(joint=1, coulomb=30.0), fx.JointStop(2, range=(-0.5, 0.9))],
@@ -175,7 +175,7 @@ def test_what_holds_a_joint_takes_any_torque() -> None:
 
 
 def test_a_run_that_an_event_ends_counts_as_far_as_it_went() -> None:
-    """The last polynomial goes on beyond the end; that part does not belong to the curve."""
+    """The last polynomial continues past the end; that part does not belong to the curve."""
     whole = pc.simulate(BOOK, START, 0, (0, 1), method="dop853", step=0.1)
     here = pc.events.LinkAngle(2, float(whole(0.501)[1]), terminal=True)
     sol = pc.simulate(BOOK, START, 0, (0, 1), method="dop853", step=0.1, events=[here])

@@ -33,10 +33,10 @@ def work() -> pc.HorizonWork:
 
 
 def test_a_digit_buys_ln_10_over_lambda_seconds_on_average() -> None:
-    """Neighbours do not part evenly, so one start says little: the mean over many is to be 1.
+    """Neighbours do not part evenly, so one start says little; the mean over many has to be 1.
 
-    The bound is how far the mean of so many numbers of that scatter is from the true one: within it
-    with 99.9 % by Student's t. It has to be so narrow that an exponent that is a tenth off shows.
+    The bound is Student's: the mean of so many numbers of that scatter lies within it of the true
+    one with a probability of 99.9 %. It has to be so narrow that an exponent off by a tenth shows.
     """
     student = 3.75  # 24 degrees of freedom
     shares: dict[str, list[float]] = {}
@@ -58,7 +58,7 @@ def test_every_point_is_a_run_of_its_own(work: pc.HorizonWork) -> None:
     for method in work.methods:
         points = work.of(method)
         assert [point.rtol for point in points] == FEW
-        # One of two tolerances may be the luckier, by no more than a time in which e is gained.
+        # A looser tolerance may be luckier, but by less than the time in which errors grow by e.
         assert (np.diff([point.valid for point in points]) > -1 / work.exponent).all()
         assert (np.diff([point.early for point in points]) < 0).all()
         assert (np.diff([point.nfev for point in points]) > 0).all()
@@ -90,12 +90,12 @@ def test_horizon_work_is_drawn(work: pc.HorizonWork) -> None:
     assert "rad" in by_digits.get_xlabel()
     assert "s" in by_cost.get_xlabel()
     assert sheet.legends
-    assert not by_digits.get_legend()  # no legend covers a point
+    assert not by_digits.get_legend()  # the legend stands outside, where it covers no point
     assert work.plot() is not None
 
 
 def labels(axis: Any) -> list[Any]:
-    """The labels of the x axis that are drawn."""
+    """Return those labels of the x axis that are drawn."""
     ticks = axis.xaxis.get_majorticklabels() + axis.xaxis.get_minorticklabels()
     low, high = sorted(axis.get_xlim())
     return [x for x in ticks if x.get_text() and low <= x.get_position()[0] <= high]
@@ -197,7 +197,7 @@ def test_who_stops_it_does_not_wait_for_exponents(monkeypatch: pytest.MonkeyPatc
     with pytest.raises(KeyboardInterrupt) as raised:
         pc.horizon_work(BOOK, CHAOTIC, 0, (0, 10), progress=stop, **options)
     assert len(raised.value.work.points) == 2  # type: ignore[attr-defined]
-    with pytest.raises(KeyboardInterrupt) as raised:  # while they are computed
+    with pytest.raises(KeyboardInterrupt) as raised:  # during the exponents
         pc.horizon_work(BOOK, CHAOTIC, 0, (0, 10), **options)
     assert len(raised.value.work.points) == 3  # type: ignore[attr-defined]
 
@@ -243,7 +243,7 @@ def test_the_lines_of_the_page_run() -> None:
     blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs/horizon.md").read_text(), re.DOTALL)
     assert len(blocks) == 3
     names: dict[str, object] = {}
-    for block in blocks[:2]:  # the third is what the tests above do
+    for block in blocks[:2]:  # the tests above run what the third block shows
         exec(block, names)
     others = json.loads((ROOT / "docs/horizon.json").read_text())["neighbours"]
     wanted = pytest.approx(np.mean(others), abs=4 * np.std(others, ddof=1))

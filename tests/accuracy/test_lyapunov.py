@@ -1,4 +1,4 @@
-"""Lyapunov exponents: closed forms, what they must add up to, and neighbours in many digits."""
+"""Lyapunov exponents agree with closed forms, known sums and neighbours in many digits."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from pendcore.horizon.lyapunov import _check_is_smooth
 E = pc.effects
 GRAVITY = 9.807
 FAST, SLOW = (np.sqrt(GRAVITY * (3 + sign * 6 / np.sqrt(7))) for sign in (1, -1))
-"""Rates of growth of two equal rods of 1 m that stand upright; hanging, frequencies."""
+"""Two equal upright rods of 1 m grow at these rates; hanging, they have these frequencies."""
 
 
 def rods(n: int, *effects: pc.effects.Effect, gravity: float = GRAVITY) -> pc.Scene:
@@ -26,7 +26,7 @@ def rods(n: int, *effects: pc.effects.Effect, gravity: float = GRAVITY) -> pc.Sc
 
 
 def growth_of(linear: NDArray[np.float64], t: float) -> NDArray[np.float64]:
-    """The ln |R_ii| of exp(linear t) = Q R, which is what the exponents sum up."""
+    """Return ln |R_ii| of exp(linear t) = Q R, which is what the exponents sum up."""
     values, vectors = np.linalg.eig(linear)
     flow = (vectors * np.exp(values * t)) @ np.linalg.inv(vectors)
     return np.log(np.abs(np.diagonal(np.linalg.qr(flow.real)[1])))
@@ -64,14 +64,14 @@ def test_at_an_equilibrium_the_growth_is_that_of_the_matrix_exponential(
 def test_a_single_pendulum_is_not_chaotic() -> None:
     found = pc.lyapunov(rods(1), 0.3, t_span=(0, 1000))
     t = found.t[1:]
-    # Neighbours of another period part in proportion to time: ln(1 + c t)/t, and no more.
+    # Neighbours swing with another period and part in proportion to time: ln(1 + c t)/t at most.
     assert (np.abs(found.finite_time[1:, 0]) <= np.log(1 + 10 * t) / t).all()
     assert found.exponents.sum() == pytest.approx(0.0, abs=1e-9)
 
 
 def test_a_small_oscillation_grows_by_nothing() -> None:
     found = pc.lyapunov(rods(2), [np.pi / 2 + 1e-6, np.pi / 2 - 1e-6], t_span=(0, 200))
-    # A change of angle becomes one of rate, FAST times as large in rad/s, and so back.
+    # A change of angle turns into one of rate, FAST times as large in rad/s, and back again.
     assert np.abs(found.growth).max() < np.log(2 * FAST)
     assert np.abs(found.exponents).max() < 0.02
 
@@ -81,11 +81,11 @@ def test_without_losses_the_spectrum_is_symmetric_and_adds_up_to_nothing(n: int)
     scene = rods(n)
     found = pc.lyapunov(scene, np.linspace(-2.0, -1.0, n), t_span=(0, 150))
     assert found.largest > 0.5
-    # Liouville: det Phi = det M(start)/det M(end) in angles and rates, as momenta are M qd.
+    # By Liouville det Phi = det M(start)/det M(end) in angles and rates, as momenta are M qd.
     _, log_det = np.linalg.slogdet(scene.mass_matrix(found.q))
     assert found.growth.sum(axis=1) == pytest.approx(log_det[0] - log_det, abs=1e-6)
     pairs = found.exponents + found.exponents[::-1]
-    assert np.abs(pairs).max() < 8 / 150  # finite time: a number over t
+    assert np.abs(pairs).max() < 8 / 150  # at a finite time t a number over t remains
     assert np.abs(found.exponents[n - 1 : n + 1]).max() < 12 / 150  # along the flow and across
 
 
@@ -109,7 +109,7 @@ def test_with_damping_the_exponents_add_up_to_it() -> None:
 
 
 def growth(case: ChaoticStart, moved: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Along the run that begins at q0 and qd0 + moved, at each half second; tight tolerances."""
+    """Return the growth at each half second of a tight run whose start is off by ``moved``."""
     q0, qd0 = np.split(np.array([*case.q0, *case.qd0]) + moved, 2)
     times = np.arange(1, len(case.growth) + 1) / 2
     return pc.lyapunov(
@@ -118,10 +118,10 @@ def growth(case: ChaoticStart, moved: NDArray[np.float64]) -> NDArray[np.float64
 
 
 def spread_of_roundings(case: ChaoticStart) -> NDArray[np.float64]:
-    """How far the roundings of the run's steps, a random walk, move its growth at those times.
+    """Return how far the random walk of the run's roundings moves its growth at those times.
 
     A component is rounded by up to EPS/2 of its size, and what a change of it at the start does is
-    measured. One at a later time s has e^growth(s) less to grow by.
+    measured. A rounding at a later time s grows by e^growth(s) less.
     """
     small = 1e-12
     changes = small * np.eye(2 * len(case.q0))
@@ -140,7 +140,7 @@ def spread_of_roundings(case: ChaoticStart) -> NDArray[np.float64]:
 
 @pytest.mark.parametrize("case", chaotic_starts(), ids=lambda case: str(case.q0))
 def test_a_neighbour_in_many_digits_parts_at_that_rate(case: ChaoticStart) -> None:
-    """They agree to the twelve decimals of the record and the rounding of the run itself."""
+    """The growths agree to the record's twelve decimals and the rounding of the run itself."""
     assert len(case.growth) == 2 * T_END
     assert EACH % 2 == 0
     exact = np.array(case.growth)
@@ -152,7 +152,7 @@ def test_a_neighbour_in_many_digits_parts_at_that_rate(case: ChaoticStart) -> No
 
 
 def differences(scene: pc.Scene, q0: list[float], t: float) -> float:
-    """The ln of how much longer a change of q_1 has become, from two runs."""
+    """Return the ln of how much longer a change of q_1 has become, from two runs."""
     small = 1e-6
     ends = [
         pc.simulate(scene, [q0[0] + change, *q0[1:]], 0, (0, t), rtol=1e-12, atol=1e-14).y[:, -1]

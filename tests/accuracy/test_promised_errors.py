@@ -29,7 +29,7 @@ def test_all_that_is_said_of_an_error_is_one_estimate(options, error):
 
 
 def test_an_error_in_step_with_a_grid_of_times_is_seen():
-    """A swing over 50 whole periods: at 101 even times the error of its phase hardly shows."""
+    """After 50 whole periods an error of the phase hardly shows at 101 evenly spaced times."""
     period = 4 * float(mpmath.ellipk(math.sin(0.5) ** 2)) / math.sqrt(9.807)
     rod = pc.Scene(links=[pc.Link.point_mass(mass=1.0, length=1.0)])
     span = (0, 50 * period)
@@ -59,7 +59,7 @@ def test_what_ended_in_a_recursion_error_is_kept(q0, t_end, error):
     ],
 )
 def test_near_the_end_of_double_precision_rounded_constants_are_seen(error, t_end, q0):
-    """Runs that share rounded constants agree, and are 10 to 136 times as far from the truth."""
+    """Runs that share such constants agree, yet lie 10 to 136 times as far from the truth."""
     with pytest.raises(pc.AccuracyError, match="not reached") as caught:
         pc.simulate(BOOK, q0, 0, (0, t_end), error=error)
     assert caught.value.least > error
@@ -73,7 +73,7 @@ def test_near_the_end_of_double_precision_rounded_constants_are_seen(error, t_en
 def test_second_runs_that_share_the_truncation_of_a_tight_trial_do_not_verify_it(
     q0: tuple[float, float], t_end: float, true: float
 ) -> None:
-    """The runs at rtol 1e-14 agree to 1e-10; a solution in 34 digits says how far off they are."""
+    """The runs at rtol 1e-14 agree to 1e-10; a solution in 34 digits tells their true error."""
     with pytest.raises(pc.AccuracyError) as refusal:
         pc.simulate(BOOK, q0, t_span=(0, t_end), error=0.75 * true)
     assert refusal.value.least > true
@@ -109,7 +109,7 @@ def test_when_the_time_is_up_a_whole_trial_is_returned_and_called_unverified(
 @pytest.mark.parametrize("t_start", [0.0, 12.5, -70.0])
 @pytest.mark.parametrize("error", [3e-12, 1e-11, 1e-10])
 def test_the_last_bit_of_a_time_is_a_part_of_the_error(t_start: float, error: float) -> None:
-    """A state is kept under the double next to its time: a rod at 1e5 rad/s turns in between."""
+    """A state is stored at the double nearest its time; at 1e5 rad/s a rod turns in between."""
     rod, stiffness = pc.Link.point_mass(mass=1.0, length=1.0), 1e10
     spring = pc.effects.TorsionalSpring(joint=1, stiffness=stiffness)
     scene = pc.Scene(links=[rod], effects=[spring], gravity=0.0)
@@ -142,7 +142,7 @@ def test_a_run_is_verified_to_the_event_that_ends_it() -> None:
 
 
 def test_second_runs_of_a_series_are_tighter_than_the_tightest_trial() -> None:
-    """All runs at rtol 1e-14 share a truncation error of 5.6e-11 here, more than was reported."""
+    """Runs at rtol 1e-14 share a truncation of 5.6e-11 here, more than the error asked for."""
     links = [
         pc.Link(
             mass=0.04602293018960736, length=0.16517151492763457, center=0.09491503985719417,
@@ -161,7 +161,7 @@ def test_second_runs_of_a_series_are_tighter_than_the_tightest_trial() -> None:
 
 
 def test_steps_that_are_cut_often_enough_are_cut_no_further() -> None:
-    """A second run of ten million steps would be compared at sixty million times."""
+    """A second run of ten million steps would otherwise be compared at sixty million times."""
     coarse = pc.simulate(BOOK, *START, rtol=1e-6)
     fine = pc.simulate(BOOK, *START, method="dopri5", step=1e-5)
     steps = coarse.stats.accepted + fine.stats.accepted
@@ -174,7 +174,7 @@ def point_masses(*links: tuple[float, float]) -> pc.Scene:
 
 
 def test_a_run_whose_link_is_lost_is_not_kept_though_positions_agree_until_then() -> None:
-    """The last link is 4 mm long: its angle is lost at 1.15 s, when positions are still right."""
+    """The last link is 4 mm long; its angle is lost at 1.15 s, while positions are still right."""
     scene = point_masses((1, 1), (1, 0.004))
     sol = pc.simulate(scene, (0.3, 2.0), 0, (0, 20), error=0.01)
     assert sol.accuracy.until == 20.0

@@ -1,4 +1,4 @@
-"""The claims of `make test-error` on a few dozen scenes of each family, and that it sees mistakes.
+"""What `make test-error` claims holds on a few dozen scenes a family, and it sees mistakes.
 
 The whole of it is `make test-error`.
 """
@@ -25,9 +25,9 @@ from true_error.trajectory import NoReferenceError
 
 pytestmark = pytest.mark.unsanitized
 SEEDS = [range(begin, begin + 8) for begin in (100_000, 100_008, 100_016)]
-"""These seeds are not among the defaults of `make test-error`."""
+"""`make test-error` has none of these seeds by default."""
 SECONDS = 60.0
-"""What an answer may take, s: among so few scenes none is to run out of time on a busy machine."""
+"""An answer may take this long, s: so few scenes must not time out on a busy machine."""
 
 
 @pytest.mark.every_value("family")
@@ -72,7 +72,7 @@ def test_the_page_shows_the_record() -> None:
 
 
 class Claiming:
-    """A solution whose statements about itself are replaced."""
+    """A solution that makes other claims about itself than the true one."""
 
     def __init__(self, sol: pc.Solution, **claims: Any) -> None:
         self._sol, self._claims = sol, claims
@@ -85,7 +85,7 @@ class Claiming:
 
 
 def verdict_of(drawn: Drawn, **changed: Any) -> Verdict:
-    """Return the verdict on runs by ``simulate``, some of which are made otherwise."""
+    """Return the verdict on runs by ``simulate``, some of them replaced as ``changed`` says."""
 
     def simulate(*scene_and_start: Any, **options: Any) -> Any:
         way = changed.get("error" if "error" in options else "rtol")
@@ -123,12 +123,12 @@ def test_an_error_that_is_not_what_is_told_is_above(family: str) -> None:
 
 
 def test_an_error_between_the_times_that_are_even_is_above(drawn: Drawn) -> None:
-    """Such an error arises where a period divides the run evenly."""
+    """Such an error arises where a whole number of periods fills the run."""
 
     class Bent(Claiming):
         def __call__(self, t: Any) -> Any:
             y = self._sol(t).copy()
-            y[0] += 3e-7 * np.sin(20 * np.pi * t)  # zero at each of 101 even times
+            y[0] += 3e-7 * np.sin(20 * np.pi * t)  # zero at each of 101 evenly spaced times
             return y
 
     def bent(*scene_and_start: Any, **options: Any) -> Any:
@@ -180,7 +180,7 @@ def test_what_hangs_is_told_and_ends_nothing(drawn: Drawn, monkeypatch: pytest.M
 
 
 def test_a_reference_that_is_not_good_enough_says_so(drawn: Drawn) -> None:
-    """Long doubles have lost it by the end, and there is no time for more digits."""
+    """By the end long doubles have lost the motion, and there is no time for more digits."""
     links = [pc.Link(mass=1.0, length=0.5)] * 3
     far = replace(
         drawn, scene=pc.Scene(links=links), q0=(-1.5, -1.2, -1.0), qd0=(0.0,) * 3, t_end=40.0,

@@ -65,7 +65,7 @@ def angle(of: Drawn, *times: float) -> Any:
 
 @pytest.mark.parametrize("name", ["textbook", "unequal", "light_tip", "no_gravity", "single_rod"])
 def test_trajectories_of_forty_digits(name: str) -> None:
-    """Integrated by other equations, in another arithmetic."""
+    """The trajectories were integrated from other equations, in another arithmetic."""
     case: Digits = of_digits(name)
     links = [
         pc.Link(mass=m, length=length) for m, length in zip(case.masses, case.lengths, strict=False)
@@ -79,7 +79,7 @@ def test_trajectories_of_forty_digits(name: str) -> None:
 
 
 def check_accelerations(of: Drawn) -> None:
-    """Newton-Euler equations of each link, each effect's law written in the most direct form."""
+    """Compare with the Newton-Euler equations of each link, with every law in its plainest form."""
     n = len(of.q0)
     bodies = [Body(x.mass, x.length, x.center, x.inertia) for x in of.scene.links]
     laws = [law(described(effect)) for effect in of.scene.effects]
@@ -148,7 +148,7 @@ def test_energy_is_kept() -> None:
 
 @pytest.mark.parametrize("family", sorted(set(FAMILIES) - {"stiff"}))
 def test_the_reference_knows_its_own_error(family: str) -> None:
-    """Compare with yet more digits, for few links, since these take long."""
+    """More digits still confirm the error; the chains are short, since these digits take long."""
     few = [of for of in map(FAMILIES[family], range(30)) if len(of.q0) <= 2]
     for of in few[:2]:
         t = np.linspace(of.t_start, of.t_start + 0.3 * (of.t_end - of.t_start), 20)
@@ -175,7 +175,7 @@ def test_a_rod_that_rubs_stops_where_its_momentum_ends() -> None:
 def test_a_rod_with_a_static_peak_comes_as_far_as_an_integral_says(
     exponent: float, velocity: float
 ) -> None:
-    """The peak is narrow: a step that begins far from it does not see it."""
+    """The peak is narrow, and a step that begins far from it does not see it."""
     peak = E.DryJointFriction(1, 0.3, static=0.9, stribeck_velocity=velocity, exponent=exponent)
     found = angle(drawn([peak], (0.0,), (3.0,), 5.0), 5.0)[0]
 
@@ -218,7 +218,7 @@ def test_a_rod_that_is_pushed_against_a_stop_bounces_as_it_must(restitution: flo
 
 
 def test_an_impact_of_a_chain_keeps_what_it_must() -> None:
-    """The momentum of every other joint is conserved, and the energy where the stop is elastic."""
+    """It keeps the momentum of every other joint and, where the stop is elastic, the energy."""
     stop = E.JointStop(2, (-2.0, 0.5), restitution=1.0, capture_speed=1e-3)
     of = drawn([stop], (0.3, 0.4, 0.0), (0.0, 3.0, 1.0), 1.0)
     found = SwitchedTrajectory(of, LONG)
@@ -235,7 +235,7 @@ def test_an_impact_of_a_chain_keeps_what_it_must() -> None:
 
 
 def test_joints_that_could_as_well_hold_as_slide_are_refused() -> None:
-    """A rod at rest, its weight exactly what friction holds at most."""
+    """A rod rests, and its weight is exactly the most that friction can hold."""
     weight = 1.7 * 0.3 * 8.0
     of = drawn([E.DryJointFriction(1, weight)], (0.0,), (0.0,), 1.0, gravity=8.0)
     with pytest.raises(NoReferenceError, match="not clear"):
@@ -243,7 +243,7 @@ def test_joints_that_could_as_well_hold_as_slide_are_refused() -> None:
 
 
 def test_a_joint_holds_to_the_last_bit_and_gives_way() -> None:
-    """A slow motor turns the joint once its torque is what friction holds."""
+    """A slow motor drives the joint, which holds until the torque is what friction can bear."""
     drive = E.Motor(1, sinusoid=E.Sinusoid(1.0, 0.5))
     of = drawn([E.DryJointFriction(1, 0.25, static=0.6), drive], (0.3,), (0.0,), 4.0)
     gives_way = np.arcsin(0.6) / 0.5
@@ -296,7 +296,7 @@ def test_quadratic_damping_slows_a_rod_like_one_over_time() -> None:
 
 
 def test_laws_that_change_side_at_one_time_all_do() -> None:
-    """Two dampers in one joint are one damper of their sum."""
+    """Two dampers in one joint act as one whose coefficient is their sum."""
     spring = E.TorsionalSpring(1, 20.0)
     both = [E.ViscousJoint(1, 0.0, damping2=0.1), E.User(OwnLaw("quadratic damper", 1, (0.25,)))]
     start = (1.0,), (0.0,), 5.0

@@ -1,4 +1,4 @@
-"""How far a run is to be trusted: never longer than it is right, by references in many digits."""
+"""A run is never trusted for longer than it is right; references in many digits show this."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ def test_by_default_fifty_chaotic_runs_are_never_trusted_too_long() -> None:
     runs = [pc.simulate(case.scene, case.q0, case.qd0, (0, T_END)) for case in cases]
     valid = np.array([run.valid_until(LIMIT) for run in runs])
     right = np.array([case.last_right(run, LIMIT) for case, run in zip(cases, runs, strict=True)])
-    assert (right < T_END).all()  # all of them are wrong in the end
-    assert (valid < right + 1 / EACH).all()  # the next known state is wrong
+    assert (right < T_END).all()  # every run is wrong in the end
+    assert (valid < right + 1 / EACH).all()  # the next known state is already wrong
     assert np.median(valid / right) >= 0.7
     assert (valid / right).min() >= 0.5
 
@@ -43,7 +43,7 @@ def test_at_any_tolerance_runs_are_never_trusted_too_long(method: str, rtol: flo
     runs = [solved(case, method, rtol) for case in cases]
     valid = np.array([run.valid_until(LIMIT) for run in runs])
     right = np.array([case.last_right(run, LIMIT) for case, run in zip(cases, runs, strict=True)])
-    assert (valid < right + 1 / EACH).all()  # the next known state is wrong
+    assert (valid < right + 1 / EACH).all()  # the next known state is already wrong
     assert np.median(valid / right) >= 0.7
 
 
@@ -56,7 +56,7 @@ def test_other_limits(limit: float) -> None:
 
 @pytest.mark.parametrize("case", chaotic_starts()[1:16:7], ids=lambda case: str(case.q0))
 def test_the_record_is_what_its_script_makes(case: ChaoticStart) -> None:
-    """Run the first three seconds with other digits, and so with other orders and steps."""
+    """The first three seconds come out alike with other digits, hence other orders and steps."""
     chain = RodChain(case.masses, case.lengths, GRAVITY)
     grid = [Fraction(k, EACH) for k in range(0, 3 * EACH + 1, EACH)]
     made = motion(chain, case.q0, case.qd0, grid, digits=30)
@@ -85,7 +85,8 @@ def test_the_error_over_time_is_what_the_reference_says() -> None:
     found = run.error()
     true = np.abs(run(known.t)[:2].T - known.q).max(axis=1)
     near = np.interp(known.t, found.t, found.angle)
-    # Larger, but not by much: errors between the times, and those of the second runs.
+    # The estimate is a little above the truth: it includes the times in between and the second
+    # runs' own errors.
     assert (true[1:] <= near[1:]).all()
     assert near[1:] == pytest.approx(1.2 * true[1:], rel=0.1, abs=2e-9)
     assert (found.t[0], found.t[-1]) == (0.0, 5.0)
@@ -120,7 +121,7 @@ def test_position_limits_are_shares_of_the_length() -> None:
     assert found.position[k + 1] > 0.05
     assert found.position == pytest.approx(
         np.minimum(found.position, 2.0)
-    )  # of the total length: no two points are farther apart
+    )  # twice the total length, which no two points exceed
 
 
 def test_past_the_horizon_nothing_is_estimated() -> None:
@@ -134,7 +135,7 @@ def test_past_the_horizon_nothing_is_estimated() -> None:
 
 
 def test_both_second_runs_together_are_never_fooled_by_one() -> None:
-    """A second run that makes the very error of the first one shows no error."""
+    """Errors may cancel: a second run that makes the first one's very error estimates none."""
     case = chaotic_starts()[1]
     run = solved(case, "dopri5", 1e-13)
     t, q = times(), np.array(case.q)
@@ -225,7 +226,7 @@ def test_the_second_runs_are_made_once(monkeypatch: pytest.MonkeyPatch) -> None:
     assert run.error() is first
     assert run.valid_until(0.1) == 2.0
     monkeypatch.undo()
-    copied = pickle.loads(pickle.dumps(run))  # without it
+    copied = pickle.loads(pickle.dumps(run))  # the copy is made without the estimate
     assert copied.error().angle.tolist() == first.angle.tolist()
 
 
@@ -237,7 +238,7 @@ def test_an_estimate_that_takes_too_long_ends_where_it_is() -> None:
     assert some.valid_until(LIMIT) <= some.t[-1]
 
     def stop(fraction: float) -> None:
-        if fraction > 0.6:  # in the other second run
+        if fraction > 0.6:  # by then the other second run is under way
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt) as raised:
@@ -266,7 +267,7 @@ def test_interrupted_it_hands_over_the_users_run_and_none_of_its_own(asked) -> N
 
     scene = pc.Scene.textbook().replace(effects=[E.User(law)])
     run = pc.simulate(scene, [1.0, 1.0], 0, (0, 2))
-    for more in (3, 500):  # at once, and within a second run
+    for more in (3, 500):  # the interrupt comes at once, or within a second run
         last = calls + more
         with pytest.raises(KeyboardInterrupt) as raised:
             asked(run)

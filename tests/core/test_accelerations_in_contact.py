@@ -15,9 +15,10 @@ def slopes(sol: pc.Solution, t: float) -> np.ndarray:
 
 @pytest.mark.parametrize("restitution", [0.0, 0.5])
 def test_accelerations_in_contact_are_the_slopes_of_the_rates(restitution, method):
-    """Held against a stop the joint turns with the other; its angle is a difference of large ones.
+    """Held against a stop, joint 2 turns with joint 1; its angle is a difference of large ones.
 
-    It was held where rounding put it, a last bit of 3 rad short of the stop: of 1 rad that is six.
+    The joint was held where rounding put it, a last bit of 3 rad short of the stop: of 1 rad that
+    is six.
     """
     effects = [
         fx.JointStop(joint=2, range=(-1.5, 0.2), restitution=restitution),

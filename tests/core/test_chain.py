@@ -1,4 +1,4 @@
-"""Chains of n links: reference motions, what they keep, and chains that are each other's equal."""
+"""Chains of n links follow reference motions, keep what they must, and equal their equivalents."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ DOWN = np.pi / 2
 
 
 def rods(n: int, length: float = 1.0, mass: float = 1.0, **options: Any) -> pc.Scene:
-    """Return a chain of n equal rods of this length and mass in all."""
+    """Return equal rods that have this length and mass in all."""
     return pc.Scene(links=[pc.Link(mass=mass / n, length=length / n)] * n, **options)
 
 
@@ -62,7 +62,7 @@ def test_a_free_chain_keeps_its_energy(n: int, t_end: float) -> None:
     start = 0.5 * np.sin(np.linspace(0, 3, n))
     sol = solve(rods(n), start, np.linspace(-1, 1, n), t_end, store="steps")
     energy = sol.energy()
-    assert np.ptp(energy.kinetic) > 0.01  # it does move
+    assert np.ptp(energy.kinetic) > 0.01  # the chain does move
     assert np.ptp(energy.total) < 1e-10 * np.ptp(energy.kinetic)
 
 
@@ -92,10 +92,10 @@ def test_the_mass_matrix_is_that_of_the_kinetic_energy(n: int) -> None:
 
 @pytest.mark.parametrize("n", [10, 100, 1000])
 def test_the_accelerations_are_those_of_a_dense_solution(n: int) -> None:
-    """M qdd is what gravity and the centripetal forces leave, written out as a matrix equation."""
+    """M qdd equals what gravity and centripetal forces leave, written out as a matrix equation."""
     random = np.random.default_rng(n)
     scene, q, qd = rods(n, length=n, mass=n), *random.uniform(-3, 3, (2, n))
-    a = np.arange(n, 0, -1) - 0.5  # of rods of 1 kg and 1 m
+    a = np.arange(n, 0, -1) - 0.5  # for rods of 1 kg and 1 m
     coupling = np.minimum.outer(a, a) + np.diag(np.full(n, -1 / 6))
     difference = q[:, np.newaxis] - q
     mass = coupling * np.cos(difference)
@@ -114,7 +114,7 @@ def test_a_hanging_chain_swings_as_bessels_function_says(n: int) -> None:
     scene, hanging, small = rods(n), np.full(n, DOWN), 1e-6
     mass = scene.mass_matrix(hanging)
     stiffness = np.diag((np.arange(n, 0, -1) - 0.5) / n**2 * scene.gravity)
-    # The slowest mode has the largest 1/w^2, which an inverse of the diagonal does not blur.
+    # The slowest mode has the largest 1/w^2; inverting a diagonal matrix does not blur it.
     squares, modes = np.linalg.eig(np.linalg.solve(stiffness, mass))
     slowest = np.argmax(squares.real)
     w, shape = 1 / np.sqrt(squares.real[slowest]), modes.real[:, slowest]
@@ -168,7 +168,7 @@ def test_rods_locked_in_line_are_one_longer_rod(locked: int, free: int) -> None:
 
 @pytest.mark.parametrize("angle", [0.9, -2.0])
 def test_a_bent_pair_is_a_link_with_its_mass_centre_off_the_line(angle: float) -> None:
-    """Links 2 and 3 at an angle: one body, its line drawn through its mass centre."""
+    """Links 2 and 3, locked at an angle, are one body whose line goes through its mass centre."""
     m, length = 1.0, 0.5
     arm = np.array([length, 0]) + length / 2 * np.array([np.cos(angle), np.sin(angle)])
     center = (m * np.array([length / 2, 0]) + m * arm) / (2 * m)

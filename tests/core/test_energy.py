@@ -179,7 +179,7 @@ def test_a_spring_that_pushes_has_no_bound():
 
 
 def test_energies_of_a_moving_pivot_are_those_of_its_motion():
-    """Held upright and still against a pivot that moves: the rod moves as the pivot does."""
+    """A lock holds the rod still against a moving pivot, so the rod moves as the pivot does."""
     moving = fx.DrivenPivot(x=fx.Sinusoid(amplitude=0.5, angular_frequency=2.0))
     scene = pc.Scene(links=[ROD], effects=[moving, fx.Lock(1)])
     # Nothing turns, so nothing but max_step keeps the steps short enough for the ledger.

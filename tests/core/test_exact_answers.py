@@ -41,13 +41,13 @@ def solve(
 
 
 def reactions(scene: pc.Scene, q: ArrayLike, qd: ArrayLike = 0.0) -> Array:
-    """Forces on the links at one instant, in weights of a rod."""
+    """Return the forces on the links at one instant, in weights of a rod."""
     now = pc.simulate(scene, q, qd, (0.0, 0.0), store="steps")
     return np.asarray(now.reactions()[0] / (M * G))
 
 
 def shape(square: float) -> Array:
-    """Angles of the links in a mode, from (K - w^2 M) x = 0 with w^2 = ``square`` g/L."""
+    """Return the links' angles in a mode: (K - w^2 M) x = 0 with w^2 = ``square`` g/L."""
     return np.array([1.0, 3 / square - 8 / 3])
 
 
@@ -93,14 +93,14 @@ def test_hanging_at_rest_each_joint_carries_what_hangs_below() -> None:
 
 def test_hanging_at_rest_it_stays() -> None:
     sol = solve(TWO, [DOWN, DOWN], 0.0, 10.0)
-    assert np.abs(sol.q - DOWN).max() < 1e-13  # pi/2 is not a double: it swings by its rounding
+    assert np.abs(sol.q - DOWN).max() < 1e-13  # pi/2 is no double: the rods swing by its rounding
 
 
 @pytest.mark.parametrize("tolerance", [1e-12, 1e-13])
 def test_upright_at_rest_it_falls_from_where_the_start_rounds_to(tolerance: float) -> None:
-    """-pi/2 is not a double: the next one is 6e-17 rad off, and 37 times 1/sqrt(3g/2L) from 1 rad.
+    """The double next to -pi/2 is 6e-17 rad off, which takes 37/sqrt(3g/2L) to grow to 1 rad.
 
-    The first steps round the angle to 2e-16 rad: that alone is a factor of e or so, 0.2 s.
+    The first steps round the angle to 2e-16 rad; this alone is a factor of e or so, or 0.2 s.
     """
     with mpmath.mp.workdps(40):
         off = mpmath.mpf(UPRIGHT) + mpmath.pi / 2
@@ -117,7 +117,7 @@ def test_upright_at_rest_it_falls_from_where_the_start_rounds_to(tolerance: floa
 
 
 def test_upright_at_rest_it_stands_in_steps_too_short_for_any_push() -> None:
-    """A step moves the state by less than half of its last bit; compensated, the moves add up."""
+    """A step would move the rod by less than half a last bit; carried on, the pushes add up."""
     how = {"method": "dopri5", "rtol": 1e-13, "atol": 1e-20, "max_steps": 100_000}
     sol = pc.simulate(ONE, UPRIGHT, 0.0, (0.0, 20.0), **how)
     assert sol.success
@@ -145,8 +145,9 @@ def test_a_start_too_low_never_flips(seed: int) -> None:
 def test_the_second_link_flips_just_over_the_pass_and_not_just_short_of_it(
     speed: float, flips: bool
 ) -> None:
-    # The pass, 3 sin q_1 + sin q_2 = 2, is a standing second link on a hanging first one. There
-    # 7 x^2 - 6 x - 27 = 0 gives the squared growth rate in g/L; the matching speed comes to rest.
+    # At the pass, 3 sin q_1 + sin q_2 = 2, the second link stands on the hanging first one. There
+    # 7 x^2 - 6 x - 27 = 0 gives the squared growth rate in g/L; with the matching speed the
+    # links just come to rest.
     square = (6 + np.sqrt(792)) / 14
     rate, start = (
         np.sqrt(square * G / L),
@@ -207,7 +208,7 @@ def test_the_scaled_determinant_is_above_a_quarter(ratio: float) -> None:
     diagonal = matrix[:, 0, 0] * matrix[:, 1, 1]
     scaled = (diagonal - matrix[:, 0, 1] ** 2) / diagonal
     assert np.all(scaled > 0.25 - 1e-15)
-    weight = 1 / (1 + ratio / 3)  # of link 2 in A_11: 1 as m_1 -> 0, 0 as m_2 -> 0
+    weight = 1 / (1 + ratio / 3)  # the share of link 2 in A_11: 1 as m_1 -> 0, 0 as m_2 -> 0
     np.testing.assert_allclose(scaled, 1 - 0.75 * weight * np.cos(difference) ** 2, atol=1e-12)
 
 

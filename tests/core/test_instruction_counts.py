@@ -1,7 +1,7 @@
-"""What effects cost, by callgrind's count of instructions: the same on every run.
+"""Absent effects cost nothing, present ones their arithmetic, by callgrind's instruction counts.
 
-Absent ones cost nothing, present ones their arithmetic. Skipped where valgrind is missing or where
-the programs that `make build-bench` builds are, or are older than the core.
+The counts are the same on every run. The tests are skipped where valgrind is missing, or where the
+programs that `make build-bench` builds are missing or older than the core.
 PENDCORE_FORWARD_DYNAMICS may name the folder of these programs.
 """
 
@@ -27,7 +27,8 @@ pytestmark = pytest.mark.outside_build
 CORE = Path(__file__).parents[2] / "cpp"
 CPU_INFO = Path("/proc/cpuinfo")
 SMOOTH = [effect for effect in EFFECTS if effect.most_instructions is not None]
-# What the core still owes: each is an expected failure, and fails here once it is kept.
+# The core still owes these: a test fails as long as its effect costs more than promised, and its
+# entry here fails once it does not.
 OWED = {
     "motor_sinusoid": "a quarter too many: registers spilled around a pack of four",
     "driven_pivot": "a quarter too many: registers spilled around a pack of four",
@@ -93,7 +94,7 @@ def test_dry_friction_that_slides_costs_one_torque(programs: tuple[Path, Path]) 
 def test_a_stop_that_is_never_reached_costs_a_run_no_more_than_to_watch_it(
     programs: tuple[Path, Path],
 ) -> None:
-    """The same steps: each has the torques' kernel, its polynomial, and bounds of one angle."""
+    """The steps stay the same: the torques' kernel, a polynomial, and bounds of one angle."""
 
     def in_run(effect: str) -> float:
         requests = [f"prepare pendcore_run {described(chain_scene(2, effect))}", "make 0 3"]

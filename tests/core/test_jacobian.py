@@ -1,11 +1,11 @@
-"""The derivatives of the accelerations, against the reference differentiated in many digits.
+"""The accelerations' derivatives agree with the reference's, differentiated in many digits.
 
 The reference has no derivatives of its own: it is differentiated by central differences of 10^-30
 in eighty digits, which leaves fifty of them. An error is measured against the size of what the
 derivative is made of: the sum over the terms of each equation, sent through the magnitude of the
 inverse matrix (Skeel's condition, as in test_right_hand_side_of_effects.py), per unit of angle or
-rate; and the derivatives of the terms, sent through it likewise: they may be there where the terms
-are not, and cancel.
+rate. The derivatives of the terms, sent through it likewise, are added, because they may be there
+and cancel where the terms themselves are not.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ from reference.random_rigs import DrawnRig, rigs
 from reference.rig import Rig
 
 TOLERANCE = 1e-12
-ROUNDING_OF_THE_REFERENCE = 1e-26  # and of its differences, where a law has a corner
+ROUNDING_OF_THE_REFERENCE = 1e-26  # that of its differences too, where a law has a corner
 MANY = multiple_precision(80)
 STEP = MANY.number(10) ** -30
-OF_USERS = {"user", "compiled_user"}  # differentiated by differences
+OF_USERS = {"user", "compiled_user"}  # their functions are differentiated by differences
 KINDS = sorted(set(pc.effects.kinds()) - OF_USERS - {"joint_stop"})  # stops have no torque
 
 
@@ -60,25 +60,25 @@ def exact_and_size(drawn: DrawnRig) -> tuple[NDArray[np.float64], NDArray[np.flo
         moved = [[x + sign * STEP * (i == j) for i, x in enumerate(state)] for sign in (1, -1)]
         ahead, behind = (rig.equations(rig.instant(number(t), one[:n], one[n:])) for one in moved)
         exact[:, j] = derivatives(ahead.solve(MANY), behind.solve(MANY))[:n]
-        # K x' = r' - K' x; what cancels there are terms of different equations
+        # In K x' = r' - K' x terms of different equations cancel.
         of_matrix = list(map(derivatives, ahead.matrix, behind.matrix))
         of_right = derivatives(*([side.value for side in one.right] for one in (ahead, behind)))
         changes = np.abs(of_matrix) @ np.abs(np.array(unknowns, dtype=float)) + np.abs(of_right)
         terms[:, j] = here.reach(changes)[:n]
-    # Per radian, or per unit of the fastest rate; a force quadratic in the rates has a factor 2,
-    # and the inverse of the mass matrix changes by its condition.
+    # Sizes are per radian, or per unit of the fastest rate; a force quadratic in the rates has a
+    # factor 2, and the inverse of the mass matrix changes by its condition.
     per = np.array([1.0] * n + [1.0 / max(1e-3, *np.abs(qd))] * n)
     gain = np.abs(rig_gain(rig, state, n))
     return exact, gain * (np.outer(sizes, per) + np.abs(exact) + terms)
 
 
 def derivatives(ahead: Sequence[Any], behind: Sequence[Any]) -> NDArray[np.float64]:
-    """Differentiate, from the values a step ahead and a step back."""
+    """Return the derivatives from the values a step further and a step back."""
     return np.array([float((a - b) / (2 * STEP)) for a, b in zip(ahead, behind, strict=True)])
 
 
 def rig_gain(rig: Rig, state: list[Any], n: int) -> float:
-    """How much a relative change of the mass matrix is worth in that of its inverse."""
+    """Return how much a relative change of the mass matrix changes its inverse."""
     matrix = np.array(rig.mass_matrix(state[:n]), dtype=float)
     size = np.sqrt(np.diag(matrix))
     return float(np.linalg.cond(matrix / np.outer(size, size)))
@@ -106,9 +106,9 @@ def test_an_effect_alone(kind: str, n: int, data: st.DataObject) -> None:
 
 @pytest.mark.parametrize("joints", [(2, 3), (1, 3)])
 def test_what_cancels_leaves_its_rounding_and_no_more(joints: tuple[int, ...]) -> None:
-    """Stretched along x, without gravity: centripetal forces have moments once a link is turned.
+    """The chain lies along x, without gravity; turn a link, and centripetal forces have moments.
 
-    Locks sum them up to zero; no term of the accelerations tells how large they were.
+    The locks add these moments up to zero; no term of the accelerations tells their size.
     """
     links = [Body(1.9, 0.6, 0.13, 0.013), Body(4.2, 2.6, 1.5, 4.8), Body(1.2, 2.7, 1.9, 0.2)]
     locks: list[Described] = [("lock", {"joint": joint}) for joint in joints]
@@ -141,5 +141,5 @@ def test_all_effects_together_on_a_long_chain(but: str | None, data: st.DataObje
 def test_functions_of_the_users_are_differentiated_by_differences(
     n: int, data: st.DataObject
 ) -> None:
-    # one that is compiled takes doubles alone, from the reference as well
+    # a compiled function takes doubles alone, from the reference as well
     check(data.draw(rigs(["user", "viscous_joint"], st.just(n))), 1e-9)

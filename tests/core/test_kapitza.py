@@ -1,4 +1,4 @@
-"""Two rods upright on a pivot that shakes up and down: stable between two borders.
+"""Two rods upright on a pivot that shakes up and down are stable between two borders.
 
 The borders are those of the linear equations, in units where the rods' mass, their length and
 gravity are 1; w is the angular frequency of the shaking, eps its amplitude. Whether a drive is
@@ -16,7 +16,7 @@ UPRIGHT = -np.pi / 2
 
 
 def multipliers(eps: float, w: float) -> NDArray[np.float64]:
-    """Magnitudes of the eigenvalues of the map over one period, by central differences."""
+    """Return the eigenvalues' magnitudes of the map over one period, by central differences."""
     shaking = pc.effects.Sinusoid(amplitude=eps, angular_frequency=w, phase=np.pi / 2)
     scene = pc.Scene(
         links=[pc.Link(mass=1.0, length=1.0)] * 2,
@@ -24,7 +24,7 @@ def multipliers(eps: float, w: float) -> NDArray[np.float64]:
         effects=[pc.effects.DrivenPivot(y=shaking)],
     )
     period, small = 2 * np.pi / w, 1e-5
-    # Angles of 1 go with rates of w: so the columns are of one size.
+    # Angles of size 1 go with rates of size w; so scaled, the columns are of one size.
     scale = np.array([1.0, 1.0, w, w])
 
     def after(start: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -63,7 +63,7 @@ def multipliers(eps: float, w: float) -> NDArray[np.float64]:
 def test_the_border_of_stability_is_where_floquet_says(
     eps: float, w: float, inside: tuple[float, float]
 ) -> None:
-    """A thousandth to one side of the border it stays, a thousandth to the other it falls.
+    """The rods stay up a thousandth to one side of the border, and fall a thousandth to the other.
 
     At the lower border the frequency is varied, at the upper one the amplitude.
     """

@@ -22,7 +22,7 @@ def kept() -> dict:
 
 def test_over_half_a_million_steps_the_energy_keeps_to_the_methods_own_error():
     rounded, compensated = (long_runs.drift(500_000, c) for c in (False, True))
-    assert compensated["of_kinetic"] < 5e-14  # 1e-12 / 20, for 1e7 / 20 steps
+    assert compensated["of_kinetic"] < 5e-14  # a twentieth of 1e-12, for a twentieth of 1e7 steps
     assert rounded["of_kinetic"] > 1.2 * compensated["of_kinetic"]
 
 
@@ -32,7 +32,7 @@ def test_roundings_that_are_carried_on_walk_a_hundred_times_less_far():
         (long_runs.walks(counts, 6, c) ** 2).mean(axis=0) ** 0.5 for c in (False, True)
     )
     assert (compensated < rounded / 100).all()
-    # a bias would grow with the steps, by 100
+    # a bias would grow with the number of steps, here by 100
     assert compensated[-1] < 30 * compensated[0]
 
 

@@ -1,6 +1,6 @@
-"""Simulated from their measured parameters, real pendulums swing as they were measured to.
+"""Real pendulums, simulated from their measured parameters, swing as they were measured to.
 
-The swings and what they are good to: examples/measured/README.md.
+examples/measured/README.md tells of the swings and how accurate they are.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ TO_BE_FITTED = {
     "double_identification_2": 0.03538,
 }
 BOUND = 0.025  # rad, with the start fitted
-NOISE = np.array([0.006, 0.006, 0.06, 0.06])  # of a row 0, rad and rad/s: see the last two tests
+NOISE = np.array([0.006, 0.006, 0.06, 0.06])  # in a row 0, rad, rad/s; shown by the last two tests
 
 
 class Swing(NamedTuple):
@@ -131,7 +131,7 @@ def changed(scene: pc.Scene, gravity: float, damping: float) -> pc.Scene:
     [(1, 0), (1, 2), (1, -1), (0.99, 1), (1.01, 1)],
     ids=["undamped", "damped twice", "damping of the wrong sign", "g - 1 %", "g + 1 %"],
 )
-@pytest.mark.filterwarnings("ignore::pendcore.PendcoreWarning")  # of the wrong sign
+@pytest.mark.filterwarnings("ignore::pendcore.PendcoreWarning")  # negative damping warns
 def test_no_start_within_the_noise_saves_a_wrong_model(
     name: str, gravity: float, damping: float
 ) -> None:
@@ -141,7 +141,7 @@ def test_no_start_within_the_noise_saves_a_wrong_model(
 
 
 def test_the_noise_was_not_chosen_generously() -> None:
-    """Five sixths of it, 5 mrad and 0.05 rad/s, are too little for one of the swings."""
+    """Five sixths of the noise, 5 mrad and 0.05 rad/s, are too little for one of the swings."""
     measured = swing("double_identification_1")
     less = 5 / 6 * NOISE
     fit = fitted(measured, measured.case.scene, noise=less)
@@ -154,7 +154,7 @@ def test_the_noise_was_not_chosen_generously() -> None:
     ]  # two searches in that box ended here
     off = largest_difference(measured, measured.case.scene, best)
     assert off == pytest.approx(0.02605, abs=1e-5)
-    for direction in np.eye(4):  # it is the best of its neighbours in the box
+    for direction in np.eye(4):  # no neighbour in the box is better
         for step in (-0.02, 0.02):
             near = best + step * less * direction
             near = np.clip(near, measured.row_0() - less, measured.row_0() + less)
@@ -185,7 +185,7 @@ def test_gentle_swings_do_not_tell_dampings_apart_and_the_triple_one_does(
 
 @pytest.mark.parametrize("name", [name for name in FROM_ROW_0 if name.startswith("double")])
 def test_angles_are_known_to_some_mrad_only(name: str) -> None:
-    """Whatever the start, the gentlest swings keep about as much as the noise of an angle."""
+    """From the best of starts, the gentlest swings still differ by about the noise of an angle."""
     measured = swing(name)
     fit = fitted(measured, measured.case.scene, noise=100 * NOISE)
     assert 0.75 * NOISE[0] < fit.difference * BOUND < NOISE[0]
@@ -193,7 +193,7 @@ def test_angles_are_known_to_some_mrad_only(name: str) -> None:
 
 @pytest.mark.parametrize("name", TO_BE_FITTED)
 def test_rates_are_known_to_some_hundredths_of_rad_per_second_only(name: str) -> None:
-    """The measured rates and the difference quotients of the measured angles disagree as much."""
+    """Measured rates and the difference quotients of measured angles disagree by that much."""
     t, q, qd = swing(name)[1:]
     quotients = (q[2:] - q[:-2]) / (t[2:] - t[:-2])[:, None]
     disagreement = np.sqrt(np.mean((quotients - qd[1:-1]) ** 2, axis=0))

@@ -1,4 +1,4 @@
-"""Whatever the method, the motion is the same: where stops end a phase, and where they do not."""
+"""Whatever the method, the motion is the same, whether stops end a phase or not."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def at_five_times(run: Drawn, **changes: object) -> np.ndarray:
 @settings(max_examples=150)
 @given(run=stopped_motions())
 def test_all_methods_agree_on_motions_with_stops(run: Drawn) -> None:
-    """The motions are regular: started 1e-8 apart, they stay as near; grazing a stop would not."""
+    """The motions are regular: started 1e-8 aside, they stay near, as none grazing a stop does."""
     wanted = at_five_times(run)
     for beside in (1e-8, -1e-8):
         moved = replace(run, qd0=[qd + beside for qd in run.qd0])

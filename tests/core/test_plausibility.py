@@ -92,9 +92,7 @@ def test_an_implausible_scene_is_warned_of_where_it_is_made(case):
     assert [warning.filename for warning in caught] == [__file__]
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        assert (
-            pickle.loads(pickle.dumps(scene)) == scene
-        )  # the warning came when the scene was made
+        assert pickle.loads(pickle.dumps(scene)) == scene  # it was warned of when made
 
 
 @pytest.mark.parametrize("case", RUNS)

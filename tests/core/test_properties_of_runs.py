@@ -22,7 +22,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::pendcore.PendcoreWarning")
 
 
 def solution(run: Drawn) -> pc.Solution:
-    """Solve, or take what an exception of the user's function brings along."""
+    """Return the run's solution, or the one that an exception of the user's function brings."""
     try:
         return run.simulate()
     except Exception as raised:
@@ -54,7 +54,7 @@ def test_any_run_keeps_the_claims(claim: Claim, run: Drawn, data: st.DataObject)
     ledger=st.booleans(),
 )
 def test_being_watched_changes_no_bit(run: Drawn, shares: list[float], ledger: bool) -> None:
-    """Sampled, stored in any form, with a ledger, shown to a progress bar: the same steps."""
+    """A run takes the same steps sampled, stored in any form, with a ledger or a progress bar."""
     times = np.unique(np.array(shares) * run.t_span[1])
     plain = run.simulate(store="steps")
     seen: list[float] = []

@@ -1,4 +1,4 @@
-"""The pure-Python reference itself: right before anything is compared with it. No core needed."""
+"""The pure-Python reference is right before anything is compared with it; no core is needed."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ FIFTY = multiple_precision(50)
 
 
 def moved(s: Number) -> tuple[list[Number], list[Number]]:
-    """Angles and rates a short time s later, to the second and the first order in s."""
+    """Return angles and rates a short time s later, to the second and first order in s."""
     qdd = newton_euler(BODIES, GRAVITY, Q, QD, couples=COUPLES, arithmetic=FIFTY).accelerations
     number = FIFTY.number
     q = [number(x) + s * number(w) + s * s / 2 * a for x, w, a in zip(Q, QD, qdd, strict=True)]
@@ -102,7 +102,7 @@ def test_the_nodes_are_the_row_sums() -> None:
 
 
 def weights_within_the_step(theta: Fraction) -> list[Fraction]:
-    """Weights of the stages in the continuous extension at ``theta``."""
+    """Return the weights of the stages in the continuous extension at ``theta``."""
     weights = []
     for i, (b, d) in enumerate(zip(dormand_prince.B, dormand_prince.D, strict=True)):
         start_bend = (i == 0) - b

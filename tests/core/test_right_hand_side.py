@@ -1,4 +1,4 @@
-"""Accelerations, joint forces, energies and mass centres at one instant, against the reference.
+"""Accelerations, joint forces, energies, mass centres at one instant agree with the reference.
 
 Errors are measured against the size of what they are made of: L qdd against the accelerations at
 hand (gravity and the centripetal ones), a force against that times the mass it moves. A component

@@ -41,7 +41,8 @@ driven = pc.Scene(links=[rod.links[0]] * 5, effects=[
 damped = pc.Scene(links=bouncing.links, effects=[fx.ViscousJoint(2, damping=1e5)])
 events = [pc.events.LinkAngle(2, 1.5), pc.events.TipLine(point=(0.3, 0.9), normal=(1.0, 0.5))]
 """
-# Angles near and far, a chaotic start, denormal rates; everything that a run leaves behind.
+# The runs have angles near and far, a chaotic start and denormal rates; everything that a run
+# leaves behind is compared.
 RUNS = """
 runs = [
     pc.simulate(book, [0.7853981633974483, 1.0471975511965976], 0, (0, 60)),
@@ -118,7 +119,7 @@ assert libm.fesetround(0x800) == 0
 
 @pytest.mark.parametrize("used", SETS)
 def test_the_long_doubles_of_the_host_program_are_left_alone(used):
-    """Registers of MMX are those of x87: a kernel that touches one leaves its stack full."""
+    """MMX registers are those of x87: a kernel that touches one leaves the x87 stack full."""
     script = """
 import numpy as np, pendcore as pc
 wave = pc.effects.Sinusoid(amplitude=1.0, angular_frequency=3.0)
@@ -140,7 +141,7 @@ for n in (1, 2, 3):
 @pytest.mark.parametrize(
     ("flags", "options", "sets"),
     [
-        # Warnings of the baseline alone no other build shows; one is wrong at -O1 (GCC 12).
+        # No other build shows the warnings of the baseline alone; one is wrong at -O1 (GCC 12).
         (
             "-O1 -Wno-maybe-uninitialized -DPENDCORE_BASELINE_ONLY",
             ["-DPENDCORE_WARNINGS_AS_ERRORS=ON"],
@@ -151,7 +152,7 @@ for n in (1, 2, 3):
     ids=["O1, the baseline alone", "O3"],
 )
 def test_every_optimisation_gives_the_same_bits(flags, options, sets, tmp_path):
-    """In ctest the same lines are compared in builds with -O2 and, under sanitizers, -Og."""
+    """The same lines are compared by ctest in builds with -O2 and, under sanitizers, with -Og."""
     always = ["-DPENDCORE_PYTHON=OFF", "-DPENDCORE_TESTS=ON", "-DCMAKE_BUILD_TYPE=None"]
     given = [*always, *options, f"-DCMAKE_CXX_FLAGS={flags}"]
     configure = [CMAKE, "-S", ROOT, "-B", tmp_path, *given]
@@ -210,7 +211,7 @@ def test_a_resumed_run_has_the_bits_of_one_that_never_stopped(method, store, sto
 
 
 def test_mirrored_starts_move_as_mirror_images():
-    # without gravity the plane may be turned over about the horizontal, q -> -q
+    # without gravity the plane may be turned over about the horizontal: q becomes -q
     floating = pc.Scene(links=BOOK.links, gravity=0.0)
     one = pc.simulate(floating, [0.3, 1.1], [2.0, -1.0], (0, 10))
     other = pc.simulate(floating, [-0.3, -1.1], [-2.0, 1.0], (0, 10))

@@ -67,7 +67,7 @@ def same_steps(one: pc.Solution, other: pc.Solution, signs: float = 1.0, s: floa
 def test_other_units_of_mass_and_length_change_no_bit(
     method: str, run: Drawn, powers: list[float]
 ) -> None:
-    """Neither the equations nor the step control has a mass or a length of its own."""
+    """Neither the equations nor the step control have a mass or a length of their own."""
     kg, m, _ = powers
     same_steps(run.simulate(method=method), in_units(run, Units(kg, m)).simulate(method=method))
 
@@ -75,7 +75,7 @@ def test_other_units_of_mass_and_length_change_no_bit(
 @pytest.mark.parametrize("method", ADAPTIVE)
 @given(run=motions(WITH_FRICTION), powers=powers)
 def test_other_units_of_time_change_no_bit(method: str, run: Drawn, powers: list[float]) -> None:
-    """The first step is given: Hairer's rule compares rates of angles with rates of rates."""
+    """The first step is given, as Hairer's rule compares rates of angles with rates of rates."""
     run.options |= {"first_step": 2.0**-10, "method": method, "ledger": True}
     kg, m, s = powers
     one, other = run.simulate(), in_units(run, Units(kg, m, s)).simulate()
@@ -91,7 +91,7 @@ def test_other_units_of_time_change_no_bit(method: str, run: Drawn, powers: list
 def test_other_units_change_no_bit_of_impacts_and_contact(
     method: str, run: Drawn, powers: list[float]
 ) -> None:
-    """Where nothing drives the joints, their speed is compared with 1 rad/s, which sets a time."""
+    """Undriven joints' speed is compared with 1 rad/s, which is a unit of time of its own."""
     kg, m, s = powers if run.scene.gravity else (*powers[:2], 1.0)
     run.options |= {"first_step": 2.0**-10, "method": method}
     same_steps(run.simulate(), in_units(run, Units(kg, m, s)).simulate(), s=s)
@@ -115,7 +115,7 @@ def test_upside_down_changes_no_bit(method: str, run: Drawn) -> None:
 
 @pytest.mark.parametrize("kind", sorted(MIRRORED & set(KINDS)))
 def test_every_kind_of_effect_has_its_mirror_images(kind: str) -> None:
-    """The scenes include those that hypothesis seldom meets, such as each mode of a motor."""
+    """The seeds also reach what hypothesis seldom meets, such as one of the modes of a motor."""
     for seed in range(25):
         run = motion_of_seed(f"{kind}/{seed}", kind)
         n = len(run.q0)
@@ -145,7 +145,7 @@ def near(found: np.ndarray, wanted: np.ndarray) -> None:
 
 
 def at_five_times(run: Drawn, **changes: object) -> np.ndarray:
-    """States at fifths of the span; the run must get there."""
+    """Return the states at fifths of the span; the run must get there."""
     sol = run.simulate(**changes)
     assert sol.status in ("finished", "stuck", "at_rest"), sol.message
     return sol(np.linspace(0, 1, 6) * sol.run.t_reached)
@@ -162,9 +162,9 @@ def test_left_to_right_is_the_mirrored_motion(method: str, run: Drawn) -> None:
 
 @pytest.mark.parametrize("seed", range(100))
 def test_left_to_right_impacts_and_contact_are_the_mirrored_ones(method: str, seed: int) -> None:
-    """The same motions each time: of thousands there is one that meets two stops within rounding.
+    """The motions are the same each time, as one in thousands meets two stops within rounding.
 
-    Which blow is the first then decides what follows, and the mirror image rounds.
+    Which blow comes first then decides what follows, and the mirror image may round them otherwise.
     """
     run = stopped_motion_of_seed(f"stopped/{seed}")
     n = len(run.q0)

@@ -1,4 +1,4 @@
-"""Threads share scenes and solutions at the same time, and each gets the bits of a run alone."""
+"""Threads of Python share scenes and solutions at once, and each gets the bits of one alone."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def test_threads_on_one_scene_and_one_solution_compute_what_one_alone_does(scene
 
 
 def test_others_run_while_the_core_computes() -> None:
-    """A run releases Python's lock, so another thread does not wait for its end."""
+    """A run holds no lock of Python's, so no thread beside it has to wait until the run ends."""
     longest = 0.0
     over = threading.Event()
 

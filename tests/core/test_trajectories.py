@@ -1,4 +1,4 @@
-"""Whole motions: against multiple precision, Octave, and the method written out in Python."""
+"""Whole motions agree with multiple precision, Octave, and the method written out in Python."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ BOUNDS = {
     "textbook": 2e-10,
     "textbook_long": 2e-8,
     "horizontal_rest": 3e-9,
-    "high_energy": 1e-3,  # chaotic: 1e-16 at the start is 1e-8 at the end
+    "high_energy": 1e-3,  # chaotic: an error of 1e-16 at the start is 1e-8 at the end
     "unequal": 5e-8,
     "heavy_tip": 1e-8,
     "light_tip": 1e-8,
@@ -74,9 +74,9 @@ def test_the_textbooks_program_ends_where_octaves_ode45_does() -> None:
     np.testing.assert_allclose(sol(5.0), octave, rtol=0, atol=2e-9)
 
 
-# Two programs of one method differ by rounding. A step size feels it most: a rounding of 1e-16 is
-# 1e-10 of an error of 1e-6, and the motion magnifies it. So the runs are loose and not long; the
-# method itself errs by far more than the bounds.
+# Two programs of one method differ by rounding, which the step size feels most: a rounding of
+# 1e-16 is 1e-10 of an error of 1e-6, and the motion magnifies it. So the runs are loose and not
+# long, and the method itself errs by far more than the bounds.
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6])
 @pytest.mark.parametrize("direction", [1, -1], ids=["forward", "backward"])
 @pytest.mark.parametrize(

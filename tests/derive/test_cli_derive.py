@@ -1,4 +1,4 @@
-"""`pendcore derive`: every form to the screen or into a file; mistakes in a line."""
+"""`pendcore derive` writes every form to the screen or a file, and tells mistakes in a line."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def test_what_cannot_be_derived_is_told_in_a_line(
 def test_a_report_is_written_into_a_folder(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setenv("PATH", "")  # no converter: Markdown and its figures
+    monkeypatch.setenv("PATH", "")  # without a converter Markdown and figures are left
     assert main(["derive", "--to", "report"]) == 0
     out, err = capsys.readouterr()
     assert out == ""

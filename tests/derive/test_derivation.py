@@ -45,7 +45,7 @@ every_chain = pytest.mark.parametrize(("name", "n"), CASES)
 
 
 def assert_close(computed: npt.ArrayLike, exact: Any) -> None:
-    """Compare the components with the largest of them."""
+    """Compare the components, with errors relative to the largest of them."""
     exact = np.array(exact, dtype=float)
     error = np.max(np.abs(np.asarray(computed) - exact))
     assert error <= TOLERANCE * np.max(np.abs(exact)), (computed, exact)
@@ -164,7 +164,7 @@ def test_the_powers_are_those_of_the_reference(kind: str, n: int) -> None:
 
 
 def described(effect: Any) -> dict[str, Any]:
-    """The parameters of an effect as the reference takes them."""
+    """Return the parameters of an effect as the reference takes them."""
     return {
         name: x.particulars() if isinstance(x, pc.effects.Part) else x
         for name, x in effect.particulars().items()
@@ -197,7 +197,7 @@ def test_lagrange_s_equations_are_the_same_exactly(n: int) -> None:
 
 
 def equal_rods(derivation: Derivation) -> dict[Any, Any]:
-    """The textbook's rods, of equal mass m and length L."""
+    """Return what gives the textbook's rods equal mass m and length L, and lets them rest."""
     s = derivation.symbols
     return {s.masses[1]: s.masses[0], s.lengths[1]: s.lengths[0]} | dict.fromkeys(s.qd, 0)
 
@@ -247,7 +247,7 @@ def test_two_of_a_kind_in_one_joint_have_symbols_of_their_own() -> None:
     assert [s.name for s in two.values if s not in one.values] == ["b_1__2"]
     assert len(two.powers) == 2
     same = Derivation(pc.Scene(links=[rod], effects=[damper, damper]))
-    assert len(same.powers) == 1  # equal effects are one key
+    assert len(same.powers) == 1  # equal effects share one key
     assert same.energy_rate() == 0
 
 

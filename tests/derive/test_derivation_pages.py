@@ -38,7 +38,7 @@ def test_the_students_lines_run(capsys, tmp_path, monkeypatch):
 
 def test_the_teachers_lines_run(capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("PATH", "")  # Markdown alone
+    monkeypatch.setenv("PATH", "")  # then only Markdown is written
     sheets, marking = blocks("derive_teacher.md")
     exec(sheets, {})
     for name in ("ada", "emmy"):
@@ -62,4 +62,4 @@ def test_the_figures_of_the_pages_are_those_of_the_report(tmp_path, monkeypatch)
             for path in (tmp_path / f"{name}.png", ROOT / f"docs/figures/derive_{name}.png")
         )
         assert drawn.shape == kept.shape
-        assert np.abs(drawn - kept).mean() < 0.01  # what another font changes is less
+        assert np.abs(drawn - kept).mean() < 0.01  # another font changes less than that

@@ -43,7 +43,7 @@ def test_numbers_of_the_textbook_are_given_once_and_what_is_referred_to_is_there
 
 @pytest.mark.parametrize("name", SETS)
 def test_a_number_is_that_of_the_textbook_s_equation(name: str) -> None:
-    """The fixed pivot has (2.1), (2.2), (2.10); link 2 all others; (2.5) is the determinant."""
+    """A fixed pivot has (2.1), (2.2), (2.10), link 2 has all others; (2.5) is the determinant."""
     derivation = derived(name, 2)
     found = {e.number: str(e) for e in equations(derivation) if e.number}
     of_a_fixed_pivot = {"2.1", "2.2", "2.10"}

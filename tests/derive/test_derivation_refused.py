@@ -24,7 +24,7 @@ def derive(*effects: object, n: int = 2) -> Derivation:
 def test_every_kind_has_a_law_or_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     assert not LAWS.keys() & WITHOUT_LAW.keys()
     assert LAWS.keys() | WITHOUT_LAW.keys() <= fx.kinds().keys()
-    monkeypatch.delitem(LAWS, "payload")  # as of a new effect
+    monkeypatch.delitem(LAWS, "payload")  # as if the effect were new
     with pytest.raises(ValueError, match=r"^effect 1, Payload\(mass=0\.5\): .* nobody has written"):
         derive(fx.Payload(mass=0.5))
 
@@ -104,7 +104,7 @@ def test_the_growth_is_what_the_message_says(n: int) -> None:
     derivation = derive(n=n)
     assert sum(a.count_ops() for a in derivation.accelerations) == WRITTEN_OUT[n - 1]
     shared = [value for _, value in derivation.shared] + list(derivation.shared_accelerations)
-    assert sum(value.count_ops() for value in shared) < 10 * n**3  # a polynomial, no exponential
+    assert sum(value.count_ops() for value in shared) < 10 * n**3  # polynomial, not exponential
 
 
 def test_a_report_is_of_a_case_of_its_scene(tmp_path: object) -> None:

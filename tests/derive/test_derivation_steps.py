@@ -40,7 +40,7 @@ def scalars(derivation: Derivation) -> list[Equation]:
 
 
 def motion(name: str, n: int, seed: int) -> tuple[dict[Any, float], pc.Solution]:
-    """A state of a scene with what the core says of it, by the symbols of the derivation."""
+    """Return what the core says of a state, by the derivation's symbols, and its solution."""
     drawn = scene(name, n, seed)
     (state,) = states(drawn, seed, count=1)
     now = pc.simulate(drawn, state.q, state.qd, t_span=(state.t, state.t), store="steps")
@@ -77,7 +77,7 @@ def test_every_printed_equation_holds_on_a_motion_of_the_core(name: str, n: int)
     payload = derived(name, n).equations.payload
     for symbol, law in derived(name, n).chain.path.items():
         known[symbol] = value(law, known)
-    if payload is not None:  # the core does not tell of it
+    if payload is not None:  # the core does not tell the payload's force
         solved = derived(name, n).equations.solved_forces
         known |= {x: value(solved[x].xreplace(known), known) for x in payload.force}
     for equation in scalars(derived(name, n)):
@@ -87,13 +87,13 @@ def test_every_printed_equation_holds_on_a_motion_of_the_core(name: str, n: int)
             continue
         assert abs(value(equation.lhs, known) - right) <= 1e-11 * size, str(equation)
         held += 1
-    assert held >= 5 * n  # of Newton's and Euler's alone 3 n, and as many again are solved
+    assert held >= 5 * n  # Newton's and Euler's alone are 3 n; as many again are solved
     check_first_order(n, known, now)
     check_energy(derived(name, n), known, now)
 
 
 def check_first_order(n: int, known: dict[Any, float], now: pc.Solution) -> None:
-    """States have the textbook's order: x(1) = q1, x(2) = qd1, and so on."""
+    """Check the textbook's order of states: x(1) = q1, x(2) = qd1, and so on."""
     named = {symbol.name: x for symbol, x in known.items()}
     order = np.arange(2 * n).reshape(2, n).T.ravel()
     rates = np.concatenate([now.qd[0], now.accelerations()[0]])[order]
@@ -102,7 +102,7 @@ def check_first_order(n: int, known: dict[Any, float], now: pc.Solution) -> None
 
 
 def check_energy(derivation: Derivation, known: dict[Any, float], now: pc.Solution) -> None:
-    """Energies are the core's, and the powers that are named add up to their change."""
+    """Check that the energies are the core's, and that their change is the sum of the powers."""
     named = {symbol.name: x for symbol, x in known.items()}
     kinetic, potential = now.energy().kinetic[0], now.energy().potential[0]
     assert named["T"] == pytest.approx(kinetic, rel=1e-13)
@@ -190,7 +190,7 @@ def test_latex_is_balanced_and_knows_every_symbol(name: str, n: int) -> None:
         assert latex.count("{") == latex.count("}")
         assert latex.count(r"\left") == latex.count(r"\right")
         assert latex.count("&=") == 1
-        assert not re.search(r"\}\^\{[^{}]*\}\^", latex), latex  # a superscript on another
+        assert not re.search(r"\}\^\{[^{}]*\}\^", latex), latex  # no superscript on another
         words = set(re.findall(r"(?<![\\A-Za-z])[A-Za-z]{2,}", re.sub(r"\\begin.*?}", "", latex)))
         assert words <= {"vmatrix", "AB", "AC", "AP"}, latex
     whole = derivation.latex()
@@ -226,7 +226,7 @@ def test_text_fits_a_terminal_and_loses_nothing(name: str, n: int) -> None:
         pieces = shown.replace("\n        ", " ")
         assert all(f"    {equation}" in pieces for equation in step.equations)
         for line in shown.splitlines():
-            assert len(line) <= 100 or " " not in line.strip()  # a factor that is longer
+            assert len(line) <= 100 or " " not in line.strip()  # only one factor may be longer
 
 
 def test_a_derivation_pickles_by_its_scene() -> None:

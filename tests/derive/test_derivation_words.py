@@ -1,4 +1,4 @@
-"""What a derivation says about effects is true for any number of them, on every joint."""
+"""What a derivation says of effects is true for any number of them and on every joint."""
 
 from __future__ import annotations
 

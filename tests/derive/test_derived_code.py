@@ -82,7 +82,7 @@ def test_python_takes_one_state_or_axes_of_many(name: str) -> None:
 
 @scenes
 def test_powers_are_the_rate_of_the_energy(name: str) -> None:
-    """In small steps along the motion."""
+    """The rate comes from small steps along the motion."""
     made, core = module(name), asked(name)
     q, qd, h = core.q.T, core.qd.T, 1e-5
     qdd = made.accelerations(core.t, q, qd)
@@ -158,7 +158,7 @@ int main() {{
 
 @pytest.fixture(scope="module")
 def told_by_cpp(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Floats]:
-    """Return rows of dy/dt, forces and energies of a program with all headers and no warning."""
+    """Return dy/dt, forces and energies: all headers in one program, no warning allowed."""
     folder = tmp_path_factory.mktemp("headers")
     for name in SCENES:
         (folder / f"{name}.hpp").write_text(header(derived(name), "Chain", name))
@@ -208,13 +208,13 @@ def in_octave(script: str, folder: Path) -> list[list[float]]:
 
 
 def woven(q: Floats, qd: Floats) -> Floats:
-    """The textbook's order, q1, q1', q2, q2', ..."""
+    """Return the state in the textbook's order, q1, q1', q2, q2', ..."""
     return np.stack([q, qd], axis=-1).reshape(*np.shape(q)[:-1], -1)
 
 
 @pytest.fixture(scope="module")
 def told_by_octave(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Floats]:
-    """Rows of dx, of the function file, of the file written out, and of the inline function."""
+    """Return dx by the function file, by the file written out, and by the inline function."""
     folder = tmp_path_factory.mktemp("octave")
     script = ["1;"]
     for name in SCENES:
@@ -247,7 +247,7 @@ def test_octave_says_what_the_core_does(name: str, told_by_octave: dict[str, Flo
 @octave
 @pytest.mark.outside_build
 def test_the_book_s_lines_give_the_book_s_figure(tmp_path: Path) -> None:
-    """RR.m with ode45 as printed there; then at tolerances at which digits can be compared."""
+    """RR.m runs with ode45 as printed there, then at tolerances that let digits be compared."""
     (tmp_path / "RR.m").write_text(Derivation.textbook().to_octave())
     (tmp_path / "g.m").write_text(Derivation.textbook().to_octave_inline())
     said = in_octave(
@@ -269,7 +269,7 @@ def test_the_book_s_lines_give_the_book_s_figure(tmp_path: Path) -> None:
     drawn = np.reshape(said[0], (-1, 5))
     assert len(drawn) > 30
     off = np.degrees(drawn[:, 1::2] - np.array([run(t)[:2] for t in drawn[:, 0]]))
-    assert np.abs(off).max() < 1.0  # degrees, of curves that span 180: no wider than their lines
+    assert np.abs(off).max() < 1.0  # in degrees; curves that span 180 have wider lines
     for end in said[1:]:
         np.testing.assert_allclose(end, woven(run.q[-1], run.qd[-1]), rtol=0, atol=1e-7)
 
@@ -322,7 +322,7 @@ def test_lines_fit_a_page() -> None:
 
 
 def test_the_example_s_header_is_what_is_written_now() -> None:
-    """With the versions that wrote it; others may share other subexpressions."""
+    """Only the versions that wrote it are compared; others may share other subexpressions."""
     kept = (EXAMPLES / "10_generated_header.hpp").read_text()
     case = pc.read_case(EXAMPLES / "10_generated_header.toml")
     written = Derivation(case.scene).to_cpp()
@@ -333,14 +333,14 @@ def test_the_example_s_header_is_what_is_written_now() -> None:
 
 
 def blocks(language: str) -> list[str]:
-    """The code on the engineer's page."""
+    """Return the blocks of code on the engineer's page."""
     page = (EXAMPLES.parent / "docs/derive_engineer.md").read_text()
     return re.findall(rf"```{language}\n(.*?)```", page, re.DOTALL)
 
 
 @pytest.fixture
 def as_the_page_says(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The engineer's folder: the case file that the page shows, and what its commands write."""
+    """Make the engineer's folder: the page's case file, and what the page's commands write."""
     page = (EXAMPLES.parent / "docs/derive_engineer.md").read_text()
     (shown,) = blocks("toml")
     (tmp_path / "arm.toml").write_text(shown)

@@ -1,4 +1,4 @@
-"""How expressions of a derivation are written in a language, and what they share is found."""
+"""A derivation's expressions are written in each language, and what they share is found."""
 
 from __future__ import annotations
 

@@ -38,7 +38,7 @@ INSTANT: Any = Instant(q1=q1, q2=q2, w1=w1, w2=w2, a1=a1, a2=a2, F21=(F21x, F21y
 
 
 def with_forces(line: Balance) -> Balance:
-    """The program has its F21 from Newton's equations, where the text keeps it as unknown."""
+    """Put in F21 from Newton's equations, as the program does; the text keeps it unknown."""
     return Balance(line.inertia, line.acting.xreplace(BOOK.equations.solved_forces))
 
 
@@ -81,7 +81,7 @@ def test_what_is_printed_differs_from_what_is_derived_by_what_the_page_says(
 
 
 def system(repairs: Repairs) -> tuple[Any, Any]:
-    """Mass matrix and right side of the printed (2.10) and (2.11)."""
+    """Return the mass matrix and right side of the printed (2.10) and (2.11)."""
     lines = [
         sympy.expand(equation(PENDULUM, INSTANT, repairs))
         for equation in (printed.equation_2_10, printed.equation_2_11)

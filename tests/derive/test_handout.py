@@ -1,4 +1,4 @@
-"""The report and the worksheet of a case are right and complete, and have units."""
+"""The report and the worksheet of a case say what is true, with units, and are whole."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ def test_what_the_derivation_says_of_the_start_is_what_the_core_says(handed_out:
 
 def test_at_rest_there_is_no_rounding_to_be_seen() -> None:
     rods = [pc.Link(mass=1.0, length=1.0), pc.Link(mass=2.0, length=0.7)]
-    case = pc.Case(scene=pc.Scene(links=rods), q0=np.pi / 2, t_span=(0, 1))  # cos q is 6e-17
+    case = pc.Case(scene=pc.Scene(links=rods), q0=np.pi / 2, t_span=(0, 1))  # cos(pi/2) is 6e-17
     text = report(Derivation(case.scene), case, motion.solved(case)).markdown()
     for name in (r"\ddot{q}_{1}", r"\ddot{q}_{2}", "F_{01x}", "F_{21x}"):
         assert f"| ${name}$ | $0$ | $0$ |" in text
@@ -145,7 +145,7 @@ def test_a_run_that_takes_no_time_is_refused() -> None:
 
 
 def test_free_bodies_have_the_couples_of_the_equations(handed_out: Any) -> None:
-    """At each joint that has one: on the link that begins there, and against it before."""
+    """A joint's couple acts on the link that begins there, and reversed on the link before."""
     case, derivation, *_ = handed_out
     shown = [
         text.get_text()
@@ -181,7 +181,7 @@ def test_a_worksheet_gives_nothing_away(handed_out: Any) -> None:
             assert f"${number(own)}$" not in text
     assert "free bodies" in whole.markdown()
     assert {drawing.name for drawing in blank.drawings} == {"mechanism", "links", "axes"}
-    assert "links" not in {drawing.name for drawing in whole.drawings}  # they share a folder
+    assert "links" not in {drawing.name for drawing in whole.drawings}  # both share a folder
 
 
 def test_no_left_side_of_a_worksheet_is_the_answer_to_a_blank(handed_out: Any) -> None:
@@ -268,7 +268,7 @@ def test_the_page_needs_no_other_file_and_no_network(handed_out: Any) -> None:
         if block.number:
             assert f"({block.number})" in text
     unread = re.sub(r"<annotation.*?</annotation>|<style.*?</style>", "", text, flags=re.DOTALL)
-    assert not re.search(r"\\[a-zA-Z]+|\$", unread)  # no LaTeX that pandoc could not read
+    assert not re.search(r"\\[a-zA-Z]+|\$", unread)  # pandoc could read all LaTeX
 
 
 @needs_latex
@@ -291,7 +291,7 @@ def test_pandoc_and_people_read_the_same_figures() -> None:
 
 
 def test_no_table_is_parted_by_the_end_of_a_page() -> None:
-    """The page break comes before it, or before the paragraph that leads to it."""
+    """Room for a table is asked for before it, or before the paragraph that leads to it."""
     document = report(Derivation(LEVEL.scene), LEVEL, motion.solved(LEVEL))
     paragraphs = document.markdown(Reader.LATEX).split("\n\n")
     tables = [i for i, text in enumerate(paragraphs) if text.startswith("| ")]

@@ -1,4 +1,4 @@
-"""In the figures of the handout arrows point the right way, and names cover nothing."""
+"""In the figures of the handout arrows point the right way, and names lie on nothing."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ effects = pc.effects
 def test_arrows_point_the_way_that_counts_as_positive(
     n: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """F_01 along +x and +y on link 1; F_21 so on link 1, and the other way round on link 2."""
+    """On link 1 F_01 and F_21 point along +x and +y; on link 2 F_21 is the other way round."""
     drawn: list[list[tuple[str, list[float]]]] = []
     sketch, arrow = drawing.sketch, drawing.arrow
 
@@ -67,7 +67,7 @@ def test_the_mechanism_is_drawn_as_it_starts_with_y_down(name: str) -> None:
 
 @pytest.mark.parametrize("seed", range(30))
 def test_names_in_figures_lie_on_nothing(seed: int) -> None:
-    """Names lie neither on each other nor on a link; this is measured where they are drawn."""
+    """Names lie neither on each other nor on a link, as measured where they are drawn."""
     rng = np.random.default_rng(seed)
     n = 1 + seed % 4
     q = np.radians(rng.choice([0.0, 15.0, 30.0, 70.0, 90.0, 110.0, 180.0, -40.0], n))

@@ -1,4 +1,4 @@
-"""The numbers of a report: laws, start, locks, method and largest reactions, without rounding."""
+"""A report tells laws, start, locks, method and largest reactions, and no rounding of 0."""
 
 from __future__ import annotations
 

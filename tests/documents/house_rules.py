@@ -20,7 +20,7 @@ Rule = Callable[[Path], Iterator[str]]
 CODE = {".hpp", ".cpp", ".py", ".pyi", ".cmake", ".sh"}
 FOLDERS = ["cpp", "python", "tests", "bench", "examples", "docs", "setup"]
 
-# Data flows one way. Each stage of the C++ core is a folder, and may include what is named here.
+# Data flows one way. Each stage of the C++ core is a folder that may include those named here.
 # dynamics and integrate know nothing of each other; they meet in simulate.
 CPP_FLOW = {
     "arithmetic": set[str](),
@@ -114,7 +114,7 @@ def sources_stand_where_their_headers_do(root: Path) -> Iterator[str]:
 
 
 def imports_of(tree: ast.AST, where: str = "") -> Iterator[tuple[str, str]]:
-    """The package's modules that a file imports, and where, if not in the open."""
+    """Yield the package's modules that a file imports, and where, if not in the open."""
     for node in ast.iter_child_nodes(tree):
         if isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
@@ -135,13 +135,13 @@ def imports_of(tree: ast.AST, where: str = "") -> Iterator[tuple[str, str]]:
 
 
 def layer_of(module: str) -> str:
-    """The layer of a module, or of a name in it: `pendcore` for what is in no folder."""
+    """Return the layer of a module or of a name in it; what is in no folder is `pendcore`."""
     names = module.split(".")
     return names[1] if len(names) > 1 and names[1] in PYTHON_LAYERS else names[0]
 
 
 def modules_of(root: Path) -> dict[str, Path]:
-    """The package's files by the names under which they are imported."""
+    """Return the package's files by the names under which they are imported."""
     found = {}
     for path in files(root, {".py"}, "python/pendcore"):
         names = path.relative_to(root / "python").with_suffix("").parts
@@ -165,7 +165,7 @@ def imports_go_down(root: Path) -> Iterator[str]:
                 yield f"{place} has a relative import"
             elif PYTHON_LAYERS.index(layer_of(name)) > PYTHON_LAYERS.index(layer):
                 yield f"{place} ({layer}) imports {name}, which is above it"
-        # The one module that is loaded by its name is a name of the package: SymPy is an extra.
+        # Only the package's own files may load a module by its name, because SymPy is an extra.
         if layer != "pendcore" and re.search(r"\b(import_module|__import__)\b", ast.unparse(tree)):
             yield f"{place} imports a module by its name"
 

@@ -48,7 +48,7 @@ def test_all_ways_solve_the_book_s_case(tmp_path: Path) -> None:
     for (_, tolerance), facts in looked.items():
         assert facts["error"] < 30 * float(tolerance)
         assert facts["right_hand_sides"] > 30
-    for tolerance in book_speed.TOLERANCES:  # one function in three forms: the same steps
+    for tolerance in book_speed.TOLERANCES:  # three forms of a function take the same steps
         counts = {
             looked[way, tolerance]["right_hand_sides"] for way in ("inline", "file", "shared")
         }

@@ -1,4 +1,4 @@
-"""The project keeps its house rules, and each rule finds a breach of it."""
+"""The project keeps its house rules, and each rule finds a breach of its own."""
 
 from __future__ import annotations
 

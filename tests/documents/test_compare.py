@@ -1,4 +1,4 @@
-"""What the comparison rests on: the measure of error, the interpolation, the turns taken."""
+"""The comparison rests on these: the measure of error, the interpolation, the turns taken."""
 
 from __future__ import annotations
 
@@ -143,7 +143,7 @@ def test_slow_runs_have_fewer_turns_spread_over_all_rounds() -> None:
     found = interleave(runs, range(30), 0.0, seconds_a_run=1.0)
     calls = {name: timing.calls for name, timing in found.items()}
     assert calls == {"quick": 30, "slow": 10, "endless": 3}
-    late = turns[-14:]  # of the last ten rounds
+    late = turns[-14:]  # the turns of the last ten rounds
     assert late.count("slow") in (3, 4)
     assert "endless" in late
 

@@ -1,4 +1,4 @@
-"""Best against best: who is compared with whom, at which errors, and what is said of it."""
+"""Best is compared with best: who with whom, at which errors, and what is said of it."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ IN_CPP, HELD_BACK, IN_PYTHON = SIDES
 def contender(
     name: str, times: dict[float, float], sides: tuple[str, ...], **other: Any
 ) -> dict[str, Any]:
-    """Make a contender whose settings are its errors; a median is four minima, of ours two."""
+    """Make a contender whose settings are its errors; a peer's median is four minima, ours two."""
     ours = name.startswith("pendcore")
     return {
         "name": name,

@@ -1,4 +1,4 @@
-"""What the comparison of chains rests on: the dense answer, the ratios, the promises' verdicts."""
+"""The comparison of chains rests on the dense answer, the ratios, and the promises' verdicts."""
 
 from __future__ import annotations
 

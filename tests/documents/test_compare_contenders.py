@@ -105,7 +105,7 @@ def test_a_case_that_no_closed_form_is_of_is_refused(case: Case) -> None:
 
 
 CARRIED = {"damped": DAMPED, "three": THREE, "bare": BARE}
-# Right to a thousandth of the length at a middling setting: no contender is given another case.
+# All are right to a thousandth of the length at a middling setting, so all have the same case.
 SETTINGS = {"tolerance": 1e-7, "step": 2e-3}
 
 

@@ -1,4 +1,4 @@
-"""What the comparison of effects rests on: differences from the bare scene, and the verdicts."""
+"""The comparison of effects rests on differences from the bare scene, and on the verdicts."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ ALIKE = {"scene": 160.0, "kernel": 160.0, "one_effect_more": 160.0}
 
 
 def effect(name: str, more: dict[str, float], **other: Any) -> dict[str, Any]:
-    """Make an effect that adds `more` to the bare times, and the instructions said."""
+    """Make an effect that adds `more` to the bare times, and as many instructions as said."""
     counted = {"call": 100 + other.pop("instructions", 0), "step": 100}
     return {
         "name": name,

@@ -1,4 +1,4 @@
-"""The comparison as a whole: each alone, its pages made of the record and of nothing else."""
+"""Each part of the comparison runs alone; pages are made of the record and nothing else."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-# What `make compare` asks for, and `make test` alone does not: .ci/run has it.
+# `make compare` asks for these, and `make test` alone does not; .ci/run has them.
 pytest.importorskip("numba")
 pytest.importorskip("scipy")
 
@@ -50,7 +50,7 @@ def test_page_on_all_solves_is_what_the_records_say() -> None:
     assert all(f"({stem}.md)" in written for stem in [*known, "chains", "effects"])
 
 
-# What the comparison is for: a record without one of them would be of something else.
+# The comparison is for these: a record without one of them would be of something else.
 FAMILIES = ("pendcore_dop", "pendcore_rk4", "odeint", "arkode", "cvode", "heyoka", "cyrk", "scipy")
 
 

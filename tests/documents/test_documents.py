@@ -33,7 +33,7 @@ def test_links_lead_somewhere(path):
 
 @pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: str(path.relative_to(ROOT)))
 def test_a_page_imports_what_its_lines_use(path):
-    """What the page shows can be pasted, from the top."""
+    """The lines of a page can be pasted, from the top."""
     above = ""
     for code in re.findall(r"```python\n(.*?)```", path.read_text(), re.DOTALL):
         above += code
@@ -88,7 +88,7 @@ def test_make_demo_says_where_the_command_is_what_takes_long_and_brings_what_com
 
 
 def test_the_page_by_hand_has_the_numbers_of_its_formulas(capsys):
-    """In 25 digits, without the core; the core prints the last two."""
+    """The formulas are worked out in 25 digits without the core; it prints the last two."""
     page = (ROOT / "docs/by_hand.md").read_text()
     told = re.findall(r"\| (-?[\d.]+) \|$", page, re.MULTILINE)
     with mpmath.workdps(25):
@@ -127,7 +127,7 @@ def hard_case() -> str:
 
 
 def test_ten_lines_draw_the_hard_case_of_the_first_steps(tmp_path, monkeypatch):
-    """The picture on the page is drawn by these lines, and the grey in it is exact rest."""
+    """The lines draw the picture on the page, and the grey in it is exact rest."""
     mpl.use("Agg")
     monkeypatch.chdir(tmp_path)
     lines = [line for line in hard_case().splitlines() if line.strip()]
@@ -140,7 +140,7 @@ def test_ten_lines_draw_the_hard_case_of_the_first_steps(tmp_path, monkeypatch):
         for path in (tmp_path / "stick_slip.png", ROOT / "docs/figures/stick_slip.png")
     )
     assert drawn.shape == kept.shape
-    assert np.abs(drawn - kept).mean() < 0.01  # what another font changes is less
+    assert np.abs(drawn - kept).mean() < 0.01  # another font changes less than that
     # At first the motor of 10 sin t has to overcome 5 N m; later the second joint stops when
     # hybrid_chain.py says, and the first lets go when it no longer holds motor and weights.
     slow = names["slow"]

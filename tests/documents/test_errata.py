@@ -27,7 +27,7 @@ def bodies(p: Pendulum) -> list[Body]:
 
 
 def true_instant(p: Pendulum, gravity: float, state: list[float]) -> Instant:
-    """A motion under Newton's laws; gravity < 0 is the same pendulum with y upward."""
+    """Return an instant under Newton's laws; gravity < 0 is the same pendulum with y upward."""
     q1, q2, w1, w2 = state
     motion = newton_euler(bodies(p), gravity, (q1, q2), (w1, w2))
     a1, a2 = motion.accelerations
@@ -51,8 +51,8 @@ DOWN, UP = "y downward", "y upward"
 EQUATIONS = [
     (printed.determinant_of_2_1, {UP}),
     (printed.equation_2_2, {UP}),
-    (printed.x_line_of_2_5, {DOWN, UP}),  # and so (2.6)
-    (printed.y_line_of_2_5, {UP}),  # and so (2.7)
+    (printed.x_line_of_2_5, {DOWN, UP}),  # and with it (2.6)
+    (printed.y_line_of_2_5, {UP}),  # and with it (2.7)
     (printed.determinant_of_2_5, {DOWN, UP}),
     (printed.equation_2_8, set()),
     (printed.x_line_of_2_9, {DOWN, UP}),

@@ -1,4 +1,4 @@
-"""Each case in examples/cases does what the comment at its head says."""
+"""Each case in examples/cases does what the comment at the head of its file says."""
 
 from __future__ import annotations
 
@@ -79,9 +79,9 @@ def test_a_stick_leans_in_the_wind_as_its_weight_lets_it() -> None:
     weight = stick.mass * sol.scene.gravity
     wind = drag.air_density * drag.drag_coefficient * drag.diameter * stick.length / 2
     wind *= drag.wind[0] ** 2
-    # wind (1 - cos^2 q) = weight cos q
+    # The stick rests where wind (1 - cos^2 q) = weight cos q.
     leaning = np.arccos((np.hypot(weight, 2 * wind) - weight) / (2 * wind))
-    assert sol.q[:, 0].min() < 0 < leaning  # it swings up beyond the horizontal at first
+    assert sol.q[:, 0].min() < 0 < leaning  # at first the stick swings up beyond the horizontal
     assert sol.q[-1, 0] == pytest.approx(leaning, abs=1e-5)
     assert abs(sol.qd[-1, 0]) < 1e-4
 

@@ -1,4 +1,4 @@
-"""The page of the random cases is what a full campaign left, and nothing failed in it."""
+"""The page of the random cases is what a full campaign left, and nothing in it failed."""
 
 from __future__ import annotations
 

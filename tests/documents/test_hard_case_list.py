@@ -1,4 +1,4 @@
-"""The hard cases that every release passes have tests, and the page that shows them its record."""
+"""The hard cases that every release passes have tests, and their page has its record."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def test_the_figures_are_drawn_from_the_record_alone(tmp_path: Path) -> None:
             matplotlib.image.imread(folder / file) for folder in (tmp_path, ROOT / "docs/figures")
         )
         assert drawn.shape == kept.shape
-        assert abs(drawn - kept).mean() < 0.01, name  # what another font changes is less
+        assert abs(drawn - kept).mean() < 0.01, name  # another font changes less than that
 
 
 def case(**outcomes: tuple[float | None, bool]) -> dict[str, Any]:

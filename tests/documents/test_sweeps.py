@@ -1,4 +1,4 @@
-"""Reduced sweeps leave out cases, and no claim."""
+"""Reduced sweeps leave out cases, but no claim."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def test_every_value_of_a_parameter_is_met_that_is_kept_whole() -> None:
 
 
 def test_values_that_never_meet_are_met_all_the_same() -> None:
-    """Parameters that are given in pairs, not as a product."""
+    """The parameters are given in pairs, not as a product."""
     pairs = [Case(f"test_pairs[{i}]", {"q": i, "t": 9 - i}) for i in range(10)]
     kept = few(pairs, 3)
     assert {0, 9} <= {case.indices["q"] for case in kept}
@@ -73,8 +73,8 @@ def test_a_share_has_a_test_of_every_file() -> None:
     }
 
 
-# Says which test functions the reduction leaves out of all that are collected, and which of these
-# are marked to be left out.
+# This code says which test functions the reduction leaves out of all that are collected, and which
+# of these are marked to be left out.
 COLLECT = """
 import sys
 import pytest
@@ -100,13 +100,13 @@ sys.exit(pytest.main(["--collect-only", "-qq", *sys.argv[1:]], plugins=[Reductio
 
 @pytest.mark.outside_build
 def test_no_test_is_left_to_test_all_unless_it_is_marked() -> None:
-    """What `make test` leaves out whole is marked, and takes a build of its own."""
+    """A test that `make test` leaves out whole is marked, and takes a build of its own."""
     told = subprocess.run(
         [sys.executable, "-c", COLLECT, "-p", "no:cacheprovider"],
         cwd=ROOT, capture_output=True, text=True, check=True,
     ).stdout.splitlines()  # fmt: skip
     assert sum(line.startswith("function ") for line in told) > 1000
     assert [line for line in told if line.startswith("lost ")] == []
-    # Two builds of the core with other optimisation.
+    # That test builds the core twice, with other optimisation.
     builds = "tests/core/test_same_bits.py::test_every_optimisation_gives_the_same_bits"
     assert {line for line in told if line.startswith("marked ")} <= {f"marked {builds}"}

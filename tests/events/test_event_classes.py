@@ -1,4 +1,4 @@
-"""Events as objects: what they refuse, how they print, compare, pickle and stand in a case file."""
+"""Events refuse what is wrong, print, compare, pickle, and stand in a case file."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def test_a_solution_keeps_what_was_asked_for_and_found(tmp_path: Path) -> None:
     assert repr(found) == f"<Found: t = {found.t!r} s, falling>"
 
 
-any_: Any = ev  # for what mypy knows to be wrong
+any_: Any = ev  # untyped, for calls that mypy would reject
 any_case: Any = case_of
 
 

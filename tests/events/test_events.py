@@ -1,4 +1,4 @@
-"""The contract of events: what is found where, once each, on every method, forward and backward."""
+"""Events are found where they are, once each, by every method, forward and backward."""
 
 from __future__ import annotations
 
@@ -21,7 +21,8 @@ BOOK = pc.Scene.textbook()
 TURNED = rod(pc.effects.Motor(joint=1, constant=2.0))
 
 
-# For a step that moves by one, and for a dense output, whose weights in dop853 are some hundreds.
+# These are roundings of a step that moves by one, and of a dense output, whose weights in dop853
+# are some hundreds.
 STEPS = dict.fromkeys(["dop853", "dop853-radau5"], of_new_state("dop853"))
 WITHIN_STEPS = dict.fromkeys(STEPS, of_dense_output("dop853"))
 
@@ -44,7 +45,7 @@ def parabola(t_0: float, t_end: float, step: float, method: str, *wanted: ev.Eve
 def test_roots_in_one_step_or_at_its_ends_are_found_once_each(
     method: str, step: float, backward: bool
 ) -> None:
-    """With q = -1/2 at 0.5 and 1: in one step, each at an end of one, and anywhere."""
+    """The angle is -1/2 at 0.5 and 1: both in one step, each at the end of a step, or anywhere."""
     span = (2.0, 0.0) if backward else (0.0, 2.0)
     wanted = [ev.LinkAngle(1, -0.5), ev.JointAngle(1, -0.5), ev.RateZero(link=1)]
     wanted += [ev.Function(lambda t, q, qd: q[0] + 0.5, samples=16), ev.RateZero(joint=1)]
@@ -77,7 +78,7 @@ CLOCKS = {
 @pytest.mark.parametrize("direction", [-1, 0, 1])
 @pytest.mark.parametrize("forward", [True, False])
 def test_a_zero_that_lies_just_there(method: str, zero: str, direction: int, forward: bool) -> None:
-    """A zero at t0 is no event; one at the end of a step or of the run is one, at that time."""
+    """A zero at t0 is no event; one at the end of a step or run is one event, at that time."""
     sense = 1 if forward else -1
     at, found = CLOCKS[zero]
     clock = ev.Function(lambda t, q, qd: t - sense * at, direction=direction)
@@ -144,7 +145,7 @@ def test_a_mode_of_small_oscillations_passes_the_vertical_at_its_frequency() -> 
 def test_sections_are_where_the_multiple_precision_references_are(
     name: str, reference_case: Callable[[str], Any]
 ) -> None:
-    """An angle that the reference has at some time is passed at that time."""
+    """The run passes the angle that the reference has at a time, at that time."""
     case = reference_case(name)
     links = [pc.Link(mass=m, length=L) for m, L in zip(case.masses, case.lengths, strict=True)]
     scene = pc.Scene(links=links, gravity=case.gravity)
@@ -166,7 +167,7 @@ def test_sections_are_where_the_multiple_precision_references_are(
 
 
 def test_every_turn_of_a_spinning_rod_is_found() -> None:
-    """At 30 rad/s without gravity: each multiple of 2 pi, also several in a step."""
+    """At 30 rad/s without gravity each multiple of 2 pi is found, also several in a step."""
     for step in (0.01, 0.1, 0.5, 1.0):
         sol = pc.simulate(
             rod(), 0.5, -30.0, (0, 10), step=step,
@@ -174,7 +175,7 @@ def test_every_turn_of_a_spinning_rod_is_found() -> None:
         )  # fmt: skip
         turns, once = sol.events
         exact = (0.5 - (1.0 - 2 * np.pi * np.arange(1, 48))) / 30
-        # A thousand sums, each rounded to half a last bit of 300 rad.
+        # There are a thousand sums, each rounded to half a last bit of 300 rad.
         assert times(turns) == pytest.approx(exact, abs=1000 * np.spacing(300.0) / 2 / 30)
         assert {one.direction for one in turns} == {-1}
         assert once == []
@@ -191,7 +192,7 @@ def test_turns_are_found_backward_and_far_from_zero() -> None:
 
 
 def test_turns_without_end_end_the_run_before_the_step_that_has_them_and_say_so() -> None:
-    """At 4e5 turns a step the third step has the millionth."""
+    """At 4e5 turns a step, the millionth turn comes in the third step."""
     turns = ev.LinkAngle(1, 0.0, every_turn=True, direction=-1)
     rate = 4e5 * 2 * np.pi
     sol = pc.simulate(rod(), 0.5, rate, (0, 4), step=1.0, events=[turns], check=False)

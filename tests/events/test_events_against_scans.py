@@ -1,4 +1,4 @@
-"""Every event against a scan that shares no code: NumPy's roots of the polynomials of the run."""
+"""Events agree with a scan that shares no code: NumPy's roots of the run's polynomials."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from pendcore import events as ev
 
 Array = NDArray[np.float64]
 METHODS = [m["name"] for m in _core.methods() if m["error_order"] and m["kind"] != "pair"]
-"""Those that have an interpolant of their own."""
+"""These methods have an interpolant of their own."""
 
 CLEAR = 1e-6
-"""Roots that are nearer to each other (shares of a step) may exist for one method alone."""
+"""Roots nearer to each other, in shares of a step, may be found by only one of scan and event."""
 
 
 def pieces(sol: pc.Solution) -> Iterator[tuple[float, float, Array]]:
@@ -31,14 +31,14 @@ def pieces(sol: pc.Solution) -> Iterator[tuple[float, float, Array]]:
 
 
 def crossings(sol: pc.Solution, weights: Array, value: float) -> list[tuple[float, float]]:
-    """Zeros of ``weights . y - value`` between the steps, with the slope along the run."""
+    """Return the zeros of ``weights . y - value`` between the steps, with the run's slopes."""
     found = []
     for start, h, rows in pieces(sol):
         p = rows @ weights
         p[0] -= value
         zeros = polynomial.polyroots(polynomial.polytrim(p, 1e-60 * np.abs(p).max()))
         near = zeros[(np.abs(zeros.imag) < CLEAR) & (np.abs(zeros.real - 0.5) < 0.5 + CLEAR)]
-        # What lies at an end, or nearly touches, is for other tests.
+        # Roots at an end, or where the curve nearly touches, are left to other tests.
         assume(np.all(np.abs(np.abs(near.real - 0.5) - 0.5) > CLEAR))
         assume(np.all(np.diff(np.sort(near.real)) > CLEAR))
         slopes = polynomial.polyval(near.real, polynomial.polyder(p)) / abs(h)
@@ -102,7 +102,7 @@ def test_the_tip_crosses_where_a_dense_scan_of_it_changes_sign(
     book = pc.Scene.textbook()
     how = {"method": method, "step": step, "events": [line], "check": False}
     sol = pc.simulate(book, q0, qd0, (0, 2 * sense), **how)
-    assume(sol.success and np.abs(sol.qd).max() < 50)  # so far the steps follow the motion
+    assume(sol.success and np.abs(sol.qd).max() < 50)  # at such rates steps follow it
     times = np.array([one.t for one in sol.events[0]])
     theta = np.linspace(0, 1, 2001)
     for start, h, rows in pieces(sol):

@@ -1,4 +1,4 @@
-"""Events where the state jumps, or stays: impacts, bounces, stick; both states, once each."""
+"""Where the state jumps or stays (impacts, bounces, stick), events tell both states, once each."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def rod(*effects: Any, gravity: float = 0.0) -> pc.Scene:
 BOUNCING = rod(
     fx.Motor(joint=1, constant=-1.0), fx.JointStop(joint=1, range=(0.0, 3.0), restitution=0.5)
 )
-FIRST = np.sqrt(2 * 0.4 * J)  # falls from 0.4 with -1/J
+FIRST = np.sqrt(2 * 0.4 * J)  # the rod falls from 0.4 with -1/J
 RATE = FIRST / J
 
 
@@ -57,7 +57,7 @@ def test_the_angle_touches_its_stop_once_an_impact() -> None:
 def test_a_mark_at_the_very_angle_of_a_stop_is_met_once_an_impact(
     joint: int, e: float, method: str
 ) -> None:
-    """The angle of such a joint is a difference, whose last bits differ from the stop's."""
+    """The angle of such a joint is a difference, and its last bits are not the stop's."""
     impacts = 0
     for k in range(12):
         bound = 0.3 + 0.07 * k
@@ -102,7 +102,7 @@ def test_a_terminal_event_at_an_impact_ends_there_and_goes_on_after_it() -> None
 def test_a_run_cut_between_two_impacts_at_one_time_finds_what_the_whole_one_does(
     apart: float, fine: Any
 ) -> None:
-    """Both stops are reached within the last bits of t = 1e6 s: as one time, blow by blow."""
+    """Both stops are reached within the last bits of t = 1e6 s, so at one time, blow by blow."""
     t0, start, rates = 1e6, [0.3, 0.9], [1.0, 4.0]
     free = unit_rod(links=2)
     (q1, q2), _ = np.split(pc.simulate(free, start, rates, (0, 0.05), **fine).y[:, -1], 2)
@@ -145,7 +145,7 @@ def test_a_run_cut_between_two_impacts_at_one_time_finds_what_the_whole_one_does
 
 @pytest.mark.parametrize("rtol", [1e-5, 1e-8, 1e-11, 1e-12])
 def test_entering_stick_is_one_rate_zero_in_a_run_that_goes_on(rtol: float, method: str) -> None:
-    """Friction 0.5 against sin(t): slides up from asin 0.5, sticks, slides down, and so on."""
+    """Under sin(t), with friction 0.5, the rod slides up from asin 0.5, sticks, slides down ..."""
     scene = rod(
         fx.DryJointFriction(joint=1, coulomb=0.5),
         fx.Motor(joint=1, sinusoid=fx.Sinusoid(amplitude=1.0, angular_frequency=1.0)),
@@ -160,7 +160,7 @@ def test_entering_stick_is_one_rate_zero_in_a_run_that_goes_on(rtol: float, meth
 
 
 def test_leaving_a_contact_is_no_rate_zero_and_coming_into_it_is_one(fine: Any) -> None:
-    """Moment of inertia 1 under -(sin t + 0.2) at a plastic stop: off where sin t = -0.2."""
+    """A rod of inertia 1 under -(sin t + 0.2) leaves a plastic stop where sin t = -0.2."""
     push = fx.Motor(joint=1, sinusoid=fx.Sinusoid(amplitude=-1.0, angular_frequency=1.0))
     stop = fx.JointStop(joint=1, range=(0.0, np.inf))
     scene = unit_rod(push, fx.Motor(joint=1, constant=-0.2), stop)
@@ -173,7 +173,7 @@ def test_leaving_a_contact_is_no_rate_zero_and_coming_into_it_is_one(fine: Any) 
     turns = [float(mpmath.findroot(rate, near)) for near in (7.9, 11.8, 12.9)]
     back = float(mpmath.findroot(lambda t: mpmath.quad(rate, [off, t]), 14.2))
     sol = pc.simulate(scene, 0.0, 0.0, (0, 20), events=watched, **fine)
-    assert sol.qd[-1, 0] > 0.1  # off again, one turn of the push after the first time
+    assert sol.qd[-1, 0] > 0.1  # the rod left again, one turn of the push after the first time
     rests, touches = sol.events
     assert [found.t for found in rests] == pytest.approx([*turns, back], abs=1e-10)
     assert [found.direction for found in rests] == [-1, 1, -1, 1]
@@ -237,7 +237,7 @@ def test_watching_changes_no_bit_of_a_run_with_impacts_and_stick() -> None:
 
 
 def test_an_impact_that_changes_no_rate_is_no_jump() -> None:
-    """The pivot has accelerations beyond doubles: no impulse is found, and the rate stays."""
+    """The pivot's accelerations are beyond doubles, so no impulse is found and the rate stays."""
     shaken = fx.DrivenPivot(y=fx.Sinusoid(amplitude=1e200, angular_frequency=1e120))
     scene = rod(fx.JointStop(joint=1, range=(0.7, 2.5)), shaken)
     sol = pc.simulate(scene, 0.7, -4.0, (0, 1), max_steps=1, check=False)

@@ -1,4 +1,4 @@
-"""Events at elastic impacts of runs that go backward: along the run, as forward."""
+"""Events at elastic impacts are told along the run in backward runs, just as in forward ones."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from unit_rods import rod
 
 
 def test_elastic_impacts_are_events_on_the_way_back_too(fine: Any) -> None:
-    """Moment of inertia 1, falls from 0.4 with -2: at the stop after T = sqrt 0.4, 3 T, 5 T, ...
+    """A rod of inertia 1 falls from 0.4 with -2, to the stop after T = sqrt 0.4, 3 T, 5 T, ...
 
-    It passes 0.3 when T/2 from its highest points, at 2 T, 4 T, ...
+    The rod passes 0.3 when T/2 from its highest points, which come at 2 T, 4 T, ...
     """
     stop = fx.JointStop(joint=1, range=(0.0, np.inf), restitution=1.0)
     scene = rod(fx.Motor(joint=1, constant=-2.0), stop)
@@ -27,7 +27,7 @@ def test_elastic_impacts_are_events_on_the_way_back_too(fine: Any) -> None:
     assert [one.t for one in zeros] == pytest.approx(-fall * np.arange(1, 10), abs=1e-10)
     assert [one.t for one in passed] == pytest.approx(-fall * np.arange(0.5, 10), abs=1e-10)
     for one in [*touches, *zeros[::2]]:
-        assert one.direction == -1  # along the run: it falls, and its rate from + to -
+        assert one.direction == -1  # along the run angle and rate fall, the rate from + to -
         np.testing.assert_allclose(one.y_before, [0, rate], atol=1e-9)
         np.testing.assert_allclose(one.y_after, [0, -rate], atol=1e-9)
     for one in zeros[1::2]:

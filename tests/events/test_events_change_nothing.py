@@ -1,4 +1,4 @@
-"""Watching changes no bit of a run; one that an event ended goes on as if it never had."""
+"""Watching changes no bit of a run; a run that an event ended goes on as if it never had."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def run(scene: pc.Scene = BOOK, t_end: float = 10.0, **options: Any) -> pc.Solut
 
 
 def but_for_dense_stages(stats: pc.Statistics) -> pc.Statistics:
-    """Compare all but the count of right-hand sides, as a dense output may ask for some."""
+    """Return the statistics without right-hand sides; a dense output may ask for its own."""
     return stats._replace(nfev=0)
 
 
@@ -207,7 +207,7 @@ def test_the_ledger_is_kept_to_the_event() -> None:
 
 @pytest.mark.parametrize("store", STORES)
 def test_an_event_within_the_last_bit_of_the_start(store: str) -> None:
-    """At t = 1e9 s a double resolves 1e-7 s: the event comes before the next."""
+    """At t = 1e9 s a double resolves 1e-7 s, and the event comes before the next double."""
     rod = pc.Scene(links=BOOK.links[:1], gravity=0.0)
     how = {**STORES[store], "events": [ev.LinkAngle(1, 1.0 + 1e-9, terminal=True)]}
     if "t_eval" in how:
@@ -232,7 +232,7 @@ def test_a_capped_run_keeps_what_it_found_and_finds_the_rest(cap: int) -> None:
 
 
 def test_chaotic_sections_are_counted_alike_whatever_is_kept() -> None:
-    """Some thousand crossings over 500 s, in one go, in pieces, with and without a stop at each."""
+    """Some thousand crossings over 500 s agree, in one go, in pieces, with and without stops."""
     section = ev.JointAngle(2, 0.0, every_turn=True, direction=1)
     span, start = (0, 500), [-1.4, -1.1]
     whole = pc.simulate(BOOK, start, 0, span, store="end", events=[section])

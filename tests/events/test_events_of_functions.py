@@ -1,4 +1,4 @@
-"""Events that are Python functions: what they see, what they may return, how they fail."""
+"""Python functions may be events: what they see, what they may return, how they fail."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def test_a_function_sees_states_of_the_run_in_arrays_of_its_own() -> None:
 
     def look(t: float, q: Any, qd: Any) -> float:
         seen.append((t, q.copy(), qd.copy()))
-        q[:] = qd[:] = np.nan  # the run has its own
+        q[:] = qd[:] = np.nan  # the run keeps arrays of its own
         return 1.0
 
     sol = run(ev.Function(look, samples=4))
@@ -50,7 +50,7 @@ def test_a_function_sees_states_of_the_run_in_arrays_of_its_own() -> None:
     for t, q, qd in seen:
         assert np.concatenate([q, qd]) == pytest.approx(sol(t), abs=1e-13)
     steps = len(sol.t) - 1
-    assert len(seen) == 4 * steps + 1  # each end of a step once
+    assert len(seen) == 4 * steps + 1  # each end of a step is sampled once
 
 
 @pytest.mark.parametrize("max_step", [0.001, 0.1])

@@ -1,4 +1,4 @@
-"""The tip's line: no crossing of the interpolant is missed, whatever moves."""
+"""No crossing of the tip's line by the interpolant is missed, whatever moves."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def distance(sol: pc.Solution, line: ev.TipLine, t: Array) -> Array:
 @pytest.mark.parametrize("step", [1.0, 0.25, 0.1])
 @pytest.mark.parametrize("sense", [1, -1])
 def test_a_spinning_tip_crosses_a_line_twice_a_turn(step: float, sense: int, method: str) -> None:
-    """Exactly q = 7 t: x = 0.3 at cos(7 t) = 0.3, several times in a step."""
+    """As q = 7 t exactly, x = 0.3 where cos(7 t) = 0.3, several times in a step."""
     line = ev.TipLine((0.3, 5.0), (2.0, 0.0))
     sol = pc.simulate(rod(), 0.0, 7.0, (0, 10 * sense), method=method, step=step, events=[line])
     turns = 2 * np.pi * np.arange(14)

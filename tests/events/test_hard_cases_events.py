@@ -1,4 +1,4 @@
-"""Events where event finders go wrong: two in a step, at the start, at the end, at a step's end."""
+"""Event finders often fail at these: two in a step, at the start, at the end, at a step's end."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ METHODS = [method["name"] for method in _core.methods() if method["error_order"]
 
 
 def passages(amplitude: float, mark: float, swings: int) -> tuple[list[float], float]:
-    """When a rod that swings from -amplitude passes the mark, and the end of the last swing."""
+    """Return when a rod swinging from -amplitude passes the mark, and when its last swing ends."""
     with mpmath.mp.workdps(30):
         k = mpmath.sin(mpmath.mpf(amplitude) / 2)
         unit = mpmath.sqrt(2 / (3 * mpmath.mpf(G)))
@@ -37,7 +37,7 @@ def times_of(sol: pc.Solution, number: int = 0) -> list[float]:
 def test_both_passages_of_a_mark_just_short_of_the_turn_are_found_in_every_swing(
     method: str, short: float, sign: int
 ) -> None:
-    """At 1e-8 rad short of the turn they are 0.12 ms apart, in steps of tens."""
+    """At 1e-8 rad short of the turn the passages are 0.12 ms apart, in steps of tens of ms."""
     amplitude = 1.0
     known, end = passages(amplitude, amplitude - short, 20)
     mark = pc.events.JointAngle(joint=1, value=np.pi / 2 - (amplitude - short))
@@ -46,7 +46,7 @@ def test_both_passages_of_a_mark_just_short_of_the_turn_are_found_in_every_swing
     assert sol.success
     found = sign * np.array(times_of(sol))
     assert found.size == len(known)
-    # an error of the angle of 1e-10 is one of the time of 1e-10/rate, sqrt(2 short) or so
+    # an angle's error of 1e-10 is a time's of 1e-10/rate, and the rate is sqrt(2 short) or so
     np.testing.assert_allclose(found, known, atol=1e-10 / np.sqrt(short))
     without = pc.simulate(
         rod(gravity=G), np.pi / 2 + amplitude, 0, (0, sign * end), **how | {"events": []}
@@ -55,7 +55,7 @@ def test_both_passages_of_a_mark_just_short_of_the_turn_are_found_in_every_swing
 
 
 def marks_at(sol: pc.Solution, row: int) -> list[pc.events.Event]:
-    """Angles and lines for the tip, where a rod is at a point of a run."""
+    """Return angles, and a line for the tip, where a rod is at a point of a run."""
     angle, (x, y) = float(sol.q[row, 0]), sol.positions()[row, -1]
     line = pc.events.TipLine((float(x), float(y)), (-0.18, 1.0))
     return [pc.events.JointAngle(1, angle), pc.events.LinkAngle(1, angle), line]
@@ -64,7 +64,7 @@ def marks_at(sol: pc.Solution, row: int) -> list[pc.events.Event]:
 @pytest.mark.parametrize("sign", [1, -1], ids=["forward", "backward"])
 @pytest.mark.parametrize("method", METHODS)
 def test_a_mark_at_the_start_is_no_event_and_one_at_the_end_is_one(method: str, sign: int) -> None:
-    """A rod that turns at 1 rad/s; the marks at the end are where the run gets to, to the bit."""
+    """A rod turns at 1 rad/s; the marks at the end are where the run gets to, to the bit."""
     free = pc.simulate(rod(), 0.2, 1, (0, sign * 1.0), method=method)
     marks = marks_at(free, 0) + marks_at(free, -1)
     how = {"method": method, "events": marks}
@@ -84,7 +84,7 @@ TURNED_BACK = rod(pc.effects.Motor(joint=1, constant=-2.0))
 
 @pytest.mark.parametrize("sign", [1, -1], ids=["forward", "backward"])
 def test_a_rate_that_is_zero_at_the_start_is_no_event(sign: int, fine: Any) -> None:
-    """A rod let go at rest; its next rest is the other turn."""
+    """A rod is let go at rest, and its next rest is the other turn."""
     quarter = passages(1.0, 0.0, 1)[0][0]
     sol = pc.simulate(
         rod(gravity=G), np.pi / 2 + 1, 0, (0, sign * 5 * quarter), **fine, events=ZEROS
@@ -96,12 +96,12 @@ def test_a_rate_that_is_zero_at_the_start_is_no_event(sign: int, fine: Any) -> N
 
 
 def test_a_rate_that_is_zero_at_the_end_is_an_event(fine: Any) -> None:
-    """Friction stops the rod after 2 s, to the bit; a step that ends there may be the last."""
+    """Friction stops the rod, to the bit, after 2 s; a step that ends there may be the last."""
     scene = rod(pc.effects.DryJointFriction(joint=1, coulomb=0.5))
     whole = pc.simulate(scene, 0, 1, (0, 3), **fine)
     stopped = float(whole.t[np.flatnonzero(whole.qd[:, 0] == 0)[0]])
     assert stopped == pytest.approx(2.0, abs=1e-12)
-    # two bits later: cut where it is found to stop, a step may end a bit of the rate before
+    # two bits later, as a step cut where the rod is found to stop may end a bit of the rate before
     stopped += 2 * np.spacing(stopped)
     sol = pc.simulate(scene, 0, 1, (0, stopped), **fine, events=ZEROS)
     assert [times_of(sol, k) for k in range(2)] == [[stopped]] * 2
@@ -113,7 +113,7 @@ def test_a_rate_that_is_zero_at_the_end_is_an_event(fine: Any) -> None:
 @pytest.mark.parametrize("value", [0.25, 0.5, 0.75])
 @pytest.mark.parametrize("method", METHODS)
 def test_a_mark_at_the_end_of_a_step_is_met_once(method: str, value: float, sign: int) -> None:
-    """At 1 rad/s; under a couple the rate is zero there: in the last bits before or after it."""
+    """At 1 rad/s the rod is there; under a couple it rests there, to a last bit before or after."""
     point = (float(np.cos(value)), float(np.sin(value)))
     marks: list[Any] = [
         pc.events.JointAngle(joint=1, value=value),
@@ -141,7 +141,7 @@ def test_a_swing_that_only_touches_the_mark_does_not_pass_it_twice_the_wrong_way
 
 
 def test_each_bounce_is_an_event_with_the_states_on_both_sides(fine: Any) -> None:
-    """Rate zero through a jump: from -w to e w without a value between."""
+    """The rate passes zero by a jump, from -w to e w without a value between."""
     stop = pc.effects.JointStop(joint=1, range=(0, np.inf), restitution=0.8, capture_speed=1e-3)
     scene = rod(pc.effects.Motor(joint=1, constant=-2.0), stop)
     bound = pc.events.JointAngle(joint=1, value=0.0)
