@@ -17,8 +17,8 @@ def slopes(sol: pc.Solution, t: float) -> np.ndarray:
 def test_accelerations_in_contact_are_the_slopes_of_the_rates(restitution, method):
     """Held against a stop, joint 2 turns with joint 1; its angle is a difference of large ones.
 
-    The joint was held where rounding put it, a last bit of 3 rad short of the stop: of 1 rad that
-    is six.
+    The joint is held where rounding put it: a last bit of 3 rad away from the stop, which is
+    sixteen last bits of its 0.2 rad.
     """
     effects = [
         fx.JointStop(joint=2, range=(-1.5, 0.2), restitution=restitution),

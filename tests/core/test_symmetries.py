@@ -42,7 +42,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::pendcore.PendcoreWarning")
 
 
 def as_given(values: tuple[float, ...]) -> list[float]:
-    """Powers of two, none of them 1."""
+    """Return powers of two."""
     return [2.0**k for k in values]
 
 
