@@ -214,3 +214,14 @@ def test_orders_are_those_that_the_pages_tell():
     assert orders == sorted(orders)
     told = f"order {orders[0]} to {orders[-1]} by the tolerances"
     assert told in (Path(__file__).parents[2] / "docs/trust.md").read_text().replace("\n", " ")
+
+
+def test_dense_output_is_finite_where_powers_of_the_step_overflow() -> None:
+    """A locked rod rests in one step of 1e123 s: 0 (h/sigma)^k is 0, though the power overflows."""
+    scene = pc.Scene.textbook().replace(
+        links=[pc.Link(mass=1.0, length=1.0)], effects=[pc.effects.Lock(joint=1)]
+    )
+    times = [0.0, 7e121, 1.2e123, 1.6e123]
+    sol = pc.simulate(scene, 0.5, t_span=(0.0, 1.6e123), method="taylor", t_eval=times)
+    assert sol.q[:, 0].tolist() == [0.5] * 4
+    assert not sol.qd.any()

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from pendcore import _core
 from pendcore.accuracy.target_error import run_to_error
 from pendcore.messages.arguments import number, two_times
-from pendcore.messages.progress import callback, close
+from pendcore.messages.progress import ProgressBar, callback, close
 from pendcore.messages.warning import warn
 from pendcore.run.call import Start, completed
 from pendcore.run.events import events_asked_for
@@ -44,7 +44,8 @@ def solve(
     if error is not None:
         start = Start(scene, q0, qd0, t_start, t_end)
         return checked(_solved_to_error(kind, start, error, options), check)
-    report = callback(options.pop("progress", None))
+    progress = options.pop("progress", None)
+    report = ProgressBar() if progress is None else callback(progress)
     run = _core.simulate(scene._compiled, q0, qd0, t_start, t_end, options, report, warn)
     result = kind(scene, run)
     if run.success:

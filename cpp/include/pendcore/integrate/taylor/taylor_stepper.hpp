@@ -259,7 +259,23 @@ class Taylor final : public Stepper {
   /// Writes the series of a step of size h in powers of theta, from the first on, in rows of
   /// `dimension` numbers.
   void write_powers(double h, int dimension, double* coefficients) const {
-    powers_of_step_(&memory_, stays_ ? 0.0 : h / memory_.sigma, n_, row_, dimension, coefficients);
+    const double x = stays_ ? 0.0 : h / memory_.sigma;
+    powers_of_step_(&memory_, x, n_, row_, dimension, coefficients);
+    double power = 1.0;
+    for (int k = 1; k <= memory_.order; ++k) power *= x;
+    if (!std::isfinite(power)) write_large_powers(x, dimension, coefficients);
+  }
+  /// The same where x^k overflows: the coefficient, perhaps zero, is multiplied by x again and again.
+  void write_large_powers(double x, int dimension, double* coefficients) const {
+    for (int k = 1; k <= memory_.order; ++k) {
+      const double* const from = memory_.rows + static_cast<std::ptrdiff_t>(k) * size_;
+      double* const to = coefficients + static_cast<std::ptrdiff_t>(k) * dimension;
+      for (int i = 0; i < 2 * n_; ++i) {
+        double term = from[i < n_ ? i : row_ + i - n_];
+        for (int factor = 0; factor < k; ++factor) term *= x;
+        to[i] = term;
+      }
+    }
   }
 
   void integrate_quadratures(double t, double h) {
