@@ -265,7 +265,7 @@ class Taylor final : public Stepper {
     for (int k = 1; k <= memory_.order; ++k) power *= x;
     if (!std::isfinite(power)) write_large_powers(x, dimension, coefficients);
   }
-  /// The same where x^k overflows: the coefficient, perhaps zero, is multiplied by x again and again.
+  /// The same where x^k overflows: the coefficient, perhaps zero, is multiplied by x k times.
   void write_large_powers(double x, int dimension, double* coefficients) const {
     for (int k = 1; k <= memory_.order; ++k) {
       const double* const from = memory_.rows + static_cast<std::ptrdiff_t>(k) * size_;
