@@ -25,7 +25,7 @@ class Run {
         discontinuities_(discontinuities),
         run_limits_(limits, integrator.t.high),
         resume_(stepper, integrator, resumable, observer, discontinuities, limits.begins_anew),
-        trial_(stepper, integrator, limits.fixed_step, discontinuities),
+        trial_(stepper, integrator, limits, discontinuities),
         state_(stepper.dimension()),
         rate_(stepper.dimension()) {
     has_quadratures_ = stepper.controlled() < stepper.dimension();
