@@ -7,7 +7,9 @@ from typing import Any
 import numpy as np
 import pendcore as pc
 import pytest
+from dense_chain import DenseChain
 from pendcore import effects as fx
+from reference.dormand_prince import integrate
 from unit_rods import rod, solve
 
 
@@ -143,3 +145,54 @@ def test_a_joint_that_is_held_passes_no_mark_beside_its_angle() -> None:
     assert sol.success
     assert (sol.qd[:, 0] == sol.qd[:, 1]).all()
     assert [found for found in sol.events if found] == []
+
+
+@pytest.mark.parametrize(
+    "masses, lengths, damping, q0, qd0, span, options, bar",
+    [
+        (
+            [1.0, 1.0, 0.1477663410806247, 1.0], [1.0, 1.0, 0.12178566430015074, 1.0],
+            (2.0, 3.501669126225858, 0.5),
+            [1.0, -0.02322384604230976, 0.4604624584291299, 0.0],
+            [0.11755537426220058, -0.2588252337710221, 0.3780789664178426, -0.5],
+            (-2.5, -1.5), {"rtol": 0.0004462848991616165}, 2e-2,
+        ),
+        (
+            [1.0] * 5 + [0.25388284558067603], [1.0] * 5 + [0.32626915673860074],
+            (9.057963501304451, 0.1, 0.1),
+            [0.0] * 6, [0.0, 0.0, 0.0, 0.0, -0.18516116621458723, 1.0],
+            (1.0, 2.5), {"rtol": 3.2626125863133584e-05, "method": "dop853"}, 1e-2,
+        ),
+    ],
+)  # fmt: skip
+def test_a_joint_turns_where_its_acceleration_is_zero_but_for_rounding(
+    masses: list[float],
+    lengths: list[float],
+    damping: tuple[float, float, float],
+    q0: list[float],
+    qd0: list[float],
+    span: tuple[float, float],
+    options: dict[str, Any],
+    bar: float,
+) -> None:
+    """The rounding of the acceleration leads to one side of the rate zero, the steps to the other.
+
+    The reference takes |w| w as it is, in steps that need not end where the rate is zero.
+    """
+    chain = DenseChain(masses=np.array(masses), lengths=np.array(lengths), gravity=9.807)
+    n = chain.n
+
+    def rates(_: float, y: Any) -> Any:
+        w = y[-1] - y[-2]
+        torques = np.zeros(n)
+        torques[-1] = -damping[0] * w - damping[1] * abs(w) * w - damping[2] * w**3
+        qdd = np.linalg.solve(chain.mass_matrix(y[:n]), chain.forces(y[:n], y[n:], torques))
+        return np.concatenate([y[n:], qdd])
+
+    law = fx.ViscousJoint(joint=n, damping=damping[0], damping2=damping[1], damping3=damping[2])
+    links = [pc.Link(mass=m, length=l) for m, l in zip(masses, lengths, strict=True)]
+    scene = pc.Scene(links=links, gravity=9.807, effects=[law])
+    sol = pc.simulate(scene, q0, qd0, span, **options)
+    assert sol.success, sol.message
+    exact = integrate(rates, np.concatenate([q0, qd0]), span, rtol=1e-8, atol=1e-8)
+    assert np.abs(sol.q[-1] - exact.y[-1][:n]).max() < bar

@@ -52,7 +52,8 @@ void check_continuation(const Solution& solution, double t_end, const std::vecto
 /// What a solution has before a run: nothing, a start without a direction of time, or steps.
 enum class Before { nothing, a_start, steps };
 
-/// From this tolerance on, rad or rad/s or relative, an accepted step may be nowhere near the motion.
+/// From this tolerance on, rad or rad/s or relative, an accepted step may be nowhere near the
+/// motion.
 constexpr double coarse_tolerance = 0.1;
 
 /// The laws, the rates and the first step at the beginning of a run. If a user's function throws,

@@ -32,12 +32,13 @@ void Switching::collect_guards(const double* y) {
     if (joints_.holds()[j].most < never) held_guards_.push_back({j, true});
   }
   for (Watch& watch : guards_) {
-    const bool was_released =
-        release_direction_[watch.joint] != 0;  // then its acceleration is zero too
-    if (watch.stop == Side::none && watch.guard.is_on_rate()) {
-      const bool is_zero = relative(y + n_, watch.joint + 1) == 0.0;
-      watch.zeros_at_start = is_zero ? 1 + (was_released ? 1 : 0) : 0;
-    }
+    if (watch.stop != Side::none || !watch.guard.is_on_rate()) continue;
+    const bool is_zero = relative(y + n_, watch.joint + 1) == 0.0;
+    // The acceleration of a released joint is zero too. After many changes at one time, it can only
+    // be one of rounding.
+    const bool accelerates =
+        release_direction_[watch.joint] == 0 && changes_at_once_ <= many_at_once;
+    watch.zeros_at_start = is_zero ? (accelerates ? 1 : 2) : 0;
   }
   set_longest_step();
   see_whether_all_rests(y);

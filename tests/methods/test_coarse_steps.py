@@ -1,0 +1,68 @@
+"""Steps that are accepted although they are nowhere near the motion: nothing in them overflows."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pendcore as pc
+import pytest
+from pendcore import effects as fx
+
+ROD = pc.Link(mass=1.0, length=1.0)
+
+
+def between(sol: pc.Solution) -> np.ndarray:
+    """The dense output at 4000 times of the part that the run has reached."""
+    return sol(np.linspace(sol.t[0], sol.t[-1], 4000))
+
+
+@pytest.mark.parametrize(
+    "links, law, qd0, t_end, options",
+    [
+        (
+            1, fx.ViscousJoint(joint=1, damping=2.993828540288064, damping2=6.6839541870275205),
+            0.0, -1.2361087799335069,
+            {"method": "dop853", "rtol": 1.0, "first_step": 9.972919077549067},
+        ),
+        (
+            2, fx.ViscousJoint(joint=2, damping=0.28, damping2=0.131, damping3=0.715),
+            0.0, 3.796775471128963, {"method": "dop853-radau5", "rtol": 1.0},
+        ),
+    ],
+)  # fmt: skip
+def test_a_step_of_coarse_tolerances_overflows_nowhere(
+    links: int, law: pc.effects.ViscousJoint, qd0: float, t_end: float, options: dict[str, Any]
+) -> None:
+    """Its new state is finite, but the stages of its dense output overflow: it is rejected."""
+    scene = pc.Scene(links=[ROD] * links, gravity=9.807, effects=[law])
+    sol = pc.simulate(scene, 0.0, qd0, (0.0, t_end), max_steps=1000, check=False, **options)
+    assert sol.stats.accepted > 0
+    assert np.isfinite(between(sol)).all()
+
+
+def test_dense_output_is_finite_under_a_law_of_1e145() -> None:
+    """A rate far below atol has a torque whose cube overflows in the stages of dense output."""
+    law = fx.ViscousJoint(joint=1, damping=10.0, damping3=4.376330066954931e145)
+    scene = pc.Scene(links=[ROD], gravity=9.807, effects=[law])
+    sol = pc.simulate(scene, 0.0, t_span=(0.0, 0.19498208047693533), max_steps=3000, check=False)
+    assert sol.stats.accepted > 0
+    assert np.isfinite(between(sol)).all()
+    assert (sol(sol.t) == sol.y).all()
+
+
+@pytest.mark.parametrize("step", [0.1, 0.5, 0.9, 1.843])
+def test_a_fixed_step_beyond_stability_is_not_said_to_chatter(step: float) -> None:
+    """Its dense output has slopes of its own where the joint begins at rest."""
+    law = fx.ViscousJoint(
+        joint=3,
+        damping=3.4900740828110077,
+        damping2=0.10508575631518155,
+        damping3=0.16826288691444558,
+    )
+    scene = pc.Scene(links=[ROD] * 3, gravity=9.807, effects=[law])
+    sol = pc.simulate(
+        scene, [0.0, 0.0, 0.5], t_span=(-2.5, -1.578), step=step, method="rk4", check=False
+    )
+    assert sol.stats.accepted > 0
+    assert "back and forth" not in sol.message
