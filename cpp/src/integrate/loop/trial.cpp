@@ -130,8 +130,8 @@ void Trial::look_for_bad_component() {
   bad_ = -1;
   // The norm overflows beyond the square root of the largest double; this alone is not an error.
   if (!std::isfinite(error)) bad_ = bad_component_of(stepper_, t_ + h_);
-  // A fixed step is accepted whatever its error is, and one of coarse tolerances at almost any.
-  if (bad_ < 0 && may_be_far_off_ && is_far_off()) bad_ = bad_component_between();
+  // A fixed step is accepted whatever its error is.
+  if (bad_ < 0 && fixed_step_ && is_far_off()) bad_ = bad_component_between();
   integrator_.trial_was_finite = bad_ < 0 && !std::isnan(error);
 }
 
