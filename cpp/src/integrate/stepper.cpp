@@ -5,9 +5,10 @@
 
 namespace pendcore {
 
-void Stepper::dense_output(double h, double* coefficients) {
+void Stepper::finite_interpolant(double h, double* coefficients) {
   interpolant(h, coefficients);
-  // What is not finite in a lower coefficient is not finite in the highest either.
+  // A stage that overflows enters the highest coefficient as well, and so does a term of a series
+  // in the terms after it: to look there is enough.
   const auto size = static_cast<std::ptrdiff_t>(dimension());
   const std::ptrdiff_t all = (interpolant_degree() + 1) * size;
   const bool is_finite = std::all_of(coefficients + all - size, coefficients + all,

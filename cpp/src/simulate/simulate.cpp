@@ -52,10 +52,6 @@ void check_continuation(const Solution& solution, double t_end, const std::vecto
 /// What a solution has before a run: nothing, a start without a direction of time, or steps.
 enum class Before { nothing, a_start, steps };
 
-/// From this tolerance on, rad or rad/s or relative, an accepted step may be nowhere near the
-/// motion.
-constexpr double coarse_tolerance = 0.1;
-
 /// The laws, the rates and the first step at the beginning of a run. If a user's function throws,
 /// or an impact is not finite, nothing of this is kept, and a continued run begins anew.
 struct Beginning {
@@ -135,7 +131,6 @@ void run(const Scene& scene, Solution& solution, double t_end, Limits limits, Be
   const std::vector<double> rtol = relative_tolerances(options, n);
   const std::vector<double> atol = absolute_tolerances(options, n);
   stepper->set_tolerances(rtol.data(), atol.data());
-  limits.coarse = std::max(std::ranges::max(rtol), std::ranges::max(atol)) >= coarse_tolerance;
 
   Recorder recorder(solution, *stepper, scene, passed_events);
   if (before != Before::nothing && solution.dense.degree != stepper->interpolant_degree()) {

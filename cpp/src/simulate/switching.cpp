@@ -176,7 +176,8 @@ bool Switching::cross(int k, double t, double* y) {
     if (jumped || joints_.is_held(j)) release_direction_[j] = 0;
   }
   forget_releases_away_from_the_border(t, y);
-  // An acceleration of rounding alone would undo each change: then the steps decide.
+  // After many changes at one time the steps decide: choose_sides() would undo each change if the
+  // acceleration is nothing but rounding.
   if (changes_at_once_ <= many_at_once) choose_sides(t, y, y + n_);
   collect_guards(y);
   return jumped;

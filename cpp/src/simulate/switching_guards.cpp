@@ -34,8 +34,8 @@ void Switching::collect_guards(const double* y) {
   for (Watch& watch : guards_) {
     if (watch.stop != Side::none || !watch.guard.is_on_rate()) continue;
     const bool is_zero = relative(y + n_, watch.joint + 1) == 0.0;
-    // The acceleration of a released joint is zero too. After many changes at one time, it can only
-    // be one of rounding.
+    // A released joint has no acceleration yet. After many changes at one time, the acceleration is
+    // taken for rounding.
     const bool accelerates =
         release_direction_[watch.joint] == 0 && changes_at_once_ <= many_at_once;
     watch.zeros_at_start = is_zero ? (accelerates ? 1 : 2) : 0;

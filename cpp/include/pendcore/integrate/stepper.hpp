@@ -55,9 +55,9 @@ class Stepper {
   /// The dense output of the attempted step, (degree + 1, dimension) row-major,
   /// y(t + theta h) = sum_p theta^p coefficient[p].
   virtual void interpolant(double h, double* coefficients) = 0;
-  /// The same where it is finite. Where it overflows although the new state does not, as under
-  /// tolerances of 1 or laws of 1e145 times a rate, it is a straight line.
-  void dense_output(double h, double* coefficients);
+  /// The same, or a straight line to the new state where the interpolant overflows although the new
+  /// state does not. This happens with tolerances of 1, or with laws of 1e145 times a rate.
+  void finite_interpolant(double h, double* coefficients);
 
   /// The values of such a polynomial for a step of size h from `start`, at `count` times: (count,
   /// dimension) row-major.

@@ -25,7 +25,7 @@ class Run {
         discontinuities_(discontinuities),
         run_limits_(limits, integrator.t.high),
         resume_(stepper, integrator, resumable, observer, discontinuities, limits.begins_anew),
-        trial_(stepper, integrator, limits, discontinuities),
+        trial_(stepper, integrator, limits.fixed_step, discontinuities),
         state_(stepper.dimension()),
         rate_(stepper.dimension()) {
     has_quadratures_ = stepper.controlled() < stepper.dimension();
@@ -219,7 +219,7 @@ class Run {
     if (t.high == integrator_.t.high) return true;
     const std::size_t rows = stepper_.interpolant_degree() + 1;
     std::vector<double> polynomial(rows * stepper_.dimension());
-    stepper_.dense_output(h, polynomial.data());
+    stepper_.finite_interpolant(h, polynomial.data());
     stepper_.sample(polynomial.data(), {}, 1.0, &theta, 1, state_.data());
     stepper_.get_derivative(rate_.data());
     stepper_.start(state_.data(), rate_.data());

@@ -32,12 +32,9 @@ double last_bits(double t, double t_new) {
   return 4.0 * epsilon * std::max(std::abs(t), std::abs(t_new));
 }
 
-Trial::Trial(Stepper& stepper, IntegratorState& integrator, const Limits& limits,
+Trial::Trial(Stepper& stepper, IntegratorState& integrator, bool fixed_step,
              Discontinuities* discontinuities)
-    : stepper_(stepper),
-      integrator_(integrator),
-      fixed_step_(limits.fixed_step),
-      may_be_far_off_(limits.fixed_step || limits.coarse) {
+    : stepper_(stepper), integrator_(integrator), fixed_step_(fixed_step) {
   if (discontinuities != nullptr) guards_ = std::make_unique<Guards>(stepper, *discontinuities);
 }
 
@@ -91,8 +88,8 @@ Trial::Verdict Trial::verify_guard_start() {
     crossing_ = guards_->first(t_, h_, !is_short);
     const double at_start = epsilon * std::max(few * std::abs(t_), 2.0 * std::abs(h_));
     if (crossing_.guard >= 0 && crossing_.theta * std::abs(h_) <= at_start) {
-      // A step that is far off shows slopes of its own.
-      if (is_short || (crossing_.is_of_slope && !may_be_far_off_) ||
+      // A fixed step that is too long for its method shows slopes that the motion does not have.
+      if (is_short || (crossing_.is_of_slope && !fixed_step_) ||
           guards_->falls_at_start(crossing_.guard, t_, h_, halvings)) {
         return Verdict::changes_at_start;
       }
@@ -135,9 +132,9 @@ void Trial::look_for_bad_component() {
   integrator_.trial_was_finite = bad_ < 0 && !std::isnan(error);
 }
 
-/// Whether some component is so large that the cubes of rates may overflow within four stages.
+/// Whether some component is so large that the squares of rates may overflow within four stages.
 bool Trial::is_far_off() {
-  constexpr double far = 1e3;
+  constexpr double far = 1e15;
   new_state_.resize(stepper_.dimension());
   stepper_.get_new_state(new_state_.data());
   return std::ranges::any_of(new_state_, [](double x) { return std::abs(x) > far; });

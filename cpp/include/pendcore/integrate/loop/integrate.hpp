@@ -47,7 +47,6 @@ struct Limits {
   double least_step = 1e-300;  ///< s, below which a step is too small
   double max_step = std::numeric_limits<double>::infinity();  ///< s
   bool fixed_step = false;  ///< keep the position's h, whatever the error
-  bool coarse = false;      ///< tolerances accept steps that are nowhere near the motion
   long long max_steps = std::numeric_limits<long long>::max();  ///< attempted, accepted or not
   double time_limit = std::numeric_limits<double>::infinity();  ///< s, of the clock on the wall
   Monitor monitor;

@@ -31,7 +31,7 @@ class Trial {
   };
 
   /// Tries steps of `integrator` and sets its `trial_was_finite`; `discontinuities` may be null.
-  Trial(Stepper& stepper, IntegratorState& integrator, const Limits& limits,
+  Trial(Stepper& stepper, IntegratorState& integrator, bool fixed_step,
         Discontinuities* discontinuities);
 
   /// Lets the method attempt a step of size h.
@@ -58,7 +58,6 @@ class Trial {
   Stepper& stepper_;
   IntegratorState& integrator_;
   bool fixed_step_;
-  bool may_be_far_off_;
   std::unique_ptr<Guards> guards_;  ///< null without discontinuities
   double t_ = 0.0;
   double h_ = 0.0;
@@ -66,7 +65,7 @@ class Trial {
   Crossing crossing_;
   int bad_ = -1;
   std::vector<double> new_state_;
-  std::vector<double> polynomial_;  ///< the dense output of a coarse step
+  std::vector<double> polynomial_;  ///< the dense output of a fixed step
 };
 
 }  // namespace pendcore
