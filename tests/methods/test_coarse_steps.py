@@ -18,7 +18,7 @@ def between(sol: pc.Solution) -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-    "links, law, qd0, t_end, options",
+    ("links", "law", "qd0", "t_end", "options"),
     [
         (
             1, fx.ViscousJoint(joint=1, damping=2.993828540288064, damping2=6.6839541870275205),

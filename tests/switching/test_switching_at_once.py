@@ -148,7 +148,7 @@ def test_a_joint_that_is_held_passes_no_mark_beside_its_angle() -> None:
 
 
 @pytest.mark.parametrize(
-    "masses, lengths, damping, q0, qd0, span, options, bar",
+    ("masses", "lengths", "damping", "q0", "qd0", "span", "options", "bar"),
     [
         (
             [1.0, 1.0, 0.1477663410806247, 1.0], [1.0, 1.0, 0.12178566430015074, 1.0],
@@ -190,7 +190,7 @@ def test_a_joint_turns_where_its_acceleration_is_zero_but_for_rounding(
         return np.concatenate([y[n:], qdd])
 
     law = fx.ViscousJoint(joint=n, damping=damping[0], damping2=damping[1], damping3=damping[2])
-    links = [pc.Link(mass=m, length=l) for m, l in zip(masses, lengths, strict=True)]
+    links = [pc.Link(mass=m, length=a) for m, a in zip(masses, lengths, strict=True)]
     scene = pc.Scene(links=links, gravity=9.807, effects=[law])
     sol = pc.simulate(scene, q0, qd0, span, **options)
     assert sol.success, sol.message
