@@ -261,12 +261,13 @@ def test_a_scene_refuses_what_its_chain_has_no_place_for(effect, message):
         pc.Scene(links=[ROD, ROD], effects=[fx.Lock(1), effect])
 
 
-def test_a_scene_refuses_stops_that_leave_a_joint_no_angle():
-    stops = [fx.JointStop(1, range=(-1, 0)), fx.JointStop(1, range=(0.5, 1))]
-    message = r"effect 2 \(joint_stop\): range: the stops of joint 1 leave it no angle"
+@pytest.mark.parametrize("lowest", [0.5, 0.0])
+def test_a_scene_refuses_stops_that_leave_a_joint_no_room(lowest):
+    stops = [fx.JointStop(1, range=(-1, 0)), fx.JointStop(1, range=(lowest, 1))]
+    message = r"effect 2 \(joint_stop\): range: the stops of joint 1 leave it no room"
     with pytest.raises(ValueError, match=f"^{message}"):
         pc.Scene(links=[ROD, ROD], effects=stops)
-    assert pc.Scene(links=[ROD], effects=[stops[0], fx.JointStop(1, range=(0, 1))])
+    assert pc.Scene(links=[ROD], effects=[stops[0], fx.JointStop(1, range=(-0.5, 1))])
 
 
 @pytest.mark.parametrize(

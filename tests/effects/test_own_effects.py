@@ -175,6 +175,29 @@ def test_a_run_that_its_function_broke_off_can_be_resumed():
     assert np.array_equal(stop.value.solution.resume(2.0).y, whole.y)
 
 
+@pytest.mark.parametrize("method", ["dopri5", "dop853", "rk4", "radau5"])
+def test_a_run_that_its_function_broke_off_ends_at_its_last_step(method):
+    """Also where the function fails at the end of a step, after the step was kept."""
+    options = {"step": 0.05} if method == "rk4" else {}
+    turn = pc.events.LinkAngle(link=1, value=0.5, every_turn=True)
+    for calls in range(1, 80):
+        left = iter(range(calls))
+
+        def fails(t, q, qd, left=left):
+            if next(left, None) is None:
+                raise OutOfAirError
+            return damp(t, q, qd)
+
+        with pytest.raises(OutOfAirError) as stop:
+            pc.simulate(scene(fx.User(fails)), **START, method=method, events=[turn], **options)
+        sol = getattr(stop.value, "solution", None)
+        if sol is None:
+            continue
+        assert sol.run.t_reached == sol.t[-1]
+        assert np.array_equal(sol.run.y_reached, sol.y[:, -1])
+        assert all(event.t <= sol.t[-1] for event in sol.events[0])
+
+
 def test_ctrl_c_in_a_function_interrupts():
     def stop(t, q, qd):
         if t > 0.5:

@@ -66,3 +66,43 @@ def test_a_fixed_step_beyond_stability_is_not_said_to_chatter(step: float) -> No
     )
     assert sol.stats.accepted > 0
     assert "back and forth" not in sol.message
+
+
+def test_a_coarse_fixed_step_from_a_motor_s_limit_is_not_said_to_chatter() -> None:
+    """The slope of the torque leads away from the limit; the dense output crosses it at once."""
+    links = [
+        pc.Link(mass=10.0, length=0.12047458140905794, center=0.12047458140905794, inertia=0.0),
+        ROD,
+        ROD,
+        pc.Link(mass=1.0, length=0.1337159761505461),
+    ]
+    gains = fx.PD(kp=-0.8028859052645209, kd=-5.0898496951303835, reference=-2.5487245229637043)
+    scene = pc.Scene(
+        links=links,
+        gravity=9.807,
+        effects=[
+            fx.Motor(joint=1, pd=gains, limit=0.1),
+            fx.ViscousJoint(joint=4, damping=5.9206929377593775),
+        ],
+    )
+    q0 = [0.4982294823897364, 0.0, 1.4740807834029885, 0.0]
+    sol = pc.simulate(scene, q0, t_span=(0.0, -0.281), step=0.02, check=False)
+    assert sol.stats.accepted > 0
+    assert "back and forth" not in sol.message
+
+
+def test_a_coarse_fixed_step_from_next_to_rest_is_not_said_to_chatter() -> None:
+    """At t = 0 a rate of 1e-190 changes its sign at once, and time resolves it."""
+    law = fx.ViscousJoint(joint=4, damping=1.1095105527664928, damping2=9.704511218801674)
+    scene = pc.Scene(links=[ROD] * 4, gravity=0.0, effects=[law])
+    sol = pc.simulate(
+        scene,
+        [0.0, 0.0, -0.7, 0.0],
+        [0.0, -4.763463850557999, 0.0, 1.8869389483316333e-190],
+        (0.0, 3.49),
+        step=35.0,
+        max_steps=10,
+        check=False,
+    )
+    assert sol.stats.accepted > 0
+    assert "back and forth" not in sol.message

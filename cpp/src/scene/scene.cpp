@@ -56,10 +56,11 @@ void check_effects(const Scene& scene) {
           if constexpr (std::is_same_v<Kind, JointStop>) {
             std::array<double, 2>& left = ranges[effect.joint - 1];
             left = {std::max(left[0], effect.range[0]), std::min(left[1], effect.range[1])};
-            if (left[0] > left[1]) {
+            if (left[0] >= left[1]) {
               throw std::invalid_argument(where + "range: the stops of joint " +
                                           std::to_string(effect.joint) +
-                                          " leave it no angle: their ranges must overlap");
+                                          " leave it no room: their ranges must overlap; "
+                                          "a Lock holds a joint at one angle");
             }
           }
           if constexpr (std::is_same_v<Kind, Lock>) {

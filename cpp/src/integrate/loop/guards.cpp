@@ -222,13 +222,23 @@ bool Guards::rises_from_rest(int k) {
   return along[1] == 0.0 && along[2] > 0.0;
 }
 
+/// Whether a linear guard is zero at the start of the step, apart from the last bits of its value
+/// and of time, and the law makes it rise.
+bool Guards::leaves_its_zero(int k, double t, double h, double value, double rounding) {
+  if (k >= discontinuities_.linear_guards()) return false;
+  const double slope = start_of(k)[1];
+  const double missed = std::abs(slope) * 4.0 * epsilon * std::max(std::abs(t), std::abs(h));
+  return slope * h > 0.0 && value >= -(rounding + missed);
+}
+
 bool Guards::falls_at_start(int k, double t, double h, int halvings) {
   if (halvings == most_halvings) return true;
   stepper_.get_state(state_.data());
   const int zeros = k < discontinuities_.linear_guards() ? discontinuities_.zeros_at_start(k) : 0;
   if (zeros == 0) {
     const double value = value_at(k, t);  // comes first, because rounding() refers to it
-    return value <= discontinuities_.rounding(k, state_.data());
+    const double rounding = discontinuities_.rounding(k, state_.data());
+    return value <= rounding && !leaves_its_zero(k, t, h, value, rounding);
   }
   const double rise = rise_at_start(k, h);
   return rise != 0.0 ? rise < 0.0 : halvings == halvings_without_sign;

@@ -70,6 +70,7 @@ class Guards {
   bool goes_below(double theta);
   double rise_at_start(int k, double h);
   bool rises_from_rest(int k);
+  bool leaves_its_zero(int k, double t, double h, double value, double rounding);
   double value_at(int k, double t);
   void interpolate_others(double t, double h);
 
