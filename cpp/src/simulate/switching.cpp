@@ -296,6 +296,7 @@ std::vector<double> Switching::saved_state() const {
                        .struck = struck_,
                        .release_direction = release_direction_,
                        .holds = joints_.saved_state(),
+                       .has_failed = joints_.has_failed(),
                        .zeros_at_start = {}};
   for (const Watch& watch : guards_) state.zeros_at_start.push_back(watch.zeros_at_start);
   NumbersWriter io;
@@ -318,7 +319,7 @@ void Switching::restore(const std::vector<double>& memory, double t, const doubl
   for (std::size_t i = 0; i < state.modes.size(); ++i) put_mode(i, state.modes[i]);
   is_over_ = std::ranges::any_of(
       scene_.effects, [&](const Effect& one) { return is_outside_table(one, t, forward_); });
-  joints_.restore(*equations_.effects, state.holds);
+  joints_.restore(*equations_.effects, state.holds, state.has_failed);
   time_of_change_ = state.time_of_change;
   changes_at_once_ = state.changes_at_once;
   order_lost_ = state.order_lost;

@@ -21,6 +21,7 @@ struct SwitchingState {
   std::vector<int> struck;             ///< (n), whether the joint struck in the last impacts
   std::vector<int> release_direction;  ///< (n), 1, -1, or 0 where none was released
   std::vector<SavedHold> holds;        ///< (n)
+  bool has_failed = false;             ///< HeldJoints::has_failed()
   std::vector<int> zeros_at_start;     ///< one for each linear guard of these modes
 };
 
@@ -41,6 +42,7 @@ void visit(Archive& io, State& s) {
     io(one.hold.most);
     io(one.torque_size);
   }
+  io(s.has_failed);
   io.the_rest(s.zeros_at_start, 0, 3);
 }
 

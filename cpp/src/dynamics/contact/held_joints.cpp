@@ -187,7 +187,9 @@ std::vector<SavedHold> HeldJoints::saved_state() const {
   return saved;
 }
 
-void HeldJoints::restore(EffectsInForce& effects, const std::vector<SavedHold>& saved) {
+void HeldJoints::restore(EffectsInForce& effects, const std::vector<SavedHold>& saved,
+                         bool has_failed) {
+  has_failed_ = has_failed;
   for (int j = 0; j < n_; ++j) {
     holds_[j] = saved[j].hold;
     size_[j] = saved[j].torque_size;

@@ -129,7 +129,7 @@ class HeldJoints {
   bool settle(double* q, double* qd) const;
 
   std::vector<SavedHold> saved_state() const;  ///< (n)
-  void restore(EffectsInForce& effects, const std::vector<SavedHold>& saved);
+  void restore(EffectsInForce& effects, const std::vector<SavedHold>& saved, bool has_failed);
 
  private:
   void put_friction(EffectsInForce& effects, int joint, int mode);
