@@ -51,6 +51,36 @@ def test_dense_output_is_finite_under_a_law_of_1e145() -> None:
     assert (sol(sol.t) == sol.y).all()
 
 
+def test_a_ledger_that_overflows_leaves_the_dense_output_as_it_is() -> None:
+    """Angles of 1e288 are finite, and the powers of their rates are not."""
+    links = [
+        {"mass": 1.0, "length": 1.0},
+        {
+            "mass": 1.6179701046668573e-07,
+            "length": 0.17089083689803455,
+            "center": 0.012296665718749484,
+            "inertia": 7.509261032973153e-10,
+        },
+        {"mass": 0.0020113465436223618, "length": 4.7132208388078395e-05},
+        {"mass": 0.019354970919150415, "length": 99705967843.58824},
+        {"mass": 0.002352647835956727, "length": 1.1134270253527419e-11},
+        {"mass": 6611532493.41551, "length": 0.723111407588497},
+    ]
+    law = fx.ViscousJoint(joint=4, damping=0.0, damping3=3.4400311607073915e-07)
+    with pytest.warns(pc.PendcoreWarning):  # of its masses
+        scene = pc.Scene(links=[pc.Link(**link) for link in links], effects=[law])
+    q0 = [0.0, -4.999833471907522e-09, 0.0, 0.0, -100.67072600291924, 0.0]
+    plain, booked = (
+        pc.simulate(
+            scene, q0, t_span=(0.0, 2.690715162498401), step=1e4, method="rk4", ledger=ledger,
+            check=False,
+        )
+        for ledger in (False, True)
+    )  # fmt: skip
+    assert plain.stats.accepted == booked.stats.accepted == 1
+    assert (between(plain) == between(booked)).all()
+
+
 @pytest.mark.parametrize("step", [0.1, 0.5, 0.9, 1.843])
 def test_a_fixed_step_beyond_stability_is_not_said_to_chatter(step: float) -> None:
     """Its dense output has slopes of its own where the joint begins at rest."""
@@ -102,6 +132,26 @@ def test_a_coarse_fixed_step_from_next_to_rest_is_not_said_to_chatter() -> None:
         (0.0, 3.49),
         step=35.0,
         max_steps=10,
+        check=False,
+    )
+    assert sol.stats.accepted > 0
+    assert "back and forth" not in sol.message
+
+
+def test_a_coarse_fixed_step_from_a_stop_is_not_said_to_chatter() -> None:
+    """The dense output of a step of half a radian does not say how a joint leaves its stop."""
+    stops = [
+        fx.JointStop(joint=2, range=(-1.985532635591384, 1.8189509256194043), restitution=1.0),
+        fx.JointStop(joint=1, range=(-1.5707963267948966, 0.040172632809008846)),
+    ]
+    scene = pc.Scene(links=[ROD] * 4, gravity=9.807, effects=stops)
+    sol = pc.simulate(
+        scene,
+        [-0.7653118469929439, 0.0, 1.040044893883345, -3.96349286902832],
+        [0.24456355560734552, -10.0, 1.8644822435241977, -10.0],
+        (0.0, 4.291248774290121),
+        method="rk4",
+        step=6.847012340570351,
         check=False,
     )
     assert sol.stats.accepted > 0

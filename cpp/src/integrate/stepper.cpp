@@ -7,18 +7,28 @@ namespace pendcore {
 
 void Stepper::finite_interpolant(double h, double* coefficients) {
   interpolant(h, coefficients);
+  const auto size = static_cast<std::ptrdiff_t>(dimension());
+  const std::ptrdiff_t degree = interpolant_degree();
   // A stage that overflows enters the highest coefficient as well, and so does a term of a series
   // in the terms after it: to look there is enough.
-  const auto size = static_cast<std::ptrdiff_t>(dimension());
-  const std::ptrdiff_t all = (interpolant_degree() + 1) * size;
-  const bool is_finite = std::all_of(coefficients + all - size, coefficients + all,
-                                     [](double x) { return std::isfinite(x); });
-  if (is_finite) return;
-  double* const slope = coefficients + size;
-  get_state(coefficients);
-  get_new_state(slope);
-  for (std::ptrdiff_t i = 0; i < size; ++i) slope[i] -= coefficients[i];
-  std::fill(slope + size, coefficients + all, 0.0);
+  const double* const highest = coefficients + degree * size;
+  auto overflows = [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+    return !std::all_of(highest + first, highest + last, [](double x) { return std::isfinite(x); });
+  };
+  // The motion does not depend on whether quadratures are integrated with it.
+  const std::ptrdiff_t motion = controlled();
+  const std::ptrdiff_t first = overflows(0, motion) ? 0 : motion;
+  const std::ptrdiff_t last = overflows(motion, size) ? size : motion;
+  if (first >= last) return;
+  std::vector<double> y(size);
+  std::vector<double> y_new(size);
+  get_state(y.data());
+  get_new_state(y_new.data());
+  for (std::ptrdiff_t i = first; i < last; ++i) {
+    coefficients[i] = y[i];
+    coefficients[size + i] = y_new[i] - y[i];
+    for (std::ptrdiff_t p = 2; p <= degree; ++p) coefficients[p * size + i] = 0.0;
+  }
 }
 
 }  // namespace pendcore

@@ -56,7 +56,8 @@ class Stepper {
   /// y(t + theta h) = sum_p theta^p coefficient[p].
   virtual void interpolant(double h, double* coefficients) = 0;
   /// The same, or a straight line to the new state where the interpolant overflows although the new
-  /// state does not. This happens with tolerances of 1, or with laws of 1e145 times a rate.
+  /// state does not. This happens with tolerances of 1, or with laws of 1e145 times a rate. The
+  /// motion has its line, and quadratures have theirs: neither depends on the other.
   void finite_interpolant(double h, double* coefficients);
 
   /// The values of such a polynomial for a step of size h from `start`, at `count` times: (count,

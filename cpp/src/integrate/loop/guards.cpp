@@ -14,7 +14,7 @@ namespace {
 constexpr int points = 9;
 /// Halvings after which a step is believed about the start of a guard: if its slope and curvature
 /// do not decide, and if its value does not.
-constexpr int halvings_without_sign = 10;
+constexpr int halvings_without_sign = 20;
 constexpr int most_halvings = 50;
 /// How often the share of a step is halved in the search for an error of the dense output.
 constexpr int shares = 30;

@@ -35,7 +35,7 @@ class Guards {
 
   /// Whether a guard that the dense output makes negative at the start of the step does fall there.
   /// A guard that is positive there, or rises from zero, does not. Where this is not known, the
-  /// dense output is believed once the step was halved ten times.
+  /// dense output is believed once the step was halved twenty times.
   bool falls_at_start(int k, double t, double h, int halvings);
 
   /// Whether the error of the dense output makes a guard that begins at zero negative: at the
