@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pendcore as pc
 import pytest
 from pendcore import effects as fx
@@ -53,3 +55,33 @@ def test_to_go_on_to_where_a_run_stands_is_to_stay_there(
     assert stays.t.tobytes() == sol.t.tobytes()
     assert stays.y.tobytes() == sol.y.tobytes()
     assert differences(whole, stays.resume(3.0)) == []
+
+
+def test_a_run_whose_contact_had_no_solution_does_not_go_on() -> None:
+    """A mass of 2e-308 leaves the torque that holds a joint without a finite value."""
+    links = [
+        pc.Link(mass=1.0, length=1.0),
+        pc.Link(mass=0.5, length=4.950390459371252),
+        pc.Link(mass=2.2250738585072014e-308, length=0.9054300677378225),
+        pc.Link(
+            mass=0.5398889769668388,
+            length=0.6640109902174399,
+            center=0.6640109902174399,
+            inertia=0.0,
+        ),
+    ]
+    effects = [fx.DryJointFriction(joint=1, coulomb=5.9951481635280395), fx.Lock(joint=4)]
+    start: dict[str, Any] = {
+        "q0": [-1.0, -2.937960905417783, 1e-9, 0.0],
+        "qd0": [0.5556183901582339, 0.0, 3.536705680691237, 3.536705680691237],
+        "t_span": (-0.8563206000640616, 0.0),
+        "check": False,
+    }
+    scene = pc.Scene(links=links, gravity=0.0, effects=effects)
+    whole = pc.simulate(scene, **start)
+    assert whole.status == "non_finite"
+    stopped = pc.simulate(scene, **start, max_steps=whole.stats.accepted)
+    assert stopped.status == "max_steps"
+    resumed = stopped.resume(0.0, max_steps=300, check=False)
+    assert resumed.status == "non_finite"
+    assert resumed.run.t_reached == whole.run.t_reached
