@@ -138,7 +138,8 @@ def _other(page: Page, i: int, link: LinkEquations) -> None:
     own = i == 2  # the textbook numbers the equations of link 2
     payload = ""
     if i == page.n and (far := _forces(page, i)[1]) is not None:
-        payload = f" ${far.latex}$ is the force of the payload on it, at ${page.joint(i).latex}$."
+        payload = f" ${far.latex}$ is the force of the payload on link {i}, at "
+        payload += f"${page.joint(i).latex}$."
         payload += _turning_with(page, i)
     if own and page.n == 2:
         out = [
@@ -191,7 +192,8 @@ def _payload(page: Page, payload: PayloadEquations) -> None:
     if payload.inertia != 0:
         turning = (
             " The forces on the payload have no moment about its mass centre: the couple "
-            f"${couple.latex}$ of link {page.n} turns it, and the opposite couple acts on the link."
+            f"${couple.latex}$ of link {page.n} turns the payload, and the opposite couple acts on "
+            "the link."
         )
         alpha = page.vector("alpha", page.n)
         moment = [page.equation(page.scaled(payload.inertia, alpha), couple)]
