@@ -45,5 +45,5 @@ class ViscousJoint(Law):
         return -sum((b * terms[power] for power, b in self.coefficients.items()), Integer(0))
 
     def power(self, chain: Chain, ground_force: Vector) -> Expr:
-        """Return the power, W; it is never positive, as damping takes energy."""
+        """Return the power, W; negative where the damping takes energy from the motion."""
         return self.couple(chain) * chain.joint_rate(self.effect.joint)
