@@ -106,3 +106,15 @@ def test_gravity_acts_where_there_is_some() -> None:
     assert stated(derived(1)) == [gravity_alone]
     weightless = ["Nothing acts on the chain but the joint that holds it. Gravity is 0."]
     assert stated(derived(1, gravity=0.0)) == weightless
+
+
+@pytest.mark.parametrize(
+    ("effect", "words"),
+    [
+        (fx.ViscousJoint(joint=1, damping=-0.1), "may feed the motion"),
+        (fx.TorsionalSpring(joint=1, stiffness=-2.0), "away from its rest angle"),
+    ],
+)
+@pytest.mark.filterwarnings("ignore:effect 1")  # about what feeds the motion
+def test_a_law_that_feeds_the_motion_is_not_said_to_oppose_it(effect: Any, words: str) -> None:
+    assert words in step(derived(1, effect), "Effects").text

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from contenders.contender import fixed_steps, tolerances
 from pendcore import _core
+
+from contenders.contender import fixed_steps, tolerances
 
 FIXED = {method["name"] for method in _core.methods() if method["error_order"] == 0}
 FINEST = {"dop853": 15, "taylor": 16}  # where smaller tolerances still bring smaller errors

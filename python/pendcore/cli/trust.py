@@ -17,7 +17,7 @@ from pendcore.run.accuracy import AccuracyError
 
 _EPILOG = """
 what is told:
-  until when every angle is right to 0.1 rad, from independent second runs (sol.valid_until)
+  until when every angle is right to the limit, from independent second runs (sol.valid_until)
   the largest error of the angles and of the positions as far as it is known (sol.error)
   the largest Lyapunov exponent, and the seconds that one more right digit is worth (sol.lyapunov)
   the largest torque that would make the run an exact motion (sol.defect)
@@ -48,7 +48,7 @@ def add_parser(commands: Any) -> None:
         type=float,
         default=LIMIT,
         metavar="RAD",
-        help="error of an angle up to which a run counts as right; default: 0.1 rad",
+        help=f"error of an angle up to which a run counts as right; default: {LIMIT} rad",
     )
     parser.add_argument(
         "--time-limit", type=float, metavar="S", help="seconds of computing for the second runs"

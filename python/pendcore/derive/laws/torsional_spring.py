@@ -29,7 +29,8 @@ class TorsionalSpring(Law):
 
     def sentence(self, notation: Notation) -> str:
         """Return the words and formulas of the law."""
-        return f"A torsional spring turns joint {self.effect.joint} towards its rest angle."
+        way = "away from" if self.effect.stiffness < 0 else "towards"
+        return f"A torsional spring turns joint {self.effect.joint} {way} its rest angle."
 
     def couple(self, chain: Chain) -> Expr:
         """Return the torque, N m: towards the rest angle if the stiffness is positive."""

@@ -36,7 +36,10 @@ class ViscousJoint(Law):
 
     def sentence(self, notation: Notation) -> str:
         """Return the words and formulas of the law."""
-        return f"Viscous damping at joint {self.effect.joint} opposes its rate."
+        joint = self.effect.joint
+        if min(self.effect.damping, self.effect.damping2, self.effect.damping3) < 0:
+            return f"The couple at joint {joint} depends on its rate, and may feed the motion."
+        return f"Viscous damping at joint {joint} opposes its rate."
 
     def couple(self, chain: Chain) -> Expr:
         """Return the torque, N m, which is odd in w."""
