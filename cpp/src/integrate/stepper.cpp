@@ -9,8 +9,8 @@ void Stepper::finite_interpolant(double h, double* coefficients) {
   interpolant(h, coefficients);
   const auto size = static_cast<std::ptrdiff_t>(dimension());
   const std::ptrdiff_t degree = interpolant_degree();
-  // A stage that overflows enters the highest coefficient as well, and so does a term of a series
-  // in the terms after it: to look there is enough.
+  // A stage that overflows makes the highest coefficient overflow, and so does a term of a series,
+  // which enters all terms after it. Therefore it is enough to look at the highest coefficient.
   const double* const highest = coefficients + degree * size;
   auto overflows = [&](std::ptrdiff_t first, std::ptrdiff_t last) {
     return !std::all_of(highest + first, highest + last, [](double x) { return std::isfinite(x); });

@@ -68,7 +68,8 @@ std::vector<double> absolute_tolerances(const Options& options, std::size_t n) {
 void check_times(const std::vector<double>& times, double t0, double t_end) {
   const double direction = t_end < t0 ? -1.0 : 1.0;
   if (times.empty()) return;
-  // In order, and both ends within the run: so are all. What is wrong is looked for after that.
+  // If the times are in order and the first and the last lie within the run, all are right. Only
+  // otherwise does the second loop look for the one that is wrong.
   bool is_right =
       (times.front() - t0) * direction >= 0.0 && (t_end - times.back()) * direction >= 0.0;
   for (std::size_t i = 1; i < times.size(); ++i) {
@@ -105,7 +106,7 @@ void check(const Options& options) {
     throw std::invalid_argument(
         "store: keeps no times of t_eval: must be \"times\" or \"dense\" with it");
   }
-  if (options.method == automatic) return;  // whatever it comes to be takes all that follows
+  if (options.method == automatic) return;  // any method that it chooses passes what follows
   const MethodInfo& method = find_method(options.method, automatic);
   if (method.error_order == 0 && !options.step) {
     throw std::invalid_argument("step: none given: method \"" + std::string(method.name) +

@@ -202,7 +202,8 @@ bool Switching::reach_stop(int k, double t, double* y) {
     choose(t, y, joint);
     return false;
   }
-  // Or the joint was leaving the stop, and is back too soon for time to resolve it: it is captured.
+  // This may also be a joint that was leaving the stop and is back too soon for time to resolve it.
+  // Then it is captured.
   const std::vector<double> before(qd, qd + n_);
   strike(t, y, false);
   return !std::equal(before.begin(), before.end(), qd);
