@@ -97,7 +97,7 @@ def test_a_function_gets_time_angles_and_rates_as_fresh_arrays():
 
     def look(t, q, qd):
         seen.append((t, q.copy(), qd.copy()))
-        q[:] = qd[:] = 99.0  # its own
+        q[:] = qd[:] = 99.0  # arrays of its own
         return np.zeros(2)
 
     own, bare = scene(fx.User(look)), scene()
@@ -177,7 +177,7 @@ def test_a_run_that_its_function_broke_off_can_be_resumed():
 
 @pytest.mark.parametrize("method", ["dopri5", "dop853", "rk4", "radau5"])
 def test_a_run_that_its_function_broke_off_ends_at_its_last_step(method):
-    """Also where the function fails at the end of a step, after the step was kept."""
+    """The function may also fail at the end of a step, after the step was kept."""
     options = {"step": 0.05} if method == "rk4" else {}
     turn = pc.events.LinkAngle(link=1, value=0.5, every_turn=True)
     for calls in range(1, 80):

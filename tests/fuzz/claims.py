@@ -111,7 +111,7 @@ def storing_changes_nothing(drawn: Drawn, sol: pc.Solution, choices: Choices) ->
     if "time_limit" in (sol.status, other.status):
         return
     if "the ledger" in sol.message + other.message:
-        return  # one that overflows ends a run: it cannot be kept in silence
+        return  # only a run with a ledger ends where the ledger overflows
     if (sol.status, sol.run.t_reached) != (other.status, other.run.t_reached):
         yield f"with {changes}: {_end(other)}, not {_end(sol)}"
     elif not same(sol.run.y_reached, other.run.y_reached):

@@ -34,7 +34,7 @@ def between(sol: pc.Solution) -> np.ndarray:
 def test_a_step_of_coarse_tolerances_overflows_nowhere(
     links: int, law: pc.effects.ViscousJoint, qd0: float, t_end: float, options: dict[str, Any]
 ) -> None:
-    """Its new state is finite, but the stages of its dense output overflow: it is a line."""
+    """The new state is finite, but the stages of the dense output overflow, so it is a line."""
     scene = pc.Scene(links=[ROD] * links, gravity=9.807, effects=[law])
     sol = pc.simulate(scene, 0.0, qd0, (0.0, t_end), max_steps=1000, check=False, **options)
     assert sol.stats.accepted > 0
@@ -67,7 +67,7 @@ def test_a_ledger_that_overflows_leaves_the_dense_output_as_it_is() -> None:
         {"mass": 6611532493.41551, "length": 0.723111407588497},
     ]
     law = fx.ViscousJoint(joint=4, damping=0.0, damping3=3.4400311607073915e-07)
-    with pytest.warns(pc.PendcoreWarning):  # of its masses
+    with pytest.warns(pc.PendcoreWarning):  # about its masses
         scene = pc.Scene(links=[pc.Link(**link) for link in links], effects=[law])
     q0 = [0.0, -4.999833471907522e-09, 0.0, 0.0, -100.67072600291924, 0.0]
     plain, booked = (

@@ -15,7 +15,7 @@ def carried(method: str, scene: pc.Scene) -> str:
 
 
 def is_refusal_of_series(error: ValueError) -> bool:
-    """Whether that is what taylor says of an effect that it has no series of, and no other."""
+    """Whether `error` is the refusal by taylor of an effect that has no series, and no other."""
     kinds = (*WITHOUT_SERIES, "dry_joint_friction")
     return any(f"({kind}) has no Taylor series" in str(error) for kind in kinds)
 

@@ -1,4 +1,4 @@
-"""The kinds of numbers that references are computed in, each for judging the one before."""
+"""The kinds of numbers that references are computed in; each judges the one before it."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Arithmetic:
 
     @property
     def nothing(self) -> float:
-        """An exponent: exp of less than minus this is nothing beside 1."""
+        """An exponent; exp of anything below its negative is nothing beside 1."""
         return 0.7 * self.bits
 
     def array(self, doubles: npt.ArrayLike) -> npt.NDArray[Any]:
