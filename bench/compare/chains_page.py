@@ -10,7 +10,7 @@ from tables import entrants, number, pair, table
 
 CORE = "pendcore"
 PEERS = {"pinocchio": "Pinocchio's ABA", "mujoco": "MuJoCo"}
-BARS = {10: 5, 100: 8}  # at most one part in so many of the fastest peer's time
+BARS = {10: 5, 100: 8}  # n: pendcore takes at most this part of the fastest peer's time, 1/5 or 1/8
 GROWTH_FROM = 100  # links: where a call's fixed cost no longer shows
 
 PAGE = """# Chains of n links

@@ -1,6 +1,6 @@
 """The reference laws of the effects themselves, before the core is compared with them.
 
-No core needed. What is exact is checked in fifty digits, by differences over a time of 1e-13 s.
+These tests need no core. Exact results are checked in fifty digits, by differences over 1e-13 s.
 """
 
 from __future__ import annotations

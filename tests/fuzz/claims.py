@@ -26,7 +26,7 @@ FAILURES = {
 
 
 def same(a: np.ndarray, b: np.ndarray) -> bool:
-    """Whether two arrays are the same to the last bit (0.0 and -0.0 apart: they are equal)."""
+    """Whether two arrays are the same to the last bit, except that 0.0 and -0.0 are equal."""
     return a.shape == b.shape and bool(np.array_equal(a, b, equal_nan=True))
 
 

@@ -10,7 +10,7 @@ WITHOUT_SERIES = ("rod_drag", "user", "compiled_user")
 
 
 def carried(method: str, scene: pc.Scene) -> str:
-    """Return the method, or where it refuses the scene, ``dop853`` in place of ``taylor``."""
+    """Return the method, with ``dop853`` in place of ``taylor`` if that refuses the scene."""
     return method.replace("taylor", "dop853") if any(map(_refused, scene.effects)) else method
 
 

@@ -167,7 +167,7 @@ def in_legs(
     scene: pc.Scene, start: tuple[Any, Any], legs: list[tuple[float, int | None, str]],
     sign: float, **how: Any,
 ) -> pc.Solution:  # fmt: skip
-    """Run from leg to leg: until a time, or so many steps; then to the end."""
+    """Run each leg until a time or for a number of steps, and then to the end."""
     done = 0.0
     sol: pc.Solution | None = None
     for t_end, max_steps, between in [*sorted(legs, key=lambda leg: leg[0]), (T, None, "")]:

@@ -113,7 +113,7 @@ TWO = DenseChain(masses=np.ones(2), lengths=np.ones(2), gravity=0.0)
 
 
 def two_stops(apart: float, fine: Any) -> tuple[pc.Solution, Any, Any]:
-    """Two rods at whose stops a free run is after 0.05 s: the second's is so many rad further.
+    """Two rods that reach their stops after 0.05 s; the second stop is `apart` rad further.
 
     Returns the run that hits them, with the mass matrix and the rates there.
     """

@@ -72,7 +72,7 @@ def test_a_reversal_at_a_knot_to_the_last_bits_is_followed_by_the_next_piece(rto
 
 
 def bits_on(t: float, bits: int) -> float:
-    """Return the double that is so many bits later."""
+    """Return the time that is `bits` last bits later."""
     return float(t + bits * np.spacing(abs(t)))
 
 

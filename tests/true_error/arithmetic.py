@@ -52,7 +52,7 @@ def as_longs(values: npt.NDArray[Any]) -> Longs:
 
 @lru_cache(1 << 16)
 def _number(exact: Fraction, of: Any, count: int) -> Any:
-    """Return the sum of so many doubles that make a fraction up, from the least one on."""
+    """Return a fraction as the sum of `count` doubles, added from the least one on."""
     parts = []
     for _ in range(count):
         parts.append(float(exact))

@@ -55,7 +55,7 @@ class SwitchedTrajectory(Trajectory):
             smooth_torques(drawn.scene), smooth_own_torques(drawn.scene)
         )
         self.changing: Parameters = {}
-        """What states and tables have changed so far, as it is without them."""
+        """The parameters that states and tables changed so far, with their unchanged values."""
         self.inside = drawn.t_start
         self.events = 0
         self.has_begun = False
@@ -112,7 +112,7 @@ class SwitchedTrajectory(Trajectory):
                       key=lambda t: sign * t)  # fmt: skip
 
     def _parameters(self) -> Parameters:
-        """Return what changes of the parameters, in the present states and intervals of tables."""
+        """Return the parameters that change, for the present states and intervals of tables."""
         parts = [switch.parameters() for switch in self.switches]
         for table in self.tables:
             parts += [
