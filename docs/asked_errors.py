@@ -2,10 +2,10 @@
 
     make asked-errors
 
-On 200 random regular scenes: the error against another method's most accurate run, the right-hand
-sides against those of the best of all methods and tolerances swept, and the same as interleaved
-times. It writes docs/asked_errors.json and the table of docs/accuracy_cost.md.
-tests/accuracy/test_asked_errors.py runs the same without the clock.
+On 200 random regular scenes, it measures the error against another method's most accurate run. It
+compares the right-hand sides with those of the best of all methods and tolerances swept, and then
+the times of the two in turns. It writes docs/asked_errors.json and the table of
+docs/accuracy_cost.md. tests/accuracy/test_asked_errors.py runs the same without the clock.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ sys.path += [str(ROOT / "tests"), str(ROOT / "tests/models")]
 from regular_scenes import Regular, regular  # noqa: E402
 
 SCENES = range(1000, 1200)
-"""Seeds: others served to choose the numbers in `pendcore.accuracy.method_choice`."""
+"""Seeds other than those that served to choose the numbers in `accuracy/method_choice.py`."""
 ROUNDS = 30
 BEGIN, END = "<!-- asked: begin -->\n", "<!-- asked: end -->"
-# What is told of each scene, its key, and the goal, where there is one.
+# The table has a row for each of these: its words, its key, and the goal, where there is one.
 ROWS: list[tuple[str, str, float | None]] = [
     ("true error / asked", "error", 1.0),
     ("work of the run / best of the sweep", "run", None),

@@ -89,7 +89,7 @@ def begin_cpp(folder: Path) -> Conversation:
 
 
 def numpy_module() -> dict[str, Any]:
-    """Return what the generated module has."""
+    """Return the names that the generated module defines."""
     from pendcore.derive import Derivation
 
     names: dict[str, Any] = {}
@@ -120,7 +120,7 @@ def looked_at(
 ) -> dict[tuple[str, str], dict[str, float]]:
     """Return right-hand sides and error of every way at every tolerance.
 
-    The error is the larger one of the two angles' at the end, rad, against a far tighter run.
+    The error is the larger of the two angles' errors at the end, rad, against a far tighter run.
     """
     exact = pc.simulate(BOOK, START, 0.0, SPAN, method="taylor", rtol=1e-15, atol=1e-16).q[-1]
     found = {}
@@ -161,7 +161,7 @@ def _timed(call: Callable[[], Any]) -> PythonRun[Any]:
 
 
 def once() -> dict[str, float]:
-    """Return the shortest seconds of what comes once, in a process of its own each."""
+    """Return the shortest time, s, of what is done once, each in a process of its own."""
     solve = "import pendcore as pc; pc.simulate(pc.Scene.textbook(), .8, 0, (0, 5))"
     derive = "from pendcore.derive import Derivation; Derivation.textbook().to_octave()"
     commands = {
@@ -266,7 +266,7 @@ def solves_table(found: dict[str, Any]) -> str:
 
 
 def calls_table(found: dict[str, Any]) -> str:
-    """Return the table of single right-hand sides, a state's time each."""
+    """Return the table of single right-hand sides, with the time of one state in each cell."""
     known = {(row["way"], row["states"]): row["least"] for row in found["right_hand_sides"]}
     names = {way: WAYS[way] for way in ("inline", "file", "shared")}
     names["cpp"] = "C++ header from SymPy, in C++"
@@ -282,7 +282,7 @@ def calls_table(found: dict[str, Any]) -> str:
 
 
 def once_table(found: dict[str, Any]) -> str:
-    """Return the table of what comes once."""
+    """Return the table of what is done once."""
     names = {
         "octave": "start Octave",
         "solve": "start Python, import pendcore, solve the case",

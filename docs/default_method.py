@@ -2,7 +2,7 @@
 
     make default-method
 
-Two tables of docs/accuracy_cost.md, with docs/default_method.json beside it: errors and times of
+It writes two tables of docs/accuracy_cost.md, and docs/default_method.json: errors and times of
 the default at several tolerances on 200 random regular scenes, beside dopri5; and times of the
 methods at the same achieved error on chains. Times are ratios of calls in turns, Python included.
 """
@@ -47,7 +47,7 @@ BEGIN, END = "<!-- default {}: begin -->\n", "<!-- default {}: end -->"
 def timed(
     ways: dict[str, dict[str, Any]], rounds: int, arguments: tuple[Any, ...]
 ) -> tuple[dict[str, pc.Solution], dict[str, float]]:
-    """Run each way in turns; return the last solutions and the shortest times, s."""
+    """Run all ways in turns; return their last solutions and their shortest times, s."""
     solutions: dict[str, pc.Solution] = {}
     seconds = dict.fromkeys(ways, inf)
     times = time_grid(*arguments[3])
@@ -60,7 +60,7 @@ def timed(
 
 
 def exact(arguments: tuple[Any, ...]) -> Callable[[pc.Solution], float]:
-    """Return what measures an error, against a method that is not the solution's own."""
+    """Return a function that measures an error against a method that is not the solution's."""
     times = time_grid(*arguments[3])
     known = {
         method: pc.simulate(*arguments, t_eval=times, method=method, **EXACT).q
@@ -75,7 +75,7 @@ def exact(arguments: tuple[Any, ...]) -> Callable[[pc.Solution], float]:
 
 
 def of_scene(seed: int) -> dict[str, Any]:
-    """Draw a regular scene; return errors and times of each way, and what the rule took."""
+    """Draw a regular scene; return errors and times of each way, and the method of the default."""
     rng = np.random.default_rng(seed)
     while growth(*(arguments := scene_and_start(rng))) >= REGULAR:
         pass

@@ -21,7 +21,7 @@ RUNS = [
 
 
 def draw() -> plt.Figure:
-    """Each step's largest torque at any joint, in a step plot; the textbook's case."""
+    """Draw each step's largest torque at any joint, in a step plot of the textbook's case."""
     scene = pc.Scene.textbook()
     figure, axes = plt.subplots(figsize=(7, 4), layout="constrained")
     for method, rtol, style, color in RUNS:

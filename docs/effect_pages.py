@@ -76,7 +76,7 @@ def kinds_table(folder: str = "effects/") -> str:
 
 
 def examples(cls: type[Effect]) -> list[Effect]:
-    """Return effects to show: those above, or one of any values that are allowed."""
+    """Return effects to show: those above, or one with any values that are allowed."""
     names = {name: getattr(pc.effects, name) for name in pc.effects.__all__} | {"inf": inf}
     kind = cls.description.kind
     if kind in EXAMPLES:

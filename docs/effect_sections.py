@@ -17,7 +17,7 @@ FORCES = ctypes.CFUNCTYPE(
 
 
 @FORCES
-def damp(t, n, q, qd, Q, data):  # of numba: numba.cfunc(signature), at full speed
+def damp(t, n, q, qd, Q, data):  # with numba: numba.cfunc(signature), at full speed
     for i in range(n):
         Q[i] -= 0.1 * qd[i]
 

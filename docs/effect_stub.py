@@ -37,7 +37,7 @@ TAKEN = {
     "address": "Any",
     "function": "Callable[..., npt.ArrayLike]",
 }
-"""What an argument may be, where it is not what the attribute is."""
+"""The type of an argument, where it is not the type of the attribute in `KEPT`."""
 KEPT = {
     "optional float": "float",
     "pair": "tuple[float, float]",

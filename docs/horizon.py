@@ -1,4 +1,4 @@
-"""How long a chaotic run is right, what it says of that itself, and what a digit more is worth.
+"""How long a chaotic run is right, how long it says that it is, and what one more digit is worth.
 
     make horizon
 
@@ -61,11 +61,11 @@ def trusted(method: str, rtol: float) -> dict[str, Any]:
 
 
 def slopes() -> dict[str, dict[str, list[float]]]:
-    """Seconds that a digit buys over those of the exponent, of each method from start to start.
+    """Return, for each method, the seconds that a digit buys over those of the exponent, by start.
 
-    As measured (`share`); as the variational equations alone have it for the same early errors
-    (`even`); and of each run, what its error is at the limit over what the early one has grown to
-    by them (`gained`).
+    `share` has this ratio as it is measured, and `even` as the variational equations alone have it
+    for the same early errors. `gained` has, for each run, the error at the limit over what the
+    early error has grown to by the variational equations.
     """
     found: dict[str, dict[str, list[float]]] = {}
     for case in record.chaotic_starts():
@@ -151,7 +151,7 @@ def table(found: dict[str, Any]) -> str:
 
 
 def draw_run(path: Path) -> None:
-    """Draw one run, what is past its horizon, and its error: true, estimated, and as limited."""
+    """Draw one run, what is past its horizon, and its error: true, estimated, largest so far."""
     from matplotlib.figure import Figure
 
     run = pc.simulate(BOOK, START, 0, SPAN)

@@ -26,13 +26,13 @@ BOOK = pc.Scene.textbook()
 BEGIN, END = "<!-- long runs: begin -->\n", "<!-- long runs: end -->"
 STEP = 5e-4
 FINE = 1e-4
-"""s: at this one the method's own error stays below the rounding of the energies."""
+"""s: at this step the method's own error stays below the rounding of the energies."""
 
 
 def energy(state: dict[str, Any]) -> mpf:
-    """Return the textbook's total energy in 40 digits, J, of where a run stands.
+    """Return the textbook's total energy in 40 digits, J, at the state that a run has reached.
 
-    Two rods of 1 kg and 1 m, angles from the horizontal, downwards.
+    The textbook has two rods of 1 kg and 1 m; angles are from the horizontal, downwards.
     """
     y = [mpf(float(x)) for x in state["position_y"]]
     for i, low in enumerate(state["position_stepper"]):

@@ -2,10 +2,10 @@
 
     make asked-errors
 
-Measured in turns, in right-hand sides of dop853 of the same scene, and divided by what
-`series_work` of `pendcore.accuracy.method_choice` says. It prints, and fails where one of them is
-not within a factor of two. No test measures times;
-tests/methods/test_series_work.py sees that every kind of effect is measured here.
+Series of taylor and right-hand sides of dop853 on the same scene are timed in turns. The ratio of
+the two times is divided by what `series_work` of `pendcore.accuracy.method_choice` says. The
+program prints the results, and fails if one of them is not within a factor of two. No test measures
+times; tests/methods/test_series_work.py sees that every kind of effect is measured here.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ EFFECTS: dict[str, Any] = {
     "driven_pivot": E.DrivenPivot(y=WAVE),
 }
 NOT_CARRIED = {"rod_drag"}
-"""What taylor has no series of."""
+"""Effects for which taylor has no series."""
 TOGETHER: dict[str, tuple[Any, ...]] = {
     "none": (),
     **{kind: (one,) for kind, one in EFFECTS.items() if kind not in NOT_CARRIED},
@@ -55,7 +55,7 @@ WITHIN = 2.0
 
 
 def scenes() -> Iterator[tuple[str, pc.Scene]]:
-    """Yield the chains and what acts on them, but for what nothing moves in."""
+    """Yield the chains and what acts on them; the lock of joint 2 needs two links."""
     for n in LINKS:
         for name, effects in TOGETHER.items():
             if name != "lock" or n > 1:
@@ -63,7 +63,7 @@ def scenes() -> Iterator[tuple[str, pc.Scene]]:
 
 
 def seconds_of_one(scene: pc.Scene, method: str, rtol: float) -> float:
-    """Return the time of a run over how often it took a right-hand side or a series, s."""
+    """Return the time of a run over the number of its right-hand sides or series, s."""
     q0 = [0.7 + 0.1 * i for i in range(len(scene.links))]
     begin = perf_counter()
     solution = pc.simulate(
@@ -74,7 +74,7 @@ def seconds_of_one(scene: pc.Scene, method: str, rtol: float) -> float:
 
 
 def measured_over_forecast(scene: pc.Scene) -> list[float]:
-    """Return how many times the forecast a series takes, for each of the ways."""
+    """Return the time of a series as a multiple of the forecast, for each of the ways."""
     least = dict.fromkeys((YARDSTICK, *WAYS), inf)
     for _ in range(ROUNDS):
         for way in least:

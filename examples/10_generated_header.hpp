@@ -67,7 +67,7 @@ struct Chain {
     double potential;  ///< J; 0 at the height of the origin
     double total() const { return kinetic + potential; }
   };
-  /// Power that each effect brings into the chain, W; negative where it takes.
+  /// Power that each effect brings into the chain, W; negative where it takes energy.
   struct Powers {
     /// ViscousJoint(joint=1, damping=0.15)
     double viscous_joint_1;

@@ -25,7 +25,7 @@ py::dict exponents(const Scene& scene, py::handle q0, py::handle qd0, py::handle
   options.max_step = number("max_step", max_step);
   options.max_steps = whole_number("max_steps", max_steps);
   options.time_limit = optional_number("time_limit", time_limit).value_or(options.time_limit);
-  options.monitor = monitor;
+  options.monitor = monitor.for_core();
   const Start start = start_of(scene, q0, qd0, t0, t_end, warn);
   TangentGrowth found;
   {

@@ -66,7 +66,7 @@ Run resume_run(const Run& run, py::handle t_end, py::handle t_eval, py::handle m
              .event_functions = run.event_functions};
   {
     const py::gil_scoped_release without_lock;
-    longer.solution = resume(run.scene, run.solution, end, times, most, limit, monitor);
+    longer.solution = resume(run.scene, run.solution, end, times, most, limit, monitor.for_core());
   }
   monitor.close(longer);
   return longer;

@@ -1,3 +1,5 @@
+#include <utility>
+
 #include "bind_events.hpp"
 #include "bind_options.hpp"
 #include "python_monitor.hpp"
@@ -11,7 +13,7 @@ Run simulate_run(const py::object& python_scene, py::handle q0, py::handle qd0, 
   const auto& scene = python_scene.cast<const Scene&>();
   PythonMonitor monitor(progress);
   Options options = options_of(given, scene.links.size());
-  options.monitor = monitor;
+  options.monitor = monitor.for_core();
   const Start start = start_of(scene, q0, qd0, t0, t_end, warn);
   Run run{.scene = scene,
           .solution = {},
@@ -21,7 +23,8 @@ Run simulate_run(const py::object& python_scene, py::handle q0, py::handle qd0, 
                                  : functions_of(given[EventsOption::info.name.data()])};
   {
     const py::gil_scoped_release without_lock;
-    run.solution = simulate(run.scene, start.q0, start.qd0, start.t0, start.t_end, options);
+    run.solution =
+        simulate(run.scene, start.q0, start.qd0, start.t0, start.t_end, std::move(options));
   }
   monitor.close(run);
   return run;

@@ -19,31 +19,30 @@ bool PythonMonitor::operator()(double fraction) {
   return false;
 }
 
-void PythonMonitor::keep_error() const {
+void PythonMonitor::keep_error() {
   const py::error_already_set error;
-  *error_ = error.value();
-  if (error.trace()) PyException_SetTraceback(error_->ptr(), error.trace().ptr());
+  error_ = error.value();
+  if (error.trace()) PyException_SetTraceback(error_.ptr(), error.trace().ptr());
 }
 
-void PythonMonitor::close(Run& run) const {
+void PythonMonitor::close(Run& run) {
   Solution& solution = run.solution;
   run.error = close(solution.status, solution.message, solution.error);
 }
 
-py::object PythonMonitor::close(Status& status, std::string& message,
-                                std::exception_ptr& error) const {
-  if (error) *error_ = python_exception(std::exchange(error, nullptr));
-  if (!*error_) {
+py::object PythonMonitor::close(Status& status, std::string& message, std::exception_ptr& error) {
+  if (error) error_ = python_exception(std::exchange(error, nullptr));
+  if (!error_) {
     // Ctrl-C came after the core last looked for it: the run is complete, and is not lost.
     if (PyErr_CheckSignals() == 0) return py::none();
     keep_error();
-    return *error_;
+    return error_;
   }
-  const bool stopped = PyErr_GivenExceptionMatches(error_->ptr(), PyExc_KeyboardInterrupt) != 0;
+  const bool stopped = PyErr_GivenExceptionMatches(error_.ptr(), PyExc_KeyboardInterrupt) != 0;
   const std::size_t sentence = text(status).sentence.size();
   status = stopped ? Status::interrupted : Status::callback_error;
   message.replace(0, sentence, text(status).sentence);
-  return *error_;
+  return error_;
 }
 
 }  // namespace pendcore::bindings

@@ -4,7 +4,7 @@
 /// function.
 #pragma once
 
-#include <memory>
+#include <functional>
 
 #include "run.hpp"
 
@@ -14,19 +14,20 @@ class PythonMonitor {
  public:
   explicit PythonMonitor(py::handle progress) : progress_(progress) {}
 
-  /// What the core calls: false stops the run.
+  /// What the core calls: false stops the run. The core's copies of it all call this object.
+  Monitor for_core() { return std::ref(*this); }
   bool operator()(double fraction);
 
   /// Puts the exception, and the status that it means, into the run.
-  void close(Run& run) const;
+  void close(Run& run);
   /// The exception, or None; the status that it means, and its sentence, become the run's.
-  py::object close(Status& status, std::string& message, std::exception_ptr& error) const;
+  py::object close(Status& status, std::string& message, std::exception_ptr& error);
 
  private:
-  void keep_error() const;
+  void keep_error();
 
   py::handle progress_;
-  std::shared_ptr<py::object> error_ = std::make_shared<py::object>();  // shared by copies
+  py::object error_;
 };
 
 }  // namespace pendcore::bindings

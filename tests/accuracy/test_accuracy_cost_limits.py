@@ -70,7 +70,7 @@ def test_what_was_not_tried_for_want_of_time_is_named():
     slow = BOOK.replace(effects=[E.User(lambda t, q, qd: -0.1 * qd)])
     found = pc.accuracy_cost(slow, *SWING, (0, 0.5), time_limit=1e-3, methods=["dopri5", "rk4"])
     (remark,) = [x for x in found.remarks if "before these were tried" in x]
-    assert remark.endswith("a larger time_limit than 0.001 s has them")
+    assert remark.endswith("a larger time_limit than 0.001 s includes them")
     tried = [p.rtol for p in found if p.method == "dopri5"]
     loosest = next(r for r in RTOL if r not in tried)
     assert f"tried: dopri5 at rtol {loosest:.3g} and below" in remark

@@ -109,7 +109,7 @@ def test_the_growth_is_what_the_message_says(n: int) -> None:
 
 def test_a_report_is_of_a_case_of_its_scene(tmp_path: object) -> None:
     other = pc.Case(scene=pc.Scene(links=[ROD]), q0=0.1, t_span=(0, 1))
-    with pytest.raises(ValueError, match="case: is of another scene"):
+    with pytest.raises(ValueError, match="case: has another scene"):
         Derivation.textbook().report(other, tmp_path)  # type: ignore[arg-type]
 
 

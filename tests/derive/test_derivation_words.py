@@ -91,7 +91,7 @@ def test_what_does_not_move_is_not_counted() -> None:
     assert "the angle $q_{1}(t)$" in text
     text = step(derived(2, fx.Lock(joint=1), fx.Lock(joint=2)), "Degrees of freedom").text
     assert text.startswith("The links do not move: $n = 0$, ")
-    assert "of one degree of freedom:" in step(derived(1), "Degrees of freedom").text
+    assert "with one degree of freedom:" in step(derived(1), "Degrees of freedom").text
 
 
 def test_several_payloads_are_several() -> None:
@@ -102,6 +102,7 @@ def test_several_payloads_are_several() -> None:
 
 
 def test_gravity_acts_where_there_is_some() -> None:
-    assert stated(derived(1)) == ["Nothing acts on it but gravity and the joint that holds it."]
-    weightless = ["Nothing acts on it but the joint that holds it. Gravity is 0."]
+    gravity_alone = "Nothing acts on the chain but gravity and the joint that holds it."
+    assert stated(derived(1)) == [gravity_alone]
+    weightless = ["Nothing acts on the chain but the joint that holds it. Gravity is 0."]
     assert stated(derived(1, gravity=0.0)) == weightless

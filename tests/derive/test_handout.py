@@ -203,7 +203,7 @@ def test_a_worksheet_states_what_acts_and_what_its_symbols_are() -> None:
         r"viscous damping, $-b_{2} \dot{\varphi}_{2}$",
         r"a motor, $\tau_{M,1} \sin \left(\Omega_{1} t\right)$",
         r"a torsional spring, $-k_{3} \left(\varphi_{3} - \varphi_{0,3}\right)$",
-        r"its moment of inertia about it is $I_{p}$",
+        r"its moment of inertia about that point is $I_{p}$",
     ):
         assert law in busy, law
     angle = number(np.degrees(0.5 - 0.3))

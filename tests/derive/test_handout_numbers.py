@@ -81,7 +81,7 @@ def test_rounding_of_0_is_not_printed_at_the_start(degrees: tuple[float, float])
     before, after = text.split("The two differ by at most")
     assert not re.search(r"10\^\{-(1[2-9]|[2-9]\d)\}", before), before
     assert text.count("printed as 0") == 1
-    assert "is left of 0 by rounding" in after
+    assert "is what rounding leaves of 0" in after
 
 
 def test_what_is_small_but_not_rounding_is_printed() -> None:

@@ -264,7 +264,7 @@ def test_a_scene_refuses_what_its_chain_has_no_place_for(effect, message):
 @pytest.mark.parametrize("lowest", [0.5, 0.0])
 def test_a_scene_refuses_stops_that_leave_a_joint_no_room(lowest):
     stops = [fx.JointStop(1, range=(-1, 0)), fx.JointStop(1, range=(lowest, 1))]
-    message = r"effect 2 \(joint_stop\): range: the stops of joint 1 leave it no room"
+    message = rf"effect 2 \(joint_stop\): range = \({lowest}, 1.0\): must overlap .* joint 1"
     with pytest.raises(ValueError, match=f"^{message}"):
         pc.Scene(links=[ROD, ROD], effects=stops)
     assert pc.Scene(links=[ROD], effects=[stops[0], fx.JointStop(1, range=(-0.5, 1))])

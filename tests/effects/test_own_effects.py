@@ -177,10 +177,11 @@ def test_a_run_that_its_function_broke_off_can_be_resumed():
 
 @pytest.mark.parametrize("method", ["dopri5", "dop853", "rk4", "radau5"])
 def test_a_run_that_its_function_broke_off_ends_at_its_last_step(method):
-    """The function may also fail at the end of a step, after the step was kept."""
+    """Even where the function fails at the end of a step that was kept already, it does."""
     options = {"step": 0.05} if method == "rk4" else {}
     turn = pc.events.LinkAngle(link=1, value=0.5, every_turn=True)
-    for calls in range(1, 80):
+    solutions = 0
+    for calls in range(1, 80):  # so many reach into the first steps of each method
         left = iter(range(calls))
 
         def fails(t, q, qd, left=left):
@@ -193,9 +194,11 @@ def test_a_run_that_its_function_broke_off_ends_at_its_last_step(method):
         sol = getattr(stop.value, "solution", None)
         if sol is None:
             continue
+        solutions += 1
         assert sol.run.t_reached == sol.t[-1]
         assert np.array_equal(sol.run.y_reached, sol.y[:, -1])
         assert all(event.t <= sol.t[-1] for event in sol.events[0])
+    assert solutions > 9
 
 
 def test_ctrl_c_in_a_function_interrupts():

@@ -17,7 +17,7 @@ from fuzz.choices import Choices, happens
 from fuzz.quantities import angle, regime, signed, size
 
 METHODS = tuple(method["name"] for method in _core.methods())
-OF_FIXED_STEPS = {method["name"] for method in _core.methods() if method["error_order"] == 0}
+FIXED_STEP_METHODS = {method["name"] for method in _core.methods() if method["error_order"] == 0}
 TIME_LIMIT = 5.0
 """s; max_steps bounds a case, and so does this limit if a step takes long."""
 
@@ -102,7 +102,9 @@ def options(choices: Choices, regime: str, span: tuple[float, float]) -> dict[st
         given["rtol"] = choices.one_of((1e-300, 1e-17, 1.0, 1e30))
         given["atol"] = choices.one_of((0.0, 1e-300, 1.0, 1e30))
     kind = choices.one_of(("",) * 6 + ("first_step", "max_step", "step"))
-    if given.get("method") in OF_FIXED_STEPS:
+    if (
+        given.get("method") in FIXED_STEP_METHODS
+    ):  # without a step it is refused, which shows nothing
         kind = "step"
     if kind:
         given[kind] = size(choices, regime) * choices.one_of((1e-2, 1e-3, length or 1.0))

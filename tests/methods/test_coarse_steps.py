@@ -67,7 +67,7 @@ def test_a_ledger_that_overflows_leaves_the_dense_output_as_it_is() -> None:
         {"mass": 6611532493.41551, "length": 0.723111407588497},
     ]
     law = fx.ViscousJoint(joint=4, damping=0.0, damping3=3.4400311607073915e-07)
-    with pytest.warns(pc.PendcoreWarning):  # about its masses
+    with pytest.warns(pc.PendcoreWarning):  # about the masses
         scene = pc.Scene(links=[pc.Link(**link) for link in links], effects=[law])
     q0 = [0.0, -4.999833471907522e-09, 0.0, 0.0, -100.67072600291924, 0.0]
     plain, booked = (
@@ -98,7 +98,7 @@ def test_a_fixed_step_beyond_stability_is_not_said_to_chatter(step: float) -> No
     assert "back and forth" not in sol.message
 
 
-def test_a_coarse_fixed_step_from_a_motor_s_limit_is_not_said_to_chatter() -> None:
+def test_a_coarse_fixed_step_from_the_limit_of_a_motor_is_not_said_to_chatter() -> None:
     """The slope of the torque leads away from the limit; the dense output crosses it at once."""
     links = [
         pc.Link(mass=10.0, length=0.12047458140905794, center=0.12047458140905794, inertia=0.0),
@@ -122,7 +122,7 @@ def test_a_coarse_fixed_step_from_a_motor_s_limit_is_not_said_to_chatter() -> No
 
 
 def test_a_coarse_fixed_step_from_next_to_rest_is_not_said_to_chatter() -> None:
-    """At t = 0 a rate of 1e-190 changes its sign at once, and time resolves it."""
+    """A rate of 1e-190 becomes zero so soon that only t = 0 lets doubles resolve the time."""
     law = fx.ViscousJoint(joint=4, damping=1.1095105527664928, damping2=9.704511218801674)
     scene = pc.Scene(links=[ROD] * 4, gravity=0.0, effects=[law])
     sol = pc.simulate(
@@ -139,7 +139,7 @@ def test_a_coarse_fixed_step_from_next_to_rest_is_not_said_to_chatter() -> None:
 
 
 def test_a_coarse_fixed_step_from_a_stop_is_not_said_to_chatter() -> None:
-    """The dense output of a step of half a radian does not say how a joint leaves its stop."""
+    """The dense output of so long a step does not say how a joint leaves its stop."""
     stops = [
         fx.JointStop(joint=2, range=(-1.985532635591384, 1.8189509256194043), restitution=1.0),
         fx.JointStop(joint=1, range=(-1.5707963267948966, 0.040172632809008846)),

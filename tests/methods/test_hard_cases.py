@@ -22,7 +22,6 @@ BOOK = pc.Scene.textbook()
 ROD = pc.Scene(links=[pc.Link(mass=1.0, length=1.0)])
 NEARLY_UPRIGHT = -np.pi / 2 + 1e-9
 FLOATING = pc.Scene(links=BOOK.links, gravity=0.0)
-ORDERS = {method["name"]: method["order"] for method in _core.methods()}
 ORDERS = {m["name"]: m["order"] for m in _core.methods() if m["error_order"]}
 METHODS = list(ORDERS)
 FIRST = {method["name"]: method["first"] for method in _core.methods()}

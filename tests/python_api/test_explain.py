@@ -312,7 +312,7 @@ def test_the_summary_of_a_run_tells_the_same():
 
 def test_it_prints_as_a_table():
     lines = repr(rods(2, fx.ViscousJoint(1, 0.1)).explain()).splitlines()
-    assert lines[0] == "2 links, gravity 9.807 m/s^2, looked at at t = 0 s"
+    assert lines[0] == "2 links, gravity 9.807 m/s^2, explained at t = 0 s"
     for line in (
         "  the textbook's count       M = 3 n - 2 c5 - c4 = 3*2 - 2*2 - 0 = 2",
         "  the constraints' Jacobian  3 n - rank = 6 - 4 = 2",
@@ -355,7 +355,7 @@ def test_the_command_explains_a_case_at_its_start(tmp_path, capsys):
     path.write_text(pc.Case(scene=scene, q0=[1, 2], t_span=(1, 2)).to_toml())
     assert main(["explain", str(path)]) == 0
     out, err = capsys.readouterr()
-    assert out.startswith("2 links, gravity 9.807 m/s^2, looked at at t = 1 s\n")
+    assert out.startswith("2 links, gravity 9.807 m/s^2, explained at t = 1 s\n")
     assert err == ""
     assert main(["explain", str(path), "--json"]) == 0
     told = json.loads(capsys.readouterr().out)

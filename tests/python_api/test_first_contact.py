@@ -272,7 +272,7 @@ def test_without_pandoc_the_report_says_why_there_is_no_page(
 ) -> None:
     monkeypatch.setattr(conversion, "has_pandoc", lambda: False)
     main(["derive", "--to", "report", "-o", str(tmp_path)])
-    assert "these take pandoc" in capsys.readouterr().err
+    assert "these need pandoc" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("n", [1, 2, 5])

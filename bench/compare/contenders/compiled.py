@@ -108,6 +108,6 @@ def as_own(contender: Contender) -> Contender:
     return replace(
         contender,
         ours=True,
-        setting="step" if method == FIXED else "tolerance",
+        setting="step" if method in FIXED else "tolerance",
         settings=settings_of(method),
     )

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from contenders.contender import fixed_steps, tolerances
+from pendcore import _core
 
-FIXED = "rk4"
+FIXED = {method["name"] for method in _core.methods() if method["error_order"] == 0}
 FINEST = {"dop853": 15, "taylor": 16}  # where smaller tolerances still bring smaller errors
 
 
 def settings_of(method: str) -> Callable[[int], list[float]]:
     """Map the number of settings per decade to the settings."""
-    if method == FIXED:
+    if method in FIXED:
         return lambda per_decade: fixed_steps(0.1, 1e-4, 2 * per_decade)
     return lambda per_decade: tolerances(FINEST.get(method, 13), per_decade)

@@ -35,7 +35,7 @@ def preparing(method: str) -> Callable[[Case, float], PythonRun[pc.Solution]]:
         q0, qd0 = case.start[: case.n].copy(), case.start[case.n :].copy()
         span = (float(case.times[0]), float(case.times[-1]))
         how: dict[str, Any] = {"step": setting}
-        if method != FIXED:
+        if method not in FIXED:
             how = {"rtol": setting, "atol": setting}
 
         def solve() -> pc.Solution:
@@ -66,7 +66,7 @@ CONTENDERS = [
         about=f"pendcore {pc.__version__} simulate, method {method}",
         prepare=preparing(method),
         ours=True,
-        setting="step" if method == FIXED else "tolerance",
+        setting="step" if method in FIXED else "tolerance",
         settings=settings_of(method),
     )
     for method in (known["name"] for known in _core.methods())

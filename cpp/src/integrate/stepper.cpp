@@ -9,8 +9,8 @@ void Stepper::finite_interpolant(double h, double* coefficients) {
   interpolant(h, coefficients);
   const auto size = static_cast<std::ptrdiff_t>(dimension());
   const std::ptrdiff_t degree = interpolant_degree();
-  // A stage that overflows makes the highest coefficient overflow, and so does a term of a series,
-  // which enters all terms after it. Therefore it is enough to look at the highest coefficient.
+  // An overflow in a stage, or in a term of a series, shows in the highest coefficient as well:
+  // only that one is looked at.
   const double* const highest = coefficients + degree * size;
   auto overflows = [&](std::ptrdiff_t first, std::ptrdiff_t last) {
     return !std::all_of(highest + first, highest + last, [](double x) { return std::isfinite(x); });

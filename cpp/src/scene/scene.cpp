@@ -45,7 +45,7 @@ void check_effects(const Scene& scene) {
   if (scene.effects.empty()) return;
   const int n = static_cast<int>(scene.links.size());
   std::vector<bool> locked(n);
-  std::vector<std::array<double, 2>> ranges(n, {-never, never});  // what the stops leave
+  std::vector<std::array<double, 2>> ranges(n, {-never, never});  // the room that stops leave
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
     const std::string where = effect_name(scene, i) + ": ";
     check_effect(where, scene.effects[i]);
@@ -54,13 +54,16 @@ void check_effects(const Scene& scene) {
           if constexpr (OnJoint<Kind>) check_place(where, "joint", effect.joint, n);
           if constexpr (OnLink<Kind>) check_place(where, "link", effect.link, n);
           if constexpr (std::is_same_v<Kind, JointStop>) {
-            std::array<double, 2>& left = ranges[effect.joint - 1];
-            left = {std::max(left[0], effect.range[0]), std::min(left[1], effect.range[1])};
-            if (left[0] >= left[1]) {
-              throw std::invalid_argument(where + "range: the stops of joint " +
-                                          std::to_string(effect.joint) +
-                                          " leave it no room: their ranges must overlap; "
-                                          "a Lock holds a joint at one angle");
+            const auto [lower, upper] = effect.range;
+            std::array<double, 2>& room = ranges[effect.joint - 1];
+            room = {std::max(room[0], lower), std::min(room[1], upper)};
+            if (room[0] >= room[1]) {
+              throw std::invalid_argument(
+                  where + "range = (" + text(lower) + ", " + text(upper) +
+                  "): must overlap the ranges of the other stops of joint " +
+                  std::to_string(effect.joint) +
+                  " (rad): together they leave it no room; a Lock holds a "
+                  "joint at one angle");
             }
           }
           if constexpr (std::is_same_v<Kind, Lock>) {

@@ -59,8 +59,9 @@ std::string ending_message(const Ending& ending, const Scene& scene, const Solut
   if (ending.chatters) {
     return "no step gets further: the law changes back and forth (at t = " +
            text(solution.t_reached) +
-           " s): dry friction that reverses at once, or two limits that meet: move one of the "
-           "limits a little, or give the joint some damping";
+           " s), as where dry friction reverses at once or two limits meet: move one of the "
+           "limits, "
+           "or give the joint some damping";
   }
   const bool forward = !(solution.t_end < solution.t0);
   std::string table = ending.status == Status::non_finite

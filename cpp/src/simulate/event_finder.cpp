@@ -75,7 +75,7 @@ EventFinder::Difference EventFinder::difference_of(const EventFunction& function
 double EventFinder::Difference::from(double level, const double* y) const {
   const double x = of(y) - level;
   const double size = std::abs(y[plus]) + (minus < 0 ? 0.0 : std::abs(y[minus])) + std::abs(level);
-  return std::abs(x) <= 4.0 * epsilon * size ? 0.0 : x;
+  return std::abs(x) <= last_bits_share * size ? 0.0 : x;
 }
 
 double EventFinder::Levels::at(int i) const { return std::fma(first + i, turn, value); }
@@ -86,7 +86,7 @@ EventFinder::Levels EventFinder::levels_between(const Difference& difference, do
   if (!difference.every_turn) return {value, 0.0, 1.0};
   const double from = (low - value) / turn;
   const double to = (high - value) / turn;
-  const double margin = 1e-9 + 4.0 * epsilon * (std::abs(from) + std::abs(to));
+  const double margin = 1e-9 + last_bits_share * (std::abs(from) + std::abs(to));
   const double first = std::ceil(from - margin);
   return {value, first, std::floor(to + margin) - first + 1.0};
 }
@@ -123,7 +123,7 @@ void EventFinder::find_difference(std::size_t k, const Step& step) {
   if (moved <= 64.0 * epsilon * moved_with_its_links) return;
   const double end = difference.of(y_new_.data());
   const Levels levels = levels_along(difference, degree, end, 8.0 * epsilon * size);
-  // One turn in each step is bounded by the number of steps.
+  // max_steps bounds the turns if each step has one.
   if (!(levels.count <= 1.0)) turns_ += levels.count - 1.0;
   if (!(turns_ <= most_turns)) {
     has_too_many_ = true;
@@ -174,7 +174,7 @@ double EventFinder::sampled(std::size_t k, const Step& step, double theta) {
   return function_at(k, std::fma(theta, step.h, step.t_old.high), y_.data());
 }
 
-/// A TipLine or a Function, at a state.
+/// Computes a TipLine or a Function at a state.
 double EventFinder::function_at(std::size_t k, double t, const double* y) {
   if (tip_line_of_[k] >= 0) return tip_lines_[tip_line_of_[k]].at(t, y);
   const auto n = static_cast<std::size_t>(n_);
@@ -273,8 +273,8 @@ void EventFinder::jump(double t, const double* before, const double* after) {
   std::copy_n(after, node_y_.size(), node_y_.begin());
 }
 
-/// A change of sign by a jump is an event. A change that begins at zero was found before, or was
-/// never armed.
+/// A change of sign by a jump is an event. If the value before the jump was zero, the event was
+/// found before, or was not armed.
 void EventFinder::cross(std::size_t k, double before, double after, double t,
                         const double* y_before, const double* y_after) {
   const int from = sign(before);

@@ -70,7 +70,8 @@ std::string short_text(double x) {
   return digits;
 }
 
-/// The frequency and damping ratio of a mode, or the rate at which an overdamped mode dies out.
+/// The frequency and damping ratio of a mode in words; for an overdamped mode, the rate at which it
+/// dies out.
 std::string measure_of(const FastMode& mode) {
   if (mode.damping_ratio > 10.0) return "overdamped, " + short_text(mode.fastest) + " 1/s";
   const double ratio = std::abs(mode.damping_ratio) < 1e-6 ? 0.0 : mode.damping_ratio;
@@ -93,7 +94,7 @@ std::optional<FastMode> fast_mode(const Scene& scene, const EquationsOfMotion& e
   }
   const Scene links{.links = scene.links, .gravity = scene.gravity};
   const double slow = far_faster * bound_of(links, t, q, qd);
-  if (!(bound_of(whole, n) > slow)) return std::nullopt;  // as a rule: no eigenvalue is needed
+  if (!(bound_of(whole, n) > slow)) return std::nullopt;  // the usual case: no eigenvalue is needed
   const auto [values, vectors] = eigenpairs(first_order(whole, n), static_cast<int>(2 * n));
   const auto sizes = [](std::complex<double> a, std::complex<double> b) {
     return std::abs(a) < std::abs(b);
@@ -169,7 +170,7 @@ std::string remark_on_steps(const Scene& scene, const EquationsOfMotion& equatio
     remark += "; stiff: went on with " + std::string(in_force.name) + " from t = " + since;
   } else if (statistics.stiff && method.kind == MethodKind::pair) {
     remark += "; stiff at t = " + since + ", but " + std::string(method.second_of_pair) +
-              " does not pay: its steps can hardly be longer for their accuracy";
+              " does not pay: accuracy hardly allows it longer steps";
   } else if (statistics.stiff) {
     remark += "; from t = " + since +
               " on the steps are limited by stability, not by accuracy: the problem is stiff: "

@@ -24,19 +24,19 @@ void check_numbers(const char* name, const std::vector<double>& values, std::siz
   }
 }
 
-void check_stop(const JointStop& stop, const std::string& where, const std::vector<double>& q0,
+void check_stop(const JointStop& stop, const std::string& name, const std::vector<double>& q0,
                 bool backward) {
   const auto& [lower, upper] = stop.range;
   const double phi = relative(q0.data(), stop.joint);
   const double rounding = 1e-12 * std::max(1.0, std::abs(phi));
   if (!(phi >= lower - rounding && phi <= upper + rounding)) {
     refuse("q0: angle of joint " + std::to_string(stop.joint), phi,
-           text(lower) + " to " + text(upper) + " rad, as " + where + "range has it");
+           text(lower) + " to " + text(upper) + " rad, the range of " + name);
   }
   if (backward && stop.restitution < 1.0) {
     throw std::invalid_argument(
-        "t_span: runs backward: " + where +
-        "with a restitution below 1 the past is not unique: run it forward");
+        "t_span: runs backward: " + name +
+        ": with a restitution below 1 the past is not unique: run it forward");
   }
 }
 
@@ -44,27 +44,26 @@ void check_stop(const JointStop& stop, const std::string& where, const std::vect
 void check_effects_at_start(const Scene& scene, const std::vector<double>& q0,
                             const std::vector<double>& qd0, double t0, double t_end) {
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
-    const std::string where = effect_name(scene, i) + ": ";
+    const std::string name = effect_name(scene, i);
     if (t_end < t0 && holding_torque(scene.effects[i])) {
-      throw std::invalid_argument("t_span: runs backward: " + where +
-                                  "with dry friction the past is not unique: run it forward");
+      throw std::invalid_argument("t_span: runs backward: " + name +
+                                  ": with dry friction the past is not unique: run it forward");
     }
     if (const auto* stop = std::get_if<JointStop>(&scene.effects[i])) {
-      check_stop(*stop, where, q0, t_end < t0);
+      check_stop(*stop, name, q0, t_end < t0);
     }
     const auto* lock = std::get_if<Lock>(&scene.effects[i]);
     if (lock == nullptr) continue;
     const std::string joint = std::to_string(lock->joint);
     const double phi = relative(q0.data(), lock->joint);
     if (lock->angle && !(std::abs(phi - *lock->angle) <= 1e-9 * std::max(1.0, std::abs(phi)))) {
-      const std::string name = where.substr(0, where.size() - 2);  // without ": "
       refuse(
           "q0: angle of joint " + joint, phi,
           text(*lock->angle) + " rad, as " + name + " says: start there, or leave its angle out");
     }
     const double rate = relative(qd0.data(), lock->joint);
     if (!(std::abs(rate) <= 1e-12 * std::abs(qd0[lock->joint - 1]))) {
-      refuse("qd0: rate of joint " + joint, rate, "0 (rad/s): " + where + "it is locked");
+      refuse("qd0: rate of joint " + joint, rate, "0 (rad/s), because " + name + " locks it");
     }
   }
 }
@@ -128,7 +127,7 @@ std::vector<std::string> run_warnings(const Scene& scene, const std::vector<doub
             if (effect.first_time() <= first && last <= effect.last_time()) return;
             warnings.push_back(effect_name(scene, i) + ": " + span_of(scene.effects[i]) +
                                ", the run from " + text(t0) + " to " + text(t_end) +
-                               " s: it ends where it leaves that span");
+                               " s: the run ends where it leaves that span");
           }
         },
         scene.effects[i]);

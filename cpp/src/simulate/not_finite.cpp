@@ -32,6 +32,7 @@ NotFinite look_at(const Scene& scene, double t, const std::vector<double>& y) {
 NotFinite find_what_is_not_finite(const Scene& scene, const IntegratorState& integrator,
                                   double t_end) {
   const std::size_t n = scene.links.size();
+  // What is not finite may lie some steps ahead; the tangent leads roughly there.
   for (const double share : {0.0, 1.0, 4.0, 16.0, 64.0, 256.0}) {
     const double h = share * integrator.h;
     if ((integrator.t.high + h - t_end) * h > 0.0) break;

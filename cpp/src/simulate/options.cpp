@@ -68,8 +68,8 @@ std::vector<double> absolute_tolerances(const Options& options, std::size_t n) {
 void check_times(const std::vector<double>& times, double t0, double t_end) {
   const double direction = t_end < t0 ? -1.0 : 1.0;
   if (times.empty()) return;
-  // If the times are in order and the first and the last lie within the run, all are right. Only
-  // otherwise does the second loop look for the one that is wrong.
+  // If times are in order and the first and the last lie within the run, all do. Only otherwise is
+  // the wrong one looked for.
   bool is_right =
       (times.front() - t0) * direction >= 0.0 && (t_end - times.back()) * direction >= 0.0;
   for (std::size_t i = 1; i < times.size(); ++i) {
@@ -104,9 +104,11 @@ void check(const Options& options) {
   }
   if (!options.t_eval.empty() && !takes_times) {
     throw std::invalid_argument(
-        "store: keeps no times of t_eval: must be \"times\" or \"dense\" with it");
+        "store = \"" + std::string(store_name(store)) +
+        "\": keeps no times of t_eval: must be \"times\" or \"dense\", or leave t_eval out");
   }
-  if (options.method == automatic) return;  // any method that it chooses passes what follows
+  if (options.method == automatic)
+    return;  // every method that the rule chooses passes what follows
   const MethodInfo& method = find_method(options.method, automatic);
   if (method.error_order == 0 && !options.step) {
     throw std::invalid_argument("step: none given: method \"" + std::string(method.name) +

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "pendcore/arithmetic/floating_point_environment.hpp"
 #include "pendcore/dynamics/energetics/ledger.hpp"
@@ -61,7 +62,7 @@ struct Beginning {
   Recorder& recorder;
   const std::vector<double>& rtol;
   const std::vector<double>& atol;
-  bool depends_on_end = false;  ///< whether a longer run would begin with another first step
+  bool depends_on_end = false;  ///< whether the first step depends on the end of the run
 
   /// Makes the beginning. `integrator` is not valid if the ending is cut.
   Ending make(IntegratorState& integrator, double t_end) {
@@ -199,7 +200,7 @@ Limits limits_of(const Options& options, double t_end) {
 }  // namespace
 
 Solution simulate(const Scene& scene, const std::vector<double>& q0, const std::vector<double>& qd0,
-                  double t0, double t_end, const Options& options) {
+                  double t0, double t_end, Options options) {
   const FloatingPointEnvironment ieee;
   const std::size_t n = scene.links.size();
   check(scene);
@@ -211,15 +212,16 @@ Solution simulate(const Scene& scene, const std::vector<double>& q0, const std::
   }
   check_times(options.t_eval, t0, t_end);
 
+  options.method = chosen_method(scene, options);
+  options.store = options.store.value_or(usual_store(options));
+  Limits limits = limits_of(options, t_end);
   Solution solution;
-  solution.options = options;
-  solution.options.method = chosen_method(scene, options);
-  solution.options.store = options.store.value_or(usual_store(options));
+  solution.options = std::move(options);
   solution.options.monitor = nullptr;
   solution.t0 = t0;
   solution.t_end = t_end;
   solution.n = static_cast<int>(n);
-  if (options.ledger) solution.accounts = accounts_of(scene);
+  if (solution.options.ledger) solution.accounts = accounts_of(scene);
   const std::size_t dimension = 2 * n + solution.accounts.size();
   solution.dimension = static_cast<int>(dimension);
   IntegratorState& start = solution.resumable;
@@ -229,7 +231,7 @@ Solution simulate(const Scene& scene, const std::vector<double>& q0, const std::
   start.y.resize(dimension);
   solution.start = start.y;
   start.dydt.resize(dimension);
-  run(scene, solution, t_end, limits_of(options, t_end), Before::nothing);
+  run(scene, solution, t_end, std::move(limits), Before::nothing);
   return solution;
 }
 
@@ -273,7 +275,8 @@ Solution resume(const Scene& scene, const Solution& solution, double t_end,
     const long long most = std::numeric_limits<long long>::max() - max_steps;
     limits.max_steps += std::clamp(again, 0LL, most);
   }
-  run(scene, longer, t_end, limits, has_begun ? Before::steps : Before::a_start, passed_events);
+  run(scene, longer, t_end, std::move(limits), has_begun ? Before::steps : Before::a_start,
+      passed_events);
   return longer;
 }
 

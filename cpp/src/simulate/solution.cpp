@@ -18,7 +18,7 @@ std::vector<double> Solution::at(const std::vector<double>& times) const {
     throw std::invalid_argument(
         "t: this solution keeps no dense output: simulate with store=\"dense\"");
   }
-  // As in the run itself: all steps of a pair are evaluated as those of its first method.
+  // All steps of a pair are evaluated as steps of its first method, as in the run itself.
   const bool is_series = find_method(options.method).dense_output_is_series;
   const auto sample = is_series ? fastest<&sample_series>() : fastest<&sample_rows>();
   const double direction = t_reached < t0 ? -1.0 : 1.0;

@@ -110,9 +110,11 @@ double Switching::next_time(double t) const {
 }
 
 /// Sets the longest step to an eighth of a period of the fastest wave, where a joint is held that
-/// the wave could release. Users' functions have a limit of their own.
+/// the wave could release. With users' functions, of which no period is known, no step is longer
+/// than a hundredth of the time in which the fastest joint turns by a radian.
 void Switching::set_longest_step() {
   constexpr double eighth_turn = 0.785398163397448;
+  constexpr double share_under_users = 0.01;
   longest_step_ = never;
   if (!joints_.any_held_for_now()) return;
   const EffectsInForce& effects = *equations_.effects;
@@ -120,7 +122,7 @@ void Switching::set_longest_step() {
     longest_step_ = std::min(longest_step_, eighth_turn / std::abs(effects.angular_frequency[k]));
   }
   if (!effects.users.empty()) {
-    longest_step_ = std::min(longest_step_, 0.01 / joints_.natural_speed());
+    longest_step_ = std::min(longest_step_, share_under_users / joints_.natural_speed());
   }
 }
 
@@ -189,7 +191,7 @@ void Switching::release(const HeldGuard& guard, double t, const double* y) {
   joints_.release(*equations_.effects, guard.joint, release_direction_[guard.joint]);
 }
 
-/// Returns whether the state jumped.
+/// Lets a joint reach its stop. Returns whether the state jumped.
 bool Switching::reach_stop(int k, double t, double* y) {
   settle(k, y);
   const int joint = guards_[k].joint;
@@ -202,8 +204,7 @@ bool Switching::reach_stop(int k, double t, double* y) {
     choose(t, y, joint);
     return false;
   }
-  // This may also be a joint that was leaving the stop and is back too soon for time to resolve it.
-  // Then it is captured.
+  // A joint that was leaving the stop may be back too soon for time to resolve it: it is captured.
   const std::vector<double> before(qd, qd + n_);
   strike(t, y, false);
   return !std::equal(before.begin(), before.end(), qd);

@@ -91,13 +91,12 @@ double Switching::slope_at_rest(int k, double t, const double* y) {
 }
 
 double Switching::rounding(int k, const double* y) const {
-  const double last_bits = 4.0 * epsilon;
   if (k >= linear_guards())
-    return last_bits * joints_.torque_size(held_guards_[k - linear_guards()].joint);
+    return last_bits_share * joints_.torque_size(held_guards_[k - linear_guards()].joint);
   const auto& [offset, on_phi, on_phid] = guards_[k].guard;
   const int j = guards_[k].joint;
   auto size = [j](const double* x) { return std::abs(x[j]) + (j > 0 ? std::abs(x[j - 1]) : 0.0); };
-  return last_bits *
+  return last_bits_share *
          (std::abs(offset) + std::abs(on_phi) * size(y) + std::abs(on_phid) * size(y + n_));
 }
 
@@ -147,7 +146,7 @@ bool Switching::settle(int k, double* y) const {
       changed = true;
     }
   }
-  // Held joints beyond it move with it.
+  // Held joints beyond that joint move with it.
   return (changed && joints_.settle(q, qd)) || changed;
 }
 

@@ -112,7 +112,7 @@ void TipLine::bound_curvature() {
   const PivotMotion pivot = pivot_motion(scene_, t_);
   lengths += std::abs(pivot.position[0]) + std::abs(pivot.position[1]);
   curvature_ *= size_of_normal_;
-  noise_ = 4.0 * epsilon * size_of_normal_ * lengths;
+  noise_ = last_bits_share * size_of_normal_ * lengths;
 }
 
 void TipLine::search(double low, double high, int depth) {

@@ -13,6 +13,7 @@ from pendcore.run.methods import known_methods
 from pendcore.scene.scene import SceneData
 
 STEPS_AT_ONCE = 2000
+"""The number of steps between two reports of progress."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)

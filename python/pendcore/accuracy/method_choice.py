@@ -58,7 +58,7 @@ def series_work(scene: SceneData, rtol: float) -> float:
     n, free = len(scene.links), scene._compiled.mobility()[-1]
     moving = any(account_of(effect.kind) == "drive" for effect in scene.effects)
     waves = sum(getattr(effect, "sinusoid", None) is not None for effect in scene.effects)
-    if n == 1:  # where time enters, its sines are most of the right-hand side
+    if n == 1:  # the sines of the time are most of a right-hand side
         base, exponent = (14.2, 0.035) if moving or waves else (26.0, 0.036)
     elif n == 2 and (moving or waves > 2 or free < n):  # these take the series of longer chains
         base, exponent = 26.0, 0.037

@@ -36,12 +36,14 @@ def time_grid(t_start: float, t_end: float, points: int = POINTS) -> Floats:
         return np.array([t_end])
     times = np.linspace(t_start, t_end, points)
     times[-1] = t_end
-    distinct: Floats = times[np.append(True, np.diff(times) != 0)]  # few bits have fewer times
+    distinct: Floats = times[
+        np.append(True, np.diff(times) != 0)
+    ]  # a span of a few last bits has fewer times than points
     return distinct
 
 
 def kept_times(solution: RunResult) -> Floats:
-    """Return the times that a solution kept, s, each once: at a jump it stands there twice."""
+    """Return the times that a solution kept, s, each once; at a jump it keeps a time twice."""
     t = solution.t
     distinct: Floats = t[np.append(True, np.diff(t) != 0)[: len(t)]]
     return distinct

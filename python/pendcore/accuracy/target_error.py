@@ -82,6 +82,7 @@ HOPELESS = 1e-6
 FOLLOWED_BADLY = ("step_too_small", "non_finite")
 """The statuses that loose tolerances may cause."""
 MOST_RUNS = 16
+"""The number of runs after which the search ends."""
 
 
 def run_to_error(start: Start, error: float, options: dict[str, Any]) -> RunResult:
@@ -323,7 +324,7 @@ def _refusal(runs: Trials, why: str = "") -> AccuracyError:
     last = min(complete or runs.trials, key=lambda trial: trial.scale)
     error = _known_error(runs, last)
     if len(runs.paid) >= MOST_RUNS:
-        why = why or f"not settled after {MOST_RUNS} runs: a smaller error may be kept"
+        why = why or f"the search ended after {MOST_RUNS} runs: another error may be kept"
     if error is None or why:
         why = why or _does_not_follow(runs)
         runs.labelled(last.solution, "refused", None, why)

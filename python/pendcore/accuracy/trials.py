@@ -37,8 +37,8 @@ FOR_BOTH = 5.0
 COMPENSATED_BELOW = 1e-12
 """The rtol below which trials use compensated sums of the state."""
 MOST_STEPS, LEAST_STEPS = 300, 100
-"""A later run may take MOST_STEPS times the steps of the first trial, or times LEAST_STEPS if the
-first trial took fewer."""
+"""A later run may take MOST_STEPS times as many steps as the first trial, which counts as
+LEAST_STEPS if it took fewer."""
 _ADVANCE = 0.35
 """The share of what is left of the progress bar that a run fills."""
 
@@ -132,7 +132,9 @@ class Trials:
             "max_step": other_steps(trial.solution, self.options["max_step"]),
             "max_steps": self._most_steps(MORE_STEPS),
         }
-        ends = [each.solution.run.t_reached for each in self.trials]  # terminal events differ
+        ends = [
+            each.solution.run.t_reached for each in self.trials
+        ]  # each has its own terminal event
         start = self.start._replace(t_end=max(ends, key=lambda t: abs(t - self.start.t_start)))
         second = self._run(moved(start, len(self.seconds)), method, rtol, options)
         self.seconds.append(second)
@@ -150,6 +152,7 @@ class Trials:
         return self._estimates[key]
 
     def distance(self, trial: TrialRun, second: TrialRun) -> float:
+        """Return the largest distance of a trial from one second run, as a share of the length."""
         return self.compared(trial, [second], 0.0).largest
 
     def best(self) -> RunResult | None:

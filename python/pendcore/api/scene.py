@@ -53,9 +53,9 @@ class Scene(SceneData):
         t : float, default 0
             Time at which motors and pivot are looked at, s.
         q : array_like, (n,), optional
-            Angles to look for equilibria from, besides hanging and upright, rad. A joint that is
-            locked where it starts is locked as it is here; without them, as it is in hanging and
-            in upright, and a remark says so.
+            Angles from which to look for equilibria, besides hanging and upright, rad. A `Lock`
+            without an angle holds its joint as it is in ``q``; if ``q`` is not given, as it is in
+            hanging and in upright, and a remark says so.
 
         Returns
         -------

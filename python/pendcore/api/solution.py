@@ -1,4 +1,4 @@
-"""A solution, and the case that it is of: each leads to the other, so they stand together."""
+"""A solution, and the case that it comes from: each makes the other, so both stand here."""
 
 from __future__ import annotations
 
@@ -102,9 +102,12 @@ class Solution(RunResult):
 
         Parameters
         ----------
-        limit : float, rad; with ``of="position"`` a share of the total length
-        of : {"angle", "position"}, of the links, or of joints and tip
-        time_limit : as in `error`; how far the run is known to hold by then
+        limit : float
+            rad; with ``of="position"`` a share of the total length.
+        of : {"angle", "position"}
+            What is limited: the angles of the links, or the positions of joints and tip.
+        time_limit : float, optional
+            As in `error`; the answer is then how far the run is known to hold by that time.
         """
         return self.error(time_limit=time_limit).valid_until(limit, of=of)
 
@@ -203,12 +206,12 @@ class Solution(RunResult):
         return to_xarray(self)
 
     def __reduce__(self) -> tuple[object, ...]:
-        # The scene first: it says best that it cannot be pickled, if it cannot.
+        # The scene comes first: if it cannot be pickled, its message says so best.
         verified = None if self.accuracy is None else self.known_error
         return type(self), (self.scene, self.run, self.name, self.accuracy, verified)
 
     def __deepcopy__(self, memo: object) -> Solution:
-        # None of them ever changes.
+        # None of these objects ever changes, so the copy shares them.
         verified = None if self.accuracy is None else self.known_error
         return Solution(self.scene, self.run, self.name, self.accuracy, verified)
 

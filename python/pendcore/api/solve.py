@@ -31,7 +31,8 @@ def solve(
 ) -> Result:
     """Run, and return the result as one of a class; `options` are used up.
 
-    A short run takes two microseconds, and so may this: what is as usual is not called for.
+    A short run takes two microseconds, and this function may hardly take more: it calls nothing
+    that default options do not need.
     """
     if q0 is None or not isinstance(scene, SceneData):
         q0 = require_start(scene, q0)
@@ -83,6 +84,6 @@ def _error_asked_for(error: float, options: dict[str, Any]) -> float:
         chosen = name in OPTIONS and OPTIONS[name].chosen_for_error
         if chosen and not np.array_equal(value, RUN_DEFAULTS[name]):
             raise ValueError(
-                f"{name} = {value!r}: is chosen for the error: leave one of the two out"
+                f"{name} = {value!r}: is chosen for the error: leave out {name} or error"
             )
     return float(error)

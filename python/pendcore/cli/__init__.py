@@ -1,4 +1,4 @@
-"""The command `pendcore`. A file for each sub-command: it adds its arguments, and runs."""
+"""The command `pendcore`; a file for each sub-command adds its arguments, and runs it."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _print_no_more() -> None:
-    """Let what is left to print go nowhere, lest Python fail to print it at its end."""
+    """Let what is left to print go nowhere, so that Python does not fail to print it at its end."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 

@@ -18,7 +18,7 @@ from pendcore.run.options import OPTIONS, limits_of_every_method
 _EPILOG = """
 what is written into the folder:
   cost.txt    error, time and right-hand sides of every method at every tolerance; what to take
-  cost.png    time against error, a line a method
+  cost.png    time against error, a line for each method
   cost.json   the same numbers for programs
 
 example:
@@ -43,7 +43,8 @@ def add_parser(commands: Any) -> None:
         type=float,
         default=1e-6,
         metavar="E",
-        help="what to recommend for: largest position error / total length; default: %(default)s",
+        help="error to recommend a method for: largest position error / total length; "
+        "default: %(default)s",
     )
     parser.add_argument(
         "--methods", metavar="A,B,...", help="default: all that can carry the case", default=None
@@ -60,7 +61,7 @@ def add_parser(commands: Any) -> None:
         type=int,
         default=REPEATS,
         metavar="N",
-        help="timed calls of each, as far as the time allows; default: %(default)s",
+        help="timed calls of each method, as far as the time allows; default: %(default)s",
     )
     parser.add_argument("--json", action="store_true", help="print the numbers as JSON")
     parser.set_defaults(execute=execute)

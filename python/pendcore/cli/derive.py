@@ -18,8 +18,8 @@ _EPILOG = """
 forms:
   text     every step of the derivation, as text
   latex    the same for LaTeX with amsmath
-  octave   a function file of MATLAB and Octave, as the textbook's RR.m
-  inline   the textbook's inline form of it
+  octave   a function file for MATLAB and Octave, like the textbook's RR.m
+  inline   the same as the textbook's inline function
   python   a module for NumPy
   cpp      a header for C++
   report   a folder: derivation, numbers, solution and its plots, to hand in or to teach from
@@ -51,10 +51,13 @@ def add_parser(commands: Any) -> None:
         "--out",
         type=Path,
         metavar="PATH",
-        help="a file, default: print it; of a report a folder, default: out/ and the case's name",
+        help="the file to write, default: print the text; for a report the folder, default: out/ "
+        "and the case's name",
     )
     parser.add_argument(
-        "--worksheet", action="store_true", help="beside the report, the same with blanks"
+        "--worksheet",
+        action="store_true",
+        help="write a worksheet beside the report: the same with blanks",
     )
     parser.set_defaults(execute=execute)
 
@@ -109,5 +112,5 @@ def _report(derivation: Any, case: Case, args: argparse.Namespace) -> int:
         made = write(derivation, case, folder, with_worksheet=args.worksheet)
     print(f"written to {folder}: {', '.join(path.name for path in made.files)}", file=sys.stderr)
     if not pendcore.derive.report.conversion.has_pandoc():
-        print("no .html and .pdf: these take pandoc, which is not installed", file=sys.stderr)
+        print("no .html and .pdf: these need pandoc, which is not installed", file=sys.stderr)
     return 1 if made.complaint else 0

@@ -13,7 +13,7 @@ from pendcore.messages.warning import warn
 
 _EPILOG = """
 what is told:
-  the effects, and what each takes of a right-hand side: operations, and ns measured on the spot
+  the effects, and what each costs in a right-hand side: operations, and ns measured on the spot
   degrees of freedom, counted as the textbook does and from the rank of the constraints
   equilibria with their natural frequencies, the stiffest rate, a safe first step
   what is not simulated

@@ -46,13 +46,13 @@ class FilesToWrite:
             yield path
 
     def outcome(self) -> str:
-        """Return what was written; where all was, also whether earlier files gave way."""
+        """Return what was written; if all files were, also whether they replaced earlier ones."""
         if not self.left_out:
             return self._told
         done = [name for name in self.names if name not in self.left_out]
         return f"written to {self.folder}: {', '.join(done) or 'nothing'}"
 
     def refuse_if_none(self) -> None:
-        """Raise what kept the last from being written, if none was."""
+        """Raise what kept the last file from being written, if none was written."""
         if self._last is not None and len(self.left_out) == len(self.names):
             raise self._last

@@ -47,7 +47,7 @@ def horizon_of(solution: Solution, estimate: ErrorEstimate, limit: float) -> Hor
 
 
 def unasked_horizon(solution: Solution) -> Horizon:
-    """Return the horizon of a run if nobody has to wait long for it; else say what tells it.
+    """Return the horizon of a run if nobody has to wait long for it; else say what to ask.
 
     Second runs take a few times as long as the run.
     """

@@ -25,8 +25,8 @@ what is written into the folder:
   summary.txt    what was simulated, how it ended, what it took, drift of energy, largest reactions
   summary.json   the same facts for programs
   angles.png     the angles in degrees over time
-Ctrl-C ends the run, and all of them are written; while one of them is written it leaves that one
-out, and the others are written. So does an error, such as a full disk. No file is there in part.
+Ctrl-C ends the run, and all of these files are written. If a file is being written, Ctrl-C or an
+error, such as a full disk, leaves that file out, and the others are written. No file is incomplete.
 
 a case:
   gravity = 9.807                  # m/s^2

@@ -44,10 +44,14 @@ def add_parser(commands: Any) -> None:
         help="a solution that `pendcore run` wrote, or a case; default: the textbook's case",
     )
     parser.add_argument(
-        "--limit", type=float, default=LIMIT, metavar="RAD", help="of an angle; default: 0.1 rad"
+        "--limit",
+        type=float,
+        default=LIMIT,
+        metavar="RAD",
+        help="error of an angle up to which a run counts as right; default: 0.1 rad",
     )
     parser.add_argument(
-        "--time-limit", type=float, metavar="S", help="s of computing for the second runs"
+        "--time-limit", type=float, metavar="S", help="seconds of computing for the second runs"
     )
     parser.add_argument("--json", action="store_true", help="print the same as JSON")
     parser.set_defaults(execute=execute)
@@ -79,7 +83,7 @@ def _solution(what: Path | None) -> Solution:
     except AccuracyError as refusal:
         if not isinstance(refusal.solution, Solution):
             raise UsageError(str(refusal)) from None
-        print(f"{refusal}; what follows is of the most accurate run", file=sys.stderr)
+        print(f"{refusal}; what follows is about the most accurate run", file=sys.stderr)
         return refusal.solution
 
 

@@ -23,7 +23,7 @@ def blamed_on_usage(what: str = "") -> Iterator[None]:
 
 
 def written(to: Path, files: Iterable[Path]) -> str:
-    """Return where files are about to be written, and whether earlier ones give way."""
+    """Return where files are about to be written, and whether they replace earlier ones."""
     gone = any(file.exists() for file in files)
     return f"written to {to}" + (", earlier files replaced" if gone else "")
 

@@ -39,17 +39,17 @@ class AccuracyCost:
     points : tuple of Point
         What each method did at each tolerance, failures among them.
     uncertainty : float
-        Of the reference: smaller errors cannot be told apart.
+        The uncertainty of the reference: smaller errors cannot be told apart.
     references : (str, str)
-        How the two runs were made whose distance this is.
+        How the two runs were made whose distance is the uncertainty.
     timed : str
         What was timed, and how.
     remarks : tuple of str
         What one should know: a span that was cut, a time that was up.
     machine : str
-        On which processor.
+        The processor on which times were measured.
     version : str
-        Of pendcore.
+        The version of pendcore.
     """
 
     name: str
@@ -69,17 +69,17 @@ class AccuracyCost:
         return front(self.points, self.uncertainty)
 
     def best(self, error: float) -> Point:
-        """Return the cheapest point that keeps an error, the uncertainty added.
+        """Return the cheapest point that keeps an error when the uncertainty is added to its own.
 
         Parameters
         ----------
         error : float
-            As a share of the total length.
+            The error to keep, as a share of the total length.
 
         Raises
         ------
         ValueError
-            If none does; the message says what was reached.
+            If no point does; the message says what was reached.
         """
         asked = _asked(error)
         kept = [p for p in self.points if p.error + self.uncertainty <= asked]
@@ -188,7 +188,7 @@ def _rows(cost: AccuracyCost) -> Iterator[str]:
         yield f"  {mark} {_row(point)}"
     yield "  * no other is both more accurate and faster"
     if any(point.method == "taylor" and not point.failure for point in cost.points):
-        yield "  of taylor it is series that are counted, each as long as many right-hand sides"
+        yield "  for taylor, series are counted, each as long as many right-hand sides"
 
 
 def _row(point: Point) -> str:

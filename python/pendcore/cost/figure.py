@@ -1,4 +1,4 @@
-"""The work-precision diagram of a sweep: time against error, a line a method."""
+"""The work-precision diagram of a sweep: time against error, a line for each method."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def plot(
     points : sequence of Point
         What to draw.
     best : sequence of Point
-        Those on the Pareto front.
+        The points on the Pareto front.
     uncertainty : float
         What the reference is uncertain by.
     title : str
@@ -108,7 +108,7 @@ def _dress(ax: Axes, points: Sequence[Point], uncertainty: float, y: str, unit: 
         ax.axvspan(right, edge, color="0.88", zorder=0)
     ax.xaxis.set_major_locator(LogLocator(base=100, numticks=20))
     ax.xaxis.set_minor_formatter(NullFormatter())
-    if y == "time":  # plain numbers, between the powers of ten where there are few of these
+    if y == "time":  # plain numbers, also between powers of ten where there are few powers
         ax.yaxis.set_major_formatter(LogFormatter())
         ax.yaxis.set_minor_formatter(LogFormatter(labelOnlyBase=False, minor_thresholds=(1.5, 0.5)))
     ax.grid(which="major", color="0.85", linewidth=0.6)

@@ -169,8 +169,8 @@ class Measurement:
             )
         if {found.first.method, found.second.method} == {"radau5", pair_of("dopri5")}:
             self.remarks.append(
-                "both references are radau5 where the scene is stiff: what its table may get wrong "
-                "shows in neither"
+                "both references are radau5 where the scene is stiff: an error in its table would "
+                "show in neither"
             )
 
     def _reference(self, stiff: bool) -> Reference:
@@ -188,7 +188,7 @@ class Measurement:
                 self._cut(begin + SHORTER * (reason.reached - begin), self._too_little())
 
     def _cut(self, t_end: float, why: str) -> None:
-        """Measure a shorter span; what first made it shorter is told."""
+        """Measure a shorter span, and keep the reason for the first cut."""
         self.start = self.start._replace(t_end=t_end)
         self.cut = self.cut or why
 
@@ -217,7 +217,7 @@ class Measurement:
         if missed:
             self.remarks.append(
                 f"the time limit was up before these were tried: {', '.join(missed)}; a larger "
-                f"time_limit than {self.time_limit:.3g} s has them"
+                f"time_limit than {self.time_limit:.3g} s includes them"
             )
 
     def _is_short_enough(self, row: list[Contender], allowed: float) -> bool:
@@ -225,7 +225,8 @@ class Measurement:
         assert self.reference is not None
         one, before = row[-1], row[-2].error if len(row) > 1 else inf
         gained = one.error > 2 * self.reference.uncertainty
-        gained &= one.error < before / 2 or before > KNOWN  # larger errors may be of unstable steps
+        # Errors above `KNOWN` may come from unstable steps, and need not fall yet.
+        gained &= one.error < before / 2 or before > KNOWN
         dear = sum(one.seconds) > allowed / self.repeats
         return one.step is not None and (dear or not gained)
 
@@ -256,7 +257,7 @@ class Measurement:
         if any(len(one.seconds) < self.repeats for one in fine):
             self.remarks.append(
                 f"the time was up before all had {self.repeats} timed calls: a larger time_limit "
-                f"than {self.time_limit:.3g} s has more"
+                f"than {self.time_limit:.3g} s gives more"
             )
 
     def _call(self, one: Contender, time_limit: float | None = None) -> tuple[RunResult, float]:

@@ -76,12 +76,12 @@ def accuracy_cost(
     points : int
         >= 2. Times, evenly spaced, on which errors are measured. All runs have them as ``t_eval``.
     repeats : int
-        >= 1. How many calls of each are timed, as far as the time allows; in rounds, so that
-        whatever slows the machine slows all alike.
+        >= 1. How many calls of each method at each tolerance are timed, as far as the time allows;
+        in rounds, so that whatever slows the machine slows all alike.
     time_limit : float
-        s, > 0, that all of it may take. A run that alone would take too long is told as a failure;
-        where even a loose one takes more than a two-hundredth of it, the span is cut, and
-        ``remarks`` says so.
+        s, > 0, that the whole measurement may take. A run that alone would take too long is told as
+        a failure; where even a loose run takes more than a two-hundredth of the limit, the span is
+        cut, and ``remarks`` says so.
     name : str
         For people.
     progress
@@ -129,7 +129,7 @@ def accuracy_cost(
     for message in scene._compiled.run_warnings(angles, start.t_start, start.t_end):
         warn(message)
     try:
-        with warnings.catch_warnings():  # given above
+        with warnings.catch_warnings():  # they were given above
             warnings.simplefilter("ignore", PendcoreWarning)
             measurement.measure()
     except BaseException as stop:

@@ -7,7 +7,7 @@
     derivation.accelerations             # sympy expressions
     print(derivation.to_octave())        # RR.m
 
-It is a derivation of its own: nothing of the compiled core enters it, and so it checks it.
+The derivation takes nothing from the compiled core, and so it checks the core.
 """
 
 from __future__ import annotations

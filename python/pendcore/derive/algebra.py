@@ -19,7 +19,7 @@ from pendcore.derive.solution import Assignments, Solution
 
 
 class Algebra:
-    """The equations themselves, without words and code; `Derivation` has its attributes."""
+    """The equations themselves, without words and code; `Derivation` documents the attributes."""
 
     def __init__(self, scene: Scene) -> None:
         check_length(len(scene.links))
@@ -59,7 +59,7 @@ class Algebra:
     def shared(self) -> Assignments:
         """Assignments that lead to the accelerations, each in terms of those before it.
 
-        `shared_accelerations` are in terms of them.
+        `shared_accelerations` are written with the symbols that they assign.
         """
         return self.solution.shared
 

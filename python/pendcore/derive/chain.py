@@ -2,8 +2,8 @@
 
     P_0 = (x_0, y_0),  P_i = P_(i-1) + L_i u_i,  C_i = P_(i-1) + c_i u_i,  u_i = (cos q_i, sin q_i)
 
-x points right and y down. Velocities and accelerations are the derivatives of these with respect to
-time, nothing else: the textbook's ``diff(rC1, t)``.
+x points right and y down. Velocities and accelerations are the derivatives of the positions with
+respect to time, nothing else: the textbook's ``diff(rC1, t)``.
 """
 
 from __future__ import annotations
@@ -54,9 +54,10 @@ class Chain:
     Attributes
     ----------
     pivot : (sympy.Expr, sympy.Expr)
-        The same as symbols, ``x_A`` and ``y_A``, and 0 along an axis on which it does not move.
+        The pivot's position as symbols, ``x_A`` and ``y_A``; 0 along an axis on which the pivot
+        does not move.
     path : dict
-        What they and their rates, ``xd_A`` to ``ydd_A``, are as functions of time.
+        These symbols and their rates, ``xd_A`` to ``ydd_A``, each with its function of time.
     """
 
     def __init__(self, notation: Notation, path: Vector) -> None:
@@ -82,7 +83,7 @@ class Chain:
         return symbols[0]
 
     def rate(self, expression: Expr) -> Expr:
-        """Differentiate with respect to time: angles, rates and pivot are functions of it."""
+        """Differentiate with respect to time, of which angles, rates and pivot are functions."""
         s = self.notation
         moving = {s.t: Integer(1), **self._rates}
         moving |= {**dict(zip(s.q, s.qd, strict=True)), **dict(zip(s.qd, s.qdd, strict=True))}
@@ -98,7 +99,7 @@ class Chain:
 
     @property
     def pivot_is_fixed(self) -> bool:
-        """Whether the pivot stays where it is, the origin."""
+        """Whether the pivot stays at the origin."""
         return self.pivot == (0, 0)
 
     def along(self, link: int) -> Vector:

@@ -21,7 +21,7 @@ class Derivation(Algebra):
     Parameters
     ----------
     scene : Scene
-        Its effects have to be smooth.
+        The scene to derive; its effects have to be smooth.
 
     Raises
     ------
@@ -32,7 +32,7 @@ class Derivation(Algebra):
     Attributes
     ----------
     scene : Scene
-        As given.
+        The scene that is derived.
     n : int
         Number of links.
     symbols : Notation
@@ -42,7 +42,7 @@ class Derivation(Algebra):
     equations : NewtonEuler
         Newton's and Euler's equations, with the reactions as unknowns.
     motion : Motion
-        What is left when the reactions are eliminated.
+        The equations that are left when the reactions are eliminated.
     solution : Solution
         The accelerations.
     energy : Energy
@@ -85,27 +85,26 @@ class Derivation(Algebra):
         case : Case
             A start and a time for this scene.
         folder : Path or str
-            Where to; it is made if it is not there.
+            Where to write; the folder is made if it does not exist.
         worksheet : bool
-            Whether to write a worksheet as well: the same with blanks.
+            Whether to write a worksheet as well: the same problem with blanks.
         progress : None, bool or callable
             As in `pendcore.simulate`.
 
         Returns
         -------
         list of Path
-            What was written, the report first: Markdown always, HTML and PDF where there are
-            converters.
+            The files, the report first: Markdown always, HTML and PDF where there are converters.
         """
         if case.scene != self.scene:
-            raise ValueError("case: is of another scene than the derivation: derive case.scene")
+            raise ValueError("case: has another scene than the derivation: derive case.scene")
         folder = Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
         made = write_report(self, case, folder, with_worksheet=worksheet, progress=progress)
         return made.files
 
     def to_octave(self, name: str = "RR") -> str:
-        """Return a function file of MATLAB and Octave, as the textbook's RR.m."""
+        """Return a function file for MATLAB and Octave, like the textbook's RR.m."""
         return octave.function_file(self, name)
 
     def to_octave_inline(self, name: str = "g") -> str:

@@ -1,6 +1,6 @@
 """Energies of the chain, the powers of effects, and the balance of both, which holds exactly.
 
-T + V changes at the rate of the powers of all effects, nothing more:
+The rate of change of T + V is the sum of the powers of all effects, and nothing else:
 
 d/dt (T + V) = sum of powers        when        M qdd = f
 """
@@ -17,7 +17,7 @@ from pendcore.derive.solution import Solution
 
 
 class Energy:
-    """Kinetic and potential energy of a chain, J, and what effects bring into it, W.
+    """Kinetic and potential energy of a chain, J, and the powers that effects bring into it, W.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ class Energy:
 
     @cached_property
     def powers_by_definitions(self) -> dict[Any, Expr]:
-        """The power of each effect, W, its loads as symbols."""
+        """The power of each effect, W, with its loads as symbols."""
         return self.powers_with(self.equations.reactions[0])
 
     def powers_with(self, ground_force: Vector) -> dict[Any, Expr]:
@@ -72,17 +72,18 @@ class Energy:
 
     @cached_property
     def powers(self) -> dict[Any, Expr]:
-        """The power that each effect brings in, W: negative where it takes."""
+        """The power that each effect brings in, W; negative where the effect takes energy."""
         known = self.motion.definitions
         return {effect: p.xreplace(known) for effect, p in self.powers_by_definitions.items()}
 
     def rate(self) -> Expr:
         """Return d/dt (T + V) minus all powers, along the motion: 0.
 
-        The accelerations in it are replaced in two steps, each exact. With R(qdd) the residual for
-        any accelerations and e = M qdd - f, R(qdd) - qd . e is brought to a normal form: it is 0
-        where forces, energies and powers fit together, whatever the accelerations. What is left is
-        qd . e at the solved accelerations: 0 where they solve the equations.
+        The accelerations are put in by two steps, each of them exact. Let R(qdd) be this difference
+        for any accelerations, and let e = M qdd - f. The first step brings R(qdd) - qd . e to a
+        normal form: that is 0 for all accelerations if forces, energies and powers fit together.
+        The second step adds qd . e at the solved accelerations: that is 0 if they solve the
+        equations.
         """
         s, motion = self.notation, self.motion
         torques = {d.symbol: d.value for d in self.equations.torques}
@@ -98,7 +99,7 @@ class Energy:
         return left + self.solution.power_of_the_error()
 
     def _locked_rates(self) -> dict[Symbol, Expr]:
-        """The rates that locks take from the links before them."""
+        """Return, for each link beyond a lock, its rate: that of the link before the lock."""
         s, found = self.notation, dict[Symbol, Expr]()
         for joint in self.equations.locked:
             before = s.qd[joint - 2] if joint > 1 else Integer(0)

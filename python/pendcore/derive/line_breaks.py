@@ -1,7 +1,7 @@
-"""Long equations on several lines: sums are broken before a sign, brackets where they must be.
+"""Long equations on several lines: they are broken before a sign, inside brackets only if needed.
 
 Neither MathML in browsers nor LaTeX breaks a displayed equation, so it is done here, on the
-expression itself: a term that is wider than a line is opened, and the sum in it broken.
+expression itself: a term that is wider than a line is opened, and the sum in it is broken.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from sympy import Expr, Mul, fraction
 from pendcore.derive.notation import Notation
 
 LINE = 35.0
-"""Width of a line of a page, in the letter m's of its font."""
+"""Width of a line of a page, in em (widths of the letter m)."""
 
 _NARROW = {" ": 0.0, ",": 0.3, ".": 0.3, "(": 0.4, ")": 0.4, "[": 0.3, "]": 0.3, "|": 0.3, "'": 0.3}
 _SIGN = {"+": 1.25, "-": 1.25, "=": 1.4, "<": 1.4, ">": 1.4, "/": 0.5}
@@ -37,13 +37,13 @@ def _widest_row(matrix: re.Match[str]) -> str:
 
 
 def width(latex: str) -> float:
-    """Estimate how wide LaTeX is when set, in the letter m's of its font."""
+    """Estimate how wide LaTeX is when it is set, in em."""
     tokens = [found.groups() for found in _TOKEN.finditer(_MATRIX.sub(_widest_row, latex))]
     return _width(iter(tokens))
 
 
 def _width(tokens: Iterator[tuple[Any, ...]], *, one: bool = False) -> float:
-    """Add up until the group ends, or take one token or group."""
+    """Add up widths until the group ends, or return the width of one token or group."""
     total = 0.0
     for command, mark, letter in tokens:
         if mark == "}":
@@ -77,13 +77,14 @@ def rows(
     left : str
         LaTeX of the left side.
     right : sympy.Expr, str or tuple of str
-        The right side; LaTeX is taken as it is, on one row, or its terms on several.
+        The right side. Text is LaTeX that goes on one row as it is; a tuple holds the terms of a
+        sum, which may go on several rows.
     notation : Notation
-        How an expression is written in LaTeX, and in which order.
+        Writes an expression in LaTeX, and orders its terms.
     margin : float
         Width of the widest left side among those that the row is aligned with.
     room : float
-        Width of a line, in the letter m's of its font.
+        Width of a line, in em.
     """
     margin = max(margin, width(left))
     if isinstance(right, str):

@@ -1,7 +1,7 @@
 """The equations of motion collected: M(q) qdd = f(t, q, qd), and with locks M qdd = f + lambda.
 
 The n moment equations without reactions are linear in the accelerations; M and f are their
-coefficients, with products of sines and cosines written as those of angle differences.
+coefficients, with products of sines and cosines written as sines and cosines of differences.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ class Named(NamedTuple):
     Attributes
     ----------
     entries : dict
-        What the symbols stand for, torques and loads as symbols.
+        What the symbols stand for, with torques and loads as symbols.
     matrix, right : sympy.Matrix, (n, n), (n, 1)
         M and f in terms of them.
     """
@@ -46,7 +46,7 @@ class Motion:
 
     @cached_property
     def mass_matrix(self) -> Matrix:
-        """M, (n, n), kg m^2; that of the chain with all its joints free, whatever is locked."""
+        """M, (n, n), kg m^2, of the chain with all its joints free, even if some are locked."""
         rows = [
             [of_differences((line.inertia - line.acting).diff(a)) for a in self.notation.qdd]
             for line in self.equations.without_reactions
@@ -78,7 +78,7 @@ class Motion:
 
     @cached_property
     def named(self) -> Named:
-        """M and f by their entries."""
+        """M and f with a symbol for each entry that is not 0."""
         n, symbol = self.notation.n, self.notation.symbol
         entries: dict[Symbol, Expr] = {}
         matrix = Matrix.zeros(n, n)
@@ -97,7 +97,7 @@ class Motion:
 
     @cached_property
     def locking(self) -> dict[Symbol, Expr]:
-        """The couples of locks on each link, lambda_i = Lambda_i - Lambda_(i+1), N m; if any."""
+        """The couple of locks on each link, if any: lambda_i = Lambda_i - Lambda_(i+1), N m."""
         couples, found = self.equations.holding, dict[Symbol, Expr]()
         for i in range(1, self.notation.n + 1):
             value = couples.get(i, Integer(0)) - couples.get(i + 1, Integer(0))
@@ -107,17 +107,20 @@ class Motion:
 
     @property
     def law(self) -> str:
-        """The equations of motion in LaTeX: with locks their couples are on the right as well."""
+        """The equations of motion in LaTeX; the couples of locks, if any, are on the right."""
         return r"M \ddot{q} = f" + (r" + \lambda" if self.equations.locked else "")
 
     @cached_property
     def turning_together(self) -> Matrix:
-        """B, (n, k): qd = B of the rates of what turns as one; without locks the identity."""
+        """B, (n, k), in qd = B r, where r are the k rates of links that turn as one.
+
+        Without locks B is the identity.
+        """
         columns: list[list[int]] = []
         for link in range(1, self.notation.n + 1):
             if link not in self.equations.locked:
                 columns.append([link])
-            elif columns:  # else the ground holds it
+            elif columns:  # otherwise the ground holds the link
                 columns[-1].append(link)
         size = self.notation.n, len(columns)
         return ImmutableMatrix(*size, lambda i, k: int(i + 1 in columns[k]))

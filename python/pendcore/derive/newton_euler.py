@@ -7,8 +7,8 @@ As in the textbook's (2.1) to (2.8), for any number of links:
 
 F_(i-1,i) is the force of link i-1 on link i where link i begins, F_01 that of the ground. The
 unknowns are F_01 and, as in the textbook, the forces of each link on the one before it: F_21, F_32
-and so on, with F_12 = -F_21. They are found from Newton's equations, from the tip inwards: (2.9).
-Put into the moment equations they leave n equations without reactions: (2.10), (2.11).
+and so on, with F_12 = -F_21. Newton's equations give these forces, from the tip inwards: (2.9).
+Put into the moment equations, they leave n equations without reactions: (2.10), (2.11).
 """
 
 from __future__ import annotations
@@ -38,11 +38,12 @@ class LinkEquations(NamedTuple):
     Attributes
     ----------
     newton : (Balance, Balance)
-        Newton's along x and y, N.
+        Newton's equations along x and y, N.
     moment : Balance
-        Euler's, N m: about the pivot A for link 1, if A is fixed; else about the mass centre.
+        Euler's equation, N m: about the pivot A for link 1, if A is fixed; else about the mass
+        centre.
     about_pivot : bool
-        Which of the two it is.
+        Whether Euler's equation is about the pivot.
     """
 
     newton: tuple[Balance, Balance]
@@ -56,11 +57,12 @@ class PayloadEquations(NamedTuple):
     Attributes
     ----------
     mass, inertia : sympy.Expr
-        kg, kg m^2; of all payloads together.
+        All payloads together, kg and kg m^2.
     force : tuple of sympy.Symbol
-        F_p3 and so on, the unknown force of it on the last link; its opposite acts on it.
+        F_p3 and so on: the unknown force of the body on the last link. The opposite force acts on
+        the body.
     newton : (Balance, Balance)
-        Newton's along x and y, N.
+        Newton's equations along x and y, N.
     """
 
     mass: Expr
@@ -99,7 +101,7 @@ class NewtonEuler:
 
     @cached_property
     def payload(self) -> PayloadEquations | None:
-        """What is at the tip, if there is anything."""
+        """The body at the tip, if there is one."""
         found = [payload for law in self.laws if (payload := law.payload()) is not None]
         if not found:
             return None
@@ -152,7 +154,7 @@ class NewtonEuler:
 
     @cached_property
     def loads(self) -> tuple[LinkLoad, ...]:
-        """Forces along links."""
+        """The forces on links and their moments."""
         return tuple(load for law in self.laws if (load := law.load(self.chain)) is not None)
 
     @cached_property
@@ -162,7 +164,7 @@ class NewtonEuler:
         return {j: symbol(f"Lambda{j}", rf"\Lambda_{{{j}}}") for j in self.locked}
 
     def joint_couple(self, joint: int) -> Expr:
-        """Return all that turns the link beyond a joint: torque, rotor and lock, N m."""
+        """Return the couple on the link beyond a joint: torque, rotor and lock together, N m."""
         if joint > self.n:
             return Integer(0)
         torque = {int(d.symbol.name[3:]): d.symbol for d in self.torques}.get(joint, Integer(0))
@@ -175,7 +177,7 @@ class NewtonEuler:
         return (x, y) if link == 1 else (-x, -y)
 
     def far_force(self, link: int) -> Vector:
-        """Return the force on a link where it ends: of the next link, or of the payload."""
+        """Return the force on a link where it ends, from the next link or from the payload."""
         if link < self.n:
             return self.forces[link]
         return ZERO if self.payload is None else self.payload.force

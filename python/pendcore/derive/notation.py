@@ -2,7 +2,7 @@
 
 The names are the textbook's, for any number of links: ``q1``, ``m1``, ``L1``, ``I_C1``, ``g``. The
 rates are plain symbols too, ``qd1`` for the rate of ``q1`` and ``qdd1`` for its acceleration, which
-keeps every derivative an ordinary partial one; LaTeX shows them with dots.
+keeps every derivative an ordinary partial one; LaTeX shows rates and accelerations with dots.
 """
 
 from __future__ import annotations
@@ -59,12 +59,12 @@ class Notation:
     q, qd, qdd : tuple of sympy.Symbol, (n,)
         Absolute angles (rad), rates (rad/s) and accelerations (rad/s^2) of the links.
     gravity : sympy.Symbol
-        Towards +y, m/s^2.
+        Acceleration of gravity, towards +y, m/s^2.
     masses, lengths : tuple of sympy.Symbol, (n,)
-        kg, m.
+        Masses (kg) and lengths (m) of the links.
     centers, inertias : tuple of sympy.Expr, (n,)
-        Distance of the mass centre from the joint where the link begins (m), moment of inertia
-        about it (kg m^2): symbols, or of a uniform rod ``L/2`` and ``m L^2/12``.
+        Distance of the mass centre from the joint where the link begins (m), and moment of inertia
+        about the mass centre (kg m^2): symbols, or ``L/2`` and ``m L^2/12`` for a uniform rod.
     latex_names : dict
         How LaTeX writes the symbols.
     """
@@ -124,7 +124,7 @@ class Notation:
         return {parameter.symbol: parameter.value for parameter in self._parameters}
 
     def symbol(self, name: str, latex: str, rank: int | None = None, link: int = 0) -> Symbol:
-        """Return the real symbol of that name, and remember how it is written, and where."""
+        """Return the real symbol of that name, and remember how it is written and ordered."""
         made = Symbol(name, real=True)
         self.latex_names[made] = latex
         if rank is not None:
@@ -142,7 +142,7 @@ class Notation:
     ) -> Symbol:
         """Return a new symbol for a constant of the scene.
 
-        A second one of the same name, such as of two dampers in one joint, is told from the first.
+        A second symbol of the same name, as for two dampers in one joint, gets a number.
         """
         taken = [p.symbol.name for p in self._parameters]
         count = 1 + sum(known == name or known.startswith(f"{name}__") for known in taken)
@@ -154,7 +154,7 @@ class Notation:
         return symbol
 
     def rank(self, symbol: Symbol) -> tuple[int, int]:
-        """Return the kind of a symbol and its link: what orders factors and terms."""
+        """Return the kind of a symbol and its link, which order factors and terms."""
         return self._ranks.get(symbol, (UNKNOWN, 0))
 
     def latex(self, expression: Any) -> str:
@@ -166,5 +166,5 @@ class Notation:
         return Latex(self.rank, self.latex_names).terms(expression)
 
     def text(self, expression: Any) -> str:
-        """Write an expression in a line of text that Python and SymPy read."""
+        """Write an expression as a line of text that Python and SymPy read."""
         return Text(self.rank, self.latex_names).write(expression)

@@ -1,8 +1,8 @@
 """The equations of motion solved for the accelerations, M qdd = f.
 
-By Cramer's rule, which is short where it is written out, and by elimination, M = L D L^T, which is
-short where it is computed. What turns as one is one unknown: with qd = B r the couples of locks,
-which do no work, drop out of
+They are solved by Cramer's rule, which is short where it is written out, and by elimination,
+M = L D L^T, which is short where it is computed. Links that turn as one have one unknown: with
+qd = B r the couples of locks, which do no work, drop out of
 
     B^T M B rd = B^T f
 """
@@ -45,7 +45,7 @@ class Solution:
 
     @cached_property
     def by_entries(self) -> tuple[Expr, ...]:
-        """The accelerations by the symbols of `Motion.named`, from Cramer's rule."""
+        """The accelerations in the symbols of `Motion.named`, from Cramer's rule."""
         matrix, right = self._free
         together = self.motion.turning_together
         if matrix.rows == 0:
@@ -62,7 +62,7 @@ class Solution:
     def holding(self) -> dict[int, Expr]:
         """The couple of each locked joint on the link beyond it, N m.
 
-        By the symbols of `Motion.named` and the accelerations: what M qdd - f leaves over.
+        It is what M qdd - f leaves over, in the symbols of `Motion.named` and the accelerations.
         """
         _, matrix, right = self.motion.named
         found: dict[int, Expr] = {}
@@ -79,7 +79,7 @@ class Solution:
 
     @property
     def by_elimination(self) -> Assignments:
-        """Those of them that eliminate: D, L, h and a, by the symbols of `Motion.named`."""
+        """The part of `shared` that eliminates: D, L, h and a, in the symbols of `Motion.named`."""
         known = {d.symbol for d in self.equations.definitions} | self.motion.named.entries.keys()
         return tuple((symbol, value) for symbol, value in self.shared if symbol not in known)
 
@@ -89,7 +89,7 @@ class Solution:
         return self._elimination[1]
 
     def power_of_the_error(self) -> Expr:
-        """Return qd . (M qdd - f) at the solved accelerations, for any M and f: 0, W."""
+        """Return qd . (M qdd - f), W, at the solved accelerations: 0 for any M and f."""
         matrix, right = self._free
         together = self.motion.turning_together
         first = [
@@ -108,7 +108,7 @@ class Solution:
 
     @cached_property
     def _elimination(self) -> tuple[Assignments, tuple[Expr, ...]]:
-        """M = L D L^T, L h = f, L^T a = D^-1 h; M is positive definite: nothing is exchanged."""
+        """M = L D L^T, L h = f, L^T a = D^-1 h; no pivoting, because M is positive definite."""
         matrix, right = self._free
         done = [(d.symbol, d.value) for d in self.equations.definitions]
         done += self.motion.named.entries.items()
@@ -142,7 +142,7 @@ class Solution:
 
 
 def _needed(assignments: list[tuple[Symbol, Expr]], wanted: tuple[Expr, ...]) -> Assignments:
-    """Return the assignments that what is wanted rests on."""
+    """Return the assignments on which the wanted expressions depend."""
     needed = set[Symbol]().union(*(expression.free_symbols for expression in wanted))
     found = []
     for symbol, value in reversed(assignments):

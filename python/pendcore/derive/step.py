@@ -41,9 +41,9 @@ class Equation:
     lhs, rhs : sympy.Expr or Formula
         Its sides.
     number : str or None
-        As in the textbook, ``"2.1"``, where it is one of the textbook's.
+        The textbook's number, such as ``"2.1"``, if it is one of the textbook's.
     remark : str
-        What is to be said of it; empty where there is nothing.
+        A remark on the equation; empty if there is none.
     """
 
     lhs: Any
@@ -161,7 +161,7 @@ def _wrapped(equation: str) -> str:
 
 
 def plain(text: str) -> str:
-    """Return a text with its inline LaTeX as a line of text has it."""
+    """Return a text with its inline LaTeX written as plain text."""
     return "".join(_spoken(x) if k % 2 else x for k, x in enumerate(text.split("$")))
 
 
@@ -176,7 +176,7 @@ def _spoken(latex: str) -> str:
 
 
 def escaped(text: str) -> str:
-    """Return a text as LaTeX takes it: percent signs and hashes outside of formulas."""
+    """Return a text as LaTeX takes it, with percent signs and hashes escaped."""
     return text.replace("%", r"\%").replace("#", r"\#")
 
 

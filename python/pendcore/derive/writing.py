@@ -77,7 +77,7 @@ class Language:
         if not expression.is_Add:
             return [expression]
         terms = sorted(expression.args, key=self._place_in_sum)
-        if all(term.is_Symbol or (-term).is_Symbol for term in terms):  # such as an angle's
+        if all(term.is_Symbol or (-term).is_Symbol for term in terms):  # such as a joint's angle
             terms.sort(key=lambda term: not term.is_Symbol)
         return terms
 

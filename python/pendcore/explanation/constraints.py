@@ -1,7 +1,7 @@
 """How many constraints the hinges and locks of a chain are: the rank of their Jacobian.
 
-Each link has three coordinates, (x, y) of its mass centre and q. A hinge says of both that the
-points which meet there are one: two rows. A lock says that q_j - q_{j-1} stays: a row.
+Each link has three coordinates, (x, y) of its mass centre and q. A hinge says that two points have
+the same x and the same y: two rows. A lock says that q_j - q_{j-1} stays: one row.
 """
 
 from __future__ import annotations

@@ -7,12 +7,12 @@ central differences, the eigenvalues of
     d/dt (dz, dzd) = ((0, 1), (A, B)) (dz, dzd)
 
 are the rates: a pair lambda = -zeta w +- i w sqrt(1 - zeta^2) is an oscillation of natural angular
-frequency w and damping ratio zeta; a real one grows or decays. Those that are slow beside the
+frequency w and damping ratio zeta; a real one grows or decays. Rates that are slow beside the
 fastest, as the fall of a rod in honey is beside its damping, come from the inverse of that matrix,
 
     ((-A^-1 B, A^-1), (1, 0)),
 
-whose largest eigenvalues their reciprocals are.
+whose largest eigenvalues are the reciprocals of these rates.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class Mode(NamedTuple):
     frequency : float
         The same in Hz.
     damping_ratio : float or None
-        Of an oscillation; 0 if nothing damps it, negative if something feeds it.
+        The damping ratio of an oscillation; 0 if nothing damps it, negative if something feeds it.
     """
 
     rate: float
@@ -107,7 +107,7 @@ class FreeAngles:
         self._scene, self._t = scene, t
         locked, n = locks(scene), len(scene.links)
         self._fixed = np.zeros(n)
-        """What each link is turned against the first of those that turn with it, or the ground."""
+        """The angle of each link against the first link that turns with it, or the ground, rad."""
         self.leaders: list[int] = []
         self._turning = np.zeros((n, 0))
         """(n, m): which links turn with each of the free angles."""
@@ -164,8 +164,8 @@ def find_equilibria(
 ) -> Iterator[Equilibrium]:
     """Find those near hanging, upright and the start; put into the remarks what was not found.
 
-    Joints are locked at the angles that their locks give, else as in the start, and without one as
-    in the pose that is looked from.
+    Joints are locked at the angles that their locks give, else as in the start, and without a start
+    as in the pose from which the search begins.
     """
     n = len(scene.links)
     poses = {"hanging": np.full(n, pi / 2), "upright": np.full(n, -pi / 2)}
@@ -186,7 +186,7 @@ def find_equilibria(
         free = FreeAngles(scene, t, pose if start is None else np.array(start))
         z = pose[free.leaders]
         balanced = free.balanced_near(z)
-        # Damping so large that the modes of an equilibrium are not finite.
+        # Damping can be so large that the modes of an equilibrium are not finite.
         if balanced is None or not all(np.isfinite(x).all() for x in free.linearised(balanced)):
             remarks.append(f"no equilibrium was found from {name} at t = {t:.6g} s")
             continue

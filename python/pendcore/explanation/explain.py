@@ -17,7 +17,7 @@ MANY = 60
 """The number of links beyond which matrices of the chain would be too large."""
 
 
-@np.errstate(all="ignore")  # what overflows is told as not found
+@np.errstate(all="ignore")  # an equilibrium that overflows is reported as not found
 def explain(scene: SceneData, t: float, start: tuple[float, ...] | None) -> Explanation:
     """Return the explanation of a scene; see `Scene.explain`."""
     remarks: list[str] = []

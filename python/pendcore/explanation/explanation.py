@@ -1,4 +1,4 @@
-"""An explanation of a scene: what it holds, how people read it, and JSON of it."""
+"""An explanation of a scene: what it holds, its text for people, and its JSON."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Cost(NamedTuple):
         Additions, multiplications, divisions and the like that an effect adds; None where they are
         not counted, as in a function of the user's.
     nanoseconds : float
-        Measured on the spot; of an effect, what it adds to the links alone.
+        Measured on the spot; for an effect, what it adds to the links alone.
     """
 
     what: str
@@ -60,14 +60,14 @@ class Explanation:
         Hanging, upright and the start, where they are in balance, or what Newton's method finds
         from there; each with its natural frequencies. Dry friction is left out.
     stiffest_rate : float or None
-        The largest eigenvalue about any of them, 1/s; None without one.
+        The largest eigenvalue about any equilibrium, 1/s; None if there is no equilibrium.
     fastest_drive : float
-        The largest angular frequency of a sinusoid, rad/s; 0 without one.
+        The largest angular frequency of a sinusoid, rad/s; 0 if there is no sinusoid.
     first_step : float or None
-        The period of the faster of the two over `STEPS_A_PERIOD`, s: safe for a start at rest near
-        an equilibrium, at the default tolerances. None where no equilibrium is known.
+        The period of the faster of these two over `STEPS_A_PERIOD`, s: safe for a start at rest
+        near an equilibrium, at the default tolerances. None where no equilibrium is known.
     not_simulated : tuple of Absence
-        What the program knows and the scene has not, then what the program does not know.
+        What the program knows and the scene does not have, then what the program does not know.
     remarks : tuple of str
         What was left out here, and why.
     """
@@ -86,7 +86,7 @@ class Explanation:
 
     @property
     def degrees_of_freedom(self) -> int | None:
-        """Coordinates less constraints, ``3 n - rank``; None where the rank is."""
+        """Coordinates less constraints, ``3 n - rank``; None where the rank is None."""
         rank = self.constraint_rank
         return None if rank is None else 3 * len(self.scene.links) - rank
 
@@ -118,12 +118,12 @@ class Explanation:
 
 
 def _text(told: Explanation) -> str:
-    """Return it as a table."""
+    """Return an explanation as a table."""
     n, at = len(told.scene.links), f"t = {told.t:.6g} s"
-    head = f"{n} link{'s'[: n > 1]}, gravity {told.scene.gravity:.6g} m/s^2, looked at at {at}"
+    head = f"{n} link{'s'[: n > 1]}, gravity {told.scene.gravity:.6g} m/s^2, explained at {at}"
     blocks = [
         [head],
-        ["What is simulated, and what of a right-hand side it takes", *_costs(told)],
+        ["What is simulated, and what it costs in a right-hand side", *_costs(told)],
         ["Freedom", *_freedom(told)],
         ["Equilibria" + _frozen(told), *_equilibria(told)],
         ["How fast", *_rates(told)],

@@ -1,4 +1,4 @@
-"""What a scene does not simulate: the effects that it does not have, and what none of them is."""
+"""What a scene does not simulate: effects that it does not have, and physics without an effect."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ class Absence(NamedTuple):
     Attributes
     ----------
     kind : str
-        Of an effect that the scene could have, or a word for what none is.
+        The kind of an effect that the scene could have, or a word for physics without an effect.
     sentence : str
-        What it would be.
+        What would be simulated.
     available : bool
         Whether there is such an effect.
     """

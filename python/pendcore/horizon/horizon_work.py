@@ -52,7 +52,7 @@ class HorizonWork:
     Attributes
     ----------
     limit : float
-        rad, of the error of the angles.
+        rad, the limit of the error of the angles.
     t_span : (float, float)
         s.
     points : tuple of HorizonPoint
@@ -97,7 +97,7 @@ class HorizonWork:
         return [point for point in self.points if point.method == method]
 
     def is_to_the_end(self, point: HorizonPoint) -> bool:
-        """Whether a point is valid to the end of the span: a longer one may find more."""
+        """Whether a point is valid to the end of the span: a longer span may find more."""
         return point.valid >= abs(self.t_span[1] - self.t_span[0])
 
     def measured(self, method: str) -> float:

@@ -71,7 +71,7 @@ class LyapunovExponents:
 
     @property
     def finite_time(self) -> Floats:
-        """Finite-time exponents from ``since`` to each of the times, 1/s, (n_t, k); NaN at it."""
+        """Finite-time exponents from ``since`` (NaN there) to each of the times, 1/s, (n_t, k)."""
         with np.errstate(invalid="ignore", divide="ignore"):
             rates: Floats = self.growth / np.abs(self.t - self.since)[:, np.newaxis]
         rates[self.t == self.since] = np.nan
@@ -79,7 +79,7 @@ class LyapunovExponents:
 
     @property
     def exponents(self) -> Floats:
-        """Over all the time, 1/s, (k,), the largest first."""
+        """The exponents over the whole time, 1/s, (k,), the largest first."""
         if len(self.t) == 0:
             return np.full(self.growth.shape[1], np.nan)
         return np.sort(self.finite_time[-1])[::-1]
@@ -175,7 +175,8 @@ def lyapunov(
     Raises
     ------
     ValueError, TypeError
-        If an argument is not what is asked for; the message names it. For dry friction and stops.
+        If an argument is not what is asked for (the message names it), and for dry friction and
+        stops.
     KeyboardInterrupt, or any exception of ``progress`` or of an effect's function
         With what was found so far as the attribute ``exponents``.
 

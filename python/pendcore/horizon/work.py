@@ -56,8 +56,8 @@ def horizon_work(
     limit : float
         rad; a run counts as valid until the error of an angle passes it.
     methods : str or iterable of str, optional
-        Of those that choose their steps, but not ``"auto"``, which is a rule. Default: dopri5,
-        dop853 and taylor, where the scene can be carried by them.
+        Methods that choose their steps, but not ``"auto"``, which is a rule. Default: dopri5,
+        dop853 and taylor, where they support the scene.
     rtols : array_like, (k,)
         Tolerances, > 0 and < 1, each with an ``atol`` of a thousandth.
     time_limit : float

@@ -23,19 +23,21 @@ class EnergyDrift(NamedTuple):
     start, end : float
         Total energy, J.
     largest_drift : float or None
-        From the start, J; where effects do work, of what the ledger leaves over. None without a
-        ledger then: nothing tells work from error.
+        The largest change since the start, J; where effects do work, the largest residual of the
+        ledger. None if effects do work and there is no ledger: nothing tells work from error.
     largest_kinetic : float
         J: the measure of the motion, as the zero of the potential energy is arbitrary. Where not
-        every step was kept, what the total energy allows: what was kept may all be near rest.
+        every step was kept, the largest that the total energy allows: what was kept may all be near
+        rest.
     relative_drift : float or None
-        The drift as a share of it; None where nothing moves.
+        The drift as a share of the largest kinetic energy; None where nothing moves.
     too_large : bool
-        Beyond a thousandth (or not a number), so that the run is not what it says.
+        Whether the drift is beyond a thousandth of the largest kinetic energy, or not a number:
+        too large to trust the run.
     changed_by : list of str
         The kinds of effects that do work, or lose energy.
     ledger : bool
-        Whether a ledger tells how much.
+        Whether a ledger tells how much they do.
     """
 
     start: float
@@ -55,7 +57,7 @@ def has_every_step(solution: RunResult) -> bool:
 
 
 def energy_drift(solution: RunResult, every: int = 1) -> EnergyDrift:
-    """Compute it from what was kept, or from one state in so many."""
+    """Compute the drift from the states that were kept, or from one state in so many."""
     run, asked = solution.run, solution.run.arguments
     start = np.concatenate([asked["q0"], asked["qd0"]])
     states = np.vstack([start, run.states[::every], run.y_reached])
@@ -99,7 +101,7 @@ def _residual(solution: RunResult) -> float | None:
 def _lowest_potential(scene: SceneData) -> float:
     """Return the lowest potential energy: every link hangs, or stands if its weight pulls up, J.
 
-    It is inf if a spring has negative energy, as its stiffness is: then no pose is the lowest.
+    It is inf if a spring's energy is negative, as its stiffness is: then no pose is the lowest.
     """
     n = len(scene.links)
     all_pull_down = all(link.center >= 0 for link in scene.links)

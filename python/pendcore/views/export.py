@@ -20,8 +20,8 @@ _HINT = 'needs {}: pip install "pendcore[export]"'
 def to_pandas(solution: RunResult) -> pd.DataFrame:
     """Return a row per time, index ``time`` (s), columns q_1.. (rad) and qd_1.. (rad/s).
 
-    ``attrs`` holds ``units``, by column, and ``case``, the TOML of what was simulated, but for
-    effects or events that are functions.
+    ``attrs`` holds ``units``, by column, and ``case``, the TOML of what was simulated, unless an
+    effect or an event is a function.
 
     Raises
     ------
@@ -45,8 +45,8 @@ def to_pandas(solution: RunResult) -> pd.DataFrame:
 def to_xarray(solution: RunResult) -> xr.Dataset:
     """Return ``q`` and ``qd`` over ``time`` and ``link``, each with ``attrs["units"]``.
 
-    The set's ``attrs["case"]`` is the TOML of what was simulated, but for effects that are
-    functions.
+    The set's ``attrs["case"]`` is the TOML of what was simulated, unless an effect or an event is
+    a function.
 
     Raises
     ------
@@ -71,7 +71,7 @@ def to_xarray(solution: RunResult) -> xr.Dataset:
 
 
 def _case(solution: RunResult) -> dict[Hashable, Any]:
-    """Return the case as TOML, which one with a function among effects or events has not."""
+    """Return the case as TOML, or nothing if an effect or an event is a function."""
     acting = any(isinstance(effect, OwnEffect) for effect in solution.scene.effects)
     if acting or any(isinstance(event, Function) for event in solution.events_asked_for()):
         return {}

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.patches import Rectangle
 
 _COLORS = ("r", "b", "g", "m", "c", "k")  # red and blue are the book's
-_STYLES = ("-", "--", "-.", ":")  # of one solution after another on the same axes
+_STYLES = ("-", "--", "-.", ":")  # for one solution after another on the same axes
 _PAST: dict[str, Any] = {
     "facecolor": "0.85",
     "edgecolor": "0.45",
@@ -70,7 +70,7 @@ def plot(
     Raises
     ------
     TypeError
-        If ``ax`` is something else than axes, or ``horizon`` than a number.
+        If ``ax`` is not axes, or ``horizon`` is not a number.
     ValueError
         If the number of axes is neither one nor that of the links, or ``horizon`` is not > 0.
     """
@@ -173,7 +173,7 @@ def _subplots(new_figure: Callable[..., Figure], n: int) -> Any:
 
 
 def _curves(solution: RunResult) -> tuple[Floats, Floats]:
-    """Return times (k,) and angles in degrees (n, k), close enough for the eye if it can be."""
+    """Return times (k,) and angles in degrees (n, k), close enough for the eye if possible."""
     t, q = solution.t, solution.q
     if solution.store == "dense" and 1 < len(t) < 1000:
         parts = ceil(2000 / (len(t) - 1))

@@ -75,7 +75,7 @@ def text(found: dict[str, Any]) -> str:
 
 
 def _effect(effect: Effect) -> dict[str, Any]:
-    """Return kind and parameters, parts as their own."""
+    """Return the kind and the parameters of an effect; a part is a dict of its parameters."""
     values = {
         name: x.particulars() if isinstance(x, Part) else x
         for name, x in effect.particulars().items()

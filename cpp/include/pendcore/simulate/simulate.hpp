@@ -30,7 +30,7 @@ std::unique_ptr<Stepper> make_taylor_stepper(const Scene& scene, const Equations
 /// may run backward. Throws std::invalid_argument for bad input, naming the argument. A run that
 /// fails returns what it has, with a status and a message that say why.
 Solution simulate(const Scene& scene, const std::vector<double>& q0, const std::vector<double>& qd0,
-                  double t0, double t_end, const Options& options = {});
+                  double t0, double t_end, Options options = {});
 
 /// The solution of the same run, continued to t_end, bit for bit as if it had never stopped.
 /// `t_eval` names further times of a run that was asked for times; max_steps, time_limit and

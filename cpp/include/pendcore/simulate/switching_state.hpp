@@ -21,7 +21,7 @@ struct SwitchingState {
   std::vector<int> struck;             ///< (n), whether the joint struck in the last impacts
   std::vector<int> release_direction;  ///< (n), 1, -1, or 0 where none was released
   std::vector<SavedHold> holds;        ///< (n)
-  bool has_failed = false;             ///< HeldJoints::has_failed()
+  bool has_failed = false;             ///< whether a contact had no finite solution
   std::vector<int> zeros_at_start;     ///< one for each linear guard of these modes
 };
 

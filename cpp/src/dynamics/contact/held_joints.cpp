@@ -62,7 +62,7 @@ Side HeldJoints::contact(int joint, const double* q) const {
   const double phi = relative(q, joint + 1);
   const double size = std::abs(q[joint]) + (joint > 0 ? std::abs(q[joint - 1]) : 0.0);
   auto is_at = [&](double end, double distance) {
-    return std::isfinite(end) && distance <= 4.0 * epsilon * (size + std::abs(end));
+    return std::isfinite(end) && distance <= last_bits_share * (size + std::abs(end));
   };
   const double lower = supports_[joint].lower.angle;
   const double upper = supports_[joint].upper.angle;

@@ -12,9 +12,10 @@ namespace pendcore {
 namespace {
 
 constexpr int points = 9;
-/// Halvings after which a step is believed about the start of a guard: if its slope and curvature
-/// do not decide, and if its value does not.
+/// If slope and curvature of a guard do not say whether it falls at the start of a step, the dense
+/// output is believed after so many halvings of the step.
 constexpr int halvings_without_sign = 20;
+/// After so many halvings it is believed in any case.
 constexpr int most_halvings = 50;
 /// How often the share of a step is halved in the search for an error of the dense output.
 constexpr int shares = 30;
@@ -152,7 +153,7 @@ Crossing Guards::where_slope_allows(Crossing crossing, double t, double h, int d
       k < discontinuities_.linear_guards() && discontinuities_.zeros_at_start(k) > 1;
   for (int dips = 0; dips < points; ++dips) {
     const double theta = crossing.theta;
-    const bool at_start = theta * std::abs(h) <= 4.0 * epsilon * std::abs(t);
+    const bool at_start = theta * std::abs(h) <= last_bits_share * std::abs(t);
     if (!(was_released && at_start)) {  // the usual case
       sample(theta);
       const double slope = discontinuities_.slope_at_rest(k, t + theta * h, state_.data());
@@ -227,7 +228,7 @@ bool Guards::rises_from_rest(int k) {
 bool Guards::leaves_its_zero(int k, double t, double h, double value, double rounding) {
   if (k >= discontinuities_.linear_guards()) return false;
   const double slope = start_of(k)[1];
-  const double missed = std::abs(slope) * 4.0 * epsilon * std::max(std::abs(t), std::abs(h));
+  const double missed = std::abs(slope) * last_bits_share * std::max(std::abs(t), std::abs(h));
   return slope * h > 0.0 && value >= -(rounding + missed);
 }
 
@@ -319,7 +320,7 @@ Guards::Located Guards::locate(const Crossing& crossing, double t, double whole,
     const double correction = miss.share * h;
     const double size = std::abs(correction);
     if (!(size <= 0.5 * std::abs(h))) break;
-    const bool is_found = size <= 4.0 * epsilon * std::max(std::abs(t), std::abs(h)) ||
+    const bool is_found = size <= last_bits_share * std::max(std::abs(t), std::abs(h)) ||
                           // The guard's own rounding can be larger, where it crosses zero slowly.
                           size <= miss.rounding * std::abs(h) ||
                           (size <= 1e-6 * std::abs(h) && size >= 0.5 * before);

@@ -199,7 +199,8 @@ class Run {
     const bool is_cut = target.is_in_reach || h != integrator_.h || law_changes;
     count_accepted(integrator_.statistics, h, is_cut, integrator_.h_is_max_step);
     if (last.is_within()) return end_within_step(last.theta, h, t_new.high);
-    integrator_.t = t_new;  // the step is kept, even if the law throws at its end
+    // Before accept(), where a user's function may throw: the observer has kept the step already.
+    integrator_.t = t_new;
     stepper_.accept(t_new.high);
     if (!law_changes) {
       if (discontinuities_ != nullptr) discontinuities_->step_taken();

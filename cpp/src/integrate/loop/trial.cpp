@@ -29,7 +29,7 @@ int bad_component_of(Stepper& stepper, double t_new) {
 }  // namespace
 
 double last_bits(double t, double t_new) {
-  return 4.0 * epsilon * std::max(std::abs(t), std::abs(t_new));
+  return last_bits_share * std::max(std::abs(t), std::abs(t_new));
 }
 
 Trial::Trial(Stepper& stepper, IntegratorState& integrator, bool fixed_step,

@@ -21,7 +21,7 @@ TAKEN = (
     *("right_hand_side", "accelerations", "reactions", "energies", "powers", "total", "std"),
     *("Angles", "State", "Force", "Energy", "Powers", "x", "kinetic", "potential"),
 )
-"""What the header calls its own."""
+"""Names that the header uses for itself."""
 
 KEYWORDS = {
     *("alignas", "alignof", "and", "asm", "auto", "bitand", "bitor", "bool", "break", "case"),
@@ -33,7 +33,7 @@ KEYWORDS = {
     *("template", "this", "throw", "true", "try", "typedef", "typeid", "typename", "union"),
     *("unsigned", "using", "virtual", "void", "volatile", "while", "xor"),
 }
-"""Words of the language that are names to Python."""
+"""Keywords of C++ that Python allows as names."""
 
 HEAD = """/// \\file
 /// {chain}: right-hand side, joint reactions, energies. Needs nothing but C++17.
@@ -120,9 +120,9 @@ def header(derivation: Algebra, name: str = "Chain", namespace: str = "pendulum"
     Parameters
     ----------
     derivation : Algebra
-        Of any scene that can be derived.
+        The derivation of any scene.
     name, namespace : str, default "Chain" and "pendulum"
-        Of the struct, and where it stands.
+        The name of the struct, and the namespace in which it stands.
     """
     for what, given, own in (("name", name, TAKEN), ("namespace", namespace, ("std",))):
         if not given.isidentifier() or not given.isascii() or given in KEYWORDS:
@@ -165,8 +165,8 @@ def _cost(quantities: Quantities) -> str:
 
 
 def _powers_struct(quantities: Quantities) -> str:
-    lines = ["  /// Power that each effect brings into the chain, W; negative where it takes."]
-    lines.append("  struct Powers {")
+    told = "Power that each effect brings into the chain, W; negative where it takes energy."
+    lines = [f"  /// {told}", "  struct Powers {"]
     for name, effect in quantities.powers.items():
         lines += [f"    /// {line.strip()}" for line in indented(repr(effect))]
         lines.append(f"    double {name};")

@@ -46,7 +46,7 @@ def indented(text: str, columns: int = COLUMNS - 10) -> list[str]:
 
 
 def wrapped(statement: str, indent: str, more: str = "") -> list[str]:
-    """Return a statement in lines; those that go on end in `more`, and begin further in."""
+    """Return a statement in lines: all but the last end in `more`, the later ones are indented."""
     lines = wrap(
         statement,
         COLUMNS - len(more),

@@ -17,14 +17,14 @@ from pendcore.derive.code.printer import Octave
 from pendcore.derive.code.shared import Computation, share
 
 TAKEN = ("t", "x", "dx", "g0", "i", "j", "e", "pi", "end", "function", "Inf", "NaN", "eps")
-"""What the language, or the file, calls its own."""
+"""Names that the language, or the file, uses for itself."""
 
 KEYWORDS = {
     *("break", "case", "catch", "classdef", "continue", "do", "else", "elseif", "end", "endfor"),
     *("endfunction", "endif", "endswitch", "endwhile", "for", "function", "global", "if"),
     *("otherwise", "parfor", "persistent", "return", "spmd", "switch", "try", "until", "while"),
 }
-"""What no function can be called, in Octave or in MATLAB."""
+"""Names that no function can have, in Octave or in MATLAB."""
 
 
 def function_file(derivation: Algebra, name: str = "RR") -> str:
@@ -35,9 +35,9 @@ def function_file(derivation: Algebra, name: str = "RR") -> str:
     Parameters
     ----------
     derivation : Algebra
-        Of any scene that can be derived.
+        The derivation of any scene.
     name : str, default "RR"
-        Of the function; the file has to be called so, with ``.m``.
+        The name of the function; the file has to have the same name, with ``.m``.
     """
     _check(name)
     computation = share(derivation.shared_accelerations, derivation.shared, TAKEN)
@@ -56,7 +56,7 @@ def function_file(derivation: Algebra, name: str = "RR") -> str:
 
 
 def written_out(derivation: Algebra, name: str = "RR") -> str:
-    """Return a function file as the textbook's program writes it: numbers in, nothing shared.
+    """Return a function file as the textbook's program writes it: with numbers, nothing shared.
 
     The expressions are those of `inline_function`, so that the two can be compared.
     """
@@ -139,7 +139,7 @@ def _with_numbers(derivation: Algebra) -> list[str]:
 
 
 def _exact(value: float) -> Rational | Float:
-    """Return 9.807 as 9807/1000, as MATLAB does; what has many digits as it is."""
+    """Return 9.807 as 9807/1000, as MATLAB does; a number of many digits stays as it is."""
     digits = repr(value).partition("e")[0].replace(".", "").strip("-0")
     return Rational(repr(value)) if len(digits) <= 6 and abs(value) > 1e-6 else Float(value)
 

@@ -1,4 +1,4 @@
-"""Expressions as text: one way to write them, and what the languages differ in.
+"""Expressions as text: one way to write them, and where the languages differ.
 
 ``sympy.octave_code`` writes elementwise operators, ``sympy.cxxcode`` splits fractions off. Here
 every language has ``L1**2*m1/12`` as a person would write it.
@@ -20,7 +20,7 @@ class Infix(StrPrinter):  # type: ignore[misc]
     Parameters
     ----------
     names : dict of Symbol to str
-        How symbols are written; the others by their own names.
+        How symbols are written; symbols that are not in it are written by their own names.
     """
 
     functions: ClassVar[dict[str, str]]

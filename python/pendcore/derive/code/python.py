@@ -19,7 +19,7 @@ TAKEN = (
     *("np", "n", "t", "y", "q", "qd", "qdd", "force", "kinetic", "potential"),
     *("right_hand_side", "accelerations", "reactions", "energies", "powers", "annotations"),
 )
-"""What the module calls its own; SymPy's names of Python's own words are left to it."""
+"""Names that the module uses for itself; `identifiers` keeps clear of Python's keywords."""
 
 HEAD = '''"""{chain}: right-hand side, joint reactions, energies.
 
@@ -59,7 +59,8 @@ DOCUMENTATION = {
         "Return kinetic and potential energy, J, the latter 0 at the height of the origin."
     ],
     "powers": [
-        "Return the power that each effect brings into the chain, W; negative where it takes.",
+        "Return the power that each effect brings into the chain, W; "
+        "negative where it takes energy.",
         "Their sum is the rate at which kinetic + potential energy grows.",
     ],
 }
@@ -75,7 +76,7 @@ def module(derivation: Algebra) -> str:
     Parameters
     ----------
     derivation : Algebra
-        Of any scene that can be derived.
+        The derivation of any scene.
     """
     n, quantities = derivation.n, Quantities.of(derivation, TAKEN)
     every = [p.symbol for p in derivation.symbols.parameters]

@@ -38,7 +38,7 @@ class Quantities:
 
     @classmethod
     def of(cls, derivation: Algebra, taken: Iterable[str]) -> Quantities:
-        """Collect them; `taken` are the names that the language needs for itself."""
+        """Collect the computations; `taken` are names that the language needs for itself."""
         taken = {*taken, *(parameter.symbol.name for parameter in derivation.symbols.parameters)}
         laws = [(known.symbol, known.value) for known in derivation.equations.definitions]
         forces = [part for force in derivation.equations.reactions for part in force]
@@ -52,7 +52,7 @@ class Quantities:
         )
 
     def symbols(self) -> list[Symbol]:
-        """Return the assignments of these computations."""
+        """Return the symbols that these computations assign."""
         every = (self.accelerations, self.reactions, self.energies, self.power)
         return list(dict.fromkeys(symbol for one in every for symbol, _ in one.assignments))
 

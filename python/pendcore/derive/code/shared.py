@@ -21,7 +21,7 @@ class Computation:
     assignments : tuple of (Symbol, Expr)
         Each in terms of what is known from outside and of those before it.
     results : tuple of Expr
-        As many, and in the order, as were asked for.
+        As many as were asked for, in the same order.
     """
 
     assignments: tuple[Assignment, ...]
@@ -35,7 +35,7 @@ class Computation:
 
     @property
     def operations(self) -> int:
-        """How many additions, multiplications, divisions, powers and calls of functions it is."""
+        """The number of additions, multiplications, divisions, powers and calls of functions."""
         return sum(int(sympy.count_ops(one)) for one in self._every)
 
     @property
@@ -61,8 +61,8 @@ def share(
     Returns
     -------
     Computation
-        Sines and cosines are ``sin_q1``, ``cos_q1_q2`` of q1 - q2, and of other arguments ``sin1``,
-        ``cos1``, ...; what else is shared is ``e1``, ``e2``, ...
+        Sines and cosines are named ``sin_q1``, or ``cos_q1_q2`` for q1 - q2, or ``sin1``, ``cos1``,
+        ... for other arguments; everything else that is shared is named ``e1``, ``e2``, ...
     """
     used = _used(results, assignments)
     expressions = [*(value for _, value in used), *results]

@@ -1,4 +1,4 @@
-"""The laws of the smooth effects in symbols, a file each, and why the others have none here."""
+"""The laws of the smooth effects in symbols, one file each, and why other effects have none."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ LAWS: dict[str, type[Law]] = {
     "torsional_spring": TorsionalSpring,
     "viscous_joint": ViscousJoint,
 }
-"""By the kind of effect."""
+"""The laws, by the kind of effect."""
 
 OWN = "its law is a function, which has no symbols"
 USE_A_LAW = "use one of pendcore.effects that has a law in symbols"
 WITHOUT_LAW: dict[str, tuple[str, str]] = {
     "compiled_user": (OWN, USE_A_LAW),
     "dry_joint_friction": (
-        "dry friction jumps with the sign of the rate, and a joint at rest sticks: there is no one "
-        "equation of motion",
+        "dry friction jumps with the sign of the rate, and a joint at rest sticks: no single "
+        "equation of motion holds throughout",
         "use ViscousJoint, the smooth friction",
     ),
     "joint_stop": (
@@ -52,7 +52,7 @@ def laws_of(effects: Sequence[Any], notation: Notation) -> list[Law]:
     Raises
     ------
     ValueError
-        For an effect without a smooth law: which one, why, and what to do instead.
+        If an effect has no smooth law; the message says which one, why, and what to do instead.
     """
     return [_law_of(i, effect, notation) for i, effect in enumerate(effects, start=1)]
 

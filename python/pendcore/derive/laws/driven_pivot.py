@@ -22,8 +22,8 @@ class DrivenPivot(Law):
         super().__init__(effect, notation)
         if effect.spline is not None:
             raise NotSmooth(
-                "spline: its path is given by points, another polynomial between any two, not a "
-                "law",
+                "spline: its path is given by points, with a different polynomial between each "
+                "two, and not by a law",
                 "give sinusoids, x= and y=",
             )
         self.path = self._axis("x"), self._axis("y")
@@ -41,11 +41,11 @@ class DrivenPivot(Law):
         return sinusoid(wave, self.notation, named)
 
     def pivot(self) -> Vector:
-        """Where it is."""
+        """Return the position of the pivot, m."""
         return self.path
 
     def power(self, chain: Chain, ground_force: Vector) -> Expr:
-        """Work per second of what moves it."""
+        """Return the power of what moves the pivot, W."""
         symbols = {law: symbol for symbol, law in chain.path.items()}
         x, y = (law.diff(self.notation.t) for law in self.path)
         return dot(ground_force, (symbols.get(x, x), symbols.get(y, y)))

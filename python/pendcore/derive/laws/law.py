@@ -11,7 +11,7 @@ from pendcore.derive.notation import Notation
 
 
 class NotSmooth(Exception):
-    """The effect has no law that is smooth: the reason, and what to do instead."""
+    """The effect has no law that is smooth; holds the reason, and what to do instead."""
 
     def __init__(self, reason: str, remedy: str) -> None:
         super().__init__(f"{reason}: {remedy}")
@@ -25,7 +25,7 @@ class LinkLoad(NamedTuple):
     Attributes
     ----------
     link : int
-        From 1.
+        The link, counted from 1.
     force : (Expr, Expr)
         N; x right, y down.
     moment : Expr
@@ -46,12 +46,12 @@ class Definition(NamedTuple):
 
 
 class Law:
-    """An effect that does nothing; the laws override what they do.
+    """The law of an effect that does nothing; each law overrides what its effect does.
 
     Parameters
     ----------
     effect : pendcore.effects.Effect
-        With its numbers.
+        The effect, with its numbers.
     notation : Notation
         Where the law puts the symbols of its parameters.
     """
@@ -69,19 +69,19 @@ class Law:
         return None
 
     def couple(self, chain: Chain) -> Expr | None:
-        """Torque at its joint, on the link beyond it, without that of rotors, N m."""
+        """Torque of the effect on the link beyond its joint, without that of rotors, N m."""
         return None
 
     def definitions(self, chain: Chain) -> tuple[Definition, ...]:
-        """Symbols that its loads are written with, each in terms of those before it."""
+        """Symbols in which the loads are written, each defined by those before it."""
         return ()
 
     def load(self, chain: Chain) -> LinkLoad | None:
-        """Force along a link, in the symbols of `definitions`."""
+        """Force on a link and its moment, in the symbols of `definitions`."""
         return None
 
     def armature(self) -> tuple[int, Expr] | None:
-        """Joint and moment of inertia of a rotor that turns with it, kg m^2."""
+        """Joint, and moment of inertia of a rotor that turns with the joint, kg m^2."""
         return None
 
     def payload(self) -> tuple[Expr, Expr] | None:
@@ -89,17 +89,17 @@ class Law:
         return None
 
     def lock(self) -> int | None:
-        """The joint that it locks."""
+        """The joint that the effect locks."""
         return None
 
     def potential_energy(self, chain: Chain) -> Expr:
-        """What it stores, J."""
+        """Energy that the effect stores, J."""
         return Integer(0)
 
     def power(self, chain: Chain, ground_force: Vector) -> Expr | None:
-        """Power that it brings into the chain, W, in the symbols of `definitions`.
+        """Power that the effect brings into the chain, W, in the symbols of `definitions`.
 
-        ``ground_force`` is that of the ground on link 1, N. None for what does no work, or keeps
-        it as energy.
+        ``ground_force`` is the force of the ground on link 1, N. The power is None if the effect
+        does no work, or stores its work as energy.
         """
         return None

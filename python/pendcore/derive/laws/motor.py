@@ -15,8 +15,8 @@ from pendcore.derive.notation import Notation
 class Motor(Law):
     """See the core's effect of that name; its power is tau w.
 
-    A limit that a constant or a sinusoid never reaches changes nothing. One that is reached makes
-    a corner in the law, and a table has one at every point.
+    A limit that a constant or a sinusoid never reaches changes nothing. A limit that is reached
+    makes a corner in the law, and a table has a corner at every point.
     """
 
     def __init__(self, effect: Any, notation: Notation) -> None:
@@ -41,14 +41,14 @@ class Motor(Law):
             name, latex = f"kd_{j}", f"k_{{d,{j}}}"
             self.kd = parameter(name, latex, pd.kd, "N m s/rad", f"derivative gain {motor}")
             name, latex = f"phiR_{j}", rf"\varphi_{{r,{j}}}"
-            self.reference = parameter(name, latex, pd.reference, "rad", f"angle aimed at {motor}")
+            self.reference = parameter(name, latex, pd.reference, "rad", f"target angle {motor}")
 
     def sentence(self, notation: Notation) -> str:
         """Return the words and formulas of the law."""
         return f"A motor turns joint {self.effect.joint}."
 
     def couple(self, chain: Chain) -> Expr:
-        """One of the three."""
+        """Return the torque, N m: constant, a sinusoid, or the controller's."""
         if self.effect.constant is not None:
             return self.constant
         if self.effect.sinusoid is not None:
@@ -57,7 +57,7 @@ class Motor(Law):
         return self.kp * (self.reference - chain.joint_angle(j)) - self.kd * chain.joint_rate(j)
 
     def power(self, chain: Chain, ground_force: Vector) -> Expr:
-        """Its work per second."""
+        """Return the power of the motor, W."""
         return self.couple(chain) * chain.joint_rate(self.effect.joint)
 
 
@@ -65,7 +65,7 @@ def _check(effect: Any) -> None:
     """Refuse a motor whose law has corners."""
     if effect.table is not None:
         raise NotSmooth(
-            "table: its torque is given by points and has a corner at each of them, not a law",
+            "table: its torque is given by points, not by a law, and has a corner at each of them",
             "give it as constant, sinusoid or pd",
         )
     if effect.pd is not None and effect.limit != float("inf"):

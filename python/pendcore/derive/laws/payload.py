@@ -32,5 +32,5 @@ class Payload(Law):
         return "A payload is fixed to the tip."
 
     def payload(self) -> tuple[Expr, Expr]:
-        """Its mass and moment of inertia."""
+        """Return the mass and the moment of inertia."""
         return self.mass, self.inertia

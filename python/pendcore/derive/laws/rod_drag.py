@@ -1,14 +1,14 @@
 """Air drag along a rod: f(s) = -k abs(w) w across it, k = rho C_d d / 2.
 
-w(s) = w_0 + (w_1 - w_0) s/L is the speed across the rod against the wind; w_0 and w_1 are those of
-its ends. The resultant F (across the rod) and the moment T about the joint where it begins are the
-integrals, with D = abs(w_0) + abs(w_1), whatever the signs:
+w(s) = w_0 + (w_1 - w_0) s/L is the speed across the rod relative to the wind; w_0 and w_1 are the
+speeds of its ends. The resultant F (across the rod) and the moment T about the joint where the rod
+begins are integrals of f. With D = abs(w_0) + abs(w_1) they are, for all signs of w_0 and w_1:
 
     F = -k L   (w_0 + w_1)/D (w_0^2 + abs(w_0 w_1) + w_1^2) / 3
     T = -k L^2 ((w_0 abs(w_0)^3 + w_1 w_1^2 (4 abs(w_0) + 3 abs(w_1)))/D^2
                 + 2 (w_0 w_1 + abs(w_0 w_1)) (w_0 + w_1)/D) / 12
 
-They are as smooth as the law: differentiable once, also where a speed changes its sign. As in the
+F and T are as smooth as f: differentiable once, also where a speed changes its sign. As in the
 core, 1e-100 m/s is added to D, so that a rod at rest has no drag instead of 0/0.
 """
 
@@ -23,7 +23,7 @@ from pendcore.derive.laws.law import Definition, Law, LinkLoad
 from pendcore.derive.notation import Notation
 
 AT_REST = 1e-100
-"""What keeps D from 0, m/s."""
+"""The speed that keeps D from 0, m/s."""
 
 
 class RodDrag(Law):
@@ -48,7 +48,7 @@ class RodDrag(Law):
             for a, v in zip("xy", effect.wind, strict=True)
         )
         self.at_rest = parameter(
-            f"eps_{i}", rf"\varepsilon_{{{i}}}", AT_REST, "m/s", "keeps 0/0 from a rod at rest"
+            f"eps_{i}", rf"\varepsilon_{{{i}}}", AT_REST, "m/s", "avoids 0/0 for a rod at rest"
         )
         self._names: dict[str, Symbol] = {}
 
@@ -56,13 +56,13 @@ class RodDrag(Law):
         """Return the words and formulas of the law."""
         i = self.effect.link
         return (
-            f"The air resists the motion of link {i} across itself: the force on a length of rod "
-            "is quadratic in its speed; its integrals along the rod are the force and the moment "
-            "about the joint where the link begins."
+            f"The air resists the motion of link {i} across the rod: the force on a length of the "
+            "rod is quadratic in the speed of that length. The integrals of this force along the "
+            "rod are the drag and its moment about the joint where the link begins."
         )
 
     def _symbol(self, letter: str, latex: str) -> Symbol:
-        """A symbol of this effect, told from that of another on the same rod."""
+        """Return a symbol of this effect; another effect on the same rod gets another symbol."""
         if letter not in self._names:
             name, i, known = f"{letter}_{self.effect.link}", self.effect.link, 1
             taken = {symbol.name for symbol in self.notation.latex_names}
@@ -74,7 +74,7 @@ class RodDrag(Law):
         return self._names[letter]
 
     def definitions(self, chain: Chain) -> tuple[Definition, ...]:
-        """Speeds of the ends, and the integrals."""
+        """Return the speeds of the ends, and the integrals F and T."""
         i, s = self.effect.link, self.notation
         length = s.lengths[i - 1]
         w0 = self._symbol("w0", r"w_{{0,{i}}}")
@@ -89,7 +89,7 @@ class RodDrag(Law):
         moment = -k * length**2 / 12 * (ends / size**2 + between)
         begins, rod = f"where rod {i} begins", f"rod {i}"
         return (
-            Definition(w0, near, f"speed across the rod {begins}, against the wind, m/s"),
+            Definition(w0, near, f"speed across the rod {begins}, relative to the wind, m/s"),
             Definition(w1, w0 + length * s.qd[i - 1], f"the same where {rod} ends, m/s"),
             Definition(self.force, force, f"drag on {rod}, across it, N"),
             Definition(self.moment, moment, f"its moment about the joint {begins}, N m"),
@@ -97,16 +97,16 @@ class RodDrag(Law):
 
     @property
     def force(self) -> Symbol:
-        """F."""
+        """F, the force across the rod."""
         return self._symbol("Fd", r"F_{{d,{i}}}")
 
     @property
     def moment(self) -> Symbol:
-        """T."""
+        """T, the moment about the joint where the rod begins."""
         return self._symbol("Td", r"T_{{d,{i}}}")
 
     def load(self, chain: Chain) -> LinkLoad:
-        """F across the rod, and T."""
+        """Return F across the rod, and T."""
         i = self.effect.link
         across = chain.across(i)
         return LinkLoad(i, (self.force * across[0], self.force * across[1]), self.moment)

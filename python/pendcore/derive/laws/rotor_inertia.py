@@ -11,7 +11,7 @@ from pendcore.derive.notation import Notation
 
 
 class RotorInertia(Law):
-    """See the core's effect of that name; to turn it takes the couple J phidd."""
+    """See the core's effect of that name; turning the rotor takes the couple J phidd."""
 
     def __init__(self, effect: Any, notation: Notation) -> None:
         super().__init__(effect, notation)
@@ -24,10 +24,11 @@ class RotorInertia(Law):
         """Return the words and formulas of the law."""
         joint = self.effect.joint
         return (
-            f"A rotor turns with joint {joint}: to turn it faster takes the moment of inertia "
-            f"${notation.latex(self.inertia)}$ times the acceleration of the joint."
+            f"A rotor turns with joint {joint}: accelerating the rotor takes a couple that is its "
+            f"moment of inertia ${notation.latex(self.inertia)}$ times the acceleration of the "
+            "joint."
         )
 
     def armature(self) -> tuple[int, Expr]:
-        """Its joint and inertia."""
+        """Return the joint and the moment of inertia."""
         return self.effect.joint, self.inertia

@@ -10,7 +10,7 @@ from pendcore.derive.notation import Notation
 
 
 class Named(NamedTuple):
-    """What the sinusoid is of: ends of names, unit, and words."""
+    """The names of a sinusoid's symbols, its unit, and its meaning in words."""
 
     text: str
     latex: str

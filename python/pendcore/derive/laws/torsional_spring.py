@@ -29,10 +29,10 @@ class TorsionalSpring(Law):
 
     def sentence(self, notation: Notation) -> str:
         """Return the words and formulas of the law."""
-        return f"A torsional spring turns joint {self.effect.joint} to its rest angle."
+        return f"A torsional spring turns joint {self.effect.joint} towards its rest angle."
 
     def couple(self, chain: Chain) -> Expr:
-        """Towards the rest angle, for positive stiffness."""
+        """Return the torque, N m: towards the rest angle if the stiffness is positive."""
         return -self.stiffness * (chain.joint_angle(self.effect.joint) - self.rest_angle)
 
     def potential_energy(self, chain: Chain) -> Expr:

@@ -39,11 +39,11 @@ class ViscousJoint(Law):
         return f"Viscous damping at joint {self.effect.joint} opposes its rate."
 
     def couple(self, chain: Chain) -> Expr:
-        """Odd in w."""
+        """Return the torque, N m, which is odd in w."""
         w = chain.joint_rate(self.effect.joint)
         terms = {1: w, 2: w * Abs(w), 3: w**3}
         return -sum((b * terms[power] for power, b in self.coefficients.items()), Integer(0))
 
     def power(self, chain: Chain, ground_force: Vector) -> Expr:
-        """What it takes, negative."""
+        """Return the power, W; negative where the damping takes energy from the motion."""
         return self.couple(chain) * chain.joint_rate(self.effect.joint)

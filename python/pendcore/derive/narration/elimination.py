@@ -54,7 +54,7 @@ def _put_in(page: Page) -> None:
     """Write (2.10) and (2.11): the reactions put into both moment equations."""
     known, accelerations = _in_brackets(page)
     fixed = page.chain.pivot_is_fixed
-    numbers = "2.10" if fixed else None, "2.11"  # about C_1 it is another equation than (2.10)
+    numbers = "2.10" if fixed else None, "2.11"  # the equation about C_1 is not (2.10)
     force = "The force between the links is" if fixed else "The joint reactions are"
     if page.equations.payload is not None:
         force = "The force between the links and that of the payload are" if fixed else force
@@ -75,7 +75,7 @@ def _put_in(page: Page) -> None:
 
 
 def _in_brackets(page: Page) -> tuple[dict[Expr, Expr], dict[Expr, Expr]]:
-    """Return the reactions by m (a - g), the brackets as symbols, and what stands in these."""
+    """Return the reactions in m (a - g) with brackets as symbols, and the brackets' contents."""
     equations, chain = page.equations, page.chain
     known: dict[Expr, Expr] = {}
     brackets: dict[Expr, Expr] = {}
@@ -105,8 +105,8 @@ def _collected(page: Page) -> None:
     law, locked = page.motion.law, page.motion.locking
     if page.n > 1:
         text += (
-            "The terms with accelerations are collected on the left, with $\\sin^{2} + "
-            "\\cos^{2} = 1$ and the sine and cosine of a difference: "
+            "The terms with accelerations are collected on the left, using $\\sin^{2} + "
+            "\\cos^{2} = 1$ and the formulas for the sine and cosine of a difference: "
             f"${law}$, with a symmetric matrix $M$."
         )
     else:
@@ -114,7 +114,8 @@ def _collected(page: Page) -> None:
     if locked:
         text += (
             " The unknown couples of locks are in $\\lambda$, and everything else is in $f$: such "
-            "a couple acts on the link beyond its joint, and its opposite on the link before."
+            "a couple acts on the link beyond its joint, and the opposite couple on the link "
+            "before it."
         )
     named = page.motion.named.entries | locked
     page.step(

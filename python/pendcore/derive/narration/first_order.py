@@ -7,7 +7,7 @@ from pendcore.derive.step import Equation
 from pendcore.derive.writing import ANGLE, RATE
 
 BY_ELIMINATION = 4
-"""Unknown accelerations from which on determinants are longer than a page."""
+"""The number of unknown accelerations from which determinants are longer than a page."""
 
 
 def first_order(page: Page) -> None:
@@ -34,9 +34,9 @@ def _solution(page: Page) -> None:
         )
         text += (
             f"; {kept}elimination solves them: ${matrix} = L D L^{{T}}$, where $L$ has ones on its "
-            "diagonal, its entries $\\ell_{ij}$ below and zeros above, and $D$ has nothing but "
-            f"its diagonal{first}. Then $L h = {right}$ gives $h$, and from "
-            "$L^{T} a = D^{-1} h$ follow the accelerations $a$, the last one first"
+            "diagonal, its entries $\\ell_{ij}$ below and zeros above, and $D$ is diagonal"
+            f"{first}. Then $L h = {right}$ gives $h$, and $L^{{T}} a = D^{{-1}} h$ gives the "
+            "accelerations $a$, the last one first"
         )
         found = [page.equation(*assignment) for assignment in solution.by_elimination]
         accelerations = solution.shared_accelerations

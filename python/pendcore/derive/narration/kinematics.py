@@ -37,12 +37,12 @@ def kinematics(page: Page) -> None:
     )
     page.step(
         "Velocities of the mass centres",
-        "The velocity is the derivative with respect to time of the position.",
+        "The velocity is the derivative of the position with respect to time.",
         *_points(page, chain.center_velocities, centers, 1),
     )
     page.step(
         "Accelerations of the mass centres",
-        "The acceleration is the derivative with respect to time of the velocity.",
+        "The acceleration is the derivative of the velocity with respect to time.",
         *_points(page, chain.center_accelerations, centers, 2),
         *(
             _points(page, [chain.tip_acceleration], joints[-1:], 2)
@@ -52,8 +52,8 @@ def kinematics(page: Page) -> None:
     )
     page.step(
         "Angular velocities and accelerations",
-        f"{'The links turn' if n > 1 else 'The link turns'} about the $z$ axis, of unit vector "
-        "$\\mathbf{k}$; positive is from $x$ to $y$.",
+        f"{'The links turn' if n > 1 else 'The link turns'} about the $z$ axis, whose unit vector "
+        "is $\\mathbf{k}$; turning from $x$ to $y$ is positive.",
         *(
             page.equation(page.vector(letter, i), page.along("k", row[i - 1]))
             for letter, row in (("omega", page.s.qd), ("alpha", page.s.qdd))
@@ -65,10 +65,10 @@ def kinematics(page: Page) -> None:
 def _mobility(page: Page) -> None:
     n = page.n
     locked = page.equations.locked
-    k = n - len(locked)  # links that a lock makes one are one
+    k = n - len(locked)  # links that a lock joins count as one
     joints = "one revolute joint" if k == 1 else f"{k} revolute joints"
     links = "one moving link" if k == 1 else f"{k} moving links"
-    text = f"The chain has {links} and {joints}, of one degree of freedom{' each' * (k > 1)}"
+    text = f"The chain has {links} and {joints}, with one degree of freedom{' each' * (k > 1)}"
     if k == 0:
         text = f"{'The link does' if n == 1 else 'The links do'} not move"
     text += f": $n = {k}$, $c_{{5}} = {k}$, $c_{{4}} = 0$."
@@ -81,7 +81,7 @@ def _mobility(page: Page) -> None:
     angles = _listed(f"$q_{{{i}}}(t)$" for i in range(1, n + 1))
     coordinates = "The generalized coordinates are the angles"
     if locked:
-        coordinates = f"It is described by the angle{'s' * (n > 1)}"
+        coordinates = f"The chain is described by the angle{'s' * (n > 1)}"
     elif n == 1:
         coordinates = "The generalized coordinate is the angle"
     page.step(

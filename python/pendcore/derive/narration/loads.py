@@ -48,7 +48,7 @@ def _moments_of_inertia(page: Page) -> None:
     elif len(found) < page.n:
         text += ", where they are not given"
     if page.chain.pivot_is_fixed:
-        text += "; link 1 turns about the fixed point $A$, and there the parallel axis theorem"
+        text += "; link 1 turns about the fixed point $A$, for which the parallel axis theorem"
         text += " gives $I_{A}$"
         about_pivot = page.symbol("I_A", "I_{A}", MASS)
         parallel = page.moment_of_inertia(1) + s.masses[0] * s.centers[0] ** 2
@@ -72,7 +72,7 @@ def _effects(page: Page) -> None:
     if page.equations.payload is not None:
         weight = page.along("j", page.equations.payload.mass * page.s.gravity)
         found.append(page.equation(page.vector("G", "p"), weight))
-    opposite = ", and its opposite on the link before" if page.n > 1 else ""
+    opposite = ", and the opposite torque on the link before it" if page.n > 1 else ""
     torques = page.equations.torques or page.equations.locked or any(page.equations.armatures)
     for joint in page.equations.locked:
         found.append(page.equation(page.chain.joint_acceleration(joint), Integer(0)))

@@ -22,7 +22,7 @@ def newton_euler(page: Page) -> None:
 
 
 def _forces(page: Page, i: int) -> tuple[Formula, Formula | None]:
-    """The force where link i begins, and where it ends, if there is one."""
+    """Return the force where link i begins, and the force where it ends, if there is one."""
     near = page.vector("F", f"{i - 1}{i}")
     if i < page.n:
         return near, page.vector("F", f"{i + 1}{i}")
@@ -30,7 +30,7 @@ def _forces(page: Page, i: int) -> tuple[Formula, Formula | None]:
 
 
 def _newton(page: Page, i: int, number: str | None) -> Equation:
-    """Newton's, m a_C = F + F + G + loads."""
+    """Return Newton's equation, m a_C = F + F + G + loads."""
     near, far = _forces(page, i)
     acting = [near, *([far] if far else []), page.vector("G", i)]
     acting += [page.load(load) for load in page.equations.loads if load.link == i]
@@ -67,7 +67,7 @@ def _euler(page: Page, i: int, about: Formula, number: str | None) -> Equation:
 
 
 def _components(page: Page, i: int, link: LinkEquations) -> list[Equation]:
-    """Newton's along x and y, with accelerations as symbols."""
+    """Return Newton's equations along x and y, with accelerations as symbols."""
     mass = page.s.masses[i - 1]
     ax, ay = (page.coordinate(axis, page.center(i), 2) for axis in "xy")
     remark = errata.REMARKS["y of 2.5"] if i == 2 else ""
@@ -93,7 +93,10 @@ def _turning_with(page: Page, i: int) -> str:
     if i < page.n or payload is None or payload.inertia == 0:
         return ""
     couple = page.s.latex(expand(payload.inertia * page.s.qdd[i - 1]))
-    return f" The payload turns with link {i}; the couple that this takes, ${couple}$, acts back."
+    return (
+        f" The payload turns with link {i}; the couple that this takes, ${couple}$, acts back on "
+        "the link."
+    )
 
 
 def _first(page: Page, link: LinkEquations) -> None:
@@ -132,10 +135,11 @@ def _other(page: Page, i: int, link: LinkEquations) -> None:
     accelerated = page.chain.center_accelerations[i - 1]
     mass = page.s.masses[i - 1]
     out: list[Equation] = []
-    own = i == 2  # the textbook's numbers of link 2
+    own = i == 2  # the textbook numbers the equations of link 2
     payload = ""
     if i == page.n and (far := _forces(page, i)[1]) is not None:
-        payload = f" ${far.latex}$ is the force of the payload on it, at ${page.joint(i).latex}$."
+        payload = f" ${far.latex}$ is the force of the payload on link {i}, at "
+        payload += f"${page.joint(i).latex}$."
         payload += _turning_with(page, i)
     if own and page.n == 2:
         out = [
@@ -163,7 +167,7 @@ def _other(page: Page, i: int, link: LinkEquations) -> None:
 
 
 def _determinant(page: Page, link: LinkEquations) -> Equation:
-    """(2.5): the moment of F_12 about C_2 as a determinant, and what effects add to it."""
+    """Return (2.5): the moment of F_12 about C_2 as a determinant, and what effects add to it."""
     begin, center, force = page.joint(1), page.center(2), page.equations.near_force(2)
     arm = (
         page.coordinate("x", begin) - page.coordinate("x", center),
@@ -181,21 +185,22 @@ def _determinant(page: Page, link: LinkEquations) -> Equation:
 
 
 def _payload(page: Page, payload: PayloadEquations) -> None:
-    """Newton's equations of the payload."""
+    """Write the equations of the payload."""
     tip, force = page.joint(page.n), page.vector("F", f"p{page.n}")
     opposite, mass = Formula(f"-{force.text}", f"-{force.latex}"), payload.mass
     couple, turning, moment = page.vector("T", "p"), "", []
     if payload.inertia != 0:
         turning = (
-            f" There its forces have no moment: the couple ${couple.latex}$ of link {page.n} turns "
-            "it, and its opposite acts on the link."
+            " The forces on the payload have no moment about its mass centre: the couple "
+            f"${couple.latex}$ of link {page.n} turns the payload, and the opposite couple acts on "
+            "the link."
         )
         alpha = page.vector("alpha", page.n)
         moment = [page.equation(page.scaled(payload.inertia, alpha), couple)]
     page.step(
         "Newton-Euler equations of the payload" if moment else "Newton's equations of the payload",
-        f"${force.latex}$ is the force of the payload on link {page.n}, at ${tip.latex}$; its "
-        f"opposite acts on the payload, whose mass centre is there.{turning}",
+        f"${force.latex}$ is the force of the payload on link {page.n}, at ${tip.latex}$; the "
+        f"opposite force acts on the payload, whose mass centre is there.{turning}",
         page.equation(
             page.scaled(mass, page.vector("a", tip)), total([opposite, page.vector("G", "p")])
         ),

@@ -1,4 +1,4 @@
-"""What the steps are written on: it numbers them, and knows the names of points and forces."""
+"""The page on which the steps are written: it numbers the steps, and names points and forces."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ class Page:
     Attributes
     ----------
     derivation : Algebra
-        What they are about.
+        The equations that the steps derive.
     is_textbook : bool
         Whether the equations are the textbook's: two uniform rods and nothing else.
     steps : list of Step
-        Those written so far.
+        The steps written so far.
     links : dict
         The number of the step with the equations of each link written so far.
     """
@@ -52,7 +52,7 @@ class Page:
         number: str | None = None,
         remark: str = "",
     ) -> Equation:
-        """Return an equation; the textbook's number and remarks on it are for two links."""
+        """Return an equation; it keeps its number for two links, its remark for the textbook's."""
         number = number if self.n == 2 else None
         return Equation(lhs, rhs, number, remark if self.is_textbook else "", self.s)
 
@@ -85,7 +85,7 @@ class Page:
 
     @staticmethod
     def position(of: Formula, origin: Formula | None = None) -> Formula:
-        """Return a vector between points, such as r_C1 or from C1 to B, r_C1B."""
+        """Return a vector between points, such as r_C1, or r_C1B from C1 to B."""
         before = origin or Formula("", "")
         return Formula(f"r_{before.text}{of.text}", rf"\mathbf{{r}}_{{{before.latex}{of.latex}}}")
 
@@ -100,7 +100,7 @@ class Page:
         return Formula(f"{letter}{between}{text}", f"{name}_{{{latex}}}")
 
     def load(self, load: LinkLoad) -> Formula:
-        """Return the name of a force along a link, D_2; a second one there is told from it."""
+        """Return the name of a force on a link, D_2; a second force there gets another name."""
         vector = self.vector("D", load.link)
         count = 1 + [x for x in self.equations.loads if x.link == load.link].index(load)
         if count == 1:
@@ -139,7 +139,7 @@ class Page:
 
 
 def total(terms: Iterable[Formula]) -> Formula:
-    """Return a sum; a term that begins with a minus is taken away."""
+    """Return a sum; a term that begins with a minus is subtracted."""
     texts: list[str] = []
     pieces: list[str] = []
     for term in terms:

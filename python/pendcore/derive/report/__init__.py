@@ -1,7 +1,8 @@
 """The report: the derivation of a user's scene as a document to hand in or to teach from.
 
-It walks from the problem with its figure through the steps of the derivation, puts the numbers in,
-solves, draws angles and reactions, and checks by the energy. The worksheet is the same with blanks.
+It states the problem with its figure, goes through the steps of the derivation, puts the numbers
+in, solves, draws angles and reactions, and checks the energy. The worksheet has the same problem
+with blanks.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ class Report(NamedTuple):
     Attributes
     ----------
     files : list of Path
-        What was written.
+        The files that were written.
     complaint : str
         A complaint about the run that the report shows; empty if there is none.
     """
@@ -45,11 +46,11 @@ def report(derivation: Algebra, case: Case, solution: Solution, refusal: str = "
     Parameters
     ----------
     derivation : Algebra
-        Of the scene of the case.
+        The derivation of the case's scene.
     case : Case
-        With the start.
+        The case, with its start.
     solution : Solution
-        Of the case, as `motion.solved` returns it.
+        The run of the case, as `motion.solved` returns it.
     refusal : str
         What an `AccuracyError` said, if the solution comes from one.
     """
@@ -92,21 +93,21 @@ def write_report(
     Parameters
     ----------
     derivation : Algebra
-        Of the scene of the case.
+        The derivation of the case's scene.
     case : Case
-        What is derived and solved.
+        The case that is derived and solved.
     folder : Path
-        Where to; it is there.
+        Where to write; the folder has to exist.
     with_worksheet : bool
         Whether to write ``worksheet`` beside ``report``.
     progress : None, bool or callable
-        As of `pendcore.simulate`.
+        As in `pendcore.simulate`.
 
     Returns
     -------
     Report
-        Its files, the report first: Markdown always, HTML where pandoc is, PDF where a LaTeX
-        engine is beside it; then the figures. And the complaint about the run.
+        The files, the report first: Markdown always, HTML where there is pandoc, PDF where there is
+        a LaTeX engine too; then the figures. Also the complaint about the run.
     """
     told = bars.callback(progress, "deriving") or (lambda fraction: None)
     try:

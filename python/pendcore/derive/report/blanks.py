@@ -13,14 +13,14 @@ from pendcore.derive.narration.page import Page
 from pendcore.derive.step import Equation, Formula, Step
 
 ROOM = r"\qquad" * 7
-"""Where an acceleration is written in by hand."""
+"""Room in which an acceleration is written by hand."""
 
 
 def concealed(derivation: Algebra) -> tuple[Step, ...]:
-    """Return the steps, but their left sides are the names of what other steps find.
+    """Return the steps, with names in the left sides for what other steps find.
 
-    In the solution ``m2 L2^2/12 qdd2`` and the acceleration of C_2 written out stand on the left;
-    here they are ``I_C2 qdd2`` and ``m2 xdd_C2``.
+    In the solution, left sides are ``m2 L2^2/12 qdd2``, say, and m2 times the acceleration of C_2
+    written out; here they are ``I_C2 qdd2`` and ``m2 xdd_C2``.
     """
     names = _names(derivation)
     return tuple(_concealed(step, names) for step in narration.steps(derivation))
@@ -34,7 +34,7 @@ def _concealed(step: Step, names: dict[Any, Any]) -> Step:
 
 
 def _without_repetition(equations: tuple[Equation, ...]) -> list[Equation]:
-    """Leave room on a left side that has been asked for: now the acceleration is put in."""
+    """Leave room in a left side that was there before: now the acceleration is to be put in."""
     found: list[Equation] = []
     for equation in equations:
         left = equation.lhs

@@ -1,7 +1,7 @@
-"""From Markdown to a page and to a PDF, by the converters that a machine has.
+"""Markdown made into a page of HTML and into a PDF, by the converters that a machine has.
 
-pandoc makes a page of HTML that needs no other file and no network: equations are MathML, figures
-are in it. With a LaTeX engine beside it, it makes a PDF.
+pandoc makes a page of HTML that needs no other file and no network: equations are MathML, and the
+page holds the figures. Where there is a LaTeX engine too, pandoc also makes a PDF.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ PREAMBLE = r"""
 
 
 class ConversionError(RuntimeError):
-    """A converter is there, and failed."""
+    """A converter is installed, and failed."""
 
 
 def has_pandoc() -> bool:
@@ -95,7 +95,7 @@ def page(document: Document) -> str:
 
 
 def _for_browsers(text: str) -> str:
-    """Set MathML right where browsers are particular: dots, brackets, functions, commas."""
+    """Adapt MathML to what browsers make of it: dots, brackets, functions, commas."""
     for combining, spacing in ACCENTS.items():
         text = text.replace(f">{combining}</mo>", f">{spacing}</mo>")
     known = ""

@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
 
 MOST_TICKS = 7
-"""How many ticks an axis has that is drawn into, at most."""
+"""The largest number of ticks on an axis that is drawn into by hand."""
 
 
 def sheets(rows: int, height: float = 2.1) -> tuple[Figure, list[Axes]]:
-    """Return a figure with axes below each other."""
+    """Return a figure with axes one below the other."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(6.6, max(3.0, height * rows)), layout="constrained")
@@ -95,14 +95,14 @@ def reactions(t: Floats, forces: Floats, names: Sequence[str]) -> Figure:
 
 
 def energies(t: Floats, curves: dict[str, Floats], residual: Floats) -> Figure:
-    """Draw energies over time, and below what their balance leaves over.
+    """Draw energies over time, and below them what their balance leaves over.
 
     Parameters
     ----------
     t : ndarray, (k,)
         s.
     curves : dict
-        By name, J, each (k,).
+        Energies by name, J, each (k,).
     residual : ndarray, (k,)
         J.
     """

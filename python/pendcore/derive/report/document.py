@@ -1,4 +1,4 @@
-"""What a report is made of, and how it is written: Markdown to read, Markdown for pandoc."""
+"""What a report is made of, and how it is written: as Markdown for people or for pandoc."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Reader(Enum):
     r"""Who reads the Markdown.
 
     ``PEOPLE``, and the programs they view it with: equations are numbered by ``\tag``.
-    ``HTML`` and ``LATEX`` are pandoc, on its way there; its MathML knows no ``\tag``.
+    ``HTML`` and ``LATEX`` are pandoc, which converts the Markdown; its MathML knows no ``\tag``.
     """
 
     PEOPLE = "md"
@@ -83,9 +83,9 @@ class Blank:
     latex : str
         The left side.
     number : str or None
-        As of `Displayed`.
+        As in `Displayed`.
     lines : int
-        As many as the right side takes by hand.
+        The number of lines that the right side takes by hand.
     """
 
     latex: str
@@ -124,7 +124,7 @@ class Table:
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
-    """A figure with its caption; `name` is that of its file."""
+    """A figure with its caption; `name` is the name of its file."""
 
     name: str
     caption: str
@@ -150,7 +150,7 @@ class Drawing:
 
 @dataclass(frozen=True, slots=True)
 class Space:
-    """Empty lines to write on, as many."""
+    """So many empty lines to write on."""
 
     lines: int
 
@@ -174,13 +174,13 @@ A_PAGE = 40
 
 @dataclass(frozen=True, slots=True)
 class Document:
-    """A document: its title, and what it is made of."""
+    """A document: its title and its blocks."""
 
     title: str
     blocks: tuple[Block, ...]
 
     def markdown(self, reader: Reader = Reader.PEOPLE) -> str:
-        """Return all of it as Markdown for a reader; pandoc gets the title by itself."""
+        """Return the document as Markdown for a reader; pandoc gets the title separately."""
         parts: list[str] = []
         before, after = (None, *self.blocks[:-1]), (*self.blocks[1:], None)
         for previous, block, following in zip(before, self.blocks, after, strict=True):
@@ -197,7 +197,7 @@ class Document:
 
 
 def _lines_together(previous: Block | None, block: Block, following: Block | None) -> int:
-    """Return the lines that a page must have left for a table, or a lead-in and what follows."""
+    """Return how many lines a page must have left: for a table, or a lead-in and what follows."""
     if isinstance(block, Table) and not isinstance(previous, Paragraph):
         return min(len(block.rows) + 3, A_PAGE)
     if isinstance(block, Paragraph) and not isinstance(following, (Heading, Paragraph)):

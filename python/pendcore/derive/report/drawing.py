@@ -1,7 +1,7 @@
 """What a drawing of a mechanism is made of: rods, joints, ground, mass centres, arrows, angles.
 
 Places are (x, y), m, x right and y down, as everywhere; `size` is the length by which the symbols
-are scaled, m. Where names go is found when all is drawn: clear of it.
+are scaled, m. Names are placed last, where they are clear of all that is drawn.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ REACTION, WEIGHT, COUPLE, ANGLE = "#b3261e", "#1f5fa8", "#7a4a9e", "#2e6b3f"
 LOAD = "#a35a00"
 
 MARGIN = 36.0
-"""Around a drawing, for the names at its border, points of print."""
+"""The margin around a drawing for the names at its border, points of print."""
 
 _FONT: Any = {
     "mathtext.fontset": "stix",
@@ -36,7 +36,7 @@ _FONT: Any = {
 
 
 def lettering() -> AbstractContextManager[None]:
-    """Draw figures with letters as in the equations, and save them the same every time."""
+    """Draw figures with the letters of the equations, and save them the same every time."""
     import matplotlib as mpl
 
     return mpl.rc_context(_FONT)
@@ -49,11 +49,11 @@ class Sketch:
     Attributes
     ----------
     axes : matplotlib.axes.Axes
-        Where.
+        Where to draw.
     size : float
-        The length that symbols are scaled by, m.
+        The length by which symbols are scaled, m.
     drawn : list of (ndarray (k, 2), float)
-        Points of all lines, and half the width of each, m: where no name can be.
+        Points of all lines, and half the width of each line, m: no name can be there.
     labels : list of Label
         Names that `finish` places.
     """
@@ -64,7 +64,7 @@ class Sketch:
     labels: list[Label] = field(default_factory=list)
 
     def line(self, start: Floats, end: Floats, half: float = 0.0) -> None:
-        """Remember that a straight line is drawn, of half a width."""
+        """Remember that a straight line is drawn; ``half`` is half its width, m."""
         self.drawn.append((np.linspace(start, end, 60), half))
 
 
@@ -77,10 +77,10 @@ def sketch(axes: Axes, size: float) -> Sketch:
 
 
 def finish(on: Sketch, *, above: float = 0.0, shrink: bool = False) -> None:
-    """Fit a drawing into its axes with a margin for names, and place these.
+    """Fit a drawing into its axes with a margin for names, and place the names.
 
-    `above` is what is left free at the top, points of print. With `shrink` the figure, which has no
-    other axes, becomes no larger than the drawing.
+    `above` is the height left free at the top, points of print. With `shrink` the figure, which has
+    no other axes, becomes no larger than the drawing.
     """
     points = np.vstack([points for points, _ in on.drawn])
     low, high = points.min(axis=0), points.max(axis=0)
@@ -117,7 +117,7 @@ def clear_direction(taken: Iterable[float], prefer: float = np.pi) -> Floats:
 def name(
     on: Sketch, at: Floats | Sequence[Floats], text: str, towards: Floats | None = None, **how: Any
 ) -> None:
-    """Name a place, or the clearest of some: where the name goes, beside it, is found later."""
+    """Name a place, or the clearest of several; `finish` finds where the name goes beside it."""
     places = np.atleast_2d(np.asarray(at, dtype=float))
     on.labels.append(Label(text, places, np.zeros(2) if towards is None else towards, how))
 
@@ -150,7 +150,7 @@ def pin(on: Sketch, at: Floats) -> None:
 
 
 def ground(on: Sketch, at: Floats, *, above: bool = True) -> None:
-    """Draw what the first joint is held by: a bracket on a hatched line, above it or below."""
+    """Draw what holds the first joint: a bracket on a hatched line, above or below the joint."""
     from matplotlib.patches import Polygon
 
     a, b = 0.05 * on.size, (0.09 if above else -0.09) * on.size
@@ -226,7 +226,7 @@ def turning_arrow(
 
 
 def angle_from_x(on: Sketch, at: Floats, angle: float, text: str, radius: float) -> None:
-    """Mark the angle of a link: a dashed line along +x, and an arc to the link if it shows."""
+    """Mark the angle of a link: a dashed line along +x, and an arc unless the angle is small."""
     reach = 0.3 * on.size
     x, y = at
     on.axes.plot([x, x + reach], [y, y], color=ANGLE, lw=0.9, ls=(0, (5, 3)), zorder=2)

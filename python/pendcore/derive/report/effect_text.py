@@ -31,7 +31,7 @@ MOTORS = {
 
 
 class JointsByName:
-    """Stands for a chain where a law asks for the angle and the rate of its joint."""
+    """Stands in for a chain where a law asks for the angle and the rate of its joint."""
 
     def __init__(self, notation: Notation) -> None:
         self.notation = notation
@@ -41,7 +41,7 @@ class JointsByName:
         return self.notation.symbol(f"phi{joint}", rf"\varphi_{{{joint}}}", ANGLE, joint)
 
     def joint_rate(self, joint: int) -> Symbol:
-        """Return its rate."""
+        """Return the rate of phi_j."""
         return self.notation.symbol(f"phid{joint}", rf"\dot{{\varphi}}_{{{joint}}}", RATE, joint)
 
 
@@ -51,7 +51,7 @@ def what_acts(derivation: Algebra, q: Sequence[float]) -> Iterator[str]:
     Parameters
     ----------
     derivation : Algebra
-        Of the scene.
+        The derivation of the scene.
     q : sequence of float, (n,)
         Angles at the start, rad; a lock keeps that of its joint.
     """
@@ -60,7 +60,7 @@ def what_acts(derivation: Algebra, q: Sequence[float]) -> Iterator[str]:
     if not laws:
         gravity = "gravity and " if derivation.scene.gravity else ""
         weightless = "" if gravity else " Gravity is 0."
-        yield f"Nothing acts on it but {gravity}the joint that holds it.{weightless}"
+        yield f"Nothing acts on the chain but {gravity}the joint that holds it.{weightless}"
         return
     if derivation.equations.torques or derivation.equations.locked or _rotors(laws):
         yield _joint_angles(derivation)
@@ -92,9 +92,10 @@ def _joint_angles(derivation: Algebra) -> str:
     if derivation.n == 1:
         return f"The angle of the joint is {first}."
     return (
-        f"The angle of joint $j$ is $\\varphi_{{j}} = q_{{j}} - q_{{j-1}}$, that of the first "
-        f"{first}. A couple at joint $j$ acts on link $j$ and, opposite, on link $j - 1$, "
-        "which for the first joint is the ground; positive is from $x$ to $y$."
+        f"The angle of joint $j$ is $\\varphi_{{j}} = q_{{j}} - q_{{j-1}}$, and the angle of the "
+        f"first joint is {first}. A couple at joint $j$ acts on link $j$, and the opposite couple "
+        "on link $j - 1$, which for the first joint is the ground. Turning from $x$ to $y$ is "
+        "positive."
     )
 
 
@@ -115,7 +116,7 @@ def _torques(derivation: Algebra) -> Iterator[str]:
                 at_zero = kind == "torsional_spring" and law.effect.rest_angle == 0.0
                 parts.append(words.format(s.latex(couple)) + (rest if at_zero else ""))
         several = "the sum of " if len(parts) > 1 else "that of "
-        yield f"At joint {joint} acts the couple $\\tau_{{{joint}}}$, {several}{_listed(parts)}."
+        yield f"The couple at joint {joint} is $\\tau_{{{joint}}}$, {several}{_listed(parts)}."
 
 
 def _drive(law: Law) -> str:
@@ -132,9 +133,9 @@ def _rotor(law: Law, s: Notation) -> str:
     assert rotor is not None
     joint, inertia = rotor
     return (
-        f"A rotor of moment of inertia ${s.latex(inertia)}$ turns with joint {joint} by its angle "
-        f"$\\varphi_{{{joint}}}$: the joint has to bring up the couple "
-        f"${s.latex(inertia)}\\,\\ddot{{\\varphi}}_{{{joint}}}$ for it."
+        f"A rotor with the moment of inertia ${s.latex(inertia)}$ turns with joint {joint}, by the "
+        f"joint's angle $\\varphi_{{{joint}}}$: the joint has to supply the couple "
+        f"${s.latex(inertia)}\\,\\ddot{{\\varphi}}_{{{joint}}}$ that accelerates the rotor."
     )
 
 
@@ -152,7 +153,7 @@ def _path(paths: Sequence[Vector], s: Notation) -> str:
     path = [Add(*along) for along in zip(*paths, strict=True)]
     moved = [rf"{axis}_{{A}}(t) = {s.latex(e)}" for axis, e in zip("xy", path, strict=True) if e]
     rests = [rf"{axis}_{{A}} = 0" for axis, e in zip("xy", path, strict=True) if not e]
-    return f"The pivot $A$ is moved on the path ${', '.join(moved + rests)}$."
+    return f"The pivot $A$ is moved along the path ${', '.join(moved + rests)}$."
 
 
 def _payload(law: Law, s: Notation, tip: str) -> str:
@@ -160,12 +161,13 @@ def _payload(law: Law, s: Notation, tip: str) -> str:
     assert body is not None
     mass, inertia = body
     turning = (
-        f"; its moment of inertia about it is ${s.latex(inertia)}$, and it turns with link {s.n}"
+        f"; its moment of inertia about that point is ${s.latex(inertia)}$, and it turns with link "
+        f"{s.n}"
         if inertia
         else ", a point mass"
     )
     return (
-        f"A payload of mass ${s.latex(mass)}$ is fixed to the tip, with its mass centre in "
+        f"A payload of mass ${s.latex(mass)}$ is fixed to the tip, with its mass centre at "
         f"${tip}${turning}."
     )
 
@@ -185,12 +187,12 @@ def _drag(law: Law, derivation: Algebra, page: Page) -> str:
         rf"the wind $({', '.join(s.latex(v) for v in wind)})$" if any(wind) else "the air, at rest"
     )
     return (
-        f"The air resists the motion of link {i} across itself. On each length $\\mathrm{{d}}s$ of "
-        f"the rod acts, along the unit vector $\\mathbf{{n}}_{{{i}}} = (-\\sin q_{{{i}}}, "
-        f"\\cos q_{{{i}}})$, the force $-\\frac{{1}}{{2}} {density} {coefficient} {diameter} "
-        f"{s.latex(Abs(w))} w\\,\\mathrm{{d}}s$, where $w(s)$ is the speed of the rod along "
+        f"The air resists the motion of link {i} across the rod. The force on each length "
+        f"$\\mathrm{{d}}s$ of the rod is $-\\frac{{1}}{{2}} {density} {coefficient} {diameter} "
+        f"{s.latex(Abs(w))} w\\,\\mathrm{{d}}s$ along the unit vector $\\mathbf{{n}}_{{{i}}} = "
+        f"(-\\sin q_{{{i}}}, \\cos q_{{{i}}})$, where $w(s)$ is the speed of the rod along "
         f"$\\mathbf{{n}}_{{{i}}}$ relative to {blows}; it is ${s.latex(w0)}$ at ${begin}$, "
         f"${s.latex(w1)}$ at ${end}$, and linear between them. ${s.latex(force)}$ is the sum of "
-        f"these forces, ${s.latex(moment)}$ that of their moments about ${begin}$; "
+        f"these forces, and ${s.latex(moment)}$ is the sum of their moments about ${begin}$; "
         f"${page.load(load).latex} = {s.latex(force)}\\,\\mathbf{{n}}_{{{i}}}$."
     )

@@ -18,12 +18,12 @@ from pendcore.derive.report.quantities import number
 
 
 class Figures:
-    """Draws what a report shows, and counts.
+    """Draws the figures of a report, and numbers them.
 
     Parameters
     ----------
     derivation : Algebra
-        Whose symbols name points and forces.
+        The derivation whose symbols name points and forces.
     q : sequence of float, (n,)
         Angles at which the chain is drawn, rad.
     """
@@ -44,7 +44,7 @@ class Figures:
         )
 
     def mechanism(self) -> Drawing:
-        """Fig. 1 of the textbook."""
+        """Draw Fig. 1 of the textbook."""
         with drawing.lettering():
             figure = mechanism(self.scene, self.q, self.points)
         what = {1: "The pendulum", 2: "The double pendulum"}.get(self.derivation.n, "The chain")
@@ -55,7 +55,7 @@ class Figures:
         )
 
     def free_bodies(self, *, forces: bool = True) -> Drawing:
-        """Every link alone; without forces it is for those who are to draw them."""
+        """Draw every link alone; without forces the drawing is for those who are to draw them."""
         symbols = self.derivation.equations.forces
         write = self.derivation.symbols.latex
         reactions = [Reaction(write(x), write(y), k == 0) for k, (x, y) in enumerate(symbols)]
@@ -70,7 +70,7 @@ class Figures:
         words = (
             "The links as free bodies; the arrows show what counts as positive."
             if forces
-            else "The links, to be completed to free-body diagrams."
+            else "The links, to be completed into free-body diagrams."
         )
         if forces and self.derivation.equations.loads:
             words += (
@@ -94,13 +94,13 @@ class Figures:
         return Acting(couples, loads, rf"({mass})" if payload.mass.is_Add else mass, couple)
 
     def angles(self, solution: Solution) -> Drawing:
-        """The textbook's figure."""
+        """Draw the textbook's figure, the angles over time."""
         with drawing.lettering():
             figure = curves.angles(solution)
         return Drawing("angles", self._caption("The angles of the links over time."), figure)
 
     def reactions(self, solution: Solution) -> Drawing:
-        """The joint forces as the derivation has them: F_01, F_21, ..."""
+        """Draw the joint forces as the derivation has them: F_01, F_21, ..."""
         forces = solution.reactions().copy()
         forces[:, 1:] *= -1  # F_12 is the core's, F_21 the derivation's
         names = [
@@ -109,13 +109,11 @@ class Figures:
         ]
         with drawing.lettering():
             figure = curves.reactions(solution.t, forces, names)
-        words = (
-            "The joint reactions over time; $y$ points down, so that a force upward is negative."
-        )
+        words = "The joint reactions over time; $y$ points down, so a force upward is negative."
         return Drawing("reactions", self._caption(words), figure)
 
     def energies(self, solution: Solution) -> Drawing:
-        """Energies, work and loss, and what is left over."""
+        """Draw the energies, and what their balance leaves over."""
         energy = solution.energy()
         found = {"$T$": energy.kinetic, "$V$": energy.potential, "$T + V$": energy.total}
         ledger = energy.ledger
@@ -123,14 +121,14 @@ class Figures:
         with drawing.lettering():
             figure = curves.energies(solution.t, found, np.asarray(left))
         words = "Above: kinetic, potential and total energy over time. Below: " + (
-            "the change of $T + V$ since the start, which is to be zero."
+            "the change of $T + V$ since the start, which should be zero."
             if ledger is None
-            else "the change of $T + V$ since the start less all work, which is to be zero."
+            else "the change of $T + V$ since the start less all work, which should be zero."
         )
         return Drawing("energies", self._caption(words), figure)
 
     def empty_axes(self, solution: Solution) -> Drawing:
-        """The axes of the figure of the angles, to draw into."""
+        """Draw the axes of the figure of the angles, with no curves."""
         with drawing.lettering():
             figure = curves.empty_axes(solution)
         return Drawing("axes", self._caption("The angles of the links over time."), figure)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 A_ROW = 3
-"""Bodies side by side."""
+"""The largest number of bodies side by side."""
 TITLE = 18.0
 """Height of the line above a body, points of print."""
 
@@ -45,9 +45,10 @@ class Acting(NamedTuple):
     Attributes
     ----------
     couples : dict
-        By joint: the couple on the link beyond it, its opposite on the link before.
+        By joint: the couple on the link beyond the joint; the opposite couple acts on the link
+        before it.
     loads : tuple of (int, str)
-        Link and name of each force across it.
+        The number of a link and the name of a force across it, for each such force.
     payload : str or None
         Mass of the body at the tip.
     payload_couple : str
@@ -72,14 +73,14 @@ def free_bodies(
     Parameters
     ----------
     scene : Scene
-        Whose links are drawn.
+        The scene whose links are drawn.
     q : sequence of float, (n,)
         Absolute angles, rad.
     points : sequence of str, (n + 1,)
         The names of the pivot, the joints and the tip.
     reactions : sequence of Reaction
-        Of the joints, from the pivot outwards, and of the payload if there is one; empty for the
-        bodies without anything that acts on them.
+        The forces in the joints, from the pivot outwards, and that of the payload if there is one;
+        empty to draw the bodies without anything that acts on them.
     acting : Acting
         What else acts.
     """
@@ -203,6 +204,6 @@ def _couple(on: Sketch, at: Floats, angle: float, text: str, sense: float) -> No
 
 
 def _clear(angle: float, *, outer: bool) -> Floats:
-    """Return where an end of a link is clear of the link and of forces."""
+    """Return the direction in which an end of a link is clear of the link and of forces."""
     link = angle if outer else angle + np.pi
     return drawing.clear_direction([link, *(np.arange(4) * np.pi / 2)], prefer=-3 * np.pi / 4)

@@ -1,6 +1,6 @@
-"""Where the names in a drawing go: of a few places beside what they name, the clearest.
+"""Where the names in a drawing go: each to the clearest of a few places beside what it names.
 
-All lengths here are points of print, but for what is drawn, which is in the axes' own coordinates.
+All lengths here are points of print, except in what is drawn: that is in the axes' own coordinates.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 GAPS = np.array([4.0, 6.0, 9.0, 13.0, 18.0, 24.0, 31.0])
-"""Between a name and what it names; the first is half a letter."""
+"""Gaps between a name and what it names; the first is half a letter."""
 AROUND = 24
 """Directions in which a name is tried."""
 CLEAR = 6.0
 """Room around a name beyond which more is no better."""
 BLOCKED = 1000.0
-"""What lying on something else costs: more than everything else."""
+"""The cost of lying on something else, which is larger than all other costs."""
 
 
 @dataclass(slots=True)
@@ -33,13 +33,13 @@ class Label:
     Attributes
     ----------
     text : str
-        With LaTeX between dollars.
+        The name, with LaTeX between dollars.
     places : ndarray, (k, 2)
-        What it may stand beside, the best first, m.
+        Points that the name may stand beside, the best first, m.
     towards : ndarray, (2,)
-        On which side it is looked for first: a vector, y down.
+        The side that is tried first: a vector, y down.
     style : dict
-        How it is written.
+        How the name is written.
     """
 
     text: str
@@ -54,9 +54,9 @@ def place(axes: Axes, labels: Sequence[Label], drawn: Sequence[tuple[Floats, flo
     Parameters
     ----------
     axes : matplotlib.axes.Axes
-        With their final limits; y down.
+        The axes, with their final limits; y down.
     labels : sequence of Label
-        The most bound to its place first.
+        The names, those with the least choice of place first.
     drawn : sequence of (ndarray (k, 2), float)
         Points of lines, and half the width of the line, m.
     """
@@ -91,7 +91,7 @@ def place(axes: Axes, labels: Sequence[Label], drawn: Sequence[tuple[Floats, flo
 
 
 def _candidates(anchors: Floats, towards: Floats, half: Floats) -> tuple[Floats, Floats]:
-    """Return centres of a box around anchors, and what each is worth: near, and as wished."""
+    """Return centres of a box around anchors, and their worth: more if near and as wished."""
     first = np.arctan2(towards[1], towards[0]) if np.any(towards) else 0.0
     turns = np.arange(AROUND) * (2 * np.pi / AROUND)
     sides = np.stack([np.cos(first + turns), np.sin(first + turns)], axis=1)

@@ -20,7 +20,7 @@ COUPLES = {"viscous_joint", "torsional_spring", "motor"}
 """Kinds of effects that act by a couple in their joint."""
 
 CIRCLE = {"boxstyle": "circle,pad=0.22", "facecolor": "white", "edgecolor": "0.3", "lw": 0.7}
-"""Around the number of a link."""
+"""The circle around the number of a link."""
 
 
 def couples_of(scene: Scene) -> frozenset[int]:
@@ -41,12 +41,12 @@ def mass_centers(scene: Scene, q: Sequence[float]) -> Floats:
 
 
 def mechanism(scene: Scene, q: Sequence[float], points: Sequence[str]) -> Figure:
-    """Draw the chain at given angles, as the textbook's Fig. 1.
+    """Draw the chain at given angles, as in the textbook's Fig. 1.
 
     Parameters
     ----------
     scene : Scene
-        Whose links and effects are drawn.
+        The scene whose links and effects are drawn.
     q : sequence of float, (n,)
         Absolute angles, rad.
     points : sequence of str, (n + 1,)

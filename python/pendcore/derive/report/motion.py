@@ -19,17 +19,17 @@ from pendcore.views.energy_drift import energy_drift
 from pendcore.views.trusted_digits import rounded, trusted_digits
 
 POINTS = 1201
-"""Times at which curves are drawn."""
+"""The number of times at which curves are drawn."""
 MOST_WITH_RATES = 3
-"""Links of which the table has the rates too: more are wider than a page."""
+"""The most links for which the table has the rates too: with more it is wider than a page."""
 AT_REST = 1e-13
-"""Share of weights times lengths below which a kinetic energy is that of rounding."""
+"""Share of weights times lengths below which a kinetic energy comes from rounding."""
 ROWS = 11
-"""Times that the table shows."""
+"""The number of times that the table shows."""
 DIGITS_OF_A_FORCE = 4
-"""How many the largest reactions are told to, where the run is so exact."""
+"""The number of digits of the largest reactions, where the run is that exact."""
 VISIBLE = 1e-9
-"""Share of the times themselves that a run has to take for its curves to be drawn."""
+"""The least time that a run takes if its curves are drawn, as a share of the times themselves."""
 
 METHODS = {
     "dopri5": "Dormand and Prince's method of order 5, that of MATLAB's `ode45`",
@@ -38,7 +38,7 @@ METHODS = {
     "radau5": "Radau IIA, an implicit method of order 5",
     "rk4": "the classical Runge-Kutta method of order 4",
 }
-"""In words; of a pair, such as `taylor-radau5`, the first."""
+"""Methods in words; for a pair, such as `taylor-radau5`, the first of the two."""
 
 
 def solved(case: Case) -> Solution:
@@ -47,7 +47,7 @@ def solved(case: Case) -> Solution:
 
 
 def solved_or_refused(case: Case) -> tuple[Solution, str]:
-    """Run a case as `solved` does; return also what its error was refused for, else nothing."""
+    """Run a case as `solved` does; return also why its error was refused, if it was."""
     start, end = case.t_span
     if start == end:
         raise ValueError(f"t_span = {case.t_span}: a report draws curves: let the run take time")
@@ -186,7 +186,7 @@ def _kept(derivation: Algebra, solution: Solution) -> str:
     elif drift.relative_drift is not None and drift.largest_kinetic > AT_REST * measure:
         kept += f", ${number(drift.relative_drift, 2)}$ of the largest kinetic energy"
     else:
-        kept += "; nothing moves whose energy this could be measured by"
+        kept += "; nothing moves, so there is no kinetic energy to measure this by"
     return f"{words}, and {what} {kept}."
 
 

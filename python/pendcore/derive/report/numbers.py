@@ -41,7 +41,7 @@ def numbers_put_in(derivation: Algebra) -> Iterator[Block]:
 
 
 def _laws(derivation: Algebra) -> list[str]:
-    """Return rows of the symbols that M and f are written with: torques, loads, the pivot."""
+    """Return rows for the symbols in which M and f are written: torques, loads, the pivot."""
     needed = set[Any]().union(*(x.free_symbols for x in derivation.motion.named.entries.values()))
     wanted = []
     for definition in reversed(derivation.equations.definitions):
@@ -63,10 +63,10 @@ def _entries(derivation: Algebra) -> list[str]:
 
 
 def _numeric(derivation: Algebra, symbol: Any, value: Expr, name: str) -> list[str]:
-    """Return rows of a symbol's value in numbers, with its unit behind."""
+    """Return rows of a symbol's value in numbers, with the unit behind it."""
     write = derivation.symbols.latex
     put_in = sympy.sympify(value.xreplace(derivation.values))
-    if not put_in.has(sympy.Abs):  # a law of the air is a quotient: it stays one
+    if not put_in.has(sympy.Abs):  # the drag is a quotient, and stays one
         put_in = sympy.expand(put_in)
     if put_in.is_number:
         return [f"{write(symbol)} &= {quantity(float(put_in), name)}"]
@@ -84,7 +84,7 @@ def _numeric(derivation: Algebra, symbol: Any, value: Expr, name: str) -> list[s
 
 
 def _rounded(expression: Expr) -> Expr:
-    """Put six digits for every number, as names: 0.5 is written so, and stands before its term."""
+    """Replace each number by a symbol named by six digits: 0.5 is written so, before its term."""
     short: dict[Expr, Expr] = {}
     for x in expression.atoms(Float):
         size = number(abs(float(x)))
@@ -111,7 +111,7 @@ class Start:
         return float(expression.xreplace(self.known).evalf(20))
 
     def rows(self) -> list[tuple[str, str, float, float]]:
-        """Return name, unit, value by the derivation and by the core, for all that is told."""
+        """Return name, unit, value by the derivation and by the core, for each row of the table."""
         derivation, case, scene = self.derivation, self.case, self.derivation.scene
         s, write = derivation.symbols, derivation.symbols.latex
         q, qd, t = np.array([case.q0]), np.array([case.qd0]), np.array([case.t_span[0]])
@@ -139,7 +139,7 @@ class Start:
     def _couples_of_core(
         self, q: Floats, qd: Floats, t: Floats, locked: Floats
     ) -> dict[int, float]:
-        """The couples of locks, N m: what turns the free chain's accelerations into these."""
+        """Return the couples of locks, N m, which make the free chain's accelerations these."""
         scene, joints = self.derivation.scene, self.derivation.equations.locked
         if not joints:
             return {}
@@ -173,8 +173,8 @@ def at_the_start(derivation: Algebra, case: Case) -> Iterator[Block]:
     )
     couples = " and the couples of the locks" if derivation.equations.locked else ""
     yield Paragraph(
-        f"From them follow the accelerations{couples}, and from these the reactions. The compiled "
-        "core of pendcore, which does not have its equations from here, computes the same:"
+        f"They give the accelerations{couples}, and these give the reactions. The compiled core of "
+        "pendcore, which has its equations from elsewhere, computes the same:"
     )
     cells = [
         (f"${n}$", *(f"${number(scales.shown(x, u))}$" for x in both), f"${unit(u)}$")
@@ -185,11 +185,11 @@ def at_the_start(derivation: Algebra, case: Case) -> Iterator[Block]:
     yield Paragraph(
         "A force is measured by the weights, an acceleration by $g$ over the shortest length, a "
         "couple or an energy by the weights times the lengths, or by the largest of its unit "
-        f"where that is larger. The two differ by at most ${number(off, 2)}$ of this measure; what "
-        f"is below ${number(ROUNDING)}$ of it is left of 0 by rounding, and printed as 0."
+        f"where that is larger. The two differ by at most ${number(off, 2)}$ of this measure. What "
+        f"is below ${number(ROUNDING)}$ of it is what rounding leaves of 0, and is printed as 0."
         + (
-            " The core has no couples of locks: in its column they are its mass matrix times what "
-            "the locks change of its accelerations."
+            " The core has no couples of locks: in its column they are its mass matrix times the "
+            "change that the locks make to its accelerations."
             if derivation.equations.locked
             else ""
         )
@@ -216,4 +216,7 @@ def _state(derivation: Algebra, case: Case) -> str:
     state = [(q, angle, "rad") for q, angle in zip(s.q, case.q0, strict=True)]
     state += [(qd, rate, "rad/s") for qd, rate in zip(s.qd, case.qd0, strict=True)]
     told = ", ".join(f"${write(x)} = {quantity(value, of)}$" for x, value, of in state)
-    return f"At $t = {quantity(case.t_span[0], 's')}$, with {told}, they are"
+    return (
+        f"At $t = {quantity(case.t_span[0], 's')}$, with {told}, the entries of $\\mathbf{{M}}$ "
+        "and $\\mathbf{f}$ are"
+    )

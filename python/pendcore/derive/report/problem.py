@@ -23,20 +23,20 @@ def problem(
     Parameters
     ----------
     derivation : Algebra
-        Of the scene.
+        The derivation of the scene.
     case : Case
-        With the start.
+        The case, with its start.
     figures : Figures
         Draws Fig. 1.
     by_hand : bool
-        Whether what only a computer needs, against 0/0, is left out.
+        Whether to leave out what only a computer needs, to avoid 0/0.
     """
     yield Heading(2, "The problem")
     yield Paragraph(_what_moves(derivation))
     for sentences in what_acts(derivation, case.q0):
         yield Paragraph(sentences)
     yield figures.mechanism()
-    yield Paragraph("Given are")
+    yield Paragraph("These numbers are given:")
     rows = [
         (f"${derivation.symbols.latex(p.symbol)}$", p.meaning, f"${number(p.value, 10)}$", _unit(p))
         for p in derivation.symbols.parameters

@@ -1,4 +1,4 @@
-"""What is large for its kind: forces are measured by weights, accelerations by g over a length."""
+"""Scales of quantities: forces are measured by weights, accelerations by g over a length."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from pendcore.derive.algebra import Algebra
 
 ROUNDING = 1e-12
-"""Below that share of the scale of its kind a number is what rounding leaves of 0."""
+"""Below this share of the scale of its kind, a number is what rounding leaves of 0."""
 
 
 class Scales:
@@ -16,7 +16,7 @@ class Scales:
     Parameters
     ----------
     derivation : Algebra
-        Whose masses, lengths and gravity they are.
+        The derivation that has masses, lengths and gravity.
     found : iterable of (str, float)
         Numbers with their units; where one is larger than the scale of its unit, it is the scale.
     """

@@ -16,13 +16,13 @@ from pendcore.derive.report.quantities import quantity
 from pendcore.derive.step import Equation, Step
 
 A_BLOCK = 12
-"""Rows that are displayed together."""
+"""The most rows that are displayed together."""
 A_PAGE = 24
 """Rows that one equation may have before a page must be able to end in it."""
 A_DENOMINATOR = 24.0
-"""Width of a denominator, in the letter m's, beyond which it has a name of its own."""
+"""Width of a denominator, in em, beyond which it has a name of its own."""
 BY_HAND = 22.0
-"""Width of what fits on a line by hand, in the letter m's of print."""
+"""Width in print, in em, of what fits on a line by hand."""
 
 
 def derivation_steps(
@@ -33,7 +33,7 @@ def derivation_steps(
     Parameters
     ----------
     derivation : Algebra
-        Whose steps they are.
+        The derivation whose steps they are.
     written : iterable of Step
         The steps.
     figures : Figures
@@ -73,7 +73,7 @@ def _shown(step: Step, derivation: Algebra) -> Iterator[Block]:
                 together = []
             together += own
         first = max(0, len(together) - 1) // A_PAGE * A_PAGE
-        for k in range(0, first, A_PAGE):  # a page must be able to end in a very long one
+        for k in range(0, first, A_PAGE):  # a page must be able to end in a very long block
             yield Displayed(line_breaks.aligned(together[k : k + A_PAGE]))
         yield Displayed(line_breaks.aligned(together[first:]), number)
         if remark := equations[-1].remark:
@@ -81,7 +81,7 @@ def _shown(step: Step, derivation: Algebra) -> Iterator[Block]:
 
 
 def _with_short_denominators(equations: Iterable[Equation], derivation: Algebra) -> list[Equation]:
-    """Return equations of which a long denominator has a name, such as a determinant."""
+    """Return the equations with names for long denominators, such as determinants."""
     notation, found, named = derivation.symbols, list[Equation](), dict[Expr, Expr]()
     for equation in equations:
         if isinstance(equation.rhs, Expr):
@@ -97,7 +97,7 @@ def _with_short_denominators(equations: Iterable[Equation], derivation: Algebra)
 
 
 def groups(equations: Iterable[Equation]) -> Iterator[tuple[str | None, list[Equation]]]:
-    """Yield the equations that are displayed together: of one number, or of none.
+    """Yield the equations that are displayed together: those of one number, or of none.
 
     A remark ends a group.
     """

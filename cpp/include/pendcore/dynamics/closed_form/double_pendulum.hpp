@@ -7,6 +7,9 @@
 ///     A_11 qdd_1 + A_12 cos(q_1 - q_2) qdd_2 + A_12 sin(q_1 - q_2) qd_2^2 = a_1 g cos q_1
 ///     A_22 qdd_2 + A_12 cos(q_2 - q_1) qdd_1 + A_12 sin(q_2 - q_1) qd_1^2 = a_2 g cos q_2
 ///
+/// with the inertias A_11, A_22, A_12 (kg m^2) and the first moments a_1, a_2 (kg m) of
+/// dynamics/inertia.hpp.
+///
 /// Each equation is divided by its own A_ii, so that no ratio of masses or lengths overflows. Both
 /// are then written as one, where x is a quantity of a link and x' the same quantity of the other
 /// link:

@@ -129,6 +129,8 @@ class HeldJoints {
   bool settle(double* q, double* qd) const;
 
   std::vector<SavedHold> saved_state() const;  ///< (n)
+  /// Continues from the saved_state() and the has_failed() of an earlier run, and puts its holds
+  /// into `effects`.
   void restore(EffectsInForce& effects, const std::vector<SavedHold>& saved, bool has_failed);
 
  private:

@@ -13,11 +13,14 @@
 ///     (k + 2) u_{k+2} = sum_{j<=k+1} qd_j n_{k+1-j}  =  qd_{k+1} n_0 + v
 ///     (k + 1) qd_{k+1} + rho sum_{j<=k} n_{k-j} . u''_j(other) = gamma c_k
 ///
+/// Here v is the rest of that sum, j <= k. In units of sigma, gamma is sigma^2 a g/A.
+///
 /// The newest u''_k contains the unknown qd_{k+1}. Because n_0 . n_0(other) = cos(q - q') = C, the
 /// unknowns of both links solve the two by two system of the equations themselves, the same for
 /// every order:
 ///
 ///     alpha + kappa alpha' = f,   alpha = (k + 1) qd_{k+1}:   alpha = (f - kappa f') / D
+///     f = gamma c_k - rho ((k + 1) n_0 . v(other) + sum_{j<k} n_{k-j} . u''_j(other))
 ///
 /// Here kappa = rho C - J_2/A and D = 1 - kappa kappa', with J_2 the rotor in joint 2 (the sigma of
 /// double_pendulum_with_effects.hpp is J_2/A). Torques on the joints add to f; a `Torque` computes

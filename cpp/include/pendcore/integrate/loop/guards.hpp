@@ -19,8 +19,8 @@ namespace pendcore {
 struct Crossing {
   int guard = -1;
   double theta = 2.0;
-  /// The guard had fallen below zero only by an error, and the crossing is where its slope becomes
-  /// negative: where errors hide a rate, the torques on the joint still give its slope.
+  /// Whether the guard fell below zero only by an error, and the crossing is where its slope
+  /// becomes negative. Where errors hide a rate, the torques on the joint still give its slope.
   bool is_of_slope = false;
 };
 
@@ -35,7 +35,7 @@ class Guards {
 
   /// Whether a guard that the dense output makes negative at the start of the step does fall there.
   /// A guard that is positive there, or rises from zero, does not. Where this is not known, the
-  /// dense output is believed once the step was halved twenty times.
+  /// dense output is believed after `halvings_without_sign` halvings of the step (guards.cpp).
   bool falls_at_start(int k, double t, double h, int halvings);
 
   /// Whether the error of the dense output makes a guard that begins at zero negative: at the

@@ -26,17 +26,17 @@ struct IntegratorState {
   TwoDouble t;
   double h = 0.0;  ///< s, the step to try next; its sign is the direction
   bool h_is_max_step = false;
-  bool trial_was_finite = true;  ///< of the last step that was tried
+  bool trial_was_finite = true;  ///< the last step that was tried
   int crossings_at_once = 0;     ///< laws that changed since the last step
   StepControl control;
-  int stiff_hits = 0;        ///< of Hairer's test for stiffness since it last forgot
+  int stiff_hits = 0;        ///< hits of Hairer's test for stiffness since its last six misses
   int stiff_misses = 0;      ///< since the last hit
-  double stiff_since = 0.0;  ///< s, if statistics.stiff; of a pair, when it was told last
+  double stiff_since = 0.0;  ///< s, when the run was first called stiff; for a pair, when last
   Statistics statistics;
   std::vector<double> y;        ///< (dimension)
   std::vector<double> dydt;     ///< (dimension)
-  std::vector<double> stepper;  ///< what the method keeps from step to step (Stepper::memory)
-  std::vector<double> discontinuities;  ///< and what Discontinuities does (Discontinuities::memory)
+  std::vector<double> stepper;  ///< Stepper::saved_state(): what the method keeps between steps
+  std::vector<double> discontinuities;  ///< Discontinuities::saved_state()
 };
 
 /// Is called about every 50 ms with the share of the interval that is done; false stops the run.
@@ -46,11 +46,11 @@ struct Limits {
   double t_end;
   double least_step = 1e-300;  ///< s, below which a step is too small
   double max_step = std::numeric_limits<double>::infinity();  ///< s
-  bool fixed_step = false;  ///< keep the position's h, whatever the error
+  bool fixed_step = false;  ///< every step has the size h of the state, whatever its error
   long long max_steps = std::numeric_limits<long long>::max();  ///< attempted, accepted or not
   double time_limit = std::numeric_limits<double>::infinity();  ///< s, of the clock on the wall
   Monitor monitor;
-  bool begins_anew = false;  ///< a run that goes on does so from the start, not from later
+  bool begins_anew = false;  ///< a continued run begins at the start again
 };
 
 /// Called for each accepted step before the state advances.
@@ -67,12 +67,13 @@ class Observer {
   /// If the run ends now, a continued run restarts here, because later steps may be cut or undone.
   virtual void restarts_here() = 0;
 
-  /// Whether it may end the run, by an event or an exception: each step then begins by writing down
-  /// where, and step_begins(). A run that goes on takes the step again: restarts_at_step().
+  /// Whether the observer may end the run, by an event or an exception. The loop then saves the
+  /// state at the start of each step and calls step_begins(). A continued run takes the last step
+  /// again; restarts_at_step() says so.
   virtual bool may_end() const { return false; }
   virtual void step_begins() {}
   virtual void restarts_at_step() {}
-  /// Whether the run is to end where it stands: of a step, or of a jump.
+  /// Whether the run is to end at the end of this step, or at this jump.
   virtual bool has_ended() const { return false; }
 };
 
@@ -94,8 +95,8 @@ struct Ending {
 int bad_component(const std::vector<double>& y);
 
 /// Takes steps from `integrator` (which moves along) until `limits` ends them. `resumable` becomes
-/// the last position that no cut step came before.
-/// `discontinuities` is null where the right-hand side is smooth.
+/// the last state before which no step was cut. `discontinuities` is null where the right-hand side
+/// is smooth.
 Ending integrate(Stepper& stepper, IntegratorState& integrator, IntegratorState& resumable,
                  const Limits& limits, Observer& observer,
                  Discontinuities* discontinuities = nullptr);
