@@ -31,9 +31,10 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Reduce sweeps, unless one test is asked for by name or all are.
+    """Reduce sweeps, unless one test is asked for by name, or all tests are.
 
-    Among several processes what builds programs begins first, lest one end with it alone.
+    Tests that build programs begin first, so that with several processes none of these runs on
+    alone at the end.
     """
     if not config.getoption("full") and not any("::" in name for name in config.args):
         _reduce(config, items)
@@ -99,5 +100,5 @@ def fine(method: str) -> dict[str, Any]:
 
 @pytest.fixture(scope="session", autouse=True)
 def _ctrl_c_is_heard() -> None:
-    """Undo that a shell starts what it runs in the background with Ctrl-C ignored."""
+    """Heed Ctrl-C, which a shell has ignored by the programs that it starts in the background."""
     signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -1,7 +1,7 @@
-"""What is solved: a chain of uniform rods, a start, a grid of times, and the states known there.
+"""A case to solve: a chain of uniform rods, a start, a grid of times, and the known states there.
 
-The reference is `tests/data/trajectories.json`, integrated in multiple precision by a program that
-is none of the contenders.
+The reference is `tests/data/trajectories.json`. A program that is no contender integrated it in
+multiple precision.
 """
 
 from __future__ import annotations
@@ -19,11 +19,12 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Case:
-    """Masses (n,) in kg, lengths (n,) in m, gravity in m/s^2; rad, rad/s and s.
+    """Masses (n,) are in kg, lengths (n,) in m, gravity in m/s^2; other units are rad, rad/s and s.
 
-    In joint j acts -stiffness (phi - rest) - damping dphi/dt, in N m: a spring and a damper, or a
-    controller's motor. `start` (2n,) is q_1..q_n, qd_1..qd_n; `reference` (n_t, 2n) are the states
-    at `times` (n_t,), known to `uncertainty` of the total length.
+    The torque -stiffness (phi - rest) - damping dphi/dt, in N m, acts in joint j. It comes from a
+    spring and a damper, or from a controller's motor. `start` (2n,) is q_1..q_n, qd_1..qd_n;
+    `reference` (n_t, 2n) has the states at `times` (n_t,), known to `uncertainty` of the total
+    length.
     """
 
     name: str
@@ -45,7 +46,7 @@ class Case:
 
     @property
     def bare(self) -> bool:
-        """Whether no torque acts in any joint: the energy is then kept."""
+        """Whether no torque acts in any joint, so that the energy is conserved."""
         return not any(self.damping) and not any(self.stiffness)
 
 
@@ -72,7 +73,7 @@ def read_case(name: str, path: Path = REFERENCES) -> Case:
 
 
 def one_step(case: Case, duration: float = 1e-4) -> Case:
-    """Keep the start and shorten the interval until one step covers it: a call's fixed cost."""
+    """Keep the start and shorten the interval to one step, to measure the fixed cost of a call."""
     times = case.times[0] + np.array([0.0, duration])
     return replace(
         case, name=f"{case.name}, one step", times=times, reference=np.tile(case.start, (2, 1))

@@ -1,4 +1,4 @@
-"""What forward dynamics is asked for: a chain of uniform rods with an effect, in several states.
+"""A scene for forward dynamics: a chain of uniform rods with an effect, in several states.
 
 Angles are absolute, from +x towards +y, y down.
 """
@@ -13,12 +13,12 @@ import numpy.typing as npt
 Array = npt.NDArray[np.float64]
 
 GRAVITY = 9.807
-NUMBERS_IN_ALL = 256  # of angles: the states of a short chain stay in the nearest memory
+NUMBERS_IN_ALL = 256  # angles; a short chain's states stay in the nearest memory
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ChainScene:
-    """Masses (n,) in kg, lengths (n,) in m; q and qd (n_states, n) in rad and rad/s.
+    """Masses (n,) are in kg, lengths (n,) in m; q and qd (n_states, n) are in rad and rad/s.
 
     The calls go through the states in turn; their number is a power of two.
     """
@@ -32,7 +32,7 @@ class ChainScene:
 
 
 def chain_scene(n: int, effect: str = "none", seed: int = 1) -> ChainScene:
-    """Draw a chain of n rods, of 1 kg and 1 m more or less, that hangs and swings."""
+    """Draw a hanging, swinging chain of n rods of about 1 kg and 1 m."""
     random = np.random.default_rng(seed)
     n_states = 1 << max(1, (NUMBERS_IN_ALL // n).bit_length() - 1)
     return ChainScene(

@@ -17,14 +17,14 @@ from tqdm import tqdm
 LENGTHS = (2, 3, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000)
 QUICK_LENGTHS = (2, 10, 100, 500)
 BURST_SECONDS = 2e-3
-CHECKED_UP_TO = 200  # links: with more, the dense solution is no better than what it checks
+CHECKED_UP_TO = 200  # links; beyond, the dense solution is no better than what it checks
 ALLOWED_DISAGREEMENT = 1e-6  # relative angles are badly conditioned in long chains
 
 Key = tuple[str, int]  # contender and links
 
 
 def accelerations(scene: ChainScene) -> Array:
-    """Solve the dense equations of docs for qdd (n,) at the scene's first state.
+    """Solve the dense equations of the documents for qdd (n,) at the scene's first state.
 
     sum_j A_ij cos(q_i - q_j) qdd_j + sum_j A_ij sin(q_i - q_j) qd_j^2 = a_i g cos q_i
     """
@@ -40,7 +40,7 @@ def accelerations(scene: ChainScene) -> Array:
 
 
 def disagreement(found: Array, known: Array) -> float:
-    """Take the largest difference as a share of the largest acceleration."""
+    """Return the largest difference as a share of the largest acceleration."""
     return float(np.abs(found - known).max() / np.abs(known).max())
 
 
@@ -55,7 +55,7 @@ def nanoseconds(timing: Timing) -> dict[str, float | int]:
 def prepare(
     entrants: list[ForwardDynamics], lengths: tuple[int, ...]
 ) -> tuple[dict[Key, Calls], dict[Key, float], dict[str, str]]:
-    """Prepare all calls; say how far each is from the dense equations, and why some stop."""
+    """Prepare all calls. Return how far each is from the dense equations, and why some stop."""
     calls: dict[Key, Calls] = {}
     errors: dict[Key, float] = {}
     stops: dict[str, str] = {}

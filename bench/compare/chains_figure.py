@@ -26,7 +26,7 @@ Curve = list[tuple[int, float]]
 
 
 def least(record: dict[str, Any], start: str, kind: str) -> Curve:
-    """List (n, least of the contenders whose names start so)."""
+    """List (n, the least value of the contenders whose names begin with `start`)."""
     best: dict[int, float] = {}
     for one in record["contenders"]:
         if one["name"] != start and (start not in PEERS or not one["name"].startswith(start)):
@@ -38,7 +38,7 @@ def least(record: dict[str, Any], start: str, kind: str) -> Curve:
 
 
 def draw_guide(axes: Axes, curve: Curve) -> None:
-    """Draw growth in proportion to n, through the curve's last point."""
+    """Draw a line of growth in proportion to n, through the curve's last point."""
     (n, value), (first, _) = curve[-1], curve[0]
     axes.plot([first, n], [value * first / n, value], color="0.6", linewidth=0.8, zorder=0)
     middle = (first * n) ** 0.5
@@ -66,7 +66,7 @@ def draw_kind(axes: Axes, record: dict[str, Any], kind: str, labels: dict[str, s
 
 
 def draw(record: dict[str, Any], path: Path) -> None:
-    """Draw into the file; of a peer that was asked in several ways, the best of them at each n."""
+    """Draw into the file. For a peer with several entries, draw the best of them at each n."""
     drawn, (time, memory) = plt.subplots(1, 2, figsize=(11, 5), layout="constrained")
     labels = {
         CORE: "pendcore",

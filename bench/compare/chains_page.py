@@ -10,7 +10,7 @@ from tables import entrants, number, pair, table
 
 CORE = "pendcore"
 PEERS = {"pinocchio": "Pinocchio's ABA", "mujoco": "MuJoCo"}
-BARS = {10: 5, 100: 8}  # at most one part in so many of the fastest peer's time
+BARS = {10: 5, 100: 8}  # n: pendcore takes at most this part of the fastest peer's time, 1/5 or 1/8
 GROWTH_FROM = 100  # links: where a call's fixed cost no longer shows
 
 PAGE = """# Chains of n links
@@ -73,7 +73,7 @@ def lengths(record: Record) -> list[int]:
 
 
 def fastest_peer(record: Record, n: int) -> tuple[str, Any] | None:
-    """Find label and point of the peer that is quickest at n."""
+    """Find the label and the point of the peer that is quickest at n."""
     found = [
         (points(one)[n]["minimum_ns"], one["label"], points(one)[n])
         for one in record["contenders"]
@@ -83,7 +83,7 @@ def fastest_peer(record: Record, n: int) -> tuple[str, Any] | None:
 
 
 def ratios(record: Record, n: int) -> tuple[str, float, float] | None:
-    """Compare with the fastest peer at n: its label, the ratio of minima, and of medians."""
+    """Compare with the fastest peer at n: its label, the ratio of minima, the ratio of medians."""
     known = entrants(record)
     mine = points(known[CORE]).get(n) if CORE in known else None
     peer = fastest_peer(record, n)
@@ -110,7 +110,7 @@ def beside_the_fastest(record: Record) -> str:
 
 
 def bars(record: Record) -> list[str]:
-    """Say at which n pendcore keeps to what it promises."""
+    """Say at which n pendcore keeps its promise."""
     lines = []
     for n, parts in BARS.items():
         found = ratios(record, n)
@@ -125,7 +125,7 @@ def bars(record: Record) -> list[str]:
 
 
 def exponent(record: Record, name: str) -> float | None:
-    """Fit p of time ~ n^p by least squares in the logarithms, from GROWTH_FROM links on."""
+    """Fit p in time ~ n^p by least squares in the logarithms, from GROWTH_FROM links on."""
     known = entrants(record)
     found = [
         (math.log(n), math.log(point["minimum_ns"]))
@@ -140,7 +140,7 @@ def exponent(record: Record, name: str) -> float | None:
 
 
 def growth(record: Record) -> str:
-    """Say with which power of n the time grows."""
+    """Say with what power of n the time grows."""
     found = exponent(record, CORE)
     if found is None:
         return ""

@@ -1,4 +1,4 @@
-"""Run pendcore beside its peers, interleaved in one run, and write what they take.
+"""Run pendcore beside its peers, interleaved in one run, and write the times that they take.
 
 Solves of five cases (what accuracy costs), `stiff` (implicit steps), `chains` (forward dynamics of
 n links) and `effects` (what each adds). Each writes into docs/comparison a .json (raw figures,
@@ -44,7 +44,7 @@ Record = dict[str, Any]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Comparison:
-    """`stem` names the files; `measure` takes `quick` and `rounds`."""
+    """A comparison: `stem` names its files, and `measure` takes `quick` and `rounds`."""
 
     stem: str
     measure: Callable[..., Record]
@@ -96,7 +96,7 @@ def arguments(given: Sequence[str] | None) -> argparse.Namespace:
 
 
 def run(comparison: Comparison, folder: Path, asked: argparse.Namespace) -> Record:
-    """Measure, or read the record, and write what is made of it."""
+    """Measure, or read the record, and write the page and the figure."""
     raw = folder / f"{comparison.stem}.json"
     if asked.redraw:
         record: Record = json.loads(raw.read_text(encoding="utf-8"))
@@ -112,7 +112,7 @@ def run(comparison: Comparison, folder: Path, asked: argparse.Namespace) -> Reco
 
 
 def write_overview(folder: Path) -> None:
-    """Write the page on all solves whose records are there."""
+    """Write the page on all solves that have a record."""
     stems = [*page.ABOUT, "stiff"]
     records = {stem: folder / f"{stem}.json" for stem in stems}
     known = {

@@ -1,6 +1,6 @@
-"""Run the hard cases in pendcore and its peers, and write what comes of them.
+"""Run the hard cases in pendcore and its peers, and write the results.
 
-Writes docs/hard_cases.json, docs/hard_cases.md and its figures, docs/figures/hard_cases_*.png.
+This writes docs/hard_cases.json, docs/hard_cases.md and its figures, docs/figures/hard_cases_*.png.
 `make hard-cases` builds what is needed and calls this; by hand:
 
     python bench/compare/compare_hard_cases.py                 some minutes
@@ -41,7 +41,7 @@ def rounded(curves: Any) -> dict[str, list[float]]:
 
 
 def measure(case: HardCase) -> Record:
-    """Run a case everywhere: what JSON holds of it. Who is absent is named on stderr."""
+    """Run a case in all programs; return its record for JSON. Name absent programs on stderr."""
     known = rounded(case.reference())
     contenders = []
     for one in case.contenders:
@@ -70,7 +70,7 @@ def measure(case: HardCase) -> Record:
 
 
 def versions() -> dict[str, str]:
-    """Name what took part; Boost's is what its headers say."""
+    """Name the versions that took part; the version of Boost comes from its headers."""
     found = {}
     for name, distribution in (("SciPy", "scipy"), ("MuJoCo", "mujoco-core")):
         try:

@@ -1,8 +1,9 @@
 """Count the instructions of a right-hand side of two links, with each effect and without.
 
-Valgrind's callgrind counts what the program of pendcore's contender executes with so many calls,
-and with none; the difference is theirs, and the same on every run and every machine that executes
-the same instructions. Valgrind knows no AVX-512: the kernels for x86-64-v3 are counted.
+Valgrind's callgrind counts what the program of pendcore's contender executes with a number of
+calls, and with none. The difference belongs to the calls; it is the same on every run and on every
+machine that executes the same instructions. Valgrind does not know AVX-512, so the kernels for
+x86-64-v3 are counted.
 
     python bench/compare/count_instructions.py [EFFECT ...]
 
@@ -10,7 +11,7 @@ the same instructions. Valgrind knows no AVX-512: the kernels for x86-64-v3 are 
     step     of a right-hand side within attempted steps of dopri5
 
 and three counts of the bare scene, in steps: as it is; by the kernel that is named by its type,
-which no effect can touch; and in a core that has one effect more in its registry.
+which no effect can affect; and in a core that has one effect more in its registry.
 """
 
 from __future__ import annotations
@@ -33,16 +34,16 @@ ONE_EFFECT_MORE = "forward_dynamics_one_effect_more"
 WAYS = {"call": "pendcore", "step": "pendcore_step"}
 KERNEL = "pendcore_kernel"
 CALLS = 256
-LONGEST_RUN = 60.0  # s; one takes a third of a second
+LONGEST_RUN = 60.0  # s; a run takes a third of a second
 VARIABLE = "PENDCORE_FORWARD_DYNAMICS"
 
 
 class NotCounted(Exception):
-    """Raised, with the reason, where nothing can be counted."""
+    """Raised, with the reason, if nothing can be counted."""
 
 
 def programs() -> tuple[Path, Path]:
-    """Find the program, and that with one effect more; NotCounted says what is missing."""
+    """Find the program and the one with one effect more; NotCounted says what is missing."""
     if shutil.which("valgrind") is None:
         raise NotCounted("valgrind is missing (Debian: valgrind)")
     try:
@@ -80,7 +81,7 @@ def count(program: Path, effect: str, contender: str) -> float:
 
 
 def count_effects(effects: list[str]) -> dict[str, dict[str, float]]:
-    """Count a right-hand side with each, both ways; stderr says why where none can be counted."""
+    """Count a right-hand side with each effect, in both ways; stderr says why if that fails."""
     try:
         program, _ = programs()
     except NotCounted as reason:
@@ -93,7 +94,7 @@ def count_effects(effects: list[str]) -> dict[str, dict[str, float]]:
 
 
 def count_bare() -> dict[str, float]:
-    """Count the bare scene: as it is, by its kernel's type, with one effect more registered."""
+    """Count the bare scene: as it is, by its kernel's type, and with one effect more registered."""
     try:
         program, longer = programs()
     except NotCounted:

@@ -7,12 +7,13 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Effect:
-    """`name` is that of effect_parameters.hpp, `theirs` what MuJoCo calls it.
+    """An effect: `name` is its name in effect_parameters.hpp, `theirs` its name in MuJoCo.
 
-    `ours`: pendcore has it; `same_law`: both sides must give the same accelerations, `felt`: and
-    others than the bare scene. The last two are what pendcore promises at most, None where it
-    promises nothing. Friction that slides is one torque more; a stop that is not reached has none,
-    but its scene is in the kernel of joint torques.
+    `ours` says whether pendcore has it. `same_law` says that both sides must give the same
+    accelerations, and `felt` that these must differ from those of the bare scene. The last two are
+    the most that pendcore promises, None where it promises nothing. Friction that slides is one
+    torque more. A stop that is not reached has no torque, but its scene uses the kernel of joint
+    torques.
     """
 
     name: str

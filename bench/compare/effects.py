@@ -30,7 +30,7 @@ Key = tuple[str, str]  # effect and contender
 
 
 def prepare(entrants: list[ForwardDynamics]) -> tuple[dict[Key, Calls], dict[str, float]]:
-    """Prepare all calls; say how far both sides' accelerations are apart."""
+    """Prepare all calls; return how far apart the accelerations of both sides are."""
     calls: dict[Key, Calls] = {}
     apart: dict[str, float] = {}
     bare: dict[str, Array] = {}

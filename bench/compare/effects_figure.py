@@ -1,7 +1,7 @@
 """What each effect adds to a right-hand side of two links: bars, pendcore beside MuJoCo.
 
-On the right what it adds in instructions, pendcore alone. A stroke across a bar's row is what
-pendcore promises at most.
+The right panel shows the instructions that it adds, for pendcore alone. A stroke across a bar's row
+is the most that pendcore promises.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ COLORS = {STEP: "#000000", PEER: "#6fa8d6"}
 LABELS = {STEP: "pendcore, in a step", PEER: "MuJoCo, mj_forward"}
 ROWS = {STEP: 0.2, PEER: -0.2}
 BAR = 0.36
-LEAST = 0.2  # ns: what is less, or lost in the noise, is drawn as this
+LEAST = 0.2  # ns; smaller values, and those lost in the noise, are drawn as this
 LIMIT = "#d1495b"
 
 
@@ -69,7 +69,7 @@ def draw_instructions(axes: Axes, record: dict[str, Any], found: list[Any]) -> N
 
 
 def draw(record: dict[str, Any], path: Path) -> None:
-    """Draw into the file; at the end of each bar what is added, and its share of the bare scene."""
+    """Draw into the file. Each bar ends with what is added and its share of the bare scene."""
     found = effects_of(record)[::-1]
     drawn, (times, instructions) = plt.subplots(
         1, 2, figsize=(11, 0.44 * len(found) + 1.7), width_ratios=(2.2, 1), sharey=True,

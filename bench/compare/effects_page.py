@@ -69,13 +69,13 @@ def time(effect: Any, side: str, kind: str = "minimum_ns") -> float | None:
 
 
 def added(record: Record, effect: Any, side: str, kind: str = "minimum_ns") -> float | None:
-    """Tell what the effect adds on that side, in nanoseconds."""
+    """Return what the effect adds on that side, in nanoseconds."""
     mine, bare = time(effect, side, kind), time(by_name(record)["none"], side, kind)
     return None if mine is None or bare is None else mine - bare
 
 
 def share(record: Record, effect: Any, side: str) -> float | None:
-    """Tell what the effect adds as a share of the same side's bare scene."""
+    """Return what the effect adds as a share of the same side's bare scene."""
     more, bare = added(record, effect, side), time(by_name(record)["none"], side)
     return None if more is None or not bare else more / bare
 
@@ -115,7 +115,7 @@ def beside(record: Record) -> str:
 
 
 def exceeded(record: Record, effect: Any) -> list[str]:
-    """List what the effect adds beyond what is promised."""
+    """List what the effect adds beyond the promise."""
     over = []
     limit = effect["most_instructions"]
     for way in WAYS:
@@ -152,7 +152,7 @@ def promised(record: Record) -> str:
 
 
 def absent(record: Record) -> str:
-    """Say what the bare scene executes, and what it would if there were no effects at all."""
+    """Say what the bare scene executes, and what it would execute without any effects."""
     counted = record["bare_instructions"]
     if not counted:
         return "Not counted."
@@ -198,7 +198,7 @@ def losses(record: Record) -> list[str]:
 
 
 def bare(record: Record) -> str:
-    """Say what each side's scene without effects takes."""
+    """Say how long each side's scene without effects takes."""
     known = by_name(record)["none"]
     labels = {one["name"]: one["label"] for one in record["contenders"]}
     found = [

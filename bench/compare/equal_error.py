@@ -1,4 +1,4 @@
-"""Best against best at equal achieved error: pendcore's methods, and its peers'."""
+"""Best against best at equal achieved error: pendcore's methods and its peers' methods."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Contender = dict[str, Any]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Side:
-    """Who is compared: ours are those of one side, the peers perhaps those of another."""
+    """The two that are compared: our side, and the side of the peers, which may be another."""
 
     title: str
     ours: str
@@ -39,7 +39,7 @@ BAR, LOOSE = 0.5, 1.5e-5  # at errors above 1e-5 the best peer has the same tabl
 
 
 def bar(side: Side, error: float) -> float:
-    """Give the share of the best peer's time that pendcore should take at most."""
+    """Return the share of the best peer's time that pendcore should take at most."""
     return side.loose_bar if error > LOOSE else BAR
 
 
@@ -55,14 +55,14 @@ def curve(contender: Contender, kind: str = "minimum_us") -> list[Point]:
 def best(
     all_of: Iterable[Contender], error: float, kind: str = "minimum_us"
 ) -> tuple[float, str] | None:
-    """Find the least time, and whose it is, at an achieved error."""
+    """Find the least time at an achieved error, and the contender that takes it."""
     times = [(time_at(curve(one, kind), error), one["label"]) for one in all_of]
     return min(((time, who) for time, who in times if time is not None), default=None)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Comparison:
-    """Best against best at an achieved error; None where a side does not get there."""
+    """Best against best at an achieved error; None if a side does not reach it."""
 
     error: float
     bar: float
@@ -73,14 +73,14 @@ class Comparison:
 
     @property
     def reached(self) -> bool:
-        """Whether pendcore keeps under the bar, or is alone in getting there."""
+        """Whether pendcore stays under the bar, or is alone in reaching the error."""
         if self.own is None:
             return False
         return self.peer is None or (self.ratio is not None and self.ratio <= self.bar)
 
 
 def compare(record: Record, side: Side, errors: Iterable[float] = DECADES) -> list[Comparison]:
-    """Compare best with best at each error; nothing where one side did not take part."""
+    """Compare best with best at each error; the list is empty if one side did not take part."""
     ours, peers = on(record, side.ours, ours=True), on(record, side.peers, ours=False)
     if not ours or not peers:
         return []

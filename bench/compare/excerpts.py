@@ -15,7 +15,7 @@ ERRORS = (1e-3, 1e-6, 1e-9, 1e-12)
 
 
 def figures(record: Record) -> str:
-    """Sum up accuracy and speed: a row an achieved error, then the cost of a call."""
+    """Sum up accuracy and speed: a row for each achieved error, then the cost of a call."""
     header = ["largest position error", "C++", "best peer", "`pc.simulate`", "best peer"]
     sides = [SIDES[0], SIDES[-1]]
     rows = []
@@ -40,7 +40,7 @@ def figures(record: Record) -> str:
 
 
 def tolerances(record: Record) -> str:
-    """Tabulate what a tolerance brings with dopri5."""
+    """Tabulate the errors that tolerances give with dopri5."""
     core = entrants(record)[CORE]
     rows = []
     for decade in range(3, 14, 2):

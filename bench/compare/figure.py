@@ -18,7 +18,7 @@ from matplotlib.ticker import FixedLocator, LogLocator, NullFormatter
 from tables import short
 from work_precision import envelope
 
-# A family of solvers is told by its dashes and its lightness, a method by its marker: the figure
+# Dashes and lightness distinguish the families of solvers, markers the methods, so that the figure
 # survives a grey printer.
 FAMILIES: dict[str, dict[str, Any]] = {
     "pendcore": {"color": "#000000", "linestyle": "-", "linewidth": 2.2},
@@ -49,7 +49,7 @@ MARKERS = {
     "adams": "P",
     "lsoda": "X",
 }
-LEFT_OUT = ("scipy", "python")  # close to what numba makes of them; in the tables
+LEFT_OUT = ("scipy", "python")  # close to what numba makes of them; the tables have them
 ERRORS = np.logspace(-1, -13.5, 126)
 
 
@@ -68,7 +68,7 @@ def marked(contender: Contender, reached: list[Any]) -> list[Any]:
 
 
 def draw_contender(axes: Axes, contender: Contender, *, by_language: bool = False) -> None:
-    """Draw the contender's unbeaten points as a line, some of its settings as markers.
+    """Draw the contender's unbeaten points as a line, and some of its settings as markers.
 
     `by_language`: C++ and Python of pendcore share the axes; the second is then dashed.
     """
@@ -106,7 +106,7 @@ def draw_ratios(axes: Axes, found: list[Comparison], label: str, dashes: Any) ->
 
 
 def draw_lower(axes: Axes, record: Record, side: str) -> None:
-    """Draw what the best of pendcore takes, as a share of the best peer's time, and the goals."""
+    """Draw the time of pendcore's best method as a share of the best peer's time, and the goals."""
     listed = [one for one in SIDES if one.peers == side]
     for one, dashes in zip(listed, ("-", (0, (2, 1.5))), strict=False):
         label = "pendcore / best peer" if one.ours == side else "with x86-64-v3"
@@ -129,19 +129,19 @@ def draw_lower(axes: Axes, record: Record, side: str) -> None:
 
 
 def most_accurate(record: Record) -> float:
-    """Find the smallest error that anybody achieved, but not below 6e-16."""
+    """Find the smallest error that any contender achieved, but not below 6e-16."""
     errors = [p["error"] for one in record["contenders"] for p in one["points"] if "error" in p]
     return max(6e-16, min(errors, default=6e-16))
 
 
 def cost(contender: Contender) -> float:
-    """Take the time at a middling setting that succeeded, to sort by."""
+    """Return the time at a middling setting that succeeded; it orders the contenders."""
     times = [point["minimum_us"] for point in contender["points"] if "minimum_us" in point]
     return float(times[len(times) // 2]) if times else 0.0
 
 
 def draw(record: Record, path: Path) -> None:
-    """Draw into the file; the dearest first, so that a legend reads as its lines lie."""
+    """Draw into the file, the slowest first, so that legend and lines have the same order."""
     drawn, panels = plt.subplots(
         2,
         2,

@@ -1,4 +1,4 @@
-"""The machine on which figures were measured: without it they mean nothing."""
+"""The machine on which figures were measured, without which they mean nothing."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def processor() -> str:
 
 
 def instruction_set() -> str:
-    """Name the one that pendcore chose here, or was told by PENDCORE_INSTRUCTION_SET."""
+    """Name the set that pendcore chose here, or that PENDCORE_INSTRUCTION_SET prescribes."""
     try:
         from pendcore import _core
     except ImportError:

@@ -1,7 +1,7 @@
 """Interleaved timing: whatever slows the machine slows all contenders alike.
 
-In every round every run has one short burst, in an order drawn anew; runs that are long against
-what a run may spend have a turn in fewer of the rounds, spread over all of them.
+In every round every run has one short burst, in an order drawn anew. A run that takes long beside
+the time it may spend has a turn in fewer rounds, spread over all of them.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ Key = TypeVar("Key", bound=Hashable)
 
 class Timed(Protocol):
     def burst(self, seconds: float) -> list[float]:
-        """Call for about so long and list each call's seconds."""
+        """Call for about that long and list each call's seconds."""
 
 
 @dataclass(frozen=True, slots=True)
 class Timing:
-    """Seconds a call: the least and the median of all calls of all rounds."""
+    """Seconds per call: the least and the median of all calls of all rounds."""
 
     minimum: float
     median: float
@@ -65,7 +65,7 @@ def interleave(
 
 
 def achieved(run: Run, case: Case) -> dict[str, Any]:
-    """Tell how wrong the run's states are and what they took; or `failure`, a sentence."""
+    """Return how wrong the run's states are and what they took, or `failure`, a sentence."""
     try:
         outcome = run.outcome()
     except (RuntimeError, ValueError, ArithmeticError) as failure:

@@ -130,7 +130,7 @@ def cell(at: Comparison) -> str:
 
 
 def ratios(records: Mapping[str, Record], side: Side) -> str:
-    """Tabulate the ratios of all cases on a side, a column a case."""
+    """Tabulate the ratios of all cases on a side, a column for each case."""
     known = {case: compare(records[case], side) for case in NAMES if case in records}
     known = {case: compared for case, compared in known.items() if compared}
     if not known:
@@ -144,7 +144,7 @@ def ratios(records: Mapping[str, Record], side: Side) -> str:
 
 
 def narrow(records: Mapping[str, Record]) -> str:
-    """Say what pendcore loses without AVX-512, and where the figures with it are from."""
+    """Say what pendcore loses without AVX-512, and where the figures with AVX-512 come from."""
     found = []
     for record in records.values():
         for wide, held_back in zip(*(compare(record, side) for side in SIDES[:2]), strict=False):
@@ -160,7 +160,7 @@ def narrow(records: Mapping[str, Record]) -> str:
 
 
 def lost(records: Mapping[str, Record]) -> dict[str, list[str]]:
-    """List where a peer is quicker, by its program: sentences with case, side and errors."""
+    """List, by program, where a peer is quicker: sentences with case, side and errors."""
     found: dict[str, dict[str, list[Comparison]]] = {}
     for case, record in records.items():
         sections = record["scenes"] if case == "stiff" else [record]
@@ -234,7 +234,7 @@ def compiling(records: Mapping[str, Record]) -> str:
 
 
 def call(records: Mapping[str, Record]) -> str:
-    """Say what heyoka's call of one step takes: an upper bound of what Python costs it."""
+    """Say how long heyoka's call of one step takes: an upper bound on what Python costs it."""
     taken = [one["one_step"]["minimum_us"] for one in of_heyoka(records) if one["one_step"]]
     return f"at most {number(max(taken), 2)} us" if taken else "a few us"
 
@@ -257,7 +257,7 @@ def own_call(records: Mapping[str, Record]) -> str:
 
 
 def page(records: Mapping[str, Record]) -> str:
-    """Make the whole page of the records that are there, by stem."""
+    """Make the whole page from the records that are there, by stem."""
     machines = {
         f"* {stem}: {record['machine']['processor']}, {record['date']}, pendcore on "
         f"{record['machine']['instruction set of pendcore']}"

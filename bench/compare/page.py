@@ -122,7 +122,7 @@ def dearer_calls(record: Record) -> list[str]:
 
 
 def failures(record: Record) -> list[str]:
-    """Name each contender that failed somewhere, and why, but for the time at which it did."""
+    """Name each contender that failed somewhere, and why, without the time of the failure."""
     lines = []
     for contender in record["contenders"]:
         reasons: dict[str, list[str]] = {}
@@ -137,7 +137,7 @@ def failures(record: Record) -> list[str]:
 
 
 def waiting(contender: Contender) -> str:
-    """Say how long it compiles: between what the quickest and the slowest setting take."""
+    """Say how long it compiles, as the range from the quickest to the slowest setting."""
     if contender["compile_seconds"] is None:
         return ""
     least, most = (number(seconds, 2) for seconds in contender["compile_seconds"])

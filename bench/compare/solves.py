@@ -16,8 +16,8 @@ from tqdm import tqdm
 
 ONE_STEP_SETTINGS = {"tolerance": 1e-6, "step": 1e-4}
 BURST_SECONDS = 1e-3
-SECONDS_A_RUN = 0.6  # at least 30 calls of what takes less than 20 ms
-LONGEST = 0.5  # s; what takes longer at a setting is not tried with tighter ones
+SECONDS_A_RUN = 0.6  # enough for 30 calls that take less than 20 ms each
+LONGEST = 0.5  # s; a contender that takes longer at a setting is not tried with tighter ones
 PER_DECADE = 4
 
 Key = tuple[str, float | None]  # contender and setting; None for the call of one step
@@ -34,7 +34,7 @@ def for_any_scene(name: str) -> bool:
 class Look:
     """A first look at a contender: what it achieves at each setting, and runs to be timed.
 
-    Where no setting succeeds there are none.
+    If no setting succeeds, there are no runs.
     """
 
     def __init__(self, contender: Contender, case: Case, settings: list[float]) -> None:
@@ -60,7 +60,7 @@ class Look:
             self.runs[contender.name, None] = short
 
     def record(self, timings: dict[Key, Timing]) -> Record:
-        """Tell the contender and its points, as JSON holds them."""
+        """Return the contender and its points, as JSON holds them."""
         who = self.contender
         compiling = [run.compile_seconds for run in self.runs.values() if run.compile_seconds]
         return {

@@ -1,6 +1,6 @@
 """The comparison on stiff scenes: implicit methods, pendcore's and its peers'.
 
-Two unit rods for 5 s, and in joint 2 a strong damper, a hard spring or a stiff controller. The
+Two unit rods move for 5 s with a strong damper, a hard spring or a stiff controller in joint 2. The
 references are in tests/data/stiff_trajectories.json; stiff_references.py made them.
 """
 
@@ -20,13 +20,13 @@ from machine import circumstances
 REFERENCES = Path(__file__).parents[2] / "tests" / "data" / "stiff_trajectories.json"
 START = np.array([0.8, 1.0, 0.0, 0.0])
 TIMES = np.linspace(0.0, 5.0, 101)
-TIGHTEST = {"spring": 1e-7}  # below it every method has to follow a vibration of 3e4 rad/s
+TIGHTEST = {"spring": 1e-7}  # below, every method has to follow a vibration of 3e4 rad/s
 LABELS = {
     "damper": "viscous joint, b/J = 1e6 1/s",
     "spring": "torsional spring, k = 1e8 N m/rad",
     "controller": "PD controller, kp = 1e6, kd = 1e3",
 }
-# What is loaded in joint 2: stiffness (N m/rad), damping (N m s/rad).
+# The stiffness (N m/rad) and the damping (N m s/rad) in joint 2.
 LOADS = {"damper": (0.0, 1e6 / 3), "spring": (1e8, 0.0), "controller": (1e6, 1e3)}
 TAKING_PART = ("radau5", "pendcore_dopri5", "cvode_bdf", "radau", "lsoda", "bdf")
 

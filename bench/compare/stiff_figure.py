@@ -1,4 +1,4 @@
-"""Error against time on the stiff scenes, a panel each."""
+"""Error against time on the stiff scenes, in a panel each."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 
 def draw(record: Record, path: Path) -> None:
-    """Draw a panel a scene; where tighter settings failed or were not run a line has a cross."""
+    """Draw a panel for each scene; a cross ends a line if tighter settings failed or never ran."""
     scenes = record["scenes"]
     drawn, panels = plt.subplots(
         1, len(scenes), figsize=(4.4 * len(scenes), 5.4), sharey=True, layout="constrained"

@@ -62,7 +62,7 @@ def each_at_equal_error(record: Record) -> str:
 
 
 def said(record: Record) -> str:
-    """Quote what dopri5 says of the tightest run that was made, whether it finished or not."""
+    """Quote the message of dopri5 from the tightest run that was made, finished or not."""
     words = [
         point.get("failure") or point.get("said")
         for one in record["contenders"]

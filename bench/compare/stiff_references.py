@@ -1,7 +1,7 @@
-"""Make tests/data/stiff_trajectories.json: the references of the stiff scenes, some minutes.
+"""Make tests/data/stiff_trajectories.json, the references of the stiff scenes, in some minutes.
 
-Each scene is solved twice by SciPy, by unlike methods or steps and far tighter than any contender:
-the positions of the two differ by `disagreement` of the total length at most. The right-hand side
+SciPy solves each scene twice, by unlike methods or steps and far more tightly than any contender.
+The positions of the two differ by at most `disagreement` of the total length. The right-hand side
 and the Jacobian are those of contenders/equations.py, which share nothing with pendcore.
 """
 
@@ -18,7 +18,7 @@ from scipy.integrate import solve_ivp
 from tqdm import tqdm
 from trajectory_error import position_error
 
-# The spring's vibration is followed, about a radian a step.
+# The steps follow the spring's vibration, about a radian in each.
 WAYS: dict[str, tuple[dict[str, Any], ...]] = {
     "damper": ({"method": "Radau", "tolerance": 1e-11}, {"method": "LSODA", "tolerance": 1e-12}),
     "spring": (

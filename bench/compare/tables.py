@@ -17,7 +17,7 @@ def entrants(record: Record) -> dict[str, Any]:
 
 
 def number(value: float | None, digits: int = 3) -> str:
-    """Write with so many digits and no power of ten; an em dash where there is nothing."""
+    """Write with that many digits and no power of ten; None becomes an em dash."""
     if value is None:
         return "—"
     if value >= 10 ** (digits - 1):
@@ -39,14 +39,14 @@ def pair(of_minima: float | None, of_medians: float | None) -> str:
 
 
 def short(label: str) -> str:
-    """Leave out what every label on a side has in common."""
+    """Leave out the part that every label on a side has in common."""
     for end in (" (x86-64-v3)", ", C++", ", Python"):
         label = label.removesuffix(end)
     return label
 
 
 def best_against_best(record: Record, side: Side, errors: Iterable[float] = DECADES) -> str:
-    """Tabulate, a row a decade of achieved error, the best of both sides and whether it is enough.
+    """Tabulate, for each decade of achieved error, the best of both sides and the goal.
 
     Ratios are of minima, and of medians in parentheses.
     """
@@ -85,7 +85,7 @@ def everybody(record: Record, side: str) -> str:
 
 
 def at_tolerance(contender: Contender, tolerance: float) -> dict[str, Any]:
-    """Pick the contender's point at rtol = atol = tolerance; empty where there is none."""
+    """Return the contender's point at rtol = atol = tolerance; empty if there is none."""
     for point in contender["points"]:
         if abs(point["setting"] / tolerance - 1) < 1e-9 and "failure" not in point:
             return dict(point)
@@ -93,13 +93,13 @@ def at_tolerance(contender: Contender, tolerance: float) -> dict[str, Any]:
 
 
 def per_evaluation(point: dict[str, Any]) -> float | None:
-    """Share the whole call out: nanoseconds a right-hand side."""
+    """Divide the time of the whole call by its right-hand sides, in nanoseconds."""
     evaluations = point.get("evaluations")
     return 1e3 * point["minimum_us"] / evaluations if evaluations else None
 
 
 def equal_tolerance(record: Record, tolerance: float) -> str:
-    """Tabulate at the same tolerance every contender that has been tried with it."""
+    """Tabulate every contender that was tried with this tolerance."""
     header = ["contender", "error", "at the end", "of energy", "right-hand sides"]
     header += ["us", "median us", "ns a right-hand side"]
     rows = []

@@ -22,26 +22,26 @@ def joints_and_tip(q: Array, lengths: Array) -> Array:
 
 
 def distances(q: Array, reference: Array, lengths: Array) -> Array:
-    """Measure the largest distance at each time (n_t,), as a share of the total length."""
+    """Return the largest distance at each time (n_t,), as a share of the total length."""
     apart = joints_and_tip(q, lengths) - joints_and_tip(reference, lengths)
     return cast(Array, np.hypot(apart[..., 0], apart[..., 1]).max(axis=-1) / lengths.sum())
 
 
 def position_error(q: Array, reference: Array, lengths: Array) -> float:
-    """Take the largest of the distances over the grid; NaN where a state is NaN."""
+    """Return the largest of the distances over the grid; NaN if a state is NaN."""
     return float(distances(q, reference, lengths).max())
 
 
 def end_error(q: Array, reference: Array, lengths: Array) -> float:
-    """Take the distance at the last time alone."""
+    """Return the distance at the last time alone."""
     return float(distances(q, reference, lengths)[-1])
 
 
 def energy_error(q: Array, qd: Array, masses: Array, lengths: Array, gravity: float) -> float:
     """Measure the largest drift of the energy of uniform rods from its start.
 
-    As a share of what the whole mass gains falling the whole length; without gravity, of the
-    kinetic energy at the start.
+    The drift is a share of the energy that the whole mass gains by falling the whole length, or,
+    without gravity, of the kinetic energy at the start.
     """
     below = np.append(np.cumsum(masses[::-1])[::-1][1:], 0.0)  # mass carried beyond each link
     moment = lengths * (masses / 2 + below)

@@ -1,7 +1,7 @@
 """Work against precision: a contender's time at an error that none of its tolerances hits.
 
-A contender's points are (error, time) pairs, one a tolerance. Its envelope keeps those that no
-other point beats in both; between them, log time is linear in log error.
+A contender's points are (error, time) pairs, one for each tolerance. Its envelope keeps the points
+that no other point beats in both; between them, log time is linear in log error.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ Point = tuple[float, float]
 
 
 def envelope(points: Iterable[Point]) -> list[Point]:
-    """Keep the unbeaten points, from the loosest and cheapest to the most accurate and dearest."""
+    """Keep the unbeaten points, from the loosest and quickest to the most accurate and slowest."""
     kept: list[Point] = []
     cheapest = math.inf
     for error, time in sorted(points):  # from the most accurate: a looser one must be cheaper
@@ -27,8 +27,8 @@ def envelope(points: Iterable[Point]) -> list[Point]:
 def time_at(points: Iterable[Point], error: float) -> float | None:
     """Find the time that achieves the error.
 
-    An error looser than the loosest point's: that point's time, since it serves. An error tighter
-    than the best point's: None.
+    For an error above that of the loosest point it is the time of that point, which is accurate
+    enough. For an error below that of the most accurate point it is None.
     """
     curve = envelope(points)
     if not curve or error < curve[-1][0]:
@@ -43,5 +43,5 @@ def time_at(points: Iterable[Point], error: float) -> float | None:
 
 
 def reached_at(points: Iterable[Point]) -> float | None:
-    """Find the smallest error of all; None where there is no point."""
+    """Find the smallest error of all; None if there is no point."""
     return min((error for error, _ in points), default=None)

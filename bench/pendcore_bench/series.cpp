@@ -1,5 +1,5 @@
-// The Taylor series of the textbook's double pendulum alone, by order: the cost of one more order.
-// Each series can only begin when the one before has ended, as in steps.
+// The Taylor series of the textbook's double pendulum alone, by order, which shows the cost of one
+// more order. Each series can only begin when the one before has ended, as in steps.
 #include <benchmark/benchmark.h>
 
 #include <pendcore/arithmetic/instruction_set.hpp>

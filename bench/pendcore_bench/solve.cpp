@@ -1,4 +1,5 @@
-// The textbook's case, 0 to 5 s, at rtol = atol = 10^-digits: the end only, 101 times, dense.
+// The textbook's case, 0 to 5 s, at rtol = atol = 10^-digits. It keeps the end only, 101 times, or
+// dense output.
 // "a call" is a right-hand side, or a series for taylor.
 #include <benchmark/benchmark.h>
 #include <cmath>

@@ -1,5 +1,5 @@
 // One step on the textbook's case. For dopri5: six right-hand sides, the new state, its error norm.
-// For taylor, at tolerances of so many digits: the new state and the series from there.
+// For taylor, at tolerances 10^-digits: the new state and the series from there.
 // latency: each step starts where the step before ended. again: the same step, never accepted.
 #include <benchmark/benchmark.h>
 

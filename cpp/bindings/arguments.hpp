@@ -1,5 +1,5 @@
 /// \file
-/// Python's numbers and arrays as the core's, or an error that names the argument.
+/// Converts Python's numbers and arrays to the core's. An error names the argument.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -15,7 +15,7 @@ namespace pendcore::bindings {
 
 namespace py = pybind11;
 
-/// An array of doubles, contiguous and at multiples of 8 bytes, made from what is given if need be.
+/// An array of doubles, contiguous and at multiples of 8 bytes, converted if necessary.
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast |
                                       py::detail::npy_api::NPY_ARRAY_ALIGNED_>;
 
@@ -32,12 +32,12 @@ long long whole_number(const char* name, py::handle value);
 bool truth(const char* name, py::handle value);
 
 /// Real numbers along one axis; a number alone counts as `copies` of it. TypeError for what is not
-/// real numbers, ValueError for more axes, which says the shape that is `wanted`.
+/// real numbers. ValueError for more axes; its message gives the shape that is `wanted`.
 std::vector<double> numbers(const char* name, py::handle value, const std::string& wanted = "(k,)",
                             std::size_t copies = 1);
 
-/// Takes what needs no conversion, and raises nothing for anything else: who called says what is
-/// wrong with that. `x` is a finite number alone; `into` takes as many of them as it has room for,
+/// Takes what needs no conversion, and raises nothing for anything else: the caller says what is
+/// wrong with it. `x` is a finite number alone; `into` takes as many of them as it has room for,
 /// from a list, a tuple, or an array of doubles with one axis.
 bool take_plain(py::handle value, double& x);
 bool take_plain(py::handle value, std::span<double> into);

@@ -184,7 +184,7 @@ void bind_effects(py::module_& module) {
   module.def("effect_descriptors", &effect_descriptors,
              "A dictionary for each kind of effect, with what is known of it.");
   module.def("part_descriptors", &part_descriptors,
-             "The same for parts of effects that have parameters of their own.");
+             "A dictionary for each part of an effect that has parameters of its own.");
   module.def("accounts", &accounts,
              "The entries that a ledger may have, and whether each is a loss or work done.");
   module.def(
@@ -199,7 +199,8 @@ void bind_effects(py::module_& module) {
       [](const std::string& where, const std::string& name, const py::dict& values) {
         check_part_named(name, where, values);
       },
-      py::arg("where"), py::arg("name"), py::arg("values"), "The same for a part of an effect.");
+      py::arg("where"), py::arg("name"), py::arg("values"),
+      "Raise a ValueError for parameters of a part that are out of their ranges.");
 }
 
 }  // namespace pendcore::bindings

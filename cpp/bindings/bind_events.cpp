@@ -116,7 +116,7 @@ void bind_events(py::module_& module) {
         check_event(where, make_event(kind_and_values), std::numeric_limits<int>::max());
       },
       py::arg("where"), py::arg("kind_and_values"),
-      "Raise a ValueError that begins with `where` for what is out of its range.");
+      "Raise a ValueError that begins with `where` for a value that is out of its range.");
 }
 
 }  // namespace pendcore::bindings

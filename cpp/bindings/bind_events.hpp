@@ -15,10 +15,11 @@ namespace py = pybind11;
 /// must keep it alive.
 Event make_event(py::handle kind_and_values);
 
-/// The pair of an event; for a function, with `f`.
+/// The pair of an event. If the event is a function, the pair has `f` for it.
 py::tuple kind_and_values(const Event& event, const py::object& f);
 
-/// The same for a pickle or a file. Raises TypeError for a function, which cannot be kept.
+/// The pair of an event, for a pickle or a file. Raises TypeError for a function, which cannot be
+/// kept.
 py::tuple saved_event(const Event& event, std::size_t i);
 
 /// The Python function of each event, or None.

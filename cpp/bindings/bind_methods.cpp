@@ -108,11 +108,10 @@ void bind_methods(py::module_& module) {
       "tableau",
       [](const std::string& method) { return tableau_named(Methods{}, find_method(method).name); },
       py::arg("method"),
-      "The coefficients c, a, b, e, d of a method, and its dense output's functions (function,\n"
-      "stage) and their basis (function, power), each a number (numerator, denominator, root of\n"
-      "6): (numerator + root sqrt(6)) / denominator. Plain numbers for an implicit method; "
-      "nothing\n"
-      "for pairs and series.");
+      "The coefficients c, a, b, e, d of a method, the functions of its dense output (function,\n"
+      "stage) and the basis of these (function, power). Each number is a triple (numerator,\n"
+      "denominator, root of 6): (numerator + root sqrt(6)) / denominator. An implicit method has\n"
+      "plain numbers; pairs and series have nothing.");
 }
 
 }  // namespace pendcore::bindings

@@ -29,7 +29,7 @@ struct Taken {
         text = value.cast<std::string>();
         return;
       }
-    } catch (const py::cast_error&) {  // a string that is no text
+    } catch (const py::cast_error&) {  // a string that is not valid text
     }
     throw py::type_error(std::string(name) + " = " + py::repr(value).cast<std::string>() +
                          ": must be the name of a method");
@@ -99,7 +99,7 @@ py::object given(const Options& options) {
   }
 }
 
-/// How Python annotates what may be given.
+/// The type annotation of an option in Python.
 constexpr std::string_view annotation(const double& /*x*/) { return "float"; }
 constexpr std::string_view annotation(const std::optional<double>& /*x*/) { return "float | None"; }
 constexpr std::string_view annotation(const long long& /*x*/) { return "int"; }

@@ -1,5 +1,5 @@
 /// \file
-/// The options of a run as Python's values, and back.
+/// Converts the options of a run to Python's values, and back.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -14,7 +14,7 @@ namespace py = pybind11;
 /// allowed, have their defaults. TypeError and ValueError for what is not of an option's type.
 Options options_of(const py::dict& given, std::size_t n);
 
-/// All options by their names, as `options_of` takes them; of events there are none.
+/// All options except the events by their names, as `options_of` takes them.
 py::dict as_python(const Options& options);
 
 }  // namespace pendcore::bindings

@@ -105,7 +105,7 @@ py::tuple defect_of_steps(const Run& run, std::size_t first, std::size_t end, co
   const Solution& s = run.solution;
   std::vector<double> q(angles.data(), angles.data() + angles.size());
   if (end > s.dense.h.size() || first > end || !(q.empty() || q.size() == std::size_t(s.n))) {
-    throw py::value_error("defect: no such steps, or no such angles");
+    throw py::value_error("defect: there are no such steps, or no such angles");
   }
   const Defect found = defect(run.scene, s, first, end, q);
   const auto steps = static_cast<py::ssize_t>(end - first);

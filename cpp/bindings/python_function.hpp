@@ -17,12 +17,12 @@ namespace py = pybind11;
 /// f(t, q, qd) -> Q as an effect. Whoever holds the effect keeps the function alive.
 CompiledUser effect_of_function(py::handle function);
 
-/// f(t, q, qd) -> a number as an event's function. Whoever holds the event keeps f alive: copies
-/// are made without Python's lock, and count no references.
+/// f(t, q, qd) -> a number, as the function of an event. Whoever holds the event keeps f alive:
+/// copies are made without Python's lock, and count no references.
 std::function<double(double, std::span<const double>, std::span<const double>)> event_function(
     py::handle function);
 
-/// The exception, of Python or of the core, as Python has it.
+/// An exception of Python or of the core, as a Python object.
 py::object python_exception(const std::exception_ptr& error);
 
 }  // namespace pendcore::bindings

@@ -38,7 +38,7 @@ class Writer {
   }
 };
 
-/// Takes the same fields out of one.
+/// Takes the same fields out of a dictionary.
 class Reader {
  public:
   explicit Reader(const py::dict& fields) : fields_(fields) {}
@@ -162,7 +162,7 @@ bool arrays_fit(const Solution& s) {
          s.dense.coefficients.size() == steps * (static_cast<std::size_t>(s.dense.degree) + 1) * n;
 }
 
-/// The polynomials lead from the start to the time reached, one after the other.
+/// Whether the polynomials lead from the start to the time reached, one after the other.
 bool polynomials_fit(const Solution& s) {
   const std::vector<double>& start = s.dense.start;
   if (!std::isfinite(s.t0) || !std::isfinite(s.t_reached)) return false;
@@ -177,7 +177,7 @@ bool polynomials_fit(const Solution& s) {
   return true;
 }
 
-/// Counts that a run could have: far below where adding to them overflows.
+/// Whether a run could have these counts: they are far below where adding to them overflows.
 bool counts_fit(const Statistics& s) {
   const long long counts[] = {s.nfev,
                               s.njev,
@@ -192,12 +192,12 @@ bool counts_fit(const Statistics& s) {
 
 bool position_fits(const IntegratorState& p) {
   const auto few = [](int n) { return n >= 0 && n < 1'000'000; };
-  // The logarithm of a double is within 1100; NaN is not.
+  // The logarithm of a double is below 1100 in magnitude. A NaN fails the comparison.
   return counts_fit(p.statistics) && few(p.stiff_hits) && few(p.stiff_misses) &&
          std::abs(p.control.log2_error_before) < 1100.0;
 }
 
-/// The effects as JSON, which has every number to the last bit.
+/// The effects as JSON, which keeps every number to the last bit.
 std::string json_of_effects(const Scene& scene) {
   py::list effects;
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
@@ -266,7 +266,7 @@ Run set_state(const py::dict& state) {
   check(run.scene);
   visit(io, run.solution);
   Solution& s = run.solution;
-  // Runs kept before "auto" was a rule have it as an alias of this pair.
+  // In runs kept before "auto" was a rule, "auto" is an alias of this pair.
   const std::string_view method = s.options.method;
   s.options.method = method == automatic ? dopri5_radau5.info.name : find_method(method).name;
   s.n = static_cast<int>(run.scene.links.size());

@@ -1,5 +1,5 @@
 /// \file
-/// The start and the interval of a run, from what Python gives.
+/// Reads the start and the interval of a run from Python's arguments.
 #pragma once
 
 #include "arguments.hpp"
@@ -14,7 +14,7 @@ struct Start {
 };
 
 /// A single angle or rate counts for all links. `warn` is called with a sentence for each value
-/// that is hardly intended; the core reports what is wrong.
+/// that is hardly intended. The core refuses values that are wrong.
 inline Start start_of(const Scene& scene, py::handle q0, py::handle qd0, py::handle t0,
                       py::handle t_end, py::handle warn) {
   const std::size_t n = scene.links.size();

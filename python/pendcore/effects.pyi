@@ -18,7 +18,7 @@ def kinds() -> dict[str, type[Effect]]:
     """Return the class of every kind of effect, the kind as in case files."""
 
 class Sinusoid(Part):
-    """amplitude sin(angular_frequency t + phase); the amplitude in the unit of what it drives."""
+    """amplitude sin(angular_frequency t + phase); the amplitude has the unit of what it drives."""
 
     __match_args__: Final = ("amplitude", "angular_frequency", "phase")
     def __init__(self, amplitude: float, angular_frequency: float, phase: float = ...) -> None: ...
@@ -37,7 +37,7 @@ class Sinusoid(Part):
     def phase(self) -> float: ...
 
 class Table(Part):
-    """Torque at given times, linear between them; the run ends where the table does."""
+    """Torque at given times, linear between them; the run ends where the table ends."""
 
     __match_args__: Final = ("t", "torque")
     def __init__(self, t: npt.ArrayLike, torque: npt.ArrayLike) -> None: ...
@@ -72,7 +72,7 @@ class PD(Part):
     def reference(self) -> float: ...
 
 class Spline(Part):
-    """Natural cubic splines x(t) and y(t) through given points; the run ends where they do."""
+    """Natural cubic splines x(t) and y(t) through given points; the run ends where they end."""
 
     __match_args__: Final = ("t", "x", "y")
     def __init__(self, t: npt.ArrayLike, x: npt.ArrayLike, y: npt.ArrayLike) -> None: ...

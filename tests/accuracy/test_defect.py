@@ -101,7 +101,7 @@ def test_it_falls_at_the_order_of_the_interpolant(method: str) -> None:
 
 @pytest.mark.parametrize("method", [name for name, m in METHODS.items() if m["kind"] == "pair"])
 def test_the_defect_of_a_pair_that_changed_over_is_that_of_its_second_method(method: str) -> None:
-    """A run that ends before the change has the first method's; resumed past it, the second's."""
+    """Before the change a run has the defect of the first method; resumed past it, the second's."""
     stiff = BOOK.replace(effects=[fx.ViscousJoint(joint=2, damping=1e6 / 3)])
     first, second = method.split("-")
     before = pc.simulate(stiff, [0.8, 1.0], 0.1, (0, 1e-5), method=method)
@@ -162,7 +162,7 @@ def test_tighter_tolerances_mean_less_torque_and_a_share_of_the_weight() -> None
 
 
 def test_what_holds_a_joint_takes_any_torque() -> None:
-    """Where a joint is stuck, at a stop or locked, only what the other joints lack is told."""
+    """Where a joint is stuck, at a stop or locked, only the other joints can lack torques."""
     stick = pc.Scene(
         links=BOOK.links,
         effects=[fx.DryJointFriction(joint=1, coulomb=30.0), fx.JointStop(2, range=(-0.5, 0.9))],

@@ -35,8 +35,9 @@ def work() -> pc.HorizonWork:
 def test_a_digit_buys_ln_10_over_lambda_seconds_on_average() -> None:
     """Neighbours do not part evenly, so one start says little; the mean over many has to be 1.
 
-    The bound is Student's: the mean of so many numbers of that scatter lies within it of the true
-    one with a probability of 99.9 %. It has to be so narrow that an exponent off by a tenth shows.
+    The bound is Student's: with a probability of 99.9 %, the mean of that many numbers with that
+    scatter lies within it of the true mean. It has to be so narrow that an exponent off by a tenth
+    shows.
     """
     student = 3.75  # 24 degrees of freedom
     shares: dict[str, list[float]] = {}

@@ -120,8 +120,8 @@ def growth(case: ChaoticStart, moved: NDArray[np.float64]) -> NDArray[np.float64
 def spread_of_roundings(case: ChaoticStart) -> NDArray[np.float64]:
     """Return how far the random walk of the run's roundings moves its growth at those times.
 
-    A component is rounded by up to EPS/2 of its size, and what a change of it at the start does is
-    measured. A rounding at a later time s grows by e^growth(s) less.
+    A component is rounded by up to EPS/2 of its size, and the effect of a change of it at the start
+    is measured. A rounding at a later time s grows by e^growth(s) less.
     """
     small = 1e-12
     changes = small * np.eye(2 * len(case.q0))

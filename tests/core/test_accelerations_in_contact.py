@@ -1,4 +1,4 @@
-"""Accelerations told for a state in contact are those of the run, to the last bits of the angle."""
+"""Accelerations of a state in contact are those of the run, to the last bits of the angle."""
 
 from __future__ import annotations
 

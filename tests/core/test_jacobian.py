@@ -4,8 +4,8 @@ The reference has no derivatives of its own: it is differentiated by central dif
 in eighty digits, which leaves fifty of them. An error is measured against the size of what the
 derivative is made of: the sum over the terms of each equation, sent through the magnitude of the
 inverse matrix (Skeel's condition, as in test_right_hand_side_of_effects.py), per unit of angle or
-rate. The derivatives of the terms, sent through it likewise, are added, because they may be there
-and cancel where the terms themselves are not.
+rate. The derivatives of the terms, sent through it in the same way, are added, because they may be
+present, and cancel, where the terms themselves are absent.
 """
 
 from __future__ import annotations

@@ -24,7 +24,7 @@ def multipliers(eps: float, w: float) -> NDArray[np.float64]:
         effects=[pc.effects.DrivenPivot(y=shaking)],
     )
     period, small = 2 * np.pi / w, 1e-5
-    # Angles of size 1 go with rates of size w; so scaled, the columns are of one size.
+    # Angles of size 1 go with rates of size w; scaled in this way, the columns are of one size.
     scale = np.array([1.0, 1.0, w, w])
 
     def after(start: NDArray[np.float64]) -> NDArray[np.float64]:

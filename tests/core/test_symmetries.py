@@ -162,9 +162,9 @@ def test_left_to_right_is_the_mirrored_motion(method: str, run: Drawn) -> None:
 
 @pytest.mark.parametrize("seed", range(100))
 def test_left_to_right_impacts_and_contact_are_the_mirrored_ones(method: str, seed: int) -> None:
-    """The motions are the same each time, as one in thousands meets two stops within rounding.
+    """The motions are the same each time, because one in thousands meets two stops within rounding.
 
-    Which blow comes first then decides what follows, and the mirror image may round them otherwise.
+    The impact that comes first then decides what follows, and the mirror image may round otherwise.
     """
     run = stopped_motion_of_seed(f"stopped/{seed}")
     n = len(run.q0)

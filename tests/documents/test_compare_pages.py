@@ -50,7 +50,7 @@ def test_page_on_all_solves_is_what_the_records_say() -> None:
     assert all(f"({stem}.md)" in written for stem in [*known, "chains", "effects"])
 
 
-# The comparison is for these: a record without one of them would be of something else.
+# The comparison is about these contenders; a record without one of them would miss its purpose.
 FAMILIES = ("pendcore_dop", "pendcore_rk4", "odeint", "arkode", "cvode", "heyoka", "cyrk", "scipy")
 
 

@@ -66,7 +66,7 @@ int main() {
 
 @pytest.fixture
 def torque(tmp_path: Path) -> Callable[[float], float]:
-    """The law of the page for the reference, of the rate of its joint."""
+    """The law of the page for the reference, as a function of the rate of its joint."""
     path = tmp_path / "magnetic_brake.py"
     path.write_text(LAW)
     brake = runpy.run_path(str(path))["MagneticBrake"](joint=1, peak=0.3, critical_rate=2.0)

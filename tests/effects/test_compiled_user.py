@@ -43,7 +43,7 @@ def test_data_that_a_function_would_misread_is_refused(data, told):
         fx.CompiledUser(damp_by_data, data=data)
     message = str(caught.value)
     assert message.startswith(f"CompiledUser: data: {told}: must be a C-contiguous one of float64")
-    mended = np.ascontiguousarray(data, dtype=np.float64)  # as it says
+    mended = np.ascontiguousarray(data, dtype=np.float64)  # as the message says
     effect = fx.CompiledUser(damp_by_data, data=mended)
     assert effect.data == mended.ctypes.data
 

@@ -83,9 +83,9 @@ def test_with_stribecks_law_it_stops_a_little_sooner(
     stop = time_to_stop(w0, friction)
     sol = pc.simulate(rod(friction), 0.2, w0, (0, 10), rtol=rtol, atol=1e-2 * rtol, method=method)
     assert_rests(sol)
-    # What radau5 keeps below its tolerance is an estimate of order 3, and its error is of order 5:
-    # the tolerance is made such that the error falls as rtol, times what the law's sharpness makes
-    # of it. That is 33 at the exponent 1.5, and below 3 in the other three.
+    # radau5 keeps an estimate of order 3 below its tolerance, while its error is of order 5. The
+    # tolerance is chosen such that the error falls as rtol, times a factor for the sharpness of the
+    # law. The factor is 33 at the exponent 1.5, and below 3 in the other three cases.
     share = 100 if method == "radau5" else 3
     assert time_of_rest(sol) == pytest.approx(stop, rel=max(1e-11, share * rtol))
 
@@ -100,10 +100,10 @@ NARROW_PEAKS = [
 
 
 def own_tolerance(method: str, rtol: float) -> float:
-    """What a method keeps the estimate of its error below, per rate.
+    """The bound below which a method keeps the estimate of its error, per rate.
 
-    Of a smooth law radau5 has an error that is far less than its estimate, and aims at rtol by
-    this. Who enters a peak of friction meets a corner, where both are of one size.
+    Under a smooth law the error of radau5 is far less than its estimate, and this bound aims at an
+    error of rtol. A step that enters a peak of friction meets a corner, where both are of one size.
     """
     return 0.1 * rtol ** (2 / 3) if method == "radau5" else rtol
 
@@ -114,11 +114,11 @@ def own_tolerance(method: str, rtol: float) -> float:
 def test_a_peak_of_friction_that_is_far_narrower_than_the_run_is_not_strided_over(
     friction: pc.effects.DryJointFriction, rtol: float, atol: float | None, method: str
 ) -> None:
-    """Where friction is constant no step errs: what errs by rtol is the time under the peak alone.
+    """Where friction is constant no step errs: only the time under the peak is off by rtol.
 
     Beyond 36^(1/exponent) Stribeck velocities the peak is below the last bit, exp(-36). The step
     that enters it begins at a rate that is hundreds of times less than the first, and may err by
-    rtol of that. Beside it each step under the peak may err by atol: that is for ten of them.
+    rtol of that rate. Each step under the peak may err by atol as well; ten of them are allowed.
     """
     atol = 1e-2 * rtol if atol is None else atol
     w0 = 1.0
@@ -130,7 +130,8 @@ def test_a_peak_of_friction_that_is_far_narrower_than_the_run_is_not_strided_ove
         rod(friction), 0.2, w0, (0, 10), rtol=rtol, atol=atol, method=method, max_steps=10_000
     )
     assert_rests(sol)
-    # The rate falls by 1 rad/s in the time to stop: an error of one is that share of the other.
+    # The rate falls by 1 rad/s in the time to stop, so an error of the rate in rad/s is the error
+    # of that time as a share of it.
     of_rates = (1e-3 + 10 * atol / rtol) * stop
     allowed = own_tolerance(method, rtol) * (of_rates + under_the_peak)
     assert abs(time_of_rest(sol) - stop) <= allowed
@@ -143,7 +144,7 @@ def test_a_narrow_peak_of_friction_shortens_every_run_by_the_same_time(
     """J w0/tc less the integral of J (1/tc - 1/friction(w)), which ends with the peak.
 
     The step that enters the peak begins at a tenth of the first rate or below, and may err by the
-    tolerance of that.
+    tolerance for that rate.
     """
     allowed = max(1e-12, 0.1 * own_tolerance(method, rtol))
     coulomb, peak_ends = 0.1, 6e-3

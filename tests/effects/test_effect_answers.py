@@ -139,7 +139,7 @@ KNOTS, TORQUE = np.array([0.0, 0.7, 0.75, 2.0, 5.0]), np.array([0.5, 2.0, -3.0, 
 def test_a_table_of_torques_is_followed_exactly_however_loose_the_tolerance(limit: float) -> None:
     """Between knots the angle is a cubic, which a step of order five takes without error.
 
-    Where the torque meets its limit is a knot as well.
+    The point where the torque meets its limit is a knot as well.
     """
     table = pc.effects.Table(t=KNOTS, torque=TORQUE)
     motor = pc.effects.Motor(joint=1, table=table, limit=limit)
@@ -198,13 +198,13 @@ def test_a_limited_servo_goes_along_a_parabola_and_then_rings_down() -> None:
 
 
 def test_bang_bang() -> None:
-    """A servo that is all limit, without damping: parabolas, and as long as it takes for a few."""
+    """A servo without damping is nearly always at its limit: the angle follows parabolas."""
     servo, limit, far = pc.effects.PD(kp=1e9, kd=0.0, reference=0.0), 0.9, 1.0
     sol = solve(rod(pc.effects.Motor(joint=1, pd=servo, limit=limit)), far, 0.0, rtol=1e-11)
     quarter = np.sqrt(2 * far * J / limit)
     turn = np.arange(int(5.0 / quarter) + 1)
     expected = np.array([1.0, 0.0, -1.0, 0.0])[turn % 4] * far
-    # Where the torque is not at its limit, an angle of 1e-9 wide, the bang is rounded off.
+    # Over an angle of 1e-9 the torque is not at its limit, and the switch is rounded off.
     np.testing.assert_allclose(sol(turn * quarter)[0], expected, atol=1e-7)
 
 

@@ -1,6 +1,6 @@
 """The reference laws of the effects themselves, before the core is compared with them.
 
-No core needed. What is exact is checked in fifty digits, by differences over a time of 1e-13 s.
+These tests need no core. Exact results are checked in fifty digits, by differences over 1e-13 s.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ def check_lagrange(rig: Rig, state: State) -> None:
     """d/dt dT/dqd_i - dT/dq_i + dV/dq_i is the generalised force of q_i, for every link i."""
     t, q, qd = FIFTY.number(state[0]), numbers(state[1]), numbers(state[2])
     motion, loads = rig.motion(t, q, qd), rig.loads(rig.instant(t, q, qd))
-    # A spring's couple is among the loads: it shall not count twice.
+    # A spring's couple is among the loads: it must not count twice.
     others = [effect for effect in rig.effects if not isinstance(effect, TorsionalSpring)]
     rig = dataclasses.replace(rig, effects=others)
 

@@ -1,6 +1,6 @@
 """The reference laws one at a time: numbers, derivatives and limits that are known beforehand.
 
-No core needed. What is exact is checked in fifty digits.
+These tests need no core. Exact results are checked in fifty digits.
 """
 
 from __future__ import annotations

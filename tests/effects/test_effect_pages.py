@@ -1,4 +1,4 @@
-"""What is written from the descriptions of effects is up to date, and what it shows runs."""
+"""The files written from the descriptions of effects are up to date, and their code runs."""
 
 from __future__ import annotations
 

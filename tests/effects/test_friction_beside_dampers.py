@@ -1,7 +1,8 @@
 """Weak dry friction beside a damper of any strength: bounded work, and the motion that it leaves.
 
-A strong damper leaves a joint the rate T/b that its torques T give, in the end less than the errors
-of a step: which way the joint slides, and whether it sticks, is then told by the torques alone.
+A strong damper leaves a joint the rate T/b that its torques T give. In the end this rate is less
+than the errors of a step. The torques alone then tell which way the joint slides, and whether it
+sticks.
 """
 
 from __future__ import annotations
@@ -40,14 +41,14 @@ def run(scene: pc.Scene, qd0: object = RIG.qd0, **options: object) -> pc.Solutio
 def test_the_work_is_bounded_whatever_the_damping(damping: float, method: str) -> None:
     sol = run(rig(fx.ViscousJoint(2, damping)), method=method, max_steps=3000)
     assert sol.success, sol.message
-    # What a step is tried for again at a guard is in nfev, not in the steps.
+    # Steps that are tried again at a guard count in nfev, but not as steps.
     assert sol.stats.nfev < 60_000
 
 
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("damping", STRONG)
 def test_a_strong_damper_leaves_the_motion_of_a_locked_joint(damping: float, method: str) -> None:
-    """It takes the rates together as an inelastic blow would, and creeps at T/b from then on."""
+    """The rates meet as in an inelastic impact, and the joint creeps at T/b from then on."""
     scene = rig(fx.ViscousJoint(2, damping))
     mass = scene.mass_matrix(RIG.q0)
     together = (mass @ RIG.qd0).sum() / mass.sum()

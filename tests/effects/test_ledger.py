@@ -135,7 +135,7 @@ def test_the_balance_closes_with_every_effect_on(locked: bool) -> None:
 
 @pytest.mark.parametrize("kind", SMOOTH)
 def test_the_balance_closes_with_an_effect_alone(kind: str) -> None:
-    # Dry friction slides all the time here: what rests is left to at_rest.
+    # Dry friction slides all the time here; at_rest has the scenes that rest.
     sol = simulate(SMOOTH[kind], t_end=0.3 if kind == "dry" else 5.0)
     found = entries(sol.energy().ledger)
     assert sorted(found) == sorted(ENTRIES.get(kind, []))
@@ -312,7 +312,7 @@ def test_a_backward_run_gives_back_what_the_forward_one_took() -> None:
 
 
 def test_a_ledger_that_overflows_ends_the_run_and_is_named() -> None:
-    """In a step, in silence before; at an impact; at an impact at the start."""
+    """It overflows in a step (once without a word), at an impact, and at an impact at the start."""
     shaken = fx.DrivenPivot(y=fx.Sinusoid(amplitude=1e-48, angular_frequency=1e150))
     heavy, stop = pc.Link(mass=1e300, length=1.0), fx.JointStop(joint=1, range=(-1.0, 1.0))
     for link, effect, q0, qd0, account in (

@@ -97,7 +97,7 @@ def test_a_function_gets_time_angles_and_rates_as_fresh_arrays():
 
     def look(t, q, qd):
         seen.append((t, q.copy(), qd.copy()))
-        q[:] = qd[:] = 99.0  # its own
+        q[:] = qd[:] = 99.0  # arrays of its own
         return np.zeros(2)
 
     own, bare = scene(fx.User(look)), scene()

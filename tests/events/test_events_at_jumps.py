@@ -186,7 +186,7 @@ def test_leaving_a_contact_is_no_rate_zero_and_coming_into_it_is_one(fine: Any) 
 def test_what_is_let_go_sets_out_one_way_at_ordinary_tolerances_too(
     joint: int, held_by: str, method: str
 ) -> None:
-    """A fine run says how often the joint turns; a mark at its stop is met once an impact."""
+    """A fine run says how often the joint turns; a mark at its stop is met once per impact."""
     middle = np.pi / 2 if joint == 1 else 0.0
     for bound in np.linspace(0.1, 0.9, 9):
         ends = (middle - bound, middle + bound)

@@ -34,7 +34,7 @@ SHOWN = 3
 
 @dataclass
 class Told:
-    """How often each outcome was, what failed, and the longest case: its seconds and number."""
+    """How often each outcome occurred, what failed, and seconds and number of the longest case."""
 
     outcomes: Counter[str] = field(default_factory=Counter)
     failed: list[dict[str, Any]] = field(default_factory=list)

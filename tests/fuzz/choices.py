@@ -1,7 +1,7 @@
-"""Where the choices come from that make a random case: a seed, or hypothesis.
+"""The choices that make a random case come from a seed or from hypothesis.
 
-The cases are drawn once, in `fuzz.drawn_scene` and `fuzz.drawn_run`, and know of neither: the
-campaign runs a hundred thousand from seeds, and hypothesis makes small what a property fails on.
+`fuzz.drawn_scene` and `fuzz.drawn_run` draw the cases and know of neither source. The campaign runs
+a hundred thousand cases from seeds; hypothesis makes a case small on which a property fails.
 """
 
 from __future__ import annotations
@@ -62,5 +62,5 @@ class FromHypothesis:
 
 
 def happens(choices: Choices, percent: int) -> bool:
-    """Whether something happens that does so in so many cases of a hundred."""
+    """Whether something happens that does so in `percent` of all cases."""
     return choices.integer(0, 99) >= 100 - percent

@@ -26,7 +26,7 @@ FAILURES = {
 
 
 def same(a: np.ndarray, b: np.ndarray) -> bool:
-    """Whether two arrays are the same to the last bit (0.0 and -0.0 apart: they are equal)."""
+    """Whether two arrays are the same to the last bit, except that 0.0 and -0.0 are equal."""
     return a.shape == b.shape and bool(np.array_equal(a, b, equal_nan=True))
 
 
@@ -111,7 +111,7 @@ def storing_changes_nothing(drawn: Drawn, sol: pc.Solution, choices: Choices) ->
     if "time_limit" in (sol.status, other.status):
         return
     if "the ledger" in sol.message + other.message:
-        return  # one that overflows ends a run: it cannot be kept in silence
+        return  # only a run with a ledger ends where the ledger overflows
     if (sol.status, sol.run.t_reached) != (other.status, other.run.t_reached):
         yield f"with {changes}: {_end(other)}, not {_end(sol)}"
     elif not same(sol.run.y_reached, other.run.y_reached):

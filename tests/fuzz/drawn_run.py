@@ -19,12 +19,12 @@ from fuzz.quantities import angle, regime, signed, size
 METHODS = tuple(method["name"] for method in _core.methods())
 FIXED_STEP_METHODS = {method["name"] for method in _core.methods() if method["error_order"] == 0}
 TIME_LIMIT = 5.0
-"""s; what bounds a case is max_steps, and this where a step takes long."""
+"""s; max_steps bounds a case, and so does this limit if a step takes long."""
 
 
 @dataclass
 class Drawn:
-    """What `pc.simulate` is called with. It prints as Python that makes it again."""
+    """The arguments of `pc.simulate`. They print as Python code that makes them again."""
 
     scene: pc.Scene
     q0: list[float]

@@ -2,10 +2,10 @@
 
     PYTHONPATH=tests:tests/models python -m fuzz.guided case out/fuzz/corpus -max_total_time=60
 
-What stands after the reader and the folder are libFuzzer's own flags. A case file and an archive
-are the fuzzer's bytes themselves; of a state, a scene, and of an archive's entries (whose checksums
-bytes alone would hardly meet) the bytes choose the damage. It stops at
-the first finding and leaves the bytes in a file `crash-...`, which read again:
+The arguments after the reader and the folder are libFuzzer's own flags. A case file and an archive
+are the fuzzer's bytes themselves. For a state, a scene, and the entries of an archive (whose
+checksums bytes alone would hardly meet), the bytes choose the damage. The fuzzer stops at the first
+finding and leaves its bytes in a file `crash-...`. This reads them again:
 
     PYTHONPATH=tests:tests/models python -m fuzz.guided case out/fuzz/corpus crash-...
 """

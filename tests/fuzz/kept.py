@@ -15,7 +15,7 @@ Record = dict[str, Any]
 
 
 def reasons(outcomes: dict[str, int]) -> list[tuple[str, int, int]]:
-    """Return each outcome, its cases, and of how many reasons; reasons stand after a colon."""
+    """Return each outcome, its cases, and the number of its reasons, which stand after a colon."""
     cases: Counter[str] = Counter()
     kinds: Counter[str] = Counter()
     for outcome, count in outcomes.items():

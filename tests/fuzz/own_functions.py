@@ -13,7 +13,7 @@ class Raised(Exception):
 
 
 class Forces:
-    """A law of the user's for a chain of n links, by its name; it prints as what makes it."""
+    """A law of the user's for a chain of n links, by its name; it prints as its constructor."""
 
     def __init__(self, name: str, n: int) -> None:
         self.name = name
@@ -39,7 +39,7 @@ class Forces:
 
 
 class Watched:
-    """What a user's event is a function of, by its name; it prints as what makes it."""
+    """The function of a user's event, by its name; it prints as its constructor."""
 
     def __init__(self, name: str) -> None:
         self.name = name

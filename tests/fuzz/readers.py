@@ -62,7 +62,7 @@ def whole_solutions() -> list[pc.Solution]:
 
 @cache
 def _hard_solutions() -> list[pc.Solution]:
-    """Return those that were watched, that bounced, by all methods, and compensated."""
+    """Return solutions with events, with bounces, by all methods, and with compensated steps."""
     fx, ev = pc.effects, pc.events
     rods = [pc.Link(mass=1.0, length=1.0)] * 2
     stops = [fx.JointStop(1, range=(0.0, 0.6), restitution=0.6), fx.JointStop(2, range=(-1, 0.8))]
@@ -108,7 +108,7 @@ def use(solution: pc.Solution) -> None:
     reached = solution.run.t_reached
     if solution.store == "dense":
         solution(np.linspace(solution.run.arguments["t_start"], reached, 5))
-    # Whatever the file says: the run goes on for so many steps, if it goes on.
+    # Whatever the file says, STEPS bounds the run if it goes on.
     for end in (reached, reached + 0.5, reached - 0.5, solution.run.arguments["t_end"]):
         try:
             solution.resume(end, **STEPS)

@@ -36,7 +36,7 @@ def of_seed(seed: str) -> tuple[Drawn | None, Verdict]:
 
 
 def of_case(case: Drawn, seed: str) -> Verdict:
-    """Run a case, and hold it against the claims; those that are chosen come from the seed."""
+    """Run a case, and check the claims; the seed chooses those that are not always checked."""
     choices = FromSeed(f"{seed}, claims")
     claims: list[Claim] = [*ALWAYS]
     if happens(choices, 50):
@@ -77,7 +77,7 @@ def _held(claim: Claim, case: Drawn, sol: pc.Solution, choices: Choices) -> Iter
         yield from claim(case, sol, choices)
     except Exception as error:
         if hasattr(error, "solution") or _has_own(case):
-            return  # what the user's function raised, once more
+            return  # the user's function raised once more
         yield _told(error)
 
 

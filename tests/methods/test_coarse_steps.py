@@ -34,7 +34,7 @@ def between(sol: pc.Solution) -> np.ndarray:
 def test_a_step_of_coarse_tolerances_overflows_nowhere(
     links: int, law: pc.effects.ViscousJoint, qd0: float, t_end: float, options: dict[str, Any]
 ) -> None:
-    """Its new state is finite, but the stages of its dense output overflow: it is a line."""
+    """The new state is finite, but the stages of the dense output overflow, so it is a line."""
     scene = pc.Scene(links=[ROD] * links, gravity=9.807, effects=[law])
     sol = pc.simulate(scene, 0.0, qd0, (0.0, t_end), max_steps=1000, check=False, **options)
     assert sol.stats.accepted > 0

@@ -62,7 +62,7 @@ def test_high_and_low_part_together_are_the_sum_to_thirty_digits(method: str) ->
     steps = round(state["position_t"] * 2**5)
     found = Fraction(state["position_y"][0]) + Fraction(state["position_stepper"][0])
     increment = found - Fraction(1 / 3)
-    # what h sum b k rounds to is the increment's affair
+    # the rounding of h sum b k belongs to the increment
     assert abs(increment / (steps * increment_of_step(method)) - 1) < 2.0**-52
     assert steps > 60_000
     assert state["position_stepper"][0] != 0.0
@@ -81,7 +81,7 @@ def test_a_ledger_changes_no_bit_of_a_compensated_run(method: str, links: int) -
     assert np.array_equal(bare.y, booked.y)
     assert not np.array_equal(bare.y, rounded.y)
     assert np.array_equal(low_part(bare)[: 2 * links], low_part(booked)[: 2 * links])
-    if method in EXPLICIT:  # no other keeps nothing else
+    if method in EXPLICIT:  # the other methods keep more than low parts
         assert len(low_part(rounded)) == 0
     assert np.count_nonzero(low_part(booked)) > links
 

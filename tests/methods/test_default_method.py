@@ -193,7 +193,7 @@ def test_a_run_that_is_about_to_ask_goes_on_bit_by_bit() -> None:
         assert np.array_equal(whole.y, resumed.y)
         assert whole.stats == resumed.stats
         assert whole.message == resumed.message
-    assert asked == [False, True, False, False]  # one stands between the last hit and the question
+    assert asked == [False, True, False, False]  # one ends between last hit and trial
 
 
 @pytest.mark.parametrize("method", ["taylor", "dop853"])

@@ -275,7 +275,7 @@ def seconds_until_ctrl_c_is_heard() -> float:
 
 
 def test_ctrl_c_as_a_run_ends_does_not_lose_it():
-    """Runs that get longer, until the core looks up once: nobody looks again before the end."""
+    """Make runs longer until the core looks for Ctrl-C once, and not again before the end."""
     interrupt = ctypes.pythonapi.PyErr_SetInterrupt
     interrupt.argtypes, interrupt.restype = [ctypes.c_double], None  # called with a fraction
     kept = None
@@ -291,7 +291,7 @@ def test_ctrl_c_as_a_run_ends_does_not_lose_it():
 
 
 def test_ctrl_c_is_heard_within_a_tenth_of_a_second():
-    # a busy machine can only lengthen it: the best of three
+    # a busy machine can only lengthen it, so the best of three counts
     assert min(seconds_until_ctrl_c_is_heard() for _ in range(3)) < 0.1
 
 

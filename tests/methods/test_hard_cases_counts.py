@@ -53,7 +53,7 @@ def test_over_ten_thousand_seconds_no_bounce_is_missed_and_nothing_gets_through(
     expected = np.arange(first, t_end, 2 * first)
     struck = sol.t[:-1][np.diff(sol.t) == 0]
     assert len(struck) == len(expected) > 3600
-    assert np.abs(struck - expected).max() < 1e-3  # what the energy has drifted
+    assert np.abs(struck - expected).max() < 1e-3  # the drift of the energy
     assert beyond(sol, 1, bound) <= 1e-15
 
 

@@ -101,7 +101,7 @@ def test_a_stiff_damper_is_flagged_in_bounded_work(damping: float) -> None:
     ids=["servo", "spring"],
 )
 def test_a_stiff_servo_ends_at_the_limit_of_steps_or_gets_there(effect: Any) -> None:
-    """As two rods that are one bent: within the servo's or spring's give, load/stiffness."""
+    """The rods move as one bent rod, but for what the servo or spring yields, load/stiffness."""
     start = [np.pi / 4, np.pi / 3]
     stiff = BOOK.replace(effects=[effect])
     sol = pc.simulate(stiff, start, t_span=(0, 0.5), max_steps=400_000, store="steps", check=False)

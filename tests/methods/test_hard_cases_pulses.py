@@ -14,7 +14,7 @@ FRICTION = 0.5
 
 
 def pulse(at: float, half: float, impulse: float = 1.0) -> fx.Motor:
-    """A triangle from at - half to at + half, of a table."""
+    """A table with a triangular pulse from at - half to at + half."""
     knots = [-1.0, at - half, at, at + half, 2 * at + 10]
     peak = impulse / ((knots[3] - knots[1]) / 2)
     return fx.Motor(joint=1, table=fx.Table(t=knots, torque=[0, 0, peak, 0, 0]))
@@ -25,8 +25,8 @@ def pulse(at: float, half: float, impulse: float = 1.0) -> fx.Motor:
 def test_a_narrow_pulse_of_a_table_gives_a_turning_rod_its_impulse(
     at: float, half: float, method: str
 ) -> None:
-    last_bits = 1e-13 + 4 * np.spacing(at) / half  # of the times within the pulse
-    # a finer tolerance asks for what these leave open
+    last_bits = 1e-13 + 4 * np.spacing(at) / half  # by the last bits of the times within the pulse
+    # a finer tolerance would ask for more than these bits can give
     sol = pc.simulate(
         rod(pulse(at, half)), 0, 0.1, (0, 2 * at), method=method, rtol=max(1e-9, last_bits)
     )
@@ -46,10 +46,10 @@ def test_pulses_of_both_signs_move_a_rod_a_step_and_leave_it_there(method: str) 
 
 
 def slide(half: float, impulse: float) -> tuple[float, float]:
-    """How far a rod that friction holds is knocked, and until when after the middle.
+    """How far a pulse knocks a rod that friction holds, and how long it slides after the middle.
 
-    Of the pulse what is above friction counts, a triangle again; its last part and what follows
-    slow the rod down.
+    Only the part of the pulse above friction counts, which is a triangle again. Friction slows the
+    rod down in the last part of the pulse and afterwards.
     """
     peak = impulse / half
     above = half * (1 - FRICTION / peak)  # half the time for which the pulse exceeds friction
@@ -100,7 +100,7 @@ def test_a_pulse_that_grows_within_the_last_bits_of_time_knocks_a_stuck_rod_as_f
 def test_a_narrow_pulse_of_ones_own_knocks_a_stuck_rod_where_max_step_is_as_short(
     half: float, method: str
 ) -> None:
-    """At rest steps are a hundredth of 1/w0, 1 s here; for what is shorter, as documented."""
+    """At rest steps are a hundredth of 1/w0 = 1 s; shorter pulses need max_step, as documented."""
 
     def blow(t: float, q: Any, qd: Any) -> Any:
         return np.array([max(0.0, 0.2 / half * (1 - abs(t - 1) / half))])

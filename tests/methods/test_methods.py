@@ -115,8 +115,8 @@ def test_the_interpolant_ends_at_the_new_state(tableau):
 def order_seen(method: dict[str, Any], counts: list[int], times: list[int]) -> float:
     """Return the slope of the error over the last four decades above rounding.
 
-    The error is the largest at the reference's ``times`` of the first half second, in so many
-    equal steps.
+    The error is the largest at the reference's ``times`` of the first half second, which a run
+    takes in ``counts`` equal steps.
     """
     case = trajectory("textbook")
     t, exact = case.t[times], np.hstack([case.q, case.qd])[times].T

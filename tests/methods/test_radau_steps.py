@@ -1,8 +1,8 @@
-"""Every step of radau5: against the method written out in Python, its control with it.
+"""Every step of radau5 agrees with the method written out in Python, including step control.
 
-Two programs of one method differ by rounding, and where Newton's iteration stops in between they
-would differ by its tolerance: that they take the same number of iterations says that they do not.
-As in test_trajectories.py the runs are loose and not long.
+Two programs of one method differ by rounding. If their Newton iterations stopped at different
+points, they would differ by the tolerance of the iteration; both take the same number of
+iterations, so this does not happen. As in test_trajectories.py the runs are loose and not long.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def damped_rods(damping: float) -> Trajectory:
 
 def check(sol: pc.Solution, run: radau_steps.Run) -> None:
     assert (sol.stats.accepted, sol.stats.rejected) == (len(run.h), run.rejected)
-    # where stages are not found it is asked whether something was not finite
+    # if stages are not found, one more evaluation asks whether something was not finite
     assert sol.stats.nfev == run.evaluations + run.not_solved
     assert sol.stats.njev == len(run.h)
     assert sol.stats.nlu == 2 * (len(run.h) + run.rejected)

@@ -1,14 +1,15 @@
 """Chains that bounce on the stop of one joint until they lean on it, bounce by bounce in NumPy.
 
-Nothing of the core is here. The angle of that joint is replaced by its gap: the smallest bounce is
-as exact as the first, however large the angles are. Between impacts Gragg's method, extrapolated
-(hybrid_chain.py); an impact is a root of the gap, by Newton's method.
+Nothing of the core is here. The angle of that joint is replaced by its gap, so that the smallest
+bounce is as exact as the first, however large the angles are. Gragg's method, extrapolated
+(hybrid_chain.py), solves the motion between impacts; Newton's method finds an impact as a root of
+the gap.
 
 Infinitely many bounces end in a finite time. From the first impact that is slower than `SMALLEST`
-on they are summed up: the gap is pressed shut by an acceleration a, constant in what is left, so
-that after an impact at the speed w it takes 2 e w/(a (1 - e)). The error is of second order in w:
-what a changes in this time. Meanwhile the chain moves as if it leant on the stop, to that order
-too: the mean of the impulses is what holds the joint.
+on they are summed up. An acceleration a, constant for the rest of them, presses the gap shut, so
+that they take 2 e w/(a (1 - e)) after an impact at the speed w. The error is the change of a in
+this time, which is of second order in w. To that order the chain meanwhile moves as if it leant on
+the stop, because the mean of the impulses holds the joint.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ SMALLEST = 1e-9  # rad/s
 
 
 class Strike(NamedTuple):
-    """When the gap closed, how fast, what that lost; how hard and how long it is pressed shut.
+    """When and how fast the gap closed, the energy lost, and the acceleration that presses it shut.
 
     `to_go` is the time of all bounces after this one, if nothing changed any more.
     """
@@ -41,8 +42,8 @@ class Strike(NamedTuple):
 class BouncingChain:
     """A stop at angle `bound` of `joint` (from 0), above it (`side` = 1) or below it (-1).
 
-    `torques(t)` of the motors. `run` notes the strikes, when the last of infinitely many is over,
-    and when the chain is let go after that.
+    `torques(t)` are those of the motors. `run` notes the strikes, when the last of infinitely many
+    is over, and when the chain is let go after that.
     """
 
     chain: DenseChain
@@ -120,7 +121,7 @@ class BouncingChain:
         return t + high, self.step(True, t, y, high), False
 
     def flown(self, t: float, y: Array, h: float) -> tuple[float, Array, bool]:
-        """A step without contact, or the part of it up to an impact, and that."""
+        """A step without contact, or the part of it up to an impact, and the impact."""
         n, j = self.chain.n, self.joint
         if y[j] == 0 < y[n + j]:  # no step is much longer than the bounce
             h = min(h, 3 * y[n + j] / self.pressed(t, y))
@@ -128,7 +129,7 @@ class BouncingChain:
         if after[j] >= 0:
             return t + h, after, False
         s, change = h, -np.inf
-        while change < -1e-15 * s:  # from the right: there the gap falls ever faster
+        while change < -1e-15 * s:  # from the right, where the gap falls ever faster
             at = self.step(False, t, y, s)
             change = min(0.0, -at[j] / at[n + j])
             s += change

@@ -10,12 +10,12 @@ WITHOUT_SERIES = ("rod_drag", "user", "compiled_user")
 
 
 def carried(method: str, scene: pc.Scene) -> str:
-    """Return the method, or where it refuses the scene, ``dop853`` in place of ``taylor``."""
+    """Return the method, with ``dop853`` in place of ``taylor`` if that refuses the scene."""
     return method.replace("taylor", "dop853") if any(map(_refused, scene.effects)) else method
 
 
 def is_refusal_of_series(error: ValueError) -> bool:
-    """Whether that is what taylor says of an effect that it has no series of, and no other."""
+    """Whether `error` is the refusal by taylor of an effect that has no series, and no other."""
     kinds = (*WITHOUT_SERIES, "dry_joint_friction")
     return any(f"({kind}) has no Taylor series" in str(error) for kind in kinds)
 

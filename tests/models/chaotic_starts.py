@@ -24,12 +24,12 @@ DATA = Path(__file__).parents[1] / "data/chaotic_starts.json"
 
 T_END = 14
 EACH = 20
-"""Times a second."""
+"""Times per second."""
 DECIMALS = 9
-"""The digits of the angles that count: what is asked is when an error passes a tenth."""
+"""The digits of the angles that count, because tests ask when an error passes a tenth."""
 DIGITS = 46
 DISPLACED = Fraction(1, 10**24)
-"""By which the neighbour's first angle differs, rad."""
+"""The difference of the neighbour's first angle, rad."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -27,7 +27,7 @@ DATA = Path(__file__).parents[1] / "data/corner_impacts.json"
 GRAVITY = 9.807
 TIMES = (0.5, 1.0, 1.5, 2.0)
 DIGITS = (60, 90)
-"""Computed twice; what they differ by is what the record is good to."""
+"""Each case is computed twice; the difference is the accuracy of the record."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -125,7 +125,7 @@ def record() -> None:
 
 
 def scan(count: int, digits: int = 40) -> None:
-    """Print the scenes that the core ends more than 1e-9 rad from where the many digits do."""
+    """Print the scenes whose end is more than 1e-9 rad off in the core."""
     apart = []
     for seed in tqdm(range(count)):
         case = drawn(seed).computed([digits])

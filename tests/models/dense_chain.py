@@ -1,7 +1,7 @@
-"""Chains of uniform rods as dense matrices in NumPy, with the laws of contact by trying out.
+"""Chains of uniform rods as dense matrices in NumPy, with the laws of contact by trial.
 
-Nothing here is shared with the core: the equations are those of docs/conventions.md, written down
-once more; which contact acts is found by trying all that could.
+Nothing here is shared with the core. The equations are those of docs/conventions.md, written down
+once more; the contacts that act are found by trying all that could.
 """
 
 from __future__ import annotations
@@ -60,8 +60,8 @@ def joints(n: int) -> Array:
 def held(m: Array, forces: Array, limits: dict[int, float]) -> tuple[Array, dict[int, int]]:
     """Accelerations, and what the joints (from 0) at rest with these limits of friction do.
 
-    0: it sticks; 1, -1: it begins to slide that way. `forces` holds the friction of joints that
-    slide already.
+    A joint at 0 sticks; a joint at 1 or -1 begins to slide that way. `forces` includes the friction
+    of joints that slide already.
     """
     return resting(m, forces, {j: (-limit, limit) for j, limit in limits.items()})
 
@@ -69,9 +69,9 @@ def held(m: Array, forces: Array, limits: dict[int, float]) -> tuple[Array, dict
 def resting(
     m: Array, forces: Array, ranges: dict[int, tuple[float, float]]
 ) -> tuple[Array, dict[int, int]]:
-    """The same, of joints whose supports can exert torques within these ranges.
+    """The same for joints whose supports can exert torques within these ranges.
 
-    Tries every pattern; the one without contradiction is the answer.
+    It tries every pattern; the one without contradiction is the answer.
     """
     d = joints(len(m))
     best: tuple[float, Any, Any] = (np.inf, None, None)
@@ -111,8 +111,8 @@ def rates_after_impact(
 ) -> tuple[Array, Array]:
     """Rates after all of these contacts close at once, and their impulses; normals point away.
 
-    The gap of contact c closes at the rate normals[c] . qd < 0. As often as any gap does: an impact
-    of all that do not open.
+    The gap of contact c closes at the rate normals[c] . qd < 0. As long as any gap closes, there is
+    an impact of all contacts that do not open.
     """
     e, impulses = np.asarray(restitution), np.zeros(len(normals))
     rounding = 1e-14 * np.abs(qd).max()
@@ -129,7 +129,7 @@ def rates_after_impact(
 def rates_after_one_impact(
     m: Array, qd: Array, normals: Array, restitution: Array
 ) -> tuple[Array, Array]:
-    """0 <= Lam against J v+ >= -e J v-: tries every set of contacts that act."""
+    """Solve 0 <= Lam against J v+ >= -e J v-, by trying every set of contacts that act."""
     wanted = -restitution * (normals @ qd)
     mobility = np.linalg.solve(m, normals.T)
     best: tuple[float, Any, Any] = (np.inf, None, None)

@@ -1,7 +1,7 @@
 """Runs of ordinary scenes for hypothesis, short enough that rounding stays rounding.
 
 Chaos multiplies a difference of rounding by e every Lyapunov time; over a second of chains of about
-a metre that is a factor of a thousand or so. For wild ones there is `any_runs`.
+a metre that is a factor of a thousand or so. `any_runs` has the wild runs.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ SMOOTH = ("viscous_joint", "rod_drag", "torsional_spring", "motor", "rotor_inert
 UNDAMPED = ("torsional_spring", "motor", "rotor_inertia", "payload", "lock", "driven_pivot")
 """Smooth effects under which a difference does not grow backward, as it does under damping."""
 LOSSLESS = ("torsional_spring", "rotor_inertia", "payload", "lock")
-"""Effects that reversed time does not tell from themselves."""
+"""Effects that are the same in reversed time."""
 
 
 @st.composite

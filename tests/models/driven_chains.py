@@ -1,6 +1,7 @@
 """Hanging rods under a motor, with friction and stops: as scenes, and mode by mode.
 
-What a run must show of the solution in hybrid_chain.py is asserted here, for all tests of it.
+The assertions of what a run must share with the solution in hybrid_chain.py are here, for all tests
+of it.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ class Motor(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DrivenChain:
-    """As many rods of 1 kg and 1 m as there is `friction`; every joint has `stops`, or none has.
+    """As many rods of 1 kg and 1 m as `friction` has entries; every joint has `stops`, or none.
 
     They are at rest at first. `h` is the step of the solution mode by mode.
     """

@@ -1,10 +1,11 @@
 """Chains with dry friction and stops, solved mode by mode in NumPy: nothing of the core is here.
 
 A mode says of each joint whether it is held (0), by friction, a stop or both, or which way it
-turns (1, -1). Within a mode the equations are smooth: Gragg's method, extrapolated to high order. A
-mode ends where the rate of a joint that slides reaches zero, the angle of one that is free a stop,
-or what holds a joint the end of its range, found by bisecting the step; the next one is free of
-contradiction among all patterns (dense_chain.py). Impacts are plastic.
+turns (1, -1). Within a mode the equations are smooth, and Gragg's method, extrapolated to high
+order, solves them. A mode ends where the rate of a sliding joint reaches zero, the angle of a free
+joint reaches a stop, or the torque that holds a joint reaches the end of its range. Bisection of
+the step finds this time. The next mode is the pattern without contradiction among all patterns
+(dense_chain.py). Impacts are plastic.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ def extrapolated_step(
 
 @dataclass(kw_only=True)
 class HybridChain:
-    """`friction` of each joint, in sliding and at rest; `torques(t)` of the motors.
+    """`friction` is that of each joint, sliding or at rest; `torques(t)` are those of the motors.
 
     `stops`, if there are any, are the least and the largest angle of each joint, (n, 2).
     """
@@ -52,14 +53,14 @@ class HybridChain:
     switches: list[tuple[float, Array, tuple[int, ...]]] = field(default_factory=list)
 
     def gaps(self, y: Array) -> Array:
-        """The way to each stop, (n, 2)."""
+        """The distance to each stop, (n, 2), rad."""
         if self.stops is None:
             return np.full((self.chain.n, 2), np.inf)
         phi = joints(self.chain.n) @ y[: self.chain.n]
         return np.column_stack([phi - self.stops[:, 0], self.stops[:, 1] - phi])
 
     def ranges(self, y: Array) -> Array:
-        """Between which torques a joint can be held, (n, 2): a stop pushes without bound."""
+        """The range of torques that can hold each joint, (n, 2); a stop pushes without bound."""
         friction = np.column_stack([-self.friction, self.friction])
         touches = self.gaps(y)[:, ::-1] < TOUCHING  # the lower stop pushes upward
         return np.where(touches, [-np.inf, np.inf], friction)

@@ -1,8 +1,8 @@
 """Random scenes whose motion is regular: neighbours part by less than a hundredfold over the span.
 
-What is known of each: the motion from two methods as accurate as doubles allow, how far apart these
+Of each scene we know the motion from two methods as accurate as doubles allow, how far apart these
 are, and what every method takes and reaches at every half decade of tolerance. An error to ask for
-is drawn with it, between 1e-2 and 1e-10.
+is drawn with the scene, between 1e-2 and 1e-10.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class Regular:
 
 
 def regular(seed: int) -> Regular:
-    """Draw until the motion is regular; measure what there is to know."""
+    """Draw until the motion is regular; measure what the tests need to know."""
     rng = np.random.default_rng(seed)
     while True:
         arguments = scene_and_start(rng)

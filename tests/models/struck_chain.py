@@ -1,6 +1,6 @@
 """Rates of a chain after an impact at its stops, with capture: the law of trust.md in NumPy.
 
-Nothing of the core is here: contacts that act are found by trying out, as in dense_chain.py.
+Nothing of the core is here: the contacts that act are found by trial, as in dense_chain.py.
 """
 
 from __future__ import annotations

@@ -26,7 +26,7 @@ class Case(Protocol):
 
 
 def few(cases: Sequence[Case], values: int) -> list[Case]:
-    """Return cases that meet up to so many values of each parameter, each value at least once.
+    """Return cases that meet up to `values` values of each parameter, each at least once.
 
     The choice depends on nothing but the names of the cases and their order.
     """
@@ -51,7 +51,7 @@ def few(cases: Sequence[Case], values: int) -> list[Case]:
 
 
 def spread(values: Sequence[int], count: int) -> list[int]:
-    """Return so many of some values, the first and the last among them."""
+    """Return `count` of the values, among them the first and the last."""
     if len(values) <= count:
         return list(values)
     if count == 1:
@@ -60,7 +60,7 @@ def spread(values: Sequence[int], count: int) -> list[int]:
 
 
 def every(names: Iterable[str], share: int) -> list[str]:
-    """Return one name of so many, the same ones each time, and at least one of every file."""
+    """Return one in `share` names, the same ones each time, and at least one of every file."""
     names = list(names)
     first: dict[str, str] = {}
     for name in sorted(names, key=digest):

@@ -53,7 +53,7 @@ def _each(value: Any, f: Callable[[float], float]) -> Any:
 
 @dataclass(frozen=True)
 class Units:
-    """How many of the new units of mass, length and time an old one is; powers of two."""
+    """How many new units of mass, length and time make one old unit; powers of two."""
 
     kg: float = 1.0
     m: float = 1.0

@@ -17,12 +17,12 @@ def rod(*effects: Any, gravity: float = 0.0, links: int = 1) -> pc.Scene:
 
 
 def solve(scene: pc.Scene, q: Any, qd: Any, t_end: float, **options: Any) -> pc.Solution:
-    """A run that has lost its end would go on for ever: max_steps ends it."""
+    """Simulate; max_steps ends a run that has lost its end and would go on for ever."""
     return pc.simulate(scene, q, qd, (0, t_end), max_steps=10_000, **options)
 
 
 def time_of_rest(sol: pc.Solution) -> float:
-    """When the last that moved came to rest; the start where nothing did."""
+    """When the last moving link came to rest, or the start if nothing moved."""
     moving = np.flatnonzero(sol.qd.any(axis=1))
     return float(sol.t[moving[-1] + 1] if moving.size else sol.t[0])
 

@@ -20,7 +20,7 @@ def read_only(x: np.ndarray) -> np.ndarray:
 
 
 class ArrayLike:
-    """What is no array, and can be read as one."""
+    """An object that is no array, but can be read as one."""
 
     def __init__(self, x: np.ndarray) -> None:
         self._x = x

@@ -35,7 +35,7 @@ def test_examples_are_read_and_used(i: int) -> None:
 @pytest.mark.filterwarnings("ignore::pendcore.PendcoreWarning")
 @pytest.mark.parametrize("reader", READERS)
 def test_most_of_the_damage_is_damage(reader: str) -> None:
-    """What changes nothing tests nothing: some is refused, and some is not."""
+    """Damage that changes nothing tests nothing: some of it is refused, and some is not."""
     refused = 0
     for i in range(100):
         try:

@@ -255,7 +255,7 @@ STARTED = {
 
 @pytest.mark.parametrize("scene", STARTED.values(), ids=STARTED)
 def test_the_first_step_is_safe_at_rest_near_an_equilibrium(scene):
-    """Accepted at once, at the tolerances of a run by default; a tenfold one is not, by dopri5."""
+    """It is accepted at the default tolerances; dopri5 rejects one that is ten times as long."""
     told, rng = scene.explain(), np.random.default_rng(7)
     for found in told.equilibria:
         for off in rng.uniform(-0.5, 0.5, (20, len(scene.links))):
@@ -278,7 +278,7 @@ def test_the_fastest_of_nature_and_drives_chooses_the_first_step():
 
 
 def test_a_drive_alone_does_not_choose_the_first_step():
-    """What is not known may be faster."""
+    """The natural rates of so long a chain are not known, and may be faster than the drive."""
     told = rods(61, fx.DrivenPivot(y=fx.Sinusoid(1e-3, 1.0))).explain()
     assert told.fastest_drive == 1.0
     assert told.first_step is None

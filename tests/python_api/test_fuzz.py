@@ -32,7 +32,7 @@ def cases() -> list[Drawn]:
 
 
 def test_random_cases_end_in_time_and_keep_every_claim() -> None:
-    """The whole of it: a hundred thousand by `make fuzz`."""
+    """The whole campaign, of a hundred thousand cases, is `make fuzz`."""
     told = campaign.run(SEED, range(CASES))
     assert told.outcomes.total() == CASES
     assert not told.failed, campaign.report_of("", told, SEED, 0)
@@ -86,7 +86,7 @@ def test_a_worker_that_dies_or_hangs_names_its_case(
 
 
 class Broken:
-    """A solution that is as another, but for what is given."""
+    """A solution like another one, except for the given entries."""
 
     def __init__(self, sol: pc.Solution, **changes: object) -> None:
         self._sol = sol

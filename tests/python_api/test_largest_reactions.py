@@ -125,7 +125,7 @@ def test_what_hangs_at_rest_has_its_weight_throughout() -> None:
 
 
 def test_a_joint_that_is_held_is_held_between_the_steps_of_an_implicit_method_too() -> None:
-    """Whose interpolant turns it by a last bit, with which it would slide."""
+    """The interpolant turns the joint by a last bit, with which it would slide."""
     one, other = (
         [x.force for x in pc.simulate(RUBBED, pi / 2, t_span=(0, 9), method=m).largest_reactions()]
         for m in ("radau5", "dop853")

@@ -122,7 +122,7 @@ def test_rest_looks_like_rest():
 
 
 def test_late_times_are_written_out():
-    """Not as the last digits of an offset in the corner."""
+    """They do not appear as the last digits of an offset in the corner."""
     line = pc.simulate(SCENE, 1.0, t_span=(2e4, 2e4 + 1)).plot()[0]
     line.figure.canvas.draw()
     assert line.axes.xaxis.get_major_formatter().get_offset() == ""

@@ -50,7 +50,7 @@ PIECES = {
 def test_a_run_of_no_length_goes_on_as_one_made_that_way(
     effect: pc.effects.Effect, t_end: float
 ) -> None:
-    """At a time where a law changes, what holds is that of the side to which the run goes."""
+    """At a time where a law changes, the law of the side to which the run goes holds."""
     scene = pc.Scene(links=BOOK.links, effects=[effect])
     direct = pc.simulate(scene, Q0, 1.0, (0, t_end), max_steps=10_000)
     resumed = pc.simulate(scene, Q0, 1.0, (0, 0)).resume(t_end, max_steps=10_000)
@@ -89,7 +89,7 @@ def test_an_end_before_the_times_asked_for_is_refused():
 
 
 def test_a_few_attempts_at_a_time_get_past_one_that_the_end_cut_short():
-    """The first would go beyond the end: all of the run depends on that, and is made anew."""
+    """The first attempt would go beyond the end, on which the run depends: it is made anew."""
     how = {"method": "dopri5", "first_step": 2.0}
     few = pc.simulate(BOOK, Q0, 0, (0, 1), max_steps=8, check=False, **how)
     whole = pc.simulate(BOOK, Q0, 0, (0, 1), **how)

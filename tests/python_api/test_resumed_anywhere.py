@@ -31,7 +31,7 @@ METHODS = {method["name"]: method for method in _core.methods()}
 INSTRUCTION_SETS = ["baseline", "x86-64-v3", "x86-64-v4"]
 INSTRUCTION_SETS = INSTRUCTION_SETS[: INSTRUCTION_SETS.index(_core.instruction_set()) + 1]
 OF_THE_LEG = {"max_steps", "time_limit"}
-"""What a run keeps that is told to each leg anew."""
+"""The options of a run that each leg is given anew."""
 
 
 CONTROLLER = fx.PD(kp=20.0, kd=2.0, reference=1.0)
@@ -126,7 +126,7 @@ def has_function(scene: pc.Scene) -> bool:
 
 
 def state(sol: pc.Solution) -> dict[str, Any]:
-    """All that a run keeps; of one that cannot be pickled, all that can be seen."""
+    """All that a run keeps; if it cannot be pickled, all that can be seen of it."""
     if not has_function(sol.scene):
         return sol.run.__getstate__()
     run = sol.run
@@ -167,7 +167,7 @@ def in_legs(
     scene: pc.Scene, start: tuple[Any, Any], legs: list[tuple[float, int | None, str]],
     sign: float, **how: Any,
 ) -> pc.Solution:  # fmt: skip
-    """Run from leg to leg: until a time, or so many steps; then to the end."""
+    """Run each leg until a time or for a number of steps, and then to the end."""
     done = 0.0
     sol: pc.Solution | None = None
     for t_end, max_steps, between in [*sorted(legs, key=lambda leg: leg[0]), (T, None, "")]:

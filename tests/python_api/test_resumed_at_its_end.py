@@ -44,7 +44,7 @@ FAST = fx.Motor(1, sinusoid=fx.Sinusoid(amplitude=1e243, angular_frequency=1e154
 def test_to_go_on_to_where_a_run_stands_is_to_stay_there(
     effects: list[fx.Effect], steps: int, store: str
 ) -> None:
-    """Its time has more digits than a double, and is not at the double's by as much."""
+    """The time of the run has more digits than a double, and differs from `sol.t[-1]` by these."""
     scene = pc.Scene(links=[pc.Link(mass=1.0, length=0.6)] * 2, effects=effects)
     start = ([1.0, 1.0], [0.0, 0.5], (1.0, 3.0))
     how = {"method": "dopri5", "store": store}

@@ -26,7 +26,7 @@ def sol():
 
 
 def same(a, b):
-    """To the last bit, between the steps too, and in what is said about it."""
+    """Whether two runs are the same to the last bit, also between the steps, and in words."""
     between = np.linspace(a.t[0], a.t[-1], 7)
     return (
         a.scene == b.scene

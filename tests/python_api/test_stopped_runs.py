@@ -106,7 +106,7 @@ def test_the_right_hand_side_is_never_asked_outside_the_interval(
 
 
 def test_a_run_shorter_than_its_first_guess_goes_on_as_one_that_is_longer(method: str):
-    """The first step then depends on the end: what goes on begins anew."""
+    """The first step then depends on the end, so that a continued run begins anew."""
     book, start = pc.Scene.textbook(), (np.pi / 4, np.pi / 3)
     once = pc.simulate(book, start, 0, (0, 1), method=method)
     short = pc.simulate(book, start, 0, (0, 1e-13), method=method)

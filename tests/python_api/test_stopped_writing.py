@@ -36,7 +36,7 @@ def names(folder: str) -> list[str]:
 
 
 def stop_after(monkeypatch: Any, pieces: int, stop: BaseException) -> None:
-    """Let the disk be full, or a user lose patience, after so many arrays of an archive."""
+    """Let the disk be full, or a user lose patience, after some arrays of an archive."""
     write = np.lib.format.write_array
 
     def write_some(*args: Any, **named: Any) -> None:

@@ -83,7 +83,7 @@ class ManyDigitContacts:
     ) -> tuple[Any, list[int]]:  # fmt: skip
         """Return x + M^-1 J^T Lam, with 0 <= Lam against J x >= wanted, and which stops act.
 
-        Those of `always` do, with impulses of any sign.
+        The stops in `always` act in any case, with impulses of any sign.
         """
         rows = dict(zip(stops, self.opening(stops), strict=True))
         want = dict(zip(stops, wanted, strict=True))

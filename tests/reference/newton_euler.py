@@ -71,14 +71,14 @@ class Equations(NamedTuple):
     def sizes(self, unknowns: Sequence[Number]) -> NDArray[np.float64]:
         """How far the unknowns change if every term changes by as much as itself.
 
-        That is |K^-1| (|K| |x| + size of the right side): Skeel's condition. Who computes with
-        terms that are off by a part in 10^12 is off by 10^-12 of these sizes.
+        That is |K^-1| (|K| |x| + size of the right side): Skeel's condition. A result
+        from terms that are off by a part in 10^12 is off by 10^-12 of these sizes.
         """
         x = np.abs(np.array(unknowns, dtype=float))
         return self.reach(magnitudes(self.matrix) @ x + [float(side.size) for side in self.right])
 
     def reach(self, terms: NDArray[np.float64]) -> NDArray[np.float64]:
-        """How far the unknowns change if the lines change by so much, whatever the signs."""
+        """How far the unknowns change if the lines change by `terms`, whatever the signs."""
         matrix = magnitudes(self.matrix)
         # Columns and rows of very different units are brought to one size before inverting.
         columns = matrix.max(axis=0)

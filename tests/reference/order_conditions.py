@@ -49,14 +49,14 @@ def density(tree: Tree) -> int:
 
 
 class StageWeights:
-    """Phi_i(t) of every stage i of a method, for whatever tree is asked for.
+    """Phi_i(t) of every stage i of a method, for any tree.
 
-    Those of the trees that hang from others are found once.
+    The weights of trees that hang from others are found once.
 
     Parameters
     ----------
     a
-        The matrix of the method; rows may be short. Of any numbers that add and multiply.
+        The matrix of the method; rows may be short. Its numbers only need to add and multiply.
     """
 
     def __init__(self, a: Sequence[Sequence[Any]]) -> None:
@@ -77,7 +77,7 @@ class StageWeights:
 def misses(weights: StageWeights, b: Sequence[Any], tree: Tree, theta: Number = 1) -> Any:
     """Return by how much ``b`` misses the condition of a tree, at ``theta`` of a step.
 
-    Weights that are not given are zero: of stages that the dense output alone asks for.
+    Missing weights are zero; they belong to stages that only the dense output needs.
     """
     total = sum((x * y for x, y in zip(b, weights(tree), strict=False) if x), Fraction(0))
     return total - Fraction(1, density(tree)) * theta ** order(tree)

@@ -31,7 +31,7 @@ class Pendulum:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Repairs:
-    """What is put right in (2.10) and (2.11); nothing unless asked for."""
+    """The repairs of (2.10) and (2.11) that are made; none by default."""
 
     weight_of_link_1: bool = False  # (2.10): +m_1 g L_1/2 cos q_1 for y downward
     mass_of_link_1: bool = False  # (2.10): m_1 L_1^2/3

@@ -118,9 +118,9 @@ def integrate(
 ) -> Run:
     """Integrate dy/dt = f(t, y) from the first to the second time of ``t_span``.
 
-    The tolerances are those of the step's own error: its estimate is of lower order, and is held
-    against 0.1 rtol^(2/3), and atol in proportion. Of tolerances at which the iteration meets
-    rounding this knows nothing.
+    The tolerances are those of the step's own error. Its estimate is of lower order, and must stay
+    below 0.1 rtol^(2/3), and atol in proportion. This program does not provide for tolerances at
+    which the iteration meets rounding.
     """
     t, t_end = t_span
     direction = 1.0 if t_end >= t else -1.0

@@ -29,7 +29,7 @@ def _sizes(row: Any) -> list[float]:
 def of_new_state(method: str) -> float:
     """Return the most that rounding moves y_new, in units of h times the largest stage.
 
-    Of a Taylor series: the first terms are by far the largest, and are rounded twice.
+    In a Taylor series the first terms are by far the largest, and are rounded twice.
     """
     if method == "taylor":
         return 2 * U
@@ -39,9 +39,9 @@ def of_new_state(method: str) -> float:
 def of_late_times(method: str, t: float) -> float:
     """Return the most that rounded times move a law as late as t: s, in the mean of a step.
 
-    A stage sees its time rounded, and the begin of its step too, each by at most half a bit of t:
-    the first is weighted by the method, the second the same in all stages. Before time 0 the core
-    has a line by its value at 0, of a product and a sum of the size of slope times t.
+    A stage sees its own time rounded, and the beginning of its step too, each by at most half a bit
+    of t. The method weights the first; the second is the same in all stages. Before time 0 the core
+    computes a line from its value at 0, by a product and a sum of the size of slope times t.
     """
     weights = sum(abs(_value(number)) for number in _core.tableau(method)["b"])
     half_a_bit = ulp(t) / 2
@@ -49,7 +49,7 @@ def of_late_times(method: str, t: float) -> float:
 
 
 def of_dense_output(method: str) -> float:
-    """Return the same of y(t + theta h) at the worst theta, of roundings without relation."""
+    """Return the same for y(t + theta h) at the worst theta, for independent roundings."""
     table = _core.tableau(method)
     of_functions = [hypot(*_sizes(row)) for row in table["functions"]]
     basis = [[_value(number) for number in row] for row in table["basis"]]

@@ -1,7 +1,7 @@
 """The start within its noise from which a simulation stays nearest to a measured swing.
 
-What is made small is the largest of two kinds of ratios: each difference between simulated and
-measured angle over the bound it has to keep, and each correction of the start over the noise it
+The fit minimises the largest of two kinds of ratios: each difference between simulated and measured
+angle over the bound that it has to keep, and each correction of the start over the noise that it
 has to stay within. A largest value has no derivative, so it is approached through the p-norm
 
     ||r||_p = (sum of abs(r_k)^p)^(1/p),      p = 2, 4, 8, 16, 32

@@ -1,10 +1,10 @@
 """Planar chains of uniform rods with stops in their joints, event by event in many digits.
 
-Between impacts Taylor series of fixed-point integers (taylor_series.py), with the joints that rest
-at a stop locked; an event is a root of a gap, or of the torque that locks a joint, to the last
-digit. Impacts are those of docs/trust.md, by trying out which contacts act. Bounces that accumulate
-are all there, at one stop or in turn at several, down to the capture speed: with 60 digits gaps of
-1e-40 rad are gaps.
+Between impacts, Taylor series of fixed-point integers (taylor_series.py) give the motion, with the
+joints that rest at a stop locked. An event is a root of a gap, or of the torque that locks a joint,
+to the last digit. Impacts follow docs/trust.md; the contacts that act are found by trial. Bounces
+that accumulate are all there, at one stop or in turn at several, down to the capture speed: with 60
+digits gaps of 1e-40 rad are gaps.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Event(NamedTuple):
 
 @dataclass(kw_only=True)
 class StoppedRods:
-    """A run of them, from a start that touches no stop; `events` gets what happens."""
+    """A run of such rods, from a start that touches no stop; `events` gets what happens."""
 
     chain: RodChain
     stops: Sequence[Stop]
@@ -76,7 +76,7 @@ class StoppedRods:
                 self.settle(q, qd, which)
                 if order == self.order:
                     halvings = max(halvings + (1 if share < 0.6 else -1 if share > 1.0 else 0), 0)
-                if which is not None:  # the next may be as near, within reach of a shorter series
+                if which is not None:  # the next may be so near that a shorter series reaches it
                     self.happen(which, now, q, qd)
                     near = x < int(share * 2**30) << self.bits - 40
                     order = max(8, order // 2) if near else order

@@ -79,9 +79,9 @@ class Series:
         order: int,
         locked: frozenset[int],
     ) -> tuple[list[list[int]], list[list[int]]]:
-        """Return the same, and of each joint the torque that locks it, per 4^halvings.
+        """Return the same, and for each joint the torque that locks it, per 4^halvings.
 
-        A link behind a joint that is locked, counted from 0, turns as the one before it, or not.
+        A link behind a joint in `locked` (from 0) turns as the link before it, or not at all.
         """
         n, bits, links = self.n, self.bits, range(self.n)
         bodies = self.bodies(locked)
@@ -153,7 +153,7 @@ class Series:
             return tuple(int(mpmath.nint(mpmath.ldexp(x, self.bits))) for x in (cosine, sine))
 
     def inverse(self, matrix: list[list[int]]) -> list[list[int]]:
-        """By Gauss and Jordan; the mass matrix is positive definite and asks for no pivots."""
+        """Invert by Gauss and Jordan; the mass matrix is positive definite and needs no pivots."""
         n, one = len(matrix), 1 << self.bits
         rows = [[*row, *(one * (i == j) for j in range(n))] for i, row in enumerate(matrix)]
         for i in range(n):

@@ -1,8 +1,9 @@
 """Impacts that alternate ever faster between two stops, past the last of infinitely many.
 
-Against the solution event by event in many digits (corner_impacts.py). In such a corner the gaps
-shrink faster than the rates: when they are below the last bits of the angles, much of the speed may
-be left, and what becomes of it depends on how the impacts go on at what is one time for a double.
+The core is compared with the solution event by event in many digits (corner_impacts.py). In such a
+corner the gaps shrink faster than the rates. When the gaps are below the last bits of the angles,
+much of the speed may be left. What becomes of it depends on the further impacts, all at what is one
+time for a double.
 """
 
 from __future__ import annotations
@@ -47,7 +48,7 @@ def test_without_stops_in_reach_the_reference_is_the_motion_in_many_digits() -> 
 
 
 def test_bounces_of_one_rod_in_the_reference_are_over_when_their_series_says() -> None:
-    """Small ones on a stop that gravity presses on: t_1 + (2 w_1/a) e/(1 - e), a = 3 g/(2 L)."""
+    """Small bounces, pressed on by gravity: t_1 + (2 w_1/a) e/(1 - e), a = 3 g/(2 L)."""
     height, e = 1e-8, 0.6
     rod = RodChain([2.0], [1.5], 9.807)
     rods = StoppedRods(chain=rod, stops=[Stop(0, 0.0, 1, e, 1e-15)], digits=40)

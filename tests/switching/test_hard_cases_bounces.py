@@ -136,7 +136,7 @@ def test_elastic_bounces_keep_the_energy_and_their_beat(fine: Any) -> None:
     method = FIRST[fine["method"]]  # nothing is stiff here
     is_derived = method in {"dop853", "taylor"}
     scale = bounces**2 * (2 * first / torque) * torque
-    # of a step: its sum; the state at both ends, what the sum is scaled by, and the impact
+    # of a step: the rounding of its sum, of the state at both ends, of the scale, and of the impact
     within = (of_new_state(method) + 4 * U) * scale if is_derived else 1e-10
     np.testing.assert_allclose(apex, [height, 0], atol=within)
 

@@ -16,7 +16,7 @@ inf = np.inf
 
 @pytest.fixture
 def fine(fine: Any) -> Any:
-    return fine | {"max_steps": 20_000}  # lest one goes on for ever
+    return fine | {"max_steps": 20_000}  # so that none goes on for ever
 
 
 def drawn_chain(n: int, seed: int) -> tuple[DenseChain, np.random.Generator]:
@@ -75,7 +75,7 @@ def test_an_impact_turns_the_joint_and_jerks_the_others_as_the_law_says(
 
 @pytest.mark.parametrize("n", [2, 3, 4])
 def test_stops_hit_at_once_share_the_impulse_by_complementarity(n: int, fine: Any) -> None:
-    """Every joint at one of its bounds at the start, moving any way: those that must, act."""
+    """Every joint starts at one of its bounds and moves either way; those that must, act."""
     acted = set()
     for seed in range(80):
         chain, random = drawn_chain(n, 1000 + seed)
@@ -113,7 +113,7 @@ TWO = DenseChain(masses=np.ones(2), lengths=np.ones(2), gravity=0.0)
 
 
 def two_stops(apart: float, fine: Any) -> tuple[pc.Solution, Any, Any]:
-    """Two rods at whose stops a free run is after 0.05 s: the second's is so many rad further.
+    """Two rods that reach their stops after 0.05 s; the second stop is `apart` rad further.
 
     Returns the run that hits them, with the mass matrix and the rates there.
     """
@@ -143,7 +143,7 @@ def test_two_stops_that_are_reached_at_the_same_time_are_hit_at_the_same_time(fi
 def test_two_stops_that_are_reached_a_hair_apart_are_hit_in_their_order(
     apart: float, fine: Any
 ) -> None:
-    """Other than both at once, and back and forth: so near, the gaps are linear in time."""
+    """The result differs from both at once. So near to the stops, the gaps are linear in time."""
     sol, m, rates = two_stops(apart, fine)
     gaps = np.array([0.0, apart]) - min(apart, 0.0)
     hits = 0

@@ -12,7 +12,7 @@ from pendcore import effects as fx
 
 
 def drawn(seed: int) -> tuple[pc.Scene, Any, Any]:
-    """One to four rods; what accumulates there does so in several joints at once."""
+    """One to four rods, on which impacts accumulate in several joints at once."""
     random = np.random.default_rng(seed)
     n = int(random.integers(1, 5))
     phi = random.uniform(-1, 1, n)
@@ -57,7 +57,7 @@ def assert_its_ledger_closes(sol: pc.Solution, rtol: float) -> None:
     size = sol.energy().kinetic.max()
     size += sum(np.abs(np.diff(entry)).sum() for entry in ledger.values())
     assert np.abs(ledger.residual).max() <= 30 * rtol * size + 1e-12
-    for name in {"dry", "viscous", "impact"} & {*ledger}:  # none gives anything back
+    for name in {"dry", "viscous", "impact"} & {*ledger}:  # none of these gives energy back
         assert np.diff(ledger[name]).min(initial=0.0) >= -1e-9
 
 

@@ -19,7 +19,7 @@ WEIGHT = 3 * G / 2  # torque of gravity on the horizontal rod
 
 
 def inclined(share: float, *effects: Any) -> pc.Scene:
-    """A rod for 30 degrees below the horizontal, and friction of so many times what it needs."""
+    """A rod for 30 degrees below the horizontal; its friction is `share` times what it needs."""
     needed = WEIGHT * np.cos(np.pi / 6)
     return rod(fx.DryJointFriction(joint=1, coulomb=share * needed), *effects, gravity=G)
 

@@ -28,7 +28,7 @@ CYCLES = 12
 
 @functools.cache
 def solved(frequency: float, **hum: float) -> tuple[Hum, list[Slide], float]:
-    """The slides of so many turns of the torque, in many digits, and a time in a stick near it."""
+    """The slides in CYCLES turns of the torque, in many digits, and a time in a late stick."""
     turns = CYCLES * 2 * np.pi / frequency
     exact = Hum(frequency=mpf(frequency), **{name: mpf(value) for name, value in hum.items()})
     found = list(slides(exact, mpf(turns)))

@@ -92,7 +92,7 @@ def test_any_number_of_joints_hold_as_much_as_they_can_and_no_more(n: int) -> No
         m = chain.mass_matrix(case["q"])
         held = np.linalg.solve(joints(n).T, m @ qdd - free)
         turns, most = joints(n) @ qdd, case["static"]
-        scale = np.abs(free).sum() + (np.abs(m) @ np.abs(qdd)).sum()  # of what is rounded
+        scale = np.abs(free).sum() + (np.abs(m) @ np.abs(qdd)).sum()  # of the rounded terms
         stuck = qdd == np.append(0.0, qdd[:-1])  # not small: the same as the link before
         assert (np.abs(held) <= most + 1e-12 * scale).all(), f"seed {seed}"
         np.testing.assert_allclose(
@@ -147,7 +147,7 @@ def test_a_joint_that_is_stuck_may_let_go_because_another_moves(fine: Any) -> No
     np.testing.assert_array_equal(sol.q[:first_free, 0], start[0])
 
     def couple(q: Any, qd: Any) -> float:
-        """What must hold link 1, from its own line of M qdd = forces with qdd_1 = 0."""
+        """The couple that must hold link 1, from its line of M qdd = forces with qdd_1 = 0."""
         m, f = chain.mass_matrix(q), chain.forces(q, qd, np.zeros(2))
         return float(m[0, 1] * f[1] / m[1, 1] - f[0])
 

@@ -1,6 +1,7 @@
-"""After a pair has gone over to radau5: friction, stops and events, beside a joint that is locked.
+"""Friction, stops and events after a pair has changed to radau5, beside a joint that is locked.
 
-A damper of 1e5 N m s/rad in joint 2 turns by its load over that: what a lock would not.
+A damper of 1e5 N m s/rad in joint 2 lets the joint turn at its load divided by that; a lock would
+not let it turn.
 """
 
 from __future__ import annotations

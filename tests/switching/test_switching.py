@@ -72,14 +72,14 @@ def test_a_reversal_at_a_knot_to_the_last_bits_is_followed_by_the_next_piece(rto
 
 
 def bits_on(t: float, bits: int) -> float:
-    """Return the double that is so many bits later."""
+    """Return the time that is `bits` last bits later."""
     return float(t + bits * np.spacing(abs(t)))
 
 
 def late(
     method: str, scene: pc.Scene, w0: float, t_span: tuple[float, float]
 ) -> tuple[pc.Solution, float]:
-    """A run, and the most that the sums of its steps round its state by: torques are up to w0."""
+    """A run, and a bound of the rounding of its state in the steps' sums; torques are up to w0."""
     sol = pc.simulate(scene, 0, w0, t_span, method=method, max_steps=10_000)
     assert (sol.status, sol.t[-1]) == ("finished", t_span[1]), sol.message
     assert (np.diff(sol.t) > 0).all()

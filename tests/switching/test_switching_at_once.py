@@ -80,14 +80,14 @@ def drawn_chain(random: np.random.Generator) -> tuple[pc.Scene, np.ndarray, np.n
 @pytest.mark.parametrize("step", [None, 0.003, 1 / 64])
 @pytest.mark.parametrize("block", range(4))
 def test_laws_that_meet_lead_on(method: str, step: float | None, block: int) -> None:
-    """However coarse the step: what it says of its start, a shorter one has to bear out."""
+    """Whatever a coarse step says of its start, a shorter one has to confirm it."""
     ways: dict[str, Any] = {"rtol": 1e-8} if step is None else {"step": step}
     for seed in range(10 * block, 10 * block + 10):
         scene, q0, qd0 = drawn_chain(np.random.default_rng(seed))
         sol = pc.simulate(
             scene, q0, qd0, (0, 3), method=method, max_steps=100_000, check=False, **ways
         )
-        may_fail = method == "radau5" and step is not None  # its equations, in so long a step
+        may_fail = method == "radau5" and step is not None  # in so long a step
         assert sol.success or (may_fail and sol.status == "not_converged"), (seed, sol.message)
 
 

@@ -1,4 +1,4 @@
-"""The kinds of numbers that references are computed in, each for judging the one before."""
+"""The kinds of numbers that references are computed in; each judges the one before it."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Arithmetic:
 
     @property
     def nothing(self) -> float:
-        """An exponent: exp of less than minus this is nothing beside 1."""
+        """An exponent; exp of anything below its negative is nothing beside 1."""
         return 0.7 * self.bits
 
     def array(self, doubles: npt.ArrayLike) -> npt.NDArray[Any]:
@@ -52,7 +52,7 @@ def as_longs(values: npt.NDArray[Any]) -> Longs:
 
 @lru_cache(1 << 16)
 def _number(exact: Fraction, of: Any, count: int) -> Any:
-    """Return the sum of so many doubles that make a fraction up, from the least one on."""
+    """Return a fraction as the sum of `count` doubles, added from the least one on."""
     parts = []
     for _ in range(count):
         parts.append(float(exact))

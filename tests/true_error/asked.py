@@ -38,13 +38,13 @@ def asked(
     scene, start
         The scene, and its angles and rates at the start, rad and rad/s.
     span : float
-        s, at most; shorter where the scene is fast.
+        The longest span, s; it is shorter if the scene is fast.
     backward : float
         The share of runs that go back in time.
     decades : (float, float)
-        Of the error.
+        The decades between which the error lies.
     turns : float
-        Of the fastest motion at the start, at most.
+        The most turns that the fastest motion at the start may make.
     """
     q0, qd0 = (tuple(map(float, values)) for values in start)
     fast = rates(scene, q0, qd0)
@@ -66,9 +66,10 @@ def asked(
 
 
 def has_past(scene: pc.Scene) -> bool:
-    """Whether a motion can be followed back: what dampers of more than the rate take is infinite.
+    """Whether a motion can be followed back in time.
 
-    It comes back in no time at all.
+    Under dampers of a higher power of the rate it cannot, because going back the rate may become
+    infinite in a finite time.
     """
     return not any(
         getattr(effect, "damping2", 0.0)
@@ -79,7 +80,7 @@ def has_past(scene: pc.Scene) -> bool:
 
 
 def times_kept(dice: Dice, t_start: float, t_end: float) -> dict[str, Any]:
-    """Return what is kept: all of the curve, the steps, the end, a few times, many times."""
+    """Return what the run keeps: all of the curve, the steps, the end, a few times, many times."""
     kind = dice.rng.random()
     if kind < 0.25:
         few = t_start + (t_end - t_start) * dice.rng.random(dice.whole(1, 5))

@@ -5,7 +5,8 @@ In absolute angles q, with the links' and the payload's bodies summed over,
     M_ij = K_ij cos(q_i - q_j),   K_ij = sum_bodies m arm_i arm_j (+ I_i where i = j),
     static moment of link i:  h_i = sum_bodies m arm_i,
 
-where arm_i is how far along link i a body hangs: its whole length for the bodies beyond.
+where arm_i is the distance along link i at which a body hangs: the whole length of link i for the
+bodies beyond it.
 """
 
 from __future__ import annotations

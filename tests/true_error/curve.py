@@ -15,8 +15,8 @@ MOST_TIMES = 4000
 def times_of(sol: pc.Solution, is_dense: bool, rng: np.random.Generator) -> Floats:
     """Return the times at which a run is compared, in its order, s.
 
-    Of a dense run many inside each step, at random, so that no period falls in with them, and its
-    steps' ends; else those that were kept, each once.
+    For a dense run these are many random times inside each step, so that no period falls in with
+    them, and the ends of its steps. Otherwise they are the times that were kept, each once.
     """
     kept = sol.t[first_of_each(sol.t)] if len(sol.t) else _end(sol)[0]
     if not is_dense or len(kept) < 2:
@@ -37,7 +37,7 @@ def angles_of(sol: pc.Solution, t: Floats, is_dense: bool) -> Floats:
 
 
 def first_of_each(t: Floats) -> npt.NDArray[np.bool]:
-    """Return where a time stands first: at a jump it stands twice, at the same place."""
+    """Return where each time stands first; at a jump it stands twice, with the same angles."""
     return np.append(True, np.diff(t) != 0)[: len(t)]
 
 

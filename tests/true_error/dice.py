@@ -37,5 +37,5 @@ class Dice:
         return values[self.whole(0, len(values) - 1)]
 
     def spread(self, count: int, width: float) -> Floats:
-        """Return so many numbers between -width and width."""
+        """Return `count` numbers between -width and width."""
         return self.rng.uniform(-width, width, count)

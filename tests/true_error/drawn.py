@@ -25,11 +25,11 @@ class Drawn:
     t_start, t_end : float
         s.
     error : float
-        What is asked for, as a share of the total length.
+        The error that is asked for, as a share of the total length.
     options : dict
         Further keywords of ``simulate`` beside ``error``.
     rtol, limit : float
-        Of the run that is asked for its ``valid_until``, and the limit, rad.
+        The tolerance of the run that is asked for its ``valid_until``, and the limit, rad.
     """
 
     family: str

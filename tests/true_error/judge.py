@@ -39,7 +39,7 @@ class Verdict:
     family, seed
         What it was drawn from.
     n, asked, method : int, float, str
-        Links, the error that was asked for, the method that was taken.
+        The number of links, the error that was asked for, and the method that was taken.
     outcome : str
         ``"kept"``, ``"refused"`` (`AccuracyError`), ``"ended early"``, ``"unverified"``, or
         ``"exception"``.
@@ -49,22 +49,22 @@ class Verdict:
         What the run says it reached, the truth, and what ``sol.error()`` says of it, all as shares
         of the total length; ``true`` is missing where the reference is not good enough.
     is_one_estimate : bool
-        Whether ``accuracy.until`` of a run that is kept is its end, and ``sol.error()`` tells that
-        end.
+        Whether ``accuracy.until`` of a run that is kept is its end, and ``sol.error()`` gives the
+        same end.
     exception : str
-        What was raised that is not an `AccuracyError`.
+        The exception that was raised, if it is not an `AccuracyError`.
     doubles : float or None
         The error of an independent integrator of tight tolerance in doubles: a refusal is needed
         where it is above what was asked.
     limit, valid_until, first_past : float or None
-        Of the run without ``error=``: the limit, rad, until when it is told to be kept, s, and when
-        the truth first passed it before that, s.
+        For the run without ``error=``: the limit, rad, the time until which the run claims to keep
+        it, s, and the time before that at which the truth first passed it, s.
     limit_known : bool
         Whether the reference could tell.
     work, seconds, reference_seconds : float
         Right-hand sides of all runs; the time of the answers and of the reference, s.
     no_reference : str
-        Why there is none.
+        Why there is no reference.
     """
 
     family: str
@@ -171,7 +171,7 @@ def _hung(*_: object) -> None:
 
 
 def outcome_of(sol: pc.Solution) -> str:
-    """Return in a word what became of an error that was asked for, and not refused."""
+    """Return in a word what became of an error that was asked for and not refused."""
     told = sol.accuracy
     return told.outcome if told.outcome == "kept" or told.times else "unverified"
 

@@ -28,9 +28,9 @@ class Rates:
     Attributes
     ----------
     motion : float
-        rad/s: the frequencies of its linear motion, of what drives it, and its rates.
+        The fastest of its linear motion, its drives and its rates, rad/s.
     decay : float
-        1/s: of what dampers take.
+        The fastest decay by dampers, 1/s.
     """
 
     motion: float

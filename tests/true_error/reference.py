@@ -3,7 +3,7 @@
 A trajectory is computed in two kinds of numbers. Their distance is the error of the one with fewer
 bits; that of the other is 2^-(bits more) of it, and counted `MARGIN` bits larger. The rounding of
 constants, of the state and of times, the step sizes and how errors grow are all in that distance.
-Where it does not suffice a third, of yet more digits, is asked.
+Where it does not suffice, a third kind with yet more digits is used.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from true_error.trajectory import NoReferenceError, Trajectory
 MARGIN = 4
 """Bits by which a reference may be worse than its bits promise."""
 LOST = 0.02
-"""A distance beyond says nothing of the smaller error: it does not follow it."""
+"""A larger distance says nothing of the smaller error, which does not follow it."""
 
 
 class Truth(NamedTuple):
@@ -53,7 +53,7 @@ class Reference:
     ----------
     drawn : Drawn
     seconds : float
-        What all of it may take.
+        The time that all of it may take.
     """
 
     def __init__(self, drawn: Drawn, seconds: float) -> None:

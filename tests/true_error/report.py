@@ -1,4 +1,4 @@
-"""What a campaign came to: counts and shares by family, and the scenes that break a claim."""
+"""The results of a campaign: counts and shares by family, and scenes that break a claim."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from true_error.judge import Verdict
 
 SHARES = (5, 25, 50, 75, 95, 99, 100)
 NO_REFERENCE, MANY = 0.02, 20
-"""The share of scenes that may lack a reference; of how many scenes at least one is kept, and the
-median tells something."""
+"""The share of scenes that may lack a reference; and the number of scenes from which on at least
+one is kept and the median tells something."""
 UNVERIFIED = 1 / 100
 """The share of scenes that may end unverified."""
 MEDIAN = (0.05, 0.8)
-"""Between which the median of true over asked is to lie."""
+"""The bounds between which the median of true over asked has to lie."""
 SHOWN = 40
 """Offenders of one kind that are listed."""
 
@@ -50,7 +50,7 @@ def record_of(verdicts: list[Verdict]) -> dict[str, Any]:
 
 
 def is_needless(verdict: Verdict) -> bool:
-    """Whether an error was refused that an independent integrator keeps in doubles, with ease."""
+    """Whether an error was refused that an independent integrator easily keeps in doubles."""
     return verdict.doubles is not None and 10 * verdict.doubles < verdict.asked
 
 

@@ -1,8 +1,8 @@
 """A trajectory from event to event: joints that stick and slip, stops, laws of several pieces.
 
-At an event with rest in it, each joint at rest holds or slides, each one at a stop stays or leaves.
-Of all that could be, exactly one agrees with the accelerations and torques that it leads to. Where
-none does, or two do to within rounding, the reference refuses.
+At an event with rest in it, each joint at rest holds or slides, and each joint at a stop stays or
+leaves. Among all these choices exactly one agrees with the accelerations and torques that it leads
+to. Where none does, or two do to within rounding, the reference refuses.
 """
 
 from __future__ import annotations
@@ -32,9 +32,9 @@ from true_error.tables import tables_of
 from true_error.trajectory import NoReferenceError, Trajectory
 
 CLEAR = 1e-9
-"""By what share a choice must be clear."""
+"""The share by which a choice must be clear."""
 AT_ONCE = 1e-9
-"""s; what is at a bound leaves it first: an event there does not count so soon."""
+"""s; a quantity at a bound first leaves it, so an event there does not count so soon."""
 HARDLY = 1e-24
 """rad/s."""
 MOST_EVENTS = 3000
@@ -55,7 +55,7 @@ class SwitchedTrajectory(Trajectory):
             smooth_torques(drawn.scene), smooth_own_torques(drawn.scene)
         )
         self.changing: Parameters = {}
-        """What states and tables have changed so far, as it is without them."""
+        """The parameters that states and tables changed so far, with their unchanged values."""
         self.inside = drawn.t_start
         self.events = 0
         self.has_begun = False
@@ -112,7 +112,7 @@ class SwitchedTrajectory(Trajectory):
                       key=lambda t: sign * t)  # fmt: skip
 
     def _parameters(self) -> Parameters:
-        """Return what changes of the parameters, in the present states and intervals of tables."""
+        """Return the parameters that change, for the present states and intervals of tables."""
         parts = [switch.parameters() for switch in self.switches]
         for table in self.tables:
             parts += [
@@ -185,7 +185,7 @@ class SwitchedTrajectory(Trajectory):
             below = abs(x - float(bound.low)) < abs(x - float(bound.high))
             for other in self.switches:
                 if isinstance(other, Pieces) and other.line() == bound:
-                    other.piece += -1 if below else 1  # which its own event would do too late
+                    other.piece += -1 if below else 1  # its own event would do this too late
         elif isinstance(switch, Friction):
             rate = abs(float(self.w[switch.joint - 1]))
             if switch.sign and rate > 0.5 * switch.far:
@@ -194,7 +194,7 @@ class SwitchedTrajectory(Trajectory):
                 self.w[switch.joint - 1] = self.arithmetic.type(0.0)
                 self._decide(system, switch)
             else:
-                # It gives way to what it holds against.
+                # It gives way to the torque that it holds against.
                 holding = self._now(system)[1][switch.joint - 1]
                 self._let_slide(switch, -int(np.sign(float(holding))))
         elif switch.held:
@@ -242,15 +242,15 @@ class SwitchedTrajectory(Trajectory):
             stop.held = at if is_held else 0
 
     def _let_slide(self, friction: Friction, sign: int) -> None:
-        """Let a joint at rest slide, or hold (0), with less than nothing of a rate.
+        """Let a joint at rest slide, or hold (0), at a rate that is next to nothing.
 
-        Then its rate has no zero where it begins, not even for rounding.
+        Then the rate has no zero where the slide begins, not even by rounding.
         """
         friction.sign, friction.is_far = sign, False
         self.w[friction.joint - 1] = sign * self.arithmetic.type(HARDLY)
 
     def _agreement(self, system: SwitchedSystem, resting: list[Friction], contacts: Any) -> float:
-        """Return by how much, relatively, the states agree with what they lead to; < 0: not."""
+        """Return how clearly the states agree with the motion that they lead to; < 0 if not."""
         now = self._parameters()
         wd, holding, _ = np.asarray(system.at(self.time, self.state, now), dtype=np.float64)
         fastest, strongest = np.abs(wd).max() + 1e-300, np.abs(holding).max() + 1e-300

@@ -42,12 +42,12 @@ class SwitchedSystem(System):
 
     instant: Any
     count: int
-    """Parameters that it has: all but those of events, which come last."""
+    """The number of parameters without those of events, which come last."""
 
     def at(self, t: Any, state: npt.NDArray[Any], values: Parameters) -> npt.NDArray[Any]:
         """Return accelerations, holding torques, rates after unit impulses: (3, n).
 
-        With some parameters other than they are.
+        `values` replace some of the parameters.
         """
         parameters = self.integrator.pars[: self.count].copy()
         for name, value in values.items():

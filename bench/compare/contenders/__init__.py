@@ -1,4 +1,4 @@
-"""THE list of contenders: a module a line, in the order of the tables."""
+"""THE list of contenders: each line is a module, in the order of the tables."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ MODULES = ("heyoka_taylor", "pendcore_python", "cyrk", "scipy_solvers")
 
 
 def installed() -> tuple[list[Contender], dict[str, str]]:
-    """Find the contenders whose packages or programs are here, and why others are not."""
+    """Find the contenders that are installed or built, and the reasons why others are not."""
     found: list[Contender] = []
     absent: dict[str, str] = {}
     for program in PROGRAMS:

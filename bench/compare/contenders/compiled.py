@@ -1,6 +1,6 @@
-"""The C++ contenders that solve cases: programs that answer (solves.cpp has the words).
+"""The C++ contenders that solve cases: programs that answer requests (see solves.cpp).
 
-pendcore's runs twice where the processor has AVX-512: as it is, and held back to x86-64-v3.
+On a processor with AVX-512, pendcore takes part twice: as it is, and held back to x86-64-v3.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def begin_conversation(path: Path, environment: dict[str, str] | None = None) ->
 
 @atexit.register
 def end_conversations() -> None:
-    """End all programs; their contenders answer no more."""
+    """End all programs; their contenders no longer answer."""
     while open_conversations:
         open_conversations.pop().close()
 
@@ -83,7 +83,7 @@ def spoken_to(conversation: Conversation) -> Iterator[Contender]:
 
 
 def of_program(program: str) -> list[Contender]:
-    """List the program's contenders; ImportError where it is not built."""
+    """List the program's contenders; raise ImportError if the program is not built."""
     path = find_executable(program, program.upper())
     peers = list(spoken_to(begin_conversation(path)))
     if program != OURS:

@@ -13,9 +13,9 @@
 
 namespace contenders {
 
-// A chain of uniform rods: masses (kg), lengths (m), gravity (m/s^2). In joint j acts the torque
-// -stiffness (phi - rest) - damping dphi/dt. If `controller` is true it belongs to a motor,
-// otherwise to a spring and a damper. start = q_1..q_n, qd_1..qd_n; times rising.
+// A chain of uniform rods: masses (kg), lengths (m), gravity (m/s^2). The torque -stiffness
+// (phi - rest) - damping dphi/dt acts in joint j. If `controller` is true it belongs to a motor,
+// otherwise to a spring and a damper. start = q_1..q_n, qd_1..qd_n; times increase.
 struct Case {
   std::vector<double> masses, lengths;
   double gravity = 0;

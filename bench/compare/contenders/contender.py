@@ -1,7 +1,7 @@
-"""What a contender is: it prepares runs of a case at a setting, to be timed and looked at.
+"""What a contender is: it prepares runs of a case at a setting, to be timed and examined.
 
-To add one: a file beside this with a list `CONTENDERS`, and its name in the list of `__init__.py`.
-A C++ contender is a .cpp file and a line in `compiled.py`.
+To add one, write a file beside this one with a list `CONTENDERS`, and add its name to the list in
+`__init__.py`. A C++ contender is a .cpp file and a line in `compiled.py`.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ COMPILED, COMPILED_V3, PYTHON = "compiled", "compiled_v3", "python"
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """States (n_t, 2n) at the case's times, and what they took: None where nobody counts.
+    """States (n_t, 2n) at the case's times, and the work that they took, None if not counted.
 
     `said` is what the contender remarks on a run that it finished.
     """
@@ -32,23 +32,24 @@ class Outcome:
 
 
 class Run(Protocol):
-    """A case at a setting, everything built that can be built beforehand.
+    """A case at a setting; everything that can be built beforehand is built.
 
-    `compile_seconds` is what a user waits for it in each process; None where nothing is compiled.
+    `compile_seconds` is how long a user waits for compilation in each process; None if nothing is
+    compiled.
     """
 
     @property
     def compile_seconds(self) -> float | None: ...
 
     def burst(self, seconds: float) -> list[float]:
-        """Call for about so long and list each call's seconds; a first of several only warms up."""
+        """Call for about that long and list each call's seconds; a first of several warms up."""
 
     def outcome(self) -> Outcome:
-        """Solve and look; RuntimeError, with a reason, where there are no states."""
+        """Solve and return the result; raise RuntimeError with a reason if there are no states."""
 
 
 def tolerances(finest: int, per_decade: int) -> list[float]:
-    """List tolerances from 1e-1 to 1e-`finest`, the whole decades exact."""
+    """List tolerances from 1e-1 to 1e-`finest`; whole decades are exact."""
     finer = [10.0 ** -(part / per_decade) for part in range(per_decade)]
     whole = [float(f"1e-{decade}") for decade in range(1, finest)]
     return [decade * share for decade in whole for share in finer] + [float(f"1e-{finest}")]
@@ -64,10 +65,11 @@ def fixed_steps(longest: float, shortest: float, per_decade: int) -> list[float]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Contender:
-    """`about` says version and settings; `prepare` raises Unsupported for a case it cannot carry.
+    """A solver: `prepare` makes its run of a case, or raises Unsupported if it cannot solve that.
 
-    `sides` are those on which it takes part: its time is that of compiled code, or has a call from
-    Python in it. `settings` are tolerances or steps, from the loosest; `slow` contenders get few.
+    `about` gives version and settings. `sides` are the sides on which the contender takes part: its
+    time is that of compiled code, or it includes a call from Python. `settings` are tolerances or
+    steps, from the loosest; `slow` contenders get few of them.
     """
 
     name: str
@@ -82,18 +84,18 @@ class Contender:
 
 
 class Unsupported(Exception):
-    """Raised by a contender that does not carry the case."""
+    """Raised by a contender that does not support the case."""
 
 
 def compiled(build: Callable[[], Answer]) -> tuple[Answer, float]:
-    """Build, and count the seconds it takes."""
+    """Build, and measure the seconds that this takes."""
     begin = time.perf_counter()
     return build(), time.perf_counter() - begin
 
 
 @dataclass(frozen=True, slots=True)
 class PythonRun(Generic[Answer]):
-    """A run in this process: `solve` is timed and ends with the states in hand; `read` looks."""
+    """A run in this process: `solve` is timed and ends with the states; `read` examines them."""
 
     solve: Callable[[], Answer]
     read: Callable[[Answer], Outcome]

@@ -34,7 +34,7 @@ int converse(const std::function<std::string(std::istream&)>& answer) {
   for (std::string line; std::getline(std::cin, line);) {
     std::istringstream request(line);
     try {
-      const std::string answered = answer(request);  // before any of the line is written
+      const std::string answered = answer(request);  // before any part of the answer is written
       std::cout << "ok " << answered << std::endl;
     } catch (const Unsupported& reason) {
       std::cout << "unsupported " << reason.what() << std::endl;

@@ -1,5 +1,5 @@
 // The protocol of a program of contenders: a request is a line, and the answer is a line, `ok ...`,
-// `unsupported ...` or `error ...`. So the bursts of several programs can take turns.
+// `unsupported ...` or `error ...`. In this way the bursts of several programs can take turns.
 #pragma once
 
 #include <cstddef>
@@ -23,12 +23,12 @@ std::vector<double> read_numbers(std::istream& in, std::size_t count);
 // Numbers as text that reads back as the same doubles, with a space before each.
 std::string words(const std::vector<double>& numbers);
 
-// The element of that name; the elements of both programs have a `name`.
+// The element of that name. The elements of both kinds of programs have a `name`.
 template <class Element>
 const Element& find(const std::vector<Element>& all, const std::string& name) {
   for (const Element& element : all)
     if (element.name == name) return element;
-  throw std::invalid_argument("nothing of the name " + name);
+  throw std::invalid_argument("nothing has the name " + name);
 }
 
 // The answers to the requests that all programs have, `names` and `about NAME`.

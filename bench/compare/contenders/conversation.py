@@ -1,6 +1,6 @@
-"""A program of C++ contenders, spoken to line by line (conversation.hpp has the rules).
+"""A program of C++ contenders, with which we speak line by line (see conversation.hpp).
 
-So its bursts take their turns among the Python contenders' and those of other programs.
+In this way its bursts take turns with those of the Python contenders and of other programs.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ def words(numbers: Iterable[Any]) -> str:
 
 
 def find_executable(name: str, variable: str) -> Path:
-    """Find the file in the folder, or of the name, that the environment's variable says.
+    """Find an executable by an environment variable, which names the file or its folder.
 
-    Else the newest of that name under the project's build.
+    Without the variable, find the newest file of that name under the project's build.
     """
     named = os.environ.get(variable)
     if named and Path(named).is_dir():
@@ -45,7 +45,8 @@ class Conversation:
     def __init__(self, path: Path, environment: Mapping[str, str] | None = None) -> None:
         """Start the program; `environment` is added to this process's."""
         self.name = path.name
-        # In a group of its own: a Ctrl-C is for us. It ends when nobody speaks to it any more.
+        # The program has a group of its own, so that a Ctrl-C reaches us alone. It ends when its
+        # input ends.
         self.process = subprocess.Popen(
             [path],
             env={**os.environ, **(environment or {})},
@@ -77,7 +78,7 @@ class Conversation:
         return answer
 
     def close(self) -> None:
-        """End the program: it does by itself when there is no more to read."""
+        """End the program, which happens by itself when its input ends."""
         for pipe in (self.process.stdin, self.process.stdout):
             if pipe is not None:
                 pipe.close()
@@ -88,7 +89,7 @@ class Conversation:
             raise
 
     def described(self) -> list[tuple[str, str, str]]:
-        """List its contenders: name, label, and what version and settings they are."""
+        """List its contenders: name, label, and version and settings."""
         result = []
         for name in self.ask("names").split():
             label, _, about = self.ask(f"about {name}").partition(": ")

@@ -20,7 +20,7 @@ from CyRK import PySolver, cyjit, nbsolve2_ivp, pysolve_ivp
 from contenders.contender import Contender, Outcome, PythonRun, compiled
 from contenders.equations import fill
 
-# Those of nine methods that are best somewhere; the last three are for stiff scenes.
+# Each of these, among nine methods, is the best somewhere. The last three are for stiff scenes.
 BY_ADDRESS = ("RK45", "DOP853", "Vern7", "LSODA", "RADAU", "BDF")
 BY_FUNCTION = ("RK45", "DOP853")
 TYPES = numba.void(numba.float64[::1], numba.float64, numba.float64[::1])
@@ -28,7 +28,7 @@ known: dict[tuple[str, str], Any] = {}
 
 
 def once(kind: str, case: Case, build: Callable[[], Any]) -> Any:
-    """Build for the case what does not depend on the tolerance, and count the seconds."""
+    """Build what does not depend on the tolerance, and measure the seconds that this takes."""
     if (kind, case.name) not in known:
         known[kind, case.name] = compiled(build)
     return known[kind, case.name]

@@ -1,9 +1,9 @@
-"""The rates of change of two or three rods of 1 kg and 1 m, for contenders without mechanics.
+"""Rates of change of two or three rods of 1 kg and 1 m, for contenders without mechanics.
 
-The closed form with its constants in place, as its reader would write it for speed: eliminated from
-the tip, with as few products as can be, which for heyoka are products of series. Written once on
-any sine and cosine: Python's, which numba compiles too, and heyoka's. (unit_rods.hpp has the like
-in C++.)
+This is the closed form with its constants in place, as a reader of it would write it for speed. The
+elimination begins at the tip and takes as few products as possible; for heyoka these are products
+of series. It is written once for any sine and cosine: Python's, which numba compiles too, and
+heyoka's. (unit_rods.hpp has the same in C++.)
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ GRAVITY = 9.807
 
 
 def require_unit_rods(case: Case) -> None:
-    """Raise Unsupported unless a closed form below is the case's."""
+    """Raise Unsupported unless one of the closed forms below fits the case."""
     rods = {(1.0, 1.0): 2, (1.0, 1.0, 1.0): 3}.get(case.masses)
     unit = rods and case.lengths == case.masses and case.gravity == GRAVITY
     if not unit or (rods == 3 and not case.bare):
@@ -31,7 +31,7 @@ def require_unit_rods(case: Case) -> None:
 
 
 def accelerations(case: Case, sin: Any = math.sin, cos: Any = math.cos) -> Callable[..., Any]:
-    """From q_1..q_n, qd_1..qd_n to (qdd_1, ..., qdd_n), on what `sin` and `cos` take."""
+    """Map q_1..q_n, qd_1..qd_n to (qdd_1, ..., qdd_n), for any type that `sin` and `cos` take."""
     require_unit_rods(case)
     if case.n == 3:
         return three_rods(sin, cos)
@@ -51,7 +51,7 @@ def two_rods(sin: Any, cos: Any) -> Callable[..., Any]:
 
 
 def loaded_rods(case: Case, sin: Any, cos: Any) -> Callable[..., Any]:
-    """With springs and dampers in the joints."""
+    """The same mapping, with springs and dampers in the joints."""
     (b1, b2), (k1, k2), (rest1, rest2) = case.damping, case.stiffness, case.rest
 
     def found(q1: Any, q2: Any, w1: Any, w2: Any) -> Any:
@@ -88,9 +88,9 @@ def three_rods(sin: Any, cos: Any) -> Callable[..., Any]:
 
 
 def rates(case: Case) -> Callable[[float, Array], list[float]]:
-    """Make the function of (t, y) that returns (qd, qdd), for the interpreter: on its own floats.
+    """Make the function of (t, y) that returns (qd, qdd), for the interpreter.
 
-    Quicker there than on NumPy's numbers.
+    It computes with Python's floats, which are quicker there than NumPy's numbers.
     """
     found = accelerations(case)
     n = case.n
@@ -128,7 +128,8 @@ def fill(case: Case, compiler: Callable[[Any], Any]) -> Callable[[Any, Any], Non
 def jacobian(case: Case) -> Callable[[float, Array], list[list[float]]] | None:
     """Make the function of (t, y) that returns the rates' derivatives, (4, 4); None for three rods.
 
-    Differentiated by hand: from M a = r(q, w), M da = dr - dM a. On scalars, for numba alike.
+    They are derived by hand: M a = r(q, w) gives M da = dr - dM a. The function computes with
+    scalars, so that numba can compile it too.
     """
     if case.n != 2:
         return None

@@ -5,7 +5,7 @@
 //   prepare NAME EFFECT n states masses lengths gravity q qd      the number of the calls
 //   accelerations CALLS      qdd at the first state
 //   bytes CALLS              heap in use after the preparation of the calls, 0 if unknown
-//   make CALLS COUNT         makes so many calls; answers the right-hand sides of one
+//   make CALLS COUNT         makes COUNT calls; answers the number of right-hand sides of one call
 //   burst CALLS SECONDS      nanoseconds of a right-hand side, one number for each batch of calls
 #include "forward_dynamics.hpp"
 

@@ -31,7 +31,7 @@ struct Scene {
 class Calls {
  public:
   virtual ~Calls() = default;
-  virtual void make(int count) = 0;                 // is timed: each call waits for the one before
+  virtual void make(int count) = 0;                 // timed; each call waits for the one before
   virtual std::vector<double> accelerations() = 0;  // qdd (n) at the first state
   virtual double right_hand_sides() { return 1; }   // in one call
 };

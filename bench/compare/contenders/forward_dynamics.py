@@ -1,4 +1,4 @@
-"""The contenders of forward dynamics: programs that answer (forward_dynamics.cpp has the words)."""
+"""The contenders of forward dynamics: programs that answer requests (see forward_dynamics.cpp)."""
 
 from __future__ import annotations
 
@@ -37,23 +37,23 @@ class Calls:
     number: str
 
     def burst(self, seconds: float) -> list[float]:
-        """Call for about so long and list the seconds of a right-hand side, batch by batch."""
+        """Call for about that long and list the seconds of a right-hand side, batch by batch."""
         answer = self.conversation.ask(f"burst {self.number} {seconds}")
         return [1e-9 * float(nanoseconds) for nanoseconds in answer.split()]
 
     def bytes(self) -> int | None:
-        """Tell what the preparation holds of the heap, where that is known."""
+        """Return the bytes of the heap that the preparation holds, if that is known."""
         return int(self.conversation.ask(f"bytes {self.number}")) or None
 
     def accelerations(self) -> Array:
-        """Give qdd (n,) at the first of the scene's states."""
+        """Return qdd (n,) at the first of the scene's states."""
         answer = self.conversation.ask(f"accelerations {self.number}")
         return np.array(answer.split(), dtype=np.float64)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ForwardDynamics:
-    """`prepare` raises Unsupported for a scene that the contender does not carry."""
+    """`prepare` raises Unsupported for a scene that the contender does not support."""
 
     name: str
     label: str

@@ -1,4 +1,4 @@
-// Boost.odeint on oscillations: of a heavy payload, of a chain, over long times, on a shaken pivot.
+// Boost.odeint on oscillations: a heavy payload, a chain, a long run, a shaken pivot.
 #include <array>
 #include <boost/numeric/odeint.hpp>
 #include <cmath>
@@ -21,7 +21,8 @@ auto controlled_fehlberg78(double atol, double rtol) {
   return ode::make_controlled(atol, rtol, ode::runge_kutta_fehlberg78<State>());
 }
 
-// n uniform links of 1 m and 1 kg in all, dense: M = A cos(q_i - q_j), factorised by Cholesky.
+// n uniform links of 1 m and 1 kg in all. The mass matrix M = A cos(q_i - q_j) is dense, and is
+// factorised by Cholesky.
 class Chain {
  public:
   explicit Chain(std::size_t n)

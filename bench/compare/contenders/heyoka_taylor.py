@@ -1,10 +1,10 @@
 """heyoka's Taylor method, compiled for a case and a tolerance by LLVM.
 
-At its best, by experiment: `fast_math` saves a fifth and costs no accuracy here; compact_mode is
-twice as slow, slp_vectorize, force_avx512 and high_accuracy bring nothing on a state so small.
-A tolerance decides the order and nothing else, so there is one setting for each order. The time is
-that of the call from Python, of which it spends a few microseconds outside compiled code (the fixed
-cost of a call says how many); heyoka offers no other interface here.
+These settings are the best, by experiment: `fast_math` saves a fifth and costs no accuracy here;
+compact_mode is twice as slow; slp_vectorize, force_avx512 and high_accuracy bring nothing for so
+small a state. A tolerance decides the order and nothing else, so there is one setting for each
+order. The time is that of the call from Python, which spends a few microseconds outside compiled
+code (the fixed cost of a call says how many); heyoka offers no other interface here.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ ORDERS = range(3, 23)
 
 
 def tolerance_of(order: int) -> float:
-    """Give the smallest tolerance of that order: heyoka takes the next above 1 - log(tol) / 2."""
+    """Return the smallest tolerance of an order: heyoka takes the next above 1 - log(tol) / 2."""
     return math.exp(-2.0 * (order - 1)) * (1 + 1e-9)
 
 

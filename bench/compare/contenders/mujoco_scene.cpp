@@ -69,7 +69,7 @@ void add_effect(mjSpec* spec, mjsBody* tip, double length, mjsJoint* joint,
   } else if (effect == "rotor_inertia") {
     joint->armature = armature;
   } else if (effect == "payload") {
-    // One body is less work than a body that is fixed to another.
+    // One body takes less work than a body that is fixed to another.
     const double mass = tip->mass + payload_mass, center = tip->ipos[0];
     const double moved = payload_mass / mass * (length - center);
     tip->inertia[1] += tip->mass * moved * (length - center) + payload_inertia;
@@ -110,7 +110,7 @@ Callbacks callbacks_of(const std::string& effect) {
   Callbacks callbacks;
   if (effect == "user") {
     callbacks.passive = [](const mjModel* /*model*/, mjData* data) {
-      // It acts on the rate of link 2, and so on the angles of both joints.
+      // The damper depends on the rate of link 2, and thus acts on the angles of both joints.
       const double couple = -user_damping * (data->qvel[0] + data->qvel[1]);
       data->qfrc_passive[0] += couple;
       data->qfrc_passive[1] += couple;

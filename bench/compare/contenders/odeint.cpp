@@ -55,8 +55,8 @@ struct Dopri5 {
   }
 };
 
-// It has no dense output: a step that would pass a time ends there, and the step after it is as
-// long as the control wanted before.
+// The method has no dense output. A step that would pass a time asked for ends there, and the step
+// after it has the length that the control wanted before.
 struct Fehlberg78 {
   template <class System, class State>
   static void integrate(System& rates, State y, const std::vector<double>& times, double tolerance,

@@ -1,4 +1,4 @@
-"""What pendcore's methods are tried with: tolerances, or steps where a method takes fixed ones."""
+"""The settings of pendcore's methods: tolerances, or steps if a method takes fixed ones."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ FINEST = {"dop853": 15, "taylor": 16}  # where smaller tolerances still bring sm
 
 
 def settings_of(method: str) -> Callable[[int], list[float]]:
-    """From the number of settings a decade to the settings."""
+    """Map the number of settings per decade to the settings."""
     if method in FIXED:
         return lambda per_decade: fixed_steps(0.1, 1e-4, 2 * per_decade)
     return lambda per_decade: tolerances(FINEST.get(method, 13), per_decade)

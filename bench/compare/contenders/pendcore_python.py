@@ -1,4 +1,4 @@
-"""pendcore as a Python user calls it: `pc.simulate`, result object and its states included."""
+"""pendcore as a Python user calls it: `pc.simulate`, including the result object and its states."""
 
 from __future__ import annotations
 

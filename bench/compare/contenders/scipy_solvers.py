@@ -17,7 +17,7 @@ from contenders.equations import fill, jacobian, rates
 
 METHODS = ("RK45", "DOP853", "LSODA", "Radau")
 IMPLICIT = ("LSODA", "Radau")
-# Radau asks at columns of a matrix too, whose numbers do not stand side by side.
+# Radau also calls with columns of a matrix, whose numbers are not contiguous.
 TYPES = [numba.void(numba.float64[::1], y) for y in (numba.float64[::1], numba.float64[:])]
 Rates = Callable[[float, Array], Any]
 known: dict[str, tuple[Any, float]] = {}
@@ -28,7 +28,7 @@ def in_python(case: Case) -> tuple[Rates, Any, None]:
 
 
 def by_numba(case: Case) -> tuple[Rates, Any, float]:
-    """Compile the case's functions, once; and count the seconds."""
+    """Compile the functions of the case once, and measure the seconds that this takes."""
 
     def build() -> tuple[Any, Any]:
         filled = numba.njit(TYPES)(fill(case, numba.njit))

@@ -4,7 +4,7 @@
 //   about NAME               label: version and settings
 //   prepare NAME SETTING n masses lengths gravity damping stiffness rest controller start n_t times
 //                            the number of the run
-//   outcome RUN              right-hand sides, steps, then the states; or failed and why
+//   outcome RUN              right-hand sides, steps, then the states; or `failed` and the reason
 //   burst RUN SECONDS        nanoseconds of each call; the first of several only warms up
 #include <chrono>
 #include <cstddef>

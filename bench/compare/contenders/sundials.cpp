@@ -2,8 +2,8 @@
 // (quicker than making it anew), the closed form has its constants in place, and there is no output
 // but the states. Among ARKODE's explicit tables, the fifth order takes its own dense output,
 // Hermite's of degree 4; degree 5 costs more without any gain here. The other tables are of higher
-// order than any dense output of ARKODE: their steps end at the times asked for. CVODE's Adams
-// method iterates by fixed point; BDF has Newton's method, with the analytic Jacobian where joints
+// order than any dense output of ARKODE, so their steps end at the times asked for. CVODE's Adams
+// method uses fixed-point iteration; BDF uses Newton's method, with the analytic Jacobian if joints
 // have springs and dampers.
 #include <arkode/arkode_erkstep.h>
 #include <cvode/cvode.h>

@@ -1,7 +1,7 @@
 // The rates of change of two or three rods of 1 kg and 1 m, for contenders without mechanics of
 // their own: the closed form with its constants in place, as a reader of it would write it for
 // speed. The elimination begins at the tip, so that the accelerations need one division.
-// (equations.py has the same.)
+// equations.py has the same in Python.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-"""Damping of the wrong sign, w' = w^3: infinite in finite time."""
+"""Damping of the wrong sign, w' = w^3: the rate is infinite after a finite time."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def pendcore() -> Outcome:
     import pendcore as pc
 
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # it warns of a negative coefficient
+        warnings.simplefilter("ignore")  # pendcore warns of a negative coefficient
         damping = pc.effects.ViscousJoint(joint=1, damping=0, damping3=-1.0)
         scene = pc.Scene(links=[pc.Link(mass=3, length=1)], gravity=0, effects=[damping])
         sol = pc.simulate(scene, 0, RATE, (0, T_END), check=False)

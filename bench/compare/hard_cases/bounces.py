@@ -1,4 +1,4 @@
-"""A rod pressed against a stop: bounces that accumulate, and end."""
+"""A rod pressed against a stop, with bounces that accumulate and end."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from hard_cases.rods import Array, mujoco_rods
 
 TORQUE, HEIGHT, RESTITUTION, CAPTURE = 2.0, 0.4, 0.8, 1e-9
 FIRST = float(np.sqrt(2 * TORQUE * HEIGHT))  # speed of the first impact
-T_LAST = FIRST / TORQUE * (1 + 2 * RESTITUTION / (1 - RESTITUTION))  # of infinitely many bounces
+T_LAST = FIRST / TORQUE * (1 + 2 * RESTITUTION / (1 - RESTITUTION))  # infinitely many are over
 T_END = 8.0
 APEX = FIRST * (1 + RESTITUTION) / TORQUE  # the top of the first bounce
 RISE = (RESTITUTION * FIRST) ** 2 / (2 * TORQUE)
 
 
-# s before T_LAST: what the figure shows
+# s before T_LAST; the figure shows these times
 BEFORE = np.append(np.linspace(T_LAST, 1, 300, endpoint=False), np.geomspace(1, 1e-7, 700))
 TRACED = T_LAST - BEFORE
 
@@ -26,7 +26,10 @@ TRACED = T_LAST - BEFORE
 def judged(
     q_end: float, t_last: float | None, more: str = "", traced: Sequence[float] | Array = ()
 ) -> Outcome:
-    """Where it is at the end (exactly 0), and when it came to rest; angles at TRACED."""
+    """Judge where the rod is at the end (exactly 0), and when it came to rest.
+
+    `traced` has the angles at TRACED.
+    """
     trace = {"q": [float(q) for q in traced]} if len(traced) else {}
     if abs(q_end) > 1e-3:
         said = f"is at {q_end:.3g} rad at the end: off the stop"
@@ -52,9 +55,9 @@ def pendcore() -> Outcome:
 
 
 def scipy(guarded: bool) -> Outcome:
-    """Ends each flight by an event and starts the next; below the capture speed it rests.
+    """End each flight by an event and start the next; below the capture speed the rod rests.
 
-    `guarded`: no step is longer than a quarter of the flight, which the user then must know.
+    With `guarded`, no step is longer than a quarter of the flight, which the user then must know.
     """
     from scipy.integrate import solve_ivp
 
@@ -83,7 +86,7 @@ def scipy(guarded: bool) -> Outcome:
 
 
 def mujoco(dt: float) -> Outcome:
-    """A limit as a stiff spring and damper that together return the restitution."""
+    """Model the stop as a stiff spring and damper that together give the restitution."""
     import mujoco
 
     stiffness = (0.1 / dt) ** 2  # half a contact takes thirty steps

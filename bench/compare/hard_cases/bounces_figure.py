@@ -1,4 +1,4 @@
-"""Bounces that accumulate: their height over the time that is left of them."""
+"""Bounces that accumulate: their height over the time left until the last of them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ LEAST = 1e-16  # rad: a figure of logarithms has no zero
 
 
 def drawn(case: Any) -> Figure:
-    """Draw the angles of each program but for SciPy's second way, which gives the first's curve."""
+    """Draw the angles of each program, except SciPy's second way, which gives the same curve."""
     left = np.array(case["reference"]["before"])
     figure, (plain, logarithmic) = plt.subplots(
         2, 1, figsize=(8.6, 7), layout="constrained", height_ratios=(0.8, 1.2)
@@ -24,7 +24,7 @@ def drawn(case: Any) -> Figure:
             continue
         q = np.array(one["trace"]["q"])
         style = dict(STYLES[one["program"]])
-        if one["program"] == "scipy":  # beneath, as it goes where pendcore goes
+        if one["program"] == "scipy":  # beneath the others, because it coincides with pendcore
             style |= {"linestyle": "-", "linewidth": 5.0, "color": "0.8", "zorder": 1}
         if "0.1 ms" in one["how"] or one["program"] == "pendcore":
             style["linewidth"] = 0.9

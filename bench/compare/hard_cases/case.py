@@ -1,4 +1,4 @@
-"""The question of a hard case, and the result in one program."""
+"""A hard case, a contender that runs it, and the outcome."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ PATIENCE = 10  # times LONGEST by the wall clock: the machine may be busy
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Outcome:
-    """`error` against the right answer, None where none was given; `said`: what happened, in words.
+    """`error` is that of the answer, None if there was no answer; `said` tells what happened.
 
-    `trace`: curves for a figure, by name. `right` overrules what the error says: for cases that ask
-    what a program says.
+    `trace` has curves for a figure, by name. `right` overrules the verdict of the error, in cases
+    that ask for a message.
     """
 
     error: float | None = None
@@ -33,9 +33,9 @@ class Outcome:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Contender:
-    """`program` is its column, `how` what its user wrote.
+    """`program` is its column in the table; `how` is what its user wrote.
 
-    `own_loop`: modes and switches are the user's own program, not the library's.
+    With `own_loop` the user's own program handles modes and switches, not the library.
     """
 
     program: str
@@ -46,10 +46,10 @@ class Contender:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HardCase:
-    """`unit` is that of the error; an error of at most `allowed` counts as right.
+    """`unit` is the unit of the error; an error of at most `allowed` counts as right.
 
-    `figure` says what its picture shows, where there is one (figures.py). `loop_not_run` names the
-    programs around which one could write a loop that would be right, and none is run here.
+    `figure` says what the picture shows, if there is one (figures.py). `loop_not_run` names the
+    programs around which one could write a loop that would be right, but none is run here.
     """
 
     name: str
@@ -69,25 +69,25 @@ class Absent(Exception):
 
 
 class NoReturn(Exception):
-    """The time limit of a contender was over."""
+    """A contender did not return within the time limit."""
 
 
 def _report(run: Callable[[], Outcome], pipe: Connection, seconds: int) -> None:
-    os.setsid()  # what it starts is ended with it, and has the same limit
+    os.setsid()  # processes that it starts end with it and have the same limit
     resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
-    os.chdir(tempfile.gettempdir())  # MuJoCo writes its warnings into a file where it runs
+    os.chdir(tempfile.gettempdir())  # MuJoCo writes its warnings into a file in the current folder
     try:
         pipe.send(run())
     except NoReturn:
         os.kill(os.getpid(), signal.SIGXCPU)
     except (ImportError, Absent) as absence:
         pipe.send(Absent(str(absence)))
-    except Exception as failure:  # what a program throws is what happened in it
+    except Exception as failure:  # an exception of the program is its outcome
         pipe.send(Outcome(said=f"{type(failure).__name__}: {failure}"))
 
 
 def run_bounded(run: Callable[[], Outcome], seconds: int = LONGEST) -> Outcome:
-    """Run in a process of its own, which is ended when the time is over."""
+    """Run in a process of its own, which is ended after the time limit."""
     context = multiprocessing.get_context("fork")
     receiver, sender = context.Pipe(duplex=False)
     process = context.Process(target=_report, args=(run, sender, seconds))

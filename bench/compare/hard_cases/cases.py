@@ -1,4 +1,4 @@
-"""THE list: a case is a file and a line here."""
+"""THE list of hard cases: each case is a file, and a line here."""
 
 from __future__ import annotations
 

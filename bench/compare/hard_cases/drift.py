@@ -25,7 +25,7 @@ def energy(states: Any) -> Array:
 
 
 def judged(states: Any, words: str) -> Outcome:
-    """The largest drift at TIMES, a share of the energy at the start."""
+    """Judge the largest drift at TIMES, as a share of the energy at the start."""
     at_start = energy((*START, 0, 0))
     return Outcome(error=float(np.abs(energy(states) / at_start - 1).max()), said=words)
 
@@ -38,7 +38,7 @@ def pendcore(**how: Any) -> Outcome:
 
 
 def rates(_: float, y: Any) -> tuple[float, ...]:
-    """In Python's own floats: quicker than NumPy's."""
+    """Return the rates, computed with Python's floats, which are quicker than NumPy's."""
     q1, q2, w1, w2 = y.tolist()
     a12, h = 0.5 * cos(q1 - q2), 0.5 * sin(q1 - q2)
     r1 = 1.5 * G * cos(q1) - h * w2**2

@@ -1,4 +1,4 @@
-"""THE list of the figures: a case that has one is a line here, its file draws the record."""
+"""THE list of the figures: a case with a figure is a line here; its file draws the record."""
 
 from __future__ import annotations
 

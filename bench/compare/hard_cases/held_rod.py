@@ -15,7 +15,7 @@ G, T_END = 9.81, 1e6
 START = np.pi / 6  # below the horizontal
 WEIGHT = 3 * G / 2
 FRICTION = float(2 * WEIGHT * np.cos(START))
-SOFT = 1e-6  # rad/s over which the sign is smoothed
+SOFT = 1e-6  # rad/s; the sign is smoothed over this rate
 
 
 TRACED = np.geomspace(1e-2, T_END, 161)  # s, for the figure
@@ -24,7 +24,7 @@ TRACED = np.geomspace(1e-2, T_END, 161)  # s, for the figure
 def moved(
     by: float, *, extrapolated_from: float = 0.0, traced: Sequence[float] | Array = ()
 ) -> Outcome:
-    """How far it has moved at the end, and at TRACED."""
+    """Judge how far the rod has moved at the end; `traced` has its way at TRACED."""
     words = f"moves by {by:.1e} rad" if by else "moves by exactly nothing"
     if extrapolated_from:
         words += f" (its rate after {extrapolated_from:.0f} s, times 1e6 s)"
@@ -54,7 +54,7 @@ def scipy_smoothed() -> Outcome:
 
 
 def scipy_events() -> Outcome:
-    """A flag of the user's own: where the torque is within friction and the rate zero, it rests."""
+    """Use a flag of the user's own: the rod rests if friction can hold it and the rate is zero."""
     held = abs(WEIGHT * np.cos(START)) <= FRICTION
     return moved(0.0) if held else Outcome(said="slides")
 

@@ -1,4 +1,4 @@
-"""A rod that friction holds: how far each program lets it creep in a million seconds."""
+"""A rod that friction holds, and how far each program lets it creep in a million seconds."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from matplotlib.figure import Figure
 from hard_cases.styles import STYLES, dress, label
 
 LEAST = 1e-11  # rad: the end of the axis
-WATCHED = 10.0  # s of MuJoCo's; from there its rate goes on
+WATCHED = 10.0  # s that MuJoCo is run; beyond, its last rate is continued
 
 
 def break_axis(above: Axes, below: Axes) -> None:
-    """Show that the logarithmic axis ends, and that zero is on none."""
+    """Show that the logarithmic axis ends, because it has no zero."""
     above.spines["bottom"].set_visible(False)
     below.spines["top"].set_visible(False)
     above.tick_params(bottom=False, which="both")
@@ -27,7 +27,7 @@ def break_axis(above: Axes, below: Axes) -> None:
 
 
 def drawn(case: Any) -> Figure:
-    """Draw what has a trace as a curve; of the others there is the end."""
+    """Draw a curve for each contender with a trace, and the end for the others."""
     t = np.array(case["reference"]["t"])
     figure, (axes, zero) = plt.subplots(
         2, 1, figsize=(8.6, 5), sharex=True, layout="constrained", height_ratios=(1, 0.12)

@@ -1,7 +1,8 @@
-"""A chain of 100 links, let go from horizontal.
+"""A chain of 100 links that is let go from horizontal.
 
-The right answer: Newton's and Euler's equations of each link with the forces in the joints as
-unknowns, a banded system; none of the programs is told it that way. In 12th order.
+The right answer comes from Newton's and Euler's equations of each link, with the forces in the
+joints as unknowns, which make a banded system. It is integrated in 12th order. None of the programs
+solves the equations in this form.
 """
 
 from __future__ import annotations
@@ -25,9 +26,9 @@ STEPS = 2000  # of the reference; 1000 move the tip by 3e-7 m, a 12th order make
 
 
 def rates_by_forces(_: float, y: Array) -> Array:
-    """Force F_i acts on link i at its upper end, -F_{i+1} at its lower one.
+    """Force F_i acts on link i at its upper end, and -F_{i+1} at its lower end.
 
-    The joints stay together: the accelerations of both ends that meet are equal.
+    The joints stay together, so that the two ends that meet have equal accelerations.
     """
     from scipy.linalg import solveh_banded
 
@@ -37,8 +38,8 @@ def rates_by_forces(_: float, y: Array) -> Array:
     spin = LENGTH / 2 * (qd**2)[:, None] * along
     inertia = MASS * LENGTH**2 / 12
     turned = LENGTH**2 / (4 * inertia) * across[:, :, None] * across[:, None, :]
-    same = np.eye(2) / MASS + turned  # an end's acceleration from the force there,
-    other = (turned - np.eye(2) / MASS)[:-1]  # and less that from the force at the other end
+    same = np.eye(2) / MASS + turned  # an end's acceleration by the force there,
+    other = (turned - np.eye(2) / MASS)[:-1]  # less the acceleration by the force at the other end
     same[1:] += same[:-1].copy()
     banded = np.zeros((4, 2 * LINKS))
     banded[3, ::2], banded[3, 1::2], banded[2, 1::2] = same[:, 0, 0], same[:, 1, 1], same[:, 0, 1]
@@ -82,7 +83,7 @@ def pendcore(**tolerances: float) -> Outcome:
 
 
 def scipy(**tolerances: float) -> Outcome:
-    """The mass matrix of the angles, dense: M = A cos(q_i - q_j), factorised by Cholesky."""
+    """Use the dense mass matrix of the angles, M = A cos(q_i - q_j), factorised by Cholesky."""
     from scipy.integrate import solve_ivp
     from scipy.linalg import cho_factor, cho_solve
 

@@ -1,4 +1,4 @@
-"""The cases that every release passes, and the tests of each; a test checks that they exist."""
+"""The cases that every release passes, with the tests of each. A test checks that these exist."""
 
 from __future__ import annotations
 
@@ -169,7 +169,7 @@ LISTED: dict[str, tuple[str, ...]] = {
 
 
 def missing(root: Path) -> list[str]:
-    """Tests of the list that are not where it says."""
+    """List the tests that are not where the list says."""
     found = []
     for tests in LISTED.values():
         for test in tests:

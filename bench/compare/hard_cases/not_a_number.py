@@ -9,7 +9,7 @@ from hard_cases.odeint import odeint
 from hard_cases.rods import Array, mujoco_rods, watched_mujoco
 
 RATE, EDGE, T_END = 1.0, 0.5, 2.0
-# q'' = 0 but for a couple that is not a number beyond the edge: it gets there at 0.5 s
+# q'' = 0, but the couple is not a number beyond the edge, which the rod reaches at 0.5 s
 
 
 def couple(q: Array) -> Array:
@@ -18,7 +18,7 @@ def couple(q: Array) -> Array:
 
 
 def told(t: float, q: float, words: str, *, says: bool) -> Outcome:
-    """A program is right that ends the run near where it happens, and says so."""
+    """Judge a program: it is right if it ends the run near that angle and says so."""
     near = abs(t - EDGE / RATE) < 0.01 and np.isfinite(q)
     return Outcome(
         error=abs(t - EDGE / RATE), said=f"{words}, last t = {t:.6g} s, q = {q:.6g} rad",
@@ -50,7 +50,7 @@ def mujoco() -> Outcome:
     data = mujoco.MjData(model)
     data.qvel[0] = RATE
     mujoco.set_mjcb_passive(lambda _, d: d.qfrc_passive.__iadd__(couple(d.qpos)))
-    # its user asks for time, and gets the start again
+    # the user asks for the time, and gets that of the start again
     for _ in range(round(T_END / 1e-3)):
         mujoco.mj_step(model, data)
     mujoco.set_mjcb_passive(None)

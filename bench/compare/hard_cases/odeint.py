@@ -12,7 +12,7 @@ from hard_cases.case import Contender, NoReturn, Outcome
 
 
 def ask(*request: str) -> dict[str, list[float]]:
-    """Lines of a name and numbers, by name."""
+    """Ask the program, and return the numbers of its lines by name."""
     path = find_executable("hard_cases_odeint", "HARD_CASES_ODEINT")
     done = subprocess.run([path, *request], capture_output=True, text=True, check=False)
     if done.returncode in {-signal.SIGXCPU, -signal.SIGKILL}:
@@ -29,5 +29,5 @@ def odeint(
     judge: Callable[[dict[str, list[float]]], Outcome],
     own_loop: bool = False,
 ) -> Contender:
-    """Make the contender that asks, and judges what it hears."""
+    """Make the contender that asks the program and judges the answer."""
     return Contender(program="odeint", how=how, run=lambda: judge(ask(*request)), own_loop=own_loop)

@@ -67,7 +67,7 @@ def taking_part(case: Any, program: str) -> list[Any]:
 
 
 def best(case: Any, program: str) -> Any | None:
-    """The contender that is right, else the one that is least wrong, else the first."""
+    """Return the contender that is right, else the least wrong one, else the first."""
     found = taking_part(case, program)
 
     def rank(one: Any) -> tuple[bool, float]:
@@ -86,7 +86,7 @@ def measured(case: Any, one: Any) -> str:
 
 
 def loops_not_run(case: Any) -> list[str]:
-    """Name the programs that are not right here, and might be in a loop that was not run."""
+    """Name the programs that are wrong here, but might be right in a loop that was not run."""
     return [
         program
         for program in case.get("loop_not_run", ())
@@ -115,13 +115,13 @@ def anchor(title: str) -> str:
 
 
 def unasked(case: Any) -> str:
-    """Name those for which no loop of one's own was run."""
+    """Name the programs for which no loop of the user's own was run."""
     programs = " and ".join(PROGRAMS[program] for program in loops_not_run(case))
     return f" (no loop of one's own was run around {programs})" if programs else ""
 
 
 def summary(record: Record) -> str:
-    """Count the cases that each program has right, and those that nobody else has."""
+    """Count the cases that each program gets right, and those that pendcore alone gets right."""
     counts = []
     for program, label in PROGRAMS.items():
         found = [best(case, program) for case in record["cases"]]
@@ -170,9 +170,9 @@ def section(case: Any) -> str:
 
 
 def losses(record: Record) -> list[str]:
-    """Name each case that pendcore has not right, and each where a peer has more to give.
+    """Name each case that pendcore does not get right, and each in which a peer gives more.
 
-    More is an answer where pendcore has only words, or one that is ten times closer.
+    More means an answer where pendcore only has a message, or one that is ten times closer.
     """
     lines = []
     for case in record["cases"]:

@@ -1,8 +1,8 @@
 """The textbook's two rods with a million times their mass at the tip.
 
-The slow and the fast mode are those of the linear equations about hanging, M q'' = -K q with
+The slow and the fast mode belong to the equations linearised about hanging, M q'' = -K q with
 M = [[4/3 + p, 1/2 + p], [1/2 + p, 1/3 + p]] and K = g diag(3/2 + p, 1/2 + p). They hold for angles
-between the rods far below p^(-1/2), 1e-3 rad: so the answer at the end is solved.
+between the rods far below p^(-1/2), 1e-3 rad, so the answer at the end is integrated.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from hard_cases.rods import Array, mujoco_rods, mujoco_steps
 G = 9.807
 RATIO = 1e6
 AMPLITUDE = 1e-4
-STEPS = 40_000  # of the reference; half as many move the end by 3e-10 rad
+STEPS = 40_000  # steps of the reference; half as many move the end by 3e-10 rad
 
 
 @cache
 def modes() -> tuple[tuple[Any, Any], ...]:
-    """Angular frequency and the second rod's share of the first one's angle, slow and fast."""
+    """Return the angular frequency of each mode and its ratio of angles, second rod to first."""
     with mp.workdps(40):
         p, g = mpf(RATIO), mpf(G)
         m11, m12, m22 = p + mpf(4) / 3, p + mpf(1) / 2, p + mpf(1) / 3
@@ -93,7 +93,7 @@ def pendcore(**how: Any) -> Outcome:
 
 
 def rates(_: float, y: Any) -> tuple[float, ...]:
-    """In angles from hanging, the determinant without what cancels."""
+    """Return the rates, in angles from hanging. The determinant is free of terms that cancel."""
     q1, q2, w1, w2 = y.tolist()
     c, s, a = cos(q1 - q2), sin(q1 - q2), 0.5 + RATIO
     r1 = -(1.5 + RATIO) * G * sin(q1) - a * s * w2**2

@@ -1,4 +1,4 @@
-"""The scenes in the peers' words: a rod of moment of inertia 1, and the textbook's two rods."""
+"""The scenes as the peers take them: a rod of moment of inertia 1, and the textbook's two rods."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def mujoco_rods(
 ) -> Any:
     """Compile uniform rods of 1 m; the joints' angles are 0 where all hang, or all stand.
 
-    `payload` is a point mass at the second one's tip.
+    `payload` is a point mass at the tip of the second rod.
     """
     import mujoco
 
@@ -66,7 +66,7 @@ def mujoco_rods(
 
 
 STIFF_FRICTION = 'solimpfriction="0.9999 0.9999 0.001" solreffriction="{} 1"'
-"""MuJoCo's friction at its hardest; to be filled in: its time constant, s."""
+"""MuJoCo's friction at its hardest; the time constant, s, is to be filled in."""
 
 
 def mujoco_steps(
@@ -84,7 +84,7 @@ def mujoco_steps(
 
 
 def driven_mujoco(model: Any, torque: Callable[[float], float], t_end: float) -> Array:
-    """Run under a torque in the first joint; rows of t, the joints' angles, and their rates."""
+    """Run under a torque in the first joint; return rows of t, the joints' angles and rates."""
     import mujoco
 
     data = mujoco.MjData(model)
@@ -98,9 +98,9 @@ def driven_mujoco(model: Any, torque: Callable[[float], float], t_end: float) ->
 
 
 def watched_mujoco(model: Any, rate: float, couple: Callable[[Any], Any], t_end: float) -> Any:
-    """Run from a rate under a couple until there is a warning: the last t and q, and what is said.
+    """Run from a rate under a couple until there is a warning; return the last t and q, and words.
 
-    Its user has switched off that MuJoCo starts again, and asks after each step.
+    The user has disabled MuJoCo's restart from the start, and looks for warnings after each step.
     """
     import mujoco
 

@@ -18,7 +18,7 @@ with mp.workdps(30):
 
 
 def judged(angle: float) -> Outcome:
-    """How far from where it began after a period."""
+    """Judge how far the rod is from its start after a period."""
     off = abs(angle - AMPLITUDE)
     return Outcome(error=off, said=f"{off:.1e} rad off after a period")
 

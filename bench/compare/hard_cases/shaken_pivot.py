@@ -1,9 +1,9 @@
-"""A rod upright on a pivot that shakes up and down: at which frequency it begins to stand.
+"""A rod upright on a pivot that shakes up and down, and the frequency at which it stands.
 
-theta'' = (3/2L) (g - eps w^2 cos wt) sin theta. With tau = wt/2 small swings are Mathieu's
-equation, theta'' + (a - 2 q cos 2 tau) theta = 0, a = -6 g/(L w^2) and q = -3 eps/L: the border is
-where a is the lowest characteristic value a_0(q), the least eigenvalue of an infinite tridiagonal
-matrix.
+theta'' = (3/2L) (g - eps w^2 cos wt) sin theta. With tau = wt/2 small swings obey Mathieu's
+equation, theta'' + (a - 2 q cos 2 tau) theta = 0, with a = -6 g/(L w^2) and q = -3 eps/L. The
+border is where a is the lowest characteristic value a_0(q), the least eigenvalue of an infinite
+tridiagonal matrix.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from hard_cases.odeint import ask
 from hard_cases.rods import UPRIGHT, mujoco_rods
 
 G = 9.807
-EPS = 0.2  # m, of a rod of 1 m
-SMALL = 1e-5  # rad from upright; what is not linear is a share of its square
+EPS = 0.2  # m; the rod has 1 m
+SMALL = 1e-5  # rad from upright; the nonlinear part is its square, relatively
 
 
 def border() -> float:
@@ -36,10 +36,10 @@ def reference() -> Mapping[str, list[float]]:
 
 
 def sought(angle_after: Callable[[float], float]) -> Outcome:
-    """Seek the frequency at which a small angle is after a period of the drive what it was.
+    """Seek the frequency at which a small angle is the same again after a period of the drive.
 
-    The equation is even in time: so the trace of the map over a period is twice that share, and the
-    border is where the trace is 2.
+    The equation is even in time. Therefore the trace of the map over a period is twice the ratio of
+    the two angles, and the trace is 2 at the border.
     """
     from scipy.optimize import brentq
 
@@ -74,7 +74,7 @@ def scipy(w: float) -> float:
 
 
 def mujoco(w: float, steps: int) -> float:
-    """In the pivot's frame: what its acceleration does to the rod's middle is a passive torque."""
+    """Run in the frame of the pivot, whose acceleration acts on the rod as a passive torque."""
     import mujoco
 
     model = mujoco_rods(dt=2 * pi / w / steps, mass=1.0, gravity=G, integrator="RK4", hanging=False)

@@ -1,4 +1,4 @@
-"""A hum on a constant torque moves a rod by steps: a staircase of slides and rests."""
+"""A rod under a constant torque and a hum, which moves in a staircase of slides and rests."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from hard_cases.rods import STIFF_FRICTION, Array, driven_mujoco, mujoco_rods
 BIAS, AMPLITUDE, FREQUENCY, FRICTION = 0.4, 0.5, 2.0, 0.7
 STAIRS = 20
 TURN = 2 * np.pi / FREQUENCY
-T_END = STAIRS * TURN  # in a rest
+T_END = STAIRS * TURN  # within a rest
 SOFT = 1e-4
 
 
@@ -38,7 +38,7 @@ def reference() -> Mapping[str, list[float]]:
 
 
 def judged(end: float, at_rest: float) -> Outcome:
-    """From the angle at the end, and the rate in the middle of a rest."""
+    """Judge the angle at the end, and the rate in the middle of a rest."""
     creep = "rests exactly" if at_rest == 0 else f"creeps at {abs(at_rest):.0e} rad/s in its rests"
     return Outcome(error=abs(end - reference()["end"][0]), said=creep)
 
@@ -72,7 +72,7 @@ def scipy_smoothed() -> Outcome:
 
 
 def scipy_events() -> Outcome:
-    """Two modes, a loop, an event for each way out; max_step keeps steps within a rest."""
+    """Use two modes, a loop, and an event for each way out; max_step keeps steps within a rest."""
     from scipy.integrate import solve_ivp
 
     def event(function: Callable[[float, Array], float], direction: int = 0) -> Any:

@@ -1,4 +1,4 @@
-"""The textbook's two rods with a joint that is damped a million times a second."""
+"""The textbook's two rods with a joint that is damped at a rate of a million per second."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from hard_cases.case import Contender, HardCase, Outcome
 from hard_cases.odeint import odeint
 from hard_cases.rods import Array, mujoco_rods, textbook_rates
 
-DAMPING = 1e5  # N m s at joint 2: 1e5 over its moment of inertia, about 0.08, is 1e6 a second
+DAMPING = 1e5  # N m s at joint 2; over its moment of inertia, about 0.08, it is 1e6 a second
 START = [np.pi / 4, np.pi / 3, 0.0, 0.0]
 T_END = 5.0
 SOLVE = np.array([[1 / 3, 0], [0, 4 / 3]])
 
 
 def rates(t: float, y: Array) -> Array:
-    """The textbook's, with the couple -b (qd_2 - qd_1) on link 2, its opposite on link 1."""
+    """The textbook's rates, with -b (qd_2 - qd_1) on link 2 and its opposite on link 1."""
     f = textbook_rates(t, y)
     a12 = 0.5 * np.cos(y[0] - y[1])
     couple = -DAMPING * (y[3] - y[2])
@@ -30,7 +30,7 @@ def rates(t: float, y: Array) -> Array:
 
 @cache
 def reference_end() -> tuple[float, ...]:
-    """SciPy's Radau as tight as it goes: any other method would take five million steps."""
+    """Solve by SciPy's Radau at its tightest; other methods would take five million steps."""
     from scipy.integrate import solve_ivp
 
     sol = solve_ivp(rates, (0, T_END), START, "Radau", rtol=1e-12, atol=1e-14)

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 
 from hard_cases.cases import PROGRAMS
 
-# Colours differ in lightness too, dashes differ: the figures survive a grey printer.
+# Colours differ in lightness, and dashes differ, so that the figures survive a grey printer.
 STYLES: dict[str, dict[str, Any]] = {
     "pendcore": {"color": "#000000", "linestyle": "-", "linewidth": 2.0},
     "scipy": {"color": "#8a8a8a", "linestyle": "-.", "linewidth": 1.4},

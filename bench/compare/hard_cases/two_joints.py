@@ -19,7 +19,7 @@ from hard_cases.odeint import odeint
 from hard_cases.rods import STIFF_FRICTION, Array, driven_mujoco, mujoco_rods
 
 FRICTION = (5.0, 1.5)  # N m
-AMPLITUDE, FREQUENCY = 10.0, 1.0  # of the motor in joint 1
+AMPLITUDE, FREQUENCY = 10.0, 1.0  # N m, rad/s; the motor in joint 1
 T_END = 9.0
 TIMES = np.linspace(0, T_END, 361)[1:]
 CHAIN = DenseChain(masses=np.ones(2), lengths=np.ones(2), gravity=9.807)
@@ -37,7 +37,7 @@ def solved() -> tuple[Array, tuple[tuple[float, tuple[int, ...]], ...]]:
 
 
 def rest() -> float:
-    """The middle of a time in which both joints stick."""
+    """Return the middle of a time in which both joints stick."""
     switches = solved()[1]
     number = next(k for k, (_, mode) in enumerate(switches) if mode == (0, 0))
     return (switches[number][0] + switches[number + 1][0]) / 2
@@ -54,7 +54,7 @@ def reference() -> Mapping[str, list[float]]:
 
 
 def judged(states: Array, at_rest: Array) -> Outcome:
-    """From the states at TIMES, and that in the middle of the rest."""
+    """Judge the states at TIMES, and the state in the middle of the rest."""
     creep = float(np.abs(at_rest[2:] @ joints(2).T).max())
     phi = states[:, :2] @ joints(2).T
     off = np.abs(phi - solved()[0][:, :2] @ joints(2).T).max(axis=1)
@@ -92,7 +92,7 @@ def scipy_smoothed() -> Outcome:
 
 
 def mujoco(dt: float, tuned: str, integrator: str) -> Outcome:
-    """Its angles are those of link 1 and of joint 2, from hanging, the other way round."""
+    """MuJoCo's angles are those of link 1 and joint 2 from hanging, with the opposite sign."""
     model = mujoco_rods(
         dt=dt, links=2, mass=1.0, gravity=9.807, joint=f'frictionloss="1" {tuned}',
         integrator=integrator,

@@ -11,11 +11,11 @@ from matplotlib.figure import Figure
 
 from hard_cases.styles import STYLES, dress, label
 
-LEAST = 1e-15  # an error of nothing is drawn here
+LEAST = 1e-15  # an error of zero is drawn here
 
 
 def rests(reference: Any, joint: int) -> list[tuple[float, float]]:
-    """When the joint sticks: from the start, and from each switch into it to the next out of it."""
+    """List when the joint sticks: from the start or a switch into stick, to the next out of it."""
     times = [0.0, *reference["switches"], reference["t"][-1]]
     modes = [0.0, *reference[f"mode_{joint}"]]
     return [

@@ -12,12 +12,12 @@ from hard_cases.odeint import odeint
 from hard_cases.rods import Array, mujoco_rods
 
 G, AMPLITUDE, SWINGS = 9.81, 1.0, 50
-SHOWN = 25.0  # ms before and after a turn that the figure shows
+SHOWN = 25.0  # ms; the figure shows this much before and after a turn
 MARK = 0.99999  # rad from the vertical: passed 1.3 ms before and after the turn
 
 
 def reference() -> dict[str, list[float]]:
-    """The first passage, from rest at -AMPLITUDE; the others follow by the period."""
+    """Return all passages: the first, from rest at -AMPLITUDE; the others follow by the period."""
     with mp.workdps(30):
         k = sin(mpf(AMPLITUDE) / 2)
         unit = sqrt(2 / (3 * mpf(G)))
@@ -30,14 +30,14 @@ def reference() -> dict[str, list[float]]:
 
 
 def around_a_turn(times: Sequence[float] | Array) -> list[float]:
-    """Return the times, s, that the figure shows, as ms from the tenth turn, on the mark's side."""
+    """Return the times that the figure shows, as ms from the tenth turn on the mark's side."""
     first, second = reference()["t"][18:20]
     ms = 1e3 * (np.asarray(times, dtype=float) - (first + second) / 2)
     return ms[np.abs(ms) < SHOWN].tolist()  # type: ignore[no-any-return]
 
 
 def judged(times: Sequence[float] | Array, steps: Sequence[float] | Array = ()) -> Outcome:
-    """From the times of the passages that were found, and of the steps."""
+    """Judge the times of the passages that were found; the steps are for the figure."""
     known = np.array(reference()["t"])
     found = np.sort(np.asarray(times, dtype=float))
     trace = {"found": around_a_turn(found), "steps": around_a_turn(steps)}

@@ -1,4 +1,4 @@
-"""A mark passed just before and just after a turn: each program's steps, and what it found."""
+"""A mark passed just before and after a turn: each program's steps and the passages it found."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from hard_cases.styles import STYLES, dress, label
 from hard_cases.two_roots import AMPLITUDE, MARK, SHOWN, G
 
-CLOSE = 6.0  # ms of the upper part, where the passages can be told apart
+CLOSE = 6.0  # ms; the upper panel shows so little that the passages can be told apart
 
 
 def drawn(case: Any) -> Figure:
@@ -21,7 +21,7 @@ def drawn(case: Any) -> Figure:
         2, 1, figsize=(8.6, 8.4), layout="constrained", height_ratios=(0.6, 1.6)
     )
     ms = np.linspace(-CLOSE, CLOSE, 201)
-    # As good as a parabola so close to the turn.
+    # So close to the turn the swing is as good as a parabola.
     fall = 0.75 * G * np.sin(AMPLITUDE) * (1e-3 * ms) ** 2
     swing.plot(ms, 1e6 * (AMPLITUDE - MARK - fall), "k")
     swing.axhline(0.0, color="0.5", linestyle="--", linewidth=1.0)

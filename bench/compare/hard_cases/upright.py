@@ -1,4 +1,4 @@
-"""Two rods that stand a billionth of a radian off upright: when they have fallen by one radian."""
+"""Two rods that stand a billionth of a radian off upright, and the time of their fall by 1 rad."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ T_END = 6.0
 
 @cache
 def fall_time() -> float:
-    """When link 1 or 2 is 1 rad off, in 25 digits, from the double that START is."""
+    """Return when link 1 or 2 is 1 rad off, in 25 digits, from the exact double START."""
     from mpmath import cos, findroot, mp, mpf, odefun, sin
 
     with mp.workdps(25):
@@ -52,7 +52,7 @@ def judged(t: float) -> Outcome:
 
 
 def first(distance: Callable[[float], float], times: Array) -> float:
-    """When the distance first is 1, bisected between two of the times."""
+    """Return when the distance is first 1, bisected between two of the times."""
     after = next(k for k, t in enumerate(times) if distance(t) > 1)
     low, high = times[after - 1], times[after]
     for _ in range(80):

@@ -269,7 +269,7 @@ TangentGrowth lyapunov(const Scene& scene, const std::vector<double>& q0,
     }
   } catch (const std::bad_alloc&) {
     throw;
-  } catch (...) {  // what a user's function throws
+  } catch (...) {  // an exception of a user's function
     ending.status = Status::callback_error;
     ending.error = std::current_exception();
   }

@@ -65,7 +65,7 @@ void EffectsInForce::call(const CompiledUser& user, double t, const Dual<double>
   for (std::size_t i = 0; i < n; ++i) {
     const double ahead = Q[i].slope;
     Q[i].slope = (ahead - forces[i]) / (2.0 * step);
-    if (std::isfinite(Q[i].slope)) continue;  // else a one-sided difference
+    if (std::isfinite(Q[i].slope)) continue;  // otherwise a one-sided difference is taken
     Q[i].slope = (std::isfinite(ahead) ? ahead - Q[i].value : Q[i].value - forces[i]) / step;
   }
 }
@@ -239,7 +239,7 @@ void ActingEffects<Row>::sum_couples(int joint) {
             if (place_of(effect) != joint || !is_couple(effect)) return;
             const Couple one = *effect.couple(modes[i]);
             if (one.slope != 0.0 || one.start != 0.0) {
-              // The common start is the latest, also where starts are negative: it keeps t - start
+              // The common start is the latest, even if starts are negative: it keeps t - start
               // small.
               const double start = has_start ? std::max(sum.start, one.start) : one.start;
               sum.held +=

@@ -27,7 +27,7 @@ Counted operator+(Counted a, Counted b) { return count(a.value + b.value); }
 Counted operator-(Counted a, Counted b) { return count(a.value - b.value); }
 Counted operator*(Counted a, Counted b) { return count(a.value * b.value); }
 Counted operator/(Counted a, Counted b) { return count(a.value / b.value); }
-Counted operator-(Counted a) { return {-a.value}; }  // a sign costs nothing: it is fused
+Counted operator-(Counted a) { return {-a.value}; }  // a sign costs nothing, because it is fused
 Counted fma(Counted a, Counted b, Counted c) { return count(a.value * b.value + c.value); }
 Counted absolute(Counted a) { return count(a.value < 0.0 ? -a.value : a.value); }
 Counted exponential(Counted a) { return count(pendcore::exponential(a.value), 20); }
@@ -95,7 +95,7 @@ class Contender {
     return std::chrono::duration<double>(Clock::now() - start).count();
   }
 
-  /// One that its tables have.
+  /// A time at which all tables of the scene have begun.
   static double time_of(const Scene& scene) {
     double t = 0.0;
     for (const Effect& effect : scene.effects) {

@@ -10,14 +10,14 @@
 namespace pendcore {
 namespace {
 
-/// On 1 to 30 links a step of radau5 costs as much as 1 to 6 series, 2 to 13 steps of dop853, or 3
-/// to 16 steps of dopri5.
+/// The steps of radau5 must be longer by this factor. On 1 to 30 links one of them costs as much as
+/// 1 to 6 series, 2 to 13 steps of dop853, or 3 to 16 steps of dopri5.
 constexpr double longer = 10.0;
 
 /// The last number of a saved state.
 constexpr double is_first = 0.0;
 constexpr double is_second = 1.0;
-constexpr double is_asked = 2.0;  ///< the first method; the size to try comes before
+constexpr double is_asked = 2.0;  ///< the first method; the number before is the step to try
 
 }  // namespace
 
@@ -60,7 +60,7 @@ Attempt StiffSwitchingStepper::attempt(double t, double h, double gain) {
     h_asked_ = 0.0;
     if (*answer) change();
   }
-  if (has_changed_) implicit_->keep_going = keep_going;  // the first never takes long
+  if (has_changed_) implicit_->keep_going = keep_going;  // the first method never takes long
   h_ = h;
   const Attempt attempt = now().attempt(t, h, gain);
   count();

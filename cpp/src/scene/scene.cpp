@@ -93,7 +93,7 @@ void warn_of_degrees(const std::string& where, const ParameterInfo& info, double
   warnings.push_back(warning_of_degrees(where + std::string(info.name), x));
 }
 
-/// The same for each angle among the parameters of an effect, or of its parts.
+/// Does this for each angle among the parameters of an effect, or of its parts.
 template <class Struct>
 void warn_of_degrees(const std::string& where, const Struct& effect,
                      std::vector<std::string>& warnings) {

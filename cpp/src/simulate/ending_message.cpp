@@ -18,7 +18,7 @@ std::string table_that_ends(const Scene& scene, double t, bool forward) {
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
     if (!is_outside_table(scene.effects[i], t, forward)) continue;
     return effect_name(scene, i) + ": " + span_of(scene.effects[i]) +
-           ", and the run is at t = " + text(t) + " s: make it longer, or simulate less";
+           ", and the run is at t = " + text(t) + " s: extend it, or end the run earlier";
   }
   return {};
 }
@@ -36,7 +36,7 @@ std::string ending_message(const Ending& ending, const Scene& scene, const Solut
   std::string message(text(ending.status).sentence);
   const Statistics& statistics = integrator.statistics;
   const bool wants_another_method = statistics.stiff && statistics.njev == 0;
-  // For a stiff run, the remark on stiffness has the advice: another method, not more steps.
+  // For a stiff run, the remark on stiffness gives the advice: another method, not more steps.
   if (ending.status == Status::max_steps && wants_another_method) message.resize(message.find(':'));
   if (ending.status == Status::at_rest) {
     const double since = solution.resumable.t.high;

@@ -57,7 +57,7 @@ double bound_of(const Linearized& second_order, std::size_t n) {
   return 0.5 * (of_qd + std::sqrt(of_qd * of_qd + 4.0 * of_q));
 }
 
-/// The same for a scene alone, in the modes that the state calls for.
+/// The same bound for a scene alone, in the modes that the state calls for.
 double bound_of(const Scene& scene, double t, const double* q, const double* qd) {
   const EquationsOfMotion equations = equations_of_motion(scene);
   if (equations.effects) choose_modes(*equations.effects, t, q, qd, true);
@@ -102,7 +102,7 @@ std::optional<FastMode> fast_mode(const Scene& scene, const EquationsOfMotion& e
   const std::size_t first = std::ranges::max_element(values, sizes) - values.begin();
   if (!(std::abs(values[first]) > slow)) return std::nullopt;
 
-  // Its partner: the conjugate, or the real one that moves the links most alike.
+  // The partner of the fastest is its conjugate, or the real one that moves the links most alike.
   const auto angles_of = [&, &vectors = vectors](std::size_t k) { return &vectors[2 * n * k]; };
   const auto product = [n](const std::complex<double>* a, const std::complex<double>* b) {
     std::complex<double> sum = 0.0;

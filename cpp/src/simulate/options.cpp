@@ -115,8 +115,9 @@ void check(const Options& options) {
                                 "\" estimates no error and takes fixed steps: give one, > 0 (s)");
   }
   if (options.compensated && !method.compensates) {
-    throw std::invalid_argument("compensated: method \"" + std::string(method.name) +
-                                "\" cannot carry on what rounding leaves over: must be False");
+    throw std::invalid_argument(
+        "compensated: method \"" + std::string(method.name) +
+        "\" cannot carry the rounding error to the next step: must be False");
   }
 }
 

@@ -69,8 +69,9 @@ void Recorder::keep_clipped(Stepper& stepper, const TwoDouble& t_old, double h, 
   if (is_kept && is_new) stepper.sample(polynomial_.data(), {}, 1.0, &theta, 1, append(t));
 }
 
-/// Keeps both states, with the same time; at a time that was asked for, only the state after the
-/// jump. An impact that changes no rate is not a jump.
+/// Keeps the states before and after the jump, with the same time. If only times that were asked
+/// for are kept, it keeps the state after the jump alone. An impact that changes no rate is not a
+/// jump.
 void Recorder::state_jumped(double t, const double* before, const double* after) {
   if (std::equal(before, before + 2 * solution_.n, after)) return state_settled(t, after);
   if (finder_) finder_->jump(t, before, after);

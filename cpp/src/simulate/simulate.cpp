@@ -64,7 +64,7 @@ struct Beginning {
   const std::vector<double>& atol;
   bool depends_on_end = false;  ///< whether the first step depends on the end of the run
 
-  /// `integrator` is not valid if the ending is cut.
+  /// Makes the beginning. `integrator` is not valid if the ending is cut.
   Ending make(IntegratorState& integrator, double t_end) {
     recorder.restarts_here();
     Ending ending{.status = Status::finished, .cut = false};
@@ -84,7 +84,7 @@ struct Beginning {
   }
 
  private:
-  /// The component that is not finite, or -1.
+  /// Makes the beginning, and returns the component that is not finite, or -1.
   int try_to(IntegratorState& integrator, double t_end) {
     const double t = integrator.t.high;
     const double direction = t_end < t ? -1.0 : 1.0;
@@ -159,7 +159,7 @@ void run(const Scene& scene, Solution& solution, double t_end, Limits limits, Be
   } else {
     Beginning beginning{options, *stepper, discontinuities, recorder, rtol, atol};
     ending = beginning.make(integrator, t_end);
-    if (ending.cut) integrator = solution.resumable;  // the start
+    if (ending.cut) integrator = solution.resumable;  // which is the start
     limits.begins_anew = beginning.depends_on_end;
     integrator.statistics.nfev = stepper->evaluations;
   }

@@ -11,9 +11,9 @@ namespace pendcore {
 
 namespace {
 
-/// Steppers that are written for the form of the equations are the fastest. What is rarer has its
-/// state in memory, with the same bits: long chains, compensated steps, runs that keep the ledger,
-/// and processors from before 2013.
+/// Steppers that are written for the form of the equations are the fastest. Rarer runs keep the
+/// state in memory and give the same bits: long chains, compensated steps, runs that keep the
+/// ledger, and processors from before 2013.
 template <const auto& table>
 std::unique_ptr<Stepper> explicit_stepper(const Scene& scene, const EquationsOfMotion& equations,
                                           bool keeps_ledger, bool compensated) {

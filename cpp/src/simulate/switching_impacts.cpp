@@ -51,8 +51,8 @@ double Switching::bounce_in_turn(double t, double* y, bool begins) {
 }
 
 /// Whether the order of the joints that strike now and have struck at this time is unknown. In a
-/// corner of two stops each impact determines the next, whatever is left of the gaps. In a corner
-/// of three stops this is not so, and neither if two joints move into their stops at once.
+/// corner of two stops each impact determines the next, whatever is left of the gaps. This does not
+/// hold in a corner of three stops, nor if two joints move into their stops at once.
 bool Switching::loses_order_of(const double* y) {
   int at_once = 0;
   for (int j = 0; j < n_; ++j) {

@@ -15,7 +15,7 @@ GRAVITIES = (9.807, 9.807, 9.807, 1.62, 0.0)
 
 
 def links(dice: Dice, n: int, decades: float) -> list[pc.Link]:
-    """Return n links of masses over so many decades: rods, points and bodies of any kind."""
+    """Return n links whose masses span some decades: rods, points and bodies of any kind."""
     found = []
     for _i in range(n):
         mass, length = dice.decades(-decades, 0.3), dice.decades(-1, 0.3)

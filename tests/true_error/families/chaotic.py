@@ -35,7 +35,7 @@ def chaotic(seed: int) -> Drawn:
     scene = chains.scene_of(links, found, 9.807)
     start = chains.start(dice, n, (2.0, 3.0), (0.0, 0.0, 2.0))
     drawn = asked(dice, "chaotic", seed, scene, start, 1.0, backward=0.0)
-    # So fast errors grow, by and large: then doubles know them until about here.
+    # Errors grow about so fast, and doubles know them until about here.
     rate = 0.5 if n == 1 else 0.7 * np.sqrt(9.807 * n / sum(link.length for link in links))
     span = dice.uniform(0.2, 1.3) * log(drawn.error / 1e-16) / rate
     if dice.chance(0.08):

@@ -65,8 +65,8 @@ def effects(dice: Dice, links: list[pc.Link]) -> list[Any]:
 def whole_periods(dice: Dice, seed: int) -> Drawn:
     """Return a swing or a rod that a motor drives, over whole periods.
 
-    Times that divide the run evenly fall on the same phase each time, where an error of phase may
-    be hidden: a rod turns back there and hardly moves.
+    Times that divide the run evenly fall on the same phase each time. An error of phase may be
+    hidden there, because a rod turns back at that phase and hardly moves.
     """
     link = pc.Link(mass=1.0, length=1.0, center=1.0, inertia=0.0)
     wide = dice.uniform(0.3, 2.0)

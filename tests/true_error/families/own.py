@@ -17,7 +17,7 @@ from true_error.own_laws import OwnLaw
 E = pc.effects
 SPAN = (0.3, 1.0, 3.0)
 ASIDE = 20.0
-"""s; tables reach as far beyond any start and end."""
+"""s; tables reach this far beyond any start and end."""
 
 
 def own(seed: int) -> Drawn:

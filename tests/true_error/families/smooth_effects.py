@@ -17,7 +17,7 @@ def weight_torque(links: list[pc.Link]) -> float:
 
 
 def joint_inertia(links: list[pc.Link], joint: int) -> float:
-    """Return what the links from a joint on turn about it, stretched, at least, kg m^2."""
+    """Return the inertia about a joint of the links from there on, stretched, at least, kg m^2."""
     beyond, total = 0.0, 0.0
     for link in links[joint - 1 :]:
         total += link.inertia + link.mass * (beyond + link.center) ** 2

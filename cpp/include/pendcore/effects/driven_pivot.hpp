@@ -4,8 +4,8 @@
 ///     g -> (-xdd_0, g - ydd_0)
 ///
 /// for gravity. The path is a sinusoid for each axis or a natural cubic spline through points; its
-/// velocity and acceleration are the exact derivatives. Source: d'Alembert's principle. Power: F_01
-/// . v_0, the work of the drive of the pivot.
+/// velocity and acceleration are the exact derivatives. Source: d'Alembert's principle. The drive
+/// of the pivot has the power F_01 . v_0.
 #pragma once
 
 #include "pendcore/effects/hooks.hpp"
@@ -42,18 +42,18 @@ struct DrivenPivot {
       parameter(&DrivenPivot::spline, {.name = "spline",
                                        .symbol = "",
                                        .unit = "m",
-                                       .sentence = "both, through points in time"}),
+                                       .sentence = "motion along both axes, through given points"}),
   };
   void check(const std::string& where) const;  ///< sinusoids or a spline, not both
 
   PivotMotion at(double t) const;  ///< for energies, views and the ledger
 
-  /// Each axis in one piece of a spline, or a sinusoid: x'' = held + slope (t - start) + gain
-  /// sin(wave).
+  /// The acceleration of each axis, in one piece of a spline or for a sinusoid: x'' = held + slope
+  /// (t - start) + gain sin(wave).
   struct Law {
     struct Axis {
       double held = 0.0, slope = 0.0;  // the acceleration in a piece
-      double velocity = 0.0;           // the velocity at its start
+      double velocity = 0.0;           // the velocity at the start of the piece
       double gain = 0.0, swing = 0.0;  // -A omega^2 and A omega
       int wave = 0;
     };

@@ -46,8 +46,8 @@ struct DryJointFriction {
                 {.name = "static",
                  .symbol = "t_s",
                  .unit = "N m",
-                 .sentence = "largest torque that holds the joint, at least coulomb; left out: "
-                             "coulomb",
+                 .sentence = "largest torque that holds the joint, at least coulomb; equal to "
+                             "coulomb if left out",
                  .range = Range::not_negative}),
       parameter(&DryJointFriction::stribeck_velocity,
                 {.name = "stribeck_velocity",
@@ -77,7 +77,7 @@ struct DryJointFriction {
 
   template <class Row>
   struct Law {
-    Row coulomb{};  // has the sign of w, like the others
+    Row coulomb{};  // has the sign of w, as the next two have
     Row peak{};
     Row inverse_velocity{};
     double exponent = 2.0;
@@ -112,7 +112,7 @@ struct DryJointFriction {
     set_lane(law.inverse_velocity, lane, mode / stribeck_velocity);
   }
 
-  /// The largest torque with which it holds the joint at rest, N m.
+  /// The largest torque with which the friction holds the joint at rest, N m.
   double holding_torque() const { return static_.value_or(coulomb); }
 };
 

@@ -24,7 +24,7 @@ enum class Account {
   drag,     ///< loss; what the wind adds is booked as `wind`
   impact,   ///< loss
   motor,    ///< work
-  drive,    ///< work, of the moving pivot
+  drive,    ///< work of the drive that moves the pivot
   wind,     ///< work of moving air
   user,     ///< work
 };
@@ -107,15 +107,16 @@ constexpr Parameter<Struct, Value> parameter(Value Struct::* field, ParameterInf
   return {field, info};
 }
 
-inline constexpr ParameterInfo joint_number{.name = "joint",
-                                            .symbol = "j",
-                                            .unit = "",
-                                            .sentence = "where it acts; counts from 1",
-                                            .required = true};
+inline constexpr ParameterInfo joint_number{
+    .name = "joint",
+    .symbol = "j",
+    .unit = "",
+    .sentence = "the joint at which it acts, counted from 1",
+    .required = true};
 inline constexpr ParameterInfo link_number{.name = "link",
                                            .symbol = "i",
                                            .unit = "",
-                                           .sentence = "on which it acts; counts from 1",
+                                           .sentence = "the link on which it acts, counted from 1",
                                            .required = true};
 
 /// Calls visit(info, value) for each parameter.

@@ -10,20 +10,21 @@
 ///
 /// and the hooks that it names:
 ///
-///     couple          couple(mode): its torque on a joint, where that is a polynomial: see law.hpp
+///     couple          couple(mode): its torque on a joint, if that is a polynomial: see law.hpp
 ///     law             Law<Row>: any other couples at joints, and forces along links;
 ///                     put(law, lane, on): its parameters into the lane of its joint or link
 ///     group           group(): effects on one row share a law if this number is the same
 ///     wind            has_wind(), and of its law dissipation(at): the part of its power that is
 ///                     lost; the rest is the wind's
 ///     modes           has_modes(), mode_at(t, phi, phid, forward), guards(mode),
-///                     next_mode(mode, guard): if the law is only piecewise smooth, see law.hpp;
-///                     with a law put_mode(law, lane, mode): what a mode changes in its lane
+///                     next_mode(mode, guard): for a law that is only piecewise smooth, see
+///                     law.hpp; with the hook `law` also put_mode(law, lane, mode): what a mode
+///                     changes in its lane
 ///     next_time       next_time(t, forward): the next time at which a mode changes
 ///     span            first_time(), last_time(): where its tables begin and end
 ///     wave            wave(): the sinusoid that drives its couple, if one does
-///     holding_torque  holding_torque(): with which it can hold its joint at rest
-///     compiled        compiled(): the same effect, with what is computed only once
+///     holding_torque  holding_torque(): the torque with which it can hold its joint at rest
+///     compiled        compiled(): the same effect, with all that is computed only once
 ///     potential       potential(phi): energy kept in the joint, J
 ///     check           check(where): what the ranges of single parameters do not say
 ///     warnings        warnings(): what is possible but hardly intended, a sentence each
@@ -265,7 +266,7 @@ struct CheckedHooks {
                 "hook warnings: .warnings = true in hooks goes with std::vector<std::string> "
                 "warnings() const");
 
-  static constexpr bool is_complete = true;  ///< asked for, so that the checks above are compiled
+  static constexpr bool is_complete = true;  ///< whoever asks for it compiles the checks above
 };
 
 /// Whether all effects of a registry have the hooks that they name. If not, this does not compile.

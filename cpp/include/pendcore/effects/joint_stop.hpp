@@ -3,10 +3,10 @@
 ///
 ///     lo <= phi <= hi;   at an impact phid+ = -e phid-, by an impulse in the joint
 ///
-/// Below the capture speed the joint stays at the stop (e = 0), and is held there until the torque
-/// that holds it would have to pull. An impact on one stop loses (1 - e^2) phid^2 / (2 J M^-1 J^T);
-/// impact.hpp has impacts on several stops at once. Source: Brogliato, Nonsmooth Mechanics (2016),
-/// section 4.1 (Newton's law of restitution) and 5.2 (several contacts).
+/// Below the capture speed the joint stays at the stop (e = 0). The stop holds it there until the
+/// holding torque would have to pull. An impact on one stop loses (1 - e^2) phid^2 /
+/// (2 J M^-1 J^T); impact.hpp has impacts on several stops at once. Source: Brogliato, Nonsmooth
+/// Mechanics (2016), sections 4.1 (Newton's law of restitution) and 5.2 (several contacts).
 #pragma once
 
 #include "pendcore/effects/hooks.hpp"
@@ -48,14 +48,15 @@ struct JointStop {
                 {.name = "capture_speed",
                  .symbol = "w_c",
                  .unit = "rad/s",
-                 .sentence = "slower impacts do not bounce; left out: 1e-9 of the natural speed "
-                             "sqrt(torque / inertia) of the joint",
+                 .sentence = "slower impacts do not bounce; if left out, it is 1e-9 of the "
+                             "natural speed sqrt(torque / inertia) of the joint",
                  .range = Range::not_negative}),
   };
   void check(const std::string& where) const {
     if (range[0] < range[1] && (range[0] > -never || range[1] < never)) return;
-    throw std::invalid_argument(where + "range = (" + text(range[0]) + ", " + text(range[1]) +
-                                "): must be (lo, hi) with lo < hi, one of them finite (rad)");
+    throw std::invalid_argument(
+        where + "range = (" + text(range[0]) + ", " + text(range[1]) +
+        "): must be (lo, hi) with lo < hi, at least one of them finite (rad)");
   }
 };
 

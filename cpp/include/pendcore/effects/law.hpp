@@ -40,7 +40,7 @@ struct Guard {
   double on_phi = 0.0;
   double on_phid = 0.0;
 
-  /// Whether its zero is a zero of the rate.
+  /// Whether the zero of the guard is a zero of the rate.
   bool is_on_rate() const { return on_phi == 0.0 && offset == 0.0; }
 };
 
@@ -51,7 +51,7 @@ struct Guard {
 ///           + gain sin(wave)
 ///
 /// Such effects need no Law. All of them on one joint are summed once, when the scene is compiled
-/// or a mode changes, and together cost as much as one.
+/// or a mode changes, and together they cost as much as one.
 struct Couple {
   double held = 0.0;
   double slope = 0.0;

@@ -26,10 +26,11 @@ struct Lock {
   static constexpr Hooks hooks{};
   static constexpr auto parameters = std::tuple{
       parameter(&Lock::joint, joint_number),
-      parameter(&Lock::angle, {.name = "angle",
-                               .symbol = "phi",
-                               .unit = "rad",
-                               .sentence = "of the joint; left out: where it starts"}),
+      parameter(&Lock::angle,
+                {.name = "angle",
+                 .symbol = "phi",
+                 .unit = "rad",
+                 .sentence = "angle of the joint; its angle at the start if left out"}),
   };
 };
 

@@ -6,9 +6,9 @@
 ///     table       tau linear between given points; the run ends where the table does
 ///     pd          tau = kp (reference - phi) - kd w
 ///
-/// Power: tau w. The modes are the pieces of the table between two of its points, and free or
-/// clipped. The times at which a sinusoid is clipped are known in advance: omega t + phase = k pi
-/// +- asin(limit/|A|).
+/// Power: tau w. The modes of a table are its pieces, each between two points. A sinusoid and a PD
+/// controller are free or clipped. The times at which a sinusoid is clipped are known in advance:
+/// omega t + phase = k pi +- asin(limit/|A|).
 #pragma once
 
 #include <algorithm>
@@ -51,7 +51,7 @@ struct Motor {
           {.name = "constant", .symbol = "tau", .unit = "N m", .sentence = "a constant torque"}),
       parameter(
           &Motor::sinusoid,
-          {.name = "sinusoid", .symbol = "", .unit = "N m", .sentence = "a torque that swings"}),
+          {.name = "sinusoid", .symbol = "", .unit = "N m", .sentence = "a sinusoidal torque"}),
       parameter(&Motor::table, {.name = "table",
                                 .symbol = "",
                                 .unit = "N m",
@@ -63,7 +63,7 @@ struct Motor {
       parameter(&Motor::limit, {.name = "limit",
                                 .symbol = "",
                                 .unit = "N m",
-                                .sentence = "largest torque of either sign",
+                                .sentence = "largest torque in either direction",
                                 .range = Range::positive_or_infinite}),
   };
   void check(const std::string& where) const;  ///< exactly one of the four laws

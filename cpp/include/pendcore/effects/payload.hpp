@@ -26,14 +26,15 @@ struct Payload {
       parameter(&Payload::mass, {.name = "mass",
                                  .symbol = "m_p",
                                  .unit = "kg",
-                                 .sentence = "of the body",
+                                 .sentence = "mass of the body",
                                  .range = Range::not_negative,
                                  .required = true}),
-      parameter(&Payload::inertia, {.name = "inertia",
-                                    .symbol = "I_p",
-                                    .unit = "kg m^2",
-                                    .sentence = "about its own mass centre, at the tip",
-                                    .range = Range::not_negative}),
+      parameter(&Payload::inertia,
+                {.name = "inertia",
+                 .symbol = "I_p",
+                 .unit = "kg m^2",
+                 .sentence = "moment of inertia about its mass centre, which is at the tip",
+                 .range = Range::not_negative}),
   };
 };
 

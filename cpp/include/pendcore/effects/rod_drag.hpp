@@ -32,8 +32,8 @@ struct RodDrag {
       .kind = "rod_drag",
       .sentence = "Air drag on a link, along the whole rod, quadratic in the speed across it.",
       .law =
-          "f(s) = -k abs(w) w,  k = rho C_d d / 2,  w(s) the speed across the rod against the "
-          "wind",
+          "f(s) = -k abs(w) w,  k = rho C_d d / 2,  w(s) is the speed across the rod relative to "
+          "the air",
       .source = "Hoerner, Fluid-Dynamic Drag (1965), chapter 3, the cross-flow principle",
       .account = Account::drag};
   static constexpr Hooks hooks{.law = true, .wind = true};
@@ -43,19 +43,19 @@ struct RodDrag {
                 {.name = "drag_coefficient",
                  .symbol = "C_d",
                  .unit = "1",
-                 .sentence = "of the cross-section; about 1.2 for a round rod",
+                 .sentence = "drag coefficient of the cross-section, about 1.2 for a round rod",
                  .range = Range::not_negative,
                  .required = true}),
       parameter(&RodDrag::diameter, {.name = "diameter",
                                      .symbol = "d",
                                      .unit = "m",
-                                     .sentence = "of the rod, as the flow sees it",
+                                     .sentence = "width of the rod across the flow",
                                      .range = Range::not_negative,
                                      .required = true}),
       parameter(&RodDrag::air_density, {.name = "air_density",
                                         .symbol = "rho",
                                         .unit = "kg/m^3",
-                                        .sentence = "of the air, or of what flows",
+                                        .sentence = "density of the air or another fluid",
                                         .range = Range::not_negative}),
       parameter(&RodDrag::wind, {.name = "wind",
                                  .symbol = "",

@@ -27,12 +27,13 @@ struct TorsionalSpring {
                 {.name = "stiffness",
                  .symbol = "k",
                  .unit = "N m/rad",
-                 .sentence = "torque per angle; negative ones push away from the rest angle",
+                 .sentence = "torque per angle; a negative one pushes away from the rest angle",
                  .required = true}),
-      parameter(&TorsionalSpring::rest_angle, {.name = "rest_angle",
-                                               .symbol = "phi_0",
-                                               .unit = "rad",
-                                               .sentence = "angle of the joint without torque"}),
+      parameter(&TorsionalSpring::rest_angle,
+                {.name = "rest_angle",
+                 .symbol = "phi_0",
+                 .unit = "rad",
+                 .sentence = "angle of the joint at which the torque is zero"}),
   };
 
   std::optional<Couple> couple(int /*mode*/) const {

@@ -5,9 +5,9 @@
 ///
 /// for the absolute angles, Q (n), N m. Q is zero on entry, and the result is added to the
 /// equations. The address may be that of a C or C++ function, of a function that numba compiled, or
-/// of a ctypes callback. The function must return the same for the same arguments. Power: Q . qd.
-/// The joint reactions treat Q as couples, because they do not know what forces Q may stand for. In
-/// C++, any callable object can be used:
+/// of a ctypes callback. The function must give the same forces for the same arguments. Power:
+/// Q . qd. The joint reactions treat Q as couples, because they do not know what forces Q may stand
+/// for. In C++, any callable object can be used:
 ///
 ///     auto magnet = [&](double t, std::span<const double> q, std::span<const double> qd,
 ///                       std::span<double> Q) { Q[0] -= strength * std::sin(q[0]); };
@@ -41,16 +41,16 @@ struct CompiledUser {
                 {.name = "address",
                  .symbol = "f",
                  .unit = "",
-                 .sentence = "of void f(double t, int n, const double* q, const double* qd, "
-                             "double* Q, void* data)",
+                 .sentence = "address of void f(double t, int n, const double* q, const double* "
+                             "qd, double* Q, void* data)",
                  .required = true}),
       parameter(&CompiledUser::data, {.name = "data",
                                       .symbol = "",
                                       .unit = "",
-                                      .sentence = "handed to the function as it is"}),
+                                      .sentence = "passed to the function unchanged"}),
   };
   /// Calls f(t, q, qd, Q) with spans, (n) each; f is not copied. An exception in f ends the run;
-  /// before the first step, it passes through simulate().
+  /// an exception before the first step passes through simulate().
   template <class Function>
   static CompiledUser of(Function& f) {
     const UserFunction call = [](double t, int n, const double* q, const double* qd, double* Q,

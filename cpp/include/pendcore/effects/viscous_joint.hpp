@@ -4,8 +4,8 @@
 ///     tau = -(b w + b2 w |w| + b3 w^3),   w = phid
 ///
 /// Source: the linear term is Rayleigh's dissipation (Theory of Sound I, 81); the quadratic and
-/// cubic terms are the next in an odd law. Power: -tau w is lost. Negative coefficients feed the
-/// motion, which may then blow up in finite time.
+/// cubic terms are the next ones of an odd law. Power: -tau w is lost. Negative coefficients feed
+/// energy into the motion, which may then blow up in finite time.
 ///
 /// |w| has a corner at w = 0. Where b2 is not 0, the sign of w is the mode, +1 or -1.
 #pragma once
@@ -34,7 +34,7 @@ struct ViscousJoint {
                 {.name = "damping",
                  .symbol = "b",
                  .unit = "N m s/rad",
-                 .sentence = "linear coefficient; negative ones feed the motion",
+                 .sentence = "linear coefficient; a negative one feeds energy into the motion",
                  .required = true}),
       parameter(&ViscousJoint::damping2, {.name = "damping2",
                                           .symbol = "b2",

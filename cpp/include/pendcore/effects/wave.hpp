@@ -20,7 +20,7 @@ struct Sinusoid {
 
   static constexpr std::string_view name = "Sinusoid";
   static constexpr std::string_view sentence =
-      "amplitude sin(angular_frequency t + phase); the amplitude in the unit of what it drives.";
+      "amplitude sin(angular_frequency t + phase); the amplitude has the unit of what it drives.";
   static constexpr auto parameters = std::tuple{
       parameter(&Sinusoid::amplitude, {.name = "amplitude",
                                        .symbol = "A",
@@ -33,7 +33,7 @@ struct Sinusoid {
                                                .sentence = "2 pi over the period",
                                                .required = true}),
       parameter(&Sinusoid::phase,
-                {.name = "phase", .symbol = "phi", .unit = "rad", .sentence = "at t = 0"}),
+                {.name = "phase", .symbol = "phi", .unit = "rad", .sentence = "phase at t = 0"}),
   };
 };
 
@@ -44,7 +44,7 @@ struct Table {
 
   static constexpr std::string_view name = "Table";
   static constexpr std::string_view sentence =
-      "Torque at given times, linear between them; the run ends where the table does.";
+      "Torque at given times, linear between them; the run ends where the table ends.";
   static constexpr auto parameters = std::tuple{
       parameter(&Table::t, {.name = "t",
                             .symbol = "t",
@@ -82,7 +82,7 @@ struct PD {
       parameter(&PD::reference, {.name = "reference",
                                  .symbol = "phi_r",
                                  .unit = "rad",
-                                 .sentence = "angle of the joint that it aims at",
+                                 .sentence = "target angle of the joint",
                                  .required = true}),
   };
 };
@@ -95,7 +95,7 @@ struct Spline {
 
   static constexpr std::string_view name = "Spline";
   static constexpr std::string_view sentence =
-      "Natural cubic splines x(t) and y(t) through given points; the run ends where they do.";
+      "Natural cubic splines x(t) and y(t) through given points; the run ends where they end.";
   static constexpr auto parameters = std::tuple{
       parameter(&Spline::t, {.name = "t",
                              .symbol = "t",

@@ -30,7 +30,7 @@ ChainOf<Number>::ChainOf(const Scene& scene, std::shared_ptr<ActingEffects<Pack<
     in(mass_moment_)[i] = link.mass * link.center;
   }
   links_ = chain_links(scene, inertia);
-  rotor_[0] = 0.0;  // part of the first link
+  rotor_[0] = 0.0;  // the first link includes the rotor of joint 1
 }
 
 // The kernels instantiate the rest.

@@ -80,9 +80,9 @@ void ForcesBetweenBounds::solve_between() {
   }
 }
 
-/// How force i violates its condition; 0 if it does not. Between the bounds: -1 below the range, 1
-/// above it. At a bound, the sign of the change of lambda that w calls for: 1 at the lower, -1 at
-/// the upper.
+/// How force i violates its condition; 0 if it does not. For a force between the bounds it is -1
+/// below the range and 1 above it. For a force at a bound it is the sign of the change of lambda
+/// that w calls for: 1 at the lower bound, -1 at the upper.
 int ForcesBetweenBounds::wrong(int i) const {
   switch (at[i]) {
     case Bound::between: return lambda[i] < lower[i] ? -1 : lambda[i] > upper[i] ? 1 : 0;

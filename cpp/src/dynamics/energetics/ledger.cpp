@@ -7,8 +7,8 @@
 namespace pendcore {
 namespace {
 
-/// Calls visit(entry, at, loads) for each law of the effects, if their rows are of type Row.
-/// Returns whether they are.
+/// Calls visit(entry, at, loads) for each law of the effects, if the rows of the laws are of type
+/// Row. Returns whether they are.
 template <class Row, class Visit>
 bool visit_rows(const EffectsInForce& effects, double t, const LinkMemory& links, Visit& visit) {
   const auto* acting = dynamic_cast<const ActingEffects<Row>*>(&effects);

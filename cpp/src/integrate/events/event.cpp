@@ -49,7 +49,7 @@ void check_function(const std::string& where, const events::Function& event, int
   if (!event.f) throw std::invalid_argument(where + "f: is empty: must be a function");
   if (event.samples < 1 || event.samples > 1'000'000) {
     throw std::invalid_argument(where + "samples = " + std::to_string(event.samples) +
-                                ": must be 1 to 1000000, in a step");
+                                ": must be 1 to 1000000 in each step");
   }
   if (!(event.max_step > 0.0)) refuse(where + "max_step", event.max_step, "> 0 (s)");
 }
@@ -69,8 +69,9 @@ void check_event(const std::string& where, const Event& event, int n) {
                                 ": must be 1 (rising), -1 (falling) or 0 (both)");
   }
   if (event.terminal < 0) {
-    throw std::invalid_argument(where + "terminal = " + std::to_string(event.terminal) +
-                                ": must be >= 0, the occurrences that end the run");
+    throw std::invalid_argument(
+        where + "terminal = " + std::to_string(event.terminal) +
+        ": must be >= 0, the number of occurrences that end the run, 0 for none");
   }
 }
 

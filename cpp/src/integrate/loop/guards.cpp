@@ -26,8 +26,8 @@ constexpr std::array<double, points> nodes = {
     0.5, 0.6913417161825449,  0.8535533905932737,  0.9619397662556434,
     1.0};
 
-/// Replaces values at the nodes by the coefficients of the polynomial through them, by Newton's
-/// divided differences and then in powers of theta. Both are `stride` apart.
+/// Replaces values at the nodes by the coefficients, in powers of theta, of the polynomial through
+/// them, by way of Newton's divided differences. Values and coefficients are `stride` apart.
 void interpolate(double* values, int stride) {
   for (int order = 1; order < points; ++order) {
     for (int i = points - 1; i >= order; --i) {
@@ -52,7 +52,7 @@ double value_of(const double* coefficients, int degree, double theta) {
   return value;
 }
 
-/// The polynomial between theta and 1, in units of that part.
+/// The polynomial between theta and 1, as a function of the share of that part.
 std::vector<double> beyond(const double* coefficients, int degree, double theta) {
   std::vector<double> rest(coefficients, coefficients + degree + 1);
   for (int from = 0; from < degree; ++from) {
@@ -132,8 +132,8 @@ Crossing Guards::first(double t, double h, bool from_rest_too) {
   return found;
 }
 
-/// Sets slopes_ to the polynomial of the slope at rest between `from` and the end of the step, in
-/// units of that part.
+/// Sets slopes_ to the polynomial of the slope at rest between `from` and the end of the step, as a
+/// function of the share of that part.
 void Guards::slopes_along_step(int k, double t, double h, double from) {
   const double direction = std::copysign(1.0, h);
   for (int i = 0; i < points; ++i) {
@@ -171,7 +171,7 @@ Crossing Guards::where_slope_allows(Crossing crossing, double t, double h, int d
       dip = std::min(dip, value_of(polynomial_.data(), degree, from + node * (turns - from)));
     }
     if (value_of(polynomial_.data(), degree, turns) <= -dip) return {k, turns, true};
-    // The guard has risen above the errors: its next zero is its own.
+    // The guard has risen above the errors, so its next zero is real.
     const std::vector<double> rest = beyond(polynomial_.data(), degree, turns);
     const double next = first_negative(rest.data(), degree);
     if (next > 1.0) return {};
@@ -237,7 +237,7 @@ bool Guards::falls_at_start(int k, double t, double h, int halvings) {
   stepper_.get_state(state_.data());
   const int zeros = k < discontinuities_.linear_guards() ? discontinuities_.zeros_at_start(k) : 0;
   if (zeros == 0) {
-    const double value = value_at(k, t);  // comes first, because rounding() refers to it
+    const double value = value_at(k, t);  // comes first, because rounding() uses it
     const double rounding = discontinuities_.rounding(k, state_.data());
     return value <= rounding && !leaves_its_zero(k, t, h, value, rounding);
   }
@@ -249,8 +249,8 @@ bool Guards::contradicts_law_at_start(const Crossing& crossing, double h) {
   return is_of_error(crossing, h) || goes_below(crossing.theta);
 }
 
-/// Whether the guard, with the slope and the curvature from the law, has its zero only after twice
-/// the crossing's share of the step. Then the crossing is an error of the dense output.
+/// Whether the guard, with the slope and the curvature that the law gives, reaches zero only after
+/// twice the crossing's share of the step. Then the crossing is an error of the dense output.
 bool Guards::is_of_error(const Crossing& crossing, double h) {
   const int k = crossing.guard;
   if (k < 0 || k >= discontinuities_.linear_guards() || discontinuities_.zeros_at_start(k) == 0)

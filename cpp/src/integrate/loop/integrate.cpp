@@ -36,7 +36,7 @@ class Run {
   }
 
   Ending go() {
-    // A law that is over where the run begins is so for a run of no length as well.
+    // If a law has ended where the run begins, it has ended for a run of no length as well.
     const bool begins = integrator_.h == 0.0;
     if (begins && discontinuities_ != nullptr && discontinuities_->is_over())
       return end_with(Status::non_finite);
@@ -53,7 +53,7 @@ class Run {
     } catch (const Stopped& stopped) {
       resume_.interrupt();
       return end_with(stopped.status);
-    } catch (...) {  // what a function of the user's throws
+    } catch (...) {  // an exception of a user's function
       resume_.interrupt();
       Ending ending = end_with(Status::callback_error);
       ending.error = std::current_exception();
@@ -65,12 +65,13 @@ class Run {
   /// The time that the next step may not go beyond.
   struct Target {
     double t;
-    double left;    ///< until then
-    bool is_break;  ///< of the law's; otherwise the end of the interval
+    double left;    ///< the time until then
+    bool is_break;  ///< whether the law changes there; otherwise the interval ends there
     bool is_in_reach;
   };
 
-  /// Each of these takes the run a little on, and returns whether it goes on: `end` says why not.
+  /// Each of these functions takes the run a little further and returns whether it goes on. `end`
+  /// notes why it does not.
   bool end(Status status) {
     status_ = status;
     return false;
@@ -78,8 +79,8 @@ class Run {
 
   bool step() {
     const double t = integrator_.t.high;
-    // A continued run may be asked to go no further: the rest of less than the last bit of its time
-    // would be a step of its own, perhaps a backward one.
+    // A continued run may be asked to go no further. What is left of its time, less than the last
+    // bit, would be a step of its own, perhaps a backward one.
     if (t == limits_.t_end) return end(Status::finished);
     const double left = difference(limits_.t_end, integrator_.t);
     if (attempts_ == limits_.max_steps) return end(Status::max_steps);
@@ -95,7 +96,7 @@ class Run {
     double h = integrator_.h;
     const bool is_too_small =
         std::abs(h) <= few * epsilon * std::abs(t) || std::abs(h) < limits_.least_step;
-    // Where the target is the next time that there is, a step there may be tried, once.
+    // If the target is the next time that a double can hold, one step to it may be tried.
     if (is_too_small && (!target.is_in_reach || integrator_.control.after_rejection)) {
       const bool is_coarse = integrator_.trial_was_finite || was_stretched_;
       return end(is_coarse ? Status::step_too_small : Status::non_finite);
@@ -109,7 +110,7 @@ class Run {
     ++attempts_;
     can_stop_ = true;
     trial_.attempt(h);
-    can_stop_ = false;  // within a step that was tried already
+    can_stop_ = false;  // from here on the step has been tried already
     if (stopped_ != Status::finished) return end(stopped_);
     const bool is_shortest = target.is_in_reach && std::abs(h) <= few * last_bits(t, target.t);
     switch (trial_.judge(is_shortest, is_shortest && !is_too_small)) {
@@ -120,7 +121,7 @@ class Run {
         integrator_.h_is_max_step = false;
         return true;
       case Trial::Verdict::changes_at_start:
-        --attempts_;  // no step: the statistics do not count it either
+        --attempts_;  // this was no step, and the statistics do not count it either
         return change_at_once(trial_.guard());
       case Trial::Verdict::fails:
         ++integrator_.statistics.rejected;
@@ -130,7 +131,7 @@ class Run {
     return accept(target, trial_.guard(), trial_.h(), trial_.result());
   }
 
-  /// Nothing moves any more: one step to the end.
+  /// Nothing moves any more, so one step leads to the end.
   bool rest(double left) {
     resume_.cut_from_here();
     integrator_.crossings_at_once = 0;
@@ -145,8 +146,8 @@ class Run {
 
   Target next_target(double left) const {
     const double h = integrator_.h;
-    // The last step may be a hundredth longer (Hairer's rule), but not longer than max_step, the
-    // last bits of t aside: a step of those alone would not be one.
+    // The last step may be a hundredth longer (Hairer's rule), but not longer than max_step. It may
+    // exceed max_step by the last bits of t, because a step over these bits alone would be no step.
     const double reach = std::min(1.01 * std::abs(h), std::max(std::abs(h), limits_.max_step));
     Target target{limits_.t_end, left, false, false};
     if (discontinuities_ != nullptr) {
@@ -168,7 +169,7 @@ class Run {
     return change_law(guard);
   }
 
-  /// The quadratures have no say in the steps: they are not to overflow in silence.
+  /// Quadratures do not affect the steps, so nothing else would report that they overflow.
   bool quadratures_overflow() {
     if (!has_quadratures_) return false;
     stepper_.get_new_state(state_.data());
@@ -179,7 +180,7 @@ class Run {
   bool accept(const Target& target, int guard, double h, const Attempt& attempt) {
     if (quadratures_overflow()) return end(Status::non_finite);
     TwoDouble t_new = integrator_.t + h;
-    // A guard's zero within the last bits of the target is there too.
+    // A guard's zero within the last bits of the target counts as at the target.
     const bool lands = target.is_in_reach && difference(target.t, t_new) * std::copysign(1.0, h) <=
                                                  last_bits(integrator_.t.high, target.t);
     if (lands) t_new = {target.t, 0.0};
@@ -213,10 +214,11 @@ class Run {
     return lands && target.is_break ? change_law(-1) : true;
   }
 
-  /// An event lies within the step: the clipped state is output only; resume repeats the step.
+  /// An event lies within the step. The clipped state is for output only, and resume repeats the
+  /// step.
   bool end_within_step(double theta, double h, double t_new) {
     const TwoDouble t = time_in_step(integrator_.t, h, theta, t_new);
-    // Within the last bits of its start no time has passed: there is one state at one time.
+    // Within the last bits of the start no time has passed, and one time has only one state.
     if (t.high == integrator_.t.high) return true;
     const std::size_t rows = stepper_.interpolant_degree() + 1;
     std::vector<double> polynomial(rows * stepper_.dimension());
@@ -235,7 +237,8 @@ class Run {
     return true;
   }
 
-  /// At the state that the stepper stands at. The step that was to be tried is tried next.
+  /// Changes the law at the state that the stepper has reached. The step that was to be tried is
+  /// tried next.
   bool change_law(int guard) {
     resume_.change_goes_on();
     const double t = integrator_.t.high;
@@ -256,7 +259,8 @@ class Run {
     stepper_.start(state_.data(), rate_.data());
     integrator_.control = StepControl{};
     resume_.end_change();
-    // As where a run begins: the ledger's rates have no say in a step's error.
+    // The ledger's rates are checked too, as at the beginning of a run: no step's error would show
+    // that they are not finite.
     bad_ = bad_component(rate_);
     return bad_ < 0 || end(Status::non_finite);
   }
@@ -279,10 +283,10 @@ class Run {
   Trial trial_;
   Status status_ = Status::finished;
   bool can_stop_ = false;
-  Status stopped_ = Status::finished;  ///< or why an attempt was given up
+  Status stopped_ = Status::finished;  ///< why an attempt was given up, if it was
   long long attempts_ = 0;
   bool chatters_ = false;
-  bool was_stretched_ = false;  ///< the last attempt, to a target that lies beyond its step
+  bool was_stretched_ = false;  ///< whether the last attempt was lengthened to reach its target
   bool has_quadratures_ = false;
   int bad_ = -1;  ///< component of the last trial, while trials are not finite
   std::vector<double> state_;

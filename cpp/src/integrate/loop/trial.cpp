@@ -127,7 +127,7 @@ void Trial::look_for_bad_component() {
   bad_ = -1;
   // The norm overflows beyond the square root of the largest double; this alone is not an error.
   if (!std::isfinite(error)) bad_ = bad_component_of(stepper_, t_ + h_);
-  // A fixed step is accepted whatever its error is.
+  // A fixed step is accepted whatever its error is, so its dense output is checked here.
   if (bad_ < 0 && fixed_step_ && is_far_off()) bad_ = bad_component_between();
   integrator_.trial_was_finite = bad_ < 0 && !std::isnan(error);
 }
@@ -140,7 +140,8 @@ bool Trial::is_far_off() {
   return std::ranges::any_of(new_state_, [](double x) { return std::abs(x) > far; });
 }
 
-/// The same for the dense output, which may have stages of its own.
+/// The first component whose dense output is not finite, or -1. The dense output may have stages of
+/// its own.
 int Trial::bad_component_between() {
   const int size = stepper_.dimension();
   polynomial_.resize(static_cast<std::size_t>(stepper_.interpolant_degree() + 1) * size);

@@ -128,7 +128,7 @@ bool ImplicitRungeKutta::is_rounding(double h) const {
   return true;
 }
 
-/// Newton's iteration. Returns false if it does not converge.
+/// Solves for the stages by Newton's iteration. Returns false if it does not converge.
 bool ImplicitRungeKutta::iterate(double t, double h) {
   double* const w = transformed_.data();
   double* const d = increment_.data();
@@ -277,9 +277,9 @@ Attempt ImplicitRungeKutta::attempt(double t, double h, double /*gain*/) {
 }
 
 /// Sets h times the slope of the polynomial at its start. This is h f(t, y), so that sol(t) has no
-/// corners, unless it differs from the slope of the stages by more than the error allows. A stiff
-/// component that has died out would otherwise turn the last bits of its state into a slope that
-/// nothing in the step has.
+/// corners, unless it differs from the slope of the stages by more than the error allows. Otherwise
+/// a stiff component that has died out would turn the last bits of its state into a slope that the
+/// motion does not have anywhere in the step.
 void ImplicitRungeKutta::set_slope(double h) {
   bool all_are_exact = true;
   for (int i = 0; i < size_; ++i) {
@@ -296,7 +296,8 @@ void ImplicitRungeKutta::set_slope(double h) {
   }
 }
 
-/// The length of the step does not matter; for some 1e-300 s the matrices would be infinite.
+/// Nothing moves, so the length of the step does not matter. No system is solved: its matrix would
+/// be infinite for a step of some 1e-300 s.
 void ImplicitRungeKutta::stay() {
   y_new_ = y_;
   low_new_ = low_;

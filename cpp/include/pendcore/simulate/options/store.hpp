@@ -8,12 +8,12 @@
 
 namespace pendcore {
 
-/// What is kept of a run. The last mode keeps all, the first two need constant memory.
+/// What is kept of a run. The last mode keeps everything; the first two need constant memory.
 enum class Store {
   end,    ///< the end
   times,  ///< the times asked for
   steps,  ///< every accepted step
-  dense,  ///< the polynomials; and the times asked for, or else every accepted step
+  dense,  ///< the polynomials, with the times asked for or else with every accepted step
 };
 
 inline constexpr std::array<std::string_view, 4> store_names = {"end", "times", "steps", "dense"};
