@@ -117,7 +117,7 @@ def test_the_readmes_counts_are_those_of_the_records():
         f"MuJoCo {right['MuJoCo']} and Boost.odeint {right['Boost.odeint']}." in readme
     )
     families = json.loads((ROOT / "docs/true_error.json").read_text())["families"].values()
-    assert f"Of [{sum(one['scenes'] for one in families):,} random scenes]" in readme
+    assert f"In [{sum(one['scenes'] for one in families):,} random scenes]" in readme
     assert sum(one["above"] for one in families) == 0
 
 
