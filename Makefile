@@ -23,9 +23,9 @@ SOURCES := pyproject.toml CMakeLists.txt $(shell find cpp python ! -path '*__pyc
 .DEFAULT_GOAL := help
 .PHONY: demo test test-all compare hard-cases bench build-bench lint tidy sanitize sanitize-few \
     sanitized references threads long horizon asked-errors default-method book-speed fuzz fuzz-readers \
-    test-error clean help
+    test-error core clean help
 
-demo: $(DONE)/installed $(DONE)/symbolic-requirements  ## build, run the textbook's case, say where its figure and summary are
+demo: $(DONE)/installed  ## build, run the textbook's case, say where its figure and summary are
 	pendcore run -o out/textbook
 	@echo
 	@echo "figure:   out/textbook/angles.png"
@@ -158,22 +158,26 @@ $(DONE)/build-requirements: pyproject.toml | $(DONE)/venv
 	@python setup/requirements.py build | $(PIP_INSTALL) cmake ninja -r /dev/stdin
 	@touch $@
 
-# A source that is edited during the build is newer than the stamp, so the next call builds it.
-# scikit-build-core imports the installed package: one that cannot be imported is removed first.
+# What pendcore imports is installed while the core compiles. A source that is edited during the build
+# is newer than the stamp, so the next call builds it.
 $(DONE)/installed: $(SOURCES) $(DONE)/build-requirements
 	@touch $@.begun
 	@echo "pip compiles the core and installs it into .venv: one to two minutes the first time"
-	@python -c "import pendcore" 2>/dev/null || python -m pip uninstall --quiet --yes pendcore 2>/dev/null
-	$(PIP_INSTALL) --no-build-isolation --config-settings build-dir=$(BUILT) .
+	@$(MAKE) --silent --jobs=2 $(DONE)/run-requirements core
 	@mv $@.begun $@
+
+# scikit-build-core imports the installed package: one that cannot be imported is removed first.
+core:
+	@python -c "import pendcore" 2>/dev/null || python -m pip uninstall --quiet --yes pendcore 2>/dev/null
+	$(PIP_INSTALL) --no-deps --no-build-isolation --config-settings build-dir=$(BUILT) .
+
+$(DONE)/run-requirements: pyproject.toml | $(DONE)/build-requirements
+	python setup/requirements.py run symbolic | $(PIP_INSTALL) -r /dev/stdin
+	@touch $@
 
 $(DONE)/test-requirements: pyproject.toml | $(DONE)/build-requirements
 	@sh setup/debian_packages.sh doctest
 	python setup/requirements.py test export symbolic | $(PIP_INSTALL) -r /dev/stdin
-	@touch $@
-
-$(DONE)/symbolic-requirements: pyproject.toml | $(DONE)/build-requirements
-	python setup/requirements.py symbolic | $(PIP_INSTALL) -r /dev/stdin
 	@touch $@
 
 $(DONE)/error-requirements: pyproject.toml | $(DONE)/test-requirements

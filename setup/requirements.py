@@ -1,4 +1,4 @@
-"""Print requirements that pyproject.toml lists, one a line: of `build`, or of an extra."""
+"""Print requirements that pyproject.toml lists, one a line: of `build`, `run`, or of an extra."""
 
 from __future__ import annotations
 
@@ -7,8 +7,11 @@ import tomllib
 from pathlib import Path
 
 pyproject = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text())
-extras = pyproject["project"]["optional-dependencies"]
+listed = {
+    "build": pyproject["build-system"]["requires"],
+    "run": pyproject["project"]["dependencies"],
+    **pyproject["project"]["optional-dependencies"],
+}
 
 for name in sys.argv[1:]:
-    listed = pyproject["build-system"]["requires"] if name == "build" else extras[name]
-    print("\n".join(listed))
+    print("\n".join(listed[name]))
