@@ -163,7 +163,7 @@ $(DONE)/build-requirements: pyproject.toml | $(DONE)/venv
 $(DONE)/installed: $(SOURCES) $(DONE)/build-requirements
 	@touch $@.begun
 	@echo "pip compiles the core and installs it into .venv: one to two minutes the first time"
-	@$(MAKE) --no-print-directory --jobs=2 $(DONE)/run-requirements core
+	@$(MAKE) --silent --jobs=2 $(DONE)/run-requirements core
 	@mv $@.begun $@
 
 # scikit-build-core imports the installed package: one that cannot be imported is removed first.
@@ -171,8 +171,10 @@ core:
 	@python -c "import pendcore" 2>/dev/null || python -m pip uninstall --quiet --yes pendcore 2>/dev/null
 	$(PIP_INSTALL) --no-deps --no-build-isolation --config-settings build-dir=$(BUILT) .
 
+# pip would compile the packages' own tests to bytecode, too: an eighth of the installation.
 $(DONE)/run-requirements: pyproject.toml | $(DONE)/build-requirements
-	python setup/requirements.py run symbolic | $(PIP_INSTALL) -r /dev/stdin
+	python setup/requirements.py run symbolic | $(PIP_INSTALL) --no-compile -r /dev/stdin
+	@python -m compileall -qq -x 'site-packages/.*/tests/' $(VIRTUAL_ENV)/lib || true
 	@touch $@
 
 $(DONE)/test-requirements: pyproject.toml | $(DONE)/build-requirements
