@@ -23,7 +23,7 @@ SOURCES := pyproject.toml CMakeLists.txt $(shell find cpp python ! -path '*__pyc
 .DEFAULT_GOAL := help
 .PHONY: demo test test-all compare hard-cases bench build-bench lint tidy sanitize sanitize-few \
     sanitized references threads long horizon asked-errors default-method book-speed fuzz fuzz-readers \
-    test-error core clean help
+    test-error elsewhere core clean help
 
 demo: $(DONE)/installed  ## build, run the textbook's case, say where its figure and summary are
 	pendcore run -o out/textbook
@@ -45,7 +45,7 @@ test-all: lint tidy build-bench $(DONE)/test-requirements $(DONE)/fuzz-requireme
 	@sh setup/debian_packages.sh octave pandoc
 	$(CPP_TESTS)
 	$(PYTEST) --full
-	$(MAKE) sanitize threads fuzz-readers fuzz CASES=20000
+	$(MAKE) sanitize threads elsewhere fuzz-readers fuzz CASES=20000
 
 # Where these are missing, tests that compare with them are skipped.
 references: $(DONE)/error-requirements $(DONE)/bench-requirements  ## installs what tests compare pendcore with
@@ -97,6 +97,12 @@ sanitized: $(DONE)/installed $(DONE)/test-requirements
 	cmake --install build/sanitizer --prefix $(SANITIZED)/pendcore
 	PYTHONPATH=$(SANITIZED) LD_PRELOAD="$(PRELOAD)" ASAN_OPTIONS=detect_leaks=0 \
 	    $(PYTEST) $(SWEEP) -m "not outside_build and not unsanitized"
+
+MACHINES ?= aarch64 riscv64 s390x
+elsewhere: $(DONE)/build-requirements  ## the same bits on other processors (MACHINES): docs/elsewhere.md, written anew
+	@sh setup/debian_packages.sh doctest $(MACHINES)
+	$(PIP_INSTALL) tqdm
+	python tests/elsewhere/elsewhere.py $(MACHINES) --contracted --page docs/elsewhere.md
 
 threads: $(DONE)/build-requirements  ## threads that share a scene, under the thread sanitizer
 	@sh setup/debian_packages.sh doctest
@@ -179,7 +185,7 @@ $(DONE)/run-requirements: pyproject.toml | $(DONE)/build-requirements
 
 $(DONE)/test-requirements: pyproject.toml | $(DONE)/build-requirements
 	@sh setup/debian_packages.sh doctest
-	python setup/requirements.py test export symbolic | $(PIP_INSTALL) -r /dev/stdin
+	python setup/requirements.py test export symbolic completion | $(PIP_INSTALL) -r /dev/stdin
 	@touch $@
 
 $(DONE)/error-requirements: pyproject.toml | $(DONE)/test-requirements

@@ -4,7 +4,7 @@
 # `also`; they are installed with the others so that a password is asked for only once.
 #
 #   setup/debian_packages.sh [python] [compiler] [eigen] [doctest] [benchmark] [boost] [sundials]
-#                            [valgrind] [octave] [pandoc] [also ...]
+#                            [valgrind] [octave] [pandoc] [aarch64] [riscv64] [s390x] [also ...]
 set -eu
 
 python=${PYTHON:-python3}
@@ -47,6 +47,10 @@ for thing in "$@"; do
         sundials) [ -e /usr/include/arkode/arkode_erkstep.h ] || miss libsundials-dev ;;
         valgrind) command -v valgrind >/dev/null || miss valgrind ;;
         octave) command -v octave-cli >/dev/null || miss octave ;;
+        aarch64 | riscv64 | s390x) # to compile for that processor, and to run what was compiled
+            command -v "$thing-linux-gnu-g++-12" >/dev/null || miss "g++-12-$thing-linux-gnu"
+            command -v "qemu-$thing-static" >/dev/null || miss qemu-user-static
+            ;;
         pandoc) command -v pandoc >/dev/null || miss pandoc ;;
         *) stop "debian_packages.sh: no '$thing' is known" ;;
     esac

@@ -112,6 +112,13 @@ void bind_methods(py::module_& module) {
       "stage) and the basis of these (function, power). Each number is a triple (numerator,\n"
       "denominator, root of 6): (numerator + root sqrt(6)) / denominator. An implicit method has\n"
       "plain numbers; pairs and series have nothing.");
+  module.def(
+      "nearest_double",
+      [](long long numerator, long long denominator, long long root) {
+        return Fraction{numerator, denominator, root}.value();
+      },
+      py::arg("numerator"), py::arg("denominator"), py::arg("root"),
+      "The double that the core takes for (numerator + root sqrt(6)) / denominator.");
 }
 
 }  // namespace pendcore::bindings

@@ -19,6 +19,11 @@ PYBIND11_MODULE(_core, module, pybind11::mod_gil_not_used()) {
   using namespace pendcore::bindings;
   module.doc() = "The compiled core: scenes, runs and methods as numbers and arrays.";
   module.attr("__version__") = PENDCORE_VERSION;
+#if defined(__clang__)
+  module.attr("compiler") = "clang " __clang_version__;
+#else
+  module.attr("compiler") = "GCC " __VERSION__;
+#endif
   bind_effects(module);
   bind_events(module);
   bind_scene(module);

@@ -3,7 +3,8 @@
 # Same bits everywhere: what the source says is what the processor computes. No multiply and add is
 # contracted, nothing is reassociated, and no -march flag: newer instruction sets are chosen while
 # running. The last two flags change no value; they free sqrt of errno and let selects be blends.
-set(pendcore_arithmetic -ffp-contract=off -fno-fast-math -fno-math-errno -fno-trapping-math)
+set(pendcore_arithmetic -ffp-contract=${PENDCORE_CONTRACTION} -fno-fast-math -fno-math-errno
+                        -fno-trapping-math)
 
 # GCC 12 moves a double through an MMX register where it runs out of others, and leaves it so: after
 # that, every long double of the process is a NaN, and with it LAPACK.

@@ -2,10 +2,10 @@
 // the events that were found. trajectory_hash.txt has all lines. The lines up to `tiny` are older
 // than the effects: scenes without effects keep every bit. If you change a method's steps or an
 // effect's law, you change lines of that file; say so in CHANGELOG.md.
+#include <bit>
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 
 #include "pendcore/pendcore.hpp"
 
@@ -15,9 +15,8 @@ namespace {
 
 std::uint64_t hash(std::uint64_t h, const std::vector<double>& numbers) {  // FNV-1a
   for (const double x : numbers) {
-    unsigned char bytes[sizeof x];
-    std::memcpy(bytes, &x, sizeof x);
-    for (const unsigned char byte : bytes) h = (h ^ byte) * 0x100000001b3u;
+    auto bits = std::bit_cast<std::uint64_t>(x);
+    for (int byte = 0; byte < 8; ++byte, bits >>= 8) h = (h ^ (bits & 0xff)) * 0x100000001b3u;
   }
   return h;
 }

@@ -81,7 +81,7 @@ def test_make_demo_says_where_the_command_is_what_takes_long_and_brings_what_com
     ).stdout  # fmt: skip
     assert ".venv/bin/pendcore --help" in told
     assert "compiles the core" in told
-    assert "requirements.py symbolic" in told, "pendcore derive is what comes next"
+    assert "requirements.py run symbolic" in told, "pendcore derive is what comes next"
     readme = (ROOT / "README.md").read_text()
     assert re.search(r"compiles the\s+core", readme)
     assert re.search(r"`pip install \.` in a clone compiles", readme)

@@ -128,7 +128,10 @@ OUT_OF_RANGE = {
         r"t_eval\[1\] = 2\.0: must be within t_span, 0\.0 to 1\.0 s",
     ),
     "t_eval nan": ({"t_eval": [nan]}, r"t_eval\[0\] = nan: must"),
-    "times and no place": ({"t_eval": [0.5], "store": "end"}, r"store: .*t_eval.*: must be"),
+    "times and no place": (
+        {"t_eval": [0.5], "store": "end"},
+        r'store = "end": .*t_eval.*: must be',
+    ),
     "t_eval against the run": (
         {"t_span": (1, 0), "t_eval": [0.2, 0.5]},
         r"t_eval\[1\] = 0.5: must",

@@ -258,12 +258,29 @@ def test_plot_puts_the_figure_beside_the_solution():
         (["--help"], "pendcore run swing.toml"),
         (["run", "--help"], "[[link]]"),
         (["plot", "--help"], "pendcore plot out/textbook/solution.npz"),
-        (["--version"], f"pendcore {pc.__version__}"),
+        (["--version"], f"pendcore {pc.__version__} ({pc._core.instruction_set()}, "),
+        (["--version"], pc._core.compiler),
     ],
 )
 def test_help_and_version_are_printed(argv, said, capsys):
     assert main(argv) == 0
     assert said in capsys.readouterr().out
+
+
+def test_a_wrong_instruction_set_does_not_hide_behind_the_version(monkeypatch, capsys):
+    monkeypatch.setattr(pc._core, "instruction_set", lambda: int("x86-64-v9"))
+    assert main(["--version"]) == 2
+    assert "x86-64-v9" in capsys.readouterr().err
+
+
+def test_a_csv_file_has_every_digit_of_the_states(capsys):
+    assert main(["run", "--csv", "--no-horizon"]) == 0
+    assert written("out/textbook") == sorted([*FILES, "states.csv"])
+    head, *rows = Path("out/textbook/states.csv").read_text(encoding="utf-8").splitlines()
+    assert head == "t (s),q_1 (rad),q_2 (rad),qd_1 (rad/s),qd_2 (rad/s)"
+    sol = pc.load("out/textbook/solution.npz")
+    numbers = np.array([[float(x) for x in row.split(",")] for row in rows])
+    assert np.array_equal(numbers, np.column_stack([sol.t, sol.y.T]))
 
 
 def test_the_case_in_the_help_is_one(capsys):

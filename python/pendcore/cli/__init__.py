@@ -9,7 +9,7 @@ import warnings
 from collections.abc import Sequence
 
 from pendcore import _core
-from pendcore.cli import cost, derive, explain, plot, run, trust
+from pendcore.cli import completion, cost, derive, explain, plot, run, trust
 from pendcore.cli.usage import UsageError
 from pendcore.messages.warning import PendcoreWarning
 
@@ -43,6 +43,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         Exit status: 0 fine, 1 the run failed or was interrupted, 2 wrong usage, 141 nobody reads.
     """
     parser = _parser()
+    if "_ARGCOMPLETE" in os.environ:
+        completion.complete(parser)
     try:
         args = parser.parse_args(argv)
     except SystemExit as stop:  # after --help, --version and wrong usage
@@ -84,11 +86,28 @@ def _parser() -> argparse.ArgumentParser:
         epilog=_EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("--version", action="version", version=f"pendcore {_core.__version__}")
+    parser.add_argument(
+        "--version", action=_Version, nargs=0, help="show version, instruction set and compiler"
+    )
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for command in (run, explain, plot, trust, cost, derive):
+    for command in (run, explain, plot, trust, cost, derive, completion):
         command.add_parser(commands)
     return parser
+
+
+class _Version(argparse.Action):
+    """Print what this build is, and end.
+
+    The instruction set is asked for only here, as a wrong PENDCORE_INSTRUCTION_SET is an error.
+    """
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        try:
+            build = f"{_core.instruction_set()}, {_core.compiler}"
+        except ValueError as error:
+            parser.error(str(error))
+        print(f"pendcore {_core.__version__} ({build})")
+        parser.exit()
 
 
 def _show_warning(message: Warning | str, *_: object, **__: object) -> None:

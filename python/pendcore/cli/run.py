@@ -16,6 +16,7 @@ from pendcore.cli.horizon import Horizon, unasked_horizon
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder
 from pendcore.run.accuracy import AccuracyError
 from pendcore.run.run_error import CAN_GO_ON
+from pendcore.views.export import write_csv
 from pendcore.views.plot import save_figure
 from pendcore.views.summary import facts, text
 
@@ -25,6 +26,7 @@ what is written into the folder:
   summary.txt    what was simulated, how it ended, what it took, drift of energy, largest reactions
   summary.json   the same facts for programs
   angles.png     the angles in degrees over time
+  states.csv     t (s), q (rad), qd (rad/s) for spreadsheets, with --csv
 Ctrl-C ends the run, and all of these files are written. If a file is being written, Ctrl-C or an
 error, such as a full disk, leaves that file out, and the others are written. No file is incomplete.
 
@@ -48,6 +50,7 @@ a case:
 """
 
 FILES = ("summary.txt", "summary.json", "angles.png", "solution.npz")
+CSV = "states.csv"
 _MANY_STEPS = 100_000
 """The number of steps above which writing the solution takes seconds."""
 
@@ -74,6 +77,9 @@ def add_parser(commands: Any) -> None:
         action="store_true",
         help="do not estimate until when the run is right: that takes second runs",
     )
+    parser.add_argument(
+        "--csv", action="store_true", help=f"write the states into {CSV} as well, a row per time"
+    )
     parser.add_argument("--json", action="store_true", help="print the summary as JSON")
     parser.set_defaults(execute=execute)
 
@@ -86,7 +92,7 @@ def execute(args: argparse.Namespace) -> int:
     folder = folder_of(args)
     with new_folder(folder):
         solution, complaint, refusal = _simulated(case, args)
-        files = FilesToWrite(folder, FILES)
+        files = FilesToWrite(folder, (*FILES, CSV) if args.csv else FILES)
         horizon = None if args.no_horizon else unasked_horizon(solution)
         found = _write(files, solution, refusal, horizon)
         print(files.outcome(), file=sys.stderr)
@@ -149,4 +155,7 @@ def _write(
         save_figure(solution, path, until)
     with files.needed_for("solution.npz"):
         save(solution, files.folder / "solution.npz")
+    if CSV in files.names:
+        with files.one(CSV) as path:
+            write_csv(solution, path)
     return found

@@ -1,11 +1,16 @@
-"""Solutions as pandas and xarray know them."""
+"""Solutions as pandas, xarray and spreadsheets know them."""
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Hashable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from pendcore.cases.case import CaseData
+from pendcore.messages.progress import callback, close
 from pendcore.run.events import Function
 from pendcore.run.result import RunResult
 from pendcore.scene.effect_class import OwnEffect
@@ -14,6 +19,8 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
+ROWS_AT_ONCE = 10_000
+"""The number of rows of a CSV file between two reports of progress."""
 _HINT = 'needs {}: pip install "pendcore[export]"'
 
 
@@ -68,6 +75,27 @@ def to_xarray(solution: RunResult) -> xr.Dataset:
         coords={"time": ("time", solution.t.copy(), {"units": "s"}), "link": list(links)},
         attrs=_case(solution),
     )
+
+
+def write_csv(solution: RunResult, path: Path) -> None:
+    """Write a row per time: t (s), q_1.. (rad), qd_1.. (rad/s), every number with all its digits.
+
+    The first row names columns and units. A jump has two rows at one time.
+    """
+    links = range(1, len(solution.scene.links) + 1)
+    names = ["t (s)", *(f"q_{i} (rad)" for i in links), *(f"qd_{i} (rad/s)" for i in links)]
+    rows = np.column_stack([solution.t, solution.q, solution.qd])
+    report = callback(None, f"writing {path.name}")
+    try:
+        with path.open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            writer.writerow(names)
+            for begin in range(0, len(rows), ROWS_AT_ONCE):
+                writer.writerows(rows[begin : begin + ROWS_AT_ONCE].tolist())
+                if report is not None:
+                    report(min(begin + ROWS_AT_ONCE, len(rows)) / len(rows))
+    finally:
+        close(report)
 
 
 def _case(solution: RunResult) -> dict[Hashable, Any]:

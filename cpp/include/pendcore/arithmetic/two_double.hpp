@@ -17,23 +17,23 @@ struct TwoDouble {
 
 /// a + b - sum, exactly, where sum is a + b rounded.
 template <class Real>
-PENDCORE_INLINE Real left_over(const Real& a, const Real& b, const Real& sum) {
+PENDCORE_INLINE constexpr Real left_over(const Real& a, const Real& b, const Real& sum) {
   const Real b_part = sum - a;
   return (a - (sum - b_part)) + (b - b_part);
 }
 
-PENDCORE_INLINE TwoDouble two_sum(double a, double b) {
+PENDCORE_INLINE constexpr TwoDouble two_sum(double a, double b) {
   const double sum = a + b;
   return {sum, left_over(a, b, sum)};
 }
 
-PENDCORE_INLINE TwoDouble operator+(const TwoDouble& a, double b) {
+PENDCORE_INLINE constexpr TwoDouble operator+(const TwoDouble& a, double b) {
   const TwoDouble sum = two_sum(a.high, b);
   return two_sum(sum.high, sum.low + a.low);
 }
 
 /// b - a, rounded to a double.
-PENDCORE_INLINE double difference(double b, const TwoDouble& a) {
+PENDCORE_INLINE constexpr double difference(double b, const TwoDouble& a) {
   const TwoDouble sum = two_sum(b, -a.high);
   return sum.high + (sum.low - a.low);
 }

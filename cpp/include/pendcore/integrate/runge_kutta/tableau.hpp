@@ -13,35 +13,16 @@
 ///
 ///     |err| = |e|^2 / sqrt(|e|^2 + 0.01 |d|^2)       of order 2 p - q
 ///
-/// Coefficients are exact, (numerator + root sqrt(6)) / denominator, and rounded once, by the
-/// compiler. The order conditions of b, of b - e and of the interpolant are tested exactly, for
-/// every method.
+/// Coefficients are exact numbers (fraction.hpp), which the compiler rounds. The order conditions
+/// of b, of b - e and of the interpolant are tested exactly, for every method.
 #pragma once
 
 #include <array>
 
 #include "pendcore/integrate/method_info.hpp"
+#include "pendcore/integrate/runge_kutta/fraction.hpp"
 
 namespace pendcore {
-
-/// A number of Q(sqrt(6)).
-struct Fraction {
-  long long numerator = 0;
-  long long denominator = 1;
-  long long root = 0;  ///< factor of sqrt(6)
-  /// The value, rounded once; where it takes more than one operation, these are in extended
-  /// precision.
-  constexpr double value() const {
-    constexpr long long exact = 1LL << 53;
-    if (root == 0 && -exact < numerator && numerator < exact && denominator < exact) {
-      return static_cast<double>(numerator) / static_cast<double>(denominator);
-    }
-    constexpr long double sqrt_6 = 2.449489742783178098197284074705891392L;
-    const long double sum = static_cast<long double>(numerator) + sqrt_6 * root;
-    return static_cast<double>(sum / static_cast<long double>(denominator));
-  }
-  constexpr bool is_zero() const { return numerator == 0 && root == 0; }
-};
 
 /// The rows of an identity matrix: powers of theta.
 template <int degree>

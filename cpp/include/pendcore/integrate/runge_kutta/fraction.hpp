@@ -1,0 +1,83 @@
+/// \file
+/// An exact number of Q(sqrt(6)), and the double nearest to it:
+///
+///     (numerator + root sqrt(6)) / denominator
+///
+/// Coefficients of methods are such numbers. Those with numerator and denominator below 2^53 and no
+/// root are one division of doubles. For the others every operation works on sums of two doubles,
+/// some 100 bits (Dekker 1971, Numerische Mathematik 18), and the result is rounded once. So a
+/// coefficient is the same double for every compiler and processor, whatever their long double is.
+///
+/// Cost: nothing where the compiler evaluates it, as it does in all kernels.
+#pragma once
+
+#include "pendcore/arithmetic/two_double.hpp"
+
+namespace pendcore {
+
+struct Fraction {
+  long long numerator = 0;
+  long long denominator = 1;  ///< > 0
+  long long root = 0;         ///< factor of sqrt(6)
+
+  constexpr double value() const;
+  constexpr bool is_zero() const { return numerator == 0 && root == 0; }
+};
+
+namespace fraction_detail {
+
+constexpr TwoDouble sqrt_6 = {0x1.3988e1409212ep+1, 0x1.f40c86450c869p-53};
+
+constexpr TwoDouble two_doubles(long long n) {
+  constexpr long long half = 1LL << 32;
+  const long long high = n / half;
+  return two_sum(static_cast<double>(high) * static_cast<double>(half),
+                 static_cast<double>(n - high * half));
+}
+
+/// a b, exactly, unless it overflows.
+constexpr TwoDouble product(double a, double b) {
+  constexpr double splitter = 134217729.0;  // 2^27 + 1: leaves halves whose products are exact
+  const double a_high = splitter * a - (splitter * a - a);
+  const double b_high = splitter * b - (splitter * b - b);
+  const double a_low = a - a_high;
+  const double b_low = b - b_high;
+  const double high = a * b;
+  return {high, ((a_high * b_high - high) + a_high * b_low + a_low * b_high) + a_low * b_low};
+}
+
+constexpr TwoDouble product(const TwoDouble& a, const TwoDouble& b) {
+  const TwoDouble exact = product(a.high, b.high);
+  return two_sum(exact.high, exact.low + (a.high * b.low + a.low * b.high));
+}
+
+constexpr TwoDouble sum(const TwoDouble& a, const TwoDouble& b) {
+  const TwoDouble high = two_sum(a.high, b.high);
+  const TwoDouble low = two_sum(a.low, b.low);
+  const TwoDouble most = two_sum(high.high, high.low + low.high);
+  return two_sum(most.high, most.low + low.low);
+}
+
+constexpr double quotient(TwoDouble a, const TwoDouble& b) {
+  const double first = a.high / b.high;
+  a = sum(a, product({-first, 0.0}, b));
+  const double second = a.high / b.high;
+  a = sum(a, product({-second, 0.0}, b));
+  const TwoDouble both = two_sum(first, second);
+  return both.high + (both.low + a.high / b.high);
+}
+
+}  // namespace fraction_detail
+
+/// The nearest double.
+constexpr double Fraction::value() const {
+  using namespace fraction_detail;
+  constexpr long long exact = 1LL << 53;
+  if (root == 0 && -exact < numerator && numerator < exact && denominator < exact) {
+    return static_cast<double>(numerator) / static_cast<double>(denominator);
+  }
+  const TwoDouble top = sum(two_doubles(numerator), product(two_doubles(root), sqrt_6));
+  return quotient(top, two_doubles(denominator));
+}
+
+}  // namespace pendcore

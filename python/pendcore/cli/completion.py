@@ -1,0 +1,49 @@
+"""`pendcore completion`: print what a shell needs to complete the command's words."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+from pendcore.cli.usage import UsageError
+
+_EPILOG = """
+to switch completion on, for this user:
+  bash   pendcore completion bash >> ~/.bashrc
+  zsh    pendcore completion zsh >> ~/.zshrc
+  fish   pendcore completion fish > ~/.config/fish/completions/pendcore.fish
+and open a new shell.
+"""
+SHELLS = ("bash", "zsh", "fish")
+
+
+def add_parser(commands: Any) -> None:
+    """Add the sub-command and its arguments."""
+    parser = commands.add_parser(
+        "completion",
+        help="let a shell complete sub-commands, options and files",
+        description="Print a script with which a shell completes sub-commands, options and files.",
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("shell", choices=SHELLS, help="whose script")
+    parser.set_defaults(execute=execute)
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Run the sub-command; return its exit status."""
+    try:
+        import argcomplete
+    except ImportError:
+        raise UsageError("needs argcomplete: pip install argcomplete") from None
+    print(argcomplete.shellcode(["pendcore"], shell=args.shell))
+    return 0
+
+
+def complete(parser: argparse.ArgumentParser) -> None:
+    """Answer a shell that asks how a line goes on, and end; do nothing if no shell asks."""
+    try:
+        import argcomplete
+    except ImportError:  # then no shell has the script that asks
+        return
+    argcomplete.autocomplete(parser)
