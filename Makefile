@@ -99,10 +99,10 @@ sanitized: $(DONE)/installed $(DONE)/test-requirements
 	    $(PYTEST) $(SWEEP) -m "not outside_build and not unsanitized"
 
 MACHINES ?= aarch64 riscv64 s390x
-elsewhere: $(DONE)/build-requirements  ## the same bits on other processors (MACHINES): docs/elsewhere.md, written anew
+CHECK_OF_THE_CHECK ?= --contracted
+elsewhere: $(DONE)/installed  ## the same bits on other processors (MACHINES); PAGE=docs/elsewhere.md writes the page
 	@sh setup/debian_packages.sh doctest $(MACHINES)
-	$(PIP_INSTALL) tqdm
-	python tests/elsewhere/elsewhere.py $(MACHINES) --contracted --page docs/elsewhere.md
+	python tests/elsewhere/elsewhere.py $(MACHINES) $(CHECK_OF_THE_CHECK) $(PAGE:%=--page %)
 
 threads: $(DONE)/build-requirements  ## threads that share a scene, under the thread sanitizer
 	@sh setup/debian_packages.sh doctest

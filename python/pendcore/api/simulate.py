@@ -73,7 +73,7 @@ def simulate(
     -----
     The step control of Runge-Kutta methods is that of Hairer, Norsett and Wanner, *Solving Ordinary
     Differential Equations I*, II.4; a Taylor series sets its steps by its coefficients. The same
-    arguments give the same bits on every x86-64 machine, whatever is stored.
+    arguments give the same bits on every machine (``docs/elsewhere.md``), whatever is stored.
     """
     return solve(Solution, scene, q0, qd0, t_span, options)  # type: ignore[arg-type]
 

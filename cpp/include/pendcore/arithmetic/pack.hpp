@@ -6,8 +6,6 @@
 /// pack, whatever the instruction set, alone or beside others. A plain double is a pack of one.
 #pragma once
 
-#include <bit>
-
 #include "pendcore/arithmetic/instruction_set.hpp"
 
 // Only inlined functions pass packs to each other, so that the calling convention does not matter.
@@ -111,23 +109,13 @@ PENDCORE_INLINE Pack<2> low_half(const Pack<4>& x) { return __builtin_shufflevec
 PENDCORE_INLINE Pack<2> high_half(const Pack<4>& x) { return __builtin_shufflevector(x, x, 2, 3); }
 
 /// a b + c, rounded once. It is correctly rounded by definition, hence the same on every processor.
-/// Four and eight lanes are written out: a loop over them would be unrolled anew in every clone of
-/// every kernel, which took a fifth of their compilation. GCC makes more of a loop over two lanes.
 template <class Real>
 PENDCORE_INLINE Real fma(const Real& a, const Real& b, const Real& c) {
-  auto of = [&](int i) __attribute__((always_inline)) {
-    return __builtin_fma(lane(a, i), lane(b, i), lane(c, i));
-  };
-  constexpr int width = Lanes<Real>::width;
-  if constexpr (width == 4) {
-    return Real{of(0), of(1), of(2), of(3)};
-  } else if constexpr (width == 8) {
-    return Real{of(0), of(1), of(2), of(3), of(4), of(5), of(6), of(7)};
-  } else {
-    Real result = c;
-    for (int i = 0; i < width; ++i) set_lane(result, i, of(i));
-    return result;
+  Real result = c;
+  for (int i = 0; i < Lanes<Real>::width; ++i) {
+    set_lane(result, i, __builtin_fma(lane(a, i), lane(b, i), lane(c, i)));
   }
+  return result;
 }
 template <class Real>
   requires(Lanes<Real>::width > 1)
@@ -137,13 +125,9 @@ PENDCORE_INLINE Real fma(double a, const Real& b, const Real& c) {
 
 template <class Real>
 PENDCORE_INLINE Real absolute(const Real& x) {
-  if constexpr (Lanes<Real>::width == 1) {
-    return __builtin_fabs(x);
-  } else {
-    using Integers = typename Lanes<Real>::Integers;
-    const Integers magnitude = Integers{} + 0x7fffffffffffffffLL;
-    return std::bit_cast<Real>(std::bit_cast<Integers>(x) & magnitude);
-  }
+  Real result = x;
+  for (int i = 0; i < Lanes<Real>::width; ++i) set_lane(result, i, __builtin_fabs(lane(x, i)));
+  return result;
 }
 
 /// The larger number in every lane; `b` where either is NaN.
