@@ -8,3 +8,6 @@ set(CMAKE_SYSTEM_PROCESSOR ${MACHINE})
 set(CMAKE_TRY_COMPILE_PLATFORM_VARIABLES MACHINE)
 set(CMAKE_CXX_COMPILER ${MACHINE}-linux-gnu-g++-12)
 set(CMAKE_CROSSCOMPILING_EMULATOR qemu-${MACHINE}-static -L /usr/${MACHINE}-linux-gnu)
+if(MACHINE STREQUAL "riscv64") # has no instruction for atomic bytes, of which GCC 12 asks a library
+  set(CMAKE_CXX_STANDARD_LIBRARIES -latomic)
+endif()
