@@ -129,7 +129,8 @@ def main() -> int:
         caught = not contracted.wrong and bool(contracted.differing())
         how_many = f"{len(contracted.differing())} of {len(contracted.hashes)} hashes differ"
         print(f"with contraction, {CONTRACTED}: {how_many if caught else 'NOT SEEN'}")
-        print(contracted.wrong)
+        if contracted.wrong:
+            print(contracted.wrong)
         fine &= caught
     if asked.page and fine:
         before, _, rest = asked.page.read_text().partition(BEGIN)
