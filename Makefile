@@ -99,10 +99,10 @@ sanitized: $(DONE)/installed $(DONE)/test-requirements
 	    $(PYTEST) $(SWEEP) -m "not outside_build and not unsanitized"
 
 MACHINES ?= aarch64 riscv64 s390x
-CHECK_OF_THE_CHECK ?= --contracted
+CONTRACTED ?= --contracted
 elsewhere: $(DONE)/installed  ## the same bits on other processors (MACHINES); PAGE=docs/elsewhere.md writes the page
 	@sh setup/debian_packages.sh doctest $(MACHINES)
-	python tests/elsewhere/elsewhere.py $(MACHINES) $(CHECK_OF_THE_CHECK) $(PAGE:%=--page %)
+	python tests/elsewhere/elsewhere.py $(MACHINES) $(CONTRACTED) $(PAGE:%=--page %)
 
 threads: $(DONE)/build-requirements  ## threads that share a scene, under the thread sanitizer
 	@sh setup/debian_packages.sh doctest

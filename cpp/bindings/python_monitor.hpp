@@ -14,8 +14,12 @@ class PythonMonitor {
  public:
   explicit PythonMonitor(py::handle progress) : progress_(progress) {}
 
-  /// What the core calls: false stops the run. The core's copies of it all call this object.
+  PythonMonitor(const PythonMonitor&) = delete;  // what it kept would stay with the copy
+  PythonMonitor& operator=(const PythonMonitor&) = delete;
+
+  /// What the core gets: it may copy that, and every copy calls this object.
   Monitor for_core() { return std::ref(*this); }
+  /// False stops the run.
   bool operator()(double fraction);
 
   /// Puts the exception, and the status that it means, into the run.

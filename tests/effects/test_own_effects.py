@@ -177,7 +177,7 @@ def test_a_run_that_its_function_broke_off_can_be_resumed():
 
 @pytest.mark.parametrize("method", ["dopri5", "dop853", "rk4", "radau5"])
 def test_a_run_that_its_function_broke_off_ends_at_its_last_step(method):
-    """Even where the function fails at the end of a step that was kept already, it does."""
+    """The run ends there even where the function fails at the end of a step that was kept."""
     options = {"step": 0.05} if method == "rk4" else {}
     turn = pc.events.LinkAngle(link=1, value=0.5, every_turn=True)
     solutions = 0

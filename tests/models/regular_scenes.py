@@ -1,8 +1,8 @@
 """Random scenes whose motion is regular: neighbours part by less than a hundredfold over the span.
 
-Of each scene we know the motion from two methods as accurate as doubles allow, how far apart these
-are, and what every method takes and reaches at every half decade of tolerance. An error to ask for
-is drawn with the scene, between 1e-2 and 1e-10.
+The motion of each scene is known from two methods as accurate as doubles allow, whose distance is
+known too. So is what every method takes and reaches at every half decade of tolerance. An error to
+ask for is drawn with the scene, between 1e-2 and 1e-10.
 """
 
 from __future__ import annotations
