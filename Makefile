@@ -23,7 +23,7 @@ SOURCES := pyproject.toml CMakeLists.txt $(shell find cpp python ! -path '*__pyc
 .DEFAULT_GOAL := help
 .PHONY: demo test test-all compare hard-cases bench build-bench lint tidy sanitize sanitize-few \
     sanitized references threads long horizon asked-errors default-method book-speed fuzz fuzz-readers \
-    test-error elsewhere core clean help
+    test-error elsewhere wasm core clean help
 
 demo: $(DONE)/installed  ## build, run the textbook's case, say where its figure and summary are
 	pendcore run -o out/textbook
@@ -98,11 +98,17 @@ sanitized: $(DONE)/installed $(DONE)/test-requirements
 	PYTHONPATH=$(SANITIZED) LD_PRELOAD="$(PRELOAD)" ASAN_OPTIONS=detect_leaks=0 \
 	    $(PYTEST) $(SWEEP) -m "not outside_build and not unsanitized"
 
-MACHINES ?= aarch64 riscv64 s390x
+MACHINES ?= aarch64 riscv64 s390x wasm32 clang
 CONTRACTED ?= --contracted
-elsewhere: $(DONE)/installed  ## the same bits on other processors (MACHINES); PAGE=docs/elsewhere.md writes the page
+elsewhere: $(DONE)/installed $(DONE)/test-requirements  ## the same bits on other processors (MACHINES); PAGE=docs/elsewhere.md writes the page
 	@sh setup/debian_packages.sh doctest $(MACHINES)
 	python tests/elsewhere/elsewhere.py $(MACHINES) $(CONTRACTED) $(PAGE:%=--page %)
+	$(if $(filter wasm32,$(MACHINES)),$(PYTEST) --full tests/elsewhere)
+
+wasm: $(DONE)/build-requirements  ## the core for browsers: build/wasm/package, docs/webassembly.md
+	@sh setup/debian_packages.sh eigen wasm32
+	cmake -G Ninja -B build/wasm -DCMAKE_TOOLCHAIN_FILE=cpp/cmake/machines/wasm32.cmake
+	cmake --build build/wasm --target pendcore_wasm
 
 threads: $(DONE)/build-requirements  ## threads that share a scene, under the thread sanitizer
 	@sh setup/debian_packages.sh doctest

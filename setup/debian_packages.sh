@@ -4,7 +4,8 @@
 # `also`; they are installed with the others so that a password is asked for only once.
 #
 #   setup/debian_packages.sh [python] [compiler] [eigen] [doctest] [benchmark] [boost] [sundials]
-#                            [valgrind] [octave] [pandoc] [aarch64] [riscv64] [s390x] [also ...]
+#                            [valgrind] [octave] [pandoc] [aarch64] [riscv64] [s390x] [wasm32]
+#                            [clang] [also ...]
 set -eu
 
 python=${PYTHON:-python3}
@@ -50,6 +51,14 @@ for thing in "$@"; do
         aarch64 | riscv64 | s390x) # to compile for that processor, and to run what was compiled
             command -v "$thing-linux-gnu-g++-12" >/dev/null || miss "g++-12-$thing-linux-gnu"
             command -v "qemu-$thing-static" >/dev/null || miss qemu-user-static
+            ;;
+        clang) command -v clang++-22 >/dev/null || miss clang-22 ;;
+        wasm32) # clang with its WebAssembly libraries, and Node
+            { command -v clang++-22 && command -v wasm-ld-22; } >/dev/null || miss "clang-22 lld-22"
+            [ -e /usr/lib/llvm-22/lib/wasm32-wasi/libc++abi.a ] ||
+                miss "wasi-libc libc++-22-dev-wasm32 libc++abi-22-dev-wasm32 \
+                    libclang-rt-22-dev-wasm32"
+            command -v node >/dev/null || miss nodejs
             ;;
         pandoc) command -v pandoc >/dev/null || miss pandoc ;;
         *) stop "debian_packages.sh: no '$thing' is known" ;;

@@ -5,6 +5,8 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -18,6 +20,14 @@ namespace py = pybind11;
 /// An array of doubles, contiguous and at multiples of 8 bytes, converted if necessary.
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast |
                                       py::detail::npy_api::NPY_ARRAY_ALIGNED_>;
+
+/// A NaN that comes of a computation has the sign that the processor gives it: here, none.
+inline void give_nan_one_sign(Array& numbers) {
+  double* const first = numbers.mutable_data();
+  for (py::ssize_t i = 0; i < numbers.size(); ++i) {
+    if (std::isnan(first[i])) first[i] = std::numeric_limits<double>::quiet_NaN();
+  }
+}
 
 inline py::str string(std::string_view text) { return {text.data(), text.size()}; }
 

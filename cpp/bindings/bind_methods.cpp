@@ -115,7 +115,7 @@ void bind_methods(py::module_& module) {
   module.def(
       "nearest_double",
       [](long long numerator, long long denominator, long long root) {
-        return Fraction{numerator, denominator, root}.value();
+        return Fraction{numerator, denominator, root}.value;
       },
       py::arg("numerator"), py::arg("denominator"), py::arg("root"),
       "The double that the core takes for (numerator + root sqrt(6)) / denominator.");

@@ -24,23 +24,17 @@ struct Taken {
   void into(bool& x) const { x = truth(name, value); }
 
   void into(std::string& text) const {
-    try {
-      if (py::isinstance<py::str>(value)) {
-        text = value.cast<std::string>();
-        return;
-      }
-    } catch (const py::cast_error&) {  // a string that is not valid text
-    }
-    throw py::type_error(std::string(name) + " = " + py::repr(value).cast<std::string>() +
-                         ": must be the name of a method");
+    const std::optional<std::string> word = valid_text();
+    if (!word) throw py::type_error(name_and_value() + ": must be the name of a method");
+    text = *word;
   }
 
   void into(std::optional<Store>& store) const {
     if (value.is_none()) return;
-    const auto word = py::str(value).cast<std::string>();
-    const auto* const found = std::ranges::find(store_names, word);
+    const std::optional<std::string> word = valid_text();
+    const auto* const found = word ? std::ranges::find(store_names, *word) : store_names.end();
     if (found == store_names.end()) {
-      throw py::value_error(std::string(name) + " = " + py::repr(value).cast<std::string>() +
+      throw py::value_error(name_and_value() +
                             ": must be \"dense\", \"steps\", \"times\" or \"end\"");
     }
     store = static_cast<Store>(found - store_names.begin());
@@ -57,6 +51,18 @@ struct Taken {
 
   void into(std::vector<Event>& events) const {
     for (const py::handle event : value) events.push_back(make_event(event));
+  }
+
+  /// The value, unless it is no text, or text that no encoding has (a lone surrogate).
+  std::optional<std::string> valid_text() const {
+    try {
+      if (py::isinstance<py::str>(value)) return value.cast<std::string>();
+    } catch (const py::cast_error&) {
+    }
+    return std::nullopt;
+  }
+  std::string name_and_value() const {
+    return std::string(name) + " = " + py::repr(value).cast<std::string>();
   }
 
   void times_into(std::vector<double>& times) const {

@@ -74,6 +74,7 @@ Array acceleration_rows(const Scene& scene, const Array& t, const Array& q, cons
   for (py::ssize_t i = 0; i < angles.count(); ++i) {
     accelerations(equations, t.at(i), angles[i].data(), rates[i].data(), result.mutable_data(i, 0));
   }
+  give_nan_one_sign(result);
   return result;
 }
 
@@ -94,6 +95,7 @@ std::optional<Array> acceleration_of_state(const Scene& scene, py::handle t, py:
   Array result(static_cast<py::ssize_t>(n));
   accelerations(equations_of_motion(scene), time, angles.data(), rates.data(),
                 result.mutable_data());
+  give_nan_one_sign(result);
   return result;
 }
 
@@ -113,6 +115,8 @@ py::tuple jacobian_rows(const Scene& scene, const Array& t, const Array& q, cons
     if (equations.effects) choose_modes(*equations.effects, t.at(i), at, turning, true);
     jacobian(t.at(i), at, turning, by_q.mutable_data(i, 0, 0), by_qd.mutable_data(i, 0, 0));
   }
+  give_nan_one_sign(by_q);
+  give_nan_one_sign(by_qd);
   return py::make_tuple(by_q, by_qd);
 }
 
@@ -128,6 +132,7 @@ Array reaction_forces(const Scene& scene, const Array& t, const Array& q, const 
   for (py::ssize_t i = 0; i < angles.count(); ++i) {
     reactions(ready, *effects, t.at(i), angles[i], rates[i], second[i], row(result, i));
   }
+  give_nan_one_sign(result);
   return result;
 }
 
@@ -185,6 +190,8 @@ void bind_scene(py::module_& module) {
               kinetic.mutable_at(i) = kinetic_energy(ready, t.at(i), angles[i], rates[i]);
               potential.mutable_at(i) = potential_energy(ready, t.at(i), angles[i]);
             }
+            give_nan_one_sign(kinetic);
+            give_nan_one_sign(potential);
             return py::make_tuple(kinetic, potential);
           },
           py::arg("t"), py::arg("q"), py::arg("qd"))

@@ -45,6 +45,8 @@ function(pendcore_compile_options target)
   if(PENDCORE_WARNINGS_AS_ERRORS)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
+  # The headers are compiled by whoever includes them: there, too, nothing is contracted.
+  target_compile_options(${target} INTERFACE -ffp-contract=${PENDCORE_CONTRACTION})
   if(PENDCORE_BASELINE_ONLY)
     target_compile_definitions(${target} PUBLIC PENDCORE_BASELINE_ONLY)
   endif()

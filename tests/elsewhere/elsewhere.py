@@ -1,13 +1,16 @@
 """`make elsewhere`: the C++ tests and the hashes of trajectories on other processors.
 
-    python tests/elsewhere/elsewhere.py aarch64 riscv64 s390x [--page docs/elsewhere.md]
+    python tests/elsewhere/elsewhere.py aarch64 wasm32 [--page docs/elsewhere.md]
 
-Debian's cross compilers build the core and its C++ tests, and QEMU runs them, but for those that
-count allocations. A machine passes if its C++ tests pass and all its hashes are those of
+Debian's cross compilers build the core and its C++ tests. QEMU runs them, or Node if they are
+compiled to WebAssembly; `clang` is this machine with another compiler. A machine passes if its C++
+tests pass, its fma agrees with whole numbers in ten million cases, and all its hashes are those of
 tests/cpp/trajectory_hash.txt. A machine whose compiler or emulator is missing fails; none is
-skipped. Last, a build in which the compiler may contract a * b + c is held against the same hashes,
-which must differ: so the comparison is seen to work. The exit status is 1 if anything is not as it
-must be.
+skipped, and test cases that are left out are named.
+
+Last, a build in which the compiler may contract a * b + c is held against the same hashes, which
+must differ: so the comparison is seen to work. The exit status is 1 if anything is not as it must
+be.
 """
 
 from __future__ import annotations
@@ -18,6 +21,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -25,25 +29,33 @@ from tqdm import tqdm
 
 ROOT = Path(__file__).parents[2]
 RECORDED = ROOT / "tests/cpp/trajectory_hash.txt"
-TOOLCHAIN = ROOT / "cpp/cmake/machines/debian.cmake"
+TOOLCHAINS = ROOT / "cpp/cmake/machines"
 BEGIN, END = "<!-- elsewhere: begin -->\n", "<!-- elsewhere: end -->"
-ABOUT = {
-    "aarch64": "ARM, 64 bits",
-    "riscv64": "RISC-V, 64 bits",
-    "s390x": "IBM Z, big-endian",
-}
-NOT_THERE = "the number of allocations*"
-"""The test cases that are left out: what they count is the same on every machine, and emulated they
-take minutes."""
+FMA_CASES = 10_000_000
+PROCESSORS = ("aarch64", "riscv64", "s390x")
+WEBASSEMBLY = "wasm32"
+CLANG = "clang"
 CONTRACTED = "aarch64"
 """The machine on which contraction is tried; every one of its processors has the instruction."""
+COUNTS_ALLOCATIONS = "the number of allocations*"
+"""What this test case counts is the same on every machine, and emulated it takes minutes."""
+CATCH = (
+    "a low part is restored, and*",
+    "events that are out of range are refused*",
+    "an exception in a callable*",
+)
+"""Test cases that catch an exception, which WebAssembly gives to JavaScript instead."""
 
 
 @dataclass
 class Machine:
-    """What became of a machine: its hashes by the name of the run, and what went wrong."""
+    """Where the programs run, how, and what became of them."""
 
-    name: str
+    about: str
+    build: str
+    runner: Sequence[str]
+    left_out: Sequence[str] = (COUNTS_ALLOCATIONS,)
+    has_threads: bool = True
     hashes: dict[str, str] = field(default_factory=dict)
     wrong: str = ""
     seconds: float = 0.0
@@ -54,33 +66,66 @@ class Machine:
         return [name for name, value in recorded.items() if self.hashes.get(name) != value]
 
 
+def machines_of(build: str) -> list[Machine]:
+    """Return the machines that run what is built under that name."""
+    abouts = {"aarch64": "ARM, 64 bits", "riscv64": "RISC-V, 64 bits", "s390x": "IBM Z, big-endian"}
+    if build in abouts:
+        emulator = (f"qemu-{build}-static", "-L", f"/usr/{build}-linux-gnu")
+        return [Machine(abouts[build], build, emulator)]
+    if build == CLANG:
+        return [Machine("this machine, clang 22", build, ())]
+    node = ("node", "--experimental-wasm-relaxed-simd", str(ROOT / "cpp/wasm/run.mjs"))
+    return [
+        Machine(about, build, runner, (COUNTS_ALLOCATIONS, *CATCH), has_threads=False)
+        for about, runner in [
+            ("WebAssembly, fma by an instruction", node),
+            ("WebAssembly, fma emulated", (*node, "--emulated")),
+        ]
+    ]
+
+
 def hashes_in(text: str) -> dict[str, str]:
-    return dict(line.rsplit(" ", 1) for line in text.splitlines())
+    return dict(line.rsplit(" ", 1) for line in text.splitlines() if " " in line)
 
 
-def run_on(name: str, contraction: str = "off") -> Machine:
-    """Build for a machine and run what was built; with contraction, the hashes alone."""
-    began = time.monotonic()
-    machine = Machine(name)
-    folder = ROOT / "build/elsewhere" / (name if contraction == "off" else f"{name}-contracted")
+def built(build: str, contraction: str = "off") -> Path:
+    """Build what runs there, and return the folder; with contraction, the hashes alone."""
+    folder = ROOT / "build/elsewhere" / (build if contraction == "off" else f"{build}-contracted")
     targets = ["trajectory_hash"]
     if contraction == "off":
-        targets += ["pendcore_tests", "pendcore_threads"]
+        targets += ["check_fma", "pendcore_tests"]
+        targets += ["pendcore_wasm"] if build == WEBASSEMBLY else ["pendcore_threads"]
+    if build == CLANG:
+        compiler = ["-DCMAKE_CXX_COMPILER=clang++-22"]
+    else:
+        toolchain = TOOLCHAINS / ("wasm32.cmake" if build == WEBASSEMBLY else "debian.cmake")
+        compiler = [f"-DCMAKE_TOOLCHAIN_FILE={toolchain}", f"-DMACHINE={build}"]
+    called(
+        "cmake", "-G", "Ninja", "-B", folder, *compiler,
+        "-DPENDCORE_TESTS=ON", f"-DPENDCORE_CONTRACTION={contraction}",
+    )  # fmt: skip
+    called("cmake", "--build", folder, "--target", *targets)
+    return folder / "tests/cpp"
+
+
+def run_on(machine: Machine, folder: Path, *, hashes_alone: bool = False) -> None:
+    """Run what was built."""
+    began = time.monotonic()
     try:
-        called(
-            "cmake", "-G", "Ninja", "-B", folder, f"-DMACHINE={name}", "-DPENDCORE_TESTS=ON",
-            f"-DCMAKE_TOOLCHAIN_FILE={TOOLCHAIN}", f"-DPENDCORE_CONTRACTION={contraction}",
-        )  # fmt: skip
-        called("cmake", "--build", folder, "--target", *targets)
-        emulator = [f"qemu-{name}-static", "-L", f"/usr/{name}-linux-gnu"]
-        machine.hashes = hashes_in(called(*emulator, folder / "tests/cpp/trajectory_hash"))
-        if contraction == "off":
-            called(*emulator, folder / "tests/cpp/pendcore_tests", f"-tce={NOT_THERE}")
-            called(*emulator, folder / "tests/cpp/pendcore_threads")
+        machine.hashes = hashes_in(called(*machine.runner, folder / "trajectory_hash"))
+        if not hashes_alone:
+            called(*machine.runner, folder / "check_fma", str(FMA_CASES))
+            left_out = ",".join(name.replace(",", "\\,") for name in machine.left_out)
+            called(*machine.runner, folder / "pendcore_tests", f"-tce={left_out}")
+            if machine.has_threads:
+                called(*machine.runner, folder / "pendcore_threads")
     except (subprocess.CalledProcessError, OSError) as error:
-        machine.wrong = f"{error}\n{getattr(error, 'stdout', '') or ''}".strip()
+        machine.wrong = told(error)
     machine.seconds = time.monotonic() - began
-    return machine
+
+
+def told(error: Exception) -> str:
+    return f"{error}\n{getattr(error, 'stdout', '') or ''}".strip()
 
 
 def called(*command: str | os.PathLike[str]) -> str:
@@ -98,10 +143,30 @@ def verdict(machine: Machine) -> str:
     return f"{len(differing)} DIFFER: {', '.join(differing)}" if differing else "all equal"
 
 
+def run_all(builds: Sequence[str]) -> list[Machine]:
+    """Build for one machine after the other; what is built runs beside the next build."""
+    machines: list[Machine] = []
+    running: list[Future[None]] = []
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        for build in tqdm(builds, unit="build", disable=None):
+            found = machines_of(build)
+            machines += found
+            try:
+                folder = built(build)
+            except (subprocess.CalledProcessError, OSError) as error:
+                for one in found:
+                    one.wrong = told(error)
+            else:
+                running += [pool.submit(run_on, one, folder) for one in found]
+        for one_run in tqdm(running, unit="run", disable=None):
+            one_run.result()
+    return machines
+
+
 def table(machines: Sequence[Machine]) -> str:
     """Return the table of the page: a row for each run, a column for each machine."""
     recorded = hashes_in(RECORDED.read_text())
-    titles = [f"{one.name} ({ABOUT[one.name]})" for one in machines]
+    titles = [f"{one.build} ({one.about})" for one in machines]
     lines = [f"| run | x86-64 | {' | '.join(titles)} |", "|---|---|" + "---|" * len(machines)]
     for name, value in recorded.items():
         cells = [
@@ -112,26 +177,36 @@ def table(machines: Sequence[Machine]) -> str:
     return "\n".join(lines) + "\n"
 
 
+def contraction_is_seen() -> bool:
+    """Print and return whether hashes differ where the compiler may contract a * b + c."""
+    (machine,) = machines_of(CONTRACTED)
+    try:
+        run_on(machine, built(CONTRACTED, contraction="fast"), hashes_alone=True)
+    except (subprocess.CalledProcessError, OSError) as error:
+        machine.wrong = told(error)
+    caught = not machine.wrong and bool(machine.differing())
+    how_many = f"{len(machine.differing())} of {len(machine.hashes)} hashes differ"
+    print(f"with contraction, {CONTRACTED}: {how_many if caught else 'NOT SEEN'}")
+    if machine.wrong:
+        print(machine.wrong)
+    return caught
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("machines", nargs="+", choices=ABOUT)
+    parser.add_argument("builds", nargs="+", choices=(*PROCESSORS, WEBASSEMBLY, CLANG))
     parser.add_argument("--page", type=Path, help="the page that has the table")
     parser.add_argument("--contracted", action="store_true", help="try contraction as well")
     asked = parser.parse_args()
-    machines = [run_on(name) for name in tqdm(asked.machines, unit="machine", disable=None)]
+    machines = run_all(asked.builds)
     for one in machines:
-        print(f"{one.name:10} {ABOUT[one.name]:20} {verdict(one):12} {one.seconds:5.0f} s")
+        print(f"{one.build:10} {one.about:36} {verdict(one):12} {one.seconds:5.0f} s")
+        print(f"           left out: {'; '.join(one.left_out)}")
         if one.wrong:
             print(one.wrong)
     fine = not any(one.wrong or one.differing() for one in machines)
     if asked.contracted:
-        contracted = run_on(CONTRACTED, contraction="fast")
-        caught = not contracted.wrong and bool(contracted.differing())
-        how_many = f"{len(contracted.differing())} of {len(contracted.hashes)} hashes differ"
-        print(f"with contraction, {CONTRACTED}: {how_many if caught else 'NOT SEEN'}")
-        if contracted.wrong:
-            print(contracted.wrong)
-        fine &= caught
+        fine &= contraction_is_seen()
     if asked.page and fine:
         before, _, rest = asked.page.read_text().partition(BEGIN)
         asked.page.write_text(before + BEGIN + table(machines) + END + rest.partition(END)[2])

@@ -270,3 +270,16 @@ def test_a_function_that_raises_at_an_impact_at_the_start_leaves_a_run_that_goes
     for one, other in zip(longer.events, whole.events, strict=True):
         assert [found.t for found in one] == [found.t for found in other]
         assert one[0].t == 0.0
+
+
+def test_a_jump_over_more_turns_than_an_int_holds_ends_the_run_in_words() -> None:
+    """A lock may move its joint by 1e-9 of its angle at the start: here by 1.4e10 turns."""
+    scene = pc.Scene(
+        links=[pc.Link(mass=1.0, length=1.0)] * 3,
+        effects=[fx.Lock(joint=1, angle=1e20), fx.JointStop(joint=3, range=(0.0, 1.0))],
+    )
+    turns = ev.JointAngle(joint=1, value=0.0, every_turn=True)
+    start = [1.0000000009e20, 0.0, 0.0]
+    sol = pc.simulate(scene, start, [0.0, 0.0, -1.0], (0, 1), events=[turns], check=False)
+    assert sol.status == "max_turns"
+    assert not sol.events[0]

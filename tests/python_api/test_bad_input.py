@@ -143,6 +143,8 @@ OUT_OF_RANGE = {
         r"store = 'all': must be \"dense\", \"steps\", \"times\" or \"end\"",
     ),
     "store no text": ({"store": 1}, r"store = 1: "),
+    "store no valid text": ({"store": "s\udcff"}, r"store = 's\\udcff': must be"),
+    "method no valid text": ({"method": "s\udcff"}, r"method = 's\\udcff': must be"),
     "times without times": ({"store": "times"}, r"t_eval: none given: store = \"times\" keeps"),
     "t_span a number": ({"t_span": 5}, r"t_span = 5: must be \(t_start, t_end\)"),
     "t_span of three": ({"t_span": (0, 1, 2)}, r"t_span = \(0, 1, 2\): must be \(t_start, t_end\)"),

@@ -180,3 +180,11 @@ def test_a_lock_is_not_in_the_mass_matrix_and_what_locked_joints_need_is_said():
     assert qdd[0] == qdd[1]
     assert "It ignores locks" in (pc.Scene.mass_matrix.__doc__ or "")
     assert "its rate, ``qd_i - qd_{i-1}``, must be" in (pc.Scene.accelerations.__doc__ or "")
+
+
+def test_numbers_that_are_not_finite_have_the_same_sign_on_every_processor():
+    """Processors give the NaN of inf - inf different signs."""
+    scene = pc.Scene.textbook()
+    found = scene.accelerations(0.0, [0.0, 0.0], [1e200, 1e200])
+    assert np.isnan(found).all()
+    assert not np.signbit(found).any()

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "pendcore/arithmetic/floating_point_environment.hpp"
+#include "pendcore/arithmetic/pack.hpp"
 #include "pendcore/dynamics/equations_of_motion.hpp"
 #include "pendcore/dynamics/joint_forces.hpp"
 
@@ -24,7 +25,7 @@ class Curve {
         rows_(solution.dense.coefficients.data() + step * (degree_ + 1) * row_) {}
 
   double h() const { return h_; }
-  double time(double theta) const { return start_ + std::fma(theta, h_, start_low_); }
+  double time(double theta) const { return start_ + fma(theta, h_, start_low_); }
   /// The theta up to which the run used the step.
   double end(double t_reached) const {
     return std::min(1.0, ((t_reached - start_) - start_low_) / h_);

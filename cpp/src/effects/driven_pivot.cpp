@@ -65,7 +65,7 @@ PivotMotion DrivenPivot::at(double t) const {
     if (const std::optional<Sinusoid>& one = *axes[axis]) {
       const double w = one->angular_frequency;
       double sine, cosine;
-      sine_cosine(std::fma(w, t, one->phase), sine, cosine);
+      sine_cosine(fma(w, t, one->phase), sine, cosine);
       motion.position[axis] = one->amplitude * sine;
       motion.velocity[axis] = one->amplitude * w * cosine;
       motion.acceleration[axis] = -one->amplitude * w * w * sine;

@@ -71,11 +71,11 @@ double Motor::next_time(double t, bool forward) const {
   if (frequency == 0.0) return none;
   const double pi = 3.14159265358979323846;
   const double edge = arc_sine(limit / std::abs(amplitude));
-  const double half_waves = std::floor(std::fma(frequency, t, phase) / pi);
+  const double half_waves = std::floor(fma(frequency, t, phase) / pi);
   double next = none;
   for (int k = -2; k <= 2; ++k) {
     for (const double side : {edge, -edge}) {
-      const double time = (std::fma(half_waves + k, pi, side) - phase) / frequency;
+      const double time = (fma(half_waves + k, pi, side) - phase) / frequency;
       if (forward ? time > t && time < next : time < t && time > next) next = time;
     }
   }
@@ -93,7 +93,7 @@ int Motor::mode_at(double t, double phi, double phid, bool forward) const {
   const double next = next_time(t, forward);
   const double middle = std::isfinite(next) ? 0.5 * (t + next) : t;
   double sine, cosine;
-  sine_cosine(std::fma(sinusoid->angular_frequency, middle, sinusoid->phase), sine, cosine);
+  sine_cosine(fma(sinusoid->angular_frequency, middle, sinusoid->phase), sine, cosine);
   const double torque = sinusoid->amplitude * sine;
   return torque > limit ? 1 : torque < -limit ? -1 : 0;
 }

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <tuple>
 
 #include "pendcore/arithmetic/epsilon.hpp"
+#include "pendcore/arithmetic/pack.hpp"
 #include "pendcore/integrate/loop/integrate.hpp"
 #include "pendcore/text/message.hpp"
 
@@ -78,7 +80,7 @@ double EventFinder::Difference::from(double level, const double* y) const {
   return std::abs(x) <= last_bits_share * size ? 0.0 : x;
 }
 
-double EventFinder::Levels::at(int i) const { return std::fma(first + i, turn, value); }
+double EventFinder::Levels::at(int i) const { return fma(first + i, turn, value); }
 
 EventFinder::Levels EventFinder::levels_between(const Difference& difference, double low,
                                                 double high) {
@@ -99,6 +101,15 @@ EventFinder::Levels EventFinder::levels_along(const Difference& difference, int 
   bernstein_form(polynomial_.data(), degree, bernstein_.data());
   const auto [least, most] = std::ranges::minmax(bernstein_);
   return levels_between(difference, std::min(least, end) - noise, std::max(most, end) + noise);
+}
+
+/// The number of levels, or none once there were too many in this run. max_steps bounds the turns
+/// if each step has one.
+int EventFinder::count_turns(std::size_t k, const Levels& levels) {
+  if (!(levels.count <= 1.0)) turns_ += levels.count - 1.0;
+  if (turns_ <= most_turns) return static_cast<int>(levels.count);
+  too_many_of_ = static_cast<int>(k);
+  return 0;
 }
 
 void EventFinder::find_difference(std::size_t k, const Step& step) {
@@ -123,14 +134,8 @@ void EventFinder::find_difference(std::size_t k, const Step& step) {
   if (moved <= 64.0 * epsilon * moved_with_its_links) return;
   const double end = difference.of(y_new_.data());
   const Levels levels = levels_along(difference, degree, end, 8.0 * epsilon * size);
-  // max_steps bounds the turns if each step has one.
-  if (!(levels.count <= 1.0)) turns_ += levels.count - 1.0;
-  if (!(turns_ <= most_turns)) {
-    has_too_many_ = true;
-    ended_by_ = static_cast<int>(k);
-    return;
-  }
-  for (int i = 0; i < static_cast<int>(levels.count); ++i) {
+  const int count = count_turns(k, levels);
+  for (int i = 0; i < count; ++i) {
     const double level = levels.at(i);
     polynomial_[0] = difference.from(level, step.rows);
     const double noise = 8.0 * epsilon * (size + std::abs(level));
@@ -171,7 +176,7 @@ void EventFinder::node_values(std::size_t k, const Step& step, double& start, do
 
 double EventFinder::sampled(std::size_t k, const Step& step, double theta) {
   step.stepper.sample(step.rows, {}, 1.0, &theta, 1, y_.data());
-  return function_at(k, std::fma(theta, step.h, step.t_old.high), y_.data());
+  return function_at(k, fma(theta, step.h, step.t_old.high), y_.data());
 }
 
 /// Computes a TipLine or a Function at a state.
@@ -209,12 +214,15 @@ StepEnd EventFinder::look(const Stepper& stepper, const double* rows, const TwoD
   const Step step{stepper, rows, t_old, h, t_new};
   candidates_.clear();
   at_the_end_.clear();
-  for (std::size_t k = 0; k < events_.size() && !has_too_many_; ++k) find(k, step);
-  if (has_too_many_) return StepEnd::too_many_turns();
+  for (std::size_t k = 0; k < events_.size() && too_many_of_ < 0; ++k) find(k, step);
+  if (too_many_of_ >= 0) {
+    ended_by_ = too_many_of_;
+    return StepEnd::too_many_turns();
+  }
   node_t_ = t_new;
   std::copy_n(y_new_.begin(), node_y_.size(), node_y_.begin());
   std::ranges::sort(candidates_, [](const Candidate& a, const Candidate& b) {
-    return a.theta != b.theta ? a.theta < b.theta : a.event < b.event;
+    return std::tie(a.theta, a.event, a.direction) < std::tie(b.theta, b.event, b.direction);
   });
   double stop = 1.0;
   for (const Candidate& candidate : candidates_) {
@@ -264,7 +272,8 @@ void EventFinder::jump(double t, const double* before, const double* after) {
     const double low = difference.of(before);
     const double high = difference.of(after);
     const Levels levels = levels_between(difference, std::min(low, high), std::max(low, high));
-    for (int i = 0; i < static_cast<int>(levels.count); ++i) {
+    const int count = count_turns(k, levels);
+    for (int i = 0; i < count; ++i) {
       const double level = levels.at(i);
       cross(k, difference.from(level, before), difference.from(level, after), t, before, after);
     }

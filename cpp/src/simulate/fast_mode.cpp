@@ -133,9 +133,9 @@ std::optional<FastMode> fast_mode(const Scene& scene, const EquationsOfMotion& e
   double largest = 0.0;
   for (std::size_t j = 0; j < n; ++j) {
     const std::complex<double> before = j > 0 ? fastest[j - 1] : 0.0;
-    const double turn = std::abs(fastest[j] - before);
-    if (turn > largest) {
-      largest = turn;
+    const double turned = std::abs(fastest[j] - before);
+    if (turned > largest) {
+      largest = turned;
       mode.joint = static_cast<int>(j) + 1;
     }
   }

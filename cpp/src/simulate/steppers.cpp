@@ -13,7 +13,7 @@ namespace {
 
 /// Steppers that are written for the form of the equations are the fastest. Rarer runs keep the
 /// state in memory and give the same bits: long chains, compensated steps, runs that keep the
-/// ledger, and processors from before 2013.
+/// ledger, and processors from before 2013; in a small module, scenes with effects.
 template <const auto& table>
 std::unique_ptr<Stepper> explicit_stepper(const Scene& scene, const EquationsOfMotion& equations,
                                           bool keeps_ledger, bool compensated) {
@@ -28,7 +28,10 @@ std::unique_ptr<Stepper> explicit_stepper(const Scene& scene, const EquationsOfM
   if (compensated || keeps_ledger || instruction_set() < least) return in_memory();
   return std::visit(
       [&]<class Form>(const Form& form) -> std::unique_ptr<Stepper> {
-        if constexpr (std::is_same_v<Form, std::shared_ptr<Chain>>) {
+        constexpr bool is_bare =
+            std::is_same_v<Form, SinglePendulum> || std::is_same_v<Form, DoublePendulum>;
+        if constexpr (std::is_same_v<Form, std::shared_ptr<Chain>> ||
+                      !(is_bare || has_special_kernels_of_rare_runs)) {
           return in_memory();
         } else {
           using System = FirstOrder<Form>;

@@ -41,7 +41,9 @@ std::unique_ptr<Stepper> make_taylor_stepper(const Scene& scene, const Equations
         {one.weight, one.coupling, one.rotor, one.product, one.delta, one.epsilon},
         CoupleTorque(std::move(effects), one.inverse_diagonal));
     const bool may_hold = equations.held_joints->can_hold() || equations.effects->any_held;
-    if (!may_hold && instruction_set() >= free.least) return of(free);
+    if constexpr (has_special_kernels_of_rare_runs) {
+      if (!may_hold && instruction_set() >= free.least) return of(free);
+    }
     return of(SeriesWithHolds(free, chain.template operator()<Pair>(), equations.effects));
   };
   if (const auto* one = std::get_if<DoublePendulumWithEffects<Parts::couples>>(&equations.form)) {

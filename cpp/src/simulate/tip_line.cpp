@@ -69,8 +69,8 @@ double TipLine::of_directions(double t) {
   double x = pivot.position[0] - line_.point[0];
   double y = pivot.position[1] - line_.point[1];
   for (std::size_t i = 0; i < sines_.size(); ++i) {
-    x = std::fma(scene_.links[i].length, cosines_[i], x);
-    y = std::fma(scene_.links[i].length, sines_[i], y);
+    x = fma(scene_.links[i].length, cosines_[i], x);
+    y = fma(scene_.links[i].length, sines_[i], y);
   }
   return line_.normal[0] * x + line_.normal[1] * y;
 }
@@ -81,19 +81,19 @@ TipLine::Point TipLine::along(double theta) {
     double angle = 0.0;
     double rate = 0.0;
     for (int p = degree_; p >= 0; --p) {
-      rate = std::fma(theta, rate, angle);
-      angle = std::fma(theta, angle, rows_[static_cast<std::size_t>(p) * dimension_ + i]);
+      rate = fma(theta, rate, angle);
+      angle = fma(theta, angle, rows_[static_cast<std::size_t>(p) * dimension_ + i]);
     }
     angles_[i] = angle;
     rates_[i] = rate;
   }
-  const double t = std::fma(theta, h_, t_);
+  const double t = fma(theta, h_, t_);
   const double value = at(t, angles_.data());
   const PivotMotion pivot = pivot_motion(scene_, t);
   double slope = h_ * (line_.normal[0] * pivot.velocity[0] + line_.normal[1] * pivot.velocity[1]);
   for (std::size_t i = 0; i < n; ++i) {
     const double across = line_.normal[1] * cosines_[i] - line_.normal[0] * sines_[i];
-    slope = std::fma(scene_.links[i].length * rates_[i], across, slope);
+    slope = fma(scene_.links[i].length * rates_[i], across, slope);
   }
   return {value, slope};
 }

@@ -23,11 +23,11 @@ PENDCORE_INLINE double exponential(double x) {
   constexpr double to_integer = 0x1.8p52;
   constexpr double ln2_high = 0x1.62e42fefa0000p-1;
   constexpr double ln2_low = 0x1.cf79abc9e3b3ap-40;
-  const double shifted = __builtin_fma(x, 0x1.71547652b82fep+0, to_integer);
+  const double shifted = fma(x, 0x1.71547652b82fep+0, to_integer);
   const double k = shifted - to_integer;
-  const double r = __builtin_fma(-k, ln2_low, __builtin_fma(-k, ln2_high, x));
+  const double r = fma(-k, ln2_low, fma(-k, ln2_high, x));
   double sum = 1.0;
-  for (int i = 13; i > 0; --i) sum = __builtin_fma(sum, r * (1.0 / i), 1.0);
+  for (int i = 13; i > 0; --i) sum = fma(sum, r * (1.0 / i), 1.0);
   const auto bits = std::bit_cast<std::int64_t>(shifted) << 52;
   return std::bit_cast<double>(std::bit_cast<std::int64_t>(sum) + bits);
 }
@@ -43,9 +43,9 @@ PENDCORE_INLINE double logarithm(double x) {
   const double f = (m - 1.0) / (m + 1.0);
   const double z = f * f;
   double sum = 0.0;
-  for (int i = 23; i > 1; i -= 2) sum = __builtin_fma(sum, z, 1.0 / i);
-  const double of_mantissa = 2.0 * __builtin_fma(f * z, sum, f);
-  return __builtin_fma(static_cast<double>(k), 0x1.62e42fefa39efp-1, of_mantissa);
+  for (int i = 23; i > 1; i -= 2) sum = fma(sum, z, 1.0 / i);
+  const double of_mantissa = 2.0 * fma(f * z, sum, f);
+  return fma(static_cast<double>(k), 0x1.62e42fefa39efp-1, of_mantissa);
 }
 
 /// Lane by lane.

@@ -14,7 +14,7 @@
 #define PENDCORE_INLINE [[gnu::always_inline]] inline
 
 // A build with -march for AVX2 or more is for that processor alone and needs no clones.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__AVX2__) && \
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__AVX2__) && \
     !defined(PENDCORE_BASELINE_ONLY)
 #define PENDCORE_CLONES 1
 #else
@@ -74,6 +74,14 @@ typename Clones<kernel>::Function fastest() {
 /// one and is only faster: a processor from before 2013 runs the general one.
 constexpr InstructionSet least_of_special_kernels =
     PENDCORE_CLONES != 0 ? InstructionSet::x86_64_v3 : InstructionSet::baseline;
+
+/// Whether such kernels are compiled for scenes with effects and for compensated steps, too. A
+/// module that is sent to browsers does without them: they are a fifth of its size.
+#ifdef PENDCORE_SMALL
+constexpr bool has_special_kernels_of_rare_runs = false;
+#else
+constexpr bool has_special_kernels_of_rare_runs = true;
+#endif
 
 /// The highest instruction set that is worth a clone for a kernel on packs of `width` numbers.
 constexpr InstructionSet best_for(int width) {

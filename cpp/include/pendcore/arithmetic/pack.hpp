@@ -108,13 +108,31 @@ PENDCORE_INLINE Pack<4> joined(const Pack<2>& low, const Pack<2>& high) {
 PENDCORE_INLINE Pack<2> low_half(const Pack<4>& x) { return __builtin_shufflevector(x, x, 0, 1); }
 PENDCORE_INLINE Pack<2> high_half(const Pack<4>& x) { return __builtin_shufflevector(x, x, 2, 3); }
 
-/// a b + c, rounded once. It is correctly rounded by definition, hence the same on every processor.
+#if defined(__wasm__)
+/// Calls of this function are what the loader replaces by an instruction, in an engine that has one
+/// which rounds once (docs/webassembly.md).
+extern "C" [[gnu::const]] Pack<2> pendcore_fma(Pack<2> a, Pack<2> b, Pack<2> c);
+#endif
+
+/// a b + c, rounded once. It is correctly rounded by definition, hence the same on every processor;
+/// one without such an instruction has it from the C library.
 template <class Real>
 PENDCORE_INLINE Real fma(const Real& a, const Real& b, const Real& c) {
   Real result = c;
+#if defined(__wasm__)
+  constexpr int width = Lanes<Real>::width;
+  for (int i = 0; i < width; i += 2) {
+    const int second = width == 1 ? i : i + 1;
+    const auto two = [&](const Real& x) { return Pack<2>{lane(x, i), lane(x, second)}; };
+    const Pack<2> fused = pendcore_fma(two(a), two(b), two(c));
+    set_lane(result, i, fused[0]);
+    if constexpr (width > 1) set_lane(result, second, fused[1]);
+  }
+#else
   for (int i = 0; i < Lanes<Real>::width; ++i) {
     set_lane(result, i, __builtin_fma(lane(a, i), lane(b, i), lane(c, i)));
   }
+#endif
   return result;
 }
 template <class Real>

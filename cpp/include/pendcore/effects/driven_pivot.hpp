@@ -69,10 +69,8 @@ struct DrivenPivot {
     PENDCORE_INLINE void add_velocity(double t, const double* cosines, double& vx,
                                       double& vy) const {
       const double since = t - start;
-      vx += x.velocity + since * __builtin_fma(0.5 * x.slope, since, x.held) +
-            x.swing * cosines[x.wave];
-      vy += y.velocity + since * __builtin_fma(0.5 * y.slope, since, y.held) +
-            y.swing * cosines[y.wave];
+      vx += x.velocity + since * fma(0.5 * x.slope, since, x.held) + x.swing * cosines[x.wave];
+      vy += y.velocity + since * fma(0.5 * y.slope, since, y.held) + y.swing * cosines[y.wave];
     }
   };
 

@@ -73,6 +73,7 @@ class EventFinder {
   double function_at(std::size_t k, double t, const double* y);
   void find(std::size_t k, const Step& step);
   void find_difference(std::size_t k, const Step& step);
+  int count_turns(std::size_t k, const Levels& levels);
   void find_tip_line(std::size_t k, const Step& step);
   void find_function(std::size_t k, const events::Function& event, const Step& step);
   void node_values(std::size_t k, const Step& step, double& start, double& end);
@@ -91,8 +92,8 @@ class EventFinder {
   std::vector<int> tip_line_of_;  ///< the number of each event's tip line, or -1
   int n_;
   int ended_by_ = -1;
-  double turns_ = 0.0;         ///< turns that steps went through, not counting one a step
-  bool has_too_many_ = false;  ///< whether there are too many turns
+  double turns_ = 0.0;    ///< turns that steps went through, not counting one a step
+  int too_many_of_ = -1;  ///< the event with too many turns, if there is one
   std::vector<Root> roots_;
   std::vector<TurningPoint> samples_;
   std::vector<Candidate> candidates_;

@@ -3,6 +3,7 @@
 /// that they say of an option from here.
 #pragma once
 
+#include <cmath>
 #include <concepts>
 #include <string>
 #include <string_view>
@@ -32,7 +33,7 @@ struct OptionInfo {
 
 /// "finite and > 0".
 inline std::string in_words(const NumberRange& range) {
-  const bool is_whole = range.least == static_cast<long long>(range.least);
+  const bool is_whole = range.least == std::floor(range.least);
   return std::string(range.includes_infinity ? "" : "finite and ") +
          (range.includes_least ? ">= " : "> ") +
          (is_whole ? std::to_string(static_cast<long long>(range.least)) : text(range.least));

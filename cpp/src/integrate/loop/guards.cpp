@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "pendcore/arithmetic/epsilon.hpp"
+#include "pendcore/arithmetic/pack.hpp"
 #include "pendcore/integrate/events/root.hpp"
 
 namespace pendcore {
@@ -98,7 +99,7 @@ void Guards::sample(double theta) {
   for (int c = 0; c < dimension_; ++c) {
     double value = rows_[static_cast<std::size_t>(degree_) * dimension_ + c];
     for (int p = degree_ - 1; p >= 0; --p) {
-      value = std::fma(theta, value, rows_[static_cast<std::size_t>(p) * dimension_ + c]);
+      value = fma(theta, value, rows_[static_cast<std::size_t>(p) * dimension_ + c]);
     }
     state_[c] = value;
   }

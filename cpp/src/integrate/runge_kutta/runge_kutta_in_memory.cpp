@@ -44,7 +44,7 @@ PENDCORE_INLINE void stages_in_memory(const StepInMemory* memory, double t, doub
       for (int at = 0; at < size; at += width) {
         store(z + at, advance(load<Block>(memory->y + at), h, method.a[s], block(at), s));
       }
-      (*memory->system)(t + method.c[s].value() * h, z, memory->k + s * size);
+      (*memory->system)(t + method.c[s].value * h, z, memory->k + s * size);
     }
   } else {
     static constexpr auto rows = rows_of(method);

@@ -8,21 +8,12 @@
 /// some 100 bits (Dekker 1971, Numerische Mathematik 18), and the result is rounded once. So a
 /// coefficient is the same double for every compiler and processor, whatever their long double is.
 ///
-/// Cost: nothing where the compiler evaluates it, as it does in all kernels.
+/// Cost: nothing, because tables of coefficients are constants.
 #pragma once
 
 #include "pendcore/arithmetic/two_double.hpp"
 
 namespace pendcore {
-
-struct Fraction {
-  long long numerator = 0;
-  long long denominator = 1;  ///< > 0
-  long long root = 0;         ///< factor of sqrt(6)
-
-  constexpr double value() const;
-  constexpr bool is_zero() const { return numerator == 0 && root == 0; }
-};
 
 namespace fraction_detail {
 
@@ -67,11 +58,8 @@ constexpr double quotient(TwoDouble a, const TwoDouble& b) {
   return both.high + (both.low + a.high / b.high);
 }
 
-}  // namespace fraction_detail
-
-/// The nearest double.
-constexpr double Fraction::value() const {
-  using namespace fraction_detail;
+/// The double nearest to (numerator + root sqrt(6)) / denominator.
+constexpr double nearest(long long numerator, long long denominator, long long root) {
   constexpr long long exact = 1LL << 53;
   if (root == 0 && -exact < numerator && numerator < exact && denominator < exact) {
     return static_cast<double>(numerator) / static_cast<double>(denominator);
@@ -79,5 +67,21 @@ constexpr double Fraction::value() const {
   const TwoDouble top = sum(two_doubles(numerator), product(two_doubles(root), sqrt_6));
   return quotient(top, two_doubles(denominator));
 }
+
+}  // namespace fraction_detail
+
+struct Fraction {
+  long long numerator;
+  long long denominator;  ///< > 0
+  long long root;         ///< factor of sqrt(6)
+  double value;           ///< the nearest double
+
+  constexpr Fraction(long long top = 0, long long bottom = 1, long long factor = 0)
+      : numerator(top),
+        denominator(bottom),
+        root(factor),
+        value(fraction_detail::nearest(top, bottom, factor)) {}
+  constexpr bool is_zero() const { return numerator == 0 && root == 0; }
+};
 
 }  // namespace pendcore

@@ -53,12 +53,12 @@ PENDCORE_INLINE Block advance(const Block& start, const Scale& h, const Weights&
 #pragma GCC unroll 16
   for (int j = 0; j < last; ++j) {
     if (weights[j].is_zero()) continue;
-    const Block weight = broadcast<Block>(weights[j].value());
+    const Block weight = broadcast<Block>(weights[j].value);
     sum = empty ? Block(weight * k(j)) : fma(weight, k(j), sum);
     empty = false;
   }
   const Block known = empty ? start : fma(h, sum, start);
-  return fma(h * weights[last].value(), k(last), known);
+  return fma(h * weights[last].value, k(last), known);
 }
 
 /// The same sum, bit for bit, with weights that a loop reads.
@@ -146,7 +146,7 @@ PENDCORE_INLINE void evaluate_stages(const System& system, double t, double h,
     for (int s = first; s < end; ++s) {
 #pragma GCC unroll 16
       for (int i = 0; i < blocks; ++i) z[i] = advance(y[i], h, method.a[s], StageBlock(k, i), s);
-      system(t + method.c[s].value() * h, z, k[s]);
+      system(t + method.c[s].value * h, z, k[s]);
     }
   } else {
     static constexpr auto rows = rows_of(method);
@@ -230,7 +230,7 @@ PENDCORE_INLINE void interpolant_of_block(double h, const Stage& k, Block* power
 #pragma GCC unroll 16
     for (int s = 0; s < Method::all_stages; ++s) {
       if (method.interpolant[i][s].is_zero()) continue;
-      sum = fma(broadcast<Block>(method.interpolant[i][s].value()), k(s), sum);
+      sum = fma(broadcast<Block>(method.interpolant[i][s].value), k(s), sum);
     }
     functions[i] = h * sum;
   }
@@ -277,7 +277,7 @@ template <const auto& method, class Blocks>
 double stiffness_of_step(double h, int blocks, const Blocks& block) {
   using Method = std::remove_cvref_t<decltype(method)>;
   constexpr int stages = Method::stages;
-  static_assert(method.first_same_as_last && stages >= 3 && method.c[stages - 2].value() == 1.0,
+  static_assert(method.first_same_as_last && stages >= 3 && method.c[stages - 2].value == 1.0,
                 "the test for stiffness needs two stages at the end of the step");
   double rates = 0.0;
   double states = 0.0;

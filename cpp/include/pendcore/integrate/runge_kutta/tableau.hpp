@@ -66,11 +66,11 @@ constexpr auto rows_of(const Method& method) {
   static_assert(Method::all_stages <= 16, "a row has room for fifteen weights");
   std::array<StageRow, Method::all_stages> rows{};
   for (int s = 0; s < Method::all_stages; ++s) {
-    rows[s].node = method.c[s].value();
+    rows[s].node = method.c[s].value;
     for (int j = 0; j < s; ++j) {
       if (method.a[s][j].is_zero()) continue;
       rows[s].stage[rows[s].count] = j;
-      rows[s].weight[rows[s].count++] = method.a[s][j].value();
+      rows[s].weight[rows[s].count++] = method.a[s][j].value;
     }
   }
   return rows;

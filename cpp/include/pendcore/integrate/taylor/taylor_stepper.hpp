@@ -198,7 +198,7 @@ class Taylor final : public Stepper {
   }
   template <bool compensated>
   static auto attempt_kernel() {
-    if constexpr (Series::is_short) {
+    if constexpr (Series::is_short && (!compensated || has_special_kernels_of_rare_runs)) {
       constexpr InstructionSet special = least_of_special_kernels;
       if (instruction_set() < special) return &Taylor::attempt_in_parts<compensated>;
       return fastest<&attempt_short_series<Series, compensated>, best, special>();

@@ -1,0 +1,196 @@
+/**
+ * Compiles a module of the core for the engine that it runs on, and gives it what it imports.
+ *
+ * The core asks for a b + c, rounded once, by calls of its function `pendcore_fma`, which computes
+ * it from sums and products. WebAssembly also has an instruction for it, f64x2.relaxed_madd, but an
+ * engine may round that once or twice. Where it rounds once, `fastest` puts the instruction in the
+ * place of the calls: the results are the same, and come several times faster.
+ */
+
+const MAGIC = [0x00, 0x61, 0x73, 0x6d, 0x01, 0x00, 0x00, 0x00];
+const SECTION = { export: 7, code: 10 };
+const FUNCTION = 0;
+const CALL = 0x10;
+/** f64x2.relaxed_madd, and three nops: as long as a call whose function's number has five bytes. */
+const INSTRUCTION = [0xfd, 0x87, 0x02, 0x01, 0x01, 0x01];
+const SITE = INSTRUCTION.length;
+
+/** (func (param $a f64) (param $b f64) (param $c f64) (result f64)) by relaxed_madd on two lanes. */
+// prettier-ignore
+const PROBE = Uint8Array.from([
+  ...MAGIC,
+  1, 8, 1, 0x60, 3, 0x7c, 0x7c, 0x7c, 1, 0x7c, // a type
+  3, 2, 1, 0, // a function of it
+  7, 5, 1, 1, 0x66, 0, 0, // exported as "f"
+  10, 22, 1, 20, 0, // its code: splat a, b and c, fuse them, take a lane
+  0x20, 0, 0xfd, 0x14, 0x20, 1, 0xfd, 0x14, 0x20, 2, 0xfd, 0x14,
+  0xfd, 0x87, 0x02, 0xfd, 0x21, 0, 0x0b,
+]);
+
+/** Whether this engine has an instruction for a b + c that rounds once. */
+export function fuses() {
+  if (!WebAssembly.validate(PROBE)) return false;
+  const { f } = new WebAssembly.Instance(new WebAssembly.Module(PROBE)).exports;
+  const tiny = 2 ** -30;
+  return f(1 + tiny, 1 - tiny, -1) === -(tiny ** 2) && f(3, 1 / 3, -1) === -(2 ** -54);
+}
+
+/** A reader of the numbers of a module, which are in LEB128. */
+class Reader {
+  constructor(bytes) {
+    this.bytes = bytes;
+    this.at = MAGIC.length;
+  }
+  byte() {
+    return this.bytes[this.at++];
+  }
+  number() {
+    let value = 0;
+    for (let shift = 0; ; shift += 7) {
+      const byte = this.byte();
+      value += (byte & 0x7f) * 2 ** shift;
+      if (byte < 0x80) return value;
+    }
+  }
+  text() {
+    const size = this.number();
+    this.at += size;
+    return new TextDecoder().decode(this.bytes.subarray(this.at - size, this.at));
+  }
+  /** Where each section begins and ends, by its number. */
+  sections() {
+    const found = {};
+    while (this.at < this.bytes.length) {
+      const kind = this.byte();
+      const size = this.number();
+      found[kind] = { begin: this.at, end: this.at + size };
+      this.at += size;
+    }
+    return found;
+  }
+}
+
+/** The number of an exported function. */
+function functionNumber(bytes, exports, name) {
+  const reader = new Reader(bytes);
+  reader.at = exports.begin;
+  for (let left = reader.number(); left > 0; --left) {
+    const text = reader.text();
+    const kind = reader.byte();
+    const number = reader.number();
+    if (kind === FUNCTION && text === name) return number;
+  }
+  throw new Error(`the module exports no function ${name}: it is not a module of pendcore`);
+}
+
+/**
+ * The module's bytes with the instruction in the place of all calls of `pendcore_fma`.
+ *
+ * The linker writes a function's number in five bytes, the last of them 0, so a call has six. That
+ * these six bytes stand elsewhere by chance has a probability of 1e-8 in a module of this size; the
+ * tests count the calls.
+ */
+export function withInstructions(given) {
+  const bytes = Uint8Array.from(given);
+  const sections = new Reader(bytes).sections();
+  let number = functionNumber(bytes, sections[SECTION.export], "pendcore_fma");
+  const call = [CALL];
+  for (let i = 0; i < 5; ++i, number >>>= 7) call.push((number & 0x7f) | (i < 4 ? 0x80 : 0));
+  let calls = 0;
+  for (let at = sections[SECTION.code].begin; at + SITE <= sections[SECTION.code].end; ++at) {
+    if (!call.every((byte, i) => bytes[at + i] === byte)) continue;
+    bytes.set(INSTRUCTION, at);
+    ++calls;
+  }
+  return { bytes, calls };
+}
+
+/** The bytes of the module that is fastest on this engine. */
+export function fastest(bytes) {
+  return fuses() ? withInstructions(bytes).bytes : bytes;
+}
+
+/** Thrown where the core throws: the message is the core's. */
+export class PendcoreError extends Error {
+  name = "PendcoreError";
+}
+
+const NANOSECONDS_PER_MILLISECOND = 1_000_000n;
+/** Numbers of WASI's errors. */
+const SUCCESS = 0;
+const BAD_FILE = 8;
+
+/**
+ * What a module imports: its errors, and of WASI a clock, arguments and lines of text.
+ *
+ * `host.memory` is the module's memory, to be set once it is there; `host.print(line)` takes what a
+ * program prints; `host.exit(code)` ends it.
+ */
+export function imports(host) {
+  const view = () => new DataView(host.memory.buffer);
+  const bytesAt = (at, size) => new Uint8Array(host.memory.buffer, at, size);
+  const words = (host.arguments ?? []).map((word) => new TextEncoder().encode(`${word}\0`));
+  const lines = { 1: "", 2: "" };
+
+  function write(file, pieces, count, written) {
+    if (!(file in lines)) return BAD_FILE;
+    let size = 0;
+    for (let i = 0; i < count; ++i) {
+      const length = view().getUint32(pieces + 8 * i + 4, true);
+      lines[file] += new TextDecoder().decode(
+        bytesAt(view().getUint32(pieces + 8 * i, true), length),
+      );
+      size += length;
+    }
+    const whole = lines[file].split("\n");
+    lines[file] = whole.pop();
+    for (const line of whole) host.print?.(line, file);
+    view().setUint32(written, size, true);
+    return SUCCESS;
+  }
+
+  function putWords(pointers, text) {
+    for (const word of words) {
+      view().setUint32(pointers, text, true);
+      bytesAt(text, word.length).set(word);
+      pointers += 4;
+      text += word.length;
+    }
+    return SUCCESS;
+  }
+
+  function putTwo(first, second, count, size) {
+    view().setUint32(first, count, true);
+    view().setUint32(second, size, true);
+    return SUCCESS;
+  }
+
+  return {
+    pendcore: {
+      thrown(message, size) {
+        throw new PendcoreError(new TextDecoder().decode(bytesAt(message, size)));
+      },
+    },
+    wasi_snapshot_preview1: {
+      clock_time_get(_clock, _precision, at) {
+        const now = BigInt(Math.round(performance.now() * 1000)) * 1000n;
+        view().setBigUint64(at, now, true);
+        return SUCCESS;
+      },
+      args_sizes_get: (count, size) =>
+        putTwo(count, size, words.length, words.reduce((sum, word) => sum + word.length, 0)),
+      args_get: putWords,
+      environ_sizes_get: (count, size) => putTwo(count, size, 0, 0),
+      environ_get: () => SUCCESS,
+      fd_write: write,
+      fd_close: () => BAD_FILE,
+      fd_seek: () => BAD_FILE,
+      fd_read: () => BAD_FILE,
+      fd_fdstat_get: () => BAD_FILE,
+      proc_exit(code) {
+        host.exit?.(code);
+        throw new PendcoreError(`the program ended with exit status ${code}`);
+      },
+    },
+  };
+}

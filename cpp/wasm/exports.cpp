@@ -1,0 +1,284 @@
+// What JavaScript calls, through cpp/wasm/pendcore.mjs.
+//
+// A scene and the options of a run are drafted by name, one call for each value; the draft then
+// becomes a scene or a run, which is an address until it is freed. Text and numbers come in through
+// two buffers. Numbers go out as addresses, which hold until the next call.
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "pendcore/arithmetic/instruction_set.hpp"
+#include "pendcore/pendcore.hpp"
+
+#define EXPORTED(name) [[clang::export_name(#name)]]
+
+namespace {
+
+using namespace pendcore;
+
+std::string text_in;
+std::vector<double> numbers_in;
+std::vector<double> numbers_out;
+Scene draft;
+Options options;
+
+struct Run {
+  std::shared_ptr<const Scene> scene;
+  Solution solution;
+};
+
+[[noreturn]] void refuse_name(const std::string& where, std::string_view name) {
+  throw std::invalid_argument(where + std::string(name) + ": there is no such name");
+}
+
+void one_number(const std::string& name) {
+  if (numbers_in.size() != 1) throw std::invalid_argument(name + ": must be a number");
+}
+
+/// Each of these takes the value of an option or of a parameter from the numbers given.
+void take(const std::string& name, double& x) {
+  one_number(name);
+  x = numbers_in[0];
+}
+void take(const std::string& name, std::optional<double>& x) {
+  one_number(name);
+  x = numbers_in[0];
+}
+void take(const std::string& /*name*/, std::vector<double>& x) { x = numbers_in; }
+void take(const std::string& name, bool& x) {
+  one_number(name);
+  x = numbers_in[0] != 0.0;
+}
+template <class Whole>
+  requires std::integral<Whole>
+void take(const std::string& name, Whole& x) {
+  one_number(name);
+  constexpr double most = 1e9;
+  if (!(std::abs(numbers_in[0]) <= most) || std::floor(numbers_in[0]) != numbers_in[0]) {
+    throw std::invalid_argument(name + " = " + text(numbers_in[0]) + ": must be a whole number");
+  }
+  x = static_cast<Whole>(numbers_in[0]);
+}
+void take(const std::string& name, std::array<double, 2>& x) {
+  if (numbers_in.size() != 2) throw std::invalid_argument(name + ": must be two numbers");
+  x = {numbers_in[0], numbers_in[1]};
+}
+
+/// Fills the parameter called `name`; that of a part is called "sinusoid.amplitude", say.
+template <class Struct>
+bool fill(Struct& effect, std::string_view name, const std::string& where) {
+  bool found = false;
+  for_each_parameter(effect, [&]<class Value>(const ParameterInfo& info, Value& value) {
+    if constexpr (OptionalPart<Value>) {
+      if (!name.starts_with(info.name) || name.size() == info.name.size() ||
+          name[info.name.size()] != '.') {
+        return;
+      }
+      if (!value) value.emplace();
+      found = found || fill(*value, name.substr(info.name.size() + 1), where);
+    } else if (name == info.name) {
+      take(where + std::string(name), value);
+      found = true;
+    }
+  });
+  return found;
+}
+
+Store store_called(std::string_view word) {
+  for (std::size_t i = 0; i < store_names.size(); ++i) {
+    if (store_names[i] == word) return static_cast<Store>(i);
+  }
+  refuse_name("store = ", word);
+}
+
+/// Sets the option called `name` from the numbers given, or from a word.
+template <class Option>
+void set_option(const std::string& name, const std::string* word) {
+  auto& value = options.*Option::field;
+  using Value = std::remove_cvref_t<decltype(value)>;
+  if constexpr (std::same_as<Value, std::string>) {
+    if (word == nullptr) throw std::invalid_argument(name + ": must be a word");
+    value = *word;
+  } else if constexpr (std::same_as<Value, std::optional<Store>>) {
+    if (word == nullptr) throw std::invalid_argument(name + ": must be a word");
+    value = store_called(*word);
+  } else if constexpr (std::same_as<Value, std::vector<Event>>) {
+    throw std::invalid_argument(name + ": are not offered to JavaScript");
+  } else {
+    if (word != nullptr) throw std::invalid_argument(name + " = " + *word + ": must be a number");
+    take(name, value);
+  }
+}
+
+void set_option_called(const std::string& name, const std::string* word) {
+  const bool is_known = Options::any_of([&]<class Option>() {
+    if (Option::info.name != name) return false;
+    set_option<Option>(name, word);
+    return true;
+  });
+  if (!is_known) refuse_name("option ", name);
+}
+
+/// n angles, n rates, and after them as many more numbers as were asked for.
+struct State {
+  std::span<const double> q, qd;
+};
+State state_in(const Scene& scene) {
+  const std::size_t n = scene.links.size();
+  if (numbers_in.size() != 2 * n) {
+    throw std::invalid_argument("a state: must be " + std::to_string(2 * n) + " numbers");
+  }
+  return {{numbers_in.data(), n}, {numbers_in.data() + n, n}};
+}
+
+const double* out(std::vector<double> numbers) {
+  numbers_out = std::move(numbers);
+  return numbers_out.data();
+}
+
+}  // namespace
+
+extern "C" {
+
+// Buffers.
+
+EXPORTED(text_buffer) char* text_buffer(std::size_t size) {
+  text_in.resize(size);
+  return text_in.data();
+}
+EXPORTED(number_buffer) double* number_buffer(std::size_t count) {
+  numbers_in.resize(count);
+  return numbers_in.data();
+}
+
+// Scenes.
+
+EXPORTED(begin_scene) void begin_scene(double gravity) {
+  draft = {.links = {}, .gravity = gravity};
+}
+EXPORTED(add_link) void add_link(double mass, double length, double center, double inertia) {
+  draft.links.push_back({mass, length, center, inertia});
+}
+/// The text is its kind.
+EXPORTED(add_effect) void add_effect() {
+  if (text_in == "user") refuse_name("kind = ", text_in);
+  draft.effects.push_back(effect_of_kind(text_in));
+}
+/// Sets a parameter of the effect added last; the text is its name.
+EXPORTED(set_parameter) void set_parameter() {
+  const std::string where = effect_name(draft, draft.effects.size() - 1) + ": ";
+  const bool found =
+      std::visit([&](auto& one) { return fill(one, text_in, where); }, draft.effects.back());
+  if (!found) refuse_name(where, text_in);
+}
+EXPORTED(end_scene) const Scene* end_scene() {
+  constexpr std::size_t most_links = 10'000;  // their matrices would not fit into 32 bits
+  if (draft.links.size() > most_links) {
+    throw std::invalid_argument(std::to_string(draft.links.size()) + " links: must be at most " +
+                                std::to_string(most_links));
+  }
+  check(draft);
+  return new Scene(compiled(std::move(draft)));
+}
+EXPORTED(free_scene) void free_scene(const Scene* scene) { delete scene; }
+
+// Runs.
+
+EXPORTED(begin_options) void begin_options() { options = Options(); }
+/// The text is the option's name.
+EXPORTED(set_numbers) void set_numbers() { set_option_called(text_in, nullptr); }
+/// The text is the option's name, a zero, and the word.
+EXPORTED(set_word) void set_word() {
+  const std::size_t end = text_in.find('\0');
+  const std::string word = text_in.substr(end + 1);
+  set_option_called(text_in.substr(0, end), &word);
+}
+/// The numbers are the state at t0.
+EXPORTED(simulate) const Run* simulate_run(const Scene* scene, double t0, double t_end) {
+  const State start = state_in(*scene);
+  auto own = std::make_shared<const Scene>(*scene);
+  Solution solution = simulate(*own, {start.q.begin(), start.q.end()},
+                               {start.qd.begin(), start.qd.end()}, t0, t_end, options);
+  return new Run{std::move(own), std::move(solution)};
+}
+/// The same run, continued to t_end, as if it had never stopped.
+EXPORTED(resume) const Run* resume_run(const Run* run, double t_end) {
+  const Options& given = run->solution.options;
+  return new Run{run->scene, resume(*run->scene, run->solution, t_end, {}, given.max_steps,
+                                    given.time_limit, Monitor())};
+}
+EXPORTED(free_run) void free_run(const Run* run) { delete run; }
+
+// What is known of a run.
+
+EXPORTED(count) std::size_t count(const Run* run) { return run->solution.t.size(); }
+EXPORTED(dimension) std::size_t dimension(const Run* run) {
+  return static_cast<std::size_t>(run->solution.dimension);
+}
+EXPORTED(times) const double* times(const Run* run) { return run->solution.t.data(); }
+EXPORTED(states) const double* states(const Run* run) { return run->solution.states.data(); }
+EXPORTED(reached) double reached(const Run* run) { return run->solution.t_reached; }
+EXPORTED(success) bool success(const Run* run) { return text(run->solution.status).success; }
+/// Three lines: status, method, message.
+EXPORTED(words) const char* words(const Run* run) {
+  text_in = std::string(text(run->solution.status).name) + '\n' + run->solution.last_method + '\n' +
+            run->solution.message;
+  return text_in.c_str();
+}
+/// Right-hand sides, Jacobians, factorisations, accepted steps, rejected ones.
+EXPORTED(statistics) const double* statistics(const Run* run) {
+  const Statistics& one = run->solution.statistics;
+  return out({static_cast<double>(one.nfev), static_cast<double>(one.njev),
+              static_cast<double>(one.nlu), static_cast<double>(one.accepted),
+              static_cast<double>(one.rejected)});
+}
+/// States at the times given as numbers, from the dense output: (times, dimension).
+EXPORTED(at) const double* at(const Run* run) { return out(run->solution.at(numbers_in)); }
+
+/// A hash of every bit of times, states and dense output (FNV-1a).
+EXPORTED(hash) std::uint64_t hash(const Run* run) {
+  std::uint64_t h = 0xcbf29ce484222325u;
+  const Solution& solution = run->solution;
+  for (const auto* numbers : {&solution.t, &solution.states, &solution.dense.coefficients}) {
+    for (const double x : *numbers) {
+      auto bits = std::bit_cast<std::uint64_t>(x);
+      for (int byte = 0; byte < 8; ++byte, bits >>= 8) h = (h ^ (bits & 0xff)) * 0x100000001b3u;
+    }
+  }
+  return h;
+}
+
+// What is known of a state of a scene, which is given as numbers.
+
+EXPORTED(accelerations) const double* accelerations_of(const Scene* scene, double t) {
+  const State state = state_in(*scene);
+  std::vector<double> qdd(state.q.size());
+  accelerations(equations_of_motion(*scene), t, state.q.data(), state.qd.data(), qdd.data());
+  return out(std::move(qdd));
+}
+/// The force on link i from link i - 1, (n, 2).
+EXPORTED(reactions) const double* reactions_of(const Scene* scene, double t) {
+  const State state = state_in(*scene);
+  std::vector<double> qdd(state.q.size()), forces(2 * state.q.size());
+  accelerations(equations_of_motion(*scene), t, state.q.data(), state.qd.data(), qdd.data());
+  reactions(*scene, t, state.q, state.qd, qdd, forces);
+  return out(std::move(forces));
+}
+/// Kinetic and potential energy.
+EXPORTED(energies) const double* energies(const Scene* scene, double t) {
+  const State state = state_in(*scene);
+  return out({kinetic_energy(*scene, t, state.q, state.qd), potential_energy(*scene, t, state.q)});
+}
+/// The pivot, the joints and the tip, (n + 1, 2).
+EXPORTED(positions) const double* positions_of(const Scene* scene, double t) {
+  const State state = state_in(*scene);
+  std::vector<double> points(2 * state.q.size() + 2);
+  positions(*scene, t, state.q, points);
+  return out(std::move(points));
+}
+
+}  // extern "C"
