@@ -23,7 +23,7 @@ SOURCES := pyproject.toml CMakeLists.txt $(shell find cpp python ! -path '*__pyc
 .DEFAULT_GOAL := help
 .PHONY: demo test test-all compare hard-cases bench build-bench lint tidy sanitize sanitize-few \
     sanitized references threads long horizon asked-errors default-method book-speed fuzz fuzz-readers \
-    test-error elsewhere wasm core clean help
+    test-error elsewhere wasm wheel core clean help
 
 demo: $(DONE)/installed  ## build, run the textbook's case, say where its figure and summary are
 	pendcore run -o out/textbook
@@ -52,7 +52,7 @@ references: $(DONE)/error-requirements $(DONE)/bench-requirements  ## installs w
 
 define CPP_TESTS
 cmake -B $(BUILT) -DPENDCORE_TESTS=ON
-cmake --build $(BUILT) --target pendcore_tests pendcore_threads trajectory_hash
+cmake --build $(BUILT) --target tests/cpp/all
 ctest --test-dir $(BUILT) --output-on-failure --no-tests=error
 endef
 
@@ -109,6 +109,18 @@ wasm: $(DONE)/build-requirements  ## the core for browsers: build/wasm/package, 
 	@sh setup/debian_packages.sh eigen wasm32
 	cmake -G Ninja -B build/wasm -DCMAKE_TOOLCHAIN_FILE=cpp/cmake/machines/wasm32.cmake
 	cmake --build build/wasm --target pendcore_wasm
+
+# The wheel is installed where nothing else of this project is, and shows there what it can do.
+WHEELS := build/wheels
+wheel: $(DONE)/build-requirements $(DONE)/wheel-requirements  ## dist/: a wheel for Linux and the sources, installed and tried
+	rm -rf $(WHEELS) dist
+	python -m build --no-isolation --outdir $(WHEELS) -Ccmake.define.PENDCORE_FOR_WHEEL=ON .
+	auditwheel repair --wheel-dir dist $(WHEELS)/pendcore-*.whl
+	cp $(WHEELS)/pendcore-*.tar.gz dist
+	$(PYTHON) -m venv $(WHEELS)/venv
+	$(WHEELS)/venv/bin/python -m pip install --quiet --disable-pip-version-check dist/pendcore-*.whl
+	cd $(WHEELS) && venv/bin/python $(CURDIR)/tests/packaging/installed.py
+	ls -l dist
 
 threads: $(DONE)/build-requirements  ## threads that share a scene, under the thread sanitizer
 	@sh setup/debian_packages.sh doctest
@@ -200,6 +212,10 @@ $(DONE)/error-requirements: pyproject.toml | $(DONE)/test-requirements
 
 $(DONE)/fuzz-requirements: pyproject.toml | $(DONE)/test-requirements
 	python setup/requirements.py fuzz | $(PIP_INSTALL) -r /dev/stdin
+	@touch $@
+
+$(DONE)/wheel-requirements: pyproject.toml | $(DONE)/build-requirements
+	python setup/requirements.py wheel | $(PIP_INSTALL) -r /dev/stdin
 	@touch $@
 
 $(DONE)/bench-requirements: pyproject.toml | $(DONE)/build-requirements

@@ -1,0 +1,86 @@
+"""Shows that an installed pendcore works, with NumPy and the standard library alone.
+
+    python tests/packaging/installed.py
+
+It repeats runs of tests/cpp/trajectory_hash.cpp, and their hashes must be those that are recorded:
+the textbook's case, a backward run, a chain, and scenes with effects. The exit status is 1 if one
+differs, or if pendcore is not the installed one.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+began = time.perf_counter()
+import pendcore as pc  # noqa: E402
+from pendcore import effects as fx  # noqa: E402
+
+IMPORT = time.perf_counter() - began
+RECORDED = Path(__file__).parents[1] / "cpp/trajectory_hash.txt"
+RODS = [pc.Link(mass=1.0, length=0.7)] * 2
+DRAG = fx.RodDrag(link=2, drag_coefficient=1.2, diameter=0.03)
+DAMPER = fx.ViscousJoint(joint=2, damping=1e5)
+
+
+def runs() -> Iterator[tuple[str, pc.Solution]]:
+    book = pc.Scene.textbook()
+    chain = pc.Scene(links=[pc.Link(mass=0.4, length=0.3)] * 7)
+    start = [math.pi / 4, math.pi / 3]
+    yield "textbook", pc.simulate(book, start, 0.0, (0, 60), method="dopri5", check=False)
+    high = {"q0": [-1.4, -1.1], "t_span": (0, 60), "check": False}
+    yield "default textbook", pc.simulate(book, **high)
+    yield "textbook dop853", pc.simulate(book, **high, method="dop853", rtol=1e-11)
+    yield "textbook rk4", pc.simulate(book, **high, method="rk4", rtol=1e-11, step=0.01)
+    bent = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7]
+    yield "chain", pc.simulate(chain, bent, 0.0, (0, 5), method="dopri5", check=False)
+    drag = pc.Scene(links=RODS, effects=[DRAG])
+    yield "default drag", pc.simulate(drag, [0.3, 0.9], [4.0, -9.0], (0, 4), check=False)
+    stiff = pc.Scene(links=RODS, effects=[DAMPER])
+    yield "default damper", pc.simulate(stiff, [0.8, 1.0], 0.0, (0, 2), check=False)
+
+
+def fnv(h: int, numbers: Any) -> int:
+    """Go on with the hash of trajectory_hash.cpp (FNV-1a), over the bytes of doubles."""
+    for byte in numbers.astype("<f8").tobytes():
+        h = ((h ^ byte) * 0x100000001B3) & 0xFFFFFFFFFFFFFFFF
+    return h
+
+
+def hash_of(solution: pc.Solution) -> str:
+    import numpy as np
+
+    h = 0xCBF29CE484222325
+    h = fnv(h, solution.t)
+    h = fnv(h, np.ascontiguousarray(solution.y.T))
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "run.npz")
+        solution.save(path)
+        with np.load(path) as saved:
+            h = fnv(h, saved["run.dense_coefficients"])
+    return f"{h:016x}"
+
+
+def main() -> int:
+    recorded = dict(line.rsplit(" ", 1) for line in RECORDED.read_text().splitlines())
+    here = Path(pc.__file__).resolve()
+    wrong = 0
+    if "site-packages" not in here.parts and "dist-packages" not in here.parts:
+        print(f"{here} is not an installed pendcore")
+        wrong += 1
+    for name, solution in runs():
+        found = hash_of(solution)
+        same = found == recorded[name]
+        wrong += not same
+        print(f"{name:20} {found} {'the recorded hash' if same else f'NOT {recorded[name]}'}")
+    print(f"pendcore {pc.__version__}, imported in {1000 * IMPORT:.0f} ms")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
