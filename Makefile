@@ -23,7 +23,7 @@ SOURCES := pyproject.toml CMakeLists.txt $(shell find cpp python ! -path '*__pyc
 .DEFAULT_GOAL := help
 .PHONY: demo test test-all compare hard-cases bench build-bench lint tidy sanitize sanitize-few \
     sanitized references threads long horizon asked-errors default-method book-speed fuzz fuzz-readers \
-    test-error elsewhere wasm wheel core clean help
+    test-error elsewhere wasm wheel site core clean help
 
 demo: $(DONE)/installed  ## build, run the textbook's case, say where its figure and summary are
 	pendcore run -o out/textbook
@@ -100,12 +100,12 @@ sanitized: $(DONE)/installed $(DONE)/test-requirements
 
 MACHINES ?= aarch64 riscv64 s390x wasm32 clang
 CONTRACTED ?= --contracted
-elsewhere: $(DONE)/installed $(DONE)/test-requirements  ## the same bits on other processors (MACHINES); PAGE=docs/elsewhere.md writes the page
+elsewhere: $(DONE)/installed $(DONE)/test-requirements  ## the same bits on other processors (MACHINES); PAGE=docs/background/elsewhere.md writes the page
 	@sh setup/debian_packages.sh doctest $(MACHINES)
 	python tests/elsewhere/elsewhere.py $(MACHINES) $(CONTRACTED) $(PAGE:%=--page %)
 	$(if $(filter wasm32,$(MACHINES)),$(PYTEST) --full tests/elsewhere)
 
-wasm: $(DONE)/build-requirements  ## the core for browsers: build/wasm/package, docs/webassembly.md
+wasm: $(DONE)/build-requirements  ## the core for browsers: build/wasm/package, docs/how_to/webassembly.md
 	@sh setup/debian_packages.sh eigen wasm32
 	cmake -G Ninja -B build/wasm -DCMAKE_TOOLCHAIN_FILE=cpp/cmake/machines/wasm32.cmake
 	cmake --build build/wasm --target pendcore_wasm
@@ -122,33 +122,42 @@ wheel: $(DONE)/build-requirements $(DONE)/wheel-requirements  ## dist/: a wheel 
 	cd $(WHEELS) && venv/bin/python $(CURDIR)/tests/packaging/installed.py
 	ls -l dist
 
+# The pages are built from a copy, beside which generated ones stand.
+SITE := build/site
+site: $(DONE)/installed $(DONE)/site-requirements  ## the documentation as a site: build/site/html/index.html
+	rm -rf $(SITE)/source && mkdir -p $(SITE)/source
+	cp -r docs examples cpp tests bench python setup *.md CMakeLists.txt Makefile $(SITE)/source
+	cd $(SITE) && sphinx-build -W --keep-going -q -j auto -d cache -c source/docs/site source/docs html
+	@echo "site:     $(SITE)/html/index.html"
+
 threads: $(DONE)/build-requirements  ## threads that share a scene, under the thread sanitizer
 	@sh setup/debian_packages.sh doctest
 	cmake --preset thread-sanitizer
 	cmake --build --preset thread-sanitizer
 	ctest --preset thread-sanitizer
 
-long: $(DONE)/installed $(DONE)/test-requirements  ## ten million steps: docs/long_runs.md, written anew
-	python docs/long_runs.py
+long: $(DONE)/installed $(DONE)/test-requirements  ## ten million steps: docs/background/long_runs.md, written anew
+	python docs/generators/long_runs.py
 
-horizon: $(DONE)/installed $(DONE)/test-requirements  ## how long runs are right: docs/horizon.md, written anew
-	python docs/horizon.py
+horizon: $(DONE)/installed $(DONE)/test-requirements  ## how long runs are right: docs/background/horizon.md, written anew
+	python docs/generators/horizon.py
 
-asked-errors: $(DONE)/installed $(DONE)/test-requirements  ## docs/accuracy_cost.md: what simulate(error=) keeps and costs
-	python docs/series_work.py
-	python docs/asked_errors.py
+asked-errors: $(DONE)/installed $(DONE)/test-requirements  ## docs/background/accuracy_cost.md: what simulate(error=) keeps and costs
+	python docs/generators/series_work.py
+	python docs/generators/asked_errors.py
 
-default-method: $(DONE)/installed $(DONE)/test-requirements  ## docs/accuracy_cost.md: what simulate takes by default, and why
-	python docs/default_method.py
+default-method: $(DONE)/installed $(DONE)/test-requirements  ## docs/background/accuracy_cost.md: what simulate takes by default, and why
+	python docs/generators/default_method.py
 
-book-speed: $(DONE)/installed $(DONE)/bench-requirements  ## the book's claim of speed: docs/book_speed.md, written anew
+book-speed: $(DONE)/installed $(DONE)/bench-requirements  ## the book's claim of speed: docs/background/book_speed.md, written anew
 	@sh setup/debian_packages.sh octave
-	python docs/book_speed.py
+	python docs/generators/book_speed.py
 
 CASES ?= 100000
 SEED ?= 1
-fuzz: $(DONE)/installed $(DONE)/test-requirements  ## random cases (CASES, SEED); 100,000 and more write docs/fuzz.md
-	PYTHONPATH=tests:tests/models python -m fuzz.campaign --cases $(CASES) --seed $(SEED) --page docs/fuzz.md
+fuzz: $(DONE)/installed $(DONE)/test-requirements  ## random cases (CASES, SEED); 100,000 and more write docs/background/fuzz.md
+	PYTHONPATH=tests:tests/models python -m fuzz.campaign --cases $(CASES) --seed $(SEED) \
+	    --page docs/background/fuzz.md --record docs/records/fuzz.json
 
 SEEDS ?= 0:5000
 FAMILIES ?= mixed damped chaotic stiff contact own short_links
@@ -212,6 +221,10 @@ $(DONE)/error-requirements: pyproject.toml | $(DONE)/test-requirements
 
 $(DONE)/fuzz-requirements: pyproject.toml | $(DONE)/test-requirements
 	python setup/requirements.py fuzz | $(PIP_INSTALL) -r /dev/stdin
+	@touch $@
+
+$(DONE)/site-requirements: pyproject.toml | $(DONE)/build-requirements
+	python setup/requirements.py docs run symbolic export | $(PIP_INSTALL) -r /dev/stdin
 	@touch $@
 
 $(DONE)/wheel-requirements: pyproject.toml | $(DONE)/build-requirements

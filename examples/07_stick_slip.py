@@ -1,7 +1,8 @@
 """Two rods with dry friction in both joints under a slow motor: each joint holds or slides.
 
 What a joint does depends on what the other lets it: that is decided at every switch, and a joint
-that sticks does not move at all. docs/hard_cases.md shows the same scene in other programs.
+that sticks does not move at all. docs/background/hard_cases.md shows the same scene in other
+programs.
 """
 
 from __future__ import annotations

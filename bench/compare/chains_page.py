@@ -15,7 +15,8 @@ GROWTH_FROM = 100  # links: where a call's fixed cost no longer shows
 
 PAGE = """# Chains of n links
 
-Made by `make compare`; the raw figures are in [chains.json](chains.json). Do not edit: run again.
+Made by `make compare`; do not edit: run again. The raw figures are in
+[chains.json](../records/comparison/chains.json).
 
 ![Time and memory of a right-hand side against the number of links](chains.png)
 

@@ -1,13 +1,14 @@
 """Run pendcore beside its peers, interleaved in one run, and write the times that they take.
 
 Solves of five cases (what accuracy costs), `stiff` (implicit steps), `chains` (forward dynamics of
-n links) and `effects` (what each adds). Each writes into docs/comparison a .json (raw figures,
-machine, versions, flags), a .md (tables) and a .png; README.md there covers all solves.
+n links) and `effects` (what each adds). Each writes docs/comparison/*.md (tables) and *.png, and
+docs/records/comparison/*.json (raw figures, machine, versions, flags); README.md beside the pages
+covers all solves.
 `make compare` builds what is needed and calls this; by hand:
 
     python bench/compare/compare.py                        twenty minutes
     python bench/compare/compare.py --only chains stiff    some of them
-    python bench/compare/compare.py --quick                a few minutes, into out/comparison
+    python bench/compare/compare.py --quick                a few minutes, into out in place of docs
     python bench/compare/compare.py --redraw               tables and figures from the JSON
 """
 
@@ -91,52 +92,58 @@ def arguments(given: Sequence[str] | None) -> argparse.Namespace:
     )
     parser.add_argument("--quick", action="store_true", help="3 rounds, fewer points")
     parser.add_argument("--redraw", action="store_true", help="measure nothing, read the JSON")
-    parser.add_argument("--output", type=Path, help="folder (default docs/comparison)")
+    parser.add_argument("--output", type=Path, help="in place of docs")
     return parser.parse_args(given)
 
 
-def run(comparison: Comparison, folder: Path, asked: argparse.Namespace) -> Record:
+def record_path(docs: Path, stem: str) -> Path:
+    return docs / "records/comparison" / f"{stem}.json"
+
+
+def run(comparison: Comparison, docs: Path, asked: argparse.Namespace) -> Record:
     """Measure, or read the record, and write the page and the figure."""
-    raw = folder / f"{comparison.stem}.json"
+    raw = record_path(docs, comparison.stem)
+    page_path = docs / "comparison" / f"{comparison.stem}.md"
     if asked.redraw:
         record: Record = json.loads(raw.read_text(encoding="utf-8"))
     else:
         record = comparison.measure(quick=asked.quick, rounds=3 if asked.quick else asked.rounds)
-        folder.mkdir(parents=True, exist_ok=True)
+        raw.parent.mkdir(parents=True, exist_ok=True)
         raw.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
-    raw.with_suffix(".md").write_text(comparison.page(record), encoding="utf-8")
-    comparison.draw(record, raw.with_suffix(".png"))
+    page_path.parent.mkdir(parents=True, exist_ok=True)
+    page_path.write_text(comparison.page(record), encoding="utf-8")
+    comparison.draw(record, page_path.with_suffix(".png"))
     print(comparison.summary(record))
-    print(f"written: {raw}, {raw.stem}.md, {raw.stem}.png\n")
+    print(f"written: {raw}, {page_path}, {page_path.stem}.png\n")
     return record
 
 
-def write_overview(folder: Path) -> None:
+def write_overview(docs: Path) -> None:
     """Write the page on all solves that have a record."""
     stems = [*page.ABOUT, "stiff"]
-    records = {stem: folder / f"{stem}.json" for stem in stems}
+    records = {stem: record_path(docs, stem) for stem in stems}
     known = {
         stem: json.loads(path.read_text(encoding="utf-8"))
         for stem, path in records.items()
         if path.exists()
     }
     if known:
-        (folder / "README.md").write_text(overview.page(known), encoding="utf-8")
+        (docs / "comparison/README.md").write_text(overview.page(known), encoding="utf-8")
 
 
 def main(given: Sequence[str] | None = None) -> int:
     asked = arguments(given)
-    folder = asked.output or PROJECT / ("out/comparison" if asked.quick else "docs/comparison")
+    docs = asked.output or PROJECT / ("out" if asked.quick else "docs")
     try:
         for name in asked.only or COMPARISONS:
-            record = run(COMPARISONS[name], folder, asked)
-            if (name, folder) == ("textbook", PROJECT / "docs/comparison"):
+            record = run(COMPARISONS[name], docs, asked)
+            if (name, docs) == ("textbook", PROJECT / "docs"):
                 excerpts.write(PROJECT, record)
     except KeyboardInterrupt:
         print("stopped; what was not finished was not written", file=sys.stderr)
         return 130
     finally:
-        write_overview(folder)
+        write_overview(docs)
     return 0
 
 

@@ -1,6 +1,7 @@
 """Run the hard cases in pendcore and its peers, and write the results.
 
-This writes docs/hard_cases.json, docs/hard_cases.md and its figures, docs/figures/hard_cases_*.png.
+This writes docs/records/hard_cases.json, docs/background/hard_cases.md and the page's figures,
+docs/figures/hard_cases_*.png.
 `make hard-cases` builds what is needed and calls this; by hand:
 
     python bench/compare/compare_hard_cases.py                 some minutes
@@ -94,7 +95,7 @@ def arguments(given: Sequence[str] | None) -> argparse.Namespace:
         "--only", nargs="+", choices=[case.name for case in CASES], help="these cases anew"
     )
     parser.add_argument("--redraw", action="store_true", help="run nothing, read the JSON")
-    parser.add_argument("--output", type=Path, default=PROJECT / "docs", help="folder")
+    parser.add_argument("--output", type=Path, default=PROJECT / "docs", help="in place of docs")
     return parser.parse_args(given)
 
 
@@ -116,15 +117,17 @@ def run(asked: argparse.Namespace, raw: Path) -> Record:
 
 def main(given: Sequence[str] | None = None) -> int:
     asked = arguments(given)
-    raw = asked.output / "hard_cases.json"
+    raw = asked.output / "records/hard_cases.json"
+    written = asked.output / "background/hard_cases.md"
     try:
         record = run(asked, raw)
     except KeyboardInterrupt:
         print("stopped; nothing was written", file=sys.stderr)
         return 130
-    asked.output.mkdir(parents=True, exist_ok=True)
+    for path in (raw, written):
+        path.parent.mkdir(parents=True, exist_ok=True)
     raw.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
-    raw.with_suffix(".md").write_text(page.page(record), encoding="utf-8")
+    written.write_text(page.page(record), encoding="utf-8")
     figures.draw(record, asked.output / "figures")
     print(page.glance(record))
     print(page.summary(record))

@@ -14,7 +14,8 @@ WAYS = ("call", "step")
 
 PAGE = """# What an effect costs
 
-Made by `make compare`; the raw figures are in [effects.json](effects.json). Do not edit: run again.
+Made by `make compare`; do not edit: run again. The raw figures are in
+[effects.json](../records/comparison/effects.json).
 
 ![What each effect adds to a right-hand side, pendcore beside MuJoCo](effects.png)
 

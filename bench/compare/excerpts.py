@@ -1,4 +1,4 @@
-"""The few figures of the textbook's record that the README and docs/trust.md quote.
+"""The few figures of the textbook's record that the README and docs/background/trust.md quote.
 
 They stand between a pair of comments that name them, and are written anew with the record.
 """
@@ -50,7 +50,10 @@ def tolerances(record: Record) -> str:
     return table(header, rows)
 
 
-EXCERPTS = {"README.md": ("figures", figures), "docs/trust.md": ("tolerances", tolerances)}
+EXCERPTS = {
+    "README.md": ("figures", figures),
+    "docs/background/trust.md": ("tolerances", tolerances),
+}
 
 
 def insert(text: str, name: str, excerpt: str) -> str:

@@ -18,7 +18,8 @@ from tables import (
 
 PAGE = """# What accuracy costs: {case}
 
-Made by `make compare`; the raw figures are in [{case}.json]({case}.json). Do not edit: run again.
+Made by `make compare`; do not edit: run again. The raw figures are in
+[{case}.json](../records/comparison/{case}.json).
 [All cases](README.md) has what to choose, how this was measured, and why pendcore loses where it
 does.
 

@@ -13,7 +13,8 @@ KINDS = ("steps", "minimum_us")
 
 PAGE = """# Stiff scenes
 
-Made by `make compare`; the raw figures are in [stiff.json](stiff.json). Do not edit: run again.
+Made by `make compare`; do not edit: run again. The raw figures are in
+[stiff.json](../records/comparison/stiff.json).
 [All cases](README.md) has how this was measured.
 
 ![Error against time on three stiff scenes](stiff.png)

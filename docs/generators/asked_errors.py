@@ -4,8 +4,9 @@
 
 On 200 random regular scenes, it measures the error against another method's most accurate run. It
 compares the right-hand sides with those of the best of all methods and tolerances swept, and then
-the times of the two in turns. It writes docs/asked_errors.json and the table of
-docs/accuracy_cost.md. tests/accuracy/test_asked_errors.py runs the same without the clock.
+the times of the two in turns. It writes docs/records/asked_errors.json and the table of
+docs/background/accuracy_cost.md. tests/accuracy/test_asked_errors.py runs the same without the
+clock.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from typing import Any
 import numpy as np
 import pendcore as pc
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 sys.path += [str(ROOT / "tests"), str(ROOT / "tests/models")]
 from regular_scenes import Regular, regular  # noqa: E402
 
@@ -108,8 +109,8 @@ def main() -> None:
     for seed in with_progress(SCENES):
         one = regular(seed)
         found.append(outcome(one) | times(one))
-    (ROOT / "docs/asked_errors.json").write_text(json.dumps(found, indent=1) + "\n")
-    page = ROOT / "docs/accuracy_cost.md"
+    (ROOT / "docs/records/asked_errors.json").write_text(json.dumps(found, indent=1) + "\n")
+    page = ROOT / "docs/background/accuracy_cost.md"
     before, _, rest = page.read_text().partition(BEGIN)
     page.write_text(before + BEGIN + table(found) + END + rest.partition(END)[2])
     print(table(found))

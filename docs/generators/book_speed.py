@@ -2,8 +2,8 @@
 
     make book-speed
 
-All take turns in one run. It writes docs/book_speed.json, the tables of docs/book_speed.md and the
-figure docs/figures/book_speed.png.
+All take turns in one run. It writes docs/records/book_speed.json, the tables of
+docs/background/book_speed.md and the figure docs/figures/book_speed.png.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ import numpy as np
 import numpy.typing as npt
 import pendcore as pc
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 sys.path.append(str(ROOT / "bench/compare"))
 from contenders.contender import PythonRun  # noqa: E402
 from contenders.conversation import Conversation  # noqa: E402
@@ -72,7 +72,7 @@ def begin_octave(folder: Path) -> Conversation:
     (folder / "shared.m").write_text(book.to_octave("shared"))
     (folder / "g.m").write_text(book.to_octave_inline())
     program = folder / "turns"
-    program.write_text((ROOT / "docs/book_speed.m").read_text())
+    program.write_text((ROOT / "docs/generators/book_speed.m").read_text())
     program.chmod(program.stat().st_mode | stat.S_IXUSR)
     return Conversation(program, {"BOOK_SPEED": str(folder)})
 
@@ -83,7 +83,7 @@ def begin_cpp(folder: Path) -> Conversation:
     from pendcore.derive.code.cpp import header
 
     (folder / "book.hpp").write_text(header(Derivation.textbook(), namespace="book"))
-    command = ["g++", "-std=c++17", "-O2", f"-I{folder}", ROOT / "docs/book_speed.cpp"]
+    command = ["g++", "-std=c++17", "-O2", f"-I{folder}", ROOT / "docs/generators/book_speed.cpp"]
     subprocess.run([*command, "-o", folder / "calls"], check=True)
     return Conversation(folder / "calls")
 
@@ -323,8 +323,8 @@ def figure(found: dict[str, Any], path: Path) -> None:
 
 def main() -> None:
     found = record(ROUNDS)
-    (ROOT / "docs/book_speed.json").write_text(json.dumps(found, indent=1) + "\n")
-    page = ROOT / "docs/book_speed.md"
+    (ROOT / "docs/records/book_speed.json").write_text(json.dumps(found, indent=1) + "\n")
+    page = ROOT / "docs/background/book_speed.md"
     text = page.read_text()
     for name, table in TABLES.items():
         before, _, rest = text.partition(BEGIN.format(name))

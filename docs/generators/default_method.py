@@ -2,9 +2,10 @@
 
     make default-method
 
-It writes two tables of docs/accuracy_cost.md, and docs/default_method.json: errors and times of
-the default at several tolerances on 200 random regular scenes, beside dopri5; and times of the
-methods at the same achieved error on chains. Times are ratios of calls in turns, Python included.
+It writes two tables of docs/background/accuracy_cost.md, and docs/records/default_method.json:
+errors and times of the default at several tolerances on 200 random regular scenes, beside dopri5;
+and times of the methods at the same achieved error on chains. Times are ratios of calls in turns,
+Python included.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ import numpy as np
 import pendcore as pc
 from pendcore.accuracy.position_error import distances, time_grid
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 sys.path += [str(ROOT / "tests"), str(ROOT / "tests/models")]
 from regular_scenes import EXACT, REGULAR, growth, scene_and_start  # noqa: E402
 
@@ -148,8 +149,8 @@ def main() -> None:
     scenes = [of_scene(seed) for seed in with_progress(SCENES, "scene")]
     chains = [of_chain(n) for n in with_progress(SPANS, "chain")]
     record = {"scenes": scenes, "chains": chains}
-    (ROOT / "docs/default_method.json").write_text(json.dumps(record, indent=1) + "\n")
-    page = ROOT / "docs/accuracy_cost.md"
+    (ROOT / "docs/records/default_method.json").write_text(json.dumps(record, indent=1) + "\n")
+    page = ROOT / "docs/background/accuracy_cost.md"
     text = page.read_text()
     for name, table in (("scenes", table_of_scenes(scenes)), ("chains", table_of_chains(chains))):
         before, _, rest = text.partition(BEGIN.format(name))

@@ -44,4 +44,4 @@ def draw() -> plt.Figure:
 
 
 if __name__ == "__main__":
-    draw().savefig(Path(__file__).parent / "figures" / "defect.png", dpi=150)
+    draw().savefig(Path(__file__).parents[1] / "figures" / "defect.png", dpi=150)

@@ -1,8 +1,8 @@
 """The pages in docs/effects, from the descriptions of the effects.
 
-docs/write_effects.py writes them; further sections are in effect_sections.py. An example needs
-values that make sense together: EXAMPLES has them for the present effects, and an effect without an
-example is shown with values that its ranges allow.
+docs/generators/write_effects.py writes them; further sections are in effect_sections.py. An example
+needs values that make sense together: EXAMPLES has them for the present effects, and an effect
+without an example is shown with values that its ranges allow.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ def pages() -> dict[str, str]:
     return {"README.md": _index(), **found}
 
 
-def kinds_table(folder: str = "effects/") -> str:
+def kinds_table(folder: str = "../effects/") -> str:
     """Return a table of the kinds, their keys and their pages."""
     rows = ["| kind | keys | |", "|---|---|---|"]
     for kind, cls in KINDS.items():
@@ -107,17 +107,19 @@ def _page(cls: type[Effect]) -> str:
 def _sections(told: Description, cls: type[Effect]) -> Iterator[str]:
     yield f"# {told.name}"
     yield ""
-    yield f"<!-- Written by docs/write_effects.py from what the core says of `{told.kind}`. -->"
+    writer = "docs/generators/write_effects.py"
+    yield f"<!-- Written by {writer} from what the core says of `{told.kind}`. -->"
     yield ""
     yield told.sentence
     yield ""
     yield f"    {told.law}"
     yield ""
     if told.account in CAVEATS:
-        more = "[trust.md](../trust.md#points-where-a-law-changes) has more."
+        more = "[trust.md](../background/trust.md#points-where-a-law-changes) has more."
         yield f"**{CAVEATS[told.account]}** {more}"
         yield ""
-    yield f"Source: {told.source}. The symbols are those of [conventions.md](../conventions.md)."
+    conventions = "[conventions.md](../reference/conventions.md)"
+    yield f"Source: {told.source}. The symbols are those of {conventions}."
     yield ""
     yield from _table(told)
     for part in dict.fromkeys(p.part for p in told.parameters if p.part):
@@ -196,7 +198,7 @@ def _index() -> str:
     return f"""\
 # Effects
 
-<!-- Written by docs/write_effects.py from the core's list of effects. -->
+<!-- Written by docs/generators/write_effects.py from the core's list of effects. -->
 
 A scene simulates gravity and the effects that it lists, and nothing else; unlisted effects cost
 nothing. Each effect may act on any joint or link, and a scene may have several effects of one
@@ -210,5 +212,5 @@ With `pc.simulate(..., ledger=True)`, `sol.energy().ledger` tells where the ener
 are losses, the other entries are work done on the chain, and `residual` is the remainder of the
 balance.
 
-[add_an_effect.md](../add_an_effect.md) says how to add an effect to the core.
+[add_an_effect.md](../how_to/add_an_effect.md) says how to add an effect to the core.
 """

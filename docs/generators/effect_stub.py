@@ -1,7 +1,7 @@
 """The stub python/pendcore/effects.pyi, from the descriptions of the effects.
 
 The classes are made when pendcore is imported; the stub shows type checkers and editors what they
-are. docs/write_effects.py writes it.
+are. docs/generators/write_effects.py writes it.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from pendcore.scene.effect_description import Parameter
 
 HEAD = '''"""What acts on a chain besides gravity: a class for each effect that the core has.
 
-Written by docs/write_effects.py from what the core says of each effect.
+Written by docs/generators/write_effects.py from what the core says of each effect.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Measures `error_over_rtol` of a method's descriptor: the typical largest error, over rtol.
 
-    python docs/error_over_rtol.py bs23
+    python docs/generators/error_over_rtol.py bs23
 
 For each rtol it prints the median over 400 random regular scenes, those whose seeds served to
 choose the numbers in `pendcore.accuracy.method_choice`. The descriptor has one number for all.
@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 from tqdm import tqdm
 
-sys.path += [str(Path(__file__).parents[1] / "tests" / folder) for folder in ("", "models")]
+sys.path += [str(Path(__file__).parents[2] / "tests" / folder) for folder in ("", "models")]
 from regular_scenes import regular
 
 SEEDS = range(200, 600)

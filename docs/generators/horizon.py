@@ -2,9 +2,10 @@
 
     make horizon
 
-It runs what docs/horizon.md tells of, and writes the tables of that page, docs/horizon.json and the
-figures docs/figures/horizon_*.png. The truth comes from the Taylor series in many digits of
-tests/reference/taylor_series.py and its record, tests/data/chaotic_starts.json.
+It runs what docs/background/horizon.md tells of, and writes the tables of that page,
+docs/records/horizon.json and the figures docs/figures/horizon_*.png. The truth comes from the
+Taylor series in many digits of tests/reference/taylor_series.py and its record,
+tests/data/chaotic_starts.json.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ import numpy as np
 import pendcore as pc
 from numpy.typing import NDArray
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 sys.path += [str(ROOT / "tests"), str(ROOT / "tests/models")]
 
 import chaotic_starts as record  # noqa: E402
@@ -237,8 +238,8 @@ def main() -> None:
             "slopes": {method: work.measured(method) for method in work.methods},
         },
     }
-    (ROOT / "docs/horizon.json").write_text(json.dumps(found, indent=1) + "\n")
-    page = ROOT / "docs/horizon.md"
+    (ROOT / "docs/records/horizon.json").write_text(json.dumps(found, indent=1) + "\n")
+    page = ROOT / "docs/background/horizon.md"
     before, rest = page.read_text().split(BEGIN)
     page.write_text(before + BEGIN + table(found) + END + rest.split(END)[1])
     draw_run(FIGURES / "horizon_run.png")

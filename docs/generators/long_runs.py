@@ -2,9 +2,9 @@
 
     make long
 
-It runs both, checks what docs/long_runs.md promises, and writes docs/long_runs.json, the figure
-docs/figures/long_runs.png and the tables of the page. tests/core/test_long_runs.py runs the
-same in a reduced form.
+It runs both, checks what docs/background/long_runs.md promises, and writes
+docs/records/long_runs.json, the figure docs/figures/long_runs.png and the tables of the page.
+tests/core/test_long_runs.py runs the same in a reduced form.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ import numpy.typing as npt
 import pendcore as pc
 from mpmath import cos, mp, mpf, sin
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 BOOK = pc.Scene.textbook()
 BEGIN, END = "<!-- long runs: begin -->\n", "<!-- long runs: end -->"
 STEP = 5e-4
@@ -176,8 +176,8 @@ def figure(found: dict[str, Any], path: Path) -> None:
 
 def main() -> None:
     found = record(10_000_000, 24)
-    (ROOT / "docs/long_runs.json").write_text(json.dumps(found, indent=1) + "\n")
-    page = ROOT / "docs/long_runs.md"
+    (ROOT / "docs/records/long_runs.json").write_text(json.dumps(found, indent=1) + "\n")
+    page = ROOT / "docs/background/long_runs.md"
     before, rest = page.read_text().split(BEGIN)
     page.write_text(before + BEGIN + tables(found) + END + rest.split(END)[1])
     figure(found, ROOT / "docs/figures/long_runs.png")

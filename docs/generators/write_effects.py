@@ -1,9 +1,9 @@
 """Writes what is made from the descriptions of the effects: run it after adding one.
 
-    python docs/write_effects.py
+    python docs/generators/write_effects.py
 
 It writes python/pendcore/effects.pyi, the pages in docs/effects, and the table of kinds in
-docs/case_files.md. A test compares them with what it would write.
+docs/how_to/case_files.md. A test compares them with what it would write.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from pathlib import Path
 from effect_pages import kinds_table, pages
 from effect_stub import stub
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 BEGIN, END = "<!-- kinds: begin -->\n", "<!-- kinds: end -->"
 
 
@@ -27,7 +27,7 @@ def written() -> dict[Path, str]:
     """Return every file and its text."""
     files = {ROOT / "docs/effects" / name: text for name, text in pages().items()}
     files[ROOT / "python/pendcore/effects.pyi"] = stub()
-    case_files = ROOT / "docs/case_files.md"
+    case_files = ROOT / "docs/how_to/case_files.md"
     files[case_files] = with_kinds(case_files.read_text())
     return files
 

@@ -1,9 +1,9 @@
 """Writes what is made from the descriptors of a run's options: run it after adding one.
 
-    python docs/write_options.py
+    python docs/generators/write_options.py
 
-It writes python/pendcore/run/keywords.py, and the table of `[run]` in docs/case_files.md. A test
-compares them with what it would write.
+It writes python/pendcore/run/keywords.py, and the table of `[run]` in docs/how_to/case_files.md. A
+test compares them with what it would write.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from pathlib import Path
 
 from pendcore.run.options import OPTIONS, RunOption
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 BEGIN, END = "<!-- options: begin -->\n", "<!-- options: end -->"
 HEAD = """\
 | key | unit | default | meaning |
@@ -24,7 +24,7 @@ HEAD = """\
 """
 KEYWORDS = '''"""The keywords of a run, for type checkers and editors.
 
-Written by docs/write_options.py from the descriptors of the options.
+Written by docs/generators/write_options.py from the descriptors of the options.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ def _toml(value: object) -> str:
 
 def written() -> dict[Path, str]:
     """Return every file and its text."""
-    page = ROOT / "docs/case_files.md"
+    page = ROOT / "docs/how_to/case_files.md"
     before, rest = page.read_text().split(BEGIN)
     return {
         ROOT / "python/pendcore/run/keywords.py": keywords(),

@@ -21,7 +21,15 @@ globals().update(PARTS | {cls.__name__: cls for cls in KINDS.values()})
 
 
 def kinds() -> dict[str, type[Effect]]:
-    """Return the class of every kind of effect, the kind as in case files."""
+    """Return the class of every kind of effect, the kind as in case files.
+
+    Examples
+    --------
+    >>> pc.effects.kinds()["viscous_joint"](joint=2, damping=0.05)
+    ViscousJoint(joint=2, damping=0.05)
+    >>> "lock" in pc.effects.kinds()
+    True
+    """
     return dict(KINDS)
 
 

@@ -1,6 +1,6 @@
 """What acts on a chain besides gravity: a class for each effect that the core has.
 
-Written by docs/write_effects.py from what the core says of each effect.
+Written by docs/generators/write_effects.py from what the core says of each effect.
 """
 
 from __future__ import annotations

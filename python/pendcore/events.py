@@ -6,8 +6,8 @@
     sol = pc.simulate(scene, q0, t_span=(0, 10), events=[bottom, pc.events.RateZero(joint=2)])
     [event.t for event in sol.events[0]]
 
-Events change no bit of a run; with ``terminal`` they end it. docs/events.md says what is found, and
-what is not.
+Events change no bit of a run; with ``terminal`` they end it. docs/how_to/events.md says what is
+found, and what is not.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """simulate(error=...) keeps the error, verifies it, tells what it took, and refuses what it cannot.
 
 The errors are measured against another method's most accurate run, or in multiple precision; the
-work is counted, not timed. docs/asked_errors.py has the same with times.
+work is counted, not timed. docs/generators/asked_errors.py has the same with times.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from pendcore.cli import main
 from regular_scenes import regular
 
 DOCS = Path(__file__).parents[2] / "docs"
-sys.path.append(str(DOCS))
+sys.path.append(str(DOCS / "generators"))
 import asked_errors  # noqa: E402
 
 BOOK = pc.Scene.textbook()
@@ -64,9 +64,9 @@ def test_the_run_takes_hardly_more_work_than_the_best_of_a_sweep(outcomes):
 
 
 def test_the_pages_table_is_that_of_the_record():
-    kept = json.loads((DOCS / "asked_errors.json").read_text())
+    kept = json.loads((DOCS / "records/asked_errors.json").read_text())
     assert len(kept) == len(asked_errors.SCENES)
-    assert asked_errors.table(kept) in (DOCS / "accuracy_cost.md").read_text()
+    assert asked_errors.table(kept) in (DOCS / "background/accuracy_cost.md").read_text()
 
 
 @pytest.mark.parametrize("name", ["textbook", "unequal", "fast_spin", "three_links", "single_rod"])
@@ -173,7 +173,7 @@ def test_a_chaotic_span_is_refused_and_told_until_when_it_holds():
 
 
 def test_the_page_says_until_when_it_holds(capsys):
-    page = (DOCS / "accuracy_cost.md").read_text()
+    page = (DOCS / "background/accuracy_cost.md").read_text()
     (code,) = [x for x in re.findall(r"```python\n(.*?)```", page, re.DOTALL) if "refusal" in x]
     (told,) = re.findall(r"print\(refusal\)  # \.\.\. (.*)", code)
     exec(code, {})

@@ -217,7 +217,7 @@ def test_backward_is_the_mirror_of_forward() -> None:
 
 
 def test_its_page_tells_what_its_lines_print(capsys: pytest.CaptureFixture[str]) -> None:
-    page = (Path(__file__).parents[2] / "docs/defect.md").read_text()
+    page = (Path(__file__).parents[2] / "docs/background/defect.md").read_text()
     code, told = re.search(r"```python\n(.*?)```\n\n```\n(.*?)```", page, re.DOTALL).groups()
     exec(code, {})
     assert capsys.readouterr().out == told

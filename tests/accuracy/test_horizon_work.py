@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 from pendcore.horizon.horizon_work import draw_work
 
 ROOT = Path(__file__).parents[2]
-sys.path.append(str(ROOT / "docs"))
+sys.path.append(str(ROOT / "docs/generators"))
 
 E = pc.effects
 BOOK = pc.Scene.textbook()
@@ -230,8 +230,8 @@ def test_one_method_need_not_be_in_a_list() -> None:
 def test_the_page_quotes_its_record() -> None:
     import horizon
 
-    page = (ROOT / "docs/horizon.md").read_text()
-    found = json.loads((ROOT / "docs/horizon.json").read_text())
+    page = (ROOT / "docs/background/horizon.md").read_text()
+    found = json.loads((ROOT / "docs/records/horizon.json").read_text())
     between = page.split(horizon.BEGIN)[1].split(horizon.END)[0]
     assert between == horizon.table(found)
     for one in found["trusted"]:
@@ -241,12 +241,13 @@ def test_the_page_quotes_its_record() -> None:
 
 def test_the_lines_of_the_page_run() -> None:
     mpl.use("Agg")
-    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs/horizon.md").read_text(), re.DOTALL)
+    page = (ROOT / "docs/background/horizon.md").read_text()
+    blocks = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
     assert len(blocks) == 3
     names: dict[str, object] = {}
     for block in blocks[:2]:  # the tests above run what the third block shows
         exec(block, names)
-    others = json.loads((ROOT / "docs/horizon.json").read_text())["neighbours"]
+    others = json.loads((ROOT / "docs/records/horizon.json").read_text())["neighbours"]
     wanted = pytest.approx(np.mean(others), abs=4 * np.std(others, ddof=1))
     assert names["found"].largest == wanted  # type: ignore[attr-defined]
 

@@ -59,8 +59,8 @@ def test_the_scenes_are_of_every_kind() -> None:
 
 def test_the_page_shows_the_record() -> None:
     docs = Path(__file__).parents[2] / "docs"
-    record = json.loads((docs / "true_error.json").read_text())
-    assert report.markdown(record) in (docs / "accuracy_cost.md").read_text()
+    record = json.loads((docs / "records/true_error.json").read_text())
+    assert report.markdown(record) in (docs / "background/accuracy_cost.md").read_text()
     assert set(record["families"]) == set(FAMILIES)
     for of_it in record["families"].values():
         assert not any(of_it[name] for name in ("above", "contradicted", "late", "exceptions"))

@@ -124,7 +124,7 @@ def test_upright_at_rest_it_stands_in_steps_too_short_for_any_push() -> None:
     assert set(sol.q[:, 0]) == {UPRIGHT}
     carried = pc.simulate(ONE, UPRIGHT, 0.0, (0.0, 20.0), **how, compensated=True)
     assert np.abs(carried.q - UPRIGHT).max() > 1
-    known_limits = " ".join((ROOT / "docs/trust.md").read_text().split())
+    known_limits = " ".join((ROOT / "docs/background/trust.md").read_text().split())
     assert "it stands for ever" in known_limits
 
 

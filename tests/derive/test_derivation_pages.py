@@ -18,7 +18,8 @@ DRAWN = ("mechanism", "free_bodies", "reactions")
 
 
 def blocks(page: str) -> list[str]:
-    return re.findall(r"```python\n(.*?)```", (ROOT / "docs" / page).read_text(), re.DOTALL)
+    text = (ROOT / "docs/tutorials" / page).read_text()
+    return re.findall(r"```python\n(.*?)```", text, re.DOTALL)
 
 
 def test_the_students_lines_run(capsys, tmp_path, monkeypatch):

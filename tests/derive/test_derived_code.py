@@ -334,14 +334,14 @@ def test_the_example_s_header_is_what_is_written_now() -> None:
 
 def blocks(language: str) -> list[str]:
     """Return the blocks of code on the engineer's page."""
-    page = (EXAMPLES.parent / "docs/derive_engineer.md").read_text()
+    page = (EXAMPLES.parent / "docs/tutorials/derive_engineer.md").read_text()
     return re.findall(rf"```{language}\n(.*?)```", page, re.DOTALL)
 
 
 @pytest.fixture
 def as_the_page_says(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Make the engineer's folder: the page's case file, and what the page's commands write."""
-    page = (EXAMPLES.parent / "docs/derive_engineer.md").read_text()
+    page = (EXAMPLES.parent / "docs/tutorials/derive_engineer.md").read_text()
     (shown,) = blocks("toml")
     (tmp_path / "arm.toml").write_text(shown)
     monkeypatch.chdir(tmp_path)

@@ -1,6 +1,7 @@
 """The errata once more, in symbols: what stands printed, minus what the derivation gives.
 
-docs/errata.md has these differences in a table; they hold for all masses, lengths and angles.
+docs/reference/errata.md has these differences in a table; they hold for all masses, lengths and
+angles.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from pendcore.derive.newton_euler import Balance
 from reference import printed_equations as printed
 from reference.printed_equations import ALL_REPAIRS, AS_PRINTED, Instant, Pendulum, Repairs
 
-PAGE = Path(__file__).parents[2] / "docs/errata.md"
+PAGE = Path(__file__).parents[2] / "docs/reference/errata.md"
 BOOK = Derivation.textbook()
 S = BOOK.symbols
 (m1, m2), (L1, L2), g = S.masses, S.lengths, S.gravity

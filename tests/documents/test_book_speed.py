@@ -1,4 +1,4 @@
-"""What docs/book_speed.md compares solves the same case, and what it says is in its record."""
+"""What docs/background/book_speed.md compares solves one case, and what it says is recorded."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import pendcore as pc
 import pytest
 
 DOCS = Path(__file__).parents[2] / "docs"
-sys.path.append(str(DOCS))
+sys.path.append(str(DOCS / "generators"))
 import book_speed  # noqa: E402
 
 octave = pytest.mark.skipif(
@@ -25,7 +25,7 @@ octave = pytest.mark.skipif(
 @pytest.fixture(scope="module")
 def kept() -> dict[str, Any]:
     """Return the record that the last `make book-speed` wrote."""
-    return json.loads((DOCS / "book_speed.json").read_text())
+    return json.loads((DOCS / "records/book_speed.json").read_text())
 
 
 def least(kept: dict[str, Any], tolerance: str) -> dict[str, float]:
@@ -76,7 +76,7 @@ def test_numpy_s_module_is_the_core_s_right_hand_side() -> None:
 def test_the_page_has_the_tables_of_the_record(name: str, kept: dict[str, Any]) -> None:
     begin, end = book_speed.BEGIN.format(name), book_speed.END.format(name)
     table = book_speed.TABLES[name](kept)
-    assert begin + table + end in (DOCS / "book_speed.md").read_text()
+    assert begin + table + end in (DOCS / "background/book_speed.md").read_text()
 
 
 def test_the_record_bears_out_what_the_page_says(kept: dict[str, Any]) -> None:

@@ -28,7 +28,8 @@ import stiff_page  # noqa: E402
 from contenders.conversation import find_executable  # noqa: E402
 from work_precision import time_at  # noqa: E402
 
-RECORDS = PROJECT / "docs" / "comparison"
+PAGES = PROJECT / "docs/comparison"
+RECORDS = PROJECT / "docs/records/comparison"
 COMPARISONS = compare.COMPARISONS
 
 
@@ -39,13 +40,13 @@ def read(stem: str) -> Any:
 @pytest.mark.parametrize("name", COMPARISONS)
 def test_written_page_is_what_the_record_says(name: str) -> None:
     comparison = COMPARISONS[name]
-    written = (RECORDS / f"{comparison.stem}.md").read_text(encoding="utf-8")
+    written = (PAGES / f"{comparison.stem}.md").read_text(encoding="utf-8")
     assert comparison.page(read(comparison.stem)) == written
 
 
 def test_page_on_all_solves_is_what_the_records_say() -> None:
     known = {stem: read(stem) for stem in [*page.ABOUT, "stiff"]}
-    written = (RECORDS / "README.md").read_text(encoding="utf-8")
+    written = (PAGES / "README.md").read_text(encoding="utf-8")
     assert overview.page(known) == written
     assert all(f"({stem}.md)" in written for stem in [*known, "chains", "effects"])
 
@@ -98,10 +99,13 @@ def test_another_figure_in_the_record_is_another_page(name: str, tmp_path: Path)
     record = json.loads(text)
     (first, *_) = record["contenders"]
     first["about"] = "changed by a test"
-    (tmp_path / f"{stem}.json").write_text(json.dumps(record), encoding="utf-8")
+    changed = tmp_path / "records/comparison" / f"{stem}.json"
+    changed.parent.mkdir(parents=True)
+    changed.write_text(json.dumps(record), encoding="utf-8")
     assert compare.main(["--only", name, "--redraw", "--output", str(tmp_path)]) == 0
-    assert "changed by a test" in (tmp_path / f"{stem}.md").read_text(encoding="utf-8")
-    assert (tmp_path / f"{stem}.png").stat().st_size > 1000
+    written = tmp_path / "comparison" / f"{stem}.md"
+    assert "changed by a test" in written.read_text(encoding="utf-8")
+    assert written.with_suffix(".png").stat().st_size > 1000
 
 
 def test_ctrl_c_ends_it_and_leaves_nothing_half_written(
@@ -125,17 +129,18 @@ def test_a_quick_run_of_solves_measures_whom_it_finds(
     monkeypatch.setattr(solves.measure, "__kwdefaults__", chosen)
     monkeypatch.setenv("SOLVES_SUNDIALS", str(tmp_path / "nowhere"))
     assert compare.main(["--only", "textbook", "--quick", "--output", str(tmp_path)]) == 0
-    record = json.loads((tmp_path / "textbook.json").read_text(encoding="utf-8"))
+    record = json.loads((tmp_path / "records/comparison/textbook.json").read_text(encoding="utf-8"))
     assert "solves_sundials" in record["absent"]
-    assert "not here: solves_sundials" in (tmp_path / "textbook.md").read_text(encoding="utf-8")
+    pages = tmp_path / "comparison"
+    assert "not here: solves_sundials" in (pages / "textbook.md").read_text(encoding="utf-8")
     names = [one["name"] for one in record["contenders"]]
     assert {"pendcore_dopri5", "pendcore_rk4", "heyoka"} <= set(names) <= set(few)
     for at in equal_error.compare(record, equal_error.SIDES[-1], [1e-3]):
         assert at.own
         assert at.peer
         assert at.ratio == pytest.approx(at.own[0] / at.peer[0])
-    assert (tmp_path / "textbook.png").stat().st_size > 1000
-    assert "(textbook.md)" in (tmp_path / "README.md").read_text(encoding="utf-8")
+    assert (pages / "textbook.png").stat().st_size > 1000
+    assert "(textbook.md)" in (pages / "README.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.outside_build
@@ -151,7 +156,8 @@ def test_quick_runs_of_chains_and_effects_measure_pendcore(
     monkeypatch.setattr(chains, "QUICK_LENGTHS", (2, 10, 100, 1000))
     for name in ("chains", "effects"):
         assert compare.main(["--only", name, "--quick", "--output", str(tmp_path)]) == 0
-    links = json.loads((tmp_path / "chains.json").read_text(encoding="utf-8"))["contenders"]
+    records = tmp_path / "records/comparison"
+    links = json.loads((records / "chains.json").read_text(encoding="utf-8"))["contenders"]
     (own,) = (one for one in links if one["name"] == "pendcore")
     held = {point["n"]: point["bytes"] for point in own["points"]}
     assert list(held) == [2, 10, 100, 1000]
@@ -159,7 +165,7 @@ def test_quick_runs_of_chains_and_effects_measure_pendcore(
     # No memory beyond O(n): ten times the links, ten times the bytes or less
     # (None where no glibc tells).
     assert held[1000] is None or held[1000] < 11 * held[100]
-    measured = json.loads((tmp_path / "effects.json").read_text(encoding="utf-8"))["effects"]
+    measured = json.loads((records / "effects.json").read_text(encoding="utf-8"))["effects"]
     assert {one["name"] for one in measured if "pendcore" in one["sides"]} == {
         effect.name for effect in (effects.BARE, *effects.EFFECTS) if effect.ours
     }

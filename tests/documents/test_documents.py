@@ -18,7 +18,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 DOCUMENTS = [*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")]
-COMPARISON = ROOT / "docs/comparison/textbook.json"
+COMPARISON = ROOT / "docs/records/comparison/textbook.json"
 
 sys.path.append(str(ROOT / "bench/compare"))
 import excerpts  # noqa: E402
@@ -59,7 +59,7 @@ def blocks_of(document: str) -> list[str]:
 def test_the_lines_of_the_first_steps_run(tmp_path, monkeypatch, capsys):
     mpl.use("Agg")
     monkeypatch.chdir(tmp_path)
-    chains, rubbed, threads = blocks_of("docs/first_steps.md")
+    chains, rubbed, threads = blocks_of("docs/tutorials/first_steps.md")
     names: dict[str, object] = {}
     exec(chains, names)
     assert names["run"].success
@@ -89,7 +89,7 @@ def test_make_demo_says_where_the_command_is_what_takes_long_and_brings_what_com
 
 def test_the_page_by_hand_has_the_numbers_of_its_formulas(capsys):
     """The formulas are worked out in 25 digits without the core; it prints the last two."""
-    page = (ROOT / "docs/by_hand.md").read_text()
+    page = (ROOT / "docs/tutorials/by_hand.md").read_text()
     told = re.findall(r"\| (-?[\d.]+) \|$", page, re.MULTILINE)
     with mpmath.workdps(25):
         q1, q2 = mpmath.radians(45), mpmath.radians(60)
@@ -100,7 +100,7 @@ def test_the_page_by_hand_has_the_numbers_of_its_formulas(capsys):
     for value, digits in zip(found, told, strict=True):
         decimals = len(digits.partition(".")[2])
         assert abs(value - mpmath.mpf(digits)) <= mpmath.mpf(10) ** -decimals / 2
-    (code,) = blocks_of("docs/by_hand.md")
+    (code,) = blocks_of("docs/tutorials/by_hand.md")
     exec(code, {})
     printed, commented = capsys.readouterr().out.strip(), code.strip().rpartition("# ")[2]
     assert printed == commented == f"[{told[-2]} {told[-1]}]"
@@ -108,7 +108,7 @@ def test_the_page_by_hand_has_the_numbers_of_its_formulas(capsys):
 
 def test_the_readmes_counts_are_those_of_the_records():
     readme = " ".join((ROOT / "README.md").read_text().split())
-    hard = (ROOT / "docs/hard_cases.md").read_text()
+    hard = (ROOT / "docs/background/hard_cases.md").read_text()
     (told,) = re.findall(r"^Right, of (\d+) cases: (.*)\.$", hard, re.MULTILINE)
     right = dict(re.findall(r"(pendcore|SciPy|MuJoCo|Boost\.odeint) (\d+)", told[1]))
     assert f"Of [{told[0]} cases that break simulators]" in readme
@@ -116,14 +116,15 @@ def test_the_readmes_counts_are_those_of_the_records():
         f"pendcore gets {right['pendcore']} right, SciPy {right['SciPy']}, "
         f"MuJoCo {right['MuJoCo']} and Boost.odeint {right['Boost.odeint']}." in readme
     )
-    families = json.loads((ROOT / "docs/true_error.json").read_text())["families"].values()
+    families = json.loads((ROOT / "docs/records/true_error.json").read_text())["families"].values()
     assert f"In [{sum(one['scenes'] for one in families):,} random scenes]" in readme
     assert sum(one["above"] for one in families) == 0
 
 
 def hard_case() -> str:
     """Return the lines of the first steps that draw their hard case."""
-    return next(block for block in blocks_of("docs/first_steps.md") if "stick_slip.png" in block)
+    blocks = blocks_of("docs/tutorials/first_steps.md")
+    return next(block for block in blocks if "stick_slip.png" in block)
 
 
 def test_ten_lines_draw_the_hard_case_of_the_first_steps(tmp_path, monkeypatch):
@@ -161,7 +162,7 @@ def test_ten_lines_draw_the_hard_case_of_the_first_steps(tmp_path, monkeypatch):
 
 
 def test_a_ledger_is_as_good_as_its_steps_and_trust_says_how_good(capsys):
-    (code,) = re.findall(r"```python\n(.*?)```", (ROOT / "docs/trust.md").read_text(), re.DOTALL)
+    (code,) = blocks_of("docs/background/trust.md")
     exec(code, {})
     residuals = [float(line.split()[1]) for line in capsys.readouterr().out.splitlines()]
     (told,) = re.findall(r"# (.*)$", code, re.MULTILINE)
@@ -170,7 +171,7 @@ def test_a_ledger_is_as_good_as_its_steps_and_trust_says_how_good(capsys):
 
 
 def test_events_are_what_their_page_says(capsys):
-    (code,) = re.findall(r"```python\n(.*?)```", (ROOT / "docs/events.md").read_text(), re.DOTALL)
+    (code,) = blocks_of("docs/how_to/events.md")
     names: dict[str, object] = {}
     exec(code, names)
     (told,) = re.findall(r"# (stopped at .*)$", code, re.MULTILINE)

@@ -1,4 +1,4 @@
-"""The errata of the source, each shown by computation; docs/errata.md refers to these tests."""
+"""The errata of the source, each shown by computation; docs/reference/errata.md names the tests."""
 
 from __future__ import annotations
 

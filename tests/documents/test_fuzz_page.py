@@ -11,12 +11,12 @@ import pytest
 from fuzz import campaign, claims, kept
 
 DOCS = Path(__file__).parents[2] / "docs"
-PAGE = DOCS / "fuzz.md"
+PAGE = DOCS / "background/fuzz.md"
 
 
 @pytest.fixture(scope="module")
 def record() -> dict[str, Any]:
-    found: dict[str, Any] = json.loads((DOCS / "fuzz.json").read_text(encoding="utf-8"))
+    found: dict[str, Any] = json.loads((DOCS / "records/fuzz.json").read_text(encoding="utf-8"))
     return found
 
 
@@ -44,18 +44,20 @@ def test_the_page_names_every_claim() -> None:
 def test_a_campaign_writes_the_page_when_it_is_a_full_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    page = tmp_path / "fuzz.md"
+    page, file = tmp_path / "page.md", tmp_path / "record.json"
     page.write_text(f"before\n{kept.BEGIN}old\n{kept.END}\nafter\n")
     asked = ["--cases", "6", "--seed", "page", "--output", str(tmp_path / "report.txt")]
-    assert campaign.main([*asked, "--page", str(page)]) == 0
+    asked += ["--page", str(page), "--record", str(file)]
+    assert campaign.main(asked) == 0
     assert "old" in page.read_text()
+    assert not file.exists()
     monkeypatch.setattr(kept, "FULL", 6)
-    assert campaign.main([*asked, "--page", str(page)]) == 0
+    assert campaign.main(asked) == 0
     text = page.read_text()
     assert "| cases | 6 |\n| failed | 0 |\n" in text
     assert text.startswith("before\n")
     assert text.endswith("after\n")
-    assert json.loads((tmp_path / "fuzz.json").read_text())["seed"] == "page"
+    assert json.loads(file.read_text())["seed"] == "page"
 
 
 def test_failures_and_kinds_of_refusal_are_told() -> None:

@@ -19,7 +19,7 @@ from hard_cases.case import Absent, Outcome, run_bounded  # noqa: E402
 from hard_cases.cases import CASES, PROGRAMS  # noqa: E402
 from hard_cases.listed import LISTED, missing  # noqa: E402
 
-RECORD = ROOT / "docs/hard_cases.json"
+RECORD = ROOT / "docs/records/hard_cases.json"
 
 
 def test_every_listed_case_has_its_tests() -> None:
@@ -33,7 +33,7 @@ def test_a_test_that_is_not_there_is_missed(tmp_path: Path) -> None:
 
 def test_the_written_page_is_what_the_record_says() -> None:
     record = json.loads(RECORD.read_text(encoding="utf-8"))
-    assert page.page(record) == (ROOT / "docs/hard_cases.md").read_text(encoding="utf-8")
+    assert page.page(record) == (ROOT / "docs/background/hard_cases.md").read_text(encoding="utf-8")
     assert [case["name"] for case in record["cases"]] == [case.name for case in CASES]
 
 
@@ -136,14 +136,15 @@ def test_who_does_not_return_is_ended_and_who_fails_is_quoted() -> None:
 @pytest.mark.outside_build
 def test_a_case_is_run_written_and_drawn_again(tmp_path: Path) -> None:
     assert compare_hard_cases.main(["--only", "separatrix", "--output", str(tmp_path)]) == 0
-    record = json.loads((tmp_path / "hard_cases.json").read_text(encoding="utf-8"))
+    record = json.loads((tmp_path / "records/hard_cases.json").read_text(encoding="utf-8"))
     (found,) = record["cases"]
     own = [one for one in found["contenders"] if one["program"] == "pendcore"]
     assert own
     assert all(one["right"] for one in own)
     assert {one["program"] for one in found["contenders"]} <= set(PROGRAMS)
-    text = (tmp_path / "hard_cases.md").read_text(encoding="utf-8")
+    written = tmp_path / "background/hard_cases.md"
+    text = written.read_text(encoding="utf-8")
     assert "A swing next to the separatrix" in text
-    (tmp_path / "hard_cases.md").unlink()
+    written.unlink()
     assert compare_hard_cases.main(["--redraw", "--output", str(tmp_path)]) == 0
-    assert (tmp_path / "hard_cases.md").read_text(encoding="utf-8") == text
+    assert written.read_text(encoding="utf-8") == text

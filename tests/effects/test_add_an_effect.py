@@ -1,4 +1,4 @@
-"""What docs/add_an_effect.md has you write is an effect, and stands where it says."""
+"""What docs/how_to/add_an_effect.md has you write is an effect, and stands where it says."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from reference.newton_euler import uniform_rod
 from reference.random_rigs import between
 
 ROOT = Path(__file__).parents[2]
-PAGE = (ROOT / "docs/add_an_effect.md").read_text()
+PAGE = (ROOT / "docs/how_to/add_an_effect.md").read_text()
 STEPS, OTHER_LAWS = PAGE.split("## Other kinds of law")
 HEADER, *LINES_OF_CPP = re.findall(r"```cpp\n(.*?)```", STEPS, re.DOTALL)
 LAW, *LINES_OF_PYTHON = re.findall(r"```python\n(.*?)```", STEPS, re.DOTALL)
@@ -106,7 +106,7 @@ def test_the_lines_to_add_stand_where_it_says() -> None:
 
 
 ELSEWHERE = {
-    "BOOKED": "docs/effect_pages.py",
+    "BOOKED": "docs/generators/effect_pages.py",
     "LOSSES": "tests/reference/rig.py",
     "SMOOTH": "tests/effects/test_ledger.py",
 }

@@ -143,7 +143,7 @@ def test_a_hook_that_is_misspelt_in_the_list_does_not_compile(tmp_path: Path) ->
 def test_every_hook_is_tried_and_explained() -> None:
     assert list(MISSPELT) == HOOKS
     contract = HEADER.split("#pragma once")[0]
-    page = (ROOT / "docs/add_an_effect.md").read_text()
+    page = (ROOT / "docs/how_to/add_an_effect.md").read_text()
     for hook in HOOKS:
         assert re.search(rf"^///     {hook} ", contract, re.MULTILINE), hook
         assert f"`.{hook}`" in page, hook

@@ -13,7 +13,7 @@ import pendcore as pc
 import pytest
 
 ROOT = Path(__file__).parents[2]
-sys.path.append(str(ROOT / "docs"))
+sys.path.append(str(ROOT / "docs/generators"))
 import effect_pages  # noqa: E402
 import effect_stub  # noqa: E402
 import write_effects  # noqa: E402
@@ -26,7 +26,7 @@ TAIL = "[start]\nq = 0.5\n[run]\nt_end = 1.0\n"
 
 @pytest.mark.parametrize("path", WRITTEN, ids=lambda path: str(path.relative_to(ROOT)))
 def test_a_file_is_what_would_be_written(path):
-    assert path.read_text() == WRITTEN[path], "run: python docs/write_effects.py"
+    assert path.read_text() == WRITTEN[path], "run: python docs/generators/write_effects.py"
 
 
 def test_every_effect_has_a_page_and_nothing_else_has():

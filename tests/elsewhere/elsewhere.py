@@ -1,6 +1,6 @@
 """`make elsewhere`: the C++ tests and the hashes of trajectories on other processors.
 
-    python tests/elsewhere/elsewhere.py aarch64 wasm32 [--page docs/elsewhere.md]
+    python tests/elsewhere/elsewhere.py aarch64 wasm32 [--page docs/background/elsewhere.md]
 
 Debian's cross compilers build the core and its C++ tests. QEMU runs them, or Node if they are
 compiled to WebAssembly; `clang` is this machine with another compiler. A machine passes if its C++

@@ -50,10 +50,11 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--only", type=int, help="number of one case, to be shown and made small")
     parser.add_argument("--output", type=Path, default=Path("out/fuzz/report.txt"))
-    parser.add_argument(
-        "--page", type=Path, help=f"Markdown that a campaign of {kept.FULL} or more is kept in"
-    )
+    parser.add_argument("--page", type=Path, help=f"page of a campaign of {kept.FULL} or more")
+    parser.add_argument("--record", type=Path, help="JSON that the page is made of")
     asked = parser.parse_args(arguments)
+    if (asked.page is None) != (asked.record is None):
+        parser.error("--page and --record need each other")
     if asked.only is not None:
         print(report_of_case(asked.seed, asked.only))
         return 0
@@ -65,7 +66,7 @@ def main(arguments: list[str] | None = None) -> int:
     asked.output.parent.mkdir(parents=True, exist_ok=True)
     asked.output.write_text(report)
     if asked.page:
-        kept.write(record_of(asked, told, seconds), asked.page)
+        kept.write(record_of(asked, told, seconds), asked.page, asked.record)
     print(report)
     return 1 if told.failed else 0
 

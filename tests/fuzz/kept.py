@@ -1,4 +1,4 @@
-"""The record of a full campaign for docs/fuzz.md: its numbers, and the tables of the page."""
+"""The record of a full campaign, and the tables that docs/background/fuzz.md has of it."""
 
 from __future__ import annotations
 
@@ -55,10 +55,10 @@ def page_of(text: str, record: Record) -> str:
     return before + BEGIN + tables(record) + END + rest.split(END)[1]
 
 
-def write(record: Record, page: Path) -> bool:
-    """Write page and JSON, if the campaign was a full one."""
+def write(record: Record, page: Path, file: Path) -> bool:
+    """Write the page and the record's file, if the campaign was a full one."""
     if record["cases"] < FULL:
         return False
-    page.with_suffix(".json").write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
+    file.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
     page.write_text(page_of(page.read_text(encoding="utf-8"), record), encoding="utf-8")
     return True

@@ -15,7 +15,7 @@ import pytest
 from pendcore import effects as fx
 
 DOCS = Path(__file__).parents[2] / "docs"
-sys.path.append(str(DOCS))
+sys.path.append(str(DOCS / "generators"))
 import default_method  # noqa: E402
 
 BOOK = pc.Scene.textbook()
@@ -159,7 +159,7 @@ def test_in_fixed_steps_a_pair_changes_over_where_it_is_named_and_the_default_do
     assert unnamed.method == "dopri5"
     assert unnamed.success
     assert "went on" not in unnamed.message
-    page = " ".join((Path(__file__).parents[2] / "docs/stiff.md").read_text().split())
+    page = " ".join((Path(__file__).parents[2] / "docs/how_to/stiff.md").read_text().split())
     assert "In a fixed `step` the default is `dopri5` and stays that" in page
 
 
@@ -221,8 +221,8 @@ def test_a_run_of_before_the_rule_is_the_pair_that_it_was() -> None:
 
 
 def test_the_page_has_the_figures_of_the_record_and_they_bear_out_the_rule() -> None:
-    record = json.loads((DOCS / "default_method.json").read_text())
-    page = (DOCS / "accuracy_cost.md").read_text()
+    record = json.loads((DOCS / "records/default_method.json").read_text())
+    page = (DOCS / "background/accuracy_cost.md").read_text()
     assert default_method.table_of_scenes(record["scenes"]) in page
     assert default_method.table_of_chains(record["chains"]) in page
     old, new = "`dopri5`, rtol 1e-9", default_method.YARDSTICK

@@ -1,4 +1,4 @@
-"""docs/series_work.py measures the cost of a series of taylor with every kind of effect.
+"""docs/generators/series_work.py measures the cost of a series of taylor with every kind of effect.
 
 An effect that is added must be drawn there, or `pendcore.accuracy.method_choice.series_work` knows
 nothing of it. That the forecast grows with the digits, and never falls to nothing, is counted here.
@@ -14,7 +14,7 @@ import pytest
 from pendcore.accuracy.method_choice import INERTIA_ALONE, series_work
 from pendcore.scene.effect_class import OwnEffect
 
-sys.path.append(str(Path(__file__).parents[2] / "docs"))
+sys.path.append(str(Path(__file__).parents[2] / "docs/generators"))
 from series_work import EFFECTS, NOT_CARRIED, TOGETHER, scenes
 
 KINDS = pc.effects.kinds()
@@ -25,8 +25,8 @@ def test_every_kind_of_effect_is_considered():
     missing = set(KINDS) - own - set(EFFECTS)
     assert not missing, (
         f"{missing}: what does a series of taylor cost beside a right-hand side with it? Add "
-        "one to EFFECTS of docs/series_work.py, and see by `make asked-errors` that series_work "
-        "in pendcore.accuracy.method_choice.py still holds"
+        "one to EFFECTS of docs/generators/series_work.py, and see by `make asked-errors` that "
+        "series_work in pendcore.accuracy.method_choice.py still holds"
     )
 
 

@@ -213,7 +213,8 @@ def test_orders_are_those_that_the_pages_tell():
     ]
     assert orders == sorted(orders)
     told = f"order {orders[0]} to {orders[-1]} by the tolerances"
-    assert told in (Path(__file__).parents[2] / "docs/trust.md").read_text().replace("\n", " ")
+    page = Path(__file__).parents[2] / "docs/background/trust.md"
+    assert told in page.read_text().replace("\n", " ")
 
 
 def test_dense_output_is_finite_where_powers_of_the_step_overflow() -> None:

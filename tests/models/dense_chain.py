@@ -1,7 +1,7 @@
 """Chains of uniform rods as dense matrices in NumPy, with the laws of contact by trial.
 
-Nothing here is shared with the core. The equations are those of docs/conventions.md, written down
-once more; the contacts that act are found by trying all that could.
+Nothing here is shared with the core. The equations are those of docs/reference/conventions.md,
+written down once more; the contacts that act are found by trying all that could.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""docs/case_files.md has every key of a case file, and the defaults that hold."""
+"""docs/how_to/case_files.md has every key of a case file, and the defaults that hold."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pytest
 from pendcore.cases.case_file import EVENT_KEYS, KEYS
 from pendcore.run.options import RUN_DEFAULTS
 
-REFERENCE = (Path(__file__).parents[2] / "docs/case_files.md").read_text()
+REFERENCE = (Path(__file__).parents[2] / "docs/how_to/case_files.md").read_text()
 BLOCKS = re.findall(r"```toml\n(.*?)```", REFERENCE, re.DOTALL)
 
 

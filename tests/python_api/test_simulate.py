@@ -17,7 +17,7 @@ import pytest
 from pendcore.messages.progress import ProgressBar
 from pendcore.run.options import OPTIONS, RUN_DEFAULTS
 
-sys.path.append(str(Path(__file__).parents[2] / "docs"))
+sys.path.append(str(Path(__file__).parents[2] / "docs/generators"))
 import write_options
 
 Q0 = (np.pi / 4, np.pi / 3)
@@ -53,7 +53,8 @@ def test_a_number_out_of_the_range_of_its_option_is_refused_in_its_words(name):
 
 def test_what_is_written_from_the_descriptors_of_options_is_what_is_there():
     for path, text in write_options.written().items():
-        assert path.read_text() == text, f"{path.name}: run: python docs/write_options.py"
+        found = path.read_text()
+        assert found == text, f"{path.name}: run: python docs/generators/write_options.py"
 
 
 def same_bits(a, b):

@@ -2,9 +2,9 @@
 
 Between impacts, Taylor series of fixed-point integers (taylor_series.py) give the motion, with the
 joints that rest at a stop locked. An event is a root of a gap, or of the torque that locks a joint,
-to the last digit. Impacts follow docs/trust.md; the contacts that act are found by trial. Bounces
-that accumulate are all there, at one stop or in turn at several, down to the capture speed: with 60
-digits gaps of 1e-40 rad are gaps.
+to the last digit. Impacts follow docs/background/trust.md; the contacts that act are found by
+trial. Bounces that accumulate are all there, at one stop or in turn at several, down to the capture
+speed: with 60 digits gaps of 1e-40 rad are gaps.
 """
 
 from __future__ import annotations

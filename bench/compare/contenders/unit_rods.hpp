@@ -19,7 +19,8 @@ struct TwoRods {
   void operator()(const double* y, double* f) const { rates(y, f, 0.0, 0.0); }
 
  protected:
-  // tau_1 and tau_2 act in the joints: docs/conventions.md has the signs, Q_i = tau_i - tau_{i+1}.
+  // tau_1 and tau_2 act in the joints: docs/reference/conventions.md has the signs,
+  // Q_i = tau_i - tau_{i+1}.
   static void rates(const double* y, double* f, double tau1, double tau2) {
     const double d = y[0] - y[1], c = std::cos(d), s = std::sin(d);
     const double r1 = 1.5 * gravity * std::cos(y[0]) - 0.5 * s * (y[3] * y[3]) + (tau1 - tau2);

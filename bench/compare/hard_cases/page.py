@@ -11,14 +11,14 @@ Record = dict[str, Any]
 
 PAGE = """# Hard cases
 
-Made by `make hard-cases`; the raw figures are in [hard_cases.json](hard_cases.json). Do not edit:
-run again.
+Made by `make hard-cases`; the raw figures are in [hard_cases.json](../records/hard_cases.json).
+Do not edit: run again.
 
 This page runs the same cases in pendcore and in three programs that you might use instead, each at
 its best: as an able user would write the case, in several ways where there is a choice. Each case
 states its right answer, from a closed form or from a solution that shares no code with any of the
 programs. The question here is only whether the answer is right; [another
-page](comparison/textbook.md) compares times.
+page](../comparison/textbook.md) compares times.
 
 ## At a glance
 
@@ -159,9 +159,8 @@ def section(case: Any) -> str:
     header = ["program", "as its user wrote it", "what happens", "error", "right"]
     bound = f" Right: within {case['allowed']:.0e} {case['unit']}." if case["allowed"] else ""
     figure = case.get("figure", "")
-    shown = (
-        f"\n![{figure}](figures/hard_cases_{case['name']}.png)\n\n*{figure}.*\n" if figure else ""
-    )
+    drawn = f"../figures/hard_cases_{case['name']}.png"
+    shown = f"\n![{figure}]({drawn})\n\n*{figure}.*\n" if figure else ""
     return (
         f"### {case['title']}\n\n{case['scene']}\n\n**The answer:** {case['answer']}{bound}\n\n"
         + table(header, rows)

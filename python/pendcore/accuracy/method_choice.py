@@ -1,8 +1,9 @@
 """Which method is likely the cheapest for an error, and which methods verify a run.
 
 The bounds below were measured on four hundred scenes of tests/models/regular_scenes.py (seeds 200
-to 599); docs/asked_errors.py tests others. Over the tolerances that matter the largest position
-error of a run is proportional to rtol, by a factor that depends on the scene and the method.
+to 599); docs/generators/asked_errors.py tests others. Over the tolerances that matter the largest
+position error of a run is proportional to rtol, by a factor that depends on the scene and the
+method.
 """
 
 from __future__ import annotations
@@ -52,8 +53,8 @@ def series_work(scene: SceneData, rtol: float) -> float:
     """Return how many right-hand sides take as long as the series of one step of ``taylor``.
 
     The order of the series, and so its work, grows with the digits asked for. The ratio is large
-    where the right-hand side has a closed form and the series has none. docs/series_work.py
-    measures it for every kind of effect.
+    where the right-hand side has a closed form and the series has none.
+    docs/generators/series_work.py measures it for every kind of effect.
     """
     n, free = len(scene.links), scene._compiled.mobility()[-1]
     moving = any(account_of(effect.kind) == "drive" for effect in scene.effects)

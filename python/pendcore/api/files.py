@@ -33,6 +33,14 @@ def load(path: str | os.PathLike[str]) -> Solution:
         If the file is no such solution.
     OSError
         If the file cannot be read.
+
+    Examples
+    --------
+    >>> sol = pc.Case.textbook().simulate()
+    >>> sol.save("run.npz")
+    >>> longer = pc.load("run.npz").resume(10.0)
+    >>> f"to {longer.t[-1]:.0f} s"
+    'to 10 s'
     """
     result = archive.load(path)
     result.scene = _public(result.scene)
@@ -59,6 +67,13 @@ def read_case(source: str | os.PathLike[str]) -> Case:
         for. The message names the line and, for an unknown key, the nearest known one.
     OSError
         If the file cannot be read.
+
+    Examples
+    --------
+    >>> with open("textbook.toml", "w") as file:
+    ...     size = file.write(pc.Case.textbook().to_toml())
+    >>> pc.read_case("textbook.toml") == pc.Case.textbook()
+    True
     """
     case = case_from(source)
     return Case(

@@ -42,6 +42,14 @@ class Scene(SceneData):
     Notes
     -----
     A scene cannot be changed; ``scene.replace(gravity=1.62)`` makes another.
+
+    Examples
+    --------
+    >>> rods = [pc.Link(mass=1.0, length=1.0), pc.Link(mass=0.5, length=0.7)]
+    >>> damper = pc.effects.ViscousJoint(joint=2, damping=0.1)
+    >>> scene = pc.Scene(links=rods, effects=[damper])
+    >>> scene.effects
+    (ViscousJoint(joint=2, damping=0.1),)
     """
 
     @known_keywords
@@ -61,6 +69,13 @@ class Scene(SceneData):
         -------
         Explanation
             Print it, or take its fields; ``to_dict()`` for JSON.
+
+        Examples
+        --------
+        >>> told = pc.Scene.textbook().explain()  # print(told) shows it all
+        >>> hanging, upright = told.equilibria
+        >>> [f"{mode.frequency:.3f} Hz" for mode in hanging.modes]
+        ['0.426 Hz', '1.144 Hz']
         """
         start = None if q is None else vector("q", q, len(self.links), "rad")
         (time,) = vector("t", t, 1, "s")

@@ -73,7 +73,18 @@ def simulate(
     -----
     The step control of Runge-Kutta methods is that of Hairer, Norsett and Wanner, *Solving Ordinary
     Differential Equations I*, II.4; a Taylor series sets its steps by its coefficients. The same
-    arguments give the same bits on every machine (``docs/elsewhere.md``), whatever is stored.
+    arguments give the same bits on every machine (``docs/background/elsewhere.md``), whatever is
+    stored.
+
+    Examples
+    --------
+    >>> scene = pc.Scene.textbook()
+    >>> sol = pc.simulate(scene, q0=[np.pi / 4, np.pi / 3], t_span=(0, 5))
+    >>> sol(2.5).round(6)  # q_1, q_2 (rad), qd_1, qd_2 (rad/s)
+    array([ 0.933714,  0.704933, -0.019304,  1.484836])
+    >>> sol = pc.simulate(scene, q0=[np.pi / 4, np.pi / 3], t_span=(0, 5), error=1e-9)
+    >>> sol.accuracy.achieved <= 1e-9
+    True
     """
     return solve(Solution, scene, q0, qd0, t_span, options)  # type: ignore[arg-type]
 

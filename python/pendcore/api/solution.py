@@ -49,6 +49,14 @@ class Solution(RunResult):
         What ``simulate(error=...)`` asked for, reached and paid; None for other runs. Its ``asked``
         and ``achieved`` are shares of the total length, and ``paid`` lists the runs that were made.
         A run that was resumed, or run again from its `case`, has none.
+
+    Examples
+    --------
+    >>> sol = pc.simulate(pc.Scene.textbook(), q0=[np.pi / 4, np.pi / 3], t_span=(0, 5))
+    >>> sol.status, sol.q.shape == (len(sol.t), 2)
+    ('finished', True)
+    >>> f"q_2 = {sol(2.5)[1]:.6f} rad at 2.5 s"
+    'q_2 = 0.704933 rad at 2.5 s'
     """
 
     __slots__ = ()
@@ -56,11 +64,18 @@ class Solution(RunResult):
 
     @known_keywords
     def defect(self, *, progress: Progress = None) -> Defect:
-        """Return the spurious torques: what motors would have to add to make the curve exact.
+        """Return the spurious torques, N m: what motors would have to add to make the curve exact.
 
-        See `pendcore.Defect`; `docs/defect.md` says how to read them. ``progress`` is as in
-        `simulate`. Raises a ValueError if the run did not store its interpolants
+        See `pendcore.Defect`; `docs/background/defect.md` says how to read them. ``progress`` is as
+        in `simulate`. Raises a ValueError if the run did not store its interpolants
         (``store="dense"``).
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> found = sol.defect()
+        >>> f"{found.largest:.0e} N m at joint {found.joint}"
+        '3e-06 N m at joint 1'
         """
         return defect(self.scene, self.run, progress)
 
@@ -88,6 +103,13 @@ class Solution(RunResult):
         ------
         KeyboardInterrupt, or any exception of ``progress`` or of an effect's function
             The attribute ``estimate`` is what was found so far, ``solution`` is this run.
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> error = sol.error()
+        >>> f"{error.angle.max():.0e} rad, {error.position.max():.0e} of the total length"
+        '5e-09 rad, 2e-09 of the total length'
         """
         return error_of(self, time_limit=time_limit, progress=progress)
 
@@ -108,6 +130,12 @@ class Solution(RunResult):
             What is limited: the angles of the links, or the positions of joints and tip.
         time_limit : float, optional
             As in `error`; the answer is then how far the run is known to hold by that time.
+
+        Examples
+        --------
+        >>> sol = pc.simulate(pc.Scene.textbook(), q0=0.0, t_span=(0, 40))  # chaotic
+        >>> f"{sol.valid_until():.0f} s, {sol.valid_until(1e-6, of='position'):.0f} s"
+        '18 s, XX s'
         """
         return self.error(time_limit=time_limit).valid_until(limit, of=of)
 
@@ -120,7 +148,14 @@ class Solution(RunResult):
         t_eval: npt.ArrayLike | None = None,
         progress: Progress = None,
     ) -> LyapunovExponents:
-        """Compute the Lyapunov exponents of this very run, 1/s; see `pendcore.lyapunov`."""
+        """Compute the Lyapunov exponents of this very run, 1/s; see `pendcore.lyapunov`.
+
+        Examples
+        --------
+        >>> found = pc.Case.textbook().simulate().lyapunov()
+        >>> found.exponents.round(2)  # 1/s
+        array([ 0.42,  0.03, -0.06, -0.44])
+        """
         return lyapunov_of(self, count, transient, t_eval, progress)
 
     @known_keywords
@@ -158,6 +193,14 @@ class Solution(RunResult):
         ------
         ValueError, TypeError
             If an argument is out of its range or of the wrong type; the message names it.
+
+        Examples
+        --------
+        >>> case = pc.Case.textbook()
+        >>> longer = case.simulate().resume(10.0)
+        >>> whole = pc.simulate(case.scene, case.q0, t_span=(0, 10), method="ode45")
+        >>> np.array_equal(longer.y, whole.y)  # every bit
+        True
         """
         require_check(check)
         longer = resumed(
@@ -167,7 +210,15 @@ class Solution(RunResult):
 
     @known_keywords
     def case(self) -> Case:
-        """Return the case of this run, ready to be run again or written as TOML."""
+        """Return the case of this run, ready to be run again or written as TOML.
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> again = sol.case().simulate()
+        >>> np.array_equal(again.y, sol.y)
+        True
+        """
         return Case.of_solution(self)
 
     @known_keywords
@@ -175,6 +226,13 @@ class Solution(RunResult):
         """Write everything to a file of NumPy's npz format; see `pendcore.load`.
 
         The file is complete or absent. ``progress`` is as in `simulate`.
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> sol.save("run.npz")
+        >>> np.array_equal(pc.load("run.npz").y, sol.y)
+        True
         """
         save(self, path, progress=progress)
 
@@ -192,17 +250,45 @@ class Solution(RunResult):
         ``ax`` is one axes, or one for each link. ``label`` names the solution in the legend. With a
         ``horizon`` in rad the figure is shaded after `valid_until` (``horizon``). Other keywords
         are properties of matplotlib's ``Line2D``. Returns the lines.
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> first, second = sol.plot(label="section 2.1")
+        >>> first.axes.figure.savefig("angles.png")
         """
         return plot(self, ax, label=label, horizon=horizon, **line_properties)
 
     @known_keywords
     def to_pandas(self) -> pd.DataFrame:
-        """Return a table with a row per time and the columns q_1.., qd_1..; units in ``attrs``."""
+        """Return a table with a row per time and the columns q_1.., qd_1..; units in ``attrs``.
+
+        Times are in s, angles in rad, rates in rad/s.
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> table = sol.to_pandas()
+        >>> table.iloc[-1].round(4).to_dict()
+        {'q_1': 1.0831, 'q_2': 0.5385, 'qd_1': 1.0004, 'qd_2': 0.3936}
+        >>> table.attrs["units"]["qd_2"]
+        'rad/s'
+        """
         return to_pandas(self)
 
     @known_keywords
     def to_xarray(self) -> xr.Dataset:
-        """Return ``q`` and ``qd`` over time and link; units and the case in ``attrs``."""
+        """Return ``q`` and ``qd`` over time and link; units and the case in ``attrs``.
+
+        Times are in s, angles in rad, rates in rad/s; each is (n_t, n).
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> data = sol.to_xarray()
+        >>> f"{data.qd.sel(link=2)[-1]:.4f} {data.qd.attrs['units']}"
+        '0.3936 rad/s'
+        """
         return to_xarray(self)
 
     def __reduce__(self) -> tuple[object, ...]:
@@ -246,6 +332,14 @@ class Case(CaseData):
     ------
     ValueError, TypeError
         If q0, qd0 or t_span are not finite numbers of that shape, or an option is unknown.
+
+    Examples
+    --------
+    >>> case = pc.Case(scene=pc.Scene.textbook(), q0=0.5, t_span=(0, 5), options={"rtol": 1e-12})
+    >>> case.q0, case.simulate().success
+    ((0.5, 0.5), True)
+    >>> pc.read_case(case.to_toml()) == case
+    True
     """
 
     scene: Scene
@@ -253,7 +347,14 @@ class Case(CaseData):
     @classmethod
     @known_keywords
     def textbook(cls) -> Case:
-        """Section 2.1 of the textbook: from rest at 45 and 60 degrees, for 5 s, by ode45."""
+        """Section 2.1 of the textbook: from rest at 45 and 60 degrees, for 5 s, by ode45.
+
+        Examples
+        --------
+        >>> case = pc.Case.textbook()
+        >>> np.degrees(case.q0).round(6), case.t_span
+        (array([45., 60.]), (0.0, 5.0))
+        """
         return cls(
             name="double pendulum, section 2.1",
             scene=Scene.textbook(),
@@ -267,6 +368,12 @@ class Case(CaseData):
         """Run the case; see `pendcore.simulate`. The solution has the name of the case.
 
         If ``check`` is given, it replaces that of the case.
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> sol.name
+        'double pendulum, section 2.1'
         """
         options = dict(self.options)
         require_check(options.get("check"))

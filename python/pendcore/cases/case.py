@@ -61,7 +61,14 @@ class CaseData:
     @classmethod
     @known_keywords
     def of_solution(cls, solution: RunResult) -> Self:
-        """Return what was asked for when a solution was computed."""
+        """Return what was asked for when a solution was computed.
+
+        Examples
+        --------
+        >>> case = pc.Case.textbook()
+        >>> pc.Case.of_solution(case.simulate()).q0 == case.q0
+        True
+        """
         asked = {key: _plain(value) for key, value in solution.run.arguments.items()}
         start = {key: asked.pop(key) for key in ("q0", "qd0")}
         t_span = (asked.pop("t_start"), asked.pop("t_end"))
@@ -79,6 +86,15 @@ class CaseData:
         ------
         TypeError
             If an option, an effect or an event is a function, which TOML cannot hold.
+
+        Examples
+        --------
+        >>> for line in pc.Case.textbook().to_toml().splitlines()[-4:]:
+        ...     print(line)
+        [run]
+        t_start = 0.0
+        t_end = 5.0
+        method = "ode45"
         """
         t_start, t_end = self.t_span
         options = dict(self.options)

@@ -1,4 +1,4 @@
-"""A case from TOML; docs/case_files.md is the reference of its keys.
+"""A case from TOML; docs/how_to/case_files.md is the reference of its keys.
 
 A case::
 

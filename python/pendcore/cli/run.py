@@ -46,7 +46,7 @@ a case:
   q_deg = [45, 60]                 # from the horizontal, downward; or q in rad
   [run]
   t_end = 5.0                      # s; also rtol, t_eval, ...: any keyword of pendcore.simulate()
-  # docs/case_files.md has every key, docs/effects a page per effect
+  # docs/how_to/case_files.md has every key, docs/effects a page per effect
 """
 
 FILES = ("summary.txt", "summary.json", "angles.png", "solution.npz")

@@ -50,6 +50,17 @@ class AccuracyCost:
         The processor on which times were measured.
     version : str
         The version of pendcore.
+
+    Examples
+    --------
+    >>> scene = pc.Scene.textbook()
+    >>> cost = pc.accuracy_cost(
+    ...     scene, q0=0.5, t_span=(0, 1), methods="dop853", rtol=[1e-3, 1e-9], repeats=1
+    ... )
+    >>> [f"{point.method} {point.setting}, {point.nfev}" for point in cost]
+    []
+    >>> cost.best(1e-8).setting
+    'rtol 1e-09'
     """
 
     name: str

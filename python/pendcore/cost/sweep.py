@@ -100,6 +100,16 @@ def accuracy_cost(
     KeyboardInterrupt, or any exception of ``progress`` or of an effect's function
         With what was measured so far as the attribute ``accuracy_cost``: no points before there is
         a reference.
+
+    Examples
+    --------
+    >>> scene = pc.Scene.textbook()
+    >>> cost = pc.accuracy_cost(
+    ...     scene, q0=0.5, t_span=(0, 1), methods="dop853", rtol=[1e-3, 1e-9], repeats=1
+    ... )
+    >>> best = cost.best(error=1e-8)
+    >>> f"{best.method}, {best.setting}: {best.error < 1e-8}"
+    'dop853, rtol 1e-09: True'
     """
     require_options(limits, limits_of_every_method)
     require_start(scene, q0)

@@ -70,6 +70,14 @@ class Explanation:
         What the program knows and the scene does not have, then what the program does not know.
     remarks : tuple of str
         What was left out here, and why.
+
+    Examples
+    --------
+    >>> told = pc.Scene.textbook().explain()
+    >>> [(found.name, found.stability) for found in told.equilibria]
+    [('hanging', 'stable'), ('upright', 'unstable')]
+    >>> f"{told.stiffest_rate:.2f} 1/s, {told.degrees_of_freedom} degrees of freedom"
+    '7.19 1/s, 2 degrees of freedom'
     """
 
     scene: SceneData

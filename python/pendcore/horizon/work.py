@@ -76,6 +76,13 @@ def horizon_work(
         If an argument is not what is asked for.
     KeyboardInterrupt, or any exception of ``progress`` or of an effect's function
         With what was found so far as the attribute ``work``.
+
+    Examples
+    --------
+    >>> scene = pc.Scene.textbook()
+    >>> work = pc.horizon_work(scene, q0=0.0, t_span=(0, 40), methods="taylor", rtols=[1e-3, 1e-9])
+    >>> [f"{point.rtol:.0e}: {point.valid:.0f} s" for point in work.points]
+    ['1e-03: 8 s', '1e-09: 18 s']
     """
     q0 = require_start(scene, q0)
     start = Start(scene, q0, qd0, *time_span(t_span))

@@ -61,6 +61,14 @@ class Accuracy:
         All the runs, in their order.
     seconds : float
         The time that all runs took together, s.
+
+    Examples
+    --------
+    >>> sol = pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 5), error=1e-6)
+    >>> sol.accuracy.asked, sol.accuracy.outcome
+    (1e-06, 'kept')
+    >>> sol.accuracy.achieved <= 1e-6
+    True
     """
 
     asked: float
@@ -133,6 +141,14 @@ class AccuracyError(ArithmeticError):
     least : float
         The least error that can be verified here, as a share of the total length; infinite where
         none can.
+
+    Examples
+    --------
+    >>> try:
+    ...     pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 5), error=1e-20)
+    ... except pc.AccuracyError as refused:
+    ...     print(1e-20 < refused.least < 1e-12, refused.solution.success)
+    True True
     """
 
     def __init__(self, message: str, solution: Any = None, least: float = inf) -> None:

@@ -26,6 +26,14 @@ class Ledger(Mapping[str, Floats]):
 
     An entry is an attribute, ``ledger.viscous``, and an item, ``ledger["viscous"]``, (n_t,).
     Entries for which the scene has no effect are missing.
+
+    Examples
+    --------
+    >>> scene = pc.Scene.textbook().replace(effects=[pc.effects.ViscousJoint(joint=1, damping=0.1)])
+    >>> sol = pc.simulate(scene, q0=0.5, t_span=(0, 5), ledger=True)
+    >>> ledger = sol.energy().ledger
+    >>> f"{ledger.viscous[-1]:.3f} J lost, residual below 1e-6 J: {abs(ledger.residual).max() < 1e-6}"
+    'XXX'
     """
 
     __slots__ = ("_entries",)
@@ -96,6 +104,14 @@ class Energy:
         J; springs are part of the potential energy, rotors and payload of the kinetic one.
     ledger : Ledger or None
         Work and loss of every effect, if the run kept them: ``simulate(..., ledger=True)``.
+
+    Examples
+    --------
+    >>> energy = pc.Case.textbook().simulate().energy()
+    >>> f"T = {energy.kinetic[0]:.3f} J, V = {energy.potential[0]:.3f} J"
+    'T = 0.000 J, V = -14.648 J'
+    >>> bool(np.ptp(energy.total) < 1e-6)  # nothing takes energy out of this scene
+    True
     """
 
     kinetic: Floats

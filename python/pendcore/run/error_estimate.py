@@ -34,6 +34,14 @@ class ErrorEstimate:
         Whether the times go to where the runs part, or to the end of the run.
     is_dense : bool
         Whether the times cover the whole curve.
+
+    Examples
+    --------
+    >>> error = pc.Case.textbook().simulate().error()
+    >>> f"{error.largest:.0e} of the length, {error.angle.max():.0e} rad"
+    '2e-09 of the length, 5e-09 rad'
+    >>> error.valid_until(1e-6)  # s: the end of the run
+    5.0
     """
 
     begin: float

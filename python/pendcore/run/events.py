@@ -29,6 +29,13 @@ class Event:
         run that is resumed goes on, to the next such one.
     name : str
         For people: the message of a run that ended says it.
+
+    Examples
+    --------
+    >>> bottom = pc.events.LinkAngle(1, np.pi / 2, direction=1, terminal=True, name="bottom")
+    >>> sol = pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 5), events=[bottom])
+    >>> f"{sol.status} at {sol.t[-1]:.3f} s"
+    'XXX'
     """
 
     kind: ClassVar[str]
@@ -108,6 +115,13 @@ class JointAngle(Event):
         over.
     direction, terminal, name
         As in `Event`.
+
+    Examples
+    --------
+    >>> straight = pc.events.JointAngle(2, 0.0, every_turn=True)
+    >>> sol = pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 5), events=[straight])
+    >>> sol.events[0].t[:3].round(3)  # s
+    array([])
     """
 
     kind = "joint_angle"
@@ -134,6 +148,13 @@ class LinkAngle(Event):
         Whether ``value + 2 pi k`` counts for every whole k.
     direction, terminal, name
         As in `Event`.
+
+    Examples
+    --------
+    >>> down = pc.events.LinkAngle(link=2, value=np.pi / 2)
+    >>> sol = pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 5), events=[down])
+    >>> sol.events[0].q[:, 1].round(6)  # rad
+    array([])
     """
 
     kind = "link_angle"
@@ -156,6 +177,13 @@ class RateZero(Event):
         One of the two, from 1: the rate of phi_j, or of q_i.
     direction, terminal, name
         As in `Event`; 1 is where the rate rises: the angle is at its least.
+
+    Examples
+    --------
+    >>> turn = pc.events.RateZero(link=1)
+    >>> sol = pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 5), events=[turn])
+    >>> sol.events[0].t.round(3)  # s
+    array([])
     """
 
     kind = "rate_zero"
@@ -181,6 +209,15 @@ class TipLine(Event):
         A vector across the line, of any length: the function rises where the tip goes this way.
     direction, terminal, name
         As in `Event`.
+
+    Examples
+    --------
+    >>> wall = pc.events.TipLine(point=(-1.0, 0.0), normal=(1.0, 0.0))  # x = -1 m
+    >>> sol = pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 5), events=[wall])
+    >>> sol.positions()[0, -1].round(3)
+    array([])
+    >>> sol.events[0].direction
+    array([])
     """
 
     kind = "tip_line"
@@ -211,6 +248,13 @@ class Function(Event):
         The longest time between two samples, s, > 0. It changes no step of the run.
     direction, terminal, name
         As in `Event`.
+
+    Examples
+    --------
+    >>> together = pc.events.Function(lambda t, q, qd: qd[0] - qd[1])  # joint 2 is at rest
+    >>> sol = pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 5), events=[together])
+    >>> [round(event.t, 3) for event in sol.events[0][:2]]  # s
+    []
     """
 
     kind = "function"

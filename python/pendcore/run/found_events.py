@@ -26,6 +26,14 @@ class Found:
         1: the function rose through zero; -1: it fell; 0: it touched zero and turned back.
     y_before, y_after : ndarray, (2n,), or None
         The states on both sides where the state jumps there.
+
+    Examples
+    --------
+    >>> bottom = pc.events.LinkAngle(1, np.pi / 2)
+    >>> sol = pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 5), events=[bottom])
+    >>> first = sol.events[0][0]
+    >>> f"t = {first.t:.3f} s, q_1 = {first.q[0]:.4f} rad, {first.direction}"
+    'XXX'
     """
 
     t: float
@@ -67,6 +75,14 @@ class FoundEvents(list[Found]):
         Angles, rad, and rates, rad/s.
     direction : ndarray, (k,), int
         1: the function rose through zero; -1: it fell; 0: it touched zero and turned back.
+
+    Examples
+    --------
+    >>> bottom = pc.events.LinkAngle(1, np.pi / 2)
+    >>> sol = pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 5), events=[bottom])
+    >>> found = sol.events[0]
+    >>> len(found), found.direction, found.qd.shape
+    XXX
     """
 
     def __init__(self, links: int, found: Iterable[Found] = ()) -> None:

@@ -1,6 +1,6 @@
 """The keywords of a run, for type checkers and editors.
 
-Written by docs/write_options.py from the descriptors of the options.
+Written by docs/generators/write_options.py from the descriptors of the options.
 """
 
 from __future__ import annotations

@@ -58,6 +58,14 @@ class LargestReaction(NamedTuple):
         that begins to stick or slide.
     steady : bool
         Whether the force has this size all the time.
+
+    Examples
+    --------
+    >>> first, second = pc.Case.textbook().simulate().largest_reactions()
+    >>> f"{second.force:.2f} N at joint {second.joint}, t = {second.t:.3f} s"
+    '22.12 N at joint 2, t = 0.644 s'
+    >>> second.just_before, second.steady
+    (False, False)
     """
 
     joint: int

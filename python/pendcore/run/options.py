@@ -60,7 +60,7 @@ ERROR = RunOption(
     "run by independent runs. The error is the largest distance of a joint or the tip from its "
     "true place, over the whole curve of a run with dense output, otherwise over the times that "
     "the run keeps. ``sol.accuracy`` says what was reached and what it cost; "
-    "``docs/accuracy_cost.md`` says what is promised.",
+    "``docs/background/accuracy_cost.md`` says what is promised.",
     range="> 0 and < 1",
     if_none="no error is verified",
 )

@@ -95,6 +95,14 @@ class RunResult:
         ------
         ValueError
             If a time lies outside the run, or the run did not store its interpolants.
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> sol(2.5).round(4)  # q_1, q_2 (rad), qd_1, qd_2 (rad/s)
+        array([ 0.9337,  0.7049, -0.0193,  1.4848])
+        >>> sol([0.0, 2.5, 5.0]).shape
+        (4, 3)
         """
         times = finite_array("t", t, "s")
         if times.ndim > 1:
@@ -147,27 +155,68 @@ class RunResult:
 
     @known_keywords
     def events_asked_for(self) -> list[Event]:
-        """Return the events that the run looked for."""
+        """Return the events that the run looked for.
+
+        Times and states of what was found are in ``events``.
+
+        Examples
+        --------
+        >>> bottom = pc.events.LinkAngle(1, np.pi / 2)
+        >>> sol = pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 1), events=[bottom])
+        >>> sol.events_asked_for() == [bottom]
+        True
+        """
         return [event_of(kind, values) for kind, values in self.run.arguments["events"]]
 
     @known_keywords
     def relative_angles(self) -> Floats:
-        """Angles of the joints, phi_i = q_i - q_{i-1} with q_0 = 0, rad, (n_t, n)."""
+        """Angles of the joints, phi_i = q_i - q_{i-1} with q_0 = 0, rad, (n_t, n).
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> np.degrees(sol.relative_angles()[0]).round(6)
+        array([45., 15.])
+        """
         return np.diff(self.q, prepend=0.0)
 
     @known_keywords
     def accelerations(self) -> Floats:
-        """Angular accelerations, rad/s^2, (n_t, n)."""
+        """Angular accelerations, rad/s^2, (n_t, n).
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> sol.accelerations()[0].round(3)  # at the start
+        array([10.811, -8.309])
+        """
         return self.scene.accelerations(self.t, self.q, self.qd)
 
     @known_keywords
     def positions(self) -> Floats:
-        """Pivot, joints and tip, m, (n_t, n+1, 2): x right, y down; a driven pivot moves."""
+        """Pivot, joints and tip, m, (n_t, n+1, 2): x right, y down; a driven pivot moves.
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> sol.positions()[0].round(3)  # pivot, joint 2, tip
+        array([[0.   , 0.   ],
+               [0.707, 0.707],
+               [1.207, 1.573]])
+        """
         return self.scene._compiled.positions(self.t, self.q)
 
     @known_keywords
     def mass_centers(self) -> Floats:
-        """Mass centres of the links, a payload excluded, m, (n_t, n, 2): x right, y down."""
+        """Mass centres of the links, a payload excluded, m, (n_t, n, 2): x right, y down.
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> sol.mass_centers()[0].round(3)
+        array([[0.354, 0.354],
+               [0.957, 1.14 ]])
+        """
         return self.scene._compiled.mass_centers(self.t, self.q)
 
     @known_keywords
@@ -175,12 +224,26 @@ class RunResult:
         """Force on each link at the joint where it begins, N, (n_t, n, 2): x right, y down.
 
         The textbook's F_01 (the ground's on link 1), F_12 (link 1's on link 2), and so on.
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> sol.reactions()[0].round(3)  # F_01 and F_12 at the start
+        array([[ -7.869, -10.224],
+               [ -4.047,  -4.24 ]])
         """
         return self.scene._compiled.reactions(self.t, self.q, self.qd)
 
     @known_keywords
     def energy(self) -> Energy:
-        """Kinetic, potential and total energy, J, each (n_t,), and the ledger if one was kept."""
+        """Kinetic, potential and total energy, J, each (n_t,), and the ledger if one was kept.
+
+        Examples
+        --------
+        >>> energy = pc.Case.textbook().simulate().energy()
+        >>> f"{energy.total[0]:.4f} J at first, {energy.total[-1]:.4f} J at last"
+        '-14.6484 J at first, -14.6484 J at last'
+        """
         kinetic, potential = self.scene._compiled.energy(self.t, self.q, self.qd)
         with np.errstate(all="ignore"):  # a blow-up's energies may be infinite
             total = kinetic + potential
@@ -202,5 +265,11 @@ class RunResult:
         steps and on both sides of every jump; other runs give the largest at the kept times. The
         impulse of an impact is not a force. See `pendcore.LargestReaction`; ``progress`` is as in
         `simulate`.
+
+        Examples
+        --------
+        >>> first, second = pc.Case.textbook().simulate().largest_reactions()
+        >>> f"{first.force:.2f} N at joint {first.joint}, t = {first.t:.3f} s"
+        '31.93 N at joint 1, t = 0.644 s'
         """
         return largest_reactions(self.scene, self.run, progress)

@@ -19,6 +19,14 @@ class RunError(RuntimeError):
     ----------
     solution : Solution
         The run as far as it came; its ``status`` and ``message`` tell why it ended.
+
+    Examples
+    --------
+    >>> try:
+    ...     pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 5), max_steps=10, check=True)
+    ... except pc.RunError as ended:
+    ...     print(ended.solution.status, len(ended.solution.t))
+    max_steps 11
     """
 
     def __init__(self, message: str, solution: Any) -> None:

@@ -30,6 +30,13 @@ class Statistics(NamedTuple):
         Sizes of the accepted steps, s, except those that ended early.
     stiff : bool
         Whether stability rather than accuracy limited the steps.
+
+    Examples
+    --------
+    >>> scene = pc.Scene.textbook()
+    >>> stats = pc.simulate(scene, q0=0.5, t_span=(0, 1), method="rk4", step=0.01).stats
+    >>> stats.accepted, stats.nfev
+    (100, 401)
     """
 
     nfev: int

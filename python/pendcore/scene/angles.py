@@ -33,6 +33,13 @@ def angles_from_vertical(theta: npt.ArrayLike) -> Any:
     -----
     For angles alone. Rates have no pi/2 in them: ``qd = -thetad``, so negate them, and never pass
     them through here.
+
+    Examples
+    --------
+    >>> pc.angles_from_vertical(np.radians([0.0, 30.0, 90.0])).round(4)
+    array([1.5708, 1.0472, 0.    ])
+    >>> pc.angles_from_vertical(0.0) == np.pi / 2  # it hangs straight down
+    True
     """
     return pi / 2 - finite_array("theta", theta, "rad")
 
@@ -55,5 +62,11 @@ def angles_to_vertical(q: npt.ArrayLike) -> Any:
     -----
     For angles alone. Rates have no pi/2 in them: ``thetad = -qd``, so negate them, and never pass
     them through here.
+
+    Examples
+    --------
+    >>> sol = pc.Case.textbook().simulate()
+    >>> np.degrees(pc.angles_to_vertical(sol.q[0])).round(6)
+    array([45., 30.])
     """
     return pi / 2 - finite_array("q", q, "rad")

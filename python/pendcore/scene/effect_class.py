@@ -79,7 +79,14 @@ class Described:
 
 
 class Part(Described):
-    """What a parameter of an effect holds that has parameters of its own."""
+    """What a parameter of an effect holds that has parameters of its own.
+
+    Examples
+    --------
+    >>> wave = pc.effects.Sinusoid(amplitude=3.0, angular_frequency=6.0)
+    >>> isinstance(wave, pc.effects.Part)
+    True
+    """
 
     __slots__ = ()
 
@@ -94,6 +101,14 @@ class Effect(Described):
     ----------
     kind : str
         As in case files.
+
+    Examples
+    --------
+    >>> effect = pc.effects.ViscousJoint(joint=2, damping=0.05)
+    >>> effect.kind, effect.particulars()
+    ('viscous_joint', {'joint': 2, 'damping': 0.05})
+    >>> effect.replace(damping=0.1)
+    ViscousJoint(joint=2, damping=0.1)
     """
 
     __slots__ = ()

@@ -34,6 +34,14 @@ class Link:
     -----
     A link cannot be changed; ``link.replace(mass=2.0)`` makes another. A centre or inertia that is
     a uniform rod's counts as left to the default: links that are equal behave the same.
+
+    Examples
+    --------
+    >>> rod = pc.Link(mass=1.0, length=2.0)
+    >>> f"centre at {rod.center} m, inertia {rod.inertia:.3f} kg m^2"
+    'centre at 1.0 m, inertia 0.333 kg m^2'
+    >>> pc.Link(mass=1.0, length=2.0, center=1.5, inertia=0.2)
+    Link(mass=1.0, length=2.0, center=1.5, inertia=0.2)
     """
 
     # init=False makes dataclasses.replace() refuse: it would carry centre and inertia of a rod over
@@ -74,6 +82,11 @@ class Link:
             kg.
         length : float
             m.
+
+        Examples
+        --------
+        >>> pc.Link.point_mass(mass=0.5, length=1.0)
+        Link(mass=0.5, length=1.0, center=1.0, inertia=0.0)
         """
         return cls(mass=mass, length=length, center=length, inertia=0.0)
 
@@ -86,6 +99,12 @@ class Link:
         **changes : float
             Any of ``mass``, ``length``, ``center``, ``inertia``; for the last two None is a rod's.
             A centre or inertia of its own stays what it is, in m and kg m^2.
+
+        Examples
+        --------
+        >>> heavy = pc.Link(mass=1.0, length=2.0).replace(mass=3.0)
+        >>> heavy, heavy.inertia
+        (Link(mass=3.0, length=2.0), 1.0)
         """
         return Link(**{**self.particulars(), **changes})  # type: ignore[arg-type]
 
@@ -93,7 +112,15 @@ class Link:
 
     @known_keywords
     def particulars(self) -> dict[str, float]:
-        """Return mass, length, and what differs from a uniform rod, enough to make it again."""
+        """Return mass, length, and what differs from a uniform rod, enough to make it again.
+
+        Units are kg, m and kg m^2.
+
+        Examples
+        --------
+        >>> pc.Link(mass=1.0, length=2.0, center=1.5).particulars()
+        {'mass': 1.0, 'length': 2.0, 'center': 1.5}
+        """
         rod = Link(mass=self.mass, length=self.length)
         values = {"mass": self.mass, "length": self.length}
         if self.center != rod.center:

@@ -43,6 +43,14 @@ class Mobility(NamedTuple):
         Joints with two degrees of freedom.
     degrees_of_freedom : int
         ``M``.
+
+    Examples
+    --------
+    >>> pc.Scene.textbook().mobility()
+    Mobility(links=2, c5=2, c4=0, degrees_of_freedom=2)
+    >>> locked = pc.Scene.textbook().replace(effects=[pc.effects.Lock(joint=2)])
+    >>> locked.mobility().degrees_of_freedom
+    1
     """
 
     links: int
@@ -86,7 +94,14 @@ class SceneData:
     @classmethod
     @known_keywords
     def textbook(cls) -> Self:
-        """Section 2.1 of the textbook: two uniform rods of 1 kg and 1 m, g = 9.807 m/s^2."""
+        """Section 2.1 of the textbook: two uniform rods of 1 kg and 1 m, g = 9.807 m/s^2.
+
+        Examples
+        --------
+        >>> scene = pc.Scene.textbook()
+        >>> scene.links[1], scene.gravity
+        (Link(mass=1.0, length=1.0), 9.807)
+        """
         return cls(links=[Link(mass=1.0, length=1.0), Link(mass=1.0, length=1.0)])
 
     @known_keywords
@@ -103,6 +118,12 @@ class SceneData:
         ----------
         links, gravity, effects
             As in `Scene`.
+
+        Examples
+        --------
+        >>> moon = pc.Scene.textbook().replace(gravity=1.62)
+        >>> moon.gravity, len(moon.links)
+        (1.62, 2)
         """
         return type(self)(
             links=self.links if links is None else links,
@@ -136,6 +157,14 @@ class SceneData:
         ------
         ValueError, TypeError
             If an argument is not finite real numbers of that shape.
+
+        Examples
+        --------
+        >>> scene = pc.Scene.textbook()
+        >>> scene.accelerations(0.0, q=[0.0, 0.0], qd=[0.0, 0.0]).round(3)  # let go, horizontal
+        array([12.609, -4.203])
+        >>> scene.accelerations([0.0, 1.0], q=np.zeros((2, 2)), qd=[0.0, 0.0]).shape
+        (2, 2)
         """
         n = len(self.links)
         found = self._compiled.acceleration_of_state(t, q, qd)
@@ -172,6 +201,12 @@ class SceneData:
         -------
         ndarray, (..., n, n)
             kg m^2.
+
+        Examples
+        --------
+        >>> pc.Scene.textbook().mass_matrix([0.0, 0.0]).round(3)  # stretched out
+        array([[1.333, 0.5  ],
+               [0.5  , 0.333]])
         """
         n = len(self.links)
         q = link_array("q", q, n, "rad")
@@ -179,7 +214,16 @@ class SceneData:
 
     @known_keywords
     def mobility(self) -> Mobility:
-        """Count the degrees of freedom as the textbook does, ``M = 3 n - 2 c5 - c4``."""
+        """Count the degrees of freedom as the textbook does, ``M = 3 n - 2 c5 - c4``.
+
+        See `pendcore.Mobility`.
+
+        Examples
+        --------
+        >>> links, c5, c4, freedom = pc.Scene.textbook().mobility()
+        >>> 3 * links - 2 * c5 - c4 == freedom
+        True
+        """
         return Mobility(*self._compiled.mobility())
 
     def __repr__(self) -> str:

@@ -110,7 +110,7 @@ PENDCORE_INLINE Pack<2> high_half(const Pack<4>& x) { return __builtin_shuffleve
 
 #if defined(__wasm__)
 /// Calls of this function are what the loader replaces by an instruction, in an engine that has one
-/// which rounds once (docs/webassembly.md).
+/// which rounds once (docs/how_to/webassembly.md).
 extern "C" [[gnu::const]] Pack<2> pendcore_fma(Pack<2> a, Pack<2> b, Pack<2> c);
 #endif
 

@@ -9,7 +9,7 @@
 ///     dopri5-radau5   else
 ///
 /// The pairs change to radau5 where that is faster, at any time (stiff_switching.hpp).
-/// docs/accuracy_cost.md has the measurements behind the rule.
+/// docs/background/accuracy_cost.md has the measurements behind the rule.
 #pragma once
 
 #include <string_view>

@@ -1,4 +1,4 @@
-"""Where the textbook prints something else; docs/errata.md shows each by computation."""
+"""Where the textbook prints something else; docs/reference/errata.md shows each by computation."""
 
 from __future__ import annotations
 

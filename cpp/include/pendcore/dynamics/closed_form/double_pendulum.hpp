@@ -1,8 +1,8 @@
 /// \file
 /// The right-hand side of the textbook's double pendulum.
 ///
-/// The Newton-Euler equations (2.1)-(2.4) of both links, y downward (docs/errata.md says why), with
-/// the reaction F_21 eliminated as in (2.9)-(2.11), for general links:
+/// The Newton-Euler equations (2.1)-(2.4) of both links, y downward (docs/reference/errata.md says
+/// why), with the reaction F_21 eliminated as in (2.9)-(2.11), for general links:
 ///
 ///     A_11 qdd_1 + A_12 cos(q_1 - q_2) qdd_2 + A_12 sin(q_1 - q_2) qd_2^2 = a_1 g cos q_1
 ///     A_22 qdd_2 + A_12 cos(q_2 - q_1) qdd_1 + A_12 sin(q_2 - q_1) qd_1^2 = a_2 g cos q_2

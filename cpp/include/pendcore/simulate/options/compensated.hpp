@@ -12,8 +12,8 @@ struct CompensatedOption {
       .name = "compensated",
       .sentence =
           "Whether each step carries the rounding error of the state over to the next step "
-          "(compensated summation), for long runs at small steps. ``docs/long_runs.md`` says when "
-          "that pays.",
+          "(compensated summation), for long runs at small steps. ``docs/background/long_runs.md`` "
+          "says when that pays.",
   };
 };
 
