@@ -103,7 +103,7 @@ CONTRACTED ?= --contracted
 elsewhere: $(DONE)/installed $(DONE)/test-requirements  ## the same bits on other processors (MACHINES); PAGE=docs/background/elsewhere.md writes the page
 	@sh setup/debian_packages.sh doctest $(MACHINES)
 	python tests/elsewhere/elsewhere.py $(MACHINES) $(CONTRACTED) $(PAGE:%=--page %)
-	$(if $(filter wasm32,$(MACHINES)),$(PYTEST) --full tests/elsewhere)
+	$(if $(filter wasm32,$(MACHINES)),PENDCORE_TEST_JAVASCRIPT=1 $(PYTEST) --full tests/elsewhere)
 
 wasm: $(DONE)/build-requirements  ## the core for browsers: build/wasm/package, docs/how_to/webassembly.md
 	@sh setup/debian_packages.sh eigen wasm32
@@ -175,7 +175,7 @@ fuzz-readers: $(DONE)/installed $(DONE)/fuzz-requirements  ## damaged files and 
 	done
 
 clean:  ## remove all that was built, and the virtual environment
-	rm -rf build out .venv
+	rm -rf build dist out .venv
 
 help:  ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 22

@@ -2,7 +2,7 @@
 
 Link 2 turns over where its joint passes +-180 degrees: the first time ends the run. And whenever
 link 1 hangs straight on its way to the right, link 2 has some angle and some rate: a point of
-Poincare's section. Of one energy, regular motions draw curves there and chaotic ones fill areas.
+Poincare's section. At one energy, regular motions draw curves there and chaotic ones fill areas.
 """
 
 from __future__ import annotations

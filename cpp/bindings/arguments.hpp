@@ -21,7 +21,7 @@ namespace py = pybind11;
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast |
                                       py::detail::npy_api::NPY_ARRAY_ALIGNED_>;
 
-/// A NaN that comes of a computation has the sign that the processor gives it: here, none.
+/// The sign of a computed NaN differs between processors; here it has none.
 inline void give_nan_one_sign(Array& numbers) {
   double* const first = numbers.mutable_data();
   for (py::ssize_t i = 0; i < numbers.size(); ++i) {

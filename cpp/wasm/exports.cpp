@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,6 +22,7 @@ namespace {
 using namespace pendcore;
 
 std::string text_in;
+std::string text_out;
 std::vector<double> numbers_in;
 std::vector<double> numbers_out;
 Scene draft;
@@ -57,9 +59,10 @@ template <class Whole>
   requires std::integral<Whole>
 void take(const std::string& name, Whole& x) {
   one_number(name);
-  constexpr double most = 1e9;
+  constexpr double most = std::same_as<Whole, int> ? 1e9 : 0x1p53;
   if (!(std::abs(numbers_in[0]) <= most) || std::floor(numbers_in[0]) != numbers_in[0]) {
-    throw std::invalid_argument(name + " = " + text(numbers_in[0]) + ": must be a whole number");
+    throw std::invalid_argument(name + " = " + text(numbers_in[0]) +
+                                ": must be a whole number, at most " + text(most));
   }
   x = static_cast<Whole>(numbers_in[0]);
 }
@@ -92,7 +95,8 @@ Store store_called(std::string_view word) {
   for (std::size_t i = 0; i < store_names.size(); ++i) {
     if (store_names[i] == word) return static_cast<Store>(i);
   }
-  refuse_name("store = ", word);
+  throw std::invalid_argument("store = \"" + std::string(word) +
+                              "\": must be \"dense\", \"steps\", \"times\" or \"end\"");
 }
 
 /// Sets the option called `name` from the numbers given, or from a word.
@@ -107,7 +111,7 @@ void set_option(const std::string& name, const std::string* word) {
     if (word == nullptr) throw std::invalid_argument(name + ": must be a word");
     value = store_called(*word);
   } else if constexpr (std::same_as<Value, std::vector<Event>>) {
-    throw std::invalid_argument(name + ": are not offered to JavaScript");
+    throw std::invalid_argument(name + ": not offered to JavaScript");
   } else {
     if (word != nullptr) throw std::invalid_argument(name + " = " + *word + ": must be a number");
     take(name, value);
@@ -123,7 +127,7 @@ void set_option_called(const std::string& name, const std::string* word) {
   if (!is_known) refuse_name("option ", name);
 }
 
-/// n angles, n rates, and after them as many more numbers as were asked for.
+/// n angles and n rates.
 struct State {
   std::span<const double> q, qd;
 };
@@ -132,11 +136,19 @@ State state_in(const Scene& scene) {
   if (numbers_in.size() != 2 * n) {
     throw std::invalid_argument("a state: must be " + std::to_string(2 * n) + " numbers");
   }
+  for (std::size_t i = 0; i < 2 * n; ++i) {
+    if (std::isfinite(numbers_in[i])) continue;
+    refuse((i < n ? "q[" : "qd[") + std::to_string(i % n) + "]", numbers_in[i],
+           i < n ? "finite (rad)" : "finite (rad/s)");
+  }
   return {{numbers_in.data(), n}, {numbers_in.data() + n, n}};
 }
 
 const double* out(std::vector<double> numbers) {
   numbers_out = std::move(numbers);
+  for (double& x : numbers_out) {  // the sign of a computed NaN differs between processors
+    if (std::isnan(x)) x = std::numeric_limits<double>::quiet_NaN();
+  }
   return numbers_out.data();
 }
 
@@ -225,9 +237,9 @@ EXPORTED(reached) double reached(const Run* run) { return run->solution.t_reache
 EXPORTED(success) bool success(const Run* run) { return text(run->solution.status).success; }
 /// Three lines: status, method, message.
 EXPORTED(words) const char* words(const Run* run) {
-  text_in = std::string(text(run->solution.status).name) + '\n' + run->solution.last_method + '\n' +
-            run->solution.message;
-  return text_in.c_str();
+  text_out = std::string(text(run->solution.status).name) + '\n' + run->solution.last_method +
+             '\n' + run->solution.message;
+  return text_out.c_str();
 }
 /// Right-hand sides, Jacobians, factorisations, accepted steps, rejected ones.
 EXPORTED(statistics) const double* statistics(const Run* run) {

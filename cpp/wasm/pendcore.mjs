@@ -64,7 +64,7 @@ class Core {
         this.#setParameters(`${prefix}${name}.`, value);
       } else {
         this.putText(prefix + name);
-        this.putNumbers([value].flat());
+        this.putNumbers(isList(value) ? value : [value]);
         this.call("set_parameter");
       }
     }
@@ -177,6 +177,9 @@ class Scene {
   }
 
   #put(q, qd = new Float64Array(this.n)) {
+    if (!isList(q) || !isList(qd)) {
+      throw new PendcoreError(`q and qd: must be lists of ${this.n} numbers each`);
+    }
     if (q.length !== this.n || qd.length !== this.n) {
       throw new PendcoreError(
         `a state of ${this.n} links: must have ${this.n} angles and rates, not ${q.length} and ${qd.length}`,
@@ -186,6 +189,7 @@ class Scene {
   }
 }
 
+/** What is known of a run. Each access to its numbers copies them out of the core's memory. */
 class Run {
   constructor(scene, address) {
     this.scene = scene;
@@ -221,6 +225,7 @@ class Run {
 
   /** States at times of the run, row by row, from the dense output. */
   at(times) {
+    if (!isList(times)) times = [times];
     this.scene.core.putNumbers(times);
     return this.#numbers("at", times.length * this.dimension);
   }

@@ -1,8 +1,9 @@
 """The pages in docs/effects, from the descriptions of the effects.
 
 docs/generators/write_effects.py writes them; further sections are in effect_sections.py. An example
-needs values that make sense together: EXAMPLES has them for the present effects, and an effect
-without an example is shown with values that its ranges allow.
+needs values that make sense together: the package has them for the present effects, as its
+docstrings show them, too, and an effect without an example is shown with values that its ranges
+allow.
 """
 
 from __future__ import annotations
@@ -14,37 +15,13 @@ from typing import Any
 import pendcore as pc
 from effect_sections import COMPILED, MORE
 from pendcore.run.energy import LOSSES
+from pendcore.scene import effect_examples
 from pendcore.scene.effect_class import KINDS, Effect, OwnEffect
 from pendcore.scene.effect_description import CAVEATS, Description, Parameter
+from pendcore.scene.effect_examples import BEFORE
 
-EXAMPLES: dict[str, list[str]] = {
-    "viscous_joint": ["ViscousJoint(joint=2, damping=0.05)"],
-    "dry_joint_friction": [
-        "DryJointFriction(joint=1, coulomb=0.2, static=0.3, stribeck_velocity=0.05)"
-    ],
-    "rod_drag": [
-        "RodDrag(link=2, drag_coefficient=1.2, diameter=0.03, wind=(4.0, 0.0))",
-    ],
-    "torsional_spring": ["TorsionalSpring(joint=2, stiffness=30.0, rest_angle=0.5)"],
-    "motor": [
-        "Motor(joint=1, constant=2.0)",
-        "Motor(joint=1, sinusoid=Sinusoid(amplitude=3.0, angular_frequency=6.0))",
-        "Motor(joint=2, table=Table(t=(0.0, 0.5, 2.0), torque=(0.0, 1.5, -1.5)))",
-        "Motor(joint=2, pd=PD(kp=40.0, kd=2.0, reference=0.3), limit=8.0)",
-    ],
-    "rotor_inertia": ["RotorInertia(joint=1, armature=0.02)"],
-    "payload": ["Payload(mass=0.5, inertia=0.001)"],
-    "joint_stop": [
-        "JointStop(joint=2, range=(-0.5, 0.8), restitution=0.4)",
-        "JointStop(joint=1, range=(0.0, inf), restitution=0.8, capture_speed=0.001)",
-    ],
-    "lock": ["Lock(joint=2)", "Lock(joint=2, angle=0.5)"],
-    "driven_pivot": [
-        "DrivenPivot(y=Sinusoid(amplitude=0.02, angular_frequency=90.0))",
-        "DrivenPivot(spline=Spline(t=(0.0, 1.0, 2.0), x=(0.0, 0.3, 0.0), y=(0.0, 0.0, 0.1)))",
-    ],
-    "user": ["User(function=lambda t, q, qd: -0.1 * qd)"],
-}
+EXAMPLES = {kind: calls for kind, calls in effect_examples.EXAMPLES.items() if kind not in BEFORE}
+"""Those that need nothing before them."""
 
 BOOKED = {
     "none": "Nothing: the effect does no work, or stores it as energy that `sol.energy()` counts.",

@@ -22,7 +22,7 @@
 
 x points right, **y points down**, and an angle q is absolute, from x towards y: q = 0 is
 horizontal, q = pi/2 hangs straight down. Everything is in SI units: kg, m, s, rad, N, J. Links and
-joints count from 1.
+joints count from 1. The examples in the docstrings need these two imports.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """`make elsewhere`: the C++ tests and the hashes of trajectories on other processors.
 
-    python tests/elsewhere/elsewhere.py aarch64 wasm32 [--page docs/background/elsewhere.md]
+    python tests/elsewhere/elsewhere.py aarch64 wasm32 [--contracted] [--page PAGE]
 
 Debian's cross compilers build the core and its C++ tests. QEMU runs them, or Node if they are
 compiled to WebAssembly; `clang` is this machine with another compiler. A machine passes if its C++
@@ -8,9 +8,9 @@ tests pass, its fma agrees with whole numbers in ten million cases, and all its 
 tests/cpp/trajectory_hash.txt. A machine whose compiler or emulator is missing fails; none is
 skipped, and test cases that are left out are named.
 
-Last, a build in which the compiler may contract a * b + c is held against the same hashes, which
-must differ: so the comparison is seen to work. The exit status is 1 if anything is not as it must
-be.
+With --contracted, a build in which the compiler may contract a * b + c is held against the same
+hashes, which must differ: so the comparison is seen to work. A page has the table of all machines.
+The exit status is 1 if anything is not as it must be.
 """
 
 from __future__ import annotations
@@ -198,6 +198,8 @@ def main() -> int:
     parser.add_argument("--page", type=Path, help="the page that has the table")
     parser.add_argument("--contracted", action="store_true", help="try contraction as well")
     asked = parser.parse_args()
+    if asked.page and set(asked.builds) != {*PROCESSORS, WEBASSEMBLY, CLANG}:
+        parser.error("--page needs all machines: the table has a column for each")
     machines = run_all(asked.builds)
     for one in machines:
         print(f"{one.build:10} {one.about:36} {verdict(one):12} {one.seconds:5.0f} s")

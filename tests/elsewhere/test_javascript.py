@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 import subprocess
 from pathlib import Path
 from typing import Any
@@ -59,9 +60,13 @@ STARTS = {"lock": {**START, "qd0": [2.0, 2.0]}}  # a locked joint is at rest
 AT = [0.1, 1.7, 3.9]
 T_LONGER = 5.0
 
-pytestmark = pytest.mark.skipif(
-    not (PACKAGE / "pendcore.wasm").exists(), reason="make elsewhere MACHINES=wasm32 builds it"
-)
+pytestmark = [
+    pytest.mark.outside_build,
+    pytest.mark.skipif(
+        "PENDCORE_TEST_JAVASCRIPT" not in os.environ,
+        reason="`make elsewhere MACHINES=wasm32` builds the module and tests it",
+    ),
+]
 
 
 def run_in_javascript(cases: list[dict[str, Any]], *flags: str) -> list[dict[str, Any]]:
@@ -165,6 +170,10 @@ def test_a_run_has_the_bits_of_python(name: str, outcomes: dict[str, dict[str, A
         ({"options": {"tol": 1}}, "option tol: there is no such name"),
         ({"at": [9.0]}, "t = 9.0: must be within the run"),
         ({"start": {"q0": [1.0]}}, "must have 2 angles and rates"),
+        ({"start": {"q0": None}}, "q and qd: must be lists of 2 numbers each"),
+        ({"start": {"qd0": [0.0, "x"]}}, "qd[1] = nan: must be finite (rad/s)"),
+        ({"options": {"store": "dens"}}, 'store = "dens": must be "dense", "steps"'),
+        ({"options": {"max_steps": 1.5}}, "max_steps = 1.5: must be a whole number"),
     ],
 )  # fmt: skip
 def test_bad_input_is_refused_in_words_and_the_next_run_is_right(

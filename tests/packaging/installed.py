@@ -33,6 +33,12 @@ def runs() -> Iterator[tuple[str, pc.Solution]]:
     chain = pc.Scene(links=[pc.Link(mass=0.4, length=0.3)] * 7)
     start = [math.pi / 4, math.pi / 3]
     yield "textbook", pc.simulate(book, start, 0.0, (0, 60), method="dopri5", check=False)
+    uneven = pc.Scene(
+        links=[pc.Link(mass=2.5, length=0.7), pc.Link.point_mass(mass=0.4, length=1.6)],
+        gravity=9.81,
+    )
+    back = {"t_span": (0, -20), "method": "dopri5", "check": False}
+    yield "backward", pc.simulate(uneven, [2.8, -0.4], [1.5, -2.0], **back)
     high = {"q0": [-1.4, -1.1], "t_span": (0, 60), "check": False}
     yield "default textbook", pc.simulate(book, **high)
     yield "textbook dop853", pc.simulate(book, **high, method="dop853", rtol=1e-11)

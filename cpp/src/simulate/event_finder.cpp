@@ -103,8 +103,8 @@ EventFinder::Levels EventFinder::levels_along(const Difference& difference, int 
   return levels_between(difference, std::min(least, end) - noise, std::max(most, end) + noise);
 }
 
-/// The number of levels, or none once there were too many in this run. max_steps bounds the turns
-/// if each step has one.
+/// The number of levels, or none once there were too many in this run. Turns beyond one a step are
+/// counted, because max_steps does not bound them.
 int EventFinder::count_turns(std::size_t k, const Levels& levels) {
   if (!(levels.count <= 1.0)) turns_ += levels.count - 1.0;
   if (turns_ <= most_turns) return static_cast<int>(levels.count);

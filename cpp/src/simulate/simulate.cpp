@@ -142,7 +142,8 @@ void run(const Scene& scene, Solution& solution, double t_end, Limits limits, Be
   if (before == Before::nothing) recorder.start(integrator.t.high, integrator.y);
   Switching* const discontinuities = switching ? &*switching : nullptr;
   RunLimits clock(limits, integrator.t.high);
-  if (switching) {  // deciding which joints are held is not a step, and takes long in a long chain
+  // Deciding which joints are held is not a step, and takes long in a long chain.
+  if (switching && stopped_is_caught) {
     switching->look_up_in_long_work([&clock, &integrator] {
       const Status status = clock.look(integrator.t.high);
       if (status != Status::finished) throw Stopped{status};

@@ -108,8 +108,8 @@ def accuracy_cost(
     ...     scene, q0=0.5, t_span=(0, 1), methods="dop853", rtol=[1e-3, 1e-9], repeats=1
     ... )
     >>> best = cost.best(error=1e-8)
-    >>> f"{best.method}, {best.setting}: {best.error < 1e-8}"
-    'dop853, rtol 1e-09: True'
+    >>> f"{best.method} at {best.setting}"
+    'dop853 at rtol 1e-09'
     """
     require_options(limits, limits_of_every_method)
     require_start(scene, q0)

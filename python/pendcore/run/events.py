@@ -35,7 +35,7 @@ class Event:
     >>> bottom = pc.events.LinkAngle(1, np.pi / 2, direction=1, terminal=True, name="bottom")
     >>> sol = pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 5), events=[bottom])
     >>> f"{sol.status} at {sol.t[-1]:.3f} s"
-    'XXX'
+    'event at 0.653 s'
     """
 
     kind: ClassVar[str]
@@ -121,7 +121,7 @@ class JointAngle(Event):
     >>> straight = pc.events.JointAngle(2, 0.0, every_turn=True)
     >>> sol = pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 5), events=[straight])
     >>> sol.events[0].t[:3].round(3)  # s
-    array([])
+    array([0.592, 1.008, 1.279])
     """
 
     kind = "joint_angle"
@@ -154,7 +154,7 @@ class LinkAngle(Event):
     >>> down = pc.events.LinkAngle(link=2, value=np.pi / 2)
     >>> sol = pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 5), events=[down])
     >>> sol.events[0].q[:, 1].round(6)  # rad
-    array([])
+    array([1.570796, 1.570796, 1.570796, 1.570796])
     """
 
     kind = "link_angle"
@@ -183,7 +183,7 @@ class RateZero(Event):
     >>> turn = pc.events.RateZero(link=1)
     >>> sol = pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 5), events=[turn])
     >>> sol.events[0].t.round(3)  # s
-    array([])
+    array([1.195, 2.464, 3.744, 4.957])
     """
 
     kind = "rate_zero"
@@ -214,10 +214,8 @@ class TipLine(Event):
     --------
     >>> wall = pc.events.TipLine(point=(-1.0, 0.0), normal=(1.0, 0.0))  # x = -1 m
     >>> sol = pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 5), events=[wall])
-    >>> sol.positions()[0, -1].round(3)
-    array([])
-    >>> sol.events[0].direction
-    array([])
+    >>> sol.events[0].direction  # it swings to the left through the wall, and back
+    array([-1,  1, -1,  1])
     """
 
     kind = "tip_line"
@@ -254,7 +252,7 @@ class Function(Event):
     >>> together = pc.events.Function(lambda t, q, qd: qd[0] - qd[1])  # joint 2 is at rest
     >>> sol = pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 5), events=[together])
     >>> [round(event.t, 3) for event in sol.events[0][:2]]  # s
-    []
+    [0.387, 0.773]
     """
 
     kind = "function"

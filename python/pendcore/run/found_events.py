@@ -33,7 +33,7 @@ class Found:
     >>> sol = pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 5), events=[bottom])
     >>> first = sol.events[0][0]
     >>> f"t = {first.t:.3f} s, q_1 = {first.q[0]:.4f} rad, {first.direction}"
-    'XXX'
+    't = 0.653 s, q_1 = 1.5708 rad, 1'
     """
 
     t: float
@@ -82,7 +82,7 @@ class FoundEvents(list[Found]):
     >>> sol = pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 5), events=[bottom])
     >>> found = sol.events[0]
     >>> len(found), found.direction, found.qd.shape
-    XXX
+    (4, array([ 1, -1,  1, -1]), (4, 2))
     """
 
     def __init__(self, links: int, found: Iterable[Found] = ()) -> None:

@@ -6,13 +6,14 @@ and the pages in docs/effects.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cache
 from textwrap import wrap
 from typing import Any, NamedTuple
 
 from pendcore import _core
 from pendcore.messages.arguments import in_unit
+from pendcore.scene.effect_examples import BEFORE, EXAMPLES, OUTCOMES
 
 NUMBERS = {"int", "float", "optional float", "pair", "floats"}
 """The types of parameters that are numbers; the others are a part, an address or a function."""
@@ -193,6 +194,58 @@ def _lines(described: Description) -> Iterator[str]:
     if described.account in CAVEATS:
         yield ""
         yield from wrap(CAVEATS[described.account], 92)
+    yield from ("", "Examples", "--------")
+    yield from _effect_example(described) if described.kind else _part_example(described.name)
+
+
+def _effect_example(effect: Description) -> Iterator[str]:
+    """Yield lines that run the textbook's scene with an effect."""
+    if effect.kind in BEFORE:
+        yield BEFORE[effect.kind]
+    call = EXAMPLES[effect.kind][0] if effect.kind in EXAMPLES else _any_call(effect)
+    yield _assignment(call, [p.part for p in effect.parameters if p.part])
+    if effect.kind not in OUTCOMES:
+        yield from (">>> effect.kind", repr(effect.kind))
+        return
+    yield ">>> scene = pc.Scene.textbook().replace(effects=[effect])"
+    yield ">>> sol = pc.simulate(scene, q0=[0.5, 1.0], t_span=(0, 1), ledger=True)"
+    if effect.account == "none":
+        yield '>>> print(f"q at 1 s: {sol(1.0)[:2].round(3).tolist()} rad")'
+    else:
+        booked = f"{{sol.energy().ledger.{effect.account}[-1]:.3f}} J"
+        yield f'>>> print(f"{effect.account}: {booked}")'
+    yield OUTCOMES[effect.kind]
+
+
+def _part_example(name: str) -> Iterator[str]:
+    """Yield lines that make an effect with a part, and show the part."""
+    made = f"={name}("
+    for call in (call for calls in EXAMPLES.values() for call in calls if made in call):
+        before, _, after = call.partition(made)
+        ends = (k for k, sign in enumerate(after, 1) if sign == ")")
+        end = next(k for k in ends if after[:k].count(")") > after[:k].count("("))
+        yield _assignment(call, [name])
+        yield f">>> effect.{before.replace('(', ' ').split()[-1]}"
+        yield f"{name}({after[:end]}"
+        return
+
+
+def _any_call(effect: Description) -> str:
+    """Return a call with the required parameters, with values that most ranges allow."""
+    values = {"int": "1", "pair": "(1.0, 2.0)", "floats": "(1.0, 2.0)"}
+    needed = (p for p in effect.parameters if p.required)
+    given = ", ".join(f"{p.name}={values.get(p.type, '1.0')}" for p in needed)
+    return f"{effect.name}({given})"
+
+
+def _assignment(call: str, parts: Iterable[str] = ()) -> str:
+    """Return the line that makes an effect, or three where it is long."""
+    for part in parts:
+        call = call.replace(f"={part}(", f"=pc.effects.{part}(")
+    if len(call) > 64:
+        head, _, inner = call.partition("(")
+        call = f"{head}(\n...     {inner[:-1]}\n... )"
+    return f">>> effect = pc.effects.{call}"
 
 
 def _meaning(parameter: Parameter) -> str:

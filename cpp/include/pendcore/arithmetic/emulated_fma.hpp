@@ -19,19 +19,6 @@ namespace emulated_fma_detail {
 template <class Real>
 using Integers = typename Lanes<Real>::Integers;
 
-/// a b - product, exactly, where `product` is a b rounded.
-template <class Real>
-PENDCORE_INLINE Real product_error(const Real& a, const Real& b, const Real& product) {
-  constexpr double half_of_mantissa = 0x1p27 + 1;
-  const auto high = [](const Real& x) {
-    const Real scaled = half_of_mantissa * x;
-    return Real(scaled - (scaled - x));
-  };
-  const Real a_high = high(a), a_low = a - a_high;
-  const Real b_high = high(b), b_low = b - b_high;
-  return ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low;
-}
-
 /// x + y, rounded to odd: of the two doubles around an inexact sum, the one whose last bit is 1.
 template <class Real>
 PENDCORE_INLINE Real sum_to_odd(const Real& x, const Real& y) {
@@ -69,7 +56,7 @@ PENDCORE_INLINE Real emulated_fma(const Real& a, const Real& b, const Real& c) {
   namespace detail = emulated_fma_detail;
   constexpr int width = Lanes<Real>::width;
   const Real product = a * b;
-  const Real low = detail::product_error(a, b, product);
+  const Real low = product_error(a, b, product);
   const Real inner = c + low;
   const Real outer = product + inner;
   Real result =

@@ -8,7 +8,8 @@
 
 #include "pendcore/arithmetic/instruction_set.hpp"
 
-// Only inlined functions pass packs to each other, so that the calling convention does not matter.
+// Only inlined functions pass packs to each other, so that the calling convention does not matter;
+// pendcore_fma, which is not inlined, is for WebAssembly alone.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 namespace pendcore {
@@ -115,7 +116,8 @@ extern "C" [[gnu::const]] Pack<2> pendcore_fma(Pack<2> a, Pack<2> b, Pack<2> c);
 #endif
 
 /// a b + c, rounded once. It is correctly rounded by definition, hence the same on every processor;
-/// one without such an instruction has it from the C library.
+/// one without such an instruction has it from the C library, or in WebAssembly from
+/// emulated_fma.hpp.
 template <class Real>
 PENDCORE_INLINE Real fma(const Real& a, const Real& b, const Real& c) {
   Real result = c;

@@ -22,6 +22,18 @@ PENDCORE_INLINE constexpr Real left_over(const Real& a, const Real& b, const Rea
   return (a - (sum - b_part)) + (b - b_part);
 }
 
+/// a b - product, exactly, where product is a b rounded; not where a part overflows, or is below
+/// the least double. Halves of the factors have exact products (Dekker 1971).
+template <class Real>
+PENDCORE_INLINE constexpr Real product_error(const Real& a, const Real& b, const Real& product) {
+  constexpr double splitter = 0x1p27 + 1;
+  const Real a_high = splitter * a - (splitter * a - a);
+  const Real b_high = splitter * b - (splitter * b - b);
+  const Real a_low = a - a_high;
+  const Real b_low = b - b_high;
+  return ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low;
+}
+
 PENDCORE_INLINE constexpr TwoDouble two_sum(double a, double b) {
   const double sum = a + b;
   return {sum, left_over(a, b, sum)};

@@ -9,11 +9,17 @@
 
 namespace pendcore {
 
-/// Thrown out of work that is not done in steps; says why the run is to end.
+/// Thrown out of work that is not done in steps; says why the run is to end. WebAssembly is
+/// compiled without handlers, so that nothing may throw it there.
 struct Stopped : std::exception {
   explicit Stopped(Status why) : status(why) {}
   Status status;
 };
+#if defined(__wasm__)
+inline constexpr bool stopped_is_caught = false;
+#else
+inline constexpr bool stopped_is_caught = true;
+#endif
 
 /// Looks at the clock seldom, but often enough: the time limit is kept within a few milliseconds,
 /// and the monitor is called about every 50 ms.

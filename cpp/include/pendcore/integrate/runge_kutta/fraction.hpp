@@ -20,21 +20,16 @@ namespace fraction_detail {
 constexpr TwoDouble sqrt_6 = {0x1.3988e1409212ep+1, 0x1.f40c86450c869p-53};
 
 constexpr TwoDouble two_doubles(long long n) {
-  constexpr long long half = 1LL << 32;
-  const long long high = n / half;
-  return two_sum(static_cast<double>(high) * static_cast<double>(half),
-                 static_cast<double>(n - high * half));
+  constexpr long long word = 1LL << 32;
+  const long long high = n / word;
+  return two_sum(static_cast<double>(high) * static_cast<double>(word),
+                 static_cast<double>(n - high * word));
 }
 
 /// a b, exactly, unless it overflows.
 constexpr TwoDouble product(double a, double b) {
-  constexpr double splitter = 134217729.0;  // 2^27 + 1: leaves halves whose products are exact
-  const double a_high = splitter * a - (splitter * a - a);
-  const double b_high = splitter * b - (splitter * b - b);
-  const double a_low = a - a_high;
-  const double b_low = b - b_high;
   const double high = a * b;
-  return {high, ((a_high * b_high - high) + a_high * b_low + a_low * b_high) + a_low * b_low};
+  return {high, product_error(a, b, high)};
 }
 
 constexpr TwoDouble product(const TwoDouble& a, const TwoDouble& b) {

@@ -1,0 +1,80 @@
+"""Sphinx's configuration of the site: `make site` builds it, without network.
+
+The pages are the Markdown files of docs/, as they read in the repository. Their Python is executed
+while the site is built (executed.py). The pages of the Python reference come from docstrings
+(python_reference.py), those of the C++ reference from the headers (cpp_reference.py), those of the
+examples from their files (example_pages.py). Names of Python's and NumPy's documentation are linked
+by the list in inventories.py.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).parent
+ROOT = HERE.parents[1]
+sys.path.insert(0, str(HERE))
+
+import cpp_reference  # noqa: E402
+import example_pages  # noqa: E402
+import inventories  # noqa: E402
+import pendcore  # noqa: E402
+import python_reference  # noqa: E402
+
+project = "pendcore"
+author = "pendcore maintainers"
+copyright = "pendcore maintainers"
+version = release = pendcore.__version__
+
+extensions = [
+    "myst_parser",
+    "numpydoc",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.intersphinx",
+    "sphinx.ext.mathjax",
+    "sphinx_copybutton",
+    "sphinx_design",
+    "executed",
+    "repository_pages",
+]
+exclude_patterns = ["site", "generators", "records", "figures"]
+root_doc = "index"
+source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
+nitpicky = False
+
+myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
+myst_heading_anchors = 4
+suppress_warnings = ["myst.header"]
+
+numpydoc_show_class_members = False
+autodoc_member_order = "groupwise"
+autodoc_typehints = "none"
+copybutton_prompt_text = r">>> |\.\.\. |\$ "
+copybutton_prompt_is_regexp = True
+copybutton_exclude = ".linenos, .gp, .go"
+
+intersphinx_mapping = inventories.write(ROOT / "inventories")
+
+html_theme = "pydata_sphinx_theme"
+html_title = "pendcore"
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
+html_show_sourcelink = False
+html_copy_source = False
+html_theme_options = {
+    "navbar_align": "left",
+    "navbar_end": ["theme-switcher"],
+    "navbar_persistent": ["search-button"],
+    "header_links_before_dropdown": 6,
+    "show_toc_level": 2,
+    "show_prev_next": True,
+    "footer_start": ["copyright"],
+    "footer_end": [],
+    "pygments_light_style": "a11y-high-contrast-light",
+    "pygments_dark_style": "a11y-high-contrast-dark",
+}
+
+python_reference.write(ROOT / "docs/reference/python")
+example_pages.write(ROOT / "examples", ROOT / "docs/examples")
+cpp_reference.write(ROOT / "cpp/include/pendcore", ROOT / "docs/reference/cpp")

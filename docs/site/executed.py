@@ -1,0 +1,118 @@
+"""A Sphinx extension that executes the Python of every page while the site is built.
+
+The blocks of a page run from top to bottom in one namespace, in an empty folder. What a block
+prints stands below it, unless the page itself shows an output there; figures that it leaves open
+stand there, too. A block that raises an error is a warning of the build, which `make site` makes an
+error; a page that shows an error on purpose prints it. A case file that the page shows stands in
+the folder under its name. A page whose Python is parts of files says that it is not executed.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import os
+import re
+import sys
+import tempfile
+import tomllib
+import traceback
+import warnings
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+from docutils import nodes
+from sphinx.application import Sphinx
+from sphinx.util import logging
+
+logger = logging.getLogger(__name__)
+NOT_EXECUTED = "not executed for the site"
+EXAMPLE = re.compile(r"<!-- the file: (.*) -->")
+REFERENCE = "reference/python/"
+"""Pages whose examples are doctests, which the tests run."""
+
+
+def execute_page(app: Sphinx, doctree: nodes.document) -> None:
+    page = app.env.docname
+    blocks = [b for b in doctree.findall(nodes.literal_block) if b.get("language") == "python"]
+    text = Path(app.env.doc2path(page)).read_text()
+    if not blocks or NOT_EXECUTED in text or page.startswith(REFERENCE):
+        return
+    mpl.use("Agg")
+    import matplotlib.pyplot as plt
+
+    names: dict[str, Any] = {"__name__": "__main__"}
+    example = EXAMPLE.search(text)
+    if example:
+        names["__file__"] = example.group(1)
+    before = os.getcwd()
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        sys.path.insert(0, folder)
+        try:
+            write_cases(doctree)
+            for number, block in enumerate(blocks, start=1):
+                printed = run(block, names, f"{page}, block {number}")
+                figures = [saved(app, plt.figure(k), page, number, k) for k in plt.get_fignums()]
+                plt.close("all")
+                add_below(block, printed, figures)
+        finally:
+            os.chdir(before)
+            sys.path.remove(folder)
+            plt.close("all")
+
+
+def write_cases(doctree: nodes.document) -> None:
+    """Write the case files that a page shows, each under the name that it gives itself."""
+    for block in doctree.findall(nodes.literal_block):
+        if block.get("language") == "toml":
+            try:
+                name = tomllib.loads(block.astext()).get("name")
+            except tomllib.TOMLDecodeError:
+                continue
+            if name:
+                Path(f"{name}.toml").write_text(block.astext())
+
+
+def run(block: nodes.literal_block, names: dict[str, Any], where: str) -> str:
+    printed = io.StringIO()
+    try:
+        code = compile(block.astext(), where, "exec")
+        quiet = contextlib.redirect_stderr(io.StringIO())
+        with contextlib.redirect_stdout(printed), quiet, warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            exec(code, names)
+    except Exception:
+        logger.warning("%s raised\n%s", where, traceback.format_exc(limit=-1))
+    return printed.getvalue()
+
+
+def saved(app: Sphinx, figure: Any, page: str, number: int, k: int) -> str:
+    """Save a figure where Sphinx finds it, and return its path from the page's folder."""
+    folder = Path(app.srcdir) / "reference" / "executed"
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"{page.replace('/', '_')}_{number}_{k}.png"
+    figure.savefig(path, dpi=110)
+    return "/" + str(path.relative_to(app.srcdir))
+
+
+def add_below(block: nodes.literal_block, printed: str, figures: list[str]) -> None:
+    parent = block.parent
+    at = parent.index(block) + 1
+    follows = parent[at] if at < len(parent) else None
+    shows_output = isinstance(follows, nodes.literal_block) and follows.get("language") in {
+        "text", "none", "default",
+    }  # fmt: skip
+    added: list[nodes.Node] = []
+    if printed.strip() and not shows_output:
+        added.append(nodes.literal_block(printed, printed, language="text", classes=["output"]))
+    added += [nodes.image(uri=path, alt="the figure that these lines draw") for path in figures]
+    for node in reversed(added):
+        parent.insert(at, node)
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    # Before Sphinx collects images, so that it copies these as well.
+    app.connect("doctree-read", execute_page, priority=100)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

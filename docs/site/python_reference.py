@@ -1,0 +1,74 @@
+"""Writes the pages of the Python reference: one for each public name, from its docstring."""
+
+from __future__ import annotations
+
+import inspect
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pendcore
+from pendcore import effects, events
+
+GROUPS = {
+    "Scenes": ["Scene", "Link", "Mobility", "Explanation"],
+    "Runs": ["simulate", "Solution", "Statistics", "RunError", "PendcoreWarning"],
+    "What a run can be trusted for": [
+        "Accuracy", "AccuracyError", "ErrorEstimate", "Defect", "LyapunovExponents", "lyapunov",
+        "HorizonWork", "horizon_work", "AccuracyCost", "accuracy_cost",
+    ],
+    "Energies and forces": ["Energy", "Ledger", "LargestReaction"],
+    "Cases and files": ["Case", "read_case", "load"],
+    "Angles": ["angles_from_vertical", "angles_to_vertical"],
+}  # fmt: skip
+
+
+def public_names() -> set[str]:
+    """Return what `pendcore` offers, without its modules."""
+    names = getattr(pendcore, "__all__", None) or [
+        name for name in dir(pendcore) if not name.startswith("_")
+    ]
+    return {
+        name
+        for name in names
+        if not inspect.ismodule(getattr(pendcore, name))
+        and str(getattr(getattr(pendcore, name), "__module__", "")).startswith("pendcore")
+    }
+
+
+def write(folder: Path) -> None:
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    listed = {name for names in GROUPS.values() for name in names}
+    if listed != public_names():
+        raise ValueError(f"the reference's groups lack or have {listed ^ public_names()}")
+    sections = [
+        *((title, "pendcore", pendcore, names) for title, names in GROUPS.items()),
+        ("Effects", "pendcore.effects", effects, list(effects.__all__)),
+        ("Events", "pendcore.events", events, list(events.__all__)),
+    ]
+    index = ["Python", "======", "", "Everything public, from the docstrings.", ""]
+    hidden = []
+    for title, module, home, names in sections:
+        hidden += ["", ".. toctree::", "   :hidden:", f"   :caption: {title}", ""]
+        index += [title, "-" * len(title), "", ".. list-table::", "   :widths: 30 70", ""]
+        for name in names:
+            page = f"{module}.{name}"
+            (folder / f"{page}.rst").write_text(page_of(page, getattr(home, name)))
+            index += [f"   * - :doc:`{name} <{page}>`", f"     - {first_line(getattr(home, name))}"]
+            hidden.append(f"   {name} <{page}>")
+        index.append("")
+    (folder / "index.rst").write_text("\n".join(index + hidden) + "\n")
+
+
+def first_line(thing: Any) -> str:
+    return (inspect.getdoc(thing) or "").partition("\n")[0].replace("*", "\\*").replace("`", "")
+
+
+def page_of(path: str, thing: Any) -> str:
+    name = path.rpartition(".")[2]
+    directive = "autofunction" if inspect.isroutine(thing) else "autoclass"
+    lines = [name, "=" * len(name), "", f".. {directive}:: {path}"]
+    if directive == "autoclass" and not issubclass(thing, BaseException):
+        lines += ["   :members:", "   :inherited-members: list, tuple, object, int, Mapping"]
+    return "\n".join(lines) + "\n"

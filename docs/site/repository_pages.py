@@ -1,0 +1,46 @@
+"""A Sphinx extension for pages that are written to be read in the repository, too.
+
+A link to an example leads to its page. A link to another file that is no page (a test, a header, a
+case) becomes a download, a link to a folder plain text. A README lists the pages of its folder for
+the site's navigation.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+from sphinx.application import Sphinx
+
+LINK = re.compile(r"\[([^\]]*)\]\(((?!https?://|mailto:|#)[^)#\s]+)(#[^)\s]*)?\)")
+
+
+def for_the_site(app: Sphinx, page: str, source: list[str]) -> None:
+    if not (Path(app.srcdir) / f"{page}.md").exists() or page.startswith("examples/"):
+        return
+    folder = (Path(app.srcdir) / page).parent
+
+    def replaced(match: re.Match[str]) -> str:
+        words, target, _ = match.groups()
+        if match.string[: match.start()].endswith("!"):
+            return match.group()
+        path = (folder / target).resolve()
+        inside = path.is_relative_to(Path(app.srcdir).resolve())
+        if (inside and path.suffix == ".md") or not path.exists():
+            return match.group()
+        if path.is_dir() or path.suffix == ".md":
+            return words
+        if (Path(app.srcdir) / "examples" / f"{path.stem}.md").exists() and path.suffix == ".py":
+            return f"[{words}](/examples/{path.stem}.md)"
+        label = words.replace("`", "")
+        return "{download}`" + f"{label} <{target}>`"
+
+    source[0] = LINK.sub(replaced, source[0])
+    if page.endswith("/README"):
+        source[0] += "\n\n:::{toctree}\n:hidden:\n:glob:\n\n*\n:::\n"
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    app.connect("source-read", for_the_site)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,0 +1,90 @@
+"""Every public name has examples in its docstring, and they do what they show."""
+
+from __future__ import annotations
+
+import doctest
+import inspect
+from collections.abc import Iterator
+from types import ModuleType
+from typing import Any
+
+import matplotlib as mpl
+import matplotlib.pyplot as plt
+import numpy as np
+import pendcore as pc
+import pytest
+from pendcore.scene import effect_description
+
+CLASSES = (pc.Case, pc.Link, pc.Scene, pc.Solution)
+"""The classes of which every public method has examples, too."""
+EXTRAS = {"Solution.to_pandas": "pandas", "Solution.to_xarray": "xarray"}
+
+
+def public() -> Iterator[tuple[str, Any]]:
+    """Yield what users may call, with its name."""
+    for module in (pc, pc.effects, pc.events):
+        for name in module.__all__:
+            thing = getattr(module, name)
+            if not isinstance(thing, ModuleType) and name != "__version__":
+                yield f"{module.__name__}.{name}".removeprefix("pendcore."), thing
+    for cls in CLASSES:
+        for name, thing in inspect.getmembers(cls, inspect.isroutine):
+            if not name.startswith("_"):
+                yield f"{cls.__name__}.{name}", thing
+    yield "Solution.__call__", pc.Solution.__call__
+
+
+PUBLIC = dict(public())
+
+
+def examples_of(docstring: str) -> list[doctest.Example]:
+    """Return the examples in the last section of a docstring, none if it is another one."""
+    before, _, section = docstring.rpartition("\nExamples\n--------\n")
+    return doctest.DocTestParser().get_examples(section) if before else []
+
+
+def complaints(name: str, docstring: str) -> str:
+    """Run the examples of a docstring; return what they do other than what they show."""
+    names = {"np": np, "pc": pc}
+    test = doctest.DocTest(examples_of(docstring), names, name, None, None, docstring)
+    told: list[str] = []
+    doctest.DocTestRunner(verbose=False).run(test, out=told.append)
+    return "".join(told)
+
+
+@pytest.mark.parametrize("name", PUBLIC)
+def test_the_examples_of_a_docstring_do_what_they_show(name, tmp_path, monkeypatch):
+    mpl.use("Agg")
+    monkeypatch.chdir(tmp_path)
+    docstring = inspect.getdoc(PUBLIC[name]) or ""
+    examples = examples_of(docstring)
+    assert examples, f"{name} has no section of examples at the end of its docstring"
+    assert examples[-1].want, f"{name}: the last example shows nothing"
+    if name in EXTRAS:
+        pytest.importorskip(EXTRAS[name])
+    told = complaints(name, docstring)
+    plt.close("all")
+    assert not told, f"\n{told}"
+
+
+def test_the_methods_of_solutions_and_scenes_are_among_the_names():
+    assert {"Scene.explain", "Scene.textbook", "Solution.resume", "Case.simulate"} <= {*PUBLIC}
+    assert {"Scene.replace", "effects.Motor", "events.Found", "simulate"} <= {*PUBLIC}
+
+
+def test_an_example_that_shows_something_else_is_found():
+    docstring = inspect.getdoc(pc.Scene.textbook)
+    assert complaints("right", docstring) == ""
+    assert "Expected" in complaints("wrong", docstring.replace("9.807)", "9.81)"))
+    assert examples_of(docstring.replace("Examples", "Notes")) == []
+
+
+def test_an_effect_that_has_no_example_of_its_own_is_shown_with_any_values(monkeypatch):
+    for table in ("EXAMPLES", "OUTCOMES"):
+        monkeypatch.setattr(effect_description, table, {})
+    for cls in (pc.effects.ViscousJoint, pc.effects.RodDrag, pc.effects.JointStop):
+        docstring = effect_description.docstring(cls.description)
+        first, second = examples_of(docstring)
+        assert first.source.startswith(f"effect = pc.effects.{cls.__name__}(")
+        assert second.want == f"'{cls.kind}'\n"
+        assert complaints(cls.kind, docstring) == ""
