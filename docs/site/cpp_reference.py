@@ -46,9 +46,11 @@ def section(home: Path, header: Path) -> list[str]:
 
 
 INTRODUCTION = """The wheel and a clone install a C++20 library as well: headers, a static
-library and a package for CMake. A project of yours needs three lines:
+library and a package for CMake. A project of yours needs five lines in its CMakeLists.txt:
 
 ```cmake
+cmake_minimum_required(VERSION 3.25)
+project(end_angles LANGUAGES CXX)
 find_package(pendcore REQUIRED)
 add_executable(end_angles end_angles.cpp)
 target_link_libraries(end_angles PRIVATE pendcore::pendcore)
@@ -62,5 +64,7 @@ CMake finds the package that Python installed when it is told where:
 ```sh
 python -c "import pendcore; print(pendcore.__path__[0])"   # the folder for the next line
 cmake -B build -Dpendcore_ROOT=FOLDER
+cmake --build build
+build/end_angles   # 0x1.1543db799e83fp+0 0x1.13b11ee0b2be5p-1, the bits of Python
 ```
 """

@@ -27,7 +27,7 @@ def for_the_site(app: Sphinx, page: str, source: list[str]) -> None:
             return match.group()
         path = (folder / target).resolve()
         inside = path.is_relative_to(Path(app.srcdir).resolve())
-        if (inside and path.suffix == ".md") or not path.exists():
+        if (inside and path.suffix in {".md", ".rst"}) or not path.exists():
             return match.group()
         if path.is_dir() or path.suffix == ".md":
             return words
