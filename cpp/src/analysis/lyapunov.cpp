@@ -121,7 +121,7 @@ class GrowthRecorder final : public Observer {
     if (!has_polynomial_) {
       polynomial_.resize(static_cast<std::size_t>(stepper.interpolant_degree() + 1) *
                          stepper.dimension());
-      stepper.finite_interpolant(h, polynomial_.data());
+      stepper.finite_interpolant(h, polynomial_, stepper.dimension());
       has_polynomial_ = true;
     }
     stepper.sample(polynomial_.data(), t_old, h, &t, 1, state_.data());

@@ -33,7 +33,7 @@ StepEnd Recorder::step_accepted(Stepper& stepper, const TwoDouble& t_old, double
   StepEnd end;
   // This comes before anything is kept: it may evaluate right-hand sides, and a user's function may
   // throw.
-  if (finder_ || keeps_polynomials_) stepper.finite_interpolant(h, polynomial_.data());
+  if (finder_ || keeps_polynomials_) stepper.finite_interpolant(h, polynomial_, dimension_);
   if (finder_) {
     end = finder_->look(stepper, polynomial_.data(), t_old, h, t_new);
     if (end.has_too_many_turns()) return end;
@@ -106,7 +106,7 @@ void Recorder::sample_step(Stepper& stepper, const TwoDouble& t_old, double h, d
   if (end > first) {
     for (std::size_t k = first; k < end; ++k) solution_.t.push_back(samples[k]);
     solution_.states.resize(end * dimension_);
-    stepper.finite_interpolant(h, polynomial_.data());
+    stepper.finite_interpolant(h, polynomial_, dimension_);
     stepper.sample(polynomial_.data(), t_old, h, samples.data() + first,
                    static_cast<int>(end - first), solution_.states.data() + first * dimension_);
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "pendcore/arithmetic/two_double.hpp"
@@ -57,8 +58,18 @@ class Stepper {
   virtual void interpolant(double h, double* coefficients) = 0;
   /// The same, or a straight line to the new state where the interpolant overflows although the new
   /// state does not. This happens with tolerances of 1, or with laws of 1e145 times a rate. The
-  /// motion has its line, and quadratures have theirs: neither depends on the other.
-  void finite_interpolant(double h, double* coefficients);
+  /// motion has its line, and quadratures have theirs: neither depends on the other. `size` is the
+  /// dimension: whoever asks at every step knows it.
+  void finite_interpolant(double h, std::span<double> coefficients, std::size_t size) {
+    interpolant(h, coefficients.data());
+    // An overflow in a stage, or in a term of a series, shows in the highest coefficient as well:
+    // only that one is looked at.
+    double zero = 0.0;
+    for (const double x : coefficients.last(size)) zero += 0.0 * x;  // NaN, unless all are finite
+    if (zero != 0.0) straighten(coefficients.data());
+  }
+  /// Puts straight lines in the place of interpolants that overflow.
+  void straighten(double* coefficients);
 
   /// The values of such a polynomial for a step of size h from `start`, at `count` times: (count,
   /// dimension) row-major.

@@ -222,7 +222,7 @@ class Run {
     if (t.high == integrator_.t.high) return true;
     const std::size_t rows = stepper_.interpolant_degree() + 1;
     std::vector<double> polynomial(rows * stepper_.dimension());
-    stepper_.finite_interpolant(h, polynomial.data());
+    stepper_.finite_interpolant(h, polynomial, stepper_.dimension());
     stepper_.sample(polynomial.data(), {}, 1.0, &theta, 1, state_.data());
     stepper_.get_derivative(rate_.data());
     stepper_.start(state_.data(), rate_.data());
