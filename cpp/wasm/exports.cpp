@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "pendcore/arithmetic/instruction_set.hpp"
 #include "pendcore/pendcore.hpp"
 
 #define EXPORTED(name) [[clang::export_name(#name)]]
@@ -156,7 +155,7 @@ const double* out(std::vector<double> numbers) {
 
 extern "C" {
 
-// Buffers.
+// JavaScript writes text and numbers into these two buffers.
 
 EXPORTED(text_buffer) char* text_buffer(std::size_t size) {
   text_in.resize(size);
@@ -167,7 +166,7 @@ EXPORTED(number_buffer) double* number_buffer(std::size_t count) {
   return numbers_in.data();
 }
 
-// Scenes.
+// These make a scene.
 
 EXPORTED(begin_scene) void begin_scene(double gravity) {
   draft = {.links = {}, .gravity = gravity};
@@ -198,7 +197,7 @@ EXPORTED(end_scene) const Scene* end_scene() {
 }
 EXPORTED(free_scene) void free_scene(const Scene* scene) { delete scene; }
 
-// Runs.
+// These make a run.
 
 EXPORTED(begin_options) void begin_options() { options = Options(); }
 /// The text is the option's name.
@@ -225,7 +224,7 @@ EXPORTED(resume) const Run* resume_run(const Run* run, double t_end) {
 }
 EXPORTED(free_run) void free_run(const Run* run) { delete run; }
 
-// What is known of a run.
+// These tell the results of a run.
 
 EXPORTED(count) std::size_t count(const Run* run) { return run->solution.t.size(); }
 EXPORTED(dimension) std::size_t dimension(const Run* run) {
@@ -264,7 +263,7 @@ EXPORTED(hash) std::uint64_t hash(const Run* run) {
   return h;
 }
 
-// What is known of a state of a scene, which is given as numbers.
+// These evaluate a scene in a state, which JavaScript has put into the numbers.
 
 EXPORTED(accelerations) const double* accelerations_of(const Scene* scene, double t) {
   const State state = state_in(*scene);

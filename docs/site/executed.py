@@ -89,8 +89,8 @@ def run(block: nodes.literal_block, names: dict[str, Any], where: str) -> str:
 
 
 def saved(app: Sphinx, figure: Any, page: str, number: int, k: int) -> str:
-    """Save a figure where Sphinx finds it, and return its path from the page's folder."""
-    folder = Path(app.srcdir) / "reference" / "executed"
+    """Save a figure where Sphinx finds it, and return its path from the folder of all pages."""
+    folder = Path(app.srcdir) / "executed"
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{page.replace('/', '_')}_{number}_{k}.png"
     figure.savefig(path, dpi=110)

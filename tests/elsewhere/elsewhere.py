@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
 import subprocess
 import sys
 import time
@@ -32,7 +33,7 @@ RECORDED = ROOT / "tests/cpp/trajectory_hash.txt"
 TOOLCHAINS = ROOT / "cpp/cmake/machines"
 BEGIN, END = "<!-- elsewhere: begin -->\n", "<!-- elsewhere: end -->"
 FMA_CASES = 10_000_000
-PROCESSORS = ("aarch64", "riscv64", "s390x")
+PROCESSORS = {"aarch64": "ARM, 64 bits", "riscv64": "RISC-V, 64 bits", "s390x": "IBM Z, big-endian"}
 WEBASSEMBLY = "wasm32"
 CLANG = "clang"
 CONTRACTED = "aarch64"
@@ -68,10 +69,9 @@ class Machine:
 
 def machines_of(build: str) -> list[Machine]:
     """Return the machines that run what is built under that name."""
-    abouts = {"aarch64": "ARM, 64 bits", "riscv64": "RISC-V, 64 bits", "s390x": "IBM Z, big-endian"}
-    if build in abouts:
+    if build in PROCESSORS:
         emulator = (f"qemu-{build}-static", "-L", f"/usr/{build}-linux-gnu")
-        return [Machine(abouts[build], build, emulator)]
+        return [Machine(PROCESSORS[build], build, emulator)]
     if build == CLANG:
         return [Machine("this machine, clang 22", build, ())]
     node = ("node", "--experimental-wasm-relaxed-simd", str(ROOT / "cpp/wasm/run.mjs"))
@@ -85,7 +85,7 @@ def machines_of(build: str) -> list[Machine]:
 
 
 def hashes_in(text: str) -> dict[str, str]:
-    return dict(line.rsplit(" ", 1) for line in text.splitlines() if " " in line)
+    return dict(re.findall(r"^(.+) ([0-9a-f]{16})$", text, re.MULTILINE))
 
 
 def built(build: str, contraction: str = "off") -> Path:

@@ -31,6 +31,7 @@ function outcome({ scene, start, options, at, t_longer }) {
       method: run.method,
       message: run.message,
       accepted: run.statistics.accepted,
+      hash: run.hash,
       run: digest(run.t, run.states),
       at: digest(run.at(at)),
       longer: digest(longer.t, longer.states),

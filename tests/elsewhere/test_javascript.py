@@ -156,6 +156,15 @@ def test_a_run_has_the_bits_of_python(name: str, outcomes: dict[str, dict[str, A
     )  # fmt: skip
 
 
+def test_the_hash_of_a_run_is_the_recorded_one() -> None:
+    scene = {"links": [{"mass": 1, "length": 1, "center": 0.5, "inertia": 1 / 12}] * 2}
+    start = {"q0": [0.25 * np.pi, np.pi / 3], "t_end": 60}
+    case = {"scene": scene, "start": start, "options": {"method": "dopri5"}, "at": AT}
+    (found,) = run_in_javascript([case])
+    recorded = HERE.parent / "cpp/trajectory_hash.txt"
+    assert recorded.read_text().splitlines()[0] == f"textbook {found['hash']}"
+
+
 @pytest.mark.parametrize(
     ("changed", "message"),
     [
