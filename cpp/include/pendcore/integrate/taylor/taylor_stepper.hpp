@@ -261,9 +261,17 @@ class Taylor final : public Stepper {
   void write_powers(double h, int dimension, double* coefficients) const {
     const double x = stays_ ? 0.0 : h / memory_.sigma;
     powers_of_step_(&memory_, x, n_, row_, dimension, coefficients);
+    if (!(std::abs(x) <= no_large_powers) && !std::isfinite(power_of(x, memory_.order))) {
+      write_large_powers(x, dimension, coefficients);
+    }
+  }
+  /// The powers of a smaller number are finite at every order; a usual step has no larger one.
+  static constexpr double no_large_powers = 0x1p8;
+  static_assert(8 * highest_order < std::numeric_limits<double>::max_exponent);
+  static double power_of(double x, int order) {
     double power = 1.0;
-    for (int k = 1; k <= memory_.order; ++k) power *= x;
-    if (!std::isfinite(power)) write_large_powers(x, dimension, coefficients);
+    for (int k = 1; k <= order; ++k) power *= x;
+    return power;
   }
   /// The same where x^k overflows: the coefficient, perhaps zero, is multiplied by x k times.
   void write_large_powers(double x, int dimension, double* coefficients) const {
