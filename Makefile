@@ -45,7 +45,7 @@ test-all: lint tidy build-bench $(DONE)/test-requirements $(DONE)/fuzz-requireme
 	@sh setup/debian_packages.sh octave pandoc
 	$(CPP_TESTS)
 	$(PYTEST) --full
-	$(MAKE) sanitize threads elsewhere fuzz-readers fuzz CASES=20000
+	$(MAKE) sanitize threads elsewhere wheel site fuzz-readers fuzz CASES=20000
 
 # Where these are missing, tests that compare with them are skipped.
 references: $(DONE)/error-requirements $(DONE)/bench-requirements  ## installs what tests compare pendcore with
@@ -122,7 +122,7 @@ wheel: $(DONE)/build-requirements $(DONE)/wheel-requirements  ## dist/: a wheel 
 	cd $(WHEELS) && venv/bin/python $(CURDIR)/tests/packaging/installed.py
 	ls -l dist
 
-# The pages are built from a copy, beside which generated ones stand.
+# The pages are built from a copy, into which the generated ones are written.
 SITE := build/site
 site: $(DONE)/installed $(DONE)/site-requirements  ## the documentation as a site: build/site/html/index.html
 	rm -rf $(SITE)/source && mkdir -p $(SITE)/source

@@ -5,13 +5,13 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
-#include <cmath>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "pendcore/arithmetic/bits.hpp"
 
 namespace pendcore::bindings {
 
@@ -21,12 +21,8 @@ namespace py = pybind11;
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast |
                                       py::detail::npy_api::NPY_ARRAY_ALIGNED_>;
 
-/// The sign of a computed NaN differs between processors; here it has none.
 inline void give_nan_one_sign(Array& numbers) {
-  double* const first = numbers.mutable_data();
-  for (py::ssize_t i = 0; i < numbers.size(); ++i) {
-    if (std::isnan(first[i])) first[i] = std::numeric_limits<double>::quiet_NaN();
-  }
+  pendcore::give_nan_one_sign({numbers.mutable_data(), static_cast<std::size_t>(numbers.size())});
 }
 
 inline py::str string(std::string_view text) { return {text.data(), text.size()}; }

@@ -125,6 +125,8 @@ py::list effect_descriptors() {
     row["account"] = string(account_name(Kind::info.account));
     row["bounds_joint"] = Kind::info.bounds_joint;
     row["jumps_or_sticks"] = Kind::info.jumps_or_sticks;
+    row["examples"] = string(Kind::info.examples);
+    row["outcome"] = string(Kind::info.outcome);
     row["parameters"] = parameters_of(effect);
     result.append(row);
   });

@@ -2,7 +2,6 @@
 
 #include <pybind11/stl.h>
 
-#include <algorithm>
 #include <optional>
 #include <string>
 
@@ -32,12 +31,9 @@ struct Taken {
   void into(std::optional<Store>& store) const {
     if (value.is_none()) return;
     const std::optional<std::string> word = valid_text();
-    const auto* const found = word ? std::ranges::find(store_names, *word) : store_names.end();
-    if (found == store_names.end()) {
-      throw py::value_error(name_and_value() +
-                            ": must be \"dense\", \"steps\", \"times\" or \"end\"");
-    }
-    store = static_cast<Store>(found - store_names.begin());
+    const std::optional<Store> found = word ? find_store(*word) : std::nullopt;
+    if (!found) throw py::value_error(name_and_value() + ": " + std::string(must_be_store));
+    store = found;
   }
 
   void into(std::vector<double>& tolerances) const {

@@ -18,8 +18,7 @@ endif()
 set(pendcore_optimisation $<$<CONFIG:Release>:-O2>)
 
 # Two things make GCC compile an eighth faster: it collects its garbage later, for 200 MB more of
-# memory, and leaves out a pass that eliminates what tree passes have eliminated before it. Explicit
-# steps (simulate/steppers.cpp) need that pass: without it they have 7 % more instructions.
+# memory, and leaves out a pass that eliminates what tree passes have eliminated before it.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   list(APPEND pendcore_optimisation
        $<$<CONFIG:Release>:--param=ggc-min-heapsize=500000> $<$<CONFIG:Release>:-fno-gcse>)

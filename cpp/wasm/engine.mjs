@@ -142,7 +142,7 @@ export function imports(host) {
       size += length;
     }
     const whole = lines[file].split("\n");
-    lines[file] = whole.pop(); // what has no end yet
+    lines[file] = whole.pop(); // the beginning of a line that has no end yet
     for (const line of whole) host.print?.(line, file);
     view().setUint32(written, size, true);
     return SUCCESS;

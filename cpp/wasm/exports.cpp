@@ -4,14 +4,13 @@
 // becomes a scene or a run, which is an address until it is freed. Text and numbers come in through
 // two buffers. Numbers go out as addresses, which hold until the next call.
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "pendcore/arithmetic/bits.hpp"
 #include "pendcore/pendcore.hpp"
 
 #define EXPORTED(name) [[clang::export_name(#name)]]
@@ -90,14 +89,6 @@ bool fill(Struct& effect, std::string_view name, const std::string& where) {
   return found;
 }
 
-Store store_called(std::string_view word) {
-  for (std::size_t i = 0; i < store_names.size(); ++i) {
-    if (store_names[i] == word) return static_cast<Store>(i);
-  }
-  throw std::invalid_argument("store = \"" + std::string(word) +
-                              "\": must be \"dense\", \"steps\", \"times\" or \"end\"");
-}
-
 /// Sets the option called `name` from the numbers given, or from a word.
 template <class Option>
 void set_option(const std::string& name, const std::string* word) {
@@ -108,7 +99,10 @@ void set_option(const std::string& name, const std::string* word) {
     value = *word;
   } else if constexpr (std::same_as<Value, std::optional<Store>>) {
     if (word == nullptr) throw std::invalid_argument(name + ": must be a word");
-    value = store_called(*word);
+    value = find_store(*word);
+    if (!value) {
+      throw std::invalid_argument((name + " = \"" + *word + "\": ").append(must_be_store));
+    }
   } else if constexpr (std::same_as<Value, std::vector<Event>>) {
     throw std::invalid_argument(name + ": not offered to JavaScript");
   } else {
@@ -145,9 +139,7 @@ State state_in(const Scene& scene) {
 
 const double* out(std::vector<double> numbers) {
   numbers_out = std::move(numbers);
-  for (double& x : numbers_out) {  // the sign of a computed NaN differs between processors
-    if (std::isnan(x)) x = std::numeric_limits<double>::quiet_NaN();
-  }
+  give_nan_one_sign(numbers_out);
   return numbers_out.data();
 }
 
@@ -250,17 +242,11 @@ EXPORTED(statistics) const double* statistics(const Run* run) {
 /// States at the times given as numbers, from the dense output: (times, dimension).
 EXPORTED(at) const double* at(const Run* run) { return out(run->solution.at(numbers_in)); }
 
-/// A hash of every bit of times, states and dense output (FNV-1a).
+/// A hash of every bit of times, states and dense output.
 EXPORTED(hash) std::uint64_t hash(const Run* run) {
-  std::uint64_t h = 0xcbf29ce484222325u;
   const Solution& solution = run->solution;
-  for (const auto* numbers : {&solution.t, &solution.states, &solution.dense.coefficients}) {
-    for (const double x : *numbers) {
-      auto bits = std::bit_cast<std::uint64_t>(x);
-      for (int byte = 0; byte < 8; ++byte, bits >>= 8) h = (h ^ (bits & 0xff)) * 0x100000001b3u;
-    }
-  }
-  return h;
+  const std::uint64_t h = hash_bits(hash_bits(solution.t), solution.states);
+  return hash_bits(h, solution.dense.coefficients);
 }
 
 // These evaluate a scene in a state, which JavaScript has put into the numbers.

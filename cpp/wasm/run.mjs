@@ -3,25 +3,29 @@
  *
  *     node --experimental-wasm-relaxed-simd cpp/wasm/run.mjs [--emulated] PROGRAM [ARGUMENT ...]
  *
- * Node 20 has the fused instruction only with that option. With --emulated, a b + c is computed from
- * sums and products whatever the engine offers. What is used, and by how many calls, is said on
- * standard error.
+ * Node 20 has the fused instruction only with that option. The program runs with that instruction,
+ * and an engine without it is an error. With --emulated, a b + c is computed from sums and products
+ * whatever the engine offers.
  */
 
 import { readFileSync } from "node:fs";
 import { fuses, imports, PendcoreError, withInstructions } from "./engine.mjs";
+
+function fail(why) {
+  console.error(why);
+  process.exit(1);
+}
 
 const words = process.argv.slice(2);
 const emulated = words[0] === "--emulated";
 if (emulated) words.shift();
 const given = readFileSync(words[0]);
 let bytes = given;
-if (!emulated && fuses()) {
+if (!emulated) {
+  if (!fuses()) fail("this engine has no instruction that fuses: give --emulated");
   const found = withInstructions(given);
+  if (found.calls === 0) fail(`${words[0]} has no call of pendcore_fma to replace`);
   bytes = found.bytes;
-  console.error(`fma by the engine's instruction, in ${found.calls} places`);
-} else {
-  console.error("fma from sums and products");
 }
 
 const host = {

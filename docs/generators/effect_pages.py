@@ -1,27 +1,19 @@
 """The pages in docs/effects, from the descriptions of the effects.
 
-docs/generators/write_effects.py writes them; further sections are in effect_sections.py. An example
-needs values that make sense together: the package has them for the present effects, as its
-docstrings show them, too, and an effect without an example is shown with values that its ranges
-allow.
+docs/generators/write_effects.py writes them; further sections are in effect_sections.py. The
+examples are those of the descriptions, as in the docstrings.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from math import inf
-from typing import Any
 
 import pendcore as pc
 from effect_sections import COMPILED, MORE
 from pendcore.run.energy import LOSSES
-from pendcore.scene import effect_examples
 from pendcore.scene.effect_class import KINDS, Effect, OwnEffect
-from pendcore.scene.effect_description import CAVEATS, Description, Parameter
-from pendcore.scene.effect_examples import BEFORE
-
-EXAMPLES = {kind: calls for kind, calls in effect_examples.EXAMPLES.items() if kind not in BEFORE}
-"""Those that need nothing before them."""
+from pendcore.scene.effect_description import CAVEATS, Description
 
 BOOKED = {
     "none": "Nothing: the effect does no work, or stores it as energy that `sol.energy()` counts.",
@@ -42,39 +34,22 @@ def pages() -> dict[str, str]:
     return {"README.md": _index(), **found}
 
 
-def kinds_table(folder: str = "../effects/") -> str:
+def kinds_table() -> str:
     """Return a table of the kinds, their keys and their pages."""
     rows = ["| kind | keys | |", "|---|---|---|"]
     for kind, cls in KINDS.items():
         if not issubclass(cls, OwnEffect):
             keys = ", ".join(f"`{p.name}`" for p in cls.description.parameters)
-            rows.append(f"| [`{kind}`]({folder}{kind}.md) | {keys} | {cls.description.sentence} |")
+            rows.append(
+                f"| [`{kind}`](../effects/{kind}.md) | {keys} | {cls.description.sentence} |"
+            )
     return "\n".join(rows) + "\n"
 
 
 def examples(cls: type[Effect]) -> list[Effect]:
-    """Return effects to show: those above, or one with any values that are allowed."""
+    """Return the effects that the examples of a kind make."""
     names = {name: getattr(pc.effects, name) for name in pc.effects.__all__} | {"inf": inf}
-    kind = cls.description.kind
-    if kind in EXAMPLES:
-        return [eval(text, names) for text in EXAMPLES[kind]]
-    values = {p.name: _some(p) for p in cls.description.parameters if p.required}
-    more = [p for p in cls.description.parameters if p.optional]
-    while True:
-        try:
-            return [cls(**values)]
-        except ValueError:  # some of what may be left out is needed
-            optional = more.pop(0)
-            values[optional.name] = _some(optional)
-
-
-def _some(parameter: Parameter) -> Any:
-    """Return a value that a parameter may have."""
-    if parameter.part:
-        cls = getattr(pc.effects, parameter.part)
-        return cls(**{p.name: _some(p) for p in cls.description.parameters if p.required})
-    whole = {"int": 1, "pair": (1.0, 2.0), "floats": (1.0, 2.0)}
-    return whole.get(parameter.type, 1.0)
+    return [eval(call, names) for call in cls.description.calls]
 
 
 def _page(cls: type[Effect]) -> str:
@@ -143,7 +118,7 @@ def _table(told: Description) -> Iterator[str]:
 
 
 def _python(effect: Effect, cls: type[Effect]) -> str:
-    shown = EXAMPLES[effect.kind][0] if isinstance(effect, OwnEffect) else repr(effect)
+    shown = cls.description.calls[0] if isinstance(effect, OwnEffect) else repr(effect)
     for name in pc.effects.__all__:
         shown = shown.replace(f"{name}(", f"pc.effects.{name}(")
     return f"""\

@@ -22,14 +22,16 @@ TITLES = {
 def write(headers: Path, folder: Path) -> None:
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
+    folders = {path.name for path in headers.iterdir() if path.is_dir()}
+    if folders != {*TITLES}:
+        raise ValueError(f"TITLES and the folders of headers differ in {folders ^ {*TITLES}}")
     for name, title in TITLES.items():
         found = sorted((headers / name).rglob("*.hpp"))
         text = [f"# {title}", "", f"Headers in `pendcore/{name}`.", ""]
         for header in found:
             text += section(headers / name, header)
         (folder / f"{name}.md").write_text("\n".join(text) + "\n")
-    program = (headers.parents[2] / "tests/consumer/end_angles.cpp").read_text()
-    about = INTRODUCTION.replace("{program}", program)
+    about = "The headers, from their comments. A first program: [](../../how_to/cpp.md)."
     lines = ["# C++", "", about, "", ":::{toctree}", ":maxdepth: 1", "", *TITLES, ":::"]
     (folder / "index.md").write_text("\n".join(lines) + "\n")
 
@@ -43,28 +45,3 @@ def section(home: Path, header: Path) -> list[str]:
     code = text[about.end() :] if about else text
     code = DIRECTIVE.sub("", code)
     return [*lines, ":::{dropdown} Declarations", "```cpp", code.strip(), "```", ":::", ""]
-
-
-INTRODUCTION = """The wheel and a clone install a C++20 library as well: headers, a static
-library and a package for CMake. A project of yours needs five lines in its CMakeLists.txt:
-
-```cmake
-cmake_minimum_required(VERSION 3.25)
-project(end_angles LANGUAGES CXX)
-find_package(pendcore REQUIRED)
-add_executable(end_angles end_angles.cpp)
-target_link_libraries(end_angles PRIVATE pendcore::pendcore)
-```
-
-```cpp
-{program}```
-
-CMake finds the package that Python installed when it is told where:
-
-```sh
-python -c "import pendcore; print(pendcore.__path__[0])"   # the folder for the next line
-cmake -B build -Dpendcore_ROOT=FOLDER
-cmake --build build
-build/end_angles   # 0x1.1543db799e83fp+0 0x1.13b11ee0b2be5p-1, the bits of Python
-```
-"""

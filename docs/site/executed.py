@@ -1,15 +1,17 @@
 """A Sphinx extension that executes the Python of every page while the site is built.
 
 The blocks of a page run from top to bottom in one namespace, in an empty folder. What a block
-prints stands below it, unless the page itself shows an output there; figures that it leaves open
-stand there, too. A block that raises an error is a warning of the build, which `make site` makes an
-error; a page that shows an error on purpose prints it. A case file that the page shows stands in
+prints stands below it. If the page itself shows an output there, it must be the same but for spaces
+and what "..." stands for. Figures that a block leaves open stand below it, too. A block that
+raises an error is a warning of the build, which `make site` makes an error, and so is another
+output; a page that shows an error on purpose prints it. A case file that the page shows stands in
 the folder under its name. A page whose Python is parts of files says that it is not executed.
 """
 
 from __future__ import annotations
 
 import contextlib
+import doctest
 import io
 import os
 import re
@@ -56,7 +58,7 @@ def execute_page(app: Sphinx, doctree: nodes.document) -> None:
                 printed = run(block, names, f"{page}, block {number}")
                 figures = [saved(app, plt.figure(k), page, number, k) for k in plt.get_fignums()]
                 plt.close("all")
-                add_below(block, printed, figures)
+                add_below(block, printed, figures, f"{page}, block {number}")
         finally:
             os.chdir(before)
             sys.path.remove(folder)
@@ -97,13 +99,20 @@ def saved(app: Sphinx, figure: Any, page: str, number: int, k: int) -> str:
     return "/" + str(path.relative_to(app.srcdir))
 
 
-def add_below(block: nodes.literal_block, printed: str, figures: list[str]) -> None:
+def is_shown(output: str, printed: str) -> bool:
+    flags = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
+    return doctest.OutputChecker().check_output(f"{output}\n", printed, flags)
+
+
+def add_below(block: nodes.literal_block, printed: str, figures: list[str], where: str) -> None:
     parent = block.parent
     at = parent.index(block) + 1
     follows = parent[at] if at < len(parent) else None
     shows_output = isinstance(follows, nodes.literal_block) and follows.get("language") in {
         "text", "none", "default",
     }  # fmt: skip
+    if shows_output and not is_shown(follows.astext(), printed):
+        logger.warning("%s prints\n%sand the page shows\n%s", where, printed, follows.astext())
     added: list[nodes.Node] = []
     if printed.strip() and not shows_output:
         added.append(nodes.literal_block(printed, printed, language="text", classes=["output"]))

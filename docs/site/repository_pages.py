@@ -1,8 +1,8 @@
 """A Sphinx extension for pages that are written to be read in the repository, too.
 
 A link to an example leads to its page. A link to another file that is no page (a test, a header, a
-case) becomes a download, a link to a folder plain text. A README lists the pages of its folder for
-the site's navigation.
+case) becomes a download. A link to a folder, or to a Markdown file outside docs/, becomes plain
+text. A README lists the pages of its folder for the site's navigation.
 """
 
 from __future__ import annotations

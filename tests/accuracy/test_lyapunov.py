@@ -335,6 +335,8 @@ def test_printed_they_are_a_sentence() -> None:
         f"t = 0 to 50 s: an error grows by e in {1 / found.largest:.3g} s, tenfold in "
         f"{np.log(10) / found.largest:.3g} s"
     )
+    regular = pc.lyapunov(rods(2), [np.pi / 4, np.pi / 3], t_span=(0, 100))
+    assert str(regular).endswith("; the run is too short to tell this from growth that slows down")
     limited = pc.lyapunov(rods(2), [-2.0, -1.0], t_span=(0, 3000), max_steps=1000, transient=1)
     assert str(limited).endswith(f"; max_steps: {limited.message}")
     assert f"from t = 1 to {limited.t[-1]:.6g} s" in str(limited)

@@ -1,5 +1,5 @@
-// No step allocates: a long run asks for memory as often as a short one. And no run allocates a
-// matrix that it never needs.
+// No step of an explicit method allocates: a long run asks for memory as often as a short one. And
+// no run allocates a matrix that it never needs.
 #include <doctest/doctest.h>
 
 #include <atomic>

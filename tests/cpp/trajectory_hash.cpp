@@ -2,32 +2,26 @@
 // the events that were found. trajectory_hash.txt has all lines. The lines up to `tiny` are older
 // than the effects: scenes without effects keep every bit. If you change a method's steps or an
 // effect's law, you change lines of that file; say so in CHANGELOG.md.
-#include <bit>
+#include <array>
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
 
+#include "pendcore/arithmetic/bits.hpp"
 #include "pendcore/pendcore.hpp"
 
 using namespace pendcore;
 
 namespace {
 
-std::uint64_t hash(std::uint64_t h, const std::vector<double>& numbers) {  // FNV-1a
-  for (const double x : numbers) {
-    auto bits = std::bit_cast<std::uint64_t>(x);
-    for (int byte = 0; byte < 8; ++byte, bits >>= 8) h = (h ^ (bits & 0xff)) * 0x100000001b3u;
-  }
-  return h;
-}
-
 void print(const char* name, const Solution& solution) {
-  std::uint64_t h = hash(0xcbf29ce484222325u, solution.t);
-  h = hash(h, solution.states);
-  h = hash(h, solution.dense.coefficients);
+  std::uint64_t h = hash_bits(solution.t);
+  h = hash_bits(h, solution.states);
+  h = hash_bits(h, solution.dense.coefficients);
   for (const FoundEvent& found : solution.found) {
-    h = hash(h, {found.t, static_cast<double>(found.event), static_cast<double>(found.direction)});
-    h = hash(hash(h, found.y), found.y_before);
+    h = hash_bits(h, std::array{found.t, static_cast<double>(found.event),
+                                static_cast<double>(found.direction)});
+    h = hash_bits(hash_bits(h, found.y), found.y_before);
   }
   std::printf("%s %016" PRIx64 "\n", name, h);
 }

@@ -13,6 +13,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pendcore as pc
 import pytest
+from pendcore import effects
 from pendcore.scene import effect_description
 
 CLASSES = (pc.Case, pc.Link, pc.Scene, pc.Solution)
@@ -79,12 +80,14 @@ def test_an_example_that_shows_something_else_is_found():
     assert examples_of(docstring.replace("Examples", "Notes")) == []
 
 
-def test_an_effect_that_has_no_example_of_its_own_is_shown_with_any_values(monkeypatch):
-    for table in ("EXAMPLES", "OUTCOMES"):
-        monkeypatch.setattr(effect_description, table, {})
-    for cls in (pc.effects.ViscousJoint, pc.effects.RodDrag, pc.effects.JointStop):
-        docstring = effect_description.docstring(cls.description)
-        first, second = examples_of(docstring)
-        assert first.source.startswith(f"effect = pc.effects.{cls.__name__}(")
-        assert second.want == f"'{cls.kind}'\n"
-        assert complaints(cls.kind, docstring) == ""
+@pytest.mark.parametrize("kind", effects.kinds())
+def test_an_example_whose_outcome_is_not_told_shows_the_kind(kind):
+    told = effects.kinds()[kind].description._replace(outcome="")
+    docstring = effect_description.docstring(told)
+    assert examples_of(docstring)[-1].want == f"'{kind}'\n"
+    assert complaints(kind, docstring) == ""
+
+
+def test_an_effect_without_examples_has_no_section_of_them():
+    told = pc.effects.Motor.description._replace(examples="", outcome="")
+    assert "Examples" not in effect_description.docstring(told)

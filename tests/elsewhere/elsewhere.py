@@ -73,7 +73,7 @@ def machines_of(build: str) -> list[Machine]:
         emulator = (f"qemu-{build}-static", "-L", f"/usr/{build}-linux-gnu")
         return [Machine(PROCESSORS[build], build, emulator)]
     if build == CLANG:
-        return [Machine("this machine, clang 22", build, ())]
+        return [Machine("x86-64, clang 22", build, ())]
     node = ("node", "--experimental-wasm-relaxed-simd", str(ROOT / "cpp/wasm/run.mjs"))
     return [
         Machine(about, build, runner, (COUNTS_ALLOCATIONS, *CATCH), has_threads=False)

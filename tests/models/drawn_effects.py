@@ -26,7 +26,7 @@ RANGES: dict[str, st.SearchStrategy[float]] = {
     "finite and >= 1": st.floats(min_value=1, allow_infinity=False),
     "> 0, inf for no limit": positive | st.just(float("inf")),
     "0 to 1": st.floats(0, 1),
-    "a number, -inf or inf for none": st.floats(allow_nan=False),
+    "a number; -inf or inf for none": st.floats(allow_nan=False),
 }
 
 

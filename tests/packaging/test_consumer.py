@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from importlib.metadata import entry_points, version
@@ -42,3 +43,14 @@ def test_an_outside_project_gets_the_bits_of_python_whatever_its_flags(
     printed = [float.fromhex(word) for word in run(tmp_path / "end_angles").split()]
     solution = pc.simulate(pc.Scene.textbook(), q0=[np.pi / 4, np.pi / 3], t_span=(0, 5))
     assert printed == list(solution.q[-1])
+
+
+def test_the_page_shows_this_project_and_what_it_prints() -> None:
+    page = (PROJECT.parents[1] / "docs/how_to/cpp.md").read_text()
+    assert f"```cpp\n{(PROJECT / 'end_angles.cpp').read_text()}```" in page
+    for line in (PROJECT / "CMakeLists.txt").read_text().splitlines()[-2:]:
+        assert f"\n{line}\n" in page
+    solution = pc.simulate(pc.Scene.textbook(), q0=[np.pi / 4, np.pi / 3], t_span=(0, 5))
+    shown = re.search(r"build/end_angles +# (\S+) (\S+), the bits", page)
+    assert shown
+    assert [float.fromhex(word) for word in shown.groups()] == list(solution.q[-1])

@@ -165,7 +165,7 @@ def test_a_value_out_of_range_is_told_with_the_range(case):
 def test_a_scene_alone_is_told_what_is_missing():
     with pytest.raises(TypeError, match=r"^q0 is missing: give"):
         pc.simulate(pc.Scene.textbook())
-    with pytest.raises(TypeError, match=r"^t_span is missing: give"):
+    with pytest.raises(TypeError, match=r"^t_span is missing: write"):
         pc.simulate(pc.Scene.textbook(), 1)
 
 

@@ -118,9 +118,12 @@ void StiffSwitchingStepper::change() {
 
 void StiffSwitchingStepper::interpolant(double h, double* coefficients) {
   now().interpolant(h, coefficients);
-  const int size = dimension();
-  std::fill(coefficients + static_cast<std::ptrdiff_t>(now().interpolant_degree() + 1) * size,
-            coefficients + static_cast<std::ptrdiff_t>(interpolant_degree() + 1) * size, 0.0);
+  const std::ptrdiff_t size = dimension();
+  const double* const highest = coefficients + now().interpolant_degree() * size;
+  // The rows above have zeros, or NaN where the highest coefficient overflows: x - x.
+  for (int p = now().interpolant_degree() + 1; p <= interpolant_degree(); ++p) {
+    for (int i = 0; i < size; ++i) coefficients[p * size + i] = highest[i] - highest[i];
+  }
 }
 
 std::vector<double> StiffSwitchingStepper::saved_state() const {

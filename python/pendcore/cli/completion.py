@@ -12,7 +12,7 @@ to switch completion on, for this user:
   bash   pendcore completion bash >> ~/.bashrc
   zsh    pendcore completion zsh >> ~/.zshrc
   fish   pendcore completion fish > ~/.config/fish/completions/pendcore.fish
-and open a new shell.
+and open a new shell. It needs the package argcomplete, which is in pendcore's extra "completion".
 """
 SHELLS = ("bash", "zsh", "fish")
 

@@ -33,6 +33,9 @@ if TYPE_CHECKING:
 
 TIMES = 201
 """The number of times in the result, unless they are given."""
+TELLING = 10.0
+"""Errors of a regular motion grow in proportion to time: by less than e to this power in 20,000
+characteristic times. Growth beyond it tells of an exponent."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -123,6 +126,8 @@ class LyapunovExponents:
         if self.time < inf:
             told += f": an error grows by e in {self.time:.3g} s, tenfold in "
             told += f"{self.seconds_a_digit:.3g} s"
+            if self.largest * abs(self.t[-1] - self.since) < TELLING:
+                told += "; the run is too short to tell this from growth that slows down"
         return told if self.success else f"{told}; {self.status}: {self.message}"
 
     def plot(self, ax: Any = None, **line_properties: Any) -> list[Line2D]:

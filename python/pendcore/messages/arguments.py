@@ -32,7 +32,7 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
     for meant, others in OTHER_NAMES.items():
         if meant in names and name.replace("_", "") in [x.replace("_", "") for x in others]:
             return f"did you mean {meant!r}?"
-    near = get_close_matches(name, names, n=1, cutoff=0.5)
+    near = get_close_matches(name, names, n=1, cutoff=0.55)
     return f"did you mean {near[0]!r}?" if near else f"known are {', '.join(names)}"
 
 
@@ -128,7 +128,9 @@ def whole_number(name: str, value: Any, most: int = 2**31 - 1) -> int:
 def two_times(t_span: Any) -> tuple[Any, Any]:
     """Return what is given as the start and the end of a run; the core checks them as times."""
     if t_span is None:
-        raise TypeError("t_span is missing: give (t_start, t_end), in s")
+        raise TypeError(
+            "t_span is missing: write t_span=(t_start, t_end), in s; the third argument is qd0"
+        )
     try:
         t_start, t_end = t_span
     except (TypeError, ValueError):

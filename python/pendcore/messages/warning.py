@@ -20,7 +20,7 @@ class PendcoreWarning(UserWarning):
     ...     warnings.simplefilter("always")
     ...     sol = pc.simulate(pc.Scene.textbook(), q0=[45, 60], t_span=(0, 1))
     >>> print(told[0].message)
-    q0[0] = 45.0 rad: that is 2578 degrees: angles are in radians
+    q0[0] = 45.0 rad: that is 2578 degrees: angles are in radians (numpy.radians converts degrees)
     """
 
 

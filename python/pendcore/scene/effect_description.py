@@ -13,7 +13,6 @@ from typing import Any, NamedTuple
 
 from pendcore import _core
 from pendcore.messages.arguments import in_unit
-from pendcore.scene.effect_examples import BEFORE, EXAMPLES, OUTCOMES
 
 NUMBERS = {"int", "float", "optional float", "pair", "floats"}
 """The types of parameters that are numbers; the others are a part, an address or a function."""
@@ -69,7 +68,7 @@ class Description(NamedTuple):
     Attributes
     ----------
     name : str
-        Of the class.
+        The name of the class.
     sentence : str
         What it is.
     parameters : tuple of Parameter
@@ -84,6 +83,10 @@ class Description(NamedTuple):
         Whether the effect may forbid a start that is next to one that it allows.
     jumps_or_sticks : bool
         Whether the motion jumps or sticks under it, each time at an instant of its own.
+    examples : str
+        Calls that make one, a line each, after lines that prepare them.
+    outcome : str
+        What the first of them does to the textbook's rods within 1 s; empty if that is not known.
     """
 
     name: str
@@ -95,6 +98,19 @@ class Description(NamedTuple):
     account: str = "none"
     bounds_joint: bool = False
     jumps_or_sticks: bool = False
+    examples: str = ""
+    outcome: str = ""
+
+    @property
+    def calls(self) -> tuple[str, ...]:
+        """The calls among the examples."""
+        return tuple(x for x in self.examples.splitlines() if x.startswith(f"{self.name}("))
+
+    @property
+    def preparation(self) -> tuple[str, ...]:
+        """The lines before them."""
+        lines = self.examples.splitlines()
+        return tuple(lines[: len(lines) - len(self.calls)])
 
 
 CAVEATS = {
@@ -127,6 +143,8 @@ USER = Description(
             default=None,
         ),
     ),
+    examples="User(function=lambda t, q, qd: -0.1 * qd)",
+    outcome="user: -1.305 J",
 )
 
 
@@ -194,17 +212,19 @@ def _lines(described: Description) -> Iterator[str]:
     if described.account in CAVEATS:
         yield ""
         yield from wrap(CAVEATS[described.account], 92)
-    yield from ("", "Examples", "--------")
-    yield from _effect_example(described) if described.kind else _part_example(described.name)
+    example = [*(_effect_example(described) if described.kind else _part_example(described.name))]
+    if example:
+        yield from ("", "Examples", "--------", *example)
 
 
 def _effect_example(effect: Description) -> Iterator[str]:
-    """Yield lines that run the textbook's scene with an effect."""
-    if effect.kind in BEFORE:
-        yield BEFORE[effect.kind]
-    call = EXAMPLES[effect.kind][0] if effect.kind in EXAMPLES else _any_call(effect)
-    yield _assignment(call, [p.part for p in effect.parameters if p.part])
-    if effect.kind not in OUTCOMES:
+    """Yield lines that run the textbook's scene with an effect, if it has an example."""
+    if not effect.calls:
+        return
+    for line in effect.preparation:
+        yield f"... {line}" if line.startswith((" ", "def ")) else f">>> {line}"
+    yield _assignment(effect.calls[0], [p.part for p in effect.parameters if p.part])
+    if not effect.outcome:
         yield from (">>> effect.kind", repr(effect.kind))
         return
     yield ">>> scene = pc.Scene.textbook().replace(effects=[effect])"
@@ -214,13 +234,13 @@ def _effect_example(effect: Description) -> Iterator[str]:
     else:
         booked = f"{{sol.energy().ledger.{effect.account}[-1]:.3f}} J"
         yield f'>>> print(f"{effect.account}: {booked}")'
-    yield OUTCOMES[effect.kind]
+    yield effect.outcome
 
 
 def _part_example(name: str) -> Iterator[str]:
-    """Yield lines that make an effect with a part, and show the part."""
+    """Yield lines that make an effect with a part, and show the part, if there is an example."""
     made = f"={name}("
-    for call in (call for calls in EXAMPLES.values() for call in calls if made in call):
+    for call in (call for effect in effects() for call in effect.calls if made in call):
         before, _, after = call.partition(made)
         ends = (k for k, sign in enumerate(after, 1) if sign == ")")
         end = next(k for k in ends if after[:k].count(")") > after[:k].count("("))
@@ -228,14 +248,6 @@ def _part_example(name: str) -> Iterator[str]:
         yield f">>> effect.{before.replace('(', ' ').split()[-1]}"
         yield f"{name}({after[:end]}"
         return
-
-
-def _any_call(effect: Description) -> str:
-    """Return a call with the required parameters, with values that most ranges allow."""
-    values = {"int": "1", "pair": "(1.0, 2.0)", "floats": "(1.0, 2.0)"}
-    needed = (p for p in effect.parameters if p.required)
-    given = ", ".join(f"{p.name}={values.get(p.type, '1.0')}" for p in needed)
-    return f"{effect.name}({given})"
 
 
 def _assignment(call: str, parts: Iterable[str] = ()) -> str:

@@ -31,7 +31,11 @@ struct DrivenPivot {
       .law = "x_0 = A_x sin(omega_x t + phase_x),  y_0 likewise;  or natural cubic splines",
       .source = "d'Alembert's principle",
       .account = Account::drive,
-      .has_series = true};
+      .has_series = true,
+      .examples =
+          "DrivenPivot(y=Sinusoid(amplitude=0.02, angular_frequency=90.0))\n"
+          "DrivenPivot(spline=Spline(t=(0.0, 1.0, 2.0), x=(0.0, 0.3, 0.0), y=(0.0, 0.0, 0.1)))",
+      .outcome = "drive: -0.484 J"};
   static constexpr Hooks hooks{
       .modes = true, .next_time = true, .span = true, .compiled = true, .check = true};
   static constexpr auto parameters = std::tuple{

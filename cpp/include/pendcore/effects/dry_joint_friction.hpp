@@ -27,7 +27,9 @@ struct DryJointFriction {
       .law = "tau = -(t_c + (t_s - t_c) exp(-abs(w/w_s)^p)) sgn w,  w = phid",
       .source = "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083, section 3",
       .account = Account::dry,
-      .jumps_or_sticks = true};
+      .jumps_or_sticks = true,
+      .examples = "DryJointFriction(joint=1, coulomb=0.2, static=0.3, stribeck_velocity=0.05)",
+      .outcome = "dry: 0.323 J"};
   static constexpr Hooks hooks{.couple = true,
                                .law = true,
                                .group = true,

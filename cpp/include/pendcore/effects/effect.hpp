@@ -56,6 +56,11 @@ struct EffectInfo {
   /// Whether the Taylor series support the effect, if it is part of the equations of motion. Among
   /// effects that are laws, couples have a series and others do not.
   bool has_series = false;
+  /// Calls in Python that make such an effect, with values that make sense together, a line each;
+  /// lines before them prepare it. The documentation shows them and runs the first.
+  std::string_view examples = {};
+  /// What that one does to the textbook's rods within 1 s: its entry in the ledger, or the angles.
+  std::string_view outcome = {};
 };
 
 /// Allowed values of a number.
@@ -69,7 +74,7 @@ constexpr std::string_view text(Range range) {
     case Range::at_least_one: return "finite and >= 1";
     case Range::positive_or_infinite: return "> 0, inf for no limit";
     case Range::share: return "0 to 1";
-    case Range::number: return "a number, -inf or inf for none";
+    case Range::number: return "a number; -inf or inf for none";
   }
   return "";
 }

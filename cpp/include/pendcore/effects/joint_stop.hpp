@@ -28,7 +28,11 @@ struct JointStop {
       .account = Account::impact,
       .bounds_joint = true,
       .jumps_or_sticks = true,
-      .has_series = true};
+      .has_series = true,
+      .examples =
+          "JointStop(joint=2, range=(-0.5, 0.8), restitution=0.4)\n"
+          "JointStop(joint=1, range=(0.0, inf), restitution=0.8, capture_speed=0.001)",
+      .outcome = "impact: 0.563 J"};
   static constexpr Hooks hooks{.check = true};
   static constexpr auto parameters = std::tuple{
       parameter(&JointStop::joint, joint_number),

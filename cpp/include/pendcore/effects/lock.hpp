@@ -22,7 +22,11 @@ struct Lock {
       .law = "phi = constant",
       .source = "the textbook's mobility, 3 n - 2 c5 - c4, with two links made one",
       .bounds_joint = true,
-      .has_series = true};
+      .has_series = true,
+      .examples =
+          "Lock(joint=2)\n"
+          "Lock(joint=2, angle=0.5)",
+      .outcome = "q at 1 s: [2.26, 2.76] rad"};
   static constexpr Hooks hooks{};
   static constexpr auto parameters = std::tuple{
       parameter(&Lock::joint, joint_number),

@@ -36,7 +36,13 @@ struct Motor {
       .source =
           "Spong, Hutchinson, Vidyasagar, Robot Modeling and Control (2006), section 6.3, "
           "for PD control",
-      .account = Account::motor};
+      .account = Account::motor,
+      .examples =
+          "Motor(joint=1, constant=2.0)\n"
+          "Motor(joint=1, sinusoid=Sinusoid(amplitude=3.0, angular_frequency=6.0))\n"
+          "Motor(joint=2, table=Table(t=(0.0, 0.5, 2.0), torque=(0.0, 1.5, -1.5)))\n"
+          "Motor(joint=2, pd=PD(kp=40.0, kd=2.0, reference=0.3), limit=8.0)",
+      .outcome = "motor: 3.625 J"};
   static constexpr Hooks hooks{.couple = true,
                                .modes = true,
                                .next_time = true,

@@ -35,7 +35,9 @@ struct RodDrag {
           "f(s) = -k abs(w) w,  k = rho C_d d / 2,  w(s) is the speed across the rod relative to "
           "the air",
       .source = "Hoerner, Fluid-Dynamic Drag (1965), chapter 3, the cross-flow principle",
-      .account = Account::drag};
+      .account = Account::drag,
+      .examples = "RodDrag(link=2, drag_coefficient=1.2, diameter=0.03, wind=(4.0, 0.0))",
+      .outcome = "drag: 3.696 J"};
   static constexpr Hooks hooks{.law = true, .wind = true};
   static constexpr auto parameters = std::tuple{
       parameter(&RodDrag::link, link_number),

@@ -15,11 +15,14 @@ struct TorsionalSpring {
   double stiffness = 0.0;
   double rest_angle = 0.0;
 
-  static constexpr EffectInfo info{.name = "TorsionalSpring",
-                                   .kind = "torsional_spring",
-                                   .sentence = "A linear torsional spring in a joint.",
-                                   .law = "tau = -k (phi - phi_0),  V = k (phi - phi_0)^2 / 2",
-                                   .source = "Hooke's law"};
+  static constexpr EffectInfo info{
+      .name = "TorsionalSpring",
+      .kind = "torsional_spring",
+      .sentence = "A linear torsional spring in a joint.",
+      .law = "tau = -k (phi - phi_0),  V = k (phi - phi_0)^2 / 2",
+      .source = "Hooke's law",
+      .examples = "TorsionalSpring(joint=2, stiffness=30.0, rest_angle=0.5)",
+      .outcome = "q at 1 s: [2.239, 2.77] rad"};
   static constexpr Hooks hooks{.couple = true, .potential = true};
   static constexpr auto parameters = std::tuple{
       parameter(&TorsionalSpring::joint, joint_number),

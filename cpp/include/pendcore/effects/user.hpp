@@ -34,7 +34,14 @@ struct CompiledUser {
       .sentence = "An effect of the user's own, as a compiled function of t, q and qd.",
       .law = "Q += f(t, q, qd)",
       .source = "the user's",
-      .account = Account::user};
+      .account = Account::user,
+      .examples =
+          "from ctypes import CFUNCTYPE, POINTER, c_double, c_int, c_void_p\n"
+          "@CFUNCTYPE(None, c_double, c_int, *[POINTER(c_double)] * 3, c_void_p)\n"
+          "def damp(t, n, q, qd, Q, data):\n"
+          "    Q[0] -= 0.1 * qd[0]\n"
+          "CompiledUser(damp)",
+      .outcome = "user: -0.339 J"};
   static constexpr Hooks hooks{.check = true};
   static constexpr auto parameters = std::tuple{
       parameter(&CompiledUser::address,

@@ -26,7 +26,9 @@ struct ViscousJoint {
       .sentence = "Viscous damping in a joint, with a linear, a quadratic and a cubic term.",
       .law = "tau = -(b w + b2 w abs(w) + b3 w^3),  w = phid",
       .source = "Rayleigh, The Theory of Sound I (1877), section 81, for the linear term",
-      .account = Account::viscous};
+      .account = Account::viscous,
+      .examples = "ViscousJoint(joint=2, damping=0.05)",
+      .outcome = "viscous: 0.504 J"};
   static constexpr Hooks hooks{.couple = true, .modes = true, .warnings = true};
   static constexpr auto parameters = std::tuple{
       parameter(&ViscousJoint::joint, joint_number),

@@ -2,6 +2,7 @@
 /// What the integration loop sees of a method applied to a system: no tableau, no pendulum.
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <span>
 #include <vector>
@@ -24,7 +25,8 @@ class Stepper {
   virtual int controlled() const { return dimension(); }  ///< the first so many count in errors
   virtual int interpolant_degree() const = 0;             ///< the degree of the polynomial in theta
 
-  /// Sets the tolerances of each component that counts (controlled() numbers each).
+  /// Sets the tolerances of each component that counts (controlled() numbers each). It comes before
+  /// start(): a method may choose its order, and with it its memory, by them.
   virtual void set_tolerances(const double* rtol, const double* atol) = 0;
 
   /// Begins at y, where the right-hand side is dydt.
@@ -58,17 +60,18 @@ class Stepper {
   virtual void interpolant(double h, double* coefficients) = 0;
   /// The same, or a straight line to the new state where the interpolant overflows although the new
   /// state does not. This happens with tolerances of 1, or with laws of 1e145 times a rate. The
-  /// motion has its line, and quadratures have theirs: neither depends on the other. `size` is the
-  /// dimension: whoever asks at every step knows it.
-  void finite_interpolant(double h, std::span<double> coefficients, std::size_t size) {
+  /// motion has its line, and quadratures have theirs: neither depends on the other. The caller
+  /// passes dimension(), because a virtual call at every step costs time.
+  void finite_interpolant(double h, std::span<double> coefficients, std::size_t dimension) {
     interpolant(h, coefficients.data());
     // An overflow in a stage, or in a term of a series, shows in the highest coefficient as well:
-    // only that one is looked at.
-    double zero = 0.0;
-    for (const double x : coefficients.last(size)) zero += 0.0 * x;  // NaN, unless all are finite
-    if (zero != 0.0) straighten(coefficients.data());
+    // only that one is looked at. The sum is finite only if all its terms are.
+    double sum = 0.0;
+    for (const double x : coefficients.last(dimension)) sum += x;
+    if (!std::isfinite(sum)) [[unlikely]]
+      straighten(coefficients.data());
   }
-  /// Puts straight lines in the place of interpolants that overflow.
+  /// Puts straight lines in the place of the interpolants that overflow, if any do.
   void straighten(double* coefficients);
 
   /// The values of such a polynomial for a step of size h from `start`, at `count` times: (count,

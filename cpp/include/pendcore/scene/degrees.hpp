@@ -19,7 +19,7 @@ inline bool is_large_angle(double x) { return std::abs(x) >= 15.0; }
 inline std::string warning_of_degrees(const std::string& name, double x) {
   constexpr double degree = 3.14159265358979323846 / 180.0;
   return name + " = " + text(x) + " rad: that is " + std::to_string(std::lround(x / degree)) +
-         " degrees: angles are in radians";
+         " degrees: angles are in radians (numpy.radians converts degrees)";
 }
 
 }  // namespace pendcore

@@ -5,12 +5,11 @@
 
 namespace pendcore {
 
-DominantEigenvalue::DominantEigenvalue(int n, int quadratures)
-    : n_(n),
-      v_(static_cast<std::size_t>(2 * n)),
-      state_(static_cast<std::size_t>(2 * n + quadratures)),
-      ahead_(state_.size()),
-      behind_(state_.size()) {}
+double* DominantEigenvalue::direction() {
+  v_.resize(static_cast<std::size_t>(2 * n_));
+  for (auto* one : {&state_, &ahead_, &behind_}) one->resize(v_.size() + quadratures_);
+  return v_.data();
+}
 
 double DominantEigenvalue::norm(double rate) const {
   double largest = 0.0;

@@ -9,7 +9,7 @@
 /// without damping.
 ///
 /// J v is a central difference over a millionth of a radian, which is good enough for an estimate
-/// of two digits. Cost: four right-hand sides; no allocation.
+/// of two digits. Cost: four right-hand sides.
 #pragma once
 
 #include <vector>
@@ -23,10 +23,11 @@ class DominantEigenvalue {
   static constexpr int evaluations = 4;
 
   /// The state has n angles, n rates and some quadratures, which are left out of account.
-  DominantEigenvalue(int n, int quadratures);
+  DominantEigenvalue(int n, int quadratures) : n_(n), quadratures_(quadratures) {}
 
-  /// The direction, 2n numbers, to be filled in: rad, rad/s.
-  double* direction() { return v_.data(); }
+  /// Memory for the direction, 2n numbers (rad, rad/s), which the caller writes before each
+  /// computation. The first call allocates it: few runs come to ask for an eigenvalue.
+  double* direction();
 
   /// Computes |lambda| at time t (s) and state y; `rate` (1/s) says how many rad/s weigh as much as
   /// a radian. Returns 0 if the direction is zero or not finite.
@@ -37,7 +38,7 @@ class DominantEigenvalue {
   double multiply(const Rates& rates, double t, const double* y, double rate);
   double norm(double rate) const;
 
-  int n_;
+  int n_, quadratures_;
   std::vector<double> v_, state_, ahead_, behind_;
 };
 

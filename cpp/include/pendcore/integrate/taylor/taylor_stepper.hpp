@@ -40,7 +40,6 @@ class Taylor final : public Stepper {
         eigenvalue_(n_, quadratures) {
     memory_.blocks = size_ / width;
     memory_.log2_count = approximate_log2(controlled());
-    make_room(lowest_taylor_order);
   }
   Taylor(const Taylor&) = delete;
   Taylor& operator=(const Taylor&) = delete;
@@ -159,11 +158,12 @@ class Taylor final : public Stepper {
   double stiffness(double h) override {
     write_rows(memory_.rows + static_cast<std::ptrdiff_t>(memory_.order) * size_,
                eigenvalue_.direction());
-    get_state(state_.data());
+    std::vector<double> state(dimension());
+    get_state(state.data());
     evaluations += DominantEigenvalue::evaluations;
     // Where stability limits the steps, |lambda| is about this rate.
     const double rate = taylor.info.stability * memory_.order / std::abs(h);
-    const double lambda = eigenvalue_(rates_, t_new_ - h, state_.data(), rate);
+    const double lambda = eigenvalue_(rates_, t_new_ - h, state.data(), rate);
     return std::abs(h) * lambda / memory_.order;
   }
 
@@ -266,14 +266,17 @@ class Taylor final : public Stepper {
     }
   }
   /// The powers of a smaller number are finite at every order; a usual step has no larger one.
-  static constexpr double no_large_powers = 0x1p8;
-  static_assert(8 * highest_order < std::numeric_limits<double>::max_exponent);
+  static constexpr int exponent_of_no_large_powers = 8;
+  static constexpr double no_large_powers = 1 << exponent_of_no_large_powers;
+  static_assert(exponent_of_no_large_powers * highest_order <
+                std::numeric_limits<double>::max_exponent);
   static double power_of(double x, int order) {
     double power = 1.0;
     for (int k = 1; k <= order; ++k) power *= x;
     return power;
   }
-  /// The same where x^k overflows: the coefficient, perhaps zero, is multiplied by x k times.
+  /// Does what write_powers() does, where x^k overflows: the coefficient, perhaps zero, is
+  /// multiplied by x k times.
   void write_large_powers(double x, int dimension, double* coefficients) const {
     for (int k = 1; k <= memory_.order; ++k) {
       const double* const from = memory_.rows + static_cast<std::ptrdiff_t>(k) * size_;
@@ -326,7 +329,6 @@ class Taylor final : public Stepper {
   bool stays_ = false;
   double t_new_ = 0.0;  ///< the end of the attempt
   DominantEigenvalue eigenvalue_;
-  std::vector<double> state_ = std::vector<double>(static_cast<std::size_t>(dimension()));
   Attempt (*attempt_)(Memory*, double, double) = compensated_ ? attempt_kernel<true>()
                                                               : attempt_kernel<false>();
   bool (*expand_)(Memory*, double, const double*, double*, double&,

@@ -22,6 +22,16 @@ constexpr std::string_view store_name(Store store) {
   return store_names[static_cast<std::size_t>(store)];
 }
 
+/// The mode of that name, if there is one.
+constexpr std::optional<Store> find_store(std::string_view name) {
+  for (std::size_t i = 0; i < store_names.size(); ++i) {
+    if (store_names[i] == name) return static_cast<Store>(i);
+  }
+  return std::nullopt;
+}
+/// What a message says where no mode has the given name.
+inline constexpr std::string_view must_be_store = R"(must be "dense", "steps", "times" or "end")";
+
 struct StoreOption {
   std::optional<Store> store;
   static constexpr auto field = &StoreOption::store;
