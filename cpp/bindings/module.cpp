@@ -11,6 +11,7 @@ void bind_options(pybind11::module_& module);
 void bind_simulate(pybind11::module_& module);
 void bind_lyapunov(pybind11::module_& module);
 void bind_methods(pybind11::module_& module);
+void bind_ensemble(pybind11::module_& module);
 void bind_arithmetic(pybind11::module_& module);
 
 }  // namespace pendcore::bindings
@@ -32,5 +33,6 @@ PYBIND11_MODULE(_core, module, pybind11::mod_gil_not_used()) {
   bind_simulate(module);
   bind_lyapunov(module);
   bind_methods(module);
+  bind_ensemble(module);
   bind_arithmetic(module);
 }

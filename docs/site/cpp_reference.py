@@ -13,7 +13,8 @@ from pathlib import Path
 ABOUT = re.compile(r"\A/// \\file\n((?:///.*\n)+)")
 DIRECTIVE = re.compile(r"^#(?:.*\\\n)*.*\n", re.MULTILINE)
 TITLES = {
-    "scene": "Scenes", "effects": "Effects", "simulate": "Runs", "integrate": "Integrators",
+    "scene": "Scenes", "effects": "Effects", "simulate": "Runs", "ensemble": "Ensembles",
+    "integrate": "Integrators",
     "dynamics": "Equations of motion", "analysis": "Analysis", "arithmetic": "Arithmetic",
     "text": "Messages",
 }  # fmt: skip

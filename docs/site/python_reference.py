@@ -8,11 +8,12 @@ from pathlib import Path
 from typing import Any
 
 import pendcore
-from pendcore import effects, events
+from pendcore import draw, effects, events, keep
 
 GROUPS = {
     "Scenes": ["Scene", "Link", "Mobility", "Explanation"],
     "Runs": ["simulate", "Solution", "Statistics", "RunError", "PendcoreWarning"],
+    "Many runs at once": ["ensemble", "Ensemble"],
     "What a run can be trusted for": [
         "Accuracy", "AccuracyError", "ErrorEstimate", "Defect", "LyapunovExponents", "lyapunov",
         "HorizonWork", "horizon_work", "AccuracyCost", "accuracy_cost",
@@ -25,7 +26,7 @@ GROUPS = {
 
 def public_names() -> set[str]:
     """Return what `pendcore` offers, without its modules."""
-    modules = {"effects", "events"}
+    modules = {"draw", "effects", "events", "keep"}
     return {*pendcore.__all__} - modules - {"__version__"}
 
 
@@ -39,6 +40,8 @@ def write(folder: Path) -> None:
         *((title, "pendcore", pendcore, names) for title, names in GROUPS.items()),
         ("Effects", "pendcore.effects", effects, list(effects.__all__)),
         ("Events", "pendcore.events", events, list(events.__all__)),
+        ("What ensembles keep", "pendcore.keep", keep, list(keep.__all__)),
+        ("Random starts", "pendcore.draw", draw, list(draw.__all__)),
     ]
     index = ["Python", "======", "", "Everything public, from the docstrings.", ""]
     hidden = []

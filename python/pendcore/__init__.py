@@ -30,9 +30,10 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
-from pendcore import effects, events
+from pendcore import draw, effects, events, keep
 from pendcore._core import __version__
 from pendcore.accuracy.defect import Defect
+from pendcore.api.ensemble import Ensemble, ensemble
 from pendcore.api.files import load, read_case
 from pendcore.api.scene import Scene
 from pendcore.api.simulate import simulate
@@ -68,6 +69,7 @@ __all__ = [
     "Case",
     "Defect",
     "Energy",
+    "Ensemble",
     "ErrorEstimate",
     "Explanation",
     "HorizonWork",
@@ -85,9 +87,12 @@ __all__ = [
     "accuracy_cost",
     "angles_from_vertical",
     "angles_to_vertical",
+    "draw",
     "effects",
+    "ensemble",
     "events",
     "horizon_work",
+    "keep",
     "load",
     "lyapunov",
     "read_case",

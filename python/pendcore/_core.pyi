@@ -137,6 +137,29 @@ def lyapunov(
     progress: Callable[[float], object] | None,
     warn: Callable[[str], object],
 ) -> dict[str, Any]: ...
+def ensemble(
+    scene: Scene,
+    shape: Sequence[int],
+    q0: npt.NDArray[np.float64],
+    qd0: npt.NDArray[np.float64],
+    names: Sequence[str],
+    values: npt.NDArray[np.float64],
+    t0: float,
+    t_end: float,
+    options: Mapping[str, Any],
+    workers: int,
+    time_limit: float,
+    progress: Callable[[float], object] | None,
+    status: npt.NDArray[np.uint8],
+    t: npt.NDArray[np.float64],
+    states: npt.NDArray[np.float64],
+    first_found: npt.NDArray[np.float64] | None,
+) -> tuple[str, int, dict[str, Any], BaseException | None]: ...
+def parameters(scene: Scene) -> list[tuple[str, str, float]]: ...
+def check_parameter_names(scene: Scene, names: Sequence[str]) -> None: ...
+
+member_statuses: tuple[str, ...]
+
 def effect_descriptors() -> list[dict[str, Any]]: ...
 def part_descriptors() -> list[dict[str, Any]]: ...
 def accounts() -> dict[str, bool]: ...

@@ -30,6 +30,7 @@ CPP_FLOW = {
     "integrate": {"arithmetic", "text"},
     "simulate": {"arithmetic", "text", "effects", "scene", "dynamics", "integrate"},
     "analysis": {"arithmetic", "text", "effects", "scene", "dynamics", "integrate", "simulate"},
+    "ensemble": {"arithmetic", "text", "effects", "scene", "dynamics", "integrate", "simulate"},
 }
 ALL_OF_IT = "pendcore.hpp"
 """The header that includes the whole core: for users, and for the bindings."""
@@ -42,6 +43,7 @@ PYTHON_LAYERS = [
     "scene",
     "explanation",
     "run",
+    "ensemble",
     "accuracy",
     "horizon",
     "cases",

@@ -16,14 +16,18 @@ import pytest
 from pendcore import effects
 from pendcore.scene import effect_description
 
-CLASSES = (pc.Case, pc.Link, pc.Scene, pc.Solution)
+CLASSES = (pc.Case, pc.Ensemble, pc.Link, pc.Scene, pc.Solution)
 """The classes of which every public method has examples, too."""
-EXTRAS = {"Solution.to_pandas": "pandas", "Solution.to_xarray": "xarray"}
+EXTRAS = {
+    "Ensemble.to_xarray": "xarray",
+    "Solution.to_pandas": "pandas",
+    "Solution.to_xarray": "xarray",
+}
 
 
 def public() -> Iterator[tuple[str, Any]]:
     """Yield what users may call, with its name."""
-    for module in (pc, pc.effects, pc.events):
+    for module in (pc, pc.draw, pc.effects, pc.events, pc.keep):
         for name in module.__all__:
             thing = getattr(module, name)
             if not isinstance(thing, ModuleType) and name != "__version__":

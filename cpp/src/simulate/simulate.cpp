@@ -200,18 +200,22 @@ Limits limits_of(const Options& options, double t_end) {
 
 }  // namespace
 
+void check_options(const Scene& scene, const Options& options, double t0, double t_end) {
+  check(options);
+  for (std::size_t i = 0; i < options.events.size(); ++i) {
+    const Event& event = options.events[i];
+    check_event(event_name(event, i) + ": ", event, static_cast<int>(scene.links.size()));
+  }
+  check_times(options.t_eval, t0, t_end);
+}
+
 Solution simulate(const Scene& scene, const std::vector<double>& q0, const std::vector<double>& qd0,
                   double t0, double t_end, Options options) {
   const FloatingPointEnvironment ieee;
   const std::size_t n = scene.links.size();
   check(scene);
   check_start(scene, q0, qd0, t0, t_end);
-  check(options);
-  for (std::size_t i = 0; i < options.events.size(); ++i) {
-    const Event& event = options.events[i];
-    check_event(event_name(event, i) + ": ", event, static_cast<int>(n));
-  }
-  check_times(options.t_eval, t0, t_end);
+  check_options(scene, options, t0, t_end);
 
   options.method = chosen_method(scene, options);
   options.store = options.store.value_or(usual_store(options));

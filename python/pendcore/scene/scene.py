@@ -7,7 +7,7 @@ i is where link i begins.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple, Self, TypeVar
 
@@ -26,6 +26,7 @@ from pendcore.messages.warning import warn
 from pendcore.scene.effect_class import Effect
 from pendcore.scene.frozen_state import frozen_state
 from pendcore.scene.link import Link
+from pendcore.scene.parameters import changed
 
 Member = TypeVar("Member")
 
@@ -132,6 +133,45 @@ class SceneData:
         )
 
     __replace__ = replace  # copy.replace() of Python 3.13
+
+    @known_keywords
+    def parameters(self) -> dict[str, float]:
+        """Return every number of the scene that has a name, in SI units.
+
+        Links and effects count from 1. Numbers that an effect leaves out are not among them, nor
+        are those of tables and splines. `with_parameters` and `pendcore.ensemble` take these names.
+
+        Examples
+        --------
+        >>> scene = pc.Scene.textbook().replace(effects=[pc.effects.ViscousJoint(2, damping=0.1)])
+        >>> known = scene.parameters()
+        >>> known["gravity"], known["link[1].mass"], known["effect[1].damping"]
+        (9.807, 1.0, 0.1)
+        """
+        return {name: value for name, _, value in _core.parameters(self._compiled)}
+
+    @known_keywords
+    def with_parameters(self, values: Mapping[str, float]) -> Self:
+        """Return a scene with other values of some parameters; see `parameters` for their names.
+
+        A link that is a uniform rod stays one when its mass or its length changes, unless its
+        ``center`` or ``inertia`` is given as well.
+
+        Raises
+        ------
+        ValueError
+            If the scene has no parameter of that name; the message has the nearest one.
+
+        Examples
+        --------
+        >>> longer = pc.Scene.textbook().with_parameters({"link[2].length": 1.5, "gravity": 1.62})
+        >>> longer.links[1], longer.gravity
+        (Link(mass=1.0, length=1.5), 1.62)
+        """
+        links, gravity, effects = changed(
+            self._compiled, self.links, self.gravity, self.effects, values
+        )
+        return type(self)(links=links, gravity=gravity, effects=effects)
 
     @known_keywords
     def accelerations(self, t: npt.ArrayLike, q: npt.ArrayLike, qd: npt.ArrayLike) -> Floats:

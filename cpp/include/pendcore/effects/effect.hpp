@@ -98,7 +98,8 @@ struct ParameterInfo {
   std::string_view unit;
   std::string_view sentence;
   Range range = Range::any;
-  bool required = false;  ///< if not, the struct has the default
+  bool required = false;                                    ///< if not, the struct has the default
+  std::array<std::string_view, 2> components = {"x", "y"};  ///< the names of a pair's two numbers
 };
 
 template <class Struct, class Value>

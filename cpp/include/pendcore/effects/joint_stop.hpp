@@ -42,7 +42,8 @@ struct JointStop {
                                     .sentence = "angles of the joint where the stops are; -inf or "
                                                 "inf where there is none",
                                     .range = Range::number,
-                                    .required = true}),
+                                    .required = true,
+                                    .components = {"lower", "upper"}}),
       parameter(&JointStop::restitution, {.name = "restitution",
                                           .symbol = "e",
                                           .unit = "1",

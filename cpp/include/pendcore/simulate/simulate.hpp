@@ -26,6 +26,10 @@ std::unique_ptr<Stepper> make_stepper(const Scene& scene, const EquationsOfMotio
 std::unique_ptr<Stepper> make_taylor_stepper(const Scene& scene, const EquationsOfMotion& equations,
                                              Rates rates, int quadratures, bool compensated);
 
+/// Throws std::invalid_argument for options with which no start of the scene can be run, but for
+/// methods and tolerances, which make_stepper() and relative_tolerances() check.
+void check_options(const Scene& scene, const Options& options, double t0, double t_end);
+
 /// Simulates the scene from angles q0 (rad, n) and rates qd0 (rad/s, n) over t0 .. t_end (s), which
 /// may run backward. Throws std::invalid_argument for bad input, naming the argument. A run that
 /// fails returns what it has, with a status and a message that say why.

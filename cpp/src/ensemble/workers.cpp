@@ -1,0 +1,77 @@
+#include "pendcore/ensemble/workers.hpp"
+
+#include <algorithm>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace pendcore {
+
+SharedWork::SharedWork(std::size_t count, std::size_t chunk, const EnsembleLimits& limits)
+    : count_(count), chunk_(std::max<std::size_t>(chunk, 1)), limits_(limits) {}
+
+Chunk SharedWork::take() {
+  if (status_.load(std::memory_order_relaxed) != Status::finished) return {};
+  const std::size_t begin = next_.fetch_add(chunk_, std::memory_order_relaxed);
+  if (begin >= count_) return {};
+  return {begin, std::min(begin + chunk_, count_)};
+}
+
+bool SharedWork::goes_on(bool on_calling_thread) {
+  if (on_calling_thread) {
+    const Clock::time_point now = Clock::now();
+    const std::chrono::duration<double> since_start = now - start_;
+    const std::chrono::duration<double> since_call = now - last_call_;
+    if (since_start.count() >= limits_.time_limit) status_ = Status::time_limit;
+    if (limits_.monitor && since_call.count() >= 0.05) {
+      last_call_ = now;
+      const double fraction = static_cast<double>(done()) / static_cast<double>(count_);
+      if (!limits_.monitor(fraction)) status_ = Status::interrupted;
+    }
+  }
+  return status_.load(std::memory_order_relaxed) == Status::finished;
+}
+
+void SharedWork::fail(std::exception_ptr error) {
+  const std::scoped_lock lock(mutex_);
+  if (!error_) error_ = std::move(error);
+  status_ = Status::interrupted;
+}
+
+void SharedWork::run(int workers, const std::function<void(bool)>& work) {
+  const auto guarded = [&](bool on_calling_thread) {
+    try {
+      work(on_calling_thread);
+    } catch (...) {
+      fail(std::current_exception());
+    }
+  };
+#if defined(__wasm__)  // one thread, and exceptions go to JavaScript
+  static_cast<void>(workers);
+  static_cast<void>(guarded);
+  work(true);
+#else
+  {
+    std::vector<std::jthread> others;
+    for (int i = 1; i < workers; ++i) others.emplace_back(guarded, false);
+    guarded(true);
+    // The calling thread is done before others are, which may run for long: it looks on.
+    while (done() < count_ && goes_on(true) && workers > 1) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+  if (error_) std::rethrow_exception(error_);
+#endif
+}
+
+int number_of_workers(const EnsembleLimits& limits, std::size_t count) {
+#if defined(__wasm__)
+  return 1;
+#else
+  const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
+  const std::size_t wanted = limits.workers > 0 ? limits.workers : processors;
+  return static_cast<int>(std::clamp<std::size_t>(wanted, 1, std::max<std::size_t>(count, 1)));
+#endif
+}
+
+}  // namespace pendcore

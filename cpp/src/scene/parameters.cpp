@@ -1,0 +1,144 @@
+#include "pendcore/scene/parameters.hpp"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+namespace pendcore {
+namespace {
+
+constexpr std::size_t first_link = 1;  // after gravity
+constexpr std::size_t numbers_of_link = 4;
+enum LinkNumber : std::uint8_t { mass, length, center, inertia };
+
+struct LinkField {
+  const char* name;
+  const char* unit;
+  double Link::* field;
+};
+constexpr std::array<LinkField, numbers_of_link> link_fields = {{
+    {"mass", "kg", &Link::mass},
+    {"length", "m", &Link::length},
+    {"center", "m", &Link::center},
+    {"inertia", "kg m^2", &Link::inertia},
+}};
+
+/// Calls visit(part, info, component, number) for every number of an effect, or of a part of one
+/// that is there. `part` names the parts before, `component` the number of a pair, if it is one.
+template <class Struct, class Visit>
+void for_each_number(Struct& effect, const std::string& part, const Visit& visit) {
+  for_each_parameter(effect, [&](const ParameterInfo& info, auto& value) {
+    using Value = std::remove_cvref_t<decltype(value)>;
+    if constexpr (std::is_same_v<Value, double>) {
+      visit(part, info, std::string_view(), value);
+    } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
+      if (value) visit(part, info, std::string_view(), *value);
+    } else if constexpr (std::is_same_v<Value, std::array<double, 2>>) {
+      for (std::size_t k = 0; k < 2; ++k) visit(part, info, info.components[k], value[k]);
+    } else if constexpr (OptionalPart<Value>) {
+      if (value) for_each_number(*value, part + std::string(info.name) + ".", visit);
+    }
+  });
+}
+
+/// Calls visit(number, part, info, component) for every number of the effects of a scene.
+template <class AnyScene, class Visit>
+void for_each_effect_number(AnyScene& scene, const Visit& visit) {
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    const std::string prefix = "effect[" + std::to_string(i + 1) + "].";
+    std::visit(
+        [&](auto& effect) {
+          for_each_number(
+              effect, prefix,
+              [&](const std::string& part, const ParameterInfo& info, std::string_view component,
+                  auto& number) { visit(part, info, component, number); });
+        },
+        scene.effects[i]);
+  }
+}
+
+/// The number of single changes of letters between two words (Levenshtein's distance).
+std::size_t distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0]++;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+std::vector<NamedNumber> parameters(const Scene& scene) {
+  std::vector<NamedNumber> result{{"gravity", "m/s^2", scene.gravity}};
+  for (std::size_t i = 0; i < scene.links.size(); ++i) {
+    for (const auto& [name, unit, field] : link_fields) {
+      result.push_back(
+          {"link[" + std::to_string(i + 1) + "]." + name, unit, scene.links[i].*field});
+    }
+  }
+  for_each_effect_number(scene, [&](const std::string& part, const ParameterInfo& info,
+                                    std::string_view component, double number) {
+    std::string name = part + std::string(info.name);
+    if (!component.empty()) name += "." + std::string(component);
+    result.push_back({std::move(name), std::string(info.unit), number});
+  });
+  return result;
+}
+
+ParameterChoice::ParameterChoice(const Scene& scene, const std::vector<std::string>& names) {
+  const std::vector<NamedNumber> known = parameters(scene);
+  for (const std::string& name : names) {
+    const auto found = std::ranges::find(known, name, &NamedNumber::name);
+    if (found == known.end()) {
+      const auto nearest = std::ranges::min_element(
+          known, {}, [&](const NamedNumber& one) { return distance(one.name, name); });
+      throw std::invalid_argument("parameter \"" + name + "\": the scene has none of that name: " +
+                                  "did you mean \"" + nearest->name + "\"?");
+    }
+    places_.push_back(static_cast<std::size_t>(found - known.begin()));
+  }
+}
+
+void ParameterChoice::set(Scene& copy, std::span<const double> values) const {
+  const std::size_t first_effect = first_link + numbers_of_link * copy.links.size();
+  bool any_effect = false;
+  bool any_link = false;
+  for (std::size_t k = 0; k < places_.size(); ++k) {
+    if (places_[k] == 0) copy.gravity = values[k];
+    any_link = any_link || (places_[k] >= first_link && places_[k] < first_effect);
+    any_effect = any_effect || places_[k] >= first_effect;
+  }
+  for (std::size_t i = 0; any_link && i < copy.links.size(); ++i) {
+    Link& link = copy.links[i];
+    const Link rod = Link::uniform_rod(link.mass, link.length);
+    const bool has_center_of_rod = link.center == rod.center;
+    const bool has_inertia_of_rod = link.inertia == rod.inertia;
+    std::array<bool, numbers_of_link> is_given{};
+    for (std::size_t k = 0; k < places_.size(); ++k) {
+      const std::size_t number = places_[k] - first_link - numbers_of_link * i;
+      if (places_[k] < first_link || number >= numbers_of_link) continue;
+      link.*link_fields[number].field = values[k];
+      is_given[number] = true;
+    }
+    const Link changed = Link::uniform_rod(link.mass, link.length);
+    if (has_center_of_rod && !is_given[center]) link.center = changed.center;
+    if (has_inertia_of_rod && !is_given[inertia]) link.inertia = changed.inertia;
+  }
+  if (!any_effect) return;
+  std::size_t place = first_effect;
+  for_each_effect_number(copy, [&](const std::string& /*part*/, const ParameterInfo& /*info*/,
+                                   std::string_view /*component*/, double& number) {
+    for (std::size_t k = 0; k < places_.size(); ++k) {
+      if (places_[k] == place) number = values[k];
+    }
+    ++place;
+  });
+}
+
+}  // namespace pendcore

@@ -1,0 +1,60 @@
+"""The numbers of a scene by name, such as ``"link[1].mass"`` and ``"effect[2].wind.x"``.
+
+The core lists the names (cpp/include/pendcore/scene/parameters.hpp); here a scene is made again
+with other values.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from pendcore import _core
+from pendcore.messages.arguments import number
+from pendcore.scene.effect_class import Described, Effect
+from pendcore.scene.link import Link
+
+PLACE = re.compile(r"(link|effect)\[(\d+)\]\.(.+)")
+COMPONENTS = (("x", "lower"), ("y", "upper"))
+"""What the names of the two numbers of a pair may be."""
+
+
+def changed(
+    scene: _core.Scene,
+    links: tuple[Link, ...],
+    gravity: float,
+    effects: tuple[Effect, ...],
+    values: Mapping[str, Any],
+) -> tuple[list[Link], float, list[Effect]]:
+    """Return links, gravity and effects with other values of some parameters."""
+    _core.check_parameter_names(scene, list(values))
+    links_changed: dict[int, dict[str, float]] = {}
+    new_links, new_effects = list(links), list(effects)
+    for name, value in values.items():
+        given = number(name, value, "")
+        place = PLACE.fullmatch(name)
+        if place is None:
+            gravity = given
+            continue
+        kind, counted, field = place.groups()
+        i = int(counted) - 1
+        if kind == "link":
+            links_changed.setdefault(i, {})[field] = given
+        else:
+            new_effects[i] = _with(new_effects[i], field.split("."), given)
+    for i, fields in links_changed.items():
+        new_links[i] = links[i].replace(**fields)
+    return new_links, gravity, new_effects
+
+
+def _with(owner: Any, path: list[str], value: float) -> Any:
+    """Return an effect, or a part of one, with another value at a path of names."""
+    name, *inner = path
+    if not inner:
+        return owner.replace(**{name: value})
+    held = getattr(owner, name)
+    if isinstance(held, Described):
+        return owner.replace(**{name: _with(held, inner, value)})
+    which = next(k for k, names in enumerate(COMPONENTS) if inner[0] in names)
+    return owner.replace(**{name: tuple(value if k == which else x for k, x in enumerate(held))})
