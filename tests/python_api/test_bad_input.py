@@ -149,7 +149,10 @@ OUT_OF_RANGE = {
     "t_span a number": ({"t_span": 5}, r"t_span = 5: must be \(t_start, t_end\)"),
     "t_span of three": ({"t_span": (0, 1, 2)}, r"t_span = \(0, 1, 2\): must be \(t_start, t_end\)"),
     "t_span missing": ({"t_span": ()}, r"t_span = \(\): must be \(t_start, t_end\)"),
-    "t_span left out": ({"t_span": None}, r"t_span is missing: give \(t_start, t_end\), in s"),
+    "t_span left out": (
+        {"t_span": None},
+        r"t_span is missing: write t_span=\(t_start, t_end\), in s",
+    ),
     "no scene": ({"scene": "textbook"}, r"scene = 'textbook': must be a pendcore.Scene"),
     "progress no function": ({"progress": 3}, r"progress = 3: must be None, True, False, or"),
 }

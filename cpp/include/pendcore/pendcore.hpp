@@ -12,6 +12,7 @@
 #include "pendcore/dynamics/inertia.hpp"
 #include "pendcore/dynamics/jacobian.hpp"
 #include "pendcore/dynamics/kinematics.hpp"
+#include "pendcore/ensemble/ensemble.hpp"
 #include "pendcore/scene/scene.hpp"
 #include "pendcore/simulate/simulate.hpp"
 #include "pendcore/simulate/solution.hpp"

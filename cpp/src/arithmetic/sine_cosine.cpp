@@ -45,6 +45,12 @@ PENDCORE_INLINE void sine_cosine_stream(const double* x, long long m, double* si
 
 }  // namespace
 
+void sine_cosine_detail::replace_large(const double* x, int count, double* sine, double* cosine) {
+  for (int i = 0; i < count; ++i) {
+    if (!(std::abs(x[i]) <= largest)) sine_cosine_exact(x[i], sine[i], cosine[i]);
+  }
+}
+
 void sine_cosine(const double* x, long long m, double* sine, double* cosine) {
   static const auto stream = fastest<&sine_cosine_stream>();
   stream(x, m, sine, cosine);

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "pendcore/ensemble/lanes.hpp"
 #include "pendcore/ensemble/workers.hpp"
 #include "pendcore/scene/parameters.hpp"
 #include "pendcore/simulate/method_choice.hpp"
@@ -40,26 +41,31 @@ class OneByOne {
         t_end_(t_end),
         options_(options),
         results_(results),
-        q0_(scene.links.size()),
-        qd0_(scene.links.size()),
         values_(choice.size()) {}
 
   const Statistics& statistics() const { return statistics_; }
 
+  /// Reads member i, and returns its scene, which is valid until the next call.
+  const Scene* read(std::size_t i, std::vector<double>& state) {
+    const std::size_t n = scene_.links.size();
+    state.resize(2 * n);
+    members_.read(i, state.data(), state.data() + n, values_.data());
+    if (choice_.size() == 0) return &scene_;
+    varied_ = scene_;
+    choice_.set(varied_, values_);
+    return &varied_;
+  }
+
   /// Runs member i, and returns whether it came to its own end. If `goes_on` returns false, the
   /// member is given up and not kept.
   bool run(std::size_t i, const std::function<bool()>& goes_on) {
-    members_.read(i, q0_.data(), qd0_.data(), values_.data());
+    const Scene* const scene = read(i, state_);
+    const auto middle = state_.begin() + static_cast<std::ptrdiff_t>(scene->links.size());
     Options options = options_;
     options.monitor = [&](double) { return goes_on(); };
     try {
-      if (choice_.size() == 0) {
-        keep(i, simulate(scene_, q0_, qd0_, t0_, t_end_, std::move(options)));
-      } else {
-        Scene varied = scene_;
-        choice_.set(varied, values_);
-        keep(i, simulate(varied, q0_, qd0_, t0_, t_end_, std::move(options)));
-      }
+      keep(i, simulate(*scene, {state_.begin(), middle}, {middle, state_.end()}, t0_, t_end_,
+                       std::move(options)));
     } catch (const std::bad_alloc&) {
       throw;
     } catch (const std::invalid_argument&) {
@@ -97,7 +103,45 @@ class OneByOne {
   const Options& options_;
   const MemberResults& results_;
   Statistics statistics_;
-  std::vector<double> q0_, qd0_, values_;
+  std::vector<double> state_, values_;
+  Scene varied_;
+};
+
+/// A worker's share of the members, for lanes.
+class Share final : public LaneSource {
+ public:
+  Share(SharedWork& work, bool on_calling_thread, OneByOne& one_by_one,
+        const MemberResults& results)
+      : work_(work),
+        on_calling_thread_(on_calling_thread),
+        one_by_one_(one_by_one),
+        results_(results) {}
+
+  const Scene* next(LaneMember& member) override {
+    if (chunk_.is_empty()) chunk_ = work_.take();
+    if (chunk_.is_empty()) return nullptr;
+    member.number = chunk_.begin++;
+    return one_by_one_.read(member.number, member.state);
+  }
+  void ended(const LaneMember& member) override {
+    results_.t[member.number] = member.t;
+    std::ranges::copy(
+        member.state,
+        results_.states.begin() + static_cast<std::ptrdiff_t>(member.number * member.state.size()));
+    results_.status[member.number] = code(member.status);
+    work_.count(1);
+  }
+  void runs_alone(std::size_t number) override {
+    if (one_by_one_.run(number, [this] { return goes_on(); })) work_.count(1);
+  }
+  bool goes_on() override { return work_.goes_on(on_calling_thread_); }
+
+ private:
+  SharedWork& work_;
+  bool on_calling_thread_;
+  OneByOne& one_by_one_;
+  const MemberResults& results_;
+  Chunk chunk_;
 };
 
 }  // namespace
@@ -124,14 +168,17 @@ EnsembleEnding run_ensemble(const Scene& scene, const Members& members, double t
   std::mutex mutex;
   work.run(workers, [&](bool on_calling_thread) {
     OneByOne one_by_one(scene, members, choice, t0, t_end, options, results);
-    const auto goes_on = [&] { return work.goes_on(on_calling_thread); };
-    for (Chunk chunk = work.take(); !chunk.is_empty(); chunk = work.take()) {
-      for (std::size_t i = chunk.begin; i < chunk.end && goes_on(); ++i) {
-        if (one_by_one.run(i, goes_on)) work.count(1);
-      }
+    Share share(work, on_calling_thread, one_by_one, results);
+    const std::unique_ptr<LaneRunner> lanes = make_lanes(scene, t0, t_end, options);
+    if (lanes) {
+      lanes->run(share);
+    } else {
+      LaneMember member;
+      while (share.goes_on() && share.next(member) != nullptr) share.runs_alone(member.number);
     }
     const std::scoped_lock lock(mutex);
     add(ending.statistics, one_by_one.statistics());
+    if (lanes) add(ending.statistics, lanes->statistics());
   });
   ending.status = work.status();
   ending.done = work.done();

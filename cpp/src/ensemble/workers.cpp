@@ -46,11 +46,6 @@ void SharedWork::run(int workers, const std::function<void(bool)>& work) {
       fail(std::current_exception());
     }
   };
-#if defined(__wasm__)  // one thread, and exceptions go to JavaScript
-  static_cast<void>(workers);
-  static_cast<void>(guarded);
-  work(true);
-#else
   {
     std::vector<std::jthread> others;
     for (int i = 1; i < workers; ++i) others.emplace_back(guarded, false);
@@ -61,17 +56,12 @@ void SharedWork::run(int workers, const std::function<void(bool)>& work) {
     }
   }
   if (error_) std::rethrow_exception(error_);
-#endif
 }
 
 int number_of_workers(const EnsembleLimits& limits, std::size_t count) {
-#if defined(__wasm__)
-  return 1;
-#else
   const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
   const std::size_t wanted = limits.workers > 0 ? limits.workers : processors;
   return static_cast<int>(std::clamp<std::size_t>(wanted, 1, std::max<std::size_t>(count, 1)));
-#endif
 }
 
 }  // namespace pendcore

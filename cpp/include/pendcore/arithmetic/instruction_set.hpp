@@ -70,6 +70,21 @@ typename Clones<kernel>::Function fastest() {
 #endif
 }
 
+/// The clone of `kernel` for one instruction set, if each set has a kernel of its own. A build
+/// without clones has the one that it is for.
+template <auto kernel, InstructionSet set>
+typename Clones<kernel>::Function only() {
+#if PENDCORE_CLONES
+  if constexpr (set == InstructionSet::x86_64_v4) {
+    return Clones<kernel>::v4;
+  } else {
+    return Clones<kernel>::v3;
+  }
+#else
+  return Clones<kernel>::baseline;
+#endif
+}
+
 /// The lowest instruction set for which a kernel is compiled that has the same bits as a general
 /// one and is only faster: a processor from before 2013 runs the general one.
 constexpr InstructionSet least_of_special_kernels =

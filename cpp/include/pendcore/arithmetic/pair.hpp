@@ -64,6 +64,12 @@ struct Constants<Two<Real>> {
     return {broadcast<Real>(x[0]), broadcast<Real>(x[1])};
   }
   PENDCORE_INLINE static Two<Real> of(double x) { return {broadcast<Real>(x), broadcast<Real>(x)}; }
+  PENDCORE_INLINE static Two<Real> of(const Real& x)
+    requires(Lanes<Real>::width > 1)
+  {
+    return {x, x};
+  }
+  PENDCORE_INLINE static Two<Real> of(const Two<Real>& x) { return x; }
 };
 
 /// The value at the joint before, and at the joint after; 0 beyond the ends of the chain.
@@ -98,6 +104,10 @@ PENDCORE_INLINE Two<Real> operator*(const Two<Real>& x, const Two<Real>& y) {
   return {x.first * y.first, x.second * y.second};
 }
 template <class Real>
+PENDCORE_INLINE Two<Real> operator*(const Two<Real>& x, double y) {
+  return {x.first * y, x.second * y};
+}
+template <class Real>
 PENDCORE_INLINE Two<Real> operator/(double x, const Two<Real>& y) {
   return {x / y.first, x / y.second};
 }
@@ -114,6 +124,21 @@ PENDCORE_INLINE void sine_cosine(const Two<Real>& x, Two<Real>& sine, Two<Real>&
 template <class Real>
 PENDCORE_INLINE Two<Real> absolute(const Two<Real>& x) {
   return {absolute(x.first), absolute(x.second)};
+}
+template <class Real>
+PENDCORE_INLINE Two<Real> larger(const Two<Real>& a, const Two<Real>& b) {
+  return {larger(a.first, b.first), larger(a.second, b.second)};
+}
+
+/// A number of each trajectory times, or divided by, both numbers of a pair.
+template <class Real>
+PENDCORE_INLINE Two<Real> fma(const Real& a, const Two<Real>& b, const Two<Real>& c) {
+  return {fma(a, b.first, c.first), fma(a, b.second, c.second)};
+}
+template <class Real>
+  requires(Lanes<Real>::width > 1)
+PENDCORE_INLINE Two<Real> operator/(const Real& x, const Two<Real>& y) {
+  return {x / y.first, x / y.second};
 }
 
 }  // namespace pendcore

@@ -2,7 +2,8 @@
 /// Powers for the step control, with the same bits on every processor.
 ///
 /// A step size needs few digits, but must not depend on a library. So these functions are minimax
-/// polynomials of the mantissa (tests/reference/minimax.py). `approximate_log2` and
+/// polynomials of the mantissa (tests/reference/minimax.py). `Real` is a double, or a pack that
+/// holds a number of each of several trajectories. `approximate_log2` and
 /// `approximate_exp2` do not use fma: code that is not cloned calls them, and there fma would be a
 /// call.
 #pragma once
@@ -18,17 +19,28 @@ namespace pendcore {
 namespace power_detail {
 
 /// x = 2^exponent (1 + u), 1/sqrt 2 <= 1 + u < sqrt 2.
+template <class Real>
 struct Split {
-  double exponent;
-  double u;
+  Real exponent;
+  Real u;
 };
 
-PENDCORE_INLINE Split split(double x) {
-  constexpr std::uint64_t sqrt_half = 0x3fe6a09e667f3bcd;
-  const std::uint64_t bits = std::bit_cast<std::uint64_t>(x);
-  const std::int64_t exponent = static_cast<std::int64_t>(bits - sqrt_half) >> 52;
-  const std::uint64_t mantissa = bits - (static_cast<std::uint64_t>(exponent) << 52);
-  return {static_cast<double>(exponent), std::bit_cast<double>(mantissa) - 1.0};
+inline constexpr double to_integer = 0x1.8p52;  ///< adding it rounds to an integer
+
+template <class Real>
+PENDCORE_INLINE Split<Real> split(const Real& x) {
+  using Integers = typename Lanes<Real>::Integers;
+  constexpr long long sqrt_half = 0x3fe6a09e667f3bcd;
+  const auto bits = std::bit_cast<Integers>(x);
+  const Integers exponent = (bits - sqrt_half) >> 52;
+  const Integers mantissa = bits - (exponent << 52);
+  const Real u = std::bit_cast<Real>(mantissa) - 1.0;
+  if constexpr (Lanes<Real>::width == 1) {
+    return {static_cast<double>(exponent), u};
+  } else {  // few processors convert packs of such integers
+    constexpr auto offset = std::bit_cast<long long>(to_integer);
+    return {std::bit_cast<Real>(exponent + offset) - to_integer, u};
+  }
 }
 
 /// log2(1 + u) = u p(u)
@@ -45,25 +57,29 @@ inline constexpr std::array exp2_of_fraction = {
 }  // namespace power_detail
 
 /// log2(x) for x >= 0, within 1e-9; zero and denormal numbers count as 2^-1023, infinity as 2^1024.
-PENDCORE_INLINE double approximate_log2(double x) {
+template <class Real>
+PENDCORE_INLINE Real approximate_log2(const Real& x) {
   const auto& c = power_detail::log2_of_mantissa;
   const auto [exponent, u] = power_detail::split(x);
-  double p = c.back();
+  Real p = broadcast<Real>(c.back());
   for (int i = c.size() - 2; i >= 0; --i) p = c[i] + p * u;
   return exponent + p * u;
 }
 
 /// 2^x within a relative 1e-10, for |x| <= 1000.
-PENDCORE_INLINE double approximate_exp2(double x) {
+template <class Real>
+PENDCORE_INLINE Real approximate_exp2(const Real& x) {
+  using Integers = typename Lanes<Real>::Integers;
+  using power_detail::to_integer;
   const auto& c = power_detail::exp2_of_fraction;
-  constexpr double to_integer = 0x1.8p52;
-  const double shifted = x + to_integer;
-  const double f = x - (shifted - to_integer);
-  const double f2 = f * f;
-  const double low = (c[0] + c[1] * f) + (c[2] + c[3] * f) * f2;
-  const double high = (c[4] + c[5] * f) + (c[6] + c[7] * f) * f2;
-  const std::int64_t exponent = std::bit_cast<std::int64_t>(shifted) << 52;
-  return std::bit_cast<double>(std::bit_cast<std::int64_t>(low + high * (f2 * f2)) + exponent);
+  const Real shifted = x + to_integer;
+  const Real f = x - (shifted - to_integer);
+  const Real f2 = f * f;
+  const Real low = (c[0] + c[1] * f) + (c[2] + c[3] * f) * f2;
+  const Real high = (c[4] + c[5] * f) + (c[6] + c[7] * f) * f2;
+  const Integers exponent = std::bit_cast<Integers>(shifted) << 52;
+  const Real of_fraction = low + high * (f2 * f2);
+  return std::bit_cast<Real>(std::bit_cast<Integers>(of_fraction) + exponent);
 }
 
 /// log2(x) within 0.05, for x > 0 that is neither denormal nor infinite. The mantissa's logarithm
@@ -75,7 +91,7 @@ PENDCORE_INLINE double coarse_log2(double x) {
 
 /// 2^x within 1 %, for |x| <= 1000.
 PENDCORE_INLINE double coarse_exp2(double x) {
-  constexpr double to_integer = 0x1.8p52;
+  using power_detail::to_integer;
   const double shifted = x + to_integer;
   const double f = x - (shifted - to_integer);
   const double of_fraction = fma(fma(0.2426, f, 0.6951), f, 1.0);
@@ -86,21 +102,28 @@ PENDCORE_INLINE double coarse_exp2(double x) {
 /// 2^gain x^power within a relative 1e-9, for |power| <= 0.25. The next step waits for it, so its
 /// chain of operations is short. The exponent of x goes through exp2 while the small power of the
 /// mantissa, 2^w with w = power log2(1 + u), is summed.
-PENDCORE_INLINE double scaled_power(double x, double power, double gain) {
+template <class Real>
+PENDCORE_INLINE Real scaled_power(const Real& x, double power, const Real& gain) {
   const auto& c = power_detail::log2_of_mantissa;
   const auto [exponent, u] = power_detail::split(x);
-  const double of_exponent = approximate_exp2(fma(power, exponent, gain));
-  const double u2 = u * u;
-  const double u4 = u2 * u2;
-  const double low = fma(fma(c[3], u, c[2]), u2, fma(c[1], u, c[0]));
-  const double middle = fma(fma(c[7], u, c[6]), u2, fma(c[5], u, c[4]));
-  const double high = fma(c[10], u2, fma(c[9], u, c[8]));
-  const double w = fma(fma(high, u4, middle), u4, low) * (power * u);
+  const auto line = [&, &u = u](int i) __attribute__((always_inline)) {
+    return fma(broadcast<Real>(c[i + 1]), u, broadcast<Real>(c[i]));
+  };
+  const Real of_exponent = approximate_exp2(fma(broadcast<Real>(power), exponent, gain));
+  const Real u2 = u * u;
+  const Real u4 = u2 * u2;
+  const Real low = fma(line(2), u2, line(0));
+  const Real middle = fma(line(6), u2, line(4));
+  const Real high = fma(broadcast<Real>(c[10]), u2, line(8));
+  const Real w = fma(fma(high, u4, middle), u4, low) * (power * u);
   constexpr std::array e = {0x1.62e42fefa39efp-1, 0x1.ebfbdff82c58fp-3, 0x1.c6b08d704a0c0p-5,
                             0x1.3b2ab6fba4e77p-7, 0x1.5d87fe78a6731p-10};  // ln(2)^k / k!
-  const double w2 = w * w;
-  const double of_mantissa =
-      fma(fma(fma(e[4], w, e[3]), w2, fma(e[2], w, e[1])), w2, fma(e[0], w, 1.0));
+  const auto line_of_w = [&](double slope, double value) __attribute__((always_inline)) {
+    return fma(broadcast<Real>(slope), w, broadcast<Real>(value));
+  };
+  const Real w2 = w * w;
+  const Real of_mantissa =
+      fma(fma(line_of_w(e[4], e[3]), w2, line_of_w(e[2], e[1])), w2, line_of_w(e[0], 1.0));
   return of_mantissa * of_exponent;
 }
 

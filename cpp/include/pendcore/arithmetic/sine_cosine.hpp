@@ -46,6 +46,9 @@ inline constexpr std::array cosine = {0x1.5555555555553p-5,  -0x1.6c16c16c16132p
                                       0x1.a01a019e24bc8p-16, -0x1.27e4f903dba05p-22,
                                       0x1.1eea8935afc8fp-29, -0x1.8ff9c523984f2p-37};
 
+/// Replaces the sines and cosines of those angles that are beyond `largest`, or not finite.
+void replace_large(const double* x, int count, double* sine, double* cosine);
+
 /// A polynomial of degree 5, summed in pairs of terms whose products do not wait for each other.
 template <class Real>
 PENDCORE_INLINE Real polynomial(const std::array<double, 6>& c, Real z, Real z2) {
@@ -107,6 +110,16 @@ PENDCORE_INLINE void sine_cosine(const Real& x, Real& sine_of_x, Real& cosine_of
   // One comparison is usually enough for all lanes.
   if (sum_by_halves(absolute(x)) <= detail::largest) [[likely]]
     return;
+  if constexpr (Lanes<Real>::width >= 4) {  // through memory, which leaves the packs whole
+    double numbers[3][Lanes<Real>::width];
+    store(numbers[0], x);
+    store(numbers[1], sine_of_x);
+    store(numbers[2], cosine_of_x);
+    detail::replace_large(numbers[0], Lanes<Real>::width, numbers[1], numbers[2]);
+    sine_of_x = load<Real>(numbers[1]);
+    cosine_of_x = load<Real>(numbers[2]);
+    return;
+  }
   for (int i = 0; i < Lanes<Real>::width; ++i) {
     if (!(__builtin_fabs(lane(x, i)) <= detail::largest)) {
       double exact_sine, exact_cosine;

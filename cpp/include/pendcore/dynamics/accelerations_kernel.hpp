@@ -9,8 +9,8 @@
 namespace pendcore {
 
 /// qdd (rad/s^2) of closed-form equations; the bare ones do not depend on time.
-template <class Dynamics, class Links>
-PENDCORE_INLINE Links accelerations_at(const Dynamics& dynamics, double t, const Links& q,
+template <class Dynamics, class Time, class Links>
+PENDCORE_INLINE Links accelerations_at(const Dynamics& dynamics, const Time& t, const Links& q,
                                        const Links& qd) {
   if constexpr (requires { dynamics.accelerations(t, q, qd); }) {
     return dynamics.accelerations(t, q, qd);

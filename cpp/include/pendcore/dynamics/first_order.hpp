@@ -22,7 +22,9 @@ struct FirstOrder {
   Dynamics dynamics;
 
   /// The derivative dydt (rad/s, rad/s^2) of the state y (rad, rad/s) at time t (s).
-  PENDCORE_INLINE void operator()(double t, const Block* y, Block* dydt) const {
+  /// If each lane of a block is a trajectory of its own, `t` is a pack, too.
+  template <class Time>
+  PENDCORE_INLINE void operator()(const Time& t, const Block* y, Block* dydt) const {
     dydt[0] = y[1];
     dydt[1] = accelerations_at(dynamics, t, y[0], y[1]);
   }

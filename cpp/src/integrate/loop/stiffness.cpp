@@ -5,8 +5,8 @@ namespace pendcore {
 void test_stiffness(Stepper& stepper, double h, IntegratorState& integrator) {
   const double boundary = stepper.info().stability;
   if (boundary == 0.0) return;
-  constexpr int first_look = 100;
-  if (integrator.statistics.accepted % 1000 != first_look && integrator.stiff_hits == 0) return;
+  const long long steps = integrator.statistics.accepted;
+  if (steps % stiffness_looks_every != first_stiffness_look && integrator.stiff_hits == 0) return;
   if (stepper.stiffness(h) > boundary) {
     integrator.stiff_misses = 0;
     if (++integrator.stiff_hits != 15) return;

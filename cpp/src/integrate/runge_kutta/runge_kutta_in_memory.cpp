@@ -86,7 +86,7 @@ PENDCORE_INLINE Attempt attempt_in_memory(const StepInMemory* memory, double t, 
                             StageInMemory<Block>{k + at, size}, stages));
     }
   }
-  SquaredErrors<method, Block> squares;
+  SquaredErrors<method, double, Block> squares;
   for (int i = 0; i < memory->error_blocks; ++i) {
     const int at = i * width;
     const Block before = load<Block>(memory->y + at);

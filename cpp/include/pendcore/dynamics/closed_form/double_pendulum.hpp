@@ -30,15 +30,16 @@
 
 namespace pendcore {
 
-struct DoublePendulum {
-  using Links = Pair;  ///< a quantity of both links
+/// The equations with constants of the links in `AnyLinks`, and other constants in `Number`: a Pair
+/// and doubles for one trajectory, packs for a trajectory in each lane.
+template <class AnyLinks, class Number>
+struct DoublePendulumEquations {
+  using Links = AnyLinks;  ///< a quantity of both links
 
-  Pair weight;     ///< gamma, 1/s^2
-  Pair coupling;   ///< rho
-  double product;  ///< rho rho'
-  double delta;    ///< 1 - rho rho'
-
-  DoublePendulum(const Scene& scene, const Inertia& inertia);
+  AnyLinks weight;    ///< gamma, 1/s^2
+  AnyLinks coupling;  ///< rho
+  Number product;     ///< rho rho'
+  Number delta;       ///< 1 - rho rho'
 
   /// qdd (rad/s^2) from q (rad) and qd (rad/s), for each type of pair in pair.hpp.
   template <class AnyPair>
@@ -56,6 +57,10 @@ struct DoublePendulum {
     const AnyPair alone = fma(-(rho * sine), qd_other * qd_other, Constant::of(weight) * c);
     return fma(-(rho * cosine), other(alone), alone) * (1.0 / determinant);
   }
+};
+
+struct DoublePendulum : DoublePendulumEquations<Pair, double> {
+  DoublePendulum(const Scene& scene, const Inertia& inertia);
 };
 
 }  // namespace pendcore

@@ -6,7 +6,9 @@
 /// runge_kutta_fixed.hpp clones it for each instruction set and hands it to the loop.
 ///
 /// A system is a type with `Block` (a double or a pack), `blocks` (how many make a state) and
-/// operator()(t, y, dydt) on blocks.
+/// operator()(t, y, dydt) on blocks. Times, step sizes and errors are doubles. They are packs if
+/// each lane of a block belongs to a trajectory of its own (ensemble/): then the kernel takes a
+/// step of each of these trajectories, with the bits that it would have alone.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +16,7 @@
 #include <limits>
 #include <type_traits>
 
-#include "pendcore/arithmetic/pack.hpp"
+#include "pendcore/arithmetic/pair.hpp"
 #include "pendcore/arithmetic/power.hpp"
 #include "pendcore/arithmetic/two_double.hpp"
 #include "pendcore/integrate/loop/attempt.hpp"
@@ -53,7 +55,7 @@ PENDCORE_INLINE Block advance(const Block& start, const Scale& h, const Weights&
 #pragma GCC unroll 16
   for (int j = 0; j < last; ++j) {
     if (weights[j].is_zero()) continue;
-    const Block weight = broadcast<Block>(weights[j].value);
+    const Block weight = Constants<Block>::of(weights[j].value);
     sum = empty ? Block(weight * k(j)) : fma(weight, k(j), sum);
     empty = false;
   }
@@ -62,18 +64,19 @@ PENDCORE_INLINE Block advance(const Block& start, const Scale& h, const Weights&
 }
 
 /// The same sum, bit for bit, with weights that a loop reads.
-template <class Block, class Stage>
-PENDCORE_INLINE Block advance(const Block& start, double h, const StageRow& row, const Stage& k) {
+template <class Block, class Scale, class Stage>
+PENDCORE_INLINE Block advance(const Block& start, const Scale& h, const StageRow& row,
+                              const Stage& k) {
   if (row.count == 0) return start;
   Block sum{};
-  if (row.count > 1) sum = broadcast<Block>(row.weight[0]) * k(row.stage[0]);
+  if (row.count > 1) sum = Constants<Block>::of(row.weight[0]) * k(row.stage[0]);
 #pragma GCC unroll 1
   for (int i = 1; i < row.count - 1; ++i) {
-    sum = fma(broadcast<Block>(row.weight[i]), k(row.stage[i]), sum);
+    sum = fma(Constants<Block>::of(row.weight[i]), k(row.stage[i]), sum);
   }
   const int last = row.count - 1;
-  const Block known = row.count > 1 ? fma(broadcast<Block>(h), sum, start) : start;
-  return fma(broadcast<Block>(h * row.weight[last]), k(row.stage[last]), known);
+  const Block known = row.count > 1 ? fma(Constants<Block>::of(h), sum, start) : start;
+  return fma(Constants<Block>::of(h * row.weight[last]), k(row.stage[last]), known);
 }
 
 /// One block of the stages k.
@@ -86,8 +89,25 @@ struct StageBlock {
 template <class Block, int blocks>
 StageBlock(const Block (*)[blocks], int) -> StageBlock<Block, blocks>;
 
+/// The sum of the numbers of a trajectory in a block, and how many they are: all lanes of the
+/// block, or one or two numbers of each trajectory if `Scale` is a pack.
+template <class Scale, class Block>
+PENDCORE_INLINE Scale sum_of_trajectory(const Block& x) {
+  if constexpr (std::is_same_v<Scale, double>) {
+    return sum_of_lanes(x);
+  } else if constexpr (std::is_same_v<Scale, Block>) {
+    return x;
+  } else {
+    return x.first + x.second;
+  }
+}
+template <class Scale, class Block>
+constexpr int numbers_of_trajectory = std::is_same_v<Scale, double>  ? Lanes<Block>::width
+                                      : std::is_same_v<Scale, Block> ? 1
+                                                                     : 2;
+
 /// The squares of the error over the components, in units of what the tolerances allow.
-template <const auto& method, class Block>
+template <const auto& method, class Scale, class Block>
 class SquaredErrors {
   using Method = std::remove_cvref_t<decltype(method)>;
   static constexpr bool has_second =
@@ -111,12 +131,16 @@ class SquaredErrors {
       others_ = is_first ? Block(other * other) : Block(others_ + other * other);
     }
   }
-  PENDCORE_INLINE double mean(double share) const {
-    const double sum = sum_of_lanes(squares_) * share;
-    if constexpr (!has_second) return sum;
-    const double others = sum_of_lanes(others_) * share;
-    const double both = sum + 0.01 * others;
-    return both > 0.0 && both < std::numeric_limits<double>::infinity() ? sum * (sum / both) : both;
+  PENDCORE_INLINE Scale mean(double share) const {
+    const Scale sum = sum_of_trajectory<Scale>(squares_) * share;
+    if constexpr (!has_second) {
+      return sum;
+    } else {
+      const Scale others = sum_of_trajectory<Scale>(others_) * share;
+      const Scale both = sum + 0.01 * others;
+      const auto is_number = (both > 0.0) & (both < std::numeric_limits<double>::infinity());
+      return is_number ? Scale(sum * (sum / both)) : both;
+    }
   }
 
  private:
@@ -137,8 +161,9 @@ constexpr bool is_written_out = [] {
 
 /// Computes stages first .. end - 1 into k, which has the stages before them; z becomes the state
 /// of the last one.
-template <const auto& method, int first, int end, class System, class Block, int blocks>
-PENDCORE_INLINE void evaluate_stages(const System& system, double t, double h,
+template <const auto& method, int first, int end, class System, class Scale, class Block,
+          int blocks>
+PENDCORE_INLINE void evaluate_stages(const System& system, const Scale& t, const Scale& h,
                                      const Block (&y)[blocks], Block (*k)[blocks],
                                      Block (&z)[blocks]) {
   if constexpr (is_written_out<method, System>) {
@@ -159,10 +184,12 @@ PENDCORE_INLINE void evaluate_stages(const System& system, double t, double h,
   }
 }
 
-/// Tries a step of size h at time t, as Stepper::attempt says.
-template <const auto& method, class System>
-PENDCORE_INLINE Attempt attempt_step(StepMemory<method, System>* memory, double t, double h,
-                                     double gain) {
+/// Tries a step of size h at time t: computes the stages, the new state, its error and the factor
+/// for the next step.
+template <const auto& method, class System, class Scale>
+PENDCORE_INLINE ErrorAndFactor<Scale> judged_step(StepMemory<method, System>* memory,
+                                                  const Scale& t, const Scale& h,
+                                                  const Scale& gain) {
   using Memory = StepMemory<method, System>;
   using Block = typename Memory::Block;
   constexpr int blocks = Memory::blocks;
@@ -170,7 +197,9 @@ PENDCORE_INLINE Attempt attempt_step(StepMemory<method, System>* memory, double 
 
   // Local copies stay in registers, and memory is written once, at the end. The stages of a loop
   // stay in memory.
-  const System system = memory->system;
+  using LocalSystem =
+      std::conditional_t<std::is_same_v<Scale, double>, const System, const System&>;
+  LocalSystem system = memory->system;
   Block y[blocks];
   Block z[blocks];
   constexpr bool in_registers = is_written_out<method, System>;
@@ -188,7 +217,7 @@ PENDCORE_INLINE Attempt attempt_step(StepMemory<method, System>* memory, double 
   }
 
   // The scales only wait for y_new, so their division is done before the last stage is.
-  SquaredErrors<method, Block> squares;
+  SquaredErrors<method, Scale, Block> squares;
 #pragma GCC unroll 16
   for (int i = 0; i < blocks; ++i) {
     const Block size = larger(absolute(y[i]), absolute(z[i]));
@@ -203,8 +232,15 @@ PENDCORE_INLINE Attempt attempt_step(StepMemory<method, System>* memory, double 
       for (int s = 1; s < stages; ++s) memory->k[s][i] = k[s][i];
     }
   }
-  const double squared_error = squares.mean(1.0 / (blocks * Lanes<Block>::width));
+  const Scale squared_error = squares.mean(1.0 / (blocks * numbers_of_trajectory<Scale, Block>));
   return {squared_error, scaled_power(squared_error, -0.5 * exponent(method.info), gain)};
+}
+
+/// The same for one trajectory, as Stepper::attempt says.
+template <const auto& method, class System>
+PENDCORE_INLINE Attempt attempt_step(StepMemory<method, System>* memory, double t, double h,
+                                     double gain) {
+  return {judged_step(memory, t, h, gain)};
 }
 
 /// The stages of the attempted step, from time t, that the dense output alone asks for.
@@ -230,7 +266,7 @@ PENDCORE_INLINE void interpolant_of_block(double h, const Stage& k, Block* power
 #pragma GCC unroll 16
     for (int s = 0; s < Method::all_stages; ++s) {
       if (method.interpolant[i][s].is_zero()) continue;
-      sum = fma(broadcast<Block>(method.interpolant[i][s].value), k(s), sum);
+      sum = fma(Constants<Block>::of(method.interpolant[i][s].value), k(s), sum);
     }
     functions[i] = h * sum;
   }
@@ -243,9 +279,9 @@ PENDCORE_INLINE void interpolant_of_block(double h, const Stage& k, Block* power
       const int weight = method.basis[i][p];
       if (weight == 0) continue;
       const bool is_alone = empty && weight == 1;
-      powers[p] = is_alone
-                      ? functions[i]
-                      : fma(broadcast<Block>(static_cast<double>(weight)), functions[i], powers[p]);
+      powers[p] = is_alone ? functions[i]
+                           : fma(Constants<Block>::of(static_cast<double>(weight)), functions[i],
+                                 powers[p]);
       empty = false;
     }
   }
@@ -273,23 +309,31 @@ PENDCORE_INLINE void interpolant_of_step(const Block* y, const Block (*k)[blocks
 /// |h| |k_last - k_before| / |y_last - y_before|, both stages at the end of the step: an estimate
 /// of h |lambda| (Hairer and Wanner II, IV.2). `block(i)` returns y, y_new and the stages of block
 /// i.
-template <const auto& method, class Blocks>
-double stiffness_of_step(double h, int blocks, const Blocks& block) {
+template <const auto& method, class Scale, class Blocks>
+PENDCORE_INLINE Scale stiffness_of_step(const Scale& h, int blocks, const Blocks& block) {
   using Method = std::remove_cvref_t<decltype(method)>;
   constexpr int stages = Method::stages;
   static_assert(method.first_same_as_last && stages >= 3 && method.c[stages - 2].value == 1.0,
                 "the test for stiffness needs two stages at the end of the step");
-  double rates = 0.0;
-  double states = 0.0;
+  Scale rates{};
+  Scale states{};
   for (int i = 0; i < blocks; ++i) {
     const auto& [y, y_new, k] = block(i);
     const auto before = advance(y, h, method.a[stages - 2], k, stages - 2);
     const auto dk = k(stages - 1) - k(stages - 2);
     const auto dy = y_new - before;
-    rates += sum_of_lanes(dk * dk);
-    states += sum_of_lanes(dy * dy);
+    rates += sum_of_trajectory<Scale>(dk * dk);
+    states += sum_of_trajectory<Scale>(dy * dy);
   }
-  return states > 0.0 ? std::abs(h) * std::sqrt(rates / states) : 0.0;
+  if constexpr (std::is_same_v<Scale, double>) {
+    return states > 0.0 ? std::abs(h) * std::sqrt(rates / states) : 0.0;
+  } else {
+    Scale stiffness{};
+    for (int i = 0; i < Lanes<Scale>::width; ++i) {
+      if (states[i] > 0.0) stiffness[i] = std::abs(h[i]) * std::sqrt(rates[i] / states[i]);
+    }
+    return stiffness;
+  }
 }
 
 }  // namespace pendcore

@@ -39,7 +39,7 @@ class Taylor final : public Stepper {
         powers_(static_cast<std::size_t>(GaussQuadrature::points) * quadratures),
         eigenvalue_(n_, quadratures) {
     memory_.blocks = size_ / width;
-    memory_.log2_count = approximate_log2(controlled());
+    memory_.log2_count = approximate_log2(static_cast<double>(controlled()));
   }
   Taylor(const Taylor&) = delete;
   Taylor& operator=(const Taylor&) = delete;

@@ -1,0 +1,57 @@
+/// \file
+/// What the runs of an ensemble have in common that are taken in lanes: a trajectory a lane.
+///
+/// Each lane has its own time, step, step control and constants, and the next member begins in it
+/// as soon as one has ended: none waits for another. The kernel of a step is that of a single run
+/// (integrate/runge_kutta/step.hpp) on packs, so that a member has the bits of simulate(). What is
+/// rare (a step that is not finite, that looks stiff, or becomes too small) is not handled here:
+/// such a member is run by simulate() from its start.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "pendcore/ensemble/ensemble.hpp"
+
+namespace pendcore {
+
+/// A member that is about to begin, or has ended.
+struct LaneMember {
+  std::size_t number = 0;
+  std::vector<double> state;  ///< (2n): angles, rad, and rates, rad/s
+  double t = 0.0;             ///< s
+  Status status = Status::finished;
+};
+
+/// Where lanes get their members, and give them back.
+class LaneSource {
+ public:
+  virtual ~LaneSource() = default;
+  /// Fills `member` with the next one and returns its scene; null if there is none. A varied scene
+  /// is valid until the next call.
+  virtual const Scene* next(LaneMember& member) = 0;
+  virtual void ended(const LaneMember& member) = 0;
+  /// This member has to be run by simulate().
+  virtual void runs_alone(std::size_t number) = 0;
+  /// Whether to go on; is asked from time to time.
+  virtual bool goes_on() = 0;
+};
+
+/// Runs members until the source has none left.
+class LaneRunner {
+ public:
+  virtual ~LaneRunner() = default;
+  virtual void run(LaneSource& source) = 0;
+  const Statistics& statistics() const { return statistics_; }
+
+ protected:
+  Statistics statistics_;
+};
+
+/// The lanes for a scene and its options, or null if its members are run one by one.
+std::unique_ptr<LaneRunner> make_lanes(const Scene& scene, double t0, double t_end,
+                                       const Options& options);
+
+}  // namespace pendcore

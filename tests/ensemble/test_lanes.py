@@ -1,0 +1,122 @@
+"""Members in lanes have the bits of `pc.simulate`, whatever happens in the lanes beside."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pendcore as pc
+import pytest
+
+BOOK = pc.Scene.textbook()
+METHODS = ["dopri5", "dop853", "dopri5-radau5", "dop853-radau5"]
+LIGHT = pc.Scene(links=[pc.Link(mass=1e-3, length=1.0), pc.Link(mass=1.0, length=0.01)])
+
+
+def assert_same(scene, q0, qd0, t_span, **options):
+    """Assert that every member is the run of `simulate`; return the ensemble."""
+    found = pc.ensemble(scene, q0, qd0, t_span, check=False, **options)
+    q, qd = (np.broadcast_to(x, (*found.shape, 2)) for x in (q0, qd0))
+    for i in np.ndindex(found.shape):
+        options.pop("workers", None)
+        if found.status[i] == "refused":
+            with pytest.raises(ValueError, match="must be"):
+                pc.simulate(scene, q[i], qd[i], t_span, **options)
+            continue
+        alone = pc.simulate(scene, q[i], qd[i], t_span, check=False, store="end", **options)
+        assert found.status[i] == alone.status, i
+        assert found.t[i] == alone.t[-1], i
+        assert np.array_equal([*found.q[i], *found.qd[i]], alone.y[:, -1], equal_nan=True), i
+    return found
+
+
+@pytest.mark.parametrize("rtol", [1e-2, 1e-5, 1e-8, 1e-12])
+@pytest.mark.parametrize("method", METHODS)
+def test_starts_over_the_whole_circle(method, rtol):
+    q0 = pc.draw.uniform(-np.pi, np.pi, (41, 2), seed=2)
+    qd0 = pc.draw.uniform(-9.0, 9.0, (41, 2), seed=3)
+    found = assert_same(BOOK, q0, qd0, (0, 3), method=method, rtol=rtol, atol=rtol / 10)
+    assert found.success.all()
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"max_step": 0.01}, {"max_steps": 57}, {"max_steps": 1},
+        {"rtol": [1e-5, 1e-7, 1e-4, 1e-6], "atol": [1e-9, 1e-6, 1e-8, 0.0]},
+    ],
+    ids=lambda options: next(iter(options)),
+)  # fmt: skip
+def test_options_and_a_backward_run(method, options):
+    q0 = pc.draw.uniform(-2.0, 2.0, (13, 2), seed=4)
+    for t_span in ((0.0, 2.0), (5.0, 3.5), (1e6, 1e6 + 1)):
+        assert_same(BOOK, q0, 0.1, t_span, method=method, **options)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_what_is_odd_beside_what_is_usual(method):
+    q0 = pc.draw.uniform(-2.0, 2.0, (12, 2), seed=5)
+    qd0 = np.zeros((12, 2))
+    q0[1] = np.nan
+    q0[3] = np.pi / 2  # rests
+    qd0[4] = 1e160  # not finite at once
+    qd0[5] = 1e4  # fast
+    q0[6] = 1e300  # far
+    qd0[7] = -0.0
+    found = assert_same(BOOK, q0, qd0, (0, 1), method=method, max_steps=20_000)
+    assert {"finished", "refused"} < set(found.counts())
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_stiff_looking_member_among_others(method):
+    qd0 = np.zeros((9, 2))
+    qd0[4] = (0.0, 300.0)
+    assert_same(LIGHT, [0.3, 0.2], qd0, (0, 2), method=method, rtol=1e-3, atol=1e-2)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_parameters_differ_from_lane_to_lane(method):
+    values = pc.draw.uniform(0.5, 2.0, (11, 3), seed=6)
+    vary = {
+        name: values[:, k] for k, name in enumerate(["link[1].mass", "link[2].length", "gravity"])
+    }
+    found = pc.ensemble(BOOK, [0.5, 1.0], t_span=(0, 3), vary=vary, method=method)
+    for i in range(11):
+        scene = BOOK.with_parameters({name: x[i] for name, x in vary.items()})
+        alone = pc.simulate(scene, [0.5, 1.0], t_span=(0, 3), method=method)
+        assert np.array_equal(found.q[i], alone.q[-1])
+
+
+SAME = """
+import hashlib, numpy as np, pendcore as pc
+q0 = pc.draw.uniform(-np.pi, np.pi, (200, 2), seed=7)
+for method in {methods}:
+    for rtol in (1e-3, 1e-9):
+        found = pc.ensemble(pc.Scene.textbook(), q0, 0.5, (0, 5), method=method, rtol=rtol,
+                            workers={workers})
+        print(hashlib.sha256(found.q.tobytes() + found.qd.tobytes()).hexdigest())
+"""
+
+
+def test_every_instruction_set_and_number_of_workers_gives_the_same_bits():
+    def printed(instruction_set, workers):
+        return subprocess.run(
+            [sys.executable, "-c", SAME.format(methods=METHODS[:2], workers=workers)],
+            env=os.environ | {"PENDCORE_INSTRUCTION_SET": instruction_set},
+            capture_output=True, text=True, check=True,
+        ).stdout  # fmt: skip
+
+    reference = printed("baseline", 1)  # one by one
+    assert len(set(reference.split())) == 4
+    for instruction_set in ("x86-64-v3", "x86-64-v4"):
+        for workers in (1, 2, 5):
+            assert printed(instruction_set, workers) == reference
+
+
+def test_a_single_member_and_none():
+    assert_same(BOOK, np.array([[0.5, 1.0]]), 0.0, (0, 2), method="dopri5")
+    assert pc.ensemble(BOOK, np.zeros((0, 2)), t_span=(0, 2), method="dopri5").q.shape == (0, 2)
+    assert pc.ensemble(BOOK, np.zeros((3, 2)), t_span=(0, 0), method="dop853").success.all()
