@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <barrier>
+#include <cmath>
 #include <limits>
 #include <thread>
 
@@ -157,4 +158,69 @@ TEST_CASE("threads that share scenes and solutions compute what one alone does")
     ++watched;
   }
   CHECK(watched == 12);
+}
+
+namespace {
+
+constexpr std::size_t members = 37;
+constexpr double ensemble_end = 2.0;  // s
+
+/// A start of the textbook's rods; one member may not be run.
+std::vector<double> start_of(std::size_t i) {
+  const double x = static_cast<double>(i);
+  if (i == 5) return {std::nan(""), 0.0};
+  return {std::fmod(0.37 * x, 6.0) - 3.0, std::fmod(0.73 * x, 6.0) - 3.0};
+}
+
+struct EnsembleRun {
+  std::vector<std::uint8_t> status = std::vector<std::uint8_t>(members);
+  std::vector<double> t = std::vector<double>(members);
+  std::vector<double> states = std::vector<double>(4 * members);
+};
+
+EnsembleRun run_of(const Options& options, int workers) {
+  EnsembleRun run;
+  const Members all{.count = members,
+                    .names = {"gravity"},
+                    .read = [](std::size_t i, double* q0, double* qd0, double* gravity) {
+                      const std::vector<double> start = start_of(i);
+                      std::copy(start.begin(), start.end(), q0);
+                      qd0[0] = qd0[1] = 0.25;
+                      *gravity = 9.0 + 0.01 * static_cast<double>(i);
+                    }};
+  const EnsembleEnding ending =
+      run_ensemble(Scene::textbook(), all, 0.0, ensemble_end, options, {.workers = workers},
+                   {.status = run.status, .t = run.t, .states = run.states, .first_found = {}});
+  CHECK(ending.status == Status::finished);
+  CHECK(ending.done == members);
+  return run;
+}
+
+}  // namespace
+
+TEST_CASE("members of an ensemble have the bits of simulate, in lanes and with many workers") {
+  for (const char* method : {"dopri5", "dop853", "taylor"}) {
+    for (const double rtol : {1e-3, 1e-8}) {
+      Options options;
+      options.method = method;
+      options.rtol = {rtol};
+      options.store = Store::end;
+      for (const int workers : {1, 4}) {
+        const EnsembleRun run = run_of(options, workers);
+        for (std::size_t i = 0; i < members; ++i) {
+          if (i == 5) {
+            CHECK(run.status[i] == code(MemberStatus::refused));
+            continue;
+          }
+          Scene scene = Scene::textbook();
+          scene.gravity = 9.0 + 0.01 * static_cast<double>(i);
+          const Solution alone =
+              simulate(scene, start_of(i), {0.25, 0.25}, 0.0, ensemble_end, options);
+          CHECK(run.status[i] == code(alone.status));
+          CHECK(std::equal(alone.states.begin(), alone.states.end(),
+                           run.states.begin() + static_cast<std::ptrdiff_t>(4 * i)));
+        }
+      }
+    }
+  }
 }
