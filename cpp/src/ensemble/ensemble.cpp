@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <mutex>
 #include <new>
+#include <ranges>
 #include <stdexcept>
 #include <utility>
 
@@ -88,9 +89,7 @@ class OneByOne {
     const std::size_t events = options_.events.size();
     if (!results_.first_found.empty()) {
       double* const first = results_.first_found.data() + i * events;
-      for (auto one = solution.found.rbegin(); one != solution.found.rend(); ++one) {
-        first[one->event] = one->t;
-      }
+      for (const FoundEvent& one : solution.found | std::views::reverse) first[one.event] = one.t;
     }
     add(statistics_, solution.statistics);
     results_.status[i] = code(solution.status);
@@ -147,8 +146,8 @@ class Share final : public LaneSource {
 }  // namespace
 
 std::vector<std::string_view> member_status_names() {
-  std::vector<std::string_view> names;
-  for (const StatusText& one : status_texts) names.push_back(one.name);
+  std::vector<std::string_view> names(status_texts.size());
+  std::ranges::transform(status_texts, names.begin(), &StatusText::name);
   names.insert(names.end(), {"not_run", "refused"});
   return names;
 }

@@ -84,19 +84,30 @@ PENDCORE_INLINE Real approximate_exp2(const Real& x) {
 
 /// log2(x) within 0.05, for x > 0 that is neither denormal nor infinite. The mantissa's logarithm
 /// is approximated by a straight line.
-PENDCORE_INLINE double coarse_log2(double x) {
+template <class Real>
+PENDCORE_INLINE Real coarse_log2(const Real& x) {
   constexpr double middle = 1023.0 - 0.043;
-  return static_cast<double>(std::bit_cast<std::int64_t>(x)) * 0x1p-52 - middle;
+  const auto bits = std::bit_cast<typename Lanes<Real>::Integers>(x);
+  Real number = x;
+  if constexpr (Lanes<Real>::width == 1) {
+    number = static_cast<double>(bits);
+  } else {
+    for (int i = 0; i < Lanes<Real>::width; ++i) number[i] = static_cast<double>(bits[i]);
+  }
+  return number * 0x1p-52 - middle;
 }
 
 /// 2^x within 1 %, for |x| <= 1000.
-PENDCORE_INLINE double coarse_exp2(double x) {
+template <class Real>
+PENDCORE_INLINE Real coarse_exp2(const Real& x) {
+  using Integers = typename Lanes<Real>::Integers;
   using power_detail::to_integer;
-  const double shifted = x + to_integer;
-  const double f = x - (shifted - to_integer);
-  const double of_fraction = fma(fma(0.2426, f, 0.6951), f, 1.0);
-  const std::int64_t exponent = std::bit_cast<std::int64_t>(shifted) << 52;
-  return std::bit_cast<double>(std::bit_cast<std::int64_t>(of_fraction) + exponent);
+  const Real shifted = x + to_integer;
+  const Real f = x - (shifted - to_integer);
+  const Real line = fma(broadcast<Real>(0.2426), f, broadcast<Real>(0.6951));
+  const Real of_fraction = fma(line, f, broadcast<Real>(1.0));
+  const Integers exponent = std::bit_cast<Integers>(shifted) << 52;
+  return std::bit_cast<Real>(std::bit_cast<Integers>(of_fraction) + exponent);
 }
 
 /// 2^gain x^power within a relative 1e-9, for |power| <= 0.25. The next step waits for it, so its
@@ -104,17 +115,17 @@ PENDCORE_INLINE double coarse_exp2(double x) {
 /// mantissa, 2^w with w = power log2(1 + u), is summed.
 template <class Real>
 PENDCORE_INLINE Real scaled_power(const Real& x, double power, const Real& gain) {
-  const auto& c = power_detail::log2_of_mantissa;
+  using power_detail::log2_of_mantissa;
   const auto [exponent, u] = power_detail::split(x);
-  const auto line = [&, &u = u](int i) __attribute__((always_inline)) {
-    return fma(broadcast<Real>(c[i + 1]), u, broadcast<Real>(c[i]));
+  const auto line = [&u = u](int i) __attribute__((always_inline)) {
+    return fma(broadcast<Real>(log2_of_mantissa[i + 1]), u, broadcast<Real>(log2_of_mantissa[i]));
   };
   const Real of_exponent = approximate_exp2(fma(broadcast<Real>(power), exponent, gain));
   const Real u2 = u * u;
   const Real u4 = u2 * u2;
   const Real low = fma(line(2), u2, line(0));
   const Real middle = fma(line(6), u2, line(4));
-  const Real high = fma(broadcast<Real>(c[10]), u2, line(8));
+  const Real high = fma(broadcast<Real>(log2_of_mantissa[10]), u2, line(8));
   const Real w = fma(fma(high, u4, middle), u4, low) * (power * u);
   constexpr std::array e = {0x1.62e42fefa39efp-1, 0x1.ebfbdff82c58fp-3, 0x1.c6b08d704a0c0p-5,
                             0x1.3b2ab6fba4e77p-7, 0x1.5d87fe78a6731p-10};  // ln(2)^k / k!
