@@ -11,7 +11,7 @@ import pendcore as pc
 import pytest
 
 BOOK = pc.Scene.textbook()
-METHODS = ["dopri5", "dop853", "dopri5-radau5", "dop853-radau5"]
+METHODS = ["dopri5", "dop853", "taylor", "dopri5-radau5", "dop853-radau5", "taylor-radau5"]
 LIGHT = pc.Scene(links=[pc.Link(mass=1e-3, length=1.0), pc.Link(mass=1.0, length=0.01)])
 
 
@@ -104,13 +104,13 @@ for method in {methods}:
 def test_every_instruction_set_and_number_of_workers_gives_the_same_bits():
     def printed(instruction_set, workers):
         return subprocess.run(
-            [sys.executable, "-c", SAME.format(methods=METHODS[:2], workers=workers)],
+            [sys.executable, "-c", SAME.format(methods=METHODS[:3], workers=workers)],
             env=os.environ | {"PENDCORE_INSTRUCTION_SET": instruction_set},
             capture_output=True, text=True, check=True,
         ).stdout  # fmt: skip
 
     reference = printed("baseline", 1)  # one by one
-    assert len(set(reference.split())) == 4
+    assert len(set(reference.split())) == 6
     for instruction_set in ("x86-64-v3", "x86-64-v4"):
         for workers in (1, 2, 5):
             assert printed(instruction_set, workers) == reference

@@ -137,6 +137,15 @@ PENDCORE_INLINE Two<Real> fma(const Real& a, const Two<Real>& b, const Two<Real>
 }
 template <class Real>
   requires(Lanes<Real>::width > 1)
+PENDCORE_INLINE Two<Real> operator*(const Real& x, const Two<Real>& y) {
+  return {x * y.first, x * y.second};
+}
+template <class Real>
+PENDCORE_INLINE Two<Real> operator*(double x, const Two<Real>& y) {
+  return {x * y.first, x * y.second};
+}
+template <class Real>
+  requires(Lanes<Real>::width > 1)
 PENDCORE_INLINE Two<Real> operator/(const Real& x, const Two<Real>& y) {
   return {x / y.first, x / y.second};
 }

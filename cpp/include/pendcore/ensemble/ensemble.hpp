@@ -52,7 +52,7 @@ struct MemberResults {
 struct EnsembleLimits {
   int workers = 0;  ///< threads; 0: one for each processor
   double time_limit = std::numeric_limits<double>::infinity();  ///< s, for the whole ensemble
-  Monitor monitor;                                              ///< is called on the calling thread
+  Monitor monitor = {};                                         ///< is called on the calling thread
 };
 
 /// What a whole ensemble came to.

@@ -48,6 +48,7 @@
 
 #include "pendcore/arithmetic/order_of_series.hpp"
 #include "pendcore/arithmetic/pair.hpp"
+#include "pendcore/arithmetic/row_of_pairs.hpp"
 #include "pendcore/arithmetic/sine_cosine.hpp"
 
 namespace pendcore {
@@ -58,15 +59,41 @@ struct NoTorque {
   static constexpr bool depends_on_time = false;
 };
 
-/// The constants that double_pendulum.hpp and double_pendulum_with_effects.hpp have in common.
-struct DoublePendulumConstants {
-  Pair weight;     ///< gamma
-  Pair coupling;   ///< rho
-  Pair rotor;      ///< J_2/A
-  double product;  ///< rho rho'
-  double delta;
-  double epsilon;
+/// What a series is made of: numbers, pairs of them, and rows of two pairs. `Number` is a double,
+/// or a pack with one trajectory a lane.
+template <class Number>
+struct SeriesOf {
+  using Half = Two<Number>;
+  using Row = TwoPairs<Number>;
+  PENDCORE_INLINE static Half pair_at(const Number* from) { return {from[0], from[1]}; }
+  PENDCORE_INLINE static void put_row(Number* to, const Row& row) {
+    to[0] = row.low.first;
+    to[1] = row.low.second;
+    to[2] = row.high.first;
+    to[3] = row.high.second;
+  }
 };
+template <>
+struct SeriesOf<double> {
+  using Half = Pair;
+  using Row = Pairs;
+  PENDCORE_INLINE static Half pair_at(const double* from) { return load<Pair>(from); }
+  PENDCORE_INLINE static void put_row(double* to, const Row& row) { store(to, row); }
+};
+
+/// The constants that double_pendulum.hpp and double_pendulum_with_effects.hpp have in common.
+template <class Number>
+struct ConstantsOfDoublePendulum {
+  using Half = typename SeriesOf<Number>::Half;
+
+  Half weight;     ///< gamma
+  Half coupling;   ///< rho
+  Half rotor;      ///< J_2/A
+  Number product;  ///< rho rho'
+  Number delta;
+  Number epsilon;
+};
+using DoublePendulumConstants = ConstantsOfDoublePendulum<double>;
 
 /// A state is one row: (q_1, q_2, qd_1, qd_2).
 template <class Torque>
@@ -100,66 +127,72 @@ class DoublePendulumSeries {
 
 /// The orders of one series. Rows are (c, c', s, s'); for rates and other numbers without a
 /// direction, a row is the pair twice.
+template <class Number>
 struct DoublePendulumOrders {
-  double per_sigma;
-  Pairs own, cross;  ///< 1/D and -kappa/D of the two by two system
-  Pairs pull;        ///< gamma sigma^2, the factor of c
-  Pairs minus_rho;
-  Pairs n0, n1, n2, rate0, rate1;
+  using Of = SeriesOf<Number>;
+  using Half = typename Of::Half;
+  using Row = typename Of::Row;
+
+  Number per_sigma;
+  Row own, cross;  ///< 1/D and -kappa/D of the two by two system
+  Row pull;        ///< gamma sigma^2, the factor of c
+  Row minus_rho;
+  Row n0, n1, n2, rate0, rate1;
   // Factors in f, in which the halves of a row are added: (k + 1) (first + k second) of u_{k+1},
   // and (k + 1) by_rest of the terms of older orders in u_{k+2}.
-  Pairs first, second, by_rest;
-  Pairs by_rate[2];         ///< factor of qd_k: [0] + k [1]
-  Pairs by_rate_before[2];  ///< factor of qd_{k-1}: [0] + k [1]
-  Pairs by_u[3];            ///< factor of u_k of the other link: [0] + k [1] + k^2 [2]
-  Pairs by_own_u;
+  Row first, second, by_rest;
+  Row by_rate[2];         ///< factor of qd_k: [0] + k [1]
+  Row by_rate_before[2];  ///< factor of qd_{k-1}: [0] + k [1]
+  Row by_u[3];            ///< factor of u_k of the other link: [0] + k [1] + k^2 [2]
+  Row by_own_u;
 
   // What the last two orders leave for the next.
-  Pairs u_before, u;                   ///< u_k and u_{k+1}
-  Pairs rate_before, rate;             ///< qd_{k-1} and qd_k; 0 instead of qd_0, which is in rate0
-  Pairs rest_before;                   ///< the terms of older orders in u_{k+1}
-  Pairs u_without_rate;                ///< u_{k+1} without its term in qd_k
-  Pair angle_of_order, rate_of_order;  ///< q_k and qd_k
+  Row u_before, u;                     ///< u_k and u_{k+1}
+  Row rate_before, rate;               ///< qd_{k-1} and qd_k; 0 instead of qd_0, which is in rate0
+  Row rest_before;                     ///< the terms of older orders in u_{k+1}
+  Row u_without_rate;                  ///< u_{k+1} without its term in qd_k
+  Half angle_of_order, rate_of_order;  ///< q_k and qd_k
 
-  Pairs pulls[highest_order];  ///< -rho u'' of the other link
-  Pairs n[highest_order + 3];
-  Pairs rates[highest_order + 1];
+  Row pulls[highest_order];  ///< -rho u'' of the other link
+  Row n[highest_order + 3];
+  Row rates[highest_order + 1];
 
-  PENDCORE_INLINE DoublePendulumOrders(const DoublePendulumConstants& constants, const double* y,
-                                       double sigma);
+  PENDCORE_INLINE DoublePendulumOrders(const ConstantsOfDoublePendulum<Number>& constants,
+                                       const Number* y, const Number& sigma);
   /// Computes orders 0, 1 and 2, whose sums are too short to have last terms apart from others.
   template <class TorqueOrders>
-  PENDCORE_INLINE void begin(TorqueOrders& torque, double* coefficients);
+  PENDCORE_INLINE void begin(TorqueOrders& torque, Number* coefficients);
   /// Computes order k >= 3 from the older terms of both sums: pulls_j n_{k-j} from j = 1 to k - 3,
   /// and qd_j n_{k+1-j} from j = 2 to k - 2.
   template <class TorqueOrders>
-  PENDCORE_INLINE void next(int k, const Pairs& sum, const Pairs& rest, TorqueOrders& torque,
-                            double* coefficients);
+  PENDCORE_INLINE void next(int k, const Row& sum, const Row& rest, TorqueOrders& torque,
+                            Number* coefficients);
 
  private:
   PENDCORE_INLINE void put_factors_together();
   /// Computes order k from f without the part of qd_k, and from the terms of older orders in
   /// u_{k+2}.
   template <class TorqueOrders>
-  PENDCORE_INLINE void finish(int k, Pairs f, const Pairs& rest, TorqueOrders& torque,
-                              double* coefficients);
+  PENDCORE_INLINE void finish(int k, Row f, const Row& rest, TorqueOrders& torque,
+                              Number* coefficients);
 };
 
-PENDCORE_INLINE DoublePendulumOrders::DoublePendulumOrders(const DoublePendulumConstants& constants,
-                                                           const double* y, double sigma) {
+template <class Number>
+PENDCORE_INLINE DoublePendulumOrders<Number>::DoublePendulumOrders(
+    const ConstantsOfDoublePendulum<Number>& constants, const Number* y, const Number& sigma) {
   per_sigma = 1.0 / sigma;  // exact: a power of two
-  Pair s0, c0;
-  sine_cosine(load<Pair>(y), s0, c0);
-  angle_of_order = load<Pair>(y);
-  rate_of_order = sigma * load<Pair>(y + 2);
-  const Pair sine = fma(s0, other(c0), -(c0 * other(s0)));
-  const Pair cosine = fma(c0, other(c0), s0 * other(s0));
-  const Pair rest =
-      fma(broadcast<Pair>(constants.epsilon), cosine, broadcast<Pair>(constants.delta));
-  const Pair inverse = 1.0 / fma(constants.product * sine, sine, rest);
+  Half s0, c0;
+  sine_cosine(Of::pair_at(y), s0, c0);
+  angle_of_order = Of::pair_at(y);
+  rate_of_order = sigma * Of::pair_at(y + 2);
+  const Half sine = fma(s0, other(c0), -(c0 * other(s0)));
+  const Half cosine = fma(c0, other(c0), s0 * other(s0));
+  const Half rest =
+      fma(Constants<Half>::of(constants.epsilon), cosine, Constants<Half>::of(constants.delta));
+  const Half inverse = 1.0 / fma(constants.product * sine, sine, rest);
   own = twice(inverse);
-  cross = twice(fma(Pair(-constants.coupling), cosine, constants.rotor) * inverse);
-  pull = joined(Pair(sigma * sigma * constants.weight), Pair{});
+  cross = twice(fma(Half(-constants.coupling), cosine, constants.rotor) * inverse);
+  pull = joined(Half(sigma * sigma * constants.weight), Half{});
   minus_rho = twice(-constants.coupling);
   rate0 = twice(rate_of_order);
   u_before = joined(c0, s0);
@@ -169,11 +202,11 @@ PENDCORE_INLINE DoublePendulumOrders::DoublePendulumOrders(const DoublePendulumC
   first = minus_rho * other(rate0) * u_before;
   second = minus_rho * n1;
   by_rest = minus_rho * n0;
-  const Pairs direct = by_rest * other(n1);
+  const Row direct = by_rest * other(n1);
   by_rate[0] = halves_added(fma(first, other(n0), direct));
   by_rate[1] = halves_added(fma(second, other(n0), direct));
   u_without_rate = u;
-  rate_before = rate = rest_before = Pairs{};
+  rate_before = rate = rest_before = Row{};
   n[1] = n1;
   rates[0] = rate0;
 }
@@ -181,24 +214,27 @@ PENDCORE_INLINE DoublePendulumOrders::DoublePendulumOrders(const DoublePendulumC
 /// Computes the factors of u_k and qd_{k-1} that come from u_{k+1} = (qd_0 n_k + qd_{k-1} n_1 +
 /// rest + qd_k n_0)/(k + 1) and from the last terms of both sums. n_k is u_k turned; where the
 /// halves are added, a row times a turned row is minus the turned first row times the second.
-PENDCORE_INLINE void DoublePendulumOrders::put_factors_together() {
+template <class Number>
+PENDCORE_INLINE void DoublePendulumOrders<Number>::put_factors_together() {
   n2 = n[2];
   rate1 = rates[1];
   by_own_u = pull - turned(pulls[0]);
-  const Pairs of_pulls = minus_rho * n2;
-  const Pairs of_rest = -turned(by_rest * other(rate1));
+  const Row of_pulls = minus_rho * n2;
+  const Row of_rest = -turned(by_rest * other(rate1));
   by_u[0] = of_rest - turned(first * other(rate0));
   by_u[1] = (of_rest - of_pulls) - turned(second * other(rate0));
   by_u[2] = of_pulls;
-  const Pairs direct = by_rest * other(n2);
+  const Row direct = by_rest * other(n2);
   by_rate_before[0] = halves_added(fma(first, other(n1), direct));
   by_rate_before[1] = halves_added(fma(second, other(n1), direct));
 }
 
+template <class Number>
 template <class TorqueOrders>
-PENDCORE_INLINE void DoublePendulumOrders::begin(TorqueOrders& torque, double* coefficients) {
-  Pairs rest{};
-  Pairs sum{};
+PENDCORE_INLINE void DoublePendulumOrders<Number>::begin(TorqueOrders& torque,
+                                                         Number* coefficients) {
+  Row rest{};
+  Row sum{};
 #pragma GCC unroll 3
   for (int k = 0; k <= 2; ++k) {
     if (k == 2) {
@@ -206,48 +242,51 @@ PENDCORE_INLINE void DoublePendulumOrders::begin(TorqueOrders& torque, double* c
       sum = pulls[0] * n[2];
     }
     const double next = k + 1.0;
-    const Pairs by = next * fma(broadcast<Pairs>(k), second, first);
-    const Pairs older = fma(Pairs(next * by_rest), other(rest), fma(pull, u_before, sum));
+    const Row by = next * fma(Constants<Row>::of(static_cast<double>(k)), second, first);
+    const Row older = fma(Row(next * by_rest), other(rest), fma(pull, u_before, sum));
     finish(k, halves_added(fma(by, other(u_without_rate), older)), rest, torque, coefficients);
   }
   put_factors_together();
 }
 
+template <class Number>
 template <class TorqueOrders>
-PENDCORE_INLINE void DoublePendulumOrders::next(int k, const Pairs& sum, const Pairs& rest,
-                                                TorqueOrders& torque, double* coefficients) {
-  const Pairs order = broadcast<Pairs>(k);
-  const Pairs by = fma(order, second, first);
-  const Pairs older =
-      fma(Pairs((k + 1.0) * by_rest), other(rest), fma(by, other(rest_before), sum));
-  const Pairs of_u = fma(order, fma(order, by_u[2], by_u[1]), by_u[0]);
-  const Pairs of_rate = fma(order, by_rate_before[1], by_rate_before[0]);
-  const Pairs known = fma(of_u, other(u_before), fma(by_own_u, u_before, older));
+PENDCORE_INLINE void DoublePendulumOrders<Number>::next(int k, const Row& sum, const Row& rest,
+                                                        TorqueOrders& torque,
+                                                        Number* coefficients) {
+  const Row order = Constants<Row>::of(static_cast<double>(k));
+  const Row by = fma(order, second, first);
+  const Row older = fma(Row((k + 1.0) * by_rest), other(rest), fma(by, other(rest_before), sum));
+  const Row of_u = fma(order, fma(order, by_u[2], by_u[1]), by_u[0]);
+  const Row of_rate = fma(order, by_rate_before[1], by_rate_before[0]);
+  const Row known = fma(of_u, other(u_before), fma(by_own_u, u_before, older));
   finish(k, fma(of_rate, other(rate_before), halves_added(known)),
          fma(rates[k - 1], n2, fma(rate1, n[k], rest)), torque, coefficients);
 }
 
+template <class Number>
 template <class TorqueOrders>
-PENDCORE_INLINE void DoublePendulumOrders::finish(int k, Pairs f, const Pairs& rest,
-                                                  TorqueOrders& torque, double* coefficients) {
+PENDCORE_INLINE void DoublePendulumOrders<Number>::finish(int k, Row f, const Row& rest,
+                                                          TorqueOrders& torque,
+                                                          Number* coefficients) {
   const double share = inverse_of[k + 1];
   const double share_after = inverse_of[k + 2];
   if constexpr (!std::is_same_v<TorqueOrders, NoTorque>) {
     f = f + twice(torque.next(k, angle_of_order, rate_of_order));
   }
-  const Pairs own_share = share * own;
-  const Pairs cross_share = share * cross;
-  const Pairs of_rate = fma(broadcast<Pairs>(k), by_rate[1], by_rate[0]);
-  const Pairs without_rate = fma(cross_share, other(f), own_share * f);
-  const Pairs rate_after = fma(Pairs(own_share * of_rate), other(rate),
-                               fma(Pairs(cross_share * other(of_rate)), rate, without_rate));
+  const Row own_share = share * own;
+  const Row cross_share = share * cross;
+  const Row of_rate = fma(Constants<Row>::of(static_cast<double>(k)), by_rate[1], by_rate[0]);
+  const Row without_rate = fma(cross_share, other(f), own_share * f);
+  const Row rate_after = fma(Row(own_share * of_rate), other(rate),
+                             fma(Row(cross_share * other(of_rate)), rate, without_rate));
   u_without_rate = share_after * fma(rate0, n[k + 1], fma(n1, rate, rest));
-  const Pairs u_after = fma(Pairs(share_after * n0), rate_after, u_without_rate);
+  const Row u_after = fma(Row(share_after * n0), rate_after, u_without_rate);
 
   angle_of_order = share * rate_of_order;
   rate_of_order = low_half(rate_after);
-  store(coefficients + static_cast<std::ptrdiff_t>(4) * (k + 1),
-        joined(angle_of_order, Pair(per_sigma * rate_of_order)));
+  Of::put_row(coefficients + static_cast<std::ptrdiff_t>(4) * (k + 1),
+              joined(angle_of_order, Half(per_sigma * rate_of_order)));
   pulls[k] = ((k + 1.0) * (k + 2.0) * minus_rho) * other(u_after);
   n[k + 2] = turned(u_after);
   rates[k + 1] = rate_after;
@@ -258,10 +297,97 @@ PENDCORE_INLINE void DoublePendulumOrders::finish(int k, Pairs f, const Pairs& r
   rate = rate_after;
 }
 
+/// The older terms of both sums of orders k and k + 1: what `next` takes. Two orders are computed
+/// at a time, so that what they share is loaded once.
+template <class Row>
+struct OlderTerms {
+  Row sum, rest;
+  Row next_sum, next_rest;
+};
+
+/// Adds up these terms of numbers, or of packs of them, that `pull(j)`, `rate(j)` and `n(j)` return.
+template <class Value, class Pull, class Rate, class Normal>
+PENDCORE_INLINE OlderTerms<Value> older_terms(int k, const Pull& pull, const Rate& rate,
+                                              const Normal& n) {
+  Value sum{}, sum_even{}, rest{}, rest_even{};  // sums of order k over odd and even j
+  Value next_sum{}, next_sum_even{}, next_rest{}, next_rest_even{};
+  Value n_before = n(k);
+  for (int j = 1; j < k - 3; j += 2) {
+    const Value n_here = n(k - j);
+    const Value n_after = n(k - j - 1);
+    const Value pull_here = pull(j);
+    const Value pull_after = pull(j + 1);
+    const Value rate_here = rate(j + 1);
+    const Value rate_after = rate(j + 2);
+    sum = fma(pull_here, n_here, sum);
+    rest = fma(rate_here, n_here, rest);
+    next_sum = fma(pull_here, n_before, next_sum);
+    next_rest = fma(rate_here, n_before, next_rest);
+    sum_even = fma(pull_after, n_after, sum_even);
+    rest_even = fma(rate_after, n_after, rest_even);
+    next_sum_even = fma(pull_after, n_here, next_sum_even);
+    next_rest_even = fma(rate_after, n_here, next_rest_even);
+    n_before = n_after;
+  }
+  const Value n_last = n(3);
+  sum = fma(pull(k - 3), n_last, sum);
+  rest = fma(rate(k - 2), n_last, rest);
+  next_sum = fma(pull(k - 3), n_before, next_sum);
+  next_rest = fma(rate(k - 2), n_before, next_rest);
+  next_sum_even = fma(pull(k - 2), n_last, next_sum_even);
+  next_rest_even = fma(rate(k - 1), n_last, next_rest_even);
+  return {sum + sum_even, rest + rest_even, next_sum + next_sum_even, next_rest + next_rest_even};
+}
+
+PENDCORE_INLINE OlderTerms<Pairs> older_terms(const DoublePendulumOrders<double>& orders, int k) {
+  return older_terms<Pairs>(
+      k, [&](int j) __attribute__((always_inline)) { return orders.pulls[j]; },
+      [&](int j) __attribute__((always_inline)) { return orders.rates[j]; },
+      [&](int j) __attribute__((always_inline)) { return orders.n[j]; });
+}
+/// In lanes, the numbers of a row are added up one after the other: the sums of a whole row would
+/// not fit into the registers.
+template <class Real>
+PENDCORE_INLINE OlderTerms<TwoPairs<Real>> older_terms(const DoublePendulumOrders<Real>& orders,
+                                                       int k) {
+  OlderTerms<TwoPairs<Real>> terms;
+  const auto add = [&](auto half, auto one) __attribute__((always_inline)) {
+    const OlderTerms<Real> found = older_terms<Real>(
+        k, [&](int j) __attribute__((always_inline)) { return orders.pulls[j].*half.*one; },
+        [&](int j) __attribute__((always_inline)) { return orders.rates[j].low.*one; },
+        [&](int j) __attribute__((always_inline)) { return orders.n[j].*half.*one; });
+    terms.sum.*half.*one = found.sum;
+    terms.rest.*half.*one = found.rest;
+    terms.next_sum.*half.*one = found.next_sum;
+    terms.next_rest.*half.*one = found.next_rest;
+  };
+  add(&TwoPairs<Real>::low, &Two<Real>::first);
+  add(&TwoPairs<Real>::low, &Two<Real>::second);
+  add(&TwoPairs<Real>::high, &Two<Real>::first);
+  add(&TwoPairs<Real>::high, &Two<Real>::second);
+  return terms;
+}
+
+/// Fills rows 1 .. order of `coefficients` with the series from the state y, a row of four numbers,
+/// in units of sigma. `torque` gives the series of the torques.
+template <class Number, class TorqueOrders>
+PENDCORE_INLINE void expand_double_pendulum(const ConstantsOfDoublePendulum<Number>& constants,
+                                            const Number* y, const Number& sigma, int order,
+                                            TorqueOrders& torque, Number* coefficients) {
+  using Row = typename SeriesOf<Number>::Row;
+  DoublePendulumOrders<Number> orders(constants, y, sigma);
+  orders.begin(torque, coefficients);
+  orders.next(3, Row{}, Row{}, torque, coefficients);
+  for (int k = 4; k < order; k += 2) {
+    const OlderTerms<Row> older = older_terms(orders, k);
+    orders.next(k, older.sum, older.rest, torque, coefficients);
+    orders.next(k + 1, older.next_sum, older.next_rest, torque, coefficients);
+  }
+}
+
 template <class Torque>
 PENDCORE_INLINE void DoublePendulumSeries<Torque>::expand(double t, const double* y, double sigma,
                                                           int order, double* coefficients) const {
-  DoublePendulumOrders orders(constants_, y, sigma);
   auto torque = [&] {
     if constexpr (Torque::is_there) {
       return typename Torque::Orders(torque_, t, sigma);
@@ -269,41 +395,7 @@ PENDCORE_INLINE void DoublePendulumSeries<Torque>::expand(double t, const double
       return torque_;
     }
   }();
-  orders.begin(torque, coefficients);
-  orders.next(3, Pairs{}, Pairs{}, torque, coefficients);
-  // Two orders are computed at a time, so that what they share is loaded once.
-  for (int k = 4; k < order; k += 2) {
-    Pairs sum{}, sum_even{}, rest{}, rest_even{};  // sums of order k over odd and even j
-    Pairs next_sum{}, next_sum_even{}, next_rest{}, next_rest_even{};
-    Pairs n_before = orders.n[k];
-    for (int j = 1; j < k - 3; j += 2) {
-      const Pairs n = orders.n[k - j];
-      const Pairs n_after = orders.n[k - j - 1];
-      const Pairs pull = orders.pulls[j];
-      const Pairs pull_after = orders.pulls[j + 1];
-      const Pairs rate = orders.rates[j + 1];
-      const Pairs rate_after = orders.rates[j + 2];
-      sum = fma(pull, n, sum);
-      rest = fma(rate, n, rest);
-      next_sum = fma(pull, n_before, next_sum);
-      next_rest = fma(rate, n_before, next_rest);
-      sum_even = fma(pull_after, n_after, sum_even);
-      rest_even = fma(rate_after, n_after, rest_even);
-      next_sum_even = fma(pull_after, n, next_sum_even);
-      next_rest_even = fma(rate_after, n, next_rest_even);
-      n_before = n_after;
-    }
-    const Pairs n = orders.n[3];
-    sum = fma(orders.pulls[k - 3], n, sum);
-    rest = fma(orders.rates[k - 2], n, rest);
-    next_sum = fma(orders.pulls[k - 3], n_before, next_sum);
-    next_rest = fma(orders.rates[k - 2], n_before, next_rest);
-    next_sum_even = fma(orders.pulls[k - 2], n, next_sum_even);
-    next_rest_even = fma(orders.rates[k - 1], n, next_rest_even);
-    orders.next(k, Pairs(sum + sum_even), Pairs(rest + rest_even), torque, coefficients);
-    orders.next(k + 1, Pairs(next_sum + next_sum_even), Pairs(next_rest + next_rest_even), torque,
-                coefficients);
-  }
+  expand_double_pendulum(constants_, y, sigma, order, torque, coefficients);
 }
 
 }  // namespace pendcore

@@ -42,9 +42,14 @@ struct TaylorMemory {
 namespace taylor_detail {
 
 /// The power 2^k <= x < 2^(k+1), within limits that leave room for its powers.
-PENDCORE_INLINE double power_of_two_below(double x) {
-  const double within = std::min(std::max(x, 0x1p-400), 0x1p400);
-  return std::bit_cast<double>(std::bit_cast<std::uint64_t>(within) & 0x7ff0000000000000U);
+template <class Real>
+PENDCORE_INLINE Real power_of_two_below(const Real& x) {
+  const Real least = broadcast<Real>(0x1p-400);
+  const Real most = broadcast<Real>(0x1p400);
+  const Real above = x < least ? least : x;
+  const Real within = most < above ? most : above;
+  using Integers = typename Lanes<Real>::Integers;
+  return std::bit_cast<Real>(std::bit_cast<Integers>(within) & 0x7ff0000000000000);
 }
 
 template <class Series>

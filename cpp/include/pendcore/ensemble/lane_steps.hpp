@@ -1,0 +1,182 @@
+/// \file
+/// What integrate/loop does around a step of a run, for a trajectory in each lane: where the step
+/// ends, whether it is accepted, how long the next one is. The operations are the same, as selects
+/// instead of branches, so that each lane has the bits of its run alone.
+#pragma once
+
+#include <limits>
+
+#include "pendcore/arithmetic/epsilon.hpp"
+#include "pendcore/arithmetic/pack.hpp"
+#include "pendcore/arithmetic/power.hpp"
+#include "pendcore/arithmetic/two_double.hpp"
+#include "pendcore/integrate/loop/step_control.hpp"
+#include "pendcore/integrate/loop/stiffness.hpp"
+#include "pendcore/integrate/loop/trial.hpp"
+
+namespace pendcore {
+
+/// What the steps of all lanes have in common.
+struct LaneInterval {
+  double t_end;  ///< s
+  double max_step = std::numeric_limits<double>::infinity();
+  long long max_steps = std::numeric_limits<long long>::max();
+};
+
+/// For each lane a bit.
+using LaneBits = unsigned;
+
+/// The lanes that need attention after a round of steps.
+struct Attention {
+  LaneBits ended = 0;    ///< at the end of the interval
+  LaneBits used_up = 0;  ///< max_steps were attempted
+  LaneBits odd = 0;      ///< to be run alone
+  LaneBits looks = 0;    ///< their stiffness is to be looked at
+  bool is_needed() const { return (ended | used_up | odd | looks) != 0; }
+};
+
+/// Where the trajectories of all lanes stand, but for their states.
+template <int width>
+struct LaneSteps {
+  using Real = Pack<width>;
+  using Integers = typename Lanes<Real>::Integers;
+
+  Real t = {}, t_low = {};  ///< s, a sum of two numbers
+  Real h = {};              ///< s, the step to try next
+  Real log2_error_before = {};
+  Integers after_rejection = {};  ///< all bits set where the last attempt was rejected
+  Integers accepted = {}, rejected = {};
+  Integers steps_to_look = {};  ///< accepted steps until stiffness is looked at
+  LaneBits active = 0;          ///< the lanes that have a member
+};
+
+namespace lanes_detail {
+
+/// Whether each lane of a comparison holds, as bits.
+template <class Integers>
+PENDCORE_INLINE LaneBits bits_of(const Integers& holds) {
+  constexpr int width = sizeof(Integers) / sizeof(long long);
+  LaneBits bits = 0;
+  for (int i = 0; i < width; ++i) bits |= static_cast<LaneBits>(holds[i] & 1) << i;
+  return bits;
+}
+
+/// std::max(a, b) in each lane: a unless it is smaller.
+template <class Real>
+PENDCORE_INLINE Real larger_of(const Real& a, const Real& b) {
+  return a < b ? b : a;
+}
+
+/// a + b as an unevaluated sum of two numbers in each lane (arithmetic/two_double.hpp).
+template <class Real>
+struct TwoReals {
+  Real high, low;
+};
+template <class Real>
+PENDCORE_INLINE TwoReals<Real> exact_sum(const Real& a, const Real& b) {
+  const Real sum = a + b;
+  return {sum, left_over(a, b, sum)};
+}
+template <class Real>
+PENDCORE_INLINE TwoReals<Real> operator+(const TwoReals<Real>& a, const Real& b) {
+  const TwoReals<Real> sum = exact_sum(a.high, b);
+  return exact_sum(sum.high, Real(sum.low + a.low));
+}
+/// b - a, rounded.
+template <class Real>
+PENDCORE_INLINE Real difference(const Real& b, const TwoReals<Real>& a) {
+  const TwoReals<Real> sum = exact_sum(b, Real(-a.high));
+  return sum.high + (sum.low - a.low);
+}
+
+}  // namespace lanes_detail
+
+/// The step that is tried next in each lane.
+template <int width>
+struct NextStep {
+  using Real = Pack<width>;
+  using Integers = typename Lanes<Real>::Integers;
+  Real h;                ///< s
+  Real bits;             ///< s, a few last bits of the time
+  Integers is_in_reach;  ///< whether it leads to the end of the interval
+  Integers is_odd;       ///< whether it is too small
+};
+
+template <int width>
+PENDCORE_INLINE NextStep<width> next_step(const LaneSteps<width>& lanes,
+                                          const LaneInterval& interval) {
+  namespace detail = lanes_detail;
+  using Real = Pack<width>;
+  const Real t_end = broadcast<Real>(interval.t_end);
+  const Real left = detail::difference(t_end, detail::TwoReals<Real>{lanes.t, lanes.t_low});
+  const Real size = absolute(lanes.h);
+  const Real stretched = 1.01 * size;
+  const Real allowed = detail::larger_of(size, broadcast<Real>(interval.max_step));
+  const Real reach = allowed < stretched ? allowed : stretched;
+  NextStep<width> next;
+  next.bits = last_bits_share * detail::larger_of(absolute(lanes.t), absolute(t_end));
+  next.is_in_reach = absolute(left) <= reach + next.bits;
+  next.is_odd = (size <= few * epsilon * absolute(lanes.t)) | (size < 1e-300) |
+                (next.is_in_reach & (absolute(left) <= few * next.bits));
+  next.h = next.is_in_reach ? left : lanes.h;
+  return next;
+}
+
+/// Accepts or rejects the steps that were `tried` (all bits set), and notes what needs attention.
+/// Returns where a step was accepted.
+template <const auto& method, int width>
+PENDCORE_INLINE typename NextStep<width>::Integers finish_step(
+    LaneSteps<width>& lanes, const LaneInterval& interval, const NextStep<width>& next,
+    const ErrorAndFactor<Pack<width>>& found, const typename NextStep<width>::Integers& is_odd,
+    const typename NextStep<width>::Integers& tried, Attention& attention) {
+  namespace detail = lanes_detail;
+  using Real = Pack<width>;
+  using Integers = typename NextStep<width>::Integers;
+  constexpr const MethodInfo& info = method.info;
+  const Real t_end = broadcast<Real>(interval.t_end);
+  const Real max_step = broadcast<Real>(interval.max_step);
+  const Real h = next.h;
+  const Integers is_accepted = (found.squared_error <= 1.0) & tried;
+  const Integers is_rejected = ~(found.squared_error <= 1.0) & tried;
+
+  // The step control of step_control.hpp, and the loop's bound on the next step.
+  const Real log2_error = 0.5 * approximate_log2(found.squared_error);
+  const Real most = lanes.after_rejection ? broadcast<Real>(1.0) : broadcast<Real>(info.growth);
+  const Real factor = found.factor < info.shrink ? broadcast<Real>(info.shrink)
+                      : most < found.factor      ? most
+                                                 : found.factor;
+  Real longer = h * factor;
+  longer = absolute(longer) >= max_step ? (h < 0.0 ? Real(-max_step) : max_step) : longer;
+  Real shorter = lanes.h;
+  if ((detail::bits_of(is_rejected) & lanes.active) != 0) {
+    const Real log2_factor = info.log2_safety - exponent(info) * log2_error;
+    shorter = h * detail::larger_of(approximate_exp2(log2_factor), broadcast<Real>(info.shrink));
+  }
+  const Real smallest = broadcast<Real>(StepControl::log2_smallest_error);
+  lanes.log2_error_before =
+      is_accepted ? detail::larger_of(log2_error, smallest) : lanes.log2_error_before;
+  lanes.after_rejection = is_rejected;
+  lanes.accepted -= is_accepted;
+  lanes.rejected -= is_rejected;
+  lanes.steps_to_look += is_accepted;
+  lanes.h = is_accepted ? longer : is_rejected ? shorter : lanes.h;
+
+  const detail::TwoReals<Real> t{lanes.t, lanes.t_low};
+  const detail::TwoReals<Real> after = t + h;
+  const Real missed = detail::difference(t_end, after);
+  const Integers lands = next.is_in_reach & ((h < 0.0 ? Real(-missed) : missed) <= next.bits);
+  lanes.t = is_accepted ? (lands ? t_end : after.high) : t.high;
+  lanes.t_low = is_accepted ? (lands ? Real{} : after.low) : t.low;
+
+  const Integers has_ended = is_accepted & (lanes.t == t_end);
+  const Integers max_steps = interval.max_steps - Integers{};
+  const Integers is_used_up = ~has_ended & (lanes.accepted + lanes.rejected >= max_steps);
+  if ((detail::bits_of(is_odd | has_ended | is_used_up) & lanes.active) != 0) {
+    attention.odd = detail::bits_of(is_odd) & lanes.active;
+    attention.ended = detail::bits_of(has_ended) & lanes.active & ~attention.odd;
+    attention.used_up = detail::bits_of(is_used_up) & lanes.active & ~attention.odd;
+  }
+  return is_accepted;
+}
+
+}  // namespace pendcore

@@ -1,0 +1,188 @@
+/// \file
+/// Steps by Taylor series of several trajectories at once.
+///
+/// As in a single run (integrate/taylor/taylor_step.hpp), a step ends with the series from its end,
+/// which says how long the next step may be. A member that begins has no series yet: its first
+/// round, in which it stays where it is, computes it.
+#pragma once
+
+#include <utility>
+
+#include "pendcore/dynamics/series/double_pendulum_series.hpp"
+#include "pendcore/ensemble/lane_steps.hpp"
+#include "pendcore/integrate/taylor/taylor_step.hpp"
+
+namespace pendcore {
+
+/// The lanes of the method of Taylor series on the bare double pendulum. A state is a row of four
+/// numbers, (q_1, q_2, qd_1, qd_2).
+template <int width>
+struct SeriesLanes : LaneSteps<width> {
+  using Real = Pack<width>;
+  using Integers = typename Lanes<Real>::Integers;
+  static constexpr int size = 4;
+
+  ConstantsOfDoublePendulum<Real> constants;
+  Real y[size] = {};
+  Real y_new[size] = {};
+  Real rtol[size] = {};
+  Real atol[size] = {};
+  Real sigma = {}, sigma_new = {};      ///< s, the unit of time of a series
+  Real largest = {}, largest_new = {};  ///< s, the step that the tolerances allow
+  Real h_before = {};                   ///< s, the step that was taken last
+  Integers begins = {};                 ///< all bits set where a member has no series yet
+  int order = lowest_taylor_order;
+  Real of_y[(highest_order + 1) * size] = {};  ///< two series: those from y, and from y_new
+  Real of_y_new[(highest_order + 1) * size] = {};
+  Real* rows = of_y;
+  Real* rows_new = of_y_new;
+};
+
+namespace lanes_detail {
+
+/// log2 of the step, in units of sigma, that the tolerances allow for the series from y.
+template <int width>
+PENDCORE_INLINE Pack<width> log2_of_step(const SeriesLanes<width>* all, const Pack<width>* y,
+                                         const Pack<width>* rows) {
+  using Real = Pack<width>;
+  constexpr int size = SeriesLanes<width>::size;
+  Real last[size], before_last[size], others[size], before[size];
+  const Real* const end = rows + static_cast<std::ptrdiff_t>(all->order) * size;
+#pragma GCC unroll 4
+  for (int i = 0; i < size; ++i) {
+    const Real moves = larger(absolute(rows[size + i]), absolute(rows[2 * size + i]));
+    const Real most = larger(absolute(y[i]), moves);
+    const Real scale = 1.0 / fma(all->rtol[i], most, all->atol[i]);
+    const auto share = [&](int k) __attribute__((always_inline)) {
+      return Real(scale * end[i - static_cast<std::ptrdiff_t>(k) * size]);
+    };
+    const auto squares = [&](int first, int count) __attribute__((always_inline)) {
+      Real sum{};
+      for (int k = first; k < first + count; ++k) sum = fma(share(k), share(k), sum);
+      return sum;
+    };
+    last[i] = squares(0, 1);
+    before_last[i] = squares(1, 1);
+    others[i] = squares(2, 2);
+    before[i] = squares(4, 4);
+  }
+  // The order of the sums is that of sum_by_halves().
+  const auto sum = [](const Real* x) { return Real((x[0] + x[2]) + (x[1] + x[3])); };
+  Real all_high[size];
+  for (int i = 0; i < size; ++i) all_high[i] = last[i] + before_last[i] + others[i];
+  const Real high = sum(all_high);
+  const Real low = sum(before);
+  const Real log2_high = coarse_log2(high);
+  const Real decay = low == 0.0 ? Real{} : Real(0.25 * (coarse_log2(low) - log2_high));
+  const Real log2_error =
+      larger_of(larger_of(Real(log2_high - 3.0 * decay), coarse_log2(sum(last))),
+                Real(coarse_log2(sum(before_last)) - decay)) -
+      2.0;  // log2 of the count of numbers in a state
+  const Real log2_step = -0.5 * inverse_of[all->order] * log2_error;
+  // Where no high power is left, or one is not finite, the step is not of this kind.
+  const auto is_usual = (high > 0.0) & (high < std::numeric_limits<double>::infinity());
+  return is_usual ? log2_step : broadcast<Real>(std::numeric_limits<double>::quiet_NaN());
+}
+
+/// Computes the series from y in units of sigma, which is chosen anew where it is far from the step
+/// that the tolerances allow. Returns the lanes that have a usual series.
+template <int width>
+PENDCORE_INLINE typename Lanes<Pack<width>>::Integers expand(SeriesLanes<width>* all,
+                                                             const Pack<width>* y,
+                                                             Pack<width>* rows, Pack<width>& sigma,
+                                                             Pack<width>& largest) {
+  using Real = Pack<width>;
+  using Integers = typename Lanes<Real>::Integers;
+  constexpr double reach = 8.0;
+  constexpr int most_tries = 12;
+  NoTorque torque;
+  Integers is_done{};
+  for (int tries = 0; tries < most_tries; ++tries) {
+    expand_double_pendulum(all->constants, y, sigma, all->order, torque, rows);
+    const Real log2_step = log2_of_step(all, y, rows);
+    is_done = absolute(log2_step) <= reach;
+    largest = sigma * coarse_exp2(is_done ? log2_step : Real{});
+    const LaneBits missing = ~bits_of(is_done) & all->active;
+    if (missing == 0) break;
+    Real shift = (log2_step < 0.0) | (log2_step > 0.0) ? log2_step : broadcast<Real>(-20.0);
+    shift = shift < -60.0 ? broadcast<Real>(-60.0) : 60.0 < shift ? broadcast<Real>(60.0) : shift;
+    const Real shifted = sigma * approximate_exp2(shift);
+    const Real other_sigma = taylor_detail::power_of_two_below(shifted);
+    sigma = is_done ? sigma : other_sigma;
+  }
+  return is_done;
+}
+
+/// sum_{k >= 1} x^k y_k for one number of the state (integrate/taylor/taylor_step.hpp).
+template <int width>
+PENDCORE_INLINE Pack<width> increment(const Pack<width>* rows, int order, const Pack<width>& x) {
+  constexpr int size = SeriesLanes<width>::size;
+  const Pack<width> square = x * x;
+  const Pack<width>* row = rows + static_cast<std::ptrdiff_t>(order) * size;
+  Pack<width> even = row[0];
+  Pack<width> odd = row[-size];
+  for (int k = order - 2; k >= 2; k -= 2) {
+    row -= 2 * size;
+    even = fma(square, even, row[0]);
+    odd = fma(square, odd, row[-size]);
+  }
+  return x * fma(x, even, odd);
+}
+
+}  // namespace lanes_detail
+
+/// Takes up to `rounds` steps in each lane, until some need attention.
+template <int width>
+PENDCORE_INLINE Attention take_series_steps(SeriesLanes<width>* all, const LaneInterval* interval,
+                                            int rounds) {
+  namespace detail = lanes_detail;
+  using All = SeriesLanes<width>;
+  using Real = typename All::Real;
+  using Integers = typename All::Integers;
+  constexpr int size = All::size;
+  Attention attention;
+  for (int round = 0; round < rounds && !attention.is_needed(); ++round) {
+    const Integers begins = all->begins;
+    const NextStep<width> next = next_step<width>(*all, *interval);
+    Integers is_odd = next.is_odd & ~begins;
+    const Real h = next.h;
+    const Real x = h * (1.0 / all->sigma);  // exact: a power of two
+    for (int i = 0; i < size; ++i) {
+      const Real after = all->y[i] + detail::increment<width>(all->rows + i, all->order, x);
+      all->y_new[i] = begins ? all->y[i] : after;
+    }
+    const Real size_of_step = absolute(h);
+    const Real share = size_of_step / all->largest;
+    const Real square = share * share;
+    const Real of_order = (square * square) * (square * square);
+    const Real squared_error = of_order * of_order;
+    is_odd |= ~(squared_error <= 1.0) & ~begins;  // rejections are rare here
+
+    const Real from_here = all->largest < 0x1p400 ? all->largest : size_of_step;
+    all->sigma_new = begins ? all->sigma : taylor_detail::power_of_two_below(from_here);
+    const Integers has_series =
+        detail::expand<width>(all, all->y_new, all->rows_new, all->sigma_new, all->largest_new);
+    is_odd |= ~has_series;
+    constexpr double safety = 0.95;  // as in attempt_series()
+    const ErrorAndFactor<Real> found{squared_error, (safety / size_of_step) * all->largest_new};
+
+    const Integers tried = ~begins;
+    const Integers is_looked_at = (all->steps_to_look == 0) & tried;
+    all->steps_to_look = is_looked_at ? Integers{} + stiffness_looks_every : all->steps_to_look;
+    finish_step<taylor, width>(*all, *interval, next, found, is_odd, tried, attention);
+    attention.looks = detail::bits_of(is_looked_at) & all->active & ~attention.odd;
+    all->h_before = h;
+
+    const Real max_step = broadcast<Real>(interval->max_step);
+    const Real first = max_step < all->largest_new ? max_step : all->largest_new;
+    all->h = begins ? (all->h < 0.0 ? Real(-first) : first) : all->h;
+    all->begins = Integers{};
+    for (int i = 0; i < size; ++i) std::swap(all->y[i], all->y_new[i]);
+    std::swap(all->rows, all->rows_new);
+    std::swap(all->sigma, all->sigma_new);
+    std::swap(all->largest, all->largest_new);
+  }
+  return attention;
+}
+
+}  // namespace pendcore
