@@ -120,3 +120,49 @@ def test_a_single_member_and_none():
     assert_same(BOOK, np.array([[0.5, 1.0]]), 0.0, (0, 2), method="dopri5")
     assert pc.ensemble(BOOK, np.zeros((0, 2)), t_span=(0, 2), method="dopri5").q.shape == (0, 2)
     assert pc.ensemble(BOOK, np.zeros((3, 2)), t_span=(0, 0), method="dop853").success.all()
+
+
+EVENTS = {
+    "turns": pc.events.LinkAngle(2, -np.pi / 2, every_turn=True),
+    "joint": pc.events.JointAngle(2, 0.0, direction=-1),
+    "rate": pc.events.RateZero(link=1),
+    "joint rate": pc.events.RateZero(joint=2, direction=1),
+    "level": pc.events.LinkAngle(1, 0.4),
+    "tip": pc.events.TipLine(point=(0.3, 0.5), normal=(1.0, 0.2)),
+}
+
+
+@pytest.mark.parametrize("rtol", [1e-3, 1e-10])
+@pytest.mark.parametrize("terminal", [False, True, 3])
+@pytest.mark.parametrize("name", EVENTS)
+def test_first_events_are_those_of_simulate(name, terminal, rtol):
+    event = EVENTS[name].replace(terminal=terminal)
+    q0 = pc.draw.uniform(-3.0, 3.0, (23, 2), seed=8)
+    q0[3, 0] = 0.4  # begins at a level
+    for t_span in ((0, 4), (1e5, 1e5 - 3)):
+        found = pc.ensemble(
+            BOOK, q0, 0.25, t_span, rtol=rtol, atol=rtol, keep=pc.keep.FirstEvent(event)
+        )
+        for i, start in enumerate(q0):
+            alone = pc.simulate(BOOK, start, 0.25, t_span, rtol=rtol, atol=rtol, events=[event])
+            first = alone.events[0].t[:1]
+            assert np.array_equal(found["first_event"][i : i + 1][: len(first)], first)
+            assert len(first) or np.isnan(found["first_event"][i])
+            assert found.status[i] == alone.status
+            assert (found.t[i], *found.q[i], *found.qd[i]) == (alone.t[-1], *alone.y[:, -1])
+
+
+def test_several_events_of_which_one_ends_the_run():
+    events = [EVENTS["rate"], EVENTS["joint"].replace(terminal=True)]
+    q0 = pc.draw.uniform(-3.0, 3.0, (23, 2), seed=9)
+    keep = {
+        "turns": pc.keep.FirstEvent(EVENTS["turns"]),
+        "rate": pc.keep.FirstEvent(EVENTS["rate"]),
+    }
+    found = pc.ensemble(BOOK, q0, t_span=(0, 6), events=events, keep=keep)
+    for i, start in enumerate(q0):
+        alone = pc.simulate(BOOK, start, t_span=(0, 6), events=[*events, EVENTS["turns"]])
+        for name, which in (("turns", 2), ("rate", 0)):
+            first = alone.events[which].t[:1]
+            assert np.array_equal(found[name][i : i + 1][: len(first)], first)
+        assert (found.status[i], found.t[i]) == (alone.status, alone.t[-1])

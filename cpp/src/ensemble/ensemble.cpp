@@ -30,6 +30,14 @@ void add(Statistics& sum, const Statistics& one) {
   sum.rejected += one.rejected;
 }
 
+/// Keeps the time of the first of each event that member i found, if that is wanted.
+void keep_first(const MemberResults& results, const std::vector<FoundEvent>& found, std::size_t i) {
+  if (results.first_found.empty()) return;
+  const std::size_t events = results.first_found.size() / results.status.size();
+  double* const first = results.first_found.data() + i * events;
+  for (const FoundEvent& one : found | std::views::reverse) first[one.event] = one.t;
+}
+
 /// Runs members one by one, each as simulate() does.
 class OneByOne {
  public:
@@ -86,11 +94,7 @@ class OneByOne {
       std::copy_n(solution.states.data() + k * columns, row, to);
     }
     results_.t[i] = solution.t_reached;
-    const std::size_t events = options_.events.size();
-    if (!results_.first_found.empty()) {
-      double* const first = results_.first_found.data() + i * events;
-      for (const FoundEvent& one : solution.found | std::views::reverse) first[one.event] = one.t;
-    }
+    keep_first(results_, solution.found, i);
     add(statistics_, solution.statistics);
     results_.status[i] = code(solution.status);
   }
@@ -127,6 +131,7 @@ class Share final : public LaneSource {
     std::ranges::copy(
         member.state,
         results_.states.begin() + static_cast<std::ptrdiff_t>(member.number * member.state.size()));
+    keep_first(results_, member.found, member.number);
     results_.status[member.number] = code(member.status);
     work_.count(1);
   }

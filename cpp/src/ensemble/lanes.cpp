@@ -10,6 +10,7 @@
 #include "pendcore/integrate/loop/first_step.hpp"
 #include "pendcore/integrate/methods.hpp"
 #include "pendcore/integrate/taylor/dominant_eigenvalue.hpp"
+#include "pendcore/simulate/event_finder.hpp"
 #include "pendcore/simulate/initial_state.hpp"
 #include "pendcore/simulate/method_choice.hpp"
 
@@ -45,8 +46,12 @@ class Runner : public LaneRunner {
       for (int lane = 0; lane < width; ++lane) {
         const LaneBits bit = 1U << lane;
         if ((attention.looks & bit) != 0 && looks_stiff(lane)) attention.odd |= bit;
-        if ((attention.odd & bit) != 0) {
+        const bool looks_for_events = (attention.events & bit) != 0 && (attention.odd & bit) == 0;
+        const EventLook look = looks_for_events ? look_for_events(lane) : EventLook::goes_on;
+        if ((attention.odd & bit) != 0 || look == EventLook::is_odd) {
           source.runs_alone(members_[lane].number);
+        } else if (look == EventLook::ends) {
+          end(lane, source, Status::event);
         } else if ((attention.ended & bit) != 0) {
           end(lane, source, Status::finished);
         } else if ((attention.used_up & bit) != 0) {
@@ -69,6 +74,9 @@ class Runner : public LaneRunner {
   virtual void put_start(int lane, const std::vector<double>& y) = 0;
   virtual void get_state(int lane, double* y) = 0;
   virtual long long evaluations_of(int lane) = 0;
+  /// What comes of a look for events in the last step of a lane.
+  enum class EventLook : std::uint8_t { goes_on, ends, is_odd };
+  virtual EventLook look_for_events(int /*lane*/) { return EventLook::goes_on; }
   /// Whether the last step of a lane suggests that the member is stiff.
   virtual bool looks_stiff(int /*lane*/) { return false; }
 
@@ -80,6 +88,8 @@ class Runner : public LaneRunner {
   double direction() const { return t_end_ < t0_ ? -1.0 : 1.0; }
   double t_end() const { return t_end_; }
   const LaneInterval& interval() const { return interval_; }
+  const Scene& scene() const { return scene_; }
+  LaneMember& member(int lane) { return members_[lane]; }
 
  private:
   /// Begins the next member in a lane, if there is one.
@@ -209,6 +219,13 @@ class SeriesRunner final : public Runner<width_on(set)> {
       all_.atol[i] = broadcast<Pack<width>>(this->atol()[i]);
     }
     all_.order = taylor_order(tightest);
+    std::vector<FoundEvent> none;
+    for (const auto& one : EventFinder(scene, options.events, none, {}).differences()) {
+      levels_.push_back({one.plus, one.minus, one.value, one.every_turn});
+    }
+    all_.levels = levels_.data();
+    all_.level_count = static_cast<int>(levels_.size());
+    rows_.resize(static_cast<std::size_t>(all_.order + 1) * All::size);
     // Lanes without a member have numbers that do no harm.
     all_.sigma = all_.sigma_new = all_.largest = all_.largest_new = broadcast<Pack<width>>(1.0);
     all_.constants.delta = broadcast<Pack<width>>(1.0);
@@ -238,9 +255,50 @@ class SeriesRunner final : public Runner<width_on(set)> {
     all_.begins[lane] = -1;
     all_.h[lane] = this->direction();
     look_count_[lane] = 0;
+    if (levels_.empty()) return;
+    this->member(lane).found.clear();
+    finders_[lane].emplace(this->scene(), this->options().events, this->member(lane).found,
+                           std::vector<long long>());
   }
   void get_state(int lane, double* y) override {
     for (int i = 0; i < All::size; ++i) y[i] = all_.y[i][lane];
+  }
+
+  /// Looks for events as a run does, on the series of the last step in powers of theta.
+  typename Runner<width>::EventLook look_for_events(int lane) override {
+    using Look = typename Runner<width>::EventLook;
+    const double h = all_.h_before[lane];
+    const double x = h / all_.sigma_new[lane];  // sigma before the step
+    constexpr double no_large_powers = 256.0;
+    if (!(std::abs(x) <= no_large_powers)) return Look::is_odd;
+    double power = 1.0;
+    for (int k = 0; k <= all_.order; ++k, power *= x) {
+      for (int i = 0; i < All::size; ++i) {
+        const int at = k * All::size + i;
+        rows_[at] = k == 0 ? all_.y_new[i][lane] : power * all_.rows_new[at][lane];
+      }
+    }
+    const double* const highest =
+        rows_.data() + static_cast<std::ptrdiff_t>(All::size) * all_.order;
+    if (!std::isfinite(highest[0] + highest[1] + highest[2] + highest[3])) return Look::is_odd;
+    std::array<double, All::size> y{};
+    get_state(lane, y.data());
+    this->stepper().set_new_state(y.data());
+    const TwoDouble t_old{all_.t_before[lane], all_.t_low_before[lane]};
+    const double t_new = all_.t[lane];
+    EventFinder& finder = *finders_[lane];
+    const StepEnd found = finder.look(this->stepper(), rows_.data(), t_old, h, t_new);
+    if (found.has_too_many_turns()) return Look::is_odd;
+    if (finder.ended_by() < 0) return Look::goes_on;
+    if (found.is_within()) {
+      const double theta = found.theta;
+      const TwoDouble t = time_in_step(t_old, h, theta, t_new);
+      if (t.high == t_old.high) return Look::is_odd;
+      this->stepper().sample(rows_.data(), {}, 1.0, &theta, 1, y.data());
+      for (int i = 0; i < All::size; ++i) all_.y[i][lane] = y[i];
+      all_.t[lane] = t.high;
+    }
+    return Look::ends;
   }
   long long evaluations_of(int lane) override {
     return 1 + all_.accepted[lane] + all_.rejected[lane] +
@@ -267,6 +325,9 @@ class SeriesRunner final : public Runner<width_on(set)> {
   All all_{};
   std::array<long long, width> look_count_{};
   DominantEigenvalue eigenvalue_{2, 0};
+  std::vector<LaneLevel> levels_;
+  std::array<std::optional<EventFinder>, width> finders_;
+  std::vector<double> rows_;
   Attention (*take_steps_)(All*, const LaneInterval*, int) = only<&take_series_steps<width>, set>();
 };
 
@@ -291,11 +352,17 @@ std::unique_ptr<LaneRunner> lanes_of(std::string_view method, const Scene& scene
 
 std::unique_ptr<LaneRunner> make_lanes(const Scene& scene, double t0, double t_end,
                                        const Options& options) {
-  const bool is_plain = !options.step && !options.compensated && !options.ledger &&
-                        options.events.empty() && options.store == Store::end;
+  const bool is_plain =
+      !options.step && !options.compensated && !options.ledger && options.store == Store::end;
   if (!is_plain || t0 == t_end || instruction_set() < least_of_special_kernels) return nullptr;
   if (!std::holds_alternative<DoublePendulum>(equations_of_motion(scene).form)) return nullptr;
   const std::string_view method = find_method(chosen_method(scene, options)).first();
+  if (!options.events.empty()) {
+    std::vector<FoundEvent> none;
+    const bool are_differences =
+        !EventFinder(scene, options.events, none, {}).differences().empty();
+    if (method != taylor.info.name || !are_differences) return nullptr;
+  }
   if constexpr (PENDCORE_CLONES != 0) {
     if (instruction_set() == InstructionSet::x86_64_v4) {
       return lanes_of<InstructionSet::x86_64_v4>(method, scene, t0, t_end, options);

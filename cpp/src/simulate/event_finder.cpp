@@ -74,6 +74,18 @@ EventFinder::Difference EventFinder::difference_of(const EventFunction& function
   return {n_ + rate.link.value_or(1) - 1, -1};
 }
 
+std::vector<EventFinder::Difference> EventFinder::differences() const {
+  std::vector<Difference> all;
+  for (const Event& event : events_) {
+    if (std::holds_alternative<events::TipLine>(event.function) ||
+        std::holds_alternative<events::Function>(event.function)) {
+      return {};
+    }
+    all.push_back(difference_of(event.function));
+  }
+  return all;
+}
+
 double EventFinder::Difference::from(double level, const double* y) const {
   const double x = of(y) - level;
   const double size = std::abs(y[plus]) + (minus < 0 ? 0.0 : std::abs(y[minus])) + std::abs(level);

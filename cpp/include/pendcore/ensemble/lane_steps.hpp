@@ -32,7 +32,8 @@ struct Attention {
   LaneBits used_up = 0;  ///< max_steps were attempted
   LaneBits odd = 0;      ///< to be run alone
   LaneBits looks = 0;    ///< their stiffness is to be looked at
-  bool is_needed() const { return (ended | used_up | odd | looks) != 0; }
+  LaneBits events = 0;   ///< an event may lie within the step
+  bool is_needed() const { return (ended | used_up | odd | looks | events) != 0; }
 };
 
 /// Where the trajectories of all lanes stand, but for their states.

@@ -23,6 +23,7 @@ struct LaneMember {
   std::vector<double> state;  ///< (2n): angles, rad, and rates, rad/s
   double t = 0.0;             ///< s
   Status status = Status::finished;
+  std::vector<FoundEvent> found;
 };
 
 /// Where lanes get their members, and give them back.

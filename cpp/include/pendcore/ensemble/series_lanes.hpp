@@ -14,6 +14,15 @@
 
 namespace pendcore {
 
+/// What an event compares with a level: the difference of two components of the state, or, if
+/// `minus` is negative, one of them alone.
+struct LaneLevel {
+  int plus = 0;
+  int minus = -1;
+  double value = 0.0;
+  bool every_turn = false;
+};
+
 /// The lanes of the method of Taylor series on the bare double pendulum. A state is a row of four
 /// numbers, (q_1, q_2, qd_1, qd_2).
 template <int width>
@@ -29,8 +38,11 @@ struct SeriesLanes : LaneSteps<width> {
   Real atol[size] = {};
   Real sigma = {}, sigma_new = {};      ///< s, the unit of time of a series
   Real largest = {}, largest_new = {};  ///< s, the step that the tolerances allow
-  Real h_before = {};                   ///< s, the step that was taken last
-  Integers begins = {};                 ///< all bits set where a member has no series yet
+  // The step that was taken last: its start, s, and its size.
+  Real t_before = {}, t_low_before = {}, h_before = {};
+  const LaneLevel* levels = nullptr;  ///< of all events
+  int level_count = 0;
+  Integers begins = {};  ///< all bits set where a member has no series yet
   int order = lowest_taylor_order;
   Real of_y[(highest_order + 1) * size] = {};  ///< two series: those from y, and from y_new
   Real of_y_new[(highest_order + 1) * size] = {};
@@ -113,6 +125,35 @@ PENDCORE_INLINE typename Lanes<Pack<width>>::Integers expand(SeriesLanes<width>*
   return is_done;
 }
 
+/// Whether a difference may reach its level within a step of x units of sigma: not if it is farther
+/// away than the sizes of all terms of the series together.
+template <int width>
+PENDCORE_INLINE typename Lanes<Pack<width>>::Integers may_reach(const SeriesLanes<width>* all,
+                                                                const LaneLevel& level,
+                                                                const Pack<width>& x) {
+  using Real = Pack<width>;
+  constexpr int size = SeriesLanes<width>::size;
+  constexpr double turn = 6.283185307179586;
+  const auto difference = [&](const Real* row) __attribute__((always_inline)) {
+    return level.minus < 0 ? row[level.plus] : Real(row[level.plus] - row[level.minus]);
+  };
+  const Real step = absolute(x);
+  Real moves{};
+  for (int k = all->order; k >= 1; --k) {
+    moves =
+        (moves + absolute(difference(all->rows + static_cast<std::ptrdiff_t>(k) * size))) * step;
+  }
+  const Real here = difference(all->y);
+  Real away = here - level.value;
+  if (level.every_turn) {
+    using power_detail::to_integer;
+    const Real turns = (away * (1.0 / turn) + to_integer) - to_integer;
+    away = away - turns * turn;
+  }
+  constexpr double rounding = 1e-9;
+  return absolute(away) <= moves * (1.0 + rounding) + rounding * (1.0 + absolute(here));
+}
+
 /// sum_{k >= 1} x^k y_k for one number of the state (integrate/taylor/taylor_step.hpp).
 template <int width>
 PENDCORE_INLINE Pack<width> increment(const Pack<width>* rows, int order, const Pack<width>& x) {
@@ -143,6 +184,8 @@ PENDCORE_INLINE Attention take_series_steps(SeriesLanes<width>* all, const LaneI
   Attention attention;
   for (int round = 0; round < rounds && !attention.is_needed(); ++round) {
     const Integers begins = all->begins;
+    const Real t_before = all->t;
+    const Real t_low_before = all->t_low;
     const NextStep<width> next = next_step<width>(*all, *interval);
     Integers is_odd = next.is_odd & ~begins;
     const Real h = next.h;
@@ -171,6 +214,13 @@ PENDCORE_INLINE Attention take_series_steps(SeriesLanes<width>* all, const LaneI
     all->steps_to_look = is_looked_at ? Integers{} + stiffness_looks_every : all->steps_to_look;
     finish_step<taylor, width>(*all, *interval, next, found, is_odd, tried, attention);
     attention.looks = detail::bits_of(is_looked_at) & all->active & ~attention.odd;
+    Integers may_happen{};
+    for (int k = 0; k < all->level_count; ++k) {
+      may_happen |= detail::may_reach<width>(all, all->levels[k], x);
+    }
+    attention.events = detail::bits_of(may_happen & tried) & all->active & ~attention.odd;
+    all->t_before = t_before;
+    all->t_low_before = t_low_before;
     all->h_before = h;
 
     const Real max_step = broadcast<Real>(interval->max_step);

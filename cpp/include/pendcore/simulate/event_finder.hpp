@@ -39,12 +39,6 @@ class EventFinder {
   /// The event that ended the run; -1 if none did.
   int ended_by() const { return ended_by_; }
 
- private:
-  struct Candidate {
-    double theta;
-    int direction;
-    int event;
-  };
   /// An angle or a rate: y[plus] - y[minus], or y[plus] alone if `minus` is negative. The event is
   /// where it is `value`, or where it is `value` plus any number of turns.
   struct Difference {
@@ -55,6 +49,15 @@ class EventFinder {
     double of(const double* y) const { return minus < 0 ? y[plus] : y[plus] - y[minus]; }
     /// The difference minus a level; 0 within the rounding of the state.
     double from(double level, const double* y) const;
+  };
+  /// The differences of all events; empty if one of them is of another kind.
+  std::vector<Difference> differences() const;
+
+ private:
+  struct Candidate {
+    double theta;
+    int direction;
+    int event;
   };
   struct Step {
     const Stepper& stepper;

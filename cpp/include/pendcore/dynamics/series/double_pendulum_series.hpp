@@ -301,11 +301,10 @@ PENDCORE_INLINE void DoublePendulumOrders<Number>::finish(int k, Row f, const Ro
 /// at a time, so that what they share is loaded once.
 template <class Row>
 struct OlderTerms {
-  Row sum, rest;
-  Row next_sum, next_rest;
+  Row sum, rest, next_sum, next_rest;
 };
 
-/// Adds up these terms of numbers, or of packs of them, that `pull(j)`, `rate(j)` and `n(j)` return.
+/// Adds up these terms of numbers, or of packs, that `pull(j)`, `rate(j)` and `n(j)` return.
 template <class Value, class Pull, class Rate, class Normal>
 PENDCORE_INLINE OlderTerms<Value> older_terms(int k, const Pull& pull, const Rate& rate,
                                               const Normal& n) {
