@@ -116,6 +116,24 @@ def test_every_instruction_set_and_number_of_workers_gives_the_same_bits():
             assert printed(instruction_set, workers) == reference
 
 
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("count", [1, 2, 3, 5, 9])
+def test_few_members_which_finish_alone(count, method):
+    q0 = pc.draw.uniform(-2.0, 2.0, (count, 2), seed=10 + count)
+    assert_same(BOOK, q0, 0.3, (0, 3), method=method, rtol=1e-6, max_steps=150)
+    assert_same(BOOK, q0, 0.3, (3, 0), method=method, rtol=1e-10)
+    gravity = np.linspace(9.0, 10.0, count)
+    event = pc.events.LinkAngle(2, 0.5, terminal=2)
+    found = pc.ensemble(
+        BOOK, q0, t_span=(0, 3), method=method, vary={"gravity": gravity}, events=[event]
+    )
+    for i in range(count):
+        scene = BOOK.replace(gravity=gravity[i])
+        alone = pc.simulate(scene, q0[i], t_span=(0, 3), method=method, events=[event])
+        assert (found.status[i], found.t[i]) == (alone.status, alone.t[-1])
+        assert np.array_equal(found.q[i], alone.q[-1])
+
+
 def test_a_single_member_and_none():
     assert_same(BOOK, np.array([[0.5, 1.0]]), 0.0, (0, 2), method="dopri5")
     assert pc.ensemble(BOOK, np.zeros((0, 2)), t_span=(0, 2), method="dopri5").q.shape == (0, 2)

@@ -126,6 +126,10 @@ class Share final : public LaneSource {
     member.number = chunk_.begin++;
     return one_by_one_.read(member.number, member.state);
   }
+  const Scene& scene_of(std::size_t number) override {
+    std::vector<double> state;
+    return *one_by_one_.read(number, state);
+  }
   void ended(const LaneMember& member) override {
     results_.t[member.number] = member.t;
     std::ranges::copy(

@@ -33,6 +33,8 @@ class LaneSource {
   /// Fills `member` with the next one and returns its scene; null if there is none. A varied scene
   /// is valid until the next call.
   virtual const Scene* next(LaneMember& member) = 0;
+  /// The scene of a member that has begun; a varied one is valid until the next call.
+  virtual const Scene& scene_of(std::size_t number) = 0;
   virtual void ended(const LaneMember& member) = 0;
   /// This member has to be run by simulate().
   virtual void runs_alone(std::size_t number) = 0;

@@ -1,0 +1,230 @@
+/// \file
+/// Fills lanes with members and takes their steps, whatever the method.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <optional>
+
+#include "pendcore/ensemble/lane_steps.hpp"
+#include "pendcore/ensemble/lanes.hpp"
+#include "pendcore/integrate/methods.hpp"
+#include "pendcore/simulate/method_choice.hpp"
+
+namespace pendcore {
+
+/// As many lanes as a register of the processor holds.
+constexpr int width_on(InstructionSet set) { return set == InstructionSet::x86_64_v4 ? 8 : 4; }
+/// So many members take less time one after the other than in lanes.
+template <int width>
+constexpr int few_lanes = width / 2;
+/// Steps between two looks at whether to go on: a fraction of a millisecond.
+inline constexpr int rounds_at_once = 256;
+
+/// The part of a runner that does not depend on the method.
+template <int width>
+class RunnerOfLanes : public LaneRunner {
+ public:
+  RunnerOfLanes(const Scene& scene, double t0, double t_end, const Options& options,
+                std::string_view method)
+      : scene_(scene),
+        t0_(t0),
+        t_end_(t_end),
+        options_(options),
+        method_(method),
+        interval_{t_end, options.max_step, options.max_steps},
+        rtol_(relative_tolerances(options, scene.links.size())),
+        atol_(absolute_tolerances(options, scene.links.size())),
+        rate_(2 * scene.links.size()) {}
+
+  void run(LaneSource& source) override {
+    bool goes_on = true;
+    for (int lane = 0; lane < width; ++lane) fill(lane, source);
+    while (steps().active != 0 && goes_on) {
+      if (is_exhausted_ && std::popcount(steps().active) <= few_lanes<width>) {
+        for (int lane = 0; lane < width; ++lane) {
+          if ((steps().active & (1U << lane)) != 0) finish_alone(lane, source);
+        }
+        return;
+      }
+      Attention attention = take_steps();
+      for (int lane = 0; lane < width; ++lane) {
+        const LaneBits bit = 1U << lane;
+        if ((attention.looks & bit) != 0 && looks_stiff(lane)) attention.odd |= bit;
+        const bool looks_for_events = (attention.events & bit) != 0 && (attention.odd & bit) == 0;
+        const EventLook look = looks_for_events ? look_for_events(lane) : EventLook::goes_on;
+        if ((attention.odd & bit) != 0 || look == EventLook::is_odd) {
+          source.runs_alone(members_[lane].number);
+        } else if (look == EventLook::ends) {
+          end(lane, source, Status::event);
+        } else if ((attention.ended & bit) != 0) {
+          end(lane, source, Status::finished);
+        } else if ((attention.used_up & bit) != 0) {
+          end(lane, source, Status::max_steps);
+        } else {
+          continue;
+        }
+        fill(lane, source);
+      }
+      goes_on = source.goes_on();
+    }
+  }
+
+ protected:
+  /// The derivative at the state of a lane, and what the method keeps between steps.
+  virtual void get_derivative(int lane, double* dydt) = 0;
+  virtual std::vector<double> saved_state(int lane) = 0;
+  virtual LaneSteps<width>& steps() = 0;
+  virtual Attention take_steps() = 0;
+  /// Puts the equations of `scene` into a lane; false if they have another form.
+  virtual bool put_equations(int lane, const EquationsOfMotion& equations) = 0;
+  /// Puts a start, at which the rates are rate(), into a lane.
+  virtual void put_start(int lane, const std::vector<double>& y) = 0;
+  virtual void get_state(int lane, double* y) = 0;
+  virtual long long evaluations_of(int lane) = 0;
+  /// What comes of a look for events in the last step of a lane.
+  enum class EventLook : std::uint8_t { goes_on, ends, is_odd };
+  virtual EventLook look_for_events(int /*lane*/) { return EventLook::goes_on; }
+  /// Whether the last step of a lane suggests that the member is stiff.
+  virtual bool looks_stiff(int /*lane*/) { return false; }
+
+  Stepper& stepper() { return *stepper_; }
+  const std::vector<double>& rate() const { return rate_; }
+  const std::vector<double>& rtol() const { return rtol_; }
+  const std::vector<double>& atol() const { return atol_; }
+  const Options& options() const { return options_; }
+  double direction() const { return t_end_ < t0_ ? -1.0 : 1.0; }
+  double t_end() const { return t_end_; }
+  const LaneInterval& interval() const { return interval_; }
+  const Scene& scene() const { return scene_; }
+  LaneMember& member(int lane) { return members_[lane]; }
+
+ private:
+  /// Begins the next member in a lane, if there is one.
+  void fill(int lane, LaneSource& source) {
+    LaneMember& member = members_[lane];
+    steps().active &= ~(1U << lane);
+    while (const Scene* scene = source.next(member)) {
+      if (begin(lane, *scene)) {
+        steps().active |= 1U << lane;
+        return;
+      }
+      source.runs_alone(member.number);
+    }
+    is_exhausted_ = true;
+  }
+
+  /// Goes on with the member of a lane as a single run, from where the lane stands.
+  void finish_alone(int lane, LaneSource& source) {
+    LaneMember& member = members_[lane];
+    if (steps().accepted[lane] + steps().rejected[lane] == 0) {
+      source.runs_alone(member.number);
+      return;
+    }
+    const Scene& scene = source.scene_of(member.number);
+    const Solution begun = stopped_run(lane);
+    const long long left =
+        options_.max_steps - begun.statistics.accepted - begun.statistics.rejected;
+    const Solution whole = resume(scene, begun, t_end_, {}, left, std::nullopt,
+                                  [&source](double) { return source.goes_on(); });
+    if (whole.status == Status::interrupted) return;
+    member.state = whole.y_reached;
+    member.t = whole.t_reached;
+    member.status = whole.status;
+    member.found = whole.found;
+    statistics_.accepted += whole.statistics.accepted;
+    statistics_.rejected += whole.statistics.rejected;
+    statistics_.nfev += whole.statistics.nfev;
+    source.ended(member);
+  }
+
+  /// The run of a lane so far, as if a limit had stopped it.
+  Solution stopped_run(int lane) {
+    const LaneSteps<width>& at = steps();
+    const std::size_t size = 2 * scene_.links.size();
+    Solution run;
+    run.options = options_;
+    run.options.method = find_method(chosen_method(scene_, options_)).name;
+    run.t0 = t0_;
+    run.t_end = t_end_;
+    run.n = static_cast<int>(scene_.links.size());
+    run.dimension = static_cast<int>(size);
+    run.start.resize(size);
+    run.found = members_[lane].found;
+    run.resumable_found = run.found.size();
+    IntegratorState& state = run.resumable;
+    state.t = {at.t[lane], at.t_low[lane]};
+    state.h = at.h[lane];
+    state.h_is_max_step = std::abs(state.h) >= options_.max_step;
+    state.control = {at.log2_error_before[lane], at.after_rejection[lane] != 0};
+    state.statistics.accepted = at.accepted[lane];
+    state.statistics.rejected = at.rejected[lane];
+    state.statistics.nfev = evaluations_of(lane);
+    state.y.resize(size);
+    state.dydt.resize(size);
+    get_state(lane, state.y.data());
+    get_derivative(lane, state.dydt.data());
+    state.stepper = saved_state(lane);
+    const bool is_pair = run.options.method != method_;
+    if (is_pair) state.stepper.push_back(0.0);  // its first method is at work
+    run.dense.degree = stepper_->interpolant_degree();
+    run.statistics = state.statistics;
+    run.t_reached = state.t.high;
+    run.y_reached = state.y;
+    return run;
+  }
+
+  /// Returns false if the beginning is not that of a usual run.
+  bool begin(int lane, const Scene& scene) {
+    const std::vector<double>& y = members_[lane].state;
+    if (stepper_ == nullptr || &scene != &scene_) {
+      equations_ = equations_of_motion(scene);
+      stepper_ = make_stepper(scene, *equations_, method_, false, false);
+      stepper_->set_tolerances(rtol_.data(), atol_.data());
+    }
+    if (!put_equations(lane, *equations_)) return false;
+    stepper_->evaluate(t0_, y.data(), rate_.data());
+    if (bad_component(y) >= 0 || bad_component(rate_) >= 0) return false;
+    LaneSteps<width>& at = steps();
+    at.t[lane] = t0_;
+    at.t_low[lane] = 0.0;
+    at.log2_error_before[lane] = StepControl::log2_smallest_error;
+    at.after_rejection[lane] = 0;
+    at.accepted[lane] = at.rejected[lane] = 0;
+    at.steps_to_look[lane] = first_stiffness_look;
+    put_start(lane, y);
+    return true;
+  }
+
+  void end(int lane, LaneSource& source, Status status) {
+    LaneMember& member = members_[lane];
+    get_state(lane, member.state.data());
+    member.t = steps().t[lane];
+    member.status = status;
+    statistics_.accepted += steps().accepted[lane];
+    statistics_.rejected += steps().rejected[lane];
+    statistics_.nfev += evaluations_of(lane);
+    source.ended(member);
+  }
+
+  const Scene& scene_;
+  double t0_, t_end_;
+  const Options& options_;
+  std::string_view method_;
+  LaneInterval interval_;
+  std::vector<double> rtol_, atol_;
+  std::vector<double> rate_;
+  std::array<LaneMember, width> members_;
+  std::optional<EquationsOfMotion> equations_;
+  std::unique_ptr<Stepper> stepper_;  ///< for the beginnings
+  bool is_exhausted_ = false;         ///< no member is left to begin
+};
+
+/// The runner of Taylor series for the bare double pendulum.
+template <InstructionSet set>
+std::unique_ptr<LaneRunner> make_series_lanes(const Scene& scene, double t0, double t_end,
+                                              const Options& options);
+
+}  // namespace pendcore

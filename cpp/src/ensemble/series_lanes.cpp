@@ -1,0 +1,161 @@
+#include "pendcore/ensemble/series_lanes.hpp"
+
+#include "pendcore/ensemble/lane_equations.hpp"
+#include "pendcore/ensemble/lane_runner.hpp"
+#include "pendcore/integrate/taylor/dominant_eigenvalue.hpp"
+#include "pendcore/simulate/event_finder.hpp"
+
+namespace pendcore {
+namespace {
+
+template <InstructionSet set>
+class SeriesRunner final : public RunnerOfLanes<width_on(set)> {
+  static constexpr int width = width_on(set);
+  using All = SeriesLanes<width>;
+
+ public:
+  SeriesRunner(const Scene& scene, double t0, double t_end, const Options& options)
+      : RunnerOfLanes<width>(scene, t0, t_end, options, taylor.info.name) {
+    double tightest = 1.0;
+    for (int i = 0; i < All::size; ++i) {
+      tightest = std::min(tightest, std::max(this->rtol()[i], this->atol()[i]));
+      all_.rtol[i] = broadcast<Pack<width>>(this->rtol()[i]);
+      all_.atol[i] = broadcast<Pack<width>>(this->atol()[i]);
+    }
+    all_.order = taylor_order(tightest);
+    std::vector<FoundEvent> none;
+    for (const auto& one : EventFinder(scene, options.events, none, {}).differences()) {
+      levels_.push_back({one.plus, one.minus, one.value, one.every_turn});
+    }
+    all_.levels = levels_.data();
+    all_.level_count = static_cast<int>(levels_.size());
+    rows_.resize(static_cast<std::size_t>(all_.order + 1) * All::size);
+    // Lanes without a member have numbers that do no harm.
+    all_.sigma = all_.sigma_new = all_.largest = all_.largest_new = broadcast<Pack<width>>(1.0);
+    all_.constants.delta = broadcast<Pack<width>>(1.0);
+  }
+
+ private:
+  void get_derivative(int lane, double* dydt) override {
+    for (int i = 0; i < All::size; ++i) {
+      dydt[i] = all_.rows[All::size + i][lane] / all_.sigma[lane];
+    }
+  }
+  std::vector<double> saved_state(int lane) override { return {all_.sigma[lane]}; }
+  LaneSteps<width>& steps() override { return all_; }
+  Attention take_steps() override { return take_steps_(&all_, &this->interval(), rounds_at_once); }
+  bool put_equations(int lane, const EquationsOfMotion& equations) override {
+    const auto* const form = std::get_if<DoublePendulum>(&equations.form);
+    if (form == nullptr) return false;
+    using Equations = LaneEquations<DoublePendulum, Pack<width>>;
+    Equations::put(all_.constants.weight, lane, form->weight);
+    Equations::put(all_.constants.coupling, lane, form->coupling);
+    all_.constants.product[lane] = form->product;
+    all_.constants.delta[lane] = form->delta;
+    return true;
+  }
+  void put_start(int lane, const std::vector<double>& y) override {
+    double rate = 0.0;  // as in Taylor::start()
+    for (int i = 0; i < 2; ++i) {
+      const double qd = this->rate()[i];
+      rate = std::max({rate, qd * qd, std::abs(this->rate()[2 + i])});
+    }
+    for (int i = 0; i < All::size; ++i) all_.y[i][lane] = y[i];
+    all_.sigma[lane] = taylor_detail::power_of_two_below(rate > 0.0 ? 1.0 / std::sqrt(rate) : 1.0);
+    all_.begins[lane] = -1;
+    all_.h[lane] = this->direction();
+    look_count_[lane] = 0;
+    if (levels_.empty()) return;
+    this->member(lane).found.clear();
+    finders_[lane].emplace(this->scene(), this->options().events, this->member(lane).found,
+                           std::vector<long long>());
+  }
+  void get_state(int lane, double* y) override {
+    for (int i = 0; i < All::size; ++i) y[i] = all_.y[i][lane];
+  }
+
+  /// Looks for events as a run does, on the series of the last step in powers of theta.
+  typename RunnerOfLanes<width>::EventLook look_for_events(int lane) override {
+    using Look = typename RunnerOfLanes<width>::EventLook;
+    const double h = all_.h_before[lane];
+    const double x = h / all_.sigma_new[lane];  // sigma before the step
+    constexpr double no_large_powers = 256.0;
+    if (!(std::abs(x) <= no_large_powers)) return Look::is_odd;
+    double power = 1.0;
+    for (int k = 0; k <= all_.order; ++k, power *= x) {
+      for (int i = 0; i < All::size; ++i) {
+        const int at = k * All::size + i;
+        rows_[at] = k == 0 ? all_.y_new[i][lane] : power * all_.rows_new[at][lane];
+      }
+    }
+    const double* const highest =
+        rows_.data() + static_cast<std::ptrdiff_t>(All::size) * all_.order;
+    if (!std::isfinite(highest[0] + highest[1] + highest[2] + highest[3])) return Look::is_odd;
+    std::array<double, All::size> y{};
+    get_state(lane, y.data());
+    this->stepper().set_new_state(y.data());
+    const TwoDouble t_old{all_.t_before[lane], all_.t_low_before[lane]};
+    const double t_new = all_.t[lane];
+    EventFinder& finder = *finders_[lane];
+    const StepEnd found = finder.look(this->stepper(), rows_.data(), t_old, h, t_new);
+    if (found.has_too_many_turns()) return Look::is_odd;
+    if (finder.ended_by() < 0) return Look::goes_on;
+    if (found.is_within()) {
+      const double theta = found.theta;
+      const TwoDouble t = time_in_step(t_old, h, theta, t_new);
+      if (t.high == t_old.high) return Look::is_odd;
+      this->stepper().sample(rows_.data(), {}, 1.0, &theta, 1, y.data());
+      for (int i = 0; i < All::size; ++i) all_.y[i][lane] = y[i];
+      all_.t[lane] = t.high;
+    }
+    return Look::ends;
+  }
+  long long evaluations_of(int lane) override {
+    return 1 + all_.accepted[lane] + all_.rejected[lane] +
+           DominantEigenvalue::evaluations * look_count_[lane];
+  }
+  /// As Taylor::stiffness() does.
+  bool looks_stiff(int lane) override {
+    ++look_count_[lane];
+    double* const direction = eigenvalue_.direction();
+    std::array<double, All::size> y{};
+    for (int i = 0; i < All::size; ++i) {
+      direction[i] = all_.rows_new[all_.order * All::size + i][lane];
+      y[i] = all_.y_new[i][lane];
+    }
+    const double h = all_.h_before[lane];
+    const double rate = taylor.info.stability * all_.order / std::abs(h);
+    const auto rates = [this](double t, const double* state, double* dydt) {
+      this->stepper().evaluate(t, state, dydt);
+    };
+    const double lambda = eigenvalue_(rates, 0.0, y.data(), rate);
+    return std::abs(h) * lambda / all_.order > taylor.info.stability;
+  }
+
+  All all_{};
+  std::array<long long, width> look_count_{};
+  DominantEigenvalue eigenvalue_{2, 0};
+  std::vector<LaneLevel> levels_;
+  std::array<std::optional<EventFinder>, width> finders_;
+  std::vector<double> rows_;
+  Attention (*take_steps_)(All*, const LaneInterval*, int) = only<&take_series_steps<width>, set>();
+};
+
+}  // namespace
+
+template <InstructionSet set>
+std::unique_ptr<LaneRunner> make_series_lanes(const Scene& scene, double t0, double t_end,
+                                              const Options& options) {
+  return std::make_unique<SeriesRunner<set>>(scene, t0, t_end, options);
+}
+
+template std::unique_ptr<LaneRunner> make_series_lanes<InstructionSet::x86_64_v3>(const Scene&,
+                                                                                  double, double,
+                                                                                  const Options&);
+#if PENDCORE_CLONES
+template std::unique_ptr<LaneRunner> make_series_lanes<InstructionSet::x86_64_v4>(const Scene&,
+                                                                                  double, double,
+                                                                                  const Options&);
+#endif
+
+}  // namespace pendcore
