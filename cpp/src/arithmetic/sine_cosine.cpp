@@ -45,9 +45,10 @@ PENDCORE_INLINE void sine_cosine_stream(const double* x, long long m, double* si
 
 }  // namespace
 
-void sine_cosine_detail::replace_large(const double* x, int count, double* sine, double* cosine) {
+void sine_cosine_detail::replace_large(const double* x, int count, double* sine_of_x,
+                                       double* cosine_of_x) {
   for (int i = 0; i < count; ++i) {
-    if (!(std::abs(x[i]) <= largest)) sine_cosine_exact(x[i], sine[i], cosine[i]);
+    if (!(std::abs(x[i]) <= largest)) sine_cosine_exact(x[i], sine_of_x[i], cosine_of_x[i]);
   }
 }
 

@@ -56,7 +56,7 @@ Attempt StiffSwitchingStepper::attempt(double t, double h, double gain) {
   if (h_asked_ != 0.0) {
     const std::optional<bool> answer = pays(t);
     count();
-    if (!answer) return {std::numeric_limits<double>::quiet_NaN(), 0.0};
+    if (!answer) return {{std::numeric_limits<double>::quiet_NaN(), 0.0}};
     h_asked_ = 0.0;
     if (*answer) change();
   }

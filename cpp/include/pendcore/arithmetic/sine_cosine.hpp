@@ -47,7 +47,7 @@ inline constexpr std::array cosine = {0x1.5555555555553p-5,  -0x1.6c16c16c16132p
                                       0x1.1eea8935afc8fp-29, -0x1.8ff9c523984f2p-37};
 
 /// Replaces the sines and cosines of those angles that are beyond `largest`, or not finite.
-void replace_large(const double* x, int count, double* sine, double* cosine);
+void replace_large(const double* x, int count, double* sine_of_x, double* cosine_of_x);
 
 /// A polynomial of degree 5, summed in pairs of terms whose products do not wait for each other.
 template <class Real>

@@ -116,7 +116,8 @@ PENDCORE_INLINE typename Lanes<Pack<width>>::Integers expand(SeriesLanes<width>*
     largest = sigma * coarse_exp2(is_done ? log2_step : Real{});
     const LaneBits missing = ~bits_of(is_done) & all->active;
     if (missing == 0) break;
-    Real shift = (log2_step < 0.0) | (log2_step > 0.0) ? log2_step : broadcast<Real>(-20.0);
+    const auto is_number = (log2_step < 0.0) | (log2_step > 0.0);
+    Real shift = is_number ? log2_step : broadcast<Real>(-20.0);
     shift = shift < -60.0 ? broadcast<Real>(-60.0) : 60.0 < shift ? broadcast<Real>(60.0) : shift;
     const Real shifted = sigma * approximate_exp2(shift);
     const Real other_sigma = taylor_detail::power_of_two_below(shifted);

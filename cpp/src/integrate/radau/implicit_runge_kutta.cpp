@@ -240,14 +240,14 @@ Attempt ImplicitRungeKutta::attempt(double t, double h, double /*gain*/) {
   }
   h_ = h;
   constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
-  if (!systems_.factor(method_, h, keep_going)) return {undefined, 0.0};
+  if (!systems_.factor(method_, h, keep_going)) return {{undefined, 0.0}};
   predict(h);
   const bool converges = iterate(t, h);  // if a user's function throws here, nothing was tried
   const bool is_careful = is_retry_ || h_before_ == 0.0;
   if (!is_retry_) ++jacobians;
   factorisations += 2;
   is_retry_ = true;
-  if (!converges) return {undefined, 0.0, !std::isfinite(squared_norm(y_new_.data()))};
+  if (!converges) return {{undefined, 0.0}, !std::isfinite(squared_norm(y_new_.data()))};
   polish(h);
   if (size_ > state_) integrate_quadratures(t, h);
   advance();
@@ -273,7 +273,7 @@ Attempt ImplicitRungeKutta::attempt(double t, double h, double /*gain*/) {
     const double log2_ratio = 0.25 * (log2_error_before_ - 2.0 * log2_error);
     factor = std::min(factor, 0.9 * (h / h_before_) * approximate_exp2(log2_ratio));
   }
-  return {squared_error_, factor};
+  return {{squared_error_, factor}};
 }
 
 /// Sets h times the slope of the polynomial at its start. This is h f(t, y), so that sol(t) has no

@@ -97,7 +97,7 @@ PENDCORE_INLINE Attempt attempt_in_memory(const StepInMemory* memory, double t, 
     squares.add(after, scale, StageInMemory<Block>{k + at, size}, i == 0);
   }
   const double squared_error = squares.mean(1.0 / memory->count);
-  return {squared_error, scaled_power(squared_error, -0.5 * exponent(method.info), gain)};
+  return {{squared_error, scaled_power(squared_error, -0.5 * exponent(method.info), gain)}};
 }
 
 /// Computes the stages of the attempted step, from time t, that only the dense output needs; `z` is

@@ -191,10 +191,10 @@ PENDCORE_INLINE Attempt attempt_series(TaylorMemory<Series>* memory, double t, d
   memory->sigma_new = detail::power_of_two_below(from_here);
   if (!expand(memory, t + h, memory->y_new, memory->rows_new, memory->sigma_new,
               memory->largest_new)) {
-    return {std::numeric_limits<double>::quiet_NaN(), 0.0};
+    return {{std::numeric_limits<double>::quiet_NaN(), 0.0}};
   }
   constexpr double safety = 0.95;  // in size, as a last step may be a hundredth longer
-  return {squared_error, (safety / size_of_step) * memory->largest_new};
+  return {{squared_error, (safety / size_of_step) * memory->largest_new}};
 }
 
 /// The same in one kernel, which is a twentieth faster where the series is short. Longer series are

@@ -102,7 +102,7 @@ class Taylor final : public Stepper {
     if (std::exchange(starts_at_rest_, false) && !has_series_) {
       memory_.sigma = taylor_detail::power_of_two_below(std::abs(h));
     }
-    if (!begin(t)) return {std::numeric_limits<double>::quiet_NaN(), 0.0};
+    if (!begin(t)) return {{std::numeric_limits<double>::quiet_NaN(), 0.0}};
     ++evaluations;
     t_new_ = t + h;
     has_new_series_ = true;
