@@ -59,7 +59,7 @@ def blocks_of(document: str) -> list[str]:
 def test_the_lines_of_the_first_steps_run(tmp_path, monkeypatch, capsys):
     mpl.use("Agg")
     monkeypatch.chdir(tmp_path)
-    chains, rubbed, threads = blocks_of("docs/tutorials/first_steps.md")
+    chains, rubbed, at_once = blocks_of("docs/tutorials/first_steps.md")
     names: dict[str, object] = {}
     exec(chains, names)
     assert names["run"].success
@@ -69,9 +69,20 @@ def test_the_lines_of_the_first_steps_run(tmp_path, monkeypatch, capsys):
     assert "PD(kp=20.0" in capsys.readouterr().out
     assert rubbed == hard_case()
     names = {}
-    exec(threads, names)
-    alone = pc.simulate(names["scene"], names["starts"][3], t_span=(0, 5))
-    assert np.array_equal(names["runs"][3].y, alone.y)
+    exec(at_once, names)
+    alone = pc.simulate(pc.Scene.textbook(), names["starts"][3], t_span=(0, 5))
+    assert np.array_equal(names["many"].q[3], alone.q[-1])
+
+
+def test_the_lines_of_many_runs_at_once_run(capsys):
+    mpl.use("Agg")
+    names: dict[str, object] = {}
+    for block in blocks_of("docs/tutorials/many_at_once.md"):
+        exec(block, names)
+    told = capsys.readouterr().out
+    assert "1.6 True" in told
+    assert "q0[1] = nan: must be finite (rad)" in told
+    assert names["turned"].success.all()
 
 
 def test_make_demo_says_where_the_command_is_what_takes_long_and_brings_what_comes_next():
