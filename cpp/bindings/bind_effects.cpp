@@ -106,6 +106,7 @@ py::list parameters_of(const Struct& defaults) {
     row["sentence"] = string(info.sentence);
     row["type"] = string(type_name<Value>());
     row["range"] = string(range_text<Value>(info));
+    row["components"] = py::make_tuple(string(info.components[0]), string(info.components[1]));
     row["required"] = info.required;
     row["default"] = info.required ? py::object(py::none()) : python(value);
     result.append(row);

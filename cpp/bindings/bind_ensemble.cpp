@@ -5,7 +5,6 @@
 #include "arguments.hpp"
 #include "bind_events.hpp"
 #include "bind_options.hpp"
-#include "pendcore/arithmetic/floating_point_environment.hpp"
 #include "pendcore/ensemble/ensemble.hpp"
 #include "pendcore/scene/parameters.hpp"
 #include "python_monitor.hpp"
@@ -57,8 +56,8 @@ std::span<Number> all_of(py::array_t<Number, py::array::c_style>& array) {
   return {array.mutable_data(), static_cast<std::size_t>(array.size())};
 }
 
-/// Runs members whose numbers are in `results` afterwards: the arrays status, t, states and, if it
-/// is not None, first_found. Returns (status, done, statistics, exception or None).
+/// Runs the members, and writes what is kept of them into the arrays status, t, states and, unless
+/// it is None, first_found. Returns (status, statistics, exception or None) of the whole.
 py::tuple ensemble(const Scene& scene, const std::vector<py::ssize_t>& shape,
                    const py::array_t<double>& q0, const py::array_t<double>& qd0,
                    const std::vector<std::string>& names, const py::array_t<double>& values,
@@ -98,8 +97,7 @@ py::tuple ensemble(const Scene& scene, const std::vector<py::ssize_t>& shape,
   std::string message(text(ending.status).sentence);
   std::exception_ptr none;
   const py::object error = monitor.close(ending.status, message, none);
-  return py::make_tuple(text(ending.status).name, ending.done, statistics(ending.statistics),
-                        error);
+  return py::make_tuple(text(ending.status).name, statistics(ending.statistics), error);
 }
 
 py::list named_numbers(const Scene& scene) {
@@ -122,7 +120,13 @@ void bind_ensemble(py::module_& module) {
              [](const Scene& scene, const std::vector<std::string>& names) {
                static_cast<void>(ParameterChoice(scene, names));
              });
-  module.attr("member_statuses") = py::tuple(py::cast(member_status_names()));
+  const std::vector<std::string_view> names = member_status_names();
+  std::vector<bool> successes;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    successes.push_back(is_success(static_cast<std::uint8_t>(i)));
+  }
+  module.attr("member_statuses") = py::tuple(py::cast(names));
+  module.attr("member_successes") = py::tuple(py::cast(successes));
 }
 
 }  // namespace pendcore::bindings

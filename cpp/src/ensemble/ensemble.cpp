@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "pendcore/arithmetic/floating_point_environment.hpp"
 #include "pendcore/ensemble/lanes.hpp"
 #include "pendcore/ensemble/workers.hpp"
 #include "pendcore/scene/parameters.hpp"
@@ -55,25 +56,25 @@ class OneByOne {
   const Statistics& statistics() const { return statistics_; }
 
   /// Reads member i, and returns its scene, which is valid until the next call.
-  const Scene* read(std::size_t i, std::vector<double>& state) {
+  const Scene& read(std::size_t i, std::vector<double>& state) {
     const std::size_t n = scene_.links.size();
     state.resize(2 * n);
     members_.read(i, state.data(), state.data() + n, values_.data());
-    if (choice_.size() == 0) return &scene_;
+    if (choice_.size() == 0) return scene_;
     varied_ = scene_;
     choice_.set(varied_, values_);
-    return &varied_;
+    return varied_;
   }
 
   /// Runs member i, and returns whether it came to its own end. If `goes_on` returns false, the
   /// member is given up and not kept.
   bool run(std::size_t i, const std::function<bool()>& goes_on) {
-    const Scene* const scene = read(i, state_);
-    const auto middle = state_.begin() + static_cast<std::ptrdiff_t>(scene->links.size());
+    const Scene& scene = read(i, state_);
+    const auto middle = state_.begin() + static_cast<std::ptrdiff_t>(scene.links.size());
     Options options = options_;
     options.monitor = [&](double) { return goes_on(); };
     try {
-      keep(i, simulate(*scene, {state_.begin(), middle}, {middle, state_.end()}, t0_, t_end_,
+      keep(i, simulate(scene, {state_.begin(), middle}, {middle, state_.end()}, t0_, t_end_,
                        std::move(options)));
     } catch (const std::bad_alloc&) {
       throw;
@@ -124,11 +125,11 @@ class Share final : public LaneSource {
     if (chunk_.is_empty()) chunk_ = work_.take();
     if (chunk_.is_empty()) return nullptr;
     member.number = chunk_.begin++;
-    return one_by_one_.read(member.number, member.state);
+    return &one_by_one_.read(member.number, member.state);
   }
   const Scene& scene_of(std::size_t number) override {
     std::vector<double> state;
-    return *one_by_one_.read(number, state);
+    return one_by_one_.read(number, state);
   }
   void ended(const LaneMember& member) override {
     results_.t[member.number] = member.t;
@@ -175,6 +176,7 @@ EnsembleEnding run_ensemble(const Scene& scene, const Members& members, double t
   SharedWork work(members.count, chunk_for(members.count, workers), limits);
   std::mutex mutex;
   work.run(workers, [&](bool on_calling_thread) {
+    const FloatingPointEnvironment ieee;
     OneByOne one_by_one(scene, members, choice, t0, t_end, options, results);
     Share share(work, on_calling_thread, one_by_one, results);
     const std::unique_ptr<LaneRunner> lanes = make_lanes(scene, t0, t_end, options);

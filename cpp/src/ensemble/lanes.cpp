@@ -1,6 +1,6 @@
 #include "pendcore/ensemble/lanes.hpp"
 
-#include "pendcore/ensemble/lane_runner.hpp"
+#include "pendcore/ensemble/lane_loop.hpp"
 #include "pendcore/ensemble/runge_kutta_lanes.hpp"
 #include "pendcore/integrate/loop/first_step.hpp"
 #include "pendcore/simulate/event_finder.hpp"
@@ -9,14 +9,14 @@ namespace pendcore {
 namespace {
 
 template <const auto& method, class Form, InstructionSet set>
-class RungeKuttaRunner final : public RunnerOfLanes<width_on(set)> {
+class RungeKuttaRunner final : public LaneLoop<width_on(set)> {
   static constexpr int width = width_on(set);
   using All = RungeKuttaLanes<method, Form, width>;
   using Equations = typename All::Equations;
 
  public:
   RungeKuttaRunner(const Scene& scene, double t0, double t_end, const Options& options)
-      : RunnerOfLanes<width>(scene, t0, t_end, options, method.info.name), n_(scene.links.size()) {
+      : LaneLoop<width>(scene, t0, t_end, options, method.info.name), n_(scene.links.size()) {
     for (int lane = 0; lane < width; ++lane) {
       for (int i = 0; i < 2; ++i) {
         Equations::put_state(all_.memory.rtol[i], lane, this->rtol().data() + i * n_);

@@ -1,7 +1,7 @@
 #include "pendcore/ensemble/series_lanes.hpp"
 
 #include "pendcore/ensemble/lane_equations.hpp"
-#include "pendcore/ensemble/lane_runner.hpp"
+#include "pendcore/ensemble/lane_loop.hpp"
 #include "pendcore/integrate/taylor/dominant_eigenvalue.hpp"
 #include "pendcore/simulate/event_finder.hpp"
 
@@ -9,13 +9,13 @@ namespace pendcore {
 namespace {
 
 template <InstructionSet set>
-class SeriesRunner final : public RunnerOfLanes<width_on(set)> {
+class SeriesRunner final : public LaneLoop<width_on(set)> {
   static constexpr int width = width_on(set);
   using All = SeriesLanes<width>;
 
  public:
   SeriesRunner(const Scene& scene, double t0, double t_end, const Options& options)
-      : RunnerOfLanes<width>(scene, t0, t_end, options, taylor.info.name) {
+      : LaneLoop<width>(scene, t0, t_end, options, taylor.info.name) {
     double tightest = 1.0;
     for (int i = 0; i < All::size; ++i) {
       tightest = std::min(tightest, std::max(this->rtol()[i], this->atol()[i]));
@@ -24,11 +24,8 @@ class SeriesRunner final : public RunnerOfLanes<width_on(set)> {
     }
     all_.order = taylor_order(tightest);
     std::vector<FoundEvent> none;
-    for (const auto& one : EventFinder(scene, options.events, none, {}).differences()) {
-      levels_.push_back({one.plus, one.minus, one.value, one.every_turn});
-    }
-    all_.levels = levels_.data();
-    all_.level_count = static_cast<int>(levels_.size());
+    differences_ = EventFinder(scene, options.events, none, {}).differences();
+    all_.differences = differences_;
     rows_.resize(static_cast<std::size_t>(all_.order + 1) * All::size);
     // Lanes without a member have numbers that do no harm.
     all_.sigma = all_.sigma_new = all_.largest = all_.largest_new = broadcast<Pack<width>>(1.0);
@@ -55,17 +52,13 @@ class SeriesRunner final : public RunnerOfLanes<width_on(set)> {
     return true;
   }
   void put_start(int lane, const std::vector<double>& y) override {
-    double rate = 0.0;  // as in Taylor::start()
-    for (int i = 0; i < 2; ++i) {
-      const double qd = this->rate()[i];
-      rate = std::max({rate, qd * qd, std::abs(this->rate()[2 + i])});
-    }
     for (int i = 0; i < All::size; ++i) all_.y[i][lane] = y[i];
-    all_.sigma[lane] = taylor_detail::power_of_two_below(rate > 0.0 ? 1.0 / std::sqrt(rate) : 1.0);
+    const double rate = taylor_detail::squared_rate(this->rate().data(), 2);
+    all_.sigma[lane] = taylor_detail::first_sigma(rate);
     all_.begins[lane] = -1;
     all_.h[lane] = this->direction();
     look_count_[lane] = 0;
-    if (levels_.empty()) return;
+    if (differences_.empty()) return;
     this->member(lane).found.clear();
     finders_[lane].emplace(this->scene(), this->options().events, this->member(lane).found,
                            std::vector<long long>());
@@ -75,12 +68,11 @@ class SeriesRunner final : public RunnerOfLanes<width_on(set)> {
   }
 
   /// Looks for events as a run does, on the series of the last step in powers of theta.
-  typename RunnerOfLanes<width>::EventLook look_for_events(int lane) override {
-    using Look = typename RunnerOfLanes<width>::EventLook;
+  typename LaneLoop<width>::EventLook look_for_events(int lane) override {
+    using Look = typename LaneLoop<width>::EventLook;
     const double h = all_.h_before[lane];
     const double x = h / all_.sigma_new[lane];  // sigma before the step
-    constexpr double no_large_powers = 256.0;
-    if (!(std::abs(x) <= no_large_powers)) return Look::is_odd;
+    if (!(std::abs(x) <= taylor_detail::no_large_powers)) return Look::is_odd;
     double power = 1.0;
     for (int k = 0; k <= all_.order; ++k, power *= x) {
       for (int i = 0; i < All::size; ++i) {
@@ -123,19 +115,17 @@ class SeriesRunner final : public RunnerOfLanes<width_on(set)> {
       direction[i] = all_.rows_new[all_.order * All::size + i][lane];
       y[i] = all_.y_new[i][lane];
     }
-    const double h = all_.h_before[lane];
-    const double rate = taylor.info.stability * all_.order / std::abs(h);
     const auto rates = [this](double t, const double* state, double* dydt) {
       this->stepper().evaluate(t, state, dydt);
     };
-    const double lambda = eigenvalue_(rates, 0.0, y.data(), rate);
-    return std::abs(h) * lambda / all_.order > taylor.info.stability;
+    return stiffness_of_series(eigenvalue_, rates, all_.t_before[lane], y.data(),
+                               all_.h_before[lane], all_.order) > taylor.info.stability;
   }
 
   All all_{};
   std::array<long long, width> look_count_{};
   DominantEigenvalue eigenvalue_{2, 0};
-  std::vector<LaneLevel> levels_;
+  std::vector<EventFinder::Difference> differences_;
   std::array<std::optional<EventFinder>, width> finders_;
   std::vector<double> rows_;
   Attention (*take_steps_)(All*, const LaneInterval*, int) = only<&take_series_steps<width>, set>();

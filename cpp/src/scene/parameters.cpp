@@ -41,19 +41,12 @@ void for_each_number(Struct& effect, const std::string& part, const Visit& visit
   });
 }
 
-/// Calls visit(number, part, info, component) for every number of the effects of a scene.
+/// Calls visit(part, info, component, number) for every number of the effects of a scene.
 template <class AnyScene, class Visit>
 void for_each_effect_number(AnyScene& scene, const Visit& visit) {
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
     const std::string prefix = "effect[" + std::to_string(i + 1) + "].";
-    std::visit(
-        [&](auto& effect) {
-          for_each_number(
-              effect, prefix,
-              [&](const std::string& part, const ParameterInfo& info, std::string_view component,
-                  auto& number) { visit(part, info, component, number); });
-        },
-        scene.effects[i]);
+    std::visit([&](auto& effect) { for_each_number(effect, prefix, visit); }, scene.effects[i]);
   }
 }
 

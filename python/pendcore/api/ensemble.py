@@ -16,11 +16,11 @@ from pendcore.api.solution import Solution
 from pendcore.ensemble.export import to_xarray
 from pendcore.ensemble.keep import USUAL_NAMES, FirstEvent, Reducer
 from pendcore.ensemble.members import Members, members_of
-from pendcore.ensemble.result import EnsembleResult, run_members
+from pendcore.ensemble.result import OF_THE_WHOLE, EnsembleResult, run_members
 from pendcore.messages.arguments import (
     known_keywords,
     numbers,
-    positive,
+    time_limit_of,
     time_span,
     whole_number,
 )
@@ -28,14 +28,13 @@ from pendcore.messages.progress import Progress, callback, close
 from pendcore.messages.warning import PendcoreWarning, warn
 from pendcore.run.events import Event, events_asked_for
 from pendcore.run.options import RUN_DEFAULTS
+from pendcore.run.run_error import require_check
 from pendcore.scene.scene import require_start
 
 if TYPE_CHECKING:
     import xarray as xr
 
 Keep = str | Reducer | Mapping[str, Reducer]
-OF_THE_WHOLE = ("workers", "time_limit", "check", "progress")
-"""The options of an ensemble that are none of its members."""
 _KEEPS = '"end", "times", a reducer of pendcore.keep, or a dictionary of reducers'
 
 
@@ -82,8 +81,9 @@ class Ensemble(EnsembleResult):
         scene = self.members.scene_of(place)
         q0, qd0 = self.members.q0[place], self.members.qd0[place]
         return simulate(
-            scene, q0, qd0, self.t_span, t_eval=self.t_eval, check=False, **self._asked()
-        )
+            scene, q0, qd0, self.t_span, t_eval=self.t_eval, check=False,
+            **self.options_of_members(),
+        )  # fmt: skip
 
     @known_keywords
     def message(self, index: Any) -> str:
@@ -153,9 +153,6 @@ class Ensemble(EnsembleResult):
         """
         return to_xarray(self)
 
-    def _asked(self) -> dict[str, Any]:
-        return {name: value for name, value in self.options.items() if name not in OF_THE_WHOLE}
-
 
 @known_keywords
 def ensemble(
@@ -197,8 +194,8 @@ def ensemble(
     vary : dict, optional
         Names of parameters, as `Scene.parameters` has them, and their values, (...).
     keep : "end", "times", a reducer of `pendcore.keep`, or a dictionary of reducers
-        What is kept of each member: its last state, its states at the times ``t_eval``, or its
-        last state and what reducers find.
+        What is kept of each member. ``"end"`` keeps its last state, and ``"times"`` keeps its
+        states at ``t_eval``. With reducers the last state is kept, too.
     t_eval : array_like, (n_t,), optional
         The times for ``keep="times"``, s.
     method, rtol, atol, events, max_steps, max_step
@@ -251,24 +248,21 @@ def _run(
     reducers: dict[str, int],
     options: dict[str, Any],
 ) -> Ensemble:
-    own = {name: options.pop(name) for name in OF_THE_WHOLE}
-    asked = tuple(events_asked_for(options.pop("events")))
-    workers = 0 if own["workers"] is None else whole_number("workers", own["workers"])
-    if own["workers"] is not None and workers < 1:
+    require_check(options["check"])
+    workers = 0 if options["workers"] is None else whole_number("workers", options["workers"])
+    if options["workers"] is not None and workers < 1:
         raise ValueError(f"workers = {workers}: must be 1 or more threads")
-    limit = inf if own["time_limit"] is None else positive("time_limit", own["time_limit"], "s")
-    found = Ensemble(members, t_span, options, times, reducers, len(asked))
-    found.options["events"] = [event._as_pair() for event in asked]
-    report = callback(own["progress"], f"running {members.count} members")
+    limit = time_limit_of(options["time_limit"])
+    found = Ensemble(members, t_span, options, times, reducers, len(options["events"]))
+    report = callback(options["progress"], f"running {members.count} members")
     try:
         error = run_members(found, workers, limit, report)
     finally:
-        found.options = options | {"events": asked} | own
         close(report)
     if error is not None:
         error.ensemble = found  # type: ignore[attr-defined]
         raise error
-    return _checked(found, own["check"])
+    return _checked(found, options["check"])
 
 
 def _checked(found: Ensemble, check: bool | None) -> Ensemble:

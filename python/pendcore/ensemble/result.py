@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,8 @@ from pendcore import _core
 from pendcore.ensemble.members import Members
 from pendcore.messages.arguments import Floats
 
-SUCCESSES = ("finished", "event", "at_rest")
+OF_THE_WHOLE = ("workers", "time_limit", "check", "progress")
+"""The options of an ensemble that are none of its members."""
 
 
 class EnsembleResult:
@@ -25,7 +25,7 @@ class EnsembleResult:
     t_span : (float, float)
         s.
     options : dict
-        How each member was run, as `simulate` takes it.
+        What `ensemble` was given by name, beside what is kept.
     codes : ndarray of uint8, (...)
         The statuses as numbers, in the order of ``pendcore._core.member_statuses``.
     statistics : dict
@@ -35,7 +35,7 @@ class EnsembleResult:
     """
 
     __slots__ = (
-        "_first", "_states", "_t", "codes", "ending", "events", "members", "options",
+        "_first", "_states", "_t", "codes", "ending", "members", "options",
         "reducers", "statistics", "t_eval", "t_span",
     )  # fmt: skip
 
@@ -46,7 +46,7 @@ class EnsembleResult:
         options: dict[str, Any],
         t_eval: Floats | None,
         reducers: dict[str, int],
-        first_of: int,
+        event_count: int,
     ) -> None:
         self.members, self.t_span, self.options, self.t_eval = members, t_span, options, t_eval
         self.reducers = reducers
@@ -57,7 +57,7 @@ class EnsembleResult:
         self.codes: npt.NDArray[np.uint8] = np.full(shape, not_run, dtype=np.uint8)
         self._t = np.full(shape, np.nan)
         self._states = np.full((*shape, *times, 2 * n), np.nan)
-        self._first = np.full((*shape, first_of), np.nan) if reducers else None
+        self._first = np.full((*shape, event_count), np.nan) if reducers else None
         self.statistics: dict[str, Any] = {}
         self.ending = "finished"
 
@@ -89,8 +89,7 @@ class EnsembleResult:
     @property
     def success(self) -> npt.NDArray[np.bool_]:
         """Whether each member reached its goal, (...)."""
-        good = [name in SUCCESSES for name in _core.member_statuses]
-        return np.array(good)[self.codes]
+        return np.array(_core.member_successes)[self.codes]
 
     @property
     def failed(self) -> npt.NDArray[np.intp]:
@@ -103,6 +102,17 @@ class EnsembleResult:
             known = ", ".join(map(repr, self.reducers)) or "none were kept"
             raise KeyError(f"no reducer is called {name!r}: {known}")
         return self._first[..., self.reducers[name]]
+
+    def options_of_members(self) -> dict[str, Any]:
+        """Return the options as `simulate` takes them.
+
+        Examples
+        --------
+        >>> found = pc.ensemble(pc.Scene.textbook(), q0=[0.5, 1.0], t_span=(0, 1), rtol=1e-6)
+        >>> found.options_of_members()["rtol"]
+        1e-06
+        """
+        return {name: value for name, value in self.options.items() if name not in OF_THE_WHOLE}
 
     def counts(self) -> dict[str, int]:
         """Return how many members have each status that occurs.
@@ -130,7 +140,7 @@ class EnsembleResult:
             some = found[np.isfinite(found)]
             span = f"{some.min():.6g} to {some.max():.6g} s" if some.size else "in none"
             lines.append(f"{name}: in {some.size} of {found.size}, {span}")
-        if self.statistics and isfinite(end):
+        if self.statistics:
             steps = self.statistics["accepted"]
             lines.append(f"{steps} steps, {self.statistics['nfev']} right-hand sides or series")
         return "\n".join(lines)
@@ -146,11 +156,12 @@ def run_members(
     members = result.members
     shape, vary = members.shape, members.vary
     values = np.stack([*vary.values()], axis=-1) if vary else np.empty((*shape, 0))
-    given = result.options | {
+    given = result.options_of_members() | {
         "store": "end" if result.t_eval is None else "times",
         "t_eval": result.t_eval,
+        "events": [event._as_pair() for event in result.options["events"]],
     }
-    result.ending, _, result.statistics, error = _core.ensemble(
+    result.ending, result.statistics, error = _core.ensemble(
         members.scene._compiled, shape, members.q0, members.qd0, list(vary), values,
         *result.t_span, given, workers, time_limit, progress,
         result.codes, result._t, result._states, result._first,

@@ -40,6 +40,8 @@ class Parameter(NamedTuple):
         Whether it has no default.
     default : object
         None where there is none, and where leaving it out means something of its own.
+    components : (str, str)
+        The names of the two numbers of a pair.
     """
 
     name: str
@@ -50,6 +52,7 @@ class Parameter(NamedTuple):
     range: str
     required: bool
     default: Any
+    components: tuple[str, str] = ("x", "y")
 
     @property
     def optional(self) -> bool:

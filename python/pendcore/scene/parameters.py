@@ -16,8 +16,6 @@ from pendcore.scene.effect_class import Described, Effect
 from pendcore.scene.link import Link
 
 PLACE = re.compile(r"(link|effect)\[(\d+)\]\.(.+)")
-COMPONENTS = (("x", "lower"), ("y", "upper"))
-"""What the names of the two numbers of a pair may be."""
 
 
 def changed(
@@ -56,5 +54,6 @@ def _with(owner: Any, path: list[str], value: float) -> Any:
     held = getattr(owner, name)
     if isinstance(held, Described):
         return owner.replace(**{name: _with(held, inner, value)})
-    which = next(k for k, names in enumerate(COMPONENTS) if inner[0] in names)
+    (components,) = (p.components for p in owner.description.parameters if p.name == name)
+    which = components.index(inner[0])
     return owner.replace(**{name: tuple(value if k == which else x for k, x in enumerate(held))})

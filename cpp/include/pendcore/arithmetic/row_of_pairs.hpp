@@ -1,6 +1,6 @@
 /// \file
 /// Two pairs beside each other, in which each number is a pack with one trajectory a lane. For a
-/// single trajectory they are Pairs (pair.hpp).
+/// single trajectory they are Pairs (pair.hpp). Sums and products are those of pairs.
 #pragma once
 
 #include "pendcore/arithmetic/pair.hpp"
@@ -8,10 +8,7 @@
 namespace pendcore {
 
 template <class Real>
-struct TwoPairs {
-  Two<Real> low;
-  Two<Real> high;
-};
+using TwoPairs = Two<Two<Real>>;
 
 template <class Real>
 PENDCORE_INLINE TwoPairs<Real> joined(const Two<Real>& low, const Two<Real>& high) {
@@ -23,45 +20,20 @@ PENDCORE_INLINE TwoPairs<Real> twice(const Two<Real>& x) {
 }
 template <class Real>
 PENDCORE_INLINE Two<Real> low_half(const TwoPairs<Real>& x) {
-  return x.low;
+  return x.first;
 }
+/// The numbers of the other link, in both pairs.
 template <class Real>
 PENDCORE_INLINE TwoPairs<Real> other(const TwoPairs<Real>& x) {
-  return {other(x.low), other(x.high)};
+  return {other(x.first), other(x.second)};
 }
 template <class Real>
 PENDCORE_INLINE TwoPairs<Real> halves_added(const TwoPairs<Real>& x) {
-  const Two<Real> sum = x.low + x.high;
-  return {sum, sum};
+  return twice(x.first + x.second);
 }
 template <class Real>
 PENDCORE_INLINE TwoPairs<Real> turned(const TwoPairs<Real>& x) {
-  return {-x.high, x.low};
-}
-template <class Real>
-PENDCORE_INLINE TwoPairs<Real> operator-(const TwoPairs<Real>& x) {
-  return {-x.low, -x.high};
-}
-template <class Real>
-PENDCORE_INLINE TwoPairs<Real> operator+(const TwoPairs<Real>& x, const TwoPairs<Real>& y) {
-  return {x.low + y.low, x.high + y.high};
-}
-template <class Real>
-PENDCORE_INLINE TwoPairs<Real> operator-(const TwoPairs<Real>& x, const TwoPairs<Real>& y) {
-  return {x.low - y.low, x.high - y.high};
-}
-template <class Real>
-PENDCORE_INLINE TwoPairs<Real> operator*(const TwoPairs<Real>& x, const TwoPairs<Real>& y) {
-  return {x.low * y.low, x.high * y.high};
-}
-template <class Real>
-PENDCORE_INLINE TwoPairs<Real> operator*(double x, const TwoPairs<Real>& y) {
-  return {x * y.low, x * y.high};
-}
-template <class Real>
-PENDCORE_INLINE TwoPairs<Real> fma(const TwoPairs<Real>& a, const TwoPairs<Real>& b,
-                                   const TwoPairs<Real>& c) {
-  return {fma(a.low, b.low, c.low), fma(a.high, b.high, c.high)};
+  return {-x.second, x.first};
 }
 
 template <class Real>

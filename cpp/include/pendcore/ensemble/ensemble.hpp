@@ -38,8 +38,13 @@ constexpr std::uint8_t code(MemberStatus status) { return static_cast<std::uint8
 
 /// The words of all codes: those of Status, "not_run", "refused".
 std::vector<std::string_view> member_status_names();
+/// Whether a member with that code reached its goal.
+constexpr bool is_success(std::uint8_t code) {
+  return code < status_texts.size() && status_texts[code].success;
+}
 
-/// What is kept of each member, in memory of the caller. It has to be NaN, and not_run, before.
+/// What is kept of each member, in memory of the caller, who has filled the numbers with NaN and
+/// the statuses with not_run.
 struct MemberResults {
   std::span<std::uint8_t> status;  ///< (count)
   std::span<double> t;             ///< s, (count): where the run ended

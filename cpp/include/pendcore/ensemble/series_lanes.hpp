@@ -6,22 +6,15 @@
 /// round, in which it stays where it is, computes it.
 #pragma once
 
+#include <span>
 #include <utility>
 
 #include "pendcore/dynamics/series/double_pendulum_series.hpp"
 #include "pendcore/ensemble/lane_steps.hpp"
 #include "pendcore/integrate/taylor/taylor_step.hpp"
+#include "pendcore/simulate/event_finder.hpp"
 
 namespace pendcore {
-
-/// What an event compares with a level: the difference of two components of the state, or, if
-/// `minus` is negative, one of them alone.
-struct LaneLevel {
-  int plus = 0;
-  int minus = -1;
-  double value = 0.0;
-  bool every_turn = false;
-};
 
 /// The lanes of the method of Taylor series on the bare double pendulum. A state is a row of four
 /// numbers, (q_1, q_2, qd_1, qd_2).
@@ -40,8 +33,7 @@ struct SeriesLanes : LaneSteps<width> {
   Real largest = {}, largest_new = {};  ///< s, the step that the tolerances allow
   // The step that was taken last: its start, s, and its size.
   Real t_before = {}, t_low_before = {}, h_before = {};
-  const LaneLevel* levels = nullptr;  ///< of all events
-  int level_count = 0;
+  std::span<const EventFinder::Difference> differences;  ///< of all events
   Integers begins = {};  ///< all bits set where a member has no series yet
   int order = lowest_taylor_order;
   Real of_y[(highest_order + 1) * size] = {};  ///< two series: those from y, and from y_new
@@ -129,9 +121,8 @@ PENDCORE_INLINE typename Lanes<Pack<width>>::Integers expand(SeriesLanes<width>*
 /// Whether a difference may reach its level within a step of x units of sigma: not if it is farther
 /// away than the sizes of all terms of the series together.
 template <int width>
-PENDCORE_INLINE typename Lanes<Pack<width>>::Integers may_reach(const SeriesLanes<width>* all,
-                                                                const LaneLevel& level,
-                                                                const Pack<width>& x) {
+PENDCORE_INLINE typename Lanes<Pack<width>>::Integers may_reach(
+    const SeriesLanes<width>* all, const EventFinder::Difference& level, const Pack<width>& x) {
   using Real = Pack<width>;
   constexpr int size = SeriesLanes<width>::size;
   constexpr double turn = 6.283185307179586;
@@ -216,8 +207,8 @@ PENDCORE_INLINE Attention take_series_steps(SeriesLanes<width>* all, const LaneI
     finish_step<taylor, width>(*all, *interval, next, found, is_odd, tried, attention);
     attention.looks = detail::bits_of(is_looked_at) & all->active & ~attention.odd;
     Integers may_happen{};
-    for (int k = 0; k < all->level_count; ++k) {
-      may_happen |= detail::may_reach<width>(all, all->levels[k], x);
+    for (const EventFinder::Difference& one : all->differences) {
+      may_happen |= detail::may_reach<width>(all, one, x);
     }
     attention.events = detail::bits_of(may_happen & tried) & all->active & ~attention.odd;
     all->t_before = t_before;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pendcore/integrate/taylor/taylor.hpp"
+
 namespace pendcore {
 
 double* DominantEigenvalue::direction() {
@@ -44,6 +46,13 @@ double DominantEigenvalue::operator()(const Rates& rates, double t, const double
   const double once = multiply(rates, t, y, rate);
   const double twice = multiply(rates, t, y, rate);
   return std::sqrt(once * twice);
+}
+
+double stiffness_of_series(DominantEigenvalue& eigenvalue, const Rates& rates, double t,
+                           const double* y, double h, int order) {
+  // Where stability limits the steps, |lambda| is about this rate.
+  const double rate = taylor.info.stability * order / std::abs(h);
+  return std::abs(h) * eigenvalue(rates, t, y, rate) / order;
 }
 
 }  // namespace pendcore

@@ -67,10 +67,10 @@ struct SeriesOf {
   using Row = TwoPairs<Number>;
   PENDCORE_INLINE static Half pair_at(const Number* from) { return {from[0], from[1]}; }
   PENDCORE_INLINE static void put_row(Number* to, const Row& row) {
-    to[0] = row.low.first;
-    to[1] = row.low.second;
-    to[2] = row.high.first;
-    to[3] = row.high.second;
+    to[0] = row.first.first;
+    to[1] = row.first.second;
+    to[2] = row.second.first;
+    to[3] = row.second.second;
   }
 };
 template <>
@@ -353,17 +353,17 @@ PENDCORE_INLINE OlderTerms<TwoPairs<Real>> older_terms(const DoublePendulumOrder
   const auto add = [&](auto half, auto one) __attribute__((always_inline)) {
     const OlderTerms<Real> found = older_terms<Real>(
         k, [&](int j) __attribute__((always_inline)) { return orders.pulls[j].*half.*one; },
-        [&](int j) __attribute__((always_inline)) { return orders.rates[j].low.*one; },
+        [&](int j) __attribute__((always_inline)) { return orders.rates[j].first.*one; },
         [&](int j) __attribute__((always_inline)) { return orders.n[j].*half.*one; });
     terms.sum.*half.*one = found.sum;
     terms.rest.*half.*one = found.rest;
     terms.next_sum.*half.*one = found.next_sum;
     terms.next_rest.*half.*one = found.next_rest;
   };
-  add(&TwoPairs<Real>::low, &Two<Real>::first);
-  add(&TwoPairs<Real>::low, &Two<Real>::second);
-  add(&TwoPairs<Real>::high, &Two<Real>::first);
-  add(&TwoPairs<Real>::high, &Two<Real>::second);
+  add(&TwoPairs<Real>::first, &Two<Real>::first);
+  add(&TwoPairs<Real>::first, &Two<Real>::second);
+  add(&TwoPairs<Real>::second, &Two<Real>::first);
+  add(&TwoPairs<Real>::second, &Two<Real>::second);
   return terms;
 }
 

@@ -42,4 +42,9 @@ class DominantEigenvalue {
   std::vector<double> v_, state_, ahead_, behind_;
 };
 
+/// h |lambda| over the order of the series, for a step of size h from the state y at time t;
+/// `eigenvalue` has the last coefficient of the series there as its direction.
+double stiffness_of_series(DominantEigenvalue& eigenvalue, const Rates& rates, double t,
+                           const double* y, double h, int order);
+
 }  // namespace pendcore

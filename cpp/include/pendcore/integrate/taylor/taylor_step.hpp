@@ -52,6 +52,23 @@ PENDCORE_INLINE Real power_of_two_below(const Real& x) {
   return std::bit_cast<Real>(std::bit_cast<Integers>(within) & 0x7ff0000000000000);
 }
 
+/// The squared rate of a motion, 1/s^2, from the derivatives of n angles and n rates.
+inline double squared_rate(const double* dydt, int n) {
+  double rate = 0.0;
+  for (int i = 0; i < n; ++i) rate = std::max({rate, dydt[i] * dydt[i], std::abs(dydt[n + i])});
+  return rate;
+}
+/// The unit of time with which a run begins, s.
+inline double first_sigma(double squared_rate) {
+  return power_of_two_below(squared_rate > 0.0 ? 1.0 / std::sqrt(squared_rate) : 1.0);
+}
+
+/// The powers of a smaller number are finite at every order; a usual step has no larger one.
+inline constexpr int exponent_of_no_large_powers = 8;
+inline constexpr double no_large_powers = 1 << exponent_of_no_large_powers;
+static_assert(exponent_of_no_large_powers * highest_order <
+              std::numeric_limits<double>::max_exponent);
+
 template <class Series>
 PENDCORE_INLINE int blocks_of(const TaylorMemory<Series>* memory) {
   if constexpr (Series::blocks > 0) {

@@ -65,12 +65,9 @@ class Taylor final : public Stepper {
     if (compensated_) drop_low_parts(y, memory_.y, memory_.low);
     read(y, memory_.y, sums_);
     std::copy_n(dydt, dimension(), given_rates_.begin());
-    double rate = 0.0;  // the squared rate of the motion, 1/s^2
-    for (int i = 0; i < n_; ++i) {
-      rate = std::max({rate, dydt[i] * dydt[i], std::abs(dydt[n_ + i])});
-    }
+    const double rate = taylor_detail::squared_rate(dydt, n_);
     starts_at_rest_ = rate == 0.0;
-    memory_.sigma = taylor_detail::power_of_two_below(rate > 0.0 ? 1.0 / std::sqrt(rate) : 1.0);
+    memory_.sigma = taylor_detail::first_sigma(rate);
     has_series_ = false;
   }
   void get_state(double* y) const override { write(memory_.y, sums_, y); }
@@ -161,10 +158,7 @@ class Taylor final : public Stepper {
     std::vector<double> state(dimension());
     get_state(state.data());
     evaluations += DominantEigenvalue::evaluations;
-    // Where stability limits the steps, |lambda| is about this rate.
-    const double rate = taylor.info.stability * memory_.order / std::abs(h);
-    const double lambda = eigenvalue_(rates_, t_new_ - h, state.data(), rate);
-    return std::abs(h) * lambda / memory_.order;
+    return stiffness_of_series(eigenvalue_, rates_, t_new_ - h, state.data(), h, memory_.order);
   }
 
   /// The low part of the state, if compensated, and sigma: with another sigma, the size of a step
@@ -261,15 +255,11 @@ class Taylor final : public Stepper {
   void write_powers(double h, int dimension, double* coefficients) const {
     const double x = stays_ ? 0.0 : h / memory_.sigma;
     powers_of_step_(&memory_, x, n_, row_, dimension, coefficients);
-    if (!(std::abs(x) <= no_large_powers) && !std::isfinite(power_of(x, memory_.order))) {
+    if (!(std::abs(x) <= taylor_detail::no_large_powers) &&
+        !std::isfinite(power_of(x, memory_.order))) {
       write_large_powers(x, dimension, coefficients);
     }
   }
-  /// The powers of a smaller number are finite at every order; a usual step has no larger one.
-  static constexpr int exponent_of_no_large_powers = 8;
-  static constexpr double no_large_powers = 1 << exponent_of_no_large_powers;
-  static_assert(exponent_of_no_large_powers * highest_order <
-                std::numeric_limits<double>::max_exponent);
   static double power_of(double x, int order) {
     double power = 1.0;
     for (int k = 1; k <= order; ++k) power *= x;

@@ -25,10 +25,10 @@ inline constexpr int rounds_at_once = 256;
 
 /// The part of a runner that does not depend on the method.
 template <int width>
-class RunnerOfLanes : public LaneRunner {
+class LaneLoop : public LaneRunner {
  public:
-  RunnerOfLanes(const Scene& scene, double t0, double t_end, const Options& options,
-                std::string_view method)
+  LaneLoop(const Scene& scene, double t0, double t_end, const Options& options,
+           std::string_view method)
       : scene_(scene),
         t0_(t0),
         t_end_(t_end),
