@@ -1,5 +1,7 @@
 #include "pendcore/ensemble/series_lanes.hpp"
 
+#include <memory>
+
 #include "pendcore/ensemble/lane_equations.hpp"
 #include "pendcore/ensemble/lane_loop.hpp"
 #include "pendcore/integrate/taylor/dominant_eigenvalue.hpp"
@@ -60,8 +62,8 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
     look_count_[lane] = 0;
     if (differences_.empty()) return;
     this->member(lane).found.clear();
-    finders_[lane].emplace(this->scene(), this->options().events, this->member(lane).found,
-                           std::vector<long long>());
+    finders_[lane] = std::make_unique<EventFinder>(
+        this->scene(), this->options().events, this->member(lane).found, std::vector<long long>());
   }
   void get_state(int lane, double* y) override {
     for (int i = 0; i < All::size; ++i) y[i] = all_.y[i][lane];
@@ -126,7 +128,7 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
   std::array<long long, width> look_count_{};
   DominantEigenvalue eigenvalue_{2, 0};
   std::vector<EventFinder::Difference> differences_;
-  std::array<std::optional<EventFinder>, width> finders_;
+  std::array<std::unique_ptr<EventFinder>, width> finders_;
   std::vector<double> rows_;
   Attention (*take_steps_)(All*, const LaneInterval*, int) = only<&take_series_steps<width>, set>();
 };
