@@ -194,8 +194,8 @@ def ensemble(
     vary : dict, optional
         Names of parameters, as `Scene.parameters` has them, and their values, (...).
     keep : "end", "times", a reducer of `pendcore.keep`, or a dictionary of reducers
-        What is kept of each member. ``"end"`` keeps its last state, and ``"times"`` keeps its
-        states at ``t_eval``. With reducers the last state is kept, too.
+        With ``"end"`` the ensemble keeps the last state of each member, with ``"times"`` the states
+        at ``t_eval``, and with reducers the last state and what the reducers find.
     t_eval : array_like, (n_t,), optional
         The times for ``keep="times"``, s.
     method, rtol, atol, events, max_steps, max_step

@@ -179,7 +179,7 @@ class LaneLoop : public LaneRunner {
   /// Returns false if the beginning is not that of a usual run.
   bool begin(int lane, const Scene& scene) {
     const std::vector<double>& y = members_[lane].state;
-    if (!equations_ || stepper_ == nullptr || &scene != &scene_) {
+    if (!equations_ || &scene != &scene_) {
       equations_ = equations_of_motion(scene);
       stepper_ = make_stepper(scene, *equations_, method_, false, false);
       stepper_->set_tolerances(rtol_.data(), atol_.data());
