@@ -23,7 +23,7 @@ SOURCES := pyproject.toml CMakeLists.txt $(shell find cpp python ! -path '*__pyc
 .DEFAULT_GOAL := help
 .PHONY: demo test test-all compare hard-cases bench build-bench lint tidy sanitize sanitize-few \
     sanitized references threads long horizon asked-errors default-method book-speed fuzz fuzz-readers \
-    test-error elsewhere wasm wheel site core clean help
+    test-error elsewhere wasm wheel site core clean help flip-map
 
 demo: $(DONE)/installed  ## build, run the textbook's case, say where its figure and summary are
 	pendcore run -o out/textbook
@@ -142,6 +142,9 @@ long: $(DONE)/installed $(DONE)/test-requirements  ## ten million steps: docs/ba
 horizon: $(DONE)/installed $(DONE)/test-requirements  ## how long runs are right: docs/background/horizon.md, written anew
 	python docs/generators/horizon.py
 
+flip-map: $(DONE)/installed $(DONE)/test-requirements  ## when rods turn over: docs/background/flip_map.md, written anew
+	python docs/generators/flip_map.py
+
 asked-errors: $(DONE)/installed $(DONE)/test-requirements  ## docs/background/accuracy_cost.md: what simulate(error=) keeps and costs
 	python docs/generators/series_work.py
 	python docs/generators/asked_errors.py
@@ -212,7 +215,7 @@ $(DONE)/run-requirements: pyproject.toml | $(DONE)/build-requirements
 
 $(DONE)/test-requirements: pyproject.toml | $(DONE)/build-requirements
 	@sh setup/debian_packages.sh doctest
-	python setup/requirements.py test export symbolic completion | $(PIP_INSTALL) -r /dev/stdin
+	python setup/requirements.py test export store cluster symbolic completion | $(PIP_INSTALL) -r /dev/stdin
 	@touch $@
 
 $(DONE)/error-requirements: pyproject.toml | $(DONE)/test-requirements
@@ -224,7 +227,7 @@ $(DONE)/fuzz-requirements: pyproject.toml | $(DONE)/test-requirements
 	@touch $@
 
 $(DONE)/site-requirements: pyproject.toml | $(DONE)/build-requirements
-	python setup/requirements.py docs run symbolic export | $(PIP_INSTALL) -r /dev/stdin
+	python setup/requirements.py docs run symbolic export store | $(PIP_INSTALL) -r /dev/stdin
 	@touch $@
 
 $(DONE)/wheel-requirements: pyproject.toml | $(DONE)/build-requirements

@@ -6,6 +6,7 @@
 #include "bind_events.hpp"
 #include "bind_options.hpp"
 #include "pendcore/ensemble/ensemble.hpp"
+#include "pendcore/ensemble/lanes.hpp"
 #include "pendcore/scene/parameters.hpp"
 #include "python_monitor.hpp"
 #include "run_state.hpp"
@@ -56,39 +57,46 @@ std::span<Number> all_of(py::array_t<Number, py::array::c_style>& array) {
   return {array.mutable_data(), static_cast<std::size_t>(array.size())};
 }
 
-/// Runs the members, and writes what is kept of them into the arrays status, t, states and, unless
-/// it is None, first_found. Returns (status, statistics, exception or None) of the whole.
+/// What a reducer finds, if it is wanted.
+using Kept = std::optional<py::array_t<double, py::array::c_style>>;
+std::span<double> all_of(Kept& kept) { return kept ? all_of(*kept) : std::span<double>(); }
+
+/// Runs the members, and writes what is kept of them into the arrays from `status` on. Returns
+/// (status, statistics, exception or None) of the whole.
 py::tuple ensemble(const Scene& scene, const std::vector<py::ssize_t>& shape,
                    const py::array_t<double>& q0, const py::array_t<double>& qd0,
-                   const std::vector<std::string>& names, const py::array_t<double>& values,
-                   py::handle t0, py::handle t_end, const py::dict& given, int workers,
-                   double time_limit, py::handle progress,
+                   const std::vector<std::string>& names,
+                   const std::vector<py::array_t<double>>& values, py::handle t0, py::handle t_end,
+                   const py::dict& given, int workers, double time_limit, py::handle progress,
                    py::array_t<std::uint8_t, py::array::c_style> status,
                    py::array_t<double, py::array::c_style> t,
-                   py::array_t<double, py::array::c_style> states,
-                   std::optional<py::array_t<double, py::array::c_style>> first_found) {
+                   py::array_t<double, py::array::c_style> states, Kept first_found, Kept extremes,
+                   Kept energy_drift, Kept largest_exponent) {
   const std::size_t n = scene.links.size();
   PythonMonitor monitor(progress);
   const Options options = options_of(given, n);
   const RowsOfMembers angles("q0", q0, shape, n);
   const RowsOfMembers rates("qd0", qd0, shape, n);
-  const RowsOfMembers parameters("vary", values, shape, names.size());
+  std::vector<RowsOfMembers> parameters;
+  for (const py::array_t<double>& one : values) parameters.emplace_back("vary", one, shape, 1);
   const Members members{.count = static_cast<std::size_t>(status.size()),
                         .names = names,
                         .read = [&](std::size_t i, double* q, double* qd, double* vary) {
                           angles.copy(i, q);
                           rates.copy(i, qd);
-                          parameters.copy(i, vary);
+                          for (const RowsOfMembers& one : parameters) one.copy(i, vary++);
                         }};
   const double begin = number("t_span[0]", t0);
   const double end = number("t_span[1]", t_end);
   const EnsembleLimits limits{
       .workers = workers, .time_limit = time_limit, .monitor = monitor.for_core()};
-  const MemberResults results{
-      .status = all_of(status),
-      .t = all_of(t),
-      .states = all_of(states),
-      .first_found = first_found ? all_of(*first_found) : std::span<double>()};
+  const MemberResults results{.status = all_of(status),
+                              .t = all_of(t),
+                              .states = all_of(states),
+                              .first_found = all_of(first_found),
+                              .extremes = all_of(extremes),
+                              .energy_drift = all_of(energy_drift),
+                              .largest_exponent = all_of(largest_exponent)};
   EnsembleEnding ending;
   {
     const py::gil_scoped_release without_lock;
@@ -114,7 +122,12 @@ void bind_ensemble(py::module_& module) {
   module.def("ensemble", &ensemble, py::arg("scene"), py::arg("shape"), py::arg("q0"),
              py::arg("qd0"), py::arg("names"), py::arg("values"), py::arg("t0"), py::arg("t_end"),
              py::arg("options"), py::arg("workers"), py::arg("time_limit"), py::arg("progress"),
-             py::arg("status"), py::arg("t"), py::arg("states"), py::arg("first_found"));
+             py::arg("status"), py::arg("t"), py::arg("states"), py::arg("first_found"),
+             py::arg("extremes"), py::arg("energy_drift"), py::arg("largest_exponent"));
+  module.def(
+      "methods_with_lanes",
+      [](const Scene& scene) { return py::tuple(py::cast(methods_with_lanes(scene))); },
+      py::arg("scene"));
   module.def("parameters", &named_numbers, py::arg("scene"));
   module.def("check_parameter_names",
              [](const Scene& scene, const std::vector<std::string>& names) {

@@ -33,7 +33,8 @@ from typing import Any
 from pendcore import draw, effects, events, keep
 from pendcore._core import __version__
 from pendcore.accuracy.defect import Defect
-from pendcore.api.ensemble import Ensemble, ensemble
+from pendcore.api.ensemble import ensemble
+from pendcore.api.ensemble_solution import Ensemble
 from pendcore.api.files import load, read_case
 from pendcore.api.scene import Scene
 from pendcore.api.simulate import simulate

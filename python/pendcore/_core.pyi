@@ -143,7 +143,7 @@ def ensemble(
     q0: npt.NDArray[np.float64],
     qd0: npt.NDArray[np.float64],
     names: Sequence[str],
-    values: npt.NDArray[np.float64],
+    values: Sequence[npt.NDArray[np.float64]],
     t0: float,
     t_end: float,
     options: Mapping[str, Any],
@@ -154,7 +154,11 @@ def ensemble(
     t: npt.NDArray[np.float64],
     states: npt.NDArray[np.float64],
     first_found: npt.NDArray[np.float64] | None,
+    extremes: npt.NDArray[np.float64] | None,
+    energy_drift: npt.NDArray[np.float64] | None,
+    largest_exponent: npt.NDArray[np.float64] | None,
 ) -> tuple[str, dict[str, Any], BaseException | None]: ...
+def methods_with_lanes(scene: Scene) -> tuple[str, ...]: ...
 def parameters(scene: Scene) -> list[tuple[str, str, float]]: ...
 def check_parameter_names(scene: Scene, names: Sequence[str]) -> None: ...
 

@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from pendcore.ensemble.keep import FirstEvent, Reducer
+from pendcore.ensemble.keep import EnergyDrift, Extremes, FirstEvent, LargestExponent, Reducer
 
-__all__ = ["FirstEvent", "Reducer"]
+__all__ = ["EnergyDrift", "Extremes", "FirstEvent", "LargestExponent", "Reducer"]

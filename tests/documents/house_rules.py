@@ -30,7 +30,10 @@ CPP_FLOW = {
     "integrate": {"arithmetic", "text"},
     "simulate": {"arithmetic", "text", "effects", "scene", "dynamics", "integrate"},
     "analysis": {"arithmetic", "text", "effects", "scene", "dynamics", "integrate", "simulate"},
-    "ensemble": {"arithmetic", "text", "effects", "scene", "dynamics", "integrate", "simulate"},
+    "ensemble": {
+        *("arithmetic", "text", "effects", "scene", "dynamics", "integrate", "simulate"),
+        "analysis",
+    },
 }
 ALL_OF_IT = "pendcore.hpp"
 """The header that includes the whole core: for users, and for the bindings."""
@@ -43,11 +46,11 @@ PYTHON_LAYERS = [
     "scene",
     "explanation",
     "run",
-    "ensemble",
     "accuracy",
     "horizon",
     "cases",
     "views",
+    "ensemble",
     "api",
     "cost",
     "derive",

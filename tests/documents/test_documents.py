@@ -85,6 +85,21 @@ def test_the_lines_of_many_runs_at_once_run(capsys):
     assert names["turned"].success.all()
 
 
+def test_the_lines_of_large_ensembles_run(capsys, tmp_path, monkeypatch):
+    for name in ("zarr", "xarray"):
+        pytest.importorskip(name, exc_type=ImportError)
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, object] = {}
+    for block in blocks_of("docs/how_to/large_ensembles.md"):
+        exec(block, names)
+    told = capsys.readouterr().out
+    assert "{'finished': 2000}" in told
+    assert "(2000, 2, 4) finished" in told
+    assert "('member_0', 'extreme', 'component') rad" in told
+    assert "True" in told
+    assert "57 GB for 1000000000 members" in told
+
+
 def test_make_demo_says_where_the_command_is_what_takes_long_and_brings_what_comes_next():
     told = subprocess.run(
         ["make", "--always-make", "--dry-run", "demo"],

@@ -40,6 +40,11 @@ SAYS = {
         "q(5) = -6.5358320, -6.1258751 rad",
         "energy gained 20.272427 J, brought in by motor and damper 20.272427 J",
     ),
+    "11_flip_map": (
+        "3600 members (60, 60)",
+        "1084 finished, 2516 event",
+        "of the pixels are resolved",
+    ),
     "07_stick_slip": (  # tests/models/hybrid_chain.py says the same
         "both joints rest from 5.543172 s to 6.047550 s",
         "phi_1 = 0.53079695, phi_2 = -0.47785263 rad",

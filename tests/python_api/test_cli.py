@@ -308,3 +308,22 @@ def test_nobody_reading_is_no_failure_of_the_run(argv):
     assert process.wait() == 141
     assert err == "written to out/textbook\n"
     assert written("out/textbook") == FILES
+
+
+def test_parameters_replace_numbers_of_the_case(tmp_path, capsys):
+    given = ["--parameters", "gravity=1.62", "link[2].mass=0.5", "q0[1]=0.1", "qd0[2]=2"]
+    assert main(["run", "-o", str(tmp_path), "--no-horizon", *given]) == 0
+    sol = pc.load(tmp_path / "solution.npz")
+    assert (sol.scene.gravity, sol.scene.links[1].mass) == (1.62, 0.5)
+    assert (sol.q[0, 0], sol.qd[0, 1]) == (0.1, 2.0)
+    assert sol.scene.links[1].inertia == pytest.approx(0.5 / 12)
+    capsys.readouterr()
+    for wrong, told in [
+        ("gravityy=1", "gravity"),
+        ("gravity", "must be NAME=VALUE"),
+        ("gravity=x", "must be NAME=VALUE"),
+        ("q0[3]=1", "the scene has 2 links"),
+        ("link[2].mass=-1", "must be finite and > 0"),
+    ]:
+        assert main(["run", "-o", str(tmp_path / "none"), "--parameters", wrong]) == 2
+        assert told in capsys.readouterr().err

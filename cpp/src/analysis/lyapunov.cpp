@@ -172,16 +172,6 @@ class GrowthRecorder final : public Observer {
   std::vector<double> polynomial_;
 };
 
-void check_is_smooth(const Scene& scene) {
-  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
-    if (!info_of(scene.effects[i]).jumps_or_sticks) continue;
-    throw std::invalid_argument(
-        effect_name(scene, i) +
-        ": makes the motion jump or stick, where the variational equations do not hold: only "
-        "scenes without dry friction and stops have Lyapunov exponents");
-  }
-}
-
 /// The options of the run, checked like the options of a simulation.
 Options options_of_run(const LyapunovOptions& options) {
   Options run;
@@ -196,6 +186,16 @@ Options options_of_run(const LyapunovOptions& options) {
 
 }  // namespace
 
+void check_has_exponents(const Scene& scene) {
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    if (!info_of(scene.effects[i]).jumps_or_sticks) continue;
+    throw std::invalid_argument(
+        effect_name(scene, i) +
+        ": makes the motion jump or stick, where the variational equations do not hold: only "
+        "scenes without dry friction and stops have Lyapunov exponents");
+  }
+}
+
 int lyapunov_count(const Scene& scene) {
   return static_cast<int>(tangent_basis(scene).size() / (2 * scene.links.size()));
 }
@@ -206,7 +206,7 @@ TangentGrowth lyapunov(const Scene& scene, const std::vector<double>& q0,
   const FloatingPointEnvironment ieee;
   check(scene);
   check_start(scene, q0, qd0, t0, t_end);
-  check_is_smooth(scene);
+  check_has_exponents(scene);
   const std::vector<double> basis = tangent_basis(scene);
   const int n = static_cast<int>(scene.links.size());
   const int all = static_cast<int>(basis.size()) / (2 * n);

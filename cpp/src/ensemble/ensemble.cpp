@@ -1,14 +1,18 @@
 #include "pendcore/ensemble/ensemble.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <mutex>
 #include <new>
+#include <optional>
 #include <ranges>
 #include <stdexcept>
 #include <utility>
 
+#include "pendcore/analysis/lyapunov.hpp"
 #include "pendcore/arithmetic/floating_point_environment.hpp"
 #include "pendcore/ensemble/lanes.hpp"
+#include "pendcore/ensemble/reducers.hpp"
 #include "pendcore/ensemble/workers.hpp"
 #include "pendcore/scene/parameters.hpp"
 #include "pendcore/simulate/method_choice.hpp"
@@ -37,6 +41,57 @@ void keep_first(const MemberResults& results, const std::vector<FoundEvent>& fou
   const std::size_t events = results.first_found.size() / results.status.size();
   double* const first = results.first_found.data() + i * events;
   for (const FoundEvent& one : found | std::views::reverse) first[one.event] = one.t;
+}
+
+/// Computes reducers of one run while it is made.
+class RunReducers final : public StepWatch {
+ public:
+  RunReducers(const Scene& scene, const MemberResults& results) {
+    if (!results.extremes.empty()) extremes_.emplace(scene.links.size());
+    if (!results.energy_drift.empty()) drift_.emplace(scene);
+  }
+  bool is_needed() const { return extremes_ || drift_; }
+
+  void starts(double t, std::span<const double> y) override {
+    if (extremes_) extremes_->starts(t, y);
+    if (drift_) drift_->starts(t, y);
+  }
+  void steps(const WatchedStep& step) override {
+    if (extremes_) extremes_->steps(step);
+    if (drift_) drift_->steps(step);
+  }
+  void jumps(double t, std::span<const double> y) override {
+    if (extremes_) extremes_->jumps(t, y);
+    if (drift_) drift_->jumps(t, y);
+  }
+  /// Keeps what was found of member i.
+  void keep(const MemberResults& results, std::size_t i) const {
+    const std::size_t size = results.extremes.size() / results.status.size();
+    if (extremes_) extremes_->write(results.extremes.data() + i * size);
+    if (drift_) results.energy_drift[i] = drift_->largest();
+  }
+
+ private:
+  std::optional<Extremes> extremes_;
+  std::optional<EnergyDrift> drift_;
+};
+
+/// The options with which members are run, for what is wanted of them.
+Options options_of_members(const Scene& scene, const Options& options,
+                           const MemberResults& results) {
+  Options own = options;
+  if (!results.energy_drift.empty() && !accounts_of(scene).empty()) own.ledger = true;
+  return own;
+}
+
+LyapunovOptions options_of_exponent(const Options& options) {
+  return {.count = 1,
+          .rtol = options.rtol.front(),
+          .atol = options.atol.front(),
+          .t_eval = {},
+          .max_step = options.max_step,
+          .max_steps = options.max_steps,
+          .monitor = {}};
 }
 
 /// Runs members one by one, each as simulate() does.
@@ -71,22 +126,37 @@ class OneByOne {
   bool run(std::size_t i, const std::function<bool()>& goes_on) {
     const Scene& scene = read(i, state_);
     const auto middle = state_.begin() + static_cast<std::ptrdiff_t>(scene.links.size());
+    const std::vector<double> q0{state_.begin(), middle};
+    const std::vector<double> qd0{middle, state_.end()};
+    const Monitor monitor = [&](double) { return goes_on(); };
+    RunReducers reducers(scene, results_);
     Options options = options_;
-    options.monitor = [&](double) { return goes_on(); };
+    options.monitor = monitor;
+    if (reducers.is_needed()) options.watch = &reducers;
     try {
-      keep(i, simulate(scene, {state_.begin(), middle}, {middle, state_.end()}, t0_, t_end_,
-                       std::move(options)));
+      const Solution solution = simulate(scene, q0, qd0, t0_, t_end_, std::move(options));
+      if (solution.status == Status::interrupted) return false;
+      if (!results_.largest_exponent.empty() && solution.t_reached != t0_) {
+        LyapunovOptions of_exponent = options_of_exponent(options_);
+        of_exponent.monitor = monitor;
+        const TangentGrowth found = lyapunov(scene, q0, qd0, t0_, solution.t_reached, of_exponent);
+        if (found.status == Status::interrupted) return false;
+        if (text(found.status).success) {
+          results_.largest_exponent[i] = found.growth.back() / std::abs(found.t_reached - t0_);
+        }
+      }
+      reducers.keep(results_, i);
+      keep(i, solution);
     } catch (const std::bad_alloc&) {
       throw;
     } catch (const std::invalid_argument&) {
       results_.status[i] = code(MemberStatus::refused);
     }
-    return results_.status[i] != code(MemberStatus::not_run);
+    return true;
   }
 
  private:
   void keep(std::size_t i, const Solution& solution) {
-    if (solution.status == Status::interrupted) return;
     const std::size_t row = 2 * scene_.links.size();
     const std::size_t size = results_.states.size() / members_.count;
     double* to = results_.states.data() + i * size;
@@ -170,6 +240,10 @@ EnsembleEnding run_ensemble(const Scene& scene, const Members& members, double t
   static_cast<void>(relative_tolerances(options, scene.links.size()));
   static_cast<void>(absolute_tolerances(options, scene.links.size()));
   static_cast<void>(make_stepper(scene, chosen_method(scene, options)));
+  const Options own = options_of_members(scene, options, results);
+  const bool in_lanes =
+      results.extremes.empty() && results.energy_drift.empty() && results.largest_exponent.empty();
+  if (!results.largest_exponent.empty()) check_has_exponents(scene);
   EnsembleEnding ending;
   if (members.count == 0) return ending;
   const int workers = number_of_workers(limits, members.count);
@@ -177,9 +251,10 @@ EnsembleEnding run_ensemble(const Scene& scene, const Members& members, double t
   std::mutex mutex;
   work.run(workers, [&](bool on_calling_thread) {
     const FloatingPointEnvironment ieee;
-    OneByOne one_by_one(scene, members, choice, t0, t_end, options, results);
+    OneByOne one_by_one(scene, members, choice, t0, t_end, own, results);
     Share share(work, on_calling_thread, one_by_one, results);
-    const std::unique_ptr<LaneRunner> lanes = make_lanes(scene, t0, t_end, options);
+    const std::unique_ptr<LaneRunner> lanes =
+        in_lanes ? make_lanes(scene, t0, t_end, own) : nullptr;
     if (lanes) {
       lanes->run(share);
     } else {

@@ -4,6 +4,7 @@
 #include "pendcore/ensemble/runge_kutta_lanes.hpp"
 #include "pendcore/integrate/loop/first_step.hpp"
 #include "pendcore/simulate/event_finder.hpp"
+#include "pendcore/simulate/switching.hpp"
 
 namespace pendcore {
 namespace {
@@ -17,6 +18,7 @@ class RungeKuttaRunner final : public LaneLoop<width_on(set)> {
  public:
   RungeKuttaRunner(const Scene& scene, double t0, double t_end, const Options& options)
       : LaneLoop<width>(scene, t0, t_end, options, method.info.name), n_(scene.links.size()) {
+    Equations::prepare(all_.memory.system.dynamics, equations_of_motion(scene));
     for (int lane = 0; lane < width; ++lane) {
       for (int i = 0; i < 2; ++i) {
         Equations::put_state(all_.memory.rtol[i], lane, this->rtol().data() + i * n_);
@@ -33,9 +35,7 @@ class RungeKuttaRunner final : public LaneLoop<width_on(set)> {
   LaneSteps<width>& steps() override { return all_; }
   Attention take_steps() override { return take_steps_(&all_, &this->interval(), rounds_at_once); }
   bool put_equations(int lane, const EquationsOfMotion& equations) override {
-    const Form* const form = std::get_if<Form>(&equations.form);
-    if (form != nullptr) Equations::put(all_.memory.system.dynamics, lane, *form);
-    return form != nullptr;
+    return Equations::put(all_.memory.system.dynamics, lane, equations);
   }
   void put_start(int lane, const std::vector<double>& y) override {
     const Options& options = this->options();
@@ -66,32 +66,57 @@ class RungeKuttaRunner final : public LaneLoop<width_on(set)> {
                            int) = only<&pendcore::take_steps<method, Form, width>, set>();
 };
 
-template <InstructionSet set>
-std::unique_ptr<LaneRunner> lanes_of(std::string_view method, const Scene& scene, double t0,
-                                     double t_end, const Options& options) {
+template <class Form, InstructionSet set>
+std::unique_ptr<LaneRunner> runge_kutta_lanes(std::string_view method, const Scene& scene,
+                                              double t0, double t_end, const Options& options) {
   if (method == dormand_prince_5.info.name) {
-    using Of = RungeKuttaRunner<dormand_prince_5, DoublePendulum, set>;
+    using Of = RungeKuttaRunner<dormand_prince_5, Form, set>;
     return std::make_unique<Of>(scene, t0, t_end, options);
   }
   if (method == dormand_prince_8.info.name) {
-    using Of = RungeKuttaRunner<dormand_prince_8, DoublePendulum, set>;
+    using Of = RungeKuttaRunner<dormand_prince_8, Form, set>;
     return std::make_unique<Of>(scene, t0, t_end, options);
-  }
-  if (method == taylor.info.name && !options.first_step) {
-    return make_series_lanes<set>(scene, t0, t_end, options);
   }
   return nullptr;
 }
 
+template <InstructionSet set>
+std::unique_ptr<LaneRunner> lanes_of(std::string_view method, const Scene& scene, double t0,
+                                     double t_end, const Options& options) {
+  const EquationsOfMotion equations = equations_of_motion(scene);
+  if (std::holds_alternative<DoublePendulum>(equations.form)) {
+    if (method == taylor.info.name && !options.first_step) {
+      return make_series_lanes<set>(scene, t0, t_end, options);
+    }
+    return runge_kutta_lanes<DoublePendulum, set>(method, scene, t0, t_end, options);
+  }
+  return runge_kutta_lanes<CouplesAndWaves, set>(method, scene, t0, t_end, options);
+}
+
 }  // namespace
+
+std::vector<std::string_view> methods_with_lanes(const Scene& scene) {
+  if (instruction_set() < least_of_special_kernels || Switching::is_needed(scene)) return {};
+  const EquationsOfMotion equations = equations_of_motion(scene);
+  if (!are_steady(equations)) return {};
+  const std::string_view dopri5 = dormand_prince_5.info.name;
+  const std::string_view dop853 = dormand_prince_8.info.name;
+  if (std::holds_alternative<DoublePendulum>(equations.form)) {
+    return {dopri5, dop853, taylor.info.name};
+  }
+  const bool has_couples =
+      std::holds_alternative<DoublePendulumWithEffects<Parts::couples>>(equations.form) ||
+      std::holds_alternative<CouplesAndWaves>(equations.form);
+  return has_couples ? std::vector{dopri5, dop853} : std::vector<std::string_view>();
+}
 
 std::unique_ptr<LaneRunner> make_lanes(const Scene& scene, double t0, double t_end,
                                        const Options& options) {
   const bool is_plain =
       !options.step && !options.compensated && !options.ledger && options.store == Store::end;
-  if (!is_plain || t0 == t_end || instruction_set() < least_of_special_kernels) return nullptr;
-  if (!std::holds_alternative<DoublePendulum>(equations_of_motion(scene).form)) return nullptr;
+  if (!is_plain || t0 == t_end) return nullptr;
   const std::string_view method = find_method(chosen_method(scene, options)).first();
+  if (std::ranges::count(methods_with_lanes(scene), method) == 0) return nullptr;
   if (!options.events.empty()) {
     std::vector<FoundEvent> none;
     const bool are_differences =

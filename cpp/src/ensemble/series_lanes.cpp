@@ -46,9 +46,9 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
   bool put_equations(int lane, const EquationsOfMotion& equations) override {
     const auto* const form = std::get_if<DoublePendulum>(&equations.form);
     if (form == nullptr) return false;
-    using Equations = LaneEquations<DoublePendulum, Pack<width>>;
-    Equations::put(all_.constants.weight, lane, form->weight);
-    Equations::put(all_.constants.coupling, lane, form->coupling);
+    using Both = BothLinks<Pack<width>>;
+    Both::put(all_.constants.weight, lane, form->weight);
+    Both::put(all_.constants.coupling, lane, form->coupling);
     all_.constants.product[lane] = form->product;
     all_.constants.delta[lane] = form->delta;
     return true;

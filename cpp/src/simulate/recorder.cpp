@@ -8,12 +8,14 @@ namespace pendcore {
 Recorder::Recorder(Solution& solution, const Stepper& stepper, const Scene& scene,
                    const std::vector<long long>& passed_events)
     : solution_(solution),
+      watch_(solution.options.watch),
       may_throw_(!effects_of<CompiledUser>(scene).empty()),
       keeps_polynomials_(solution.options.store == Store::dense),
       keeps_steps_(solution.options.store == Store::steps ||
                    (keeps_polynomials_ && solution.options.t_eval.empty())),
       dimension_(static_cast<std::size_t>(stepper.dimension())),
-      polynomial_(static_cast<std::size_t>(stepper.interpolant_degree() + 1) * dimension_) {
+      polynomial_(static_cast<std::size_t>(stepper.interpolant_degree() + 1) * dimension_),
+      shown_(dimension_) {
   const std::vector<Event>& events = solution.options.events;
   if (!events.empty() && stepper.interpolant_degree() > highest_degree) {
     throw std::invalid_argument("events: the dense output of this method has too high a degree");
@@ -24,6 +26,7 @@ Recorder::Recorder(Solution& solution, const Stepper& stepper, const Scene& scen
 }
 
 void Recorder::start(double t, const std::vector<double>& y) {
+  if (watch_ != nullptr) watch_->starts(t, y);
   const std::vector<double>& samples = solution_.options.t_eval;
   const bool asked_for = !samples.empty() && samples.front() == t;
   if (keeps_steps_ || asked_for) std::ranges::copy(y, append(t));
@@ -33,7 +36,8 @@ StepEnd Recorder::step_accepted(Stepper& stepper, const TwoDouble& t_old, double
   StepEnd end;
   // This comes before anything is kept: it may evaluate right-hand sides, and a user's function may
   // throw.
-  if (finder_ || keeps_polynomials_) stepper.finite_interpolant(h, polynomial_, dimension_);
+  if (finder_ || keeps_polynomials_ || watch_ != nullptr)
+    stepper.finite_interpolant(h, polynomial_, dimension_);
   if (finder_) {
     end = finder_->look(stepper, polynomial_.data(), t_old, h, t_new);
     if (end.has_too_many_turns()) return end;
@@ -46,6 +50,7 @@ StepEnd Recorder::step_accepted(Stepper& stepper, const TwoDouble& t_old, double
     dense.h.push_back(h);
     dense.coefficients.insert(dense.coefficients.end(), polynomial_.begin(), polynomial_.end());
   }
+  if (watch_ != nullptr) show_step(stepper, t_end, end.is_within() ? end.theta : 1.0);
   if (end.is_within()) {
     keep_clipped(stepper, t_old, h, end.theta, t_end);
   } else if (keeps_steps_) {
@@ -54,6 +59,20 @@ StepEnd Recorder::step_accepted(Stepper& stepper, const TwoDouble& t_old, double
     sample_step(stepper, t_old, h, t_new);
   }
   return end;
+}
+
+/// Shows the step, up to a share of it at time t, to what looks on.
+void Recorder::show_step(Stepper& stepper, double t, double share) {
+  if (share < 1.0) {
+    stepper.sample(polynomial_.data(), {}, 1.0, &share, 1, shown_.data());
+  } else {
+    stepper.get_new_state(shown_.data());
+  }
+  watch_->steps({.t = t,
+                 .y = shown_,
+                 .rows = polynomial_.data(),
+                 .degree = stepper.interpolant_degree(),
+                 .share = share});
 }
 
 /// Keeps the step up to an event within it, at time t.
@@ -76,6 +95,7 @@ void Recorder::state_jumped(double t, const double* before, const double* after)
   if (std::equal(before, before + 2 * solution_.n, after)) return state_settled(t, after);
   if (finder_) finder_->jump(t, before, after);
   if (keeps_steps_) {
+    if (watch_ != nullptr) watch_->jumps(t, {after, dimension_});
     std::copy_n(after, dimension_, append(t));
   } else {
     state_settled(t, after);
@@ -83,6 +103,7 @@ void Recorder::state_jumped(double t, const double* before, const double* after)
 }
 
 void Recorder::state_settled(double t, const double* after) {
+  if (watch_ != nullptr) watch_->jumps(t, {after, dimension_});
   if (solution_.t.empty() || solution_.t.back() != t) return;
   std::copy_n(after, dimension_, solution_.states.end() - static_cast<std::ptrdiff_t>(dimension_));
 }

@@ -182,6 +182,7 @@ void run(const Scene& scene, Solution& solution, double t_end, Limits limits, Be
   solution.message += remark_on_steps(scene, equations, integrator, find_method(options.method),
                                       stepper->info(), options.step.has_value(), solution.t0);
   solution.error = ending.error;
+  solution.options.watch = nullptr;
   if (options.store == Store::end) {
     solution.t = {solution.t_reached};
     solution.states = solution.y_reached;

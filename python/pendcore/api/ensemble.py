@@ -1,157 +1,29 @@
-"""Many runs of one scene: the call, and what it returns."""
+"""Many runs of one scene: the call."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Mapping
 from math import inf
-from operator import index as whole
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from pendcore.api.ensemble_solution import Ensemble, run_ensemble
 from pendcore.api.scene import Scene
-from pendcore.api.simulate import simulate
-from pendcore.api.solution import Solution
-from pendcore.ensemble.export import to_xarray
-from pendcore.ensemble.keep import USUAL_NAMES, FirstEvent, Reducer
-from pendcore.ensemble.members import Members, members_of
-from pendcore.ensemble.result import OF_THE_WHOLE, EnsembleResult, run_members
-from pendcore.messages.arguments import (
-    known_keywords,
-    numbers,
-    time_limit_of,
-    time_span,
-    whole_number,
-)
-from pendcore.messages.progress import Progress, callback, close
-from pendcore.messages.warning import PendcoreWarning, warn
+from pendcore.ensemble.keep import Reducer
+from pendcore.ensemble.members import members_of
+from pendcore.ensemble.request import Request
+from pendcore.messages.arguments import known_keywords, numbers, time_span
+from pendcore.messages.progress import Progress
 from pendcore.run.events import Event, events_asked_for
 from pendcore.run.options import RUN_DEFAULTS
-from pendcore.run.run_error import require_check
 from pendcore.scene.scene import require_start
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 Keep = str | Reducer | Mapping[str, Reducer]
+_TAKEN = ("status", "t_reached", "q", "qd", "q0", "qd0", "link", "time", "extreme", "component")
 _KEEPS = '"end", "times", a reducer of pendcore.keep, or a dictionary of reducers'
-
-
-class Ensemble(EnsembleResult):
-    """The result of `ensemble`: arrays whose first axes are those of the members.
-
-    Examples
-    --------
-    >>> masses = np.linspace(0.5, 1.5, 5)
-    >>> found = pc.ensemble(
-    ...     pc.Scene.textbook(), q0=[0.5, 1.0], t_span=(0, 5), vary={"link[2].mass": masses}
-    ... )
-    >>> found.q.shape, found.success.all()
-    ((5, 2), np.True_)
-    >>> one = found.member(3)  # a Solution, with the same bits
-    >>> np.array_equal(one.q[-1], found.q[3])
-    True
-    """
-
-    __slots__ = ()
-
-    @known_keywords
-    def member(self, index: Any) -> Solution:
-        """Return the run of one member as a full `Solution`, with the bits that it had.
-
-        Parameters
-        ----------
-        index : int, tuple of int, or a row of ``failed``
-            Which member.
-
-        Raises
-        ------
-        ValueError
-            If the member was refused: the message says why.
-
-        Examples
-        --------
-        >>> found = pc.ensemble(pc.Scene.textbook(), q0=[[0.5, 1.0], [0.6, 1.0]], t_span=(0, 5))
-        >>> sol = found.member(1)
-        >>> sol.status, np.array_equal(sol.q[-1], found.q[1])
-        ('finished', True)
-        """
-        place = _place(index, self.shape)
-        scene = self.members.scene_of(place)
-        q0, qd0 = self.members.q0[place], self.members.qd0[place]
-        return simulate(
-            scene, q0, qd0, self.t_span, t_eval=self.t_eval, check=False,
-            **self.options_of_members(),
-        )  # fmt: skip
-
-    @known_keywords
-    def message(self, index: Any) -> str:
-        """Return what the run of one member says of its end, or why it was refused.
-
-        The member is run again: an ensemble keeps no texts.
-
-        Examples
-        --------
-        >>> found = pc.ensemble(pc.Scene.textbook(), q0=[[0.5, np.nan]], t_span=(0, 5), check=False)
-        >>> found.message(0)
-        'q0[1] = nan: must be finite (rad)'
-        """
-        try:
-            return self.member(index).message
-        except ValueError as refusal:
-            return str(refusal)
-
-    @known_keywords
-    def rerun(self, **options: Any) -> Ensemble:
-        """Run the members that failed once more, along one axis, with other options.
-
-        Parameters
-        ----------
-        **options
-            As in `ensemble`; what is not given stays.
-
-        Returns
-        -------
-        Ensemble
-            Member k is the one at ``failed[k]``.
-
-        Examples
-        --------
-        >>> short = pc.ensemble(
-        ...     pc.Scene.textbook(), q0=[[0.1, 0.1], [1.5, 1.5]], t_span=(0, 9), max_steps=60,
-        ...     check=False,
-        ... )
-        >>> short.status, short.rerun(max_steps=1000).status
-        (array(['max_steps', 'finished'], dtype='<U14'), array(['finished'], dtype='<U14'))
-        """
-        places = np.flatnonzero(~self.success)
-        return _run(
-            self.members.selected(places), self.t_span, self.t_eval, self.reducers,
-            self.options | _known(options),
-        )  # fmt: skip
-
-    @known_keywords
-    def to_xarray(self) -> xr.Dataset:
-        """Return everything as a data set of xarray, with units.
-
-        The members' axes are ``member_0``, ``member_1``, ...; starts and varied parameters are
-        coordinates along the axes on which they depend.
-
-        Raises
-        ------
-        ImportError
-            If xarray is not installed.
-
-        Examples
-        --------
-        >>> found = pc.ensemble(
-        ...     pc.Scene.textbook(), q0=[0.5, 1.0], t_span=(0, 5), vary={"gravity": [9.8, 1.62]}
-        ... )
-        >>> found.to_xarray().sizes["member_0"]
-        2
-        """
-        return to_xarray(self)
 
 
 @known_keywords
@@ -171,6 +43,9 @@ def ensemble(
     max_steps: int = RUN_DEFAULTS["max_steps"],
     max_step: float = inf,
     workers: int | None = None,
+    executor: Any = None,
+    store: str | os.PathLike[str] | None = None,
+    chunk: int | None = None,
     time_limit: float | None = None,
     check: bool | None = None,
     progress: Progress = None,
@@ -201,7 +76,16 @@ def ensemble(
     method, rtol, atol, events, max_steps, max_step
         As in `simulate`. An event that is ``terminal`` ends a member.
     workers : int, optional
-        The number of threads. Default: one for each processor.
+        The number of threads. Default: one for each processor, and with an ``executor`` one in each
+        of its tasks.
+    executor : optional
+        An executor of `concurrent.futures`, or a ``Client`` of `dask.distributed`: its workers run
+        the members, chunk by chunk.
+    store : path, optional
+        A folder for the results, of Zarr 3, written chunk by chunk. If it is there, the call goes
+        on where it stopped. `load` reads it, and so does xarray.
+    chunk : int, optional
+        The number of members in a chunk. Default: so many that a chunk takes about 2 s.
     time_limit : float, optional
         s, for the whole ensemble; what is not run by then has the status ``"not_run"``.
     check : bool, optional
@@ -218,8 +102,11 @@ def ensemble(
     Raises
     ------
     ValueError, TypeError
-        If an argument is wrong for every member; the message names it.
-    KeyboardInterrupt
+        If an argument is wrong for every member; the message names it. A store with results of
+        another scene, start, option or version is refused.
+    OSError
+        If the disk is too small for the store, or full, or cannot be written.
+    KeyboardInterrupt, or any exception of ``progress``, a worker or the disk
         The attribute ``ensemble`` has the members that were run.
 
     Examples
@@ -231,77 +118,34 @@ def ensemble(
     """
     q0 = require_start(scene, q0)
     members = members_of(scene, q0, qd0, vary)
-    reducers, asked = _reducers(keep, events)
-    times = _times(keep, t_eval)
     options = {
-        "method": method, "rtol": rtol, "atol": atol, "events": asked, "max_steps": max_steps,
-        "max_step": max_step, "workers": workers, "time_limit": time_limit, "check": check,
-        "progress": progress,
+        "method": method, "rtol": rtol, "atol": atol, "events": tuple(events_asked_for(events)),
+        "max_steps": max_steps, "max_step": max_step,
     }  # fmt: skip
-    return _run(members, time_span(t_span), times, reducers, options)
+    request = Request(time_span(t_span), _times(keep, t_eval), _reducers(keep), options)
+    of_the_whole = {
+        "workers": workers, "executor": executor, "store": store, "chunk": chunk,
+        "time_limit": time_limit, "check": check, "progress": progress,
+    }  # fmt: skip
+    return run_ensemble(members, request, of_the_whole)
 
 
-def _run(
-    members: Members,
-    t_span: tuple[float, float],
-    times: Any,
-    reducers: dict[str, int],
-    options: dict[str, Any],
-) -> Ensemble:
-    require_check(options["check"])
-    workers = 0 if options["workers"] is None else whole_number("workers", options["workers"])
-    if options["workers"] is not None and workers < 1:
-        raise ValueError(f"workers = {workers}: must be 1 or more threads")
-    limit = time_limit_of(options["time_limit"])
-    found = Ensemble(members, t_span, options, times, reducers, len(options["events"]))
-    report = callback(options["progress"], f"running {members.count} members")
-    try:
-        error = run_members(found, workers, limit, report)
-    finally:
-        close(report)
-    if error is not None:
-        error.ensemble = found  # type: ignore[attr-defined]
-        raise error
-    return _checked(found, options["check"])
-
-
-def _checked(found: Ensemble, check: bool | None) -> Ensemble:
-    if check is False or found.success.all():
-        return found
-    told = ", ".join(f"{count} {name}" for name, count in found.counts().items())
-    place = tuple(found.failed[0].tolist())
-    complaint = f"of {len(found)} members {told}; .failed lists those that failed, the first is "
-    complaint += f"{place}: .message({place}) says why"
-    if check:
-        error = RuntimeError(complaint)
-        error.ensemble = found  # type: ignore[attr-defined]
-        raise error
-    try:
-        warn(f"{complaint}; check=True raises an error, check=False says nothing")
-    except PendcoreWarning as error:
-        error.ensemble = found  # type: ignore[attr-defined]
-        raise
-    return found
-
-
-def _reducers(keep: Keep, events: Iterable[Event]) -> tuple[dict[str, int], tuple[Event, ...]]:
-    """Return the name of each reducer with the number of its event, and all events."""
-    asked = tuple(events_asked_for(events))
+def _reducers(keep: Keep) -> dict[str, Reducer]:
+    """Return the name of each reducer, and the reducer."""
     if isinstance(keep, str):
         if keep not in ("end", "times"):
             raise ValueError(f"keep = {keep!r}: must be {_KEEPS}")
-        return {}, asked
+        return {}
     if isinstance(keep, Reducer):
-        keep = {USUAL_NAMES[type(keep)]: keep}  # type: ignore[index]
+        return {keep.usual_name: keep}
     if not isinstance(keep, Mapping) or not keep:
         raise TypeError(f"keep = {keep!r}: must be {_KEEPS}")
-    places: dict[str, int] = {}
     for name, reducer in keep.items():
-        if not isinstance(name, str) or not isinstance(reducer, FirstEvent):
+        if not isinstance(name, str) or not isinstance(reducer, Reducer):
             raise TypeError(f"keep[{name!r}] = {reducer!r}: must be a reducer of pendcore.keep")
-        places[name] = len(asked)
-        asked += (reducer.event,)
-    return places, asked
+        if name in _TAKEN:
+            raise ValueError(f"keep[{name!r}]: this name is taken: choose another one")
+    return dict(keep)
 
 
 def _times(keep: Keep, t_eval: npt.ArrayLike | None) -> Any:
@@ -312,32 +156,3 @@ def _times(keep: Keep, t_eval: npt.ArrayLike | None) -> Any:
     if t_eval is None:
         raise TypeError('t_eval is missing: keep="times" keeps the states at these times, in s')
     return np.array(numbers("t_eval", t_eval, "s"))
-
-
-def _known(options: dict[str, Any]) -> dict[str, Any]:
-    names = ("method", "rtol", "atol", "max_steps", "max_step", *OF_THE_WHOLE)
-    for name in options:
-        if name not in names:
-            raise TypeError(f"rerun: has no parameter {name!r}: known are {', '.join(names)}")
-    return options
-
-
-def _place(given: Any, shape: tuple[int, ...]) -> tuple[int, ...]:
-    """Return an index of a member as a tuple."""
-    place: tuple[int, ...]
-    try:
-        try:
-            place = (whole(given),)
-        except TypeError:
-            place = tuple(whole(one) for one in given)
-        if len(place) != len(shape):
-            raise TypeError
-    except TypeError:
-        raise TypeError(
-            f"index = {given!r}: must be {len(shape)} whole numbers: the ensemble has the shape "
-            f"{shape}"
-        ) from None
-    for axis, (i, size) in enumerate(zip(place, shape, strict=True)):
-        if not -size <= i < size:
-            raise IndexError(f"index[{axis}] = {i}: must be below {size}: the shape is {shape}")
-    return place

@@ -3,34 +3,43 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
+from pendcore.api.ensemble_solution import Ensemble
 from pendcore.api.scene import Scene
 from pendcore.api.solution import Case, Solution
 from pendcore.api.solve import result_as
 from pendcore.cases import archive
 from pendcore.cases.case_file import case_from
+from pendcore.ensemble.archive import is_ensemble
+from pendcore.ensemble.archive import load as load_ensemble
+from pendcore.ensemble.members import Members
+from pendcore.ensemble.store import opened
 from pendcore.messages.arguments import known_keywords
 from pendcore.scene.scene import SceneData
 
 
 @known_keywords
-def load(path: str | os.PathLike[str]) -> Solution:
-    """Read a solution that `Solution.save` wrote.
+def load(path: str | os.PathLike[str]) -> Solution | Ensemble:
+    """Read a solution or an ensemble that was saved.
 
     Parameters
     ----------
     path : path
-        The file.
+        A file that `Solution.save` or `Ensemble.save` wrote, or the folder of an ensemble's store.
 
     Returns
     -------
-    Solution
-        With every number of the saved one to the last bit; it evaluates and resumes as that did.
+    Solution or Ensemble
+        With every number of the saved one to the last bit; a solution evaluates and resumes as
+        that did. The arrays of a store are read when they are asked for.
 
     Raises
     ------
     ValueError
-        If the file is no such solution.
+        If it is neither.
     OSError
         If the file cannot be read.
 
@@ -42,6 +51,12 @@ def load(path: str | os.PathLike[str]) -> Solution:
     >>> f"to {longer.t[-1]:.0f} s"
     'to 10 s'
     """
+    if Path(path).is_dir():
+        store = opened(Path(path))
+        return _ensemble(store.members, store.request, store.arrays)
+    if is_ensemble(path):
+        found = load_ensemble(path)
+        return _ensemble(found.members, found.request, found.arrays, found.ending, found.statistics)
     result = archive.load(path)
     result.scene = _public(result.scene)
     return result_as(Solution, result)
@@ -80,6 +95,18 @@ def read_case(source: str | os.PathLike[str]) -> Case:
         scene=_public(case.scene), q0=case.q0, qd0=case.qd0, t_span=case.t_span, name=case.name,
         options=case.options,
     )  # fmt: skip
+
+
+def load_solution(path: str | os.PathLike[str]) -> Solution:
+    """Read a solution; an ensemble is refused with a ValueError."""
+    found = load(path)
+    if isinstance(found, Ensemble):
+        raise ValueError(f"{path}: is an ensemble, not a solution: pc.load() reads it, in Python")
+    return found
+
+
+def _ensemble(members: Members, *rest: Any) -> Ensemble:
+    return Ensemble(replace(members, scene=_public(members.scene)), *rest)
 
 
 def _public(scene: SceneData) -> Scene:

@@ -50,7 +50,7 @@ from pendcore.scene.link import Link
 from pendcore.scene.scene import SceneData
 
 KEYS = {
-    "": ("name", "gravity", "link", "effect", "event", "start", "run"),
+    "": ("name", "gravity", "link", "effect", "event", "start", "run", "map"),
     "link": tuple(f.name for f in fields(Link)),
     "effect": ("kind",),
     "event": ("kind",),
@@ -87,16 +87,17 @@ def case_from(source: str | os.PathLike[str]) -> CaseData:
     """Read a case from a file, or from the text itself; see `pendcore.read_case`."""
     if isinstance(source, str) and "\n" in source:
         return case_from_text(source, "case")
-    return case_from_text(_text_of(Path(source)), str(source))
+    return case_from_text(text_of(Path(source)), str(source))
 
 
 def with_line(path: Path, complaint: str) -> str:
     """Return a complaint of `Case.simulate` with file and line of what it begins with."""
-    text = TomlText(_text_of(path), str(path))
+    text = TomlText(text_of(path), str(path))
     return str(text.error(_place(complaint), complaint))
 
 
-def _text_of(path: Path) -> str:
+def text_of(path: Path) -> str:
+    """Return the text of a file in UTF-8."""
     try:
         return path.read_text(encoding="utf-8-sig")  # Windows' editors write a byte order mark
     except UnicodeDecodeError:

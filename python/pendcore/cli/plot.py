@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from pendcore.api.files import load
+from pendcore.api.files import load_solution
 from pendcore.cases.whole_file import whole_file
 from pendcore.cli.usage import blamed_on_usage, written
 from pendcore.views.plot import save_figure
@@ -46,7 +46,7 @@ def execute(args: argparse.Namespace) -> int:
     if args.out is None or not out.suffix:
         out = out.with_suffix(".png")
     with blamed_on_usage():
-        solution = load(args.solution)
+        solution = load_solution(args.solution)
         where = written(out, [out])
         with whole_file(out) as path:
             save_figure(solution, path)

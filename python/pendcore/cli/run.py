@@ -13,6 +13,7 @@ from pendcore.cases.case_file import with_line
 from pendcore.cli.case_and_folder import add_case_and_folder, case_of, folder_of
 from pendcore.cli.files_to_write import FilesToWrite
 from pendcore.cli.horizon import Horizon, unasked_horizon
+from pendcore.cli.parameters import with_parameters
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder
 from pendcore.run.accuracy import AccuracyError
 from pendcore.run.run_error import CAN_GO_ON
@@ -73,6 +74,14 @@ def add_parser(commands: Any) -> None:
         "the run is verified",
     )
     parser.add_argument(
+        "--parameters",
+        nargs="+",
+        default=[],
+        metavar="NAME=VALUE",
+        help="replace numbers of the case: gravity=1.62, link[2].mass=0.9, q0[1]=0.5, ...; "
+        "scene.parameters() lists those of a scene",
+    )
+    parser.add_argument(
         "--no-horizon",
         action="store_true",
         help="do not estimate until when the run is right: that takes second runs",
@@ -88,6 +97,7 @@ def execute(args: argparse.Namespace) -> int:
     """Run the sub-command; return its exit status."""
     with blamed_on_usage():
         case = case_of(args)
+        case = with_parameters(case, args.parameters) if args.parameters else case
         case = case if args.error is None else _with_error(case, args.error)
     folder = folder_of(args)
     with new_folder(folder):

@@ -9,7 +9,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from pendcore.api.files import load, read_case
+from pendcore.api.files import load_solution, read_case
 from pendcore.api.solution import Case, Solution
 from pendcore.cli.horizon import LIMIT, horizon_of
 from pendcore.cli.usage import UsageError, blamed_on_usage
@@ -76,7 +76,7 @@ def execute(args: argparse.Namespace) -> int:
 
 def _solution(what: Path | None) -> Solution:
     if what is not None and what.suffix == ".npz":
-        return load(what)
+        return load_solution(what)
     case = Case.textbook() if what is None else read_case(what)
     try:
         return case.simulate(check=False)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pendcore import _core
+from pendcore.ensemble.coordinates import coordinates, member_axes
 from pendcore.ensemble.result import EnsembleResult
 
 if TYPE_CHECKING:
@@ -19,28 +20,20 @@ def to_xarray(found: EnsembleResult) -> xr.Dataset:
         import xarray as xr
     except ImportError:
         raise ImportError('to_xarray() needs xarray: pip install "pendcore[export]"') from None
-    axes = [f"member_{k}" for k in range(len(found.shape))]
-    of_state = [*axes, "link"] if found.t_eval is None else [*axes, "time", "link"]
-    names = np.array(_core.member_statuses)
-    data: dict[str, Any] = {
-        "q": (of_state, found.q, {"units": "rad"}),
-        "qd": (of_state, found.qd, {"units": "rad/s"}),
-        "t_reached": (axes, found._t, {"units": "s"}),
-        "status": (axes, names[found.codes]),
-    }
-    data |= {name: (axes, found[name], {"units": "s"}) for name in found.reducers}
-    links = range(1, len(found.members.scene.links) + 1)
-    units = {name: unit for name, unit, _ in _core.parameters(found.members.scene._compiled)}
+    axes = member_axes(found.shape)
+    members, request = found.members, found.request
+    data: dict[str, Any] = {}
     coords: dict[str, Any] = {
-        "link": list(links),
-        "q0": ([*axes, "link"], found.members.q0, {"units": "rad"}),
-        "qd0": ([*axes, "link"], found.members.qd0, {"units": "rad/s"}),
+        one.name: (one.axes, one.values, {"units": one.unit}) for one in coordinates(members)
     }
-    if found.t_eval is not None:
-        coords["time"] = ("time", found.t_eval, {"units": "s"})
-    coords |= {
-        name: (axes, values, {"units": units[name]}) for name, values in found.members.vary.items()
-    }
-    about = {"scene": repr(found.members.scene), "t_span": list(found.t_span),
-             "pendcore": _core.__version__}  # fmt: skip
-    return xr.Dataset(data, coords=coords, attrs=about)
+    for one in request.variables(len(members.scene.links)):
+        values = np.asarray(found.arrays[one.name][...])
+        if one.name == "status":
+            values = np.array(_core.member_statuses)[values]
+        data[one.name] = ([*axes, *one.labels], values, {"units": one.unit} if one.unit else {})
+        coords |= {axis: list(labels) for axis, labels in one.labels.items()}
+    if request.t_eval is not None:
+        coords["time"] = ("time", request.t_eval, {"units": "s"})
+    told = {"scene": repr(members.scene), "t_span": list(request.t_span),
+            "pendcore": _core.__version__}  # fmt: skip
+    return xr.Dataset(data, coords=coords, attrs=told)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 from pendcore.messages.arguments import known_keywords
 from pendcore.run.events import Event
@@ -10,15 +11,23 @@ from pendcore.scene.frozen_state import frozen_state
 
 
 class Reducer:
-    """What makes one number of a whole run.
+    """What makes a number, or a few, of a whole run.
 
     Examples
     --------
-    >>> isinstance(pc.keep.FirstEvent(pc.events.LinkAngle(1, 0.0)), pc.keep.Reducer)
+    >>> isinstance(pc.keep.EnergyDrift(), pc.keep.Reducer)
     True
     """
 
     __slots__ = ()
+    usual_name: ClassVar[str]
+    """Its name, if it is given alone."""
+    unit: ClassVar[str]
+
+    @staticmethod
+    def labels(n: int) -> dict[str, list[str]]:
+        """Return its axes beyond those of the members, with the labels along each."""
+        return {}
 
 
 @frozen_state
@@ -43,6 +52,8 @@ class FirstEvent(Reducer):
     """
 
     event: Event
+    usual_name: ClassVar[str] = "first_event"
+    unit: ClassVar[str] = "s"
 
     @known_keywords
     def __init__(self, event: Event) -> None:
@@ -53,5 +64,74 @@ class FirstEvent(Reducer):
         object.__setattr__(self, "event", event)
 
 
-USUAL_NAMES = {FirstEvent: "first_event"}
-"""The name of a reducer that is given alone."""
+@frozen_state
+@dataclass(frozen=True, slots=True)
+class Extremes(Reducer):
+    """The least and the greatest value of each angle, rad, and rate, rad/s, of a run: (2, 2n).
+
+    They are found between the steps, on the dense output. Row 0 is the least values, row 1 the
+    greatest; the columns are the angles of all links, then their rates.
+
+    Examples
+    --------
+    >>> found = pc.ensemble(
+    ...     pc.Scene.textbook(), q0=[[0.5, 1.0], [1.5, 1.5]], t_span=(0, 5), keep=pc.keep.Extremes()
+    ... )
+    >>> np.ptp(found["extremes"], axis=1).round(2)[:, :2]  # rad, swings of both links
+    array([[2.  , 2.67],
+           [0.14, 0.21]])
+    """
+
+    usual_name: ClassVar[str] = "extremes"
+    unit: ClassVar[str] = "rad, rad/s"
+
+    @staticmethod
+    def labels(n: int) -> dict[str, list[str]]:
+        """Return the axes and their labels."""
+        links = range(1, n + 1)
+        components = [f"q_{i}" for i in links] + [f"qd_{i}" for i in links]
+        return {"extreme": ["least", "greatest"], "component": components}
+
+
+@frozen_state
+@dataclass(frozen=True, slots=True)
+class EnergyDrift(Reducer):
+    """The largest change of the total energy over the steps of a run, J.
+
+    Where effects do work, it is the largest residual of the ledger, which each member then keeps.
+    The energy tells of errors, but not how large they are: see `Ensemble.resolved`.
+
+    Examples
+    --------
+    >>> found = pc.ensemble(
+    ...     pc.Scene.textbook(), q0=[[0.5, 1.0], [1.5, 1.5]], t_span=(0, 5),
+    ...     keep=pc.keep.EnergyDrift(),
+    ... )
+    >>> bool((found["energy_drift"] < 1e-6).all())
+    True
+    """
+
+    usual_name: ClassVar[str] = "energy_drift"
+    unit: ClassVar[str] = "J"
+
+
+@frozen_state
+@dataclass(frozen=True, slots=True)
+class LargestExponent(Reducer):
+    """The largest finite-time Lyapunov exponent of a run, 1/s; see `pendcore.lyapunov`.
+
+    It takes a run of its own, to the time that the member reached. Scenes with dry friction or
+    stops have none.
+
+    Examples
+    --------
+    >>> found = pc.ensemble(
+    ...     pc.Scene.textbook(), q0=[[0.0, 0.0], [1.5, 1.5]], t_span=(0, 30),
+    ...     keep=pc.keep.LargestExponent(),
+    ... )
+    >>> found["largest_exponent"].round(1)
+    array([1.1, 0.1])
+    """
+
+    usual_name: ClassVar[str] = "largest_exponent"
+    unit: ClassVar[str] = "1/s"

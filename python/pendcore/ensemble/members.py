@@ -51,6 +51,16 @@ class Members:
         """Return the scene of a member."""
         return self.scene.with_parameters(self.values(index)) if self.vary else self.scene
 
+    def block(self, block: tuple[slice, ...]) -> Members:
+        """Return the members of a block, in memory of their own."""
+        return replace(
+            self,
+            shape=tuple(one.stop - one.start for one in block),
+            q0=self.q0[block].copy(),
+            qd0=self.qd0[block].copy(),
+            vary={name: values[block].copy() for name, values in self.vary.items()},
+        )
+
     def selected(self, places: npt.NDArray[np.intp]) -> Members:
         """Return the members at flat places, along one axis."""
         where = np.unravel_index(places, self.shape)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -9,10 +10,8 @@ import numpy.typing as npt
 
 from pendcore import _core
 from pendcore.ensemble.members import Members
+from pendcore.ensemble.request import Request
 from pendcore.messages.arguments import Floats
-
-OF_THE_WHOLE = ("workers", "time_limit", "check", "progress")
-"""The options of an ensemble that are none of its members."""
 
 
 class EnsembleResult:
@@ -22,44 +21,28 @@ class EnsembleResult:
     ----------
     members : Members
         What was run.
-    t_span : (float, float)
-        s.
-    options : dict
-        What `ensemble` was given by name, beside what is kept.
-    codes : ndarray of uint8, (...)
-        The statuses as numbers, in the order of ``pendcore._core.member_statuses``.
+    request : Request
+        What was asked of each.
+    arrays : mapping
+        Name to array, in memory or in a store, by the names of `Request.variables`.
     statistics : dict
-        The work of all members.
+        The work of all members that this call ran; empty where it is not known.
     ending : str
         ``"finished"``, or what ended the whole: ``"time_limit"``, ``"interrupted"``.
     """
 
-    __slots__ = (
-        "_first", "_states", "_t", "codes", "ending", "members", "options",
-        "reducers", "statistics", "t_eval", "t_span",
-    )  # fmt: skip
+    __slots__ = ("arrays", "ending", "members", "request", "statistics")
 
     def __init__(
         self,
         members: Members,
-        t_span: tuple[float, float],
-        options: dict[str, Any],
-        t_eval: Floats | None,
-        reducers: dict[str, int],
-        event_count: int,
+        request: Request,
+        arrays: Mapping[str, Any],
+        ending: str = "finished",
+        statistics: dict[str, Any] | None = None,
     ) -> None:
-        self.members, self.t_span, self.options, self.t_eval = members, t_span, options, t_eval
-        self.reducers = reducers
-        """The name of each reducer, and the number of its event."""
-        shape, n = members.shape, len(members.scene.links)
-        times = () if t_eval is None else t_eval.shape
-        not_run = _core.member_statuses.index("not_run")
-        self.codes: npt.NDArray[np.uint8] = np.full(shape, not_run, dtype=np.uint8)
-        self._t = np.full(shape, np.nan)
-        self._states = np.full((*shape, *times, 2 * n), np.nan)
-        self._first = np.full((*shape, event_count), np.nan) if reducers else None
-        self.statistics: dict[str, Any] = {}
-        self.ending = "finished"
+        self.members, self.request, self.arrays = members, request, arrays
+        self.ending, self.statistics = ending, statistics or {}
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -67,19 +50,29 @@ class EnsembleResult:
         return self.members.shape
 
     @property
+    def codes(self) -> npt.NDArray[np.uint8]:
+        """The statuses as numbers, in the order of ``pendcore._core.member_statuses``, (...)."""
+        return np.asarray(self.arrays["status"][...])
+
+    @property
+    def t_reached(self) -> Floats:
+        """The time that each member reached, s, (...)."""
+        return np.asarray(self.arrays["t_reached"][...])
+
+    @property
     def t(self) -> Floats:
         """The time that each member reached, s, (...); with ``keep="times"`` the times, (n_t,)."""
-        return self._t if self.t_eval is None else self.t_eval
+        return self.t_reached if self.request.t_eval is None else self.request.t_eval
 
     @property
     def q(self) -> Floats:
         """The angles of each member at its end, rad, (..., n), or at the times, (..., n_t, n)."""
-        return self._states[..., : len(self.members.scene.links)]
+        return np.asarray(self.arrays["q"][...])
 
     @property
     def qd(self) -> Floats:
         """The rates there, rad/s, with the shape of ``q``."""
-        return self._states[..., len(self.members.scene.links) :]
+        return np.asarray(self.arrays["qd"][...])
 
     @property
     def status(self) -> npt.NDArray[np.str_]:
@@ -98,21 +91,10 @@ class EnsembleResult:
 
     def __getitem__(self, name: str) -> Floats:
         """Return what a reducer of ``keep`` found, (...)."""
-        if name not in self.reducers or self._first is None:
-            known = ", ".join(map(repr, self.reducers)) or "none were kept"
+        if name not in self.request.reducers:
+            known = ", ".join(map(repr, self.request.reducers)) or "none were kept"
             raise KeyError(f"no reducer is called {name!r}: {known}")
-        return self._first[..., self.reducers[name]]
-
-    def options_of_members(self) -> dict[str, Any]:
-        """Return the options as `simulate` takes them.
-
-        Examples
-        --------
-        >>> found = pc.ensemble(pc.Scene.textbook(), q0=[0.5, 1.0], t_span=(0, 1), rtol=1e-6)
-        >>> found.options_of_members()["rtol"]
-        1e-06
-        """
-        return {name: value for name, value in self.options.items() if name not in OF_THE_WHOLE}
+        return np.asarray(self.arrays[name][...])
 
     def counts(self) -> dict[str, int]:
         """Return how many members have each status that occurs.
@@ -123,8 +105,9 @@ class EnsembleResult:
         >>> found.counts()
         {'finished': 3}
         """
-        found = np.bincount(self.codes.ravel(), minlength=len(_core.member_statuses))
-        pairs = zip(_core.member_statuses, found.tolist(), strict=True)
+        codes = self.codes
+        found = [int(np.count_nonzero(codes == i)) for i in range(len(_core.member_statuses))]
+        pairs = zip(_core.member_statuses, found, strict=True)
         return {name: count for name, count in pairs if count}
 
     def __len__(self) -> int:
@@ -132,13 +115,17 @@ class EnsembleResult:
 
     def __str__(self) -> str:
         told = ", ".join(f"{count} {name}" for name, count in self.counts().items()) or "none"
-        begin, end = self.t_span
+        begin, end = self.request.t_span
         lines = [f"{len(self)} members {self.shape}, t = {begin:g} to {end:g} s: {told}"]
         lines += [f"varied: {name}" for name in self.members.vary]
-        for name in self.reducers:
+        for name, reducer in self.request.reducers.items():
+            if reducer.labels(1):
+                continue
             found = self[name]
             some = found[np.isfinite(found)]
-            span = f"{some.min():.6g} to {some.max():.6g} s" if some.size else "in none"
+            span = (
+                f"{some.min():.6g} to {some.max():.6g} {reducer.unit}" if some.size else "in none"
+            )
             lines.append(f"{name}: in {some.size} of {found.size}, {span}")
         if self.statistics:
             steps = self.statistics["accepted"]
@@ -147,23 +134,3 @@ class EnsembleResult:
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} of {len(self)} members {self.shape}>"
-
-
-def run_members(
-    result: EnsembleResult, workers: int, time_limit: float, progress: Any
-) -> BaseException | None:
-    """Run all members, and return the exception that broke it off, if there was one."""
-    members = result.members
-    shape, vary = members.shape, members.vary
-    values = np.stack([*vary.values()], axis=-1) if vary else np.empty((*shape, 0))
-    given = result.options_of_members() | {
-        "store": "end" if result.t_eval is None else "times",
-        "t_eval": result.t_eval,
-        "events": [event._as_pair() for event in result.options["events"]],
-    }
-    result.ending, result.statistics, error = _core.ensemble(
-        members.scene._compiled, shape, members.q0, members.qd0, list(vary), values,
-        *result.t_span, given, workers, time_limit, progress,
-        result.codes, result._t, result._states, result._first,
-    )  # fmt: skip
-    return error

@@ -6,6 +6,7 @@ from math import pi
 
 import numpy as np
 
+from pendcore import _core
 from pendcore.explanation.constraints import constraint_rank
 from pendcore.explanation.equilibria import Equilibrium, find_equilibria
 from pendcore.explanation.explanation import STEPS_A_PERIOD, Cost, Explanation
@@ -50,6 +51,7 @@ def explain(scene: SceneData, t: float, start: tuple[float, ...] | None) -> Expl
         fastest_drive=drive,
         first_step=2 * pi / (STEPS_A_PERIOD * fastest) if equilibria and fastest > 0 else None,
         not_simulated=tuple(absent(scene)),
+        lanes=_core.methods_with_lanes(scene._compiled),
         remarks=tuple(remarks),
     )
 

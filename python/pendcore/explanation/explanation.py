@@ -68,6 +68,9 @@ class Explanation:
         near an equilibrium, at the default tolerances. None where no equilibrium is known.
     not_simulated : tuple of Absence
         What the program knows and the scene does not have, then what the program does not know.
+    lanes : tuple of str
+        The methods by which `ensemble` runs several members at once, a lane of the processor's
+        registers each; it runs others one by one.
     remarks : tuple of str
         What was left out here, and why.
 
@@ -90,6 +93,7 @@ class Explanation:
     fastest_drive: float
     first_step: float | None
     not_simulated: tuple[Absence, ...]
+    lanes: tuple[str, ...]
     remarks: tuple[str, ...]
 
     @property
@@ -117,6 +121,7 @@ class Explanation:
             "fastest_drive": self.fastest_drive,
             "first_step": self.first_step,
             "not_simulated": [absence._asdict() for absence in self.not_simulated],
+            "lanes": self.lanes,
             "remarks": self.remarks,
         }
         return _plain(told)  # type: ignore[no-any-return]
@@ -136,6 +141,7 @@ def _text(told: Explanation) -> str:
         ["Equilibria" + _frozen(told), *_equilibria(told)],
         ["How fast", *_rates(told)],
         ["What is not simulated", *_absences(told)],
+        ["Many at once", *_bullet(_of_lanes(told.lanes))],
     ]
     if told.remarks:
         blocks.append(["Remarks", *(line for remark in told.remarks for line in _bullet(remark))])
@@ -218,6 +224,17 @@ def _absences(told: Explanation) -> Iterator[str]:
         first, *more = wrap(absence.sentence, _WIDTH - 22)
         yield f"  {name:18}  {first}"
         yield from (f"{'':22}{line}" for line in more)
+
+
+def _of_lanes(methods: tuple[str, ...]) -> str:
+    if not methods:
+        return "an ensemble runs its members one by one in each thread"
+    with_events = " or, by taylor, their first events" if "taylor" in methods else ""
+    return (
+        "an ensemble runs several members at once, a lane each, by "
+        f"{', '.join(methods[:-1])} or {methods[-1]}, if it keeps their ends{with_events}; by "
+        "other methods, it runs them one by one"
+    )
 
 
 def _bullet(remark: str) -> list[str]:

@@ -25,6 +25,8 @@ class ProgressBar:
     """s."""
     what = "simulating"
     """What the bar says is done."""
+    count, unit = 100, "%"
+    """What it counts, and how many there are."""
     _since: float | None = None
     _bar: tqdm[Any] | None = None
 
@@ -34,8 +36,8 @@ class ProgressBar:
         if monotonic() - self._since < self.patience:
             return
         if self._bar is None:
-            self._bar = _new_bar(self.what)
-        self._bar.update(100 * fraction - self._bar.n)
+            self._bar = _new_bar(self.what, self.count, self.unit)
+        self._bar.update(self.count * fraction - self._bar.n)
 
     def wanted(self) -> bool:
         """Only people look at bars."""
@@ -57,19 +59,23 @@ class ImmediateBar(ProgressBar):
         return True
 
 
-def _new_bar(what: str) -> tqdm[Any]:
+def _new_bar(what: str, count: int, unit: str) -> tqdm[Any]:
     from tqdm import tqdm  # slow to import: a short run does not owe that
 
     layout = "{desc} {percentage:3.0f} % |{bar}| {elapsed}, {remaining} to go"
-    return tqdm(total=100, desc=what, bar_format=layout, file=sys.stderr)
+    if unit != ProgressBar.unit:
+        layout += ", {rate_noinv_fmt}"
+    return tqdm(total=count, desc=what, bar_format=layout, unit=f" {unit}", file=sys.stderr)
 
 
-def callback(progress: Progress, what: str = "simulating") -> Callable[[float], object] | None:
-    """Return what the core is to call, or None; a bar says what is done."""
+def callback(
+    progress: Progress, what: str = "simulating", count: int = 100, unit: str = "%"
+) -> Callable[[float], object] | None:
+    """Return what the core is to call, or None; a bar says what is done, and how fast."""
     if progress is None or progress is True:
         bar = ProgressBar() if progress is None else ImmediateBar()
         if what != bar.what:
-            bar.what = what
+            bar.what, bar.count, bar.unit = what, count, unit
         return bar
     if progress is False:
         return None

@@ -54,8 +54,11 @@ struct TangentGrowth {
 /// The number of exponents of a scene: twice its degrees of freedom.
 int lyapunov_count(const Scene& scene);
 
-/// Throws std::invalid_argument for bad input, and for effects that make the motion or the law of
-/// motion jump (dry friction and stops), because the variational equations do not hold there.
+/// Throws std::invalid_argument for effects that make the motion or the law of motion jump (dry
+/// friction and stops): the variational equations do not hold there.
+void check_has_exponents(const Scene& scene);
+
+/// Throws std::invalid_argument for bad input, and for a scene without exponents.
 TangentGrowth lyapunov(const Scene& scene, const std::vector<double>& q0,
                        const std::vector<double>& qd0, double t0, double t_end,
                        const LyapunovOptions& options);

@@ -29,6 +29,13 @@ PENDCORE_INLINE Two<Real> other(const Two<Real>& x) {
   return {x.second, x.first};
 }
 
+/// One of both numbers.
+PENDCORE_INLINE double number_of(const Pair& x, int k) { return x[k]; }
+template <class Real>
+PENDCORE_INLINE const Real& number_of(const Two<Real>& x, int k) {
+  return k == 0 ? x.first : x.second;
+}
+
 /// Two pairs beside each other: (x_1, x_2, y_1, y_2).
 using Pairs = Pack<4>;
 

@@ -19,12 +19,14 @@ namespace pendcore {
 
 /// The first two waves that act on a double pendulum, and what they add to its equations:
 /// Q += sum_k sin(wave k) (torque_k + on_sine_k sin q + on_cosine_k cos q).
-struct TwoWaves {
-  Pair angular_frequency{}, phase{};
-  Pair torque[2]{};     ///< amplitudes of motors
-  Pair on_sine[2]{};    ///< amplitudes of a xdd_0 of the pivot
-  Pair on_cosine[2]{};  ///< amplitudes of -a ydd_0 of the pivot
+template <class Links>
+struct WavesOf {
+  Links angular_frequency{}, phase{};
+  Links torque[2]{};     ///< amplitudes of motors
+  Links on_sine[2]{};    ///< amplitudes of a xdd_0 of the pivot
+  Links on_cosine[2]{};  ///< amplitudes of -a ydd_0 of the pivot
 };
+using TwoWaves = WavesOf<Pair>;
 
 /// The part of the compiled effects that does not depend on the width of a row: modes, waves, and
 /// the motion of the pivot. An object belongs to one run and one thread, because modes change along

@@ -7,11 +7,12 @@
 
 namespace pendcore {
 
-template <class V>
+/// If each lane of a row is a trajectory of its own, the time is a pack, too.
+template <class V, class Time = double>
 struct RowAt {
   using Value = V;
 
-  double t;
+  Time t;
   V q, qd, s, c;
   V L;
   double pivot_vx, pivot_vy;

@@ -85,9 +85,9 @@ struct alignas(sizeof(Row)) Couples {
   }
 
   /// held + slope (t - start)
-  template <class V>
-  PENDCORE_INLINE V in_time(double t) const {
-    return fma(Constants<V>::of(slope), Constants<V>::of(broadcast<Row>(t) - start),
+  template <class V, class Time>
+  PENDCORE_INLINE V in_time(const Time& t) const {
+    return fma(Constants<V>::of(slope), Constants<V>::of(Constants<Row>::of(t) - start),
                Constants<V>::of(held));
   }
   /// Whether some torque depends on the square or the cube of its rate.

@@ -1,32 +1,24 @@
 /// \file
 /// The forms of the equations that are taken in lanes: the same equations as those of a single run,
 /// with a trajectory, and its constants, in each lane.
+///
+/// With effects, these are couples that never change their mode, and at most two waves of motors
+/// and the pivot.
 #pragma once
 
-#include "pendcore/dynamics/closed_form/double_pendulum.hpp"
+#include "pendcore/dynamics/equations_of_motion.hpp"
 
 namespace pendcore {
 
-template <class Form, class Real>
-struct LaneEquations;
-
+/// Puts numbers of both links into a lane, and takes them out.
 template <class Real>
-struct LaneEquations<DoublePendulum, Real> {
-  using Type = DoublePendulumEquations<Two<Real>, Real>;
+struct BothLinks {
   using Integers = typename Lanes<Real>::Integers;
 
-  /// Puts the constants of one trajectory into a lane.
-  static void put(Type& equations, int lane, const DoublePendulum& one) {
-    put(equations.weight, lane, one.weight);
-    put(equations.coupling, lane, one.coupling);
-    equations.product[lane] = one.product;
-    equations.delta[lane] = one.delta;
-  }
   static void put(Two<Real>& pair, int lane, const Pair& one) {
     pair.first[lane] = one[0];
     pair.second[lane] = one[1];
   }
-  /// Numbers of both links, angles for example.
   static void put_state(Two<Real>& pair, int lane, const double* from) {
     pair.first[lane] = from[0];
     pair.second[lane] = from[1];
@@ -38,6 +30,116 @@ struct LaneEquations<DoublePendulum, Real> {
   PENDCORE_INLINE static Two<Real> select(const Integers& which, const Two<Real>& yes,
                                           const Two<Real>& no) {
     return {which ? yes.first : no.first, which ? yes.second : no.second};
+  }
+};
+
+/// Type is the equations in lanes, which prepare() prepares for members like the given one. put()
+/// puts the constants of one trajectory into a lane; it returns false if its equations have another
+/// form.
+template <class Form, class Real>
+struct LaneEquations;
+
+template <class Real>
+struct LaneEquations<DoublePendulum, Real> : BothLinks<Real> {
+  using Type = DoublePendulumEquations<Two<Real>, Real>;
+  using BothLinks<Real>::put;
+
+  static void prepare(Type& /*equations*/, const EquationsOfMotion& /*one*/) {}
+  static bool put(Type& equations, int lane, const EquationsOfMotion& from) {
+    const auto* const one = std::get_if<DoublePendulum>(&from.form);
+    if (one == nullptr) return false;
+    put(equations.weight, lane, one->weight);
+    put(equations.coupling, lane, one->coupling);
+    equations.product[lane] = one->product;
+    equations.delta[lane] = one->delta;
+    return true;
+  }
+};
+
+/// A double pendulum with couples, and perhaps with waves, in every lane.
+template <class Real>
+struct LoadedDoublePendulumInLanes : LoadedDoublePendulum<Two<Real>, Real> {
+  Couples<Two<Real>> couples;
+  WavesOf<Two<Real>> waves;
+  bool has_waves = false;
+
+  PENDCORE_INLINE Two<Real> accelerations(const Real& t, const Two<Real>& q,
+                                          const Two<Real>& qd) const {
+    using V = Two<Real>;
+    V s, c;
+    sine_cosine(q, s, c);
+    const typename LoadedDoublePendulum<V, Real>::template Between<V> between(s, c);
+    const RowAt<V, Real> at{t, q, qd, s, c, {}, 0.0, 0.0};
+    const RowLoads<V> loads{.couples = couples.torque(at)};
+    V torque = loads.torque_of_couples();
+    if (has_waves) {
+      V wave, cosine;
+      sine_cosine(fma(waves.angular_frequency, V{t, t}, waves.phase), wave, cosine);
+      torque = with_waves(torque, waves, wave, s, c);
+    }
+    return this->both_free(this->alone(torque, this->weight * c, between, qd), this->kappa(between),
+                           between);
+  }
+};
+
+/// The forms with couples, and with couples and waves, share the equations in lanes.
+using CouplesAndWaves = DoublePendulumWithEffects<Parts::waves>;
+
+/// Whether no effect of the equations changes its law or holds a joint along a run.
+inline bool are_steady(const EquationsOfMotion& equations) {
+  return !equations.effects || (!equations.effects->has_modes && !equations.effects->any_held);
+}
+
+template <class Real>
+struct LaneEquations<CouplesAndWaves, Real> : BothLinks<Real> {
+  using Type = LoadedDoublePendulumInLanes<Real>;
+  using BothLinks<Real>::put;
+
+  static void prepare(Type& equations, const EquationsOfMotion& one) {
+    equations.has_waves = std::holds_alternative<CouplesAndWaves>(one.form);
+  }
+  static bool put(Type& equations, int lane, const EquationsOfMotion& from) {
+    if (!are_steady(from)) return false;
+    const auto put_form = [&](const auto* one, bool has_waves) {
+      if (one == nullptr || has_waves != equations.has_waves) return false;
+      put(equations, lane, *one);
+      put(equations.couples, lane, *one->couples);
+      put(equations.waves, lane, one->effects->two_waves);
+      return true;
+    };
+    using WithCouples = DoublePendulumWithEffects<Parts::couples>;
+    return put_form(std::get_if<WithCouples>(&from.form), false) ||
+           put_form(std::get_if<CouplesAndWaves>(&from.form), true);
+  }
+
+ private:
+  static void put(LoadedDoublePendulum<Two<Real>, Real>& equations, int lane,
+                  const LoadedDoublePendulum<Pair, double>& one) {
+    put(equations.inverse_diagonal, lane, one.inverse_diagonal);
+    put(equations.weight, lane, one.weight);
+    put(equations.coupling, lane, one.coupling);
+    put(equations.rotor, lane, one.rotor);
+    equations.product[lane] = one.product;
+    equations.delta[lane] = one.delta;
+    equations.epsilon[lane] = one.epsilon;
+  }
+  static void put(Couples<Two<Real>>& couples, int lane, const Couples<Pair>& one) {
+    put(couples.held, lane, one.held);
+    put(couples.slope, lane, one.slope);
+    put(couples.start, lane, one.start);
+    put(couples.on_phi, lane, one.on_phi);
+    put(couples.on_phid, lane, one.on_phid);
+    put(couples.on_phid2, lane, one.on_phid2);
+    put(couples.on_phid3, lane, one.on_phid3);
+  }
+  static void put(WavesOf<Two<Real>>& waves, int lane, const TwoWaves& one) {
+    put(waves.angular_frequency, lane, one.angular_frequency);
+    put(waves.phase, lane, one.phase);
+    for (int k = 0; k < 2; ++k) {
+      put(waves.torque[k], lane, one.torque[k]);
+      put(waves.on_sine[k], lane, one.on_sine[k]);
+      put(waves.on_cosine[k], lane, one.on_cosine[k]);
+    }
   }
 };
 

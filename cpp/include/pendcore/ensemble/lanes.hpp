@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "pendcore/ensemble/ensemble.hpp"
@@ -52,6 +53,11 @@ class LaneRunner {
  protected:
   Statistics statistics_;
 };
+
+/// The methods that have lanes for the equations of a scene: for two links without effects but
+/// payloads all explicit ones, and for two links with couples and up to two waves those of
+/// Dormand and Prince.
+std::vector<std::string_view> methods_with_lanes(const Scene& scene);
 
 /// The lanes for a scene and its options, or null if its members are run one by one.
 std::unique_ptr<LaneRunner> make_lanes(const Scene& scene, double t0, double t_end,

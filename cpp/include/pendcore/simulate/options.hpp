@@ -17,6 +17,7 @@
 #include "pendcore/simulate/options/store.hpp"
 #include "pendcore/simulate/options/t_eval.hpp"
 #include "pendcore/simulate/options/time_limit.hpp"
+#include "pendcore/simulate/step_watch.hpp"
 
 namespace pendcore {
 
@@ -28,6 +29,7 @@ using AllOptions = OptionList<MethodOption, RtolOption, AtolOption, TEvalOption,
 /// Kept with the solution, so that it can be resumed.
 struct Options : AllOptions {
   Monitor monitor;
+  StepWatch* watch = nullptr;  ///< looks on; must outlive the run
 };
 
 /// What is kept of a run whose `store` is not given.

@@ -40,8 +40,10 @@ class Recorder final : public Observer {
                    bool with_end = true);
   void keep_clipped(Stepper& stepper, const TwoDouble& t_old, double h, double theta, double t);
   double* append(double t);  ///< returns memory for the state at t
+  void show_step(Stepper& stepper, double t, double share);
 
   Solution& solution_;
+  StepWatch* watch_;
   std::optional<EventFinder> finder_;
   bool may_throw_;  ///< whether there are users' functions
   Kept at_step_start_{};
@@ -49,6 +51,7 @@ class Recorder final : public Observer {
   bool keeps_steps_;
   std::size_t dimension_;
   std::vector<double> polynomial_;  ///< the dense output of one step
+  std::vector<double> shown_;       ///< the state that the watch sees
 };
 
 }  // namespace pendcore

@@ -163,6 +163,14 @@ void bernstein_form(const double* coefficients, int degree, double* bernstein) {
   }
 }
 
+void find_turning_points(const double* coefficients, int degree, std::vector<TurningPoint>& found) {
+  LongForm b{};
+  bernstein_form(coefficients, degree, b.data());
+  LongForm slopes{};
+  for (int i = 0; i < degree; ++i) slopes[i] = b[i + 1] - b[i];
+  TurningPoints(coefficients, degree, found).search(slopes, 0.0, 1.0, 0);
+}
+
 void find_roots(const double* coefficients, int degree, double end, double noise,
                 std::vector<Root>& found) {
   const double start = coefficients[0];

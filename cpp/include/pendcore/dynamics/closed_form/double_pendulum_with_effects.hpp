@@ -28,21 +28,72 @@ enum class Parts {
   everything,  ///< any number of waves, any motion of the pivot, users' functions
 };
 
+/// What all forms share: constants, and the equations for a torque on each link. Types are those of
+/// DoublePendulumEquations.
+template <class AnyLinks, class Number>
+struct LoadedDoublePendulum {
+  using Links = AnyLinks;
+
+  AnyLinks inverse_diagonal;  ///< 1/A
+  AnyLinks weight;            ///< a g/A
+  AnyLinks coupling;          ///< rho
+  AnyLinks rotor;             ///< sigma
+  Number product;             ///< rho rho'
+  Number delta;
+  Number epsilon;
+
+  /// C and S of a state.
+  template <class V>
+  struct Between {
+    V cosine, sine;
+    PENDCORE_INLINE Between(const V& s, const V& c) {
+      const V c_other = other(c);
+      cosine = fma(c, c_other, s * other(s));
+      sine = fma(s, c_other, -(c * other(s)));
+    }
+  };
+  template <class V>
+  PENDCORE_INLINE V alone(const V& torque, const V& pull, const Between<V>& between,
+                          const V& qd) const {
+    using Constant = Constants<V>;
+    const V qd_other = other(qd);
+    return fma(Constant::of(inverse_diagonal), torque,
+               fma(-(Constant::of(coupling) * between.sine), qd_other * qd_other, pull));
+  }
+  template <class V>
+  PENDCORE_INLINE V kappa(const Between<V>& between) const {
+    return fma(Constants<V>::of(coupling), between.cosine, -Constants<V>::of(rotor));
+  }
+  template <class V>
+  PENDCORE_INLINE V both_free(const V& alone, const V& kappa, const Between<V>& between) const {
+    using Constant = Constants<V>;
+    const V determinant = fma(Constant::of(product) * between.sine, between.sine,
+                              fma(Constant::of(epsilon), between.cosine, Constant::of(delta)));
+    return fma(-kappa, other(alone), alone) * (1.0 / determinant);
+  }
+};
+
+/// What two waves, whose sines are `wave`, add to a torque (TwoWaves).
+template <class V, class Waves, class Sines>
+PENDCORE_INLINE V with_waves(V torque, const Waves& two, const Sines& wave, const V& s,
+                             const V& c) {
+  using Constant = Constants<V>;
+#pragma GCC unroll 2
+  for (int k = 0; k < 2; ++k) {
+    const V size = fma(Constant::of(two.on_sine[k]), s,
+                       fma(Constant::of(two.on_cosine[k]), c, Constant::of(two.torque[k])));
+    torque = fma(Constant::of(number_of(wave, k)), size, torque);
+  }
+  return torque;
+}
+
 template <Parts parts>
-struct DoublePendulumWithEffects {
-  using Links = Pair;
+struct DoublePendulumWithEffects : LoadedDoublePendulum<Pair, double> {
   static constexpr bool is_long = parts == Parts::everything;
 
   Pair length;
-  Pair diagonal;          ///< A, kg m^2
-  Pair inverse_diagonal;  ///< 1/A
-  Pair moment;            ///< a/A, 1/m
-  Pair weight;            ///< a g/A
-  Pair coupling;          ///< rho
-  Pair rotor;             ///< sigma
-  double product;         ///< rho rho'
-  double delta;
-  double epsilon;
+  Pair diagonal;                 ///< A, kg m^2
+  Pair moment;                   ///< a/A, 1/m
   const Couples<Pair>* couples;  ///< the couples on both joints
   const ActingEffects<Pair>* effects;
 
@@ -60,12 +111,7 @@ struct DoublePendulumWithEffects {
     } else {
       sine_cosine(q, s, c);
     }
-    const V c_other = other(c);
-    const V cosine = fma(c, c_other, s * other(s));   // C
-    const V sine = fma(s, c_other, -(c * other(s)));  // S
-    const V rho = Constant::of(coupling);
-    const V qd_other = other(qd);
-
+    const Between<V> between(s, c);
     V pull = Constant::of(weight) * c;
     RowAt<V> at{t, q, qd, s, c, Constant::of(length), 0.0, 0.0};
     RowLoads<V> loads{.couples = couples->torque(at)};
@@ -87,26 +133,17 @@ struct DoublePendulumWithEffects {
     V torque = loads.torque_of_couples();
     if constexpr (parts == Parts::laws || everything) torque = torque + loads.moments;
     if constexpr (parts == Parts::waves) {
-      const TwoWaves& two = effects->two_waves;
-#pragma GCC unroll 2
-      for (int k = 0; k < 2; ++k) {
-        const V size = fma(Constant::of(two.on_sine[k]), s,
-                           fma(Constant::of(two.on_cosine[k]), c, Constant::of(two.torque[k])));
-        torque = fma(Constant::of(wave[k]), size, torque);
-      }
+      torque = with_waves(torque, effects->two_waves, wave, s, c);
     }
     if constexpr (parts == Parts::laws || everything) {
       if (effects->has_forces) torque = torque + loads.torque_of_forces(at);
     }
 
-    const V alone =
-        fma(Constant::of(inverse_diagonal), torque, fma(-(rho * sine), qd_other * qd_other, pull));
-    const V kappa = fma(rho, cosine, -Constant::of(rotor));
+    const V f = alone(torque, pull, between, qd);
+    const V k = kappa(between);
     if (effects->any_held) [[unlikely]]
-      return with_joints_held(alone, kappa);
-    const V determinant = fma(Constant::of(product) * sine, sine,
-                              fma(Constant::of(epsilon), cosine, Constant::of(delta)));
-    return fma(-kappa, other(alone), alone) * (1.0 / determinant);
+      return with_joints_held(f, k);
+    return both_free(f, k, between);
   }
 
  private:
@@ -145,14 +182,14 @@ struct DoublePendulumWithEffects {
   /// With joint 2 held, qdd is (A_1 f_1 + A_2 f_2)/(A_1 + A_2 + 2 M_12) for both links. With joint
   /// 1 held, it is 0 and f_2.
   template <class V>
-  PENDCORE_INLINE V with_joints_held(const V& alone, const V& kappa) const {
+  PENDCORE_INLINE V with_joints_held(const V& f, const V& k) const {
     using Constant = Constants<V>;
     const V none = Constant::of(0.0);
     if (effects->held[0] && effects->held[1]) return none;
-    if (effects->held[0]) return other(after(alone));
+    if (effects->held[0]) return other(after(f));
     const V a = Constant::of(diagonal);
-    const V moments = a * alone;
-    const V inertia = fma(a, kappa, a);
+    const V moments = a * f;
+    const V inertia = fma(a, k, a);
     return (moments + other(moments)) * (1.0 / (inertia + other(inertia)));
   }
 };

@@ -43,6 +43,10 @@ struct TurningPoint {
   double value;
 };
 
+/// Adds the turning points of p(theta) = sum_k coefficients[k] theta^k in 0 < theta < 1, in their
+/// order. The degree is at most 63.
+void find_turning_points(const double* coefficients, int degree, std::vector<TurningPoint>& found);
+
 inline int sign(double x) { return (x > 0.0) - (x < 0.0); }
 
 /// Where f takes the sign `after`, which it has at `high` and not at `low`; to the last bits.

@@ -1,0 +1,27 @@
+/// \file
+/// What looks on while a run is made, step by step, and never changes it.
+#pragma once
+
+#include <span>
+
+namespace pendcore {
+
+/// An accepted step. Of a step in which an event ends the run, only the part before counts.
+struct WatchedStep {
+  double t;                   ///< s, at its end
+  std::span<const double> y;  ///< the state there: angles, rates, accounts of the ledger
+  const double* rows;         ///< the dense output in powers of theta, (degree + 1, size of y)
+  int degree;
+  double share;  ///< of the step: theta at its end, 1 but where an event ends it
+};
+
+class StepWatch {
+ public:
+  virtual ~StepWatch() = default;
+  virtual void starts(double t, std::span<const double> y) = 0;
+  virtual void steps(const WatchedStep& step) = 0;
+  /// The state became y at once: at an impact, or at the start.
+  virtual void jumps(double t, std::span<const double> y) = 0;
+};
+
+}  // namespace pendcore

@@ -1,0 +1,241 @@
+"""The flip map of the textbook's rods, which pixels of it are true, and a check in many digits.
+
+    make flip-map
+
+It runs what docs/background/flip_map.md tells of, and writes the numbers of that page,
+docs/records/flip_map.json and docs/figures/flip_map.png. The truth at some pixels comes from the
+Taylor series in many digits of tests/reference/taylor_series.py, which share no code with the core.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+from concurrent.futures import ProcessPoolExecutor
+from fractions import Fraction
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+import pendcore as pc
+from numpy.typing import NDArray
+from pendcore.cost.machine import processor
+from pendcore.ensemble.forbidden import is_forbidden
+from pendcore.ensemble.members import members_of
+
+ROOT = Path(__file__).parents[2]
+sys.path += [str(ROOT / "tests")]
+
+from reference.taylor_series import RodChain, motion  # noqa: E402
+
+BOOK = pc.Scene.textbook()
+UP = -np.pi / 2
+EVENTS = {f"link {i}": pc.events.LinkAngle(i, UP, every_turn=True, terminal=True) for i in (1, 2)}
+UNIT = float(np.sqrt(1.0 / BOOK.gravity))  # sqrt(l/g), s
+CHECKED = 1000
+GRID = 0.02  # s, of the times at which turns are counted in many digits
+LONGEST = 30.0  # s, of a motion in many digits
+BEGIN, END = "<!-- flip map: begin -->\n", "<!-- flip map: end -->"
+
+Floats = NDArray[np.float64]
+
+
+def angles(count: int) -> Floats:
+    """Return the angles from hanging at the centres of even pixels, rad."""
+    return np.pi * (2 * np.arange(count) + 1 - count) / count
+
+
+def half(count: int) -> Floats:
+    """Return the starts of half of the pixels, from hanging, (count/2, count, 2).
+
+    The motion from (-theta_1, -theta_2) is the mirror image of that from (theta_1, theta_2).
+    """
+    theta = angles(count)
+    return np.stack(np.meshgrid(theta[: count // 2], theta, indexing="ij"), axis=-1)
+
+
+def whole(part: NDArray[Any]) -> NDArray[Any]:
+    """Return all pixels from half of them."""
+    return np.concatenate([part, part[::-1, ::-1]])
+
+
+def flips(found: pc.Ensemble) -> Floats:
+    """Return when one of the links first turns over, s; NaN where none does."""
+    return np.fmin(*(found[name] for name in EVENTS))
+
+
+def computed(count: int, t_end: float, workers: int | None) -> dict[str, Any]:
+    """Compute the map, and a second time, and which pixels agree."""
+    q0 = np.pi / 2 + half(count)
+    members = members_of(BOOK, q0, 0.0, None)
+    forbidden = np.all([is_forbidden(members, one) for one in EVENTS.values()], axis=0)
+    begin = perf_counter()
+    keep = {name: pc.keep.FirstEvent(one) for name, one in EVENTS.items()}
+    asked = {"t_span": (0, t_end), "keep": keep, "max_steps": 10**9, "workers": workers}
+    found = pc.ensemble(BOOK, q0[~forbidden], **asked, progress=True)
+    seconds = perf_counter() - begin
+    other = found.second(workers=workers, progress=True)
+    both = perf_counter() - begin
+    one, two = flips(found), flips(other)
+    agree = (np.abs(one - two) <= 0.01 * np.fmax(one, two)) | (np.isnan(one) & np.isnan(two))
+    agree &= found.success & other.success
+
+    def placed(values: NDArray[Any], otherwise: Any) -> NDArray[Any]:
+        full = np.full(forbidden.shape, otherwise, values.dtype)
+        full[~forbidden] = values
+        return whole(full)
+
+    return {
+        "flip": placed(one, np.nan),
+        "resolved": placed(agree, True),
+        "first": placed(np.fmin(one, two), np.nan),
+        "forbidden": whole(forbidden),
+        "seconds": seconds,
+        "seconds with the second ensemble": both,
+        "right-hand sides or series": found.statistics["nfev"],
+    }
+
+
+def in_many_digits(theta: tuple[float, float], until: float) -> float:
+    """Return when the first link turns over by then, s, or NaN, within GRID."""
+    chain = RodChain([1.0, 1.0], [1.0, 1.0], BOOK.gravity)
+    q0 = [np.pi / 2 + x for x in theta]
+    count = int(np.ceil(until / GRID))
+    times = [Fraction(k) * Fraction(GRID) for k in range(1, count + 1)]
+    digits = 24 + int(1.2 * until)
+    made = motion(chain, q0, [0.0, 0.0], times, digits=digits)
+    q = np.array([q0, *([float(x) for x in row[:2]] for row in made)])
+    turns = np.floor((q - UP) / (2 * np.pi))
+    changed = np.flatnonzero((turns != turns[0]).any(axis=1))
+    return GRID * changed[0] if len(changed) else np.nan
+
+
+def checked(found: dict[str, Any], count: int, pixels: int) -> dict[str, Any]:
+    """Compare resolved pixels, drawn at random, with motions in many digits."""
+    theta = angles(count)
+    may = found["resolved"] & ~found["forbidden"]
+    may[count // 2 :] = False  # mirror images
+    places = np.argwhere(may)
+    drawn = places[(pc.draw.uniform(0, 1, pixels, seed=3) * len(places)).astype(int)]
+    flip = found["flip"][tuple(drawn.T)]
+    until = np.fmin(np.where(np.isnan(flip), LONGEST, 1.01 * flip + 2 * GRID), LONGEST)
+    starts = [tuple(float(x) for x in theta[place]) for place in drawn]
+    with ProcessPoolExecutor() as pool:
+        truth = np.array([*pool.map(in_many_digits, starts, until.tolist(), chunksize=4)])
+    expected = np.where(flip < until, flip, np.nan)
+    wrong = ~(
+        (np.abs(truth - expected) <= GRID + 0.01 * expected)
+        | (np.isnan(truth) & np.isnan(expected))
+    )
+    return {
+        "pixels": len(drawn),
+        "that turn over": int(np.isfinite(expected).sum()),
+        "longest": float(until.max()),
+        "wrong": int(wrong.sum()),
+        "wrong ones": [
+            [*starts[k], float(flip[k]), float(truth[k])] for k in np.flatnonzero(wrong)
+        ],
+    }
+
+
+def unresolved(found: dict[str, Any], times: Floats) -> list[float]:
+    """Return the share of pixels that are not resolved if the map ends at each of the times."""
+    lost = np.where(found["resolved"], np.inf, found["first"])
+    lost = np.where(np.isnan(lost), np.inf, lost)
+    return [float(np.mean(lost <= t)) for t in times]
+
+
+def draw(found: dict[str, Any], count: int, path: Path) -> None:
+    mpl.use("Agg")
+    from matplotlib import pyplot as plt
+
+    fig, (left, right) = plt.subplots(1, 2, figsize=(13, 5.6), layout="constrained", sharey=True)
+    edges = [-180, 180, -180, 180]
+    shown = np.ma.masked_invalid(found["flip"] / UNIT)
+    image = left.imshow(
+        shown.T, origin="lower", extent=edges, norm="log", cmap="turbo_r", interpolation="none"
+    )
+    fig.colorbar(image, ax=left, label="first turn over, in sqrt(l/g)")
+    kinds = np.where(found["forbidden"], 2.0, found["resolved"].astype(float))
+    colours = mpl.colors.ListedColormap(["0.2", "tab:green", "white"])
+    right.imshow(
+        kinds.T, origin="lower", extent=edges, cmap=colours, vmin=0, vmax=2, interpolation="none"
+    )
+    share = 1 - found["resolved"].mean()
+    right.set_title(f"green: resolved; black: not ({share:.1%}); white: energy forbids it")
+    for ax in (left, right):
+        ax.set(xlabel="angle of link 1 from hanging (degrees)", xticks=range(-180, 181, 60))
+    left.set(ylabel="angle of link 2 from hanging (degrees)", yticks=range(-180, 181, 60))
+    fig.savefig(path, dpi=110)
+    plt.close(fig)
+
+
+def page(record: dict[str, Any]) -> str:
+    count, check = record["pixels along an axis"], record["check in many digits"]
+    rows = "\n".join(
+        f"| {t:,.0f} | {flipped:.2%} | {share:.2%} |"
+        for t, flipped, share in zip(
+            record["times"], record["turned over"], record["unresolved"], strict=True
+        )
+    )
+    size = f"{count} x {count} pixels"
+    end = f"10^{np.log10(record['t_end'] / UNIT):.0f} sqrt(l/g) = {record['t_end']:.0f} s"
+    times = f"{record['seconds']:.0f} s on {record['processors']} processors ({record['machine']})"
+    both = f"{record['seconds with the second ensemble']:.0f} s"
+    return f"""{BEGIN}
+{size}, to {end}. The map took {times},
+with the second ensemble {both}. At {record["forbidden"]:.1%} of the pixels energy forbids that
+a link turns over.
+
+| map to t, sqrt(l/g) | turned over by then | not resolved |
+|---|---|---|
+{rows}
+
+{check["pixels"]} resolved pixels, drawn at random, were computed in many digits until they turned
+over, or for at most {check["longest"]:.0f} s: {check["that turn over"]} turned over by then.
+**{check["wrong"]} of them were wrong.**
+
+{END}"""
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--count", type=int, default=1024)
+    parser.add_argument("--t-end", type=float, default=1e4, help="in sqrt(l/g)")
+    parser.add_argument("--workers", type=int)
+    parser.add_argument("--checked", type=int, default=CHECKED)
+    parser.add_argument("--out", type=Path, default=ROOT / "docs")
+    args = parser.parse_args()
+    t_end = args.t_end * UNIT
+    found = computed(args.count, t_end, args.workers)
+    times = 10.0 ** np.arange(0.5, np.log10(args.t_end) + 0.01, 0.5)
+    record = {
+        "pixels along an axis": args.count,
+        "t_end": t_end,
+        "machine": processor(),
+        "processors": os.cpu_count(),
+        **{name: x for name, x in found.items() if not isinstance(x, np.ndarray)},
+        "forbidden": float(found["forbidden"].mean()),
+        "times": times.tolist(),
+        "turned over": [float(np.mean(found["flip"] <= t * UNIT)) for t in times],
+        "unresolved": unresolved(found, times * UNIT),
+        "check in many digits": checked(found, args.count, args.checked),
+    }
+    (args.out / "figures").mkdir(parents=True, exist_ok=True)
+    (args.out / "records").mkdir(parents=True, exist_ok=True)
+    draw(found, args.count, args.out / "figures/flip_map.png")
+    (args.out / "records/flip_map.json").write_text(json.dumps(record, indent=1) + "\n")
+    path = args.out / "background/flip_map.md"
+    if path.exists():
+        text = path.read_text()
+        before, after = text.split(BEGIN)[0], text.split(END)[1]
+        path.write_text(before + page(record) + after)
+    print(page(record))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,289 @@
+"""`pendcore map`: a number over a plane of starts or parameters, and which pixels are resolved."""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pendcore.api.ensemble import ensemble
+from pendcore.api.files import read_case
+from pendcore.api.solution import Case
+from pendcore.cases.map_table import MapAxis, MapTable, read_map_table
+from pendcore.cli.files_to_write import FilesToWrite
+from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder
+from pendcore.ensemble.figure import Axis, Shown, draw_map, is_wide, new_axes
+from pendcore.ensemble.forbidden import is_forbidden
+from pendcore.ensemble.keep import EnergyDrift, FirstEvent, LargestExponent, Reducer
+from pendcore.ensemble.members import members_of
+from pendcore.ensemble.refinement import Mask, levels_of, refined
+from pendcore.messages.arguments import Floats
+
+_EPILOG = """
+the case has a table
+  [map]
+  show = "first_event"     # or "largest_exponent", "energy_drift", "q[1]", "qd[2]" at the end
+  x = {name = "q0_deg[1]", start = -180, stop = 180, count = 300}
+  y = {name = "q0_deg[2]", start = -180, stop = 180, count = 300}
+where names are those of parameters (scene.parameters() lists them) or of the start: q0[1],
+q0_deg[1], qd0[2]. With "first_event" the first [[event]] of the case counts.
+
+what is written into the folder:
+  map.png       the map; beside it, which pixels a second, independent run of each confirms
+  map.npz       x, y, values, resolved, computed: arrays of NumPy
+  summary.txt   what was run, and how many pixels are resolved
+
+example:
+  pendcore map examples/11_flip_map.toml
+  pendcore map examples/11_flip_map.toml --zoom -120 -60 20 80 -o out/zoom
+"""
+
+FILES = ("summary.txt", "map.npz", "map.png")
+
+
+@dataclass(slots=True)
+class Pixels:
+    """What is known of the pixels, (n_x, n_y)."""
+
+    values: Floats
+    resolved: Mask
+    computed: Mask
+    counts: dict[str, int] = field(default_factory=dict)
+    forbidden: int = 0
+
+
+def add_parser(commands: Any) -> None:
+    """Add the sub-command and its arguments."""
+    parser = commands.add_parser(
+        "map",
+        help="draw a number over a plane of starts or parameters, and which pixels are resolved",
+        description="Run the case at every pixel of a map.",
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("case", type=Path, metavar="CASE.toml", help="a case with a table [map]")
+    parser.add_argument(
+        "-o", "--out", type=Path, metavar="FOLDER", help="default: out/ and the name of the case"
+    )
+    parser.add_argument("--count", type=int, metavar="N", help="pixels along both axes")
+    parser.add_argument(
+        "--zoom",
+        type=float,
+        nargs=4,
+        metavar=("X0", "X1", "Y0", "Y1"),
+        help="other ends of x and y",
+    )
+    parser.add_argument(
+        "--refine",
+        type=int,
+        default=0,
+        metavar="LEVELS",
+        help="begin with pixels that are 2^LEVELS times as large, and divide those that differ "
+        "from a neighbour; default: compute all",
+    )
+    parser.add_argument(
+        "--no-trust", action="store_true", help="leave out the second runs that confirm pixels"
+    )
+    parser.add_argument("--workers", type=int, metavar="N", help="threads; default: all processors")
+    parser.set_defaults(execute=execute)
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Run the sub-command; return its exit status."""
+    with blamed_on_usage():
+        case, table = read_case(args.case), read_map_table(args.case)
+        table = _asked_for(table, args)
+        reducer = _reducer(table.show, case)
+        levels_of((table.x.count, table.y.count), args.refine)
+    folder = args.out or Path("out", args.case.stem)
+    with new_folder(folder):
+        with blamed_on_usage():
+            pixels, complaint = _computed(case, table, reducer, args)
+        files = FilesToWrite(folder, FILES)
+        told = _summary(case, table, pixels, args)
+        with files.one("summary.txt") as path:
+            path.write_text(told, encoding="utf-8")
+        with files.one("map.npz") as path, path.open("wb") as file:
+            np.savez(
+                file, x=table.x.values, y=table.y.values, values=pixels.values,
+                resolved=pixels.resolved, computed=pixels.computed, case=case.to_toml(),
+            )  # fmt: skip
+        with files.one("map.png") as path:
+            _save_figure(table, reducer, pixels, args, path)
+        print(files.outcome(), file=sys.stderr)
+        print(complaint or told, end="\n" * bool(complaint), file=sys.stderr if complaint else None)
+        files.refuse_if_none()
+    return 1 if complaint or files.left_out else 0
+
+
+def _asked_for(table: MapTable, args: argparse.Namespace) -> MapTable:
+    """Return the table with what the command line changes."""
+    x, y = table.x, table.y
+    if args.count is not None:
+        if args.count < 2:
+            raise UsageError(f"--count = {args.count}: must be 2 or more pixels")
+        x, y = x.with_count(args.count), y.with_count(args.count)
+    if args.zoom is not None:
+        x0, x1, y0, y1 = args.zoom
+        if not (x0 < x1 and y0 < y1):
+            raise UsageError(f"--zoom {x0:g} {x1:g} {y0:g} {y1:g}: X0 < X1 and Y0 < Y1 are needed")
+        x, y = x.across(x0, x1), y.across(y0, y1)
+    if args.refine < 0:
+        raise UsageError(f"--refine = {args.refine}: must be 0 or more levels")
+    return MapTable(table.show, x, y)
+
+
+def _reducer(show: str, case: Case) -> Reducer | None:
+    """Return the reducer that makes what is shown; None for a component of the end state."""
+    if show == FirstEvent.usual_name:
+        events = case.options.get("events", ())
+        if not events:
+            raise UsageError('show = "first_event": the case has no [[event]]')
+        return FirstEvent(events[0])
+    kinds = {one.usual_name: one for one in (EnergyDrift, LargestExponent)}
+    if show in kinds:
+        return kinds[show]()
+    if not re.fullmatch(r"qd?\[\d+\]", show):
+        known = ", ".join([FirstEvent.usual_name, *kinds, "q[1]", "qd[1]"])
+        raise UsageError(f"show = {show!r}: must be one of {known}, ...")
+    return None
+
+
+def _computed(
+    case: Case, table: MapTable, reducer: Reducer | None, args: argparse.Namespace
+) -> tuple[Pixels, str]:
+    """Return the pixels, and a complaint if they are not all there."""
+    shape = (table.x.count, table.y.count)
+    pixels = Pixels(np.full(shape, np.nan), np.zeros(shape, bool), np.zeros(shape, bool))
+    trusted = {"now": np.empty(0, dtype=bool)}
+
+    def compute(level: tuple[int, int], wanted: Mask) -> Floats:
+        x, y = (one.with_count(size) for one, size in zip((table.x, table.y), level, strict=True))
+        i, k = np.nonzero(wanted)
+        values, trusted["now"] = _run(case, table, reducer, x.values[i], y.values[k], pixels, args)
+        return values
+
+    resolved = np.empty((0, 0), dtype=bool)
+    complaint = ""
+    try:
+        for values, wanted in refined(shape, args.refine, compute):
+            if resolved.size:
+                resolved = resolved.repeat(2, axis=0).repeat(2, axis=1)
+            else:
+                resolved = np.zeros(values.shape, dtype=bool)
+            resolved[wanted] = trusted["now"]
+            factor = shape[0] // values.shape[0]
+            pixels.values = values.repeat(factor, axis=0).repeat(factor, axis=1)
+            pixels.resolved = resolved.repeat(factor, axis=0).repeat(factor, axis=1)
+            pixels.computed = wanted.repeat(factor, axis=0).repeat(factor, axis=1)
+    except KeyboardInterrupt:
+        complaint = "interrupted: the map has what was computed before"
+    return pixels, complaint
+
+
+def _run(
+    case: Case,
+    table: MapTable,
+    reducer: Reducer | None,
+    x: Floats,
+    y: Floats,
+    pixels: Pixels,
+    args: argparse.Namespace,
+) -> tuple[Floats, Mask]:
+    """Run pixels (k,); return their values, and which of them are resolved."""
+    q0, qd0, vary = _starts(case, table, x, y)
+    options = {name: value for name, value in case.options.items() if name in _OPTIONS}
+    values, resolved = np.full(len(x), np.nan), np.ones(len(x), dtype=bool)
+    wanted = np.ones(len(x), dtype=bool)
+    if isinstance(reducer, FirstEvent):
+        wanted = ~is_forbidden(members_of(case.scene, q0, qd0, vary), reducer.event)
+        pixels.forbidden += int(np.count_nonzero(~wanted))
+    vary = {name: one[wanted] for name, one in vary.items()}
+    found = ensemble(
+        case.scene, q0[wanted], qd0[wanted], case.t_span, vary=vary,
+        keep="end" if reducer is None else reducer, workers=args.workers, check=False, **options,
+    )  # fmt: skip
+    for name, count in found.counts().items():
+        pixels.counts[name] = pixels.counts.get(name, 0) + count
+    if reducer is None:
+        kind, _, number = table.show.partition("[")
+        if int(number[:-1]) > q0.shape[1]:
+            raise UsageError(f"show = {table.show!r}: the scene has {q0.shape[1]} links")
+        values[wanted] = getattr(found, kind)[:, int(number[:-1]) - 1]
+    else:
+        values[wanted] = found[reducer.usual_name]
+    if not args.no_trust:
+        other = found.second(workers=args.workers, check=False)
+        resolved[wanted] = found.resolved(other)
+    return values, resolved
+
+
+_OPTIONS = ("method", "rtol", "atol", "max_steps", "max_step")
+
+
+def _starts(
+    case: Case, table: MapTable, x: Floats, y: Floats
+) -> tuple[Floats, Floats, dict[str, Floats]]:
+    """Return angles and rates (k, n), and the parameters that vary, of pixels."""
+    n = len(case.scene.links)
+    q0, qd0 = np.tile(case.q0, (len(x), 1)), np.tile(case.qd0, (len(x), 1))
+    vary: dict[str, Floats] = {}
+    for axis, values in ((table.x, x), (table.y, y)):
+        start = re.fullmatch(r"(q0|q0_deg|qd0)\[(\d+)\]", axis.name)
+        if start is None:
+            vary[axis.name] = values
+            continue
+        link = int(start[2])
+        if not 1 <= link <= n:
+            raise UsageError(f"{axis.name}: the scene has {n} links")
+        target = qd0 if start[1] == "qd0" else q0
+        target[:, link - 1] = np.radians(values) if start[1] == "q0_deg" else values
+    return q0, qd0, vary
+
+
+def _summary(case: Case, table: MapTable, pixels: Pixels, args: argparse.Namespace) -> str:
+    total = pixels.values.size
+    begin, end = case.t_span
+    lines = [
+        f"{table.show} over {table.x.name} and {table.y.name}, t = {begin:g} to {end:g} s",
+        f"{table.x.count} x {table.y.count} pixels",
+        "runs: " + ", ".join(f"{count} {name}" for name, count in pixels.counts.items()),
+    ]
+    if pixels.forbidden:
+        lines.append(
+            f"{pixels.forbidden} were not needed: the energy does not suffice for the event"
+        )
+    if args.refine:
+        share = np.count_nonzero(pixels.computed) / total
+        lines.append(f"computed at the finest level: {share:.1%}")
+    some = pixels.values[np.isfinite(pixels.values)]
+    if some.size:
+        lines.append(f"values: {some.min():.6g} to {some.max():.6g}, at {some.size} pixels")
+    if not args.no_trust:
+        lines.append(f"resolved: {np.count_nonzero(pixels.resolved) / total:.2%} of the pixels")
+    return "\n".join(lines) + "\n"
+
+
+def _save_figure(
+    table: MapTable, reducer: Reducer | None, pixels: Pixels, args: argparse.Namespace, path: Path
+) -> None:
+    unit = reducer.unit if reducer else "rad" if table.show.startswith("q[") else "rad/s"
+    is_log = isinstance(reducer, FirstEvent | EnergyDrift) and is_wide(pixels.values)
+    shown = Shown(f"{table.show.replace('_', ' ')} ({unit})", pixels.values, is_log)
+    axes = new_axes(1 if args.no_trust else 2)
+    mask = None if args.no_trust else pixels.resolved
+    draw_map(axes, _axis(table.x), _axis(table.y), shown, mask, {})
+    axes[0].figure.savefig(path, dpi=150)
+
+
+def _axis(axis: MapAxis) -> Axis:
+    unit = {"q0": "rad", "qd0": "rad/s"}.get(axis.name.partition("[")[0], "")
+    name = axis.name
+    if name.startswith("q0_deg"):
+        name, unit = name.replace("_deg", ""), "degrees"
+    return Axis(f"{name} ({unit})" if unit else name, axis.values)

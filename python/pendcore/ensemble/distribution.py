@@ -1,0 +1,204 @@
+"""An ensemble run block by block: here, or by the workers of an executor.
+
+A result goes where the blocks go: into arrays in memory, or into a store. Workers write into a
+store themselves, so that results never pass through this process.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from dataclasses import dataclass
+from math import inf
+from os import cpu_count
+from pathlib import Path
+from time import monotonic
+from typing import Any
+
+from pendcore import _core
+from pendcore.ensemble.blocks import Block, Blocks, size_of
+from pendcore.ensemble.members import Members
+from pendcore.ensemble.request import Request
+from pendcore.ensemble.run import Arrays, Outcome, run_members
+from pendcore.ensemble.store import Store, write_block
+
+Report = Callable[[float], object] | None
+
+AHEAD = 4
+"""The number of tasks that wait for each processor: enough that no worker has nothing to do."""
+LOOK = 0.2
+"""s between two looks at the clock."""
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """A block for a worker, with all that it needs to run it."""
+
+    version: str
+    members: Members
+    request: Request
+    workers: int
+    store: Path | None
+    block: Block
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What bounds the whole."""
+
+    workers: int
+    time_limit: float
+    report: Report
+
+
+class InMemory:
+    """Arrays in memory that take the results of blocks."""
+
+    def __init__(self, members: Members, request: Request) -> None:
+        variables = request.variables(len(members.scene.links))
+        self.arrays: Arrays = {one.name: one.empty(members.shape) for one in variables}
+
+    def is_done(self, block: Block) -> bool:
+        """Return whether a block was written: none is, to begin with."""
+        return False
+
+    def write(self, block: Block, arrays: Arrays) -> None:
+        """Take the results of a block."""
+        for name, values in arrays.items():
+            self.arrays[name][block] = values
+
+
+def run_here(
+    members: Members, request: Request, blocks: Blocks, target: InMemory | Store, limits: Limits
+) -> Outcome:
+    """Run the blocks that are not done, one after the other, by threads."""
+    until, done, total = monotonic() + limits.time_limit, 0, max(members.count, 1)
+    statistics: Counter[str] = Counter()
+    try:
+        for block in blocks:
+            size = size_of(block)
+            if not target.is_done(block):
+                report = _part(limits.report, done / total, size / total)
+                left = max(until - monotonic(), 0.0)
+                found = run_members(members.block(block), request, limits.workers, left, report)
+                if found.ending != "finished" or found.error is not None:
+                    return Outcome({}, found.ending, dict(statistics), found.error)
+                target.write(block, found.arrays)
+                statistics.update(found.statistics)
+            done += size
+            if limits.report is not None:
+                limits.report(done / total)
+    except BaseException as stop:  # Ctrl-C between blocks, an exception of progress, a full disk
+        return Outcome({}, "interrupted", dict(statistics), stop)
+    return Outcome({}, "finished", dict(statistics), None)
+
+
+def run_by(
+    executor: Any,
+    members: Members,
+    request: Request,
+    blocks: Blocks,
+    target: InMemory | Store,
+    limits: Limits,
+) -> Outcome:
+    """Run the blocks that are not done by the workers of an executor."""
+    store = target.path.resolve() if isinstance(target, Store) else None
+    left = (block for block in blocks if not target.is_done(block))
+    tasks = (
+        Task(_core.__version__, members.block(block), request, limits.workers or 1, store, block)
+        for block in left
+    )
+    until, done, total = monotonic() + limits.time_limit, 0, max(members.count, 1)
+    statistics: Counter[str] = Counter()
+    pool, processors = _pool(executor)
+    running: set[Future[Any]] = set()
+    ending, error = "finished", None
+    try:
+        results = _results(pool, tasks, AHEAD * processors, running, lambda: monotonic() < until)
+        for block, arrays, counted in results:
+            if arrays is not None:
+                target.write(block, arrays)
+            statistics.update(counted)
+            done += size_of(block)
+            if limits.report is not None:
+                limits.report(done / total)
+        if monotonic() >= until and done < total:
+            ending = "time_limit"
+    except BaseException as stop:  # Ctrl-C, an exception of progress, or what a worker raised
+        ending, error = "interrupted", _in_words(stop)
+    finally:
+        for one in running:
+            one.cancel()
+    return Outcome({}, ending, dict(statistics), error)
+
+
+def run_task(task: Task) -> tuple[Block, Arrays | None, dict[str, Any]]:
+    """Run a block in the process of a worker."""
+    if task.version != _core.__version__:
+        raise RuntimeError(
+            f"a worker has pendcore {_core.__version__}, and the ensemble is run by "
+            f"{task.version}: install the same version everywhere"
+        )
+    found = run_members(task.members, task.request, task.workers, inf, None)
+    if found.error is not None:
+        raise found.error
+    if task.store is None:
+        return task.block, found.arrays, found.statistics
+    variables = task.request.variables(len(task.members.scene.links))
+    write_block(task.store, variables, task.block, found.arrays)
+    return task.block, None, found.statistics
+
+
+def _results(
+    pool: Executor,
+    tasks: Iterable[Task],
+    most: int,
+    running: set[Future[Any]],
+    goes_on: Callable[[], bool],
+) -> Iterator[Any]:
+    """Yield results as they come, with at most so many tasks on their way."""
+    left = iter(tasks)
+    while goes_on():
+        while len(running) < most and (task := next(left, None)) is not None:
+            running.add(pool.submit(run_task, task))
+        if not running:
+            return
+        for one in wait(running, LOOK, FIRST_COMPLETED).done:
+            running.discard(one)
+            yield one.result()
+
+
+def _pool(executor: Any) -> tuple[Executor, int]:
+    """Return an executor of concurrent.futures, and the number of its processors."""
+    if hasattr(executor, "get_executor") and hasattr(executor, "nthreads"):  # a client of Dask's
+        threads = sum(executor.nthreads().values())
+        return executor.get_executor(pure=False, retries=2), max(threads, 1)
+    if not isinstance(executor, Executor):
+        raise TypeError(
+            f"executor = {executor!r}: must be an executor of concurrent.futures, or a Client of "
+            "dask.distributed"
+        )
+    return executor, getattr(executor, "_max_workers", None) or cpu_count() or 1
+
+
+def _in_words(error: BaseException) -> BaseException:
+    """Return what a worker raised, in words where it does not speak for itself."""
+    if isinstance(error, ModuleNotFoundError) and (error.name or "").startswith("pendcore"):
+        return RuntimeError(
+            f"a worker has no pendcore ({error}): install pendcore {_core.__version__} where the "
+            "executor's workers run"
+        )
+    if type(error).__name__ in ("BrokenProcessPool", "KilledWorker"):
+        return RuntimeError(
+            f"the executor's workers died ({error}): they ran out of memory or were killed, or "
+            f"have no pendcore {_core.__version__}; what was finished stays"
+        )
+    return error
+
+
+def _part(report: Report, begin: float, share: float) -> Report:
+    """Return a report for a part of the whole."""
+    if report is None:
+        return None
+    return lambda fraction: report(begin + share * fraction)

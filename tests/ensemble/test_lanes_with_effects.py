@@ -1,0 +1,100 @@
+"""Couples and waves in lanes: the bits of `pc.simulate`, and what has no lanes runs one by one."""
+
+from __future__ import annotations
+
+import numpy as np
+import pendcore as pc
+import pytest
+from test_lanes import BOOK, assert_same
+
+E = pc.effects
+METHODS = ["dopri5", "dop853", "dopri5-radau5", "dop853-radau5"]
+SCENES = {
+    "damping": [E.ViscousJoint(joint=1, damping=0.1), E.ViscousJoint(joint=2, damping=0.3)],
+    "spring and rotors": [
+        E.TorsionalSpring(joint=2, stiffness=3.0, rest_angle=0.2),
+        E.RotorInertia(joint=2, armature=0.1),
+        E.RotorInertia(joint=1, armature=0.2),
+    ],
+    "constant motor": [E.Motor(joint=1, constant=2.0), E.Payload(mass=0.3)],
+    "controller": [E.Motor(joint=2, pd=E.PD(kp=4.0, kd=0.5, reference=0.3))],
+    "one wave": [E.Motor(joint=1, sinusoid=E.Sinusoid(3.0, 6.0))],
+    "two waves and damping": [
+        E.Motor(joint=1, sinusoid=E.Sinusoid(3.0, 6.0, 0.4)),
+        E.Motor(joint=2, sinusoid=E.Sinusoid(1.0, 11.0)),
+        E.ViscousJoint(joint=2, damping=0.1),
+    ],
+    "shaken pivot": [E.DrivenPivot(x=E.Sinusoid(0.05, 9.0)), E.ViscousJoint(joint=1, damping=0.1)],
+}
+ONE_BY_ONE = {
+    "friction": [E.DryJointFriction(joint=2, coulomb=0.2)],
+    "stop": [E.JointStop(joint=2, range=(-4.0, 4.0), restitution=0.5)],
+    "lock": [E.Lock(joint=2)],
+    "motor at its limit": [E.Motor(joint=1, sinusoid=E.Sinusoid(3.0, 6.0), limit=2.0)],
+    "three waves": [E.Motor(joint=1, sinusoid=E.Sinusoid(1.0, 6.0 + k)) for k in range(3)],
+    "drag": [E.RodDrag(link=2, drag_coefficient=1.2, diameter=0.03)],
+}
+
+
+def scene_of(effects):
+    return BOOK.replace(effects=effects)
+
+
+def has_lanes():
+    return pc._core.instruction_set() in ("x86-64-v3", "x86-64-v4")
+
+
+@pytest.mark.parametrize("rtol", [1e-3, 1e-7, 1e-11])
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("name", SCENES)
+def test_effects_change_no_bit_in_lanes(name, method, rtol):
+    q0 = pc.draw.uniform(-2.0, 2.0, (21, 2), seed=2)
+    qd0 = pc.draw.uniform(-3.0, 3.0, (21, 2), seed=3)
+    scene = scene_of(SCENES[name])
+    if has_lanes():
+        assert scene.explain().lanes == ("dopri5", "dop853")
+    assert_same(scene, q0, qd0, (0.3, 3), method=method, rtol=rtol, atol=rtol / 10)
+    assert_same(scene, q0, qd0, (1.0, 0.0), method=method, rtol=rtol, max_steps=40)
+
+
+@pytest.mark.parametrize("name", ONE_BY_ONE)
+def test_what_switches_or_has_more_runs_one_by_one(name):
+    scene = scene_of(ONE_BY_ONE[name])
+    assert scene.explain().lanes == ()
+    assert "runs its members one by one" in str(scene.explain())
+    assert_same(scene, pc.draw.uniform(-0.5, 0.5, (9, 2), seed=2), 0.0, (0, 2), method="dopri5")
+
+
+def test_parameters_of_effects_differ_from_lane_to_lane():
+    scene = scene_of(SCENES["two waves and damping"])
+    names = [
+        "effect[1].sinusoid.amplitude", "effect[2].sinusoid.angular_frequency",
+        "effect[3].damping", "link[1].mass",
+    ]  # fmt: skip
+    values = pc.draw.uniform(0.5, 2.0, (13, len(names)), seed=6)
+    vary = {name: values[:, k] for k, name in enumerate(names)}
+    found = pc.ensemble(scene, [0.5, 1.0], t_span=(0, 3), vary=vary, method="dop853")
+    for i in range(13):
+        one = scene.with_parameters({name: x[i] for name, x in vary.items()})
+        alone = pc.simulate(one, [0.5, 1.0], t_span=(0, 3), method="dop853")
+        assert np.array_equal(found.q[i], alone.q[-1])
+
+
+def test_a_member_whose_motor_is_at_its_limit_beside_others():
+    scene = scene_of([E.Motor(joint=1, sinusoid=E.Sinusoid(3.0, 6.0), limit=9.0)])
+    limits = np.array([9.0, 2.0, 8.0, 1.0, 7.0, 7.5, 8.5])
+    found = pc.ensemble(
+        scene, [0.5, 1.0], t_span=(0, 3), vary={"effect[1].limit": limits}, method="dopri5"
+    )
+    for i, limit in enumerate(limits):
+        one = scene.with_parameters({"effect[1].limit": limit})
+        alone = pc.simulate(one, [0.5, 1.0], t_span=(0, 3), method="dopri5")
+        assert np.array_equal(found.q[i], alone.q[-1])
+
+
+def test_explain_names_the_methods_with_lanes():
+    told = BOOK.explain()
+    if has_lanes():
+        assert told.lanes == ("dopri5", "dop853", "taylor")
+        assert "by dopri5, dop853 or taylor, if it keeps their ends" in " ".join(str(told).split())
+    assert told.to_dict()["lanes"] == list(told.lanes)

@@ -1,0 +1,118 @@
+"""Reducers: numbers of whole runs, as those runs alone have them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pendcore as pc
+import pytest
+
+BOOK = pc.Scene.textbook()
+E = pc.effects
+SCENES = {
+    "bare": BOOK,
+    "damped": BOOK.replace(effects=[E.ViscousJoint(joint=2, damping=0.1)]),
+    "motor": BOOK.replace(effects=[E.Motor(joint=1, sinusoid=E.Sinusoid(3.0, 6.0))]),
+    "stop": BOOK.replace(effects=[E.JointStop(joint=2, range=(-2.0, 2.0), restitution=0.5)]),
+    "three links": BOOK.replace(links=[*BOOK.links, pc.Link(mass=0.5, length=0.6)]),
+}
+
+
+def starts(count, n):
+    return pc.draw.uniform(-0.9, 0.9, (count, n), seed=4)
+
+
+@pytest.mark.parametrize("method", ["dopri5", "dop853", "taylor", "radau5", "auto"])
+@pytest.mark.parametrize("name", SCENES)
+def test_extremes_are_those_of_the_dense_output(name, method):
+    scene = SCENES[name]
+    if method == "taylor" and name == "stop":
+        method = "dopri5-radau5"
+    q0 = starts(4, len(scene.links))
+    asked = {"t_span": (0, 3), "method": method, "rtol": 1e-5}
+    found = pc.ensemble(scene, q0, keep=pc.keep.Extremes(), **asked)
+    plain = pc.ensemble(scene, q0, **asked)
+    assert np.array_equal(found.q, plain.q)
+    for i, start in enumerate(q0):
+        sol = pc.simulate(scene, start, **asked)
+        t = np.unique(np.concatenate([np.linspace(0, 3, 300_001), sol.t]))
+        states = np.concatenate([sol(t).T, sol.y.T])  # both sides of every jump are kept
+        least, greatest = found["extremes"][i]
+        assert (least <= states.min(axis=0)).all()
+        assert (greatest >= states.max(axis=0)).all()
+        assert np.allclose(least, states.min(axis=0), rtol=0, atol=2e-6)
+        assert np.allclose(greatest, states.max(axis=0), rtol=0, atol=2e-6)
+
+
+def test_extremes_end_with_the_event_that_ends_the_run():
+    top = pc.events.RateZero(link=1, terminal=True)
+    found = pc.ensemble(BOOK, [0.5, 1.0], t_span=(0, 9), events=[top], keep=pc.keep.Extremes())
+    assert found.status == "event"
+    assert found["extremes"][1, 0] == pytest.approx(float(found.q[0]), abs=1e-12)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_the_energy_drift_is_that_of_the_run(name):
+    scene = SCENES[name]
+    q0 = starts(4, len(scene.links))
+    asked = {"t_span": (0, 3), "rtol": 1e-6}
+    found = pc.ensemble(scene, q0, keep=pc.keep.EnergyDrift(), **asked)
+    plain = pc.ensemble(scene, q0, **asked)
+    assert np.array_equal(found.q, plain.q)
+    for i, start in enumerate(q0):
+        sol = pc.simulate(scene, start, ledger=bool(scene.effects), **asked)
+        energy = sol.energy()
+        drift = energy.total - energy.total[0] if energy.ledger is None else energy.ledger.residual
+        assert found["energy_drift"][i] == pytest.approx(np.abs(drift).max(), rel=1e-6, abs=1e-13)
+        assert found["energy_drift"][i] > 0
+
+
+@pytest.mark.parametrize("name", ["bare", "damped", "motor", "three links"])
+def test_the_largest_exponent_is_that_of_lyapunov(name):
+    scene = SCENES[name]
+    q0 = starts(3, len(scene.links))
+    found = pc.ensemble(scene, q0, t_span=(0, 8), keep=pc.keep.LargestExponent())
+    for i, start in enumerate(q0):
+        alone = pc.lyapunov(scene, start, t_span=(0, 8), count=1, t_eval=[8.0])
+        assert found["largest_exponent"][i] == alone.largest
+    assert np.array_equal(found.q, pc.ensemble(scene, q0, t_span=(0, 8)).q)
+
+
+def test_a_scene_without_exponents_is_refused():
+    with pytest.raises(ValueError, match="only scenes without dry friction and stops"):
+        pc.ensemble(SCENES["stop"], [0.1, 0.1], t_span=(0, 1), keep=pc.keep.LargestExponent())
+    with pytest.raises(TypeError, match=r"rtol: must be one number with pc.keep.LargestExponent"):
+        pc.ensemble(
+            BOOK, [0.1, 0.1], t_span=(0, 1), rtol=[1e-6] * 4, keep=pc.keep.LargestExponent()
+        )
+
+
+@pytest.mark.parametrize("workers", [1, 3])
+def test_several_reducers_at_once(workers):
+    first = pc.keep.FirstEvent(pc.events.RateZero(link=1))
+    keep = {
+        "first": first,
+        "span": pc.keep.Extremes(),
+        "drift": pc.keep.EnergyDrift(),
+        "again": pc.keep.EnergyDrift(),
+        "second": pc.keep.FirstEvent(pc.events.RateZero(link=2)),
+    }
+    q0 = starts(6, 2)
+    found = pc.ensemble(BOOK, q0, t_span=(0, 3), keep=keep, workers=workers)
+    for name, one in keep.items():
+        alone = pc.ensemble(BOOK, q0, t_span=(0, 3), keep=one)
+        assert np.array_equal(found[name], alone[one.usual_name], equal_nan=True), name
+    assert "drift: in 6 of 6" in str(found)
+
+
+def test_members_that_were_not_run_have_no_numbers():
+    keep = {"a": pc.keep.Extremes(), "b": pc.keep.EnergyDrift(), "c": pc.keep.LargestExponent()}
+    q0 = [[0.1, 0.2], [np.nan, 0.2]]
+    found = pc.ensemble(BOOK, q0, t_span=(0, 1), keep=keep, check=False)
+    for name in keep:
+        assert np.isfinite(found[name][0]).all()
+        assert np.isnan(found[name][1]).all()
+
+
+def test_names_that_are_taken():
+    with pytest.raises(ValueError, match=r"keep\[.q.\]: this name is taken"):
+        pc.ensemble(BOOK, [0.1, 0.2], t_span=(0, 1), keep={"q": pc.keep.EnergyDrift()})

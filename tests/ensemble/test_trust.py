@@ -1,0 +1,150 @@
+"""Which members are resolved, events that energy forbids, figures."""
+
+from __future__ import annotations
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pendcore as pc
+import pytest
+from pendcore.ensemble.forbidden import is_forbidden
+from pendcore.ensemble.members import members_of
+from pendcore.ensemble.refinement import refined
+from pendcore.ensemble.trust import second
+
+BOOK = pc.Scene.textbook()
+UPRIGHT = pc.events.LinkAngle(2, -np.pi / 2, every_turn=True, terminal=True)
+
+
+def plane(count, span=np.pi):
+    """Starts from hanging, centres of even pixels, (count, count, 2)."""
+    theta = span * (2 * np.arange(count) + 1 - count) / count
+    return np.pi / 2 + np.stack(np.meshgrid(theta, theta, indexing="ij"), axis=-1)
+
+
+def test_a_chaotic_motion_is_resolved_as_long_as_doubles_know_it():
+    starts = [[1.5, 1.5], [0.0, 0.0]]  # regular, chaotic
+    short = pc.ensemble(BOOK, starts, t_span=(0, 10))
+    long = pc.ensemble(BOOK, starts, t_span=(0, 100))
+    assert short.resolved().tolist() == [True, True]
+    assert long.resolved().tolist() == [True, False]
+    until = pc.simulate(BOOK, starts[1], t_span=(0, 100)).valid_until()
+    assert 10 < until < 100
+
+
+def test_a_coarse_run_is_not_resolved_at_its_own_fault():
+    coarse = pc.ensemble(BOOK, plane(4), t_span=(0, 20), rtol=1e-3, atol=1e-3)
+    fine = pc.ensemble(BOOK, plane(4), t_span=(0, 20), rtol=1e-12, atol=1e-12)
+    told = coarse.resolved()
+    wrong = np.abs(coarse.q - fine.q).max(axis=-1) > 0.2
+    assert wrong.any()
+    assert not told[wrong].any()
+    assert told[~wrong].mean() > 0.8
+
+
+def test_the_second_ensemble_has_another_method_and_other_bits():
+    scene = BOOK.replace(effects=[pc.effects.ViscousJoint(joint=1, damping=0.1)])
+    found = pc.ensemble(scene, plane(2), t_span=(0, 1), vary={"gravity": [9.0, 8.0]}, rtol=1e-6)
+    members, request = second(found.members, found.request)
+    first = pc.simulate(scene, plane(2)[0, 0], t_span=(0, 1), rtol=1e-6).method
+    assert request.options["method"].partition("-")[0] != first.partition("-")[0]
+    assert request.options["rtol"] == pytest.approx(1e-8)
+    assert 0 < np.abs(members.q0 - found.members.q0).max() < 2e-14
+    assert 0 < np.abs(members.vary["gravity"] - [9.0, 8.0]).max() < 2e-14
+    moved, own = members.scene.links[0], scene.links[0]
+    assert 0 < abs(moved.inertia - own.inertia) < 1e-15
+    assert members.scene.effects == scene.effects
+
+
+def test_events_are_compared_by_their_times():
+    found = pc.ensemble(BOOK, plane(4), t_span=(0, 10), keep=pc.keep.FirstEvent(UPRIGHT))
+    other = found.second()
+    times = found["first_event"], other["first_event"]
+    assert found.resolved(other).all()
+    assert np.nanmax(np.abs(times[0] - times[1])) > 0
+    assert not found.resolved(other, within=0.0).all()
+    assert found.resolved(other, name="q").all()
+    with pytest.raises(ValueError, match=r"name = 'p': must be one of 'first_event', 'q', 'qd'"):
+        found.resolved(other, name="p")
+
+
+def test_energy_forbids_what_does_not_happen():
+    q0 = plane(20)
+    theta = q0 - np.pi / 2
+    forbidden = is_forbidden(members_of(BOOK, q0, 0.0, None), UPRIGHT)
+    heyl = 3 * np.cos(theta[..., 0]) + np.cos(theta[..., 1]) > 2  # Heyl (2008)
+    assert np.array_equal(forbidden, heyl)
+    found = pc.ensemble(BOOK, q0, t_span=(0, 15), keep=pc.keep.FirstEvent(UPRIGHT))
+    assert np.isnan(found["first_event"][forbidden]).all()
+    assert np.isfinite(found["first_event"]).mean() > 0.5
+
+
+@pytest.mark.filterwarnings("ignore:link 1. center")
+@pytest.mark.parametrize("value", [-np.pi / 2, -0.3, 2.9])
+@pytest.mark.parametrize("link", [1, 2, 3])
+def test_nothing_that_happens_is_called_forbidden(link, value):
+    links = [pc.Link(mass=0.7, length=0.4, center=-0.1), *BOOK.links]
+    scene = pc.Scene(links=links, gravity=5.0)
+    event = pc.events.LinkAngle(link, value, every_turn=True, terminal=True)
+    q0 = pc.draw.uniform(-3, 3, (60, 3), seed=link)
+    qd0 = pc.draw.uniform(-2, 2, (60, 3), seed=link + 9)
+    forbidden = is_forbidden(members_of(scene, q0, qd0, None), event)
+    found = pc.ensemble(scene, q0, qd0, (0, 10), keep=pc.keep.FirstEvent(event))
+    assert not np.isfinite(found["first_event"][forbidden]).any()
+
+
+def test_nothing_is_known_of_scenes_with_effects():
+    scene = BOOK.replace(effects=[pc.effects.Motor(joint=1, constant=30.0)])
+    q0 = plane(4)
+    assert not is_forbidden(members_of(scene, q0, 0.0, None), UPRIGHT).any()
+    assert not is_forbidden(members_of(BOOK, q0, 0.0, {"gravity": 9.0}), UPRIGHT).any()
+    line = pc.events.TipLine(point=(0.0, -9.0), normal=(0.0, 1.0))
+    assert not is_forbidden(members_of(BOOK, q0, 0.0, None), line).any()
+
+
+def test_a_map_is_refined_where_neighbours_differ():
+    asked = []
+
+    def disc(level, wanted):
+        asked.append(int(wanted.sum()))
+        x, y = ((np.arange(size) + 0.5) / size - 0.5 for size in level)
+        i, k = np.nonzero(wanted)
+        return (np.hypot(x[i], y[k]) < 0.3) * 1.0 + 1.0
+
+    *_, (values, computed) = refined((256, 256), 4, disc)
+    x = (np.arange(256) + 0.5) / 256 - 0.5
+    assert np.array_equal(values, (np.hypot(x[:, None], x) < 0.3) + 1.0)
+    assert sum(asked) < 0.2 * values.size
+    assert asked[-1] == computed.sum()
+    with pytest.raises(ValueError, match="count = 100: must be a multiple of 8"):
+        list(refined((100, 104), 3, disc))
+
+
+def test_figures_name_their_axes_and_units():
+    found = pc.ensemble(BOOK, plane(6), t_span=(0, 10), keep=pc.keep.FirstEvent(UPRIGHT))
+    [image] = found.plot()
+    assert image.axes.get_xlabel() == "q0[1] (rad)"
+    assert image.axes.get_ylabel() == "q0[2] (rad)"
+    assert image.colorbar.ax.get_ylabel() == "first event (s)"
+    shown = image.get_array().filled(np.nan)
+    assert np.array_equal(shown, found["first_event"].T, equal_nan=True)
+    mask = found.resolved()
+    image, trust = found.plot("qd[2]", resolved=mask)
+    assert image.colorbar.ax.get_ylabel() == "qd[2] at the end (rad/s)"
+    assert np.array_equal(trust.get_array(), mask.T)
+    assert trust.axes is not image.axes
+
+    swept = pc.ensemble(BOOK, [0.5, 1.0], t_span=(0, 1), vary={"link[2].mass": [0.5, 1.0, 2.0]})
+    [line] = swept.plot("q[2]")
+    assert line.axes.get_xlabel() == "link[2].mass (kg)"
+    assert np.array_equal(line.get_ydata(), swept.q[:, 1])
+    own = plt.figure().add_subplot()
+    line, marks = swept.plot("q[2]", own, resolved=[True, False, True], color="k")
+    assert line.axes is own
+    assert marks.get_xdata().tolist() == [1.0]
+    with pytest.raises(ValueError, match=r"name = 'q\[3\]': must be one of q\[1\], q\[2\]"):
+        swept.plot("q[3]")
+    with pytest.raises(ValueError, match=r"resolved: shape \(2,\): must be \(3,\)"):
+        swept.plot(resolved=[True, False])
+    with pytest.raises(ValueError, match="a figure needs one axis or two"):
+        pc.ensemble(BOOK, [0.5, 1.0], t_span=(0, 1)).plot()
+    plt.close("all")
