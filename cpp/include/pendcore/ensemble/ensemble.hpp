@@ -52,10 +52,10 @@ struct MemberResults {
   std::span<double> states;
   /// s, (count, events): when each event of the options was first found; empty if not wanted
   std::span<double> first_found;
-  std::span<double> extremes;      ///< (count, 2, 2n): see reducers.hpp; empty if not wanted
-  std::span<double> energy_drift;  ///< J, (count); empty if not wanted
+  std::span<double> extremes = {};      ///< (count, 2, 2n): see reducers.hpp; empty if not wanted
+  std::span<double> energy_drift = {};  ///< J, (count); empty if not wanted
   /// 1/s, (count): the largest Lyapunov exponent (analysis/lyapunov.hpp); empty if not wanted
-  std::span<double> largest_exponent;
+  std::span<double> largest_exponent = {};
 };
 
 struct EnsembleLimits {
