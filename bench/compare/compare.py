@@ -1,9 +1,9 @@
 """Run pendcore beside its peers, interleaved in one run, and write the times that they take.
 
 Solves of five cases (what accuracy costs), `stiff` (implicit steps), `chains` (forward dynamics of
-n links) and `effects` (what each adds). Each writes docs/comparison/*.md (tables) and *.png, and
-docs/records/comparison/*.json (raw figures, machine, versions, flags); README.md beside the pages
-covers all solves.
+n links), `effects` (what each adds) and `ensembles` (many runs at once). Each writes
+docs/comparison/*.md (tables) and *.png, and docs/records/comparison/*.json (raw figures, machine,
+versions, flags); README.md beside the pages covers all solves.
 `make compare` builds what is needed and calls this; by hand:
 
     python bench/compare/compare.py                        twenty minutes
@@ -28,6 +28,9 @@ import chains_page
 import effects
 import effects_figure
 import effects_page
+import ensembles
+import ensembles_figure
+import ensembles_page
 import excerpts
 import figure
 import overview
@@ -79,6 +82,7 @@ COMPARISONS = {
     "stiff": of_pages("stiff", stiff, stiff_page, stiff_figure),
     "chains": of_pages("chains", chains, chains_page, chains_figure),
     "effects": of_pages("effects", effects, effects_page, effects_figure),
+    "ensembles": of_pages("ensembles", ensembles, ensembles_page, ensembles_figure),
 }
 
 

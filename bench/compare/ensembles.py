@@ -34,9 +34,12 @@ KNOWN = 512
 """Starts whose true end is computed."""
 T_END = 5.0
 BURST_SECONDS = 0.3
+MOTOR = (2.0, 3.0)
+"""Amplitude, N m, and angular frequency, rad/s, of the motor in joint 1."""
 SCENES = {
     "bare": "two rods",
     "damped": "two rods, damping 0.1 and 0.05 N m s/rad",
+    "motor": "two rods, a motor of 2 sin(3 t) N m in joint 1",
     "three_links": "three rods",
 }
 
@@ -57,7 +60,20 @@ def case_of(name: str) -> Case:
     """Return the rods of a scene; start and reference are another case's."""
     case = read_case("three_links" if name == "three_links" else "textbook")
     damping = (0.1, 0.05) if name == "damped" else (0.0,) * case.n
-    return replace(case, damping=damping)
+    return replace(case, name=name, damping=damping)
+
+
+def has_motor(case: Case) -> bool:
+    return case.name == "motor"
+
+
+def scene(case: Case) -> pc.Scene:
+    made = scene_of(case)
+    if not has_motor(case):
+        return made
+    amplitude, frequency = MOTOR
+    wave = pc.effects.Sinusoid(amplitude=amplitude, angular_frequency=frequency)
+    return replace(made, effects=[pc.effects.Motor(joint=1, sinusoid=wave)])
 
 
 def starts(n: int, count: int) -> Array:
@@ -71,11 +87,11 @@ def starts(n: int, count: int) -> Array:
 
 def by_ensemble(method: str, workers: int | None) -> Callable[..., Callable[[], Array]]:
     def prepare(case: Case, q0: Array, tolerance: float) -> Callable[[], Array]:
-        scene = scene_of(case)
+        made = scene(case)
 
         def solve() -> Array:
             found = pc.ensemble(
-                scene, q0, t_span=(0.0, T_END), method=method, rtol=tolerance, atol=tolerance,
+                made, q0, t_span=(0.0, T_END), method=method, rtol=tolerance, atol=tolerance,
                 workers=workers, progress=False,
             )  # fmt: skip
             return found.q
@@ -86,12 +102,12 @@ def by_ensemble(method: str, workers: int | None) -> Callable[..., Callable[[], 
 
 
 def by_loop(case: Case, q0: Array, tolerance: float) -> Callable[[], Array]:
-    scene = scene_of(case)
+    made = scene(case)
 
     def solve() -> Array:
         return np.array([
             pc.simulate(
-                scene, start, t_span=(0.0, T_END), rtol=tolerance, atol=tolerance, store="end"
+                made, start, t_span=(0.0, T_END), rtol=tolerance, atol=tolerance, store="end"
             ).q[-1]
             for start in q0
         ])  # fmt: skip
@@ -107,7 +123,9 @@ def equations(case: Case) -> list[tuple[Any, Any]]:
 
     names = [f"{kind}{i}" for kind in ("q", "w") for i in range(case.n)]
     variables = [heyoka.expression(name) for name in names]
-    found = accelerations(case, heyoka.sin, heyoka.cos)(*variables)
+    amplitude, frequency = MOTOR
+    drive = amplitude * heyoka.sin(frequency * heyoka.time) if has_motor(case) else 0.0
+    found = accelerations(case, heyoka.sin, heyoka.cos, drive)(*variables)
     return list(zip(variables, [*variables[case.n :], *found], strict=True))
 
 
@@ -187,6 +205,8 @@ def by_scipy(case: Case, q0: Array, tolerance: float) -> Callable[[], Array]:
     from contenders.scipy_solvers import by_numba
     from scipy.integrate import solve_ivp
 
+    if has_motor(case):
+        raise Unsupported("its right-hand side has no motor")
     function, _, _ = by_numba(case)
     rest = np.zeros(case.n)
 

@@ -8,7 +8,7 @@ from tables import number, power, table
 from work_precision import time_at
 
 ERRORS = (1e-3, 1e-6, 1e-9, 1e-12)
-BARS = {"bare": "1/3", "damped": "1/2", "three_links": "1/2"}
+BARS = {"bare": "1/3", "damped": "1/2", "motor": "1/2", "three_links": "1/2"}
 
 PAGE = """# Many runs at once
 

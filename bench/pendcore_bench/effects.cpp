@@ -19,7 +19,7 @@ void step(benchmark::State& state, const std::vector<Effect>& effects) {
   stepper->set_tolerances(tolerance.data(), tolerance.data());
   stepper->evaluate(0.0, y.data(), rates.data());
   stepper->start(y.data(), rates.data());
-  for (auto _ : state) benchmark::DoNotOptimize(stepper->attempt(0.0, 0.01, 0.0));
+  for (auto _ : state) benchmark::DoNotOptimize(stepper->attempt({0.0}, 0.01, 0.0));
   set_calls(state, 6);
 }
 

@@ -27,14 +27,14 @@ void latency(benchmark::State& state, const char* method) {
   const auto made = stepper(method, static_cast<int>(state.range(0)));
   double t = 0.0;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(made->attempt(t, h, 0.0));
+    benchmark::DoNotOptimize(made->attempt({t}, h, 0.0));
     made->accept(t += h);
   }
 }
 
 void again(benchmark::State& state) {
   const auto made = stepper("dopri5", 9);
-  for (auto _ : state) benchmark::DoNotOptimize(made->attempt(0.0, h, 0.0));
+  for (auto _ : state) benchmark::DoNotOptimize(made->attempt({0.0}, h, 0.0));
 }
 
 BENCHMARK_CAPTURE(latency, dopri5, "dopri5")

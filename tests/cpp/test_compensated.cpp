@@ -16,7 +16,7 @@ std::unique_ptr<Stepper> after_a_step(const Scene& scene, bool ledger) {
   std::vector<double> dydt(stepper->dimension());
   stepper->evaluate(0.0, y.data(), dydt.data());
   stepper->start(y.data(), dydt.data());
-  stepper->attempt(0.0, 1e-3, 1.0);
+  stepper->attempt({0.0}, 1e-3, 1.0);
   return stepper;
 }
 

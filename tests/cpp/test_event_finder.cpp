@@ -23,7 +23,7 @@ struct Turning {
     const double dydt[] = {1.0, 0.0};
     stepper->set_tolerances(tolerance, tolerance);
     stepper->start(y, dydt);
-    stepper->attempt(0.0, 1.0, 1.0);
+    stepper->attempt({0.0}, 1.0, 1.0);
     rows.resize(static_cast<std::size_t>(stepper->interpolant_degree() + 1) * 2);
     stepper->interpolant(1.0, rows.data());
     stepper->get_new_state(end);

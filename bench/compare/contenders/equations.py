@@ -30,12 +30,17 @@ def require_unit_rods(case: Case) -> None:
         )
 
 
-def accelerations(case: Case, sin: Any = math.sin, cos: Any = math.cos) -> Callable[..., Any]:
-    """Map q_1..q_n, qd_1..qd_n to (qdd_1, ..., qdd_n), for any type that `sin` and `cos` take."""
+def accelerations(
+    case: Case, sin: Any = math.sin, cos: Any = math.cos, drive: Any = 0.0
+) -> Callable[..., Any]:
+    """Map q_1..q_n, qd_1..qd_n to (qdd_1, ..., qdd_n), for any type that `sin` and `cos` take.
+
+    `drive` is a torque in joint 1 of two rods, N m.
+    """
     require_unit_rods(case)
     if case.n == 3:
         return three_rods(sin, cos)
-    return two_rods(sin, cos) if case.bare else loaded_rods(case, sin, cos)
+    return two_rods(sin, cos) if case.bare and not drive else loaded_rods(case, sin, cos, drive)
 
 
 def two_rods(sin: Any, cos: Any) -> Callable[..., Any]:
@@ -50,12 +55,12 @@ def two_rods(sin: Any, cos: Any) -> Callable[..., Any]:
     return found
 
 
-def loaded_rods(case: Case, sin: Any, cos: Any) -> Callable[..., Any]:
-    """The same mapping, with springs and dampers in the joints."""
+def loaded_rods(case: Case, sin: Any, cos: Any, drive: Any = 0.0) -> Callable[..., Any]:
+    """The same mapping, with springs and dampers in the joints and a motor in the first."""
     (b1, b2), (k1, k2), (rest1, rest2) = case.damping, case.stiffness, case.rest
 
     def found(q1: Any, q2: Any, w1: Any, w2: Any) -> Any:
-        tau1 = -b1 * w1 - k1 * (q1 - rest1)
+        tau1 = drive - b1 * w1 - k1 * (q1 - rest1)
         tau2 = -b2 * (w2 - w1) - k2 * (q2 - q1 - rest2)
         d = q1 - q2
         c, s = cos(d), sin(d)

@@ -143,7 +143,7 @@ class Steps : public Calls {
     stepper_->start(y.data(), rates.data());
   }
   void make(int count) override {
-    for (; count > 0; --count) error_ += stepper_->attempt(0.0, 0.01, 0.0).squared_error;
+    for (; count > 0; --count) error_ += stepper_->attempt({0.0}, 0.01, 0.0).squared_error;
   }
   double right_hand_sides() override { return 6.0; }
   std::vector<double> accelerations() override {

@@ -7,15 +7,14 @@
 #include "pendcore/dynamics/kinematics.hpp"
 
 namespace pendcore {
-namespace {
-
-/// Whether all effects of the scene only change constants of the bare closed form.
 bool is_bare(const Scene& scene) {
   return std::ranges::all_of(scene.effects, [](const Effect& effect) {
     const auto* rotor = std::get_if<RotorInertia>(&effect);
     return std::holds_alternative<Payload>(effect) || (rotor != nullptr && rotor->joint == 1);
   });
 }
+
+namespace {
 
 EquationsOfMotion form_of_motion(const Scene& scene) {
   const Inertia inertia(scene);

@@ -1,5 +1,6 @@
 #include "pendcore/ensemble/lanes.hpp"
 
+#include "pendcore/dynamics/series/few_links_series.hpp"
 #include "pendcore/ensemble/lane_loop.hpp"
 #include "pendcore/ensemble/runge_kutta_lanes.hpp"
 #include "pendcore/integrate/loop/first_step.hpp"
@@ -84,10 +85,10 @@ template <InstructionSet set>
 std::unique_ptr<LaneRunner> lanes_of(std::string_view method, const Scene& scene, double t0,
                                      double t_end, const Options& options) {
   const EquationsOfMotion equations = equations_of_motion(scene);
+  if (method == taylor.info.name) {
+    return options.first_step ? nullptr : make_series_lanes<set>(scene, t0, t_end, options);
+  }
   if (std::holds_alternative<DoublePendulum>(equations.form)) {
-    if (method == taylor.info.name && !options.first_step) {
-      return make_series_lanes<set>(scene, t0, t_end, options);
-    }
     return runge_kutta_lanes<DoublePendulum, set>(method, scene, t0, t_end, options);
   }
   return runge_kutta_lanes<CouplesAndWaves, set>(method, scene, t0, t_end, options);
@@ -101,13 +102,19 @@ std::vector<std::string_view> methods_with_lanes(const Scene& scene) {
   if (!are_steady(equations)) return {};
   const std::string_view dopri5 = dormand_prince_5.info.name;
   const std::string_view dop853 = dormand_prince_8.info.name;
+  const std::string_view series = taylor.info.name;
   if (std::holds_alternative<DoublePendulum>(equations.form)) {
-    return {dopri5, dop853, taylor.info.name};
+    return {dopri5, dop853, series};
+  }
+  if (FewLinksSeries::has(scene, equations)) {
+    return without_series(scene) ? std::vector<std::string_view>() : std::vector{series};
   }
   const bool has_couples =
       std::holds_alternative<DoublePendulumWithEffects<Parts::couples>>(equations.form) ||
       std::holds_alternative<CouplesAndWaves>(equations.form);
-  return has_couples ? std::vector{dopri5, dop853} : std::vector<std::string_view>();
+  if (!has_couples) return {};
+  const bool has_series = !without_series(scene) && equations.effects->pivots.empty();
+  return has_series ? std::vector{dopri5, dop853, series} : std::vector{dopri5, dop853};
 }
 
 std::unique_ptr<LaneRunner> make_lanes(const Scene& scene, double t0, double t_end,

@@ -10,14 +10,17 @@
 namespace pendcore {
 namespace {
 
-template <InstructionSet set>
+template <template <class> class Form, InstructionSet set>
 class SeriesRunner final : public LaneLoop<width_on(set)> {
   static constexpr int width = width_on(set);
-  using All = SeriesLanes<width>;
+  using All = SeriesLanes<Form, width>;
+  using One = typename All::Equations::One;
 
  public:
-  SeriesRunner(const Scene& scene, double t0, double t_end, const Options& options)
+  /// `one` has the kinds of the laws of all members.
+  SeriesRunner(const One& one, const Scene& scene, double t0, double t_end, const Options& options)
       : LaneLoop<width>(scene, t0, t_end, options, taylor.info.name) {
+    all_.equations.prepare(one);
     double tightest = 1.0;
     for (int i = 0; i < All::size; ++i) {
       tightest = std::min(tightest, std::max(this->rtol()[i], this->atol()[i]));
@@ -25,13 +28,13 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
       all_.atol[i] = broadcast<Pack<width>>(this->atol()[i]);
     }
     all_.order = taylor_order(tightest);
+    all_.log2_count = approximate_log2(static_cast<double>(All::size));
     std::vector<FoundEvent> none;
     differences_ = EventFinder(scene, options.events, none, {}).differences();
     all_.differences = differences_;
     rows_.resize(static_cast<std::size_t>(all_.order + 1) * All::size);
     // Lanes without a member have numbers that do no harm.
     all_.sigma = all_.sigma_new = all_.largest = all_.largest_new = broadcast<Pack<width>>(1.0);
-    all_.constants.delta = broadcast<Pack<width>>(1.0);
   }
 
  private:
@@ -43,19 +46,15 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
   std::vector<double> saved_state(int lane) override { return {all_.sigma[lane]}; }
   LaneSteps<width>& steps() override { return all_; }
   Attention take_steps() override { return take_steps_(&all_, &this->interval(), rounds_at_once); }
-  bool put_equations(int lane, const EquationsOfMotion& equations) override {
-    const auto* const form = std::get_if<DoublePendulum>(&equations.form);
-    if (form == nullptr) return false;
-    using Both = BothLinks<Pack<width>>;
-    Both::put(all_.constants.weight, lane, form->weight);
-    Both::put(all_.constants.coupling, lane, form->coupling);
-    all_.constants.product[lane] = form->product;
-    all_.constants.delta[lane] = form->delta;
-    return true;
+  void equations_are_new(const Scene& scene, const EquationsOfMotion& equations) override {
+    one_ = All::Equations::one_of(scene, equations);
+  }
+  bool put_equations(int lane, const EquationsOfMotion& /*equations*/) override {
+    return one_ && all_.equations.put(lane, *one_);
   }
   void put_start(int lane, const std::vector<double>& y) override {
     for (int i = 0; i < All::size; ++i) all_.y[i][lane] = y[i];
-    const double rate = taylor_detail::squared_rate(this->rate().data(), 2);
+    const double rate = taylor_detail::squared_rate(this->rate().data(), All::Equations::links);
     all_.sigma[lane] = taylor_detail::first_sigma(rate);
     all_.begins[lane] = -1;
     all_.h[lane] = this->direction();
@@ -82,9 +81,8 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
         rows_[at] = k == 0 ? all_.y_new[i][lane] : power * all_.rows_new[at][lane];
       }
     }
-    const double* const highest =
-        rows_.data() + static_cast<std::ptrdiff_t>(All::size) * all_.order;
-    if (!std::isfinite(highest[0] + highest[1] + highest[2] + highest[3])) return Look::is_odd;
+    const auto is_finite = [](double term) { return std::isfinite(term); };
+    if (!std::all_of(rows_.end() - All::size, rows_.end(), is_finite)) return Look::is_odd;
     std::array<double, All::size> y{};
     get_state(lane, y.data());
     this->stepper().set_new_state(y.data());
@@ -126,19 +124,37 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
 
   All all_{};
   std::array<long long, width> look_count_{};
-  DominantEigenvalue eigenvalue_{2, 0};
+  DominantEigenvalue eigenvalue_{All::Equations::links, 0};
+  std::optional<One> one_;
   std::vector<EventFinder::Difference> differences_;
   std::array<std::unique_ptr<EventFinder>, width> finders_;
   std::vector<double> rows_;
-  Attention (*take_steps_)(All*, const LaneInterval*, int) = only<&take_series_steps<width>, set>();
+  Attention (*take_steps_)(All*, const LaneInterval*, int) =
+      only<&take_series_steps<Form, width>, set>();
 };
+
+template <InstructionSet set, template <class> class... Forms>
+std::unique_ptr<LaneRunner> first_of(const Scene& scene, double t0, double t_end,
+                                     const Options& options) {
+  const EquationsOfMotion equations = equations_of_motion(scene);
+  std::unique_ptr<LaneRunner> runner;
+  const auto try_form = [&]<template <class> class Form>() {
+    if (runner) return;
+    const auto one = Form<Pack<width_on(set)>>::one_of(scene, equations);
+    if (!one) return;
+    runner = std::make_unique<SeriesRunner<Form, set>>(*one, scene, t0, t_end, options);
+  };
+  (try_form.template operator()<Forms>(), ...);
+  return runner;
+}
 
 }  // namespace
 
 template <InstructionSet set>
 std::unique_ptr<LaneRunner> make_series_lanes(const Scene& scene, double t0, double t_end,
                                               const Options& options) {
-  return std::make_unique<SeriesRunner<set>>(scene, t0, t_end, options);
+  return first_of<set, BareDoublePendulumSeries, LoadedDoublePendulumSeries, ThreeLinksSeries,
+                  FourLinksSeries>(scene, t0, t_end, options);
 }
 
 template std::unique_ptr<LaneRunner> make_series_lanes<InstructionSet::x86_64_v3>(const Scene&,

@@ -52,9 +52,9 @@ bool StiffSwitchingStepper::stiffness_found(bool size_is_given) {
   return true;
 }
 
-Attempt StiffSwitchingStepper::attempt(double t, double h, double gain) {
+Attempt StiffSwitchingStepper::attempt(const TwoDouble& t, double h, double gain) {
   if (h_asked_ != 0.0) {
-    const std::optional<bool> answer = pays(t);
+    const std::optional<bool> answer = pays(t.high);
     count();
     if (!answer) return {{std::numeric_limits<double>::quiet_NaN(), 0.0}};
     h_asked_ = 0.0;
@@ -78,7 +78,7 @@ std::optional<bool> StiffSwitchingStepper::pays(double t) {
   };
   double squared_error = 0.0;
   try {
-    squared_error = implicit_->attempt(t, h_asked_, 0.0).squared_error;
+    squared_error = implicit_->attempt({t}, h_asked_, 0.0).squared_error;
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const Stopped&) {

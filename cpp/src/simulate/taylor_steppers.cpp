@@ -3,6 +3,7 @@
 #include <string>
 
 #include "pendcore/dynamics/equations_of_motion.hpp"
+#include "pendcore/dynamics/series/few_links_series.hpp"
 #include "pendcore/dynamics/series/series_with_holds.hpp"
 #include "pendcore/integrate/taylor/taylor_stepper.hpp"
 #include "pendcore/simulate/simulate.hpp"
@@ -35,22 +36,27 @@ std::unique_ptr<Stepper> make_taylor_stepper(const Scene& scene, const Equations
     return of(DoublePendulumSeries<NoTorque>(
         {bare->weight, bare->coupling, Pair{}, bare->product, bare->delta, 0.0}, {}));
   }
+  const auto& effects = equations.effects;
   auto with_torque = [&]<Parts parts>(const DoublePendulumWithEffects<parts>& one) {
-    auto effects = std::dynamic_pointer_cast<const ActingEffects<Pair>>(equations.effects);
-    const DoublePendulumSeries<CoupleTorque> free(
+    const DoublePendulumSeries<CoupleTorque<Pair>> free(
         {one.weight, one.coupling, one.rotor, one.product, one.delta, one.epsilon},
-        CoupleTorque(std::move(effects), one.inverse_diagonal));
-    const bool may_hold = equations.held_joints->can_hold() || equations.effects->any_held;
+        {std::dynamic_pointer_cast<const ActingEffects<Pair>>(effects), one.inverse_diagonal});
+    const bool may_hold = equations.held_joints->can_hold() || effects->any_held;
     if constexpr (has_special_kernels_of_rare_runs) {
       if (!may_hold && instruction_set() >= free.least) return of(free);
     }
-    return of(SeriesWithHolds(free, chain.template operator()<Pair>(), equations.effects));
+    return of(SeriesWithHolds(free, chain.template operator()<Pair>(), effects));
   };
   if (const auto* one = std::get_if<DoublePendulumWithEffects<Parts::couples>>(&equations.form)) {
     return with_torque(*one);
   }
   const auto* one = std::get_if<DoublePendulumWithEffects<Parts::waves>>(&equations.form);
-  if (one != nullptr && equations.effects->pivots.empty()) return with_torque(*one);
+  if (one != nullptr && effects->pivots.empty()) return with_torque(*one);
+
+  if (FewLinksSeries::has(scene, equations)) {
+    auto rows = std::dynamic_pointer_cast<const ActingEffects<Pack<4>>>(effects);
+    return of(FewLinksSeries(scene, std::move(rows)));
+  }
   switch (scene.links.size()) {
     case 1: return of(chain.template operator()<double>());
     case 2: return of(chain.template operator()<Pair>());

@@ -12,6 +12,12 @@
 #pragma once
 
 #define PENDCORE_INLINE [[gnu::always_inline]] inline
+/// For long parts of a kernel with several callers: a module that is sent to browsers has them once.
+#ifdef PENDCORE_SMALL
+#define PENDCORE_INLINE_UNLESS_SMALL [[gnu::noinline]] inline
+#else
+#define PENDCORE_INLINE_UNLESS_SMALL PENDCORE_INLINE
+#endif
 
 // A build with -march for AVX2 or more is for that processor alone and needs no clones.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__AVX2__) && \

@@ -22,6 +22,21 @@ struct Two {
 
 using Pair = Pack<2>;
 
+namespace pair_detail {
+template <class Number>
+struct PairOf {
+  using Type = Two<Number>;
+};
+template <>
+struct PairOf<double> {
+  using Type = Pair;
+};
+}  // namespace pair_detail
+
+/// The pair for a number type: a pack of two doubles, or two packs.
+template <class Number>
+using PairOf = typename pair_detail::PairOf<Number>::Type;
+
 /// (x_2, x_1)
 PENDCORE_INLINE Pair other(const Pair& x) { return Pair{x[1], x[0]}; }
 template <class Real>

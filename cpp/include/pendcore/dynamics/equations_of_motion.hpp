@@ -26,6 +26,10 @@ struct EquationsOfMotion {
   std::shared_ptr<HeldJoints> held_joints = nullptr;  ///< null for a bare form
 };
 
+/// Whether all effects of a scene only change constants of links that turn freely: payloads, and
+/// rotors in joint 1.
+bool is_bare(const Scene& scene);
+
 /// The equations of a scene that check() passed.
 EquationsOfMotion equations_of_motion(const Scene& scene);
 

@@ -27,6 +27,7 @@
 /// holds; the step that would cross its zero is cut to end there, and `next_mode` follows.
 #pragma once
 
+#include <bit>
 #include <limits>
 #include <vector>
 
@@ -71,7 +72,7 @@ struct Couple {
 /// The sums of the couples on a row of joints. The alignment is set here: GCC reports the alignment
 /// of a wide pack as on the baseline, and its clones rely on the true alignment.
 template <class Row>
-struct alignas(sizeof(Row)) Couples {
+struct alignas(std::bit_floor(sizeof(Row))) Couples {
   int row = 0;
   Row held{}, slope{}, start{}, on_phi{}, on_phid{}, on_phid2{}, on_phid3{};
 

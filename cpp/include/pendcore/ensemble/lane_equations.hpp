@@ -6,19 +6,37 @@
 /// and the pivot.
 #pragma once
 
+#include "pendcore/arithmetic/row_of_links.hpp"
 #include "pendcore/dynamics/equations_of_motion.hpp"
 
 namespace pendcore {
 
-/// Puts numbers of both links into a lane, and takes them out.
+/// Puts the numbers of one trajectory into a lane.
+template <class Real>
+void put_row(Two<Real>& row, int lane, const Pair& one) {
+  row.first[lane] = one[0];
+  row.second[lane] = one[1];
+}
+template <class Real, int links>
+void put_row(EachLink<Real, links>& row, int lane, const Pack<4>& one) {
+  for (int i = 0; i < links; ++i) row.of[i][lane] = one[i];
+}
+template <class Rows, class Row>
+void put_couples(Couples<Rows>& couples, int lane, const Couples<Row>& one) {
+  put_row(couples.held, lane, one.held);
+  put_row(couples.slope, lane, one.slope);
+  put_row(couples.start, lane, one.start);
+  put_row(couples.on_phi, lane, one.on_phi);
+  put_row(couples.on_phid, lane, one.on_phid);
+  put_row(couples.on_phid2, lane, one.on_phid2);
+  put_row(couples.on_phid3, lane, one.on_phid3);
+}
+
+/// Puts states of both links into a lane, and takes them out.
 template <class Real>
 struct BothLinks {
   using Integers = typename Lanes<Real>::Integers;
 
-  static void put(Two<Real>& pair, int lane, const Pair& one) {
-    pair.first[lane] = one[0];
-    pair.second[lane] = one[1];
-  }
   static void put_state(Two<Real>& pair, int lane, const double* from) {
     pair.first[lane] = from[0];
     pair.second[lane] = from[1];
@@ -42,14 +60,12 @@ struct LaneEquations;
 template <class Real>
 struct LaneEquations<DoublePendulum, Real> : BothLinks<Real> {
   using Type = DoublePendulumEquations<Two<Real>, Real>;
-  using BothLinks<Real>::put;
-
   static void prepare(Type& /*equations*/, const EquationsOfMotion& /*one*/) {}
   static bool put(Type& equations, int lane, const EquationsOfMotion& from) {
     const auto* const one = std::get_if<DoublePendulum>(&from.form);
     if (one == nullptr) return false;
-    put(equations.weight, lane, one->weight);
-    put(equations.coupling, lane, one->coupling);
+    put_row(equations.weight, lane, one->weight);
+    put_row(equations.coupling, lane, one->coupling);
     equations.product[lane] = one->product;
     equations.delta[lane] = one->delta;
     return true;
@@ -93,8 +109,6 @@ inline bool are_steady(const EquationsOfMotion& equations) {
 template <class Real>
 struct LaneEquations<CouplesAndWaves, Real> : BothLinks<Real> {
   using Type = LoadedDoublePendulumInLanes<Real>;
-  using BothLinks<Real>::put;
-
   static void prepare(Type& equations, const EquationsOfMotion& one) {
     equations.has_waves = std::holds_alternative<CouplesAndWaves>(one.form);
   }
@@ -103,7 +117,7 @@ struct LaneEquations<CouplesAndWaves, Real> : BothLinks<Real> {
     const auto put_form = [&](const auto* one, bool has_waves) {
       if (one == nullptr || has_waves != equations.has_waves) return false;
       put(equations, lane, *one);
-      put(equations.couples, lane, *one->couples);
+      put_couples(equations.couples, lane, *one->couples);
       put(equations.waves, lane, one->effects->two_waves);
       return true;
     };
@@ -115,30 +129,21 @@ struct LaneEquations<CouplesAndWaves, Real> : BothLinks<Real> {
  private:
   static void put(LoadedDoublePendulum<Two<Real>, Real>& equations, int lane,
                   const LoadedDoublePendulum<Pair, double>& one) {
-    put(equations.inverse_diagonal, lane, one.inverse_diagonal);
-    put(equations.weight, lane, one.weight);
-    put(equations.coupling, lane, one.coupling);
-    put(equations.rotor, lane, one.rotor);
+    put_row(equations.inverse_diagonal, lane, one.inverse_diagonal);
+    put_row(equations.weight, lane, one.weight);
+    put_row(equations.coupling, lane, one.coupling);
+    put_row(equations.rotor, lane, one.rotor);
     equations.product[lane] = one.product;
     equations.delta[lane] = one.delta;
     equations.epsilon[lane] = one.epsilon;
   }
-  static void put(Couples<Two<Real>>& couples, int lane, const Couples<Pair>& one) {
-    put(couples.held, lane, one.held);
-    put(couples.slope, lane, one.slope);
-    put(couples.start, lane, one.start);
-    put(couples.on_phi, lane, one.on_phi);
-    put(couples.on_phid, lane, one.on_phid);
-    put(couples.on_phid2, lane, one.on_phid2);
-    put(couples.on_phid3, lane, one.on_phid3);
-  }
   static void put(WavesOf<Two<Real>>& waves, int lane, const TwoWaves& one) {
-    put(waves.angular_frequency, lane, one.angular_frequency);
-    put(waves.phase, lane, one.phase);
+    put_row(waves.angular_frequency, lane, one.angular_frequency);
+    put_row(waves.phase, lane, one.phase);
     for (int k = 0; k < 2; ++k) {
-      put(waves.torque[k], lane, one.torque[k]);
-      put(waves.on_sine[k], lane, one.on_sine[k]);
-      put(waves.on_cosine[k], lane, one.on_cosine[k]);
+      put_row(waves.torque[k], lane, one.torque[k]);
+      put_row(waves.on_sine[k], lane, one.on_sine[k]);
+      put_row(waves.on_cosine[k], lane, one.on_cosine[k]);
     }
   }
 };

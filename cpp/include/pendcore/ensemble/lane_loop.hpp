@@ -80,6 +80,8 @@ class LaneLoop : public LaneRunner {
   virtual Attention take_steps() = 0;
   /// Puts the equations of `scene` into a lane; false if they have another form.
   virtual bool put_equations(int lane, const EquationsOfMotion& equations) = 0;
+  /// The equations of the members that begin from now on are these.
+  virtual void equations_are_new(const Scene& /*scene*/, const EquationsOfMotion& /*equations*/) {}
   /// Puts a start, at which the rates are rate(), into a lane.
   virtual void put_start(int lane, const std::vector<double>& y) = 0;
   virtual void get_state(int lane, double* y) = 0;
@@ -181,6 +183,7 @@ class LaneLoop : public LaneRunner {
     const std::vector<double>& y = members_[lane].state;
     if (!equations_ || &scene != &scene_) {
       equations_ = equations_of_motion(scene);
+      equations_are_new(scene, *equations_);
       stepper_ = make_stepper(scene, *equations_, method_, false, false);
       stepper_->set_tolerances(rtol_.data(), atol_.data());
     }
@@ -222,7 +225,7 @@ class LaneLoop : public LaneRunner {
   bool is_exhausted_ = false;         ///< no member is left to begin
 };
 
-/// The runner of Taylor series for the bare double pendulum.
+/// The runner of Taylor series; null if the scene has none in lanes.
 template <InstructionSet set>
 std::unique_ptr<LaneRunner> make_series_lanes(const Scene& scene, double t0, double t_end,
                                               const Options& options);

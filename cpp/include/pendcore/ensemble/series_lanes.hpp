@@ -9,22 +9,23 @@
 #include <span>
 #include <utility>
 
-#include "pendcore/dynamics/series/double_pendulum_series.hpp"
 #include "pendcore/ensemble/lane_steps.hpp"
+#include "pendcore/ensemble/series_equations.hpp"
 #include "pendcore/integrate/taylor/taylor_step.hpp"
 #include "pendcore/simulate/event_finder.hpp"
 
 namespace pendcore {
 
-/// The lanes of the method of Taylor series on the bare double pendulum. A state is a row of four
-/// numbers, (q_1, q_2, qd_1, qd_2).
-template <int width>
+/// The lanes of the method of Taylor series on a form of the equations (series_equations.hpp). A
+/// state is (q, qd).
+template <template <class> class Form, int width>
 struct SeriesLanes : LaneSteps<width> {
   using Real = Pack<width>;
   using Integers = typename Lanes<Real>::Integers;
-  static constexpr int size = 4;
+  using Equations = Form<Real>;
+  static constexpr int size = 2 * Equations::links;
 
-  ConstantsOfDoublePendulum<Real> constants;
+  Equations equations;
   Real y[size] = {};
   Real y_new[size] = {};
   Real rtol[size] = {};
@@ -36,6 +37,7 @@ struct SeriesLanes : LaneSteps<width> {
   std::span<const EventFinder::Difference> differences;  ///< of all events
   Integers begins = {};  ///< all bits set where a member has no series yet
   int order = lowest_taylor_order;
+  double log2_count = 0.0;  ///< log2 of the count of numbers in a state
   Real of_y[(highest_order + 1) * size] = {};  ///< two series: those from y, and from y_new
   Real of_y_new[(highest_order + 1) * size] = {};
   Real* rows = of_y;
@@ -45,14 +47,14 @@ struct SeriesLanes : LaneSteps<width> {
 namespace lanes_detail {
 
 /// log2 of the step, in units of sigma, that the tolerances allow for the series from y.
-template <int width>
-PENDCORE_INLINE Pack<width> log2_of_step(const SeriesLanes<width>* all, const Pack<width>* y,
-                                         const Pack<width>* rows) {
-  using Real = Pack<width>;
-  constexpr int size = SeriesLanes<width>::size;
-  Real last[size], before_last[size], others[size], before[size];
+template <class All, class Real>
+PENDCORE_INLINE Real log2_of_step(const All* all, const Real* y, const Real* rows) {
+  constexpr int size = All::size;
+  // A single run adds up the blocks of a state, and then the numbers of the sum: as here.
+  constexpr int block = 4;
+  Real last[block]{}, before_last[block]{}, others[block]{}, before[block]{};
   const Real* const end = rows + static_cast<std::ptrdiff_t>(all->order) * size;
-#pragma GCC unroll 4
+#pragma GCC unroll 8
   for (int i = 0; i < size; ++i) {
     const Real moves = larger(absolute(rows[size + i]), absolute(rows[2 * size + i]));
     const Real most = larger(absolute(y[i]), moves);
@@ -60,20 +62,20 @@ PENDCORE_INLINE Pack<width> log2_of_step(const SeriesLanes<width>* all, const Pa
     const auto share = [&](int k) __attribute__((always_inline)) {
       return Real(scale * end[i - static_cast<std::ptrdiff_t>(k) * size]);
     };
-    const auto squares = [&](int first, int count) __attribute__((always_inline)) {
-      Real sum{};
+    const auto add = [&](Real& sum, int first, int count) __attribute__((always_inline)) {
       for (int k = first; k < first + count; ++k) sum = fma(share(k), share(k), sum);
-      return sum;
     };
-    last[i] = squares(0, 1);
-    before_last[i] = squares(1, 1);
-    others[i] = squares(2, 2);
-    before[i] = squares(4, 4);
+    constexpr int links = All::Equations::links;
+    const int at = (i / links * All::Equations::row + i % links) % block;
+    add(last[at], 0, 1);
+    add(before_last[at], 1, 1);
+    add(others[at], 2, 2);
+    add(before[at], 4, 4);
   }
   // The order of the sums is that of sum_by_halves().
   const auto sum = [](const Real* x) { return Real((x[0] + x[2]) + (x[1] + x[3])); };
-  Real all_high[size];
-  for (int i = 0; i < size; ++i) all_high[i] = last[i] + before_last[i] + others[i];
+  Real all_high[block];
+  for (int i = 0; i < block; ++i) all_high[i] = last[i] + before_last[i] + others[i];
   const Real high = sum(all_high);
   const Real low = sum(before);
   const Real log2_high = coarse_log2(high);
@@ -81,7 +83,7 @@ PENDCORE_INLINE Pack<width> log2_of_step(const SeriesLanes<width>* all, const Pa
   const Real log2_error =
       larger_of(larger_of(Real(log2_high - 3.0 * decay), coarse_log2(sum(last))),
                 Real(coarse_log2(sum(before_last)) - decay)) -
-      2.0;  // log2 of the count of numbers in a state
+      all->log2_count;
   const Real log2_step = -0.5 * inverse_of[all->order] * log2_error;
   // Where no high power is left, or one is not finite, the step is not of this kind.
   const auto is_usual = (high > 0.0) & (high < std::numeric_limits<double>::infinity());
@@ -90,19 +92,15 @@ PENDCORE_INLINE Pack<width> log2_of_step(const SeriesLanes<width>* all, const Pa
 
 /// Computes the series from y in units of sigma, which is chosen anew where it is far from the step
 /// that the tolerances allow. Returns the lanes that have a usual series.
-template <int width>
-PENDCORE_INLINE typename Lanes<Pack<width>>::Integers expand(SeriesLanes<width>* all,
-                                                             const Pack<width>* y,
-                                                             Pack<width>* rows, Pack<width>& sigma,
-                                                             Pack<width>& largest) {
-  using Real = Pack<width>;
-  using Integers = typename Lanes<Real>::Integers;
+template <class All, class Real>
+PENDCORE_INLINE typename All::Integers expand(All* all, const Real& t, const Real* y, Real* rows,
+                                              Real& sigma, Real& largest) {
+  using Integers = typename All::Integers;
   constexpr double reach = 8.0;
   constexpr int most_tries = 12;
-  NoTorque torque;
   Integers is_done{};
   for (int tries = 0; tries < most_tries; ++tries) {
-    expand_double_pendulum(all->constants, y, sigma, all->order, torque, rows);
+    all->equations.expand(t, y, sigma, all->order, rows);
     const Real log2_step = log2_of_step(all, y, rows);
     is_done = absolute(log2_step) <= reach;
     largest = sigma * coarse_exp2(is_done ? log2_step : Real{});
@@ -120,11 +118,11 @@ PENDCORE_INLINE typename Lanes<Pack<width>>::Integers expand(SeriesLanes<width>*
 
 /// Whether a difference may reach its level within a step of x units of sigma: not if it is farther
 /// away than the sizes of all terms of the series together.
-template <int width>
-PENDCORE_INLINE typename Lanes<Pack<width>>::Integers may_reach(
-    const SeriesLanes<width>* all, const EventFinder::Difference& level, const Pack<width>& x) {
-  using Real = Pack<width>;
-  constexpr int size = SeriesLanes<width>::size;
+template <class All, class Real>
+PENDCORE_INLINE typename All::Integers may_reach(const All* all,
+                                                 const EventFinder::Difference& level,
+                                                 const Real& x) {
+  constexpr int size = All::size;
   constexpr double turn = 6.283185307179586;
   const auto difference = [&](const Real* row) __attribute__((always_inline)) {
     return level.minus < 0 ? row[level.plus] : Real(row[level.plus] - row[level.minus]);
@@ -147,13 +145,12 @@ PENDCORE_INLINE typename Lanes<Pack<width>>::Integers may_reach(
 }
 
 /// sum_{k >= 1} x^k y_k for one number of the state (integrate/taylor/taylor_step.hpp).
-template <int width>
-PENDCORE_INLINE Pack<width> increment(const Pack<width>* rows, int order, const Pack<width>& x) {
-  constexpr int size = SeriesLanes<width>::size;
-  const Pack<width> square = x * x;
-  const Pack<width>* row = rows + static_cast<std::ptrdiff_t>(order) * size;
-  Pack<width> even = row[0];
-  Pack<width> odd = row[-size];
+template <int size, class Real>
+PENDCORE_INLINE Real increment(const Real* rows, int order, const Real& x) {
+  const Real square = x * x;
+  const Real* row = rows + static_cast<std::ptrdiff_t>(order) * size;
+  Real even = row[0];
+  Real odd = row[-size];
   for (int k = order - 2; k >= 2; k -= 2) {
     row -= 2 * size;
     even = fma(square, even, row[0]);
@@ -165,11 +162,11 @@ PENDCORE_INLINE Pack<width> increment(const Pack<width>* rows, int order, const 
 }  // namespace lanes_detail
 
 /// Takes up to `rounds` steps in each lane, until some need attention.
-template <int width>
-PENDCORE_INLINE Attention take_series_steps(SeriesLanes<width>* all, const LaneInterval* interval,
-                                            int rounds) {
+template <template <class> class Form, int width>
+PENDCORE_INLINE Attention take_series_steps(SeriesLanes<Form, width>* all,
+                                            const LaneInterval* interval, int rounds) {
   namespace detail = lanes_detail;
-  using All = SeriesLanes<width>;
+  using All = SeriesLanes<Form, width>;
   using Real = typename All::Real;
   using Integers = typename All::Integers;
   constexpr int size = All::size;
@@ -183,7 +180,7 @@ PENDCORE_INLINE Attention take_series_steps(SeriesLanes<width>* all, const LaneI
     const Real h = next.h;
     const Real x = h * (1.0 / all->sigma);  // exact: a power of two
     for (int i = 0; i < size; ++i) {
-      const Real after = all->y[i] + detail::increment<width>(all->rows + i, all->order, x);
+      const Real after = all->y[i] + detail::increment<size>(all->rows + i, all->order, x);
       all->y_new[i] = begins ? all->y[i] : after;
     }
     const Real size_of_step = absolute(h);
@@ -195,8 +192,10 @@ PENDCORE_INLINE Attention take_series_steps(SeriesLanes<width>* all, const LaneI
 
     const Real from_here = all->largest < 0x1p400 ? all->largest : size_of_step;
     all->sigma_new = begins ? all->sigma : taylor_detail::power_of_two_below(from_here);
-    const Integers has_series =
-        detail::expand<width>(all, all->y_new, all->rows_new, all->sigma_new, all->largest_new);
+    const detail::TwoReals<Real> start{all->t, all->t_low};
+    const Real t_new = begins ? all->t : (start + h).high;
+    const Integers has_series = detail::expand(all, t_new, all->y_new, all->rows_new,
+                                               all->sigma_new, all->largest_new);
     is_odd |= ~has_series;
     constexpr double safety = 0.95;  // as in attempt_series()
     const ErrorAndFactor<Real> found{squared_error, (safety / size_of_step) * all->largest_new};
@@ -208,7 +207,7 @@ PENDCORE_INLINE Attention take_series_steps(SeriesLanes<width>* all, const LaneI
     attention.looks = detail::bits_of(is_looked_at) & all->active & ~attention.odd;
     Integers may_happen{};
     for (const EventFinder::Difference& one : all->differences) {
-      may_happen |= detail::may_reach<width>(all, one, x);
+      may_happen |= detail::may_reach(all, one, x);
     }
     attention.events = detail::bits_of(may_happen & tried) & all->active & ~attention.odd;
     all->t_before = t_before;

@@ -47,7 +47,7 @@ class Stepper {
   virtual double own_first_step(double /*t*/) { return 0.0; }
 
   /// Tries a step of size h from the state at time t; `gain` is the one of the step control.
-  virtual Attempt attempt(double t, double h, double gain) = 0;
+  virtual Attempt attempt(const TwoDouble& t, double h, double gain) = 0;
 
   /// Replaces an attempt by a step in which nothing moves.
   virtual void stay() = 0;

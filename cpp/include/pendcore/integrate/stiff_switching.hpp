@@ -75,7 +75,7 @@ class StiffSwitchingStepper final : public Stepper {
   void set_new_state(const double* y) override { now().set_new_state(y); }
   void evaluate(double t, const double* y, double* dydt) override;
   double own_first_step(double t) override { return now().own_first_step(t); }
-  Attempt attempt(double t, double h, double gain) override;
+  Attempt attempt(const TwoDouble& t, double h, double gain) override;
   void stay() override { now().stay(); }
   void accept(double t_new) override;
   void interpolant(double h, double* coefficients) override;

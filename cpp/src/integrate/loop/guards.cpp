@@ -316,7 +316,7 @@ Guards::Located Guards::locate(const Crossing& crossing, double t, double whole,
   double before = std::numeric_limits<double>::infinity();
   Attempt attempt{};
   for (int polish = 0; polish < 10; ++polish) {
-    attempt = stepper_.attempt(t, h, gain);
+    attempt = stepper_.attempt({t}, h, gain);
     const Miss miss = this->miss(crossing, t, h);
     const double correction = miss.share * h;
     const double size = std::abs(correction);

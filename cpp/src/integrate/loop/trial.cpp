@@ -41,7 +41,7 @@ Trial::Trial(Stepper& stepper, IntegratorState& integrator, bool fixed_step,
 void Trial::attempt(double h) {
   t_ = integrator_.t.high;
   h_ = h;
-  attempt_ = stepper_.attempt(t_, h_, integrator_.control.gain(stepper_.info()));
+  attempt_ = stepper_.attempt(integrator_.t, h_, integrator_.control.gain(stepper_.info()));
 }
 
 Trial::Verdict Trial::judge(bool is_shortest, bool at_any_error) {

@@ -233,7 +233,8 @@ void ImplicitRungeKutta::integrate_quadratures(double t, double h) {
   }
 }
 
-Attempt ImplicitRungeKutta::attempt(double t, double h, double /*gain*/) {
+Attempt ImplicitRungeKutta::attempt(const TwoDouble& time, double h, double /*gain*/) {
+  const double t = time.high;
   if (!has_jacobian_) {
     system_->jacobian(t, y_.data(), systems_.by_q(), systems_.by_qd());
     has_jacobian_ = true;

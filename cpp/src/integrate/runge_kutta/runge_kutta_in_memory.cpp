@@ -194,11 +194,11 @@ class RungeKuttaInMemory final : public Stepper {
     write(rate.data(), dydt);
     ++evaluations;
   }
-  Attempt attempt(double t, double h, double gain) override {
+  Attempt attempt(const TwoDouble& t, double h, double gain) override {
     evaluations += stages - 1;
-    t_ = t;
+    t_ = t.high;
     has_dense_stages_ = all_stages == stages;
-    return attempt_(&memory_, t, h, gain);
+    return attempt_(&memory_, t.high, h, gain);
   }
   void stay() override {
     const std::size_t bytes = size_ * sizeof(double);

@@ -1,7 +1,7 @@
 /// \file
 /// One link in the recursion of chain.hpp: its constants, and the step that takes B from a link to
 /// the link before. The accelerations (chain_recursion.hpp) and their series
-/// (chain_series_recurrence.hpp) both use it.
+/// (chain_series_recurrence.hpp, few_links_series.hpp) use it.
 #pragma once
 
 #include <vector>
@@ -11,9 +11,12 @@
 
 namespace pendcore {
 
-struct ChainLink {
-  double m, L, mc, I, Io, LL, turn, across;  // turn: I_o - m c L, across: I + m (L - c)^2
+/// `Number` is a double, or a pack with one trajectory a lane.
+template <class Number>
+struct ChainLinkOf {
+  Number m, L, mc, I, Io, LL, turn, across;  // turn: I_o - m c L, across: I + m (L - c)^2
 };
+using ChainLink = ChainLinkOf<double>;
 
 /// The links of a scene. The last link has the moment of inertia of the payload. The first link has
 /// the rotor of joint 1, which turns against the ground; rotors of other joints couple two links
@@ -29,8 +32,9 @@ struct ForcePerAcceleration {
 
   /// Adds a link that turns freely, and rotates B into the frame of the link before. The factor r =
   /// 1/D enters last, so that the other operations do not wait for the division.
-  PENDCORE_INLINE void add_free(const ChainLink& k, Number r, Number wu, Number cc, Number ss,
-                                Number sc) {
+  template <class Constant>
+  PENDCORE_INLINE void add_free(const ChainLinkOf<Constant>& k, Number r, Number wu, Number cc,
+                                Number ss, Number sc) {
     const Number mass = k.m + uu;
     const Number along = wu * wu;
     const Number mixed = un * k.turn;

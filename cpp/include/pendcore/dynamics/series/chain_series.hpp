@@ -39,7 +39,6 @@ class ChainSeries {
  public:
   using Block = Row;
   static constexpr int blocks = 0;  ///< known at run time only
-  static constexpr bool depends_on_time = true;
   static constexpr bool is_short = false;
   static constexpr InstructionSet best = InstructionSet::x86_64_v3;
   static constexpr InstructionSet least = InstructionSet::baseline;
@@ -49,6 +48,7 @@ class ChainSeries {
   ChainSeries(const Scene& scene, std::shared_ptr<const ActingEffects<Row>> effects);
 
   int links() const { return n_; }
+  static constexpr bool depends_on_time() { return true; }
   int row() const { return row_; }
   void set_order(int order);
 

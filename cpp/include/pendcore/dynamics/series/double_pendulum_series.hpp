@@ -50,20 +50,15 @@
 #include "pendcore/arithmetic/pair.hpp"
 #include "pendcore/arithmetic/row_of_pairs.hpp"
 #include "pendcore/arithmetic/sine_cosine.hpp"
+#include "pendcore/dynamics/series/torque_series.hpp"
 
 namespace pendcore {
-
-/// The bare pendulum has no torque but gravity's.
-struct NoTorque {
-  static constexpr bool is_there = false;
-  static constexpr bool depends_on_time = false;
-};
 
 /// What a series is made of: numbers, pairs of them, and rows of two pairs. `Number` is a double,
 /// or a pack with one trajectory a lane.
 template <class Number>
 struct SeriesOf {
-  using Half = Two<Number>;
+  using Half = PairOf<Number>;
   using Row = TwoPairs<Number>;
   PENDCORE_INLINE static Half pair_at(const Number* from) { return {from[0], from[1]}; }
   PENDCORE_INLINE static void put_row(Number* to, const Row& row) {
@@ -75,7 +70,7 @@ struct SeriesOf {
 };
 template <>
 struct SeriesOf<double> {
-  using Half = Pair;
+  using Half = PairOf<double>;
   using Row = Pairs;
   PENDCORE_INLINE static Half pair_at(const double* from) { return load<Pair>(from); }
   PENDCORE_INLINE static void put_row(double* to, const Row& row) { store(to, row); }
@@ -101,8 +96,7 @@ class DoublePendulumSeries {
  public:
   using Block = Pack<4>;
   static constexpr int blocks = 1;
-  static constexpr bool depends_on_time = Torque::depends_on_time;
-  static constexpr bool is_short = !depends_on_time;  ///< bare, without a torque
+  static constexpr bool is_short = !Torque::is_there;  ///< bare, without a torque
   static constexpr InstructionSet best = best_for(is_short ? 4 : 2);
   /// Where it has no clone, series_with_holds.hpp has the same bits.
   static constexpr InstructionSet least =
@@ -113,6 +107,7 @@ class DoublePendulumSeries {
 
   static constexpr int row() { return 2; }
   static constexpr int links() { return 2; }
+  static constexpr bool depends_on_time() { return Torque::is_there; }
   void set_order(int /*order*/) {}
 
   /// Fills rows 1 .. order of `coefficients` with y_k of y(t + theta sigma) = sum_k theta^k y_k,
@@ -146,9 +141,10 @@ struct DoublePendulumOrders {
   Row by_u[3];            ///< factor of u_k of the other link: [0] + k [1] + k^2 [2]
   Row by_own_u;
 
-  // What the last two orders leave for the next.
-  Row u_before, u;                     ///< u_k and u_{k+1}
-  Row rate_before, rate;               ///< qd_{k-1} and qd_k; 0 instead of qd_0, which is in rate0
+  // What the last two orders leave for the next. Even and odd orders have a place each, so that
+  // nothing moves from one place to another.
+  Row u[2];                            ///< u_k and u_{k+1}
+  Row rate[2];                         ///< qd_{k-1} and qd_k; 0 instead of qd_0, which is in rate0
   Row rest_before;                     ///< the terms of older orders in u_{k+1}
   Row u_without_rate;                  ///< u_{k+1} without its term in qd_k
   Half angle_of_order, rate_of_order;  ///< q_k and qd_k
@@ -163,16 +159,18 @@ struct DoublePendulumOrders {
   template <class TorqueOrders>
   PENDCORE_INLINE void begin(TorqueOrders& torque, Number* coefficients);
   /// Computes order k >= 3 from the older terms of both sums: pulls_j n_{k-j} from j = 1 to k - 3,
-  /// and qd_j n_{k+1-j} from j = 2 to k - 2.
-  template <class TorqueOrders>
+  /// and qd_j n_{k+1-j} from j = 2 to k - 2. `odd` is k % 2.
+  template <int odd, class TorqueOrders>
   PENDCORE_INLINE void next(int k, const Row& sum, const Row& rest, TorqueOrders& torque,
                             Number* coefficients);
 
  private:
+  template <int k, class TorqueOrders>
+  PENDCORE_INLINE void first_order(TorqueOrders& torque, Number* coefficients);
   PENDCORE_INLINE void put_factors_together();
   /// Computes order k from f without the part of qd_k, and from the terms of older orders in
   /// u_{k+2}.
-  template <class TorqueOrders>
+  template <int odd, class TorqueOrders>
   PENDCORE_INLINE void finish(int k, Row f, const Row& rest, TorqueOrders& torque,
                               Number* coefficients);
 };
@@ -195,18 +193,18 @@ PENDCORE_INLINE DoublePendulumOrders<Number>::DoublePendulumOrders(
   pull = joined(Half(sigma * sigma * constants.weight), Half{});
   minus_rho = twice(-constants.coupling);
   rate0 = twice(rate_of_order);
-  u_before = joined(c0, s0);
-  n0 = turned(u_before);
-  u = rate0 * n0;
-  n1 = turned(u);
-  first = minus_rho * other(rate0) * u_before;
+  u[0] = joined(c0, s0);
+  n0 = turned(u[0]);
+  u[1] = rate0 * n0;
+  n1 = turned(u[1]);
+  first = minus_rho * other(rate0) * u[0];
   second = minus_rho * n1;
   by_rest = minus_rho * n0;
   const Row direct = by_rest * other(n1);
   by_rate[0] = halves_added(fma(first, other(n0), direct));
   by_rate[1] = halves_added(fma(second, other(n0), direct));
-  u_without_rate = u;
-  rate_before = rate = rest_before = Row{};
+  u_without_rate = u[1];
+  rate[0] = rate[1] = rest_before = Row{};
   n[1] = n1;
   rates[0] = rate0;
 }
@@ -230,27 +228,34 @@ PENDCORE_INLINE void DoublePendulumOrders<Number>::put_factors_together() {
 }
 
 template <class Number>
-template <class TorqueOrders>
-PENDCORE_INLINE void DoublePendulumOrders<Number>::begin(TorqueOrders& torque,
-                                                         Number* coefficients) {
+template <int k, class TorqueOrders>
+PENDCORE_INLINE void DoublePendulumOrders<Number>::first_order(TorqueOrders& torque,
+                                                               Number* coefficients) {
   Row rest{};
   Row sum{};
-#pragma GCC unroll 3
-  for (int k = 0; k <= 2; ++k) {
-    if (k == 2) {
-      rest = rates[1] * n[2];
-      sum = pulls[0] * n[2];
-    }
-    const double next = k + 1.0;
-    const Row by = next * fma(Constants<Row>::of(static_cast<double>(k)), second, first);
-    const Row older = fma(Row(next * by_rest), other(rest), fma(pull, u_before, sum));
-    finish(k, halves_added(fma(by, other(u_without_rate), older)), rest, torque, coefficients);
+  if constexpr (k == 2) {
+    rest = rates[1] * n[2];
+    sum = pulls[0] * n[2];
   }
-  put_factors_together();
+  constexpr double next = k + 1.0;
+  const Row by = next * fma(Constants<Row>::of(static_cast<double>(k)), second, first);
+  const Row older = fma(Row(next * by_rest), other(rest), fma(pull, u[k % 2], sum));
+  finish<k % 2>(k, halves_added(fma(by, other(u_without_rate), older)), rest, torque,
+                coefficients);
 }
 
 template <class Number>
 template <class TorqueOrders>
+PENDCORE_INLINE void DoublePendulumOrders<Number>::begin(TorqueOrders& torque,
+                                                         Number* coefficients) {
+  first_order<0>(torque, coefficients);
+  first_order<1>(torque, coefficients);
+  first_order<2>(torque, coefficients);
+  put_factors_together();
+}
+
+template <class Number>
+template <int odd, class TorqueOrders>
 PENDCORE_INLINE void DoublePendulumOrders<Number>::next(int k, const Row& sum, const Row& rest,
                                                         TorqueOrders& torque,
                                                         Number* coefficients) {
@@ -259,13 +264,13 @@ PENDCORE_INLINE void DoublePendulumOrders<Number>::next(int k, const Row& sum, c
   const Row older = fma(Row((k + 1.0) * by_rest), other(rest), fma(by, other(rest_before), sum));
   const Row of_u = fma(order, fma(order, by_u[2], by_u[1]), by_u[0]);
   const Row of_rate = fma(order, by_rate_before[1], by_rate_before[0]);
-  const Row known = fma(of_u, other(u_before), fma(by_own_u, u_before, older));
-  finish(k, fma(of_rate, other(rate_before), halves_added(known)),
-         fma(rates[k - 1], n2, fma(rate1, n[k], rest)), torque, coefficients);
+  const Row known = fma(of_u, other(u[odd]), fma(by_own_u, u[odd], older));
+  finish<odd>(k, fma(of_rate, other(rate[1 - odd]), halves_added(known)),
+              fma(rates[k - 1], n2, fma(rate1, n[k], rest)), torque, coefficients);
 }
 
 template <class Number>
-template <class TorqueOrders>
+template <int odd, class TorqueOrders>
 PENDCORE_INLINE void DoublePendulumOrders<Number>::finish(int k, Row f, const Row& rest,
                                                           TorqueOrders& torque,
                                                           Number* coefficients) {
@@ -278,9 +283,9 @@ PENDCORE_INLINE void DoublePendulumOrders<Number>::finish(int k, Row f, const Ro
   const Row cross_share = share * cross;
   const Row of_rate = fma(Constants<Row>::of(static_cast<double>(k)), by_rate[1], by_rate[0]);
   const Row without_rate = fma(cross_share, other(f), own_share * f);
-  const Row rate_after = fma(Row(own_share * of_rate), other(rate),
-                             fma(Row(cross_share * other(of_rate)), rate, without_rate));
-  u_without_rate = share_after * fma(rate0, n[k + 1], fma(n1, rate, rest));
+  const Row rate_after = fma(Row(own_share * of_rate), other(rate[odd]),
+                             fma(Row(cross_share * other(of_rate)), rate[odd], without_rate));
+  u_without_rate = share_after * fma(rate0, n[k + 1], fma(n1, rate[odd], rest));
   const Row u_after = fma(Row(share_after * n0), rate_after, u_without_rate);
 
   angle_of_order = share * rate_of_order;
@@ -290,11 +295,9 @@ PENDCORE_INLINE void DoublePendulumOrders<Number>::finish(int k, Row f, const Ro
   pulls[k] = ((k + 1.0) * (k + 2.0) * minus_rho) * other(u_after);
   n[k + 2] = turned(u_after);
   rates[k + 1] = rate_after;
-  u_before = u;
-  u = u_after;
+  u[odd] = u_after;
   rest_before = rest;
-  rate_before = rate;
-  rate = rate_after;
+  rate[1 - odd] = rate_after;
 }
 
 /// The older terms of both sums of orders k and k + 1: what `next` takes. Two orders are computed
@@ -376,25 +379,25 @@ PENDCORE_INLINE void expand_double_pendulum(const ConstantsOfDoublePendulum<Numb
   using Row = typename SeriesOf<Number>::Row;
   DoublePendulumOrders<Number> orders(constants, y, sigma);
   orders.begin(torque, coefficients);
-  orders.next(3, Row{}, Row{}, torque, coefficients);
+  orders.template next<1>(3, Row{}, Row{}, torque, coefficients);
   for (int k = 4; k < order; k += 2) {
     const OlderTerms<Row> older = older_terms(orders, k);
-    orders.next(k, older.sum, older.rest, torque, coefficients);
-    orders.next(k + 1, older.next_sum, older.next_rest, torque, coefficients);
+    orders.template next<0>(k, older.sum, older.rest, torque, coefficients);
+    orders.template next<1>(k + 1, older.next_sum, older.next_rest, torque, coefficients);
   }
 }
 
 template <class Torque>
 PENDCORE_INLINE void DoublePendulumSeries<Torque>::expand(double t, const double* y, double sigma,
                                                           int order, double* coefficients) const {
-  auto torque = [&] {
-    if constexpr (Torque::is_there) {
-      return typename Torque::Orders(torque_, t, sigma);
-    } else {
-      return torque_;
-    }
-  }();
-  expand_double_pendulum(constants_, y, sigma, order, torque, coefficients);
+  if constexpr (Torque::is_there) {
+    const TorqueLaws<Pair, double> laws = torque_laws(*torque_.effects, torque_.factor);
+    typename Torque::Orders orders(laws, t, sigma);
+    expand_double_pendulum(constants_, y, sigma, order, orders, coefficients);
+  } else {
+    NoTorque none;
+    expand_double_pendulum(constants_, y, sigma, order, none, coefficients);
+  }
 }
 
 }  // namespace pendcore

@@ -15,10 +15,9 @@ namespace pendcore {
 
 class SeriesWithHolds {
  public:
-  using Free = DoublePendulumSeries<CoupleTorque>;
+  using Free = DoublePendulumSeries<CoupleTorque<Pair>>;
   using Block = Free::Block;
   static constexpr int blocks = Free::blocks;
-  static constexpr bool depends_on_time = true;
   static constexpr bool is_short = false;
   static constexpr InstructionSet best = InstructionSet::x86_64_v3;
   static constexpr InstructionSet least = InstructionSet::baseline;
@@ -28,6 +27,7 @@ class SeriesWithHolds {
 
   static constexpr int row() { return 2; }
   static constexpr int links() { return 2; }
+  static constexpr bool depends_on_time() { return true; }
   void set_order(int order) { held_.set_order(order); }
 
   PENDCORE_INLINE void expand(double t, const double* y, double sigma, int order,

@@ -67,11 +67,11 @@ class RungeKuttaFixed final : public Stepper {
     ++evaluations;
   }
 
-  Attempt attempt(double t, double h, double gain) override {
+  Attempt attempt(const TwoDouble& t, double h, double gain) override {
     evaluations += stages - 1;
-    t_ = t;
+    t_ = t.high;
     has_dense_stages_ = Memory::all_stages == stages;
-    return attempt_(&memory_, t, h, gain);
+    return attempt_(&memory_, t.high, h, gain);
   }
 
   void stay() override {

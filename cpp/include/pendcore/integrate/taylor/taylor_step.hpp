@@ -1,8 +1,8 @@
 /// \file
 /// One step of the method of Taylor series (taylor.hpp): the kernels.
 ///
-/// A system is a `Series`. It has the size of its rows, `links()` and `row()`; what a processor
-/// works on, `Block` and `blocks` (0 if known only at run time); and
+/// A system is a `Series`. It has the size of its rows, `links()` and `row()`; whether it
+/// `depends_on_time()`; what a processor works on, `Block` and `blocks` (0 if known only at run time); and
 ///
 ///     expand(t, y, sigma, order, coefficients)
 ///
@@ -191,9 +191,9 @@ PENDCORE_INLINE void advance_series(TaylorMemory<Series>* memory, double h) {
   }
 }
 
-/// Takes the step of size h by `advance`, and computes the series from its end by `expand`.
+/// Takes the step of size h to t_new by `advance`, and computes the series from there by `expand`.
 template <class Series, class Advance, class Expand>
-PENDCORE_INLINE Attempt attempt_series(TaylorMemory<Series>* memory, double t, double h,
+PENDCORE_INLINE Attempt attempt_series(TaylorMemory<Series>* memory, double t_new, double h,
                                        const Advance& advance, const Expand& expand) {
   namespace detail = taylor_detail;
   advance(memory, h);
@@ -206,7 +206,7 @@ PENDCORE_INLINE Attempt attempt_series(TaylorMemory<Series>* memory, double t, d
 
   const double from_here = memory->largest < 0x1p400 ? memory->largest : size_of_step;
   memory->sigma_new = detail::power_of_two_below(from_here);
-  if (!expand(memory, t + h, memory->y_new, memory->rows_new, memory->sigma_new,
+  if (!expand(memory, t_new, memory->y_new, memory->rows_new, memory->sigma_new,
               memory->largest_new)) {
     return {{std::numeric_limits<double>::quiet_NaN(), 0.0}};
   }
@@ -217,7 +217,7 @@ PENDCORE_INLINE Attempt attempt_series(TaylorMemory<Series>* memory, double t, d
 /// The same in one kernel, which is a twentieth faster where the series is short. Longer series are
 /// compiled once, as a kernel of their own.
 template <class Series, bool compensated>
-PENDCORE_INLINE Attempt attempt_short_series(TaylorMemory<Series>* memory, double t, double h) {
+PENDCORE_INLINE Attempt attempt_short_series(TaylorMemory<Series>* memory, double t_new, double h) {
   auto advance = [](TaylorMemory<Series>* all, double step) __attribute__((always_inline)) {
     advance_series<Series, compensated>(all, step);
   };
@@ -225,7 +225,7 @@ PENDCORE_INLINE Attempt attempt_short_series(TaylorMemory<Series>* memory, doubl
                    double& sigma, double& largest) __attribute__((always_inline)) {
     return taylor_detail::expand(all, time, y, rows, sigma, largest);
   };
-  return attempt_series(memory, t, h, advance, expand);
+  return attempt_series(memory, t_new, h, advance, expand);
 }
 
 /// y + sum_k theta^k y_k at theta = (time - start)/h, on rows of `dimension` numbers.

@@ -93,18 +93,19 @@ class Taylor final : public Stepper {
 
   double own_first_step(double t) override { return begin(t) ? memory_.largest : 0.0; }
 
-  Attempt attempt(double t, double h, double /*gain*/) override {
+  Attempt attempt(const TwoDouble& t, double h, double /*gain*/) override {
     stays_ = false;
     // Where nothing moves yet, the given step is the only time scale.
     if (std::exchange(starts_at_rest_, false) && !has_series_) {
       memory_.sigma = taylor_detail::power_of_two_below(std::abs(h));
     }
-    if (!begin(t)) return {{std::numeric_limits<double>::quiet_NaN(), 0.0}};
+    if (!begin(t.high)) return {{std::numeric_limits<double>::quiet_NaN(), 0.0}};
     ++evaluations;
-    t_new_ = t + h;
+    t_ = t.high;
+    t_new_ = (t + h).high;
     has_new_series_ = true;
-    const Attempt attempt = attempt_(&memory_, t, h);
-    if (!sums_.empty()) integrate_quadratures(t, h);
+    const Attempt attempt = attempt_(&memory_, t_new_, h);
+    if (!sums_.empty()) integrate_quadratures(t.high, h);
     return attempt;
   }
   void stay() override {
@@ -117,7 +118,7 @@ class Taylor final : public Stepper {
     stays_ = true;
   }
   void accept(double t_new) override {
-    const bool is_of_that_time = !Series::depends_on_time || t_new == t_new_;
+    const bool is_of_that_time = !memory_.series.depends_on_time() || t_new == t_new_;
     const bool is_whole = has_new_series_ && is_of_that_time;
     if (!is_whole) memory_.sigma_new = memory_.sigma;
     std::swap(memory_.y, memory_.y_new);
@@ -158,7 +159,7 @@ class Taylor final : public Stepper {
     std::vector<double> state(dimension());
     get_state(state.data());
     evaluations += DominantEigenvalue::evaluations;
-    return stiffness_of_series(eigenvalue_, rates_, t_new_ - h, state.data(), h, memory_.order);
+    return stiffness_of_series(eigenvalue_, rates_, t_, state.data(), h, memory_.order);
   }
 
   /// The low part of the state, if compensated, and sigma: with another sigma, the size of a step
@@ -185,10 +186,10 @@ class Taylor final : public Stepper {
  private:
   /// Without the kernel for short series, where that is not compiled.
   template <bool compensated>
-  static Attempt attempt_in_parts(Memory* memory, double t, double h) {
+  static Attempt attempt_in_parts(Memory* memory, double t_new, double h) {
     static const auto advance = fastest<&advance_series<Series, compensated>, best, least>();
     static const auto expand = fastest<&taylor_detail::expand<Series>, best, least>();
-    return attempt_series(memory, t, h, advance, expand);
+    return attempt_series(memory, t_new, h, advance, expand);
   }
   template <bool compensated>
   static auto attempt_kernel() {
@@ -317,7 +318,7 @@ class Taylor final : public Stepper {
   bool has_series_ = false;
   bool has_new_series_ = false;
   bool stays_ = false;
-  double t_new_ = 0.0;  ///< the end of the attempt
+  double t_ = 0.0, t_new_ = 0.0;  ///< the start and the end of the attempt
   DominantEigenvalue eigenvalue_;
   Attempt (*attempt_)(Memory*, double, double) = compensated_ ? attempt_kernel<true>()
                                                               : attempt_kernel<false>();

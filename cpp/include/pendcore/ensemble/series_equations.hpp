@@ -1,0 +1,183 @@
+/// \file
+/// The forms of the equations whose Taylor series are computed in lanes: those of a single run
+/// (dynamics/series), with a trajectory, and its constants, in each lane.
+///
+/// A form has, for a pack of trajectories: the number of `links`; `row`, the numbers that a single
+/// run has in a row of its state; `One`, the constants of one trajectory; put(), which puts these
+/// into a lane and returns false if their laws are of other kinds than those of the lanes; and
+/// expand(), which computes the series.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "pendcore/dynamics/series/double_pendulum_series.hpp"
+#include "pendcore/dynamics/series/few_links_series.hpp"
+#include "pendcore/ensemble/lane_equations.hpp"
+
+namespace pendcore {
+
+/// The torques of couples and waves in lanes. `Row` is the row of a single run.
+template <class Rows, class Row, class Real>
+struct TorquesInLanes {
+  using One = TorqueLaws<Row, double>;
+
+  Couples<Rows> couples;
+  TorqueLaws<Rows, Real> laws;
+
+  /// Sets the kinds of laws.
+  void prepare(const One& one) {
+    laws.couples = one.couples != nullptr ? &couples : nullptr;
+    laws.has_powers = one.has_powers;
+    laws.has_waves = one.has_waves;
+  }
+  bool put(int lane, const One& one) {
+    const bool is_alike = (laws.couples != nullptr) == (one.couples != nullptr) &&
+                          laws.has_powers == one.has_powers && laws.has_waves == one.has_waves;
+    if (!is_alike) return false;
+    if (one.couples != nullptr) put_couples(couples, lane, *one.couples);
+    put_row(laws.angular_frequency, lane, one.angular_frequency);
+    put_row(laws.phase, lane, one.phase);
+    for (int k = 0; k < 2; ++k) put_row(laws.gain[k], lane, one.gain[k]);
+    put_row(laws.factor, lane, one.factor);
+    return true;
+  }
+};
+
+/// Puts the constants of a double pendulum into a lane.
+template <class Real>
+void put_constants(ConstantsOfDoublePendulum<Real>& constants, int lane,
+                   const DoublePendulumConstants& one) {
+  put_row(constants.weight, lane, one.weight);
+  put_row(constants.coupling, lane, one.coupling);
+  put_row(constants.rotor, lane, one.rotor);
+  constants.product[lane] = one.product;
+  constants.delta[lane] = one.delta;
+  constants.epsilon[lane] = one.epsilon;
+}
+
+template <class Real>
+struct BareDoublePendulumSeries {
+  static constexpr int links = 2;
+  static constexpr int row = 2;
+  using One = DoublePendulumConstants;
+
+  ConstantsOfDoublePendulum<Real> constants{};
+
+  static std::optional<One> one_of(const Scene& /*scene*/, const EquationsOfMotion& equations) {
+    const auto* const form = std::get_if<DoublePendulum>(&equations.form);
+    if (form == nullptr) return std::nullopt;
+    return One{form->weight, form->coupling, Pair{}, form->product, form->delta, 0.0};
+  }
+  /// Lanes without a member have numbers that do no harm.
+  void prepare(const One& /*one*/) { constants.delta = broadcast<Real>(1.0); }
+  bool put(int lane, const One& one) {
+    put_constants(constants, lane, one);
+    return true;
+  }
+  PENDCORE_INLINE void expand(const Real& /*t*/, const Real* y, const Real& sigma, int order,
+                              Real* rows) const {
+    NoTorque none;
+    expand_double_pendulum(constants, y, sigma, order, none, rows);
+  }
+};
+
+template <class Real>
+struct LoadedDoublePendulumSeries {
+  static constexpr int links = 2;
+  static constexpr int row = 2;
+  struct One {
+    DoublePendulumConstants constants;
+    TorqueLaws<Pair, double> laws;
+  };
+
+  ConstantsOfDoublePendulum<Real> constants{};
+  TorquesInLanes<Two<Real>, Pair, Real> torques;
+
+  static std::optional<One> one_of(const Scene& /*scene*/, const EquationsOfMotion& equations) {
+    if (!are_steady(equations)) return std::nullopt;
+    std::optional<One> found;
+    const auto take = [&](const auto* form) {
+      if (form == nullptr || !equations.effects->pivots.empty()) return;
+      const auto& effects = dynamic_cast<const ActingEffects<Pair>&>(*equations.effects);
+      found = {{form->weight, form->coupling, form->rotor, form->product, form->delta,
+                form->epsilon},
+               torque_laws(effects, form->inverse_diagonal)};
+    };
+    take(std::get_if<DoublePendulumWithEffects<Parts::couples>>(&equations.form));
+    take(std::get_if<DoublePendulumWithEffects<Parts::waves>>(&equations.form));
+    return found;
+  }
+  void prepare(const One& one) {
+    constants.delta = broadcast<Real>(1.0);
+    torques.prepare(one.laws);
+  }
+  bool put(int lane, const One& one) {
+    put_constants(constants, lane, one.constants);
+    return torques.put(lane, one.laws);
+  }
+  PENDCORE_INLINE void expand(const Real& t, const Real* y, const Real& sigma, int order,
+                              Real* rows) const {
+    TorqueOrders<Two<Real>, Real> orders(torques.laws, t, sigma);
+    expand_double_pendulum(constants, y, sigma, order, orders, rows);
+  }
+};
+
+template <class Real, int n>
+struct FewLinksSeriesInLanes {
+  static constexpr int links = n;
+  static constexpr int row = FewLinksSeries::row();
+  struct One {
+    ConstantsOfFewLinks<double, n> constants;
+    TorqueLaws<Pack<4>, double> laws;
+  };
+
+  ConstantsOfFewLinks<Real, n> constants{};
+  TorquesInLanes<EachLink<Real, n>, Pack<4>, Real> torques;
+
+  static std::optional<One> one_of(const Scene& scene, const EquationsOfMotion& equations) {
+    if (scene.links.size() != n || !FewLinksSeries::has(scene, equations) ||
+        !are_steady(equations)) {
+      return std::nullopt;
+    }
+    One one{constants_of_few_links<n>(scene), {}};
+    if (is_bare(scene)) return one;
+    const auto& effects = dynamic_cast<const ActingEffects<Pack<4>>&>(*equations.effects);
+    one.laws = torque_laws(effects, broadcast<Pack<4>>(1.0));
+    return one;
+  }
+  void prepare(const One& one) {
+    for (ChainLinkOf<Real>& link : constants.link) link.Io = broadcast<Real>(1.0);
+    torques.prepare(one.laws);
+  }
+  bool put(int lane, const One& one) {
+    for (int i = 0; i < n; ++i) {
+      ChainLinkOf<Real>& to = constants.link[i];
+      const ChainLink& from = one.constants.link[i];
+      to.m[lane] = from.m;
+      to.L[lane] = from.L;
+      to.mc[lane] = from.mc;
+      to.I[lane] = from.I;
+      to.Io[lane] = from.Io;
+      to.LL[lane] = from.LL;
+      to.turn[lane] = from.turn;
+      to.across[lane] = from.across;
+    }
+    constants.payload_mass[lane] = one.constants.payload_mass;
+    put_row(constants.weight, lane, one.constants.weight);
+    for (int by = 1; by < n; ++by) {
+      put_row(constants.coupling[by], lane, one.constants.coupling[by]);
+    }
+    return torques.put(lane, one.laws);
+  }
+  PENDCORE_INLINE void expand(const Real& t, const Real* y, const Real& sigma, int order,
+                              Real* rows) const {
+    expand_few_links<Real, n>(constants, torques.laws, t, y, sigma, order, rows);
+  }
+};
+template <class Real>
+using ThreeLinksSeries = FewLinksSeriesInLanes<Real, 3>;
+template <class Real>
+using FourLinksSeries = FewLinksSeriesInLanes<Real, 4>;
+
+}  // namespace pendcore
