@@ -18,7 +18,7 @@ LIGHT = pc.Scene(links=[pc.Link(mass=1e-3, length=1.0), pc.Link(mass=1.0, length
 def assert_same(scene, q0, qd0, t_span, **options):
     """Assert that every member is the run of `simulate`; return the ensemble."""
     found = pc.ensemble(scene, q0, qd0, t_span, check=False, **options)
-    q, qd = (np.broadcast_to(x, (*found.shape, 2)) for x in (q0, qd0))
+    q, qd = (np.broadcast_to(x, (*found.shape, len(scene.links))) for x in (q0, qd0))
     for i in np.ndindex(found.shape):
         options.pop("workers", None)
         if found.status[i] == "refused":

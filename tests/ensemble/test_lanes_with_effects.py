@@ -8,7 +8,7 @@ import pytest
 from test_lanes import BOOK, assert_same
 
 E = pc.effects
-METHODS = ["dopri5", "dop853", "dopri5-radau5", "dop853-radau5"]
+METHODS = ["dopri5", "dop853", "taylor", "dopri5-radau5", "dop853-radau5", "taylor-radau5"]
 SCENES = {
     "damping": [E.ViscousJoint(joint=1, damping=0.1), E.ViscousJoint(joint=2, damping=0.3)],
     "spring and rotors": [
@@ -23,6 +23,10 @@ SCENES = {
         E.Motor(joint=1, sinusoid=E.Sinusoid(3.0, 6.0, 0.4)),
         E.Motor(joint=2, sinusoid=E.Sinusoid(1.0, 11.0)),
         E.ViscousJoint(joint=2, damping=0.1),
+    ],
+    "cube of a rate": [
+        E.ViscousJoint(joint=2, damping=0.1, damping3=0.05),
+        E.ViscousJoint(joint=1, damping=0.1),
     ],
     "shaken pivot": [E.DrivenPivot(x=E.Sinusoid(0.05, 9.0)), E.ViscousJoint(joint=1, damping=0.1)],
 }
@@ -52,7 +56,8 @@ def test_effects_change_no_bit_in_lanes(name, method, rtol):
     qd0 = pc.draw.uniform(-3.0, 3.0, (21, 2), seed=3)
     scene = scene_of(SCENES[name])
     if has_lanes():
-        assert scene.explain().lanes == ("dopri5", "dop853")
+        series = () if name == "shaken pivot" else ("taylor",)
+        assert scene.explain().lanes == ("dopri5", "dop853", *series)
     assert_same(scene, q0, qd0, (0.3, 3), method=method, rtol=rtol, atol=rtol / 10)
     assert_same(scene, q0, qd0, (1.0, 0.0), method=method, rtol=rtol, max_steps=40)
 
@@ -65,7 +70,8 @@ def test_what_switches_or_has_more_runs_one_by_one(name):
     assert_same(scene, pc.draw.uniform(-0.5, 0.5, (9, 2), seed=2), 0.0, (0, 2), method="dopri5")
 
 
-def test_parameters_of_effects_differ_from_lane_to_lane():
+@pytest.mark.parametrize("method", ["dop853", "taylor"])
+def test_parameters_of_effects_differ_from_lane_to_lane(method):
     scene = scene_of(SCENES["two waves and damping"])
     names = [
         "effect[1].sinusoid.amplitude", "effect[2].sinusoid.angular_frequency",
@@ -73,22 +79,23 @@ def test_parameters_of_effects_differ_from_lane_to_lane():
     ]  # fmt: skip
     values = pc.draw.uniform(0.5, 2.0, (13, len(names)), seed=6)
     vary = {name: values[:, k] for k, name in enumerate(names)}
-    found = pc.ensemble(scene, [0.5, 1.0], t_span=(0, 3), vary=vary, method="dop853")
+    found = pc.ensemble(scene, [0.5, 1.0], t_span=(0, 3), vary=vary, method=method)
     for i in range(13):
         one = scene.with_parameters({name: x[i] for name, x in vary.items()})
-        alone = pc.simulate(one, [0.5, 1.0], t_span=(0, 3), method="dop853")
+        alone = pc.simulate(one, [0.5, 1.0], t_span=(0, 3), method=method)
         assert np.array_equal(found.q[i], alone.q[-1])
 
 
-def test_a_member_whose_motor_is_at_its_limit_beside_others():
+@pytest.mark.parametrize("method", ["dopri5", "taylor"])
+def test_a_member_whose_motor_is_at_its_limit_beside_others(method):
     scene = scene_of([E.Motor(joint=1, sinusoid=E.Sinusoid(3.0, 6.0), limit=9.0)])
     limits = np.array([9.0, 2.0, 8.0, 1.0, 7.0, 7.5, 8.5])
     found = pc.ensemble(
-        scene, [0.5, 1.0], t_span=(0, 3), vary={"effect[1].limit": limits}, method="dopri5"
+        scene, [0.5, 1.0], t_span=(0, 3), vary={"effect[1].limit": limits}, method=method
     )
     for i, limit in enumerate(limits):
         one = scene.with_parameters({"effect[1].limit": limit})
-        alone = pc.simulate(one, [0.5, 1.0], t_span=(0, 3), method="dopri5")
+        alone = pc.simulate(one, [0.5, 1.0], t_span=(0, 3), method=method)
         assert np.array_equal(found.q[i], alone.q[-1])
 
 

@@ -29,14 +29,9 @@
 /// No sine, cosine, product or quotient needs a series of its own: each order is two sums of
 /// products of rows of four, (c, c', s, s').
 ///
-/// The time of an order is mostly the time that it waits for the orders before it. The last of
-/// them, qd_k, is in u_{k+1}; the one before it is in u_k and qd_{k-1}. Each multiplies factors
-/// that the start of the step determines, and k and k^2. With these factors computed once in a
-/// step, order k + 1 is
-///
-///     qd_{k+1} = older + by_u (u_k, u_k') + by_rate_before qd_{k-1}' + by_rate (qd_k, qd_k')
-///
-/// instead of f. `older` has all terms of the two sums but the last ones, and is known long before.
+/// The weight is a pull like that of the other link: gamma c_k is n_k times (0, gamma), which is
+/// added to -rho u''_0(other). Two orders are computed at a time, so that what their sums share is
+/// loaded once.
 ///
 /// Source: the recurrences of automatic differentiation (Moore, Interval Analysis, 1966, chapter
 /// 11; Jorba and Zou, Exp. Math. 14, 2005); the elimination is this project's.
@@ -120,6 +115,17 @@ class DoublePendulumSeries {
   Torque torque_;
 };
 
+namespace double_pendulum_detail {
+
+/// The terms of the sums of orders k and k + 1 that are known before both: of qd_j n_{k+1-j}, and
+/// of n_{k-j} times the pulls.
+template <class Value>
+struct KnownTerms {
+  Value along{}, across{}, next_along{}, next_across{};
+};
+
+}  // namespace double_pendulum_detail
+
 /// The orders of one series. Rows are (c, c', s, s'); for rates and other numbers without a
 /// direction, a row is the pair twice.
 template <class Number>
@@ -128,51 +134,33 @@ struct DoublePendulumOrders {
   using Half = typename Of::Half;
   using Row = typename Of::Row;
 
+  using Terms = double_pendulum_detail::KnownTerms<Row>;
+
   Number per_sigma;
-  Row own, cross;  ///< 1/D and -kappa/D of the two by two system
-  Row pull;        ///< gamma sigma^2, the factor of c
+  Half own, cross;  ///< 1/D and -kappa/D of the two by two system
   Row minus_rho;
-  Row n0, n1, n2, rate0, rate1;
-  // Factors in f, in which the halves of a row are added: (k + 1) (first + k second) of u_{k+1},
-  // and (k + 1) by_rest of the terms of older orders in u_{k+2}.
-  Row first, second, by_rest;
-  Row by_rate[2];         ///< factor of qd_k: [0] + k [1]
-  Row by_rate_before[2];  ///< factor of qd_{k-1}: [0] + k [1]
-  Row by_u[3];            ///< factor of u_k of the other link: [0] + k [1] + k^2 [2]
-  Row by_own_u;
-
-  // What the last two orders leave for the next. Even and odd orders have a place each, so that
-  // nothing moves from one place to another.
-  Row u[2];                            ///< u_k and u_{k+1}
-  Row rate[2];                         ///< qd_{k-1} and qd_k; 0 instead of qd_0, which is in rate0
-  Row rest_before;                     ///< the terms of older orders in u_{k+1}
-  Row u_without_rate;                  ///< u_{k+1} without its term in qd_k
-  Half angle_of_order, rate_of_order;  ///< q_k and qd_k
-
-  Row pulls[highest_order];  ///< -rho u'' of the other link
+  Row across_by_rho;              ///< -rho n_0
+  Row weight;                     ///< sigma^2 gamma, along y
+  Half angle_of_order;            ///< q_k
+  Half rates[highest_order + 1];  ///< qd_k
   Row n[highest_order + 3];
-  Row rates[highest_order + 1];
+  Row pulls[highest_order];  ///< -rho u''(other); in order 0 with the weight
 
   PENDCORE_INLINE DoublePendulumOrders(const ConstantsOfDoublePendulum<Number>& constants,
                                        const Number* y, const Number& sigma);
-  /// Computes orders 0, 1 and 2, whose sums are too short to have last terms apart from others.
-  template <class TorqueOrders>
-  PENDCORE_INLINE void begin(TorqueOrders& torque, Number* coefficients);
-  /// Computes order k >= 3 from the older terms of both sums: pulls_j n_{k-j} from j = 1 to k - 3,
-  /// and qd_j n_{k+1-j} from j = 2 to k - 2. `odd` is k % 2.
-  template <int odd, class TorqueOrders>
-  PENDCORE_INLINE void next(int k, const Row& sum, const Row& rest, TorqueOrders& torque,
-                            Number* coefficients);
 
- private:
-  template <int k, class TorqueOrders>
-  PENDCORE_INLINE void first_order(TorqueOrders& torque, Number* coefficients);
-  PENDCORE_INLINE void put_factors_together();
-  /// Computes order k from f without the part of qd_k, and from the terms of older orders in
-  /// u_{k+2}.
-  template <int odd, class TorqueOrders>
-  PENDCORE_INLINE void finish(int k, Row f, const Row& rest, TorqueOrders& torque,
+  /// Computes order k from its sums.
+  template <class TorqueOrders>
+  PENDCORE_INLINE void finish(int k, const Row& along, const Row& across, TorqueOrders& torque,
                               Number* coefficients);
+  /// Computes order k + 1 after order k, from the terms that were known before both.
+  template <class TorqueOrders>
+  PENDCORE_INLINE void finish_next(int k, const Terms& known, TorqueOrders& torque,
+                                   Number* coefficients) {
+    const Row older = fma(twice(rates[0]), n[k + 2], known.next_along);
+    const Row along = fma(twice(rates[k + 1]), n[1], older);
+    finish(k + 1, along, fma(pulls[k], n[1], known.next_across), torque, coefficients);
+  }
 };
 
 template <class Number>
@@ -182,193 +170,105 @@ PENDCORE_INLINE DoublePendulumOrders<Number>::DoublePendulumOrders(
   Half s0, c0;
   sine_cosine(Of::pair_at(y), s0, c0);
   angle_of_order = Of::pair_at(y);
-  rate_of_order = sigma * Of::pair_at(y + 2);
+  rates[0] = sigma * Of::pair_at(y + 2);
   const Half sine = fma(s0, other(c0), -(c0 * other(s0)));
   const Half cosine = fma(c0, other(c0), s0 * other(s0));
   const Half rest =
       fma(Constants<Half>::of(constants.epsilon), cosine, Constants<Half>::of(constants.delta));
-  const Half inverse = 1.0 / fma(constants.product * sine, sine, rest);
-  own = twice(inverse);
-  cross = twice(fma(Half(-constants.coupling), cosine, constants.rotor) * inverse);
-  pull = joined(Half(sigma * sigma * constants.weight), Half{});
+  own = 1.0 / fma(constants.product * sine, sine, rest);
+  cross = fma(Half(-constants.coupling), cosine, constants.rotor) * own;
   minus_rho = twice(-constants.coupling);
-  rate0 = twice(rate_of_order);
-  u[0] = joined(c0, s0);
-  n0 = turned(u[0]);
-  u[1] = rate0 * n0;
-  n1 = turned(u[1]);
-  first = minus_rho * other(rate0) * u[0];
-  second = minus_rho * n1;
-  by_rest = minus_rho * n0;
-  const Row direct = by_rest * other(n1);
-  by_rate[0] = halves_added(fma(first, other(n0), direct));
-  by_rate[1] = halves_added(fma(second, other(n0), direct));
-  u_without_rate = u[1];
-  rate[0] = rate[1] = rest_before = Row{};
-  n[1] = n1;
-  rates[0] = rate0;
-}
-
-/// Computes the factors of u_k and qd_{k-1} that come from u_{k+1} = (qd_0 n_k + qd_{k-1} n_1 +
-/// rest + qd_k n_0)/(k + 1) and from the last terms of both sums. n_k is u_k turned; where the
-/// halves are added, a row times a turned row is minus the turned first row times the second.
-template <class Number>
-PENDCORE_INLINE void DoublePendulumOrders<Number>::put_factors_together() {
-  n2 = n[2];
-  rate1 = rates[1];
-  by_own_u = pull - turned(pulls[0]);
-  const Row of_pulls = minus_rho * n2;
-  const Row of_rest = -turned(by_rest * other(rate1));
-  by_u[0] = of_rest - turned(first * other(rate0));
-  by_u[1] = (of_rest - of_pulls) - turned(second * other(rate0));
-  by_u[2] = of_pulls;
-  const Row direct = by_rest * other(n2);
-  by_rate_before[0] = halves_added(fma(first, other(n1), direct));
-  by_rate_before[1] = halves_added(fma(second, other(n1), direct));
-}
-
-template <class Number>
-template <int k, class TorqueOrders>
-PENDCORE_INLINE void DoublePendulumOrders<Number>::first_order(TorqueOrders& torque,
-                                                               Number* coefficients) {
-  Row rest{};
-  Row sum{};
-  if constexpr (k == 2) {
-    rest = rates[1] * n[2];
-    sum = pulls[0] * n[2];
-  }
-  constexpr double next = k + 1.0;
-  const Row by = next * fma(Constants<Row>::of(static_cast<double>(k)), second, first);
-  const Row older = fma(Row(next * by_rest), other(rest), fma(pull, u[k % 2], sum));
-  finish<k % 2>(k, halves_added(fma(by, other(u_without_rate), older)), rest, torque,
-                coefficients);
+  weight = joined(Half{}, Half(sigma * sigma * constants.weight));
+  n[0] = turned(joined(c0, s0));
+  n[1] = turned(Row(twice(rates[0]) * n[0]));
+  across_by_rho = minus_rho * n[0];
 }
 
 template <class Number>
 template <class TorqueOrders>
-PENDCORE_INLINE void DoublePendulumOrders<Number>::begin(TorqueOrders& torque,
-                                                         Number* coefficients) {
-  first_order<0>(torque, coefficients);
-  first_order<1>(torque, coefficients);
-  first_order<2>(torque, coefficients);
-  put_factors_together();
-}
-
-template <class Number>
-template <int odd, class TorqueOrders>
-PENDCORE_INLINE void DoublePendulumOrders<Number>::next(int k, const Row& sum, const Row& rest,
-                                                        TorqueOrders& torque,
-                                                        Number* coefficients) {
-  const Row order = Constants<Row>::of(static_cast<double>(k));
-  const Row by = fma(order, second, first);
-  const Row older = fma(Row((k + 1.0) * by_rest), other(rest), fma(by, other(rest_before), sum));
-  const Row of_u = fma(order, fma(order, by_u[2], by_u[1]), by_u[0]);
-  const Row of_rate = fma(order, by_rate_before[1], by_rate_before[0]);
-  const Row known = fma(of_u, other(u[odd]), fma(by_own_u, u[odd], older));
-  finish<odd>(k, fma(of_rate, other(rate[1 - odd]), halves_added(known)),
-              fma(rates[k - 1], n2, fma(rate1, n[k], rest)), torque, coefficients);
-}
-
-template <class Number>
-template <int odd, class TorqueOrders>
-PENDCORE_INLINE void DoublePendulumOrders<Number>::finish(int k, Row f, const Row& rest,
+PENDCORE_INLINE void DoublePendulumOrders<Number>::finish(int k, const Row& along,
+                                                          const Row& across,
                                                           TorqueOrders& torque,
                                                           Number* coefficients) {
-  const double share = inverse_of[k + 1];
-  const double share_after = inverse_of[k + 2];
+  const Row beta = (k + 1.0) * along;
+  Half f = low_half(halves_added(fma(across_by_rho, other(beta), across)));
   if constexpr (!std::is_same_v<TorqueOrders, NoTorque>) {
-    f = f + twice(torque.next(k, angle_of_order, rate_of_order));
+    f = f + torque.next(k, angle_of_order, rates[k]);
   }
-  const Row own_share = share * own;
-  const Row cross_share = share * cross;
-  const Row of_rate = fma(Constants<Row>::of(static_cast<double>(k)), by_rate[1], by_rate[0]);
-  const Row without_rate = fma(cross_share, other(f), own_share * f);
-  const Row rate_after = fma(Row(own_share * of_rate), other(rate[odd]),
-                             fma(Row(cross_share * other(of_rate)), rate[odd], without_rate));
-  u_without_rate = share_after * fma(rate0, n[k + 1], fma(n1, rate[odd], rest));
-  const Row u_after = fma(Row(share_after * n0), rate_after, u_without_rate);
-
-  angle_of_order = share * rate_of_order;
-  rate_of_order = low_half(rate_after);
+  const Half alpha = fma(cross, other(f), own * f);
+  const double share = inverse_of[k + 1];
+  angle_of_order = share * rates[k];
+  rates[k + 1] = share * alpha;
   Of::put_row(coefficients + static_cast<std::ptrdiff_t>(4) * (k + 1),
-              joined(angle_of_order, Half(per_sigma * rate_of_order)));
-  pulls[k] = ((k + 1.0) * (k + 2.0) * minus_rho) * other(u_after);
-  n[k + 2] = turned(u_after);
-  rates[k + 1] = rate_after;
-  u[odd] = u_after;
-  rest_before = rest;
-  rate[1 - odd] = rate_after;
+              joined(angle_of_order, Half(per_sigma * rates[k + 1])));
+  const Row bend = fma(twice(alpha), n[0], beta);  // u''
+  n[k + 2] = turned(Row((share * inverse_of[k + 2]) * bend));
+  pulls[k] = minus_rho * other(bend);
 }
 
-/// The older terms of both sums of orders k and k + 1: what `next` takes. Two orders are computed
-/// at a time, so that what they share is loaded once.
-template <class Row>
-struct OlderTerms {
-  Row sum, rest, next_sum, next_rest;
-};
+namespace double_pendulum_detail {
 
-/// Adds up these terms of numbers, or of packs, that `pull(j)`, `rate(j)` and `n(j)` return.
+/// Adds up the known terms of orders k >= 2 and k + 1 of the numbers that `pull(j)`, `rate(j)` and
+/// `n(j)` return.
 template <class Value, class Pull, class Rate, class Normal>
-PENDCORE_INLINE OlderTerms<Value> older_terms(int k, const Pull& pull, const Rate& rate,
+PENDCORE_INLINE KnownTerms<Value> known_terms(int k, const Pull& pull, const Rate& rate,
                                               const Normal& n) {
-  Value sum{}, sum_even{}, rest{}, rest_even{};  // sums of order k over odd and even j
-  Value next_sum{}, next_sum_even{}, next_rest{}, next_rest_even{};
-  Value n_before = n(k);
-  for (int j = 1; j < k - 3; j += 2) {
-    const Value n_here = n(k - j);
-    const Value n_after = n(k - j - 1);
-    const Value pull_here = pull(j);
-    const Value pull_after = pull(j + 1);
-    const Value rate_here = rate(j + 1);
-    const Value rate_after = rate(j + 2);
-    sum = fma(pull_here, n_here, sum);
-    rest = fma(rate_here, n_here, rest);
-    next_sum = fma(pull_here, n_before, next_sum);
-    next_rest = fma(rate_here, n_before, next_rest);
-    sum_even = fma(pull_after, n_after, sum_even);
-    rest_even = fma(rate_after, n_after, rest_even);
-    next_sum_even = fma(pull_after, n_here, next_sum_even);
-    next_rest_even = fma(rate_after, n_here, next_rest_even);
-    n_before = n_after;
+  KnownTerms<Value> sum;
+  auto rate_here = rate(1);
+  Value pull_here = pull(0);
+  for (int i = k; i >= 2; --i) {
+    const Value n_here = n(i);
+    sum.along = fma(rate_here, n_here, sum.along);
+    sum.across = fma(pull_here, n_here, sum.across);
+    rate_here = rate(k + 2 - i);
+    pull_here = pull(k + 1 - i);
+    sum.next_along = fma(rate_here, n_here, sum.next_along);
+    sum.next_across = fma(pull_here, n_here, sum.next_across);
   }
-  const Value n_last = n(3);
-  sum = fma(pull(k - 3), n_last, sum);
-  rest = fma(rate(k - 2), n_last, rest);
-  next_sum = fma(pull(k - 3), n_before, next_sum);
-  next_rest = fma(rate(k - 2), n_before, next_rest);
-  next_sum_even = fma(pull(k - 2), n_last, next_sum_even);
-  next_rest_even = fma(rate(k - 1), n_last, next_rest_even);
-  return {sum + sum_even, rest + rest_even, next_sum + next_sum_even, next_rest + next_rest_even};
+  const Value n_last = n(k + 1);
+  sum.along = fma(rate_here, n(1), fma(rate(0), n_last, sum.along));
+  sum.across = fma(pull_here, n(1), sum.across);
+  sum.next_along = fma(rate(1), n_last, sum.next_along);
+  sum.next_across = fma(pull(0), n_last, sum.next_across);
+  return sum;
 }
 
-PENDCORE_INLINE OlderTerms<Pairs> older_terms(const DoublePendulumOrders<double>& orders, int k) {
-  return older_terms<Pairs>(
+PENDCORE_INLINE KnownTerms<Pairs> known_terms(const DoublePendulumOrders<double>& orders, int k) {
+  return known_terms<Pairs>(
       k, [&](int j) __attribute__((always_inline)) { return orders.pulls[j]; },
-      [&](int j) __attribute__((always_inline)) { return orders.rates[j]; },
+      [&](int j) __attribute__((always_inline)) { return twice(orders.rates[j]); },
       [&](int j) __attribute__((always_inline)) { return orders.n[j]; });
 }
-/// In lanes, the numbers of a row are added up one after the other: the sums of a whole row would
-/// not fit into the registers.
+/// In lanes, the numbers of one link are added up after those of the other: the sums of a whole row
+/// would not fit into the registers.
 template <class Real>
-PENDCORE_INLINE OlderTerms<TwoPairs<Real>> older_terms(const DoublePendulumOrders<Real>& orders,
+PENDCORE_INLINE KnownTerms<TwoPairs<Real>> known_terms(const DoublePendulumOrders<Real>& orders,
                                                        int k) {
-  OlderTerms<TwoPairs<Real>> terms;
-  const auto add = [&](auto half, auto one) __attribute__((always_inline)) {
-    const OlderTerms<Real> found = older_terms<Real>(
-        k, [&](int j) __attribute__((always_inline)) { return orders.pulls[j].*half.*one; },
-        [&](int j) __attribute__((always_inline)) { return orders.rates[j].first.*one; },
-        [&](int j) __attribute__((always_inline)) { return orders.n[j].*half.*one; });
-    terms.sum.*half.*one = found.sum;
-    terms.rest.*half.*one = found.rest;
-    terms.next_sum.*half.*one = found.next_sum;
-    terms.next_rest.*half.*one = found.next_rest;
+  using AlongAxes = Two<Real>;  // a number along x, and one along y
+  KnownTerms<TwoPairs<Real>> terms;
+  const auto add = [&](Real Two<Real>::* link) __attribute__((always_inline)) {
+    const auto of = [link](const TwoPairs<Real>& row) __attribute__((always_inline)) {
+      return AlongAxes{row.first.*link, row.second.*link};
+    };
+    const auto put = [link](TwoPairs<Real>& row, const AlongAxes& x) __attribute__((always_inline)) {
+      row.first.*link = x.first;
+      row.second.*link = x.second;
+    };
+    const KnownTerms<AlongAxes> found = known_terms<AlongAxes>(
+        k, [&](int j) __attribute__((always_inline)) { return of(orders.pulls[j]); },
+        [&](int j) __attribute__((always_inline)) { return orders.rates[j].*link; },
+        [&](int j) __attribute__((always_inline)) { return of(orders.n[j]); });
+    put(terms.along, found.along);
+    put(terms.across, found.across);
+    put(terms.next_along, found.next_along);
+    put(terms.next_across, found.next_across);
   };
-  add(&TwoPairs<Real>::first, &Two<Real>::first);
-  add(&TwoPairs<Real>::first, &Two<Real>::second);
-  add(&TwoPairs<Real>::second, &Two<Real>::first);
-  add(&TwoPairs<Real>::second, &Two<Real>::second);
+  add(&Two<Real>::first);
+  add(&Two<Real>::second);
   return terms;
 }
+
+}  // namespace double_pendulum_detail
 
 /// Fills rows 1 .. order of `coefficients` with the series from the state y, a row of four numbers,
 /// in units of sigma. `torque` gives the series of the torques.
@@ -376,14 +276,16 @@ template <class Number, class TorqueOrders>
 PENDCORE_INLINE void expand_double_pendulum(const ConstantsOfDoublePendulum<Number>& constants,
                                             const Number* y, const Number& sigma, int order,
                                             TorqueOrders& torque, Number* coefficients) {
-  using Row = typename SeriesOf<Number>::Row;
-  DoublePendulumOrders<Number> orders(constants, y, sigma);
-  orders.begin(torque, coefficients);
-  orders.template next<1>(3, Row{}, Row{}, torque, coefficients);
-  for (int k = 4; k < order; k += 2) {
-    const OlderTerms<Row> older = older_terms(orders, k);
-    orders.template next<0>(k, older.sum, older.rest, torque, coefficients);
-    orders.template next<1>(k + 1, older.next_sum, older.next_rest, torque, coefficients);
+  using Orders = DoublePendulumOrders<Number>;
+  Orders orders(constants, y, sigma);
+  orders.finish(0, twice(orders.rates[0]) * orders.n[1], orders.weight * orders.n[0], torque,
+                coefficients);
+  orders.pulls[0] = orders.pulls[0] + orders.weight;
+  orders.finish_next(0, typename Orders::Terms{}, torque, coefficients);
+  for (int k = 2; k < order; k += 2) {
+    const typename Orders::Terms known = double_pendulum_detail::known_terms(orders, k);
+    orders.finish(k, known.along, known.across, torque, coefficients);
+    orders.finish_next(k, known, torque, coefficients);
   }
 }
 

@@ -269,7 +269,7 @@ struct FewLinksOrders {
     Value rate = of(rates[1]);
     Value x = of(hx[0]);
     Value y = of(hy[0]);
-    for (int i = k; i >= 2; --i) {
+  for (int i = k; i >= 2; --i) {
       const Value n_x = of(nx[i]);
       const Value n_y = of(ny[i]);
       sum.along_x = fma(rate, n_x, sum.along_x);

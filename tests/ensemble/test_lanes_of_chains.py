@@ -1,0 +1,109 @@
+"""Chains of three and four links in lanes of Taylor series: the bits of `pc.simulate`."""
+
+from __future__ import annotations
+
+import numpy as np
+import pendcore as pc
+import pytest
+from test_lanes import assert_same
+from test_lanes_with_effects import has_lanes
+
+E = pc.effects
+SCENES = {
+    "bare": [],
+    "payload and a rotor in joint 1": [E.Payload(mass=0.3), E.RotorInertia(joint=1, armature=0.2)],
+    "damping": [E.ViscousJoint(joint=1, damping=0.1), E.ViscousJoint(joint=3, damping=0.3)],
+    "spring and the cube of a rate": [
+        E.TorsionalSpring(joint=2, stiffness=3.0, rest_angle=0.2),
+        E.ViscousJoint(joint=2, damping=0.1, damping3=0.05),
+    ],
+    "two waves": [
+        E.Motor(joint=1, sinusoid=E.Sinusoid(3.0, 6.0, 0.4)),
+        E.Motor(joint=3, sinusoid=E.Sinusoid(1.0, 11.0)),
+    ],
+    "controller": [E.Motor(joint=2, pd=E.PD(kp=4.0, kd=0.5, reference=0.3))],
+}
+ONE_BY_ONE = {
+    "rotor between links": [E.RotorInertia(joint=2, armature=0.2)],
+    "friction": [E.DryJointFriction(joint=2, coulomb=0.2)],
+    "three waves": [E.Motor(joint=1, sinusoid=E.Sinusoid(1.0, 6.0 + k)) for k in range(3)],
+    "shaken pivot": [E.DrivenPivot(x=E.Sinusoid(0.05, 9.0))],
+    "drag": [E.RodDrag(link=2, drag_coefficient=1.2, diameter=0.03)],
+}
+
+
+def chain(n, effects=()):
+    links = [pc.Link(mass=1.0 + 0.2 * i, length=1.0 - 0.1 * i) for i in range(n)]
+    return pc.Scene(links=links, gravity=9.81, effects=list(effects))
+
+
+def starts(count, n, seed, reach):
+    return pc.draw.uniform(-reach, reach, (count, n), seed=seed)
+
+
+@pytest.mark.parametrize("rtol", [1e-3, 1e-7, 1e-12])
+@pytest.mark.parametrize("n", [3, 4])
+@pytest.mark.parametrize("name", SCENES)
+def test_chains_in_lanes_have_the_bits_of_single_runs(name, n, rtol):
+    scene = chain(n, SCENES[name])
+    if has_lanes():
+        assert scene.explain().lanes == ("taylor",)
+    q0, qd0 = starts(21, n, 2, np.pi), starts(21, n, 3, 4.0)
+    for method in ("taylor", "taylor-radau5"):
+        same = {"method": method, "rtol": rtol, "atol": rtol / 10}
+        found = assert_same(scene, q0, qd0, (0.3, 2.3), **same)
+        assert found.success.all()
+        assert_same(scene, q0, qd0, (1.0, 0.0), **same, max_steps=11)
+        assert_same(scene, q0[:3], qd0[:3], (0.0, 1.0), **same, max_step=0.02)
+
+
+@pytest.mark.parametrize("name", ONE_BY_ONE)
+def test_other_chains_run_one_by_one(name):
+    scene = chain(3, ONE_BY_ONE[name])
+    assert scene.explain().lanes == ()
+    method = "dop853" if name == "drag" else "taylor"
+    assert_same(scene, starts(7, 3, 2, 0.5), 0.0, (0, 1), method=method)
+
+
+@pytest.mark.parametrize("n", [3, 4])
+def test_parameters_of_chains_differ_from_lane_to_lane(n):
+    scene = chain(n, SCENES["two waves"])
+    names = ["link[3].mass", "link[1].length", "gravity", "effect[2].sinusoid.amplitude"]
+    values = pc.draw.uniform(0.5, 2.0, (13, len(names)), seed=6)
+    vary = {name: values[:, k] for k, name in enumerate(names)}
+    start = np.linspace(0.4, 1.2, n)
+    found = pc.ensemble(scene, start, t_span=(0, 3), vary=vary, method="taylor")
+    for i in range(13):
+        one = scene.with_parameters({name: x[i] for name, x in vary.items()})
+        alone = pc.simulate(one, start, t_span=(0, 3), method="taylor")
+        assert np.array_equal(found.q[i], alone.q[-1])
+
+
+@pytest.mark.parametrize("terminal", [False, True])
+def test_first_events_of_chains_are_those_of_simulate(terminal):
+    scene = chain(3)
+    event = pc.events.LinkAngle(3, -np.pi / 2, every_turn=True, terminal=terminal)
+    q0 = starts(23, 3, 8, 3.0)
+    found = pc.ensemble(
+        scene, q0, t_span=(0, 3), method="taylor", keep=pc.keep.FirstEvent(event), rtol=1e-9
+    )
+    for i, start in enumerate(q0):
+        alone = pc.simulate(
+            scene, start, t_span=(0, 3), method="taylor", events=[event], rtol=1e-9
+        )
+        first = alone.events[0].t[:1]
+        assert np.array_equal(found["first_event"][i : i + 1][: len(first)], first)
+        assert (found.t[i], *found.q[i]) == (alone.t[-1], *alone.q[-1])
+    assert np.isfinite(found["first_event"]).any()
+
+
+def test_a_heavy_payload_on_light_links_agrees_with_another_method():
+    """The factors of the inverse lose nothing where the links are light."""
+    light = [pc.Link(mass=1e-3, length=1.0)] * 3
+    scene = pc.Scene(links=light, gravity=9.807, effects=[E.Payload(mass=10.0)])
+    start = [0.3, 0.9, -0.2]
+    ends = [
+        pc.simulate(scene, start, t_span=(0, 0.5), method=m, rtol=1e-13, atol=1e-13).q[-1]
+        for m in ("taylor", "dop853")
+    ]
+    np.testing.assert_allclose(*ends, rtol=0, atol=2e-10)
