@@ -80,6 +80,29 @@ void print_switching_and_stiff_runs() {
   }
 }
 
+/// Series of few links, bare and with torques of each kind.
+void print_series() {
+  Options options;
+  options.method = "taylor";
+  options.rtol = {1e-11};
+  const std::vector<Effect> torques = {
+      ViscousJoint{.joint = 1, .damping = 0.02, .damping3 = 0.01},
+      Motor{.joint = 2, .sinusoid = Sinusoid{0.5, 3.0, 0.1}},
+      Motor{.joint = 1, .pd = PD{2.0, 0.3, 1.0}},
+  };
+  for (const int n : {2, 3, 4}) {
+    Scene scene{.links = std::vector<Link>(n, Link::uniform_rod(0.4, 0.3))};
+    const std::vector<double> start(n, 0.5);
+    const std::vector<double> rates(n, -2.0);
+    const auto name = [n](const std::string& what) {
+      return what + " taylor, " + std::to_string(n) + " links";
+    };
+    if (n > 2) print(name("bare").c_str(), simulate(scene, start, rates, 0, 5, options));
+    scene.effects = torques;
+    print(name("torques").c_str(), simulate(scene, start, rates, 0, 5, options));
+  }
+}
+
 /// Runs that name no method: each branch of the rule, and a run that turns out to be stiff.
 void print_runs_without_a_method() {
   const std::vector<Link> rods(2, Link::uniform_rod(1.0, 0.7));
@@ -135,6 +158,7 @@ int main() {
                                       {4.0, -9.0, 1.0, 2.0, 3.0, 4.0, 5.0}, 0, 2, tight));
   print_switching_and_stiff_runs();
   print_explicit_runs();
+  print_series();
   print_runs_without_a_method();
   return 0;
 }
