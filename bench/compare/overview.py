@@ -12,9 +12,9 @@ from tables import number, power, short, table
 PAGE = """# What accuracy costs, beside other solvers
 
 Made by `make compare` from its [records](../records/comparison). Do not edit: run again. The pages
-of the cases have every contender's figures: {cases}. Two more pages answer other questions:
-[effects](effects.md) (what each effect costs) and [chains](chains.md) (forward dynamics of n
-links).
+of the cases have every contender's figures: {cases}. Three more pages answer other questions:
+[effects](effects.md) (what each effect costs), [chains](chains.md) (forward dynamics of n links)
+and [ensembles](ensembles.md) (many runs at once).
 
 ## What to choose
 

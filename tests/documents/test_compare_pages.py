@@ -48,7 +48,7 @@ def test_page_on_all_solves_is_what_the_records_say() -> None:
     known = {stem: read(stem) for stem in [*page.ABOUT, "stiff"]}
     written = (PAGES / "README.md").read_text(encoding="utf-8")
     assert overview.page(known) == written
-    assert all(f"({stem}.md)" in written for stem in [*known, "chains", "effects"])
+    assert all(f"({stem}.md)" in written for stem in [*known, "chains", "effects", "ensembles"])
 
 
 # The comparison is about these contenders; a record without one of them would miss its purpose.

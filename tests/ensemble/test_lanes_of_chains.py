@@ -88,9 +88,7 @@ def test_first_events_of_chains_are_those_of_simulate(terminal):
         scene, q0, t_span=(0, 3), method="taylor", keep=pc.keep.FirstEvent(event), rtol=1e-9
     )
     for i, start in enumerate(q0):
-        alone = pc.simulate(
-            scene, start, t_span=(0, 3), method="taylor", events=[event], rtol=1e-9
-        )
+        alone = pc.simulate(scene, start, t_span=(0, 3), method="taylor", events=[event], rtol=1e-9)
         first = alone.events[0].t[:1]
         assert np.array_equal(found["first_event"][i : i + 1][: len(first)], first)
         assert (found.t[i], *found.q[i]) == (alone.t[-1], *alone.q[-1])

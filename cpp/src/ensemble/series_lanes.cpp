@@ -129,8 +129,8 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
   std::vector<EventFinder::Difference> differences_;
   std::array<std::unique_ptr<EventFinder>, width> finders_;
   std::vector<double> rows_;
-  Attention (*take_steps_)(All*, const LaneInterval*, int) =
-      only<&take_series_steps<Form, width>, set>();
+  Attention (*take_steps_)(All*, const LaneInterval*,
+                           int) = only<&take_series_steps<Form, width>, set>();
 };
 
 template <InstructionSet set, template <class> class... Forms>

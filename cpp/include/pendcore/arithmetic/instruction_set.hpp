@@ -12,7 +12,7 @@
 #pragma once
 
 #define PENDCORE_INLINE [[gnu::always_inline]] inline
-/// For long parts of a kernel with several callers: a module that is sent to browsers has them once.
+/// For long parts of kernels with several callers. A module that is sent to browsers has them once.
 #ifdef PENDCORE_SMALL
 #define PENDCORE_INLINE_UNLESS_SMALL [[gnu::noinline]] inline
 #else

@@ -40,50 +40,43 @@ using RowOfLinks = typename row_detail::RowOfLinks<Number, links>::Type;
 
 template <class Real, int links>
 PENDCORE_INLINE EachLink<Real, links> operator-(const EachLink<Real, links>& x) {
-  return row_detail::each<Real, links>([&](int i) __attribute__((always_inline)) {
-    return Real(-x.of[i]);
-  });
+  return row_detail::each<Real, links>(
+      [&](int i) __attribute__((always_inline)) { return Real(-x.of[i]); });
 }
 template <class Real, int links>
 PENDCORE_INLINE EachLink<Real, links> operator+(const EachLink<Real, links>& x,
                                                 const EachLink<Real, links>& y) {
-  return row_detail::each<Real, links>([&](int i) __attribute__((always_inline)) {
-    return Real(x.of[i] + y.of[i]);
-  });
+  return row_detail::each<Real, links>(
+      [&](int i) __attribute__((always_inline)) { return Real(x.of[i] + y.of[i]); });
 }
 template <class Real, int links>
 PENDCORE_INLINE EachLink<Real, links> operator-(const EachLink<Real, links>& x,
                                                 const EachLink<Real, links>& y) {
-  return row_detail::each<Real, links>([&](int i) __attribute__((always_inline)) {
-    return Real(x.of[i] - y.of[i]);
-  });
+  return row_detail::each<Real, links>(
+      [&](int i) __attribute__((always_inline)) { return Real(x.of[i] - y.of[i]); });
 }
 template <class Real, int links>
 PENDCORE_INLINE EachLink<Real, links> operator*(const EachLink<Real, links>& x,
                                                 const EachLink<Real, links>& y) {
-  return row_detail::each<Real, links>([&](int i) __attribute__((always_inline)) {
-    return Real(x.of[i] * y.of[i]);
-  });
+  return row_detail::each<Real, links>(
+      [&](int i) __attribute__((always_inline)) { return Real(x.of[i] * y.of[i]); });
 }
 template <class Real, int links>
 PENDCORE_INLINE EachLink<Real, links> operator*(const Real& x, const EachLink<Real, links>& y) {
-  return row_detail::each<Real, links>([&](int i) __attribute__((always_inline)) {
-    return Real(x * y.of[i]);
-  });
+  return row_detail::each<Real, links>(
+      [&](int i) __attribute__((always_inline)) { return Real(x * y.of[i]); });
 }
 template <class Real, int links>
 PENDCORE_INLINE EachLink<Real, links> operator*(double x, const EachLink<Real, links>& y) {
-  return row_detail::each<Real, links>([&](int i) __attribute__((always_inline)) {
-    return Real(x * y.of[i]);
-  });
+  return row_detail::each<Real, links>(
+      [&](int i) __attribute__((always_inline)) { return Real(x * y.of[i]); });
 }
 template <class Real, int links>
 PENDCORE_INLINE EachLink<Real, links> fma(const EachLink<Real, links>& a,
                                           const EachLink<Real, links>& b,
                                           const EachLink<Real, links>& c) {
-  return row_detail::each<Real, links>([&](int i) __attribute__((always_inline)) {
-    return fma(a.of[i], b.of[i], c.of[i]);
-  });
+  return row_detail::each<Real, links>(
+      [&](int i) __attribute__((always_inline)) { return fma(a.of[i], b.of[i], c.of[i]); });
 }
 template <class Real, int links>
 PENDCORE_INLINE void sine_cosine(const EachLink<Real, links>& x, EachLink<Real, links>& sine,
@@ -95,9 +88,8 @@ PENDCORE_INLINE void sine_cosine(const EachLink<Real, links>& x, EachLink<Real, 
 template <class Real, int links>
 PENDCORE_INLINE EachLink<Real, links> fma(const Real& a, const EachLink<Real, links>& b,
                                           const EachLink<Real, links>& c) {
-  return row_detail::each<Real, links>([&](int i) __attribute__((always_inline)) {
-    return fma(a, b.of[i], c.of[i]);
-  });
+  return row_detail::each<Real, links>(
+      [&](int i) __attribute__((always_inline)) { return fma(a, b.of[i], c.of[i]); });
 }
 
 /// The value at the joint before, and at the joint after; 0 beyond the ends of the chain.
@@ -109,15 +101,13 @@ PENDCORE_INLINE Pack<4> after(const Pack<4>& x) {
 }
 template <class Real, int links>
 PENDCORE_INLINE EachLink<Real, links> before(const EachLink<Real, links>& x) {
-  return row_detail::each<Real, links>([&](int i) __attribute__((always_inline)) {
-    return i == 0 ? Real{} : x.of[i - 1];
-  });
+  return row_detail::each<Real, links>(
+      [&](int i) __attribute__((always_inline)) { return i == 0 ? Real{} : x.of[i - 1]; });
 }
 template <class Real, int links>
 PENDCORE_INLINE EachLink<Real, links> after(const EachLink<Real, links>& x) {
-  return row_detail::each<Real, links>([&](int i) __attribute__((always_inline)) {
-    return i + 1 == links ? Real{} : x.of[i + 1];
-  });
+  return row_detail::each<Real, links>(
+      [&](int i) __attribute__((always_inline)) { return i + 1 == links ? Real{} : x.of[i + 1]; });
 }
 
 template <class Real, int links>
@@ -149,9 +139,8 @@ PENDCORE_INLINE Pack<4> link_after(const Pack<4>& row) {
 }
 template <int links, int by, class Real>
 PENDCORE_INLINE EachLink<Real, links> link_after(const EachLink<Real, links>& row) {
-  return row_detail::each<Real, links>([&](int i) __attribute__((always_inline)) {
-    return row.of[(i + by) % links];
-  });
+  return row_detail::each<Real, links>(
+      [&](int i) __attribute__((always_inline)) { return row.of[(i + by) % links]; });
 }
 
 }  // namespace pendcore

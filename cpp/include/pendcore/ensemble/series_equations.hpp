@@ -100,9 +100,9 @@ struct LoadedDoublePendulumSeries {
     const auto take = [&](const auto* form) {
       if (form == nullptr || !equations.effects->pivots.empty()) return;
       const auto& effects = dynamic_cast<const ActingEffects<Pair>&>(*equations.effects);
-      found = {{form->weight, form->coupling, form->rotor, form->product, form->delta,
-                form->epsilon},
-               torque_laws(effects, form->inverse_diagonal)};
+      found = {
+          {form->weight, form->coupling, form->rotor, form->product, form->delta, form->epsilon},
+          torque_laws(effects, form->inverse_diagonal)};
     };
     take(std::get_if<DoublePendulumWithEffects<Parts::couples>>(&equations.form));
     take(std::get_if<DoublePendulumWithEffects<Parts::waves>>(&equations.form));

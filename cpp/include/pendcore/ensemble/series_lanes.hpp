@@ -37,7 +37,7 @@ struct SeriesLanes : LaneSteps<width> {
   std::span<const EventFinder::Difference> differences;  ///< of all events
   Integers begins = {};  ///< all bits set where a member has no series yet
   int order = lowest_taylor_order;
-  double log2_count = 0.0;  ///< log2 of the count of numbers in a state
+  double log2_count = 0.0;                     ///< log2 of the count of numbers in a state
   Real of_y[(highest_order + 1) * size] = {};  ///< two series: those from y, and from y_new
   Real of_y_new[(highest_order + 1) * size] = {};
   Real* rows = of_y;
@@ -194,8 +194,8 @@ PENDCORE_INLINE Attention take_series_steps(SeriesLanes<Form, width>* all,
     all->sigma_new = begins ? all->sigma : taylor_detail::power_of_two_below(from_here);
     const detail::TwoReals<Real> start{all->t, all->t_low};
     const Real t_new = begins ? all->t : (start + h).high;
-    const Integers has_series = detail::expand(all, t_new, all->y_new, all->rows_new,
-                                               all->sigma_new, all->largest_new);
+    const Integers has_series =
+        detail::expand(all, t_new, all->y_new, all->rows_new, all->sigma_new, all->largest_new);
     is_odd |= ~has_series;
     constexpr double safety = 0.95;  // as in attempt_series()
     const ErrorAndFactor<Real> found{squared_error, (safety / size_of_step) * all->largest_new};

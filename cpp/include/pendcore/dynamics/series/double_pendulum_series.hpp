@@ -187,8 +187,7 @@ PENDCORE_INLINE DoublePendulumOrders<Number>::DoublePendulumOrders(
 template <class Number>
 template <class TorqueOrders>
 PENDCORE_INLINE void DoublePendulumOrders<Number>::finish(int k, const Row& along,
-                                                          const Row& across,
-                                                          TorqueOrders& torque,
+                                                          const Row& across, TorqueOrders& torque,
                                                           Number* coefficients) {
   const Row beta = (k + 1.0) * along;
   Half f = low_half(halves_added(fma(across_by_rho, other(beta), across)));
@@ -250,10 +249,11 @@ PENDCORE_INLINE KnownTerms<TwoPairs<Real>> known_terms(const DoublePendulumOrder
     const auto of = [link](const TwoPairs<Real>& row) __attribute__((always_inline)) {
       return AlongAxes{row.first.*link, row.second.*link};
     };
-    const auto put = [link](TwoPairs<Real>& row, const AlongAxes& x) __attribute__((always_inline)) {
-      row.first.*link = x.first;
-      row.second.*link = x.second;
-    };
+    const auto put = [link](TwoPairs<Real>& row, const AlongAxes& x)
+                         __attribute__((always_inline)) {
+                           row.first.*link = x.first;
+                           row.second.*link = x.second;
+                         };
     const KnownTerms<AlongAxes> found = known_terms<AlongAxes>(
         k, [&](int j) __attribute__((always_inline)) { return of(orders.pulls[j]); },
         [&](int j) __attribute__((always_inline)) { return orders.rates[j].*link; },

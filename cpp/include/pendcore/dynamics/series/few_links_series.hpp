@@ -15,16 +15,17 @@
 ///     M_0 alpha = tau_k - n_0 . A beta - sum_{j<k} n_{k-j} . H_j
 ///     H_k = A beta + (A n_0) alpha
 ///
-/// M_0 is the mass matrix at the angles q_0. Its inverse is U^T diag(r) U, the product form of the
+/// M_0 is the mass matrix at the angles q_0. Its inverse is U^T diag(r) U, the factors of the
 /// recursion of chain.hpp: U takes the torques in all joints to those that turn a link with the
 /// links beyond it, and r is the inverse of what resists. Nothing cancels in r, whatever the masses.
 ///
-/// A product of a matrix and a row needs each number of the row beside each other one: here the
-/// row is turned by one link after the other, and `[d]` of a matrix has its entries (i, i + d).
+/// A product of a matrix and a row needs each number of the row beside each other one. `[d]` of a
+/// matrix has its entries (i, i + d), counted around the end, and is multiplied by the row that is
+/// shifted by d links.
 ///
 /// Source: the recurrences are those of double_pendulum_series.hpp; the factors of the inverse are
 /// those of Rodriguez, Jain and Kreutz-Delgado, Int. J. Robotics Research 10 (1991).
-/// Cost: for each order k six sums of k products of packs, and some 60 operations on packs.
+/// Cost: for order k four sums of k products of rows, and some 40 operations on rows.
 #pragma once
 
 #include <memory>
@@ -191,11 +192,11 @@ struct FewLinksOrders {
   const ConstantsOfFewLinks<Number, links>& constants;
   Number per_sigma;
   few_links_detail::InverseMassMatrix<Row, links> inverse;
-  Row turned_x[links];              ///< A n_0; [0] is not used
+  Row turned_x[links];  ///< A n_0; [0] is not used
   Row turned_y[links];
   Row angle_of_order;  ///< q_k
   Row nx[highest_order + 3], ny[highest_order + 3];
-  Row rates[highest_order + 1];     ///< qd_k
+  Row rates[highest_order + 1];  ///< qd_k
   Row hx[highest_order + 1], hy[highest_order + 1];
 
   PENDCORE_INLINE FewLinksOrders(const ConstantsOfFewLinks<Number, links>& of, const Number* y,
@@ -245,8 +246,7 @@ struct FewLinksOrders {
     ny[k + 2] = share_after * fma(alpha, nx[0], beta_x);
     hx[k] = push_x + times<links>(turned_x, alpha);
     hy[k] = push_y + times<links>(turned_y, alpha);
-    Number* const row =
-        coefficients + static_cast<std::ptrdiff_t>(2 * Rows::numbers) * (k + 1);
+    Number* const row = coefficients + static_cast<std::ptrdiff_t>(2 * Rows::numbers) * (k + 1);
     Rows::put(row, angle_of_order);
     Rows::put(row + Rows::numbers, per_sigma * rate_after);
   }
@@ -256,8 +256,8 @@ struct FewLinksOrders {
                                    Number* coefficients) {
     const Row along_x = fma(rates[k + 1], nx[1], fma(rates[0], nx[k + 2], known.next_along_x));
     const Row along_y = fma(rates[k + 1], ny[1], fma(rates[0], ny[k + 2], known.next_along_y));
-    const Row across = fma(hx[k], nx[1], known.next_across_x) +
-                       fma(hy[k], ny[1], known.next_across_y);
+    const Row across =
+        fma(hx[k], nx[1], known.next_across_x) + fma(hy[k], ny[1], known.next_across_y);
     finish(k + 1, along_x, along_y, across, nullptr, torques, coefficients);
   }
 
@@ -269,7 +269,7 @@ struct FewLinksOrders {
     Value rate = of(rates[1]);
     Value x = of(hx[0]);
     Value y = of(hy[0]);
-  for (int i = k; i >= 2; --i) {
+    for (int i = k; i >= 2; --i) {
       const Value n_x = of(nx[i]);
       const Value n_y = of(ny[i]);
       sum.along_x = fma(rate, n_x, sum.along_x);
@@ -315,9 +315,8 @@ PENDCORE_INLINE KnownTerms<EachLink<Real, links>> known_terms(
 #pragma GCC unroll 4
   for (int i = 0; i < links; ++i) {
     const KnownTerms<Real> found = orders.template known_terms<Real>(
-        k, [i](const EachLink<Real, links>& row) __attribute__((always_inline)) {
-          return row.of[i];
-        });
+        k,
+        [i](const EachLink<Real, links>& row) __attribute__((always_inline)) { return row.of[i]; });
     terms.along_x.of[i] = found.along_x;
     terms.along_y.of[i] = found.along_y;
     terms.across_x.of[i] = found.across_x;

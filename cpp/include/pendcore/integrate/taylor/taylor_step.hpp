@@ -2,7 +2,8 @@
 /// One step of the method of Taylor series (taylor.hpp): the kernels.
 ///
 /// A system is a `Series`. It has the size of its rows, `links()` and `row()`; whether it
-/// `depends_on_time()`; what a processor works on, `Block` and `blocks` (0 if known only at run time); and
+/// `depends_on_time()`; what a processor works on, `Block` and `blocks` (0 if known only at run
+/// time); and
 ///
 ///     expand(t, y, sigma, order, coefficients)
 ///
