@@ -17,7 +17,8 @@
 ///
 /// M_0 is the mass matrix at the angles q_0. Its inverse is U^T diag(r) U, the factors of the
 /// recursion of chain.hpp: U takes the torques in all joints to those that turn a link with the
-/// links beyond it, and r is the inverse of what resists. Nothing cancels in r, whatever the masses.
+/// links beyond it, and r is the inverse of what resists. Whatever the masses, nothing cancels in
+/// r.
 ///
 /// A product of a matrix and a row needs each number of the row beside each other one. `[d]` of a
 /// matrix has its entries (i, i + d), counted around the end, and is multiplied by the row that is
