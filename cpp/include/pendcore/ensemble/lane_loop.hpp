@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <memory>
 #include <optional>
 
 #include "pendcore/ensemble/lane_steps.hpp"
@@ -182,7 +183,7 @@ class LaneLoop : public LaneRunner {
   bool begin(int lane, const Scene& scene) {
     const std::vector<double>& y = members_[lane].state;
     if (!equations_ || &scene != &scene_) {
-      equations_ = equations_of_motion(scene);
+      equations_ = std::make_unique<const EquationsOfMotion>(equations_of_motion(scene));
       equations_are_new(scene, *equations_);
       stepper_ = make_stepper(scene, *equations_, method_, false, false);
       stepper_->set_tolerances(rtol_.data(), atol_.data());
@@ -220,7 +221,7 @@ class LaneLoop : public LaneRunner {
   std::vector<double> rtol_, atol_;
   std::vector<double> rate_;
   std::array<LaneMember, width> members_;
-  std::optional<EquationsOfMotion> equations_;
+  std::unique_ptr<const EquationsOfMotion> equations_;
   std::unique_ptr<Stepper> stepper_;  ///< for the beginnings
   bool is_exhausted_ = false;         ///< no member is left to begin
 };

@@ -34,8 +34,8 @@ bool FewLinksSeries::has(const Scene& scene, const EquationsOfMotion& equations)
 }
 
 FewLinksSeries::FewLinksSeries(const Scene& scene, Effects effects)
-    : links_(static_cast<int>(scene.links.size())),
-      effects_(is_bare(scene) ? nullptr : std::move(effects)) {
+    : effects_(is_bare(scene) ? nullptr : std::move(effects)),
+      links_(static_cast<int>(scene.links.size())) {
   if (links_ == 3) three_ = constants_of_few_links<3>(scene);
   if (links_ == 4) four_ = constants_of_few_links<4>(scene);
 }

@@ -82,10 +82,10 @@ class FewLinksSeries {
                               double* coefficients) const;
 
  private:
-  int links_;
   ConstantsOfFewLinks<double, 3> three_{};
   ConstantsOfFewLinks<double, 4> four_{};
   Effects effects_;
+  int links_;
 };
 
 namespace few_links_detail {
