@@ -47,16 +47,9 @@ reaches the error.
   `dopri5` and `taylor` at all settings), because pendcore checks its arguments and makes and
   returns a result object. This is why some errors reach the goal in C++ and miss it from Python.
 * **In C++** `taylor` is the best method from errors of some 1e-4 down. By count in
-  `double_pendulum_series.hpp`, order k of its series takes 2 (k - 3) + 30 products of rows of four
-  numbers, or k + 12 cycles of a processor with two multipliers. By latency, an order waits 9
-  cycles for the order before it (two products, a change of places) and 44 cycles for the order
-  before that one (two sums, both halves of a row, the two by two system), which makes 22 cycles an
-  order. In fact an order takes longer than either bound: `make bench` (`series/order`) measures
-  some 35 cycles an order at order 12 and 56 at order 28. The reason is that the instructions of
-  one order, 140 by callgrind at order 18, fill half the window in which a processor looks for
-  independent work. We tried without gain: orders written out one by one (the same time, a minute
-  more of compiling), four sums in place of two, instructions in another order by the compiler,
-  higher orders in longer steps.
+  `double_pendulum_series.hpp`, order k of its series takes 2 k + 6 products of rows of four numbers
+  and five of pairs. Factors that let an order wait less for the order before it took three times
+  as many products and were no quicker, so they are gone.
 * Outside the series a step computes its size (two logarithms, a power) and the new state (a
   polynomial), which takes a fifth of its time (`make bench`, `step/latency/taylor` beside
   `series`); the loop and the samples come on top. At 1e-2 its time is close to that of `dopri5`,

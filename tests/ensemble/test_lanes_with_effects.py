@@ -105,3 +105,26 @@ def test_explain_names_the_methods_with_lanes():
         assert told.lanes == ("dopri5", "dop853", "taylor")
         assert "by dopri5, dop853 or taylor, if it keeps their ends" in " ".join(str(told).split())
     assert told.to_dict()["lanes"] == list(told.lanes)
+
+
+def test_explain_names_a_single_method_with_lanes():
+    told = BOOK.replace(links=[pc.Link(mass=1.0, length=1.0)] * 3).explain()
+    if has_lanes():
+        words = " ".join(str(told).split())
+        assert "a lane each, by taylor, if it keeps their ends or their first events" in words
+
+
+def test_stiffness_is_that_of_the_member_of_the_lane():
+    """A stiff member among others, whose equations were made after its own."""
+    scene = scene_of([E.ViscousJoint(joint=2, damping=0.1)])
+    damping = np.tile([200.0, 60.0, 0.1, 0.2, 0.3, 0.4, 0.5], 6)
+    found = pc.ensemble(
+        scene, [0.5, 1.0], t_span=(0, 20), vary={"effect[1].damping": damping},
+        method="taylor-radau5",
+    )  # fmt: skip
+    for i, one in enumerate(damping):
+        alone = pc.simulate(
+            scene.with_parameters({"effect[1].damping": one}), [0.5, 1.0], t_span=(0, 20),
+            method="taylor-radau5",
+        )  # fmt: skip
+        assert np.array_equal(found.q[i], alone.q[-1]), one

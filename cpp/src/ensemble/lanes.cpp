@@ -42,8 +42,8 @@ class RungeKuttaRunner final : public LaneLoop<width_on(set)> {
     const Options& options = this->options();
     double h = std::min(options.first_step.value_or(options.max_step), options.max_step);
     if (!options.first_step) {
-      this->stepper().start(y.data(), this->rate().data());
-      h = first_step(this->stepper(), all_.t[lane], this->t_end(), options.max_step,
+      this->stepper(lane).start(y.data(), this->rate().data());
+      h = first_step(this->stepper(lane), all_.t[lane], this->t_end(), options.max_step,
                      this->rtol().data(), this->atol().data())
               .h;
     }
@@ -84,10 +84,10 @@ std::unique_ptr<LaneRunner> runge_kutta_lanes(std::string_view method, const Sce
 template <InstructionSet set>
 std::unique_ptr<LaneRunner> lanes_of(std::string_view method, const Scene& scene, double t0,
                                      double t_end, const Options& options) {
-  const EquationsOfMotion equations = equations_of_motion(scene);
   if (method == taylor.info.name) {
     return options.first_step ? nullptr : make_series_lanes<set>(scene, t0, t_end, options);
   }
+  const EquationsOfMotion equations = equations_of_motion(scene);
   if (std::holds_alternative<DoublePendulum>(equations.form)) {
     return runge_kutta_lanes<DoublePendulum, set>(method, scene, t0, t_end, options);
   }

@@ -1,8 +1,12 @@
 #include "pendcore/ensemble/series_lanes.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <memory>
+#include <optional>
+#include <vector>
 
-#include "pendcore/ensemble/lane_equations.hpp"
 #include "pendcore/ensemble/lane_loop.hpp"
 #include "pendcore/integrate/taylor/dominant_eigenvalue.hpp"
 #include "pendcore/simulate/event_finder.hpp"
@@ -85,18 +89,18 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
     if (!std::all_of(rows_.end() - All::size, rows_.end(), is_finite)) return Look::is_odd;
     std::array<double, All::size> y{};
     get_state(lane, y.data());
-    this->stepper().set_new_state(y.data());
+    this->stepper(lane).set_new_state(y.data());
     const TwoDouble t_old{all_.t_before[lane], all_.t_low_before[lane]};
     const double t_new = all_.t[lane];
     EventFinder& finder = *finders_[lane];
-    const StepEnd found = finder.look(this->stepper(), rows_.data(), t_old, h, t_new);
+    const StepEnd found = finder.look(this->stepper(lane), rows_.data(), t_old, h, t_new);
     if (found.has_too_many_turns()) return Look::is_odd;
     if (finder.ended_by() < 0) return Look::goes_on;
     if (found.is_within()) {
       const double theta = found.theta;
       const TwoDouble t = time_in_step(t_old, h, theta, t_new);
       if (t.high == t_old.high) return Look::is_odd;
-      this->stepper().sample(rows_.data(), {}, 1.0, &theta, 1, y.data());
+      this->stepper(lane).sample(rows_.data(), {}, 1.0, &theta, 1, y.data());
       for (int i = 0; i < All::size; ++i) all_.y[i][lane] = y[i];
       all_.t[lane] = t.high;
     }
@@ -115,8 +119,8 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
       direction[i] = all_.rows_new[all_.order * All::size + i][lane];
       y[i] = all_.y_new[i][lane];
     }
-    const auto rates = [this](double t, const double* state, double* dydt) {
-      this->stepper().evaluate(t, state, dydt);
+    const auto rates = [this, lane](double t, const double* state, double* dydt) {
+      this->stepper(lane).evaluate(t, state, dydt);
     };
     return stiffness_of_series(eigenvalue_, rates, all_.t_before[lane], y.data(),
                                all_.h_before[lane], all_.order) > taylor.info.stability;

@@ -2,9 +2,9 @@
 
 The second ensemble has tolerances a hundredth of the first ones, another method, and constants and
 starts that are some last bits off, as the second runs of `Solution.error` have. Where a motion
-amplifies a last bit to something that can be seen, the two disagree. Where only the first method
-looks for events in lanes, the second ensemble keeps it: a Taylor series at other tolerances has
-another order and other steps, and another method would take many times as long.
+amplifies a last bit to something that can be seen, the two disagree. Where events are looked for,
+Taylor series are kept: at other tolerances they have another order and other steps, and another
+method, which has no lanes with events, would take many times as long.
 """
 
 from __future__ import annotations
@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pendcore import _core
 from pendcore.accuracy.estimate import TIGHTER
 from pendcore.accuracy.method_choice import TIGHTEST, second_methods
 from pendcore.accuracy.rounding import LAST_BITS, moved
@@ -42,7 +41,9 @@ def second(members: Members, request: Request) -> tuple[Members, Request]:
     choice = Choice(request.options["method"], request.options["rtol"], request.options["atol"])
     method = run(start._replace(t_end=t_start), choice, store="end").method
     choice = tightened(choice, TIGHTER[0], TIGHTEST)
-    keeps_method = bool(request.events) and _has_lanes_with_events(members, method)
+    is_tighter = bool(np.max(choice.rtol) <= 0.1 * np.min(request.options["rtol"]))
+    is_series = method.partition("-")[0] == "taylor"
+    keeps_method = is_tighter and is_series and bool(request.events)
     options = {
         "method": method if keeps_method else next(second_methods(start, method, stiff=False)),
         "rtol": choice.rtol,
@@ -60,11 +61,6 @@ def second(members: Members, request: Request) -> tuple[Members, Request]:
         },
     )
     return near, request.with_options(**options)
-
-
-def _has_lanes_with_events(members: Members, method: str) -> bool:
-    series = method.split("-")[0]
-    return series == "taylor" and series in _core.methods_with_lanes(members.scene._compiled)
 
 
 def _moved(values: Floats, seed: int, scale: Floats) -> Floats:

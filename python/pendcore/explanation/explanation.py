@@ -229,10 +229,13 @@ def _absences(told: Explanation) -> Iterator[str]:
 def _of_lanes(methods: tuple[str, ...]) -> str:
     if not methods:
         return "an ensemble runs its members one by one in each thread"
-    with_events = " or, by taylor, their first events" if "taylor" in methods else ""
+    *others, last = methods
+    names = f"{', '.join(others)} or {last}" if others else last
+    by_series = "" if not others else ", by taylor,"
+    with_events = f" or{by_series} their first events" if "taylor" in methods else ""
     return (
         "an ensemble runs several members at once, a lane each, by "
-        f"{', '.join(methods[:-1])} or {methods[-1]}, if it keeps their ends{with_events}; by "
+        f"{names}, if it keeps their ends{with_events}; by "
         "other methods, it runs them one by one"
     )
 

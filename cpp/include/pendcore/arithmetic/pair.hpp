@@ -44,7 +44,7 @@ PENDCORE_INLINE Two<Real> other(const Two<Real>& x) {
   return {x.second, x.first};
 }
 
-/// One of both numbers.
+/// Number k of the pair, counted from 0.
 PENDCORE_INLINE double number_of(const Pair& x, int k) { return x[k]; }
 template <class Real>
 PENDCORE_INLINE const Real& number_of(const Two<Real>& x, int k) {

@@ -79,9 +79,9 @@ class LaneLoop : public LaneRunner {
   virtual std::vector<double> saved_state(int lane) = 0;
   virtual LaneSteps<width>& steps() = 0;
   virtual Attention take_steps() = 0;
-  /// Puts the equations of `scene` into a lane; false if they have another form.
+  /// Puts the equations into a lane; false if they have another form than those of the others.
   virtual bool put_equations(int lane, const EquationsOfMotion& equations) = 0;
-  /// The equations of the members that begin from now on are these.
+  /// Called before put_equations() whenever the next members have other equations.
   virtual void equations_are_new(const Scene& /*scene*/, const EquationsOfMotion& /*equations*/) {}
   /// Puts a start, at which the rates are rate(), into a lane.
   virtual void put_start(int lane, const std::vector<double>& y) = 0;
@@ -93,7 +93,8 @@ class LaneLoop : public LaneRunner {
   /// Whether the last step of a lane suggests that the member is stiff.
   virtual bool looks_stiff(int /*lane*/) { return false; }
 
-  Stepper& stepper() { return *stepper_; }
+  /// What a lane evaluates: its member may have other parameters than the one that began last.
+  Stepper& stepper(int lane) { return *steppers_[lane]; }
   const std::vector<double>& rate() const { return rate_; }
   const std::vector<double>& rtol() const { return rtol_; }
   const std::vector<double>& atol() const { return atol_; }
@@ -189,6 +190,7 @@ class LaneLoop : public LaneRunner {
       stepper_->set_tolerances(rtol_.data(), atol_.data());
     }
     if (!put_equations(lane, *equations_)) return false;
+    steppers_[lane] = stepper_;
     stepper_->evaluate(t0_, y.data(), rate_.data());
     if (bad_component(y) >= 0 || bad_component(rate_) >= 0) return false;
     LaneSteps<width>& at = steps();
@@ -222,8 +224,9 @@ class LaneLoop : public LaneRunner {
   std::vector<double> rate_;
   std::array<LaneMember, width> members_;
   std::unique_ptr<const EquationsOfMotion> equations_;
-  std::unique_ptr<Stepper> stepper_;  ///< for the beginnings
-  bool is_exhausted_ = false;         ///< no member is left to begin
+  std::shared_ptr<Stepper> stepper_;  ///< of the members that begin
+  std::array<std::shared_ptr<Stepper>, width> steppers_;
+  bool is_exhausted_ = false;  ///< no member is left to begin
 };
 
 /// The runner of Taylor series; null if the scene has none in lanes.

@@ -54,9 +54,9 @@ class LaneRunner {
   Statistics statistics_;
 };
 
-/// The methods that have lanes for the equations of a scene: for two links without effects but
-/// payloads all explicit ones, and for two links with couples and up to two waves those of
-/// Dormand and Prince.
+/// The methods that have lanes for the equations of a scene. Those of Dormand and Prince have them
+/// for two links, bare or with couples and up to two waves of motors and the pivot; Taylor series
+/// for two, three and four links whose pivot stands still. There are none where a law may change.
 std::vector<std::string_view> methods_with_lanes(const Scene& scene);
 
 /// The lanes for a scene and its options, or null if its members are run one by one.

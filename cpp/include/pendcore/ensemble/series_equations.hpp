@@ -3,13 +3,15 @@
 /// (dynamics/series), with a trajectory, and its constants, in each lane.
 ///
 /// A form has, for a pack of trajectories: the number of `links`; `row`, the numbers that a single
-/// run has in a row of its state; `One`, the constants of one trajectory; put(), which puts these
-/// into a lane and returns false if their laws are of other kinds than those of the lanes; and
+/// run has in a row of its state; `One`, the constants of one trajectory; one_of(), the constants
+/// of a scene, or nothing if its equations have another form; prepare(), which sets the kinds of
+/// laws and gives lanes without a member numbers that do no harm; put(), which puts constants into a
+/// lane and returns false if their laws are of other kinds, so that the lane must not be used; and
 /// expand(), which computes the series.
 #pragma once
 
-#include <memory>
 #include <optional>
+#include <variant>
 
 #include "pendcore/dynamics/series/double_pendulum_series.hpp"
 #include "pendcore/dynamics/series/few_links_series.hpp"
@@ -24,6 +26,13 @@ struct TorquesInLanes {
 
   Couples<Rows> couples;
   TorqueLaws<Rows, Real> laws;
+
+  TorquesInLanes() = default;
+  TorquesInLanes(const TorquesInLanes&) = delete;  // its laws point to its own couples
+  TorquesInLanes& operator=(const TorquesInLanes&) = delete;
+  TorquesInLanes(TorquesInLanes&&) = delete;
+  TorquesInLanes& operator=(TorquesInLanes&&) = delete;
+  ~TorquesInLanes() = default;
 
   /// Sets the kinds of laws.
   void prepare(const One& one) {
@@ -69,7 +78,6 @@ struct BareDoublePendulumSeries {
     if (form == nullptr) return std::nullopt;
     return One{form->weight, form->coupling, Pair{}, form->product, form->delta, 0.0};
   }
-  /// Lanes without a member have numbers that do no harm.
   void prepare(const One& /*one*/) { constants.delta = broadcast<Real>(1.0); }
   bool put(int lane, const One& one) {
     put_constants(constants, lane, one);

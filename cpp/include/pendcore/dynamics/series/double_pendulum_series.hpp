@@ -38,6 +38,7 @@
 /// Cost: a sine and cosine of a pair, a division, and for order p some p^2/2 pairs of products.
 #pragma once
 
+#include <cstddef>
 #include <type_traits>
 #include <utility>
 
@@ -106,7 +107,7 @@ class DoublePendulumSeries {
   void set_order(int /*order*/) {}
 
   /// Fills rows 1 .. order of `coefficients` with y_k of y(t + theta sigma) = sum_k theta^k y_k,
-  /// from the state y. The order is even, and at least `lowest_order`.
+  /// from the state y. The order is even, and at least `lowest_taylor_order`.
   PENDCORE_INLINE void expand(double t, const double* y, double sigma, int order,
                               double* coefficients) const;
 

@@ -9,14 +9,15 @@
 ///     A_ii qdd_i + n_i . H_i = tau_i,    H_i = sum_{j != i} A_ij u_j'' - g a_i e_y
 ///
 /// As in double_pendulum_series.hpp, the newest unknown alpha = (k + 1) qd_{k+1} appears along n_0
-/// alone: u''_k = alpha n_0 + beta, and in units of sigma
+/// alone: u''_k = alpha n_0 + beta. In units of sigma, with A without its diagonal, tau times
+/// sigma^2, and w = sigma^2 g a e_y in order 0 and 0 in the others,
 ///
 ///     beta = (k + 1) sum_{j<=k} qd_j n_{k+1-j}
-///     M_0 alpha = tau_k - n_0 . A beta - sum_{j<k} n_{k-j} . H_j
-///     H_k = A beta + (A n_0) alpha
+///     M_0 alpha = tau_k - n_0 . (A beta - w) - sum_{j<k} n_{k-j} . H_j
+///     H_k = A beta - w + (A n_0) alpha
 ///
 /// M_0 is the mass matrix at the angles q_0. Its inverse is U^T diag(r) U, the factors of the
-/// recursion of chain.hpp: U takes the torques in all joints to those that turn a link with the
+/// recursion of chain.hpp: U takes the torques on all links to those that turn a link with the
 /// links beyond it, and r is the inverse of what resists. Whatever the masses, nothing cancels in
 /// r.
 ///
@@ -26,9 +27,11 @@
 ///
 /// Source: the recurrences are those of double_pendulum_series.hpp; the factors of the inverse are
 /// those of Rodriguez, Jain and Kreutz-Delgado, Int. J. Robotics Research 10 (1991).
-/// Cost: for order k four sums of k products of rows, and some 40 operations on rows.
+/// Cost: in a series a sine and cosine, a division and the factors of the inverse for each link;
+/// for order k four sums of k products of rows, and some 40 operations on rows.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 
 #include "pendcore/arithmetic/order_of_series.hpp"
@@ -46,9 +49,9 @@ struct ConstantsOfFewLinks {
   using Row = RowOfLinks<Number, links>;
 
   ChainLinkOf<Number> link[links];
-  Number payload_mass;
+  Number payload_mass;  ///< kg
   Row weight;           ///< g a_i
-  Row coupling[links];  ///< A_ij; [0] is not used
+  Row coupling[links];  ///< [d] has A_{i,i+d}; [0] is not used
 };
 
 /// The constants of a chain without rotors between its links.
@@ -65,8 +68,8 @@ class FewLinksSeries {
   static constexpr InstructionSet best = InstructionSet::x86_64_v3;
   static constexpr InstructionSet least = InstructionSet::baseline;
 
-  /// Whether there is a series: not for links that are coupled by a rotor or may be held, a pivot
-  /// that moves, or more than two waves.
+  /// Whether this is the series of a scene whose effects all have one (without_series()): not if
+  /// links are coupled by a rotor or may be held, if the pivot moves, or with more than two waves.
   static bool has(const Scene& scene, const EquationsOfMotion& equations);
   /// `effects` is null if none of them is in the equations of motion.
   FewLinksSeries(const Scene& scene, Effects effects);
@@ -122,7 +125,7 @@ template <class Number, int links, class Row>
 PENDCORE_INLINE InverseMassMatrix<Row, links> inverse_mass_matrix(
     const ConstantsOfFewLinks<Number, links>& constants, const Row& sine, const Row& cosine) {
   struct Turning {
-    Number r, wx, wy;  ///< of chain.hpp, along x and y
+    Number r, wx, wy;  ///< r and w of chain.hpp; w along x and y
   };
   Turning turning[links];
   ForcePerAcceleration<Number> B{constants.payload_mass, Number{}, constants.payload_mass};
@@ -143,7 +146,7 @@ PENDCORE_INLINE InverseMassMatrix<Row, links> inverse_mass_matrix(
     B.add_free(k, r, wu, cos * cos, sin * sin, sin * cos);
   }
   InverseMassMatrix<Row, links> inverse;
-  // A torque in joint j pushes the links before, through the forces in their joints: column j of U.
+  // A torque on link j pushes the links before, through the forces in their joints: column j of U.
 #pragma GCC unroll 4
   for (int j = 0; j < links; ++j) {
     set_link(inverse.r, j, turning[j].r);
@@ -200,9 +203,9 @@ struct FewLinksOrders {
   Row rates[highest_order + 1];  ///< qd_k
   Row hx[highest_order + 1], hy[highest_order + 1];
 
-  PENDCORE_INLINE FewLinksOrders(const ConstantsOfFewLinks<Number, links>& of, const Number* y,
+  PENDCORE_INLINE FewLinksOrders(const ConstantsOfFewLinks<Number, links>& given, const Number* y,
                                  const Number& sigma)
-      : constants(of), per_sigma(1.0 / sigma) {  // exact: a power of two
+      : constants(given), per_sigma(1.0 / sigma) {  // exact: a power of two
     Row s, c;
     angle_of_order = Rows::get(y);
     sine_cosine(angle_of_order, s, c);
@@ -211,11 +214,11 @@ struct FewLinksOrders {
     ny[0] = c;
     nx[1] = -(rates[0] * c);
     ny[1] = -(rates[0] * s);
-    inverse = few_links_detail::inverse_mass_matrix<Number, links>(of, s, c);
+    inverse = few_links_detail::inverse_mass_matrix<Number, links>(given, s, c);
     const auto turn = [&]<int by>() __attribute__((always_inline)) {
       if constexpr (by < links) {
-        turned_x[by] = of.coupling[by] * link_after<links, by>(nx[0]);
-        turned_y[by] = of.coupling[by] * link_after<links, by>(ny[0]);
+        turned_x[by] = given.coupling[by] * link_after<links, by>(nx[0]);
+        turned_y[by] = given.coupling[by] * link_after<links, by>(ny[0]);
       }
     };
     turn.template operator()<1>();
@@ -223,7 +226,8 @@ struct FewLinksOrders {
     turn.template operator()<3>();
   }
 
-  /// Computes order k from its sums. `pull` is sigma^2 g a in order 0, and 0 in the others.
+  /// Computes order k from its sums. `pull` is sigma^2 g a in order 0, and null in the
+  /// others.
   PENDCORE_INLINE_UNLESS_SMALL void finish(int k, const Row& along_x, const Row& along_y,
                                            const Row& across, const Row* pull, Torques& torques,
                                            Number* coefficients) {
@@ -235,7 +239,7 @@ struct FewLinksOrders {
     Row push_y = times<links>(constants.coupling, beta_y);
     if (pull != nullptr) push_y = push_y - *pull;
     Row load = -fma(nx[0], push_x, fma(ny[0], push_y, across));
-    if (torques.is_there()) load = load + torques.next(k, angle_of_order, rates[k]);
+    if (torques.are_any()) load = load + torques.next(k, angle_of_order, rates[k]);
     const Row free = inverse.r * (load + times<links>(inverse.upper, load));
     const Row alpha = free + times<links>(inverse.transposed, free);
     const double share = inverse_of[k + 1];
@@ -307,8 +311,8 @@ PENDCORE_INLINE KnownTerms<Pack<4>> known_terms(const FewLinksOrders<double, lin
   return orders.template known_terms<Pack<4>>(
       k, [](const Pack<4>& row) __attribute__((always_inline)) { return row; });
 }
-/// In lanes, the numbers of one link are added up after those of the other: the sums of a whole row
-/// would not fit into the registers.
+/// In lanes, the links are added up one after the other: the sums of a whole row would not fit into
+/// the registers.
 template <class Real, int links>
 PENDCORE_INLINE KnownTerms<EachLink<Real, links>> known_terms(
     const FewLinksOrders<Real, links>& orders, int k) {

@@ -23,7 +23,7 @@
 
 namespace pendcore {
 
-/// No torque but gravity's.
+/// No torque but gravity's, and its orders.
 struct NoTorque {
   static constexpr bool is_there = false;
 };
@@ -32,12 +32,12 @@ struct NoTorque {
 /// lane.
 template <class Links, class Number>
 struct TorqueLaws {
-  const Couples<Links>* couples = nullptr;  ///< null if there are none
-  bool has_powers = false;                  ///< of the rates of the joints
+  const Couples<Links>* couples = nullptr;  ///< of effects that outlive this; null without any
+  bool has_powers = false;                  ///< whether a law has a square or cube of a rate
   bool has_waves = false;
-  PairOf<Number> angular_frequency{}, phase{};  ///< of two waves
-  Links gain[2]{};                              ///< of each wave, on the joints
-  Links factor{};                               ///< of the result
+  PairOf<Number> angular_frequency{}, phase{};  ///< of each wave, rad/s and rad
+  Links gain[2]{};                              ///< what each wave gives to the joints, N m
+  Links factor{};                               ///< multiplies the result
 };
 
 /// The laws of a scene that are in force now: a motor at its limit has no wave.
@@ -73,13 +73,14 @@ class TorqueOrders {
     turn_ = sigma * laws.angular_frequency;
   }
 
-  PENDCORE_INLINE bool is_there() const { return laws_.couples != nullptr || laws_.has_waves; }
+  PENDCORE_INLINE bool are_any() const { return laws_.couples != nullptr || laws_.has_waves; }
   /// Order k from the angles and rates of order k. The orders are called one after the other, from
   /// 0.
   PENDCORE_INLINE_UNLESS_SMALL Links next(int k, const Links& angle, const Links& rate) {
     Links couple{};
     if (laws_.couples != nullptr) {
       const Couples<Links>& couples = *laws_.couples;
+      // Of three links in a pack of four, the fourth has a rate but no law: its terms are 0.
       const Links w = per_sigma_ * (rate - before(rate));
       couple = fma(couples.on_phid, w, couples.on_phi * (angle - before(angle)));
       if (k == 0) couple = couple + in_time_;

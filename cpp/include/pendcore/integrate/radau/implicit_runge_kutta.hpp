@@ -56,7 +56,7 @@ class ImplicitRungeKutta final : public Stepper {
   void evaluate(double t, const double* y, double* dydt) override;
 
   /// If the iteration does not converge, the error is NaN, so that the step is not accepted.
-  Attempt attempt(const TwoDouble& t, double h, double gain) override;
+  Attempt attempt(const TwoDouble& time, double h, double gain) override;
   void stay() override;
   void accept(double t_new) override;
   void interpolant(double h, double* coefficients) override;
