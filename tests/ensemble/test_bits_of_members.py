@@ -1,4 +1,4 @@
-"""A member has the bits of `pc.simulate`, whatever computes it: twenty scenes by every adaptive method.
+"""A member has the bits of `pc.simulate`, whatever computes it: twenty scenes by every method.
 
 Lanes of one, four and eight are those of the instruction sets; with fewer members, fewer of them
 are in use.

@@ -137,8 +137,8 @@ class Ensemble(EnsembleResult):
         """Run the same members once more, independently, to see which of them are resolved.
 
         Another method runs them at a hundredth of the tolerances, with constants and starts that
-        are some last bits off. If events are looked for, Taylor series are kept: their order and their
-        steps are others at the other tolerances.
+        are some last bits off. If events are looked for, Taylor series are kept: their order and
+        their steps are others at the other tolerances.
 
         Parameters
         ----------

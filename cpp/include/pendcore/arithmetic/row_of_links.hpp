@@ -1,6 +1,6 @@
 /// \file
-/// A quantity of each of three or four links beside the same quantity of the others, as pair.hpp has
-/// for two.
+/// A quantity of each of three or four links beside the same quantity of the others, as pair.hpp
+/// has for two.
 ///
 /// For one trajectory the row is a pack of four, whose last numbers are zero if there are fewer
 /// links; for packs with a trajectory a lane it is as many of these. Sums and products are those of

@@ -1,6 +1,6 @@
 /// \file
-/// The forms of the equations that Runge-Kutta methods take in lanes: the same equations as those of a single run,
-/// with a trajectory, and its constants, in each lane.
+/// The forms of the equations that Runge-Kutta methods take in lanes: the same equations as those
+/// of a single run, with a trajectory, and its constants, in each lane.
 ///
 /// With effects, these are couples that never change their mode, and at most two waves of motors
 /// and the pivot.

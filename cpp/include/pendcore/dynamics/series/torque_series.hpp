@@ -80,7 +80,7 @@ class TorqueOrders {
     Links couple{};
     if (laws_.couples != nullptr) {
       const Couples<Links>& couples = *laws_.couples;
-      // Of three links in a pack of four, the fourth has a rate but no law: its terms are 0.
+      // The fourth place of a pack for three links has a rate but no law: its terms are 0.
       const Links w = per_sigma_ * (rate - before(rate));
       couple = fma(couples.on_phid, w, couples.on_phi * (angle - before(angle)));
       if (k == 0) couple = couple + in_time_;
