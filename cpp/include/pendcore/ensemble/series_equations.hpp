@@ -6,8 +6,8 @@
 /// run has in a row of its state; `One`, the constants of one trajectory; one_of(), the constants
 /// of a scene, or nothing if its equations have another form; prepare(), which sets the kinds of
 /// laws and gives lanes without a member numbers that do no harm; put(), which puts constants into
-/// a lane and returns false if their laws are of other kinds, so that the lane must not be used; and
-/// expand(), which computes the series.
+/// a lane and returns false if their laws are of other kinds, so that the lane must not be used;
+/// and expand(), which computes the series.
 #pragma once
 
 #include <optional>

@@ -46,8 +46,8 @@ class Stepper {
   /// 0.
   virtual double own_first_step(double /*t*/) { return 0.0; }
 
-  /// Tries a step of size h from the state at time t, a sum of two numbers; `gain` is the one of the
-  /// step control.
+  /// Tries a step of size h from the state at time t, a sum of two numbers; `gain` is the one of
+  /// the step control.
   virtual Attempt attempt(const TwoDouble& t, double h, double gain) = 0;
 
   /// Replaces an attempt by a step in which nothing moves.
