@@ -47,7 +47,7 @@ TOGETHER: dict[str, tuple[Any, ...]] = {
         E.Motor(joint=1, sinusoid=E.Sinusoid(0.5, angular_frequency=f)) for f in (1.0, 2.0, 3.0)
     ),
 }
-LINKS = (1, 2, 3, 5)
+LINKS = (1, 2, 3, 4, 5)
 YARDSTICK = ("dop853", 1e-9)
 WAYS = (("taylor", 1e-4), ("taylor", 1e-8), ("taylor", 1e-12))
 ROUNDS = 15

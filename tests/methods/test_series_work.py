@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pendcore as pc
 import pytest
-from pendcore.accuracy.method_choice import INERTIA_ALONE, series_work
+from pendcore.accuracy.method_choice import HOLDING, INERTIA_ALONE, series_work
 from pendcore.scene.effect_class import OwnEffect
 
 sys.path.append(str(Path(__file__).parents[2] / "docs/generators"))
@@ -31,7 +31,7 @@ def test_every_kind_of_effect_is_considered():
 
 
 def test_what_is_named_are_kinds_of_effects():
-    assert set(EFFECTS) | NOT_CARRIED | INERTIA_ALONE <= set(KINDS)
+    assert set(EFFECTS) | NOT_CARRIED | INERTIA_ALONE | HOLDING <= set(KINDS)
     assert all(effect.kind == kind for kind, effect in EFFECTS.items())
 
 
@@ -51,3 +51,15 @@ def test_more_digits_take_longer_series():
         works = [series_work(scene, rtol) for rtol in (1e-2, 1e-6, 1e-10, 1e-14)]
         assert works == sorted(set(works)), name
         assert works[0] > 1, name
+
+
+@pytest.mark.skipif(
+    pc._core.instruction_set() == "baseline", reason="this processor has no lanes, which tell"
+)
+@pytest.mark.parametrize(
+    ("name", "scene"), [x for x in scenes() if 3 <= len(x[1].links) <= 4], ids=str
+)
+def test_the_series_of_few_links_is_forecast_where_it_is(name, scene):
+    """What has it has lanes, too."""
+    has_it = "taylor" in scene.explain().lanes
+    assert (series_work(scene, 1e-3) < 10) == has_it, name

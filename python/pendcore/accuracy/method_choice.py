@@ -36,6 +36,8 @@ DOPRI5_ABOVE_ELSE = 3e-7
 """The same bound with any other number of links."""
 INERTIA_ALONE = {"payload", "rotor_inertia"}
 """Effects that change the mass matrix and add no torque of their own."""
+HOLDING = {"dry_joint_friction", "joint_stop"}
+"""Effects that may hold a joint where it is."""
 _DIGITS = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
 
 
@@ -62,15 +64,25 @@ def series_work(scene: SceneData, rtol: float) -> float:
     if n == 1:  # the sines of the time are most of a right-hand side
         base, exponent = (14.2, 0.035) if moving or waves else (26.0, 0.036)
     elif n == 2 and (moving or waves > 2 or free < n):  # these take the series of longer chains
-        base, exponent = 26.0, 0.037
+        base, exponent = 20.0, 0.037
     elif n == 2:
         bare = all(effect.kind in INERTIA_ALONE for effect in scene.effects)
         base, exponent = (8.3, 0.030) if bare else (11.2, 0.029)
+    elif n <= 4 and not (moving or waves > 2 or free < n or _may_hold_or_couple(scene)):
+        base, exponent = 6.0, 0.030  # the series of few links
     else:
         base, exponent = 12.2, 0.040
     if free < n:
         base *= 1.5
     return float(base * (1e-3 / rtol) ** exponent)
+
+
+def _may_hold_or_couple(scene: SceneData) -> bool:
+    """Whether a joint may be held, or a rotor couples two links."""
+    holds = any(effect.kind in HOLDING for effect in scene.effects)
+    return holds or any(
+        effect.kind == "rotor_inertia" and effect.joint > 1 for effect in scene.effects
+    )
 
 
 def rounded(rtol: float, tightest: float = TIGHTEST) -> float:
