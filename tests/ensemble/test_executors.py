@@ -88,18 +88,6 @@ def test_a_time_limit_ends_the_whole():
     assert found.counts().get("not_run", 0) > 0
 
 
-@pytest.fixture(scope="module")
-def cluster():
-    distributed = pytest.importorskip("distributed", exc_type=ImportError)
-    with (
-        distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
-        ) as cluster,
-        distributed.Client(cluster) as client,
-    ):
-        yield client
-
-
 def kill_a_worker(client, path):
     """Kill one of the processes when the store has its first chunk."""
     pids = client.run(os.getpid)

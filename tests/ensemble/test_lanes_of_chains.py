@@ -101,7 +101,7 @@ def test_a_heavy_payload_on_light_links_agrees_with_another_method():
     scene = pc.Scene(links=light, gravity=9.807, effects=[E.Payload(mass=10.0)])
     start = [0.3, 0.9, -0.2]
     ends = [
-        pc.simulate(scene, start, t_span=(0, 0.5), method=m, rtol=1e-13, atol=1e-13).q[-1]
+        pc.simulate(scene, start, t_span=(0, 2), method=m, rtol=1e-13, atol=1e-13).q[-1]
         for m in ("taylor", "dop853")
     ]
-    np.testing.assert_allclose(*ends, rtol=0, atol=2e-10)
+    np.testing.assert_allclose(*ends, rtol=0, atol=5e-10)

@@ -35,8 +35,8 @@ class RungeKuttaRunner final : public LaneLoop<width_on(set)> {
   std::vector<double> saved_state(int /*lane*/) override { return {}; }
   LaneSteps<width>& steps() override { return all_; }
   Attention take_steps() override { return take_steps_(&all_, &this->interval(), rounds_at_once); }
-  bool put_equations(int lane, const EquationsOfMotion& equations) override {
-    return Equations::put(all_.memory.system.dynamics, lane, equations);
+  bool put_equations(int lane) override {
+    return Equations::put(all_.memory.system.dynamics, lane, this->equations());
   }
   void put_start(int lane, const std::vector<double>& y) override {
     const Options& options = this->options();

@@ -53,9 +53,7 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
   void equations_are_new(const Scene& scene, const EquationsOfMotion& equations) override {
     one_ = All::Equations::one_of(scene, equations);
   }
-  bool put_equations(int lane, const EquationsOfMotion& /*equations*/) override {
-    return one_ && all_.equations.put(lane, *one_);
-  }
+  bool put_equations(int lane) override { return one_ && all_.equations.put(lane, *one_); }
   void put_start(int lane, const std::vector<double>& y) override {
     for (int i = 0; i < All::size; ++i) all_.y[i][lane] = y[i];
     const double rate = taylor_detail::squared_rate(this->rate().data(), All::Equations::links);

@@ -81,7 +81,8 @@ def _may_hold_or_couple(scene: SceneData) -> bool:
     """Whether a joint may be held, or a rotor couples two links."""
     holds = any(effect.kind in HOLDING for effect in scene.effects)
     return holds or any(
-        effect.kind == "rotor_inertia" and effect.joint > 1 for effect in scene.effects
+        effect.kind == "rotor_inertia" and getattr(effect, "joint", 1) > 1
+        for effect in scene.effects
     )
 
 

@@ -211,7 +211,7 @@ class Ensemble(EnsembleResult):
         resolved : array_like of bool, (...), optional
             What `resolved` found. In a new figure of two axes, it is drawn beside the map.
         **properties
-            Of matplotlib's ``pcolormesh`` or ``plot``.
+            Passed on to matplotlib's ``pcolormesh`` or ``plot``.
 
         Returns
         -------

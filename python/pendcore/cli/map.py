@@ -48,7 +48,7 @@ FILES = ("summary.txt", "map.npz", "map.png")
 
 @dataclass(slots=True)
 class Pixels:
-    """What is known of the pixels, (n_x, n_y)."""
+    """The values of the pixels, and which are computed and resolved, (n_x, n_y)."""
 
     values: Floats
     resolved: Mask

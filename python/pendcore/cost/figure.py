@@ -46,7 +46,7 @@ def plot(
     y : {"time", "nfev"}
         What is drawn upwards: the least time of a call, or right-hand sides.
     **line_properties
-        Of matplotlib's ``Line2D``.
+        Passed on to matplotlib's ``Line2D``.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""What is asked of every member of an ensemble, and the arrays that answer it."""
+"""The request that every member of an ensemble gets, and the arrays that answer it."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Variable(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """What is asked of every member.
+    """The interval, the options and the results that every member is asked for.
 
     Attributes
     ----------

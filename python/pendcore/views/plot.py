@@ -60,7 +60,7 @@ def plot(
         rad. What lies past the time at which the estimated error passes it is shaded
         (`Solution.valid_until`: that takes further runs, when it is first asked for).
     **line_properties
-        Of matplotlib's ``Line2D``, such as ``color``, ``linestyle`` or ``linewidth``.
+        Passed on to matplotlib's ``Line2D``, such as ``color``, ``linestyle`` or ``linewidth``.
 
     Returns
     -------

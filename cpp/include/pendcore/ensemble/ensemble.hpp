@@ -43,7 +43,7 @@ constexpr bool is_success(std::uint8_t code) {
   return code < status_texts.size() && status_texts[code].success;
 }
 
-/// What is kept of each member. The caller owns the memory, and has filled the numbers with NaN and
+/// The results that are kept. The caller owns the memory, and has filled the numbers with NaN and
 /// the statuses with not_run.
 struct MemberResults {
   std::span<std::uint8_t> status;  ///< (count)

@@ -21,6 +21,16 @@ template <class Real, int links>
 void put_row(EachLink<Real, links>& row, int lane, const Pack<4>& one) {
   for (int i = 0; i < links; ++i) row.of[i][lane] = one[i];
 }
+/// Puts what the equations of a double pendulum and their series have in common.
+template <class Equations, class One>
+void put_constants(Equations& equations, int lane, const One& one) {
+  put_row(equations.weight, lane, one.weight);
+  put_row(equations.coupling, lane, one.coupling);
+  put_row(equations.rotor, lane, one.rotor);
+  equations.product[lane] = one.product;
+  equations.delta[lane] = one.delta;
+  equations.epsilon[lane] = one.epsilon;
+}
 template <class Rows, class Row>
 void put_couples(Couples<Rows>& couples, int lane, const Couples<Row>& one) {
   put_row(couples.held, lane, one.held);
@@ -109,6 +119,7 @@ inline bool are_steady(const EquationsOfMotion& equations) {
 template <class Real>
 struct LaneEquations<CouplesAndWaves, Real> : BothLinks<Real> {
   using Type = LoadedDoublePendulumInLanes<Real>;
+
   static void prepare(Type& equations, const EquationsOfMotion& one) {
     equations.has_waves = std::holds_alternative<CouplesAndWaves>(one.form);
   }
@@ -130,12 +141,7 @@ struct LaneEquations<CouplesAndWaves, Real> : BothLinks<Real> {
   static void put(LoadedDoublePendulum<Two<Real>, Real>& equations, int lane,
                   const LoadedDoublePendulum<Pair, double>& one) {
     put_row(equations.inverse_diagonal, lane, one.inverse_diagonal);
-    put_row(equations.weight, lane, one.weight);
-    put_row(equations.coupling, lane, one.coupling);
-    put_row(equations.rotor, lane, one.rotor);
-    equations.product[lane] = one.product;
-    equations.delta[lane] = one.delta;
-    equations.epsilon[lane] = one.epsilon;
+    put_constants(equations, lane, one);
   }
   static void put(WavesOf<Two<Real>>& waves, int lane, const TwoWaves& one) {
     put_row(waves.angular_frequency, lane, one.angular_frequency);

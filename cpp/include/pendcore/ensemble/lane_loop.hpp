@@ -80,7 +80,7 @@ class LaneLoop : public LaneRunner {
   virtual LaneSteps<width>& steps() = 0;
   virtual Attention take_steps() = 0;
   /// Puts the equations into a lane; false if they have another form than those of the others.
-  virtual bool put_equations(int lane, const EquationsOfMotion& equations) = 0;
+  virtual bool put_equations(int lane) = 0;
   /// Called before put_equations() whenever the next members have other equations.
   virtual void equations_are_new(const Scene& /*scene*/, const EquationsOfMotion& /*equations*/) {}
   /// Puts a start, at which the rates are rate(), into a lane.
@@ -93,6 +93,8 @@ class LaneLoop : public LaneRunner {
   /// Whether the last step of a lane suggests that the member is stiff.
   virtual bool looks_stiff(int /*lane*/) { return false; }
 
+  /// Those of the members that begin.
+  const EquationsOfMotion& equations() const { return *equations_; }
   /// What a lane evaluates: its member may have other parameters than the one that began last.
   Stepper& stepper(int lane) { return *steppers_[lane]; }
   const std::vector<double>& rate() const { return rate_; }
@@ -189,7 +191,7 @@ class LaneLoop : public LaneRunner {
       stepper_ = make_stepper(scene, *equations_, method_, false, false);
       stepper_->set_tolerances(rtol_.data(), atol_.data());
     }
-    if (!put_equations(lane, *equations_)) return false;
+    if (!put_equations(lane)) return false;
     steppers_[lane] = stepper_;
     stepper_->evaluate(t0_, y.data(), rate_.data());
     if (bad_component(y) >= 0 || bad_component(rate_) >= 0) return false;

@@ -53,18 +53,6 @@ struct TorquesInLanes {
   }
 };
 
-/// Puts the constants of a double pendulum into a lane.
-template <class Real>
-void put_constants(ConstantsOfDoublePendulum<Real>& constants, int lane,
-                   const DoublePendulumConstants& one) {
-  put_row(constants.weight, lane, one.weight);
-  put_row(constants.coupling, lane, one.coupling);
-  put_row(constants.rotor, lane, one.rotor);
-  constants.product[lane] = one.product;
-  constants.delta[lane] = one.delta;
-  constants.epsilon[lane] = one.epsilon;
-}
-
 template <class Real>
 struct BareDoublePendulumSeries {
   static constexpr int links = 2;

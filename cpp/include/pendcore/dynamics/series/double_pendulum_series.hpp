@@ -30,8 +30,7 @@
 /// products of rows of four, (c, c', s, s').
 ///
 /// The weight is a pull like that of the other link: gamma c_k is n_k times (0, gamma), which is
-/// added to -rho u''_0(other). Two orders are computed at a time, so that what their sums share is
-/// loaded once.
+/// added to -rho u''_0(other).
 ///
 /// Source: the recurrences of automatic differentiation (Moore, Interval Analysis, 1966, chapter
 /// 11; Jorba and Zou, Exp. Math. 14, 2005); the elimination is this project's.
@@ -46,6 +45,7 @@
 #include "pendcore/arithmetic/pair.hpp"
 #include "pendcore/arithmetic/row_of_pairs.hpp"
 #include "pendcore/arithmetic/sine_cosine.hpp"
+#include "pendcore/dynamics/series/known_terms.hpp"
 #include "pendcore/dynamics/series/torque_series.hpp"
 
 namespace pendcore {
@@ -116,17 +116,6 @@ class DoublePendulumSeries {
   Torque torque_;
 };
 
-namespace double_pendulum_detail {
-
-/// The terms of the sums of orders k and k + 1 that are known before both: of qd_j n_{k+1-j}, and
-/// of n_{k-j} times the pulls.
-template <class Value>
-struct KnownTerms {
-  Value along{}, across{}, next_along{}, next_across{};
-};
-
-}  // namespace double_pendulum_detail
-
 /// The orders of one series. Rows are (c, c', s, s'); for rates and other numbers without a
 /// direction, a row is the pair twice.
 template <class Number>
@@ -134,8 +123,7 @@ struct DoublePendulumOrders {
   using Of = SeriesOf<Number>;
   using Half = typename Of::Half;
   using Row = typename Of::Row;
-
-  using Terms = double_pendulum_detail::KnownTerms<Row>;
+  using Terms = KnownTerms<Row>;
 
   Number per_sigma;
   Half own, cross;  ///< 1/D and -kappa/D of the two by two system
@@ -206,33 +194,6 @@ PENDCORE_INLINE void DoublePendulumOrders<Number>::finish(int k, const Row& alon
   pulls[k] = minus_rho * other(bend);
 }
 
-namespace double_pendulum_detail {
-
-/// Adds up the known terms of orders k >= 2 and k + 1 of the numbers that `pull(j)`, `rate(j)` and
-/// `n(j)` return.
-template <class Value, class Pull, class Rate, class Normal>
-PENDCORE_INLINE KnownTerms<Value> known_terms(int k, const Pull& pull, const Rate& rate,
-                                              const Normal& n) {
-  KnownTerms<Value> sum;
-  auto rate_here = rate(1);
-  Value pull_here = pull(0);
-  for (int i = k; i >= 2; --i) {
-    const Value n_here = n(i);
-    sum.along = fma(rate_here, n_here, sum.along);
-    sum.across = fma(pull_here, n_here, sum.across);
-    rate_here = rate(k + 2 - i);
-    pull_here = pull(k + 1 - i);
-    sum.next_along = fma(rate_here, n_here, sum.next_along);
-    sum.next_across = fma(pull_here, n_here, sum.next_across);
-  }
-  const Value n_last = n(k + 1);
-  sum.along = fma(rate_here, n(1), fma(rate(0), n_last, sum.along));
-  sum.across = fma(pull_here, n(1), sum.across);
-  sum.next_along = fma(rate(1), n_last, sum.next_along);
-  sum.next_across = fma(pull(0), n_last, sum.next_across);
-  return sum;
-}
-
 PENDCORE_INLINE KnownTerms<Pairs> known_terms(const DoublePendulumOrders<double>& orders, int k) {
   return known_terms<Pairs>(
       k, [&](int j) __attribute__((always_inline)) { return orders.pulls[j]; },
@@ -269,8 +230,6 @@ PENDCORE_INLINE KnownTerms<TwoPairs<Real>> known_terms(const DoublePendulumOrder
   return terms;
 }
 
-}  // namespace double_pendulum_detail
-
 /// Fills rows 1 .. order of `coefficients` with the series from the state y, a row of four numbers,
 /// in units of sigma. `torque` gives the series of the torques.
 template <class Number, class TorqueOrders>
@@ -284,7 +243,7 @@ PENDCORE_INLINE void expand_double_pendulum(const ConstantsOfDoublePendulum<Numb
   orders.pulls[0] = orders.pulls[0] + orders.weight;
   orders.finish_next(0, typename Orders::Terms{}, torque, coefficients);
   for (int k = 2; k < order; k += 2) {
-    const typename Orders::Terms known = double_pendulum_detail::known_terms(orders, k);
+    const typename Orders::Terms known = known_terms(orders, k);
     orders.finish(k, known.along, known.across, torque, coefficients);
     orders.finish_next(k, known, torque, coefficients);
   }

@@ -39,6 +39,7 @@
 #include "pendcore/arithmetic/sine_cosine.hpp"
 #include "pendcore/dynamics/chain/chain_link.hpp"
 #include "pendcore/dynamics/equations_of_motion.hpp"
+#include "pendcore/dynamics/series/known_terms.hpp"
 #include "pendcore/dynamics/series/torque_series.hpp"
 
 namespace pendcore {
@@ -175,14 +176,6 @@ PENDCORE_INLINE Row times(const Row* matrix, const Row& row) {
   return sum;
 }
 
-/// The known terms of the sums of orders k and k + 1: qd_j n_{k+1-j} along x and y, and
-/// n_{k-j} . H_j. Two orders are computed at a time, so that what they share is loaded once.
-template <class Value>
-struct KnownTerms {
-  Value along_x{}, along_y{}, across_x{}, across_y{};
-  Value next_along_x{}, next_along_y{}, next_across_x{}, next_across_y{};
-};
-
 }  // namespace few_links_detail
 
 /// The orders of one series.
@@ -190,7 +183,7 @@ template <class Number, int links>
 struct FewLinksOrders {
   using Rows = few_links_detail::Rows<Number, links>;
   using Row = RowOfLinks<Number, links>;
-  using Terms = few_links_detail::KnownTerms<Row>;
+  using Terms = KnownTerms<Two<Row>>;  // along x, and along y
   using Torques = TorqueOrders<Row, Number>;
 
   const ConstantsOfFewLinks<Number, links>& constants;
@@ -259,82 +252,54 @@ struct FewLinksOrders {
   /// Computes order k + 1 after order k, from the terms that were known before both.
   PENDCORE_INLINE void finish_next(int k, const Terms& known, Torques& torques,
                                    Number* coefficients) {
-    const Row along_x = fma(rates[k + 1], nx[1], fma(rates[0], nx[k + 2], known.next_along_x));
-    const Row along_y = fma(rates[k + 1], ny[1], fma(rates[0], ny[k + 2], known.next_along_y));
+    const Two<Row>& along = known.next_along;
+    const Row along_x = fma(rates[k + 1], nx[1], fma(rates[0], nx[k + 2], along.first));
+    const Row along_y = fma(rates[k + 1], ny[1], fma(rates[0], ny[k + 2], along.second));
     const Row across =
-        fma(hx[k], nx[1], known.next_across_x) + fma(hy[k], ny[1], known.next_across_y);
+        fma(hx[k], nx[1], known.next_across.first) + fma(hy[k], ny[1], known.next_across.second);
     finish(k + 1, along_x, along_y, across, nullptr, torques, coefficients);
   }
 
   /// Adds up the known terms of orders k >= 2 and k + 1. `of` takes a row to the numbers that are
   /// added up at a time.
   template <class Value, class Of>
-  PENDCORE_INLINE few_links_detail::KnownTerms<Value> known_terms(int k, const Of& of) const {
-    few_links_detail::KnownTerms<Value> sum;
-    Value rate = of(rates[1]);
-    Value x = of(hx[0]);
-    Value y = of(hy[0]);
-    for (int i = k; i >= 2; --i) {
-      const Value n_x = of(nx[i]);
-      const Value n_y = of(ny[i]);
-      sum.along_x = fma(rate, n_x, sum.along_x);
-      sum.along_y = fma(rate, n_y, sum.along_y);
-      sum.across_x = fma(x, n_x, sum.across_x);
-      sum.across_y = fma(y, n_y, sum.across_y);
-      rate = of(rates[k + 2 - i]);
-      x = of(hx[k + 1 - i]);
-      y = of(hy[k + 1 - i]);
-      sum.next_along_x = fma(rate, n_x, sum.next_along_x);
-      sum.next_along_y = fma(rate, n_y, sum.next_along_y);
-      sum.next_across_x = fma(x, n_x, sum.next_across_x);
-      sum.next_across_y = fma(y, n_y, sum.next_across_y);
-    }
-    const Value n_x = of(nx[k + 1]);
-    const Value n_y = of(ny[k + 1]);
-    sum.along_x = fma(rate, of(nx[1]), fma(of(rates[0]), n_x, sum.along_x));
-    sum.along_y = fma(rate, of(ny[1]), fma(of(rates[0]), n_y, sum.along_y));
-    sum.across_x = fma(x, of(nx[1]), sum.across_x);
-    sum.across_y = fma(y, of(ny[1]), sum.across_y);
-    sum.next_along_x = fma(of(rates[1]), n_x, sum.next_along_x);
-    sum.next_along_y = fma(of(rates[1]), n_y, sum.next_along_y);
-    sum.next_across_x = fma(of(hx[0]), n_x, sum.next_across_x);
-    sum.next_across_y = fma(of(hy[0]), n_y, sum.next_across_y);
-    return sum;
+  PENDCORE_INLINE KnownTerms<Two<Value>> known(int k, const Of& of) const {
+    using AlongAxes = Two<Value>;
+    return known_terms<AlongAxes>(
+        k, [&](int j) __attribute__((always_inline)) { return AlongAxes{of(hx[j]), of(hy[j])}; },
+        [&](int j) __attribute__((always_inline)) { return of(rates[j]); },
+        [&](int j) __attribute__((always_inline)) { return AlongAxes{of(nx[j]), of(ny[j])}; });
   }
 };
 
-namespace few_links_detail {
-
 template <int links>
-PENDCORE_INLINE KnownTerms<Pack<4>> known_terms(const FewLinksOrders<double, links>& orders,
-                                                int k) {
-  return orders.template known_terms<Pack<4>>(
+PENDCORE_INLINE KnownTerms<Two<Pack<4>>> known_terms(const FewLinksOrders<double, links>& orders,
+                                                     int k) {
+  return orders.template known<Pack<4>>(
       k, [](const Pack<4>& row) __attribute__((always_inline)) { return row; });
 }
 /// In lanes, the links are added up one after the other: the sums of a whole row would not fit into
 /// the registers.
 template <class Real, int links>
-PENDCORE_INLINE KnownTerms<EachLink<Real, links>> known_terms(
+PENDCORE_INLINE KnownTerms<Two<EachLink<Real, links>>> known_terms(
     const FewLinksOrders<Real, links>& orders, int k) {
-  KnownTerms<EachLink<Real, links>> terms;
+  using Row = EachLink<Real, links>;
+  KnownTerms<Two<Row>> terms;
 #pragma GCC unroll 4
   for (int i = 0; i < links; ++i) {
-    const KnownTerms<Real> found = orders.template known_terms<Real>(
-        k,
-        [i](const EachLink<Real, links>& row) __attribute__((always_inline)) { return row.of[i]; });
-    terms.along_x.of[i] = found.along_x;
-    terms.along_y.of[i] = found.along_y;
-    terms.across_x.of[i] = found.across_x;
-    terms.across_y.of[i] = found.across_y;
-    terms.next_along_x.of[i] = found.next_along_x;
-    terms.next_along_y.of[i] = found.next_along_y;
-    terms.next_across_x.of[i] = found.next_across_x;
-    terms.next_across_y.of[i] = found.next_across_y;
+    const KnownTerms<Two<Real>> found = orders.template known<Real>(
+        k, [i](const Row& row) __attribute__((always_inline)) { return row.of[i]; });
+    const auto put = [i](Two<Row>& to, const Two<Real>& x) __attribute__((always_inline)) {
+      to.first.of[i] = x.first;
+      to.second.of[i] = x.second;
+    };
+    put(terms.along, found.along);
+    put(terms.across, found.across);
+    put(terms.next_along, found.next_along);
+    put(terms.next_across, found.next_across);
   }
   return terms;
 }
-
-}  // namespace few_links_detail
 
 /// Fills rows 1 .. order of `coefficients` with the series from the state y in units of sigma.
 template <class Number, int links>
@@ -351,9 +316,9 @@ PENDCORE_INLINE void expand_few_links(const ConstantsOfFewLinks<Number, links>& 
                 torques, coefficients);
   orders.finish_next(0, typename Orders::Terms{}, torques, coefficients);
   for (int k = 2; k < order; k += 2) {
-    const typename Orders::Terms known = few_links_detail::known_terms(orders, k);
-    orders.finish(k, known.along_x, known.along_y, known.across_x + known.across_y, nullptr,
-                  torques, coefficients);
+    const typename Orders::Terms known = known_terms(orders, k);
+    orders.finish(k, known.along.first, known.along.second,
+                  known.across.first + known.across.second, nullptr, torques, coefficients);
     orders.finish_next(k, known, torques, coefficients);
   }
 }
