@@ -193,6 +193,42 @@ def test_under_effects_neighbours_part_at_that_rate(name: str, n: int) -> None:
     assert alone.growth[-1, 0] == pytest.approx(found.growth[-1, 0], abs=1e-7)
 
 
+DRIVEN = [
+    E.ViscousJoint(1, 0.1),
+    E.TorsionalSpring(2, 3.0, 0.2),
+    E.Motor(1, sinusoid=E.Sinusoid(2.0, 3.0)),
+]
+
+
+@pytest.mark.parametrize("effects", [[], DRIVEN], ids=["bare", "driven"])
+@pytest.mark.parametrize("n", [2, 3, 4])
+def test_two_to_four_links_take_one_series_a_step(n: int, effects: list[pc.effects.Effect]) -> None:
+    scene, q0 = rods(n, *effects), [0.3, 1.1, 0.7, -0.4][:n]
+    found = pc.lyapunov(scene, q0, t_span=(0, 2.0), rtol=1e-11)
+    # A step of Runge-Kutta would count as twelve right-hand sides.
+    assert found.stats.nfev < 4 * found.stats.accepted
+    assert found.growth[-1, 0] == pytest.approx(differences(scene, q0, 2.0), abs=2e-5)
+    _, log_det = np.linalg.slogdet(scene.mass_matrix(found.q))
+    if not effects:
+        assert found.growth.sum(axis=1) == pytest.approx(log_det[0] - log_det, abs=1e-8)
+
+
+def test_changes_that_shrink_by_many_powers_of_ten_shrink_at_the_rates_of_the_linear_system() -> (
+    None
+):
+    scene = rods(2, E.ViscousJoint(joint=1, damping=12.0), E.ViscousJoint(joint=2, damping=3.0))
+    mass = np.array([[4 / 3, 1 / 2], [1 / 2, 1 / 3]])
+    linear = linearised(-np.linalg.solve(mass, GRAVITY * np.diag([3 / 2, 1 / 2])))
+    linear[2:, 2:] = -np.linalg.solve(mass, [[15.0, -3.0], [-3.0, 3.0]])
+    rates = np.linalg.eigvals(linear).real
+    found = pc.lyapunov(scene, np.pi / 2, t_span=(0, 10), t_eval=[5.0, 10.0], rtol=1e-11)
+    # In the first half the changes turn into their directions.
+    later = (found.growth[2] - found.growth[1]) / 5
+    assert later.sum() == pytest.approx(rates.sum(), abs=1e-6)
+    assert later[-1] == pytest.approx(rates.min(), abs=1e-6)
+    assert found.growth[2, -1] < -500.0
+
+
 def test_what_is_locked_has_no_exponents() -> None:
     locked = pc.lyapunov(rods(2, E.Lock(joint=2)), 0.3, t_span=(0, 20))
     one = pc.Scene(links=[pc.Link(mass=2.0, length=2.0)], gravity=GRAVITY)

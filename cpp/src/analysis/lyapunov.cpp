@@ -5,13 +5,17 @@
 #include <memory>
 #include <stdexcept>
 
+#include "pendcore/analysis/tangent_series.hpp"
 #include "pendcore/arithmetic/exponential.hpp"
 #include "pendcore/arithmetic/floating_point_environment.hpp"
 #include "pendcore/dynamics/jacobian.hpp"
+#include "pendcore/dynamics/series/double_pendulum_series.hpp"
+#include "pendcore/dynamics/series/few_links_series.hpp"
 #include "pendcore/dynamics/tangent_space.hpp"
 #include "pendcore/integrate/loop/first_step.hpp"
 #include "pendcore/integrate/runge_kutta/dormand_prince_8.hpp"
 #include "pendcore/integrate/runge_kutta/runge_kutta_in_memory.hpp"
+#include "pendcore/integrate/taylor/taylor_stepper.hpp"
 #include "pendcore/simulate/initial_state.hpp"
 #include "pendcore/simulate/options.hpp"
 #include "pendcore/text/message.hpp"
@@ -24,8 +28,9 @@ namespace {
 /// (qd, dqd_1 .. dqd_k).
 class TangentSystem final : public GeneralSystem {
  public:
-  TangentSystem(const Scene& scene, int count, double t_end, bool forward)
-      : GeneralSystem(row_in_memory(static_cast<int>(scene.links.size()) * (1 + count), false), 0),
+  /// `numbers` are those of a row, padding included.
+  TangentSystem(const Scene& scene, int count, int numbers, double t_end, bool forward)
+      : GeneralSystem(numbers, 0),
         equations_(equations_of_motion(scene)),
         jacobian_(scene, equations_),
         n_(static_cast<int>(scene.links.size())),
@@ -60,6 +65,34 @@ class TangentSystem final : public GeneralSystem {
   double t_end_;
   bool forward_;
 };
+
+/// The series of two to four links have dual numbers (dynamics/series). Other scenes, and laws in
+/// pieces, whose joints a series may not pass, have dop853.
+std::unique_ptr<Stepper> make_stepper(const Scene& scene, int count, double t_end, bool forward) {
+  const int numbers = static_cast<int>(scene.links.size()) * (1 + count);
+  const EquationsOfMotion equations = equations_of_motion(scene);
+  const auto& effects = equations.effects;
+  const auto by_series = [&]<class Series>(Series series) -> std::unique_ptr<Stepper> {
+    auto system = std::make_shared<TangentSystem>(scene, count, numbers, t_end, forward);
+    auto rates = [system](double t, const double* y, double* dydt) { (*system)(t, y, dydt); };
+    return std::make_unique<Taylor<TangentSeries<Series>>>(
+        TangentSeries<Series>(std::move(series), count), std::move(rates), 0);
+  };
+  if (auto bare = bare_series(equations)) return by_series(*std::move(bare));
+  const bool is_smooth =
+      effects && !effects->has_modes && !effects->any_held && !without_series(scene);
+  if (is_smooth) {
+    if (auto loaded = series_with_torque(equations)) return by_series(*std::move(loaded));
+    if (FewLinksSeries::has(scene, equations)) {
+      return by_series(
+          FewLinksSeries(scene, std::dynamic_pointer_cast<ActingEffects<Pack<4>>>(effects)));
+    }
+  }
+  const int row = row_in_memory(numbers, false);
+  return runge_kutta_in_memory(dormand_prince_8.info.name,
+                               std::make_unique<TangentSystem>(scene, count, row, t_end, forward),
+                               numbers);
+}
 
 /// Sums up the growth, and records it at the times asked for.
 class GrowthRecorder final : public Observer {
@@ -104,12 +137,14 @@ class GrowthRecorder final : public Observer {
     if (!was_stepped_) return;
     was_stepped_ = false;
     stepper_.get_state(state_.data());
-    stepper_.get_derivative(rate_.data());
     gather(state_, changes_);
+    stepper_.get_derivative(rate_.data());
     gather(rate_, slopes_);
     // The derivatives of the changes are linear in the changes, so nothing needs to be evaluated
     // again.
     orthonormalise(k_, 2 * n_, changes_.data(), slopes_.data(), lengths_.data());
+    const auto is_near_one = [](double length) { return 1.0 / far < length && length < far; };
+    if (std::ranges::all_of(lengths_, is_near_one)) return;
     for (int i = 0; i < k_; ++i) sums_[i] += logarithm(lengths_[i]);
     scatter(changes_, state_);
     scatter(slopes_, rate_);
@@ -157,6 +192,9 @@ class GrowthRecorder final : public Observer {
       std::copy_n(row + n_, n_, dq + half());
     }
   }
+
+  /// A change whose length leaves 1/far to far is no longer measured by its tolerances.
+  static constexpr double far = 16.0;
 
   Stepper& stepper_;
   int n_;
@@ -223,10 +261,8 @@ TangentGrowth lyapunov(const Scene& scene, const std::vector<double>& q0,
   TangentGrowth result;
   result.count = options.count == 0 ? all : options.count;
   const int numbers = n * (1 + result.count);
-  const std::unique_ptr<Stepper> in_memory = runge_kutta_in_memory(
-      dormand_prince_8.info.name,
-      std::make_unique<TangentSystem>(scene, result.count, t_end, !(t_end < t0)), numbers);
-  Stepper& stepper = *in_memory;
+  const std::unique_ptr<Stepper> made = make_stepper(scene, result.count, t_end, !(t_end < t0));
+  Stepper& stepper = *made;
 
   IntegratorState integrator;
   integrator.t = {t0, 0.0};

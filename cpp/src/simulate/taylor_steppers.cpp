@@ -32,27 +32,15 @@ std::unique_ptr<Stepper> make_taylor_stepper(const Scene& scene, const Equations
     return ChainSeries<Row>(scene,
                             std::dynamic_pointer_cast<const ActingEffects<Row>>(equations.effects));
   };
-  if (const auto* bare = std::get_if<DoublePendulum>(&equations.form)) {
-    return of(DoublePendulumSeries<NoTorque>(
-        {bare->weight, bare->coupling, Pair{}, bare->product, bare->delta, 0.0}, {}));
-  }
+  if (auto bare = bare_series(equations)) return of(*std::move(bare));
   const auto& effects = equations.effects;
-  auto with_torque = [&]<Parts parts>(const DoublePendulumWithEffects<parts>& one) {
-    const DoublePendulumSeries<CoupleTorque<Pair>> free(
-        {one.weight, one.coupling, one.rotor, one.product, one.delta, one.epsilon},
-        {std::dynamic_pointer_cast<const ActingEffects<Pair>>(effects), one.inverse_diagonal});
+  if (auto free = series_with_torque(equations)) {
     const bool may_hold = equations.held_joints->can_hold() || effects->any_held;
     if constexpr (has_special_kernels_of_rare_runs) {
-      if (!may_hold && instruction_set() >= free.least) return of(free);
+      if (!may_hold && instruction_set() >= free->least) return of(*std::move(free));
     }
-    return of(SeriesWithHolds(free, chain.template operator()<Pair>(), effects));
-  };
-  if (const auto* one = std::get_if<DoublePendulumWithEffects<Parts::couples>>(&equations.form)) {
-    return with_torque(*one);
+    return of(SeriesWithHolds(*std::move(free), chain.template operator()<Pair>(), effects));
   }
-  const auto* one = std::get_if<DoublePendulumWithEffects<Parts::waves>>(&equations.form);
-  if (one != nullptr && effects->pivots.empty()) return with_torque(*one);
-
   if (FewLinksSeries::has(scene, equations)) {
     auto rows = std::dynamic_pointer_cast<const ActingEffects<Pack<4>>>(effects);
     return of(FewLinksSeries(scene, std::move(rows)));

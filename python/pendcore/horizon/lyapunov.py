@@ -195,10 +195,12 @@ def lyapunov(
 
     Notes
     -----
-    The variational equations are integrated beside the motion, by dop853 with exact derivatives of
-    the right-hand side (of a user's function, by differences), and made orthonormal after each step
-    (Benettin, Galgani, Giorgilli & Strelcyn, *Meccanica* 15 (1980), 9-20). Lengths are those of
-    (dq, dqd) in rad and rad/s: over a long time they do not matter. The first change is one of q_1,
+    The variational equations are integrated beside the motion: by Taylor series with exact
+    derivatives for two to four links whose laws are in one piece, and otherwise by dop853 with
+    exact derivatives of the right-hand side (of a user's function, by differences). The changes are
+    made orthonormal as soon as one has grown or shrunk sixteenfold (Benettin, Galgani, Giorgilli &
+    Strelcyn, *Meccanica* 15 (1980), 9-20). Lengths are those of (dq, dqd) in rad and rad/s: over a
+    long time they do not matter. The first change is one of q_1,
     the second of q_2, and so on; then those of the rates.
 
     Examples

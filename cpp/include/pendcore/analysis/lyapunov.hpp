@@ -5,9 +5,10 @@
 ///     d(dq)/dt = dqd,   d(dqd)/dt = (d qdd/d q) dq + (d qdd/d qd) dqd
 ///
 /// They are integrated beside the state for k small changes (dq, dqd) of it at once, with exact
-/// derivatives of the right-hand side (dynamics/jacobian.hpp). The changes are part of the error
-/// norm, as the state is. After each step they are made orthonormal again, Phi = Q R, and the
-/// logarithms of the diagonal of R are summed:
+/// derivatives of the right-hand side (dynamics/jacobian.hpp), or of the Taylor series where the
+/// scene has one on dual numbers (tangent_series.hpp). The changes are part of the error norm, as
+/// the state is. After a step in which a length in R left 1/16 to 16, they are made orthonormal
+/// again, Phi = Q R, and the logarithms of the diagonal of R are summed:
 ///
 ///     growth_i(t) = sum of ln R_ii        exponent_i = growth_i/(t - t_0), in 1/s
 ///
@@ -15,7 +16,8 @@
 /// joints have no changes: a chain with m free joints has 2m exponents.
 ///
 /// Source: Benettin, Galgani, Giorgilli, Strelcyn, Meccanica 15 (1980), 9-20.
-/// Cost: each step of dop853 takes 12 right-hand sides, on dual numbers, for each of the k changes.
+/// Cost: a series on dual numbers for each step and each of the k changes, or 12 right-hand sides
+/// of dop853.
 #pragma once
 
 #include <limits>

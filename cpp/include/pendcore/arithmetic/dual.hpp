@@ -11,6 +11,7 @@
 #pragma once
 
 #include "pendcore/arithmetic/exponential.hpp"
+#include "pendcore/arithmetic/row_of_links.hpp"
 
 namespace pendcore {
 
@@ -23,6 +24,16 @@ struct Dual {
   PENDCORE_INLINE Dual(const Row& constant)  // NOLINT(google-explicit-constructor): as a row would
       : value(constant), slope{} {}
   PENDCORE_INLINE Dual(const Row& x, const Row& along) : value(x), slope(along) {}
+  // GCC would copy the structure in parts that are smaller than its packs, and a pack that is then
+  // loaded has to wait until all parts are in memory: series took twice as long.
+  PENDCORE_INLINE Dual(const Dual& x)
+      : value(x.value), slope(x.slope) {}           // NOLINT(*-use-equals-default)
+  PENDCORE_INLINE Dual& operator=(const Dual& x) {  // NOLINT(*-use-equals-default)
+    value = x.value;
+    slope = x.slope;
+    return *this;
+  }
+  ~Dual() = default;
 
   PENDCORE_INLINE friend Dual operator-(const Dual& x) { return {-x.value, -x.slope}; }
   PENDCORE_INLINE friend Dual operator+(const Dual& x, const Dual& y) {
@@ -34,6 +45,9 @@ struct Dual {
   PENDCORE_INLINE friend Dual operator*(const Dual& x, const Dual& y) {
     return {x.value * y.value, pendcore::fma(x.value, y.slope, Row(x.slope * y.value))};
   }
+  PENDCORE_INLINE friend Dual operator*(double x, const Dual& y) {
+    return {x * y.value, x * y.slope};
+  }
   PENDCORE_INLINE friend Dual operator/(double x, const Dual& y) {
     const Row quotient = x / y.value;
     return {quotient, -(quotient * y.slope) / y.value};
@@ -42,9 +56,34 @@ struct Dual {
     return {pendcore::fma(a.value, b.value, c.value),
             pendcore::fma(a.value, b.slope, pendcore::fma(a.slope, b.value, c.slope))};
   }
+  PENDCORE_INLINE friend Dual fma(double a, const Dual& b, const Dual& c) {
+    return {pendcore::fma(a, b.value, c.value), pendcore::fma(a, b.slope, c.slope)};
+  }
   PENDCORE_INLINE Dual& operator+=(const Dual& x) { return *this = *this + x; }
   PENDCORE_INLINE Dual& operator-=(const Dual& x) { return *this = *this - x; }
 };
+
+/// Products with a row of constants.
+template <class Row>
+PENDCORE_INLINE Dual<Row> operator*(const Row& x, const Dual<Row>& y) {
+  return {x * y.value, x * y.slope};
+}
+template <class Row>
+PENDCORE_INLINE Dual<Row> fma(const Row& a, const Dual<Row>& b, const Dual<Row>& c) {
+  return {fma(a, b.value, c.value), fma(a, b.slope, c.slope)};
+}
+
+/// What a row without a slope is to a dual row: the type of constants beside it.
+template <class Row>
+struct WithoutSlope {
+  using Type = Row;
+};
+template <class Row>
+struct WithoutSlope<Dual<Row>> {
+  using Type = Row;
+};
+template <class Row>
+using ConstantOf = typename WithoutSlope<Row>::Type;
 
 /// A lane of a dual row is a dual number.
 template <class Row>

@@ -2,6 +2,8 @@
 /// The recursion of chain.hpp.
 #pragma once
 
+#include <algorithm>
+
 #include "pendcore/dynamics/chain/chain.hpp"
 #include "pendcore/dynamics/row.hpp"
 
@@ -11,8 +13,8 @@ template <class Number>
 PENDCORE_INLINE void ChainOf<Number>::prepare(const Number* q, const Number* qd) const {
   Number* const s = in(s_);
   Number* const c = in(c_);
-  __builtin_memcpy(in(q_), q, n_ * sizeof(Number));
-  __builtin_memcpy(in(qd_), qd, n_ * sizeof(Number));
+  std::copy_n(q, n_, in(q_));
+  std::copy_n(qd, n_, in(qd_));
   for (int i = 0; i < padded_; i += 4) {
     const Row rate = load<Row>(in(qd_) + i);
     Row sine, cosine;

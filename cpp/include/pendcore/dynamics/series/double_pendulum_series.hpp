@@ -38,6 +38,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <type_traits>
 #include <utility>
 
@@ -45,13 +46,14 @@
 #include "pendcore/arithmetic/pair.hpp"
 #include "pendcore/arithmetic/row_of_pairs.hpp"
 #include "pendcore/arithmetic/sine_cosine.hpp"
+#include "pendcore/dynamics/equations_of_motion.hpp"
 #include "pendcore/dynamics/series/known_terms.hpp"
 #include "pendcore/dynamics/series/torque_series.hpp"
 
 namespace pendcore {
 
-/// What a series is made of: numbers, pairs of them, and rows of two pairs. `Number` is a double,
-/// or a pack with one trajectory a lane.
+/// What a series is made of: numbers, pairs of them, and rows of two pairs. `Number` is a double, a
+/// dual number, or a pack with one trajectory a lane.
 template <class Number>
 struct SeriesOf {
   using Half = PairOf<Number>;
@@ -70,6 +72,14 @@ struct SeriesOf<double> {
   using Row = Pairs;
   PENDCORE_INLINE static Half pair_at(const double* from) { return load<Pair>(from); }
   PENDCORE_INLINE static void put_row(double* to, const Row& row) { store(to, row); }
+};
+
+template <>
+struct SeriesOf<Dual<double>> {
+  using Half = Dual<Pair>;
+  using Row = Dual<Pairs>;
+  PENDCORE_INLINE static Half pair_at(const Dual<double>* from) { return load<Half>(from); }
+  PENDCORE_INLINE static void put_row(Dual<double>* to, const Row& row) { store(to, row); }
 };
 
 /// The constants that double_pendulum.hpp and double_pendulum_with_effects.hpp have in common.
@@ -108,24 +118,32 @@ class DoublePendulumSeries {
 
   /// Fills rows 1 .. order of `coefficients` with y_k of y(t + theta sigma) = sum_k theta^k y_k,
   /// from the state y. The order is even, and at least `lowest_taylor_order`.
-  PENDCORE_INLINE void expand(double t, const double* y, double sigma, int order,
-                              double* coefficients) const;
+  template <class Number>
+  PENDCORE_INLINE void expand(double t, const Number* y, double sigma, int order,
+                              Number* coefficients) const;
 
  private:
   DoublePendulumConstants constants_;
   Torque torque_;
 };
 
+/// The series of equations without torques, and of those with couples or up to two waves, while no
+/// joint is held; none for equations of another form.
+std::optional<DoublePendulumSeries<NoTorque>> bare_series(const EquationsOfMotion& equations);
+std::optional<DoublePendulumSeries<CoupleTorque<Pair>>> series_with_torque(
+    const EquationsOfMotion& equations);
+
 /// The orders of one series. Rows are (c, c', s, s'); for rates and other numbers without a
 /// direction, a row is the pair twice.
 template <class Number>
 struct DoublePendulumOrders {
+  using Constant = ConstantOf<Number>;
   using Of = SeriesOf<Number>;
   using Half = typename Of::Half;
   using Row = typename Of::Row;
   using Terms = KnownTerms<Row>;
 
-  Number per_sigma;
+  Constant per_sigma;
   Half own, cross;  ///< 1/D and -kappa/D of the two by two system
   Row minus_rho;
   Row across_by_rho;              ///< -rho n_0
@@ -135,8 +153,8 @@ struct DoublePendulumOrders {
   Row n[highest_order + 3];
   Row pulls[highest_order];  ///< -rho u''(other); in order 0 with the weight
 
-  PENDCORE_INLINE DoublePendulumOrders(const ConstantsOfDoublePendulum<Number>& constants,
-                                       const Number* y, const Number& sigma);
+  PENDCORE_INLINE DoublePendulumOrders(const ConstantsOfDoublePendulum<Constant>& constants,
+                                       const Number* y, const Constant& sigma);
 
   /// Computes order k from its sums.
   template <class TorqueOrders>
@@ -154,7 +172,7 @@ struct DoublePendulumOrders {
 
 template <class Number>
 PENDCORE_INLINE DoublePendulumOrders<Number>::DoublePendulumOrders(
-    const ConstantsOfDoublePendulum<Number>& constants, const Number* y, const Number& sigma) {
+    const ConstantsOfDoublePendulum<Constant>& constants, const Number* y, const Constant& sigma) {
   per_sigma = 1.0 / sigma;  // exact: a power of two
   Half s0, c0;
   sine_cosine(Of::pair_at(y), s0, c0);
@@ -194,8 +212,10 @@ PENDCORE_INLINE void DoublePendulumOrders<Number>::finish(int k, const Row& alon
   pulls[k] = minus_rho * other(bend);
 }
 
-PENDCORE_INLINE KnownTerms<Pairs> known_terms(const DoublePendulumOrders<double>& orders, int k) {
-  return known_terms<Pairs>(
+template <class Number>
+  requires(Lanes<Number>::width == 1)
+PENDCORE_INLINE auto known_terms(const DoublePendulumOrders<Number>& orders, int k) {
+  return known_terms<typename SeriesOf<Number>::Row>(
       k, [&](int j) __attribute__((always_inline)) { return orders.pulls[j]; },
       [&](int j) __attribute__((always_inline)) { return twice(orders.rates[j]); },
       [&](int j) __attribute__((always_inline)) { return orders.n[j]; });
@@ -203,6 +223,7 @@ PENDCORE_INLINE KnownTerms<Pairs> known_terms(const DoublePendulumOrders<double>
 /// In lanes, the numbers of one link are added up after those of the other: the sums of a whole row
 /// would not fit into the registers.
 template <class Real>
+  requires(Lanes<Real>::width > 1)
 PENDCORE_INLINE KnownTerms<TwoPairs<Real>> known_terms(const DoublePendulumOrders<Real>& orders,
                                                        int k) {
   using AlongAxes = Two<Real>;  // a number along x, and one along y
@@ -233,9 +254,9 @@ PENDCORE_INLINE KnownTerms<TwoPairs<Real>> known_terms(const DoublePendulumOrder
 /// Fills rows 1 .. order of `coefficients` with the series from the state y, a row of four numbers,
 /// in units of sigma. `torque` gives the series of the torques.
 template <class Number, class TorqueOrders>
-PENDCORE_INLINE void expand_double_pendulum(const ConstantsOfDoublePendulum<Number>& constants,
-                                            const Number* y, const Number& sigma, int order,
-                                            TorqueOrders& torque, Number* coefficients) {
+PENDCORE_INLINE void expand_double_pendulum(
+    const ConstantsOfDoublePendulum<ConstantOf<Number>>& constants, const Number* y,
+    const ConstantOf<Number>& sigma, int order, TorqueOrders& torque, Number* coefficients) {
   using Orders = DoublePendulumOrders<Number>;
   Orders orders(constants, y, sigma);
   orders.finish(0, twice(orders.rates[0]) * orders.n[1], orders.weight * orders.n[0], torque,
@@ -250,11 +271,12 @@ PENDCORE_INLINE void expand_double_pendulum(const ConstantsOfDoublePendulum<Numb
 }
 
 template <class Torque>
-PENDCORE_INLINE void DoublePendulumSeries<Torque>::expand(double t, const double* y, double sigma,
-                                                          int order, double* coefficients) const {
+template <class Number>
+PENDCORE_INLINE void DoublePendulumSeries<Torque>::expand(double t, const Number* y, double sigma,
+                                                          int order, Number* coefficients) const {
   if constexpr (Torque::is_there) {
     const TorqueLaws<Pair, double> laws = torque_laws(*torque_.effects, torque_.factor);
-    typename Torque::Orders orders(laws, t, sigma);
+    TorqueOrders<typename SeriesOf<Number>::Half, double> orders(laws, t, sigma);
     expand_double_pendulum(constants_, y, sigma, order, orders, coefficients);
   } else {
     NoTorque none;

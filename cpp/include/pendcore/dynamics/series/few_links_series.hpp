@@ -82,8 +82,9 @@ class FewLinksSeries {
 
   /// Fills rows 1 .. order of `coefficients` with y_k of y(t + theta sigma) = sum_k theta^k y_k,
   /// from the state y. The order is even.
-  PENDCORE_INLINE void expand(double t, const double* y, double sigma, int order,
-                              double* coefficients) const;
+  template <class Number>
+  PENDCORE_INLINE void expand(double t, const Number* y, double sigma, int order,
+                              Number* coefficients) const;
 
  private:
   ConstantsOfFewLinks<double, 3> three_{};
@@ -94,7 +95,7 @@ class FewLinksSeries {
 
 namespace few_links_detail {
 
-/// Where rows are in a state of packs, and of doubles.
+/// Where rows are in a state of packs, of doubles, and of dual numbers.
 template <class Number, int links>
 struct Rows {
   static constexpr int numbers = links;
@@ -113,6 +114,14 @@ struct Rows<double, links> {
   PENDCORE_INLINE static Pack<4> get(const double* from) { return load<Pack<4>>(from); }
   PENDCORE_INLINE static void put(double* to, const Pack<4>& row) { store(to, row); }
 };
+template <int links>
+struct Rows<Dual<double>, links> {
+  static constexpr int numbers = 4;
+  PENDCORE_INLINE static Dual<Pack<4>> get(const Dual<double>* from) {
+    return load<Dual<Pack<4>>>(from);
+  }
+  PENDCORE_INLINE static void put(Dual<double>* to, const Dual<Pack<4>>& row) { store(to, row); }
+};
 
 /// The factors of M_0^-1 = U^T diag(r) U. The entries of U on its diagonal are 1 and not kept.
 template <class Row, int links>
@@ -124,7 +133,8 @@ struct InverseMassMatrix {
 
 template <class Number, int links, class Row>
 PENDCORE_INLINE InverseMassMatrix<Row, links> inverse_mass_matrix(
-    const ConstantsOfFewLinks<Number, links>& constants, const Row& sine, const Row& cosine) {
+    const ConstantsOfFewLinks<ConstantOf<Number>, links>& constants, const Row& sine,
+    const Row& cosine) {
   struct Turning {
     Number r, wx, wy;  ///< r and w of chain.hpp; w along x and y
   };
@@ -132,7 +142,7 @@ PENDCORE_INLINE InverseMassMatrix<Row, links> inverse_mass_matrix(
   ForcePerAcceleration<Number> B{constants.payload_mass, Number{}, constants.payload_mass};
 #pragma GCC unroll 4
   for (int i = links - 1; i >= 0; --i) {
-    const ChainLinkOf<Number>& k = constants.link[i];
+    const ChainLinkOf<ConstantOf<Number>>& k = constants.link[i];
     const Number c = of_link(cosine, i);
     const Number s = of_link(sine, i);
     const Number wu = k.L * B.un;
@@ -168,8 +178,8 @@ PENDCORE_INLINE InverseMassMatrix<Row, links> inverse_mass_matrix(
 }
 
 /// The product of a matrix without its diagonal and a row.
-template <int links, class Row>
-PENDCORE_INLINE Row times(const Row* matrix, const Row& row) {
+template <int links, class Matrix, class Row>
+PENDCORE_INLINE Row times(const Matrix* matrix, const Row& row) {
   Row sum = matrix[1] * link_after<links, 1>(row);
   if constexpr (links > 2) sum = fma(matrix[2], link_after<links, 2>(row), sum);
   if constexpr (links > 3) sum = fma(matrix[3], link_after<links, 3>(row), sum);
@@ -181,13 +191,14 @@ PENDCORE_INLINE Row times(const Row* matrix, const Row& row) {
 /// The orders of one series.
 template <class Number, int links>
 struct FewLinksOrders {
+  using Constant = ConstantOf<Number>;
   using Rows = few_links_detail::Rows<Number, links>;
   using Row = RowOfLinks<Number, links>;
   using Terms = KnownTerms<Two<Row>>;  // along x, and along y
-  using Torques = TorqueOrders<Row, Number>;
+  using Torques = TorqueOrders<Row, Constant>;
 
-  const ConstantsOfFewLinks<Number, links>& constants;
-  Number per_sigma;
+  const ConstantsOfFewLinks<Constant, links>& constants;
+  Constant per_sigma;
   few_links_detail::InverseMassMatrix<Row, links> inverse;
   Row turned_x[links];  ///< A n_0; [0] is not used
   Row turned_y[links];
@@ -196,8 +207,8 @@ struct FewLinksOrders {
   Row rates[highest_order + 1];  ///< qd_k
   Row hx[highest_order + 1], hy[highest_order + 1];
 
-  PENDCORE_INLINE FewLinksOrders(const ConstantsOfFewLinks<Number, links>& given, const Number* y,
-                                 const Number& sigma)
+  PENDCORE_INLINE FewLinksOrders(const ConstantsOfFewLinks<Constant, links>& given, const Number* y,
+                                 const Constant& sigma)
       : constants(given), per_sigma(1.0 / sigma) {  // exact: a power of two
     Row s, c;
     angle_of_order = Rows::get(y);
@@ -272,15 +283,17 @@ struct FewLinksOrders {
   }
 };
 
-template <int links>
-PENDCORE_INLINE KnownTerms<Two<Pack<4>>> known_terms(const FewLinksOrders<double, links>& orders,
-                                                     int k) {
-  return orders.template known<Pack<4>>(
-      k, [](const Pack<4>& row) __attribute__((always_inline)) { return row; });
+template <class Number, int links>
+  requires(Lanes<Number>::width == 1)
+PENDCORE_INLINE auto known_terms(const FewLinksOrders<Number, links>& orders, int k) {
+  using Row = RowOfLinks<Number, links>;
+  return orders.template known<Row>(
+      k, [](const Row& row) __attribute__((always_inline)) { return row; });
 }
 /// In lanes, the links are added up one after the other: the sums of a whole row would not fit into
 /// the registers.
 template <class Real, int links>
+  requires(Lanes<Real>::width > 1)
 PENDCORE_INLINE KnownTerms<Two<EachLink<Real, links>>> known_terms(
     const FewLinksOrders<Real, links>& orders, int k) {
   using Row = EachLink<Real, links>;
@@ -303,15 +316,16 @@ PENDCORE_INLINE KnownTerms<Two<EachLink<Real, links>>> known_terms(
 
 /// Fills rows 1 .. order of `coefficients` with the series from the state y in units of sigma.
 template <class Number, int links>
-PENDCORE_INLINE void expand_few_links(const ConstantsOfFewLinks<Number, links>& constants,
-                                      const TorqueLaws<RowOfLinks<Number, links>, Number>& laws,
-                                      const Number& t, const Number* y, const Number& sigma,
-                                      int order, Number* coefficients) {
+PENDCORE_INLINE void expand_few_links(
+    const ConstantsOfFewLinks<ConstantOf<Number>, links>& constants,
+    const TorqueLaws<RowOfLinks<ConstantOf<Number>, links>, ConstantOf<Number>>& laws,
+    const ConstantOf<Number>& t, const Number* y, const ConstantOf<Number>& sigma, int order,
+    Number* coefficients) {
   using Orders = FewLinksOrders<Number, links>;
   using Row = typename Orders::Row;
   typename Orders::Torques torques(laws, t, sigma);
   Orders orders(constants, y, sigma);
-  const Row pull = Number(sigma * sigma) * constants.weight;
+  const Row pull = ConstantOf<Number>(sigma * sigma) * constants.weight;
   orders.finish(0, orders.rates[0] * orders.nx[1], orders.rates[0] * orders.ny[1], Row{}, &pull,
                 torques, coefficients);
   orders.finish_next(0, typename Orders::Terms{}, torques, coefficients);
@@ -323,14 +337,15 @@ PENDCORE_INLINE void expand_few_links(const ConstantsOfFewLinks<Number, links>& 
   }
 }
 
-PENDCORE_INLINE void FewLinksSeries::expand(double t, const double* y, double sigma, int order,
-                                            double* coefficients) const {
+template <class Number>
+PENDCORE_INLINE void FewLinksSeries::expand(double t, const Number* y, double sigma, int order,
+                                            Number* coefficients) const {
   TorqueLaws<Pack<4>, double> laws;
   if (effects_) laws = torque_laws(*effects_, broadcast<Pack<4>>(1.0));
   if (links_ == 3) {
-    expand_few_links<double, 3>(three_, laws, t, y, sigma, order, coefficients);
+    expand_few_links<Number, 3>(three_, laws, t, y, sigma, order, coefficients);
   } else {
-    expand_few_links<double, 4>(four_, laws, t, y, sigma, order, coefficients);
+    expand_few_links<Number, 4>(four_, laws, t, y, sigma, order, coefficients);
   }
 }
 

@@ -17,8 +17,8 @@
 
 #include <memory>
 
+#include "pendcore/arithmetic/dual_rows.hpp"
 #include "pendcore/arithmetic/order_of_series.hpp"
-#include "pendcore/arithmetic/row_of_links.hpp"
 #include "pendcore/dynamics/acting_effects.hpp"
 
 namespace pendcore {
@@ -58,16 +58,16 @@ PENDCORE_INLINE TorqueLaws<Links, double> torque_laws(const ActingEffects<Links>
   return laws;
 }
 
-/// The orders of one series of torques.
+/// The orders of one series of torques. `Links` may be dual; the time is not.
 template <class Links, class Number>
 class TorqueOrders {
+  using Laws = TorqueLaws<ConstantOf<Links>, Number>;
   using Waves = PairOf<Number>;
 
  public:
-  PENDCORE_INLINE TorqueOrders(const TorqueLaws<Links, Number>& laws, const Number& t,
-                               const Number& sigma)
+  PENDCORE_INLINE TorqueOrders(const Laws& laws, const Number& t, const Number& sigma)
       : laws_(laws), sigma_(sigma), per_sigma_(1.0 / sigma), by_(sigma * sigma * laws.factor) {
-    if (laws.couples != nullptr) in_time_ = laws.couples->template in_time<Links>(t);
+    if (laws.couples != nullptr) in_time_ = laws.couples->template in_time<ConstantOf<Links>>(t);
     if (!laws.has_waves) return;
     sine_cosine(fma(laws.angular_frequency, Waves{t, t}, laws.phase), sine_, cosine_);
     turn_ = sigma * laws.angular_frequency;
@@ -79,7 +79,7 @@ class TorqueOrders {
   PENDCORE_INLINE_UNLESS_SMALL Links next(int k, const Links& angle, const Links& rate) {
     Links couple{};
     if (laws_.couples != nullptr) {
-      const Couples<Links>& couples = *laws_.couples;
+      const auto& couples = *laws_.couples;
       // The fourth place of a pack for three links has a rate but no law: its terms are 0.
       const Links w = per_sigma_ * (rate - before(rate));
       couple = fma(couples.on_phid, w, couples.on_phi * (angle - before(angle)));
@@ -108,10 +108,10 @@ class TorqueOrders {
     return fma(laws_.couples->on_phid2, squares_[k], laws_.couples->on_phid3 * cube);
   }
 
-  const TorqueLaws<Links, Number>& laws_;
+  const Laws& laws_;
   Number sigma_, per_sigma_;
-  Links by_;         ///< sigma^2 times the factor
-  Links in_time_{};  ///< held + slope (t - start)
+  ConstantOf<Links> by_;         ///< sigma^2 times the factor
+  ConstantOf<Links> in_time_{};  ///< held + slope (t - start)
   Waves sine_{}, cosine_{}, turn_{};
   Links rates_[highest_order];
   Links squares_[highest_order];
@@ -122,7 +122,6 @@ class TorqueOrders {
 template <class Links>
 struct CoupleTorque {
   static constexpr bool is_there = true;
-  using Orders = TorqueOrders<Links, double>;
 
   std::shared_ptr<const ActingEffects<Links>> effects;
   Links factor;
