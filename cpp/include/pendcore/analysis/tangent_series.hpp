@@ -1,6 +1,6 @@
 /// \file
-/// The Taylor series of a motion and of small changes of its state, on dual numbers: the variational
-/// equations of lyapunov.hpp, to any order.
+/// The Taylor series of a motion and of small changes of its state: the variational equations of
+/// lyapunov.hpp, to any order.
 ///
 /// The coefficients of a change are the derivatives of the coefficients of the motion along it. So
 /// the recurrences of the motion, on dual numbers, give both.
