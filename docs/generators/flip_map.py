@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 from pendcore.cost.machine import processor
 from pendcore.ensemble.forbidden import is_forbidden
 from pendcore.ensemble.members import members_of
+from scipy.interpolate import CubicHermiteSpline
 
 ROOT = Path(__file__).parents[2]
 sys.path += [str(ROOT / "tests")]
@@ -38,6 +39,7 @@ EVENTS = {f"link {i}": pc.events.LinkAngle(i, UP, every_turn=True, terminal=True
 UNIT = float(np.sqrt(1.0 / BOOK.gravity))  # sqrt(l/g), s
 CHECKED = 1000
 GRID = 0.02  # s, of the times at which turns are counted in many digits
+CLOSE = 0.1  # rad, between upright and a reversal that is computed in many digits as well
 LONGEST = 30.0  # s, of a motion in many digits
 BEGIN, END = "<!-- flip map: begin -->\n", "<!-- flip map: end -->"
 
@@ -101,17 +103,36 @@ def computed(count: int, t_end: float, workers: int | None) -> dict[str, Any]:
 
 
 def in_many_digits(theta: tuple[float, float], until: float) -> float:
-    """Return when the first link turns over by then, s, or NaN, within GRID."""
+    """Return when a link first turns over by then, s, to GRID, or NaN.
+
+    A link may turn over and back between two times of the grid: it does if the angle at which it
+    reverses lies beyond.
+    """
     chain = RodChain([1.0, 1.0], [1.0, 1.0], BOOK.gravity)
     q0 = [np.pi / 2 + x for x in theta]
-    count = int(np.ceil(until / GRID))
-    times = [Fraction(k) * Fraction(GRID) for k in range(1, count + 1)]
     digits = 24 + int(1.2 * until)
-    made = motion(chain, q0, [0.0, 0.0], times, digits=digits)
-    q = np.array([q0, *([float(x) for x in row[:2]] for row in made)])
+
+    def angles_at(times: Floats) -> tuple[Floats, Floats]:
+        exact = [Fraction(t) for t in times.tolist()]
+        made = motion(chain, q0, [0.0, 0.0], exact, digits=digits)
+        state = np.array([[float(x) for x in row] for row in made]).reshape(-1, 4)
+        return state[:, :2], state[:, 2:]
+
+    times = GRID * np.arange(1, int(np.ceil(until / GRID)) + 1)
+    q, qd = angles_at(times)
+    times = np.concatenate([[0.0], times])
+    q, qd = np.concatenate([[q0], q]), np.concatenate([[[0.0, 0.0]], qd])
+    between = CubicHermiteSpline(times, q, qd)
+    rates = between.derivative()
+    reversals = np.unique(np.concatenate([*rates.roots(extrapolate=False)]))
+    distance = (between(reversals) - UP + np.pi) % (2 * np.pi) - np.pi
+    close = reversals[(np.abs(distance) < CLOSE).any(axis=1) & (reversals > 0)]
+    if len(close):
+        times = np.concatenate([times, close])
+        q = np.concatenate([q, angles_at(close)[0]])
     turns = np.floor((q - UP) / (2 * np.pi))
-    changed = np.flatnonzero((turns != turns[0]).any(axis=1))
-    return GRID * changed[0] if len(changed) else np.nan
+    changed = (turns != turns[0]).any(axis=1)
+    return float(times[changed].min()) if changed.any() else np.nan
 
 
 def checked(found: dict[str, Any], count: int, pixels: int) -> dict[str, Any]:

@@ -87,6 +87,9 @@ std::unique_ptr<LaneRunner> lanes_of(std::string_view method, const Scene& scene
   if (method == taylor.info.name) {
     return options.first_step ? nullptr : make_series_lanes<set>(scene, t0, t_end, options);
   }
+  if (scene.links.size() == 1) {
+    return runge_kutta_lanes<SinglePendulum, set>(method, scene, t0, t_end, options);
+  }
   const EquationsOfMotion equations = equations_of_motion(scene);
   if (std::holds_alternative<DoublePendulum>(equations.form)) {
     return runge_kutta_lanes<DoublePendulum, set>(method, scene, t0, t_end, options);
@@ -106,6 +109,7 @@ std::vector<std::string_view> methods_with_lanes(const Scene& scene) {
   if (std::holds_alternative<DoublePendulum>(equations.form)) {
     return {dopri5, dop853, series};
   }
+  if (LaneEquations<SinglePendulum, Pack<4>>::has(equations)) return {dopri5, dop853};
   if (FewLinksSeries::has(scene, equations)) {
     return without_series(scene) ? std::vector<std::string_view>() : std::vector{series};
   }

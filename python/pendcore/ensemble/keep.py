@@ -126,11 +126,11 @@ class LargestExponent(Reducer):
     Examples
     --------
     >>> found = pc.ensemble(
-    ...     pc.Scene.textbook(), q0=[[0.0, 0.0], [1.5, 1.5]], t_span=(0, 30),
+    ...     pc.Scene.textbook(), q0=[[0.0, 0.0], [1.5, 1.5]], t_span=(0, 15),
     ...     keep=pc.keep.LargestExponent(),
     ... )
-    >>> found["largest_exponent"].round(1)
-    array([1.1, 0.1])
+    >>> found["largest_exponent"].round(2)
+    array([1.02, 0.11])
     """
 
     usual_name: ClassVar[str] = "largest_exponent"

@@ -1,6 +1,6 @@
 /// \file
 /// A quantity of each of three or four links beside the same quantity of the others, as pair.hpp
-/// has for two.
+/// has for two; and in packs with a trajectory a lane also that of one link.
 ///
 /// For one trajectory the row is a pack of four, whose last numbers are zero if there are fewer
 /// links; for packs with a trajectory a lane it is as many of these. Sums and products are those of
@@ -73,6 +73,27 @@ PENDCORE_INLINE EachLink<Real, links> operator*(double x, const EachLink<Real, l
       [&](int i) __attribute__((always_inline)) { return Real(x * y.of[i]); });
 }
 template <class Real, int links>
+PENDCORE_INLINE EachLink<Real, links> operator*(const EachLink<Real, links>& x, double y) {
+  return row_detail::each<Real, links>(
+      [&](int i) __attribute__((always_inline)) { return Real(x.of[i] * y); });
+}
+template <class Real, int links>
+PENDCORE_INLINE EachLink<Real, links> operator/(const Real& x, const EachLink<Real, links>& y) {
+  return row_detail::each<Real, links>(
+      [&](int i) __attribute__((always_inline)) { return Real(x / y.of[i]); });
+}
+template <class Real, int links>
+PENDCORE_INLINE EachLink<Real, links> absolute(const EachLink<Real, links>& x) {
+  return row_detail::each<Real, links>(
+      [&](int i) __attribute__((always_inline)) { return absolute(x.of[i]); });
+}
+template <class Real, int links>
+PENDCORE_INLINE EachLink<Real, links> larger(const EachLink<Real, links>& a,
+                                             const EachLink<Real, links>& b) {
+  return row_detail::each<Real, links>(
+      [&](int i) __attribute__((always_inline)) { return larger(a.of[i], b.of[i]); });
+}
+template <class Real, int links>
 PENDCORE_INLINE EachLink<Real, links> fma(const EachLink<Real, links>& a,
                                           const EachLink<Real, links>& b,
                                           const EachLink<Real, links>& c) {
@@ -118,6 +139,7 @@ struct Constants<EachLink<Real, links>> {
   PENDCORE_INLINE static Row of(const Real& x) {
     return row_detail::each<Real, links>([&](int) __attribute__((always_inline)) { return x; });
   }
+  PENDCORE_INLINE static Row of(double x) { return of(broadcast<Real>(x)); }
 };
 
 /// The number of one link.

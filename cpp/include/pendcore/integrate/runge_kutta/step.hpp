@@ -16,8 +16,8 @@
 #include <limits>
 #include <type_traits>
 
-#include "pendcore/arithmetic/pair.hpp"
 #include "pendcore/arithmetic/power.hpp"
+#include "pendcore/arithmetic/row_of_links.hpp"
 #include "pendcore/arithmetic/two_double.hpp"
 #include "pendcore/integrate/loop/attempt.hpp"
 #include "pendcore/integrate/loop/step_control.hpp"
@@ -90,21 +90,25 @@ template <class Block, int blocks>
 StageBlock(const Block (*)[blocks], int) -> StageBlock<Block, blocks>;
 
 /// The sum of the numbers of a trajectory in a block, and how many they are: all lanes of the
-/// block, or one or two numbers of each trajectory if `Scale` is a pack.
-template <class Scale, class Block>
-PENDCORE_INLINE Scale sum_of_trajectory(const Block& x) {
-  if constexpr (std::is_same_v<Scale, double>) {
-    return sum_of_lanes(x);
-  } else if constexpr (std::is_same_v<Scale, Block>) {
-    return x;
-  } else {
-    return x.first + x.second;
-  }
+/// block, or the numbers of one or two links if each lane has a trajectory.
+template <class Block>
+PENDCORE_INLINE double sum_of_trajectory(const Block& x) {
+  return sum_of_lanes(x);
 }
-template <class Scale, class Block>
-constexpr int numbers_of_trajectory = std::is_same_v<Scale, double>  ? Lanes<Block>::width
-                                      : std::is_same_v<Scale, Block> ? 1
-                                                                     : 2;
+template <class Real>
+PENDCORE_INLINE Real sum_of_trajectory(const EachLink<Real, 1>& x) {
+  return x.of[0];
+}
+template <class Real>
+PENDCORE_INLINE Real sum_of_trajectory(const Two<Real>& x) {
+  return x.first + x.second;
+}
+template <class Block>
+constexpr int numbers_of_trajectory = Lanes<Block>::width;
+template <class Real>
+constexpr int numbers_of_trajectory<EachLink<Real, 1>> = 1;
+template <class Real>
+constexpr int numbers_of_trajectory<Two<Real>> = 2;
 
 /// The squares of the error over the components, in units of what the tolerances allow.
 template <const auto& method, class Scale, class Block>
@@ -132,11 +136,11 @@ class SquaredErrors {
     }
   }
   PENDCORE_INLINE Scale mean(double share) const {
-    const Scale sum = sum_of_trajectory<Scale>(squares_) * share;
+    const Scale sum = sum_of_trajectory(squares_) * share;
     if constexpr (!has_second) {
       return sum;
     } else {
-      const Scale others = sum_of_trajectory<Scale>(others_) * share;
+      const Scale others = sum_of_trajectory(others_) * share;
       const Scale both = sum + 0.01 * others;
       const auto is_number = (both > 0.0) & (both < std::numeric_limits<double>::infinity());
       return is_number ? Scale(sum * (sum / both)) : both;
@@ -232,7 +236,7 @@ PENDCORE_INLINE ErrorAndFactor<Scale> judged_step(StepMemory<method, System>* me
       for (int s = 1; s < stages; ++s) memory->k[s][i] = k[s][i];
     }
   }
-  const Scale squared_error = squares.mean(1.0 / (blocks * numbers_of_trajectory<Scale, Block>));
+  const Scale squared_error = squares.mean(1.0 / (blocks * numbers_of_trajectory<Block>));
   return {squared_error, scaled_power(squared_error, -0.5 * exponent(method.info), gain)};
 }
 
@@ -322,8 +326,8 @@ PENDCORE_INLINE Scale stiffness_of_step(const Scale& h, int blocks, const Blocks
     const auto before = advance(y, h, method.a[stages - 2], k, stages - 2);
     const auto dk = k(stages - 1) - k(stages - 2);
     const auto dy = y_new - before;
-    rates += sum_of_trajectory<Scale>(dk * dk);
-    states += sum_of_trajectory<Scale>(dy * dy);
+    rates += sum_of_trajectory(dk * dk);
+    states += sum_of_trajectory(dy * dy);
   }
   if constexpr (std::is_same_v<Scale, double>) {
     return states > 0.0 ? std::abs(h) * std::sqrt(rates / states) : 0.0;
