@@ -55,9 +55,9 @@ class LaneRunner {
 };
 
 /// The methods that have lanes for the equations of a scene. Those of Dormand and Prince have them
-/// for one and two links, bare or with couples and waves of motors and the pivot (up to four waves
-/// for one link, two for two); Taylor series for two, three and four links whose pivot stands still.
-/// There are none where a law may change.
+/// for one and two links, bare or with couples and waves of motors and the pivot: up to four waves
+/// for one link, two for two. Taylor series have them for two, three and four links whose pivot
+/// stands still. There are none where a law may change.
 std::vector<std::string_view> methods_with_lanes(const Scene& scene);
 
 /// The lanes for a scene and its options, or null if its members are run one by one.
