@@ -185,11 +185,12 @@ class OneByOne {
 class Share final : public LaneSource {
  public:
   Share(SharedWork& work, bool on_calling_thread, OneByOne& one_by_one,
-        const MemberResults& results)
+        const MemberResults& results, bool keeps_times)
       : work_(work),
         on_calling_thread_(on_calling_thread),
         one_by_one_(one_by_one),
-        results_(results) {}
+        results_(results),
+        keeps_times_(keeps_times) {}
 
   const Scene* next(LaneMember& member) override {
     if (chunk_.is_empty()) chunk_ = work_.take();
@@ -203,9 +204,9 @@ class Share final : public LaneSource {
   }
   void ended(const LaneMember& member) override {
     results_.t[member.number] = member.t;
-    std::ranges::copy(
-        member.state,
-        results_.states.begin() + static_cast<std::ptrdiff_t>(member.number * member.state.size()));
+    const std::size_t size = results_.states.size() / results_.status.size();
+    std::ranges::copy(keeps_times_ ? member.samples : member.state,
+                      results_.states.data() + member.number * size);
     keep_first(results_, member.found, member.number);
     results_.status[member.number] = code(member.status);
     work_.count(1);
@@ -220,6 +221,7 @@ class Share final : public LaneSource {
   bool on_calling_thread_;
   OneByOne& one_by_one_;
   const MemberResults& results_;
+  bool keeps_times_;
   Chunk chunk_;
 };
 
@@ -252,7 +254,7 @@ EnsembleEnding run_ensemble(const Scene& scene, const Members& members, double t
   work.run(workers, [&](bool on_calling_thread) {
     const FloatingPointEnvironment ieee;
     OneByOne one_by_one(scene, members, choice, t0, t_end, own, results);
-    Share share(work, on_calling_thread, one_by_one, results);
+    Share share(work, on_calling_thread, one_by_one, results, own.store == Store::times);
     const std::unique_ptr<LaneRunner> lanes =
         in_lanes ? make_lanes(scene, t0, t_end, own) : nullptr;
     if (lanes) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -36,6 +37,7 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
     std::vector<FoundEvent> none;
     differences_ = EventFinder(scene, options.events, none, {}).differences();
     all_.differences = differences_;
+    all_.has_times = !options.t_eval.empty();
     rows_.resize(static_cast<std::size_t>(all_.order + 1) * All::size);
     // Lanes without a member have numbers that do no harm.
     all_.sigma = all_.sigma_new = all_.largest = all_.largest_new = broadcast<Pack<width>>(1.0);
@@ -61,6 +63,11 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
     all_.begins[lane] = -1;
     all_.h[lane] = this->direction();
     look_count_[lane] = 0;
+    this->member(lane).samples.clear();
+    if (all_.has_times) {
+      if (this->options().t_eval.front() == all_.t[lane]) this->member(lane).samples = y;
+      find_next_time(lane);
+    }
     if (differences_.empty()) return;
     this->member(lane).found.clear();
     finders_[lane] = std::make_unique<EventFinder>(
@@ -70,12 +77,11 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
     for (int i = 0; i < All::size; ++i) y[i] = all_.y[i][lane];
   }
 
-  /// Looks for events as a run does, on the series of the last step in powers of theta.
-  typename LaneLoop<width>::EventLook look_for_events(int lane) override {
-    using Look = typename LaneLoop<width>::EventLook;
-    const double h = all_.h_before[lane];
-    const double x = h / all_.sigma_new[lane];  // sigma before the step
-    if (!(std::abs(x) <= taylor_detail::no_large_powers)) return Look::is_odd;
+  /// Writes the series of the last step in powers of theta to rows_, as a run does; false if they
+  /// are not finite.
+  bool write_interpolant(int lane) {
+    const double x = all_.h_before[lane] / all_.sigma_new[lane];  // sigma before the step
+    if (!(std::abs(x) <= taylor_detail::no_large_powers)) return false;
     double power = 1.0;
     for (int k = 0; k <= all_.order; ++k, power *= x) {
       for (int i = 0; i < All::size; ++i) {
@@ -84,7 +90,46 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
       }
     }
     const auto is_finite = [](double term) { return std::isfinite(term); };
-    if (!std::all_of(rows_.end() - All::size, rows_.end(), is_finite)) return Look::is_odd;
+    return std::all_of(rows_.end() - All::size, rows_.end(), is_finite);
+  }
+
+  /// Notes the time that is asked for after those that have been sampled.
+  void find_next_time(int lane) {
+    const std::vector<double>& times = this->options().t_eval;
+    const std::size_t next = this->member(lane).samples.size() / All::size;
+    all_.next_time[lane] = next < times.size()
+                               ? times[next]
+                               : this->direction() * std::numeric_limits<double>::infinity();
+  }
+  /// As Recorder::sample_step() does.
+  bool sample_step(int lane) override {
+    const std::vector<double>& times = this->options().t_eval;
+    std::vector<double>& samples = this->member(lane).samples;
+    const double h = all_.h_before[lane];
+    const double t_new = all_.t[lane];
+    const std::size_t first = samples.size() / All::size;
+    std::size_t end = first;
+    while (end < times.size() && (times[end] - t_new) * h < 0.0) ++end;
+    if (end > first) {
+      if (!write_interpolant(lane)) return false;
+      samples.resize(end * All::size);
+      const TwoDouble t_old{all_.t_before[lane], all_.t_low_before[lane]};
+      this->stepper(lane).sample(rows_.data(), t_old, h, &times[first],
+                                 static_cast<int>(end - first), &samples[first * All::size]);
+    }
+    if (end < times.size() && times[end] == t_new) {
+      samples.resize((end + 1) * All::size);
+      get_state(lane, &samples[end * All::size]);
+    }
+    find_next_time(lane);
+    return true;
+  }
+
+  /// Looks for events as a run does.
+  typename LaneLoop<width>::EventLook look_for_events(int lane) override {
+    using Look = typename LaneLoop<width>::EventLook;
+    if (!write_interpolant(lane)) return Look::is_odd;
+    const double h = all_.h_before[lane];
     std::array<double, All::size> y{};
     get_state(lane, y.data());
     this->stepper(lane).set_new_state(y.data());

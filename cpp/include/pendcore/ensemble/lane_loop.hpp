@@ -55,7 +55,9 @@ class LaneLoop : public LaneRunner {
         const LaneBits bit = 1U << lane;
         if ((attention.looks & bit) != 0 && looks_stiff(lane)) attention.odd |= bit;
         const bool looks_for_events = (attention.events & bit) != 0 && (attention.odd & bit) == 0;
-        const EventLook look = looks_for_events ? look_for_events(lane) : EventLook::goes_on;
+        EventLook look = looks_for_events ? look_for_events(lane) : EventLook::goes_on;
+        const bool is_sampled = (attention.samples & bit) != 0 && (attention.odd & bit) == 0;
+        if (is_sampled && !sample_step(lane)) look = EventLook::is_odd;
         if ((attention.odd & bit) != 0 || look == EventLook::is_odd) {
           source.runs_alone(members_[lane].number);
         } else if (look == EventLook::ends) {
@@ -90,6 +92,8 @@ class LaneLoop : public LaneRunner {
   /// What comes of a look for events in the last step of a lane.
   enum class EventLook : std::uint8_t { goes_on, ends, is_odd };
   virtual EventLook look_for_events(int /*lane*/) { return EventLook::goes_on; }
+  /// Keeps the states at the times within the last step of a lane; false if the step is odd.
+  virtual bool sample_step(int /*lane*/) { return true; }
   /// Whether the last step of a lane suggests that the member is stiff.
   virtual bool looks_stiff(int /*lane*/) { return false; }
 
@@ -137,6 +141,7 @@ class LaneLoop : public LaneRunner {
                                   [&source](double) { return source.goes_on(); });
     if (whole.status == Status::interrupted) return;
     member.state = whole.y_reached;
+    if (!options_.t_eval.empty()) member.samples = whole.states;
     member.t = whole.t_reached;
     member.status = whole.status;
     member.found = whole.found;
@@ -160,6 +165,10 @@ class LaneLoop : public LaneRunner {
     run.start.resize(size);
     run.found = members_[lane].found;
     run.resumable_found = run.found.size();
+    run.states = members_[lane].samples;
+    run.resumable_t = run.states.size() / size;
+    run.t.assign(options_.t_eval.begin(),
+                 options_.t_eval.begin() + static_cast<std::ptrdiff_t>(run.resumable_t));
     IntegratorState& state = run.resumable;
     state.t = {at.t[lane], at.t_low[lane]};
     state.h = at.h[lane];

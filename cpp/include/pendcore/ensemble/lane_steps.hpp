@@ -33,7 +33,8 @@ struct Attention {
   LaneBits odd = 0;      ///< to be run alone
   LaneBits looks = 0;    ///< their stiffness is to be looked at
   LaneBits events = 0;   ///< an event may lie within the step
-  bool is_needed() const { return (ended | used_up | odd | looks | events) != 0; }
+  LaneBits samples = 0;  ///< a time that was asked for lies within the step
+  bool is_needed() const { return (ended | used_up | odd | looks | events | samples) != 0; }
 };
 
 /// Where the trajectories of all lanes stand, but for their states.

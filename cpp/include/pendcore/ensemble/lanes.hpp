@@ -22,7 +22,9 @@ namespace pendcore {
 struct LaneMember {
   std::size_t number = 0;
   std::vector<double> state;  ///< (2n): angles, rad, and rates, rad/s
-  double t = 0.0;             ///< s
+  /// (times reached, 2n): the states at the times of options.t_eval; empty if none is asked for
+  std::vector<double> samples;
+  double t = 0.0;  ///< s
   Status status = Status::finished;
   std::vector<FoundEvent> found;
 };

@@ -35,7 +35,9 @@ struct SeriesLanes : LaneSteps<width> {
   // The step that was taken last: its start, s, and its size.
   Real t_before = {}, t_low_before = {}, h_before = {};
   std::span<const EventFinder::Difference> differences;  ///< of all events
-  Integers begins = {};  ///< all bits set where a member has no series yet
+  bool has_times = false;  ///< whether states at given times are asked for
+  Real next_time = {};     ///< s, the next of them; infinite if there is none
+  Integers begins = {};    ///< all bits set where a member has no series yet
   int order = lowest_taylor_order;
   double log2_count = 0.0;                     ///< log2 of the count of numbers in a state
   Real of_y[(highest_order + 1) * size] = {};  ///< two series: those from y, and from y_new
@@ -210,6 +212,10 @@ PENDCORE_INLINE Attention take_series_steps(SeriesLanes<Form, width>* all,
       may_happen |= detail::may_reach(all, one, x);
     }
     attention.events = detail::bits_of(may_happen & tried) & all->active & ~attention.odd;
+    if (all->has_times) {
+      const Real ahead = h < 0.0 ? Real(all->t - all->next_time) : Real(all->next_time - all->t);
+      attention.samples = detail::bits_of((ahead <= 0.0) & tried) & all->active & ~attention.odd;
+    }
     all->t_before = t_before;
     all->t_low_before = t_low_before;
     all->h_before = h;

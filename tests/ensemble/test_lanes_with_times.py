@@ -1,0 +1,83 @@
+"""States at given times, of members in lanes of Taylor series: the bits of `pc.simulate`."""
+
+from __future__ import annotations
+
+import numpy as np
+import pendcore as pc
+import pytest
+from test_lanes import BOOK, LIGHT
+from test_lanes_of_chains import chain
+
+E = pc.effects
+SCENES = {
+    "bare": BOOK,
+    "damped and driven": BOOK.replace(
+        effects=[E.ViscousJoint(1, damping=0.2), E.Motor(2, sinusoid=E.Sinusoid(2.0, 7.0))]
+    ),
+    "light": LIGHT,
+    "three links": chain(3),
+    "four links, damped": chain(4, [E.ViscousJoint(2, damping=0.3)]),
+}
+TIMES = {
+    "sparse": [0.9],
+    "ends included": [0.0, 1.0, 2.0],
+    "many in a step": np.linspace(0.0, 2.0, 501),
+    "uneven": [0.1, 0.1 + 1e-12, 0.11, 1.3, 1.999],
+}
+
+
+def starts(count, n):
+    return pc.draw.uniform(-2.5, 2.5, (count, n), seed=5)
+
+
+def assert_same_at_times(scene, q0, t_span, times, **options):
+    found = pc.ensemble(scene, q0, 0.3, t_span, keep="times", t_eval=times, check=False, **options)
+    for i, start in enumerate(q0):
+        alone = pc.simulate(scene, start, 0.3, t_span, t_eval=times, check=False, **options)
+        reached = len(alone.t)
+        assert found.status[i] == alone.status
+        assert np.array_equal(found.q[i, :reached], alone.q)
+        assert np.array_equal(found.qd[i, :reached], alone.qd)
+        assert np.isnan(found.q[i, reached:]).all()
+    return found
+
+
+@pytest.mark.parametrize("rtol", [1e-3, 1e-8, 1e-12])
+@pytest.mark.parametrize("times", TIMES)
+@pytest.mark.parametrize("name", SCENES)
+def test_states_at_times_in_lanes_are_those_of_single_runs(name, times, rtol):
+    scene = SCENES[name]
+    q0 = starts(11, len(scene.links))
+    for method in ("taylor", "auto"):
+        asked = {"method": method, "rtol": rtol, "atol": rtol / 10}
+        assert_same_at_times(scene, q0, (0, 2), TIMES[times], **asked)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_backward_and_cut_short(name):
+    scene = SCENES[name]
+    q0 = starts(9, len(scene.links))
+    assert_same_at_times(scene, q0, (1.0, -0.5), [1.0, 0.7, 0.0, -0.5], method="taylor")
+    cut = assert_same_at_times(scene, q0, (0, 2), np.linspace(0, 2, 41), max_steps=9)
+    assert (cut.status == "max_steps").any()
+    assert_same_at_times(scene, q0, (0, 0.3), [0.05, 0.2], method="taylor", max_step=0.01)
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 5])
+def test_few_members_finish_alone(count):
+    assert_same_at_times(BOOK, starts(count, 2), (0, 4), np.linspace(0, 4, 17))
+
+
+def test_members_of_different_length_and_failures_side_by_side():
+    """One member is not finite in its first step, another is stiff for lanes."""
+    q0 = starts(13, 2)
+    masses = np.ones(13)
+    masses[4] = 1e-9
+    times = np.linspace(0, 2, 9)
+    found = pc.ensemble(
+        BOOK, q0, t_span=(0, 2), keep="times", t_eval=times, vary={"link[1].mass": masses}
+    )
+    for i, start in enumerate(q0):
+        scene = BOOK.with_parameters({"link[1].mass": masses[i]})
+        alone = pc.simulate(scene, start, t_span=(0, 2), t_eval=times)
+        assert np.array_equal(found.q[i], alone.q)
