@@ -103,10 +103,10 @@ def computed(count: int, t_end: float, workers: int | None) -> dict[str, Any]:
 
 
 def in_many_digits(theta: tuple[float, float], until: float) -> float:
-    """Return when a link first turns over by then, s, to GRID, or NaN.
+    """Return the time at which a link first turns over, s, off by GRID at most; NaN if none does.
 
-    A link may turn over and back between two times of the grid: it does if the angle at which it
-    reverses lies beyond.
+    A link may turn over and back between two times of the grid: it does if it reverses beyond
+    upright.
     """
     chain = RodChain([1.0, 1.0], [1.0, 1.0], BOOK.gravity)
     q0 = [np.pi / 2 + x for x in theta]

@@ -150,6 +150,11 @@ def test_ctrl_c_and_a_time_limit_keep_what_is_done():
     assert limited.counts()["not_run"] > 1000
 
 
+class OwnReducer(pc.keep.Reducer):
+    usual_name = "own"
+    unit = "rad"
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
@@ -164,7 +169,12 @@ def test_ctrl_c_and_a_time_limit_keep_what_is_done():
         ({"method": "euler"}, 'method = "euler": must be one of'),
         ({"rtol": -1.0}, "rtol"),
         ({"max_steps": 0}, "max_steps"),
-        ({"keep": pc.keep.FirstEvent}, "must be a reducer|must be"),
+        ({"keep": "ends"}, 'keep = \'ends\': must be "end", "times"'),
+        ({"keep": pc.keep.Extremes}, r"Extremes'>: call it: must be"),
+        ({"keep": {"a": pc.keep.Extremes}}, r"keep\['a'\] = .*: call it: must be one of pc"),
+        ({"keep": OwnReducer()}, "the core does not know this class: must be one of pc.keep.First"),
+        ({"keep": {"a": 1}}, r"keep\['a'\] = 1: must be one of pc.keep.FirstEvent"),
+        ({"keep": {1: pc.keep.Extremes()}}, r"keep\[1\]: the name must be a text"),
         ({"t_span": (0, np.inf)}, "must be finite"),
     ],
 )  # fmt: skip
@@ -224,6 +234,15 @@ def test_samples_are_functions_of_seed_and_index_alone():
     assert abs(np.mean(((drawn - 2.0) / 0.5) ** 4) - 3.0) < 0.1
     with pytest.raises(ValueError, match="seed = -1"):
         pc.draw.uniform(0, 1, 3, seed=-1)
+
+
+def test_samples_that_cannot_be_drawn():
+    with pytest.raises(ValueError, match=r"mean: shape \(2,\): does not broadcast to size = \(10,"):
+        pc.draw.normal([0.0, 1.0], 0.1, (10, 3))
+    with pytest.raises(ValueError, match=r"high: shape \(2, 1\): does not broadcast to size"):
+        pc.draw.uniform(0.0, [[1.0], [2.0]], 1)
+    with pytest.raises(ValueError, match=r"deviation = -0\.1: must be >= 0"):
+        pc.draw.normal(0.0, [0.2, -0.1], (10, 2))
 
 
 def test_xarray_has_units_and_coordinates():

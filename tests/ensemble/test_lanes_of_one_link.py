@@ -68,7 +68,7 @@ def test_other_links_run_one_by_one(name):
 
 @pytest.mark.parametrize("method", ["dopri5", "dop853"])
 def test_parameters_differ_from_lane_to_lane(method):
-    """An amplitude of 0 is no wave: that member has other equations, and runs alone."""
+    """A motor of amplitude 0 has no wave: its member has other equations, and runs alone."""
     scene = one_link(SCENES["four waves, two pivots"])
     names = ["link[1].mass", "gravity", "effect[1].sinusoid.amplitude", "effect[2].y.amplitude"]
     values = pc.draw.uniform(0.1, 2.0, (13, len(names)), seed=6)

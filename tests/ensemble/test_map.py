@@ -59,6 +59,7 @@ def test_zoom_refine_and_other_numbers(tmp_path, capsys):
         ('show = "first_event"\n', "", "[map] needs show"),
         ('"q0_deg[2]"', '"q0_deg[3]"', "q0_deg[3]: the scene has 2 links"),
         ('"q0_deg[2]"', '"gravityy"', "gravity"),
+        ('"q0_deg[2]"', '"q0[1]"', "y.name = 'q0[1]': is that of x too: name another one"),
         ("count = 200}", "count = 1}", "x.count = 1: must be a whole number from 2"),
         ("stop = 270, ", "", "x: must be a table with name, start, stop, count"),
         ("start = -90", "start = 300", "start = 300, stop = 270: must be increasing"),

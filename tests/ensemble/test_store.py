@@ -191,6 +191,10 @@ def test_what_cannot_be_a_store(tmp_path):
         pc.ensemble(BOOK, STARTS, t_span=(0, 1), store=tmp_path / "other")
     with pytest.raises(ValueError, match="is no store of an ensemble"):
         pc.load(tmp_path / "other")
+    (tmp_path / "file").touch()
+    with pytest.raises(OSError, match=r"file': is a file: choose another name"):
+        pc.ensemble(BOOK, STARTS, t_span=(0, 1), store=tmp_path / "file")
+    (tmp_path / "file").unlink()
     with pytest.raises(OSError, match=r"the folder .* does not exist"):
         pc.ensemble(BOOK, STARTS, t_span=(0, 1), store=tmp_path / "none" / "a.zarr")
     own = BOOK.replace(effects=[pc.effects.User(lambda t, q, qd: -qd)])
@@ -237,7 +241,7 @@ except OSError as error:
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
 def test_a_folder_that_cannot_be_written(tmp_path):
     tmp_path.chmod(0o500)
-    with pytest.raises(OSError, match=r"a\.zarr"):
+    with pytest.raises(OSError, match=r"a\.zarr': the folder .* cannot be written"):
         pc.ensemble(BOOK, STARTS, t_span=(0, 1), store=tmp_path / "a.zarr")
 
 

@@ -129,6 +129,22 @@ def test_a_map_is_refined_where_neighbours_differ():
         list(refined((100, 104), 3, disc))
 
 
+def test_decreasing_starts_name_an_axis_too():
+    found = pc.ensemble(BOOK, [[1.0, 0.5], [0.5, 0.5], [0.2, 0.5]], t_span=(0, 0.1))
+    [line] = found.plot("q[1]")
+    assert line.axes.get_xlabel() == "q0[1] (rad)"
+    assert line.get_xdata().tolist() == [1.0, 0.5, 0.2]
+
+
+def test_what_cannot_be_drawn():
+    found = pc.ensemble(BOOK, [[1.0, 0.5]] * 2, t_span=(0, 1), keep="times", t_eval=[0.5, 1.0])
+    for name in (None, "q[1]"):
+        with pytest.raises(ValueError, match="keeps states at several times, which are not one"):
+            found.plot(name)
+    with pytest.raises(TypeError, match="name: is of type ndarray: must name what is"):
+        found.plot(found.q)
+
+
 def test_figures_name_their_axes_and_units():
     found = pc.ensemble(BOOK, plane(6), t_span=(0, 10), keep=pc.keep.FirstEvent(UPRIGHT))
     [image] = found.plot()

@@ -28,9 +28,9 @@ namespace {
 /// (qd, dqd_1 .. dqd_k).
 class TangentSystem final : public GeneralSystem {
  public:
-  /// `numbers` are those of a row, padding included.
-  TangentSystem(const Scene& scene, int count, int numbers, double t_end, bool forward)
-      : GeneralSystem(numbers, 0),
+  /// A row has `size` numbers, padding included.
+  TangentSystem(const Scene& scene, int count, int size, double t_end, bool forward)
+      : GeneralSystem(size, 0),
         equations_(equations_of_motion(scene)),
         jacobian_(scene, equations_),
         n_(static_cast<int>(scene.links.size())),
@@ -66,9 +66,10 @@ class TangentSystem final : public GeneralSystem {
   bool forward_;
 };
 
-/// The series of two to four links have dual numbers (dynamics/series). Other scenes, and laws in
-/// pieces, whose joints a series may not pass, have dop853.
-std::unique_ptr<Stepper> make_stepper(const Scene& scene, int count, double t_end, bool forward) {
+/// Taylor series where those of dynamics/series/double_pendulum_series.hpp or few_links_series.hpp
+/// hold along the whole run; dop853 for all other scenes.
+std::unique_ptr<Stepper> tangent_stepper(const Scene& scene, int count, double t_end,
+                                         bool forward) {
   const int numbers = static_cast<int>(scene.links.size()) * (1 + count);
   const EquationsOfMotion equations = equations_of_motion(scene);
   const auto& effects = equations.effects;
@@ -79,9 +80,7 @@ std::unique_ptr<Stepper> make_stepper(const Scene& scene, int count, double t_en
         TangentSeries<Series>(std::move(series), count), std::move(rates), 0);
   };
   if (auto bare = bare_series(equations)) return by_series(*std::move(bare));
-  const bool is_smooth =
-      effects && !effects->has_modes && !effects->any_held && !without_series(scene);
-  if (is_smooth) {
+  if (effects && are_steady(equations) && !without_series(scene)) {
     if (auto loaded = series_with_torque(equations)) return by_series(*std::move(loaded));
     if (FewLinksSeries::has(scene, equations)) {
       return by_series(
@@ -193,7 +192,8 @@ class GrowthRecorder final : public Observer {
     }
   }
 
-  /// A change whose length leaves 1/far to far is no longer measured by its tolerances.
+  /// As long as R_ii are within [1/far, far], the changes stay as they are: then a series that ends
+  /// a step begins the next. Beyond, absolute tolerances would no longer suit their lengths.
   static constexpr double far = 16.0;
 
   Stepper& stepper_;
@@ -261,7 +261,7 @@ TangentGrowth lyapunov(const Scene& scene, const std::vector<double>& q0,
   TangentGrowth result;
   result.count = options.count == 0 ? all : options.count;
   const int numbers = n * (1 + result.count);
-  const std::unique_ptr<Stepper> made = make_stepper(scene, result.count, t_end, !(t_end < t0));
+  const std::unique_ptr<Stepper> made = tangent_stepper(scene, result.count, t_end, !(t_end < t0));
   Stepper& stepper = *made;
 
   IntegratorState integrator;

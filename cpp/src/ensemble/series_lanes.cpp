@@ -77,8 +77,8 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
     for (int i = 0; i < All::size; ++i) y[i] = all_.y[i][lane];
   }
 
-  /// Writes the series of the last step in powers of theta to rows_, as a run does; false if they
-  /// are not finite.
+  /// Writes the series of the last step in powers of theta to rows_, as a run does; false if its
+  /// powers may be too large.
   bool write_interpolant(int lane) {
     const double x = all_.h_before[lane] / all_.sigma_new[lane];  // sigma before the step
     if (!(std::abs(x) <= taylor_detail::no_large_powers)) return false;
@@ -93,7 +93,7 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
     return std::all_of(rows_.end() - All::size, rows_.end(), is_finite);
   }
 
-  /// Notes the time that is asked for after those that have been sampled.
+  /// Sets the next time to sample.
   void find_next_time(int lane) {
     const std::vector<double>& times = this->options().t_eval;
     const std::size_t next = this->member(lane).samples.size() / All::size;

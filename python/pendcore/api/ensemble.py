@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from pendcore.api.ensemble_solution import Ensemble, run_ensemble
 from pendcore.api.scene import Scene
-from pendcore.ensemble.keep import Reducer
+from pendcore.ensemble.keep import REDUCERS, Reducer
 from pendcore.ensemble.members import members_of
 from pendcore.ensemble.request import Request
 from pendcore.messages.arguments import known_keywords, numbers, time_span
@@ -23,7 +23,8 @@ from pendcore.scene.scene import require_start
 
 Keep = str | Reducer | Mapping[str, Reducer]
 _TAKEN = ("status", "t_reached", "q", "qd", "q0", "qd0", "link", "time", "extreme", "component")
-_KEEPS = '"end", "times", a reducer of pendcore.keep, or a dictionary of reducers'
+_REDUCERS = ", ".join(f"pc.keep.{one.__name__}" for one in REDUCERS)
+_KEEPS = f'"end", "times", or a reducer or a dictionary of reducers: {_REDUCERS}'
 
 
 @known_keywords
@@ -85,7 +86,8 @@ def ensemble(
         A folder for the results, of Zarr 3, written chunk by chunk. If it is there, the call goes
         on where it stopped. `load` reads it, and so does xarray.
     chunk : int, optional
-        The number of members in a chunk. Default: so many that a chunk takes about 2 s.
+        The number of members in a chunk. Default: so many that a chunk takes about 2 s. A store
+        that is there keeps its own.
     time_limit : float, optional
         s, for the whole ensemble; what is not run by then has the status ``"not_run"``.
     check : bool, optional
@@ -122,7 +124,8 @@ def ensemble(
         "method": method, "rtol": rtol, "atol": atol, "events": tuple(events_asked_for(events)),
         "max_steps": max_steps, "max_step": max_step,
     }  # fmt: skip
-    request = Request(time_span(t_span), _times(keep, t_eval), _reducers(keep), options)
+    reducers = _reducers(keep)
+    request = Request(time_span(t_span), _times(keep, t_eval), reducers, options)
     of_the_whole = {
         "workers": workers, "executor": executor, "store": store, "chunk": chunk,
         "time_limit": time_limit, "check": check, "progress": progress,
@@ -137,15 +140,29 @@ def _reducers(keep: Keep) -> dict[str, Reducer]:
             raise ValueError(f"keep = {keep!r}: must be {_KEEPS}")
         return {}
     if isinstance(keep, Reducer):
+        _require_reducer("keep", keep)
         return {keep.usual_name: keep}
     if not isinstance(keep, Mapping) or not keep:
-        raise TypeError(f"keep = {keep!r}: must be {_KEEPS}")
+        raise TypeError(f"keep = {keep!r}{_uncalled(keep)}: must be {_KEEPS}")
     for name, reducer in keep.items():
-        if not isinstance(name, str) or not isinstance(reducer, Reducer):
-            raise TypeError(f"keep[{name!r}] = {reducer!r}: must be a reducer of pendcore.keep")
+        if not isinstance(name, str):
+            raise TypeError(f"keep[{name!r}]: the name must be a text")
+        _require_reducer(f"keep[{name!r}]", reducer)
         if name in _TAKEN:
             raise ValueError(f"keep[{name!r}]: this name is taken: choose another one")
     return dict(keep)
+
+
+def _require_reducer(where: str, reducer: object) -> None:
+    if type(reducer) in REDUCERS:
+        return
+    own = ": the core does not know this class" if isinstance(reducer, Reducer) else ""
+    raise TypeError(f"{where} = {reducer!r}{_uncalled(reducer)}{own}: must be one of {_REDUCERS}")
+
+
+def _uncalled(reducer: object) -> str:
+    is_class = isinstance(reducer, type) and issubclass(reducer, Reducer)
+    return ": call it" if is_class else ""
 
 
 def _times(keep: Keep, t_eval: npt.ArrayLike | None) -> Any:

@@ -78,7 +78,10 @@ def read_map_table(path: Path) -> MapTable:
     show = table["show"]
     if not isinstance(show, str):
         raise text.error(("map", "show"), f"show = {show!r}: must be a text")
-    return MapTable(show, _axis(text, "x"), _axis(text, "y"))
+    x, y = _axis(text, "x"), _axis(text, "y")
+    if x.name.replace("_deg", "") == y.name.replace("_deg", ""):
+        raise text.error(("map", "y"), f"y.name = {y.name!r}: is that of x too: name another one")
+    return MapTable(show, x, y)
 
 
 def _axis(text: TomlText, key: str) -> MapAxis:

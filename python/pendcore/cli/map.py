@@ -149,8 +149,8 @@ def _reducer(show: str, case: Case) -> Reducer | None:
     if show in kinds:
         return kinds[show]()
     if not re.fullmatch(r"qd?\[\d+\]", show):
-        known = ", ".join([FirstEvent.usual_name, *kinds, "q[1]", "qd[1]"])
-        raise UsageError(f"show = {show!r}: must be one of {known}, ...")
+        known = ", ".join([FirstEvent.usual_name, *kinds])
+        raise UsageError(f"show = {show!r}: must be one of {known}, or q[i] or qd[i] of a link i")
     return None
 
 

@@ -36,6 +36,7 @@ def uniform(low: npt.ArrayLike, high: npt.ArrayLike, size: Size, *, seed: int = 
     True
     """
     low, high = real_array("low", low, ""), real_array("high", high, "")
+    _require_to_fit(_shape(size), low=low, high=high)
     return low + (high - low) * _shares(size, seed)
 
 
@@ -64,7 +65,10 @@ def normal(mean: npt.ArrayLike, deviation: npt.ArrayLike, size: Size, *, seed: i
     '1.000 kg, 0.010 kg'
     """
     mean, deviation = real_array("mean", mean, ""), real_array("deviation", deviation, "")
+    if (deviation < 0).any():
+        raise ValueError(f"deviation = {deviation.min():g}: must be >= 0")
     shape = _shape(size)
+    _require_to_fit(shape, mean=mean, deviation=deviation)
     radius, angle = np.moveaxis(_shares((*shape, 2), seed), -1, 0)
     drawn: Floats = np.sqrt(-2.0 * np.log1p(-radius)) * np.cos(2.0 * np.pi * angle)
     return mean + deviation * drawn
@@ -76,6 +80,16 @@ def _shape(size: Size) -> tuple[int, ...]:
     if any(one < 0 for one in shape):
         raise ValueError(f"size = {size!r}: must not be negative")
     return shape
+
+
+def _require_to_fit(shape: tuple[int, ...], **given: Floats) -> None:
+    for name, values in given.items():
+        try:
+            fits = np.broadcast_shapes(values.shape, shape) == shape
+        except ValueError:
+            fits = False
+        if not fits:
+            raise ValueError(f"{name}: shape {values.shape}: does not broadcast to size = {shape}")
 
 
 def _shares(size: Size, seed: int) -> Floats:

@@ -67,6 +67,8 @@ def new_axes(count: int) -> list[Any]:
 def shown_of(found: EnsembleResult, name: str | None) -> Shown:
     """Return what is drawn of an ensemble for a name."""
     reducers = found.request.reducers
+    if name is not None and not isinstance(name, str):
+        raise TypeError(f"name: is of type {type(name).__name__}: must name what is drawn")
     if name is None:
         name = next((x for x, one in reducers.items() if not one.labels(1)), "q[1]")
     if name in reducers:
@@ -76,9 +78,14 @@ def shown_of(found: EnsembleResult, name: str | None) -> Shown:
         label = f"{name.replace('_', ' ')} ({reducer.unit})"
         may_be_log = isinstance(reducer, FirstEvent | EnergyDrift)
         return Shown(label, found[name], may_be_log and is_wide(found[name]))
+    if found.request.t_eval is not None:
+        raise ValueError(
+            'keep="times" keeps states at several times, which are not one number for each member: '
+            "draw found.q or found.qd yourself"
+        )
     n = len(found.members.scene.links)
     known = [f"{x}[{i}]" for x in ("q", "qd") for i in range(1, n + 1)]
-    if name not in known or found.request.t_eval is not None:
+    if name not in known:
         raise ValueError(f"name = {name!r}: must be one of {', '.join([*reducers, *known])}")
     kind, _, number = name.partition("[")
     values = getattr(found, kind)[..., int(number[:-1]) - 1]
@@ -92,7 +99,7 @@ def is_wide(values: Floats) -> bool:
 
 
 def axis_of(found: EnsembleResult, k: int) -> Axis:
-    """Return an axis of the members: the first start or parameter that grows along it alone."""
+    """Return an axis of the members: the first start or parameter that changes along it alone."""
     members = found.members
     n = len(members.scene.links)
     given = dict(members.vary)
@@ -103,7 +110,9 @@ def axis_of(found: EnsembleResult, k: int) -> Axis:
     for name, values in given.items():
         along = np.moveaxis(values, k, 0).reshape(values.shape[k], -1)
         first = along[:, 0] if along.size else along.ravel()
-        if len(first) > 1 and (np.diff(first) > 0).all() and (along == first[:, None]).all():
+        steps = np.diff(first)
+        is_monotone = len(first) > 1 and ((steps > 0).all() or (steps < 0).all())
+        if is_monotone and (along == first[:, None]).all():
             unit = units.get(name, "")
             return Axis(f"{name} ({unit})" if unit else name, np.asarray(first))
     return Axis(f"member along axis {k}", np.arange(found.shape[k], dtype=float))

@@ -11,7 +11,10 @@ from pendcore.scene.frozen_state import frozen_state
 
 
 class Reducer:
-    """What makes a number, or a few, of a whole run.
+    """What makes a number, or a few, of a whole run: one of the classes of `pendcore.keep`.
+
+    The core computes them. For anything else, keep the states at times, or go through the runs of
+    `Ensemble.member`.
 
     Examples
     --------
@@ -135,3 +138,7 @@ class LargestExponent(Reducer):
 
     usual_name: ClassVar[str] = "largest_exponent"
     unit: ClassVar[str] = "1/s"
+
+
+REDUCERS: tuple[type[Reducer], ...] = (FirstEvent, Extremes, EnergyDrift, LargestExponent)
+"""Those that the core computes."""

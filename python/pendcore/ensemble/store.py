@@ -95,6 +95,8 @@ def require_space(path: Path, size: int) -> None:
     folder = path.resolve().parent
     if not folder.is_dir():
         raise FileNotFoundError(f"store = {str(path)!r}: the folder {folder} does not exist")
+    if not os.access(folder, os.W_OK):
+        raise PermissionError(f"store = {str(path)!r}: the folder {folder} cannot be written")
     free = shutil.disk_usage(folder).free
     if size > free:
         raise OSError(
@@ -117,6 +119,8 @@ def store_for(path: Path, members: Members, request: Request, chunk: int) -> Sto
     ``chunk`` is the number of members in a block of a new store; 0 leaves it to their work.
     """
     if path.exists():
+        if not path.is_dir():
+            raise FileExistsError(f"store = {str(path)!r}: is a file: choose another name")
         return continued(path, members, request)
     about(members.scene, list(members.vary), request)  # says what cannot be saved, before all work
     require_space(path, bytes_of(members, request))
@@ -168,9 +172,9 @@ def opened(path: Path, mode: str = "r") -> Store:
             for name in names
         }
         members = members_from(scene, shape, found)
-    except (KeyError, TypeError, ValueError, FileNotFoundError) as error:
+    except (KeyError, TypeError, ValueError, FileNotFoundError):
         raise ValueError(
-            f"store = {str(path)!r}: is no store of an ensemble ({error}); choose another name"
+            f"store = {str(path)!r}: is no store of an ensemble: choose another name"
         ) from None
     return Store(path, group, members, request, Blocks(shape, block_shape))
 

@@ -232,13 +232,10 @@ def _of_lanes(methods: tuple[str, ...]) -> str:
     *others, last = methods
     names = f"{', '.join(others)} or {last}" if others else last
     by_series = "" if not others else ", by taylor,"
-    with_more = (
-        f" or{by_series} their first events or states at times" if "taylor" in methods else ""
-    )
+    with_more = f", or{by_series} first events or states at times" if "taylor" in methods else ""
     return (
         "an ensemble runs several members at once, a lane each, by "
-        f"{names}, if it keeps their ends{with_more}; by "
-        "other methods, it runs them one by one"
+        f"{names}, if it keeps ends{with_more}; otherwise it runs them one by one"
     )
 
 

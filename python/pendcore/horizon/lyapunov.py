@@ -59,7 +59,7 @@ class LyapunovExponents:
     success : bool
         Whether the run reached its end.
     stats : Statistics
-        What the run took; ``nfev`` counts right-hand sides with all k changes.
+        What the run took; ``nfev`` counts right-hand sides, or Taylor series, with all k changes.
 
     Examples
     --------
@@ -195,13 +195,14 @@ def lyapunov(
 
     Notes
     -----
-    The variational equations are integrated beside the motion: by Taylor series with exact
-    derivatives for two to four links whose laws are in one piece, and otherwise by dop853 with
-    exact derivatives of the right-hand side (of a user's function, by differences). The changes are
-    made orthonormal as soon as one has grown or shrunk sixteenfold (Benettin, Galgani, Giorgilli &
+    The variational equations are integrated beside the motion. Two to four links go by Taylor
+    series, with exact derivatives, if they have nothing but payloads, damping, springs and motors
+    whose laws are in one piece, with two sinusoids at most. Other scenes go by dop853 with exact
+    derivatives of the right-hand side (of a user's function, by differences). The changes Phi = Q R
+    are made orthonormal as soon as an R_ii is not within [1/16, 16] (Benettin, Galgani, Giorgilli &
     Strelcyn, *Meccanica* 15 (1980), 9-20). Lengths are those of (dq, dqd) in rad and rad/s: over a
-    long time they do not matter. The first change is one of q_1,
-    the second of q_2, and so on; then those of the rates.
+    long time they do not matter. The first change is one of q_1, the second of q_2, and so on; then
+    those of the rates.
 
     Examples
     --------

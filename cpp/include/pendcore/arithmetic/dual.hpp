@@ -24,8 +24,8 @@ struct Dual {
   PENDCORE_INLINE Dual(const Row& constant)  // NOLINT(google-explicit-constructor): as a row would
       : value(constant), slope{} {}
   PENDCORE_INLINE Dual(const Row& x, const Row& along) : value(x), slope(along) {}
-  // GCC would copy the structure in parts that are smaller than its packs, and a pack that is then
-  // loaded has to wait until all parts are in memory: series took twice as long.
+  // GCC would copy the structure in parts of 16 bytes. The load of a wider pack cannot be forwarded
+  // from several stores, and waits for them: series took twice as long.
   PENDCORE_INLINE Dual(const Dual& x)
       : value(x.value), slope(x.slope) {}           // NOLINT(*-use-equals-default)
   PENDCORE_INLINE Dual& operator=(const Dual& x) {  // NOLINT(*-use-equals-default)
@@ -73,7 +73,7 @@ PENDCORE_INLINE Dual<Row> fma(const Row& a, const Dual<Row>& b, const Dual<Row>&
   return {fma(a, b.value, c.value), fma(a, b.slope, c.slope)};
 }
 
-/// What a row without a slope is to a dual row: the type of constants beside it.
+/// The type of a constant beside a row: that of the row, or of its value if it is dual.
 template <class Row>
 struct WithoutSlope {
   using Type = Row;

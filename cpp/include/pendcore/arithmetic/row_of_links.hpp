@@ -1,6 +1,6 @@
 /// \file
 /// A quantity of each of three or four links beside the same quantity of the others, as pair.hpp
-/// has for two; and in packs with a trajectory a lane also that of one link.
+/// has for two. If each lane has a trajectory, a row may also be of one link.
 ///
 /// For one trajectory the row is a pack of four, whose last numbers are zero if there are fewer
 /// links; for packs with a trajectory a lane it is as many of these. Sums and products are those of
@@ -153,6 +153,26 @@ template <class Real, int links>
 PENDCORE_INLINE void set_link(EachLink<Real, links>& row, int i, const Real& x) {
   row.of[i] = x;
 }
+
+/// The sum of the numbers that one trajectory has in a row, and how many they are.
+template <class Row>
+PENDCORE_INLINE double sum_of_numbers(const Row& x) {
+  return sum_of_lanes(x);
+}
+template <class Real>
+PENDCORE_INLINE Real sum_of_numbers(const EachLink<Real, 1>& x) {
+  return x.of[0];
+}
+template <class Real>
+PENDCORE_INLINE Real sum_of_numbers(const Two<Real>& x) {
+  return x.first + x.second;
+}
+template <class Row>
+constexpr int count_of_numbers = Lanes<Row>::width;
+template <class Real>
+constexpr int count_of_numbers<EachLink<Real, 1>> = 1;
+template <class Real>
+constexpr int count_of_numbers<Two<Real>> = 2;
 
 /// Gives each link the number of the link `by` places after; the first follows the last.
 template <int links, int by>

@@ -30,6 +30,9 @@ struct EquationsOfMotion {
 /// rotors in joint 1.
 bool is_bare(const Scene& scene);
 
+/// Whether no effect of the equations changes its law or holds a joint along a run.
+bool are_steady(const EquationsOfMotion& equations);
+
 /// The equations of a scene that check() passed.
 EquationsOfMotion equations_of_motion(const Scene& scene);
 

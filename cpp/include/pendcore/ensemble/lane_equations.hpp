@@ -2,8 +2,8 @@
 /// The forms of the equations that Runge-Kutta methods take in lanes: the same equations as those
 /// of a single run, with a trajectory, and its constants, in each lane.
 ///
-/// With effects, these are couples that never change their mode, and waves of motors and the pivot:
-/// at most two, or four for one link.
+/// With effects, these are couples that never change their mode, and waves of motors and the pivot.
+/// Here are the forms of two links, with at most two waves; one_link_in_lanes.hpp has those of one.
 #pragma once
 
 #include "pendcore/arithmetic/row_of_links.hpp"
@@ -11,12 +11,11 @@
 
 namespace pendcore {
 
-/// Whether no effect of the equations changes its law or holds a joint along a run.
-inline bool are_steady(const EquationsOfMotion& equations) {
-  return !equations.effects || (!equations.effects->has_modes && !equations.effects->any_held);
-}
-
 /// Puts the numbers of one trajectory into a lane.
+template <class Real>
+void put_row(EachLink<Real, 1>& row, int lane, double one) {
+  row.of[0][lane] = one;
+}
 template <class Real>
 void put_row(Two<Real>& row, int lane, const Pair& one) {
   row.first[lane] = one[0];
@@ -36,10 +35,6 @@ void put_constants(Equations& equations, int lane, const One& one) {
   equations.delta[lane] = one.delta;
   equations.epsilon[lane] = one.epsilon;
 }
-template <class Real>
-void put_row(EachLink<Real, 1>& row, int lane, double one) {
-  row.of[0][lane] = one;
-}
 template <class Rows, class Row>
 void put_couples(Couples<Rows>& couples, int lane, const Couples<Row>& one) {
   put_row(couples.held, lane, one.held);
@@ -50,19 +45,6 @@ void put_couples(Couples<Rows>& couples, int lane, const Couples<Row>& one) {
   put_row(couples.on_phid2, lane, one.on_phid2);
   put_row(couples.on_phid3, lane, one.on_phid3);
 }
-
-/// Puts states of one link into a lane, and takes them out.
-template <class Real>
-struct OneLink {
-  using Integers = typename Lanes<Real>::Integers;
-  using Row = EachLink<Real, 1>;
-
-  static void put_state(Row& row, int lane, const double* from) { row.of[0][lane] = from[0]; }
-  static void get_state(const Row& row, int lane, double* to) { to[0] = row.of[0][lane]; }
-  PENDCORE_INLINE static Row select(const Integers& which, const Row& yes, const Row& no) {
-    return {{which ? yes.of[0] : no.of[0]}};
-  }
-};
 
 /// Puts states of both links into a lane, and takes them out.
 template <class Real>
@@ -127,128 +109,6 @@ struct LoadedDoublePendulumInLanes : LoadedDoublePendulum<Two<Real>, Real> {
     }
     return this->both_free(this->alone(torque, this->weight * c, between, qd), this->kappa(between),
                            between);
-  }
-};
-
-/// One link in every lane, bare or with couples and waves. Which waves there are, and what each of
-/// them moves, is the same in all lanes.
-template <class Real>
-struct SinglePendulumInLanes {
-  using Links = EachLink<Real, 1>;
-  static constexpr int most_waves = 4;
-  /// A wave, counted from 0, and its amplitude: N m of a motor, m/s^2 of the pivot along x or y.
-  struct Moved {
-    int wave = 0;
-    Real gain = {};
-  };
-  struct Pivot {
-    Moved x, y;
-  };
-
-  bool is_bare = true;
-  Real weight = {}, inverse_inertia = {}, moment = {};
-  bool has_couples = false;
-  Couples<Links> couples;
-  int waves = 0;
-  Real angular_frequency[most_waves] = {}, phase[most_waves] = {};
-  int motors = 0;
-  Moved motor[most_waves];
-  int pivots = 0;
-  Pivot pivot[most_waves];
-
-  /// As SinglePendulum and SinglePendulumWithEffects compute it, in the same order.
-  PENDCORE_INLINE Links accelerations(const Real& t, const Links& q, const Links& qd) const {
-    Links s, c;
-    sine_cosine(q, s, c);
-    Links pull = weight * c;
-    if (is_bare) return pull;
-    Real wave[most_waves];
-    for (int k = 0; k < waves; ++k) {
-      Real cosine;
-      sine_cosine(fma(angular_frequency[k], t, phase[k]), wave[k], cosine);
-    }
-    if (pivots > 0) {
-      Real x{}, y{};
-      for (int k = 0; k < pivots; ++k) {
-        x = x + fma(pivot[k].x.gain, wave[pivot[k].x.wave], Real{});
-        y = y + fma(pivot[k].y.gain, wave[pivot[k].y.wave], Real{});
-      }
-      pull = fma(moment, x * s - y * c, pull);
-    }
-    RowLoads<Links> loads;
-    if (has_couples) loads.couple(couples.torque(RowAt<Links, Real>{t, q, qd, s, c, {}, 0.0, 0.0}));
-    for (int k = 0; k < motors; ++k) loads.couple({{motor[k].gain * wave[motor[k].wave]}});
-    return fma(inverse_inertia, loads.torque_of_couples() + loads.moments, pull);
-  }
-};
-
-template <class Real>
-struct LaneEquations<SinglePendulum, Real> : OneLink<Real> {
-  using Type = SinglePendulumInLanes<Real>;
-  using Moved = typename Type::Moved;
-
-  /// Whether the equations of one link have lanes.
-  static bool has(const EquationsOfMotion& equations) {
-    if (std::holds_alternative<SinglePendulum>(equations.form)) return true;
-    if (!std::holds_alternative<SinglePendulumWithEffects>(equations.form)) return false;
-    const auto& effects = dynamic_cast<const ActingEffects<double>&>(*equations.effects);
-    return are_steady(equations) && effects.entries.empty() && effects.users.empty() &&
-           effects.waves <= Type::most_waves && effects.pivots.size() <= Type::most_waves;
-  }
-  static void prepare(Type& equations, const EquationsOfMotion& one) {
-    const auto* const form = std::get_if<SinglePendulumWithEffects>(&one.form);
-    equations.is_bare = form == nullptr;
-    if (form == nullptr) return;
-    const ActingEffects<double>& effects = *form->effects;
-    equations.has_couples = !effects.couples.empty();
-    equations.waves = effects.waves;
-    equations.motors = static_cast<int>(effects.joint_waves.size());
-    equations.pivots = static_cast<int>(effects.pivots.size());
-    for (int k = 0; k < equations.motors; ++k) {
-      equations.motor[k].wave = effects.joint_waves[k].wave;
-    }
-    for (int k = 0; k < equations.pivots; ++k) {
-      equations.pivot[k].x.wave = effects.pivots[k]->x.wave;
-      equations.pivot[k].y.wave = effects.pivots[k]->y.wave;
-    }
-  }
-  static bool put(Type& equations, int lane, const EquationsOfMotion& from) {
-    if (const auto* const bare = std::get_if<SinglePendulum>(&from.form)) {
-      equations.weight[lane] = bare->weight;
-      return equations.is_bare;
-    }
-    if (equations.is_bare || !has(from)) return false;
-    const auto& form = std::get<SinglePendulumWithEffects>(from.form);
-    const ActingEffects<double>& effects = *form.effects;
-    // An amplitude of 0 is no wave, so that one member may have fewer.
-    const bool is_alike = equations.has_couples == !effects.couples.empty() &&
-                          equations.waves == effects.waves &&
-                          equations.motors == static_cast<int>(effects.joint_waves.size()) &&
-                          equations.pivots == static_cast<int>(effects.pivots.size());
-    if (!is_alike) return false;
-    equations.weight[lane] = form.weight;
-    equations.inverse_inertia[lane] = form.inverse_inertia;
-    equations.moment[lane] = form.moment;
-    if (equations.has_couples) put_couples(equations.couples, lane, effects.couples.front());
-    for (int k = 0; k < equations.waves; ++k) {
-      equations.angular_frequency[k][lane] = effects.angular_frequency[k];
-      equations.phase[k][lane] = effects.phase[k];
-    }
-    const auto put_wave = [lane](Moved& to, int wave, double gain) {
-      to.gain[lane] = gain;
-      return to.wave == wave;
-    };
-    bool is_same = true;
-    for (int k = 0; k < equations.motors; ++k) {
-      const JointWave& one = effects.joint_waves[k];
-      is_same &= put_wave(equations.motor[k], one.wave, one.gain);
-    }
-    for (int k = 0; k < equations.pivots; ++k) {
-      const DrivenPivot::Law& law = *effects.pivots[k];
-      is_same &= put_wave(equations.pivot[k].x, law.x.wave, law.x.gain);
-      is_same &= put_wave(equations.pivot[k].y, law.y.wave, law.y.gain);
-    }
-    return is_same;
   }
 };
 

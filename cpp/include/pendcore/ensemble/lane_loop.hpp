@@ -55,9 +55,9 @@ class LaneLoop : public LaneRunner {
         const LaneBits bit = 1U << lane;
         if ((attention.looks & bit) != 0 && looks_stiff(lane)) attention.odd |= bit;
         const bool looks_for_events = (attention.events & bit) != 0 && (attention.odd & bit) == 0;
-        EventLook look = looks_for_events ? look_for_events(lane) : EventLook::goes_on;
-        const bool is_sampled = (attention.samples & bit) != 0 && (attention.odd & bit) == 0;
-        if (is_sampled && !sample_step(lane)) look = EventLook::is_odd;
+        const EventLook look = looks_for_events ? look_for_events(lane) : EventLook::goes_on;
+        const bool has_samples = (attention.samples & bit) != 0 && (attention.odd & bit) == 0;
+        if (has_samples && !sample_step(lane)) attention.odd |= bit;
         if ((attention.odd & bit) != 0 || look == EventLook::is_odd) {
           source.runs_alone(members_[lane].number);
         } else if (look == EventLook::ends) {
@@ -92,7 +92,8 @@ class LaneLoop : public LaneRunner {
   /// What comes of a look for events in the last step of a lane.
   enum class EventLook : std::uint8_t { goes_on, ends, is_odd };
   virtual EventLook look_for_events(int /*lane*/) { return EventLook::goes_on; }
-  /// Keeps the states at the times within the last step of a lane; false if the step is odd.
+  /// Keeps the states at the times within the last step of a lane; false if a single run has to do
+  /// it.
   virtual bool sample_step(int /*lane*/) { return true; }
   /// Whether the last step of a lane suggests that the member is stiff.
   virtual bool looks_stiff(int /*lane*/) { return false; }

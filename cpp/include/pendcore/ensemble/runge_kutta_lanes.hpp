@@ -6,8 +6,8 @@
 #include <tuple>
 
 #include "pendcore/dynamics/first_order.hpp"
-#include "pendcore/ensemble/lane_equations.hpp"
 #include "pendcore/ensemble/lane_steps.hpp"
+#include "pendcore/ensemble/one_link_in_lanes.hpp"
 #include "pendcore/integrate/runge_kutta/step.hpp"
 
 namespace pendcore {

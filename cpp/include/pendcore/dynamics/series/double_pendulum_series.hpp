@@ -127,9 +127,10 @@ class DoublePendulumSeries {
   Torque torque_;
 };
 
-/// The series of equations without torques, and of those with couples or up to two waves, while no
-/// joint is held; none for equations of another form.
+/// The series of a bare double pendulum; none for other equations.
 std::optional<DoublePendulumSeries<NoTorque>> bare_series(const EquationsOfMotion& equations);
+/// The series with couples and up to two waves of motors, while no joint is held and the pivot
+/// stands still; none for other equations.
 std::optional<DoublePendulumSeries<CoupleTorque<Pair>>> series_with_torque(
     const EquationsOfMotion& equations);
 

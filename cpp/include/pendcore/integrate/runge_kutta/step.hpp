@@ -89,27 +89,6 @@ struct StageBlock {
 template <class Block, int blocks>
 StageBlock(const Block (*)[blocks], int) -> StageBlock<Block, blocks>;
 
-/// The sum of the numbers of a trajectory in a block, and how many they are: all lanes of the
-/// block, or the numbers of one or two links if each lane has a trajectory.
-template <class Block>
-PENDCORE_INLINE double sum_of_trajectory(const Block& x) {
-  return sum_of_lanes(x);
-}
-template <class Real>
-PENDCORE_INLINE Real sum_of_trajectory(const EachLink<Real, 1>& x) {
-  return x.of[0];
-}
-template <class Real>
-PENDCORE_INLINE Real sum_of_trajectory(const Two<Real>& x) {
-  return x.first + x.second;
-}
-template <class Block>
-constexpr int numbers_of_trajectory = Lanes<Block>::width;
-template <class Real>
-constexpr int numbers_of_trajectory<EachLink<Real, 1>> = 1;
-template <class Real>
-constexpr int numbers_of_trajectory<Two<Real>> = 2;
-
 /// The squares of the error over the components, in units of what the tolerances allow.
 template <const auto& method, class Scale, class Block>
 class SquaredErrors {
@@ -136,11 +115,11 @@ class SquaredErrors {
     }
   }
   PENDCORE_INLINE Scale mean(double share) const {
-    const Scale sum = sum_of_trajectory(squares_) * share;
+    const Scale sum = sum_of_numbers(squares_) * share;
     if constexpr (!has_second) {
       return sum;
     } else {
-      const Scale others = sum_of_trajectory(others_) * share;
+      const Scale others = sum_of_numbers(others_) * share;
       const Scale both = sum + 0.01 * others;
       const auto is_number = (both > 0.0) & (both < std::numeric_limits<double>::infinity());
       return is_number ? Scale(sum * (sum / both)) : both;
@@ -236,7 +215,7 @@ PENDCORE_INLINE ErrorAndFactor<Scale> judged_step(StepMemory<method, System>* me
       for (int s = 1; s < stages; ++s) memory->k[s][i] = k[s][i];
     }
   }
-  const Scale squared_error = squares.mean(1.0 / (blocks * numbers_of_trajectory<Block>));
+  const Scale squared_error = squares.mean(1.0 / (blocks * count_of_numbers<Block>));
   return {squared_error, scaled_power(squared_error, -0.5 * exponent(method.info), gain)};
 }
 
@@ -326,8 +305,8 @@ PENDCORE_INLINE Scale stiffness_of_step(const Scale& h, int blocks, const Blocks
     const auto before = advance(y, h, method.a[stages - 2], k, stages - 2);
     const auto dk = k(stages - 1) - k(stages - 2);
     const auto dy = y_new - before;
-    rates += sum_of_trajectory(dk * dk);
-    states += sum_of_trajectory(dy * dy);
+    rates += sum_of_numbers(dk * dk);
+    states += sum_of_numbers(dy * dy);
   }
   if constexpr (std::is_same_v<Scale, double>) {
     return states > 0.0 ? std::abs(h) * std::sqrt(rates / states) : 0.0;

@@ -1,0 +1,59 @@
+// Which ensembles have lanes: nothing else would show that members run one by one, but their time.
+#include <doctest/doctest.h>
+
+#include "pendcore/ensemble/lanes.hpp"
+#include "pendcore/pendcore.hpp"
+
+using namespace pendcore;
+
+namespace {
+
+bool have_lanes(const Scene& scene, const std::string& method, const Options& asked = {}) {
+  Options options = asked;
+  options.method = method;
+  options.store = options.t_eval.empty() ? Store::end : Store::times;
+  return make_lanes(scene, 0.0, 1.0, options) != nullptr;
+}
+
+Scene chain(std::size_t n, std::vector<Effect> effects = {}) {
+  return {.links = std::vector<Link>(n, Link::uniform_rod(1.0, 1.0)),
+          .effects = std::move(effects)};
+}
+
+}  // namespace
+
+TEST_CASE("scenes and methods that have lanes, and those that have none") {
+  if (instruction_set() < least_of_special_kernels) return;
+  for (const char* method : {"dopri5", "dop853", "dop853-radau5"}) {
+    CHECK(have_lanes(chain(1), method));
+    CHECK(have_lanes(chain(1, {DrivenPivot{.y = Sinusoid{0.1, 5.0}}}), method));
+    CHECK(have_lanes(chain(2), method));
+    CHECK_FALSE(have_lanes(chain(3), method));
+  }
+  CHECK(have_lanes(chain(1), "auto"));
+  CHECK_FALSE(have_lanes(chain(1), "taylor"));
+  for (const std::size_t n : {2, 3, 4}) {
+    CHECK(have_lanes(chain(n), "auto"));
+    CHECK(have_lanes(chain(n, {ViscousJoint{.joint = 2, .damping = 0.1}}), "taylor"));
+    CHECK_FALSE(have_lanes(chain(n, {DryJointFriction{.joint = 2, .coulomb = 0.1}}), "taylor"));
+  }
+  CHECK_FALSE(have_lanes(chain(5), "taylor"));
+  CHECK_FALSE(have_lanes(chain(2), "radau5"));
+}
+
+TEST_CASE("times and events have lanes of Taylor series, but not both at once") {
+  if (instruction_set() < least_of_special_kernels) return;
+  Options times, with_event;
+  times.t_eval = {0.5, 1.0};
+  with_event.events = {{.function = events::LinkAngle{.link = 1, .value = 0.5}}};
+  Options both = times;
+  both.events = with_event.events;
+  for (const std::size_t n : {2, 3, 4}) {
+    CHECK(have_lanes(chain(n), "taylor", times));
+    CHECK(have_lanes(chain(n), "taylor", with_event));
+    CHECK_FALSE(have_lanes(chain(n), "taylor", both));
+  }
+  CHECK_FALSE(have_lanes(chain(2), "dopri5", times));
+  CHECK_FALSE(have_lanes(chain(2), "dopri5", with_event));
+  CHECK_FALSE(have_lanes(chain(1), "dop853", times));
+}
