@@ -35,16 +35,14 @@ struct SinglePendulumInLanes {
     Driven x, y;
   };
 
-  bool is_bare = true;
   Real weight = {}, inverse_inertia = {}, moment = {};
-  bool has_couples = false;
-  Couples<Links> couples;
-  int waves = 0;
   Real angular_frequency[most_waves] = {}, phase[most_waves] = {};
-  int motor_count = 0;
+  Couples<Links> couples;
   Driven motor[most_waves];
-  int pivot_count = 0;
   Pivot pivot[most_waves];
+  int waves = 0, motor_count = 0, pivot_count = 0;
+  bool is_bare = true;
+  bool has_couples = false;
 
   /// As SinglePendulum and SinglePendulumWithEffects compute it, in the same order.
   PENDCORE_INLINE Links accelerations(const Real& t, const Links& q, const Links& qd) const {

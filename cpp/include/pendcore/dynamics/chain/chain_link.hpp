@@ -33,8 +33,8 @@ struct ForcePerAcceleration {
   /// Adds a link that turns freely, and rotates B into the frame of the link before. The factor r =
   /// 1/D enters last, so that the other operations do not wait for the division.
   template <class Constant>
-  PENDCORE_INLINE void add_free(const ChainLinkOf<Constant>& k, Number r, Number wu, Number cc,
-                                Number ss, Number sc) {
+  PENDCORE_INLINE void add_free(const ChainLinkOf<Constant>& k, const Number& r, const Number& wu,
+                                const Number& cc, const Number& ss, const Number& sc) {
     const Number mass = k.m + uu;
     const Number along = wu * wu;
     const Number mixed = un * k.turn;
