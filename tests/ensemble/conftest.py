@@ -11,7 +11,7 @@ def cluster():
     distributed = pytest.importorskip("distributed", exc_type=ImportError)
     with (
         distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0"
         ) as cluster,
         distributed.Client(cluster) as client,
     ):
