@@ -136,8 +136,8 @@ class GrowthRecorder final : public Observer {
     if (!was_stepped_) return;
     was_stepped_ = false;
     stepper_.get_state(state_.data());
-    gather(state_, changes_);
     stepper_.get_derivative(rate_.data());
+    gather(state_, changes_);
     gather(rate_, slopes_);
     // The derivatives of the changes are linear in the changes, so nothing needs to be evaluated
     // again.

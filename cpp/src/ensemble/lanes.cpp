@@ -123,12 +123,12 @@ std::vector<std::string_view> methods_with_lanes(const Scene& scene) {
 
 std::unique_ptr<LaneRunner> make_lanes(const Scene& scene, double t0, double t_end,
                                        const Options& options) {
+  const bool keeps_times = options.store == Store::times;
   const bool is_plain = !options.step && !options.compensated && !options.ledger &&
-                        (options.store == Store::end || options.store == Store::times);
+                        (keeps_times || options.store == Store::end);
   if (!is_plain || t0 == t_end) return nullptr;
   const std::string_view method = find_method(chosen_method(scene, options)).first();
   if (std::ranges::count(methods_with_lanes(scene), method) == 0) return nullptr;
-  const bool keeps_times = options.store == Store::times;
   if (keeps_times && (method != taylor.info.name || !options.events.empty())) return nullptr;
   if (!options.events.empty()) {
     std::vector<FoundEvent> none;

@@ -11,6 +11,7 @@
 #include "pendcore/ensemble/lane_loop.hpp"
 #include "pendcore/integrate/taylor/dominant_eigenvalue.hpp"
 #include "pendcore/simulate/event_finder.hpp"
+#include "pendcore/simulate/recorder.hpp"
 
 namespace pendcore {
 namespace {
@@ -108,8 +109,7 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
     const double h = all_.h_before[lane];
     const double t_new = all_.t[lane];
     const std::size_t first = samples.size() / All::size;
-    std::size_t end = first;
-    while (end < times.size() && (times[end] - t_new) * h < 0.0) ++end;
+    const std::size_t end = first_not_before(times, first, t_new, h);
     if (end > first) {
       if (!write_interpolant(lane)) return false;
       samples.resize(end * All::size);

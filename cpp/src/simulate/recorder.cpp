@@ -122,8 +122,7 @@ void Recorder::sample_step(Stepper& stepper, const TwoDouble& t_old, double h, d
                            bool with_end) {
   const std::vector<double>& samples = solution_.options.t_eval;
   const std::size_t first = solution_.t.size();
-  std::size_t end = first;
-  while (end < samples.size() && (samples[end] - t_new) * h < 0.0) ++end;
+  const std::size_t end = first_not_before(samples, first, t_new, h);
   if (end > first) {
     for (std::size_t k = first; k < end; ++k) solution_.t.push_back(samples[k]);
     solution_.states.resize(end * dimension_);

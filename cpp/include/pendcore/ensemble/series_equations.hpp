@@ -62,9 +62,8 @@ struct BareDoublePendulumSeries {
   ConstantsOfDoublePendulum<Real> constants{};
 
   static std::optional<One> one_of(const Scene& /*scene*/, const EquationsOfMotion& equations) {
-    const auto* const form = std::get_if<DoublePendulum>(&equations.form);
-    if (form == nullptr) return std::nullopt;
-    return One{form->weight, form->coupling, Pair{}, form->product, form->delta, 0.0};
+    const auto series = bare_series(equations);
+    return series ? std::optional(series->constants()) : std::nullopt;
   }
   void prepare(const One& /*one*/) { constants.delta = broadcast<Real>(1.0); }
   bool put(int lane, const One& one) {
@@ -92,17 +91,8 @@ struct LoadedDoublePendulumSeries {
 
   static std::optional<One> one_of(const Scene& /*scene*/, const EquationsOfMotion& equations) {
     if (!are_steady(equations)) return std::nullopt;
-    std::optional<One> found;
-    const auto take = [&](const auto* form) {
-      if (form == nullptr || !equations.effects->pivots.empty()) return;
-      const auto& effects = dynamic_cast<const ActingEffects<Pair>&>(*equations.effects);
-      found = {
-          {form->weight, form->coupling, form->rotor, form->product, form->delta, form->epsilon},
-          torque_laws(effects, form->inverse_diagonal)};
-    };
-    take(std::get_if<DoublePendulumWithEffects<Parts::couples>>(&equations.form));
-    take(std::get_if<DoublePendulumWithEffects<Parts::waves>>(&equations.form));
-    return found;
+    const auto series = series_with_torque(equations);
+    return series ? std::optional(One{series->constants(), series->laws()}) : std::nullopt;
   }
   void prepare(const One& one) {
     constants.delta = broadcast<Real>(1.0);

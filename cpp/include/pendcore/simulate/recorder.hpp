@@ -10,6 +10,14 @@
 
 namespace pendcore {
 
+/// The number of the first time, from `first` on, that is not before t_new, the end of a step of
+/// size h.
+inline std::size_t first_not_before(const std::vector<double>& times, std::size_t first,
+                                    double t_new, double h) {
+  while (first < times.size() && (times[first] - t_new) * h < 0.0) ++first;
+  return first;
+}
+
 class Recorder final : public Observer {
  public:
   /// `passed_events` are the numbers of occurrences of each event that do not end the run: it ended

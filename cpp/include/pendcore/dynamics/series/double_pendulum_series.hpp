@@ -116,6 +116,14 @@ class DoublePendulumSeries {
   static constexpr bool depends_on_time() { return Torque::is_there; }
   void set_order(int /*order*/) {}
 
+  const DoublePendulumConstants& constants() const { return constants_; }
+  /// The laws of its torques that are in force now.
+  PENDCORE_INLINE TorqueLaws<Pair, double> laws() const
+    requires(Torque::is_there)
+  {
+    return torque_laws(*torque_.effects, torque_.factor);
+  }
+
   /// Fills rows 1 .. order of `coefficients` with y_k of y(t + theta sigma) = sum_k theta^k y_k,
   /// from the state y. The order is even, and at least `lowest_taylor_order`.
   template <class Number>
@@ -276,8 +284,8 @@ template <class Number>
 PENDCORE_INLINE void DoublePendulumSeries<Torque>::expand(double t, const Number* y, double sigma,
                                                           int order, Number* coefficients) const {
   if constexpr (Torque::is_there) {
-    const TorqueLaws<Pair, double> laws = torque_laws(*torque_.effects, torque_.factor);
-    TorqueOrders<typename SeriesOf<Number>::Half, double> orders(laws, t, sigma);
+    const TorqueLaws<Pair, double> in_force = laws();
+    TorqueOrders<typename SeriesOf<Number>::Half, double> orders(in_force, t, sigma);
     expand_double_pendulum(constants_, y, sigma, order, orders, coefficients);
   } else {
     NoTorque none;
