@@ -26,9 +26,20 @@ double plain_number(const char* name, py::handle value) {
   return x;
 }
 
+/// An array that needs no conversion. The same question to py::array_t makes a new dtype each time.
+bool is_array_of_doubles(py::handle value) {
+  if (!py::detail::npy_api::get().PyArray_Check_(value.ptr())) return false;
+  const auto* const array = py::detail::array_proxy(value.ptr());
+  const auto type = py::reinterpret_borrow<py::dtype>(array->descr);
+  constexpr int plain =
+      py::detail::npy_api::NPY_ARRAY_C_CONTIGUOUS_ | py::detail::npy_api::NPY_ARRAY_ALIGNED_;
+  return type.num() == py::detail::npy_api::NPY_DOUBLE_ && type.byteorder() == '=' &&
+         (array->flags & plain) == plain;
+}
+
 /// Any array-like of real numbers, or an empty optional where it is something else.
 std::optional<Array> real_array(py::handle value) {
-  if (Array::check_(value)) return py::reinterpret_borrow<Array>(value);
+  if (is_array_of_doubles(value)) return py::reinterpret_borrow<Array>(value);
   if (py::isinstance<py::str>(value) || py::isinstance<py::bytes>(value)) return std::nullopt;
   const py::array any = py::array::ensure(value);
   if (!any) {
@@ -116,7 +127,7 @@ bool take_plain(py::handle value, std::span<double> into) {
     }
     return true;
   }
-  if (!Array::check_(value)) return false;
+  if (!is_array_of_doubles(value)) return false;
   const auto array = py::reinterpret_borrow<Array>(value);
   if (array.ndim() != 1 || static_cast<std::size_t>(array.size()) != into.size()) return false;
   std::copy_n(array.data(), into.size(), into.begin());

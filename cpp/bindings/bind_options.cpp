@@ -138,12 +138,20 @@ py::dict descriptor(const Options& usual) {
   return result;
 }
 
+/// The text of a keyword. A cast would note the string in a table, to keep it alive.
+std::string_view text_of(py::handle keyword) {
+  Py_ssize_t size = 0;
+  const char* const text = PyUnicode_AsUTF8AndSize(keyword.ptr(), &size);
+  if (text == nullptr) throw py::error_already_set();
+  return {text, static_cast<std::size_t>(size)};
+}
+
 }  // namespace
 
 Options options_of(const py::dict& given, std::size_t n) {
   Options options;
   for (const auto& [key, value] : given) {
-    const auto name = key.cast<std::string_view>();
+    const std::string_view name = text_of(key);
     const bool is_known = Options::any_of([&, &value = value]<class Option>() {
       if (Option::info.name != name) return false;
       take<Option>(options, value, n);

@@ -21,8 +21,8 @@ py::array copy_flat(const std::vector<double>& numbers) { return copy(numbers, {
 py::tuple event_pairs(const Run& run) {
   py::list pairs;
   for (std::size_t i = 0; i < run.solution.options.events.size(); ++i) {
-    const py::object f = i < run.event_functions.size() ? py::object(run.event_functions[i])
-                                                        : py::object(py::none());
+    const py::object f =
+        run.event_functions ? py::object(run.event_functions[py::int_(i)]) : py::none();
     pairs.append(kind_and_values(run.solution.options.events[i], f));
   }
   return py::tuple(pairs);
@@ -60,14 +60,13 @@ Run resume_run(const Run& run, py::handle t_end, py::handle t_eval, py::handle m
       t_eval.is_none() ? std::vector<double>{} : numbers("t_eval", t_eval);
   const long long most = whole_number("max_steps", max_steps);
   const std::optional<double> limit = optional_number("time_limit", time_limit);
-  Run longer{.scene = run.scene,
-             .solution = {},
-             .python_scene = run.python_scene,
-             .event_functions = run.event_functions};
-  {
-    const py::gil_scoped_release without_lock;
-    longer.solution = resume(run.scene, run.solution, end, times, most, limit, monitor.for_core());
-  }
+  const Scene& scene = scene_of(run);
+  const auto without_lock = [&] {
+    const py::gil_scoped_release released;
+    return resume(scene, run.solution, end, times, most, limit, monitor.for_core());
+  };
+  Run longer{
+      .scene = run.scene, .solution = without_lock(), .event_functions = run.event_functions};
   monitor.close(longer);
   return longer;
 }
@@ -107,7 +106,7 @@ py::tuple defect_of_steps(const Run& run, std::size_t first, std::size_t end, co
   if (end > s.dense.h.size() || first > end || !(q.empty() || q.size() == std::size_t(s.n))) {
     throw py::value_error("defect: there are no such steps, or no such angles");
   }
-  const Defect found = defect(run.scene, s, first, end, q);
+  const Defect found = defect(scene_of(run), s, first, end, q);
   const auto steps = static_cast<py::ssize_t>(end - first);
   return py::make_tuple(copy(found.torque, {steps, s.n}), copy_flat(found.apart), copy_flat(q));
 }

@@ -1,3 +1,4 @@
+#include <memory>
 #include <utility>
 
 #include "bind_events.hpp"
@@ -8,25 +9,26 @@
 namespace pendcore::bindings {
 namespace {
 
-Run simulate_run(const py::object& python_scene, py::handle q0, py::handle qd0, py::handle t0,
-                 py::handle t_end, const py::dict& given, py::handle progress, py::handle warn) {
+std::unique_ptr<Run> simulate_run(const py::object& python_scene, py::handle q0, py::handle qd0,
+                                  py::handle t0, py::handle t_end, const py::dict& given,
+                                  py::handle progress, py::handle warn) {
   const auto& scene = python_scene.cast<const Scene&>();
   PythonMonitor monitor(progress);
   Options options = options_of(given, scene.links.size());
   options.monitor = monitor.for_core();
   const Start start = start_of(scene, q0, qd0, t0, t_end, warn);
-  Run run{.scene = scene,
-          .solution = {},
-          .python_scene = python_scene,
-          .event_functions = options.events.empty()
-                                 ? py::list()
-                                 : functions_of(given[EventsOption::info.name.data()])};
-  {
-    const py::gil_scoped_release without_lock;
-    run.solution =
-        simulate(run.scene, start.q0, start.qd0, start.t0, start.t_end, std::move(options));
+  py::object event_functions;
+  if (!options.events.empty()) {
+    event_functions = functions_of(given[EventsOption::info.name.data()]);
   }
-  monitor.close(run);
+  const auto without_lock = [&] {
+    const py::gil_scoped_release released;
+    return simulate(scene, start.q0, start.qd0, start.t0, start.t_end, std::move(options));
+  };
+  auto run = std::make_unique<Run>(Run{.scene = python_scene,
+                                       .solution = without_lock(),
+                                       .event_functions = std::move(event_functions)});
+  monitor.close(*run);
   return run;
 }
 

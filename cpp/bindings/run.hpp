@@ -12,11 +12,12 @@ namespace pendcore::bindings {
 namespace py = pybind11;
 
 struct Run {
-  Scene scene;
+  py::object scene;  ///< a Scene, which keeps the functions among its effects alive
   Solution solution;
-  py::object python_scene = py::none();  ///< keeps the functions among its effects alive
-  py::list event_functions{};            ///< the Python function of each event, or None
+  py::object event_functions{};  ///< a list: the Python function of each event, or None
   py::object error = py::none();
 };
+
+inline const Scene& scene_of(const Run& run) { return run.scene.cast<const Scene&>(); }
 
 }  // namespace pendcore::bindings

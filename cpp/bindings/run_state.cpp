@@ -239,12 +239,13 @@ py::dict statistics(const Statistics& statistics) {
 py::dict get_state(const Run& run) {
   Writer io;
   std::vector<double> links;
-  for (const Link& link : run.scene.links) {
+  const Scene& scene = scene_of(run);
+  for (const Link& link : scene.links) {
     links.insert(links.end(), {link.mass, link.length, link.center, link.inertia});
   }
   io("links", links);
-  io("gravity", run.scene.gravity);
-  io("effects", json_of_effects(run.scene));
+  io("gravity", scene.gravity);
+  io("effects", json_of_effects(scene));
   visit(io, run.solution);
   put_events(io.fields, run.solution);
   return io.fields;
@@ -252,29 +253,29 @@ py::dict get_state(const Run& run) {
 
 Run set_state(const py::dict& state) {
   const Reader io(state);
-  Run run;
+  Scene scene;
   std::vector<double> links;
   io("links", links);
   if (links.size() % 4 != 0) throw py::value_error("links: must have four numbers a link");
   for (std::size_t i = 0; i < links.size(); i += 4) {
-    run.scene.links.push_back({links[i], links[i + 1], links[i + 2], links[i + 3]});
+    scene.links.push_back({links[i], links[i + 1], links[i + 2], links[i + 3]});
   }
-  io("gravity", run.scene.gravity);
+  io("gravity", scene.gravity);
   std::string effects;
   io("effects", effects);
-  run.scene.effects = effects_of_json(effects);
-  check(run.scene);
-  visit(io, run.solution);
-  Solution& s = run.solution;
+  scene.effects = effects_of_json(effects);
+  check(scene);
+  Solution s;
+  visit(io, s);
   // In runs kept before "auto" was a rule, "auto" is an alias of this pair.
   const std::string_view method = s.options.method;
   s.options.method = method == automatic ? dopri5_radau5.info.name : find_method(method).name;
-  s.n = static_cast<int>(run.scene.links.size());
-  if (s.options.ledger) s.accounts = accounts_of(run.scene);
+  s.n = static_cast<int>(scene.links.size());
+  if (s.options.ledger) s.accounts = accounts_of(scene);
   s.dimension = 2 * s.n + static_cast<int>(s.accounts.size());
   check_parts(s);
   take_events(state, s);
-  return run;
+  return {.scene = py::cast(std::move(scene)), .solution = std::move(s)};
 }
 
 }  // namespace pendcore::bindings

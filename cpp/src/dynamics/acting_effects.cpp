@@ -284,7 +284,7 @@ template <class Row>
 void ActingEffects<Row>::find_two_waves(const Scene& scene) {
   const Inertia inertia(scene);
   for (int i = 0; i < 2; ++i) {
-    const double a = inertia.first_moment[i];
+    const double a = inertia.links[i].first_moment;
     for (const auto& law : pivots) {
       if (law->x.wave < 2) two_waves.on_sine[law->x.wave][i] += a * law->x.gain;
       if (law->y.wave < 2) two_waves.on_cosine[law->y.wave][i] -= a * law->y.gain;

@@ -8,7 +8,7 @@
 namespace pendcore {
 
 void JointForces::set_mass_matrix(const double* q) {
-  const std::size_t n = inertia.diagonal.size();
+  const std::size_t n = inertia.links.size();
   sine.resize(n);
   cosine.resize(n);
   mass.resize(n * n);
@@ -17,12 +17,12 @@ void JointForces::set_mass_matrix(const double* q) {
 }
 
 void JointForces::set_up() {
-  const int n = static_cast<int>(inertia.diagonal.size());
+  const int n = static_cast<int>(inertia.links.size());
   const int m = static_cast<int>(joints.size());
   factor_ = mass;
   factor_symmetric(n, factor_.data());
   problem.resize(m);
-  response_.assign(joints.size() * inertia.diagonal.size(), 0.0);
+  response_.assign(joints.size() * inertia.links.size(), 0.0);
   for (int r = 0; r < m; ++r) {
     if (problem.look) problem.look();
     double* const x = response_.data() + static_cast<std::ptrdiff_t>(r) * n;
@@ -43,10 +43,10 @@ void JointForces::set_up() {
 }
 
 void JointForces::add_response(double* x) const {
-  const int n = static_cast<int>(inertia.diagonal.size());
-  std::vector<double> change(inertia.diagonal.size(), 0.0);
+  const int n = static_cast<int>(inertia.links.size());
+  std::vector<double> change(inertia.links.size(), 0.0);
   for (std::size_t r = 0; r < joints.size(); ++r) {
-    const double* const row = response_.data() + r * inertia.diagonal.size();
+    const double* const row = response_.data() + r * inertia.links.size();
     for (int i = 0; i < n; ++i) change[i] += problem.lambda[r] * row[i];
   }
   solve_upper(n, factor_.data(), change.data());

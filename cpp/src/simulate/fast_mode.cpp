@@ -165,14 +165,14 @@ std::string remark_on_steps(const Scene& scene, const EquationsOfMotion& equatio
                             const MethodInfo& in_force, bool fixed_step, double t0) {
   std::string remark;
   const Statistics& statistics = integrator.statistics;
-  const std::string since = text(integrator.stiff_since) + " s";
+  const auto since = [&integrator] { return text(integrator.stiff_since) + " s"; };
   if (statistics.stiff && in_force.name == method.second_of_pair) {
-    remark += "; stiff: went on with " + std::string(in_force.name) + " from t = " + since;
+    remark += "; stiff: went on with " + std::string(in_force.name) + " from t = " + since();
   } else if (statistics.stiff && method.kind == MethodKind::pair) {
-    remark += "; stiff at t = " + since + ", but " + std::string(method.second_of_pair) +
+    remark += "; stiff at t = " + since() + ", but " + std::string(method.second_of_pair) +
               " does not pay: accuracy hardly allows it longer steps";
   } else if (statistics.stiff) {
-    remark += "; from t = " + since +
+    remark += "; from t = " + since() +
               " on the steps are limited by stability, not by accuracy: the problem is stiff: "
               "method=\"radau5\" takes longer ones, and " +
               (fixed_step ? "\"dopri5-radau5\"" : "\"auto\"") + " changes over by itself";

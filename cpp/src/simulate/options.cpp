@@ -20,21 +20,19 @@ bool is_within(const NumberRange& range, double value) {
 /// One number for all components or one for each, none below `least`.
 std::vector<double> tolerances(const OptionInfo& info, const std::vector<double>& given,
                                std::size_t dimension, double least) {
-  const std::string name(info.name);
   if (given.size() != 1 && given.size() != dimension) {
-    throw std::invalid_argument(name + ": has " + std::to_string(given.size()) +
+    throw std::invalid_argument(std::string(info.name) + ": has " + std::to_string(given.size()) +
                                 " numbers: must have 1, or " + std::to_string(dimension) +
                                 " (q_1 .. q_n, qd_1 .. qd_n)");
   }
-  std::vector<double> result(dimension);
-  for (std::size_t i = 0; i < dimension; ++i) {
-    const double value = given[given.size() == 1 ? 0 : i];
-    if (!is_within(info.range, value)) {
-      const std::string index = given.size() == 1 ? "" : "[" + std::to_string(i) + "]";
-      refuse(name + index, value, range_with_unit(info));
-    }
-    result[i] = std::max(value, least);
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    if (is_within(info.range, given[i])) continue;
+    const std::string index = given.size() == 1 ? "" : "[" + std::to_string(i) + "]";
+    refuse(std::string(info.name) + index, given[i], range_with_unit(info));
   }
+  std::vector<double> result(given);
+  for (double& one : result) one = std::max(one, least);
+  result.resize(dimension, result.front());
   return result;
 }
 

@@ -14,10 +14,9 @@ Recorder::Recorder(Solution& solution, const Stepper& stepper, const Scene& scen
       keeps_steps_(solution.options.store == Store::steps ||
                    (keeps_polynomials_ && solution.options.t_eval.empty())),
       dimension_(static_cast<std::size_t>(stepper.dimension())),
-      polynomial_(static_cast<std::size_t>(stepper.interpolant_degree() + 1) * dimension_),
-      shown_(dimension_) {
+      degree_(static_cast<std::size_t>(stepper.interpolant_degree())) {
   const std::vector<Event>& events = solution.options.events;
-  if (!events.empty() && stepper.interpolant_degree() > highest_degree) {
+  if (!events.empty() && degree_ > highest_degree) {
     throw std::invalid_argument("events: the dense output of this method has too high a degree");
   }
   if (!events.empty()) finder_.emplace(scene, events, solution.found, passed_events);
@@ -36,8 +35,7 @@ StepEnd Recorder::step_accepted(Stepper& stepper, const TwoDouble& t_old, double
   StepEnd end;
   // This comes before anything is kept: it may evaluate right-hand sides, and a user's function may
   // throw.
-  if (finder_ || keeps_polynomials_ || watch_ != nullptr)
-    stepper.finite_interpolant(h, polynomial_, dimension_);
+  if (finder_ || keeps_polynomials_ || watch_ != nullptr) interpolate(stepper, h);
   if (finder_) {
     end = finder_->look(stepper, polynomial_.data(), t_old, h, t_new);
     if (end.has_too_many_turns()) return end;
@@ -61,8 +59,14 @@ StepEnd Recorder::step_accepted(Stepper& stepper, const TwoDouble& t_old, double
   return end;
 }
 
+void Recorder::interpolate(Stepper& stepper, double h) {
+  polynomial_.resize((degree_ + 1) * dimension_);
+  stepper.finite_interpolant(h, polynomial_, dimension_);
+}
+
 /// Shows the step, up to a share of it at time t, to what looks on.
 void Recorder::show_step(Stepper& stepper, double t, double share) {
+  shown_.resize(dimension_);
   if (share < 1.0) {
     stepper.sample(polynomial_.data(), {}, 1.0, &share, 1, shown_.data());
   } else {
@@ -71,7 +75,7 @@ void Recorder::show_step(Stepper& stepper, double t, double share) {
   watch_->steps({.t = t,
                  .y = shown_,
                  .rows = polynomial_.data(),
-                 .degree = stepper.interpolant_degree(),
+                 .degree = static_cast<int>(degree_),
                  .share = share});
 }
 
@@ -126,7 +130,7 @@ void Recorder::sample_step(Stepper& stepper, const TwoDouble& t_old, double h, d
   if (end > first) {
     for (std::size_t k = first; k < end; ++k) solution_.t.push_back(samples[k]);
     solution_.states.resize(end * dimension_);
-    stepper.finite_interpolant(h, polynomial_, dimension_);
+    interpolate(stepper, h);
     stepper.sample(polynomial_.data(), t_old, h, samples.data() + first,
                    static_cast<int>(end - first), solution_.states.data() + first * dimension_);
   }

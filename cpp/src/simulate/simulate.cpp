@@ -141,11 +141,12 @@ void run(const Scene& scene, Solution& solution, double t_end, Limits limits, Be
   IntegratorState integrator = solution.resumable;
   if (before == Before::nothing) recorder.start(integrator.t.high, integrator.y);
   Switching* const discontinuities = switching ? &*switching : nullptr;
-  RunLimits clock(limits, integrator.t.high);
+  std::optional<RunLimits> clock;
   // Deciding which joints are held is not a step, and takes long in a long chain.
   if (switching && stopped_is_caught) {
+    clock.emplace(limits, integrator.t.high);
     switching->look_up_in_long_work([&clock, &integrator] {
-      const Status status = clock.look(integrator.t.high);
+      const Status status = clock->look(integrator.t.high);
       if (status != Status::finished) throw Stopped{status};
     });
   }
@@ -174,7 +175,6 @@ void run(const Scene& scene, Solution& solution, double t_end, Limits limits, Be
   solution.status = ending.status;
   solution.statistics = integrator.statistics;
   solution.t_reached = integrator.t.high;
-  solution.y_reached = integrator.y;
   solution.message = ending_message(ending, scene, solution, integrator,
                                     switching ? switching->remark() : "", recorder.ended_by());
   if (switching) solution.message += switching->remark_on_impacts();
@@ -183,6 +183,7 @@ void run(const Scene& scene, Solution& solution, double t_end, Limits limits, Be
                                       stepper->info(), options.step.has_value(), solution.t0);
   solution.error = ending.error;
   solution.options.watch = nullptr;
+  solution.y_reached = std::move(integrator.y);
   if (options.store == Store::end) {
     solution.t = {solution.t_reached};
     solution.states = solution.y_reached;
@@ -221,8 +222,7 @@ Solution simulate(const Scene& scene, const std::vector<double>& q0, const std::
   options.method = chosen_method(scene, options);
   options.store = options.store.value_or(usual_store(options));
   Limits limits = limits_of(options, t_end);
-  Solution solution;
-  solution.options = std::move(options);
+  Solution solution(std::move(options));
   solution.options.monitor = nullptr;
   solution.t0 = t0;
   solution.t_end = t_end;
@@ -232,9 +232,8 @@ Solution simulate(const Scene& scene, const std::vector<double>& q0, const std::
   solution.dimension = static_cast<int>(dimension);
   IntegratorState& start = solution.resumable;
   start.t = {t0, 0.0};
-  start.y = q0;
-  start.y.insert(start.y.end(), qd0.begin(), qd0.end());
   start.y.resize(dimension);
+  std::ranges::copy(qd0, std::ranges::copy(q0, start.y.begin()).out);
   solution.start = start.y;
   start.dydt.resize(dimension);
   run(scene, solution, t_end, std::move(limits), Before::nothing);

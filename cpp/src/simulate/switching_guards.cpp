@@ -126,7 +126,7 @@ void Switching::stop_joint(int joint, double* qd) const {
   set_relative(qd, joint + 1, 0.0);
   if (joint + 1 == n_) return;
   const JointSupport& next = joints_.supports()[joint + 1];
-  const double torque = joints_.inertia()[joint + 1] * next.natural_speed * next.natural_speed;
+  const double torque = joints_.inertia(joint + 1) * next.natural_speed * next.natural_speed;
   if (next.damping * std::abs(rate) <= epsilon * torque) return;
   for (int i = joint + 1; i < n_; ++i) qd[i] -= rate;
 }

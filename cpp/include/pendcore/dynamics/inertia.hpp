@@ -18,16 +18,22 @@
 
 namespace pendcore {
 
+struct LinkInertia {
+  double first_moment;  ///< a_i
+  double diagonal;      ///< M_ii: A_ii and the rotors
+  double length;        ///< L_i
+  double rotor;         ///< J_i
+};
+
 struct Inertia {
-  std::vector<double> first_moment;  ///< a_i, (n)
-  std::vector<double> diagonal;      ///< M_ii: A_ii and the rotors, (n)
-  std::vector<double> length;        ///< L_i, (n)
-  std::vector<double> rotor;         ///< J_j, (n)
-  double payload_mass = 0.0;         ///< m_p
-  double payload_inertia = 0.0;      ///< I_p
+  std::vector<LinkInertia> links;  ///< (n)
+  double payload_mass = 0.0;       ///< m_p
+  double payload_inertia = 0.0;    ///< I_p
 
   explicit Inertia(const Scene& scene);
   double coupling(std::size_t i, std::size_t j) const;  ///< A_ij, i != j, counted from 0
+  /// The rotors between two links, (n): 0 and J_2 .. J_n. In a chain, J_1 is part of the first link.
+  std::vector<double> rotors_between_links() const;
 };
 
 /// M_ij, that is A_ij cos(q_i - q_j) and the rotors, (n, n), kg m^2, from the sines and cosines of

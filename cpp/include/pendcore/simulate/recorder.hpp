@@ -42,6 +42,7 @@ class Recorder final : public Observer {
   struct Kept {
     std::size_t t, steps, found;
   };
+  void interpolate(Stepper& stepper, double h);  ///< sets polynomial_
   Kept kept() const;
   void count(const Kept& kept);  ///< so much is also in a run that never stopped
   void sample_step(Stepper& stepper, const TwoDouble& t_old, double h, double t_new,
@@ -58,6 +59,7 @@ class Recorder final : public Observer {
   bool keeps_polynomials_;
   bool keeps_steps_;
   std::size_t dimension_;
+  std::size_t degree_;
   std::vector<double> polynomial_;  ///< the dense output of one step
   std::vector<double> shown_;       ///< the state that the watch sees
 };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pendcore/integrate/loop/integrate.hpp"
@@ -21,6 +22,9 @@ struct DenseOutput {
 };
 
 struct Solution {
+  Solution() = default;
+  explicit Solution(Options own) : options(std::move(own)) {}
+
   Status status = Status::finished;
   std::string message;
   std::string last_method;  ///< with which the run ended: of a pair, one of its two

@@ -10,7 +10,7 @@ ChainOf<Number>::ChainOf(const Scene& scene, std::shared_ptr<ActingEffects<Pack<
       effects_(std::move(effects)) {
   const Inertia inertia(scene);
   payload_mass_ = inertia.payload_mass;
-  rotor_ = inertia.rotor;
+  rotor_ = inertia.rotors_between_links();
   for (int i = 1; i < n_; ++i) has_rotors_ |= rotor_[i] != 0.0;
   loaded_ = !effects_->couples.empty() || !effects_->entries.empty() || !effects_->users.empty() ||
             !effects_->pivots.empty();
@@ -30,7 +30,6 @@ ChainOf<Number>::ChainOf(const Scene& scene, std::shared_ptr<ActingEffects<Pack<
     in(mass_moment_)[i] = link.mass * link.center;
   }
   links_ = chain_links(scene, inertia);
-  rotor_[0] = 0.0;  // the first link includes the rotor of joint 1
 }
 
 // The kernels instantiate the rest.

@@ -21,7 +21,7 @@ std::vector<ChainLink> chain_links(const Scene& scene, const Inertia& inertia) {
                      .turn = about_joint - mc * L,
                      .across = I + m * rest * rest});
   }
-  links.front().Io += inertia.rotor.front();
+  links.front().Io += inertia.links.front().rotor;
   return links;
 }
 

@@ -6,13 +6,13 @@ DoublePendulum::DoublePendulum(const Scene& scene, const Inertia& inertia) {
   const Link& first = scene.links[0];
   const Link& second = scene.links[1];
   for (int i = 0; i < 2; ++i) {
-    weight[i] = inertia.first_moment[i] * scene.gravity / inertia.diagonal[i];
-    coupling[i] = inertia.coupling(0, 1) / inertia.diagonal[i];
+    weight[i] = inertia.links[i].first_moment * scene.gravity / inertia.links[i].diagonal;
+    coupling[i] = inertia.coupling(0, 1) / inertia.links[i].diagonal;
   }
   product = coupling[0] * coupling[1];
   // A_11 A_22 - A_12^2 = (I_1 + m_1 c_1^2) A_22 + L_1^2 m_2 I_2, and with a payload
   // L_1^2 ((m_2 + m_p)(I_2 + I_p) + m_2 m_p (L_2 - c_2)^2) at its end: all terms are positive.
-  const double about_joint = first.inertia_about_joint() + inertia.rotor[0];
+  const double about_joint = first.inertia_about_joint() + inertia.links[0].rotor;
   const double hung = first.length * first.length * (second.mass + inertia.payload_mass);
   const double apart = second.length - second.center;
   double about_center = second.inertia + inertia.payload_inertia;
@@ -20,8 +20,8 @@ DoublePendulum::DoublePendulum(const Scene& scene, const Inertia& inertia) {
     const double share = inertia.payload_mass / (second.mass + inertia.payload_mass);
     about_center += second.mass * share * apart * apart;
   }
-  delta = about_joint / inertia.diagonal[0] +
-          (hung / inertia.diagonal[0]) * (about_center / inertia.diagonal[1]);
+  delta = about_joint / inertia.links[0].diagonal +
+          (hung / inertia.links[0].diagonal) * (about_center / inertia.links[1].diagonal);
 }
 
 }  // namespace pendcore

@@ -26,14 +26,14 @@ DoublePendulumWithEffects<parts>::DoublePendulumWithEffects(const Scene& scene,
   const DoublePendulum bare(scene, plain);
   double share[2];  // A'/A
   for (int i = 0; i < 2; ++i) {
-    length[i] = inertia.length[i];
-    diagonal[i] = inertia.diagonal[i];
-    inverse_diagonal[i] = 1.0 / inertia.diagonal[i];
-    moment[i] = inertia.first_moment[i] / inertia.diagonal[i];
-    share[i] = plain.diagonal[i] / inertia.diagonal[i];
-    weight[i] = inertia.first_moment[i] * scene.gravity / inertia.diagonal[i];
-    coupling[i] = inertia.coupling(0, 1) / inertia.diagonal[i];
-    rotor[i] = inertia.rotor[1] / inertia.diagonal[i];
+    length[i] = inertia.links[i].length;
+    diagonal[i] = inertia.links[i].diagonal;
+    inverse_diagonal[i] = 1.0 / inertia.links[i].diagonal;
+    moment[i] = inertia.links[i].first_moment / inertia.links[i].diagonal;
+    share[i] = plain.links[i].diagonal / inertia.links[i].diagonal;
+    weight[i] = inertia.links[i].first_moment * scene.gravity / inertia.links[i].diagonal;
+    coupling[i] = inertia.coupling(0, 1) / inertia.links[i].diagonal;
+    rotor[i] = inertia.links[1].rotor / inertia.links[i].diagonal;
   }
   product = coupling[0] * coupling[1];
   delta = bare.delta * share[0] * share[1] + rotor[1] * share[0] + rotor[0] * share[1];

@@ -101,7 +101,7 @@ double HeldJoints::work_of_drive(const EquationsOfMotion& equations, double t,
   effects.pivot_velocity(t, x, y);
   double work = 0.0;
   for (int i = 0; i < n_; ++i) {
-    const double moment = forces_.inertia.first_moment[i] * (after[i] - before[i]);
+    const double moment = forces_.inertia.links[i].first_moment * (after[i] - before[i]);
     work += moment * (y * forces_.cosine[i] - x * forces_.sine[i]);
   }
   return work;

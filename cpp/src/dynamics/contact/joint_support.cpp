@@ -31,9 +31,9 @@ void set_natural_speeds(const Scene& scene, const Inertia& inertia,
   double largest = 0.0;
   for (std::size_t j = 0; j < supports.size(); ++j) {
     JointSupport& joint = supports[j];
-    const double weight = inertia.first_moment[j] * std::abs(scene.gravity);
+    const double weight = inertia.links[j].first_moment * std::abs(scene.gravity);
     joint.natural_speed =
-        std::sqrt((weight + joint.torque + joint.stiffness) / inertia.diagonal[j]);
+        std::sqrt((weight + joint.torque + joint.stiffness) / inertia.links[j].diagonal);
     largest = std::max(largest, joint.natural_speed);
   }
   if (largest == 0.0) largest = 1.0;  // nothing drives the joints: 1 rad/s

@@ -12,7 +12,7 @@ ConstantsOfFewLinks<double, links> constants_of_few_links(const Scene& scene) {
   std::ranges::copy(chain_links(scene, inertia), constants.link);
   constants.payload_mass = inertia.payload_mass;
   for (int i = 0; i < links; ++i) {
-    constants.weight[i] = scene.gravity * inertia.first_moment[i];
+    constants.weight[i] = scene.gravity * inertia.links[i].first_moment;
     for (int by = 1; by < links; ++by) {
       constants.coupling[by][i] = inertia.coupling(i, (i + by) % links);
     }

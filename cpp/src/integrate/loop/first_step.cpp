@@ -1,6 +1,7 @@
 #include "pendcore/integrate/loop/first_step.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -15,8 +16,11 @@ FirstStep first_step(Stepper& stepper, double t, double t_end, double max_step, 
   }
   const int n = stepper.controlled();
   const int size = stepper.dimension();
-  std::vector<double> memory(5 * size);
-  double* const y = memory.data();
+  // A run of a few links asks the heap for nothing here.
+  constexpr int few = 8;
+  std::array<double, static_cast<std::size_t>(5 * few)> of_few;
+  std::vector<double> of_many(size > few ? 5 * size : 0);
+  double* const y = size > few ? of_many.data() : of_few.data();
   double* const rate = y + size;
   double* const euler = rate + size;
   double* const euler_rate = euler + size;

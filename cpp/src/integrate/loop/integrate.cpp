@@ -25,10 +25,9 @@ class Run {
         discontinuities_(discontinuities),
         run_limits_(limits, integrator.t.high),
         resume_(stepper, integrator, resumable, observer, discontinuities, limits.begins_anew),
-        trial_(stepper, integrator, limits.fixed_step, discontinuities),
-        state_(stepper.dimension()),
-        rate_(stepper.dimension()) {
+        trial_(stepper, integrator, limits.fixed_step, discontinuities) {
     has_quadratures_ = stepper.controlled() < stepper.dimension();
+    if (has_quadratures_ || discontinuities != nullptr) make_room();
     stepper.keep_going = [this] {
       if (can_stop_) stopped_ = run_limits_.look(integrator_.t.high);
       return stopped_ == Status::finished;
@@ -62,6 +61,12 @@ class Run {
   }
 
  private:
+  /// A short run that needs neither a state nor a rate of its own has no memory for them.
+  void make_room() {
+    state_.resize(stepper_.dimension());
+    rate_.resize(stepper_.dimension());
+  }
+
   /// The time that the next step may not go beyond.
   struct Target {
     double t;
@@ -223,6 +228,7 @@ class Run {
     const std::size_t rows = stepper_.interpolant_degree() + 1;
     std::vector<double> polynomial(rows * stepper_.dimension());
     stepper_.finite_interpolant(h, polynomial, stepper_.dimension());
+    make_room();
     stepper_.sample(polynomial.data(), {}, 1.0, &theta, 1, state_.data());
     stepper_.get_derivative(rate_.data());
     stepper_.start(state_.data(), rate_.data());

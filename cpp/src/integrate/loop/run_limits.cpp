@@ -1,6 +1,8 @@
 #include "pendcore/integrate/loop/run_limits.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace pendcore {
 namespace {
@@ -10,6 +12,15 @@ double seconds(std::chrono::steady_clock::duration d) {
 }
 
 }  // namespace
+
+// To read the clock takes as long as three right-hand sides: a run of one step reads it once, and
+// not at all where nothing waits for it.
+RunLimits::RunLimits(const Limits& limits, double t0) : limits_(limits), t0_(t0) {
+  const bool has_limit = std::isfinite(limits.time_limit);
+  if (!has_limit) steps_between_looks_ = limits.monitor ? 2 : std::numeric_limits<int>::max();
+  if (!has_limit && !limits.monitor) return;
+  start_ = last_look_ = last_call_ = Steady::now();
+}
 
 Status RunLimits::look(double t) {
   if (++steps_ < steps_between_looks_) return Status::finished;

@@ -16,7 +16,7 @@ struct SinglePendulum {
   double weight;  ///< a_1 g / A_11, 1/s^2
 
   SinglePendulum(const Inertia& inertia, double gravity)
-      : weight(inertia.first_moment[0] * gravity / inertia.diagonal[0]) {}
+      : weight(inertia.links[0].first_moment * gravity / inertia.links[0].diagonal) {}
 
   template <class Real>
   PENDCORE_INLINE Real accelerations(const Real& q, const Real& /*qd*/) const {

@@ -22,10 +22,10 @@ struct SinglePendulumWithEffects {
 
   SinglePendulumWithEffects(const Scene& scene, const Inertia& inertia,
                             const ActingEffects<double>* in_force)
-      : length(inertia.length[0]),
-        inverse_inertia(1.0 / inertia.diagonal[0]),
-        moment(inertia.first_moment[0] / inertia.diagonal[0]),
-        weight(inertia.first_moment[0] * scene.gravity / inertia.diagonal[0]),
+      : length(inertia.links[0].length),
+        inverse_inertia(1.0 / inertia.links[0].diagonal),
+        moment(inertia.links[0].first_moment / inertia.links[0].diagonal),
+        weight(inertia.links[0].first_moment * scene.gravity / inertia.links[0].diagonal),
         effects(in_force) {}
 
   template <class V>

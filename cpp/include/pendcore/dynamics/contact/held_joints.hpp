@@ -68,7 +68,7 @@ class HeldJoints {
   bool any_held_for_now() const;  ///< by anything but a lock
   /// The inertia about its joint of each link and everything beyond it, kg m^2, (n): the diagonal
   /// of M.
-  const std::vector<double>& inertia() const { return forces_.inertia.diagonal; }
+  double inertia(int joint) const { return forces_.inertia.links[joint].diagonal; }
   double natural_speed() const { return natural_speed_; }  ///< the highest of all joints, rad/s
 
   /// Locks a joint at an angle from now on, and sets this angle in the state.
@@ -92,7 +92,7 @@ class HeldJoints {
 
   /// Whether an acceleration of a joint is no more than the rounding error of its torque.
   bool is_rounding(int joint, double phidd) const {
-    return forces_.inertia.diagonal[joint] * std::abs(phidd) <=
+    return forces_.inertia.links[joint].diagonal * std::abs(phidd) <=
            rounding_of_torque * (size_[joint] + supports_[joint].friction);
   }
 

@@ -25,8 +25,7 @@ ChainSeries<Row>::ChainSeries(const Scene& scene, std::shared_ptr<const ActingEf
   const Inertia inertia(scene);
   payload_mass_ = inertia.payload_mass;
   links_ = chain_links(scene, inertia);
-  rotor_ = inertia.rotor;
-  rotor_[0] = 0.0;  // part of the first link
+  rotor_ = inertia.rotors_between_links();
   has_rotors_ = std::ranges::any_of(rotor_, [](double J) { return J > 0.0; });
   for (auto* array : {&beta_x_, &beta_y_, &torque_, &alpha_, &hx_, &hy_}) array->resize(row_);
   const std::size_t room = row_ + 2 * static_cast<std::size_t>(chain_series_detail::margin);

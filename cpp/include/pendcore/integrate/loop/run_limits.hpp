@@ -25,7 +25,7 @@ inline constexpr bool stopped_is_caught = true;
 /// and the monitor is called about every 50 ms.
 class RunLimits {
  public:
-  RunLimits(const Limits& limits, double t0) : limits_(limits), t0_(t0) {}
+  RunLimits(const Limits& limits, double t0);
 
   /// Status::finished means that the run goes on.
   Status look(double t);
@@ -37,9 +37,9 @@ class RunLimits {
   double t0_;
   int steps_ = 0;
   int steps_between_looks_ = 1;
-  Steady::time_point start_ = Steady::now();
-  Steady::time_point last_look_ = start_;
-  Steady::time_point last_call_ = start_;
+  Steady::time_point start_{};
+  Steady::time_point last_look_{};
+  Steady::time_point last_call_{};
 };
 
 }  // namespace pendcore
