@@ -69,7 +69,7 @@ class OfTheRate final : public DifferentiableSystem {
 template <const auto& method, Function f>
 std::unique_ptr<Stepper> make_stepper() {
   auto implicit = [](const Collocation& one) {
-    return std::make_unique<ImplicitRungeKutta>(one, std::make_unique<OfTheRate<f>>());
+    return implicit_runge_kutta(one, std::make_unique<OfTheRate<f>>());
   };
   if constexpr (method.info.kind == MethodKind::implicit_one) {
     return implicit(method);

@@ -16,6 +16,12 @@ bool is_bare(const Scene& scene) {
 
 namespace {
 
+template <class Form>
+PENDCORE_INLINE void accelerations_of_form(const void* form, double t, const double* q,
+                                           const double* qd, double* qdd) {
+  accelerations_in_memory(static_cast<const Form*>(form), t, q, qd, qdd);
+}
+
 EquationsOfMotion form_of_motion(const Scene& scene) {
   const Inertia inertia(scene);
   const std::size_t n = scene.links.size();
@@ -78,20 +84,23 @@ void choose_modes(EffectsInForce& effects, double t, const double* q, const doub
   }
 }
 
-void accelerations_in_force(const EquationsOfMotion& equations, double t, const double* q,
-                            const double* qd, double* qdd) {
-  std::visit(
-      [=]<class Form>(const Form& form) {
+RightHandSide right_hand_side(const EquationsOfMotion& equations) {
+  return std::visit(
+      []<class Form>(const Form& form) -> RightHandSide {
         if constexpr (std::is_same_v<Form, std::shared_ptr<Chain>>) {
-          static const auto compute = fastest<&accelerations_in_memory<Chain, double>>();
-          compute(form.get(), t, q, qd, qdd);
+          static const auto compute = fastest<&accelerations_of_form<Chain>>();
+          return {form.get(), compute};
         } else {
-          static const auto compute =
-              fastest<&accelerations_in_memory<Form, double>, best_for(2)>();
-          compute(&form, t, q, qd, qdd);
+          static const auto compute = fastest<&accelerations_of_form<Form>, best_for(2)>();
+          return {&form, compute};
         }
       },
       equations.form);
+}
+
+void accelerations_in_force(const EquationsOfMotion& equations, double t, const double* q,
+                            const double* qd, double* qdd) {
+  right_hand_side(equations)(t, q, qd, qdd);
 }
 
 void accelerations(const EquationsOfMotion& equations, double t, const double* q, const double* qd,

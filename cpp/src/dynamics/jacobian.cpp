@@ -4,6 +4,34 @@
 #include "pendcore/dynamics/chain/chain_recursion.hpp"
 
 namespace pendcore {
+namespace {
+
+/// Both matrices of closed-form equations. Written out for all directions, what does not depend on
+/// the direction is computed once.
+template <class Form>
+PENDCORE_INLINE void jacobian_in_memory(const Form* form, double t, const double* q,
+                                        const double* qd, double* by_q, double* by_qd) {
+  using Row = typename Form::Links;
+  constexpr int n = Lanes<Row>::width;
+  const Row angles = load<Row>(q);
+  const Row rates = load<Row>(qd);
+#pragma GCC unroll 2
+  for (int j = 0; j < n; ++j) {
+    Row direction{};
+    set_lane(direction, j, 1.0);
+    const Dual<Row> of_angle =
+        accelerations_at(*form, t, Dual<Row>(angles, direction), Dual<Row>(rates));
+    const Dual<Row> of_rate =
+        accelerations_at(*form, t, Dual<Row>(angles), Dual<Row>(rates, direction));
+    for (int i = 0; i < n; ++i) {
+      by_q[i * n + j] = lane(of_angle.slope, i);
+      by_qd[i * n + j] = lane(of_rate.slope, i);
+    }
+  }
+}
+
+}  // namespace
+
 Jacobian::Jacobian(const Scene& scene, const EquationsOfMotion& equations)
     : n_(static_cast<int>(scene.links.size())), equations_(equations), q_(n_), qd_(n_), qdd_(n_) {
   if (std::holds_alternative<std::shared_ptr<Chain>>(equations.form)) {
@@ -39,6 +67,26 @@ void Jacobian::compute(double t) const {
 
 void Jacobian::operator()(double t, const double* q, const double* qd, double* by_q,
                           double* by_qd) const {
+  if (chain_) return direction_by_direction(t, q, qd, by_q, by_qd);
+  std::visit(
+      [=]<class Form>(const Form& form) {
+        if constexpr (!std::is_same_v<Form, std::shared_ptr<Chain>>) {
+          static const auto both = fastest<&jacobian_in_memory<Form>, best_for(2)>();
+          both(&form, t, q, qd, by_q, by_qd);
+        }
+      },
+      equations_.form);
+  if (!equations_.effects) return;
+  for (int i = 0; i < n_; ++i) {
+    if (equations_.effects->held[i] == 0) continue;
+    for (double* const matrix : {by_q, by_qd}) {
+      for (int j = 0; j < n_; ++j) matrix[i * n_ + j] = i > 0 ? matrix[(i - 1) * n_ + j] : 0.0;
+    }
+  }
+}
+
+void Jacobian::direction_by_direction(double t, const double* q, const double* qd, double* by_q,
+                                      double* by_qd) const {
   for (int i = 0; i < n_; ++i) {
     q_[i] = q[i];
     qd_[i] = qd[i];

@@ -7,13 +7,14 @@ SceneSystem::SceneSystem(const Scene& scene, const EquationsOfMotion& equations,
     : DifferentiableSystem(row_size,
                            keeps_ledger ? static_cast<int>(accounts_of(scene).size()) : 0),
       equations_(equations),
+      right_hand_side_(right_hand_side(equations_)),
       n_(static_cast<int>(scene.links.size())) {
   if (quadratures > 0) ledger_ = std::make_unique<Ledger>(scene, equations.effects);
 }
 
 void SceneSystem::operator()(double t, const double* y, double* dydt) const {
-  __builtin_memcpy(dydt, y + row, n_ * sizeof(double));
-  accelerations_in_force(equations_, t, y, y + row, dydt + row);
+  for (int i = 0; i < n_; ++i) dydt[i] = y[row + i];
+  right_hand_side_(t, y, y + row, dydt + row);
   if (ledger_) {
     ledger_->powers(t, y, y + row, dydt + row, dydt + static_cast<std::ptrdiff_t>(2) * row);
   }

@@ -49,7 +49,7 @@ std::unique_ptr<Stepper> implicit(const Collocation& method, const Scene& scene,
   auto system = std::make_unique<SceneSystem>(scene, equations,
                                               static_cast<int>(scene.links.size()), keeps_ledger);
   system->differentiate(scene);
-  return std::make_unique<ImplicitRungeKutta>(method, std::move(system), compensated);
+  return implicit_runge_kutta(method, std::move(system), compensated);
 }
 
 template <const auto& table>

@@ -45,7 +45,21 @@ EquationsOfMotion equations_of_motion(const Scene& scene);
 void accelerations(const EquationsOfMotion& equations, double t, const double* q, const double* qd,
                    double* qdd);
 
-/// The same in the current modes and with the joints that are held now.
+/// The right-hand side of equations in their form, for a caller that asks for it at every stage. It
+/// computes qdd in the current modes and with the joints that are held now.
+struct RightHandSide {
+  const void* form;
+  void (*compute)(const void* form, double t, const double* q, const double* qd, double* qdd);
+
+  void operator()(double t, const double* q, const double* qd, double* qdd) const {
+    compute(form, t, q, qd, qdd);
+  }
+};
+
+/// The equations must outlive their right-hand side.
+RightHandSide right_hand_side(const EquationsOfMotion& equations);
+
+/// The same, for one state.
 void accelerations_in_force(const EquationsOfMotion& equations, double t, const double* q,
                             const double* qd, double* qdd);
 

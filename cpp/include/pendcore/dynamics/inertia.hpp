@@ -32,7 +32,7 @@ struct Inertia {
 
   explicit Inertia(const Scene& scene);
   double coupling(std::size_t i, std::size_t j) const;  ///< A_ij, i != j, counted from 0
-  /// The rotors between two links, (n): 0 and J_2 .. J_n. In a chain, J_1 is part of the first link.
+  /// The rotors between two links, (n): 0 and J_2 .. J_n. In a chain, link 1 includes J_1.
   std::vector<double> rotors_between_links() const;
 };
 

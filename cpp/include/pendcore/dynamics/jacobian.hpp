@@ -37,6 +37,8 @@ class Jacobian {
  private:
   /// Computes qdd_ from q_ and qd_.
   void compute(double t) const;
+  void direction_by_direction(double t, const double* q, const double* qd, double* by_q,
+                              double* by_qd) const;
 
   int n_;
   EquationsOfMotion equations_;

@@ -18,4 +18,11 @@ class GeneralSystem {
   const int quadratures;
 };
 
+/// A system of two rows (q and qd) that also computes the derivatives of qdd, (row, row) each.
+class DifferentiableSystem : public GeneralSystem {
+ public:
+  using GeneralSystem::GeneralSystem;
+  virtual void jacobian(double t, const double* y, double* by_q, double* by_qd) const = 0;
+};
+
 }  // namespace pendcore

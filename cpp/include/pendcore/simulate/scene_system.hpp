@@ -17,6 +17,8 @@ class SceneSystem final : public DifferentiableSystem {
   /// Rows of `row_size` numbers, of which the first belong to links.
   SceneSystem(const Scene& scene, const EquationsOfMotion& equations, int row_size,
               bool keeps_ledger);
+  SceneSystem(const SceneSystem&) = delete;  // the right-hand side points into the equations
+  SceneSystem& operator=(const SceneSystem&) = delete;
 
   void operator()(double t, const double* y, double* dydt) const override;
 
@@ -26,6 +28,7 @@ class SceneSystem final : public DifferentiableSystem {
 
  private:
   EquationsOfMotion equations_;
+  RightHandSide right_hand_side_;
   int n_;
   std::unique_ptr<Ledger> ledger_;
   std::unique_ptr<Jacobian> jacobian_;

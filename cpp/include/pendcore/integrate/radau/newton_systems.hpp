@@ -7,39 +7,115 @@
 /// for a real and for a complex h. Cost: two eliminations of half the size of J.
 #pragma once
 
+#include <functional>
+
 #include "pendcore/integrate/radau/collocation.hpp"
 #include "pendcore/integrate/radau/gaussian_elimination.hpp"
+#include "pendcore/integrate/radau/sizes.hpp"
 
 namespace pendcore {
 
-class NewtonSystems {
- public:
-  void resize(int n);
+template <class Sizes>
+struct NewtonSystems {
+  template <class Number>
+  using Row = typename Sizes::template Row<Number>;
+  template <class Number>
+  using Matrix = typename Sizes::template Matrix<Number>;
 
-  /// A and B, (n, n) each. The caller fills them in.
-  double* by_q() { return by_q_.data(); }
-  double* by_qd() { return by_qd_.data(); }
+  Matrix<double> by_q, by_qd;  ///< A and B. The caller fills them in.
+  double real_g = 0.0;         ///< g of the real system,
+  Complex complex_g;           ///< and of the complex one
+
+  void allocate(int n) {
+    Sizes::allocate(by_q, n * n);
+    Sizes::allocate(by_qd, n * n);
+    Sizes::allocate(real_, n * n);
+    Sizes::allocate(complex_, n * n);
+    Sizes::allocate(real_pivots_, n);
+    Sizes::allocate(complex_pivots_, n);
+    Sizes::allocate(real_side_, n);
+    Sizes::allocate(complex_side_, n);
+  }
 
   /// Factors both systems for a step of size h: g = real/h, and (alpha + i beta)/h. Calls
   /// `keep_going` from time to time; returns false if that did.
-  bool factor(const Collocation& method, double h, const std::function<bool()>& keep_going);
-  double real() const { return g_; }              ///< g
-  Complex complex() const { return complex_g_; }  ///< g
+  PENDCORE_INLINE bool factor(int n, const Collocation& method, double h,
+                              const std::function<bool()>& keep_going) {
+    real_g = method.real / h;
+    h_ = h / method.real;
+    complex_g = {method.alpha / h, method.beta / h};
+    const double scale = h / (method.alpha * method.alpha + method.beta * method.beta);
+    complex_h_ = {method.alpha * scale, -method.beta * scale};
+    const double re = complex_h_.re;
+    const double im = complex_h_.im;
+    const Complex square{re * re - im * im, 2.0 * re * im};
+#pragma GCC unroll 4
+    for (int k = 0; k < n * n; ++k) {
+      real_[k] = -h_ * (by_qd[k] + h_ * by_q[k]);
+      complex_[k] = {-re * by_qd[k] - square.re * by_q[k], -im * by_qd[k] - square.im * by_q[k]};
+    }
+    for (int k = 0; k < n * n; k += n + 1) {
+      real_[k] += 1.0;
+      complex_[k].re += 1.0;
+    }
+    return pendcore::factor(n, real_.data(), real_pivots_.data(), keep_going) &&
+           pendcore::factor(n, complex_.data(), complex_pivots_.data(), keep_going);
+  }
 
   /// Replaces (r, s) by (x, y), 2n numbers.
-  void solve_real(double* x);
-  void solve_complex(double* re, double* im);
+  PENDCORE_INLINE void solve_real(int n, double* x) {
+    double* const s = x + n;
+#pragma GCC unroll 2
+    for (int i = 0; i < n; ++i) {
+      double sum = 0.0;
+#pragma GCC unroll 2
+      for (int j = 0; j < n; ++j) sum += by_q[i * n + j] * x[j];
+      real_side_[i] = h_ * (s[i] + h_ * sum);
+    }
+    solve_factored(n, real_.data(), real_pivots_.data(), real_side_.data());
+#pragma GCC unroll 2
+    for (int i = 0; i < n; ++i) {
+      s[i] = real_side_[i];
+      x[i] = h_ * (x[i] + s[i]);
+    }
+  }
+  PENDCORE_INLINE void solve_complex(int n, double* re, double* im) {
+    const Complex h = complex_h_;
+    auto times_h = [h](double x, double y) {
+      return Complex{h.re * x - h.im * y, h.re * y + h.im * x};
+    };
+#pragma GCC unroll 2
+    for (int i = 0; i < n; ++i) {
+      double of_re = 0.0;
+      double of_im = 0.0;
+#pragma GCC unroll 2
+      for (int j = 0; j < n; ++j) {
+        of_re += by_q[i * n + j] * re[j];
+        of_im += by_q[i * n + j] * im[j];
+      }
+      const Complex moved = times_h(of_re, of_im);
+      complex_side_[i] = times_h(re[n + i] + moved.re, im[n + i] + moved.im);
+    }
+    solve_factored(n, complex_.data(), complex_pivots_.data(), complex_side_.data());
+#pragma GCC unroll 2
+    for (int i = 0; i < n; ++i) {
+      const Complex y = complex_side_[i];
+      const Complex x = times_h(re[i] + y.re, im[i] + y.im);
+      re[n + i] = y.re;
+      im[n + i] = y.im;
+      re[i] = x.re;
+      im[i] = x.im;
+    }
+  }
 
  private:
-  int n_ = 0;
-  std::vector<double> by_q_, by_qd_;
-  double g_ = 0.0;
   double h_ = 0.0;  ///< 1/g
-  Complex complex_g_, complex_h_;
-  GaussianElimination<double> real_;
-  GaussianElimination<Complex> complex_;
-  std::vector<double> real_side_;
-  std::vector<Complex> complex_side_;
+  Complex complex_h_;
+  Matrix<double> real_;  ///< the factors
+  Matrix<Complex> complex_;
+  Row<int> real_pivots_, complex_pivots_;
+  Row<double> real_side_;
+  Row<Complex> complex_side_;
 };
 
 }  // namespace pendcore
