@@ -44,13 +44,13 @@ void check_stop(const JointStop& stop, const std::string& name, const std::vecto
 void check_effects_at_start(const Scene& scene, const std::vector<double>& q0,
                             const std::vector<double>& qd0, double t0, double t_end) {
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
-    const std::string name = effect_name(scene, i);
+    const auto name = [&scene, i] { return effect_name(scene, i); };
     if (t_end < t0 && holding_torque(scene.effects[i])) {
-      throw std::invalid_argument("t_span: runs backward: " + name +
+      throw std::invalid_argument("t_span: runs backward: " + name() +
                                   ": with dry friction the past is not unique: run it forward");
     }
     if (const auto* stop = std::get_if<JointStop>(&scene.effects[i])) {
-      check_stop(*stop, name, q0, t_end < t0);
+      check_stop(*stop, name(), q0, t_end < t0);
     }
     const auto* lock = std::get_if<Lock>(&scene.effects[i]);
     if (lock == nullptr) continue;
@@ -59,11 +59,11 @@ void check_effects_at_start(const Scene& scene, const std::vector<double>& q0,
     if (lock->angle && !(std::abs(phi - *lock->angle) <= 1e-9 * std::max(1.0, std::abs(phi)))) {
       refuse(
           "q0: angle of joint " + joint, phi,
-          text(*lock->angle) + " rad, as " + name + " says: start there, or leave its angle out");
+          text(*lock->angle) + " rad, as " + name() + " says: start there, or leave its angle out");
     }
     const double rate = relative(qd0.data(), lock->joint);
     if (!(std::abs(rate) <= 1e-12 * std::abs(qd0[lock->joint - 1]))) {
-      refuse("qd0: rate of joint " + joint, rate, "0 (rad/s), because " + name + " locks it");
+      refuse("qd0: rate of joint " + joint, rate, "0 (rad/s), because " + name() + " locks it");
     }
   }
 }
