@@ -23,7 +23,7 @@ SOURCES := pyproject.toml CMakeLists.txt $(shell find cpp python ! -path '*__pyc
 .DEFAULT_GOAL := help
 .PHONY: demo test test-all compare hard-cases bench build-bench lint tidy sanitize sanitize-few \
     sanitized references threads long horizon asked-errors default-method book-speed fuzz fuzz-readers \
-    test-error elsewhere wasm wheel site core clean help flip-map
+    test-error elsewhere wasm wheel site core clean help flip-map film
 
 demo: $(DONE)/installed  ## build, run the textbook's case, say where its figure and summary are
 	pendcore run -o out/textbook
@@ -42,7 +42,7 @@ test: $(DONE)/installed $(DONE)/test-requirements  ## build and run the tests: e
 # compiler warnings are errors.
 test-all: export SKBUILD_CMAKE_DEFINE = PENDCORE_WARNINGS_AS_ERRORS=ON
 test-all: lint tidy build-bench $(DONE)/test-requirements $(DONE)/fuzz-requirements  ## everything: full sweeps, sanitizers, other builds, random cases
-	@sh setup/debian_packages.sh octave pandoc
+	@sh setup/debian_packages.sh octave pandoc ffmpeg
 	$(CPP_TESTS)
 	$(PYTEST) --full
 	$(MAKE) sanitize threads elsewhere wheel site fuzz-readers fuzz CASES=20000
@@ -141,6 +141,9 @@ long: $(DONE)/installed $(DONE)/test-requirements  ## ten million steps: docs/ba
 
 horizon: $(DONE)/installed $(DONE)/test-requirements  ## how long runs are right: docs/background/horizon.md, written anew
 	python docs/generators/horizon.py
+
+film: $(DONE)/installed  ## the README's film: docs/figures/swing.gif, drawn anew
+	MPLBACKEND=Agg python docs/generators/film.py
 
 flip-map: $(DONE)/installed $(DONE)/test-requirements  ## when rods turn over: docs/background/flip_map.md, written anew
 	python docs/generators/flip_map.py

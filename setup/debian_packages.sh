@@ -4,8 +4,8 @@
 # `also`; they are installed with the others so that a password is asked for only once.
 #
 #   setup/debian_packages.sh [python] [compiler] [eigen] [doctest] [benchmark] [boost] [sundials]
-#                            [valgrind] [octave] [pandoc] [aarch64] [riscv64] [s390x] [wasm32]
-#                            [clang] [also ...]
+#                            [valgrind] [octave] [pandoc] [ffmpeg] [aarch64] [riscv64] [s390x]
+#                            [wasm32] [clang] [also ...]
 set -eu
 
 python=${PYTHON:-python3}
@@ -61,6 +61,7 @@ for thing in "$@"; do
             command -v node >/dev/null || miss nodejs
             ;;
         pandoc) command -v pandoc >/dev/null || miss pandoc ;;
+        ffmpeg) command -v ffmpeg >/dev/null || miss ffmpeg ;;
         *) stop "debian_packages.sh: no '$thing' is known" ;;
     esac
 done

@@ -50,6 +50,8 @@ PYTHON_LAYERS = [
     "horizon",
     "cases",
     "views",
+    "figures",
+    "films",
     "ensemble",
     "api",
     "cost",

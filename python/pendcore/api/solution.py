@@ -5,12 +5,13 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from math import pi
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy.typing as npt
 
 from pendcore.accuracy.defect import Defect, defect
 from pendcore.accuracy.estimate import error_of
+from pendcore.api.drawn import DrawnResult
 from pendcore.api.scene import Scene
 from pendcore.api.solve import solve
 from pendcore.cases.archive import save
@@ -21,20 +22,17 @@ from pendcore.messages.progress import Progress
 from pendcore.run.call import resumed
 from pendcore.run.error_estimate import ErrorEstimate
 from pendcore.run.options import RUN_DEFAULTS
-from pendcore.run.result import RunResult
 from pendcore.run.run_error import checked, require_check
 from pendcore.scene.frozen_state import frozen_state
 from pendcore.views.export import to_pandas, to_xarray
-from pendcore.views.plot import plot
 from pendcore.views.table import html, text
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
-    from matplotlib.lines import Line2D
 
 
-class Solution(RunResult):
+class Solution(DrawnResult):
     """The result of `simulate`.
 
     Call it, ``sol(t)``, for the state between the steps. It pickles; `save` and `load` keep it all.
@@ -235,30 +233,6 @@ class Solution(RunResult):
         True
         """
         save(self, path, progress=progress)
-
-    @known_keywords
-    def plot(
-        self,
-        ax: Any = None,
-        *,
-        label: str | None = None,
-        horizon: float | None = None,
-        **line_properties: Any,
-    ) -> list[Line2D]:
-        """Draw the angles, deg, over time, s, as in the textbook; one axes for each link.
-
-        ``ax`` is one axes, or one for each link. ``label`` names the solution in the legend. With a
-        ``horizon`` in rad the figure is shaded after `valid_until` (``horizon``). Other keywords
-        are properties of matplotlib's ``Line2D``. Returns the lines.
-
-        Examples
-        --------
-        >>> sol = pc.Case.textbook().simulate()
-        >>> first, second = sol.plot(label="section 2.1")
-        >>> second.axes.get_ylabel()  # first.axes.figure.savefig("angles.png") keeps the figure
-        'q2 (deg)'
-        """
-        return plot(self, ax, label=label, horizon=horizon, **line_properties)
 
     @known_keywords
     def to_pandas(self) -> pd.DataFrame:

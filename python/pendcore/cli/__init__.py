@@ -9,7 +9,7 @@ import warnings
 from collections.abc import Sequence
 
 from pendcore import _core
-from pendcore.cli import completion, cost, derive, explain, map, plot, run, trust
+from pendcore.cli import completion, cost, derive, explain, map, plot, run, show, trust
 from pendcore.cli.usage import UsageError
 from pendcore.messages.warning import PendcoreWarning
 
@@ -20,6 +20,7 @@ examples:
   pendcore run swing.toml --json | jq .energy
   pendcore explain swing.toml             what it simulates, what not, how fast it moves
   pendcore plot out/swing/solution.npz -o swing.pdf
+  pendcore show swing.toml -o swing.mp4   a film of it, in true time
   pendcore trust out/swing/solution.npz   until when the run is right, how fast its errors grow
   pendcore cost swing.toml                what accuracy costs on it: error and time of every method
   pendcore map flips.toml                 a number over a plane of starts, and which pixels are true
@@ -91,7 +92,7 @@ def _parser() -> argparse.ArgumentParser:
         "--version", action=_Version, nargs=0, help="show version, instruction set and compiler"
     )
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for command in (run, explain, plot, trust, cost, map, derive, completion):
+    for command in (run, explain, plot, show, trust, cost, map, derive, completion):
         command.add_parser(commands)
     return parser
 

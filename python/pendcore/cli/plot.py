@@ -11,12 +11,18 @@ from typing import Any
 from pendcore.api.files import load_solution
 from pendcore.cases.whole_file import whole_file
 from pendcore.cli.usage import blamed_on_usage, written
-from pendcore.views.plot import save_figure
+from pendcore.figures.plot import KINDS, save_figure
 
 _EPILOG = """
 example:
   pendcore plot out/textbook/solution.npz -o angles.pdf
+  pendcore plot out/textbook/solution.npz --what path -o path.png
+  pendcore plot out/textbook/solution.npz --what free_bodies --at 1.5 -o bodies.png
 """
+
+
+DRAWN = [kind for kind in KINDS if kind != "section"]
+"""A section needs events, which a saved solution does not always have."""
 
 
 def add_parser(commands: Any) -> None:
@@ -24,7 +30,8 @@ def add_parser(commands: Any) -> None:
     parser = commands.add_parser(
         "plot",
         help="draw a saved solution",
-        description="Draw the angles in degrees over time, as the textbook does.",
+        description="Draw a figure: without --what the textbook's, the angles in degrees over "
+        "time.",
         epilog=_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -35,6 +42,18 @@ def add_parser(commands: Any) -> None:
         type=Path,
         metavar="FILE",
         help="figure to write, its kind from the suffix (png, pdf, svg); default: RUN.png",
+    )
+    parser.add_argument(
+        "--what", choices=DRAWN, default="angles", help="which figure (default: angles)"
+    )
+    parser.add_argument(
+        "--at", type=float, metavar="T", help="s, the time at which free_bodies are shown"
+    )
+    parser.add_argument(
+        "--horizon",
+        type=float,
+        metavar="RAD",
+        help="shade what lies past the time until which the error of an angle is below this",
     )
     parser.add_argument("--json", action="store_true", help="print what was written as JSON")
     parser.set_defaults(execute=execute)
@@ -48,8 +67,9 @@ def execute(args: argparse.Namespace) -> int:
     with blamed_on_usage():
         solution = load_solution(args.solution)
         where = written(out, [out])
+        until = None if args.horizon is None else solution.valid_until(args.horizon)
         with whole_file(out) as path:
-            save_figure(solution, path)
+            save_figure(solution, path, until, what=args.what, t=args.at)
     print(where, file=sys.stderr)
     if args.json:
         print(json.dumps({"figure": str(out), "status": solution.status}))

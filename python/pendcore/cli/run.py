@@ -15,10 +15,10 @@ from pendcore.cli.files_to_write import FilesToWrite
 from pendcore.cli.horizon import Horizon, unasked_horizon
 from pendcore.cli.parameters import with_parameters
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder
+from pendcore.figures.plot import save_figure
 from pendcore.run.accuracy import AccuracyError
 from pendcore.run.run_error import CAN_GO_ON
 from pendcore.views.export import write_csv
-from pendcore.views.plot import save_figure
 from pendcore.views.summary import facts, text
 
 _EPILOG = """

@@ -64,14 +64,16 @@ def _call_complaint(
 ) -> str:
     """Return what is wrong with how a function was called; nothing if its own code complained."""
     various = (Parameter.VAR_KEYWORD, Parameter.VAR_POSITIONAL)
-    parameters = [x for x in signature(function).parameters.values() if x.kind not in various]
+    listed = signature(function).parameters.values()
+    parameters = [x for x in listed if x.kind not in various]
+    takes_more = any(x.kind is Parameter.VAR_POSITIONAL for x in listed)
     by_place = [one for one in parameters if one.kind is not Parameter.KEYWORD_ONLY]
     owner = _owner(function, args)
     own = [one.name for one in parameters if one.name not in ("self", "cls")]
     given = {one.name for one, _ in zip(by_place, args, strict=False)} | set(named)
     missing = [one.name for one in parameters if one.default is Parameter.empty]
     missing = [name for name in missing if name not in given and name in own]
-    if len(args) > len(by_place):
+    if len(args) > len(by_place) and not takes_more:
         by_name = ", ".join(f"{name}=..." for name in own if name not in given)
         by_itself = ", ".join(one.name for one in by_place if one.name in own)
         if by_itself:

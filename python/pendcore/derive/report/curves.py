@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pendcore.api.solution import Solution
+from pendcore.figures.plot import plot
 from pendcore.messages.arguments import Floats
-from pendcore.views.plot import plot
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -1,0 +1,104 @@
+"""`pendcore show`: see a case or a saved solution move."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+from pendcore.api.files import load_solution, read_case
+from pendcore.api.solution import Case, Solution
+from pendcore.cases.whole_file import whole_file
+from pendcore.cli.usage import UsageError, blamed_on_usage, written
+from pendcore.figures.plot import save_figure
+
+_EPILOG = """
+examples:
+  pendcore show swing.toml -o swing.mp4            in true time
+  pendcore show swing.toml -o swing.gif --speed 0.5 --reactions
+  pendcore show out/swing/solution.npz -o swing.png   a strip of positions
+
+ffmpeg writes MP4; where it is missing, a GIF is written instead.
+"""
+
+
+def add_parser(commands: Any) -> None:
+    """Add the sub-command and its arguments."""
+    parser = commands.add_parser(
+        "show",
+        help="see a case move: a film, or a strip of positions",
+        description="Write a film of a case or of a saved solution, or a strip of its positions.",
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "case",
+        nargs="?",
+        type=Path,
+        metavar="CASE",
+        help="CASE.toml, or RUN.npz; default: the book's",
+    )
+    parser.add_argument(
+        "-o", "--out", type=Path, required=True, metavar="FILE", help="its suffix: mp4, gif, png"
+    )
+    parser.add_argument(
+        "--speed", type=float, default=1.0, metavar="X", help="1 is true time, 0.25 slow motion"
+    )
+    parser.add_argument("--fps", type=float, default=30.0, metavar="N", help="frames a second")
+    parser.add_argument(
+        "--trace", type=float, default=2.0, metavar="S", help="s of the tip's path that are shown"
+    )
+    parser.add_argument(
+        "--reactions", action="store_true", help="show the forces at the joints as arrows"
+    )
+    parser.add_argument("--energy", action="store_true", help="show the energies below")
+    parser.add_argument(
+        "--horizon",
+        type=float,
+        metavar="RAD",
+        help="draw the run pale once the error of an angle may be above this",
+    )
+    parser.add_argument("--json", action="store_true", help="print what was written as JSON")
+    parser.set_defaults(execute=execute)
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Run the sub-command; return its exit status."""
+    if args.out.suffix.lower() not in (".mp4", ".gif", ".png"):
+        raise UsageError(f"-o {args.out}: must end with .mp4, .gif or .png")
+    solution = _solution(args.case)
+    with blamed_on_usage():
+        where = written(args.out, [args.out])
+        out = _write(solution, args)
+    print(where if out == args.out else f"written to {out}", file=sys.stderr)
+    if not solution.success:
+        print(f"the run is not complete: {solution.message}", file=sys.stderr)
+    if args.json:
+        print(json.dumps({"file": str(out), "status": solution.status}))
+    return 0 if solution.success else 1
+
+
+def _solution(path: Path | None) -> Solution:
+    with blamed_on_usage():
+        if path is not None and path.suffix == ".npz":
+            return load_solution(path)
+        case = Case.textbook() if path is None else read_case(path)
+        return case.simulate(check=False)
+
+
+def _write(solution: Solution, args: argparse.Namespace) -> Path:
+    if args.out.suffix.lower() == ".png":
+        with whole_file(args.out) as path:
+            save_figure(solution, path, what="strip")
+        return Path(args.out)
+    return solution.to_video(
+        args.out,
+        speed=args.speed,
+        fps=args.fps,
+        trace=args.trace,
+        reactions=args.reactions,
+        energy=args.energy,
+        horizon=args.horizon,
+    )

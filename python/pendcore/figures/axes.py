@@ -1,0 +1,103 @@
+"""What the figures of a run share: axes, smooth curves, and the shade past the horizon."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from math import ceil
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+
+from pendcore.accuracy.estimate import error_of
+from pendcore.messages.arguments import Floats
+from pendcore.run.result import RunResult
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+COLORS = ("r", "b", "g", "m", "c", "k")  # red and blue are the book's
+STYLES = ("-", "--", "-.", ":")  # for one solution after another on the same axes
+PAST: dict[str, Any] = {
+    "facecolor": "0.85",
+    "edgecolor": "0.45",
+    "hatch": "//",
+    "linewidth": 0,
+    "zorder": 0,
+}
+NewFigure: TypeAlias = Callable[..., "Figure"]
+"""Makes a new figure: pyplot's, or one of its own."""
+FEW = 200
+"""Without dense output, points are marked if they are fewer than this."""
+
+
+def figure_of_pyplot(*args: Any, **named: Any) -> Figure:
+    """Return a new figure that pyplot shows when it is asked to."""
+    import matplotlib.pyplot as plt
+
+    return plt.figure(*args, **named)
+
+
+def stacked(new_figure: NewFigure, rows: int) -> Any:
+    """Return as many axes of a new figure, one above the other."""
+    figure = new_figure(figsize=(6.4, max(4.8, 1.8 * rows)), layout="constrained")
+    return figure.subplots(rows, 1, squeeze=False)[:, 0]
+
+
+def square(new_figure: NewFigure) -> Axes:
+    """Return the axes of a new figure in the plane."""
+    return new_figure(figsize=(5.4, 5.4), layout="constrained").subplots()
+
+
+def axes_among(ax: Any, counts: Sequence[int], which: str) -> list[Axes]:
+    """Return the given axes as a list; TypeError or ValueError unless they are one of `counts`."""
+    from matplotlib.axes import Axes
+
+    axes = list(np.ravel(ax))
+    told = ", or ".join(dict.fromkeys("one" if k == 1 else f"{k}, {which}" for k in counts))
+    if not all(isinstance(axis, Axes) for axis in axes):
+        raise TypeError(f"ax = {ax!r}: must be matplotlib Axes, {told}")
+    if len(axes) not in counts:
+        raise ValueError(f"ax: {len(axes)} axes: must be {told}")
+    return axes
+
+
+def in_plane(axis: Axes) -> None:
+    """Let the axes show the plane as the project has it: to scale, with y downwards."""
+    axis.set_aspect("equal", adjustable="datalim")
+    if not axis.yaxis_inverted():
+        axis.invert_yaxis()
+    axis.set_xlabel("x (m)")
+    axis.set_ylabel("y (m), downwards")
+    axis.grid(True, alpha=0.4)
+
+
+def is_bare(solution: RunResult, t: Floats) -> bool:
+    """Whether there are but a few points with nothing known between them."""
+    return (solution.store != "dense" and len(t) < FEW) or len(t) == 1
+
+
+def smooth_states(solution: RunResult) -> tuple[Floats, Floats]:
+    """Return times (k,) and states (k, 2n), close enough for the eye if possible."""
+    t = solution.t
+    states = np.hstack([solution.q, solution.qd])
+    if solution.store == "dense" and 1 < len(t) < 1000:
+        parts = ceil(2000 / (len(t) - 1))
+        places = np.linspace(0, len(t) - 1, parts * (len(t) - 1) + 1)
+        t = np.interp(places, np.arange(len(t)), t)
+        states = solution(t).T
+    return t, states
+
+
+def horizon_time(solution: RunResult, horizon: float | None) -> float | None:
+    """Return the time past which the error is above the horizon, rad; None if none is asked for."""
+    return None if horizon is None else error_of(solution).valid_until(horizon)
+
+
+def shade_past(axes: Iterable[Axes], valid: float | None, solution: RunResult) -> list[Artist]:
+    """Shade what lies past a time, s, in each of the axes."""
+    end = solution.run.t_reached
+    if valid is None or valid == end:
+        return []
+    return [axis.axvspan(valid, end, **PAST) for axis in axes]

@@ -1,0 +1,130 @@
+"""One call for every figure of a run."""
+
+from __future__ import annotations
+
+import os
+from io import BytesIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, get_args
+
+import numpy.typing as npt
+
+from pendcore.figures.axes import NewFigure, figure_of_pyplot, horizon_time, shade_past
+from pendcore.figures.in_plane import draw_path, draw_phase, draw_section
+from pendcore.figures.over_time import draw_energy, draw_links, draw_reactions
+from pendcore.figures.poses import draw_free_bodies, draw_strip
+from pendcore.messages.arguments import did_you_mean, positive
+from pendcore.run.result import RunResult
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+
+What = Literal[
+    "angles", "rates", "reactions", "energy", "path", "phase", "section", "strip", "free_bodies"
+]
+KINDS: tuple[str, ...] = get_args(What)
+OVER_TIME = KINDS[:4]
+_OWN = {"t": ("strip", "free_bodies"), "event": ("section",), "link": ("section",)}
+"""The parameters that only some figures have."""
+
+
+def plot(
+    solution: RunResult,
+    ax: Any = None,
+    *,
+    what: What = "angles",
+    label: str | None = None,
+    horizon: float | None = None,
+    t: npt.ArrayLike | None = None,
+    event: int | None = None,
+    link: int | None = None,
+    **line_properties: Any,
+) -> list[Artist]:
+    """Draw a figure of a run; `pendcore.Solution.plot` has the parameters.
+
+    Raises
+    ------
+    TypeError
+        If ``ax`` is not axes, or ``horizon`` is not a number.
+    ValueError
+        If there is no such figure, or the number of axes is not that of the figure, or a parameter
+        is not one of this figure.
+    """
+    if what not in KINDS:
+        raise ValueError(f"what = {what!r}: {did_you_mean(str(what), KINDS)}")
+    for name, value in (("t", t), ("event", event), ("link", link)):
+        if value is not None and what not in _OWN[name]:
+            raise ValueError(f"{name}: belongs to what = {' and '.join(map(repr, _OWN[name]))}")
+    if horizon is not None:
+        positive("horizon", horizon, "rad")
+        if what not in (*OVER_TIME, "path", "phase"):
+            raise ValueError(f"horizon: what = {what!r} shows no times past which it could shade")
+    from matplotlib.cbook import normalize_kwargs
+    from matplotlib.lines import Line2D
+
+    own = _Own(t, event, link)
+    given = normalize_kwargs(line_properties, Line2D)
+    valid = horizon_time(solution, horizon)
+    return _drawn(solution, ax, figure_of_pyplot, what, label, valid, own, given)
+
+
+class _Own(NamedTuple):
+    """What only some figures have."""
+
+    t: npt.ArrayLike | None = None
+    event: int | None = None
+    link: int | None = None
+
+
+def _drawn(
+    solution: RunResult,
+    ax: Any,
+    new_figure: NewFigure,
+    what: str,
+    label: str | None,
+    valid_until: float | None,
+    own: _Own,
+    given: dict[str, Any],
+) -> list[Artist]:
+    place = solution, ax, new_figure
+    if what == "path":
+        return [*draw_path(*place, label, valid_until, given)]
+    if what == "phase":
+        return [*draw_phase(*place, label, valid_until, given)]
+    if what == "section":
+        return [*draw_section(*place, label, own.event or 0, own.link or 1, given)]
+    if what == "strip":
+        return draw_strip(*place, own.t, given)
+    if what == "free_bodies":
+        return draw_free_bodies(*place, own.t, given)
+    if what == "reactions":
+        lines = draw_reactions(*place, label, given)
+    elif what == "energy":
+        lines = draw_energy(*place, label, given)
+    else:
+        lines = draw_links(*place, what, label, given)
+    axes: list[Any] = [*dict.fromkeys(line.axes for line in lines)]
+    shade_past(axes, valid_until, solution)
+    return [*lines]
+
+
+def save_figure(
+    solution: RunResult,
+    path: str | os.PathLike[str],
+    valid_until: float | None = None,
+    *,
+    what: str = "angles",
+    t: float | None = None,
+) -> None:
+    """Draw a figure into a file; the suffix says which kind (png, pdf, svg, ...).
+
+    What is past ``valid_until``, s, is shaded, if that is known.
+    """
+    from matplotlib.figure import Figure
+
+    artists = _drawn(solution, None, Figure, what, None, valid_until, _Own(t), {})
+    figure: Any = artists[0].get_figure(root=True)
+    drawn = BytesIO()  # matplotlib's PDF breaks off with an error of its own if the disk is full
+    kind = Path(path).suffix.removeprefix(".")
+    figure.savefig(drawn, dpi=150, format=kind or None)
+    Path(path).write_bytes(drawn.getvalue())

@@ -1,0 +1,1 @@
+"""Runs that move: frames, matplotlib's animation, video files."""

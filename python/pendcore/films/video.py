@@ -1,0 +1,186 @@
+"""Films in files: MP4 by ffmpeg, GIF by Pillow.
+
+The axes are drawn once. Each frame restores their pixels and draws what moves on top of them,
+which takes a tenth of the time of a whole figure.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pendcore.cases.whole_file import whole_file
+from pendcore.films.stage import Choices, Stage
+from pendcore.messages.arguments import whole_number
+from pendcore.messages.progress import Progress, callback, close
+from pendcore.messages.warning import warn
+from pendcore.run.result import RunResult
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+SIZES = {".mp4": (1920, 1080), ".gif": (640, 360)}
+"""The size of a film in pixels, unless another is asked for."""
+_DPI = {".mp4": 150.0, ".gif": 60.0}
+_SAMPLES = 8
+"""The number of frames of which a GIF takes its colours."""
+_GIF_TICK = 10
+"""ms, the unit of the times in a GIF."""
+
+
+def to_video(
+    solutions: Sequence[RunResult],
+    names: Sequence[str],
+    path: str | os.PathLike[str],
+    choices: Choices,
+    size: tuple[int, int] | None = None,
+    progress: Progress = None,
+) -> Path:
+    """Write a film and return where it is: where ffmpeg is missing, a GIF in place of an MP4."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    target = Path(path)
+    kind = target.suffix.lower()
+    if kind not in SIZES:
+        raise ValueError(f"path = {str(target)!r}: must end with .mp4 or .gif")
+    ffmpeg = _ffmpeg() if kind == ".mp4" else None
+    if kind == ".mp4" and ffmpeg is None:
+        target, kind = target.with_suffix(".gif"), ".gif"
+        warn(
+            f"ffmpeg is not installed, and an MP4 needs it: {target} is written instead "
+            "(Debian: ffmpeg; pip: imageio-ffmpeg)"
+        )
+    width, height = _even_size(size, SIZES[kind])
+    dpi = _DPI[kind] * width / SIZES[kind][0]
+    figure = Figure(figsize=(width / dpi, height / dpi), dpi=dpi)
+    canvas = FigureCanvasAgg(figure)
+    stage = Stage(solutions, figure, choices, names)
+    frames = range(len(stage.times))
+    report = callback(progress, "drawing", len(frames), "frames")
+    try:
+        with whole_file(target) as file:
+            pictures = _pictures(stage, canvas, frames, report)
+            if kind == ".mp4":
+                _write_mp4(pictures, str(ffmpeg), file, (width, height), choices.fps)
+            else:
+                samples = _pictures(stage, canvas, frames[:: max(len(frames) // _SAMPLES, 1)])
+                _write_gif(samples, pictures, file, (width, height), choices.fps)
+    finally:
+        close(report)
+    return target
+
+
+def _even_size(given: tuple[int, int] | None, usual: tuple[int, int]) -> tuple[int, int]:
+    if given is None:
+        return usual
+    try:
+        width, height = given
+    except (TypeError, ValueError):
+        raise TypeError(f"size = {given!r}: must be (width, height), in pixels") from None
+    size = whole_number("size[0]", width), whole_number("size[1]", height)
+    for i, pixels in enumerate(size):
+        if not 64 <= pixels <= 8192 or pixels % 2:
+            raise ValueError(f"size[{i}] = {pixels}: must be even, and 64 to 8192 (pixels)")
+    return size
+
+
+def _pictures(
+    stage: Stage, canvas: Any, frames: Sequence[int], report: Any = None
+) -> Iterator[memoryview]:
+    """Yield the pixels of frames, RGBA; they are overwritten by the next."""
+    canvas.draw()
+    still = canvas.copy_from_bbox(stage.figure.bbox)
+    count = len(frames)
+    for k in frames:
+        canvas.restore_region(still)
+        for artist in stage.show(k):
+            stage.figure.draw_artist(artist)
+        yield canvas.buffer_rgba()
+        if report is not None:
+            report((k + 1) / count)
+
+
+def _ffmpeg() -> str | None:
+    """Return the path of ffmpeg: the system's, or that of the package imageio-ffmpeg."""
+    if found := shutil.which("ffmpeg"):
+        return found
+    try:
+        import imageio_ffmpeg  # type: ignore[import-not-found,unused-ignore]
+    except ImportError:
+        return None
+    return str(imageio_ffmpeg.get_ffmpeg_exe())
+
+
+def _write_mp4(
+    pictures: Iterator[memoryview], ffmpeg: str, file: Path, size: tuple[int, int], fps: float
+) -> None:
+    command = [
+        ffmpeg, "-loglevel", "error", "-y",
+        "-f", "rawvideo", "-pix_fmt", "rgba", "-s", f"{size[0]}x{size[1]}", "-r", f"{fps:.10g}",
+        "-i", "-",
+        "-an", "-c:v", "libx264", "-preset", "veryfast", "-crf", "20", "-pix_fmt", "yuv420p",
+        "-movflags", "+faststart", "-f", "mp4", str(file),
+    ]  # fmt: skip
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        assert process.stdin is not None
+        try:
+            for picture in pictures:
+                process.stdin.write(picture)
+        except BrokenPipeError:
+            pass  # ffmpeg says below why it ended
+        except BaseException:
+            process.kill()
+            raise
+        _, told = process.communicate()
+    if process.returncode != 0:
+        last = told.decode(errors="replace").strip().rpartition("\n")[-1]
+        raise RuntimeError(f"ffmpeg ended with {process.returncode}: {last or 'it says nothing'}")
+
+
+def _write_gif(
+    samples: Iterator[memoryview],
+    pictures: Iterator[memoryview],
+    file: Path,
+    size: tuple[int, int],
+    fps: float,
+) -> None:
+    """Write a GIF. All frames share the colours of some samples, so that what rests stays equal."""
+    palette = _palette(samples, size)
+    first, *rest = (_with_palette(picture, palette, size) for picture in pictures)
+    ticks = [round((k + 1) * 1000 / fps / _GIF_TICK) for k in range(len(rest) + 1)]
+    durations = [_GIF_TICK * (b - a) for a, b in zip([0, *ticks], ticks, strict=False)]
+    first.save(
+        file, format="GIF", save_all=True, append_images=rest, duration=durations, loop=0,
+        optimize=False, disposal=1,
+    )  # fmt: skip
+
+
+def _palette(samples: Iterator[memoryview], size: tuple[int, int]) -> Image:
+    """Return an image whose palette has white, and the colours of the samples, 64 in all."""
+    from PIL.Image import Dither, Quantize, fromarray, new
+
+    seen = np.concatenate([np.array(_rgb(picture, size)) for picture in samples])
+    colors = np.unique(seen.reshape(-1, 3), axis=0)  # each once: the thin traces count, too
+    few = fromarray(colors[np.newaxis]).quantize(63, Quantize.MEDIANCUT, dither=Dither.NONE)
+    palette = new("P", (1, 1))
+    palette.putpalette([255, 255, 255, *(few.getpalette() or [])[: 3 * 63]])
+    return palette
+
+
+def _rgb(picture: memoryview, size: tuple[int, int]) -> Image:
+    from PIL.Image import frombuffer
+
+    return frombuffer("RGBA", size, bytes(picture), "raw", "RGBA", 0, 1).convert("RGB")
+
+
+def _with_palette(picture: memoryview, palette: Image, size: tuple[int, int]) -> Image:
+    from PIL.Image import Dither
+
+    return _rgb(picture, size).quantize(palette=palette, dither=Dither.NONE)

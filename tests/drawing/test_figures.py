@@ -1,0 +1,190 @@
+"""Figures show the numbers of the run, with units, y downwards, and shade past the horizon."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pendcore as pc
+import pytest
+from matplotlib.figure import Figure
+from pendcore.figures.plot import KINDS, save_figure
+from pendcore.figures.poses import forces_on_links
+
+
+@pytest.fixture(scope="module")
+def sol() -> pc.Solution:
+    down = pc.events.LinkAngle(1, np.pi / 2)
+    return pc.simulate(pc.Scene.textbook(), [0.8, 1.0], t_span=(0, 5), events=[down], ledger=True)
+
+
+def axes(rows: int = 1) -> Any:
+    return Figure().subplots(rows, 1, squeeze=False)[:, 0]
+
+
+def test_rates_are_those_of_the_run_in_rad_per_second(sol: pc.Solution) -> None:
+    lines = sol.plot(axes(2), what="rates")
+    for i, line in enumerate(lines):
+        t, curve = line.get_data()
+        assert np.array_equal(curve, sol(t)[2 + i])
+        assert line.axes.get_ylabel() == f"qd{i + 1} (rad/s)"
+        assert line.axes.get_xlabel() == "t (s)"
+
+
+def test_reactions_have_components_and_sizes_in_newtons(sol: pc.Solution) -> None:
+    lines = sol.plot(axes(2), what="reactions")
+    assert [line.get_label() for line in lines] == [
+        "F_01 x", "F_01 y", "|F_01|", "F_12 x", "F_12 y", "|F_12|",
+    ]  # fmt: skip
+    x, y, size = (line.get_ydata() for line in lines[:3])
+    assert (x[0], y[0]) == pytest.approx(tuple(sol.reactions()[0, 0]))
+    assert size == pytest.approx(np.hypot(x, y))
+    assert lines[0].axes.get_ylabel() == "F_01 (N)"
+
+
+def test_the_energy_has_its_ledger_below(sol: pc.Solution) -> None:
+    damped = pc.Scene.textbook().replace(effects=[pc.effects.ViscousJoint(joint=1, damping=0.5)])
+    run = pc.simulate(damped, 0.5, t_span=(0, 5), ledger=True)
+    lines = run.plot(axes(2), what="energy")
+    found = {line.get_label(): line.get_data() for line in lines}
+    assert set(found) == {"kinetic", "potential", "total", "viscous (lost)", "residual"}
+    t, total = found["total"]
+    lost = np.interp(t, *found["viscous (lost)"])
+    assert total + lost == pytest.approx(np.full(len(t), total[0]), abs=0.05)
+    assert found["kinetic"][1][0] == 0.0
+    bare = pc.simulate(damped, 0.5, t_span=(0, 5))
+    assert len(bare.plot(axes(), what="energy")) == 3
+
+
+def test_the_path_is_that_of_the_tip_and_y_points_down(sol: pc.Solution) -> None:
+    (line,) = sol.plot(axes(), what="path")
+    x, y = line.get_data()
+    assert (x[-1], y[-1]) == pytest.approx(tuple(sol.positions()[-1, -1]), abs=1e-12)
+    assert line.axes.yaxis_inverted()
+    assert line.axes.get_aspect() == 1.0
+    assert line.axes.get_ylabel() == "y (m), downwards"
+
+
+def test_two_paths_on_one_axes_differ_in_colour_and_leave_y_downwards(sol: pc.Solution) -> None:
+    ax = axes()
+    first, second = sol.plot(ax, what="path")[0], sol.plot(ax, what="path")[0]
+    assert first.get_color() != second.get_color()
+    assert first.axes.yaxis_inverted()
+
+
+def test_the_phase_portrait_has_a_curve_for_each_link(sol: pc.Solution) -> None:
+    lines = sol.plot(axes(), what="phase")
+    assert len(lines) == 2
+    assert lines[1].get_xdata()[0] == sol.q[0, 1]
+    assert lines[1].get_ydata()[-1] == sol.qd[-1, 1]
+    assert lines[0].axes.get_xlabel() == "q (rad)"
+
+
+def test_a_section_shows_the_states_at_an_event(sol: pc.Solution) -> None:
+    (line,) = sol.plot(axes(), what="section", link=2)
+    assert len(line.get_xdata()) == len(sol.events[0]) > 2
+    assert np.cos(line.get_xdata()) == pytest.approx(np.cos(sol.events[0].q[:, 1]))
+    assert np.array_equal(line.get_ydata(), sol.events[0].qd[:, 1])
+
+
+def test_a_section_without_events_says_how_to_look_for_them() -> None:
+    run = pc.Case.textbook().simulate()
+    with pytest.raises(ValueError, match=r"looked for no event: give simulate\(\.\.\., events="):
+        run.plot(axes(), what="section")
+
+
+def test_a_strip_has_a_pose_and_its_time_for_each_time(sol: pc.Solution) -> None:
+    artists = sol.plot(axes(), what="strip", t=[0.0, 1.5, 4.0])
+    lines, texts = artists[::2], artists[1::2]
+    assert [text.get_text() for text in texts] == ["0 s", "1.5 s", "4 s"]
+    pose = np.array(lines[1].get_data()).T
+    true = pc.simulate(sol.scene, [0.8, 1.0], t_span=(0, 5), t_eval=[1.5]).positions()[0]
+    assert pose - pose[0] == pytest.approx(true - true[0], abs=1e-6)
+
+
+def test_the_forces_on_a_free_body_are_its_mass_times_its_acceleration() -> None:
+    """By another way: the acceleration of mass centres from their places."""
+    effects = [
+        pc.effects.RodDrag(link=2, drag_coefficient=1.2, diameter=0.05),
+        pc.effects.Payload(mass=0.4),
+        pc.effects.DrivenPivot(x=pc.effects.Sinusoid(amplitude=0.05, angular_frequency=7.0)),
+    ]
+    scene = pc.Scene.textbook().replace(effects=effects)
+    run = pc.simulate(scene, [0.3, 0.9], [2.0, -5.0], t_span=(0, 1), rtol=1e-11, atol=1e-12)
+    h, at = 2e-4, 0.6
+    times = at + h * np.array([-1, 0, 1])
+    states = run(times).T
+    q, qd = np.ascontiguousarray(states[:, :2]), np.ascontiguousarray(states[:, 2:])
+    centers = scene._compiled.mass_centers(times, q)
+    tip = scene._compiled.positions(times, q)[:, -1]
+    change = [1.0, -2.0, 1.0]
+    momentum = [
+        link.mass * np.tensordot(change, centers[:, i], 1) / h**2
+        for i, link in enumerate(scene.links)
+    ]
+    momentum[1] = momentum[1] + 0.4 * np.tensordot(change, tip, 1) / h**2
+    forces = forces_on_links(scene, times[1:2], q[1:2], qd[1:2])
+    assert [kind for kind, _, _ in forces[1]] == ["joint", "weight", "weight", "other"]
+    for own, of_link in zip(momentum, forces, strict=True):
+        assert sum(force for _, _, force in of_link) == pytest.approx(own, rel=1e-4, abs=1e-4)
+    (drag,) = (force for kind, _, force in forces[1] if kind == "other")
+    speed = np.gradient(centers[:, 1], h, axis=0)[1]
+    assert drag @ speed < 0  # drag brakes
+
+
+def test_free_bodies_show_each_force_by_its_size(sol: pc.Solution) -> None:
+    artists = sol.plot(axes(), what="free_bodies", t=1.0, color="b")
+    axis = artists[0].axes
+    sizes = [text.get_text() for text in axis.texts if text.get_text().endswith("N")]
+    assert sizes.count(sizes[1]) == 2  # action and reaction
+    assert axis.get_title() == "t = 1 s"
+
+
+def test_what_is_past_the_horizon_is_shaded_or_pale() -> None:
+    chaotic = pc.simulate(pc.Scene.textbook(), 0.0, t_span=(0, 30))
+    until = chaotic.valid_until()
+    assert until < 25
+    for what, rows in (("rates", 2), ("reactions", 2), ("energy", 1)):
+        ax = axes(rows)
+        chaotic.plot(ax, what=what, horizon=0.1)
+        assert all(len(axis.patches) == 1 for axis in ax)
+        assert ax[0].patches[0].get_x() == pytest.approx(until)
+    for what in ("path", "phase"):
+        line = chaotic.plot(axes(), what=what, horizon=0.1)[0]
+        assert len(line.get_xdata()) < 0.95 * len(chaotic.plot(axes(), what=what)[0].get_xdata())
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"what": "angle"}, "what = 'angle': did you mean 'angles'?"),
+        ({"what": "angles", "t": 1.0}, "t: belongs to what = 'strip' and 'free_bodies'"),
+        ({"what": "path", "link": 2}, "link: belongs to what = 'section'"),
+        ({"what": "strip", "horizon": 0.1}, "horizon: what = 'strip' shows no times"),
+        ({"what": "section", "link": 3}, "link = 3: must be 1 to 2"),
+        ({"what": "section", "event": 1}, "event = 1: must be 0 to 0"),
+        ({"what": "free_bodies", "t": 9.0}, "t = 9"),
+    ],
+)
+def test_what_a_figure_cannot_show_is_refused(
+    sol: pc.Solution, given: dict[str, Any], message: str
+) -> None:
+    with pytest.raises(ValueError, match=message.replace("?", r"\?")):
+        sol.plot(axes(), **given)
+
+
+def test_a_run_without_dense_output_shows_the_times_it_kept() -> None:
+    run = pc.Case.textbook().simulate().case()
+    kept = pc.simulate(run.scene, run.q0, t_span=(0, 5), t_eval=np.linspace(0, 5, 11))
+    assert len(kept.plot(axes(), what="strip")) == 16
+    with pytest.raises(ValueError, match="kept no dense output and not this time"):
+        kept.plot(axes(), what="strip", t=[0.3])
+
+
+@pytest.mark.parametrize("what", [kind for kind in KINDS if kind != "section"])
+@pytest.mark.parametrize("links", [1, 3])
+def test_every_figure_is_drawn_into_a_file(tmp_path: Any, what: str, links: int) -> None:
+    rods = [pc.Link(mass=1.0, length=0.5)] * links
+    run = pc.simulate(pc.Scene(links=rods), 0.4, t_span=(0, 2))
+    save_figure(run, tmp_path / "figure.png", what=what)
+    assert (tmp_path / "figure.png").stat().st_size > 5_000
