@@ -23,7 +23,7 @@ SOURCES := pyproject.toml CMakeLists.txt $(shell find cpp python ! -path '*__pyc
 .DEFAULT_GOAL := help
 .PHONY: demo test test-all compare hard-cases bench build-bench lint tidy sanitize sanitize-few \
     sanitized references threads long horizon asked-errors default-method book-speed fuzz fuzz-readers \
-    test-error elsewhere wasm wheel site core clean help flip-map film
+    test-error elsewhere wasm page wheel site core clean help flip-map film
 
 demo: $(DONE)/installed  ## build, run the textbook's case, say where its figure and summary are
 	pendcore run -o out/textbook
@@ -110,11 +110,15 @@ wasm: $(DONE)/build-requirements  ## the core for browsers: build/wasm/package, 
 	cmake -G Ninja -B build/wasm -DCMAKE_TOOLCHAIN_FILE=cpp/cmake/machines/wasm32.cmake
 	cmake --build build/wasm --target pendcore_wasm
 
+page: wasm $(DONE)/installed  ## the core for browsers, installed, so that pages hold it (sol.to_html)
+	$(MAKE) --silent core
+
 # The wheel is installed where nothing else of this project is, and shows there what it can do.
 WHEELS := build/wheels
-wheel: $(DONE)/build-requirements $(DONE)/wheel-requirements  ## dist/: a wheel for Linux and the sources, installed and tried
+wheel: wasm $(DONE)/build-requirements $(DONE)/wheel-requirements  ## dist/: a wheel for Linux and the sources, installed and tried
 	rm -rf $(WHEELS) dist
-	python -m build --no-isolation --outdir $(WHEELS) -Ccmake.define.PENDCORE_FOR_WHEEL=ON .
+	python -m build --no-isolation --outdir $(WHEELS) -Ccmake.define.PENDCORE_FOR_WHEEL=ON \
+	    -Ccmake.define.PENDCORE_BROWSER_CORE=$(CURDIR)/build/wasm/package/pendcore.wasm.gz .
 	auditwheel repair --wheel-dir dist $(WHEELS)/pendcore-*.whl
 	cp $(WHEELS)/pendcore-*.tar.gz dist
 	$(PYTHON) -m venv $(WHEELS)/venv

@@ -1,6 +1,8 @@
 #include <pybind11/stl.h>
 
+#include <cinttypes>
 #include <cmath>
+#include <cstdio>
 
 #include "arguments.hpp"
 #include "bind_events.hpp"
@@ -146,6 +148,13 @@ void bind_run(py::module_& module) {
       .def_property_readonly("statistics",
                              [](const Run& run) { return statistics(run.solution.statistics); })
       .def_property_readonly("arguments", &arguments)
+      .def_property_readonly("fingerprint",
+                             [](const Run& run) {
+                               char digits[17];
+                               std::snprintf(digits, sizeof digits, "%016" PRIx64,
+                                             fingerprint(run.solution));
+                               return std::string(digits);
+                             })
       .def_readonly("error", &Run::error)
       .def("evaluate", &evaluate, py::arg("t"))
       .def_property_readonly("step_starts",

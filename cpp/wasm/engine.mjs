@@ -19,17 +19,57 @@ const SITE = INSTRUCTION.length;
 // prettier-ignore
 const PROBE = Uint8Array.from([
   ...MAGIC,
-  1, 8, 1, 0x60, 3, 0x7c, 0x7c, 0x7c, 1, 0x7c, // a type
-  3, 2, 1, 0, // a function of it
-  7, 5, 1, 1, 0x66, 0, 0, // exported as "f"
-  10, 22, 1, 20, 0, // its code: splat a, b and c, fuse them, take a lane
-  0x20, 0, 0xfd, 0x14, 0x20, 1, 0xfd, 0x14, 0x20, 2, 0xfd, 0x14,
-  0xfd, 0x87, 0x02, 0xfd, 0x21, 0, 0x0b,
+  1,
+  8,
+  1,
+  0x60,
+  3,
+  0x7c,
+  0x7c,
+  0x7c,
+  1,
+  0x7c, // a type
+  3,
+  2,
+  1,
+  0, // a function of it
+  7,
+  5,
+  1,
+  1,
+  0x66,
+  0,
+  0, // exported as "f"
+  10,
+  22,
+  1,
+  20,
+  0, // its code: splat a, b and c, fuse them, take a lane
+  0x20,
+  0,
+  0xfd,
+  0x14,
+  0x20,
+  1,
+  0xfd,
+  0x14,
+  0x20,
+  2,
+  0xfd,
+  0x14,
+  0xfd,
+  0x87,
+  0x02,
+  0xfd,
+  0x21,
+  0,
+  0x0b,
 ]);
 
 /** Whether this engine has an instruction for a b + c that rounds once. */
 export function fuses() {
   if (!WebAssembly.validate(PROBE)) return false;
+  /** @type {any} */
   const { f } = new WebAssembly.Instance(new WebAssembly.Module(PROBE)).exports;
   const tiny = 2 ** -30;
   return f(1 + tiny, 1 - tiny, -1) === -(tiny ** 2) && f(3, 1 / 3, -1) === -(2 ** -54);
@@ -114,7 +154,6 @@ export class PendcoreError extends Error {
   name = "PendcoreError";
 }
 
-const NANOSECONDS_PER_MILLISECOND = 1_000_000n;
 /** Numbers of WASI's errors. */
 const SUCCESS = 0;
 const BAD_FILE = 8;
@@ -177,7 +216,12 @@ export function imports(host) {
         return SUCCESS;
       },
       args_sizes_get: (count, size) =>
-        putTwo(count, size, words.length, words.reduce((sum, word) => sum + word.length, 0)),
+        putTwo(
+          count,
+          size,
+          words.length,
+          words.reduce((sum, word) => sum + word.length, 0),
+        ),
       args_get: putWords,
       environ_sizes_get: (count, size) => putTwo(count, size, 0, 0),
       environ_get: () => SUCCESS,

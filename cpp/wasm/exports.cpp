@@ -242,12 +242,19 @@ EXPORTED(statistics) const double* statistics(const Run* run) {
 /// States at the times given as numbers, from the dense output: (times, dimension).
 EXPORTED(at) const double* at(const Run* run) { return out(run->solution.at(numbers_in)); }
 
-/// A hash of every bit of times, states and dense output.
-EXPORTED(hash) std::uint64_t hash(const Run* run) {
-  const Solution& solution = run->solution;
-  const std::uint64_t h = hash_bits(hash_bits(solution.t), solution.states);
-  return hash_bits(h, solution.dense.coefficients);
+/// The entries of the ledger after angles and rates, a line each; those of losses begin with -.
+EXPORTED(accounts) const char* accounts(const Run* run) {
+  text_out.clear();
+  for (const Account account : run->solution.accounts) {
+    if (!text_out.empty()) text_out += '\n';
+    if (is_loss(account)) text_out += '-';
+    text_out += account_name(account);
+  }
+  return text_out.c_str();
 }
+
+/// A hash of every bit of times, states and dense output.
+EXPORTED(hash) std::uint64_t hash(const Run* run) { return fingerprint(run->solution); }
 
 // These evaluate a scene in a state, which JavaScript has put into the numbers.
 

@@ -25,9 +25,11 @@ export async function load(bytes) {
   const host = {};
   const module = await WebAssembly.compile(fastest(new Uint8Array(bytes)));
   const instance = await WebAssembly.instantiate(module, imports(host));
-  host.memory = instance.exports.memory;
-  instance.exports._initialize();
-  return new Core(instance.exports);
+  /** @type {any} */
+  const exports = instance.exports;
+  host.memory = exports.memory;
+  exports._initialize();
+  return new Core(exports);
 }
 
 class Core {
@@ -97,7 +99,9 @@ class Core {
     } catch (error) {
       stack.value = before;
       if (error instanceof WebAssembly.RuntimeError) {
-        throw new PendcoreError(`${name}: the core has no more memory, or failed (${error.message})`);
+        throw new PendcoreError(
+          `${name}: the core has no more memory, or failed (${error.message})`,
+        );
       }
       throw error;
     }
@@ -116,9 +120,7 @@ class Core {
 
   /** A copy of numbers of the core. */
   numbers(at, count) {
-    return new Float64Array(
-      this.exports.memory.buffer.slice(at, at + BYTES_PER_NUMBER * count),
-    );
+    return new Float64Array(this.exports.memory.buffer.slice(at, at + BYTES_PER_NUMBER * count));
   }
 
   text(at) {
@@ -131,6 +133,7 @@ class Core {
   }
 }
 
+/** @type {(value: any) => boolean} */
 function isList(value) {
   return Array.isArray(value) || ArrayBuffer.isView(value);
 }
@@ -176,6 +179,7 @@ class Scene {
     return this.core.numbers(this.core.call(what, this.address, t), count);
   }
 
+  /** @type {(q: any, qd?: any) => void} */
   #put(q, qd = new Float64Array(this.n)) {
     if (!isList(q) || !isList(qd)) {
       throw new PendcoreError(`q and qd: must be lists of ${this.n} numbers each`);
@@ -203,6 +207,9 @@ class Run {
     this.success = Boolean(core.call("success", address));
     this.dimension = core.call("dimension", address);
     this.t_reached = core.call("reached", address);
+    const accounts = core.text(core.call("accounts", address));
+    /** The ledger's entries in a state, after angles and rates: those of losses begin with "-". */
+    this.accounts = accounts === "" ? [] : accounts.split("\n");
   }
 
   /** The times that were kept, s. */

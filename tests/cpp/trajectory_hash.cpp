@@ -15,9 +15,7 @@ using namespace pendcore;
 namespace {
 
 void print(const char* name, const Solution& solution) {
-  std::uint64_t h = hash_bits(solution.t);
-  h = hash_bits(h, solution.states);
-  h = hash_bits(h, solution.dense.coefficients);
+  std::uint64_t h = fingerprint(solution);
   for (const FoundEvent& found : solution.found) {
     h = hash_bits(h, std::array{found.t, static_cast<double>(found.event),
                                 static_cast<double>(found.direction)});

@@ -52,6 +52,7 @@ PYTHON_LAYERS = [
     "views",
     "figures",
     "films",
+    "page",
     "ensemble",
     "api",
     "cost",

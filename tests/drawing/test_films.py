@@ -264,4 +264,4 @@ def test_the_command_refuses_other_files(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["show", "-o", str(tmp_path / "swing.avi")]) == 2
-    assert "must end with .mp4, .gif or .png" in capsys.readouterr().err
+    assert "must end with .html, .mp4, .gif or .png" in capsys.readouterr().err

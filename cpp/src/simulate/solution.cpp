@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "pendcore/arithmetic/bits.hpp"
 #include "pendcore/arithmetic/floating_point_environment.hpp"
 #include "pendcore/arithmetic/pack.hpp"
 #include "pendcore/integrate/horner.hpp"
@@ -47,6 +48,11 @@ std::vector<double> Solution::at(const std::vector<double>& times) const {
     y += dimension;
   }
   return result;
+}
+
+std::uint64_t fingerprint(const Solution& solution) {
+  const std::uint64_t h = hash_bits(hash_bits(solution.t), solution.states);
+  return hash_bits(h, solution.dense.coefficients);
 }
 
 }  // namespace pendcore

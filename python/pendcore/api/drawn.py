@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy.typing as npt
 
+from pendcore.cases.whole_file import whole_file
 from pendcore.figures.plot import What
 from pendcore.figures.plot import plot as draw
 from pendcore.films.animate import animate
@@ -15,6 +16,7 @@ from pendcore.films.stage import Choices
 from pendcore.films.video import to_video
 from pendcore.messages.arguments import known_keywords
 from pendcore.messages.progress import Progress
+from pendcore.page.html import page_of
 from pendcore.run.result import RunResult
 
 if TYPE_CHECKING:
@@ -183,6 +185,33 @@ class DrawnResult(RunResult):
         )  # fmt: skip
         runs = self, *others
         return to_video(runs, _names(runs, names), path, given, size, progress)
+
+    @known_keywords
+    def to_html(self, path: str | os.PathLike[str], *, title: str | None = None) -> Path:
+        """Write the run as one page with the core inside, which opens from disk; return its path.
+
+        The page simulates by itself, with the bits of this run, and says so by both hashes. Its
+        reader drags links, changes every parameter, adds effects, chooses method and tolerance, and
+        sees reactions, energies, until when the run can be trusted, and what accuracy costs. Its
+        address holds the run that it shows. Pages of scenes with functions of one's own, and pages
+        made by an install without the core for browsers, play back what was computed here, and say
+        so. The file is complete or absent.
+
+        Parameters
+        ----------
+        path : path
+        title : str, optional
+            Default: the name of the run, or "pendcore".
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> sol.to_html("run.html").name
+        'run.html'
+        """
+        with whole_file(path) as file:
+            file.write_text(page_of(self, title or self.name or "pendcore"), encoding="utf-8")
+        return Path(path)
 
 
 def _names(runs: tuple[RunResult, ...], given: tuple[str, ...] | None) -> tuple[str, ...]:

@@ -20,7 +20,7 @@ examples:
   pendcore run swing.toml --json | jq .energy
   pendcore explain swing.toml             what it simulates, what not, how fast it moves
   pendcore plot out/swing/solution.npz -o swing.pdf
-  pendcore show swing.toml -o swing.mp4   a film of it, in true time
+  pendcore show swing.toml                a page that simulates it; -o swing.mp4 for a film
   pendcore trust out/swing/solution.npz   until when the run is right, how fast its errors grow
   pendcore cost swing.toml                what accuracy costs on it: error and time of every method
   pendcore map flips.toml                 a number over a plane of starts, and which pixels are true

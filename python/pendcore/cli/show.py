@@ -1,4 +1,4 @@
-"""`pendcore show`: see a case or a saved solution move."""
+"""`pendcore show`: a case or a saved solution as a page, a film, or a strip of positions."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ from pendcore.figures.plot import save_figure
 
 _EPILOG = """
 examples:
-  pendcore show swing.toml -o swing.mp4            in true time
+  pendcore show swing.toml                         a page with the core inside: out/swing.html
+  pendcore show swing.toml -o swing.mp4            a film, in true time
   pendcore show swing.toml -o swing.gif --speed 0.5 --reactions
   pendcore show out/swing/solution.npz -o swing.png   a strip of positions
 
@@ -28,8 +29,8 @@ def add_parser(commands: Any) -> None:
     """Add the sub-command and its arguments."""
     parser = commands.add_parser(
         "show",
-        help="see a case move: a film, or a strip of positions",
-        description="Write a film of a case or of a saved solution, or a strip of its positions.",
+        help="see a case move: a page, a film, or a strip of positions",
+        description="Write a page that simulates a case, a film of it, or a strip of positions.",
         epilog=_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -41,7 +42,11 @@ def add_parser(commands: Any) -> None:
         help="CASE.toml, or RUN.npz; default: the book's",
     )
     parser.add_argument(
-        "-o", "--out", type=Path, required=True, metavar="FILE", help="its suffix: mp4, gif, png"
+        "-o",
+        "--out",
+        type=Path,
+        metavar="FILE",
+        help="its suffix: html, mp4, gif, png; default: out/ and the name of the case, .html",
     )
     parser.add_argument(
         "--speed", type=float, default=1.0, metavar="X", help="1 is true time, 0.25 slow motion"
@@ -66,10 +71,12 @@ def add_parser(commands: Any) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Run the sub-command; return its exit status."""
-    if args.out.suffix.lower() not in (".mp4", ".gif", ".png"):
-        raise UsageError(f"-o {args.out}: must end with .mp4, .gif or .png")
+    args.out = args.out or Path("out", f"{args.case.stem if args.case else 'textbook'}.html")
+    if args.out.suffix.lower() not in (".html", ".mp4", ".gif", ".png"):
+        raise UsageError(f"-o {args.out}: must end with .html, .mp4, .gif or .png")
     solution = _solution(args.case)
     with blamed_on_usage():
+        args.out.parent.mkdir(parents=True, exist_ok=True)
         where = written(args.out, [args.out])
         out = _write(solution, args)
     print(where if out == args.out else f"written to {out}", file=sys.stderr)
@@ -89,6 +96,8 @@ def _solution(path: Path | None) -> Solution:
 
 
 def _write(solution: Solution, args: argparse.Namespace) -> Path:
+    if args.out.suffix.lower() == ".html":
+        return solution.to_html(args.out)
     if args.out.suffix.lower() == ".png":
         with whole_file(args.out) as path:
             save_figure(solution, path, what="strip")

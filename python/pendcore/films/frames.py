@@ -63,11 +63,11 @@ def moves_of(solution: RunResult, times: Floats) -> Moves:
     """Return where a run is at the times of frames; it stays where it ends."""
     start, end = float(solution.run.arguments["t_start"]), solution.run.t_reached
     at = np.clip(times, min(start, end), max(start, end))
-    states = _states(solution, at)
+    states = states_of(solution, at)
     n = len(solution.scene.links)
     parts = np.linspace(0, len(at) - 1, PATH_PARTS * (len(at) - 1) + 1)
     along = np.interp(parts, np.arange(len(at)), at)
-    between = np.ascontiguousarray(_states(solution, along)[:, :n])
+    between = np.ascontiguousarray(states_of(solution, along)[:, :n])
     q, qd = np.ascontiguousarray(states[:, :n]), np.ascontiguousarray(states[:, n:])
     compiled = solution.scene._compiled
     return Moves(
@@ -78,7 +78,7 @@ def moves_of(solution: RunResult, times: Floats) -> Moves:
     )
 
 
-def _states(solution: RunResult, times: Floats) -> Floats:
+def states_of(solution: RunResult, times: Floats) -> Floats:
     """Return the states at times of a run, (k, 2n).
 
     Without dense output they are cubic between the times that were kept, which know the rates.

@@ -2,6 +2,7 @@
 /// The result of a run: times, states, dense output, statistics, and the position to resume from.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -57,5 +58,8 @@ struct Solution {
   /// output.
   std::vector<double> at(const std::vector<double>& times) const;
 };
+
+/// A hash of every bit of the times, the states and the dense output (arithmetic/bits.hpp).
+std::uint64_t fingerprint(const Solution& solution);
 
 }  // namespace pendcore

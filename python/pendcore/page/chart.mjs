@@ -1,0 +1,139 @@
+/** A small chart on a canvas: curves in axes with units, a shade, and a line that moves along. */
+
+import { color, fitted } from "./scene_view.mjs";
+
+const LEFT = 52;
+const RIGHT = 10;
+const TOP = 22;
+const BOTTOM = 36;
+
+/** Round numbers that cover an interval: some five of them. */
+export function ticks(low, high) {
+  const span = high - low || 1;
+  const step = 10 ** Math.floor(Math.log10(span / 4));
+  const wide = [1, 2, 5, 10].map((k) => k * step).find((one) => span / one <= 6) ?? step;
+  const found = [];
+  for (let k = Math.ceil(low / wide); k <= high / wide + 1e-9; ++k) found.push(k * wide);
+  return found;
+}
+
+function label(value) {
+  const size = Math.abs(value);
+  if (size !== 0 && (size >= 1e5 || size < 1e-3)) return value.toExponential(0);
+  return String(Number(value.toPrecision(6)));
+}
+
+export class Chart {
+  /** `names` are [horizontal, vertical], with units; log tells which axes are logarithmic. */
+  constructor(canvas, names, { log = false } = {}) {
+    this.canvas = canvas;
+    this.names = names;
+    this.log = log;
+    this.curves = [];
+    this.box = [0, 1, 0, 1];
+  }
+
+  /** Curves are { name, color, x, y, dots }. */
+  set(curves) {
+    this.curves = curves;
+    const place = (value) => (this.log ? Math.log10(value) : value);
+    let [left, right, low, high] = [Infinity, -Infinity, Infinity, -Infinity];
+    for (const { x, y } of curves) {
+      for (let k = 0; k < x.length; ++k) {
+        const [px, py] = [place(x[k]), place(y[k])];
+        if (!Number.isFinite(px) || !Number.isFinite(py)) continue;
+        left = Math.min(left, px);
+        right = Math.max(right, px);
+        low = Math.min(low, py);
+        high = Math.max(high, py);
+      }
+    }
+    if (left > right) [left, right, low, high] = [0, 1, 0, 1];
+    const margin = Math.max(0.06 * (high - low), 1e-9 * Math.max(Math.abs(high), 1), 1e-12);
+    this.box = [left, right === left ? left + 1 : right, low - margin, high + margin];
+  }
+
+  /** `past` is where the shade begins; `now` where the line is, or a list of points. */
+  draw({ past = null, now = null, points = [] } = {}) {
+    const { pen, width, height } = fitted(this.canvas);
+    const [left, right, low, high] = this.box;
+    const place = (value) => (this.log ? Math.log10(value) : value);
+    const at = (x, y) => [
+      LEFT + ((place(x) - left) / (right - left)) * (width - LEFT - RIGHT),
+      height - BOTTOM - ((place(y) - low) / (high - low)) * (height - TOP - BOTTOM),
+    ];
+    pen.font = "11px system-ui, sans-serif";
+    if (past !== null && past < right) {
+      pen.fillStyle = color("line");
+      const [x] = at(past, 0);
+      pen.fillRect(x, TOP, width - RIGHT - x, height - TOP - BOTTOM);
+    }
+    this.#axes(pen, width, height, at);
+    for (const { x, y, color: stroke, dots } of this.curves) {
+      pen.strokeStyle = pen.fillStyle = color(stroke);
+      pen.lineWidth = 1.3;
+      pen.beginPath();
+      for (let k = 0; k < x.length; ++k) {
+        const [px, py] = at(x[k], y[k]);
+        if (k === 0) pen.moveTo(px, py);
+        else pen.lineTo(px, py);
+      }
+      pen.stroke();
+      if (dots)
+        for (let k = 0; k < x.length; ++k) pen.fillRect(...at(x[k], y[k]).map((p) => p - 2), 4, 4);
+    }
+    if (now !== null) {
+      const [x] = at(now, 1);
+      pen.strokeStyle = color("ink");
+      pen.beginPath();
+      pen.moveTo(x, TOP);
+      pen.lineTo(x, height - BOTTOM);
+      pen.stroke();
+    }
+    for (const { x, y, color: fill } of points) {
+      pen.fillStyle = color(fill);
+      pen.beginPath();
+      pen.arc(...at(x, y), 4, 0, 2 * Math.PI);
+      pen.fill();
+    }
+    this.#legend(pen, width);
+  }
+
+  #axes(pen, width, height, at) {
+    const [left, right, low, high] = this.box;
+    const back = (value) => (this.log ? 10 ** value : value);
+    const round = (from, to) =>
+      this.log ? ticks(from, to).filter((one) => Number.isInteger(one)) : ticks(from, to);
+    pen.strokeStyle = color("line");
+    pen.fillStyle = color("faint");
+    pen.lineWidth = 1;
+    for (const tick of round(left, right)) {
+      const [x] = at(back(tick), back(low));
+      pen.strokeRect(x, TOP, 0, height - TOP - BOTTOM);
+      pen.textAlign = "center";
+      pen.fillText(label(back(tick)), x, height - BOTTOM + 14);
+    }
+    for (const tick of round(low, high)) {
+      const [, y] = at(back(left), back(tick));
+      pen.strokeRect(LEFT, y, width - LEFT - RIGHT, 0);
+      pen.textAlign = "right";
+      pen.fillText(label(back(tick)), LEFT - 5, y + 4);
+    }
+    pen.textAlign = "left";
+    pen.fillText(this.names[1], 4, 13);
+    pen.textAlign = "right";
+    pen.fillText(this.names[0], width - RIGHT, height - 5);
+  }
+
+  #legend(pen, width) {
+    pen.textAlign = "right";
+    let x = width - RIGHT;
+    for (const { name, color: fill } of [...this.curves].reverse()) {
+      if (!name) continue;
+      pen.fillStyle = color(fill);
+      pen.fillText(name, x, 13);
+      x -= pen.measureText(name).width + 10;
+    }
+    pen.textAlign = "left";
+  }
+}

@@ -1,0 +1,242 @@
+/** Sliders and fields for everything that a case has, made from the core's descriptors. */
+
+function element(tag, properties = {}, children = []) {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(properties)) {
+    if (name in made) made[name] = value;
+    else made.setAttribute(name, value);
+  }
+  made.append(...children);
+  return made;
+}
+
+let counter = 0;
+
+/** A number with a slider; `change` gets the new value. */
+export function numberField({ name, unit, value, low, high, whole, change }) {
+  const id = `field-${++counter}`;
+  const field = element("input", {
+    type: "number",
+    id,
+    step: whole ? "1" : "any",
+    value: String(Number(value.toPrecision(7))),
+  });
+  const slider = element("input", {
+    type: "range",
+    min: String(low),
+    max: String(high),
+    step: whole ? "1" : String((high - low) / 500),
+    value: String(value),
+    "aria-label": `${name}, ${unit || "no unit"}`,
+  });
+  const take = (text, other) => {
+    const number = Number(text);
+    const isNumber = text !== "" && Number.isFinite(number);
+    field.setAttribute("aria-invalid", String(!isNumber));
+    if (!isNumber) return;
+    other.value = text;
+    change(number);
+  };
+  field.addEventListener("input", () => take(field.value, slider));
+  slider.addEventListener("input", () => take(slider.value, field));
+  const label = element("label", { htmlFor: id, textContent: unit ? `${name} (${unit})` : name });
+  return element("div", { className: "parameter" }, [label, field, slider]);
+}
+
+function choice(name, options, value, change) {
+  const id = `field-${++counter}`;
+  const select = element(
+    "select",
+    { id },
+    options.map((one) => element("option", { value: one, textContent: one })),
+  );
+  select.value = value;
+  select.addEventListener("change", () => change(select.value));
+  const label = element("label", { htmlFor: id, textContent: name });
+  return element("div", { className: "parameter" }, [label, select]);
+}
+
+/**
+ * An interval for a slider about a value, within what the descriptor allows.
+ *
+ * @returns {[number, number]}
+ */
+function interval(value, range) {
+  const size = Math.max(Math.abs(value) * 3, 1);
+  const isPositive = /^>=? 0/.test(range);
+  const top = /<=? ([0-9.]+)/.exec(range);
+  const high = top ? Number(top[1]) : size;
+  return [isPositive ? 0 : -size, high];
+}
+
+export class Controls {
+  /** `changed` is called with the new case; the fields stay, unless the case has other parts. */
+  constructor(form, { kinds, defaults, changed }) {
+    this.form = form;
+    this.kinds = kinds;
+    this.defaults = defaults;
+    this.changed = changed;
+    this.given = null;
+    form.addEventListener("submit", (event) => event.preventDefault());
+  }
+
+  show(given) {
+    this.given = given;
+    this.form.replaceChildren(
+      this.#world(),
+      ...given.link.map((link, i) => this.#link(link, i)),
+      ...given.effect.map((effect, i) => this.#effect(effect, i)),
+      this.#more(),
+    );
+  }
+
+  #group(title, fields) {
+    return element("fieldset", {}, [element("legend", { textContent: title }), ...fields]);
+  }
+
+  #field(name, unit, value, [low, high], set, whole = false) {
+    const change = (number) => {
+      set(number);
+      this.changed(this.given);
+    };
+    return numberField({ name, unit, value, low, high, whole, change });
+  }
+
+  #world() {
+    const { given } = this;
+    const begin = given.run.t_start ?? 0;
+    return this.#group("World", [
+      this.#field("gravity", "m/s^2", given.gravity, [0, 25], (x) => (given.gravity = x)),
+      this.#field(
+        "end of the run",
+        "s",
+        given.run.t_end,
+        [begin + 1, begin + 120],
+        (x) => (given.run.t_end = x),
+      ),
+    ]);
+  }
+
+  #link(link, i) {
+    const { start } = this.given;
+    const degrees = 180 / Math.PI;
+    // A link keeps its shape: its centre moves with its length, its inertia with both.
+    const scale = (mass, length) => {
+      link.center *= length / link.length;
+      if (link.mass > 0) link.inertia *= (mass / link.mass) * (length / link.length) ** 2;
+      Object.assign(link, { mass, length });
+    };
+    return this.#group(`Link ${i + 1}`, [
+      this.#field("mass", "kg", link.mass, [0.01, Math.max(3 * link.mass, 3)], (x) =>
+        scale(x, link.length),
+      ),
+      this.#field("length", "m", link.length, [0.05, Math.max(3 * link.length, 3)], (x) =>
+        scale(link.mass, x),
+      ),
+      this.#field(
+        "angle at the start",
+        "deg",
+        start.q[i] * degrees,
+        [-180, 180],
+        (x) => (start.q[i] = x / degrees),
+      ),
+      this.#field("rate at the start", "rad/s", start.qd[i], [-20, 20], (x) => (start.qd[i] = x)),
+    ]);
+  }
+
+  #effect(effect, i) {
+    const known = this.kinds.find((one) => one.kind === effect.kind);
+    const remove = element("button", { type: "button", textContent: "Remove" });
+    remove.addEventListener("click", () => {
+      this.given.effect.splice(i, 1);
+      this.show(this.given);
+      this.changed(this.given);
+    });
+    const fields = this.#parameters(effect, known.parameters);
+    return this.#group(`${i + 1}: ${known.name}`, [
+      element("p", { className: "small", textContent: `${known.sentence} ${known.law}` }),
+      ...fields,
+      remove,
+    ]);
+  }
+
+  #parameters(values, parameters) {
+    const fields = [];
+    for (const one of parameters) {
+      const value = values[one.name];
+      if (value === undefined || value === null) continue;
+      if (typeof value === "number" && Number.isFinite(value)) {
+        const whole = one.type === "int";
+        /** @type {[number, number]} */
+        const range = whole ? [1, this.given.link.length] : interval(value, one.range);
+        fields.push(
+          this.#field(one.name, one.unit, value, range, (x) => (values[one.name] = x), whole),
+        );
+      } else if (Array.isArray(value) && value.length === 2 && one.type === "pair") {
+        one.components.forEach((component, k) => {
+          if (!Number.isFinite(value[k])) return;
+          const set = (x) => (value[k] = x);
+          fields.push(
+            this.#field(
+              `${one.name}, ${component}`,
+              one.unit,
+              value[k],
+              interval(value[k], one.range),
+              set,
+            ),
+          );
+        });
+      } else if (typeof value === "object" && !Array.isArray(value)) {
+        const part = this.kinds.find((other) => other.name === one.type);
+        if (part) fields.push(...this.#parameters(value, part.parameters));
+      }
+    }
+    return fields;
+  }
+
+  #more() {
+    const names = Object.keys(this.defaults);
+    const select = element(
+      "select",
+      { "aria-label": "Kind of effect" },
+      names.map((kind) =>
+        element("option", {
+          value: kind,
+          textContent: this.kinds.find((one) => one.kind === kind).name,
+        }),
+      ),
+    );
+    const add = element("button", { type: "button", textContent: "Add" });
+    add.addEventListener("click", () => {
+      const copy = structuredClone(this.defaults[select.value]);
+      if (copy.joint > this.given.link.length) copy.joint = 1;
+      if (copy.link > this.given.link.length) copy.link = 1;
+      this.given.effect.push({ kind: select.value, ...copy });
+      this.show(this.given);
+      this.changed(this.given);
+    });
+    return this.#group("More effects", [select, " ", add]);
+  }
+}
+
+/** Fields for method and tolerance. */
+export function methodFields(box, given, methods, changed) {
+  const digits = Math.round(-Math.log10(given.run.rtol ?? 1e-6));
+  const tolerance = numberField({
+    name: "digits: rtol = 10^-digits",
+    unit: "",
+    value: digits,
+    low: 2,
+    high: 14,
+    whole: true,
+    change: (x) => {
+      given.run.rtol = 10 ** -x;
+      changed(given);
+    },
+  });
+  const method = choice("method", methods, given.run.method, (name) => {
+    given.run.method = name;
+    changed(given);
+  });
+  box.replaceChildren(method, tolerance);
+}

@@ -1,0 +1,218 @@
+"""A run as one file of HTML, with the core inside: it opens from disk and asks for nothing."""
+
+from __future__ import annotations
+
+import json
+import re
+from base64 import b64encode
+from functools import cache
+from html import escape
+from importlib.resources import files
+from math import inf
+from typing import Any
+
+import numpy as np
+
+from pendcore import _core
+from pendcore.accuracy.estimate import error_of
+from pendcore.cases.case import CaseData
+from pendcore.films.frames import moves_of, states_of
+from pendcore.run.call import Choice, run, start_of
+from pendcore.run.methods import known_methods
+from pendcore.run.result import RunResult
+from pendcore.scene.effect_class import KINDS, PARTS
+
+CORE_MODULES = ("engine.mjs", "pendcore.mjs")
+"""They stand in cpp/wasm, and are installed beside the page."""
+PAGE_MODULES = ("scene_view.mjs", "chart.mjs", "case.mjs", "runs.mjs", "controls.mjs", "main.mjs")
+CORE = "pendcore.wasm.gz"
+OF_FUNCTIONS = ("user", "compiled_user")
+"""The kinds of effects that only Python has."""
+WITHOUT_CORE = (
+    "This page plays back what Python computed: the install that made it has no core for browsers "
+    "(`make page` in a clone builds it; wheels have it)."
+)
+OWN_FUNCTIONS = "This page plays back what Python computed: functions of one's own stay in Python."
+LIMIT = 0.1
+"""rad: a run can be trusted until its error passes this; main.mjs says the same."""
+_PATIENCE = 10.0
+"""s, for second runs of a page that cannot make them itself."""
+_MOST_FRAMES = 3600
+_IMPORT = re.compile(r'^import [^;]*? from "[^"]+";\n', re.MULTILINE)
+_EXPORT = re.compile(
+    r"^export (?=(async )?(function|class|const))|^export \{[^}]*\};\n", re.MULTILINE
+)
+
+
+def page_of(solution: RunResult, title: str) -> str:
+    """Return the page; without a core for browsers in the install, it plays the run back."""
+    case = CaseData.of_solution(solution)
+    scene = solution.scene
+    own = any(effect.kind in OF_FUNCTIONS for effect in scene.effects)
+    has_events = bool(solution.run.arguments["events"])
+    core = None if own else core_for_browsers()
+    told = OWN_FUNCTIONS if own else "" if core is not None else WITHOUT_CORE
+    data = {
+        "case": _plain_case(case, solution),
+        "hash": "" if has_events else solution.run.fingerprint,
+        "valid_until": _horizon(solution, may_take_long=core is None),
+        "can_run": core is not None,
+        "kinds": [
+            {**one._asdict(), "parameters": [x._asdict() for x in one.parameters]}
+            for one in _descriptors()
+        ],
+        "defaults": _defaults(),
+        "methods": ["auto", *(x for x, one in known_methods().items() if one["error_order"] > 0)],
+        "recording": None if core is not None else _recording(solution),
+        "about": f"pendcore {_core.__version__}. {told}".strip(),
+    }
+    parts = {
+        "TITLE": escape(title),
+        "STYLE": _source("style.css"),
+        "DATA": json.dumps(_finite(data), allow_nan=False).replace("</", "<\\/"),
+        "WASM": "" if core is None else b64encode(core).decode(),
+        "CORE": "" if core is None else _bundle(CORE_MODULES),
+        "WORKER": "" if core is None else _bundle(("worker.mjs",)),
+        "SCRIPT": f"{{\n{_bundle(PAGE_MODULES)}\n}}",
+    }
+    return re.sub(r"@([A-Z]+)@", lambda found: parts[found[1]], _source("page.html"))
+
+
+def _horizon(solution: RunResult, *, may_take_long: bool) -> float | None:
+    """Return until when the run is right, s; None leaves it to the page to find out."""
+    estimate = solution.known_error
+    if estimate is None:
+        if not may_take_long:
+            return None
+        try:
+            estimate = error_of(solution, time_limit=_PATIENCE)
+        except ValueError:  # there is no second opinion on this run
+            return None
+    return estimate.valid_until(LIMIT)
+
+
+@cache
+def core_for_browsers() -> bytes | None:
+    """Return the packed module of the core, or None if this install has none."""
+    packed = files("pendcore.page") / CORE
+    return packed.read_bytes() if packed.is_file() else None
+
+
+def _source(name: str) -> str:
+    return (files("pendcore.page") / name).read_text(encoding="utf-8")
+
+
+def _bundle(names: tuple[str, ...]) -> str:
+    """Return modules one after the other, as one script: their names do not collide."""
+    return "\n".join(_EXPORT.sub("", _IMPORT.sub("", _source(name))) for name in names)
+
+
+def _plain_case(case: CaseData, solution: RunResult) -> dict[str, Any]:
+    """Return the case as plain data, named as in a case file, with every link in full."""
+    start = solution.run.arguments
+    left_out = ("error", "events", "progress", "check")
+    options = {name: value for name, value in case.options.items() if name not in left_out}
+    return {
+        "gravity": case.scene.gravity,
+        "link": [
+            {"mass": one.mass, "length": one.length, "center": one.center, "inertia": one.inertia}
+            for one in case.scene.links
+        ],
+        "effect": [
+            {"kind": one.kind, **_parameters(one)}
+            for one in case.scene.effects
+            if one.kind not in OF_FUNCTIONS
+        ],
+        "start": {"q": start["q0"], "qd": start["qd0"]},
+        "run": {
+            **options,
+            "t_start": start["t_start"],
+            "t_end": start["t_end"],
+            "method": _method(solution),
+            "rtol": start["rtol"],
+        },
+    }
+
+
+def _method(solution: RunResult) -> str:
+    """Return the method of a run, or "auto" where that takes the same: it goes on to do so."""
+    asked = solution.run.arguments
+    of_no_length = start_of(solution)._replace(t_end=asked["t_start"])
+    try:
+        usual = run(of_no_length, Choice("auto", asked["rtol"], asked["atol"]), store="end").method
+    except ValueError:
+        usual = ""
+    is_adaptive = asked["step"] is None and not asked["compensated"]
+    return "auto" if usual == solution.method and is_adaptive else solution.method
+
+
+def _descriptors() -> list[Any]:
+    """Return what is known of effects and of their parts."""
+    kinds = [one.description for name, one in KINDS.items() if name not in OF_FUNCTIONS]
+    return [*kinds, *(one.description for one in PARTS.values())]
+
+
+@cache
+def _defaults() -> dict[str, Any]:
+    """Return parameters of each kind of effect to begin with: those of its first example."""
+    classes = {one.__name__: one for one in (*KINDS.values(), *PARTS.values())}
+    return {
+        kind: _parameters(eval(one.description.calls[0], dict(classes)))
+        for kind, one in KINDS.items()
+        if kind not in OF_FUNCTIONS
+    }
+
+
+def _parameters(value: Any) -> dict[str, Any]:
+    """Return the parameters of an effect, or of a part, that are not what they are if left out."""
+    found = {}
+    for one in value.description.parameters:
+        given = getattr(value, one.name)
+        if given is None or (not one.required and given == one.default):
+            continue
+        if one.part is not None:
+            given = _parameters(given)
+        elif one.type in ("pair", "floats"):
+            given = [float(x) for x in given]
+        found[one.name] = given
+    return found
+
+
+def _recording(solution: RunResult) -> dict[str, Any]:
+    """Return the run at equal steps of time, for a page that only plays back."""
+    begin, end = float(solution.run.arguments["t_start"]), solution.run.t_reached
+    count = min(max(round(60 * abs(end - begin)), 2), _MOST_FRAMES)
+    t = np.linspace(begin, end, count)
+    moves, states = moves_of(solution, t), states_of(solution, t)
+    n = len(solution.scene.links)
+    q, qd = np.ascontiguousarray(states[:, :n]), np.ascontiguousarray(states[:, n:])
+    kinetic, potential = solution.scene._compiled.energy(t, q, qd)
+    return {
+        "t": _rounded(t),
+        "states": _rounded(states),
+        "places": _rounded(moves.places.reshape(count, -1)),
+        "reactions": _rounded(moves.reactions.reshape(count, -1)),
+        "energies": _rounded(np.stack([kinetic, potential], axis=1)),
+        "message": solution.message,
+        "success": solution.success,
+    }
+
+
+def _rounded(numbers: Any) -> Any:
+    """Return numbers as a list with seven digits: nobody sees more, and the page stays small."""
+    if np.ndim(numbers) > 1:
+        return [_rounded(row) for row in numbers]
+    return [float(f"{x:.7g}") for x in numbers]
+
+
+def _finite(value: Any) -> Any:
+    """Return the same with infinities as words, because JSON has none."""
+    if isinstance(value, dict):
+        return {name: _finite(one) for name, one in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(one) for one in value]
+    if isinstance(value, np.ndarray | np.generic):
+        return _finite(value.tolist())
+    if isinstance(value, float) and abs(value) == inf:
+        return "inf" if value > 0 else "-inf"
+    return value

@@ -1,0 +1,502 @@
+/** The page: what is shown, and what happens when somebody touches it. */
+
+import { load } from "../../../cpp/wasm/pendcore.mjs";
+import { addressOf, caseInAddress, parseCase, toPython, toToml, writeCase } from "./case.mjs";
+import { Chart } from "./chart.mjs";
+import { Controls, methodFields } from "./controls.mjs";
+import { coreBytes, LiveRun, Recording, simulateCase } from "./runs.mjs";
+import { SceneView } from "./scene_view.mjs";
+
+const TRACE = 2; // s
+const TRACE_PARTS = 240;
+const LIMIT = 0.1; // rad; a run can be trusted until its error is above
+const GHOST = 1e-9; // rad
+const NEIGHBOURS = { count: 1000, spread: 1e-5, rate: 60 };
+const COLORS = ["first", "second", "third", "fourth"];
+const ACCOUNTS = ["fourth", "faint", "ink"];
+const STEP = 1 / 60; // s
+
+/** @type {(id: string) => any} */
+const byId = (id) => document.getElementById(id);
+const data = parseCase(byId("data").textContent);
+
+/** Asks the worker, which may be busy with something older that nobody waits for any more. */
+class Helper {
+  /** Gets what is known so far of a long task. */
+  progress = null;
+
+  constructor(bytes) {
+    const text = ["core-js", "worker-js"].map((id) => byId(id).textContent).join("\n");
+    this.worker = new Worker(URL.createObjectURL(new Blob([text], { type: "text/javascript" })));
+    this.worker.postMessage({ bytes: bytes.slice(0) });
+    this.waiting = new Map();
+    this.last = 0;
+    this.worker.onmessage = ({ data: told }) => {
+      if (told.partial) return this.progress?.(told.partial);
+      const { resolve, reject } = this.waiting.get(told.id) ?? {};
+      this.waiting.delete(told.id);
+      return told.failure ? reject?.(new Error(told.failure)) : resolve?.(told.answer);
+    };
+  }
+  ask(task, given, more = {}) {
+    const id = ++this.last;
+    this.worker.postMessage({ id, task, given, ...more });
+    return new Promise((resolve, reject) => this.waiting.set(id, { resolve, reject }));
+  }
+}
+
+class Page {
+  run = null;
+  ghost = null;
+  neighbours = null;
+  hash = "";
+  copied = null;
+  measured = undefined;
+  dragged = 0;
+  question = 0;
+  frames = 0;
+  since = 0;
+  before = undefined;
+  later = undefined;
+
+  constructor(core, bytes) {
+    this.core = core;
+    this.original = writeCase(data.case);
+    this.given = (core && caseInAddress()) ?? parseCase(this.original);
+    this.t = this.given.run.t_start ?? 0;
+    this.speed = 1;
+    this.isPlaying = false;
+    this.validUntil = data.valid_until;
+    this.view = new SceneView(byId("scene"));
+    this.charts = {
+      angles: new Chart(byId("angles"), ["t (s)", "q (deg)"]),
+      phase: new Chart(byId("phase"), ["q (rad)", "qd (rad/s)"]),
+      energy: new Chart(byId("energy"), ["t (s)", "energy (J)"]),
+      cost: new Chart(byId("cost"), ["time (ms)", "error / total length"], { log: true }),
+    };
+    if (core) {
+      this.helper = new Helper(bytes);
+      this.controls = new Controls(byId("setup"), {
+        kinds: data.kinds,
+        defaults: data.defaults,
+        changed: () => this.changed(),
+      });
+    } else {
+      document.body.classList.add("without-core");
+    }
+    byId("about").textContent = data.about;
+    this.#listen();
+    this.rerun();
+    this.controls?.show(this.given);
+    if (core) methodFields(byId("method"), this.given, data.methods, () => this.changed());
+    requestAnimationFrame((now) => this.frame(now));
+  }
+
+  /** The case has changed: it runs anew, and the address holds it. */
+  changed() {
+    history.replaceState(null, "", addressOf(this.given));
+    this.neighbours = null;
+    this.validUntil = null;
+    this.rerun();
+  }
+
+  rerun() {
+    try {
+      this.run = this.core
+        ? new LiveRun(this.core, this.given)
+        : new Recording(data.recording, this.given);
+    } catch (error) {
+      return this.say(error.message);
+    }
+    this.say(this.run.success ? "" : this.run.message);
+    this.t = this.run.within(this.t);
+    const time = byId("time");
+    [time.min, time.max] = [this.run.begin, this.run.end].sort((a, b) => a - b).map(String);
+    this.view.forgetForces();
+    this.ghost = null;
+    this.#ghost();
+    this.#bits();
+    this.#curves();
+    this.#ask();
+    this.draw();
+    return undefined;
+  }
+
+  say(text) {
+    const message = byId("message");
+    message.textContent = text;
+    message.hidden = text === "";
+  }
+
+  /** Shows the hash of the run, beside Python's if it is still Python's run. */
+  #bits() {
+    const badge = byId("bits");
+    badge.classList.remove("same", "other");
+    if (!this.core) {
+      badge.textContent = `played back; Python's hash ${data.hash}`;
+      return;
+    }
+    this.hash = simulateCase(this.core, this.given).run.hash;
+    if (writeCase(this.given) !== this.original) {
+      badge.textContent = `hash ${this.hash}`;
+      return;
+    }
+    const same = this.hash === data.hash;
+    badge.classList.add(same ? "same" : "other");
+    badge.textContent = same
+      ? `the bits of Python: hash ${this.hash} = ${data.hash}`
+      : `not the bits of Python: hash ${this.hash}, Python's ${data.hash}`;
+  }
+
+  #ghost() {
+    if (!this.core || !byId("ghost").checked) return;
+    const start = structuredClone(this.given.start);
+    start.q[start.q.length - 1] += GHOST;
+    try {
+      this.ghost = new LiveRun(this.core, { ...this.given, start });
+    } catch {
+      this.ghost = null;
+    }
+  }
+
+  /** What takes longer than a frame comes later; an answer to an older question is dropped. */
+  #ask() {
+    this.trust();
+    if (!this.helper) return;
+    clearTimeout(this.later);
+    const asked = ++this.question;
+    const isStale = () => asked !== this.question;
+    this.later = setTimeout(async () => {
+      const given = structuredClone(this.given);
+      try {
+        if (this.validUntil === null) {
+          const until = await this.helper.ask("horizon", given, { limit: LIMIT });
+          if (isStale()) return;
+          this.validUntil = until;
+          this.trust();
+          this.draw();
+        }
+        if (byId("neighbours").checked && !this.neighbours) {
+          const found = await this.helper.ask("neighbours", given, NEIGHBOURS);
+          if (!isStale()) this.neighbours = found;
+        }
+      } catch (error) {
+        if (!isStale())
+          byId("trust").textContent = `How far to trust it is not known: ${error.message}`;
+      }
+    }, 150);
+  }
+
+  trust() {
+    const told = byId("trust");
+    const until = this.validUntil;
+    if (until === null) told.textContent = "How far to trust this run is being found out.";
+    else if (
+      Math.abs(until - this.run.end) < 1e-9 * Math.abs(this.run.end) ||
+      this.#isRight(this.run.end)
+    )
+      told.textContent = `Right to ${LIMIT} rad to its end.`;
+    else
+      told.textContent = `Right to ${LIMIT} rad until t = ${until.toPrecision(4)} s; pale after that.`;
+  }
+
+  #isRight(t) {
+    if (this.validUntil === null) return true;
+    const forward = this.run.end >= this.run.begin;
+    return forward ? t <= this.validUntil * (1 + 1e-12) : t >= this.validUntil;
+  }
+
+  #curves() {
+    const { run } = this;
+    const count = this.core ? 1500 : Math.min(data.recording?.t.length ?? 0, 1500);
+    const times = Array.from(
+      { length: count },
+      (_x, k) => run.begin + ((run.end - run.begin) * k) / (count - 1),
+    );
+    const states = run.states(times);
+    const links = Array.from({ length: run.n }, (_x, i) => i);
+    const paint = (i) => COLORS[i % COLORS.length];
+    this.charts.angles.set(
+      links.map((i) => ({
+        name: `q${i + 1}`,
+        color: paint(i),
+        x: times,
+        y: states.map((state) => (state[i] * 180) / Math.PI),
+      })),
+    );
+    this.charts.phase.set(
+      links.map((i) => ({
+        name: `link ${i + 1}`,
+        color: paint(i),
+        x: states.map((state) => state[i]),
+        y: states.map((state) => state[run.n + i]),
+      })),
+    );
+    const energies = times.map((t, k) => run.energies(t, states[k]));
+    const own = ["kinetic", "potential", "total"].map((name, k) => ({
+      name,
+      color: COLORS[k],
+      x: times,
+      y: energies.map(([T, V]) => [T, V, T + V][k]),
+    }));
+    const booked = run.ledger(times).map((y, k) => ({
+      name: run.accounts[k].replace(/^-(.*)/, "$1 (lost)"),
+      color: ACCOUNTS[k % ACCOUNTS.length],
+      x: times,
+      y,
+    }));
+    this.charts.energy.set([...own, ...booked]);
+  }
+
+  frame(now) {
+    const passed = Math.min((now - (this.before ?? now)) / 1000, 0.25);
+    this.before = now;
+    ++this.frames;
+    if (now - this.since > 1000) {
+      const rate = (1000 * this.frames) / (now - this.since);
+      byId("rate").textContent = this.isPlaying ? `${rate.toFixed(0)} frames a second` : "";
+      [this.since, this.frames] = [now, 0];
+    }
+    if (this.isPlaying && !this.dragged) {
+      const direction = this.run.end >= this.run.begin ? 1 : -1;
+      this.t = this.run.within(this.t + direction * passed * this.speed);
+      if (this.t === this.run.end) this.play(false);
+      this.draw();
+    }
+    requestAnimationFrame((later) => this.frame(later));
+  }
+
+  draw() {
+    const { run, t } = this;
+    const state = run.state(t);
+    const places = run.places(t, state);
+    const shown = {
+      places,
+      t,
+      lengths: run.lengths,
+      isLost: !this.#isRight(t),
+      pivot: [places[0], places[1]],
+      forces: byId("reactions").checked ? run.reactions(t, state) : null,
+      path: byId("trace").checked ? this.#path(t) : null,
+      ghost: this.ghost ? this.ghost.places(this.ghost.within(t), this.ghost.state(t)) : null,
+      neighbours: byId("neighbours").checked ? this.neighbours : null,
+    };
+    this.view.draw(shown);
+    const past = this.#isRight(run.end) ? null : this.validUntil;
+    this.charts.angles.draw({ past, now: t });
+    this.charts.energy.draw({ past, now: t });
+    const points = Array.from({ length: run.n }, (_x, i) => ({
+      x: state[i],
+      y: state[run.n + i],
+      color: COLORS[i % COLORS.length],
+    }));
+    this.charts.phase.draw({ points });
+    byId("clock").textContent = `${t.toFixed(2)} s`;
+    byId("time").value = String(t);
+    const angles = Array.from(
+      { length: run.n },
+      (_x, i) => `q${i + 1} ${((state[i] * 180) / Math.PI).toFixed(1)} degrees`,
+    );
+    this.view.canvas.setAttribute("aria-label", `At ${t.toFixed(2)} s: ${angles.join(", ")}`);
+  }
+
+  #path(t) {
+    const { run } = this;
+    const direction = run.end >= run.begin ? 1 : -1;
+    const since = run.within(t - direction * TRACE);
+    const times = Array.from(
+      { length: TRACE_PARTS },
+      (_x, k) => since + ((t - since) * k) / (TRACE_PARTS - 1),
+    );
+    return run.states(times).flatMap((state, k) => [...run.places(times[k], state).slice(-2)]);
+  }
+
+  play(isPlaying) {
+    if (isPlaying && this.t === this.run.end) this.t = this.run.begin;
+    this.isPlaying = isPlaying;
+    const button = byId("play");
+    button.textContent = isPlaying ? "Pause" : "Play";
+    button.setAttribute("aria-pressed", String(isPlaying));
+  }
+
+  go(t) {
+    this.play(false);
+    this.t = this.run.within(t);
+    this.draw();
+  }
+
+  #listen() {
+    byId("play").addEventListener("click", () => this.play(!this.isPlaying));
+    byId("back").addEventListener("click", () => this.go(this.t - STEP));
+    byId("forth").addEventListener("click", () => this.go(this.t + STEP));
+    byId("time").addEventListener("input", () => this.go(Number(byId("time").value)));
+    byId("speed").addEventListener("change", () => {
+      this.speed = Number(byId("speed").value);
+    });
+    for (const id of ["trace", "reactions"]) byId(id).addEventListener("change", () => this.draw());
+    byId("ghost").addEventListener("change", () => {
+      this.ghost = null;
+      this.#ghost();
+      this.draw();
+    });
+    byId("neighbours").addEventListener("change", () => this.#ask());
+    byId("measure").addEventListener("click", () => this.#measure());
+    this.#tabs();
+    this.#keys();
+    this.#drag();
+    const copy = (id, text) =>
+      byId(id).addEventListener("click", async () => {
+        await this.#copy(text());
+        const label = byId(id).textContent;
+        byId(id).textContent = "Copied";
+        setTimeout(() => (byId(id).textContent = label), 1200);
+      });
+    copy("copy-link", () => location.href.split("#")[0] + addressOf(this.given));
+    copy("copy-toml", () => toToml(this.given));
+    copy("copy-python", () => toPython(this.given, data.kinds));
+    window.addEventListener("resize", () => this.draw());
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
+    window.addEventListener("hashchange", () => {
+      const given = this.core && caseInAddress();
+      if (!given || writeCase(given) === writeCase(this.given)) return;
+      this.given = given;
+      this.controls.show(given);
+      this.changed();
+    });
+  }
+
+  /** Pages from a file have no clipboard in some browsers: a hidden field does as well. */
+  async #copy(text) {
+    this.copied = text;
+    try {
+      await navigator.clipboard.writeText(text);
+    } catch {
+      const field = document.createElement("textarea");
+      field.value = text;
+      document.body.append(field);
+      field.select();
+      document.execCommand("copy");
+      field.remove();
+    }
+  }
+
+  #tabs() {
+    const tabs = ["curves", "setup", "accuracy"];
+    const show = (chosen) => {
+      for (const name of tabs) {
+        byId(name).hidden = name !== chosen;
+        byId(`tab-${name}`).setAttribute("aria-selected", String(name === chosen));
+      }
+      this.draw();
+      this.charts.cost.draw();
+    };
+    for (const name of tabs) byId(`tab-${name}`).addEventListener("click", () => show(name));
+  }
+
+  #keys() {
+    const actions = {
+      " ": () => this.play(!this.isPlaying),
+      ArrowLeft: () => this.go(this.t - STEP),
+      ArrowRight: () => this.go(this.t + STEP),
+      Home: () => this.go(this.run.begin),
+      End: () => this.go(this.run.end),
+    };
+    byId("scene").addEventListener("keydown", (event) => {
+      if (!(event.key in actions)) return;
+      event.preventDefault();
+      actions[event.key]();
+    });
+  }
+
+  /** Dragging a joint or the tip starts the run from the new pose, at rest. */
+  #drag() {
+    const canvas = byId("scene");
+    const place = (event) => {
+      const { left, top } = canvas.getBoundingClientRect();
+      return this.view.metres(event.clientX - left, event.clientY - top);
+    };
+    canvas.addEventListener("pointerdown", (event) => {
+      if (!this.core) return;
+      const [x, y] = place(event);
+      const places = this.run.places(this.t, this.run.state(this.t));
+      let [nearest, least] = [-1, 30 / this.view.pixels];
+      for (let i = 1; i <= this.run.n; ++i) {
+        const away = Math.hypot(x - places[2 * i], y - places[2 * i + 1]);
+        if (away < least) [nearest, least] = [i, away];
+      }
+      if (nearest < 0) return;
+      this.play(false);
+      canvas.setPointerCapture(event.pointerId);
+      const state = this.run.state(this.t);
+      this.given.start.q = [...state.subarray(0, this.run.n)];
+      this.given.start.qd = this.given.start.qd.map(() => 0);
+      this.t = this.run.begin;
+      this.dragged = nearest;
+    });
+    canvas.addEventListener("pointermove", (event) => {
+      if (!this.dragged) return;
+      const [x, y] = place(event);
+      const places = this.run.places(this.run.begin, this.run.state(this.run.begin));
+      const i = this.dragged;
+      const before = this.given.start.q[i - 1];
+      const angle = Math.atan2(y - places[2 * i - 1], x - places[2 * i - 2]);
+      this.given.start.q[i - 1] =
+        angle + 2 * Math.PI * Math.round((before - angle) / (2 * Math.PI));
+      this.t = this.run.begin;
+      this.changed();
+    });
+    const end = () => {
+      if (!this.dragged) return;
+      this.dragged = 0;
+      this.controls.show(this.given);
+    };
+    canvas.addEventListener("pointerup", end);
+    canvas.addEventListener("pointercancel", end);
+  }
+
+  async #measure() {
+    const told = byId("measured");
+    told.textContent = "measuring";
+    const draw = (points) => {
+      const methods = [...new Set(points.map((one) => one.method))];
+      this.charts.cost.set(
+        methods.map((method, k) => {
+          const own = points.filter((one) => one.method === method && one.error > 0);
+          return {
+            name: method,
+            color: COLORS[k % COLORS.length],
+            dots: true,
+            x: own.map((one) => one.ms),
+            y: own.map((one) => one.error),
+          };
+        }),
+      );
+      this.charts.cost.draw();
+    };
+    this.helper.progress = draw;
+    try {
+      const methods = data.methods.filter((name) => name !== "auto" && !name.includes("-"));
+      const points = await this.helper.ask("cost", structuredClone(this.given), { methods });
+      draw(points);
+      this.measured = points;
+      told.textContent = `${points.length} runs; errors against the tightest run`;
+    } catch (error) {
+      told.textContent = error.message;
+    }
+  }
+}
+
+async function begin() {
+  const bytes = await coreBytes();
+  const core = bytes && data.can_run ? await load(bytes.slice(0)) : null;
+  const page = new Page(core, bytes);
+  /** @type {any} */ (window).pendcorePage = page;
+  const isStill = matchMedia("(prefers-reduced-motion: reduce)").matches;
+  page.play(!isStill);
+}
+
+begin().catch((error) => {
+  const message = byId("message");
+  message.textContent = `This page cannot run here: ${error.message}`;
+  message.hidden = false;
+});

@@ -1,0 +1,165 @@
+/** The picture of the chain: links, trace, arrows, ghost and neighbours, on a canvas; y points down. */
+
+const MARGIN = 0.12; // of the total length
+const ARROW = 0.45; // of the total length, for the largest force seen so far
+
+/** A colour of the page's style. */
+export function color(name) {
+  return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+}
+
+/** A canvas whose units are CSS pixels, sharp on every screen. */
+export function fitted(canvas) {
+  const ratio = window.devicePixelRatio || 1;
+  const { clientWidth: width, clientHeight: height } = canvas;
+  if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
+    canvas.width = Math.round(width * ratio);
+    canvas.height = Math.round(height * ratio);
+  }
+  const pen = canvas.getContext("2d");
+  pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+  pen.clearRect(0, 0, width, height);
+  return { pen, width, height };
+}
+
+export class SceneView {
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.largestForce = 0;
+    this.pixels = 1;
+    this.center = [0, 0];
+  }
+
+  forgetForces() {
+    this.largestForce = 0;
+  }
+
+  /** Metres of a place on the canvas, in CSS pixels. */
+  metres(x, y) {
+    return [(x - this.center[0]) / this.pixels, (y - this.center[1]) / this.pixels];
+  }
+
+  draw(shown) {
+    const { pen, width, height } = fitted(this.canvas);
+    const total = shown.lengths.reduce((sum, length) => sum + length, 0);
+    this.pixels = Math.min(width, height) / (2 * total * (1 + MARGIN));
+    this.center = [width / 2, height / 2];
+    this.pen = pen;
+    this.#axes(width, height, total);
+    if (shown.neighbours) this.#neighbours(shown);
+    if (shown.path) this.#line(shown.path, color(shown.isLost ? "lost" : "second"), 1.4, 0.75);
+    if (shown.ghost) this.#chain(shown.ghost, color("first"), 0.55);
+    this.#chain(shown.places, color(shown.isLost ? "lost" : "chain"), 1);
+    if (shown.forces) this.#arrows(shown.places, shown.forces, total);
+  }
+
+  #at(x, y) {
+    return [this.center[0] + x * this.pixels, this.center[1] + y * this.pixels];
+  }
+
+  #axes(width, height, total) {
+    const { pen } = this;
+    pen.strokeStyle = color("line");
+    pen.lineWidth = 1;
+    pen.beginPath();
+    const [x, y] = this.#at(0, 0);
+    pen.moveTo(0, y);
+    pen.lineTo(width, y);
+    pen.moveTo(x, 0);
+    pen.lineTo(x, height);
+    pen.stroke();
+    pen.fillStyle = color("faint");
+    pen.font = "12px system-ui, sans-serif";
+    pen.fillText("x", width - 14, y - 6);
+    pen.fillText("y", x + 6, height - 8);
+    const nice = 10 ** Math.floor(Math.log10(total));
+    const bar = nice * this.pixels;
+    pen.fillRect(12, height - 16, bar, 2);
+    pen.fillText(`${nice} m`, 12, height - 22);
+  }
+
+  #line(points, stroke, lineWidth, alpha) {
+    const { pen } = this;
+    pen.globalAlpha = alpha;
+    pen.strokeStyle = stroke;
+    pen.lineWidth = lineWidth;
+    pen.lineJoin = "round";
+    pen.beginPath();
+    for (let k = 0; k < points.length; k += 2) {
+      const [x, y] = this.#at(points[k], points[k + 1]);
+      if (k === 0) pen.moveTo(x, y);
+      else pen.lineTo(x, y);
+    }
+    pen.stroke();
+    pen.globalAlpha = 1;
+  }
+
+  #chain(places, stroke, alpha) {
+    this.#line(places, stroke, 5, alpha);
+    const { pen } = this;
+    pen.globalAlpha = alpha;
+    pen.fillStyle = stroke;
+    for (let k = 0; k < places.length; k += 2) {
+      const [x, y] = this.#at(places[k], places[k + 1]);
+      pen.beginPath();
+      pen.arc(x, y, k === 0 ? 4 : 6, 0, 2 * Math.PI);
+      pen.fill();
+    }
+    pen.globalAlpha = 1;
+  }
+
+  #arrows(places, forces, total) {
+    const { pen } = this;
+    for (let k = 0; k < forces.length; k += 2) {
+      const size = Math.hypot(forces[k], forces[k + 1]);
+      if (Number.isFinite(size)) this.largestForce = Math.max(this.largestForce, size);
+    }
+    const scale = (ARROW * total) / (this.largestForce || 1);
+    pen.strokeStyle = pen.fillStyle = color("first");
+    pen.lineWidth = 2;
+    pen.font = "12px system-ui, sans-serif";
+    for (let k = 0; k < forces.length; k += 2) {
+      const size = Math.hypot(forces[k], forces[k + 1]);
+      if (!(size > 0)) continue;
+      const [x, y] = this.#at(places[k], places[k + 1]);
+      const [dx, dy] = [forces[k] * scale * this.pixels, forces[k + 1] * scale * this.pixels];
+      const along = Math.hypot(dx, dy) || 1;
+      const [u, v] = [dx / along, dy / along];
+      pen.beginPath();
+      pen.moveTo(x, y);
+      pen.lineTo(x + dx, y + dy);
+      pen.stroke();
+      pen.beginPath();
+      pen.moveTo(x + dx + 7 * u, y + dy + 7 * v);
+      pen.lineTo(x + dx - 4 * v, y + dy + 4 * u);
+      pen.lineTo(x + dx + 4 * v, y + dy - 4 * u);
+      pen.fill();
+      pen.fillText(`${size.toPrecision(3)} N`, x + dx + 10, y + dy);
+    }
+  }
+
+  /** All neighbours are one path, so that a thousand take no longer than a frame. */
+  #neighbours({ neighbours, lengths, t, pivot }) {
+    const { angles, count, n, rate, begin } = neighbours;
+    const steps = angles.length / (count * n);
+    const frame = Math.min(Math.max(Math.round(Math.abs(t - begin) * rate), 0), steps - 1);
+    const { pen, pixels } = this;
+    const [x0, y0] = this.#at(pivot[0], pivot[1]);
+    pen.globalAlpha = 0.12;
+    pen.strokeStyle = color("third");
+    pen.lineWidth = 1;
+    pen.beginPath();
+    for (let k = 0; k < count; ++k) {
+      let [x, y] = [x0, y0];
+      pen.moveTo(x, y);
+      for (let i = 0; i < n; ++i) {
+        const angle = angles[(frame * count + k) * n + i];
+        x += lengths[i] * pixels * Math.cos(angle);
+        y += lengths[i] * pixels * Math.sin(angle);
+        pen.lineTo(x, y);
+      }
+    }
+    pen.stroke();
+    pen.globalAlpha = 1;
+  }
+}

@@ -1,0 +1,94 @@
+"""A browser for pages of runs: Debian's Chromium, driven by selenium."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pendcore as pc
+import pytest
+from pendcore.page.html import core_for_browsers
+
+CHROMIUM = shutil.which("chromium")
+DRIVER = shutil.which("chromedriver")
+SIZES = {"desktop": (1280, 900), "phone": (390, 844)}
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Any]:
+    """Return a browser without a window, and skip the test where there is none."""
+    selenium = pytest.importorskip("selenium.webdriver")
+    if CHROMIUM is None or DRIVER is None:
+        pytest.skip("chromium or chromedriver is missing (Debian: chromium chromium-driver)")
+    options = selenium.ChromeOptions()
+    options.binary_location = CHROMIUM
+    for flag in (
+        "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+        "--disable-background-networking", "--disable-component-update", "--disable-sync",
+    ):  # fmt: skip
+        options.add_argument(flag)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    from selenium.webdriver.chrome.service import Service
+
+    driver = selenium.Chrome(options=options, service=Service(DRIVER))
+    driver.set_window_size(*SIZES["desktop"])
+    yield driver
+    driver.quit()
+
+
+@pytest.fixture
+def core() -> None:
+    """Skip a test of the core in a page where the install has none."""
+    if core_for_browsers() is None:
+        pytest.skip("`make page` builds the core for browsers and installs it")
+
+
+class Opened:
+    """A page in the browser."""
+
+    def __init__(self, browser: Any, file: Path, fragment: str = "") -> None:
+        self.browser = browser
+        browser.get("about:blank")
+        browser.get_log("browser")
+        browser.get_log("performance")
+        browser.get(file.as_uri() + fragment)
+        self.wait("window.pendcorePage !== undefined || !message.hidden")
+
+    def ask(self, expression: str) -> Any:
+        return self.browser.execute_script(f"return {expression}")
+
+    def do(self, statement: str) -> None:
+        self.browser.execute_script(statement)
+
+    def wait(self, condition: str, seconds: float = 20.0) -> None:
+        from selenium.webdriver.support.ui import WebDriverWait
+
+        WebDriverWait(self.browser, seconds, 0.05).until(lambda _: self.ask(condition))
+
+    def text(self, name: str) -> str:
+        return str(self.ask(f"document.getElementById({name!r}).textContent"))
+
+    def click(self, name: str) -> None:
+        self.browser.find_element("id", name).click()
+
+    def copied(self, button: str) -> str:
+        self.do("pendcorePage.copied = null")
+        self.do(f"document.getElementById({button!r}).click()")
+        self.wait("pendcorePage.copied !== null")
+        return str(self.ask("pendcorePage.copied"))
+
+    def complaints(self) -> list[str]:
+        """Return what the page said in the console."""
+        return [one["message"] for one in self.browser.get_log("browser")]
+
+
+@pytest.fixture
+def opened(browser: Any, tmp_path: Path) -> Callable[..., Opened]:
+    """Return what writes the page of a solution and opens it from disk."""
+
+    def open_page(solution: pc.Solution, fragment: str = "") -> Opened:
+        return Opened(browser, solution.to_html(tmp_path / "run.html"), fragment)
+
+    return open_page

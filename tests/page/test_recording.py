@@ -1,0 +1,43 @@
+"""A page without the core plays back what Python computed, and says what is missing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pendcore as pc
+import pytest
+from pendcore.page import html
+
+Open = Callable[..., Any]
+pytestmark = pytest.mark.unsanitized
+
+
+@pytest.fixture
+def sol() -> pc.Solution:
+    return pc.simulate(pc.Scene.textbook(), [0.8, 1.0], t_span=(0, 8))
+
+
+def test_an_install_without_the_core_plays_back_and_says_what_is_missing(
+    sol: pc.Solution, opened: Open, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(html, "core_for_browsers", lambda: None)
+    page = opened(sol)
+    assert "no core for browsers (`make page` in a clone builds it" in page.text("about")
+    assert page.text("bits") == f"played back; Python's hash {sol.run.fingerprint}"
+    page.do("pendcorePage.go(2)")
+    shown = page.ask("pendcorePage.t")
+    assert shown == pytest.approx(2, abs=1 / 60)
+    assert page.ask("[...pendcorePage.run.state(2)]") == pytest.approx([*sol(shown)], abs=1e-5)
+    hidden = "getComputedStyle(document.getElementById('tab-setup')).display"
+    assert page.ask(hidden) == "none"
+    assert page.complaints() == []
+    assert "Right to 0.1 rad to its end." in page.text("trust")
+
+
+def test_functions_of_ones_own_are_played_back(opened: Open) -> None:
+    brake = pc.effects.User(function=lambda t, q, qd: [-0.1 * qd[0], 0.0])
+    run = pc.simulate(pc.Scene.textbook().replace(effects=[brake]), 0.5, t_span=(0, 4))
+    page = opened(run)
+    assert "functions of one's own stay in Python" in page.text("about")
+    assert page.ask("[...pendcorePage.run.state(4)]") == pytest.approx([*run(4.0)], abs=1e-5)
