@@ -41,8 +41,8 @@ test: $(DONE)/installed $(DONE)/test-requirements  ## build and run the tests: e
 # that are compared with pendcore, the fuzzer of the readers, Octave and pandoc. As in .ci/run,
 # compiler warnings are errors.
 test-all: export SKBUILD_CMAKE_DEFINE = PENDCORE_WARNINGS_AS_ERRORS=ON
-test-all: lint tidy build-bench $(DONE)/test-requirements $(DONE)/fuzz-requirements  ## everything: full sweeps, sanitizers, other builds, random cases
-	@sh setup/debian_packages.sh octave pandoc ffmpeg
+test-all: lint tidy build-bench page $(DONE)/test-requirements $(DONE)/fuzz-requirements  ## everything: full sweeps, sanitizers, other builds, random cases
+	@sh setup/debian_packages.sh octave pandoc ffmpeg chromium
 	$(CPP_TESTS)
 	$(PYTEST) --full
 	$(MAKE) sanitize threads elsewhere wheel site fuzz-readers fuzz CASES=20000
@@ -128,7 +128,7 @@ wheel: wasm $(DONE)/build-requirements $(DONE)/wheel-requirements  ## dist/: a w
 
 # The pages are built from a copy, into which the generated ones are written.
 SITE := build/site
-site: $(DONE)/installed $(DONE)/site-requirements  ## the documentation as a site: build/site/html/index.html
+site: page $(DONE)/site-requirements  ## the documentation as a site: build/site/html/index.html
 	rm -rf $(SITE)/source && mkdir -p $(SITE)/source
 	cp -r docs examples cpp tests bench python setup *.md CMakeLists.txt Makefile $(SITE)/source
 	cd $(SITE) && sphinx-build -W --keep-going -q -j auto -d cache -c source/docs/site source/docs html
@@ -222,7 +222,7 @@ $(DONE)/run-requirements: pyproject.toml | $(DONE)/build-requirements
 
 $(DONE)/test-requirements: pyproject.toml | $(DONE)/build-requirements
 	@sh setup/debian_packages.sh doctest
-	python setup/requirements.py test export store cluster symbolic completion | $(PIP_INSTALL) -r /dev/stdin
+	python setup/requirements.py test export store cluster symbolic completion browser | $(PIP_INSTALL) -r /dev/stdin
 	@touch $@
 
 $(DONE)/error-requirements: pyproject.toml | $(DONE)/test-requirements

@@ -4,8 +4,8 @@
 # `also`; they are installed with the others so that a password is asked for only once.
 #
 #   setup/debian_packages.sh [python] [compiler] [eigen] [doctest] [benchmark] [boost] [sundials]
-#                            [valgrind] [octave] [pandoc] [ffmpeg] [aarch64] [riscv64] [s390x]
-#                            [wasm32] [clang] [also ...]
+#                            [valgrind] [octave] [pandoc] [ffmpeg] [chromium] [aarch64] [riscv64]
+#                            [s390x] [wasm32] [clang] [also ...]
 set -eu
 
 python=${PYTHON:-python3}
@@ -62,6 +62,10 @@ for thing in "$@"; do
             ;;
         pandoc) command -v pandoc >/dev/null || miss pandoc ;;
         ffmpeg) command -v ffmpeg >/dev/null || miss ffmpeg ;;
+        chromium) # and what drives it
+            { command -v chromium && command -v chromedriver; } >/dev/null ||
+                miss "chromium chromium-driver"
+            ;;
         *) stop "debian_packages.sh: no '$thing' is known" ;;
     esac
 done

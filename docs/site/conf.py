@@ -3,7 +3,7 @@
 The pages are the Markdown files of docs/, as they read in the repository. Their Python is executed
 while the site is built (executed.py). The pages of the Python reference come from docstrings
 (python_reference.py), those of the C++ reference from the headers (cpp_reference.py), those of the
-examples from their files (example_pages.py). Names in the documentation of Python, NumPy and
+examples from their files (example_pages.py). The first page shows a run alive (live_pages.py). Names in the documentation of Python, NumPy and
 Matplotlib are linked by the list in inventories.py.
 """
 
@@ -19,6 +19,7 @@ sys.path.insert(0, str(HERE))
 import cpp_reference  # noqa: E402
 import example_pages  # noqa: E402
 import inventories  # noqa: E402
+import live_pages  # noqa: E402
 import pendcore  # noqa: E402
 import python_reference  # noqa: E402
 
@@ -74,6 +75,7 @@ html_theme_options = {
     "pygments_dark_style": "a11y-high-contrast-dark",
 }
 
+live_pages.write(HERE / "_static")
 python_reference.write(ROOT / "docs/reference/python")
 example_pages.write(ROOT / "examples", ROOT / "docs/examples")
 cpp_reference.write(ROOT / "cpp/include/pendcore", ROOT / "docs/reference/cpp")

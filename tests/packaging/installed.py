@@ -4,7 +4,7 @@
 
 It repeats runs of tests/cpp/trajectory_hash.cpp, and their hashes must be those that are recorded:
 the textbook's case, a backward run, a chain, and scenes with effects. The exit status is 1 if one
-differs, or if pendcore is not the installed one.
+differs, if a page of a run has no core inside, or if pendcore is not the installed one.
 """
 
 from __future__ import annotations
@@ -84,6 +84,11 @@ def main() -> int:
         same = found == recorded[name]
         wrong += not same
         print(f"{name:20} {found} {'the recorded hash' if same else f'NOT {recorded[name]}'}")
+    with tempfile.TemporaryDirectory() as folder:
+        page = pc.Case.textbook().simulate().to_html(Path(folder, "run.html")).read_text()
+    alive = "plays back" not in page
+    wrong += not alive
+    print(f"a page has {len(page)} bytes, and {'' if alive else 'NOT '}the core inside")
     print(f"pendcore {pc.__version__}, imported in {1000 * IMPORT:.0f} ms")
     return 1 if wrong else 0
 

@@ -44,19 +44,19 @@ class DrawnResult(RunResult):
     ) -> list[Artist]:
         """Draw a figure; without ``what``, the textbook's: the angles, deg, over time, s.
 
-        ===============  ==========================================================================
-        ``"angles"``     the absolute angle of each link, deg, over time
-        ``"rates"``      the rate of each link, rad/s, over time
-        ``"reactions"``  the force on each link at its joint, N, over time: x, y (downwards), size
-        ``"energy"``     kinetic, potential and total energy, J, over time; with ``ledger=True``
-                         the work and loss of every effect
-        ``"path"``       the path of the tip in the plane, with the chain at the start and the end
-        ``"phase"``      the rate of each link, rad/s, over its angle, rad
-        ``"section"``    a Poincare section: rate over angle of a ``link`` where an ``event``
-                         happened, an index into ``sol.events``
-        ``"strip"``      the chain at the times ``t``, s, (k,), side by side
+        =================  ========================================================================
+        ``"angles"``       the absolute angle of each link, deg, over time
+        ``"rates"``        the rate of each link, rad/s, over time
+        ``"reactions"``    the force on each link at its joint, N, over time: x, y (downwards), size
+        ``"energy"``       kinetic, potential and total energy, J, over time; with ``ledger=True``
+                           the work and loss of every effect
+        ``"path"``         the path of the tip in the plane, with the chain at the start and the end
+        ``"phase"``        the rate of each link, rad/s, over its angle, rad
+        ``"section"``      a Poincare section: rate over angle of a ``link`` where an ``event``
+                           happened, an index into ``sol.events``
+        ``"strip"``        the chain at the times ``t``, s, (k,), side by side
         ``"free_bodies"``  each link by itself with the forces on it, N, at the time ``t``, s
-        ===============  ==========================================================================
+        =================  ========================================================================
 
         Parameters
         ----------
