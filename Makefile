@@ -222,7 +222,7 @@ $(DONE)/run-requirements: pyproject.toml | $(DONE)/build-requirements
 
 $(DONE)/test-requirements: pyproject.toml | $(DONE)/build-requirements
 	@sh setup/debian_packages.sh doctest
-	python setup/requirements.py test export store cluster symbolic completion browser | $(PIP_INSTALL) -r /dev/stdin
+	python setup/requirements.py test export store cluster symbolic completion browser notebook | $(PIP_INSTALL) -r /dev/stdin
 	@touch $@
 
 $(DONE)/error-requirements: pyproject.toml | $(DONE)/test-requirements

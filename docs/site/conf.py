@@ -3,8 +3,8 @@
 The pages are the Markdown files of docs/, as they read in the repository. Their Python is executed
 while the site is built (executed.py). The pages of the Python reference come from docstrings
 (python_reference.py), those of the C++ reference from the headers (cpp_reference.py), those of the
-examples from their files (example_pages.py). The first page shows a run alive (live_pages.py). Names in the documentation of Python, NumPy and
-Matplotlib are linked by the list in inventories.py.
+examples from their files (example_pages.py). The first page shows a run alive (live_pages.py).
+Names in the documentation of Python, NumPy and Matplotlib are linked by the list in inventories.py.
 """
 
 from __future__ import annotations

@@ -14,9 +14,10 @@ from pendcore.figures.plot import plot as draw
 from pendcore.films.animate import animate
 from pendcore.films.stage import Choices
 from pendcore.films.video import to_video
-from pendcore.messages.arguments import known_keywords
+from pendcore.messages.arguments import known_keywords, whole_number
 from pendcore.messages.progress import Progress
 from pendcore.page.html import page_of
+from pendcore.page.notebook import NotebookPage, widget_of
 from pendcore.run.result import RunResult
 
 if TYPE_CHECKING:
@@ -212,6 +213,37 @@ class DrawnResult(RunResult):
         with whole_file(path) as file:
             file.write_text(page_of(self, title or self.name or "pendcore"), encoding="utf-8")
         return Path(path)
+
+    @known_keywords
+    def page(self, *, height: int = 900) -> NotebookPage:
+        """Return the page of `to_html` as a notebook shows it: alive, in exported notebooks, too.
+
+        ``height`` is in pixels. A notebook grows by the size of the page, 0.7 MB.
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> sol.page()._repr_html_()[:15]  # a notebook calls this
+        '<iframe srcdoc='
+        """
+        pixels = whole_number("height", height)
+        return NotebookPage(page_of(self, self.name or "pendcore"), pixels)
+
+    @known_keywords
+    def widget(self, *, height: int = 900) -> Any:
+        """Return the same page as an anywidget (which takes that package).
+
+        Its attribute ``case`` is the case that the page shows now, named as in a case file: what
+        its reader has dragged and set can be read in Python.
+
+        Examples
+        --------
+        >>> widget = pc.Case.textbook().simulate().widget()
+        >>> widget.case is None  # until a notebook shows it
+        True
+        """
+        pixels = whole_number("height", height)
+        return widget_of(page_of(self, self.name or "pendcore"), pixels)
 
 
 def _names(runs: tuple[RunResult, ...], given: tuple[str, ...] | None) -> tuple[str, ...]:

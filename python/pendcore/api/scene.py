@@ -4,13 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
 import numpy.typing as npt
 
 from pendcore.explanation.explain import explain
 from pendcore.explanation.explanation import Explanation
 from pendcore.messages.arguments import known_keywords, vector
+from pendcore.messages.html import beside, drawing, table
 from pendcore.scene.frozen_state import frozen_state
 from pendcore.scene.scene import SceneData
+
+MOST_ROWS = 20
+"""The most links in the table of a notebook."""
 
 
 @frozen_state
@@ -51,6 +56,22 @@ class Scene(SceneData):
     >>> scene.effects
     (ViscousJoint(joint=2, damping=0.1),)
     """
+
+    def _repr_html_(self) -> str:
+        links = [
+            [str(i), *(f"{x:.6g}" for x in (one.mass, one.length, one.center, one.inertia))]
+            for i, one in enumerate(self.links[:MOST_ROWS], 1)
+        ]
+        left_out = len(self.links) - len(links)
+        links += [[f"and {left_out} more", "", "", "", ""]] * (left_out > 0)
+        head = ("link", "mass (kg)", "length (m)", "center (m)", "inertia (kg m^2)")
+        effects = [[str(i), repr(one)] for i, one in enumerate(self.effects, 1)]
+        below = table(effects, ("", "effect")) if effects else "<p>no effects</p>"
+        n = len(self.links)
+        slanted = np.linspace(0.35, 0.9, n)[np.newaxis]  # rad; a pose that shows every link
+        pose = self._compiled.positions(np.zeros(1), slanted)[0]
+        about = f"<p>gravity {self.gravity:.6g} m/s^2, downwards</p>"
+        return beside(about + table(links, head) + below, drawing([pose], None, f"{n} links"))
 
     @known_keywords
     def explain(self, t: float = 0.0, q: npt.ArrayLike | None = None) -> Explanation:

@@ -12,6 +12,7 @@ from pendcore import _core
 from pendcore.ensemble.members import Members
 from pendcore.ensemble.request import Request
 from pendcore.messages.arguments import Floats
+from pendcore.messages.html import table
 
 
 class EnsembleResult:
@@ -131,6 +132,11 @@ class EnsembleResult:
             steps = self.statistics["accepted"]
             lines.append(f"{steps} steps, {self.statistics['nfev']} right-hand sides or series")
         return "\n".join(lines)
+
+    def _repr_html_(self) -> str:
+        first, *rest = str(self).split("\n")
+        rows = [("", first)] + [("", line) for line in rest]
+        return table(rows)
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} of {len(self)} members {self.shape}>"

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 from pendcore.explanation.equilibria import Equilibrium, Mode
 from pendcore.explanation.not_modelled import Absence
+from pendcore.messages.html import beside, table
 from pendcore.scene.drives import changes_with_time
 from pendcore.scene.scene import Mobility, SceneData
 
@@ -125,6 +126,22 @@ class Explanation:
             "remarks": self.remarks,
         }
         return _plain(told)  # type: ignore[no-any-return]
+
+    def _repr_html_(self) -> str:
+        costs = [
+            [one.what, "" if one.operations is None else str(one.operations),
+             f"{one.nanoseconds:.0f}"]
+            for one in self.costs
+        ]  # fmt: skip
+        found = [
+            [one.name, one.stability, ", ".join(f"{x.angular_frequency:.4g}" for x in one.modes)]
+            for one in self.equilibria
+        ]
+        return beside(
+            table(costs, ("simulated", "operations", "ns")),
+            table(found, ("equilibrium", "", "frequencies (rad/s)")),
+            table([[one.sentence] for one in self.not_simulated], ("not simulated",)),
+        )
 
     def __repr__(self) -> str:
         return _text(self)

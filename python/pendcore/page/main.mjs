@@ -88,16 +88,28 @@ class Page {
     this.#listen();
     this.rerun();
     this.controls?.show(this.given);
+    this.tell();
     if (core) methodFields(byId("method"), this.given, data.methods, () => this.changed());
     requestAnimationFrame((now) => this.frame(now));
   }
 
   /** The case has changed: it runs anew, and the address holds it. */
   changed() {
-    history.replaceState(null, "", addressOf(this.given));
+    this.tell();
+    try {
+      history.replaceState(null, "", addressOf(this.given));
+    } catch {
+      // A frame in a notebook has no address of its own.
+    }
     this.neighbours = null;
     this.validUntil = null;
     this.rerun();
+  }
+
+  /** Tells a notebook around the page what it shows. */
+  tell() {
+    if (window.parent !== window)
+      window.parent.postMessage({ pendcore: writeCase(this.given) }, "*");
   }
 
   rerun() {

@@ -6,6 +6,8 @@ from dataclasses import asdict, dataclass
 from math import inf
 from typing import Any, Literal, NamedTuple, TypeAlias
 
+from pendcore.messages.html import table
+
 Outcome: TypeAlias = Literal["kept", "refused", "ended early"]
 
 
@@ -122,6 +124,18 @@ class Accuracy:
             f"{asked}, achieved {self.achieved:.1e} of the total length {where}{verdict}: "
             f"verified by {self.verified_by}"
         )
+
+    def _repr_html_(self) -> str:
+        reached = f"{self.achieved:.1e}" if self.times else "not known"
+        rows = [
+            ("asked", f"{self.asked:.1e} of the total length"),
+            ("achieved", reached),
+            ("outcome", self.outcome),
+            ("verified by", self.verified_by),
+            ("paid", f"{len(self.paid)} runs, {self.work():.0f} right-hand sides in all, "
+             f"{self.work('run'):.0f} of them in this run; {self.seconds:.2g} s"),
+        ]  # fmt: skip
+        return table(rows)
 
     def __repr__(self) -> str:
         return (

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from html import escape
+
+import numpy as np
 
 from pendcore.messages.arguments import Floats
+from pendcore.messages.html import beside, drawing, table
 from pendcore.run.methods import known_methods
 from pendcore.run.result import RunResult
 from pendcore.views import energy_drift
 
+_POSES, _MOST_POINTS = 6, 400
+"""The poses in a drawing of a run, and the most points of the tip's path."""
 _MANY = 4000
 """With more times than this, a repr computes the energy at some of them only."""
 
@@ -23,12 +27,17 @@ def text(solution: RunResult) -> str:
 
 
 def html(solution: RunResult) -> str:
-    """Return these lines as an HTML table."""
-    rows = "".join(
-        f"<tr><th style='text-align: left'>{escape(name)}</th><td>{escape(value)}</td></tr>"
-        for name, value in _rows(solution)
-    )
-    return f"<table>{rows}</table>"
+    """Return these lines as an HTML table, beside a drawing of the run."""
+    rows = table(_rows(solution))
+    t, q = solution.t, solution.q
+    right = np.isfinite(q).all(axis=1)
+    if not right.any():
+        return rows
+    some = np.flatnonzero(right)[:: -(-int(right.sum()) // _MOST_POINTS)]
+    places = solution.scene._compiled.positions(t[some], np.ascontiguousarray(q[some]))
+    chosen = np.unique(np.linspace(0, len(places) - 1, _POSES).round().astype(int))
+    title = f"the chain at {len(chosen)} times, the last of them black, and the path of its tip"
+    return beside(rows, drawing(places[chosen], places[:, -1], title))
 
 
 def listed(values: Sequence[float] | Floats, most: int = 6) -> str:

@@ -1,0 +1,74 @@
+"""Small tables and drawings in HTML, as notebooks show objects; numbers only, no style sheet."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from html import escape
+
+import numpy as np
+import numpy.typing as npt
+
+_LEFT = "text-align: left; vertical-align: top"
+_WIDTH = 180
+"""Pixels, of a drawing."""
+
+
+def table(rows: Iterable[Sequence[str]], head: Sequence[str] = ()) -> str:
+    """Return a table; without a head, the first cell of each row names it."""
+    lines = []
+    if head:
+        cells = "".join(f"<th style='{_LEFT}'>{escape(cell)}</th>" for cell in head)
+        lines.append(f"<tr>{cells}</tr>")
+    for row in rows:
+        first = "td" if head else "th"
+        cells = "".join(
+            f"<{kind} style='{_LEFT}'>{escape(cell)}</{kind}>"
+            for kind, cell in zip([first, *["td"] * (len(row) - 1)], row, strict=True)
+        )
+        lines.append(f"<tr>{cells}</tr>")
+    return f"<table>{''.join(lines)}</table>"
+
+
+def beside(*parts: str) -> str:
+    """Return parts side by side."""
+    inner = "".join(f"<div style='margin-right: 1.5em'>{part}</div>" for part in parts)
+    return f"<div style='display: flex; flex-wrap: wrap; align-items: flex-start'>{inner}</div>"
+
+
+def drawing(
+    poses: Iterable[npt.NDArray[np.float64]],
+    path: npt.NDArray[np.float64] | None = None,
+    title: str = "",
+) -> str:
+    """Return chains, (n+1, 2) places in m each, as a drawing; y points down, as in SVG itself.
+
+    The last pose is black, those before it are the fainter the earlier. ``path``, (k, 2), is a line
+    behind them.
+    """
+    shown = [np.asarray(pose) for pose in poses]
+    every = np.concatenate([*shown, *([] if path is None else [path])])
+    every = every[np.isfinite(every).all(axis=1)]
+    low, high = every.min(axis=0), every.max(axis=0)
+    size = max(float((high - low).max()), 1e-12)
+    scale = 0.84 * _WIDTH / size
+    shift = _WIDTH / 2 - scale * (low + high) / 2
+
+    def points(line: npt.NDArray[np.float64]) -> str:
+        return " ".join(f"{x:.1f},{y:.1f}" for x, y in scale * line + shift)
+
+    lines = []
+    if path is not None:
+        lines.append(
+            f"<polyline points='{points(path)}' fill='none' stroke='#1f5fa8' stroke-width='1' "
+            "opacity='0.6'/>"
+        )
+    for k, pose in enumerate(shown, 1):
+        opacity = 1.0 if k == len(shown) else 0.15 + 0.45 * k / len(shown)
+        lines.append(
+            f"<polyline points='{points(pose)}' fill='none' stroke='currentColor' stroke-width='3' "
+            f"stroke-linecap='round' stroke-linejoin='round' opacity='{opacity:.2f}'/>"
+        )
+    return (
+        f"<svg width='{_WIDTH}' height='{_WIDTH}' role='img'><title>{escape(title)}</title>"
+        f"{''.join(lines)}</svg>"
+    )

@@ -1,0 +1,155 @@
+"""What notebooks show: tables with a drawing, the page in a frame, the widget that Python reads."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from html import unescape
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+import pendcore as pc
+import pytest
+from pendcore.page.html import core_for_browsers
+
+
+@pytest.fixture(scope="module")
+def sol() -> pc.Solution:
+    effects = [pc.effects.ViscousJoint(joint=2, damping=0.05), pc.effects.Payload(mass=0.2)]
+    scene = pc.Scene.textbook().replace(effects=effects)
+    return pc.simulate(scene, [0.8, 1.0], t_span=(0, 8), error=1e-6)
+
+
+def objects(sol: pc.Solution) -> dict[str, Any]:
+    return {
+        "solution": sol,
+        "scene": sol.scene,
+        "explanation": sol.scene.explain(),
+        "accuracy": sol.accuracy,
+        "ensemble": pc.ensemble(sol.scene, q0=np.zeros((3, 2)), t_span=(0, 1)),
+    }
+
+
+NAMES = ("solution", "scene", "explanation", "accuracy", "ensemble")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_an_object_is_shown_by_a_short_table_that_is_whole(name: str, sol: pc.Solution) -> None:
+    told = objects(sol)[name]._repr_html_()
+    ElementTree.fromstring(f"<div>{told}</div>")  # every tag is closed
+    assert "<table>" in told
+    assert len(told) < 20_000
+    assert not re.search(r"\bnan\b|None|object at", told)
+
+
+def test_tables_hold_the_numbers_with_their_units(sol: pc.Solution) -> None:
+    told = {name: one._repr_html_() for name, one in objects(sol).items()}
+    assert "9.807 m/s^2" in told["scene"]
+    assert "damping=0.05" in told["scene"]
+    assert "frequencies (rad/s)" in told["explanation"]
+    assert "Bending of the links" in told["explanation"]
+    assert "1.0e-06 of the total length" in told["accuracy"]
+    assert "kept" in told["accuracy"]
+    assert "3 members (3,)" in told["ensemble"]
+    assert "last q" in told["solution"]
+
+
+def test_the_drawing_is_the_chain_with_y_downwards(sol: pc.Solution) -> None:
+    told = sol._repr_html_()
+    lines = re.findall(r"<polyline points='([^']+)' fill='none' stroke='(\w+|#\w+)'", told)
+    assert [stroke for _, stroke in lines] == ["#1f5fa8"] + ["currentColor"] * 6
+    last = np.array([pair.split(",") for pair in lines[-1][0].split()], dtype=float)
+    true = sol.positions()[-1]
+    scale = np.hypot(*(last[1] - last[0]))  # a link is 1 m
+    assert last - last[0] == pytest.approx(scale * (true - true[0]), abs=0.2)
+
+
+def test_a_run_that_blew_up_is_shown_as_far_as_it_can_be_drawn() -> None:
+    feeds = pc.effects.ViscousJoint(joint=2, damping=0.0, damping3=-50.0)
+    with pytest.warns(pc.PendcoreWarning, match="feeds energy"):
+        wild = pc.Scene.textbook().replace(effects=[feeds])
+    blown = pc.simulate(wild, [0.8, 1.0], [0, 5], (0, 4), check=False)
+    ElementTree.fromstring(f"<div>{blown._repr_html_()}</div>")
+
+
+def test_a_scene_of_many_links_has_a_short_table() -> None:
+    told = pc.Scene(links=[pc.Link(mass=1.0, length=0.1)] * 60)._repr_html_()
+    assert "and 40 more" in told
+    assert told.count("<tr>") < 25
+
+
+@pytest.mark.unsanitized
+def test_the_page_lives_in_a_frame(
+    sol: pc.Solution, browser: Any, tmp_path: Any, core: None
+) -> None:
+    shown = tmp_path / "notebook.html"
+    shown.write_text(f"<!doctype html><body>{sol.page(height=700)._repr_html_()}</body>")
+    assert unescape(shown.read_text()).count("<title>pendcore</title>") == 1
+    browser.get(shown.as_uri())
+    browser.switch_to.frame(browser.find_element("tag name", "iframe"))
+    try:
+        told = waited(browser, "document.getElementById('bits')?.textContent || ''")
+        assert told == f"the bits of Python: hash {sol.run.fingerprint} = {sol.run.fingerprint}"
+    finally:
+        browser.switch_to.default_content()
+
+
+def waited(browser: Any, expression: str) -> Any:
+    from selenium.webdriver.support.ui import WebDriverWait
+
+    ask: Callable[[Any], Any] = lambda one: one.execute_script(f"return {expression}")  # noqa: E731
+    return WebDriverWait(browser, 20, 0.05).until(ask)
+
+
+@pytest.mark.unsanitized
+def test_the_widget_tells_python_what_its_reader_does(
+    sol: pc.Solution, browser: Any, tmp_path: Any, core: None
+) -> None:
+    pytest.importorskip("anywidget")
+    widget = sol.widget(height=640)
+    assert (widget.case, widget.height) == (None, 640)
+    (tmp_path / "page.html").write_text(widget.page)
+    # A model as notebooks have it; what it is told is handed to the widget below.
+    shown = tmp_path / "notebook.html"
+    shown.write_text(
+        "<!doctype html><body><div id='here'></div><script type='module'>"
+        + widget._esm.replace("export default { render };", "")
+        + "const values = { page: "
+        + repr_js(widget.page)
+        + ", height: 640 };"
+        "window.values = values;"
+        "const model = { get: (name) => values[name], set: (name, x) => { values[name] = x },"
+        " save_changes() {} };"
+        "render({ model, el: document.getElementById('here') });</script></body>"
+    )
+    browser.get(shown.as_uri())
+    widget.text = waited(browser, "window.values?.text")
+    assert widget.case["gravity"] == 9.807
+    browser.switch_to.frame(browser.find_element("tag name", "iframe"))
+    browser.execute_script("pendcorePage.given.gravity = 1.62; pendcorePage.changed()")
+    browser.switch_to.default_content()
+    widget.text = waited(browser, "window.values.text.includes('1.62') && window.values.text")
+    assert widget.case["gravity"] == 1.62
+    assert widget.case["effect"][0] == {"kind": "viscous_joint", "joint": 2, "damping": 0.05}
+
+
+def repr_js(text: str) -> str:
+    import json
+
+    return json.dumps(text).replace("</", "<\\/")
+
+
+def test_a_widget_without_its_package_says_what_is_missing(
+    sol: pc.Solution, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(__import__("sys").modules, "anywidget", None)
+    with pytest.raises(ImportError, match=r"anywidget is missing \(pip: anywidget\)"):
+        sol.widget()
+
+
+def test_the_core_for_browsers_is_small() -> None:
+    packed = core_for_browsers()
+    if packed is None:
+        pytest.skip("`make page` builds the core for browsers and installs it")
+    assert len(packed) < 450_000
