@@ -16,54 +16,15 @@ const INSTRUCTION = [0xfd, 0x87, 0x02, 0x01, 0x01, 0x01];
 const SITE = INSTRUCTION.length;
 
 /** (func (param $a f64) (param $b f64) (param $c f64) (result f64)) by relaxed_madd on two lanes. */
-// prettier-ignore
+// biome-ignore format: a row is a section
 const PROBE = Uint8Array.from([
   ...MAGIC,
-  1,
-  8,
-  1,
-  0x60,
-  3,
-  0x7c,
-  0x7c,
-  0x7c,
-  1,
-  0x7c, // a type
-  3,
-  2,
-  1,
-  0, // a function of it
-  7,
-  5,
-  1,
-  1,
-  0x66,
-  0,
-  0, // exported as "f"
-  10,
-  22,
-  1,
-  20,
-  0, // its code: splat a, b and c, fuse them, take a lane
-  0x20,
-  0,
-  0xfd,
-  0x14,
-  0x20,
-  1,
-  0xfd,
-  0x14,
-  0x20,
-  2,
-  0xfd,
-  0x14,
-  0xfd,
-  0x87,
-  0x02,
-  0xfd,
-  0x21,
-  0,
-  0x0b,
+  1, 8, 1, 0x60, 3, 0x7c, 0x7c, 0x7c, 1, 0x7c, // a type
+  3, 2, 1, 0, // a function of it
+  7, 5, 1, 1, 0x66, 0, 0, // exported as "f"
+  10, 22, 1, 20, 0, // its code: splat a, b and c, fuse them, take a lane
+  0x20, 0, 0xfd, 0x14, 0x20, 1, 0xfd, 0x14, 0x20, 2, 0xfd, 0x14,
+  0xfd, 0x87, 0x02, 0xfd, 0x21, 0, 0x0b,
 ]);
 
 /** Whether this engine has an instruction for a b + c that rounds once. */

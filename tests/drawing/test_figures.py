@@ -132,6 +132,20 @@ def test_the_forces_on_a_free_body_are_its_mass_times_its_acceleration() -> None
     assert drag @ speed < 0  # drag brakes
 
 
+def test_a_fast_pivot_is_no_force_on_a_link() -> None:
+    shaken = pc.effects.DrivenPivot(y=pc.effects.Sinusoid(amplitude=0.01, angular_frequency=5e3))
+    drag = pc.effects.RodDrag(link=2, drag_coefficient=1.2, diameter=0.05)
+    scene = pc.Scene.textbook().replace(effects=[shaken, drag])
+    state = np.array([1e-3]), np.array([[0.3, 0.9]]), np.array([[2.0, -5.0]])
+    first, second = forces_on_links(scene, *state)
+    assert [kind for kind, _, _ in first] == ["joint", "joint", "weight"]
+    assert [kind for kind, _, _ in second] == ["joint", "weight", "other"]
+    slow = scene.replace(effects=[drag])
+    slow_drag = forces_on_links(slow, *state)[1][-1][2]
+    # The pivot's speed is part of the wind that the rod feels, so that the drags are of one size.
+    assert 0.1 < np.hypot(*second[-1][2]) / np.hypot(*slow_drag) < 1e3
+
+
 def test_free_bodies_show_each_force_by_its_size(sol: pc.Solution) -> None:
     artists = sol.plot(axes(), what="free_bodies", t=1.0, color="b")
     axis = artists[0].axes
@@ -162,6 +176,9 @@ def test_what_is_past_the_horizon_is_shaded_or_pale() -> None:
         ({"what": "path", "link": 2}, "link: belongs to what = 'section'"),
         ({"what": "strip", "horizon": 0.1}, "horizon: what = 'strip' shows no times"),
         ({"what": "section", "link": 3}, "link = 3: must be 1 to 2"),
+        ({"what": "section", "link": 0}, "link = 0: must be 1 to 2"),
+        ({"what": "strip", "label": "mine"}, "label: belongs to what = 'angles' and"),
+        ({"what": "free_bodies", "t": [1.0, 2.0]}, "t: 2 times: must be one"),
         ({"what": "section", "event": 1}, "event = 1: must be 0 to 0"),
         ({"what": "free_bodies", "t": 9.0}, "t = 9"),
     ],
@@ -177,6 +194,9 @@ def test_a_run_without_dense_output_shows_the_times_it_kept() -> None:
     run = pc.Case.textbook().simulate().case()
     kept = pc.simulate(run.scene, run.q0, t_span=(0, 5), t_eval=np.linspace(0, 5, 11))
     assert len(kept.plot(axes(), what="strip")) == 16
+    assert kept.plot(axes(), what="free_bodies")[0].axes.get_title() == "t = 0 s"
+    later = pc.simulate(run.scene, run.q0, t_span=(0, 5), t_eval=[1.0, 2.0])
+    assert later.plot(axes(), what="free_bodies")[0].axes.get_title() == "t = 1 s"
     with pytest.raises(ValueError, match="kept no dense output and not this time"):
         kept.plot(axes(), what="strip", t=[0.3])
 

@@ -100,6 +100,11 @@ def test_several_runs_stand_on_top_of_each_other_or_side_by_side(sol: pc.Solutio
     assert len(stage(sol, energy=True).figure.axes) == 2
 
 
+def test_the_whole_path_can_be_shown(sol: pc.Solution) -> None:
+    film = stage(sol, trace=np.inf)
+    assert len(film.show(60)[0].get_xdata()) == 4 * 60 + 1
+
+
 def test_arrows_are_the_reactions(sol: pc.Solution) -> None:
     film = stage(sol, reactions=True)
     arrows = film.show(20)[2]
@@ -108,6 +113,8 @@ def test_arrows_are_the_reactions(sol: pc.Solution) -> None:
     force = sol.scene._compiled.reactions(at, q, qd)[0]
     assert pytest.approx(force[:, 0] / force[:, 1]) == arrows.U / arrows.V
     assert np.array_equal(arrows.get_offsets(), chain(film, 20)[:-1])
+    sizes = [text.get_text() for text in film.show(20)[3:5]]
+    assert sizes == [f" {np.hypot(*one):.3g} N" for one in force]
 
 
 def test_a_run_is_pale_past_its_horizon() -> None:
@@ -222,6 +229,10 @@ def test_a_film_that_is_stopped_leaves_no_file(
         ({"fps": -1}, ValueError, "fps = -1.0: must be > 0"),
         ({"size": (641, 360)}, ValueError, r"size\[0\] = 641: must be even"),
         ({"size": 640}, TypeError, "size = 640: must be"),
+        ({"trace": -1}, ValueError, r"trace = -1.0: must be >= 0 \(s\); inf shows"),
+        ({"trace": "all"}, TypeError, "trace = 'all': must be a real number"),
+        ({"fps": 60}, ValueError, r"fps = 60: must be at most 50 \(1/s\) in a GIF"),
+        ({"speed": 0.01}, ValueError, "6001 frames: a GIF is made in memory"),
         ({"names": ("a", "b")}, ValueError, "must be 1, one for each run"),
     ],
 )
@@ -247,17 +258,43 @@ def test_an_animation_draws_its_frames(sol: pc.Solution) -> None:
     animation._draw_was_started = True  # type: ignore[attr-defined]  nobody looks at it
 
 
-@pytest.mark.parametrize("name", ["swing.gif", "swing.png"])
+@pytest.mark.parametrize(
+    ("name", "options"), [("swing.gif", ["--speed", "4", "--fps", "10"]), ("swing.png", [])]
+)
 def test_the_command_writes_films_and_strips(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, options: list[str]
 ) -> None:
     out = tmp_path / name
-    assert main(["show", "-o", str(out), "--speed", "4", "--fps", "10", "--json"]) == 0
+    assert main(["show", "-o", str(out), "--json", *options]) == 0
     told = capsys.readouterr()
     assert json.loads(told.out) == {"file": str(out), "status": "finished"}
     assert told.err == f"written to {out}\n"
     with Image.open(out) as image:
         assert image.width > 600
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["show", "-o", "a.png", "--reactions"], "--reactions: is for films"),
+        (["show", "-o", "a.html", "--speed", "0.5"], "--speed: is for films"),
+        (["plot", "run.npz", "--what", "path", "--at", "1"], "t: belongs to what = 'strip' and"),
+        (["plot", "run.npz", "--what", "strip", "--horizon", "0.1"], "horizon: what = 'strip'"),
+    ],
+)
+def test_the_command_refuses_options_that_show_nothing(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    arguments: list[str],
+    told: str,
+    sol: pc.Solution,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    sol.save("run.npz")
+    assert main(arguments) == 2
+    assert told in capsys.readouterr().err
+    assert [one.name for one in tmp_path.iterdir()] == ["run.npz"]
 
 
 def test_the_command_refuses_other_files(

@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pendcore as pc
 import pytest
+from pendcore.messages.html import drawing
 from pendcore.page.html import core_for_browsers
 
 
@@ -65,12 +66,21 @@ def test_the_drawing_is_the_chain_with_y_downwards(sol: pc.Solution) -> None:
     assert last - last[0] == pytest.approx(scale * (true - true[0]), abs=0.2)
 
 
-def test_a_run_that_blew_up_is_shown_as_far_as_it_can_be_drawn() -> None:
-    feeds = pc.effects.ViscousJoint(joint=2, damping=0.0, damping3=-50.0)
-    with pytest.warns(pc.PendcoreWarning, match="feeds energy"):
-        wild = pc.Scene.textbook().replace(effects=[feeds])
-    blown = pc.simulate(wild, [0.8, 1.0], [0, 5], (0, 4), check=False)
-    ElementTree.fromstring(f"<div>{blown._repr_html_()}</div>")
+def test_the_last_pose_is_drawn_last_in_a_run_of_many_times() -> None:
+    run = pc.simulate(pc.Scene.textbook(), 0.0, t_span=(0, 60))
+    assert len(run.t) > 450
+    told = re.findall(r"points='([^']+)'", run._repr_html_())
+    last = np.array([pair.split(",") for pair in told[-1].split()], dtype=float)
+    true = run.positions()[-1]
+    scale = np.hypot(*(last[1] - last[0]))
+    assert last - last[0] == pytest.approx(scale * (true - true[0]), abs=0.2)
+
+
+def test_what_is_not_finite_is_left_out_of_a_drawing() -> None:
+    wild = np.array([[0.0, 0.0], [np.nan, np.inf], [1.0, 1.0]])
+    told = drawing([np.array([[0.0, 0.0], [1.0, 1.0]])], wild)
+    assert "nan" not in told
+    assert "inf" not in told
 
 
 def test_a_scene_of_many_links_has_a_short_table() -> None:
@@ -85,7 +95,7 @@ def test_the_page_lives_in_a_frame(
 ) -> None:
     shown = tmp_path / "notebook.html"
     shown.write_text(f"<!doctype html><body>{sol.page(height=700)._repr_html_()}</body>")
-    assert unescape(shown.read_text()).count("<title>pendcore</title>") == 1
+    assert unescape(shown.read_text()).count("<title>A pendulum</title>") == 1
     browser.get(shown.as_uri())
     browser.switch_to.frame(browser.find_element("tag name", "iframe"))
     try:
@@ -132,6 +142,8 @@ def test_the_widget_tells_python_what_its_reader_does(
     widget.text = waited(browser, "window.values.text.includes('1.62') && window.values.text")
     assert widget.case["gravity"] == 1.62
     assert widget.case["effect"][0] == {"kind": "viscous_joint", "joint": 2, "damping": 0.05}
+    widget.text = '{"effect": [{"range": ["-inf", 1]}]}'
+    assert widget.case == {"effect": [{"range": [-np.inf, 1]}]}
 
 
 def repr_js(text: str) -> str:

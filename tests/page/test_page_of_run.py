@@ -7,11 +7,12 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 import numpy as np
 import pendcore as pc
 import pytest
-from elsewhere.test_javascript import CASES, START, STARTS, scene_in_python
+from browser_cases import CASES, START, STARTS, scene_in_python
 from pendcore.page import html
 
 Open = Callable[..., Any]
@@ -103,130 +104,60 @@ def test_the_case_is_copied_as_toml_as_python_and_as_a_link(
     assert other.ask("pendcorePage.hash") == again.run.fingerprint
 
 
-@pytest.mark.parametrize("size", ["desktop", "phone"])
-def test_dragging_the_tip_starts_the_run_elsewhere(
-    sol: pc.Solution, opened: Open, browser: Any, size: str
+def test_an_address_that_is_refused_shows_the_run_of_the_page(
+    sol: pc.Solution, opened: Open
 ) -> None:
-    from page.conftest import SIZES
-    from selenium.webdriver.common.action_chains import ActionChains
-
-    browser.set_window_size(*SIZES[size])
-    try:
-        page = opened(sol)
-        page.do("pendcorePage.go(0)")
-        x, y, left, top = page.ask(
-            "(() => { const { view, run } = pendcorePage; const p = run.places(0, run.state(0));"
-            " view.canvas.scrollIntoView();"
-            " const { left, top } = view.canvas.getBoundingClientRect();"
-            " return [p[4] * view.pixels, p[5] * view.pixels,"
-            " left + view.center[0], top + view.center[1]] })()"
-        )
-        drag = ActionChains(browser)
-        drag.w3c_actions.pointer_action.move_to_location(round(left + x), round(top + y))
-        drag.w3c_actions.pointer_action.pointer_down()
-        drag.w3c_actions.pointer_action.move_to_location(round(left + x - 40), round(top + y - 60))
-        drag.w3c_actions.pointer_action.pointer_up()
-        drag.perform()
-        moved = page.ask("pendcorePage.given.start.q")
-        assert moved[0] == 0.8
-        wanted = np.arctan2(
-            y - 60 - page.ask("pendcorePage.view.pixels") * np.sin(0.8),
-            x - 40 - page.ask("pendcorePage.view.pixels") * np.cos(0.8),
-        )
-        assert moved[1] == pytest.approx(wanted, abs=0.05)
-        run = pc.simulate(sol.scene, moved, t_span=(0, 8))
-        assert page.ask("pendcorePage.hash") == run.run.fingerprint
-    finally:
-        browser.set_window_size(*SIZES["desktop"])
+    case = opened(sol).ask("structuredClone(pendcorePage.given)")
+    case["link"][0]["mass"] = -1.0
+    page = opened(sol, "#case=" + quote(json.dumps(case)))
+    assert page.text("message").startswith("The address holds a run that is refused: link 1: mass")
+    assert page.text("bits").startswith("the bits of Python")
+    for nonsense in ("{}", "null", "[1", '{"link":[{}],"effect":[]}'):
+        page = opened(sol, "#case=" + quote(nonsense))
+        assert page.text("bits").startswith("the bits of Python"), nonsense
+        assert page.ask("message.hidden")
 
 
-def test_keys_play_step_and_go_home(sol: pc.Solution, opened: Open, browser: Any) -> None:
-    from selenium.webdriver.common.keys import Keys
-
+def test_another_address_in_the_same_page_is_followed(sol: pc.Solution, opened: Open) -> None:
     page = opened(sol)
-    page.do("pendcorePage.play(false); pendcorePage.go(1)")
-    scene = browser.find_element("id", "scene")
-    scene.send_keys(Keys.ARROW_RIGHT, Keys.ARROW_RIGHT)
-    assert page.ask("pendcorePage.t") == pytest.approx(1 + 2 / 60)
-    scene.send_keys(Keys.HOME)
-    assert page.text("clock") == "0.00 s"
-    scene.send_keys(Keys.SPACE)
-    assert page.text("play") == "Pause"
-    page.wait("pendcorePage.t > 0.2")
-    label = page.ask("document.getElementById('scene').getAttribute('aria-label')")
-    assert re.fullmatch(r"At \d\.\d\d s: q1 [\d.-]+ degrees, q2 [\d.-]+ degrees", label)
-
-
-def test_every_control_has_a_name(sol: pc.Solution, opened: Open) -> None:
-    page = opened(sol)
-    nameless = page.ask(
-        "[...document.querySelectorAll('button, input, select, canvas')].filter((one) =>"
-        " !(one.getAttribute('aria-label') || one.labels?.length || one.textContent.trim()))"
-        ".map((one) => one.outerHTML)"
-    )
-    assert nameless == []
-
-
-def test_sliders_change_parameters_and_the_run(
-    sol: pc.Solution, opened: Open, browser: Any
-) -> None:
-    page = opened(sol)
-    page.click("tab-setup")
-    field = browser.find_element("xpath", "//label[text()='damping (N m s/rad)']/..//input")
+    case = page.ask("structuredClone(pendcorePage.given)")
+    case["gravity"] = 1.62
+    page.do(f"location.hash = 'case=' + encodeURIComponent({json.dumps(json.dumps(case))})")
+    page.wait("pendcorePage.given.gravity === 1.62")
     page.do(
-        "const f = [...document.querySelectorAll('label')].find((one) =>"
-        " one.textContent === 'damping (N m s/rad)').parentElement.querySelector('input');"
-        " f.value = '0.5'; f.dispatchEvent(new Event('input'))"
+        "const s = document.querySelector('#method select'); s.value = 'dop853';"
+        "s.dispatchEvent(new Event('change'))"
     )
-    assert field.get_attribute("value") == "0.5"
-    damped = pc.effects.ViscousJoint(joint=2, damping=0.5)
-    scene = sol.scene.replace(effects=[damped])
-    run = pc.simulate(scene, [0.8, 1.0], t_span=(0, 8))
-    assert page.ask("pendcorePage.hash") == run.run.fingerprint
+    assert page.ask("pendcorePage.given.run.method") == "dop853"
+    page.wait("location.hash.includes('dop853')")
 
 
-def test_effects_are_added_and_removed(sol: pc.Solution, opened: Open) -> None:
+def test_what_the_worker_runs_is_freed(sol: pc.Solution, opened: Open) -> None:
+    """A thousand runs take no more memory than a few, here as in the worker."""
     page = opened(sol)
-    page.click("tab-setup")
-    kinds = page.ask("Object.keys(pendcorePage.controls.defaults)")
-    assert set(kinds) == {*pc.effects.kinds()} - {"user", "compiled_user"}
-    for kind in kinds:
-        page.do(
-            "const select = document.querySelector('#setup select[aria-label]');"
-            f"select.value = {kind!r}; select.nextSibling.nextSibling.click()"
-        )
-        assert page.ask("pendcorePage.given.effect.at(-1).kind") == kind
-        refused = page.ask("!message.hidden && message.textContent") or ""
-        assert not refused or "q0" in refused, (kind, refused)  # a lock or a stop elsewhere
-        page.do("[...document.querySelectorAll('fieldset button')].at(-2).click()")
-        assert page.ask("pendcorePage.given.effect.length") == 1
-    assert page.ask("message.hidden")
+    page.do(
+        "window.bytes = () => pendcorePage.core.exports.memory.buffer.byteLength;"
+        "for (let k = 0; k < 50; ++k) pendcorePage.changed();"
+        "window.few = bytes(); for (let k = 0; k < 300; ++k) pendcorePage.changed();"
+    )
+    assert page.ask("bytes() - few") <= 2**20
 
 
-@pytest.mark.parametrize(
-    ("change", "scene"),
-    [
-        ("gravity = -Infinity", lambda: pc.Scene.textbook().replace(gravity=-np.inf)),
-        (
-            "link[0].length = -1",
-            lambda: pc.Scene(links=[pc.Link(mass=1.0, length=-1.0, center=0.5)]),
-        ),
-        (
-            "effect.push({kind: 'joint_stop', joint: 1, range: [1, 0.5], restitution: 0.5})",
-            lambda: pc.effects.JointStop(joint=1, range=(1, 0.5), restitution=0.5),
-        ),
-    ],
-)
-def test_an_impossible_parameter_is_refused_as_python_refuses_it(
-    sol: pc.Solution, opened: Open, change: str, scene: Callable[[], object]
-) -> None:
-    with pytest.raises(ValueError, match=r"\w") as refused:
-        scene()
-    page = opened(sol)
-    page.do(f"pendcorePage.given.{change}; pendcorePage.changed()")
-    assert page.ask("message.hidden") is False
-    told = page.text("message")
-    assert told.split(": ", 1)[-1].split(": ")[-1] == str(refused.value).split(": ")[-1]
+def test_a_run_with_events_has_a_hash_of_its_own(sol: pc.Solution, opened: Open) -> None:
+    """The page knows no events, and does not claim their bits."""
+    down = pc.events.LinkAngle(1, np.pi / 2)
+    run = pc.simulate(sol.scene, [0.8, 1.0], t_span=(0, 8), events=[down])
+    page = opened(run)
+    assert re.fullmatch("hash [0-9a-f]{16}", page.text("bits"))
+    assert page.ask("pendcorePage.hash") == sol.run.fingerprint
+
+
+def test_a_backward_run_is_trusted_backward(opened: Open) -> None:
+    run = pc.simulate(pc.Scene.textbook(), 0.8, t_span=(5, 0))
+    page = opened(run)
+    page.wait("pendcorePage.validUntil !== null")
+    assert page.ask("pendcorePage.validUntil") == pytest.approx(0.0, abs=1e-9)
+    assert page.text("trust") == "Right to 0.1 rad to its end."
 
 
 def test_a_blow_up_and_a_rest_are_told_as_python_tells_them(opened: Open) -> None:
@@ -290,19 +221,6 @@ def test_what_accuracy_costs_is_measured(sol: pc.Solution, opened: Open) -> None
     assert errors[0] > 1e3 * errors[-1] > 0
     assert all(one["ms"] > 0 for one in points)
     assert {one["method"] for one in points} >= {"dopri5", "dop853", "taylor", "radau5"}
-
-
-def test_methods_and_tolerances_are_chosen_in_the_page(sol: pc.Solution, opened: Open) -> None:
-    page = opened(sol)
-    page.click("tab-accuracy")
-    page.do(
-        "const s = document.querySelector('#method select'); s.value = 'dop853';"
-        "s.dispatchEvent(new Event('change'));"
-        "const f = document.querySelector('#method input'); f.value = '11';"
-        "f.dispatchEvent(new Event('input'))"
-    )
-    run = pc.simulate(sol.scene, [0.8, 1.0], t_span=(0, 8), method="dop853", rtol=1e-11)
-    assert page.ask("pendcorePage.hash") == run.run.fingerprint
 
 
 def test_whoever_wants_less_motion_gets_a_page_that_waits(

@@ -168,3 +168,14 @@ def test_the_traceback_of_a_users_function_is_kept():
 def test_options_at_odds_are_refused(options, message):
     with pytest.raises((ValueError, TypeError), match=message):
         begun(**options)
+
+
+def test_a_blow_up_is_told_alike_whether_the_run_goes_on_or_never_stopped():
+    """The ledger's rate overflows a step before the motion does."""
+    damped = pc.effects.ViscousJoint(joint=1, damping=0.5, damping2=0.375)
+    scene = pc.Scene(links=[pc.Link(mass=1.0, length=0.6)] * 2, effects=[damped])
+    how = {"method": "rk4", "step": 0.003, "ledger": True, "check": False}
+    whole = pc.simulate(scene, 1.0, 2.0, (0, -2.5), **how)
+    assert whole.status == "non_finite"
+    leg = pc.simulate(scene, 1.0, 2.0, (0, -1.0), **how)
+    assert leg.resume(-2.5, check=False).message == whole.message

@@ -56,7 +56,8 @@ class DrawnResult(RunResult):
         ``"section"``      a Poincare section: rate over angle of a ``link`` where an ``event``
                            happened, an index into ``sol.events``
         ``"strip"``        the chain at the times ``t``, s, (k,), side by side
-        ``"free_bodies"``  each link by itself with the forces on it, N, at the time ``t``, s
+        ``"free_bodies"``  each link by itself with the forces on it, N, at the time ``t``, s;
+                           couples in joints are not drawn
         =================  ========================================================================
 
         Parameters
@@ -202,7 +203,7 @@ class DrawnResult(RunResult):
         ----------
         path : path
         title : str, optional
-            Default: the name of the run, or "pendcore".
+            The headline. Default: the name of the run.
 
         Examples
         --------
@@ -210,15 +211,18 @@ class DrawnResult(RunResult):
         >>> sol.to_html("run.html").name
         'run.html'
         """
+        if Path(path).suffix.lower() not in (".html", ".htm"):
+            raise ValueError(f"path = {os.fspath(path)!r}: must end with .html")
+        text = page_of(self, title or self.name or "A pendulum")
         with whole_file(path) as file:
-            file.write_text(page_of(self, title or self.name or "pendcore"), encoding="utf-8")
+            file.write_text(text, encoding="utf-8")
         return Path(path)
 
     @known_keywords
     def page(self, *, height: int = 900) -> NotebookPage:
         """Return the page of `to_html` as a notebook shows it: alive, in exported notebooks, too.
 
-        ``height`` is in pixels. A notebook grows by the size of the page, 0.7 MB.
+        ``height`` is in pixels. A notebook grows by the size of the page.
 
         Examples
         --------
@@ -227,7 +231,7 @@ class DrawnResult(RunResult):
         '<iframe srcdoc='
         """
         pixels = whole_number("height", height)
-        return NotebookPage(page_of(self, self.name or "pendcore"), pixels)
+        return NotebookPage(page_of(self, self.name or "A pendulum"), pixels)
 
     @known_keywords
     def widget(self, *, height: int = 900) -> Any:
@@ -243,7 +247,7 @@ class DrawnResult(RunResult):
         True
         """
         pixels = whole_number("height", height)
-        return widget_of(page_of(self, self.name or "pendcore"), pixels)
+        return widget_of(page_of(self, self.name or "A pendulum"), pixels)
 
 
 def _names(runs: tuple[RunResult, ...], given: tuple[str, ...] | None) -> tuple[str, ...]:

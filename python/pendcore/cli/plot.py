@@ -67,9 +67,9 @@ def execute(args: argparse.Namespace) -> int:
     with blamed_on_usage():
         solution = load_solution(args.solution)
         where = written(out, [out])
-        until = None if args.horizon is None else solution.valid_until(args.horizon)
+        out.parent.mkdir(parents=True, exist_ok=True)
         with whole_file(out) as path:
-            save_figure(solution, path, until, what=args.what, t=args.at)
+            save_figure(solution, path, what=args.what, t=args.at, horizon=args.horizon)
     print(where, file=sys.stderr)
     if args.json:
         print(json.dumps({"figure": str(out), "status": solution.status}))

@@ -49,11 +49,11 @@ def add_parser(commands: Any) -> None:
         help="its suffix: html, mp4, gif, png; default: out/ and the name of the case, .html",
     )
     parser.add_argument(
-        "--speed", type=float, default=1.0, metavar="X", help="1 is true time, 0.25 slow motion"
+        "--speed", type=float, metavar="X", help="1, the default, is true time, 0.25 slow motion"
     )
-    parser.add_argument("--fps", type=float, default=30.0, metavar="N", help="frames a second")
+    parser.add_argument("--fps", type=float, metavar="N", help="frames a second (default: 30)")
     parser.add_argument(
-        "--trace", type=float, default=2.0, metavar="S", help="s of the tip's path that are shown"
+        "--trace", type=float, metavar="S", help="s of the tip's path that are shown (default: 2)"
     )
     parser.add_argument(
         "--reactions", action="store_true", help="show the forces at the joints as arrows"
@@ -74,6 +74,7 @@ def execute(args: argparse.Namespace) -> int:
     args.out = args.out or Path("out", f"{args.case.stem if args.case else 'textbook'}.html")
     if args.out.suffix.lower() not in (".html", ".mp4", ".gif", ".png"):
         raise UsageError(f"-o {args.out}: must end with .html, .mp4, .gif or .png")
+    _refuse_what_is_not_shown(args)
     solution = _solution(args.case)
     with blamed_on_usage():
         args.out.parent.mkdir(parents=True, exist_ok=True)
@@ -85,6 +86,15 @@ def execute(args: argparse.Namespace) -> int:
     if args.json:
         print(json.dumps({"file": str(out), "status": solution.status}))
     return 0 if solution.success else 1
+
+
+def _refuse_what_is_not_shown(args: argparse.Namespace) -> None:
+    """Refuse options of films for what is none."""
+    if args.out.suffix.lower() in (".mp4", ".gif"):
+        return
+    for name in ("speed", "fps", "trace", "reactions", "energy", "horizon"):
+        if getattr(args, name) not in (None, False):
+            raise UsageError(f"--{name}: is for films: -o FILE.mp4 or FILE.gif")
 
 
 def _solution(path: Path | None) -> Solution:
@@ -102,11 +112,10 @@ def _write(solution: Solution, args: argparse.Namespace) -> Path:
         with whole_file(args.out) as path:
             save_figure(solution, path, what="strip")
         return Path(args.out)
+    given = {name: getattr(args, name) for name in ("speed", "fps", "trace")}
     return solution.to_video(
         args.out,
-        speed=args.speed,
-        fps=args.fps,
-        trace=args.trace,
+        **{name: value for name, value in given.items() if value is not None},
         reactions=args.reactions,
         energy=args.energy,
         horizon=args.horizon,

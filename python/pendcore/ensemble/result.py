@@ -134,9 +134,7 @@ class EnsembleResult:
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:
-        first, *rest = str(self).split("\n")
-        rows = [("", first)] + [("", line) for line in rest]
-        return table(rows)
+        return table([("", line) for line in str(self).split("\n")])
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} of {len(self)} members {self.shape}>"

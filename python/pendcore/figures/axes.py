@@ -57,7 +57,8 @@ def axes_among(ax: Any, counts: Sequence[int], which: str) -> list[Axes]:
     axes = list(np.ravel(ax))
     told = ", or ".join(dict.fromkeys("one" if k == 1 else f"{k}, {which}" for k in counts))
     if not all(isinstance(axis, Axes) for axis in axes):
-        raise TypeError(f"ax = {ax!r}: must be matplotlib Axes, {told}")
+        remedy = "; a figure is chosen by what=" if isinstance(ax, str) else ""
+        raise TypeError(f"ax = {ax!r}: must be matplotlib Axes, {told}{remedy}")
     if len(axes) not in counts:
         raise ValueError(f"ax: {len(axes)} axes: must be {told}")
     return axes

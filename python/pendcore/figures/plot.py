@@ -24,8 +24,13 @@ What = Literal[
 ]
 KINDS: tuple[str, ...] = get_args(What)
 OVER_TIME = KINDS[:4]
-_OWN = {"t": ("strip", "free_bodies"), "event": ("section",), "link": ("section",)}
-"""The parameters that only some figures have."""
+_OWN = {
+    "t": ("strip", "free_bodies"),
+    "event": ("section",),
+    "link": ("section",),
+    "label": tuple(kind for kind in KINDS if kind not in ("strip", "free_bodies")),
+}
+"""The parameters that only some figures have, and which."""
 
 
 def plot(
@@ -50,19 +55,11 @@ def plot(
         If there is no such figure, or the number of axes is not that of the figure, or a parameter
         is not one of this figure.
     """
-    if what not in KINDS:
-        raise ValueError(f"what = {what!r}: {did_you_mean(str(what), KINDS)}")
-    for name, value in (("t", t), ("event", event), ("link", link)):
-        if value is not None and what not in _OWN[name]:
-            raise ValueError(f"{name}: belongs to what = {' and '.join(map(repr, _OWN[name]))}")
-    if horizon is not None:
-        positive("horizon", horizon, "rad")
-        if what not in (*OVER_TIME, "path", "phase"):
-            raise ValueError(f"horizon: what = {what!r} shows no times past which it could shade")
+    own = _Own(t, event, link, label if what in ("strip", "free_bodies") else None)
+    _check(what, own, horizon)
     from matplotlib.cbook import normalize_kwargs
     from matplotlib.lines import Line2D
 
-    own = _Own(t, event, link)
     given = normalize_kwargs(line_properties, Line2D)
     valid = horizon_time(solution, horizon)
     return _drawn(solution, ax, figure_of_pyplot, what, label, valid, own, given)
@@ -74,6 +71,20 @@ class _Own(NamedTuple):
     t: npt.ArrayLike | None = None
     event: int | None = None
     link: int | None = None
+    label: str | None = None
+
+
+def _check(what: str, own: _Own, horizon: float | None) -> None:
+    """Raise a ValueError for a figure that does not exist, or has no such parameter."""
+    if what not in KINDS:
+        raise ValueError(f"what = {what!r}: {did_you_mean(str(what), KINDS)}")
+    for name, kinds in _OWN.items():
+        if getattr(own, name) is not None and what not in kinds:
+            raise ValueError(f"{name}: belongs to what = {' and '.join(map(repr, kinds))}")
+    if horizon is not None:
+        positive("horizon", horizon, "rad")
+        if what not in (*OVER_TIME, "path", "phase"):
+            raise ValueError(f"horizon: what = {what!r} shows no times past which it could shade")
 
 
 def _drawn(
@@ -92,7 +103,9 @@ def _drawn(
     if what == "phase":
         return [*draw_phase(*place, label, valid_until, given)]
     if what == "section":
-        return [*draw_section(*place, label, own.event or 0, own.link or 1, given)]
+        event = 0 if own.event is None else own.event
+        link = 1 if own.link is None else own.link
+        return [*draw_section(*place, label, event, link, given)]
     if what == "strip":
         return draw_strip(*place, own.t, given)
     if what == "free_bodies":
@@ -115,12 +128,17 @@ def save_figure(
     *,
     what: str = "angles",
     t: float | None = None,
+    horizon: float | None = None,
 ) -> None:
     """Draw a figure into a file; the suffix says which kind (png, pdf, svg, ...).
 
-    What is past ``valid_until``, s, is shaded, if that is known.
+    What is past ``valid_until``, s, is shaded, if that is known; ``horizon`` is as in `plot`.
     """
     from matplotlib.figure import Figure
+
+    _check(what, _Own(t), horizon)
+    if horizon is not None:
+        valid_until = horizon_time(solution, horizon)
 
     artists = _drawn(solution, None, Figure, what, None, valid_until, _Own(t), {})
     figure: Any = artists[0].get_figure(root=True)

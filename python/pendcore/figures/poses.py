@@ -34,7 +34,7 @@ def draw_strip(
 ) -> list[Artist]:
     """Draw the chain at some times, s, from left to right, each with the tip's path until then."""
     t, states = smooth_states(solution)
-    at = _times(solution, times, _usual_times(solution, t))
+    at = _times(solution, times, _usual_times(solution))
     n = len(solution.scene.links)
     poses = solution.scene._compiled.positions(at, _states(solution, at)[:, :n])
     path = solution.scene._compiled.positions(t, states[:, :n])[:, -1]
@@ -47,13 +47,13 @@ def draw_strip(
     axis = axes_among(ax, (1,), "")[0]
     artists: list[Artist] = []
     before = at[0]
+    lowest = max(float(poses[..., 1].max()), float(path[:, 1].max())) + 0.12 * reach
     for k, (time, pose) in enumerate(zip(at, poses, strict=True)):
         moved = np.array([k * step, 0.0])
         since = (t - before) * (time - t) >= 0
         axis.plot(*(path[since] + moved).T, color="b", linewidth=0.8, alpha=0.5, zorder=1)
         how = {"color": "k", "linewidth": 1.6, "marker": "o", "markersize": 3, **given}
         artists += axis.plot(*(pose + moved).T, **how)
-        lowest = max(float(poses[..., 1].max()), float(path[:, 1].max())) + 0.12 * reach
         artists.append(
             axis.text(float(pivot[k]) + k * step, lowest, f"{time:.4g} s", ha="center", va="top")
         )
@@ -63,10 +63,11 @@ def draw_strip(
     return artists
 
 
-def _usual_times(solution: RunResult, t: Floats) -> Floats:
+def _usual_times(solution: RunResult) -> Floats:
     """Return a few times from the start to the end; of those that the run kept, if it must."""
     if solution.store == "dense":
-        return np.linspace(t[0], t[-1], _POSES)
+        start = float(solution.run.arguments["t_start"])
+        return np.linspace(start, solution.run.t_reached, _POSES)
     places = np.unique(np.linspace(0, len(solution.t) - 1, _POSES).round().astype(int))
     times: Floats = solution.t[places]
     return times
@@ -80,8 +81,9 @@ def draw_free_bodies(
     given: dict[str, Any],
 ) -> list[Artist]:
     """Draw each link by itself with the forces on it, N, at a time, s."""
-    start = float(solution.run.arguments["t_start"])
-    at = _times(solution, t, np.array([start]))[:1]
+    at = _times(solution, t, _usual_times(solution)[:1])
+    if len(at) > 1:
+        raise ValueError(f"t: {len(at)} times: must be one (s): free bodies are of an instant")
     state = _states(solution, at)
     scene, n = solution.scene, len(solution.scene.links)
     q, qd = state[:, :n], state[:, n:]
@@ -166,37 +168,42 @@ def forces_on_links(
 def _other_forces(scene: SceneData, t: Floats, q: Floats, qd: Floats) -> Floats:
     """Return what acts on each link beside joints and weights, N, (n, 2): drag and wind."""
     n = len(scene.links)
-    rest = np.zeros((n, 2))
-    if not any(effect.kind == "rod_drag" for effect in scene.effects):
-        return rest
+    others = [effect for effect in scene.effects if effect.kind != "rod_drag"]
+    if len(others) == len(scene.effects):
+        return np.zeros((n, 2))
+    # Without drag nothing else acts, so that the motion of a link tells how the pivot accelerates.
+    dragless = SceneData._unpickled(scene.links, scene.gravity, others)
+    lacking = _lacking_forces(dragless, t, q, qd, np.zeros(2))
+    masses = np.array([link.mass for link in scene.links])
+    masses[-1] += _payload(scene)
+    heaviest = int(np.argmax(masses))
+    pivot = -lacking[heaviest] / masses[heaviest]
+    return _lacking_forces(scene, t, q, qd, pivot)
+
+
+def _lacking_forces(scene: SceneData, t: Floats, q: Floats, qd: Floats, pivot: Floats) -> Floats:
+    """Return what joints and weights lack to move each link's mass centre, N, (n, 2).
+
+    ``pivot`` is the acceleration of the pivot, m/s^2, (2,).
+    """
+    n = len(scene.links)
     turning_rate = scene._compiled.accelerations(t, q, qd)[0]
     sine, cosine = np.sin(q[0]), np.cos(q[0])
     along, across = np.stack([cosine, sine], -1), np.stack([-sine, cosine], -1)
     turning = turning_rate[:, np.newaxis] * across - (qd[0] ** 2)[:, np.newaxis] * along
     reactions = np.vstack([scene._compiled.reactions(t, q, qd)[0], np.zeros(2)])
-    place = _pivot_acceleration(scene, t, q)
+    lacking = np.zeros((n, 2))
+    place = pivot
     for i, link in enumerate(scene.links):
         end = place + link.length * turning[i]
         momentum = link.mass * (place + link.center * turning[i])
         mass = link.mass
         if i + 1 == n:
-            momentum += _payload(scene) * end
+            momentum = momentum + _payload(scene) * end
             mass += _payload(scene)
-        rest[i] = momentum - reactions[i] + reactions[i + 1] - [0.0, mass * scene.gravity]
+        lacking[i] = momentum - reactions[i] + reactions[i + 1] - [0.0, mass * scene.gravity]
         place = end
-    return rest
-
-
-def _pivot_acceleration(scene: SceneData, t: Floats, q: Floats) -> Floats:
-    """Return the acceleration of the pivot, m/s^2, (2,), from three of its places.
-
-    An arrow needs no more than the eight digits that this gives.
-    """
-    step = 1e-4  # s
-    times = t + step * np.array([-1.0, 0.0, 1.0])
-    before, here, after = scene._compiled.positions(times, np.repeat(q, 3, axis=0))[:, 0]
-    acceleration: Floats = (before - 2 * here + after) / step**2
-    return acceleration
+    return lacking
 
 
 def _payload(scene: SceneData) -> float:

@@ -54,7 +54,7 @@ def frame_times(solutions: Sequence[RunResult], fps: float, speed: float) -> Flo
             f"speed = {speed}: a film of {abs(length) / faster / 60:.3g} minutes: must have at "
             f"most {MOST_FRAMES} frames: give speed={abs(length) / 60:.3g} for one of a minute"
         )
-    frames = max(int(count), 1) + 1
+    frames = max(int(count * (1 + 1e-12)), 1) + 1
     times: Floats = start + np.copysign(faster / rate, length) * np.arange(frames)
     return times
 

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pendcore.accuracy.estimate import error_of
-from pendcore.figures.axes import COLORS, in_plane
+from pendcore.figures.axes import in_plane
 from pendcore.figures.over_time import draw_energies
 from pendcore.films.frames import PATH_PARTS, Moves, frame_times, moves_of
-from pendcore.messages.arguments import Floats, positive
+from pendcore.messages.arguments import Floats, number, positive
 from pendcore.run.result import RunResult
 
 if TYPE_CHECKING:
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 _CHAINS = ("0.1", "tab:red", "tab:blue", "tab:green", "tab:purple", "tab:brown")
 _LOST = "0.72"
 """The colour of a run past the time until which it can be trusted."""
+_FORCE = "tab:orange"
 _ARROW = 0.4
 """How long the largest arrow is, as a share of the total length."""
 
@@ -111,21 +112,25 @@ class _Player:
     ) -> None:
         self.color = color
         self._moves, self._last_right, self._scale = moves, last_right, scale
-        trace = 0.0 if choices.trace is None else choices.trace
-        self._behind = round(trace * choices.fps / choices.speed)
+        frames = _trace(choices.trace) * choices.fps / choices.speed
+        self._behind = round(min(frames, len(moves.places)))
         (self._trace,) = axis.plot([], [], "-", color=color, linewidth=1.2, alpha=0.55, zorder=2)
         (self._chain,) = axis.plot(
             [], [], "o-", color=color, linewidth=4, markersize=7, solid_capstyle="round", zorder=3
         )
         self.artists: list[Artist] = [self._trace, self._chain]
         self._arrows: Any = None
+        self._sizes: list[Any] = []
         if choices.reactions:
             n = moves.reactions.shape[1]
             self._arrows = axis.quiver(
-                *np.zeros((4, n)), color=COLORS[0], angles="xy", scale_units="xy", scale=1.0,
+                *np.zeros((4, n)), color=_FORCE, angles="xy", scale_units="xy", scale=1.0,
                 width=0.004, zorder=4,
             )  # fmt: skip
-            self.artists.append(self._arrows)
+            self._sizes = [
+                axis.text(0.0, 0.0, "", color=_FORCE, fontsize="small", zorder=5) for _ in range(n)
+            ]
+            self.artists += [self._arrows, *self._sizes]
 
     def show(self, k: int) -> None:
         places = self._moves.places
@@ -140,6 +145,21 @@ class _Player:
             self._arrows.set_offsets(places[k, :-1])
             force = self._scale * self._moves.reactions[k]
             self._arrows.set_UVC(force[:, 0], force[:, 1])
+            for at, size, newtons in zip(
+                places[k, :-1] + force, self._sizes, self._moves.reactions[k], strict=True
+            ):
+                size.set_position((at[0], at[1]))
+                size.set_text(f" {np.hypot(*newtons):.3g} N")
+
+
+def _trace(given: float | None) -> float:
+    """Return how much of the tip's path is shown, s."""
+    if given is None:
+        return 0.0
+    seconds = number("trace", given, "s")
+    if not seconds >= 0:
+        raise ValueError(f"trace = {seconds}: must be >= 0 (s); inf shows the whole path")
+    return seconds
 
 
 def _layout(figure: Figure, count: int, choices: Choices) -> tuple[list[Axes], Axes | None]:

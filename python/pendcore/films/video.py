@@ -30,6 +30,7 @@ SIZES = {".mp4": (1920, 1080), ".gif": (640, 360)}
 _DPI = {".mp4": 150.0, ".gif": 60.0}
 _SAMPLES = 8
 """The number of frames of which a GIF takes its colours."""
+_MOST_GIF_RATE, _MOST_GIF_FRAMES = 50.0, 4000
 _GIF_TICK = 10
 """ms, the unit of the times in a GIF."""
 
@@ -57,12 +58,22 @@ def to_video(
             f"ffmpeg is not installed, and an MP4 needs it: {target} is written instead "
             "(Debian: ffmpeg; pip: imageio-ffmpeg)"
         )
+    if kind == ".gif" and choices.fps > _MOST_GIF_RATE:
+        raise ValueError(
+            f"fps = {choices.fps}: must be at most {_MOST_GIF_RATE:g} (1/s) in a GIF: browsers "
+            "show shorter frames too slowly"
+        )
     width, height = _even_size(size, SIZES[kind])
     dpi = _DPI[kind] * width / SIZES[kind][0]
     figure = Figure(figsize=(width / dpi, height / dpi), dpi=dpi)
     canvas = FigureCanvasAgg(figure)
     stage = Stage(solutions, figure, choices, names)
     frames = range(len(stage.times))
+    if kind == ".gif" and len(frames) > _MOST_GIF_FRAMES:
+        raise ValueError(
+            f"{target}: {len(frames)} frames: a GIF is made in memory and may have "
+            f"{_MOST_GIF_FRAMES}: take fewer fps, more speed, or an MP4"
+        )
     report = callback(progress, "drawing", len(frames), "frames")
     try:
         with whole_file(target) as file:

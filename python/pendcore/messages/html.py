@@ -42,12 +42,13 @@ def drawing(
 ) -> str:
     """Return chains, (n+1, 2) places in m each, as a drawing; y points down, as in SVG itself.
 
-    The last pose is black, those before it are the fainter the earlier. ``path``, (k, 2), is a line
-    behind them.
+    The last pose is the plainest, those before it are the fainter the earlier. ``path``, (k, 2), is
+    a line behind them.
     """
     shown = [np.asarray(pose) for pose in poses]
+    if path is not None:
+        path = path[np.isfinite(path).all(axis=1)]
     every = np.concatenate([*shown, *([] if path is None else [path])])
-    every = every[np.isfinite(every).all(axis=1)]
     low, high = every.min(axis=0), every.max(axis=0)
     size = max(float((high - low).max()), 1e-12)
     scale = 0.84 * _WIDTH / size

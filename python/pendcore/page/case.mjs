@@ -23,10 +23,25 @@ export function caseInAddress() {
   const found = /[#&]case=([^&]+)/.exec(location.hash);
   if (!found) return null;
   try {
-    return parseCase(decodeURIComponent(found[1]));
+    const given = parseCase(decodeURIComponent(found[1]));
+    return isCase(given) ? given : null;
   } catch {
     return null;
   }
+}
+
+/** Whether a case has its parts; the core checks their values. */
+function isCase(given) {
+  const n = given?.link?.length;
+  const isRow = (row) => Array.isArray(row) && row.length === n && row.every(Number.isFinite);
+  return (
+    n > 0 &&
+    Array.isArray(given.effect) &&
+    Number.isFinite(given.gravity) &&
+    isRow(given.start?.q) &&
+    isRow(given.start?.qd) &&
+    Number.isFinite(given.run?.t_end)
+  );
 }
 
 export function addressOf(given) {
@@ -67,8 +82,8 @@ export function toToml(given) {
   ].join("");
 }
 
-function pythonValue(value, parts) {
-  if (Array.isArray(value)) return `[${value.map((one) => pythonValue(one, parts)).join(", ")}]`;
+function pythonValue(value) {
+  if (Array.isArray(value)) return `[${value.map(pythonValue).join(", ")}]`;
   if (typeof value === "string") return JSON.stringify(value);
   if (typeof value === "boolean") return value ? "True" : "False";
   if (value === Infinity || value === -Infinity) return `float("${value > 0 ? "inf" : "-inf"}")`;

@@ -13,7 +13,16 @@ function element(tag, properties = {}, children = []) {
 let counter = 0;
 
 /** A number with a slider; `change` gets the new value. */
-export function numberField({ name, unit, value, low, high, whole, change }) {
+export function numberField({
+  name,
+  unit,
+  value,
+  low,
+  high,
+  whole = false,
+  positive = false,
+  change,
+}) {
   const id = `field-${++counter}`;
   const field = element("input", {
     type: "number",
@@ -31,7 +40,8 @@ export function numberField({ name, unit, value, low, high, whole, change }) {
   });
   const take = (text, other) => {
     const number = Number(text);
-    const isNumber = text !== "" && Number.isFinite(number);
+    // On the way to 0.5 a field holds 0, which is no mass and no length.
+    const isNumber = text !== "" && Number.isFinite(number) && (number > 0 || !positive);
     field.setAttribute("aria-invalid", String(!isNumber));
     if (!isNumber) return;
     other.value = text;
@@ -70,7 +80,7 @@ function interval(value, range) {
 }
 
 export class Controls {
-  /** `changed` is called with the new case; the fields stay, unless the case has other parts. */
+  /** `changed` is called when the case has changed; the fields stay, unless it has other parts. */
   constructor(form, { kinds, defaults, changed }) {
     this.form = form;
     this.kinds = kinds;
@@ -94,12 +104,12 @@ export class Controls {
     return element("fieldset", {}, [element("legend", { textContent: title }), ...fields]);
   }
 
-  #field(name, unit, value, [low, high], set, whole = false) {
+  #field(name, unit, value, [low, high], set, more = {}) {
     const change = (number) => {
       set(number);
-      this.changed(this.given);
+      this.changed();
     };
-    return numberField({ name, unit, value, low, high, whole, change });
+    return numberField({ name, unit, value, low, high, change, ...more });
   }
 
   #world() {
@@ -121,17 +131,29 @@ export class Controls {
     const { start } = this.given;
     const degrees = 180 / Math.PI;
     // A link keeps its shape: its centre moves with its length, its inertia with both.
+    const center = link.center / link.length;
+    const shape = link.mass > 0 ? link.inertia / (link.mass * link.length ** 2) : 0;
     const scale = (mass, length) => {
-      link.center *= length / link.length;
-      if (link.mass > 0) link.inertia *= (mass / link.mass) * (length / link.length) ** 2;
-      Object.assign(link, { mass, length });
+      const inertia = shape * mass * length ** 2;
+      Object.assign(link, { mass, length, center: center * length, inertia });
     };
+    const positive = { positive: true };
     return this.#group(`Link ${i + 1}`, [
-      this.#field("mass", "kg", link.mass, [0.01, Math.max(3 * link.mass, 3)], (x) =>
-        scale(x, link.length),
+      this.#field(
+        "mass",
+        "kg",
+        link.mass,
+        [0.01, Math.max(3 * link.mass, 3)],
+        (x) => scale(x, link.length),
+        positive,
       ),
-      this.#field("length", "m", link.length, [0.05, Math.max(3 * link.length, 3)], (x) =>
-        scale(link.mass, x),
+      this.#field(
+        "length",
+        "m",
+        link.length,
+        [0.05, Math.max(3 * link.length, 3)],
+        (x) => scale(link.mass, x),
+        positive,
       ),
       this.#field(
         "angle at the start",
@@ -150,7 +172,7 @@ export class Controls {
     remove.addEventListener("click", () => {
       this.given.effect.splice(i, 1);
       this.show(this.given);
-      this.changed(this.given);
+      this.changed();
     });
     const fields = this.#parameters(effect, known.parameters);
     return this.#group(`${i + 1}: ${known.name}`, [
@@ -170,7 +192,7 @@ export class Controls {
         /** @type {[number, number]} */
         const range = whole ? [1, this.given.link.length] : interval(value, one.range);
         fields.push(
-          this.#field(one.name, one.unit, value, range, (x) => (values[one.name] = x), whole),
+          this.#field(one.name, one.unit, value, range, (x) => (values[one.name] = x), { whole }),
         );
       } else if (Array.isArray(value) && value.length === 2 && one.type === "pair") {
         one.components.forEach((component, k) => {
@@ -213,7 +235,7 @@ export class Controls {
       if (copy.link > this.given.link.length) copy.link = 1;
       this.given.effect.push({ kind: select.value, ...copy });
       this.show(this.given);
-      this.changed(this.given);
+      this.changed();
     });
     return this.#group("More effects", [select, " ", add]);
   }
@@ -221,7 +243,8 @@ export class Controls {
 
 /** Fields for method and tolerance. */
 export function methodFields(box, given, methods, changed) {
-  const digits = Math.round(-Math.log10(given.run.rtol ?? 1e-6));
+  const rtol = [given.run.rtol ?? 1e-6].flat();
+  const digits = Math.round(-Math.log10(Math.min(...rtol)));
   const tolerance = numberField({
     name: "digits: rtol = 10^-digits",
     unit: "",
@@ -231,12 +254,14 @@ export function methodFields(box, given, methods, changed) {
     whole: true,
     change: (x) => {
       given.run.rtol = 10 ** -x;
-      changed(given);
+      changed();
     },
   });
-  const method = choice("method", methods, given.run.method, (name) => {
+  const all = methods.includes(given.run.method) ? methods : [given.run.method, ...methods];
+  const method = choice("method", all, given.run.method, (name) => {
     given.run.method = name;
-    changed(given);
+    delete given.run.step; // of a method with fixed steps
+    changed();
   });
   box.replaceChildren(method, tolerance);
 }

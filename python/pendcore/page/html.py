@@ -8,7 +8,7 @@ from base64 import b64encode
 from functools import cache
 from html import escape
 from importlib.resources import files
-from math import inf
+from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -26,7 +26,7 @@ CORE_MODULES = ("engine.mjs", "pendcore.mjs")
 """They stand in cpp/wasm, and are installed beside the page."""
 PAGE_MODULES = ("scene_view.mjs", "chart.mjs", "case.mjs", "runs.mjs", "controls.mjs", "main.mjs")
 CORE = "pendcore.wasm.gz"
-OF_FUNCTIONS = ("user", "compiled_user")
+PYTHON_ONLY_KINDS = ("user", "compiled_user")
 """The kinds of effects that only Python has."""
 WITHOUT_CORE = (
     "This page plays back what Python computed: the install that made it has no core for browsers "
@@ -34,7 +34,7 @@ WITHOUT_CORE = (
 )
 OWN_FUNCTIONS = "This page plays back what Python computed: functions of one's own stay in Python."
 LIMIT = 0.1
-"""rad: a run can be trusted until its error passes this; main.mjs says the same."""
+"""rad: a run can be trusted until its error passes this."""
 _PATIENCE = 10.0
 """s, for second runs of a page that cannot make them itself."""
 _MOST_FRAMES = 3600
@@ -48,7 +48,7 @@ def page_of(solution: RunResult, title: str) -> str:
     """Return the page; without a core for browsers in the install, it plays the run back."""
     case = CaseData.of_solution(solution)
     scene = solution.scene
-    own = any(effect.kind in OF_FUNCTIONS for effect in scene.effects)
+    own = any(effect.kind in PYTHON_ONLY_KINDS for effect in scene.effects)
     has_events = bool(solution.run.arguments["events"])
     core = None if own else core_for_browsers()
     told = OWN_FUNCTIONS if own else "" if core is not None else WITHOUT_CORE
@@ -56,6 +56,7 @@ def page_of(solution: RunResult, title: str) -> str:
         "case": _plain_case(case, solution),
         "hash": "" if has_events else solution.run.fingerprint,
         "valid_until": _horizon(solution, may_take_long=core is None),
+        "limit": LIMIT,
         "can_run": core is not None,
         "kinds": [
             {**one._asdict(), "parameters": [x._asdict() for x in one.parameters]}
@@ -69,7 +70,7 @@ def page_of(solution: RunResult, title: str) -> str:
     parts = {
         "TITLE": escape(title),
         "STYLE": _source("style.css"),
-        "DATA": json.dumps(_finite(data), allow_nan=False).replace("</", "<\\/"),
+        "DATA": json.dumps(_finite(data), allow_nan=False).replace("<", "\\u003c"),
         "WASM": "" if core is None else b64encode(core).decode(),
         "CORE": "" if core is None else _bundle(CORE_MODULES),
         "WORKER": "" if core is None else _bundle(("worker.mjs",)),
@@ -113,6 +114,7 @@ def _plain_case(case: CaseData, solution: RunResult) -> dict[str, Any]:
     left_out = ("error", "events", "progress", "check")
     options = {name: value for name, value in case.options.items() if name not in left_out}
     return {
+        **({"name": solution.name} if solution.name else {}),
         "gravity": case.scene.gravity,
         "link": [
             {"mass": one.mass, "length": one.length, "center": one.center, "inertia": one.inertia}
@@ -121,7 +123,7 @@ def _plain_case(case: CaseData, solution: RunResult) -> dict[str, Any]:
         "effect": [
             {"kind": one.kind, **_parameters(one)}
             for one in case.scene.effects
-            if one.kind not in OF_FUNCTIONS
+            if one.kind not in PYTHON_ONLY_KINDS
         ],
         "start": {"q": start["q0"], "qd": start["qd0"]},
         "run": {
@@ -148,7 +150,7 @@ def _method(solution: RunResult) -> str:
 
 def _descriptors() -> list[Any]:
     """Return what is known of effects and of their parts."""
-    kinds = [one.description for name, one in KINDS.items() if name not in OF_FUNCTIONS]
+    kinds = [one.description for name, one in KINDS.items() if name not in PYTHON_ONLY_KINDS]
     return [*kinds, *(one.description for one in PARTS.values())]
 
 
@@ -159,7 +161,7 @@ def _defaults() -> dict[str, Any]:
     return {
         kind: _parameters(eval(one.description.calls[0], dict(classes)))
         for kind, one in KINDS.items()
-        if kind not in OF_FUNCTIONS
+        if kind not in PYTHON_ONLY_KINDS
     }
 
 
@@ -206,13 +208,13 @@ def _rounded(numbers: Any) -> Any:
 
 
 def _finite(value: Any) -> Any:
-    """Return the same with infinities as words, because JSON has none."""
+    """Return the same with infinities as words, and null for NaN, because JSON has neither."""
     if isinstance(value, dict):
         return {name: _finite(one) for name, one in value.items()}
     if isinstance(value, list | tuple):
         return [_finite(one) for one in value]
     if isinstance(value, np.ndarray | np.generic):
         return _finite(value.tolist())
-    if isinstance(value, float) and abs(value) == inf:
-        return "inf" if value > 0 else "-inf"
+    if isinstance(value, float) and not isfinite(value):
+        return None if value != value else "inf" if value > 0 else "-inf"
     return value

@@ -9,7 +9,8 @@ import { SceneView } from "./scene_view.mjs";
 
 const TRACE = 2; // s
 const TRACE_PARTS = 240;
-const LIMIT = 0.1; // rad; a run can be trusted until its error is above
+const SETTLED = 300; // ms, after which the address follows a change
+const FORCES = 400; // times at which the largest force of a run is looked for
 const GHOST = 1e-9; // rad
 const NEIGHBOURS = { count: 1000, spread: 1e-5, rate: 60 };
 const COLORS = ["first", "second", "third", "fourth"];
@@ -37,6 +38,11 @@ class Helper {
       this.waiting.delete(told.id);
       return told.failure ? reject?.(new Error(told.failure)) : resolve?.(told.answer);
     };
+    this.worker.onerror = (event) => {
+      const reason = new Error(event.message || "the browser starts no worker");
+      for (const { reject } of this.waiting.values()) reject(reason);
+      this.waiting.clear();
+    };
   }
   ask(task, given, more = {}) {
     const id = ++this.last;
@@ -53,6 +59,9 @@ class Page {
   copied = null;
   measured = undefined;
   dragged = 0;
+  /** Whether a joint was dragged since the last frame. */
+  isMoved = false;
+  settling = undefined;
   question = 0;
   frames = 0;
   since = 0;
@@ -86,24 +95,47 @@ class Page {
     }
     byId("about").textContent = data.about;
     this.#listen();
-    this.rerun();
-    this.controls?.show(this.given);
+    this.begin();
     this.tell();
-    if (core) methodFields(byId("method"), this.given, data.methods, () => this.changed());
     requestAnimationFrame((now) => this.frame(now));
   }
 
-  /** The case has changed: it runs anew, and the address holds it. */
+  /** The first run: if the core refuses the case in the address, that of the page. */
+  begin() {
+    this.rerun();
+    if (this.run === null) {
+      const refusal = byId("message").textContent;
+      this.given = parseCase(this.original);
+      this.rerun();
+      this.say(`The address holds a run that is refused: ${refusal}`);
+    }
+    this.showFields();
+  }
+
+  showFields() {
+    if (!this.core) return;
+    this.controls.show(this.given);
+    methodFields(byId("method"), this.given, data.methods, () => this.changed());
+  }
+
+  /** The case has changed: it runs anew, and the address will hold it. */
   changed() {
+    this.neighbours = null;
+    this.validUntil = null;
+    this.rerun();
+    clearTimeout(this.settling);
+    this.settling = setTimeout(() => this.settle(), SETTLED);
+  }
+
+  /** Writes the case into the address, which browsers allow a few times a second, and tells it. */
+  settle() {
+    clearTimeout(this.settling);
     this.tell();
     try {
       history.replaceState(null, "", addressOf(this.given));
     } catch {
       // A frame in a notebook has no address of its own.
     }
-    this.neighbours = null;
-    this.validUntil = null;
-    this.rerun();
   }
 
   /** Tells a notebook around the page what it shows. */
@@ -113,25 +145,49 @@ class Page {
   }
 
   rerun() {
+    let run;
     try {
-      this.run = this.core
+      run = this.core
         ? new LiveRun(this.core, this.given)
         : new Recording(data.recording, this.given);
     } catch (error) {
-      return this.say(error.message);
+      return this.refused(error.message);
     }
-    this.say(this.run.success ? "" : this.run.message);
-    this.t = this.run.within(this.t);
+    this.run?.free();
+    this.run = run;
+    this.say(run.success ? "" : run.message);
+    this.t = run.within(this.t);
     const time = byId("time");
-    [time.min, time.max] = [this.run.begin, this.run.end].sort((a, b) => a - b).map(String);
-    this.view.forgetForces();
-    this.ghost = null;
+    [time.min, time.max] = [run.begin, run.end].sort((a, b) => a - b).map(String);
+    this.view.largestForce = this.#largestForce();
     this.#ghost();
-    this.#bits();
+    if (!this.dragged) this.#bits();
     this.#curves();
     this.#ask();
     this.draw();
     return undefined;
+  }
+
+  /** The picture stays that of the last run that was possible, and nothing is said of it. */
+  refused(reason) {
+    this.say(reason);
+    this.question += 1;
+    byId("bits").textContent = "";
+    byId("trust").textContent = "The picture is that of the last run that was possible.";
+  }
+
+  #largestForce() {
+    const { run } = this;
+    const sizes = Array.from({ length: FORCES }, (_x, k) => {
+      const t = run.begin + ((run.end - run.begin) * k) / (FORCES - 1);
+      const forces = run.reactions(t, run.state(t));
+      let largest = 0;
+      for (let i = 0; i < forces.length; i += 2) {
+        largest = Math.max(largest, Math.hypot(forces[i], forces[i + 1]));
+      }
+      return largest;
+    });
+    return Math.max(...sizes.filter(Number.isFinite), 0);
   }
 
   say(text) {
@@ -145,11 +201,14 @@ class Page {
     const badge = byId("bits");
     badge.classList.remove("same", "other");
     if (!this.core) {
-      badge.textContent = `played back; Python's hash ${data.hash}`;
+      badge.textContent = data.hash ? `played back; Python's hash ${data.hash}` : "played back";
       return;
     }
-    this.hash = simulateCase(this.core, this.given).run.hash;
-    if (writeCase(this.given) !== this.original) {
+    const { run, scene } = simulateCase(this.core, this.given);
+    this.hash = run.hash;
+    run.free();
+    scene.free();
+    if (writeCase(this.given) !== this.original || !data.hash) {
       badge.textContent = `hash ${this.hash}`;
       return;
     }
@@ -161,6 +220,8 @@ class Page {
   }
 
   #ghost() {
+    this.ghost?.free();
+    this.ghost = null;
     if (!this.core || !byId("ghost").checked) return;
     const start = structuredClone(this.given.start);
     start.q[start.q.length - 1] += GHOST;
@@ -182,15 +243,19 @@ class Page {
       const given = structuredClone(this.given);
       try {
         if (this.validUntil === null) {
-          const until = await this.helper.ask("horizon", given, { limit: LIMIT });
+          const until = await this.helper.ask("horizon", given, { limit: data.limit });
           if (isStale()) return;
           this.validUntil = until;
           this.trust();
           this.draw();
         }
         if (byId("neighbours").checked && !this.neighbours) {
+          byId("rate").textContent = "computing a thousand neighbours";
           const found = await this.helper.ask("neighbours", given, NEIGHBOURS);
-          if (!isStale()) this.neighbours = found;
+          if (isStale()) return;
+          this.neighbours = found;
+          byId("rate").textContent = "";
+          this.draw();
         }
       } catch (error) {
         if (!isStale())
@@ -207,9 +272,9 @@ class Page {
       Math.abs(until - this.run.end) < 1e-9 * Math.abs(this.run.end) ||
       this.#isRight(this.run.end)
     )
-      told.textContent = `Right to ${LIMIT} rad to its end.`;
+      told.textContent = `Right to ${data.limit} rad to its end.`;
     else
-      told.textContent = `Right to ${LIMIT} rad until t = ${until.toPrecision(4)} s; pale after that.`;
+      told.textContent = `Right to ${data.limit} rad until t = ${until.toPrecision(4)} s; pale after that.`;
   }
 
   #isRight(t) {
@@ -266,8 +331,14 @@ class Page {
     ++this.frames;
     if (now - this.since > 1000) {
       const rate = (1000 * this.frames) / (now - this.since);
-      byId("rate").textContent = this.isPlaying ? `${rate.toFixed(0)} frames a second` : "";
+      if (this.neighbours && this.isPlaying) {
+        byId("rate").textContent = `${rate.toFixed(0)} frames a second`;
+      }
       [this.since, this.frames] = [now, 0];
+    }
+    if (this.isMoved) {
+      this.isMoved = false;
+      this.changed();
     }
     if (this.isPlaying && !this.dragged) {
       const direction = this.run.end >= this.run.begin ? 1 : -1;
@@ -347,7 +418,6 @@ class Page {
     });
     for (const id of ["trace", "reactions"]) byId(id).addEventListener("change", () => this.draw());
     byId("ghost").addEventListener("change", () => {
-      this.ghost = null;
       this.#ghost();
       this.draw();
     });
@@ -363,6 +433,8 @@ class Page {
         byId(id).textContent = "Copied";
         setTimeout(() => (byId(id).textContent = label), 1200);
       });
+    // A notebook's frame has no address to copy.
+    byId("copy-link").hidden = location.protocol === "about:";
     copy("copy-link", () => location.href.split("#")[0] + addressOf(this.given));
     copy("copy-toml", () => toToml(this.given));
     copy("copy-python", () => toPython(this.given, data.kinds));
@@ -372,8 +444,8 @@ class Page {
       const given = this.core && caseInAddress();
       if (!given || writeCase(given) === writeCase(this.given)) return;
       this.given = given;
-      this.controls.show(given);
       this.changed();
+      this.showFields();
     });
   }
 
@@ -420,6 +492,18 @@ class Page {
     });
   }
 
+  /** The number of the joint near a place, or of the tip; 0 where there is none. */
+  #joint(near) {
+    const [x, y] = near;
+    const places = this.run.places(this.t, this.run.state(this.t));
+    let [nearest, least] = [0, 30 / this.view.pixels];
+    for (let i = 1; i <= this.run.n; ++i) {
+      const away = Math.hypot(x - places[2 * i], y - places[2 * i + 1]);
+      if (away < least) [nearest, least] = [i, away];
+    }
+    return nearest;
+  }
+
   /** Dragging a joint or the tip starts the run from the new pose, at rest. */
   #drag() {
     const canvas = byId("scene");
@@ -429,14 +513,8 @@ class Page {
     };
     canvas.addEventListener("pointerdown", (event) => {
       if (!this.core) return;
-      const [x, y] = place(event);
-      const places = this.run.places(this.t, this.run.state(this.t));
-      let [nearest, least] = [-1, 30 / this.view.pixels];
-      for (let i = 1; i <= this.run.n; ++i) {
-        const away = Math.hypot(x - places[2 * i], y - places[2 * i + 1]);
-        if (away < least) [nearest, least] = [i, away];
-      }
-      if (nearest < 0) return;
+      const nearest = this.#joint(place(event));
+      if (nearest === 0) return;
       this.play(false);
       canvas.setPointerCapture(event.pointerId);
       const state = this.run.state(this.t);
@@ -444,7 +522,16 @@ class Page {
       this.given.start.qd = this.given.start.qd.map(() => 0);
       this.t = this.run.begin;
       this.dragged = nearest;
+      this.changed();
     });
+    // A finger that is not on a joint scrolls the page.
+    canvas.addEventListener(
+      "touchstart",
+      (event) => {
+        if (this.core && this.#joint(place(event.touches[0])) > 0) event.preventDefault();
+      },
+      { passive: false },
+    );
     canvas.addEventListener("pointermove", (event) => {
       if (!this.dragged) return;
       const [x, y] = place(event);
@@ -455,12 +542,15 @@ class Page {
       this.given.start.q[i - 1] =
         angle + 2 * Math.PI * Math.round((before - angle) / (2 * Math.PI));
       this.t = this.run.begin;
-      this.changed();
+      this.isMoved = true;
     });
     const end = () => {
       if (!this.dragged) return;
       this.dragged = 0;
-      this.controls.show(this.given);
+      this.isMoved = false;
+      this.changed();
+      this.settle();
+      this.showFields();
     };
     canvas.addEventListener("pointerup", end);
     canvas.addEventListener("pointercancel", end);
@@ -468,7 +558,9 @@ class Page {
 
   async #measure() {
     const told = byId("measured");
+    const question = this.question;
     told.textContent = "measuring";
+    byId("measure").disabled = true;
     const draw = (points) => {
       const methods = [...new Set(points.map((one) => one.method))];
       this.charts.cost.set(
@@ -485,16 +577,21 @@ class Page {
       );
       this.charts.cost.draw();
     };
-    this.helper.progress = draw;
+    this.helper.progress = (points) => question === this.question && draw(points);
     try {
       const methods = data.methods.filter((name) => name !== "auto" && !name.includes("-"));
       const points = await this.helper.ask("cost", structuredClone(this.given), { methods });
+      if (question !== this.question) throw new Error("the scene has changed since");
       draw(points);
       this.measured = points;
-      told.textContent = `${points.length} runs; errors against the tightest run`;
+      const beyond = this.#isRight(this.run.end)
+        ? ""
+        : "; past the time until which it is right, no tolerance helps";
+      told.textContent = `${points.length} runs; errors against the tightest run${beyond}`;
     } catch (error) {
       told.textContent = error.message;
     }
+    byId("measure").disabled = false;
   }
 }
 
@@ -504,6 +601,7 @@ async function begin() {
   const page = new Page(core, bytes);
   /** @type {any} */ (window).pendcorePage = page;
   const isStill = matchMedia("(prefers-reduced-motion: reduce)").matches;
+  byId("speed").value = "1"; // some browsers remember what was chosen before
   page.play(!isStill);
 }
 

@@ -69,11 +69,15 @@ def widget_of(text: str, height: int) -> Any:
 
         @property
         def case(self) -> dict[str, Any] | None:
-            return json.loads(self.text, object_hook=_with_infinities) if self.text else None
+            return _with_infinities(json.loads(self.text)) if self.text else None
 
     return PageWidget(page=text, height=height)
 
 
-def _with_infinities(values: dict[str, Any]) -> dict[str, Any]:
-    words = {"inf": inf, "-inf": -inf}
-    return {name: words.get(x, x) if isinstance(x, str) else x for name, x in values.items()}
+def _with_infinities(value: Any) -> Any:
+    """Return the same with numbers in the place of the words for infinities."""
+    if isinstance(value, dict):
+        return {name: _with_infinities(one) for name, one in value.items()}
+    if isinstance(value, list):
+        return [_with_infinities(one) for one in value]
+    return {"inf": inf, "-inf": -inf}.get(value, value) if isinstance(value, str) else value

@@ -45,6 +45,10 @@ export class LiveRun {
     this.lengths = given.link.map((one) => one.length);
     this.accounts = this.run.accounts;
   }
+  free() {
+    this.run.free();
+    this.scene.free();
+  }
   /** Angles and rates at a time. */
   state(t) {
     return this.run.at([this.within(t)]).subarray(0, 2 * this.n);
@@ -88,6 +92,7 @@ export class Recording {
     this.lengths = given.link.map((one) => one.length);
     this.accounts = [];
   }
+  free() {}
   #nearest(t) {
     const { t: times } = this.recorded;
     const last = times.length - 1;

@@ -1,7 +1,7 @@
 /** The picture of the chain: links, trace, arrows, ghost and neighbours, on a canvas; y points down. */
 
 const MARGIN = 0.12; // of the total length
-const ARROW = 0.45; // of the total length, for the largest force seen so far
+const ARROW = 0.45; // of the total length, for the largest force of the run
 
 /** A colour of the page's style. */
 export function color(name) {
@@ -28,10 +28,6 @@ export class SceneView {
     this.largestForce = 0;
     this.pixels = 1;
     this.center = [0, 0];
-  }
-
-  forgetForces() {
-    this.largestForce = 0;
   }
 
   /** Metres of a place on the canvas, in CSS pixels. */
@@ -110,10 +106,6 @@ export class SceneView {
 
   #arrows(places, forces, total) {
     const { pen } = this;
-    for (let k = 0; k < forces.length; k += 2) {
-      const size = Math.hypot(forces[k], forces[k + 1]);
-      if (Number.isFinite(size)) this.largestForce = Math.max(this.largestForce, size);
-    }
     const scale = (ARROW * total) / (this.largestForce || 1);
     pen.strokeStyle = pen.fillStyle = color("first");
     pen.lineWidth = 2;

@@ -10,76 +10,95 @@ const scope = self;
 let core = null;
 let ready = Promise.resolve();
 
-/** The largest difference of an angle, rad, at times of two runs. */
-function apart(one, other, times, n) {
-  const [a, b] = [one.at(times), other.at(times)];
-  return times.map((_t, k) => {
-    let largest = 0;
-    for (let i = 0; i < n; ++i) {
-      largest = Math.max(largest, Math.abs(a[k * one.dimension + i] - b[k * other.dimension + i]));
-    }
-    return largest;
-  });
-}
-
-function made(given, others) {
+/** Runs a case, gives the run to `use`, and frees it: a loop leaves no time to clean up after it. */
+function withRun(given, others, use) {
   const scene = core.scene({ links: given.link, gravity: given.gravity, effects: given.effect });
-  const { t_start, t_end, t_eval: _times, store: _store, ...options } = given.run;
-  return scene.simulate({
-    q0: given.start.q,
-    qd0: given.start.qd,
-    t0: t_start ?? 0,
-    t_end,
-    ...options,
-    store: "dense",
-    ...others,
-  });
+  try {
+    const { t_start, t_end, t_eval: _times, store: _store, ...options } = given.run;
+    const run = scene.simulate({
+      q0: given.start.q,
+      qd0: given.start.qd,
+      t0: t_start ?? 0,
+      t_end,
+      ...options,
+      store: "dense",
+      ...others,
+    });
+    try {
+      return use(run);
+    } finally {
+      run.free();
+    }
+  } finally {
+    scene.free();
+  }
 }
 
 function grid(begin, end, count) {
   return Array.from({ length: count }, (_x, k) => begin + ((end - begin) * k) / (count - 1));
 }
 
+/** One number, or one for each component. */
+function each(value, change) {
+  return Array.isArray(value) ? value.map(change) : change(value);
+}
+
 /** Until when a run is right to `limit` rad, by a run of another method at a hundredth of rtol. */
 function horizon(given, limit) {
-  const first = made(given);
-  const method = first.method === "dop853" ? "taylor" : "dop853";
-  const rtol = Math.max((given.run.rtol ?? 1e-6) / 100, 3e-14);
-  const moved = given.start.q.map((angle) => angle * (1 + 2 ** -51));
-  const { step: _step, first_step: _first, ...run } = given.run;
-  const second = made(
-    { ...given, run, start: { ...given.start, q: moved } },
-    { method: first.method === "radau5" ? "radau5" : method, rtol, atol: rtol / 1000 },
-  );
   const begin = given.run.t_start ?? 0;
-  const end = Math.min(first.t_reached, second.t_reached);
-  const times = grid(begin, end, 4000);
-  const errors = apart(first, second, times, given.link.length);
-  const past = errors.findIndex((error) => !(error <= limit));
-  return past < 0 ? end : times[Math.max(past - 1, 0)];
+  const { step: _step, first_step: _first, ...run } = given.run;
+  const moved = given.start.q.map((angle) => angle * (1 + 2 ** -51));
+  const other = { ...given, run, start: { ...given.start, q: moved } };
+  const rtol = each(given.run.rtol ?? 1e-6, (one) => Math.max(one / 100, 3e-14));
+  const second = (method) => ({
+    method: method === "radau5" ? "radau5" : method === "dop853" ? "taylor" : "dop853",
+    rtol,
+    atol: each(rtol, (one) => one / 1000),
+  });
+  return withRun(given, {}, (one) => {
+    const compare = (another) => {
+      const lengths = [one.t_reached, another.t_reached].map((end) => end - begin);
+      const length = Math.abs(lengths[0]) < Math.abs(lengths[1]) ? lengths[0] : lengths[1];
+      const times = grid(begin, begin + length, 4000);
+      const [a, b] = [one.at(times), another.at(times)];
+      const n = given.link.length;
+      const isWrong = (_t, k) => {
+        for (let i = 0; i < n; ++i) {
+          if (!(Math.abs(a[k * one.dimension + i] - b[k * another.dimension + i]) <= limit))
+            return true;
+        }
+        return false;
+      };
+      const past = times.findIndex(isWrong);
+      return past < 0 ? begin + length : times[Math.max(past - 1, 0)];
+    };
+    try {
+      return withRun(other, second(one.method), compare);
+    } catch {
+      return withRun(other, { ...second(one.method), method: "dopri5" }, compare); // without series
+    }
+  });
 }
 
 /** The angles of many runs that start beside this one, at equal steps of time. */
 function neighbours(given, count, spread, rate) {
   const n = given.link.length;
   const begin = given.run.t_start ?? 0;
-  const times = grid(
-    begin,
-    given.run.t_end,
-    Math.round(Math.abs(given.run.t_end - begin) * rate) + 1,
-  );
-  const angles = new Float32Array(count * times.length * n);
+  const steps = Math.round(Math.abs(given.run.t_end - begin) * rate) + 1;
+  const times = grid(begin, given.run.t_end, steps);
+  const angles = new Float32Array(count * steps * n);
   for (let k = 0; k < count; ++k) {
     const q = [...given.start.q];
     q[n - 1] += spread * (k + 1);
-    const run = made({ ...given, start: { ...given.start, q } });
-    const [low, high] = [Math.min(begin, run.t_reached), Math.max(begin, run.t_reached)];
-    const rows = run.at(times.map((t) => Math.min(Math.max(t, low), high)));
-    for (let j = 0; j < times.length; ++j) {
-      for (let i = 0; i < n; ++i) {
-        angles[(j * count + k) * n + i] = rows[j * run.dimension + i];
+    const start = { ...given.start, q };
+    withRun({ ...given, start }, { store: "times", t_eval: times }, (run) => {
+      const rows = run.states;
+      const kept = rows.length / run.dimension;
+      for (let j = 0; j < steps; ++j) {
+        const row = Math.min(j, kept - 1) * run.dimension; // a run that ended stays where it is
+        for (let i = 0; i < n; ++i) angles[(j * count + k) * n + i] = rows[row + i];
       }
-    }
+    });
   }
   return { angles, count, n, rate, begin };
 }
@@ -88,23 +107,23 @@ function neighbours(given, count, spread, rate) {
 function measured(given, method, tolerance, times, truth) {
   const total = given.link.reduce((sum, one) => sum + one.length, 0);
   const others = { method, rtol: tolerance, atol: tolerance, step: null, first_step: null };
-  let run = made(given, others);
-  if (!run.success) return null;
+  const once = (use) => withRun(given, others, use);
+  const found = once((run) => (run.success ? { rows: run.at(times), size: run.dimension } : null));
+  if (found === null) return null;
   // A browser's clock has steps of a tenth of a millisecond, so that many runs are timed at once.
   let least = Infinity;
   for (let batch = 0; batch < 3; ++batch) {
     const begin = performance.now();
     let runs = 0;
-    for (; performance.now() < begin + 20; ++runs) run = made(given, others);
+    for (; performance.now() < begin + 20; ++runs) once(() => null);
     least = Math.min(least, (performance.now() - begin) / runs);
   }
   const n = given.link.length;
-  const rows = run.at(times);
   let error = 0;
   for (let k = 0; k < times.length; ++k) {
     let [x, y] = [0, 0];
     for (let i = 0; i < n; ++i) {
-      const [here, there] = [rows[k * run.dimension + i], truth.rows[k * truth.dimension + i]];
+      const [here, there] = [found.rows[k * found.size + i], truth.rows[k * truth.size + i]];
       x += given.link[i].length * (Math.cos(here) - Math.cos(there));
       y += given.link[i].length * (Math.sin(here) - Math.sin(there));
       error = Math.max(error, Math.hypot(x, y) / total);
@@ -113,27 +132,24 @@ function measured(given, method, tolerance, times, truth) {
   return { method, tolerance, ms: least, error };
 }
 
-function cost(given, methods) {
+function cost(given, methods, tell) {
   const begin = given.run.t_start ?? 0;
-  const stiff = made(given).method === "radau5";
-  const best = made(given, {
-    method: stiff ? "radau5" : "dop853",
-    rtol: 3e-14,
-    atol: 1e-16,
-    step: null,
+  const isStiff = withRun(given, {}, (run) => run.method === "radau5");
+  const tightest = { method: isStiff ? "radau5" : "dop853", rtol: 3e-14, atol: 1e-16, step: null };
+  const truth = withRun(given, tightest, (run) => {
+    const times = grid(begin, run.t_reached, 101);
+    return { times, rows: run.at(times), size: run.dimension };
   });
-  const times = grid(begin, best.t_reached, 101);
-  const truth = { rows: best.at(times), dimension: best.dimension };
   const found = [];
   for (const method of methods) {
     for (let digits = 3; digits <= 12; ++digits) {
       try {
-        const one = measured(given, method, 10 ** -digits, times, truth);
+        const one = measured(given, method, 10 ** -digits, truth.times, truth);
         if (one !== null) found.push(one);
       } catch {
         break; // the method does not take this scene
       }
-      scope.postMessage({ partial: found });
+      tell(found);
     }
   }
   return found;
@@ -142,7 +158,7 @@ function cost(given, methods) {
 const tasks = {
   horizon: ({ given, limit }) => horizon(given, limit),
   neighbours: ({ given, count, spread, rate }) => neighbours(given, count, spread, rate),
-  cost: ({ given, methods }) => cost(given, methods),
+  cost: ({ given, methods }, tell) => cost(given, methods, tell),
 };
 
 scope.onmessage = async ({ data }) => {
@@ -154,7 +170,7 @@ scope.onmessage = async ({ data }) => {
       return;
     }
     await ready;
-    const answer = tasks[data.task](data);
+    const answer = tasks[data.task](data, (partial) => scope.postMessage({ id: data.id, partial }));
     const moved = answer?.angles ? [answer.angles.buffer] : [];
     scope.postMessage({ id: data.id, answer }, moved);
   } catch (error) {

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 from pendcore.messages.arguments import Floats
 from pendcore.messages.html import beside, drawing, table
@@ -33,11 +34,17 @@ def html(solution: RunResult) -> str:
     right = np.isfinite(q).all(axis=1)
     if not right.any():
         return rows
-    some = np.flatnonzero(right)[:: -(-int(right.sum()) // _MOST_POINTS)]
+    finite = np.flatnonzero(right)
+    some = finite[_spread(len(finite), _MOST_POINTS)]
     places = solution.scene._compiled.positions(t[some], np.ascontiguousarray(q[some]))
-    chosen = np.unique(np.linspace(0, len(places) - 1, _POSES).round().astype(int))
-    title = f"the chain at {len(chosen)} times, the last of them black, and the path of its tip"
+    chosen = _spread(len(places), _POSES)
+    title = f"the chain at {len(chosen)} times, the last of them plainest, and the path of its tip"
     return beside(rows, drawing(places[chosen], places[:, -1], title))
+
+
+def _spread(count: int, most: int) -> npt.NDArray[np.intp]:
+    """Return numbers from 0 to count - 1, the first and the last among them, at most so many."""
+    return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(np.intp))
 
 
 def listed(values: Sequence[float] | Floats, most: int = 6) -> str:

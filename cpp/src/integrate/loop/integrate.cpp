@@ -39,7 +39,9 @@ class Run {
     const bool begins = integrator_.h == 0.0;
     if (begins && discontinuities_ != nullptr && discontinuities_->is_over())
       return end_with(Status::non_finite);
-    if (const int bad = bad_component(integrator_.dydt); bad >= 0) {
+    // Where a run goes on, the ledger's rates are not looked at, as in a run that never stopped.
+    const int bad = bad_component(integrator_.dydt);
+    if (bad >= 0 && (begins || bad < stepper_.controlled())) {
       return end_with(Status::non_finite, bad);
     }
     resume_.step_begins();

@@ -17,6 +17,7 @@ double seconds(std::chrono::steady_clock::duration d) {
 // not at all where nothing waits for it.
 RunLimits::RunLimits(const Limits& limits, double t0) : limits_(limits), t0_(t0) {
   const bool has_limit = std::isfinite(limits.time_limit);
+  // Before the second step, no monitor waits yet.
   if (!has_limit) steps_between_looks_ = limits.monitor ? 2 : std::numeric_limits<int>::max();
   if (!has_limit && !limits.monitor) return;
   start_ = last_look_ = last_call_ = Steady::now();

@@ -66,8 +66,7 @@ class HeldJoints {
   const std::vector<Hold>& holds() const { return holds_; }
   bool is_held(int joint) const { return holds_[joint].is_held; }
   bool any_held_for_now() const;  ///< by anything but a lock
-  /// The inertia about its joint of each link and everything beyond it, kg m^2, (n): the diagonal
-  /// of M.
+  /// The inertia, kg m^2, of a link and everything beyond it about the joint: M_ii.
   double inertia(int joint) const { return forces_.inertia.links[joint].diagonal; }
   double natural_speed() const { return natural_speed_; }  ///< the highest of all joints, rad/s
 

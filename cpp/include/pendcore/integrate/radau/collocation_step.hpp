@@ -114,10 +114,10 @@ struct CollocationStep {
       store(&scale[i], at(atol.data(), i) + at(rtol.data(), i) * largest + 1e-300);
     }
   }
-  PENDCORE_INLINE double squared_norm(const double* of) const {
+  PENDCORE_INLINE double squared_norm(const double* row) const {
     double sum = 0.0;
     for (int i = 0; i < sizes.state; i += width) {
-      const Block ratio = at(of, i) / at(scale.data(), i);
+      const Block ratio = at(row, i) / at(scale.data(), i);
       const Block square = ratio * ratio;
       for (int k = 0; k < width; ++k) sum += lane(square, k);
     }

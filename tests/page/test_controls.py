@@ -1,0 +1,240 @@
+"""What a reader of a page touches does what it says: joints, keys, sliders, effects, methods."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pendcore as pc
+import pytest
+
+Open = Callable[..., Any]
+pytestmark = [pytest.mark.unsanitized, pytest.mark.usefixtures("core")]
+
+
+@pytest.fixture(scope="module")
+def sol() -> pc.Solution:
+    damped = pc.Scene.textbook().replace(effects=[pc.effects.ViscousJoint(joint=2, damping=0.05)])
+    return pc.simulate(damped, [0.8, 1.0], t_span=(0, 8))
+
+
+@pytest.mark.parametrize("size", ["desktop", "phone"])
+def test_dragging_the_tip_starts_the_run_elsewhere(
+    sol: pc.Solution, opened: Open, browser: Any, size: str
+) -> None:
+    from page.conftest import SIZES
+    from selenium.webdriver.common.action_chains import ActionChains
+
+    browser.set_window_size(*SIZES[size])
+    try:
+        page = opened(sol)
+        page.do("pendcorePage.go(0)")
+        x, y, left, top = page.ask(
+            "(() => { const { view, run } = pendcorePage; const p = run.places(0, run.state(0));"
+            " view.canvas.scrollIntoView();"
+            " const { left, top } = view.canvas.getBoundingClientRect();"
+            " return [p[4] * view.pixels, p[5] * view.pixels,"
+            " left + view.center[0], top + view.center[1]] })()"
+        )
+        drag = ActionChains(browser)
+        drag.w3c_actions.pointer_action.move_to_location(round(left + x), round(top + y))
+        drag.w3c_actions.pointer_action.pointer_down()
+        drag.w3c_actions.pointer_action.move_to_location(round(left + x - 40), round(top + y - 60))
+        drag.w3c_actions.pointer_action.pointer_up()
+        drag.perform()
+        moved = page.ask("pendcorePage.given.start.q")
+        assert moved[0] == 0.8
+        wanted = np.arctan2(
+            y - 60 - page.ask("pendcorePage.view.pixels") * np.sin(0.8),
+            x - 40 - page.ask("pendcorePage.view.pixels") * np.cos(0.8),
+        )
+        assert moved[1] == pytest.approx(wanted, abs=0.05)
+        run = pc.simulate(sol.scene, moved, t_span=(0, 8))
+        assert page.ask("pendcorePage.hash") == run.run.fingerprint
+    finally:
+        browser.set_window_size(*SIZES["desktop"])
+
+
+def test_keys_play_step_and_go_home(sol: pc.Solution, opened: Open, browser: Any) -> None:
+    from selenium.webdriver.common.keys import Keys
+
+    page = opened(sol)
+    page.do("pendcorePage.play(false); pendcorePage.go(1)")
+    scene = browser.find_element("id", "scene")
+    scene.send_keys(Keys.ARROW_RIGHT, Keys.ARROW_RIGHT)
+    assert page.ask("pendcorePage.t") == pytest.approx(1 + 2 / 60)
+    scene.send_keys(Keys.HOME)
+    assert page.text("clock") == "0.00 s"
+    scene.send_keys(Keys.SPACE)
+    assert page.text("play") == "Pause"
+    page.wait("pendcorePage.t > 0.2")
+    label = page.ask("document.getElementById('scene').getAttribute('aria-label')")
+    assert re.fullmatch(r"At \d\.\d\d s: q1 [\d.-]+ degrees, q2 [\d.-]+ degrees", label)
+
+
+def test_every_control_has_a_name(sol: pc.Solution, opened: Open) -> None:
+    page = opened(sol)
+    nameless = page.ask(
+        "[...document.querySelectorAll('button, input, select, canvas')].filter((one) =>"
+        " !(one.getAttribute('aria-label') || one.labels?.length || one.textContent.trim()))"
+        ".map((one) => one.outerHTML)"
+    )
+    assert nameless == []
+
+
+def test_sliders_change_parameters_and_the_run(
+    sol: pc.Solution, opened: Open, browser: Any
+) -> None:
+    page = opened(sol)
+    page.click("tab-setup")
+    field = browser.find_element("xpath", "//label[text()='damping (N m s/rad)']/..//input")
+    page.do(
+        "const f = [...document.querySelectorAll('label')].find((one) =>"
+        " one.textContent === 'damping (N m s/rad)').parentElement.querySelector('input');"
+        " f.value = '0.5'; f.dispatchEvent(new Event('input'))"
+    )
+    assert field.get_attribute("value") == "0.5"
+    damped = pc.effects.ViscousJoint(joint=2, damping=0.5)
+    scene = sol.scene.replace(effects=[damped])
+    run = pc.simulate(scene, [0.8, 1.0], t_span=(0, 8))
+    assert page.ask("pendcorePage.hash") == run.run.fingerprint
+
+
+@pytest.mark.parametrize(("name", "typed"), [("mass (kg)", "0.8"), ("length (m)", "0.35")])
+def test_a_rod_stays_a_rod_while_its_numbers_are_typed(
+    sol: pc.Solution, opened: Open, browser: Any, name: str, typed: str
+) -> None:
+    """On the way to 0.8 the field holds 0."""
+    from selenium.webdriver.common.keys import Keys
+
+    page = opened(sol)
+    page.click("tab-setup")
+    field = browser.find_element("xpath", f"//label[text()='{name}']/../input[@type='number']")
+    field.send_keys(Keys.CONTROL, "a")
+    field.send_keys(typed)
+    link = page.ask("pendcorePage.given.link[0]")
+    made = pc.Link(**{"mass": 1.0, "length": 1.0, name.split()[0]: float(typed)})
+    assert link == pytest.approx(
+        {x: getattr(made, x) for x in ("mass", "length", "center", "inertia")}
+    )
+    assert page.ask("message.hidden")
+    field.send_keys(Keys.CONTROL, "a")
+    field.send_keys("-2")
+    assert field.get_attribute("aria-invalid") == "true"
+    assert page.ask("pendcorePage.given.link[0].mass") > 0
+
+
+def test_a_tap_on_a_joint_starts_there_and_the_page_says_so(
+    sol: pc.Solution, opened: Open, browser: Any
+) -> None:
+    from selenium.webdriver.common.action_chains import ActionChains
+
+    page = opened(sol)
+    page.do("pendcorePage.play(false); pendcorePage.go(2)")
+    x, y = page.ask(
+        "(() => { const { view, run } = pendcorePage; const p = run.places(2, run.state(2));"
+        " const { left, top } = view.canvas.getBoundingClientRect();"
+        " return [left + view.center[0] + p[4] * view.pixels,"
+        " top + view.center[1] + p[5] * view.pixels] })()"
+    )
+    tap = ActionChains(browser)
+    tap.w3c_actions.pointer_action.move_to_location(round(x), round(y))
+    tap.w3c_actions.pointer_action.pointer_down()
+    tap.w3c_actions.pointer_action.pointer_up()
+    tap.perform()
+    q = page.ask("pendcorePage.given.start.q")
+    assert q == [*sol(2.0)[:2]]
+    assert page.ask("[...pendcorePage.run.state(0)]") == [*q, 0, 0]
+    assert page.text("bits").startswith("hash ")
+
+
+def test_a_run_that_is_refused_leaves_the_picture_and_says_nothing_of_it(
+    sol: pc.Solution, opened: Open
+) -> None:
+    page = opened(sol)
+    page.do("pendcorePage.given.link[0].length = -1; pendcorePage.changed()")
+    assert page.text("bits") == ""
+    assert page.text("trust") == "The picture is that of the last run that was possible."
+    page.do("pendcorePage.given.link[0].length = 1; pendcorePage.changed()")
+    assert page.text("bits").startswith("the bits of Python")
+
+
+def test_a_tolerance_for_each_component_is_understood(sol: pc.Solution, opened: Open) -> None:
+    run = pc.simulate(sol.scene, [0.8, 1.0], t_span=(0, 8), rtol=[1e-6, 1e-6, 1e-7, 1e-7])
+    page = opened(run)
+    page.wait("pendcorePage.validUntil !== null")
+    assert page.ask("document.querySelector('#method input').value") == "7"
+    assert page.text("bits").endswith(f"= {run.run.fingerprint}")
+
+
+def test_fixed_steps_keep_their_method_until_another_is_chosen(
+    sol: pc.Solution, opened: Open
+) -> None:
+    run = pc.simulate(sol.scene, 0.8, t_span=(0, 4), method="rk4", step=0.01)
+    page = opened(run)
+    assert page.ask("document.querySelector('#method select').value") == "rk4"
+    page.do(
+        "const s = document.querySelector('#method select'); s.value = 'dop853';"
+        "s.dispatchEvent(new Event('change'))"
+    )
+    assert page.ask("message.hidden")
+    assert page.ask("'step' in pendcorePage.given.run") is False
+
+
+def test_effects_are_added_and_removed(sol: pc.Solution, opened: Open) -> None:
+    page = opened(sol)
+    page.click("tab-setup")
+    kinds = page.ask("Object.keys(pendcorePage.controls.defaults)")
+    assert set(kinds) == {*pc.effects.kinds()} - {"user", "compiled_user"}
+    for kind in kinds:
+        page.do(
+            "const select = document.querySelector('#setup select[aria-label]');"
+            f"select.value = {kind!r}; select.nextSibling.nextSibling.click()"
+        )
+        assert page.ask("pendcorePage.given.effect.at(-1).kind") == kind
+        refused = page.ask("!message.hidden && message.textContent") or ""
+        assert not refused or "q0" in refused, (kind, refused)  # a lock or a stop elsewhere
+        page.do("[...document.querySelectorAll('fieldset button')].at(-2).click()")
+        assert page.ask("pendcorePage.given.effect.length") == 1
+    assert page.ask("message.hidden")
+
+
+@pytest.mark.parametrize(
+    ("change", "scene"),
+    [
+        ("gravity = -Infinity", lambda: pc.Scene.textbook().replace(gravity=-np.inf)),
+        (
+            "link[0].length = -1",
+            lambda: pc.Scene(links=[pc.Link(mass=1.0, length=-1.0, center=0.5)]),
+        ),
+        (
+            "effect.push({kind: 'joint_stop', joint: 1, range: [1, 0.5], restitution: 0.5})",
+            lambda: pc.effects.JointStop(joint=1, range=(1, 0.5), restitution=0.5),
+        ),
+    ],
+)
+def test_an_impossible_parameter_is_refused_as_python_refuses_it(
+    sol: pc.Solution, opened: Open, change: str, scene: Callable[[], object]
+) -> None:
+    with pytest.raises(ValueError, match=r"\w") as refused:
+        scene()
+    page = opened(sol)
+    page.do(f"pendcorePage.given.{change}; pendcorePage.changed()")
+    assert page.ask("message.hidden") is False
+    told = page.text("message")
+    assert told.split(": ", 1)[-1].split(": ")[-1] == str(refused.value).split(": ")[-1]
+
+
+def test_methods_and_tolerances_are_chosen_in_the_page(sol: pc.Solution, opened: Open) -> None:
+    page = opened(sol)
+    page.click("tab-accuracy")
+    page.do(
+        "const s = document.querySelector('#method select'); s.value = 'dop853';"
+        "s.dispatchEvent(new Event('change'));"
+        "const f = document.querySelector('#method input'); f.value = '11';"
+        "f.dispatchEvent(new Event('input'))"
+    )
+    run = pc.simulate(sol.scene, [0.8, 1.0], t_span=(0, 8), method="dop853", rtol=1e-11)
+    assert page.ask("pendcorePage.hash") == run.run.fingerprint
