@@ -3,7 +3,8 @@
 The pages are the Markdown files of docs/, as they read in the repository. Their Python is executed
 while the site is built (executed.py). The pages of the Python reference come from docstrings
 (python_reference.py), those of the C++ reference from the headers (cpp_reference.py), those of the
-examples from their files (example_pages.py). The first page shows a run alive (live_pages.py).
+examples from their files (example_pages.py), those of the notebooks from their cells
+(notebook_pages.py). The first page shows a run alive (live_pages.py).
 Names in the documentation of Python, NumPy and Matplotlib are linked by the list in inventories.py.
 """
 
@@ -20,6 +21,7 @@ import cpp_reference  # noqa: E402
 import example_pages  # noqa: E402
 import inventories  # noqa: E402
 import live_pages  # noqa: E402
+import notebook_pages  # noqa: E402
 import pendcore  # noqa: E402
 import python_reference  # noqa: E402
 
@@ -77,5 +79,6 @@ html_theme_options = {
 
 live_pages.write(HERE / "_static")
 python_reference.write(ROOT / "docs/reference/python")
+notebook_pages.write(ROOT / "examples/notebooks", ROOT / "docs/notebooks")
 example_pages.write(ROOT / "examples", ROOT / "docs/examples")
 cpp_reference.write(ROOT / "cpp/include/pendcore", ROOT / "docs/reference/cpp")

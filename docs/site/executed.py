@@ -10,6 +10,7 @@ the folder under its name. A page whose Python is parts of files says that it is
 
 from __future__ import annotations
 
+import ast
 import contextlib
 import doctest
 import io
@@ -30,6 +31,8 @@ from sphinx.util import logging
 
 logger = logging.getLogger(__name__)
 NOT_EXECUTED = "not executed for the site"
+NOTEBOOK = "<!-- a notebook -->"
+"""In such a page, what a block's last line shows in a notebook stands below the block."""
 EXAMPLE = re.compile(r"<!-- the file: (.*) -->")
 REFERENCE = "reference/python/"
 """Pages whose examples are doctests, which the tests run."""
@@ -45,6 +48,7 @@ def execute_page(app: Sphinx, doctree: nodes.document) -> None:
     import matplotlib.pyplot as plt
 
     names: dict[str, Any] = {"__name__": "__main__"}
+    is_notebook = NOTEBOOK in text
     example = EXAMPLE.search(text)
     if example:
         names["__file__"] = example.group(1)
@@ -55,10 +59,12 @@ def execute_page(app: Sphinx, doctree: nodes.document) -> None:
         try:
             write_cases(doctree)
             for number, block in enumerate(blocks, start=1):
-                printed = run(block, names, f"{page}, block {number}")
+                where = f"{page}, block {number}"
+                printed, value = run(block.astext(), names, where)
+                html = shown(value, block.astext()) if is_notebook else ""
                 figures = [saved(app, plt.figure(k), page, number, k) for k in plt.get_fignums()]
                 plt.close("all")
-                add_below(block, printed, figures, f"{page}, block {number}")
+                add_below(block, printed, figures, where, html)
         finally:
             os.chdir(before)
             sys.path.remove(folder)
@@ -77,17 +83,29 @@ def write_cases(doctree: nodes.document) -> None:
                 Path(f"{name}.toml").write_text(block.astext())
 
 
-def run(block: nodes.literal_block, names: dict[str, Any], where: str) -> str:
-    printed = io.StringIO()
+def run(text: str, names: dict[str, Any], where: str) -> tuple[str, Any]:
+    """Run a block, and return what it printed, and the value of its last line if that is one."""
+    printed, last = io.StringIO(), None
     try:
-        code = compile(block.astext(), where, "exec")
+        body = ast.parse(text, where)
+        value = None
+        if body.body and isinstance(body.body[-1], ast.Expr):
+            value = ast.Expression(body.body.pop().value)
         quiet = contextlib.redirect_stderr(io.StringIO())
         with contextlib.redirect_stdout(printed), quiet, warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            exec(code, names)
+            exec(compile(body, where, "exec"), names)
+            if value:
+                last = eval(compile(value, where, "eval"), names)
     except Exception:
         logger.warning("%s raised\n%s", where, traceback.format_exc(limit=-1))
-    return printed.getvalue()
+    return printed.getvalue(), last
+
+
+def shown(value: Any, text: str) -> str:
+    """Return what a notebook shows of the value of a last line; nothing if ";" ends the line."""
+    is_silent = text.rstrip().endswith(";") or not hasattr(value, "_repr_html_")
+    return "" if is_silent else str(value._repr_html_())
 
 
 def saved(app: Sphinx, figure: Any, page: str, number: int, k: int) -> str:
@@ -104,7 +122,9 @@ def is_shown(output: str, printed: str) -> bool:
     return doctest.OutputChecker().check_output(f"{output}\n", printed, flags)
 
 
-def add_below(block: nodes.literal_block, printed: str, figures: list[str], where: str) -> None:
+def add_below(
+    block: nodes.literal_block, printed: str, figures: list[str], where: str, html: str
+) -> None:
     parent = block.parent
     at = parent.index(block) + 1
     follows = parent[at] if at < len(parent) else None
@@ -117,6 +137,8 @@ def add_below(block: nodes.literal_block, printed: str, figures: list[str], wher
     if printed.strip() and not shows_output:
         added.append(nodes.literal_block(printed, printed, language="text", classes=["output"]))
     added += [nodes.image(uri=path, alt="the figure that these lines draw") for path in figures]
+    if html:
+        added.append(nodes.raw("", f"<div class='shown'>{html}</div>", format="html"))
     for node in reversed(added):
         parent.insert(at, node)
 

@@ -39,6 +39,13 @@ def browser() -> Iterator[Any]:
 
 
 @pytest.fixture
+def sized(browser: Any) -> Iterator[Callable[[str], None]]:
+    """Return what makes the window as large as a "desktop" or a "phone", until the test ends."""
+    yield lambda size: browser.set_window_size(*SIZES[size])
+    browser.set_window_size(*SIZES["desktop"])
+
+
+@pytest.fixture
 def core() -> None:
     """Skip a test of the core in a page where the install has none."""
     if core_for_browsers() is None:

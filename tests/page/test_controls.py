@@ -22,39 +22,35 @@ def sol() -> pc.Solution:
 
 @pytest.mark.parametrize("size", ["desktop", "phone"])
 def test_dragging_the_tip_starts_the_run_elsewhere(
-    sol: pc.Solution, opened: Open, browser: Any, size: str
+    sol: pc.Solution, opened: Open, browser: Any, sized: Callable[[str], None], size: str
 ) -> None:
-    from page.conftest import SIZES
     from selenium.webdriver.common.action_chains import ActionChains
 
-    browser.set_window_size(*SIZES[size])
-    try:
-        page = opened(sol)
-        page.do("pendcorePage.go(0)")
-        x, y, left, top = page.ask(
-            "(() => { const { view, run } = pendcorePage; const p = run.places(0, run.state(0));"
-            " view.canvas.scrollIntoView();"
-            " const { left, top } = view.canvas.getBoundingClientRect();"
-            " return [p[4] * view.pixels, p[5] * view.pixels,"
-            " left + view.center[0], top + view.center[1]] })()"
-        )
-        drag = ActionChains(browser)
-        drag.w3c_actions.pointer_action.move_to_location(round(left + x), round(top + y))
-        drag.w3c_actions.pointer_action.pointer_down()
-        drag.w3c_actions.pointer_action.move_to_location(round(left + x - 40), round(top + y - 60))
-        drag.w3c_actions.pointer_action.pointer_up()
-        drag.perform()
-        moved = page.ask("pendcorePage.given.start.q")
-        assert moved[0] == 0.8
-        wanted = np.arctan2(
-            y - 60 - page.ask("pendcorePage.view.pixels") * np.sin(0.8),
-            x - 40 - page.ask("pendcorePage.view.pixels") * np.cos(0.8),
-        )
-        assert moved[1] == pytest.approx(wanted, abs=0.05)
-        run = pc.simulate(sol.scene, moved, t_span=(0, 8))
-        assert page.ask("pendcorePage.hash") == run.run.fingerprint
-    finally:
-        browser.set_window_size(*SIZES["desktop"])
+    sized(size)
+    page = opened(sol)
+    page.do("pendcorePage.go(0)")
+    x, y, left, top = page.ask(
+        "(() => { const { view, run } = pendcorePage; const p = run.places(0, run.state(0));"
+        " view.canvas.scrollIntoView();"
+        " const { left, top } = view.canvas.getBoundingClientRect();"
+        " return [p[4] * view.pixels, p[5] * view.pixels,"
+        " left + view.center[0], top + view.center[1]] })()"
+    )
+    drag = ActionChains(browser)
+    drag.w3c_actions.pointer_action.move_to_location(round(left + x), round(top + y))
+    drag.w3c_actions.pointer_action.pointer_down()
+    drag.w3c_actions.pointer_action.move_to_location(round(left + x - 40), round(top + y - 60))
+    drag.w3c_actions.pointer_action.pointer_up()
+    drag.perform()
+    moved = page.ask("pendcorePage.given.start.q")
+    assert moved[0] == 0.8
+    wanted = np.arctan2(
+        y - 60 - page.ask("pendcorePage.view.pixels") * np.sin(0.8),
+        x - 40 - page.ask("pendcorePage.view.pixels") * np.cos(0.8),
+    )
+    assert moved[1] == pytest.approx(wanted, abs=0.05)
+    run = pc.simulate(sol.scene, moved, t_span=(0, 8))
+    assert page.ask("pendcorePage.hash") == run.run.fingerprint
 
 
 def test_keys_play_step_and_go_home(sol: pc.Solution, opened: Open, browser: Any) -> None:

@@ -134,7 +134,13 @@ class Explanation:
             for one in self.costs
         ]  # fmt: skip
         found = [
-            [one.name, one.stability, ", ".join(f"{x.angular_frequency:.4g}" for x in one.modes)]
+            [
+                one.name,
+                one.stability,
+                ", ".join(
+                    f"{x.angular_frequency:.4g}" for x in one.modes if x.angular_frequency > 0
+                ),
+            ]
             for one in self.equilibria
         ]
         return beside(

@@ -4,7 +4,7 @@ import { color, fitted } from "./scene_view.mjs";
 
 const LEFT = 52;
 const RIGHT = 10;
-const TOP = 22;
+const LINE = 14; // the height of a row of names
 const BOTTOM = 36;
 
 /** Round numbers that cover an interval: some five of them. */
@@ -57,18 +57,20 @@ export class Chart {
   draw({ past = null, now = null, points = [] } = {}) {
     const { pen, width, height } = fitted(this.canvas);
     const [left, right, low, high] = this.box;
+    pen.font = "11px system-ui, sans-serif";
+    const legend = this.#legend(pen, width);
+    const top = 8 + LINE * legend.length;
     const place = (value) => (this.log ? Math.log10(value) : value);
     const at = (x, y) => [
       LEFT + ((place(x) - left) / (right - left)) * (width - LEFT - RIGHT),
-      height - BOTTOM - ((place(y) - low) / (high - low)) * (height - TOP - BOTTOM),
+      height - BOTTOM - ((place(y) - low) / (high - low)) * (height - top - BOTTOM),
     ];
-    pen.font = "11px system-ui, sans-serif";
     if (past !== null && past < right) {
       pen.fillStyle = color("line");
       const [x] = at(past, 0);
-      pen.fillRect(x, TOP, width - RIGHT - x, height - TOP - BOTTOM);
+      pen.fillRect(x, top, width - RIGHT - x, height - top - BOTTOM);
     }
-    this.#axes(pen, width, height, at);
+    this.#axes(pen, width, height, top, at);
     for (const { x, y, color: stroke, dots } of this.curves) {
       pen.strokeStyle = pen.fillStyle = color(stroke);
       pen.lineWidth = 1.3;
@@ -86,7 +88,7 @@ export class Chart {
       const [x] = at(now, 1);
       pen.strokeStyle = color("ink");
       pen.beginPath();
-      pen.moveTo(x, TOP);
+      pen.moveTo(x, top);
       pen.lineTo(x, height - BOTTOM);
       pen.stroke();
     }
@@ -96,10 +98,10 @@ export class Chart {
       pen.arc(...at(x, y), 4, 0, 2 * Math.PI);
       pen.fill();
     }
-    this.#legend(pen, width);
+    this.#drawLegend(pen, width, legend);
   }
 
-  #axes(pen, width, height, at) {
+  #axes(pen, width, height, top, at) {
     const [left, right, low, high] = this.box;
     const back = (value) => (this.log ? 10 ** value : value);
     const round = (from, to) =>
@@ -109,7 +111,7 @@ export class Chart {
     pen.lineWidth = 1;
     for (const tick of round(left, right)) {
       const [x] = at(back(tick), back(low));
-      pen.strokeRect(x, TOP, 0, height - TOP - BOTTOM);
+      pen.strokeRect(x, top, 0, height - top - BOTTOM);
       pen.textAlign = "center";
       pen.fillText(label(back(tick)), x, height - BOTTOM + 14);
     }
@@ -125,14 +127,33 @@ export class Chart {
     pen.fillText(this.names[0], width - RIGHT, height - 5);
   }
 
+  /** The names of the curves, in as many rows as they need beside the name of the axis. */
   #legend(pen, width) {
-    pen.textAlign = "right";
-    let x = width - RIGHT;
-    for (const { name, color: fill } of [...this.curves].reverse()) {
+    const free = width - LEFT - RIGHT - pen.measureText(this.names[1]).width;
+    const rows = [[]];
+    let left = free;
+    for (const { name, color: fill } of this.curves) {
       if (!name) continue;
-      pen.fillStyle = color(fill);
-      pen.fillText(name, x, 13);
-      x -= pen.measureText(name).width + 10;
+      const needs = pen.measureText(name).width + 10;
+      if (needs > left && rows.at(-1).length > 0) {
+        rows.push([]);
+        left = free;
+      }
+      left -= needs;
+      rows.at(-1).push({ name, fill, needs });
+    }
+    return rows;
+  }
+
+  #drawLegend(pen, width, rows) {
+    pen.textAlign = "right";
+    for (const [k, row] of rows.entries()) {
+      let x = width - RIGHT;
+      for (const { name, fill, needs } of row.reverse()) {
+        pen.fillStyle = color(fill);
+        pen.fillText(name, x, 13 + k * LINE);
+        x -= needs;
+      }
     }
     pen.textAlign = "left";
   }

@@ -61,7 +61,7 @@ class ChainOf {
   PENDCORE_INLINE void collect_loads(double t) const;
   /// `size` is the number of links where the compiler knows it, and 0 otherwise.
   template <int size>
-  PENDCORE_INLINE void recursion(Number ax, Number ay, Number* qdd) const;
+  PENDCORE_INLINE void recursion(const Number& ax, const Number& ay, Number* qdd) const;
   template <bool loaded, int size>
   PENDCORE_INLINE void tip_to_base() const;
   template <int size>

@@ -260,7 +260,8 @@ PENDCORE_INLINE void ChainOf<Number>::accelerations(double t, const Number* q, c
 
 template <class Number>
 template <int size>
-PENDCORE_INLINE void ChainOf<Number>::recursion(Number ax, Number ay, Number* qdd) const {
+PENDCORE_INLINE void ChainOf<Number>::recursion(const Number& ax, const Number& ay,
+                                                Number* qdd) const {
   if (loaded_) {
     tip_to_base<true, size>();
   } else {
