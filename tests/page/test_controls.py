@@ -234,3 +234,88 @@ def test_methods_and_tolerances_are_chosen_in_the_page(sol: pc.Solution, opened:
     )
     run = pc.simulate(sol.scene, [0.8, 1.0], t_span=(0, 8), method="dop853", rtol=1e-11)
     assert page.ask("pendcorePage.hash") == run.run.fingerprint
+
+
+def drawn(page: Any) -> list[dict[str, Any]]:
+    """Return the curves of the chart whose quantities are chosen."""
+    return page.ask(  # type: ignore[no-any-return]
+        "pendcorePage.curves.chosen.curves.map(({ name, x, y }) => ({ name, x, y }))"
+    )
+
+
+def choose(page: Any, menu: str, label: str) -> None:
+    page.do(
+        f"const menu = document.getElementById('{menu}'); menu.value = '{label}';"
+        "menu.dispatchEvent(new Event('change'))"
+    )
+    assert page.ask(f"document.getElementById('{menu}').value") == label
+
+
+def test_any_quantity_is_drawn_over_any_other(sol: pc.Solution, opened: Open) -> None:
+    page = opened(sol)
+    phase = drawn(page)
+    t = np.linspace(0, 8, len(phase[0]["x"]))
+    states = sol(t)
+    beside = pc.simulate(sol.scene, [0.8, 1.0], t_span=(0, 8), t_eval=t)
+    assert [one["name"] for one in phase] == ["link 1", "link 2"]
+    for i, one in enumerate(phase):
+        np.testing.assert_allclose(one["x"], states[i], atol=1e-10)
+        np.testing.assert_allclose(one["y"], states[2 + i], atol=1e-10)
+    choose(page, "across", "t (s)")
+    choose(page, "up", "force at joint 2 (N)")
+    (one,) = drawn(page)
+    np.testing.assert_allclose(one["x"], t, atol=1e-12)
+    forces = np.linalg.norm(beside.reactions()[:, 1], axis=-1)
+    np.testing.assert_allclose(one["y"], forces, rtol=1e-8)
+    choose(page, "across", "tip x (m)")
+    choose(page, "up", "tip y, down (m)")
+    (path,) = drawn(page)
+    tip = beside.positions()[:, -1]
+    np.testing.assert_allclose(path["x"], tip[:, 0], atol=1e-10)
+    np.testing.assert_allclose(path["y"], tip[:, 1], atol=1e-10)
+
+
+def test_a_choice_survives_a_run_and_goes_with_its_link(sol: pc.Solution, opened: Open) -> None:
+    page = opened(sol)
+    choose(page, "up", "qd 2 (rad/s)")
+    page.do("pendcorePage.given.start.q[0] = 0.5; pendcorePage.changed()")
+    assert page.ask("document.getElementById('up').value") == "qd 2 (rad/s)"
+    choose(page, "across", "kinetic energy (J)")
+    page.do(
+        "const { given } = pendcorePage; given.link.pop(); given.effect = [];"
+        "given.start.q.pop(); given.start.qd.pop(); pendcorePage.changed()"
+    )
+    assert page.ask("document.getElementById('up').value") == "qd (rad/s)"
+    assert page.ask("document.getElementById('across').value") == "kinetic energy (J)"
+
+
+def test_sliders_have_the_size_of_a_small_rig(opened: Open) -> None:
+    rig = pc.Scene(
+        links=[pc.Link(mass=0.05, length=0.1)],
+        effects=[
+            pc.effects.ViscousJoint(joint=1, damping=2e-5),
+            pc.effects.DryJointFriction(joint=1, coulomb=1e-4, static=1e-4),
+            pc.effects.JointStop(joint=1, range=(-1, 1), restitution=0.5),
+        ],
+    )
+    page = opened(pc.simulate(rig, [0.3], t_span=(0, 2)))
+    page.click("tab-setup")
+    sliders = {
+        name: (float(low), float(high), float(step))
+        for name, low, high, step in page.ask(
+            "[...document.querySelectorAll('#setup input[type=range]')].map((one) =>"
+            " [one.getAttribute('aria-label').split(',')[0], one.min, one.max, one.step])"
+        )
+    }
+    assert sliders["mass"] == pytest.approx((1e-4, 0.15, 1e-4))
+    assert sliders["length"] == pytest.approx((1e-3, 0.3, 1e-3))
+    assert sliders["damping"] == pytest.approx((-6e-5, 6e-5, 1e-7))  # some joints feed the motion
+    assert sliders["coulomb"] == pytest.approx((0, 3e-4, 1e-6))
+    assert sliders["restitution"] == pytest.approx((0, 1, 1e-3))
+
+
+def test_the_trace_of_a_fast_link_is_round(opened: Open) -> None:
+    fast = pc.simulate(pc.Scene.textbook(), [0.3, 0.3], [0.0, 60.0], t_span=(0, 2))
+    page = opened(fast)
+    turned = 2 * np.abs(fast.qd).max() / page.ask("pendcorePage.traceParts")
+    assert turned == pytest.approx(0.1, rel=0.02)

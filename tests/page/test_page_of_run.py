@@ -204,9 +204,9 @@ def test_neighbours_are_the_runs_beside_this_one(sol: pc.Solution, opened: Open)
 
 def test_the_ledger_is_drawn_beside_the_energies(sol: pc.Solution, opened: Open) -> None:
     page = opened(sol)
-    names = page.ask("pendcorePage.charts.energy.curves.map((one) => one.name)")
+    names = page.ask("pendcorePage.curves.energy.curves.map((one) => one.name)")
     assert names == ["kinetic", "potential", "total", "viscous (lost)"]
-    total, lost = page.ask("[2, 3].map((k) => pendcorePage.charts.energy.curves[k].y.at(-1))")
+    total, lost = page.ask("[2, 3].map((k) => pendcorePage.curves.energy.curves[k].y.at(-1))")
     assert total + lost == pytest.approx(sol.energy().total[0], abs=1e-6)
 
 

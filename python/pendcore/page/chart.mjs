@@ -29,6 +29,7 @@ export class Chart {
     this.canvas = canvas;
     this.names = names;
     this.log = log;
+    this.isDown = false; // y points up, as it does not in the plane of the pendulum
     this.curves = [];
     this.box = [0, 1, 0, 1];
   }
@@ -61,10 +62,13 @@ export class Chart {
     const legend = this.#legend(pen, width);
     const top = 8 + LINE * legend.length;
     const place = (value) => (this.log ? Math.log10(value) : value);
-    const at = (x, y) => [
-      LEFT + ((place(x) - left) / (right - left)) * (width - LEFT - RIGHT),
-      height - BOTTOM - ((place(y) - low) / (high - low)) * (height - top - BOTTOM),
-    ];
+    const at = (x, y) => {
+      const share = (place(y) - low) / (high - low);
+      return [
+        LEFT + ((place(x) - left) / (right - left)) * (width - LEFT - RIGHT),
+        top + (this.isDown ? share : 1 - share) * (height - top - BOTTOM),
+      ];
+    };
     if (past !== null && past < right) {
       pen.fillStyle = color("line");
       const [x] = at(past, 0);

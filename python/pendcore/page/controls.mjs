@@ -12,6 +12,11 @@ function element(tag, properties = {}, children = []) {
 
 let counter = 0;
 
+/** A power of ten that divides an interval into 200 to 2000 parts. */
+function roundStep(size) {
+  return 10 ** Math.floor(Math.log10(size / 200));
+}
+
 /** A number with a slider; `change` gets the new value. */
 export function numberField({
   name,
@@ -24,6 +29,7 @@ export function numberField({
   change,
 }) {
   const id = `field-${++counter}`;
+  const step = whole ? 1 : roundStep(high - low);
   const field = element("input", {
     type: "number",
     id,
@@ -32,9 +38,9 @@ export function numberField({
   });
   const slider = element("input", {
     type: "range",
-    min: String(low),
+    min: String(positive ? step : low),
     max: String(high),
-    step: whole ? "1" : String((high - low) / 500),
+    step: String(step),
     value: String(value),
     "aria-label": `${name}, ${unit || "no unit"}`,
   });
@@ -67,16 +73,16 @@ function choice(name, options, value, change) {
 }
 
 /**
- * An interval for a slider about a value, within what the descriptor allows.
+ * An interval for a slider about a value, within what the descriptor allows: "0 to 1", "> 0".
  *
  * @returns {[number, number]}
  */
 function interval(value, range) {
-  const size = Math.max(Math.abs(value) * 3, 1);
-  const isPositive = /^>=? 0/.test(range);
-  const top = /<=? ([0-9.]+)/.exec(range);
-  const high = top ? Number(top[1]) : size;
-  return [isPositive ? 0 : -size, high];
+  const size = value === 0 ? 1 : 3 * Math.abs(value);
+  const both = /^([0-9.]+) to ([0-9.]+)$/.exec(range);
+  if (both) return [Number(both[1]), Number(both[2])];
+  const least = />=? ([0-9.]+)/.exec(range);
+  return least ? [Number(least[1]), Number(least[1]) + size] : [-size, size];
 }
 
 export class Controls {
@@ -143,7 +149,7 @@ export class Controls {
         "mass",
         "kg",
         link.mass,
-        [0.01, Math.max(3 * link.mass, 3)],
+        [0, 3 * link.mass || 3],
         (x) => scale(x, link.length),
         positive,
       ),
@@ -151,7 +157,7 @@ export class Controls {
         "length",
         "m",
         link.length,
-        [0.05, Math.max(3 * link.length, 3)],
+        [0, 3 * link.length || 3],
         (x) => scale(link.mass, x),
         positive,
       ),

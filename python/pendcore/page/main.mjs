@@ -4,52 +4,23 @@ import { load } from "../../../cpp/wasm/pendcore.mjs";
 import { addressOf, caseInAddress, parseCase, toPython, toToml, writeCase } from "./case.mjs";
 import { Chart } from "./chart.mjs";
 import { Controls, methodFields } from "./controls.mjs";
+import { copyBy } from "./copy.mjs";
+import { Curves, drawCost } from "./curves.mjs";
+import { Helper } from "./helper.mjs";
 import { coreBytes, LiveRun, Recording, simulateCase } from "./runs.mjs";
 import { SceneView } from "./scene_view.mjs";
+import { listenToKeys, listenToPointer, STEP } from "./touch.mjs";
 
 const TRACE = 2; // s
-const TRACE_PARTS = 240;
+const TRACE_PARTS = { least: 240, most: 2000, angle: 0.1 }; // rad, that a link turns in a part
 const SETTLED = 300; // ms, after which the address follows a change
 const FORCES = 400; // times at which the largest force of a run is looked for
 const GHOST = 1e-9; // rad
 const NEIGHBOURS = { count: 1000, spread: 1e-5, rate: 60 };
-const COLORS = ["first", "second", "third", "fourth"];
-const ACCOUNTS = ["fourth", "faint", "ink"];
-const STEP = 1 / 60; // s
 
 /** @type {(id: string) => any} */
 const byId = (id) => document.getElementById(id);
 const data = parseCase(byId("data").textContent);
-
-/** Asks the worker, which may be busy with something older that nobody waits for any more. */
-class Helper {
-  /** Gets what is known so far of a long task. */
-  progress = null;
-
-  constructor(bytes) {
-    const text = ["core-js", "worker-js"].map((id) => byId(id).textContent).join("\n");
-    this.worker = new Worker(URL.createObjectURL(new Blob([text], { type: "text/javascript" })));
-    this.worker.postMessage({ bytes: bytes.slice(0) });
-    this.waiting = new Map();
-    this.last = 0;
-    this.worker.onmessage = ({ data: told }) => {
-      if (told.partial) return this.progress?.(told.partial);
-      const { resolve, reject } = this.waiting.get(told.id) ?? {};
-      this.waiting.delete(told.id);
-      return told.failure ? reject?.(new Error(told.failure)) : resolve?.(told.answer);
-    };
-    this.worker.onerror = (event) => {
-      const reason = new Error(event.message || "the browser starts no worker");
-      for (const { reject } of this.waiting.values()) reject(reason);
-      this.waiting.clear();
-    };
-  }
-  ask(task, given, more = {}) {
-    const id = ++this.last;
-    this.worker.postMessage({ id, task, given, ...more });
-    return new Promise((resolve, reject) => this.waiting.set(id, { resolve, reject }));
-  }
-}
 
 class Page {
   run = null;
@@ -67,6 +38,7 @@ class Page {
   since = 0;
   before = undefined;
   later = undefined;
+  traceParts = TRACE_PARTS.least;
 
   constructor(core, bytes) {
     this.core = core;
@@ -77,12 +49,8 @@ class Page {
     this.isPlaying = false;
     this.validUntil = data.valid_until;
     this.view = new SceneView(byId("scene"));
-    this.charts = {
-      angles: new Chart(byId("angles"), ["t (s)", "q (deg)"]),
-      phase: new Chart(byId("phase"), ["q (rad)", "qd (rad/s)"]),
-      energy: new Chart(byId("energy"), ["t (s)", "energy (J)"]),
-      cost: new Chart(byId("cost"), ["time (ms)", "error / total length"], { log: true }),
-    };
+    this.curves = new Curves(byId);
+    this.cost = new Chart(byId("cost"), ["time (ms)", "error / total length"], { log: true });
     if (core) {
       this.helper = new Helper(bytes);
       this.controls = new Controls(byId("setup"), {
@@ -162,7 +130,9 @@ class Page {
     this.view.largestForce = this.#largestForce();
     this.#ghost();
     if (!this.dragged) this.#bits();
-    this.#curves();
+    this.curves.set(run);
+    const needed = (TRACE * this.curves.fastest) / TRACE_PARTS.angle;
+    this.traceParts = Math.ceil(Math.min(Math.max(needed, TRACE_PARTS.least), TRACE_PARTS.most));
     this.#ask();
     this.draw();
     return undefined;
@@ -283,48 +253,6 @@ class Page {
     return forward ? t <= this.validUntil * (1 + 1e-12) : t >= this.validUntil;
   }
 
-  #curves() {
-    const { run } = this;
-    const count = this.core ? 1500 : Math.min(data.recording?.t.length ?? 0, 1500);
-    const times = Array.from(
-      { length: count },
-      (_x, k) => run.begin + ((run.end - run.begin) * k) / (count - 1),
-    );
-    const states = run.states(times);
-    const links = Array.from({ length: run.n }, (_x, i) => i);
-    const paint = (i) => COLORS[i % COLORS.length];
-    this.charts.angles.set(
-      links.map((i) => ({
-        name: `q${i + 1}`,
-        color: paint(i),
-        x: times,
-        y: states.map((state) => (state[i] * 180) / Math.PI),
-      })),
-    );
-    this.charts.phase.set(
-      links.map((i) => ({
-        name: `link ${i + 1}`,
-        color: paint(i),
-        x: states.map((state) => state[i]),
-        y: states.map((state) => state[run.n + i]),
-      })),
-    );
-    const energies = times.map((t, k) => run.energies(t, states[k]));
-    const own = ["kinetic", "potential", "total"].map((name, k) => ({
-      name,
-      color: COLORS[k],
-      x: times,
-      y: energies.map(([T, V]) => [T, V, T + V][k]),
-    }));
-    const booked = run.ledger(times).map((y, k) => ({
-      name: run.accounts[k].replace(/^-(.*)/, "$1 (lost)"),
-      color: ACCOUNTS[k % ACCOUNTS.length],
-      x: times,
-      y,
-    }));
-    this.charts.energy.set([...own, ...booked]);
-  }
-
   frame(now) {
     const passed = Math.min((now - (this.before ?? now)) / 1000, 0.25);
     this.before = now;
@@ -366,14 +294,7 @@ class Page {
     };
     this.view.draw(shown);
     const past = this.#isRight(run.end) ? null : this.validUntil;
-    this.charts.angles.draw({ past, now: t });
-    this.charts.energy.draw({ past, now: t });
-    const points = Array.from({ length: run.n }, (_x, i) => ({
-      x: state[i],
-      y: state[run.n + i],
-      color: COLORS[i % COLORS.length],
-    }));
-    this.charts.phase.draw({ points });
+    this.curves.draw(t, state, past);
     byId("clock").textContent = `${t.toFixed(2)} s`;
     byId("time").value = String(t);
     const angles = Array.from(
@@ -388,8 +309,8 @@ class Page {
     const direction = run.end >= run.begin ? 1 : -1;
     const since = run.within(t - direction * TRACE);
     const times = Array.from(
-      { length: TRACE_PARTS },
-      (_x, k) => since + ((t - since) * k) / (TRACE_PARTS - 1),
+      { length: this.traceParts },
+      (_x, k) => since + ((t - since) * k) / (this.traceParts - 1),
     );
     return run.states(times).flatMap((state, k) => [...run.places(times[k], state).slice(-2)]);
   }
@@ -424,14 +345,17 @@ class Page {
     byId("neighbours").addEventListener("change", () => this.#ask());
     byId("measure").addEventListener("click", () => this.#measure());
     this.#tabs();
-    this.#keys();
-    this.#drag();
+    listenToKeys(byId("scene"), this);
+    listenToPointer(byId("scene"), this);
+    for (const menu of this.curves.menus)
+      menu.addEventListener("change", () => {
+        this.curves.choose();
+        this.draw();
+      });
     const copy = (id, text) =>
-      byId(id).addEventListener("click", async () => {
-        await this.#copy(text());
-        const label = byId(id).textContent;
-        byId(id).textContent = "Copied";
-        setTimeout(() => (byId(id).textContent = label), 1200);
+      byId(id).addEventListener("click", () => {
+        this.copied = text();
+        copyBy(byId(id), this.copied);
       });
     // A notebook's frame has no address to copy.
     byId("copy-link").hidden = location.protocol === "about:";
@@ -449,21 +373,6 @@ class Page {
     });
   }
 
-  /** Pages from a file have no clipboard in some browsers: a hidden field does as well. */
-  async #copy(text) {
-    this.copied = text;
-    try {
-      await navigator.clipboard.writeText(text);
-    } catch {
-      const field = document.createElement("textarea");
-      field.value = text;
-      document.body.append(field);
-      field.select();
-      document.execCommand("copy");
-      field.remove();
-    }
-  }
-
   #tabs() {
     const tabs = ["curves", "setup", "accuracy"];
     const show = (chosen) => {
@@ -472,88 +381,9 @@ class Page {
         byId(`tab-${name}`).setAttribute("aria-selected", String(name === chosen));
       }
       this.draw();
-      this.charts.cost.draw();
+      this.cost.draw();
     };
     for (const name of tabs) byId(`tab-${name}`).addEventListener("click", () => show(name));
-  }
-
-  #keys() {
-    const actions = {
-      " ": () => this.play(!this.isPlaying),
-      ArrowLeft: () => this.go(this.t - STEP),
-      ArrowRight: () => this.go(this.t + STEP),
-      Home: () => this.go(this.run.begin),
-      End: () => this.go(this.run.end),
-    };
-    byId("scene").addEventListener("keydown", (event) => {
-      if (!(event.key in actions)) return;
-      event.preventDefault();
-      actions[event.key]();
-    });
-  }
-
-  /** The number of the joint near a place, or of the tip; 0 where there is none. */
-  #joint(near) {
-    const [x, y] = near;
-    const places = this.run.places(this.t, this.run.state(this.t));
-    let [nearest, least] = [0, 30 / this.view.pixels];
-    for (let i = 1; i <= this.run.n; ++i) {
-      const away = Math.hypot(x - places[2 * i], y - places[2 * i + 1]);
-      if (away < least) [nearest, least] = [i, away];
-    }
-    return nearest;
-  }
-
-  /** Dragging a joint or the tip starts the run from the new pose, at rest. */
-  #drag() {
-    const canvas = byId("scene");
-    const place = (event) => {
-      const { left, top } = canvas.getBoundingClientRect();
-      return this.view.metres(event.clientX - left, event.clientY - top);
-    };
-    canvas.addEventListener("pointerdown", (event) => {
-      if (!this.core) return;
-      const nearest = this.#joint(place(event));
-      if (nearest === 0) return;
-      this.play(false);
-      canvas.setPointerCapture(event.pointerId);
-      const state = this.run.state(this.t);
-      this.given.start.q = [...state.subarray(0, this.run.n)];
-      this.given.start.qd = this.given.start.qd.map(() => 0);
-      this.t = this.run.begin;
-      this.dragged = nearest;
-      this.changed();
-    });
-    // A finger that is not on a joint scrolls the page.
-    canvas.addEventListener(
-      "touchstart",
-      (event) => {
-        if (this.core && this.#joint(place(event.touches[0])) > 0) event.preventDefault();
-      },
-      { passive: false },
-    );
-    canvas.addEventListener("pointermove", (event) => {
-      if (!this.dragged) return;
-      const [x, y] = place(event);
-      const places = this.run.places(this.run.begin, this.run.state(this.run.begin));
-      const i = this.dragged;
-      const before = this.given.start.q[i - 1];
-      const angle = Math.atan2(y - places[2 * i - 1], x - places[2 * i - 2]);
-      this.given.start.q[i - 1] =
-        angle + 2 * Math.PI * Math.round((before - angle) / (2 * Math.PI));
-      this.t = this.run.begin;
-      this.isMoved = true;
-    });
-    const end = () => {
-      if (!this.dragged) return;
-      this.dragged = 0;
-      this.isMoved = false;
-      this.changed();
-      this.settle();
-      this.showFields();
-    };
-    canvas.addEventListener("pointerup", end);
-    canvas.addEventListener("pointercancel", end);
   }
 
   async #measure() {
@@ -561,22 +391,7 @@ class Page {
     const question = this.question;
     told.textContent = "measuring";
     byId("measure").disabled = true;
-    const draw = (points) => {
-      const methods = [...new Set(points.map((one) => one.method))];
-      this.charts.cost.set(
-        methods.map((method, k) => {
-          const own = points.filter((one) => one.method === method && one.error > 0);
-          return {
-            name: method,
-            color: COLORS[k % COLORS.length],
-            dots: true,
-            x: own.map((one) => one.ms),
-            y: own.map((one) => one.error),
-          };
-        }),
-      );
-      this.charts.cost.draw();
-    };
+    const draw = (points) => drawCost(this.cost, points);
     this.helper.progress = (points) => question === this.question && draw(points);
     try {
       const methods = data.methods.filter((name) => name !== "auto" && !name.includes("-"));

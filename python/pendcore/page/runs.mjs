@@ -44,6 +44,7 @@ export class LiveRun {
     this.success = this.run.success;
     this.lengths = given.link.map((one) => one.length);
     this.accounts = this.run.accounts;
+    this.count = Infinity; // it has a state at any time
   }
   free() {
     this.run.free();
@@ -91,6 +92,7 @@ export class Recording {
     this.success = recorded.success;
     this.lengths = given.link.map((one) => one.length);
     this.accounts = [];
+    this.count = recorded.t.length;
   }
   free() {}
   #nearest(t) {

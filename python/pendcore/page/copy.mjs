@@ -1,0 +1,24 @@
+/** Copies text to the clipboard. */
+
+const SHOWN = 1200; // ms for which a button says that it has copied
+
+/** Pages from a file have no clipboard in some browsers: a hidden field does as well. */
+async function copyText(text) {
+  try {
+    await navigator.clipboard.writeText(text);
+  } catch {
+    const field = document.createElement("textarea");
+    field.value = text;
+    document.body.append(field);
+    field.select();
+    document.execCommand("copy");
+    field.remove();
+  }
+}
+
+export async function copyBy(button, text) {
+  await copyText(text);
+  const label = button.textContent;
+  button.textContent = "Copied";
+  setTimeout(() => (button.textContent = label), SHOWN);
+}

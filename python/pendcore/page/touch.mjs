@@ -1,0 +1,81 @@
+/** Keys and fingers on the picture: play, step, and start elsewhere by dragging a joint. */
+
+export const STEP = 1 / 60; // s
+const REACH = 30; // pixels from a joint within which it is taken
+
+export function listenToKeys(canvas, page) {
+  const actions = {
+    " ": () => page.play(!page.isPlaying),
+    ArrowLeft: () => page.go(page.t - STEP),
+    ArrowRight: () => page.go(page.t + STEP),
+    Home: () => page.go(page.run.begin),
+    End: () => page.go(page.run.end),
+  };
+  canvas.addEventListener("keydown", (event) => {
+    if (!(event.key in actions)) return;
+    event.preventDefault();
+    actions[event.key]();
+  });
+}
+
+/** The number of the joint near a place, or of the tip; 0 where there is none. */
+function jointNear(page, [x, y]) {
+  const places = page.run.places(page.t, page.run.state(page.t));
+  let [nearest, least] = [0, REACH / page.view.pixels];
+  for (let i = 1; i <= page.run.n; ++i) {
+    const away = Math.hypot(x - places[2 * i], y - places[2 * i + 1]);
+    if (away < least) [nearest, least] = [i, away];
+  }
+  return nearest;
+}
+
+/** Dragging a joint or the tip starts the run from the new pose, at rest. */
+export function listenToPointer(canvas, page) {
+  const place = ({ clientX, clientY }) => {
+    const { left, top } = canvas.getBoundingClientRect();
+    return page.view.metres(clientX - left, clientY - top);
+  };
+  canvas.addEventListener("pointerdown", (event) => {
+    if (!page.core) return;
+    const nearest = jointNear(page, place(event));
+    if (nearest === 0) return;
+    page.play(false);
+    canvas.setPointerCapture(event.pointerId);
+    const { start } = page.given;
+    start.q = [...page.run.state(page.t).subarray(0, page.run.n)];
+    start.qd = start.qd.map(() => 0);
+    page.t = page.run.begin;
+    page.dragged = nearest;
+    page.changed();
+  });
+  // A finger that is not on a joint scrolls the page.
+  canvas.addEventListener(
+    "touchstart",
+    (event) => {
+      if (page.core && jointNear(page, place(event.touches[0])) > 0) event.preventDefault();
+    },
+    { passive: false },
+  );
+  canvas.addEventListener("pointermove", (event) => {
+    if (!page.dragged) return;
+    const { run, dragged, given } = page;
+    const [x, y] = place(event);
+    const places = run.places(run.begin, run.state(run.begin));
+    const before = given.start.q[dragged - 1];
+    const angle = Math.atan2(y - places[2 * dragged - 1], x - places[2 * dragged - 2]);
+    const turns = Math.round((before - angle) / (2 * Math.PI));
+    given.start.q[dragged - 1] = angle + 2 * Math.PI * turns;
+    page.t = run.begin;
+    page.isMoved = true;
+  });
+  const end = () => {
+    if (!page.dragged) return;
+    page.dragged = 0;
+    page.isMoved = false;
+    page.changed();
+    page.settle();
+    page.showFields();
+  };
+  canvas.addEventListener("pointerup", end);
+  canvas.addEventListener("pointercancel", end);
+}
