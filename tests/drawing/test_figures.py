@@ -168,6 +168,14 @@ def test_what_is_past_the_horizon_is_shaded_or_pale() -> None:
         assert len(line.get_xdata()) < 0.95 * len(chaotic.plot(axes(), what=what)[0].get_xdata())
 
 
+def test_a_property_that_lines_do_not_have_is_refused(sol: pc.Solution) -> None:
+    with pytest.raises(TypeError, match=r"Solution\.plot: has no parameter 'wat': did you mean"):
+        sol.plot(wat="rates")
+    with pytest.raises(TypeError, match="no parameter 'colour': did you mean 'color'"):
+        sol.plot(colour="r")
+    assert sol.plot(axes(), what="path", lw=3)[0].get_linewidth() == 3  # type: ignore[attr-defined]
+
+
 @pytest.mark.parametrize(
     ("given", "message"),
     [

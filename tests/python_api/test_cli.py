@@ -206,7 +206,8 @@ MISTAKES = {
     "unknown command": (["jump"], "invalid choice: 'jump'"),
     "no command": ([], "COMMAND"),
     "unknown option": (["run", "--fast"], "--fast"),
-    "no solution": (["plot", "key.toml"], "key.toml: is not a solution that pendcore saved"),
+    "no solution": (["plot", "a.npz"], "a.npz: is not a solution that pendcore saved"),
+    "a case": (["plot", "key.toml"], "key.toml: is a case, not a solution: `pendcore run`"),
     "no such solution": (["plot", "x.npz"], "x.npz: No such file or directory"),
     "unknown kind of figure": (["plot", "run.npz", "-o", "a.doc"], "doc"),
 }
@@ -215,6 +216,7 @@ MISTAKES = {
 @pytest.mark.parametrize("mistake", MISTAKES)
 def test_wrong_usage_is_told_in_a_line_and_ends_with_2(mistake, capsys):
     Path("key.toml").write_text(CASE.replace("gravity", "gravty"))
+    Path("a.npz").write_text("no archive")
     Path("rtol.toml").write_text(CASE + "rtol = -1.0\n")
     Path("method.toml").write_text(CASE.replace("ode45", "euler"))
     Path("t_eval.toml").write_text(CASE + "\nt_eval = [2.0, 1.0]\n")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from inspect import signature
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, get_args
@@ -50,7 +51,7 @@ def plot(
     Raises
     ------
     TypeError
-        If ``ax`` is not axes, or ``horizon`` is not a number.
+        If ``ax`` is not axes, ``horizon`` is not a number, or a property is not one of lines.
     ValueError
         If there is no such figure, or the number of axes is not that of the figure, or a parameter
         is not one of this figure.
@@ -61,6 +62,13 @@ def plot(
     from matplotlib.lines import Line2D
 
     given = normalize_kwargs(line_properties, Line2D)
+    for name in given:
+        if not hasattr(Line2D, f"set_{name}"):
+            known = [*signature(plot).parameters, "color", "linewidth", "linestyle", "marker"]
+            known = [one for one in known if one not in ("solution", "line_properties")]
+            raise TypeError(
+                f"Solution.plot: has no parameter {name!r}: {did_you_mean(name, known)}"
+            )
     valid = horizon_time(solution, horizon)
     return _drawn(solution, ax, figure_of_pyplot, what, label, valid, own, given)
 
