@@ -187,9 +187,23 @@ def test_a_worksheet_gives_nothing_away(handed_out: Any) -> None:
 def test_no_left_side_of_a_worksheet_is_the_answer_to_a_blank(handed_out: Any) -> None:
     _, derivation, _, blank = handed_out
     asked = [block.latex for block in blank.blocks if isinstance(block, Blank)]
-    assert len(asked) == sum(len(step.equations) for step in derivation.steps)
+    named_again = [
+        equation
+        for step in derivation.steps
+        for k, equation in enumerate(step.equations)
+        if not equation.number and equation.lhs in [one.lhs for one in step.equations[:k]]
+    ]
+    assert "M" in [str(one.lhs) for one in named_again]  # with its value: it has a blank already
+    assert len(asked) == sum(len(step.equations) for step in derivation.steps) - len(named_again)
     for left in asked:
         assert not re.search(r"\\(sin|cos)\b|\\frac{[^\\]", left), left
+
+
+def test_a_worksheet_asks_for_the_balance_where_effects_change_the_energy(handed_out: Any) -> None:
+    case, _, _, blank = handed_out
+    asked = blank.markdown().partition("## Check by the energy")[2]
+    assert ("keep the balance" in asked) == bool(case.scene.effects)
+    assert ("keep it" in asked) != bool(case.scene.effects)
 
 
 def test_a_worksheet_states_what_acts_and_what_its_symbols_are() -> None:

@@ -71,7 +71,10 @@ def _mobility(page: Page) -> None:
     text = f"The chain has {links} and {joints}, with one degree of freedom{' each' * (k > 1)}"
     if k == 0:
         text = f"{'The link does' if n == 1 else 'The links do'} not move"
-    text += f": $n = {k}$, $c_{{5}} = {k}$, $c_{{4}} = 0$."
+    text += (
+        f": $n = {k}$, $c_{{5}} = {k}$, $c_{{4}} = 0$. Here $n$ counts the moving links, $c_{{5}}$ "
+        "the joints that leave one degree of freedom, and $c_{4}$ those that leave two."
+    )
     if locked:
         joints = f"joint{'s' if len(locked) > 1 else ''} {_listed(map(str, locked))}"
         text += f" The lock of {joints} makes one body of the two that it joins."

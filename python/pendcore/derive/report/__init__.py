@@ -183,9 +183,15 @@ def _questions(
     yield Paragraph("Integrate the first-order system, and draw the angles.")
     yield figures.empty_axes(solution)
     yield Heading(2, "Check by the energy")
+    works = solution.energy().ledger is not None
     yield Paragraph(
-        "Write down kinetic and potential energy. What is their sum at the start, and how well "
-        "does your solution keep it?"
+        "Write down kinetic and potential energy. What is their sum at the start"
+        + (
+            " and at the end? How much did the effects take or give in between, and how well does "
+            "your solution keep the balance?"
+            if works
+            else ", and how well does your solution keep it?"
+        )
     )
     yield Space(6)
 

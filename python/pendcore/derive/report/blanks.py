@@ -34,7 +34,10 @@ def _concealed(step: Step, names: dict[Any, Any]) -> Step:
 
 
 def _without_repetition(equations: tuple[Equation, ...]) -> list[Equation]:
-    """Leave room in a left side that was there before: now the acceleration is to be put in."""
+    """Leave room in a left side that was there before: now the acceleration is to be put in.
+
+    Where nothing is to be put in, the second is the first with its value: one blank will do.
+    """
     found: list[Equation] = []
     for equation in equations:
         left = equation.lhs
@@ -43,6 +46,8 @@ def _without_repetition(equations: tuple[Equation, ...]) -> list[Equation]:
             room = rf"\underbrace{{{ROOM}}}_{{{last}}}"
             known = Formula(f"{left}, put in", rf"{' '.join(factors)} \, {room}")
             equation = replace(equation, lhs=known)
+        elif left in [e.lhs for e in found]:
+            continue
         found.append(equation)
     return found
 
