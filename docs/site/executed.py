@@ -85,25 +85,25 @@ def write_cases(doctree: nodes.document) -> None:
 
 def run(text: str, names: dict[str, Any], where: str) -> tuple[str, Any]:
     """Run a block, and return what it printed, and the value of its last line if that is one."""
-    printed, last = io.StringIO(), None
+    printed, value = io.StringIO(), None
     try:
         body = ast.parse(text, where)
-        value = None
+        last_line = None
         if body.body and isinstance(body.body[-1], ast.Expr):
-            value = ast.Expression(body.body.pop().value)
+            last_line = ast.Expression(body.body.pop().value)
         quiet = contextlib.redirect_stderr(io.StringIO())
         with contextlib.redirect_stdout(printed), quiet, warnings.catch_warnings():
             warnings.simplefilter("ignore")
             exec(compile(body, where, "exec"), names)
-            if value:
-                last = eval(compile(value, where, "eval"), names)
+            if last_line:
+                value = eval(compile(last_line, where, "eval"), names)
     except Exception:
         logger.warning("%s raised\n%s", where, traceback.format_exc(limit=-1))
-    return printed.getvalue(), last
+    return printed.getvalue(), value
 
 
 def shown(value: Any, text: str) -> str:
-    """Return what a notebook shows of the value of a last line; nothing if ";" ends the line."""
+    """Return the HTML that a notebook shows of the value of a last line; none if ";" ends it."""
     is_silent = text.rstrip().endswith(";") or not hasattr(value, "_repr_html_")
     return "" if is_silent else str(value._repr_html_())
 

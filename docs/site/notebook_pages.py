@@ -9,26 +9,31 @@ import json
 import shutil
 from pathlib import Path
 
+from executed import NOTEBOOK
+
 INTRODUCTION = (
     "Each can be downloaded, and is run while the site is built: what it shows is alive here."
 )
+
+
+ORDER = ("textbook_swing", "chaos_and_trust", "friction_and_stops")
 
 
 def write(notebooks: Path, folder: Path) -> None:
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     rows, tree = [], []
-    for name in ("textbook_swing", "chaos_and_trust", "friction_and_stops"):
+    for name in ORDER:
         path = notebooks / f"{name}.ipynb"
         cells = json.loads(path.read_text())["cells"]
-        lines = ["<!-- a notebook -->", ""]
+        lines: list[str] = []
         for cell in cells:
             text = "".join(cell["source"])
             lines += ["```python", text, "```", ""] if cell["cell_type"] == "code" else [text, ""]
         lines += [f"{{download}}`{path.name} <../../examples/notebooks/{path.name}>`"]
         title = "".join(cells[0]["source"]).partition("\n")[0].removeprefix("# ")
         # MyST takes a title before anything else.
-        (folder / f"{name}.md").write_text("\n".join([*lines[2:], "", lines[0]]) + "\n")
+        (folder / f"{name}.md").write_text("\n".join([*lines, "", NOTEBOOK]) + "\n")
         rows.append(f"* [{title}]({name}.md)")
         tree.append(name)
     index = ["# Notebooks", "", INTRODUCTION, "", *rows, "", ":::{toctree}", ":hidden:", ""]

@@ -194,7 +194,7 @@ def imports_form_no_circle(root: Path) -> Iterator[str]:
 
 
 def names_say_what_a_file_holds(root: Path) -> Iterator[str]:
-    for path in files(root, CODE | {".md", ".txt"}, *FOLDERS):
+    for path in files(root, CODE | {".md", ".mjs", ".txt"}, *FOLDERS):
         relative = path.relative_to(root)
         words = set(re.split(r"[/_.\-]", str(relative).lower()))
         for word in sorted(words & FORBIDDEN_NAMES):

@@ -11,6 +11,7 @@ import matplotlib.pyplot as plt
 import pytest
 
 FOLDER = Path(__file__).parents[2] / "examples/notebooks"
+PAGES = Path(__file__).parents[2] / "docs/site/notebook_pages.py"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
 
 
@@ -22,6 +23,8 @@ def no_figure_left_over() -> Any:
 
 def test_there_are_notebooks() -> None:
     assert len(NOTEBOOKS) == 3
+    for path in NOTEBOOKS:  # each has a page
+        assert f'"{path.stem}"' in PAGES.read_text()
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)

@@ -173,6 +173,10 @@ def test_a_property_that_lines_do_not_have_is_refused(sol: pc.Solution) -> None:
         sol.plot(wat="rates")
     with pytest.raises(TypeError, match="no parameter 'colour': did you mean 'color'"):
         sol.plot(colour="r")
+    with pytest.raises(TypeError, match="no parameter 'alphaa': did you mean 'alpha'"):
+        sol.plot(alphaa=0.5)
+    with pytest.raises(TypeError, match="no parameter 'data'"):
+        sol.plot(data=1)
     assert sol.plot(axes(), what="path", lw=3)[0].get_linewidth() == 3  # type: ignore[attr-defined]
 
 

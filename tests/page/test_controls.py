@@ -294,8 +294,8 @@ def test_sliders_have_the_size_of_a_small_rig(opened: Open) -> None:
         links=[pc.Link(mass=0.05, length=0.1)],
         effects=[
             pc.effects.ViscousJoint(joint=1, damping=2e-5),
-            pc.effects.DryJointFriction(joint=1, coulomb=1e-4, static=1e-4),
-            pc.effects.JointStop(joint=1, range=(-1, 1), restitution=0.5),
+            pc.effects.DryJointFriction(joint=1, coulomb=1e-4, static=1e-4, stribeck_velocity=0.01),
+            pc.effects.JointStop(joint=1, range=(-np.pi / 3, np.pi / 3), restitution=0.5),
         ],
     )
     page = opened(pc.simulate(rig, [0.3], t_span=(0, 2)))
@@ -307,15 +307,42 @@ def test_sliders_have_the_size_of_a_small_rig(opened: Open) -> None:
             " [one.getAttribute('aria-label').split(',')[0], one.min, one.max, one.step])"
         )
     }
-    assert sliders["mass"] == pytest.approx((1e-4, 0.15, 1e-4))
-    assert sliders["length"] == pytest.approx((1e-3, 0.3, 1e-3))
-    assert sliders["damping"] == pytest.approx((-6e-5, 6e-5, 1e-7))  # some joints feed the motion
-    assert sliders["coulomb"] == pytest.approx((0, 3e-4, 1e-6))
-    assert sliders["restitution"] == pytest.approx((0, 1, 1e-3))
+    assert sliders["mass"] == (1e-4, 0.15, 1e-4)
+    assert sliders["length"] == (1e-3, 0.3, 1e-3)
+    assert sliders["damping"] == (-6e-5, 6e-5, 1e-7)  # some joints feed the motion
+    assert sliders["coulomb"] == (0, 3e-4, 1e-6)
+    assert sliders["stribeck_velocity"][0] == sliders["stribeck_velocity"][2] > 0
+    assert sliders["restitution"] == (0, 1, 1e-3)
+    assert sliders["range"] == (-3.15, 3.15, 0.01)  # -pi/3 and three times as much: no odd digits
 
 
 def test_the_trace_of_a_fast_link_is_round(opened: Open) -> None:
-    fast = pc.simulate(pc.Scene.textbook(), [0.3, 0.3], [0.0, 60.0], t_span=(0, 2))
-    page = opened(fast)
-    turned = 2 * np.abs(fast.qd).max() / page.ask("pendcorePage.traceParts")
-    assert turned == pytest.approx(0.1, rel=0.02)
+    page = opened(pc.simulate(pc.Scene.textbook(), [0.3, 0.3], [0.0, 60.0], t_span=(0, 2)))
+    page.do(
+        "const { view } = pendcorePage; const draw = view.draw.bind(view);"
+        "view.draw = (shown) => { window.path = shown.path; draw(shown) }; pendcorePage.go(2)"
+    )
+    path = np.array(page.ask("window.path")).reshape(-1, 2)
+    steps = np.linalg.norm(np.diff(path, axis=0), axis=1)
+    assert steps.max() < 0.12  # m: a tenth of a turn in rad at 1 m, and what link 1 adds
+
+
+def test_what_does_not_change_is_drawn_too(opened: Open) -> None:
+    """Without gravity, the kinetic energy of one rod changes in its last bit alone."""
+    free = pc.Scene(links=[pc.Link(mass=1, length=1)], gravity=0.0)
+    page = opened(pc.simulate(free, [0.3], [4.0], t_span=(0, 2)))
+    choose(page, "across", "kinetic energy (J)")
+    choose(page, "up", "potential energy (J)")
+    (one,) = drawn(page)
+    assert np.ptp(one["x"]) < 1e-14
+    left, right = page.ask("pendcorePage.curves.chosen.box.slice(0, 2)")
+    assert right - left > 1e-9
+    assert page.complaints() == []
+
+
+def test_a_button_says_copied_for_a_while_and_then_its_name(sol: pc.Solution, opened: Open) -> None:
+    page = opened(sol)
+    page.click("copy-toml")
+    page.click("copy-toml")
+    assert page.text("copy-toml") == "Copied"
+    page.wait("document.getElementById('copy-toml').textContent === 'Copy TOML'")

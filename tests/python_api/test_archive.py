@@ -126,3 +126,9 @@ def test_a_warning_about_the_scene_is_not_given_again(tmp_path):
     run = pc.simulate(scene, 0, 0, (0, 1))
     run.save(tmp_path / "run.npz")
     assert pc.load(tmp_path / "run.npz").scene == pickle.loads(pickle.dumps(run)).scene == scene
+
+
+def test_a_solution_may_be_saved_under_any_name(tmp_path):
+    sol = pc.Case.textbook().simulate()
+    sol.save(tmp_path / "run.toml")
+    assert np.array_equal(pc.load(tmp_path / "run.toml").q, sol.q)

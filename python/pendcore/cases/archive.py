@@ -99,14 +99,14 @@ class _Told:
 def load(path: str | os.PathLike[str]) -> RunResult:
     """Read what `save` wrote; see `pendcore.load`."""
     with Path(path).open("rb") as file:
-        if Path(path).suffix == ".toml":
-            raise ValueError(
-                f"{path}: is a case, not a solution: `pendcore run` solves and saves it, "
-                "`pendcore show` draws it, pc.read_case reads it"
-            )
         try:
             return _loaded(file)
         except Exception as error:  # whatever a damaged file makes of zip, npy, TOML or the core
+            if Path(path).suffix == ".toml":
+                raise ValueError(
+                    f"{path}: is a case, not a solution: `pendcore run` solves and saves it, "
+                    "`pendcore show` draws it, pc.read_case reads it"
+                ) from None
             raise ValueError(f"{path}: is not a solution that pendcore saved ({error})") from None
 
 

@@ -58,14 +58,16 @@ def plot(
     """
     own = _Own(t, event, link, label if what in ("strip", "free_bodies") else None)
     _check(what, own, horizon)
+    from matplotlib.artist import ArtistInspector
     from matplotlib.cbook import normalize_kwargs
     from matplotlib.lines import Line2D
 
     given = normalize_kwargs(line_properties, Line2D)
+    properties = {*ArtistInspector(Line2D).get_setters()} - {"data", "xdata", "ydata", "figure"}
     for name in given:
-        if not hasattr(Line2D, f"set_{name}"):
-            known = [*signature(plot).parameters, "color", "linewidth", "linestyle", "marker"]
-            known = [one for one in known if one not in ("solution", "line_properties")]
+        if name not in properties:
+            listed = [one for one in signature(plot).parameters if one != "line_properties"]
+            known = [*listed[1:], *sorted(properties)]
             raise TypeError(
                 f"Solution.plot: has no parameter {name!r}: {did_you_mean(name, known)}"
             )

@@ -6,15 +6,17 @@ const LEFT = 52;
 const RIGHT = 10;
 const LINE = 14; // the height of a row of names
 const BOTTOM = 36;
+const MOST_TICKS = 10;
+const MOST_ROWS = 3; // of names; the others are left out
 
 /** Round numbers that cover an interval: some five of them. */
 export function ticks(low, high) {
   const span = high - low || 1;
   const step = 10 ** Math.floor(Math.log10(span / 4));
   const wide = [1, 2, 5, 10].map((k) => k * step).find((one) => span / one <= 6) ?? step;
-  const found = [];
-  for (let k = Math.ceil(low / wide); k <= high / wide + 1e-9; ++k) found.push(k * wide);
-  return found;
+  const first = Math.ceil(low / wide);
+  const count = Math.min(Math.floor(high / wide + 1e-9) - first + 1, MOST_TICKS);
+  return Array.from({ length: Math.max(count, 0) }, (_x, k) => (first + k) * wide);
 }
 
 function label(value) {
@@ -50,17 +52,20 @@ export class Chart {
       }
     }
     if (left > right) [left, right, low, high] = [0, 1, 0, 1];
-    const margin = Math.max(0.06 * (high - low), 1e-9 * Math.max(Math.abs(high), 1), 1e-12);
-    this.box = [left, right === left ? left + 1 : right, low - margin, high + margin];
+    // What is nearly constant gets an interval in which its rounding does not show.
+    const least = (value) => 1e-9 * Math.max(Math.abs(value), 1);
+    const beside = right - left < least(right) ? least(right) : 0;
+    const margin = Math.max(0.06 * (high - low), least(high));
+    this.box = [left - beside, right + beside, low - margin, high + margin];
   }
 
-  /** `past` is where the shade begins; `now` where the line is, or a list of points. */
+  /** `past` is where the shade begins, `now` where the line is; `points` are marked. */
   draw({ past = null, now = null, points = [] } = {}) {
     const { pen, width, height } = fitted(this.canvas);
     const [left, right, low, high] = this.box;
     pen.font = "11px system-ui, sans-serif";
     const legend = this.#legend(pen, width);
-    const top = 8 + LINE * legend.length;
+    const top = 8 + LINE * Math.min(legend.length, MOST_ROWS);
     const place = (value) => (this.log ? Math.log10(value) : value);
     const at = (x, y) => {
       const share = (place(y) - low) / (high - low);
@@ -151,7 +156,7 @@ export class Chart {
 
   #drawLegend(pen, width, rows) {
     pen.textAlign = "right";
-    for (const [k, row] of rows.entries()) {
+    for (const [k, row] of rows.slice(0, MOST_ROWS).entries()) {
       let x = width - RIGHT;
       for (const { name, fill, needs } of row.reverse()) {
         pen.fillStyle = color(fill);

@@ -14,7 +14,12 @@ let counter = 0;
 
 /** A power of ten that divides an interval into 200 to 2000 parts. */
 function roundStep(size) {
-  return 10 ** Math.floor(Math.log10(size / 200));
+  return Number(`1e${Math.floor(Math.log10(size / 200))}`);
+}
+
+/** The multiple of a step beside a value, so that the round values of a slider can be reached. */
+function rounded(value, step, round) {
+  return Number((round(Number((value / step).toPrecision(12))) * step).toPrecision(12));
 }
 
 /** A number with a slider; `change` gets the new value. */
@@ -38,8 +43,8 @@ export function numberField({
   });
   const slider = element("input", {
     type: "range",
-    min: String(positive ? step : low),
-    max: String(high),
+    min: String(positive ? step : rounded(low, step, Math.floor)),
+    max: String(rounded(high, step, Math.ceil)),
     step: String(step),
     value: String(value),
     "aria-label": `${name}, ${unit || "no unit"}`,
@@ -198,7 +203,10 @@ export class Controls {
         /** @type {[number, number]} */
         const range = whole ? [1, this.given.link.length] : interval(value, one.range);
         fields.push(
-          this.#field(one.name, one.unit, value, range, (x) => (values[one.name] = x), { whole }),
+          this.#field(one.name, one.unit, value, range, (x) => (values[one.name] = x), {
+            whole,
+            positive: />(?!=)/.test(one.range),
+          }),
         );
       } else if (Array.isArray(value) && value.length === 2 && one.type === "pair") {
         one.components.forEach((component, k) => {

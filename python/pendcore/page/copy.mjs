@@ -16,9 +16,9 @@ async function copyText(text) {
   }
 }
 
-export async function copyBy(button, text) {
+export async function copyAndSay(button, text) {
   await copyText(text);
-  const label = button.textContent;
+  button.dataset.label ??= button.textContent; // a second click finds "Copied"
   button.textContent = "Copied";
-  setTimeout(() => (button.textContent = label), SHOWN);
+  setTimeout(() => (button.textContent = button.dataset.label), SHOWN);
 }

@@ -25,7 +25,7 @@ const QUANTITIES = [
   },
   { name: "kinetic energy", unit: "J", of: (run, t, state) => run.energies(t, state)[0] },
   { name: "potential energy", unit: "J", of: (run, t, state) => run.energies(t, state)[1] },
-  { name: "t", unit: "s", of: (_run, t) => t },
+  { name: "t", unit: "s", isTime: true, of: (_run, t) => t },
 ];
 
 /** The quantities for a menu: of all links together, then of each link, then of the whole. */
@@ -113,6 +113,7 @@ export class Curves {
     const [x, y] = this.menus.map((menu) => this.offered.find(({ label }) => label === menu.value));
     this.chosen.names = [x.label, y.label];
     this.chosen.isDown = y.isDown === true;
+    this.isOverTime = x.isTime === true;
     const isTogether = x.isTogether || y.isTogether;
     this.pairs = Array.from({ length: isTogether ? run.n : 1 }, (_x, i) => ({
       name: isTogether ? `link ${i + 1}` : "",
@@ -135,7 +136,7 @@ export class Curves {
       const [x, y] = at(t, state);
       return { x, y, color };
     });
-    this.chosen.draw({ points });
+    this.chosen.draw(this.isOverTime ? { past, now: t } : { points });
   }
 }
 

@@ -25,8 +25,8 @@ from pendcore.scene.effect_class import KINDS, PARTS
 CORE_MODULES = ("engine.mjs", "pendcore.mjs")
 """They stand in cpp/wasm, and are installed beside the page."""
 PAGE_MODULES = (
-    "scene_view.mjs", "chart.mjs", "curves.mjs", "case.mjs", "runs.mjs", "helper.mjs", "copy.mjs",
-    "controls.mjs", "touch.mjs", "main.mjs",
+    "scene_view.mjs", "chart.mjs", "curves.mjs", "case.mjs", "runs.mjs", "copy.mjs",
+    "background.mjs", "controls.mjs", "touch.mjs", "main.mjs",
 )  # fmt: skip
 CORE = "pendcore.wasm.gz"
 PYTHON_ONLY_KINDS = ("user", "compiled_user")

@@ -1,18 +1,18 @@
 /** The page: what is shown, and what happens when somebody touches it. */
 
 import { load } from "../../../cpp/wasm/pendcore.mjs";
+import { Background } from "./background.mjs";
 import { addressOf, caseInAddress, parseCase, toPython, toToml, writeCase } from "./case.mjs";
 import { Chart } from "./chart.mjs";
 import { Controls, methodFields } from "./controls.mjs";
-import { copyBy } from "./copy.mjs";
+import { copyAndSay } from "./copy.mjs";
 import { Curves, drawCost } from "./curves.mjs";
-import { Helper } from "./helper.mjs";
 import { coreBytes, LiveRun, Recording, simulateCase } from "./runs.mjs";
 import { SceneView } from "./scene_view.mjs";
 import { listenToKeys, listenToPointer, STEP } from "./touch.mjs";
 
 const TRACE = 2; // s
-const TRACE_PARTS = { least: 240, most: 2000, angle: 0.1 }; // rad, that a link turns in a part
+const TRACE_PARTS = { least: 240, most: 2000, angle: 0.1 }; // in each, a link turns by this, rad
 const SETTLED = 300; // ms, after which the address follows a change
 const FORCES = 400; // times at which the largest force of a run is looked for
 const GHOST = 1e-9; // rad
@@ -52,7 +52,7 @@ class Page {
     this.curves = new Curves(byId);
     this.cost = new Chart(byId("cost"), ["time (ms)", "error / total length"], { log: true });
     if (core) {
-      this.helper = new Helper(bytes);
+      this.background = new Background(bytes);
       this.controls = new Controls(byId("setup"), {
         kinds: data.kinds,
         defaults: data.defaults,
@@ -205,7 +205,7 @@ class Page {
   /** What takes longer than a frame comes later; an answer to an older question is dropped. */
   #ask() {
     this.trust();
-    if (!this.helper) return;
+    if (!this.background) return;
     clearTimeout(this.later);
     const asked = ++this.question;
     const isStale = () => asked !== this.question;
@@ -213,7 +213,7 @@ class Page {
       const given = structuredClone(this.given);
       try {
         if (this.validUntil === null) {
-          const until = await this.helper.ask("horizon", given, { limit: data.limit });
+          const until = await this.background.ask("horizon", given, { limit: data.limit });
           if (isStale()) return;
           this.validUntil = until;
           this.trust();
@@ -221,7 +221,7 @@ class Page {
         }
         if (byId("neighbours").checked && !this.neighbours) {
           byId("rate").textContent = "computing a thousand neighbours";
-          const found = await this.helper.ask("neighbours", given, NEIGHBOURS);
+          const found = await this.background.ask("neighbours", given, NEIGHBOURS);
           if (isStale()) return;
           this.neighbours = found;
           byId("rate").textContent = "";
@@ -355,7 +355,7 @@ class Page {
     const copy = (id, text) =>
       byId(id).addEventListener("click", () => {
         this.copied = text();
-        copyBy(byId(id), this.copied);
+        copyAndSay(byId(id), this.copied);
       });
     // A notebook's frame has no address to copy.
     byId("copy-link").hidden = location.protocol === "about:";
@@ -392,10 +392,10 @@ class Page {
     told.textContent = "measuring";
     byId("measure").disabled = true;
     const draw = (points) => drawCost(this.cost, points);
-    this.helper.progress = (points) => question === this.question && draw(points);
+    this.background.progress = (points) => question === this.question && draw(points);
     try {
       const methods = data.methods.filter((name) => name !== "auto" && !name.includes("-"));
-      const points = await this.helper.ask("cost", structuredClone(this.given), { methods });
+      const points = await this.background.ask("cost", structuredClone(this.given), { methods });
       if (question !== this.question) throw new Error("the scene has changed since");
       draw(points);
       this.measured = points;

@@ -1,10 +1,10 @@
-/** The worker of the page: what takes longer than a frame. */
+/** What takes longer than a frame is asked of a worker (worker.mjs). */
 
 /** @type {(id: string) => string} */
 const scriptText = (id) => document.getElementById(id).textContent;
 
 /** Asks the worker, which may be busy with something older that nobody waits for any more. */
-export class Helper {
+export class Background {
   /** Gets what is known so far of a long task. */
   progress = null;
 
