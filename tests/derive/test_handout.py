@@ -203,8 +203,8 @@ def test_a_worksheet_asks_for_the_balance_where_effects_change_the_energy(handed
     case, _, _, blank = handed_out
     asked = blank.markdown().partition("## Check by the energy")[2]
     works = any(
-        kind.kind not in ("torsional_spring", "rotor_inertia", "payload", "lock")
-        for kind in case.scene.effects
+        effect.kind not in ("torsional_spring", "rotor_inertia", "payload", "lock")
+        for effect in case.scene.effects
     )
     assert ("keep the balance" in asked) == works
     assert ("keep it" in asked) != works

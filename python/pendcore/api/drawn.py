@@ -213,7 +213,7 @@ class DrawnResult(RunResult):
         """
         if Path(path).suffix.lower() not in (".html", ".htm"):
             raise ValueError(f"path = {os.fspath(path)!r}: must end with .html")
-        text = page_of(self, title or self.name or "A pendulum")
+        text = page_of(self, title)
         with whole_file(path) as file:
             file.write_text(text, encoding="utf-8")
         return Path(path)
@@ -231,7 +231,7 @@ class DrawnResult(RunResult):
         '<iframe srcdoc='
         """
         pixels = whole_number("height", height)
-        return NotebookPage(page_of(self, self.name or "A pendulum"), pixels)
+        return NotebookPage(page_of(self), pixels)
 
     @known_keywords
     def widget(self, *, height: int = 900) -> Any:
@@ -247,7 +247,7 @@ class DrawnResult(RunResult):
         True
         """
         pixels = whole_number("height", height)
-        return widget_of(page_of(self, self.name or "A pendulum"), pixels)
+        return widget_of(page_of(self), pixels)
 
 
 def _names(runs: tuple[RunResult, ...], given: tuple[str, ...] | None) -> tuple[str, ...]:

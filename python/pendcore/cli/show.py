@@ -8,9 +8,9 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from pendcore.api.files import load_solution, read_case
-from pendcore.api.solution import Case, Solution
+from pendcore.api.solution import Solution
 from pendcore.cases.whole_file import whole_file
+from pendcore.cli.case_or_solution import add_case_or_solution, solution_of
 from pendcore.cli.usage import UsageError, blamed_on_usage, written
 from pendcore.figures.plot import save_figure
 
@@ -34,13 +34,7 @@ def add_parser(commands: Any) -> None:
         epilog=_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument(
-        "case",
-        nargs="?",
-        type=Path,
-        metavar="CASE",
-        help="CASE.toml, or RUN.npz; default: the book's",
-    )
+    add_case_or_solution(parser)
     parser.add_argument(
         "-o",
         "--out",
@@ -75,8 +69,8 @@ def execute(args: argparse.Namespace) -> int:
     if args.out.suffix.lower() not in (".html", ".mp4", ".gif", ".png"):
         raise UsageError(f"-o {args.out}: must end with .html, .mp4, .gif or .png")
     _refuse_what_is_not_shown(args)
-    solution = _solution(args.case)
     with blamed_on_usage():
+        solution = solution_of(args)
         args.out.parent.mkdir(parents=True, exist_ok=True)
         where = written(args.out, [args.out])
         out = _write(solution, args)
@@ -95,14 +89,6 @@ def _refuse_what_is_not_shown(args: argparse.Namespace) -> None:
     for name in ("speed", "fps", "trace", "reactions", "energy", "horizon"):
         if getattr(args, name) not in (None, False):
             raise UsageError(f"--{name}: is for films: -o FILE.mp4 or FILE.gif")
-
-
-def _solution(path: Path | None) -> Solution:
-    with blamed_on_usage():
-        if path is not None and path.suffix == ".npz":
-            return load_solution(path)
-        case = Case.textbook() if path is None else read_case(path)
-        return case.simulate(check=False)
 
 
 def _write(solution: Solution, args: argparse.Namespace) -> Path:

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import argparse
 import json
-import sys
 from math import isfinite
-from pathlib import Path
 from typing import Any
 
-from pendcore.api.files import load_solution, read_case
-from pendcore.api.solution import Case, Solution
+from pendcore.api.solution import Solution
+from pendcore.cli.case_or_solution import add_case_or_solution, solution_of
 from pendcore.cli.horizon import LIMIT, horizon_of
 from pendcore.cli.usage import UsageError, blamed_on_usage
-from pendcore.run.accuracy import AccuracyError
 
 _EPILOG = """
 what is told:
@@ -36,13 +33,7 @@ def add_parser(commands: Any) -> None:
         epilog=_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument(
-        "what",
-        nargs="?",
-        type=Path,
-        metavar="RUN.npz|CASE.toml",
-        help="a solution that `pendcore run` wrote, or a case; default: the textbook's case",
-    )
+    add_case_or_solution(parser)
     parser.add_argument(
         "--limit",
         type=float,
@@ -64,7 +55,7 @@ def execute(args: argparse.Namespace) -> int:
     if args.time_limit is not None and not args.time_limit > 0:
         raise UsageError(f"--time-limit = {args.time_limit!r}: must be > 0 (s)")
     with blamed_on_usage():
-        solution = _solution(args.what)
+        solution = solution_of(args)
         found = trust(solution, args.limit, args.time_limit)
     if args.json:
         print(json.dumps({key: x for key, (x, _) in found.items()}, indent=2))
@@ -72,19 +63,6 @@ def execute(args: argparse.Namespace) -> int:
         for _, sentence in found.values():
             print(sentence)
     return 0
-
-
-def _solution(what: Path | None) -> Solution:
-    if what is not None and what.suffix == ".npz":
-        return load_solution(what)
-    case = Case.textbook() if what is None else read_case(what)
-    try:
-        return case.simulate(check=False)
-    except AccuracyError as refusal:
-        if not isinstance(refusal.solution, Solution):
-            raise UsageError(str(refusal)) from None
-        print(f"{refusal}; what follows is about the most accurate run", file=sys.stderr)
-        return refusal.solution
 
 
 def trust(

@@ -1,1 +1,1 @@
-"""What is drawn of a run with matplotlib: curves over time, in the plane, and poses."""
+"""The figures of a run, drawn with matplotlib: curves over time, curves in the plane, poses."""

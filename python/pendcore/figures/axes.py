@@ -45,11 +45,6 @@ def stacked(new_figure: NewFigure, rows: int) -> Any:
     return figure.subplots(rows, 1, squeeze=False)[:, 0]
 
 
-def square(new_figure: NewFigure) -> Axes:
-    """Return the axes of a new figure in the plane."""
-    return new_figure(figsize=(5.4, 5.4), layout="constrained").subplots()
-
-
 def axes_among(ax: Any, counts: Sequence[int], which: str) -> list[Axes]:
     """Return the given axes as a list; TypeError or ValueError unless they are one of `counts`."""
     from matplotlib.axes import Axes
@@ -62,6 +57,13 @@ def axes_among(ax: Any, counts: Sequence[int], which: str) -> list[Axes]:
     if len(axes) not in counts:
         raise ValueError(f"ax: {len(axes)} axes: must be {told}")
     return axes
+
+
+def one_axes(ax: Any, new_figure: NewFigure, size: tuple[float, float]) -> Axes:
+    """Return the axes that were given, or those of a new figure of a size, inches."""
+    if ax is None:
+        ax = new_figure(figsize=size, layout="constrained").subplots()
+    return axes_among(ax, (1,), "")[0]
 
 
 def in_plane(axis: Axes) -> None:

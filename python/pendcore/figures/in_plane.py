@@ -10,11 +10,10 @@ from pendcore.figures.axes import (
     COLORS,
     STYLES,
     NewFigure,
-    axes_among,
     in_plane,
     is_bare,
+    one_axes,
     smooth_states,
-    square,
 )
 from pendcore.messages.arguments import Floats, whole_number
 from pendcore.run.result import RunResult
@@ -23,6 +22,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
 
+_SIZE = (5.4, 5.4)
+"""inches"""
 _LOST: dict[str, Any] = {"color": "0.75", "linewidth": 0.8, "zorder": 1}
 """How a curve looks past the horizon."""
 
@@ -36,7 +37,7 @@ def draw_path(
     given: dict[str, Any],
 ) -> list[Line2D]:
     """Draw the path of the tip, m, with the chain at the start and at the end."""
-    axis = _one(ax, new_figure)
+    axis = one_axes(ax, new_figure, _SIZE)
     t, states = smooth_states(solution)
     places = solution.scene._compiled.positions(t, states[:, : len(solution.scene.links)])
     count = len(axis.lines)
@@ -64,7 +65,7 @@ def draw_phase(
     given: dict[str, Any],
 ) -> list[Line2D]:
     """Draw the rate of each link (rad/s) over its angle (rad)."""
-    axis = _one(ax, new_figure)
+    axis = one_axes(ax, new_figure, _SIZE)
     n = len(solution.scene.links)
     t, states = smooth_states(solution)
     lines = []
@@ -107,7 +108,7 @@ def draw_section(
     if not 1 <= which <= n:
         raise ValueError(f"link = {which}: must be 1 to {n}")
     found = solution.events[number]
-    axis = _one(ax, new_figure)
+    axis = one_axes(ax, new_figure, _SIZE)
     turn = 2 * np.pi
     angle = (found.q[:, which - 1] + np.pi) % turn - np.pi
     ours: dict[str, Any] = {
@@ -123,10 +124,6 @@ def draw_section(
     if label is not None:
         axis.legend()
     return lines
-
-
-def _one(ax: Any, new_figure: NewFigure) -> Axes:
-    return axes_among(square(new_figure) if ax is None else ax, (1,), "")[0]
 
 
 def _curve(

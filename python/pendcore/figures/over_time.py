@@ -35,7 +35,7 @@ class Panel(NamedTuple):
     t : ndarray, (k,)
         s.
     label : str
-        Of the vertical axis, with the unit.
+        What the vertical axis is called, with the unit.
     curves : list of (str, ndarray (k,))
         Name and values of each curve.
     """

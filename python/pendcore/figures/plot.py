@@ -56,7 +56,7 @@ def plot(
         If there is no such figure, or the number of axes is not that of the figure, or a parameter
         is not one of this figure.
     """
-    own = _Own(t, event, link, label if what in ("strip", "free_bodies") else None)
+    own = _Own(t, event, link, label)
     _check(what, own, horizon)
     from matplotlib.artist import ArtistInspector
     from matplotlib.cbook import normalize_kwargs
@@ -72,7 +72,7 @@ def plot(
                 f"Solution.plot: has no parameter {name!r}: {did_you_mean(name, known)}"
             )
     valid = horizon_time(solution, horizon)
-    return _drawn(solution, ax, figure_of_pyplot, what, label, valid, own, given)
+    return _drawn(solution, ax, figure_of_pyplot, what, valid, own, given)
 
 
 class _Own(NamedTuple):
@@ -102,12 +102,11 @@ def _drawn(
     ax: Any,
     new_figure: NewFigure,
     what: str,
-    label: str | None,
     valid_until: float | None,
     own: _Own,
     given: dict[str, Any],
 ) -> list[Artist]:
-    place = solution, ax, new_figure
+    place, label = (solution, ax, new_figure), own.label
     if what == "path":
         return [*draw_path(*place, label, valid_until, given)]
     if what == "phase":
@@ -142,7 +141,7 @@ def save_figure(
 ) -> None:
     """Draw a figure into a file; the suffix says which kind (png, pdf, svg, ...).
 
-    What is past ``valid_until``, s, is shaded, if that is known; ``horizon`` is as in `plot`.
+    The figure is shaded past ``valid_until``, s, if that is known; ``horizon`` is as in `plot`.
     """
     from matplotlib.figure import Figure
 
@@ -150,7 +149,7 @@ def save_figure(
     if horizon is not None:
         valid_until = horizon_time(solution, horizon)
 
-    artists = _drawn(solution, None, Figure, what, None, valid_until, _Own(t), {})
+    artists = _drawn(solution, None, Figure, what, valid_until, _Own(t), {})
     figure: Any = artists[0].get_figure(root=True)
     drawn = BytesIO()  # matplotlib's PDF breaks off with an error of its own if the disk is full
     kind = Path(path).suffix.removeprefix(".")

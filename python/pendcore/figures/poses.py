@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from pendcore.figures.axes import NewFigure, axes_among, in_plane, smooth_states
+from pendcore.figures.axes import NewFigure, in_plane, one_axes, smooth_states
 from pendcore.messages.arguments import Floats, finite_array
 from pendcore.run.result import RunResult
 from pendcore.scene.scene import SceneData
@@ -41,10 +41,7 @@ def draw_strip(
     reach = float(sum(link.length for link in solution.scene.links))
     pivot = poses[:, 0, 0]
     step = 1.15 * float(np.ptp(np.concatenate([poses[..., 0].ravel(), path[:, 0]])) or reach)
-    if ax is None:
-        size = (min(2.0 * len(at), 16.0), 3.2)
-        ax = new_figure(figsize=size, layout="constrained").subplots()
-    axis = axes_among(ax, (1,), "")[0]
+    axis = one_axes(ax, new_figure, (min(2.0 * len(at), 16.0), 3.2))
     artists: list[Artist] = []
     before = at[0]
     lowest = max(float(poses[..., 1].max()), float(path[:, 1].max())) + 0.12 * reach
@@ -93,10 +90,7 @@ def draw_free_bodies(
     sizes = [np.hypot(*force) for link in forces for _, _, force in link]
     reach = float(sum(link.length for link in scene.links))
     scale = _SHARE * reach / max(max(sizes), 1e-300)
-    if ax is None:
-        size = (3.2 * n + 1.6, 5.0)
-        ax = new_figure(figsize=size, layout="constrained").subplots()
-    axis = axes_among(ax, (1,), "")[0]
+    axis = one_axes(ax, new_figure, (3.2 * n + 1.6, 5.0))
     artists: list[Artist] = []
     named: set[str] = set()
     for i, arrows in enumerate(forces):

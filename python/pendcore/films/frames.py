@@ -23,6 +23,8 @@ class Moves:
 
     Attributes
     ----------
+    states : ndarray, (k, 2n)
+        Angles, rad, and rates, rad/s.
     places : ndarray, (k, n+1, 2)
         Pivot, joints and tip, m.
     reactions : ndarray, (k, n, 2)
@@ -33,6 +35,7 @@ class Moves:
         m.
     """
 
+    states: Floats
     places: Floats
     reactions: Floats
     path: Floats
@@ -67,13 +70,12 @@ def moves_of(solution: RunResult, times: Floats) -> Moves:
     n = len(solution.scene.links)
     parts = np.linspace(0, len(at) - 1, PATH_PARTS * (len(at) - 1) + 1)
     along = np.interp(parts, np.arange(len(at)), at)
-    between = np.ascontiguousarray(states_of(solution, along)[:, :n])
-    q, qd = np.ascontiguousarray(states[:, :n]), np.ascontiguousarray(states[:, n:])
     compiled = solution.scene._compiled
     return Moves(
-        compiled.positions(at, q),
-        compiled.reactions(at, q, qd),
-        compiled.positions(along, between)[:, -1],
+        states,
+        compiled.positions(at, states[:, :n]),
+        compiled.reactions(at, states[:, :n], states[:, n:]),
+        compiled.positions(along, states_of(solution, along)[:, :n])[:, -1],
         float(sum(link.length for link in solution.scene.links)),
     )
 

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pendcore.accuracy.estimate import error_of
-from pendcore.figures.axes import in_plane
+from pendcore.figures.axes import horizon_time, in_plane
 from pendcore.figures.over_time import draw_energies
 from pendcore.films.frames import PATH_PARTS, Moves, frame_times, moves_of
 from pendcore.messages.arguments import Floats, number, positive
@@ -185,11 +184,10 @@ def _frame_scene(axis: Axes, moves: Sequence[Moves], scale: float) -> None:
 
 
 def _last_right_frame(solution: RunResult, times: Floats, choices: Choices) -> int:
-    if choices.horizon is None:
-        return len(times)
-    positive("horizon", choices.horizon, "rad")
-    valid = error_of(solution).valid_until(choices.horizon)
-    if valid == solution.run.t_reached:
+    if choices.horizon is not None:
+        positive("horizon", choices.horizon, "rad")
+    valid = horizon_time(solution, choices.horizon)
+    if valid is None or valid == solution.run.t_reached:
         return len(times)
     past = (times - valid) * (1 if times[-1] >= times[0] else -1) > 0
     return int(np.argmax(past)) - 1 if past.any() else len(times)

@@ -1,6 +1,7 @@
 /** The curves beside the picture: angles, energies, and any variable over any other. */
 
 import { Chart } from "./chart.mjs";
+import { grid } from "./simulate.mjs";
 
 const COLORS = ["first", "second", "third", "fourth"];
 const ACCOUNTS = ["fourth", "faint", "ink"];
@@ -56,10 +57,7 @@ export class Curves {
   set(run) {
     this.run = run;
     const count = Math.min(run.count, POINTS);
-    this.times = Array.from(
-      { length: count },
-      (_x, k) => run.begin + ((run.end - run.begin) * k) / (count - 1),
-    );
+    this.times = grid(run.begin, run.end, count);
     this.states = run.states(this.times);
     this.#fillMenus();
     const { times, states } = this;

@@ -16,7 +16,7 @@ import numpy as np
 from pendcore import _core
 from pendcore.accuracy.estimate import error_of
 from pendcore.cases.case import CaseData
-from pendcore.films.frames import moves_of, states_of
+from pendcore.films.frames import moves_of
 from pendcore.run.call import Choice, run, start_of
 from pendcore.run.methods import known_methods
 from pendcore.run.result import RunResult
@@ -25,9 +25,10 @@ from pendcore.scene.effect_class import KINDS, PARTS
 CORE_MODULES = ("engine.mjs", "pendcore.mjs")
 """They stand in cpp/wasm, and are installed beside the page."""
 PAGE_MODULES = (
-    "scene_view.mjs", "chart.mjs", "curves.mjs", "case.mjs", "runs.mjs", "copy.mjs",
+    "scene_view.mjs", "chart.mjs", "simulate.mjs", "curves.mjs", "case.mjs", "runs.mjs", "copy.mjs",
     "background.mjs", "controls.mjs", "touch.mjs", "main.mjs",
 )  # fmt: skip
+WORKER_MODULES = ("simulate.mjs", "worker.mjs")
 CORE = "pendcore.wasm.gz"
 PYTHON_ONLY_KINDS = ("user", "compiled_user")
 """The kinds of effects that only Python has."""
@@ -47,8 +48,11 @@ _EXPORT = re.compile(
 )
 
 
-def page_of(solution: RunResult, title: str) -> str:
-    """Return the page; without a core for browsers in the install, it plays the run back."""
+def page_of(solution: RunResult, title: str | None = None) -> str:
+    """Return the page; without a core for browsers in the install, it plays the run back.
+
+    ``title`` is the headline; without one, the page has the name of the run.
+    """
     case = CaseData.of_solution(solution)
     scene = solution.scene
     own = any(effect.kind in PYTHON_ONLY_KINDS for effect in scene.effects)
@@ -71,12 +75,12 @@ def page_of(solution: RunResult, title: str) -> str:
         "about": f"pendcore {_core.__version__}. {told}".strip(),
     }
     parts = {
-        "TITLE": escape(title),
+        "TITLE": escape(title or solution.name or "A pendulum"),
         "STYLE": _source("style.css"),
         "DATA": json.dumps(_finite(data), allow_nan=False).replace("<", "\\u003c"),
         "WASM": "" if core is None else b64encode(core).decode(),
         "CORE": "" if core is None else _bundle(CORE_MODULES),
-        "WORKER": "" if core is None else _bundle(("worker.mjs",)),
+        "WORKER": "" if core is None else _bundle(WORKER_MODULES),
         "SCRIPT": f"{{\n{_bundle(PAGE_MODULES)}\n}}",
     }
     return re.sub(r"@([A-Z]+)@", lambda found: parts[found[1]], _source("page.html"))
@@ -188,13 +192,12 @@ def _recording(solution: RunResult) -> dict[str, Any]:
     begin, end = float(solution.run.arguments["t_start"]), solution.run.t_reached
     count = min(max(round(60 * abs(end - begin)), 2), _MOST_FRAMES)
     t = np.linspace(begin, end, count)
-    moves, states = moves_of(solution, t), states_of(solution, t)
-    n = len(solution.scene.links)
-    q, qd = np.ascontiguousarray(states[:, :n]), np.ascontiguousarray(states[:, n:])
+    moves, n = moves_of(solution, t), len(solution.scene.links)
+    q, qd = moves.states[:, :n], moves.states[:, n:]
     kinetic, potential = solution.scene._compiled.energy(t, q, qd)
     return {
         "t": _rounded(t),
-        "states": _rounded(states),
+        "states": _rounded(moves.states),
         "places": _rounded(moves.places.reshape(count, -1)),
         "reactions": _rounded(moves.reactions.reshape(count, -1)),
         "energies": _rounded(np.stack([kinetic, potential], axis=1)),

@@ -7,8 +7,9 @@ import { Chart } from "./chart.mjs";
 import { Controls, methodFields } from "./controls.mjs";
 import { copyAndSay } from "./copy.mjs";
 import { Curves, drawCost } from "./curves.mjs";
-import { coreBytes, LiveRun, Recording, simulateCase } from "./runs.mjs";
+import { coreBytes, LiveRun, Recording } from "./runs.mjs";
 import { SceneView } from "./scene_view.mjs";
+import { grid, simulateCase } from "./simulate.mjs";
 import { listenToKeys, listenToPointer, STEP } from "./touch.mjs";
 
 const TRACE = 2; // s
@@ -148,8 +149,7 @@ class Page {
 
   #largestForce() {
     const { run } = this;
-    const sizes = Array.from({ length: FORCES }, (_x, k) => {
-      const t = run.begin + ((run.end - run.begin) * k) / (FORCES - 1);
+    const sizes = grid(run.begin, run.end, FORCES).map((t) => {
       const forces = run.reactions(t, run.state(t));
       let largest = 0;
       for (let i = 0; i < forces.length; i += 2) {
@@ -308,10 +308,7 @@ class Page {
     const { run } = this;
     const direction = run.end >= run.begin ? 1 : -1;
     const since = run.within(t - direction * TRACE);
-    const times = Array.from(
-      { length: this.traceParts },
-      (_x, k) => since + ((t - since) * k) / (this.traceParts - 1),
-    );
+    const times = grid(since, t, this.traceParts);
     return run.states(times).flatMap((state, k) => [...run.places(times[k], state).slice(-2)]);
   }
 

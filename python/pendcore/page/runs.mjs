@@ -1,5 +1,7 @@
 /** Runs of a case: by the core, or played back from what Python has computed. */
 
+import { simulateDense } from "./simulate.mjs";
+
 /** Unpacks the module that is in the page; null if there is none. */
 export async function coreBytes() {
   const text = document.getElementById("core-wasm").textContent.trim();
@@ -9,32 +11,11 @@ export async function coreBytes() {
   return new Response(stream).arrayBuffer();
 }
 
-/** The core's scene of a case. */
-export function sceneOf(core, given) {
-  return core.scene({ links: given.link, gravity: given.gravity, effects: given.effect });
-}
-
-/** Runs a case, with other options where they are given. */
-export function simulateCase(core, given, others = {}) {
-  const { t_start, t_end, ...options } = { ...given.run, ...others };
-  const scene = sceneOf(core, given);
-  const run = scene.simulate({
-    q0: given.start.q,
-    qd0: given.start.qd,
-    t0: t_start ?? 0,
-    t_end,
-    ...options,
-  });
-  return { scene, run };
-}
-
 /** A run that the core has made, as the page plays it. */
 export class LiveRun {
   constructor(core, given) {
-    const { t_eval: _times, store: _store, ...run } = given.run;
     // The ledger changes no bit of the motion.
-    const dense = { ...given, run: { ...run, store: "dense", ledger: true } };
-    const made = simulateCase(core, dense);
+    const made = simulateDense(core, given, { ledger: true });
     this.scene = made.scene;
     this.run = made.run;
     this.n = given.link.length;

@@ -4,6 +4,7 @@
  */
 
 import { load } from "../../../cpp/wasm/pendcore.mjs";
+import { grid, simulateDense } from "./simulate.mjs";
 
 /** @type {any} */
 const scope = self;
@@ -12,30 +13,13 @@ let ready = Promise.resolve();
 
 /** Runs a case, gives the run to `use`, and frees it: a loop leaves no time to clean up after it. */
 function withRun(given, others, use) {
-  const scene = core.scene({ links: given.link, gravity: given.gravity, effects: given.effect });
+  const { scene, run } = simulateDense(core, given, others);
   try {
-    const { t_start, t_end, t_eval: _times, store: _store, ...options } = given.run;
-    const run = scene.simulate({
-      q0: given.start.q,
-      qd0: given.start.qd,
-      t0: t_start ?? 0,
-      t_end,
-      ...options,
-      store: "dense",
-      ...others,
-    });
-    try {
-      return use(run);
-    } finally {
-      run.free();
-    }
+    return use(run);
   } finally {
+    run.free();
     scene.free();
   }
-}
-
-function grid(begin, end, count) {
-  return Array.from({ length: count }, (_x, k) => begin + ((end - begin) * k) / (count - 1));
 }
 
 /** One number, or one for each component. */

@@ -1,0 +1,30 @@
+/** A case through the core, as the page and its worker run it. */
+
+/** Runs a case, with other options where they are given; who asks frees the run and its scene. */
+export function simulateCase(core, given, others = {}) {
+  const { t_start, t_end, ...options } = { ...given.run, ...others };
+  const scene = core.scene({
+    links: given.link,
+    gravity: given.gravity,
+    effects: given.effect,
+  });
+  try {
+    const { q: q0, qd: qd0 } = given.start;
+    const run = scene.simulate({ q0, qd0, t0: t_start ?? 0, t_end, ...options });
+    return { scene, run };
+  } catch (error) {
+    scene.free();
+    throw error;
+  }
+}
+
+/** The same without the times that the case keeps: a state at any time, unless others say more. */
+export function simulateDense(core, given, others = {}) {
+  const { t_eval: _times, store: _store, ...run } = given.run;
+  return simulateCase(core, { ...given, run }, { store: "dense", ...others });
+}
+
+/** Numbers at equal steps from one end to the other. */
+export function grid(begin, end, count) {
+  return Array.from({ length: count }, (_x, k) => begin + ((end - begin) * k) / (count - 1));
+}
