@@ -247,6 +247,14 @@ def test_an_estimate_that_takes_too_long_ends_where_it_is() -> None:
     assert run.error().is_complete
 
 
+def test_without_time_an_estimate_makes_one_leg_of_one_second_run() -> None:
+    """Legs shorter than the least time of a leg once went on to the end, whatever the limit."""
+    run = pc.simulate(pc.Scene.textbook(), [1.0, 1.0], 0, (0, 600), max_step=0.05)
+    some = run.error(time_limit=1e-9)
+    assert not some.is_complete
+    assert 0 < some.t[-1] < 600 / 16
+
+
 @pytest.mark.parametrize(
     "asked",
     [lambda run: run.error(), lambda run: run.valid_until(0.1), lambda run: run.plot(horizon=0.1)],

@@ -195,6 +195,9 @@ def test_trust_tells_of_the_best_run_where_an_error_was_refused(
     told = capsys.readouterr()
     assert "not reached" in told.err
     assert "and lost after that" in told.out
+    assert main(["show", str(case), "-o", str(tmp_path / "chaos.png")]) == 0
+    assert "not reached" in capsys.readouterr().err
+    assert (tmp_path / "chaos.png").exists()
 
 
 def test_trust_names_its_options_and_says_once_what_it_has_not(

@@ -213,7 +213,7 @@ def _compared(
             assert second is not None
             seconds.append(second)
             start = start._replace(t_end=second.run.t_reached)
-            if not second.success:
+            if not second.success or monotonic() > until:
                 break
     except BaseException as stop:
         if isinstance(partly := getattr(stop, "solution", second), RunResult):
@@ -258,7 +258,7 @@ def _legs(
                 second, end, part, max_steps=max_steps, time_limit=left, progress=share
             )
         yield second
-        if not second.success:
+        if not second.success or monotonic() > until:
             return
 
 
