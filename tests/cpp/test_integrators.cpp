@@ -97,7 +97,7 @@ double detest_a4(double, double y) { return y / 4 * (1 - y / 20); }  // y = 20/(
 
 class Nothing final : public Observer {
  public:
-  StepEnd step_accepted(Stepper&, const TwoDouble&, double, double) override { return {}; }
+  StepEnd step_accepted(StepOutput&, const TwoDouble&, double, double) override { return {}; }
   void state_jumped(double, const double*, const double*) override {}
   void restarts_here() override {}
 };

@@ -41,19 +41,21 @@ TEST_CASE("scenes and methods that have lanes, and those that have none") {
   CHECK_FALSE(have_lanes(chain(2), "radau5"));
 }
 
-TEST_CASE("times and events have lanes of Taylor series, but not both at once") {
+TEST_CASE("times and events have lanes, but for functions of one's own") {
   if (instruction_set() < least_of_special_kernels) return;
-  Options times, with_event;
-  times.t_eval = {0.5, 1.0};
-  with_event.events = {{.function = events::LinkAngle{.link = 1, .value = 0.5}}};
-  Options both = times;
-  both.events = with_event.events;
-  for (const std::size_t n : {2, 3, 4}) {
-    CHECK(have_lanes(chain(n), "taylor", times));
-    CHECK(have_lanes(chain(n), "taylor", with_event));
-    CHECK_FALSE(have_lanes(chain(n), "taylor", both));
+  Options times, with_events, both, with_function;
+  times.t_eval = both.t_eval = {0.5, 1.0};
+  with_events.events = {{.function = events::LinkAngle{.link = 1, .value = 0.5}},
+                        {.function = events::TipLine{.point = {0.1, 0.2}, .normal = {1.0, 0.0}}}};
+  both.events = with_events.events;
+  const auto own = [](double t, std::span<const double>, std::span<const double>) { return t; };
+  with_function.events = {{.function = events::Function{.f = own}}};
+  for (const std::size_t n : {1, 2, 3, 4}) {
+    const char* const method = n == 1 ? "dop853" : "taylor";
+    CHECK(have_lanes(chain(n), method, times));
+    CHECK(have_lanes(chain(n), method, with_events));
+    CHECK(have_lanes(chain(n), method, both));
+    CHECK_FALSE(have_lanes(chain(n), method, with_function));
   }
-  CHECK_FALSE(have_lanes(chain(2), "dopri5", times));
-  CHECK_FALSE(have_lanes(chain(2), "dopri5", with_event));
-  CHECK_FALSE(have_lanes(chain(1), "dop853", times));
+  CHECK(have_lanes(chain(2), "dopri5", both));
 }

@@ -150,24 +150,27 @@ EVENTS = {
 }
 
 
+@pytest.mark.parametrize("method", ["dopri5", "dop853", "taylor", "auto"])
 @pytest.mark.parametrize("rtol", [1e-3, 1e-10])
 @pytest.mark.parametrize("terminal", [False, True, 3])
 @pytest.mark.parametrize("name", EVENTS)
-def test_first_events_are_those_of_simulate(name, terminal, rtol):
+def test_first_events_are_those_of_simulate(name, terminal, rtol, method):
     event = EVENTS[name].replace(terminal=terminal)
     q0 = pc.draw.uniform(-3.0, 3.0, (23, 2), seed=8)
     q0[3, 0] = 0.4  # begins at a level
+    how = {"method": method, "rtol": rtol, "atol": rtol}
     for t_span in ((0, 4), (1e5, 1e5 - 3)):
-        found = pc.ensemble(
-            BOOK, q0, 0.25, t_span, rtol=rtol, atol=rtol, keep=pc.keep.FirstEvent(event)
-        )
+        found = pc.ensemble(BOOK, q0, 0.25, t_span, keep=pc.keep.FirstEvent(event), **how)
+        evaluations = 0
         for i, start in enumerate(q0):
-            alone = pc.simulate(BOOK, start, 0.25, t_span, rtol=rtol, atol=rtol, events=[event])
+            alone = pc.simulate(BOOK, start, 0.25, t_span, store="end", events=[event], **how)
+            evaluations += alone.stats.nfev
             first = alone.events[0].t[:1]
             assert np.array_equal(found["first_event"][i : i + 1][: len(first)], first)
             assert len(first) or np.isnan(found["first_event"][i])
             assert found.status[i] == alone.status
             assert (found.t[i], *found.q[i], *found.qd[i]) == (alone.t[-1], *alone.y[:, -1])
+        assert found.statistics["nfev"] == evaluations
 
 
 def test_several_events_of_which_one_ends_the_run():
@@ -184,3 +187,23 @@ def test_several_events_of_which_one_ends_the_run():
             first = alone.events[which].t[:1]
             assert np.array_equal(found[name][i : i + 1][: len(first)], first)
         assert (found.status[i], found.t[i]) == (alone.status, alone.t[-1])
+
+
+TIP = pc.events.TipLine(point=(0.3, 0.5), normal=(1.0, 0.2))
+
+
+@pytest.mark.parametrize("method", ["dopri5", "dop853", "taylor"])
+def test_events_of_members_with_lengths_of_their_own(method):
+    """Where the tip is depends on the lengths."""
+    q0 = pc.draw.uniform(-3.0, 3.0, (19, 2), seed=10)
+    length = pc.draw.uniform(0.5, 1.5, 19, seed=11)
+    found = pc.ensemble(
+        BOOK, q0, t_span=(0, 3), vary={"link[2].length": length}, method=method,
+        keep=pc.keep.FirstEvent(TIP),
+    )  # fmt: skip
+    for i, start in enumerate(q0):
+        scene = BOOK.replace(links=[BOOK.links[0], BOOK.links[1].replace(length=length[i])])
+        alone = pc.simulate(scene, start, t_span=(0, 3), method=method, events=[TIP])
+        first = alone.events[0].t[:1]
+        assert np.array_equal(found["first_event"][i : i + 1][: len(first)], first)
+        assert np.array_equal(found.q[i], alone.q[-1])

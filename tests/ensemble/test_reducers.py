@@ -116,3 +116,43 @@ def test_members_that_were_not_run_have_no_numbers():
 def test_names_that_are_taken():
     with pytest.raises(ValueError, match=r"keep\[.q.\]: this name is taken"):
         pc.ensemble(BOOK, [0.1, 0.2], t_span=(0, 1), keep={"q": pc.keep.EnergyDrift()})
+
+
+IN_LANES = {
+    **{name: SCENES[name] for name in ("bare", "damped", "motor", "three links")},
+    "one link": pc.Scene(links=[pc.Link(mass=1.0, length=0.7)]),
+}
+
+
+@pytest.mark.parametrize("backward", [False, True])
+@pytest.mark.parametrize("name", IN_LANES)
+def test_members_in_lanes_have_the_numbers_of_single_members(name, backward):
+    """An ensemble of one member has no lanes. One start is fast, one is not finite."""
+    scene = IN_LANES[name]
+    n = len(scene.links)
+    q0 = starts(13, n)
+    qd0 = np.full((13, n), 0.2)
+    qd0[3] = 1e160
+    qd0[5] = 200.0
+    keep = {
+        "span": pc.keep.Extremes(),
+        "drift": pc.keep.EnergyDrift(),
+        "first": pc.keep.FirstEvent(pc.events.RateZero(link=1)),
+    }
+    mass = pc.draw.uniform(0.5, 1.0, 13, seed=12)
+    t_span = (1.5, -1.0) if backward else (0, 2)
+    for method in (*pc._core.methods_with_lanes(scene._compiled), "auto"):
+        asked = {"t_span": t_span, "method": method, "rtol": 1e-5, "check": False}
+        asked |= {"events": [pc.events.RateZero(link=n, terminal=2)], "max_steps": 2000}
+        for wanted in (["span"], ["drift"], ["span", "drift", "first"]):
+            kept = {one: keep[one] for one in wanted}
+            whole = pc.ensemble(scene, q0, qd0, vary={"link[1].mass": mass}, keep=kept, **asked)
+            assert len(whole.counts()) > 1
+            for i in range(13):
+                vary = {"link[1].mass": mass[i : i + 1]}
+                one = pc.ensemble(scene, q0[i], qd0[i], vary=vary, keep=kept, **asked)
+                assert whole.status[i] == one.status[0]
+                for key in ("t", "q", "qd"):
+                    assert np.array_equal(getattr(whole, key)[i], getattr(one, key)[0])
+                for key in wanted:
+                    assert np.array_equal(whole[key][i], one[key][0], equal_nan=True), (i, key)

@@ -112,15 +112,15 @@ class GrowthRecorder final : public Observer {
   void start(double t, const std::vector<double>& y) {
     if (next_ < times_.size() && times_[next_] == t) keep(t, y);
   }
-  StepEnd step_accepted(Stepper& stepper, const TwoDouble& t_old, double h, double t_new) override {
+  StepEnd step_accepted(StepOutput& step, const TwoDouble& t_old, double h, double t_new) override {
     has_polynomial_ = false;
     was_stepped_ = true;
     while (next_ < times_.size() && (times_[next_] - t_new) * h <= 0.0) {
       const double t = times_[next_];
       if (t == t_new) {
-        stepper.get_new_state(state_.data());
+        step.get_new_state(state_.data());
       } else {
-        interpolate(stepper, t_old, h, t);
+        interpolate(step, t_old, h, t);
       }
       keep(t, state_);
     }
@@ -151,14 +151,14 @@ class GrowthRecorder final : public Observer {
   }
 
  private:
-  void interpolate(Stepper& stepper, const TwoDouble& t_old, double h, double t) {
+  void interpolate(StepOutput& step, const TwoDouble& t_old, double h, double t) {
     if (!has_polynomial_) {
-      polynomial_.resize(static_cast<std::size_t>(stepper.interpolant_degree() + 1) *
-                         stepper.dimension());
-      stepper.finite_interpolant(h, polynomial_, stepper.dimension());
+      polynomial_.resize(static_cast<std::size_t>(step.interpolant_degree() + 1) *
+                         step.dimension());
+      step.finite_interpolant(h, polynomial_, step.dimension());
       has_polynomial_ = true;
     }
-    stepper.sample(polynomial_.data(), t_old, h, &t, 1, state_.data());
+    step.sample(polynomial_.data(), t_old, h, &t, 1, state_.data());
   }
   void keep(double t, const std::vector<double>& y) {
     gather(y, changes_);

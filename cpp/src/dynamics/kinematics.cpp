@@ -1,5 +1,6 @@
 #include "pendcore/dynamics/kinematics.hpp"
 
+#include <algorithm>
 #include <vector>
 
 #include "pendcore/arithmetic/sine_cosine.hpp"
@@ -18,12 +19,15 @@ std::vector<double> directions_of(std::span<const double> q) {
 
 void directions(std::span<const double> q, std::span<double> u) {
   require_size("u", u, 2 * q.size());
-  std::vector<double> sine(q.size());
-  std::vector<double> cosine(q.size());
-  sine_cosine(q.data(), static_cast<long long>(q.size()), sine.data(), cosine.data());
-  for (std::size_t i = 0; i < q.size(); ++i) {
-    u[2 * i] = cosine[i];
-    u[2 * i + 1] = sine[i];
+  constexpr std::size_t at_once = 32;
+  double sine[at_once], cosine[at_once];
+  for (std::size_t first = 0; first < q.size(); first += at_once) {
+    const std::size_t count = std::min(at_once, q.size() - first);
+    sine_cosine(q.data() + first, static_cast<long long>(count), sine, cosine);
+    for (std::size_t i = 0; i < count; ++i) {
+      u[2 * (first + i)] = cosine[i];
+      u[2 * (first + i) + 1] = sine[i];
+    }
   }
 }
 

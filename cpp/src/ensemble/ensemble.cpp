@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <mutex>
 #include <new>
 #include <optional>
@@ -43,6 +44,11 @@ void keep_first(const MemberResults& results, const std::vector<FoundEvent>& fou
   for (const FoundEvent& one : found | std::views::reverse) first[one.event] = one.t;
 }
 
+/// Whether a reducer looks on while a run is made.
+bool are_watched(const MemberResults& results) {
+  return !results.extremes.empty() || !results.energy_drift.empty();
+}
+
 /// Computes reducers of one run while it is made.
 class RunReducers final : public StepWatch {
  public:
@@ -50,8 +56,7 @@ class RunReducers final : public StepWatch {
     if (!results.extremes.empty()) extremes_.emplace(scene.links.size());
     if (!results.energy_drift.empty()) drift_.emplace(scene);
   }
-  bool is_needed() const { return extremes_ || drift_; }
-
+  bool asks_for_dense_output() const override { return extremes_.has_value(); }
   void starts(double t, std::span<const double> y) override {
     if (extremes_) extremes_->starts(t, y);
     if (drift_) drift_->starts(t, y);
@@ -132,7 +137,7 @@ class OneByOne {
     RunReducers reducers(scene, results_);
     Options options = options_;
     options.monitor = monitor;
-    if (reducers.is_needed()) options.watch = &reducers;
+    if (are_watched(results_)) options.watch = &reducers;
     try {
       const Solution solution = simulate(scene, q0, qd0, t0_, t_end_, std::move(options));
       if (solution.status == Status::interrupted) return false;
@@ -196,8 +201,12 @@ class Share final : public LaneSource {
     if (chunk_.is_empty()) chunk_ = work_.take();
     if (chunk_.is_empty()) return nullptr;
     member.number = chunk_.begin++;
-    return &one_by_one_.read(member.number, member.state);
+    const Scene& scene = one_by_one_.read(member.number, member.state);
+    if (watches()) member.watch = std::make_unique<RunReducers>(scene, results_);
+    return &scene;
   }
+  bool watches() const override { return are_watched(results_); }
+  bool watches_dense_output() const override { return !results_.extremes.empty(); }
   const Scene& scene_of(std::size_t number) override {
     std::vector<double> state;
     return one_by_one_.read(number, state);
@@ -205,9 +214,10 @@ class Share final : public LaneSource {
   void ended(const LaneMember& member) override {
     results_.t[member.number] = member.t;
     const std::size_t size = results_.states.size() / results_.status.size();
-    std::ranges::copy(keeps_times_ ? member.samples : member.state,
+    std::ranges::copy(keeps_times_ ? member.recorded.states : member.state,
                       results_.states.data() + member.number * size);
-    keep_first(results_, member.found, member.number);
+    keep_first(results_, member.recorded.found, member.number);
+    if (watches()) static_cast<const RunReducers&>(*member.watch).keep(results_, member.number);
     results_.status[member.number] = code(member.status);
     work_.count(1);
   }
@@ -243,8 +253,6 @@ EnsembleEnding run_ensemble(const Scene& scene, const Members& members, double t
   static_cast<void>(absolute_tolerances(options, scene.links.size()));
   static_cast<void>(make_stepper(scene, chosen_method(scene, options)));
   const Options own = options_of_members(scene, options, results);
-  const bool in_lanes =
-      results.extremes.empty() && results.energy_drift.empty() && results.largest_exponent.empty();
   if (!results.largest_exponent.empty()) check_has_exponents(scene);
   EnsembleEnding ending;
   if (members.count == 0) return ending;
@@ -255,8 +263,9 @@ EnsembleEnding run_ensemble(const Scene& scene, const Members& members, double t
     const FloatingPointEnvironment ieee;
     OneByOne one_by_one(scene, members, choice, t0, t_end, own, results);
     Share share(work, on_calling_thread, one_by_one, results, own.store == Store::times);
+    // The largest exponent takes a run of its own.
     const std::unique_ptr<LaneRunner> lanes =
-        in_lanes ? make_lanes(scene, t0, t_end, own) : nullptr;
+        results.largest_exponent.empty() ? make_lanes(scene, t0, t_end, own) : nullptr;
     if (lanes) {
       lanes->run(share);
     } else {

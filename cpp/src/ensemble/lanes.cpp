@@ -34,7 +34,14 @@ class RungeKuttaRunner final : public LaneLoop<width_on(set)> {
   }
   std::vector<double> saved_state(int /*lane*/) override { return {}; }
   LaneSteps<width>& steps() override { return all_; }
-  Attention take_steps() override { return take_steps_(&all_, &this->interval(), rounds_at_once); }
+  const LaneSteps<width>& steps() const override { return all_; }
+  Attention take_steps() override {
+    Attention attention = take_steps_(&all_, &this->interval(), rounds_at_once);
+    if (all_.needs_dense_output && (attention.recorded | attention.searched) != 0) {
+      attention.recorded |= attention.searched & interpolate_(&all_);
+    }
+    return attention;
+  }
   bool put_equations(int lane) override {
     return Equations::put(all_.memory.system.dynamics, lane, this->equations());
   }
@@ -53,18 +60,31 @@ class RungeKuttaRunner final : public LaneLoop<width_on(set)> {
       Equations::put_state(all_.memory.k[0][i], lane, this->rate().data() + i * n_);
     }
   }
-  void get_state(int lane, double* y) override {
+  void put_state(int lane, const double* y) override {
+    for (int i = 0; i < 2; ++i) Equations::put_state(all_.memory.y[i], lane, y + i * n_);
+  }
+  void get_state(int lane, double* y) const override {
     for (int i = 0; i < 2; ++i) Equations::get_state(all_.memory.y[i], lane, y + i * n_);
   }
-  long long evaluations_of(int lane) override {
+  void get_state_before(int lane, double* y) const override {
+    for (int i = 0; i < 2; ++i) Equations::get_state(all_.y_before[i], lane, y + i * n_);
+  }
+  bool write_interpolant(int lane, double* coefficients) const override {
+    for (const auto& number : all_.rows) *coefficients++ = number[lane];
+    return true;
+  }
+  long long evaluations_of(int lane) const override {
+    constexpr int of_dense_output = All::Memory::all_stages - All::stages;
     const long long attempts = all_.accepted[lane] + all_.rejected[lane];
-    return (this->options().first_step ? 1 : 2) + (All::stages - 1) * attempts;
+    return (this->options().first_step ? 1 : 2) + (All::stages - 1) * attempts +
+           of_dense_output * this->interpolated(lane);
   }
 
   std::size_t n_;
   All all_{};
   Attention (*take_steps_)(All*, const LaneInterval*,
                            int) = only<&pendcore::take_steps<method, Form, width>, set>();
+  LaneBits (*interpolate_)(All*) = only<&interpolate_step<method, Form, width>, set>();
 };
 
 template <class Form, InstructionSet set>
@@ -123,19 +143,15 @@ std::vector<std::string_view> methods_with_lanes(const Scene& scene) {
 
 std::unique_ptr<LaneRunner> make_lanes(const Scene& scene, double t0, double t_end,
                                        const Options& options) {
-  const bool keeps_times = options.store == Store::times;
   const bool is_plain = !options.step && !options.compensated && !options.ledger &&
-                        (keeps_times || options.store == Store::end);
+                        (options.store == Store::times || options.store == Store::end);
   if (!is_plain || t0 == t_end) return nullptr;
   const std::string_view method = find_method(chosen_method(scene, options)).first();
   if (std::ranges::count(methods_with_lanes(scene), method) == 0) return nullptr;
-  if (keeps_times && (method != taylor.info.name || !options.events.empty())) return nullptr;
-  if (!options.events.empty()) {
-    std::vector<FoundEvent> none;
-    const bool are_differences =
-        !EventFinder(scene, options.events, none, {}).differences().empty();
-    if (method != taylor.info.name || !are_differences) return nullptr;
-  }
+  const auto is_function = [](const Event& event) {
+    return std::holds_alternative<events::Function>(event.function);
+  };
+  if (std::ranges::any_of(options.events, is_function)) return nullptr;
   if constexpr (PENDCORE_CLONES != 0) {
     if (instruction_set() == InstructionSet::x86_64_v4) {
       return lanes_of<InstructionSet::x86_64_v4>(method, scene, t0, t_end, options);

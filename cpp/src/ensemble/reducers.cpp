@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pendcore/arithmetic/epsilon.hpp"
 #include "pendcore/dynamics/energetics/energy.hpp"
 
 namespace pendcore {
@@ -15,6 +16,7 @@ void Extremes::starts(double /*t*/, std::span<const double> y) {
 void Extremes::steps(const WatchedStep& step) {
   const std::size_t columns = step.y.size();
   polynomial_.resize(static_cast<std::size_t>(step.degree) + 1);
+  bounds_.resize(polynomial_.size());
   for (std::size_t i = 0; i < least_.size(); ++i) {
     const double* const c = step.rows + i;
     double reach = 0.0;
@@ -26,6 +28,10 @@ void Extremes::steps(const WatchedStep& step) {
     take(step.y[i]);
     if (c[0] - reach >= least_[i] && c[0] + reach <= greatest_[i]) continue;
     for (int k = 0; k <= step.degree; ++k) polynomial_[k] = c[k * columns];
+    bernstein_form(polynomial_.data(), step.degree, bounds_.data());
+    const auto [low, high] = std::ranges::minmax(bounds_);
+    const double rounding = 16.0 * epsilon * (std::abs(c[0]) + reach);
+    if (low - rounding >= least_[i] && high + rounding <= greatest_[i]) continue;
     turning_points_.clear();
     find_turning_points(polynomial_.data(), step.degree, turning_points_);
     for (const TurningPoint& point : turning_points_) {

@@ -124,6 +124,13 @@ void StiffSwitchingStepper::interpolant(double h, double* coefficients) {
   for (int p = now().interpolant_degree() + 1; p <= interpolant_degree(); ++p) {
     for (int i = 0; i < size; ++i) coefficients[p * size + i] = highest[i] - highest[i];
   }
+  count();
+}
+
+double StiffSwitchingStepper::stiffness(double h) {
+  const double found = now().stiffness(h);
+  count();
+  return found;
 }
 
 std::vector<double> StiffSwitchingStepper::saved_state() const {

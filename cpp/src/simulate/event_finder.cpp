@@ -126,8 +126,8 @@ int EventFinder::count_turns(std::size_t k, const Levels& levels) {
 
 void EventFinder::find_difference(std::size_t k, const Step& step) {
   const Difference difference = difference_of(events_[k].function);
-  const int degree = step.stepper.interpolant_degree();
-  const int dimension = step.stepper.dimension();
+  const int degree = step.output.interpolant_degree();
+  const int dimension = step.output.dimension();
   polynomial_.resize(degree + 1);
   double size = 0.0;
   double moved = 0.0;
@@ -158,8 +158,8 @@ void EventFinder::find_difference(std::size_t k, const Step& step) {
 void EventFinder::find_tip_line(std::size_t k, const Step& step) {
   double start, end;
   node_values(k, step, start, end);
-  tip_lines_[tip_line_of_[k]].find(step.rows, step.stepper.interpolant_degree(),
-                                   step.stepper.dimension(), step.t_old.high, step.h, start, end,
+  tip_lines_[tip_line_of_[k]].find(step.rows, step.output.interpolant_degree(),
+                                   step.output.dimension(), step.t_old.high, step.h, start, end,
                                    roots_);
 }
 
@@ -187,7 +187,7 @@ void EventFinder::node_values(std::size_t k, const Step& step, double& start, do
 }
 
 double EventFinder::sampled(std::size_t k, const Step& step, double theta) {
-  step.stepper.sample(step.rows, {}, 1.0, &theta, 1, y_.data());
+  step.output.sample(step.rows, {}, 1.0, &theta, 1, y_.data());
   return function_at(k, fma(theta, step.h, step.t_old.high), y_.data());
 }
 
@@ -218,12 +218,12 @@ void EventFinder::find(std::size_t k, const Step& step) {
   }
 }
 
-StepEnd EventFinder::look(const Stepper& stepper, const double* rows, const TwoDouble& t_old,
+StepEnd EventFinder::look(const StepOutput& output, const double* rows, const TwoDouble& t_old,
                           double h, double t_new) {
-  y_new_.resize(stepper.dimension());
-  y_.resize(stepper.dimension());
-  stepper.get_new_state(y_new_.data());
-  const Step step{stepper, rows, t_old, h, t_new};
+  y_new_.resize(output.dimension());
+  y_.resize(output.dimension());
+  output.get_new_state(y_new_.data());
+  const Step step{output, rows, t_old, h, t_new};
   candidates_.clear();
   at_the_end_.clear();
   for (std::size_t k = 0; k < events_.size() && too_many_of_ < 0; ++k) find(k, step);
@@ -243,7 +243,7 @@ StepEnd EventFinder::look(const Stepper& stepper, const double* rows, const TwoD
       at_the_end_.push_back(found_.size());
       append(candidate, t_new, y_new_.data());
     } else {
-      stepper.sample(rows, {}, 1.0, &candidate.theta, 1, y_.data());
+      output.sample(rows, {}, 1.0, &candidate.theta, 1, y_.data());
       append(candidate, time_in_step(t_old, h, candidate.theta, t_new).high, y_.data());
     }
     if (ended_by_ >= 0) stop = candidate.theta;

@@ -5,16 +5,17 @@
 
 namespace pendcore {
 
-Recorder::Recorder(Solution& solution, const Stepper& stepper, const Scene& scene,
+Recorder::Recorder(Solution& solution, const StepOutput& output, const Scene& scene,
                    const std::vector<long long>& passed_events)
     : solution_(solution),
       watch_(solution.options.watch),
+      watch_asks_for_polynomials_(watch_ != nullptr && watch_->asks_for_dense_output()),
       may_throw_(!effects_of<CompiledUser>(scene).empty()),
       keeps_polynomials_(solution.options.store == Store::dense),
       keeps_steps_(solution.options.store == Store::steps ||
                    (keeps_polynomials_ && solution.options.t_eval.empty())),
-      dimension_(static_cast<std::size_t>(stepper.dimension())),
-      degree_(static_cast<std::size_t>(stepper.interpolant_degree())) {
+      dimension_(static_cast<std::size_t>(output.dimension())),
+      degree_(static_cast<std::size_t>(output.interpolant_degree())) {
   const std::vector<Event>& events = solution.options.events;
   if (!events.empty() && degree_ > highest_degree) {
     throw std::invalid_argument("events: the dense output of this method has too high a degree");
@@ -31,13 +32,14 @@ void Recorder::start(double t, const std::vector<double>& y) {
   if (keeps_steps_ || asked_for) std::ranges::copy(y, append(t));
 }
 
-StepEnd Recorder::step_accepted(Stepper& stepper, const TwoDouble& t_old, double h, double t_new) {
+StepEnd Recorder::step_accepted(StepOutput& output, const TwoDouble& t_old, double h,
+                                double t_new) {
   StepEnd end;
   // This comes before anything is kept: it may evaluate right-hand sides, and a user's function may
   // throw.
-  if (finder_ || keeps_polynomials_ || watch_ != nullptr) interpolate(stepper, h);
+  if (finder_ || keeps_polynomials_ || watch_asks_for_polynomials_) interpolate(output, h);
   if (finder_) {
-    end = finder_->look(stepper, polynomial_.data(), t_old, h, t_new);
+    end = finder_->look(output, polynomial_.data(), t_old, h, t_new);
     if (end.has_too_many_turns()) return end;
   }
   const double t_end = end.is_within() ? time_in_step(t_old, h, end.theta, t_new).high : t_new;
@@ -48,29 +50,29 @@ StepEnd Recorder::step_accepted(Stepper& stepper, const TwoDouble& t_old, double
     dense.h.push_back(h);
     dense.coefficients.insert(dense.coefficients.end(), polynomial_.begin(), polynomial_.end());
   }
-  if (watch_ != nullptr) show_step(stepper, t_end, end.is_within() ? end.theta : 1.0);
+  if (watch_ != nullptr) show_step(output, t_end, end.is_within() ? end.theta : 1.0);
   if (end.is_within()) {
-    keep_clipped(stepper, t_old, h, end.theta, t_end);
+    keep_clipped(output, t_old, h, end.theta, t_end);
   } else if (keeps_steps_) {
-    stepper.get_new_state(append(t_new));
+    output.get_new_state(append(t_new));
   } else {
-    sample_step(stepper, t_old, h, t_new);
+    sample_step(output, t_old, h, t_new);
   }
   return end;
 }
 
-void Recorder::interpolate(Stepper& stepper, double h) {
+void Recorder::interpolate(StepOutput& output, double h) {
   polynomial_.resize((degree_ + 1) * dimension_);
-  stepper.finite_interpolant(h, polynomial_, dimension_);
+  output.finite_interpolant(h, polynomial_, dimension_);
 }
 
 /// Shows the step, up to a share of it at time t, to what looks on.
-void Recorder::show_step(Stepper& stepper, double t, double share) {
+void Recorder::show_step(StepOutput& output, double t, double share) {
   shown_.resize(dimension_);
   if (share < 1.0) {
-    stepper.sample(polynomial_.data(), {}, 1.0, &share, 1, shown_.data());
+    output.sample(polynomial_.data(), {}, 1.0, &share, 1, shown_.data());
   } else {
-    stepper.get_new_state(shown_.data());
+    output.get_new_state(shown_.data());
   }
   watch_->steps({.t = t,
                  .y = shown_,
@@ -80,16 +82,16 @@ void Recorder::show_step(Stepper& stepper, double t, double share) {
 }
 
 /// Keeps the step up to an event within it, at time t.
-void Recorder::keep_clipped(Stepper& stepper, const TwoDouble& t_old, double h, double theta,
+void Recorder::keep_clipped(StepOutput& output, const TwoDouble& t_old, double h, double theta,
                             double t) {
   const std::vector<double>& samples = solution_.options.t_eval;
   const bool is_new = solution_.t.empty() || solution_.t.back() != t;
   bool is_kept = keeps_steps_;
   if (!keeps_steps_) {
-    sample_step(stepper, t_old, h, t, false);
+    sample_step(output, t_old, h, t, false);
     is_kept = solution_.t.size() < samples.size() && samples[solution_.t.size()] == t;
   }
-  if (is_kept && is_new) stepper.sample(polynomial_.data(), {}, 1.0, &theta, 1, append(t));
+  if (is_kept && is_new) output.sample(polynomial_.data(), {}, 1.0, &theta, 1, append(t));
 }
 
 /// Keeps the states before and after the jump, with the same time. If only times that were asked
@@ -122,7 +124,7 @@ void Recorder::count(const Kept& kept) {
   solution_.resumable_found = kept.found;
 }
 
-void Recorder::sample_step(Stepper& stepper, const TwoDouble& t_old, double h, double t_new,
+void Recorder::sample_step(StepOutput& output, const TwoDouble& t_old, double h, double t_new,
                            bool with_end) {
   const std::vector<double>& samples = solution_.options.t_eval;
   const std::size_t first = solution_.t.size();
@@ -130,12 +132,12 @@ void Recorder::sample_step(Stepper& stepper, const TwoDouble& t_old, double h, d
   if (end > first) {
     for (std::size_t k = first; k < end; ++k) solution_.t.push_back(samples[k]);
     solution_.states.resize(end * dimension_);
-    interpolate(stepper, h);
-    stepper.sample(polynomial_.data(), t_old, h, samples.data() + first,
-                   static_cast<int>(end - first), solution_.states.data() + first * dimension_);
+    interpolate(output, h);
+    output.sample(polynomial_.data(), t_old, h, samples.data() + first,
+                  static_cast<int>(end - first), solution_.states.data() + first * dimension_);
   }
   if (with_end && end < samples.size() && samples[end] == t_new)
-    stepper.get_new_state(append(t_new));
+    output.get_new_state(append(t_new));
 }
 
 double* Recorder::append(double t) {

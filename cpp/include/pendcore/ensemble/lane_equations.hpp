@@ -50,6 +50,7 @@ void put_couples(Couples<Rows>& couples, int lane, const Couples<Row>& one) {
 template <class Real>
 struct BothLinks {
   using Integers = typename Lanes<Real>::Integers;
+  static constexpr int links = 2;
 
   static void put_state(Two<Real>& pair, int lane, const double* from) {
     pair.first[lane] = from[0];
@@ -58,6 +59,9 @@ struct BothLinks {
   static void get_state(const Two<Real>& pair, int lane, double* to) {
     to[0] = pair.first[lane];
     to[1] = pair.second[lane];
+  }
+  PENDCORE_INLINE static const Real& number(const Two<Real>& pair, int link) {
+    return link == 0 ? pair.first : pair.second;
   }
   PENDCORE_INLINE static Two<Real> select(const Integers& which, const Two<Real>& yes,
                                           const Two<Real>& no) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <limits>
+#include <span>
 
 #include "pendcore/arithmetic/epsilon.hpp"
 #include "pendcore/arithmetic/pack.hpp"
@@ -13,6 +14,7 @@
 #include "pendcore/integrate/loop/step_control.hpp"
 #include "pendcore/integrate/loop/stiffness.hpp"
 #include "pendcore/integrate/loop/trial.hpp"
+#include "pendcore/simulate/event_finder.hpp"
 
 namespace pendcore {
 
@@ -28,13 +30,13 @@ using LaneBits = unsigned;
 
 /// The lanes that need attention after a round of steps.
 struct Attention {
-  LaneBits ended = 0;    ///< at the end of the interval
-  LaneBits used_up = 0;  ///< max_steps were attempted
-  LaneBits odd = 0;      ///< to be run alone
-  LaneBits looks = 0;    ///< their stiffness is to be looked at
-  LaneBits events = 0;   ///< an event may lie within the step
-  LaneBits samples = 0;  ///< a time that was asked for lies within the step
-  bool is_needed() const { return (ended | used_up | odd | looks | events | samples) != 0; }
+  LaneBits ended = 0;     ///< at the end of the interval
+  LaneBits used_up = 0;   ///< max_steps were attempted
+  LaneBits odd = 0;       ///< to be run alone
+  LaneBits looks = 0;     ///< their stiffness is to be looked at
+  LaneBits searched = 0;  ///< the dense output of their step is to be searched for events
+  LaneBits recorded = 0;  ///< something may be recorded of their step
+  bool is_needed() const { return (ended | used_up | odd | looks | searched | recorded) != 0; }
 };
 
 /// Where the trajectories of all lanes stand, but for their states.
@@ -50,6 +52,16 @@ struct LaneSteps {
   Integers accepted = {}, rejected = {};
   Integers steps_to_look = {};  ///< accepted steps until stiffness is looked at
   LaneBits active = 0;          ///< the lanes that have a member
+
+  // The step that was taken last: its start, s, and its size.
+  Real t_before = {}, t_low_before = {}, h_before = {};
+  // What is recorded of steps, by a Recorder for each lane.
+  std::span<const EventFinder::Difference>
+      differences;  ///< those of events, if all are of the kind
+  bool every_step_is_recorded = false;
+  bool needs_dense_output = false;
+  bool has_times = false;  ///< whether states at given times are asked for
+  Real next_time = {};     ///< s, the next of them; infinite if there is none
 };
 
 namespace lanes_detail {
@@ -91,7 +103,49 @@ PENDCORE_INLINE Real difference(const Real& b, const TwoReals<Real>& a) {
   return sum.high + (sum.low - a.low);
 }
 
+/// Whether a difference may reach its level within a step of x, whose dense output is a polynomial
+/// with rows of `size` numbers, from the first power on, and which begins at y: not if the level is
+/// farther away than the sizes of all terms together.
+template <int size, class Real>
+PENDCORE_INLINE typename Lanes<Real>::Integers may_reach(const EventFinder::Difference& level,
+                                                         const Real* y, const Real* powers,
+                                                         int degree, const Real& x) {
+  constexpr double turn = 6.283185307179586;
+  const auto difference = [&](const Real* row) __attribute__((always_inline)) {
+    return level.minus < 0 ? row[level.plus] : Real(row[level.plus] - row[level.minus]);
+  };
+  const Real step = absolute(x);
+  Real moves{};
+  for (int k = degree - 1; k >= 0; --k) {
+    moves = (moves + absolute(difference(powers + static_cast<std::ptrdiff_t>(k) * size))) * step;
+  }
+  const Real here = difference(y);
+  Real away = here - level.value;
+  if (level.every_turn) {
+    using power_detail::to_integer;
+    const Real turns = (away * (1.0 / turn) + to_integer) - to_integer;
+    away = away - turns * turn;
+  }
+  constexpr double rounding = 1e-9;
+  const typename Lanes<Real>::Integers is_too_far =
+      absolute(away) > moves * (1.0 + rounding) + rounding * (1.0 + absolute(here));
+  return ~is_too_far;  // what is not a number may reach it
+}
+
 }  // namespace lanes_detail
+
+/// Whether an event may lie within a step of x: see may_reach().
+template <int size, int width, class Real>
+PENDCORE_INLINE typename LaneSteps<width>::Integers may_have_event(const LaneSteps<width>& lanes,
+                                                                   const Real* y,
+                                                                   const Real* powers, int degree,
+                                                                   const Real& x) {
+  typename LaneSteps<width>::Integers may_happen{};
+  for (const EventFinder::Difference& one : lanes.differences) {
+    may_happen |= lanes_detail::may_reach<size>(one, y, powers, degree, x);
+  }
+  return may_happen;
+}
 
 /// The step that is tried next in each lane.
 template <int width>
@@ -125,7 +179,7 @@ PENDCORE_INLINE NextStep<width> next_step(const LaneSteps<width>& lanes,
 }
 
 /// Accepts or rejects the steps that were `tried` (all bits set), and notes what needs attention.
-/// Returns where a step was accepted.
+/// Returns where a step was accepted; there, the end of the step is the time that lanes have now.
 template <const auto& method, int width>
 PENDCORE_INLINE typename NextStep<width>::Integers finish_step(
     LaneSteps<width>& lanes, const LaneInterval& interval, const NextStep<width>& next,
@@ -167,6 +221,9 @@ PENDCORE_INLINE typename NextStep<width>::Integers finish_step(
   const detail::TwoReals<Real> after = t + h;
   const Real missed = detail::difference(t_end, after);
   const Integers lands = next.is_in_reach & ((h < 0.0 ? Real(-missed) : missed) <= next.bits);
+  lanes.t_before = lanes.t;
+  lanes.t_low_before = lanes.t_low;
+  lanes.h_before = h;
   lanes.t = is_accepted ? (lands ? t_end : after.high) : t.high;
   lanes.t_low = is_accepted ? (lands ? Real{} : after.low) : t.low;
 
@@ -178,6 +235,15 @@ PENDCORE_INLINE typename NextStep<width>::Integers finish_step(
     attention.ended = detail::bits_of(has_ended) & lanes.active & ~attention.odd;
     attention.used_up = detail::bits_of(is_used_up) & lanes.active & ~attention.odd;
   }
+  const LaneBits usual = lanes.active & ~attention.odd;
+  if (lanes.every_step_is_recorded) {
+    attention.recorded = detail::bits_of(is_accepted) & usual;
+  } else if (lanes.has_times) {
+    const Real missing = lanes.next_time - lanes.t;
+    const Real ahead = h < 0.0 ? Real(-missing) : missing;
+    attention.recorded = detail::bits_of((ahead <= 0.0) & is_accepted) & usual;
+  }
+  if (!lanes.differences.empty()) attention.searched = detail::bits_of(is_accepted) & usual;
   return is_accepted;
 }
 

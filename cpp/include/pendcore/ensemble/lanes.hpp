@@ -22,20 +22,23 @@ namespace pendcore {
 struct LaneMember {
   std::size_t number = 0;
   std::vector<double> state;  ///< (2n): angles, rad, and rates, rad/s
-  /// (times reached, 2n): the states at the times of options.t_eval; empty if none is asked for
-  std::vector<double> samples;
-  double t = 0.0;  ///< s
+  double t = 0.0;             ///< s
   Status status = Status::finished;
-  std::vector<FoundEvent> found;
+  Solution recorded;                 ///< what was recorded of its steps: times, states, events
+  std::unique_ptr<StepWatch> watch;  ///< looks on, if it is not null
 };
 
 /// Where lanes get their members, and give them back.
 class LaneSource {
  public:
   virtual ~LaneSource() = default;
-  /// Fills `member` with the next one and returns its scene; null if there is none. A varied scene
-  /// is valid until the next call.
+  /// Fills `member` with the next one, perhaps with a watch, and returns its scene; null if there
+  /// is none. A varied scene is valid until the next call.
   virtual const Scene* next(LaneMember& member) = 0;
+  /// Whether members have a watch.
+  virtual bool watches() const = 0;
+  /// Whether their watches ask for dense output.
+  virtual bool watches_dense_output() const = 0;
   /// The scene of a member that has begun; a varied one is valid until the next call.
   virtual const Scene& scene_of(std::size_t number) = 0;
   virtual void ended(const LaneMember& member) = 0;
@@ -59,10 +62,12 @@ class LaneRunner {
 /// The methods that have lanes for the equations of a scene. Those of Dormand and Prince have them
 /// for one and two links, bare or with couples and waves of motors and the pivot: up to four waves
 /// for one link, two for two. Taylor series have them for two, three and four links whose pivot
-/// stands still. There are none where a law may change.
+/// stands still. There are none where a law may change. Events may end members, and states at times
+/// be kept, in all lanes.
 std::vector<std::string_view> methods_with_lanes(const Scene& scene);
 
-/// The lanes for a scene and its options, or null if its members are run one by one.
+/// The lanes for a scene and its options, or null if its members are run one by one: for example
+/// if an event is a function of the user's.
 std::unique_ptr<LaneRunner> make_lanes(const Scene& scene, double t0, double t_end,
                                        const Options& options);
 

@@ -12,9 +12,11 @@ template <class Real>
 struct OneLink {
   using Integers = typename Lanes<Real>::Integers;
   using Row = EachLink<Real, 1>;
+  static constexpr int links = 1;
 
   static void put_state(Row& row, int lane, const double* from) { row.of[0][lane] = from[0]; }
   static void get_state(const Row& row, int lane, double* to) { to[0] = row.of[0][lane]; }
+  PENDCORE_INLINE static const Real& number(const Row& row, int link) { return row.of[link]; }
   PENDCORE_INLINE static Row select(const Integers& which, const Row& yes, const Row& no) {
     return {{which ? yes.of[0] : no.of[0]}};
   }

@@ -2,8 +2,8 @@
 /// Numbers of a whole run, which are found while it is made.
 ///
 /// The extremes are those of the dense output: within a step, a component is largest at an end or
-/// at a turning point of its polynomial. Steps that cannot exceed what was found, by the sum of
-/// the coefficients' sizes, are not searched.
+/// at a turning point of its polynomial. A step is not searched if the bounds of its polynomial, by
+/// the sum of the coefficients' sizes or in Bernstein form, do not exceed what was found.
 ///
 /// The energy drift is the largest |E(t) - E(0) - W(t)| at the ends of steps, where E is the total
 /// energy and W the work of effects, less the losses, that the ledger has (energetics/ledger.hpp).
@@ -22,6 +22,7 @@ namespace pendcore {
 class Extremes final : public StepWatch {
  public:
   explicit Extremes(std::size_t n) : least_(2 * n), greatest_(2 * n) {}
+  bool asks_for_dense_output() const override { return true; }
   void starts(double t, std::span<const double> y) override;
   void steps(const WatchedStep& step) override;
   void jumps(double t, std::span<const double> y) override;
@@ -30,15 +31,16 @@ class Extremes final : public StepWatch {
 
  private:
   std::vector<double> least_, greatest_;
-  std::vector<double> polynomial_;
+  std::vector<double> polynomial_, bounds_;
   std::vector<TurningPoint> turning_points_;
 };
 
-/// The largest energy drift, J. The scene must outlive it; where effects do work, the run must keep
-/// the ledger.
+/// The largest energy drift, J. Where effects do work, the run must keep the ledger.
 class EnergyDrift final : public StepWatch {
  public:
-  explicit EnergyDrift(const Scene& scene) : scene_(scene), accounts_(accounts_of(scene)) {}
+  explicit EnergyDrift(const Scene& scene)
+      : scene_(compiled(scene)), accounts_(accounts_of(scene)) {}
+  bool asks_for_dense_output() const override { return false; }
   void starts(double t, std::span<const double> y) override;
   void steps(const WatchedStep& step) override;
   void jumps(double t, std::span<const double> y) override;
@@ -48,7 +50,7 @@ class EnergyDrift final : public StepWatch {
   /// The energy less what the ledger accounts for, J.
   double unexplained(double t, std::span<const double> y) const;
 
-  const Scene& scene_;
+  Scene scene_;
   std::vector<Account> accounts_;
   double start_ = 0.0;
   double largest_ = 0.0;

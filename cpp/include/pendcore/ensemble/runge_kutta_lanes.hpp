@@ -4,6 +4,7 @@
 #pragma once
 
 #include <tuple>
+#include <utility>
 
 #include "pendcore/dynamics/first_order.hpp"
 #include "pendcore/ensemble/lane_steps.hpp"
@@ -19,11 +20,53 @@ struct RungeKuttaLanes : LaneSteps<width> {
   using Equations = LaneEquations<Form, Real>;
   using System = FirstOrder<typename Equations::Type>;
   using Memory = StepMemory<method, System>;
+  using Block = typename Memory::Block;
   static constexpr int stages = Memory::stages;
+  static constexpr int size = 2 * Equations::links;
   static_assert(method.first_same_as_last && method.info.error_order > 0);
 
   Memory memory;
+  // For dense output:
+  Block y_before[Memory::blocks] = {};      ///< the state before the last step
+  Block rates_before[Memory::blocks] = {};  ///< its derivative
+  /// The dense output of the last step in powers of theta, (degree + 1) rows of a state.
+  Real rows[(Memory::degree + 1) * size] = {};
 };
+
+/// Computes the dense output of the last step of each lane. Returns the lanes in which an event may
+/// lie within it.
+template <const auto& method, class Form, int width>
+PENDCORE_INLINE LaneBits interpolate_step(RungeKuttaLanes<method, Form, width>* all) {
+  using All = RungeKuttaLanes<method, Form, width>;
+  using Memory = typename All::Memory;
+  using Real = typename All::Real;
+  constexpr int links = All::Equations::links;
+  auto& memory = all->memory;
+  const auto swap_rates = [all, &memory] {
+    for (int i = 0; i < Memory::blocks; ++i) std::swap(memory.k[0][i], all->rates_before[i]);
+  };
+  swap_rates();
+  if constexpr (Memory::all_stages > Memory::stages) {
+    typename All::Block z[Memory::blocks];
+    evaluate_stages<method, Memory::stages, Memory::all_stages>(
+        memory.system, all->t_before, all->h_before, all->y_before, memory.k, z);
+  }
+  for (int i = 0; i < Memory::blocks; ++i) {
+    typename All::Block powers[Memory::degree];
+    interpolant_of_block<method>(all->h_before, StageBlock(memory.k, i), powers);
+    for (int link = 0; link < links; ++link) {
+      Real* const column = all->rows + i * links + link;
+      column[0] = All::Equations::number(all->y_before[i], link);
+      for (int p = 0; p < Memory::degree; ++p) {
+        column[static_cast<std::ptrdiff_t>(p + 1) * All::size] =
+            All::Equations::number(powers[p], link);
+      }
+    }
+  }
+  swap_rates();
+  return lanes_detail::bits_of(may_have_event<All::size>(*all, all->rows, all->rows + All::size,
+                                                         Memory::degree, broadcast<Real>(1.0)));
+}
 
 /// Takes up to `rounds` steps in each lane, until some need attention.
 template <const auto& method, class Form, int width>
@@ -56,6 +99,12 @@ PENDCORE_INLINE Attention take_steps(RungeKuttaLanes<method, Form, width>* all,
     const Integers all_tried = Integers{} - 1;
     const Integers is_accepted =
         finish_step<method, width>(*all, *interval, next, found, is_odd, all_tried, attention);
+    if (all->needs_dense_output) {
+      for (int i = 0; i < All::Memory::blocks; ++i) {
+        all->y_before[i] = memory.y[i];
+        all->rates_before[i] = memory.k[0][i];
+      }
+    }
     for (int i = 0; i < All::Memory::blocks; ++i) {
       memory.y[i] = All::Equations::select(is_accepted, memory.y_new[i], memory.y[i]);
       memory.k[0][i] =

@@ -32,12 +32,7 @@ struct SeriesLanes : LaneSteps<width> {
   Real atol[size] = {};
   Real sigma = {}, sigma_new = {};      ///< s, the unit of time of a series
   Real largest = {}, largest_new = {};  ///< s, the step that the tolerances allow
-  // The step that was taken last: its start, s, and its size.
-  Real t_before = {}, t_low_before = {}, h_before = {};
-  std::span<const EventFinder::Difference> differences;  ///< of all events
-  bool has_times = false;  ///< whether states at given times are asked for
-  Real next_time = {};     ///< s, the next of them; infinite if there is none
-  Integers begins = {};    ///< all bits set where a member has no series yet
+  Integers begins = {};                 ///< all bits set where a member has no series yet
   int order = lowest_taylor_order;
   double log2_count = 0.0;                     ///< log2 of the count of numbers in a state
   Real of_y[(highest_order + 1) * size] = {};  ///< two series: those from y, and from y_new
@@ -118,34 +113,6 @@ PENDCORE_INLINE typename All::Integers expand(All* all, const Real& t, const Rea
   return is_done;
 }
 
-/// Whether a difference may reach its level within a step of x units of sigma: not if it is farther
-/// away than the sizes of all terms of the series together.
-template <class All, class Real>
-PENDCORE_INLINE typename All::Integers may_reach(const All* all,
-                                                 const EventFinder::Difference& level,
-                                                 const Real& x) {
-  constexpr int size = All::size;
-  constexpr double turn = 6.283185307179586;
-  const auto difference = [&](const Real* row) __attribute__((always_inline)) {
-    return level.minus < 0 ? row[level.plus] : Real(row[level.plus] - row[level.minus]);
-  };
-  const Real step = absolute(x);
-  Real moves{};
-  for (int k = all->order; k >= 1; --k) {
-    moves =
-        (moves + absolute(difference(all->rows + static_cast<std::ptrdiff_t>(k) * size))) * step;
-  }
-  const Real here = difference(all->y);
-  Real away = here - level.value;
-  if (level.every_turn) {
-    using power_detail::to_integer;
-    const Real turns = (away * (1.0 / turn) + to_integer) - to_integer;
-    away = away - turns * turn;
-  }
-  constexpr double rounding = 1e-9;
-  return absolute(away) <= moves * (1.0 + rounding) + rounding * (1.0 + absolute(here));
-}
-
 /// sum_{k >= 1} x^k y_k for one number of the state (integrate/taylor/taylor_step.hpp).
 template <int size, class Real>
 PENDCORE_INLINE Real increment(const Real* rows, int order, const Real& x) {
@@ -175,8 +142,6 @@ PENDCORE_INLINE Attention take_series_steps(SeriesLanes<Form, width>* all,
   Attention attention;
   for (int round = 0; round < rounds && !attention.is_needed(); ++round) {
     const Integers begins = all->begins;
-    const Real t_before = all->t;
-    const Real t_low_before = all->t_low;
     const NextStep<width> next = next_step<width>(*all, *interval);
     Integers is_odd = next.is_odd & ~begins;
     const Real h = next.h;
@@ -207,18 +172,12 @@ PENDCORE_INLINE Attention take_series_steps(SeriesLanes<Form, width>* all,
     all->steps_to_look = is_looked_at ? Integers{} + stiffness_looks_every : all->steps_to_look;
     finish_step<taylor, width>(*all, *interval, next, found, is_odd, tried, attention);
     attention.looks = detail::bits_of(is_looked_at) & all->active & ~attention.odd;
-    Integers may_happen{};
-    for (const EventFinder::Difference& one : all->differences) {
-      may_happen |= detail::may_reach(all, one, x);
+    if (attention.searched != 0) {
+      const Integers may_happen =
+          may_have_event<size>(*all, all->y, all->rows + size, all->order, x);
+      attention.recorded |= detail::bits_of(may_happen) & attention.searched;
+      attention.searched = 0;
     }
-    attention.events = detail::bits_of(may_happen & tried) & all->active & ~attention.odd;
-    if (all->has_times) {
-      const Real ahead = h < 0.0 ? Real(all->t - all->next_time) : Real(all->next_time - all->t);
-      attention.samples = detail::bits_of((ahead <= 0.0) & tried) & all->active & ~attention.odd;
-    }
-    all->t_before = t_before;
-    all->t_low_before = t_low_before;
-    all->h_before = h;
 
     const Real max_step = broadcast<Real>(interval->max_step);
     const Real first = max_step < all->largest_new ? max_step : all->largest_new;

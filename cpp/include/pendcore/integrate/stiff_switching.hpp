@@ -83,7 +83,7 @@ class StiffSwitchingStepper final : public Stepper {
               int count, double* states) const override {
     first_->sample(coefficients, start, h, times, count, states);
   }
-  double stiffness(double h) override { return now().stiffness(h); }
+  double stiffness(double h) override;
   bool stiffness_found(bool size_is_given) override;
 
   /// The memory of the current method, and whether the method has changed, or is to try the

@@ -13,7 +13,7 @@
 
 #include "pendcore/integrate/events/event.hpp"
 #include "pendcore/integrate/loop/step_end.hpp"
-#include "pendcore/integrate/stepper.hpp"
+#include "pendcore/integrate/step_output.hpp"
 #include "pendcore/simulate/tip_line.hpp"
 
 namespace pendcore {
@@ -30,7 +30,7 @@ class EventFinder {
 
   /// Looks at an accepted step, with its dense output in `rows`. Returns where in the step a
   /// terminal event ends the run, if one does.
-  StepEnd look(const Stepper& stepper, const double* rows, const TwoDouble& t_old, double h,
+  StepEnd look(const StepOutput& output, const double* rows, const TwoDouble& t_old, double h,
                double t_new);
 
   /// The state jumped at the end of that step.
@@ -60,7 +60,7 @@ class EventFinder {
     int event;
   };
   struct Step {
-    const Stepper& stepper;
+    const StepOutput& output;
     const double* rows;
     const TwoDouble& t_old;
     double h;

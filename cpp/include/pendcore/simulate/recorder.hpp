@@ -22,11 +22,12 @@ class Recorder final : public Observer {
  public:
   /// `passed_events` are the numbers of occurrences of each event that do not end the run: it ended
   /// there, and was continued.
-  Recorder(Solution& solution, const Stepper& stepper, const Scene& scene,
+  Recorder(Solution& solution, const StepOutput& output, const Scene& scene,
            const std::vector<long long>& passed_events);
 
   void start(double t, const std::vector<double>& y);
-  StepEnd step_accepted(Stepper& stepper, const TwoDouble& t_old, double h, double t_new) override;
+  StepEnd step_accepted(StepOutput& output, const TwoDouble& t_old, double h,
+                        double t_new) override;
   void state_jumped(double t, const double* before, const double* after) override;
   void state_settled(double t, const double* after) override;
   void restarts_here() override { count(kept()); }
@@ -42,17 +43,18 @@ class Recorder final : public Observer {
   struct Kept {
     std::size_t t, steps, found;
   };
-  void interpolate(Stepper& stepper, double h);  ///< sets polynomial_
+  void interpolate(StepOutput& output, double h);  ///< sets polynomial_
   Kept kept() const;
   void count(const Kept& kept);  ///< so much is also in a run that never stopped
-  void sample_step(Stepper& stepper, const TwoDouble& t_old, double h, double t_new,
+  void sample_step(StepOutput& output, const TwoDouble& t_old, double h, double t_new,
                    bool with_end = true);
-  void keep_clipped(Stepper& stepper, const TwoDouble& t_old, double h, double theta, double t);
+  void keep_clipped(StepOutput& output, const TwoDouble& t_old, double h, double theta, double t);
   double* append(double t);  ///< returns memory for the state at t
-  void show_step(Stepper& stepper, double t, double share);
+  void show_step(StepOutput& output, double t, double share);
 
   Solution& solution_;
   StepWatch* watch_;
+  bool watch_asks_for_polynomials_;
   std::optional<EventFinder> finder_;
   bool may_throw_;  ///< whether there are users' functions
   Kept at_step_start_{};

@@ -10,7 +10,8 @@ namespace pendcore {
 struct WatchedStep {
   double t;                   ///< s, at its end
   std::span<const double> y;  ///< the state there: angles, rates, accounts of the ledger
-  const double* rows;         ///< the dense output in powers of theta, (degree + 1, size of y)
+  /// The dense output in powers of theta, (degree + 1, size of y), if the watch asks for it.
+  const double* rows;
   int degree;
   double share;  ///< of the step: theta at its end, 1 but where an event ends it
 };
@@ -18,6 +19,7 @@ struct WatchedStep {
 class StepWatch {
  public:
   virtual ~StepWatch() = default;
+  virtual bool asks_for_dense_output() const = 0;
   virtual void starts(double t, std::span<const double> y) = 0;
   virtual void steps(const WatchedStep& step) = 0;
   /// The state became y at once: at an impact, or at the start.

@@ -43,9 +43,11 @@ double potential_energy(const Scene& scene, double t, std::span<const double> q)
   mass_centers(scene, t, q, centers);
   double moment = 0.0;
   for (std::size_t i = 0; i < n; ++i) moment += scene.links[i].mass * centers[2 * i + 1];
-  std::vector<double> joints(2 * n + 2);
-  positions(scene, t, q, joints);
-  for (const Payload& payload : effects_of<Payload>(scene)) moment += payload.mass * joints.back();
+  if (auto payloads = effects_of<Payload>(scene); !payloads.empty()) {
+    std::vector<double> joints(2 * n + 2);
+    positions(scene, t, q, joints);
+    for (const Payload& payload : payloads) moment += payload.mass * joints.back();
+  }
   double kept = 0.0;
   for (const Effect& effect : scene.effects) {
     std::visit(

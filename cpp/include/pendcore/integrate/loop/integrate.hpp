@@ -58,7 +58,7 @@ class Observer {
  public:
   virtual ~Observer() = default;
   /// Returns where in the step the run is to end, if an event ends it there.
-  virtual StepEnd step_accepted(Stepper& stepper, const TwoDouble& t_old, double h,
+  virtual StepEnd step_accepted(StepOutput& step, const TwoDouble& t_old, double h,
                                 double t_new) = 0;
   /// At the end of that step, time t, the state jumped.
   virtual void state_jumped(double t, const double* before, const double* after) = 0;

@@ -239,8 +239,8 @@ PENDCORE_INLINE void dense_stages_of_step(StepMemory<method, System>* memory, do
 
 /// The coefficients of theta, theta^2, ... of the dense output of one block of the state, from its
 /// stages.
-template <const auto& method, class Stage, class Block>
-PENDCORE_INLINE void interpolant_of_block(double h, const Stage& k, Block* powers) {
+template <const auto& method, class Scale, class Stage, class Block>
+PENDCORE_INLINE void interpolant_of_block(const Scale& h, const Stage& k, Block* powers) {
   using Method = std::remove_cvref_t<decltype(method)>;
   Block functions[Method::degree];
 #pragma GCC unroll 16

@@ -1,11 +1,12 @@
-#include "pendcore/integrate/stepper.hpp"
+#include "pendcore/integrate/step_output.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace pendcore {
 
-void Stepper::straighten(double* coefficients) {
+void StepOutput::straighten(double* coefficients) {
   const auto size = static_cast<std::ptrdiff_t>(dimension());
   const std::ptrdiff_t degree = interpolant_degree();
   const double* const highest = coefficients + degree * size;
