@@ -37,7 +37,9 @@ TEST_CASE("scenes and methods that have lanes, and those that have none") {
     CHECK(have_lanes(chain(n, {ViscousJoint{.joint = 2, .damping = 0.1}}), "taylor"));
     CHECK_FALSE(have_lanes(chain(n, {DryJointFriction{.joint = 2, .coulomb = 0.1}}), "taylor"));
   }
-  CHECK_FALSE(have_lanes(chain(5), "taylor"));
+  CHECK(have_lanes(chain(2, {DrivenPivot{.y = Sinusoid{0.1, 5.0}}}), "auto"));
+  CHECK(have_lanes(chain(6, {RotorInertia{.joint = 3, .armature = 0.1}}), "taylor"));
+  CHECK_FALSE(have_lanes(chain(7), "taylor"));
   CHECK_FALSE(have_lanes(chain(2), "radau5"));
 }
 

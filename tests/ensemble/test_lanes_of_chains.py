@@ -1,4 +1,4 @@
-"""Chains of three and four links in lanes of Taylor series: the bits of `pc.simulate`."""
+"""Chains in lanes of Taylor series: the bits of `pc.simulate`."""
 
 from __future__ import annotations
 
@@ -23,11 +23,24 @@ SCENES = {
     ],
     "controller": [E.Motor(joint=2, pd=E.PD(kp=4.0, kd=0.5, reference=0.3))],
 }
-ONE_BY_ONE = {
+OF_LONGER_CHAINS = {
+    **SCENES,
     "rotor between links": [E.RotorInertia(joint=2, armature=0.2)],
-    "friction": [E.DryJointFriction(joint=2, coulomb=0.2)],
     "three waves": [E.Motor(joint=1, sinusoid=E.Sinusoid(1.0, 6.0 + k)) for k in range(3)],
     "shaken pivot": [E.DrivenPivot(x=E.Sinusoid(0.05, 9.0))],
+    "pivot shaken both ways, with damping and the cube of a rate": [
+        E.DrivenPivot(x=E.Sinusoid(0.05, 9.0), y=E.Sinusoid(0.1, 4.0, 1.0)),
+        E.ViscousJoint(joint=1, damping=0.2, damping3=0.03),
+    ],
+    "two shaken pivots and a motor": [
+        E.DrivenPivot(y=E.Sinusoid(0.02, 20.0)),
+        E.DrivenPivot(x=E.Sinusoid(0.1, 3.0)),
+        E.Motor(joint=2, sinusoid=E.Sinusoid(1.0, 5.0)),
+    ],
+}
+"""Scenes of two to four links that have no other series, and of five and six links."""
+ONE_BY_ONE = {
+    "friction": [E.DryJointFriction(joint=2, coulomb=0.2)],
     "drag": [E.RodDrag(link=2, drag_coefficient=1.2, diameter=0.03)],
 }
 
@@ -57,6 +70,30 @@ def test_chains_in_lanes_have_the_bits_of_single_runs(name, n, rtol):
         assert_same(scene, q0[:3], qd0[:3], (0.0, 1.0), **same, max_step=0.02)
 
 
+@pytest.mark.parametrize("rtol", [1e-3, 1e-7, 1e-12])
+@pytest.mark.parametrize("n", [2, 3, 4, 5, 6])
+@pytest.mark.parametrize("name", OF_LONGER_CHAINS)
+def test_longer_chains_in_lanes_have_the_bits_of_single_runs(name, n, rtol):
+    needs_three = any(getattr(one, "joint", 1) > 2 for one in OF_LONGER_CHAINS[name])
+    if n == 2 and needs_three:
+        pytest.skip("a joint that two links do not have")
+    scene = chain(n, OF_LONGER_CHAINS[name])
+    if has_lanes():
+        assert "taylor" in scene.explain().lanes
+    q0, qd0 = starts(21, n, 2, np.pi), starts(21, n, 3, 4.0)
+    q0[5], qd0[5] = 0.0, 0.0
+    same = {"method": "taylor", "rtol": rtol, "atol": rtol / 10}
+    found = assert_same(scene, q0, qd0, (0.3, 2.3), **same)
+    assert found.success.all()
+    assert_same(scene, q0, qd0, (1.0, 0.0), **same, max_steps=11)
+    assert_same(scene, q0[:3], qd0[:3], (0.0, 1.0), **same, max_step=0.02)
+
+
+def test_chains_that_are_too_long_for_lanes():
+    assert chain(7).explain().lanes == ()
+    assert_same(chain(7), starts(5, 7, 2, 0.5), 0.0, (0, 1), method="taylor")
+
+
 @pytest.mark.parametrize("name", ONE_BY_ONE)
 def test_other_chains_run_one_by_one(name):
     scene = chain(3, ONE_BY_ONE[name])
@@ -65,11 +102,25 @@ def test_other_chains_run_one_by_one(name):
     assert_same(scene, starts(7, 3, 2, 0.5), 0.0, (0, 1), method=method)
 
 
-@pytest.mark.parametrize("n", [3, 4])
-def test_parameters_of_chains_differ_from_lane_to_lane(n):
-    scene = chain(n, SCENES["two waves"])
-    names = ["link[3].mass", "link[1].length", "gravity", "effect[2].sinusoid.amplitude"]
+VARIED = ["link[1].mass", "link[1].length", "gravity"]
+
+
+@pytest.mark.parametrize(
+    ("n", "effects", "names"),
+    [
+        (3, "two waves", ["effect[2].sinusoid.amplitude"]),
+        (4, "two waves", ["effect[2].sinusoid.amplitude"]),
+        (2, "shaken pivot", ["effect[1].x.amplitude", "effect[1].x.angular_frequency"]),
+        (5, "spring and the cube of a rate", ["effect[1].stiffness", "effect[2].damping3"]),
+        (6, "rotor between links", ["effect[1].armature"]),
+        (5, "three waves", ["effect[3].sinusoid.amplitude", "effect[1].sinusoid.phase"]),
+    ],
+)
+def test_parameters_of_chains_differ_from_lane_to_lane(n, effects, names):
+    scene = chain(n, OF_LONGER_CHAINS[effects])
+    names = [*VARIED, *names]
     values = pc.draw.uniform(0.5, 2.0, (13, len(names)), seed=6)
+    values[4, 3] = 0.0  # that member has no such effect: it runs alone
     vary = {name: values[:, k] for k, name in enumerate(names)}
     start = np.linspace(0.4, 1.2, n)
     found = pc.ensemble(scene, start, t_span=(0, 3), vary=vary, method="taylor")

@@ -1,6 +1,5 @@
 #include "pendcore/ensemble/lanes.hpp"
 
-#include "pendcore/dynamics/series/few_links_series.hpp"
 #include "pendcore/ensemble/lane_loop.hpp"
 #include "pendcore/ensemble/runge_kutta_lanes.hpp"
 #include "pendcore/integrate/loop/first_step.hpp"
@@ -123,22 +122,18 @@ std::vector<std::string_view> methods_with_lanes(const Scene& scene) {
   if (instruction_set() < least_of_special_kernels || Switching::is_needed(scene)) return {};
   const EquationsOfMotion equations = equations_of_motion(scene);
   if (!are_steady(equations)) return {};
-  const std::string_view dopri5 = dormand_prince_5.info.name;
-  const std::string_view dop853 = dormand_prince_8.info.name;
-  const std::string_view series = taylor.info.name;
-  if (std::holds_alternative<DoublePendulum>(equations.form)) {
-    return {dopri5, dop853, series};
-  }
-  if (LaneEquations<SinglePendulum, Pack<4>>::has(equations)) return {dopri5, dop853};
-  if (FewLinksSeries::has(scene, equations)) {
-    return without_series(scene) ? std::vector<std::string_view>() : std::vector{series};
-  }
+  std::vector<std::string_view> methods;
   const bool has_couples =
       std::holds_alternative<DoublePendulumWithEffects<Parts::couples>>(equations.form) ||
       std::holds_alternative<CouplesAndWaves>(equations.form);
-  if (!has_couples) return {};
-  const bool has_series = !without_series(scene) && equations.effects->pivots.empty();
-  return has_series ? std::vector{dopri5, dop853, series} : std::vector{dopri5, dop853};
+  if (std::holds_alternative<DoublePendulum>(equations.form) || has_couples ||
+      LaneEquations<SinglePendulum, Pack<4>>::has(equations)) {
+    methods = {dormand_prince_5.info.name, dormand_prince_8.info.name};
+  }
+  const std::size_t n = scene.links.size();
+  const bool has_series = n >= 2 && n <= most_links_in_lanes && !without_series(scene);
+  if (has_series) methods.push_back(taylor.info.name);
+  return methods;
 }
 
 std::unique_ptr<LaneRunner> make_lanes(const Scene& scene, double t0, double t_end,

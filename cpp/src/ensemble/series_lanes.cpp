@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "pendcore/ensemble/chain_series_in_lanes.hpp"
 #include "pendcore/ensemble/lane_loop.hpp"
 #include "pendcore/integrate/taylor/dominant_eigenvalue.hpp"
 
@@ -31,6 +32,9 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
       all_.atol[i] = broadcast<Pack<width>>(this->atol()[i]);
     }
     all_.order = taylor_order(tightest);
+    if constexpr (requires { all_.equations.set_order(all_.order); }) {
+      all_.equations.set_order(all_.order);
+    }
     all_.log2_count = approximate_log2(static_cast<double>(All::size));
     // Lanes without a member have numbers that do no harm.
     all_.sigma = all_.sigma_new = all_.largest = all_.largest_new = broadcast<Pack<width>>(1.0);
@@ -128,7 +132,8 @@ template <InstructionSet set>
 std::unique_ptr<LaneRunner> make_series_lanes(const Scene& scene, double t0, double t_end,
                                               const Options& options) {
   return first_of<set, BareDoublePendulumSeries, LoadedDoublePendulumSeries, ThreeLinksSeries,
-                  FourLinksSeries>(scene, t0, t_end, options);
+                  FourLinksSeries, ChainOfTwo, ChainOfThree, ChainOfFour, ChainOfFive, ChainOfSix>(
+      scene, t0, t_end, options);
 }
 
 template std::unique_ptr<LaneRunner> make_series_lanes<InstructionSet::x86_64_v3>(const Scene&,

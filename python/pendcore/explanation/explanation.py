@@ -254,11 +254,9 @@ def _of_lanes(methods: tuple[str, ...]) -> str:
         return "an ensemble runs its members one by one in each thread"
     *others, last = methods
     names = f"{', '.join(others)} or {last}" if others else last
-    by_series = "" if not others else ", by taylor,"
-    with_more = f", or{by_series} first events or states at times" if "taylor" in methods else ""
     return (
-        "an ensemble runs several members at once, a lane each, by "
-        f"{names}, if it keeps ends{with_more}; otherwise it runs them one by one"
+        f"an ensemble runs several members at once, a lane each, by {names}; with events that are "
+        "functions of your own, or for the largest exponent, it runs them one by one"
     )
 
 

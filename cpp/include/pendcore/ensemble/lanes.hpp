@@ -61,10 +61,11 @@ class LaneRunner {
 
 /// The methods that have lanes for the equations of a scene. Those of Dormand and Prince have them
 /// for one and two links, bare or with couples and waves of motors and the pivot: up to four waves
-/// for one link, two for two. Taylor series have them for two, three and four links whose pivot
-/// stands still. There are none where a law may change. Events may end members, and states at times
+/// for one link, two for two. Taylor series have them for two to six links. There are none where a
+/// law may change. Events may end members, and states at times
 /// be kept, in all lanes.
 std::vector<std::string_view> methods_with_lanes(const Scene& scene);
+inline constexpr std::size_t most_links_in_lanes = 6;
 
 /// The lanes for a scene and its options, or null if its members are run one by one: for example
 /// if an event is a function of the user's.

@@ -3,11 +3,13 @@
 /// (dynamics/series), with a trajectory, and its constants, in each lane.
 ///
 /// A form has, for a pack of trajectories: the number of `links`; `row`, the numbers that a single
-/// run has in a row of its state; `One`, the constants of one trajectory; one_of(), the constants
-/// of a scene, or nothing if its equations have another form; prepare(), which sets the kinds of
-/// laws and gives lanes without a member numbers that do no harm; put(), which puts constants into
-/// a lane and returns false if their laws are of other kinds, so that the lane must not be used;
-/// and expand(), which computes the series.
+/// run has in a row of its state, which it takes in blocks of `block`; `One`, the constants of one
+/// trajectory; one_of(), the constants of a scene, or nothing if its equations have another form;
+/// prepare(), which sets the kinds of laws and gives lanes without a member numbers that do no
+/// harm; put(), which puts constants into a lane and returns false if their laws are of other
+/// kinds, so that the lane must not be used; and expand(), which computes the series.
+///
+/// Here are the forms of a few links; chain_series_in_lanes.hpp has that of any chain.
 #pragma once
 
 #include <optional>
@@ -57,6 +59,7 @@ template <class Real>
 struct BareDoublePendulumSeries {
   static constexpr int links = 2;
   static constexpr int row = 2;
+  static constexpr int block = 4;
   using One = DoublePendulumConstants;
 
   ConstantsOfDoublePendulum<Real> constants{};
@@ -81,6 +84,7 @@ template <class Real>
 struct LoadedDoublePendulumSeries {
   static constexpr int links = 2;
   static constexpr int row = 2;
+  static constexpr int block = 4;
   struct One {
     DoublePendulumConstants constants;
     TorqueLaws<Pair, double> laws;
@@ -113,6 +117,7 @@ template <class Real, int n>
 struct FewLinksSeriesInLanes {
   static constexpr int links = n;
   static constexpr int row = FewLinksSeries::row();
+  static constexpr int block = 4;
   struct One {
     ConstantsOfFewLinks<double, n> constants;
     TorqueLaws<Pack<4>, double> laws;

@@ -48,7 +48,7 @@ template <class All, class Real>
 PENDCORE_INLINE Real log2_of_step(const All* all, const Real* y, const Real* rows) {
   constexpr int size = All::size;
   // A single run adds up the blocks of a state, and then the numbers of the sum: as here.
-  constexpr int block = 4;
+  constexpr int block = All::Equations::block;
   Real last[block]{}, before_last[block]{}, others[block]{}, before[block]{};
   const Real* const end = rows + static_cast<std::ptrdiff_t>(all->order) * size;
 #pragma GCC unroll 8
@@ -70,7 +70,12 @@ PENDCORE_INLINE Real log2_of_step(const All* all, const Real* y, const Real* row
     add(before[at], 4, 4);
   }
   // The order of the sums is that of sum_by_halves().
-  const auto sum = [](const Real* x) { return Real((x[0] + x[2]) + (x[1] + x[3])); };
+  const auto sum = [](const Real* x) {
+    if constexpr (block == 2)
+      return Real(x[0] + x[1]);
+    else
+      return Real((x[0] + x[2]) + (x[1] + x[3]));
+  };
   Real all_high[block];
   for (int i = 0; i < block; ++i) all_high[i] = last[i] + before_last[i] + others[i];
   const Real high = sum(all_high);

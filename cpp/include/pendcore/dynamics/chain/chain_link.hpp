@@ -47,9 +47,10 @@ struct ForcePerAcceleration {
 
   /// The same for a link whose rotation is coupled with the link before, by a rotor or a held
   /// joint.
-  PENDCORE_INLINE void add_coupled(const ChainLink& k, const Number& r, const Number& wu,
-                                   const Number& wn, const Number& cc, const Number& ss,
-                                   const Number& sc) {
+  template <class Constant>
+  PENDCORE_INLINE void add_coupled(const ChainLinkOf<Constant>& k, const Number& r,
+                                   const Number& wu, const Number& wn, const Number& cc,
+                                   const Number& ss, const Number& sc) {
     const Number along = fma(-r * wu, wu, k.m + uu);
     const Number mixed = fma(-r * wu, wn, un);
     const Number across = fma(-r * wn, wn, k.m + nn);
