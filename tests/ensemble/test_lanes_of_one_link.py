@@ -11,6 +11,7 @@ from test_lanes_with_effects import has_lanes
 E = pc.effects
 METHODS = ["dopri5", "dop853", "dopri5-radau5", "dop853-radau5", "auto"]
 WAVE = E.Sinusoid(3.0, 6.0, 0.4)
+DRAG = E.RodDrag(link=1, drag_coefficient=1.2, diameter=0.03)
 SCENES = {
     "bare": [],
     "payload": [E.Payload(mass=0.3)],
@@ -28,12 +29,18 @@ SCENES = {
         E.Motor(1, sinusoid=E.Sinusoid(1.0, 2.5)),
         E.DrivenPivot(x=E.Sinusoid(0.05, 9.0)),
     ],
+    "drag": [DRAG],
+    "drag, wind, a motor and damping": [
+        DRAG.replace(diameter=0.4, wind=(3.0, -1.0)),
+        E.Motor(1, sinusoid=WAVE),
+        E.ViscousJoint(1, damping=0.1),
+    ],
 }
 ONE_BY_ONE = {
     "friction": [E.DryJointFriction(joint=1, coulomb=0.2)],
     "lock": [E.Lock(joint=1)],
     "five waves": [E.Motor(1, sinusoid=E.Sinusoid(1.0, 6.0 + k)) for k in range(5)],
-    "drag": [E.RodDrag(link=1, drag_coefficient=1.2, diameter=0.03)],
+    "drag and a shaken pivot": [DRAG, E.DrivenPivot(y=E.Sinusoid(0.05, 40.0))],
     "table": [E.Motor(1, table=E.Table([0.0, 1.0, 4.0], [0.0, 1.0, -1.0]))],
 }
 

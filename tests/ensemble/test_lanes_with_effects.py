@@ -28,6 +28,12 @@ SCENES = {
         E.ViscousJoint(joint=2, damping=0.1, damping3=0.05),
         E.ViscousJoint(joint=1, damping=0.1),
     ],
+    "drag": [E.RodDrag(link=2, drag_coefficient=1.2, diameter=0.03)],
+    "drag and wind on both links, and damping": [
+        E.RodDrag(link=1, drag_coefficient=1.2, diameter=0.3, wind=(4.0, -1.0)),
+        E.ViscousJoint(joint=2, damping=0.1),
+        E.RodDrag(link=2, drag_coefficient=0.8, diameter=0.2),
+    ],
     "shaken pivot": [E.DrivenPivot(x=E.Sinusoid(0.05, 9.0)), E.ViscousJoint(joint=1, damping=0.1)],
 }
 ONE_BY_ONE = {
@@ -35,7 +41,11 @@ ONE_BY_ONE = {
     "stop": [E.JointStop(joint=2, range=(-4.0, 4.0), restitution=0.5)],
     "lock": [E.Lock(joint=2)],
     "motor at its limit": [E.Motor(joint=1, sinusoid=E.Sinusoid(3.0, 6.0), limit=2.0)],
-    "drag": [E.RodDrag(link=2, drag_coefficient=1.2, diameter=0.03)],
+    "drag twice on a link": [E.RodDrag(link=2, drag_coefficient=1.2, diameter=0.03)] * 2,
+    "drag and a motor": [
+        E.RodDrag(link=2, drag_coefficient=1.2, diameter=0.03),
+        E.Motor(joint=1, sinusoid=E.Sinusoid(3.0, 6.0)),
+    ],
 }
 
 
@@ -54,8 +64,11 @@ def test_effects_change_no_bit_in_lanes(name, method, rtol):
     q0 = pc.draw.uniform(-2.0, 2.0, (21, 2), seed=2)
     qd0 = pc.draw.uniform(-3.0, 3.0, (21, 2), seed=3)
     scene = scene_of(SCENES[name])
+    if "drag" in name and method.startswith("taylor"):
+        method = method.replace("taylor", "dop853")  # drag has no series
     if has_lanes():
-        assert scene.explain().lanes == ("dopri5", "dop853", "taylor")
+        series = () if "drag" in name else ("taylor",)
+        assert scene.explain().lanes == ("dopri5", "dop853", *series)
     assert_same(scene, q0, qd0, (0.3, 3), method=method, rtol=rtol, atol=rtol / 10)
     assert_same(scene, q0, qd0, (1.0, 0.0), method=method, rtol=rtol, max_steps=40)
 

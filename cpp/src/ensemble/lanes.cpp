@@ -123,10 +123,8 @@ std::vector<std::string_view> methods_with_lanes(const Scene& scene) {
   const EquationsOfMotion equations = equations_of_motion(scene);
   if (!are_steady(equations)) return {};
   std::vector<std::string_view> methods;
-  const bool has_couples =
-      std::holds_alternative<DoublePendulumWithEffects<Parts::couples>>(equations.form) ||
-      std::holds_alternative<CouplesAndWaves>(equations.form);
-  if (std::holds_alternative<DoublePendulum>(equations.form) || has_couples ||
+  if (std::holds_alternative<DoublePendulum>(equations.form) ||
+      LaneEquations<CouplesAndWaves, Pack<4>>::has(equations) ||
       LaneEquations<SinglePendulum, Pack<4>>::has(equations)) {
     methods = {dormand_prince_5.info.name, dormand_prince_8.info.name};
   }

@@ -83,6 +83,11 @@ PENDCORE_INLINE EachLink<Real, links> operator/(const Real& x, const EachLink<Re
       [&](int i) __attribute__((always_inline)) { return Real(x / y.of[i]); });
 }
 template <class Real, int links>
+PENDCORE_INLINE EachLink<Real, links> operator/(double x, const EachLink<Real, links>& y) {
+  return row_detail::each<Real, links>(
+      [&](int i) __attribute__((always_inline)) { return Real(x / y.of[i]); });
+}
+template <class Real, int links>
 PENDCORE_INLINE EachLink<Real, links> absolute(const EachLink<Real, links>& x) {
   return row_detail::each<Real, links>(
       [&](int i) __attribute__((always_inline)) { return absolute(x.of[i]); });

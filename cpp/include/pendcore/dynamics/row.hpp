@@ -42,7 +42,8 @@ struct RowLoads {
   /// What the couples add to Q_i: tau_i - tau_{i+1}.
   PENDCORE_INLINE V torque_of_couples() const { return couples - after(couples); }
   /// What the forces on the link after this one add: L_i n_i . F.
-  PENDCORE_INLINE V torque_of_forces(const RowAt<V>& at) const {
+  template <class At>
+  PENDCORE_INLINE V torque_of_forces(const At& at) const {
     return at.L * fma(at.c, after(fy), -(at.s * after(fx)));
   }
 };

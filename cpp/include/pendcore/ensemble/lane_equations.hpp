@@ -2,8 +2,9 @@
 /// The forms of the equations that Runge-Kutta methods take in lanes: the same equations as those
 /// of a single run, with a trajectory, and its constants, in each lane.
 ///
-/// With effects, these are couples that never change their mode, and waves of motors and the pivot.
-/// Here are the forms of two links, with at most two waves; one_link_in_lanes.hpp has those of one.
+/// With effects, these are couples that never change their mode, waves of motors and the pivot, and
+/// drag. Here are the forms of two links, with at most two waves, or drag and none;
+/// one_link_in_lanes.hpp has those of one.
 #pragma once
 
 #include "pendcore/arithmetic/row_of_links.hpp"
@@ -45,6 +46,31 @@ void put_couples(Couples<Rows>& couples, int lane, const Couples<Row>& one) {
   put_row(couples.on_phid2, lane, one.on_phid2);
   put_row(couples.on_phid3, lane, one.on_phid3);
 }
+
+/// The drag on rods in lanes, if there is one for each link at most.
+template <class Row>
+struct DragInLanes {
+  RodDrag::Law<Row> law;
+  bool is_there = false;
+
+  /// The law of a trajectory; null if it has none, or none that lanes have: `is_supported` tells.
+  template <class OfRun>
+  static const RodDrag::Law<OfRun>* of(const ActingEffects<OfRun>& effects, bool& is_supported) {
+    is_supported = effects.entries.empty();
+    if (effects.entries.size() != 1) return nullptr;
+    const auto* const shared =
+        std::get_if<const SharedLaw<RodDrag, OfRun>*>(&effects.entries.front().law);
+    is_supported = shared != nullptr && effects.pivots.empty();
+    return is_supported ? &(*shared)->law : nullptr;
+  }
+  template <class OfRun>
+  void put(int lane, const RodDrag::Law<OfRun>& one) {
+    put_row(law.minus_k, lane, one.minus_k);
+    put_row(law.minus_k_arm, lane, one.minus_k_arm);
+    put_row(law.wind_x, lane, one.wind_x);
+    put_row(law.wind_y, lane, one.wind_y);
+  }
+};
 
 /// Puts states of both links into a lane, and takes them out.
 template <class Real>
@@ -90,12 +116,14 @@ struct LaneEquations<DoublePendulum, Real> : BothLinks<Real> {
   }
 };
 
-/// A double pendulum with couples, and perhaps with waves, in every lane.
+/// A double pendulum with couples, and perhaps with waves or drag, in every lane.
 template <class Real>
 struct LoadedDoublePendulumInLanes : LoadedDoublePendulum<Two<Real>, Real> {
   Couples<Two<Real>> couples;
   WavesOf<Two<Real>> waves;
   bool has_waves = false;
+  Two<Real> length{};
+  DragInLanes<Two<Real>> drag;
 
   PENDCORE_INLINE Two<Real> accelerations(const Real& t, const Two<Real>& q,
                                           const Two<Real>& qd) const {
@@ -103,9 +131,11 @@ struct LoadedDoublePendulumInLanes : LoadedDoublePendulum<Two<Real>, Real> {
     V s, c;
     sine_cosine(q, s, c);
     const typename LoadedDoublePendulum<V, Real>::template Between<V> between(s, c);
-    const RowAt<V, Real> at{t, q, qd, s, c, {}, 0.0, 0.0};
-    const RowLoads<V> loads{.couples = couples.torque(at)};
+    const RowAt<V, Real> at{t, q, qd, s, c, length, 0.0, 0.0};
+    RowLoads<V> loads{.couples = couples.torque(at)};
+    if (drag.is_there) drag.law.add(at, loads);
     V torque = loads.torque_of_couples();
+    if (drag.is_there) torque = torque + loads.moments + loads.torque_of_forces(at);
     if (has_waves) {
       V wave, cosine;
       sine_cosine(fma(waves.angular_frequency, V{t, t}, waves.phase), wave, cosine);
@@ -116,7 +146,10 @@ struct LoadedDoublePendulumInLanes : LoadedDoublePendulum<Two<Real>, Real> {
   }
 };
 
-/// The forms with couples, and with couples and waves, share the equations in lanes.
+/// The forms with couples, with couples and waves, and with couples and drag share the equations in
+/// lanes.
+using CouplesAlone = DoublePendulumWithEffects<Parts::couples>;
+using CouplesAndLaws = DoublePendulumWithEffects<Parts::laws>;
 using CouplesAndWaves = DoublePendulumWithEffects<Parts::waves>;
 
 template <class Real>
@@ -125,19 +158,36 @@ struct LaneEquations<CouplesAndWaves, Real> : BothLinks<Real> {
 
   static void prepare(Type& equations, const EquationsOfMotion& one) {
     equations.has_waves = std::holds_alternative<CouplesAndWaves>(one.form);
+    equations.drag.is_there = std::holds_alternative<CouplesAndLaws>(one.form);
+  }
+  /// Whether the equations have lanes.
+  static bool has(const EquationsOfMotion& from) {
+    if (!are_steady(from)) return false;
+    bool is_supported = true;
+    if (const auto* const laws = std::get_if<CouplesAndLaws>(&from.form)) {
+      DragInLanes<Two<Real>>::of(*laws->effects, is_supported);
+      return is_supported;
+    }
+    return std::holds_alternative<CouplesAlone>(from.form) ||
+           std::holds_alternative<CouplesAndWaves>(from.form);
   }
   static bool put(Type& equations, int lane, const EquationsOfMotion& from) {
-    if (!are_steady(from)) return false;
-    const auto put_form = [&](const auto* one, bool has_waves) {
-      if (one == nullptr || has_waves != equations.has_waves) return false;
+    if (!has(from)) return false;
+    const auto put_form = [&](const auto* one, bool has_waves, bool has_drag) {
+      const bool is_alike = has_waves == equations.has_waves && has_drag == equations.drag.is_there;
+      if (one == nullptr || !is_alike) return false;
       put(equations, lane, *one);
       put_couples(equations.couples, lane, *one->couples);
       put(equations.waves, lane, one->effects->two_waves);
+      put_row(equations.length, lane, one->length);
+      bool is_supported = true;
+      const auto* const drag = DragInLanes<Two<Real>>::of(*one->effects, is_supported);
+      if (drag != nullptr) equations.drag.put(lane, *drag);
       return true;
     };
-    using WithCouples = DoublePendulumWithEffects<Parts::couples>;
-    return put_form(std::get_if<WithCouples>(&from.form), false) ||
-           put_form(std::get_if<CouplesAndWaves>(&from.form), true);
+    return put_form(std::get_if<CouplesAlone>(&from.form), false, false) ||
+           put_form(std::get_if<CouplesAndWaves>(&from.form), true, false) ||
+           put_form(std::get_if<CouplesAndLaws>(&from.form), false, true);
   }
 
  private:

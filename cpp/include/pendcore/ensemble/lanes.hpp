@@ -59,11 +59,10 @@ class LaneRunner {
   Statistics statistics_;
 };
 
-/// The methods that have lanes for the equations of a scene. Those of Dormand and Prince have them
-/// for one and two links, bare or with couples and waves of motors and the pivot: up to four waves
-/// for one link, two for two. Taylor series have them for two to six links. There are none where a
-/// law may change. Events may end members, and states at times
-/// be kept, in all lanes.
+/// The methods that have lanes for the equations of a scene; none where a law may change. Those of
+/// Dormand and Prince have them for one and two links with couples, and waves of motors and the
+/// pivot (up to four for one link, two for two) or drag. Taylor series have them for two to six
+/// links with any effects that have a series.
 std::vector<std::string_view> methods_with_lanes(const Scene& scene);
 inline constexpr std::size_t most_links_in_lanes = 6;
 

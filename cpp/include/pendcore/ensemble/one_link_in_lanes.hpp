@@ -1,6 +1,6 @@
 /// \file
 /// The equations of one link in lanes (lane_equations.hpp): bare, or with couples and up to four
-/// waves of motors and the pivot.
+/// waves of motors and the pivot, or with drag and a pivot that stands still.
 #pragma once
 
 #include "pendcore/ensemble/lane_equations.hpp"
@@ -40,6 +40,8 @@ struct SinglePendulumInLanes {
   Real weight = {}, inverse_inertia = {}, moment = {};
   Real angular_frequency[most_waves] = {}, phase[most_waves] = {};
   Couples<Links> couples;
+  Links length{};
+  DragInLanes<Links> drag;
   Driven motor[most_waves];
   Pivot pivot[most_waves];
   int waves = 0, motor_count = 0, pivot_count = 0;
@@ -66,9 +68,11 @@ struct SinglePendulumInLanes {
       }
       pull = fma(moment, x * s - y * c, pull);
     }
+    const RowAt<Links, Real> at{t, q, qd, s, c, length, 0.0, 0.0};
     RowLoads<Links> loads;
-    if (has_couples) loads.couple(couples.torque(RowAt<Links, Real>{t, q, qd, s, c, {}, 0.0, 0.0}));
+    if (has_couples) loads.couple(couples.torque(at));
     for (int k = 0; k < motor_count; ++k) loads.couple({{motor[k].gain * wave[motor[k].wave]}});
+    if (drag.is_there) drag.law.add(at, loads);
     return fma(inverse_inertia, loads.torque_of_couples() + loads.moments, pull);
   }
 };
@@ -84,7 +88,9 @@ struct LaneEquations<SinglePendulum, Real> : OneLink<Real> {
     const auto* const form = std::get_if<SinglePendulumWithEffects>(&equations.form);
     if (form == nullptr || !are_steady(equations)) return false;
     const ActingEffects<double>& effects = *form->effects;
-    return effects.entries.empty() && effects.users.empty() && effects.waves <= Type::most_waves &&
+    bool is_supported = true;
+    DragInLanes<EachLink<Real, 1>>::of(effects, is_supported);
+    return is_supported && effects.users.empty() && effects.waves <= Type::most_waves &&
            effects.joint_waves.size() <= Type::most_waves &&
            effects.pivots.size() <= Type::most_waves;
   }
@@ -94,6 +100,7 @@ struct LaneEquations<SinglePendulum, Real> : OneLink<Real> {
     if (form == nullptr) return;
     const ActingEffects<double>& effects = *form->effects;
     equations.has_couples = !effects.couples.empty();
+    equations.drag.is_there = !effects.entries.empty();
     equations.waves = effects.waves;
     equations.motor_count = static_cast<int>(effects.joint_waves.size());
     equations.pivot_count = static_cast<int>(effects.pivots.size());
@@ -115,6 +122,7 @@ struct LaneEquations<SinglePendulum, Real> : OneLink<Real> {
     const ActingEffects<double>& effects = *form.effects;
     // A motor of amplitude 0 has no joint wave: its member has other equations.
     const bool is_alike = equations.has_couples == !effects.couples.empty() &&
+                          equations.drag.is_there == !effects.entries.empty() &&
                           equations.waves == effects.waves &&
                           equations.motor_count == static_cast<int>(effects.joint_waves.size()) &&
                           equations.pivot_count == static_cast<int>(effects.pivots.size());
@@ -122,6 +130,10 @@ struct LaneEquations<SinglePendulum, Real> : OneLink<Real> {
     equations.weight[lane] = form.weight;
     equations.inverse_inertia[lane] = form.inverse_inertia;
     equations.moment[lane] = form.moment;
+    put_row(equations.length, lane, form.length);
+    bool is_supported = true;
+    const auto* const drag = DragInLanes<EachLink<Real, 1>>::of(effects, is_supported);
+    if (drag != nullptr) equations.drag.put(lane, *drag);
     if (equations.has_couples) put_couples(equations.couples, lane, effects.couples.front());
     for (int k = 0; k < equations.waves; ++k) {
       equations.angular_frequency[k][lane] = effects.angular_frequency[k];
