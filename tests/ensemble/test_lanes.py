@@ -16,8 +16,13 @@ LIGHT = pc.Scene(links=[pc.Link(mass=1e-3, length=1.0), pc.Link(mass=1.0, length
 
 
 def assert_same(scene, q0, qd0, t_span, **options):
-    """Assert that every member is the run of `simulate`; return the ensemble."""
+    """Assert that every member is the run of `simulate`; return the ensemble.
+
+    With one thread, lanes are full whatever the number of processors.
+    """
+    options = {"workers": 1} | options
     found = pc.ensemble(scene, q0, qd0, t_span, check=False, **options)
+    evaluations = 0
     q, qd = (np.broadcast_to(x, (*found.shape, len(scene.links))) for x in (q0, qd0))
     for i in np.ndindex(found.shape):
         options.pop("workers", None)
@@ -26,9 +31,11 @@ def assert_same(scene, q0, qd0, t_span, **options):
                 pc.simulate(scene, q[i], qd[i], t_span, **options)
             continue
         alone = pc.simulate(scene, q[i], qd[i], t_span, check=False, store="end", **options)
+        evaluations += alone.stats.nfev
         assert found.status[i] == alone.status, i
         assert found.t[i] == alone.t[-1], i
         assert np.array_equal([*found.q[i], *found.qd[i]], alone.y[:, -1], equal_nan=True), i
+    assert found.statistics["nfev"] == evaluations
     return found
 
 
@@ -160,7 +167,9 @@ def test_first_events_are_those_of_simulate(name, terminal, rtol, method):
     q0[3, 0] = 0.4  # begins at a level
     how = {"method": method, "rtol": rtol, "atol": rtol}
     for t_span in ((0, 4), (1e5, 1e5 - 3)):
-        found = pc.ensemble(BOOK, q0, 0.25, t_span, keep=pc.keep.FirstEvent(event), **how)
+        found = pc.ensemble(
+            BOOK, q0, 0.25, t_span, keep=pc.keep.FirstEvent(event), workers=1, **how
+        )
         evaluations = 0
         for i, start in enumerate(q0):
             alone = pc.simulate(BOOK, start, 0.25, t_span, store="end", events=[event], **how)
@@ -199,7 +208,7 @@ def test_events_of_members_with_lengths_of_their_own(method):
     length = pc.draw.uniform(0.5, 1.5, 19, seed=11)
     found = pc.ensemble(
         BOOK, q0, t_span=(0, 3), vary={"link[2].length": length}, method=method,
-        keep=pc.keep.FirstEvent(TIP),
+        keep=pc.keep.FirstEvent(TIP), workers=1,
     )  # fmt: skip
     for i, start in enumerate(q0):
         scene = BOOK.replace(links=[BOOK.links[0], BOOK.links[1].replace(length=length[i])])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 import pendcore as pc
 import pytest
@@ -23,8 +25,7 @@ SCENES = {
     ],
     "controller": [E.Motor(joint=2, pd=E.PD(kp=4.0, kd=0.5, reference=0.3))],
 }
-OF_LONGER_CHAINS = {
-    **SCENES,
+OF_ANY_CHAIN = {
     "rotor between links": [E.RotorInertia(joint=2, armature=0.2)],
     "three waves": [E.Motor(joint=1, sinusoid=E.Sinusoid(1.0, 6.0 + k)) for k in range(3)],
     "shaken pivot": [E.DrivenPivot(x=E.Sinusoid(0.05, 9.0))],
@@ -38,7 +39,7 @@ OF_LONGER_CHAINS = {
         E.Motor(joint=2, sinusoid=E.Sinusoid(1.0, 5.0)),
     ],
 }
-"""Scenes of two to four links that have no other series, and of five and six links."""
+"""Effects with which chains of two to four links have no series but that of any chain."""
 ONE_BY_ONE = {
     "friction": [E.DryJointFriction(joint=2, coulomb=0.2)],
     "drag": [E.RodDrag(link=2, drag_coefficient=1.2, diameter=0.03)],
@@ -71,13 +72,12 @@ def test_chains_in_lanes_have_the_bits_of_single_runs(name, n, rtol):
 
 
 @pytest.mark.parametrize("rtol", [1e-3, 1e-7, 1e-12])
-@pytest.mark.parametrize("n", [2, 3, 4, 5, 6])
-@pytest.mark.parametrize("name", OF_LONGER_CHAINS)
-def test_longer_chains_in_lanes_have_the_bits_of_single_runs(name, n, rtol):
-    needs_three = any(getattr(one, "joint", 1) > 2 for one in OF_LONGER_CHAINS[name])
-    if n == 2 and needs_three:
-        pytest.skip("a joint that two links do not have")
-    scene = chain(n, OF_LONGER_CHAINS[name])
+@pytest.mark.parametrize(
+    ("n", "name"),
+    [*product([2, 3, 4, 5, 6], OF_ANY_CHAIN), *product([5, 6], SCENES)],
+)
+def test_any_chain_in_lanes_has_the_bits_of_single_runs(name, n, rtol):
+    scene = chain(n, (OF_ANY_CHAIN | SCENES)[name])
     if has_lanes():
         assert "taylor" in scene.explain().lanes
     q0, qd0 = starts(21, n, 2, np.pi), starts(21, n, 3, 4.0)
@@ -86,7 +86,7 @@ def test_longer_chains_in_lanes_have_the_bits_of_single_runs(name, n, rtol):
     found = assert_same(scene, q0, qd0, (0.3, 2.3), **same)
     assert found.success.all()
     assert_same(scene, q0, qd0, (1.0, 0.0), **same, max_steps=11)
-    assert_same(scene, q0[:3], qd0[:3], (0.0, 1.0), **same, max_step=0.02)
+    assert_same(scene, q0, qd0, (0.0, 1.0), **same, max_step=0.007)  # looks whether it is stiff
 
 
 def test_chains_that_are_too_long_for_lanes():
@@ -117,13 +117,14 @@ VARIED = ["link[1].mass", "link[1].length", "gravity"]
     ],
 )
 def test_parameters_of_chains_differ_from_lane_to_lane(n, effects, names):
-    scene = chain(n, OF_LONGER_CHAINS[effects])
+    scene = chain(n, (OF_ANY_CHAIN | SCENES)[effects])
     names = [*VARIED, *names]
     values = pc.draw.uniform(0.5, 2.0, (13, len(names)), seed=6)
-    values[4, 3] = 0.0  # that member has no such effect: it runs alone
+    values[4, 3] = 0.0  # which may give that member other equations, so that it runs alone
+    values[7, -1] = 0.0
     vary = {name: values[:, k] for k, name in enumerate(names)}
     start = np.linspace(0.4, 1.2, n)
-    found = pc.ensemble(scene, start, t_span=(0, 3), vary=vary, method="taylor")
+    found = pc.ensemble(scene, start, t_span=(0, 3), vary=vary, method="taylor", workers=1)
     for i in range(13):
         one = scene.with_parameters({name: x[i] for name, x in vary.items()})
         alone = pc.simulate(one, start, t_span=(0, 3), method="taylor")

@@ -201,9 +201,10 @@ class Share final : public LaneSource {
     if (chunk_.is_empty()) chunk_ = work_.take();
     if (chunk_.is_empty()) return nullptr;
     member.number = chunk_.begin++;
-    const Scene& scene = one_by_one_.read(member.number, member.state);
-    if (watches()) member.watch = std::make_unique<RunReducers>(scene, results_);
-    return &scene;
+    return &one_by_one_.read(member.number, member.state);
+  }
+  std::unique_ptr<StepWatch> watch(const Scene& scene) override {
+    return watches() ? std::make_unique<RunReducers>(scene, results_) : nullptr;
   }
   bool watches() const override { return are_watched(results_); }
   bool watches_dense_output() const override { return !results_.extremes.empty(); }

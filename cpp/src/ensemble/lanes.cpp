@@ -3,7 +3,6 @@
 #include "pendcore/ensemble/lane_loop.hpp"
 #include "pendcore/ensemble/runge_kutta_lanes.hpp"
 #include "pendcore/integrate/loop/first_step.hpp"
-#include "pendcore/simulate/event_finder.hpp"
 #include "pendcore/simulate/switching.hpp"
 
 namespace pendcore {
@@ -36,7 +35,8 @@ class RungeKuttaRunner final : public LaneLoop<width_on(set)> {
   const LaneSteps<width>& steps() const override { return all_; }
   Attention take_steps() override {
     Attention attention = take_steps_(&all_, &this->interval(), rounds_at_once);
-    if (all_.needs_dense_output && (attention.recorded | attention.searched) != 0) {
+    const LaneBits every = all_.interpolates_every_step ? attention.recorded : 0;
+    if ((attention.sampled | attention.searched | every) != 0) {
       attention.recorded |= attention.searched & interpolate_(&all_);
     }
     return attention;
@@ -113,7 +113,7 @@ std::unique_ptr<LaneRunner> lanes_of(std::string_view method, const Scene& scene
   if (std::holds_alternative<DoublePendulum>(equations.form)) {
     return runge_kutta_lanes<DoublePendulum, set>(method, scene, t0, t_end, options);
   }
-  return runge_kutta_lanes<CouplesAndWaves, set>(method, scene, t0, t_end, options);
+  return runge_kutta_lanes<TwoLinksWithEffects, set>(method, scene, t0, t_end, options);
 }
 
 }  // namespace
@@ -124,7 +124,7 @@ std::vector<std::string_view> methods_with_lanes(const Scene& scene) {
   if (!are_steady(equations)) return {};
   std::vector<std::string_view> methods;
   if (std::holds_alternative<DoublePendulum>(equations.form) ||
-      LaneEquations<CouplesAndWaves, Pack<4>>::has(equations) ||
+      LaneEquations<TwoLinksWithEffects, Pack<4>>::has(equations) ||
       LaneEquations<SinglePendulum, Pack<4>>::has(equations)) {
     methods = {dormand_prince_5.info.name, dormand_prince_8.info.name};
   }

@@ -30,7 +30,7 @@ void Extremes::steps(const WatchedStep& step) {
     for (int k = 0; k <= step.degree; ++k) polynomial_[k] = c[k * columns];
     bernstein_form(polynomial_.data(), step.degree, bounds_.data());
     const auto [low, high] = std::ranges::minmax(bounds_);
-    const double rounding = 16.0 * epsilon * (std::abs(c[0]) + reach);
+    const double rounding = step.degree * epsilon * (std::abs(c[0]) + reach);
     if (low - rounding >= least_[i] && high + rounding <= greatest_[i]) continue;
     turning_points_.clear();
     find_turning_points(polynomial_.data(), step.degree, turning_points_);

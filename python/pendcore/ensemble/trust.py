@@ -4,7 +4,7 @@ The second ensemble has tolerances a hundredth of the first ones, another method
 starts that are some last bits off, as the second runs of `Solution.error` have. Where a motion
 amplifies a last bit to something that can be seen, the two disagree. Where events are looked for,
 Taylor series are kept: at other tolerances they have another order and other steps, and another
-method, which has no lanes with events, would take many times as long.
+method would take several times as long.
 """
 
 from __future__ import annotations

@@ -255,8 +255,9 @@ def _of_lanes(methods: tuple[str, ...]) -> str:
     *others, last = methods
     names = f"{', '.join(others)} or {last}" if others else last
     return (
-        f"an ensemble runs several members at once, a lane each, by {names}; with events that are "
-        "functions of your own, or for the largest exponent, it runs them one by one"
+        f"an ensemble runs several members at once, a lane each, by {names}; it runs them one by "
+        "one with events that are functions of your own, for the largest exponent, and for the "
+        "energy drift if effects do work or lose energy"
     )
 
 

@@ -175,7 +175,7 @@ void EffectsOfChainInLanes<Real>::put(int lane, const One& one) {
   }
 }
 
-/// Any chain of n links with smooth effects: what the forms above do not have.
+/// A chain of n links with smooth effects, for what the forms of series_equations.hpp do not have.
 template <class Real, int n>
 class ChainSeriesInLanes {
  public:

@@ -3,7 +3,7 @@
 /// of a single run, with a trajectory, and its constants, in each lane.
 ///
 /// With effects, these are couples that never change their mode, waves of motors and the pivot, and
-/// drag. Here are the forms of two links, with at most two waves, or drag and none;
+/// drag. Here are the forms of two links, with at most two waves, or with drag and no wave;
 /// one_link_in_lanes.hpp has those of one.
 #pragma once
 
@@ -47,21 +47,25 @@ void put_couples(Couples<Rows>& couples, int lane, const Couples<Row>& one) {
   put_row(couples.on_phid3, lane, one.on_phid3);
 }
 
-/// The drag on rods in lanes, if there is one for each link at most.
+/// The drag on rods in lanes, at most one for each link.
 template <class Row>
 struct DragInLanes {
   RodDrag::Law<Row> law;
   bool is_there = false;
 
-  /// The law of a trajectory; null if it has none, or none that lanes have: `is_supported` tells.
+  /// Whether a trajectory has no laws but this one, and none beside a moving pivot.
   template <class OfRun>
-  static const RodDrag::Law<OfRun>* of(const ActingEffects<OfRun>& effects, bool& is_supported) {
-    is_supported = effects.entries.empty();
-    if (effects.entries.size() != 1) return nullptr;
+  static bool has(const ActingEffects<OfRun>& effects) {
+    if (effects.entries.empty()) return true;
+    return effects.entries.size() == 1 && effects.pivots.empty() && law_of(effects) != nullptr;
+  }
+  /// The law of a trajectory; null if it has none.
+  template <class OfRun>
+  static const RodDrag::Law<OfRun>* law_of(const ActingEffects<OfRun>& effects) {
+    if (effects.entries.empty()) return nullptr;
     const auto* const shared =
         std::get_if<const SharedLaw<RodDrag, OfRun>*>(&effects.entries.front().law);
-    is_supported = shared != nullptr && effects.pivots.empty();
-    return is_supported ? &(*shared)->law : nullptr;
+    return shared != nullptr ? &(*shared)->law : nullptr;
   }
   template <class OfRun>
   void put(int lane, const RodDrag::Law<OfRun>& one) {
@@ -146,14 +150,16 @@ struct LoadedDoublePendulumInLanes : LoadedDoublePendulum<Two<Real>, Real> {
   }
 };
 
-/// The forms with couples, with couples and waves, and with couples and drag share the equations in
-/// lanes.
 using CouplesAlone = DoublePendulumWithEffects<Parts::couples>;
 using CouplesAndLaws = DoublePendulumWithEffects<Parts::laws>;
 using CouplesAndWaves = DoublePendulumWithEffects<Parts::waves>;
 
+/// Two links with effects: the forms with couples, with couples and waves, and with couples and
+/// drag share their equations in lanes.
+struct TwoLinksWithEffects;
+
 template <class Real>
-struct LaneEquations<CouplesAndWaves, Real> : BothLinks<Real> {
+struct LaneEquations<TwoLinksWithEffects, Real> : BothLinks<Real> {
   using Type = LoadedDoublePendulumInLanes<Real>;
 
   static void prepare(Type& equations, const EquationsOfMotion& one) {
@@ -163,10 +169,8 @@ struct LaneEquations<CouplesAndWaves, Real> : BothLinks<Real> {
   /// Whether the equations have lanes.
   static bool has(const EquationsOfMotion& from) {
     if (!are_steady(from)) return false;
-    bool is_supported = true;
     if (const auto* const laws = std::get_if<CouplesAndLaws>(&from.form)) {
-      DragInLanes<Two<Real>>::of(*laws->effects, is_supported);
-      return is_supported;
+      return DragInLanes<Two<Real>>::has(*laws->effects);
     }
     return std::holds_alternative<CouplesAlone>(from.form) ||
            std::holds_alternative<CouplesAndWaves>(from.form);
@@ -180,8 +184,7 @@ struct LaneEquations<CouplesAndWaves, Real> : BothLinks<Real> {
       put_couples(equations.couples, lane, *one->couples);
       put(equations.waves, lane, one->effects->two_waves);
       put_row(equations.length, lane, one->length);
-      bool is_supported = true;
-      const auto* const drag = DragInLanes<Two<Real>>::of(*one->effects, is_supported);
+      const auto* const drag = DragInLanes<Two<Real>>::law_of(*one->effects);
       if (drag != nullptr) equations.drag.put(lane, *drag);
       return true;
     };

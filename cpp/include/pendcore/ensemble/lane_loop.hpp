@@ -7,13 +7,11 @@
 #include <bit>
 #include <cmath>
 #include <memory>
-#include <optional>
+#include <stdexcept>
 
-#include "pendcore/ensemble/lane_steps.hpp"
-#include "pendcore/ensemble/lanes.hpp"
+#include "pendcore/ensemble/lane_recording.hpp"
 #include "pendcore/integrate/methods.hpp"
 #include "pendcore/simulate/method_choice.hpp"
-#include "pendcore/simulate/recorder.hpp"
 
 namespace pendcore {
 
@@ -27,24 +25,27 @@ inline constexpr int rounds_at_once = 256;
 
 /// The part of a runner that does not depend on the method.
 template <int width>
-class LaneLoop : public LaneRunner {
+class LaneLoop : public RecordingLanes<width> {
+  using Base = RecordingLanes<width>;
+  using Base::members_;
+  using Base::options_;
+  using Base::scene_;
+  using Base::statistics_;
+  using Base::t0_;
+  using Base::t_end_;
+
  public:
   LaneLoop(const Scene& scene, double t0, double t_end, const Options& options,
            std::string_view method)
-      : scene_(scene),
-        t0_(t0),
-        t_end_(t_end),
-        options_(options),
+      : RecordingLanes<width>(scene, t0, t_end, options),
         method_(method),
         interval_{t_end, options.max_step, options.max_steps},
         rtol_(relative_tolerances(options, scene.links.size())),
         atol_(absolute_tolerances(options, scene.links.size())),
-        rate_(2 * scene.links.size()) {
-    for (LaneMember& member : members_) member.recorded = Solution(options);
-  }
+        rate_(2 * scene.links.size()) {}
 
   void run(LaneSource& source) override {
-    say_what_is_recorded(source);
+    this->say_what_is_recorded(source);
     bool goes_on = true;
     for (int lane = 0; lane < width; ++lane) fill(lane, source);
     while (steps().active != 0 && goes_on) {
@@ -59,10 +60,11 @@ class LaneLoop : public LaneRunner {
         const LaneBits bit = 1U << lane;
         if ((attention.looks & bit) != 0 && looks_stiff(lane)) attention.odd |= bit;
         const bool is_recorded = (attention.recorded & bit) != 0 && (attention.odd & bit) == 0;
-        const Next next = is_recorded ? record_step(lane) : Next::goes_on;
-        if ((attention.odd & bit) != 0 || next == Next::is_odd) {
+        const AfterRecording after =
+            is_recorded ? this->record_step(lane) : AfterRecording::goes_on;
+        if ((attention.odd & bit) != 0 || after == AfterRecording::is_odd) {
           source.runs_alone(members_[lane].number);
-        } else if (next == Next::ends) {
+        } else if (after == AfterRecording::ends) {
           end(lane, source, Status::event);
         } else if ((attention.ended & bit) != 0) {
           end(lane, source, Status::finished);
@@ -78,11 +80,12 @@ class LaneLoop : public LaneRunner {
   }
 
  protected:
+  using AfterRecording = typename Base::AfterRecording;
+  using Base::get_state;
+  using Base::steps;
   /// The derivative at the state of a lane, and what the method keeps between steps.
   virtual void get_derivative(int lane, double* dydt) = 0;
   virtual std::vector<double> saved_state(int lane) = 0;
-  virtual LaneSteps<width>& steps() = 0;
-  virtual const LaneSteps<width>& steps() const = 0;
   virtual Attention take_steps() = 0;
   /// Puts the equations into a lane; false if they have another form than those of the others.
   virtual bool put_equations(int lane) = 0;
@@ -90,130 +93,25 @@ class LaneLoop : public LaneRunner {
   virtual void equations_are_new(const Scene& /*scene*/, const EquationsOfMotion& /*equations*/) {}
   /// Puts a start, at which the rates are rate(), into a lane.
   virtual void put_start(int lane, const std::vector<double>& y) = 0;
-  virtual void put_state(int lane, const double* y) = 0;
-  virtual void get_state(int lane, double* y) const = 0;
-  virtual void get_state_before(int lane, double* y) const = 0;  ///< that before the last step
-  /// Writes the dense output of the last step of a lane, in powers of theta, as a single run does;
-  /// false if the single run may do it otherwise.
-  virtual bool write_interpolant(int lane, double* coefficients) const = 0;
   virtual long long evaluations_of(int lane) const = 0;
   /// Whether the last step of a lane suggests that the member is stiff.
   virtual bool looks_stiff(int /*lane*/) { return false; }
 
   /// Those of the members that begin.
   const EquationsOfMotion& equations() const { return *equations_; }
-  /// What a lane evaluates: its member may have other parameters than the one that began last.
-  Stepper& stepper(int lane) const { return *steppers_[lane]; }
-  /// The steps of a lane whose dense output a single run computes.
-  long long interpolated(int lane) const {
-    return interpolates_every_step_ ? steps().accepted[lane] : interpolated_[lane];
-  }
+  Stepper& stepper(int lane) const override { return *steppers_[lane]; }
   const std::vector<double>& rate() const { return rate_; }
   const std::vector<double>& rtol() const { return rtol_; }
   const std::vector<double>& atol() const { return atol_; }
-  const Options& options() const { return options_; }
-  double direction() const { return t_end_ < t0_ ? -1.0 : 1.0; }
-  double t_end() const { return t_end_; }
   const LaneInterval& interval() const { return interval_; }
 
  private:
-  /// The last step of a lane, for its recorder.
-  class LaneStep final : public StepOutput {
-   public:
-    LaneStep(LaneLoop& loop, int lane) : loop_(loop), lane_(lane) {}
-    int dimension() const override { return loop_.stepper(lane_).dimension(); }
-    int interpolant_degree() const override { return loop_.stepper(lane_).interpolant_degree(); }
-    void get_state(double* y) const override { loop_.get_state_before(lane_, y); }
-    void get_new_state(double* y) const override { loop_.get_state(lane_, y); }
-    void interpolant(double /*h*/, double* coefficients) override {
-      if (!has_interpolant_) ++loop_.interpolated_[lane_];
-      has_interpolant_ = true;
-      is_odd_ |= !loop_.write_interpolant(lane_, coefficients);
-    }
-    void sample(const double* coefficients, const TwoDouble& start, double h, const double* times,
-                int count, double* states) const override {
-      loop_.stepper(lane_).sample(coefficients, start, h, times, count, states);
-    }
-    bool is_odd() const { return is_odd_; }
-
-   private:
-    LaneLoop& loop_;
-    int lane_;
-    bool has_interpolant_ = false;
-    bool is_odd_ = false;
-  };
-
-  void say_what_is_recorded(const LaneSource& source) {
-    const bool watches = source.watches();
-    LaneSteps<width>& at = steps();
-    std::vector<FoundEvent> none;
-    differences_ = EventFinder(scene_, options_.events, none, {}).differences();
-    const bool may_be_screened = differences_.size() == options_.events.size();
-    at.every_step_is_recorded = watches || !may_be_screened;
-    if (may_be_screened && !watches) at.differences = differences_;
-    at.has_times = !options_.t_eval.empty();
-    interpolates_every_step_ = source.watches_dense_output() || !options_.events.empty();
-    at.needs_dense_output = interpolates_every_step_ || at.has_times;
-    records_ = watches || at.needs_dense_output;
-  }
-
-  /// Begins to record the member that begins in a lane.
-  void start_recording(int lane, const Scene& scene) {
-    LaneMember& member = members_[lane];
-    interpolated_[lane] = 0;
-    if (!records_) return;
-    Solution& recorded = member.recorded;
-    recorded.t.clear();
-    recorded.states.clear();
-    recorded.found.clear();
-    recorded.options.watch = member.watch.get();
-    recorders_[lane].emplace(recorded, LaneStep(*this, lane), scene, std::vector<long long>());
-    recorders_[lane]->start(t0_, member.state);
-    recorders_[lane]->state_settled(t0_, member.state.data());
-    find_next_time(lane);
-  }
-
-  /// Sets the time that is sampled next.
-  void find_next_time(int lane) {
-    const std::size_t next = members_[lane].recorded.t.size();
-    const std::vector<double>& times = options_.t_eval;
-    constexpr double far = std::numeric_limits<double>::infinity();
-    steps().next_time[lane] = next < times.size() ? times[next] : direction() * far;
-  }
-
-  /// What comes of a step that was recorded.
-  enum class Next : std::uint8_t { goes_on, ends, is_odd };
-  /// Records the last step of a lane, as a single run does.
-  Next record_step(int lane) {
-    LaneSteps<width>& at = steps();
-    Recorder& recorder = *recorders_[lane];
-    LaneStep step(*this, lane);
-    const TwoDouble t_old{at.t_before[lane], at.t_low_before[lane]};
-    const double h = at.h_before[lane];
-    const double t_new = at.t[lane];
-    const StepEnd end = recorder.step_accepted(step, t_old, h, t_new);
-    if (step.is_odd() || end.has_too_many_turns()) return Next::is_odd;
-    find_next_time(lane);
-    if (!recorder.has_ended()) return Next::goes_on;
-    if (end.is_within()) {
-      const TwoDouble t = time_in_step(t_old, h, end.theta, t_new);
-      if (t.high == t_old.high) return Next::is_odd;
-      std::vector<double>& y = members_[lane].state;
-      std::vector<double> rows((step.interpolant_degree() + 1) * y.size());
-      step.finite_interpolant(h, rows, y.size());
-      step.sample(rows.data(), {}, 1.0, &end.theta, 1, y.data());
-      put_state(lane, y.data());
-      at.t[lane] = t.high;
-    }
-    return Next::ends;
-  }
-
   /// Begins the next member in a lane, if there is one.
   void fill(int lane, LaneSource& source) {
     LaneMember& member = members_[lane];
     steps().active &= ~(1U << lane);
     while (const Scene* scene = source.next(member)) {
-      if (begin(lane, *scene)) {
+      if (begin(lane, *scene, source)) {
         steps().active |= 1U << lane;
         return;
       }
@@ -283,9 +181,11 @@ class LaneLoop : public LaneRunner {
   }
 
   /// Returns false if the beginning is not that of a usual run.
-  bool begin(int lane, const Scene& scene) {
+  bool begin(int lane, const Scene& scene, LaneSource& source) {
     const std::vector<double>& y = members_[lane].state;
-    if (!equations_ || &scene != &scene_) {
+    const bool is_varied = &scene != &scene_;
+    if (is_varied && !is_allowed(scene)) return false;
+    if (!equations_ || is_varied) {
       equations_ = std::make_unique<const EquationsOfMotion>(equations_of_motion(scene));
       equations_are_new(scene, *equations_);
       stepper_ = make_stepper(scene, *equations_, method_, false, false);
@@ -303,7 +203,16 @@ class LaneLoop : public LaneRunner {
     at.accepted[lane] = at.rejected[lane] = 0;
     at.steps_to_look[lane] = first_stiffness_look;
     put_start(lane, y);
-    start_recording(lane, scene);
+    this->start_recording(lane, scene, source);
+    return true;
+  }
+
+  static bool is_allowed(const Scene& scene) {
+    try {
+      check(scene);
+    } catch (const std::invalid_argument&) {
+      return false;
+    }
     return true;
   }
 
@@ -318,19 +227,10 @@ class LaneLoop : public LaneRunner {
     source.ended(member);
   }
 
-  const Scene& scene_;
-  double t0_, t_end_;
-  const Options& options_;
   std::string_view method_;
   LaneInterval interval_;
   std::vector<double> rtol_, atol_;
   std::vector<double> rate_;
-  std::array<LaneMember, width> members_;
-  std::array<std::optional<Recorder>, width> recorders_;
-  std::array<long long, width> interpolated_{};  ///< steps whose dense output was computed
-  bool interpolates_every_step_ = false;         ///< whether a single run does
-  bool records_ = false;                         ///< whether members have recorders
-  std::vector<EventFinder::Difference> differences_;
   std::unique_ptr<const EquationsOfMotion> equations_;
   std::shared_ptr<Stepper> stepper_;  ///< of the members that begin
   std::array<std::shared_ptr<Stepper>, width> steppers_;

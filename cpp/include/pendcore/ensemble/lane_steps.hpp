@@ -35,6 +35,7 @@ struct Attention {
   LaneBits odd = 0;       ///< to be run alone
   LaneBits looks = 0;     ///< their stiffness is to be looked at
   LaneBits searched = 0;  ///< the dense output of their step is to be searched for events
+  LaneBits sampled = 0;   ///< a time that is asked for lies within their step
   LaneBits recorded = 0;  ///< something may be recorded of their step
   bool is_needed() const { return (ended | used_up | odd | looks | searched | recorded) != 0; }
 };
@@ -56,12 +57,13 @@ struct LaneSteps {
   // The step that was taken last: its start, s, and its size.
   Real t_before = {}, t_low_before = {}, h_before = {};
   // What is recorded of steps, by a Recorder for each lane.
-  std::span<const EventFinder::Difference>
-      differences;  ///< those of events, if all are of the kind
+  /// All events, if each is a level of an angle or a rate; else every step is recorded.
+  std::span<const EventFinder::Difference> differences;
   bool every_step_is_recorded = false;
-  bool needs_dense_output = false;
-  bool has_times = false;  ///< whether states at given times are asked for
-  Real next_time = {};     ///< s, the next of them; infinite if there is none
+  bool needs_dense_output = false;       ///< whether some steps have it
+  bool interpolates_every_step = false;  ///< whether all have it in a single run
+  bool has_times = false;                ///< whether states at given times are asked for
+  Real next_time = {};                   ///< s, the next of them; infinite if there is none
 };
 
 namespace lanes_detail {
@@ -236,13 +238,13 @@ PENDCORE_INLINE typename NextStep<width>::Integers finish_step(
     attention.used_up = detail::bits_of(is_used_up) & lanes.active & ~attention.odd;
   }
   const LaneBits usual = lanes.active & ~attention.odd;
-  if (lanes.every_step_is_recorded) {
-    attention.recorded = detail::bits_of(is_accepted) & usual;
-  } else if (lanes.has_times) {
+  if (lanes.has_times) {
     const Real missing = lanes.next_time - lanes.t;
     const Real ahead = h < 0.0 ? Real(-missing) : missing;
-    attention.recorded = detail::bits_of((ahead <= 0.0) & is_accepted) & usual;
+    attention.sampled = detail::bits_of((ahead <= 0.0) & is_accepted) & usual;
   }
+  attention.recorded =
+      lanes.every_step_is_recorded ? detail::bits_of(is_accepted) & usual : attention.sampled;
   if (!lanes.differences.empty()) attention.searched = detail::bits_of(is_accepted) & usual;
   return is_accepted;
 }

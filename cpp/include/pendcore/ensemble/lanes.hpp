@@ -32,11 +32,12 @@ struct LaneMember {
 class LaneSource {
  public:
   virtual ~LaneSource() = default;
-  /// Fills `member` with the next one, perhaps with a watch, and returns its scene; null if there
-  /// is none. A varied scene is valid until the next call.
+  /// Fills `member` with the next one and returns its scene; null if there is none. A varied scene
+  /// is valid until the next call.
   virtual const Scene* next(LaneMember& member) = 0;
-  /// Whether members have a watch.
-  virtual bool watches() const = 0;
+  /// The watch of a member that begins, whose scene is allowed; null if members have none.
+  virtual std::unique_ptr<StepWatch> watch(const Scene& scene) = 0;
+  virtual bool watches() const = 0;  ///< whether they have one
   /// Whether their watches ask for dense output.
   virtual bool watches_dense_output() const = 0;
   /// The scene of a member that has begun; a varied one is valid until the next call.
@@ -60,9 +61,8 @@ class LaneRunner {
 };
 
 /// The methods that have lanes for the equations of a scene; none where a law may change. Those of
-/// Dormand and Prince have them for one and two links with couples, and waves of motors and the
-/// pivot (up to four for one link, two for two) or drag. Taylor series have them for two to six
-/// links with any effects that have a series.
+/// Dormand and Prince have them for one and two links with some effects (one_link_in_lanes.hpp,
+/// lane_equations.hpp), Taylor series for two to six links with all effects that have a series.
 std::vector<std::string_view> methods_with_lanes(const Scene& scene);
 inline constexpr std::size_t most_links_in_lanes = 6;
 

@@ -88,10 +88,8 @@ struct LaneEquations<SinglePendulum, Real> : OneLink<Real> {
     const auto* const form = std::get_if<SinglePendulumWithEffects>(&equations.form);
     if (form == nullptr || !are_steady(equations)) return false;
     const ActingEffects<double>& effects = *form->effects;
-    bool is_supported = true;
-    DragInLanes<EachLink<Real, 1>>::of(effects, is_supported);
-    return is_supported && effects.users.empty() && effects.waves <= Type::most_waves &&
-           effects.joint_waves.size() <= Type::most_waves &&
+    return DragInLanes<EachLink<Real, 1>>::has(effects) && effects.users.empty() &&
+           effects.waves <= Type::most_waves && effects.joint_waves.size() <= Type::most_waves &&
            effects.pivots.size() <= Type::most_waves;
   }
   static void prepare(Type& equations, const EquationsOfMotion& one) {
@@ -131,8 +129,7 @@ struct LaneEquations<SinglePendulum, Real> : OneLink<Real> {
     equations.inverse_inertia[lane] = form.inverse_inertia;
     equations.moment[lane] = form.moment;
     put_row(equations.length, lane, form.length);
-    bool is_supported = true;
-    const auto* const drag = DragInLanes<EachLink<Real, 1>>::of(effects, is_supported);
+    const auto* const drag = DragInLanes<EachLink<Real, 1>>::law_of(effects);
     if (drag != nullptr) equations.drag.put(lane, *drag);
     if (equations.has_couples) put_couples(equations.couples, lane, effects.couples.front());
     for (int k = 0; k < equations.waves; ++k) {

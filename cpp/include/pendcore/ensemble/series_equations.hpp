@@ -7,7 +7,8 @@
 /// trajectory; one_of(), the constants of a scene, or nothing if its equations have another form;
 /// prepare(), which sets the kinds of laws and gives lanes without a member numbers that do no
 /// harm; put(), which puts constants into a lane and returns false if their laws are of other
-/// kinds, so that the lane must not be used; and expand(), which computes the series.
+/// kinds, so that the lane must not be used; set_order(), if it needs memory for the orders; and
+/// expand(), which computes the series.
 ///
 /// Here are the forms of a few links; chain_series_in_lanes.hpp has that of any chain.
 #pragma once

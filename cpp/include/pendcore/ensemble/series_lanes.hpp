@@ -6,13 +6,11 @@
 /// round, in which it stays where it is, computes it.
 #pragma once
 
-#include <span>
 #include <utility>
 
 #include "pendcore/ensemble/lane_steps.hpp"
 #include "pendcore/ensemble/series_equations.hpp"
 #include "pendcore/integrate/taylor/taylor_step.hpp"
-#include "pendcore/simulate/event_finder.hpp"
 
 namespace pendcore {
 
@@ -70,7 +68,7 @@ PENDCORE_INLINE Real log2_of_step(const All* all, const Real* y, const Real* row
     add(before[at], 4, 4);
   }
   // The order of the sums is that of sum_by_halves().
-  const auto sum = [](const Real* x) {
+  const auto sum = [](const Real* x) __attribute__((always_inline)) {
     if constexpr (block == 2)
       return Real(x[0] + x[1]);
     else

@@ -93,7 +93,9 @@ class ConstantsOfChain {
   }
 
   PENDCORE_INLINE ChainLinkOf<Number> link(int i) const {
-    const auto number = [this, i](int k) { return numbers_.number(each * i + k); };
+    const auto number = [this, i](int k) __attribute__((always_inline)) {
+      return numbers_.number(each * i + k);
+    };
     return {number(0), number(1), number(2), number(3), number(4), number(5), number(6), number(7)};
   }
   PENDCORE_INLINE Number rotor(int i) const { return numbers_.number(each * i + 8); }
@@ -207,8 +209,8 @@ class ChainSeries {
 
  private:
   using Rows = RowsInMemory<Row, Number>;
-  /// The factors of one link, which are the same for all orders of a series. The alignment is that
-  /// of Couples (effects/law.hpp).
+  /// The factors of one link, which are the same for all orders of a series. The alignment is set
+  /// for the same reason as that of Couples (effects/law.hpp).
   struct alignas(sizeof(Number)) Factors {
     Number nx, ny;         ///< across the link
     Number Bxx, Bxy, Byy;  ///< B of the links beyond
@@ -249,7 +251,7 @@ class ChainSeries {
     series_.set_row(at(quantity, group, order), x);
   }
   /// The number of link i in order 0.
-  PENDCORE_INLINE Number first(Quantity quantity, int i) const {
+  PENDCORE_INLINE Number order_zero_of(Quantity quantity, int i) const {
     return series_.number(at(quantity, i / places, 0) + i % places);
   }
 

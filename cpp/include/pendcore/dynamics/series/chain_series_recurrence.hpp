@@ -57,8 +57,8 @@ PENDCORE_INLINE void ChainSeries<Row, Effects>::factor() const {
   Number kappa{};
   for (int i = n_ - 1; i >= 0; --i) {
     const ChainLinkOf<Number> k = constants_.link(i);
-    const Number c = first(cosine_of, i);
-    const Number s = first(sine_of, i);
+    const Number c = order_zero_of(cosine_of, i);
+    const Number s = order_zero_of(sine_of, i);
     Factors& here = factors_[i];
     here.nx = -s;
     here.ny = c;
@@ -77,8 +77,8 @@ PENDCORE_INLINE void ChainSeries<Row, Effects>::factor() const {
     here.wx = fma(wu, c, -(wn * s));
     here.wy = fma(wu, s, wn * c);
     if (i == 0) break;
-    const Number c_before = first(cosine_of, i - 1);
-    const Number s_before = first(sine_of, i - 1);
+    const Number c_before = order_zero_of(cosine_of, i - 1);
+    const Number s_before = order_zero_of(sine_of, i - 1);
     const Number cos = fma(c, c_before, s * s_before);
     const Number sin = fma(s, c_before, -(c * s_before));
     const Number cc = cos * cos;
@@ -217,7 +217,7 @@ PENDCORE_INLINE void ChainSeries<Row, Effects>::expand(const Number& t, const Nu
                                                        const Number& sigma, int order,
                                                        Number* coefficients) const {
   constexpr int margin = chain_series_detail::margin;
-  // A row of numbers side by side, or one number for each trajectory.
+  // Numbers side by side make a row; in lanes, one number does.
   const auto row_at = [](const Number* from) __attribute__((always_inline)) {
     Row x;
     __builtin_memcpy(&x, from, sizeof x);
