@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <type_traits>
 #include <utility>
@@ -43,6 +44,8 @@ class EffectsOfChainInLanes {
 
   explicit EffectsOfChainInLanes(const One& one);
   void put(int lane, const One& one);
+  /// One whose laws are of the kinds of all.
+  const One& kinds() const { return kinds_; }
 
   static constexpr bool are_any() { return true; }
   static constexpr bool any_held() { return false; }
@@ -183,6 +186,7 @@ class ChainSeriesInLanes {
   static constexpr int block = n == 2 ? 2 : 4;
   static constexpr int row = (n + block - 1) / block * block;
   using Effects = EffectsOfChainInLanes<Real>;
+  using Series = ChainSeries<Real, Effects>;
   struct One {
     ConstantsOfChain<double> constants;
     typename Effects::One effects;
@@ -199,18 +203,16 @@ class ChainSeriesInLanes {
   }
   /// All lanes have the constants of the given trajectory until others are put.
   void prepare(const One& one) {
-    kinds_ = one;
     ConstantsOfChain<Real> constants(n);
     for (int lane = 0; lane < Lanes<Real>::width; ++lane) constants.put(lane, one.constants);
-    series_.emplace(n, std::move(constants), Effects(one.effects));
+    series_ = std::make_unique<Series>(n, std::move(constants), Effects(one.effects));
     for (int lane = 0; lane < Lanes<Real>::width; ++lane) series_->effects().put(lane, one.effects);
   }
   void set_order(int order) { series_->set_order(order); }
   bool put(int lane, const One& one) {
-    if (!one.effects.is_like(kinds_->effects) ||
-        one.constants.has_rotors() != kinds_->constants.has_rotors()) {
-      return false;
-    }
+    const bool is_alike = one.effects.is_like(series_->effects().kinds()) &&
+                          one.constants.has_rotors() == series_->has_rotors();
+    if (!is_alike) return false;
     series_->constants().put(lane, one.constants);
     series_->effects().put(lane, one.effects);
     return true;
@@ -221,8 +223,7 @@ class ChainSeriesInLanes {
   }
 
  private:
-  std::optional<One> kinds_;
-  std::optional<ChainSeries<Real, Effects>> series_;
+  std::unique_ptr<Series> series_;
 };
 template <class Real>
 using ChainOfTwo = ChainSeriesInLanes<Real, 2>;

@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
-#include <optional>
+#include <memory>
 #include <vector>
 
 #include "pendcore/ensemble/lane_steps.hpp"
@@ -67,7 +67,8 @@ class RecordingLanes : public LaneRunner {
     recorded.states.clear();
     recorded.found.clear();
     recorded.options.watch = member.watch.get();
-    recorders_[lane].emplace(recorded, LaneStep(*this, lane), scene, std::vector<long long>());
+    recorders_[lane] = std::make_unique<Recorder>(recorded, LaneStep(*this, lane), scene,
+                                                  std::vector<long long>());
     recorders_[lane]->start(t0_, member.state);
     recorders_[lane]->state_settled(t0_, member.state.data());
     find_next_time(lane);
@@ -140,7 +141,7 @@ class RecordingLanes : public LaneRunner {
     steps().next_time[lane] = next < times.size() ? times[next] : direction() * far;
   }
 
-  std::array<std::optional<Recorder>, width> recorders_;
+  std::array<std::unique_ptr<Recorder>, width> recorders_;
   std::array<long long, width> interpolated_{};  ///< steps whose dense output was computed
   bool records_ = false;                         ///< whether members have recorders
   std::vector<EventFinder::Difference> differences_;

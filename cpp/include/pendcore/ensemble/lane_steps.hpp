@@ -52,18 +52,17 @@ struct LaneSteps {
   Integers after_rejection = {};  ///< all bits set where the last attempt was rejected
   Integers accepted = {}, rejected = {};
   Integers steps_to_look = {};  ///< accepted steps until stiffness is looked at
-  LaneBits active = 0;          ///< the lanes that have a member
 
-  // The step that was taken last: its start, s, and its size.
+  /// The step that was taken last: its start, s, and its size.
   Real t_before = {}, t_low_before = {}, h_before = {};
-  // What is recorded of steps, by a Recorder for each lane.
+  Real next_time = {};  ///< s, at which a state is asked for; infinite if there is none
   /// All events, if each is a level of an angle or a rate; else every step is recorded.
   std::span<const EventFinder::Difference> differences;
+  LaneBits active = 0;     ///< the lanes that have a member
+  bool has_times = false;  ///< whether states at given times are asked for
   bool every_step_is_recorded = false;
   bool needs_dense_output = false;       ///< whether some steps have it
   bool interpolates_every_step = false;  ///< whether all have it in a single run
-  bool has_times = false;                ///< whether states at given times are asked for
-  Real next_time = {};                   ///< s, the next of them; infinite if there is none
 };
 
 namespace lanes_detail {

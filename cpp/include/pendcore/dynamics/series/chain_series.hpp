@@ -200,6 +200,7 @@ class ChainSeries {
   void set_order(int order);
 
   ConstantsOfChain<Number>& constants() { return constants_; }
+  bool has_rotors() const { return has_rotors_; }
   Effects& effects() { return effects_; }
 
   /// Fills rows 1 .. order of `coefficients`, each (q, qd), both padded to whole rows, with time in
