@@ -70,6 +70,54 @@ def test_keys_play_step_and_go_home(sol: pc.Solution, opened: Open, browser: Any
     assert re.fullmatch(r"At \d\.\d\d s: q1 [\d.-]+ degrees, q2 [\d.-]+ degrees", label)
 
 
+def test_the_picture_is_enlarged_moved_and_fitted_again(
+    sol: pc.Solution, opened: Open, browser: Any
+) -> None:
+    from selenium.webdriver.common.action_chains import ActionChains
+
+    page = opened(sol)
+    page.do("pendcorePage.play(false); pendcorePage.go(0)")
+    view = "(() => { const { view } = pendcorePage; return [view.pixels, ...view.center] })()"
+    start = page.ask("[...pendcorePage.given.start.q]")
+    fitted = page.ask(view)
+    scene = browser.find_element("id", "scene")
+    scene.send_keys("+")
+    assert page.ask(view) == pytest.approx([1.25 * fitted[0], *fitted[1:]])
+    scene.send_keys("-")
+    assert page.ask(view) == pytest.approx(fitted)
+
+    left, top = page.ask(
+        "(() => { const { view } = pendcorePage; view.canvas.scrollIntoView();"
+        " const { left, top } = view.canvas.getBoundingClientRect(); return [left, top] })()"
+    )
+    mouse = ActionChains(browser)
+    mouse.w3c_actions.pointer_action.move_to_location(round(left + 15), round(top + 15))
+    mouse.w3c_actions.pointer_action.pointer_down()
+    mouse.w3c_actions.pointer_action.move_to_location(round(left + 45), round(top + 35))
+    mouse.w3c_actions.pointer_action.pointer_up()
+    mouse.perform()
+    assert page.ask(view) == pytest.approx([fitted[0], fitted[1] + 30, fitted[2] + 20])
+    assert page.ask("[...pendcorePage.given.start.q]") == start
+
+    wheel = (
+        (
+            "pendcorePage.view.canvas.dispatchEvent(new WheelEvent('wheel', { deltaY: -100,"
+            " ctrlKey: CTRL, cancelable: true, clientX: LEFT + 40, clientY: TOP + 50 }))"
+        )
+        .replace("LEFT", str(left))
+        .replace("TOP", str(top))
+    )
+    place = "pendcorePage.view.metres(40, 50)"
+    before = page.ask(place)
+    page.do(wheel.replace("CTRL", "false"))
+    assert page.ask(view)[0] == pytest.approx(fitted[0])
+    page.do(wheel.replace("CTRL", "true"))
+    assert page.ask(view)[0] == pytest.approx(fitted[0] * np.exp(0.2))
+    assert page.ask(place) == pytest.approx(before, abs=0.02)
+    scene.send_keys("0")
+    assert page.ask(view) == pytest.approx(fitted)
+
+
 def test_every_control_has_a_name(sol: pc.Solution, opened: Open) -> None:
     page = opened(sol)
     nameless = page.ask(

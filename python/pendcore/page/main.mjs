@@ -10,7 +10,7 @@ import { Curves, drawCost } from "./curves.mjs";
 import { coreBytes, LiveRun, Recording } from "./runs.mjs";
 import { SceneView } from "./scene_view.mjs";
 import { grid, simulateCase } from "./simulate.mjs";
-import { listenToKeys, listenToPointer, STEP } from "./touch.mjs";
+import { listenToKeys, listenToPointer, listenToView, STEP } from "./touch.mjs";
 
 const TRACE = 2; // s
 const TRACE_PARTS = { least: 240, most: 2000, angle: 0.1 }; // in each, a link turns by this, rad
@@ -344,6 +344,7 @@ class Page {
     this.#tabs();
     listenToKeys(byId("scene"), this);
     listenToPointer(byId("scene"), this);
+    listenToView(byId("scene"), this);
     for (const menu of this.curves.menus)
       menu.addEventListener("change", () => {
         this.curves.choose();

@@ -2,6 +2,7 @@
 
 const MARGIN = 0.12; // of the total length
 const ARROW = 0.45; // of the total length, for the largest force of the run
+const ZOOMS = [0.1, 50];
 
 /** A colour of the page's style. */
 export function color(name) {
@@ -28,6 +29,26 @@ export class SceneView {
     this.largestForce = 0;
     this.pixels = 1;
     this.center = [0, 0];
+    this.fit();
+  }
+
+  /** Shows the whole chain in the middle. */
+  fit() {
+    this.zoom = 1;
+    this.shift = [0, 0];
+  }
+
+  /** Moves the picture by CSS pixels. */
+  move(x, y) {
+    this.shift = [this.shift[0] + x, this.shift[1] + y];
+  }
+
+  /** Enlarges the picture; a place on the canvas, in CSS pixels, stays where it is. */
+  enlarge(factor, place = this.center) {
+    const zoom = Math.min(Math.max(this.zoom * factor, ZOOMS[0]), ZOOMS[1]);
+    const further = zoom / this.zoom - 1;
+    this.move(further * (this.center[0] - place[0]), further * (this.center[1] - place[1]));
+    this.zoom = zoom;
   }
 
   /** Metres of a place on the canvas, in CSS pixels. */
@@ -38,8 +59,8 @@ export class SceneView {
   draw(shown) {
     const { pen, width, height } = fitted(this.canvas);
     const total = shown.lengths.reduce((sum, length) => sum + length, 0);
-    this.pixels = Math.min(width, height) / (2 * total * (1 + MARGIN));
-    this.center = [width / 2, height / 2];
+    this.pixels = (this.zoom * Math.min(width, height)) / (2 * total * (1 + MARGIN));
+    this.center = [width / 2 + this.shift[0], height / 2 + this.shift[1]];
     this.pen = pen;
     this.#axes(width, height, total);
     if (shown.neighbours) this.#neighbours(shown);
@@ -68,7 +89,7 @@ export class SceneView {
     pen.font = "12px system-ui, sans-serif";
     pen.fillText("x", width - 14, y - 6);
     pen.fillText("y", x + 6, height - 8);
-    const nice = 10 ** Math.floor(Math.log10(total));
+    const nice = 10 ** Math.floor(Math.log10(total / this.zoom));
     const bar = nice * this.pixels;
     pen.fillRect(12, height - 16, bar, 2);
     pen.fillText(`${nice} m`, 12, height - 22);

@@ -1,6 +1,8 @@
-/** Keys and fingers on the picture: play, step, and start elsewhere by dragging a joint. */
+/** Keys and fingers on the picture: play, step, start elsewhere by dragging a joint, look closer. */
 
 export const STEP = 1 / 60; // s
+const CLOSER = 1.25; // by a key
+const CLOSER_A_PIXEL = 0.002; // of a wheel, as a logarithm
 const REACH = 30; // pixels from a joint within which it is taken
 
 export function listenToKeys(canvas, page) {
@@ -10,11 +12,52 @@ export function listenToKeys(canvas, page) {
     ArrowRight: () => page.go(page.t + STEP),
     Home: () => page.go(page.run.begin),
     End: () => page.go(page.run.end),
+    "+": () => page.view.enlarge(CLOSER),
+    "=": () => page.view.enlarge(CLOSER), // the same key without Shift
+    "-": () => page.view.enlarge(1 / CLOSER),
+    0: () => page.view.fit(),
   };
   canvas.addEventListener("keydown", (event) => {
-    if (!(event.key in actions)) return;
+    if (!(event.key in actions) || event.ctrlKey || event.metaKey) return;
     event.preventDefault();
     actions[event.key]();
+    page.draw();
+  });
+}
+
+/** The wheel with Ctrl, or two fingers on a touchpad, look closer; a mouse moves the picture. */
+export function listenToView(canvas, page) {
+  const { view } = page;
+  let held = null; // where the mouse was, while it moves the picture
+  canvas.addEventListener(
+    "wheel",
+    (event) => {
+      if (!event.ctrlKey && !event.metaKey) return; // the page scrolls
+      event.preventDefault();
+      view.enlarge(Math.exp(-CLOSER_A_PIXEL * event.deltaY), [event.offsetX, event.offsetY]);
+      page.draw();
+    },
+    { passive: false },
+  );
+  canvas.addEventListener("pointerdown", (event) => {
+    if (event.pointerType !== "mouse" || page.dragged) return;
+    canvas.setPointerCapture(event.pointerId);
+    held = [event.clientX, event.clientY];
+  });
+  canvas.addEventListener("pointermove", ({ clientX, clientY }) => {
+    if (!held) return;
+    view.move(clientX - held[0], clientY - held[1]);
+    held = [clientX, clientY];
+    page.draw();
+  });
+  for (const end of ["pointerup", "pointercancel"]) {
+    canvas.addEventListener(end, () => {
+      held = null;
+    });
+  }
+  canvas.addEventListener("dblclick", () => {
+    view.fit();
+    page.draw();
   });
 }
 
