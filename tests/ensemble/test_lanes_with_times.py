@@ -115,7 +115,8 @@ def test_members_that_lanes_leave_to_single_runs(rtol, method):
     times = np.linspace(0, 2, 9)
     asked = {"t_eval": times, "rtol": rtol, "max_steps": 300, "check": False, "method": method}
     found = pc.ensemble(BOOK, q0, qd0, (0, 2), keep="times", **asked)
-    assert found.counts()["finished"] >= 6
+    are_cut = method == "dopri5" and rtol == 1e-9  # four more runs, by max_steps
+    assert found.counts()["finished"] == (6 if are_cut else 10)
     for i in range(13):
         if found.status[i] == "refused":
             continue

@@ -270,13 +270,7 @@ void ActingEffects<Row>::sum_couples(int joint) {
   }
   Couples<Row>& row = *std::ranges::find(couples, joint / width, &Couples<Row>::row);
   const int lane = joint % width;
-  set_lane(row.held, lane, sum.held);
-  set_lane(row.slope, lane, sum.slope);
-  set_lane(row.start, lane, sum.start);
-  set_lane(row.on_phi, lane, sum.on_phi);
-  set_lane(row.on_phid, lane, sum.on_phid);
-  set_lane(row.on_phid2, lane, sum.on_phid2);
-  set_lane(row.on_phid3, lane, sum.on_phid3);
+  each_coefficient(row, sum, [lane](Row& all, double one) { set_lane(all, lane, one); });
 }
 
 /// Finds what the first two waves do to the pivot; sum_couples() does this for motors.

@@ -97,6 +97,18 @@ struct alignas(std::bit_floor(sizeof(Row))) Couples {
   }
 };
 
+/// Calls use(to, from) with each coefficient of couples and of a Couple, or of other couples.
+template <class To, class From, class Use>
+void each_coefficient(To& to, const From& from, const Use& use) {
+  use(to.held, from.held);
+  use(to.slope, from.slope);
+  use(to.start, from.start);
+  use(to.on_phi, from.on_phi);
+  use(to.on_phid, from.on_phid);
+  use(to.on_phid2, from.on_phid2);
+  use(to.on_phid3, from.on_phid3);
+}
+
 /// A wave that drives a joint: tau += gain sin(wave).
 struct JointWave {
   int joint;  ///< counted from 0

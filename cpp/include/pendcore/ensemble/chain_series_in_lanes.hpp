@@ -102,24 +102,15 @@ EffectsOfChainInLanes<Real>::One::One(const ActingEffects<Row>& effects, int lin
   for (const JointWave& wave : effects.joint_waves) {
     joint_waves.push_back({wave.joint, wave.wave, wave.gain});
   }
-  const auto axis = [](const DrivenPivot::Law::Axis& of) {
-    return PivotAxisOf<double>{of.wave, of.held, of.slope, of.gain};
-  };
   for (const auto& law : effects.pivots) {
-    pivots.push_back({law->start, axis(law->x), axis(law->y)});
+    pivots.push_back({law->start, axis_of(law->x), axis_of(law->y)});
   }
   constexpr int places = Lanes<Row>::width;
   for (const Couples<Row>& of_row : effects.couples) {
     for (int i = 0; i < places && of_row.row * places + i < links; ++i) {
       Couples<double> joint;
       joint.row = of_row.row * places + i;
-      joint.held = lane(of_row.held, i);
-      joint.slope = lane(of_row.slope, i);
-      joint.start = lane(of_row.start, i);
-      joint.on_phi = lane(of_row.on_phi, i);
-      joint.on_phid = lane(of_row.on_phid, i);
-      joint.on_phid2 = lane(of_row.on_phid2, i);
-      joint.on_phid3 = lane(of_row.on_phid3, i);
+      each_coefficient(joint, of_row, [i](double& to, const Row& row) { to = lane(row, i); });
       joints.push_back({joint, of_row.has_powers()});
     }
   }
@@ -166,15 +157,8 @@ void EffectsOfChainInLanes<Real>::put(int lane, const One& one) {
     }
   }
   for (int i = 0; i < couples(); ++i) {
-    const Couples<double>& from = one.joints[i].couples;
-    Couples<Real>& to = couples_[i];
-    set_lane(to.held, lane, from.held);
-    set_lane(to.slope, lane, from.slope);
-    set_lane(to.start, lane, from.start);
-    set_lane(to.on_phi, lane, from.on_phi);
-    set_lane(to.on_phid, lane, from.on_phid);
-    set_lane(to.on_phid2, lane, from.on_phid2);
-    set_lane(to.on_phid3, lane, from.on_phid3);
+    each_coefficient(couples_[i], one.joints[i].couples,
+                     [lane](Real& all, double number) { set_lane(all, lane, number); });
   }
 }
 

@@ -38,13 +38,8 @@ void put_constants(Equations& equations, int lane, const One& one) {
 }
 template <class Rows, class Row>
 void put_couples(Couples<Rows>& couples, int lane, const Couples<Row>& one) {
-  put_row(couples.held, lane, one.held);
-  put_row(couples.slope, lane, one.slope);
-  put_row(couples.start, lane, one.start);
-  put_row(couples.on_phi, lane, one.on_phi);
-  put_row(couples.on_phid, lane, one.on_phid);
-  put_row(couples.on_phid2, lane, one.on_phid2);
-  put_row(couples.on_phid3, lane, one.on_phid3);
+  each_coefficient(couples, one,
+                   [lane](Rows& all, const Row& of_one) { put_row(all, lane, of_one); });
 }
 
 /// The drag on rods in lanes, at most one for each link.

@@ -45,7 +45,7 @@ class LaneLoop : public RecordingLanes<width> {
         rate_(2 * scene.links.size()) {}
 
   void run(LaneSource& source) override {
-    this->say_what_is_recorded(source);
+    this->choose_what_is_recorded(source);
     bool goes_on = true;
     for (int lane = 0; lane < width; ++lane) fill(lane, source);
     while (steps().active != 0 && goes_on) {

@@ -1,6 +1,6 @@
 /// \file
-/// What is recorded of the steps in lanes: a Recorder looks at a step of a lane as at that of a
-/// single run.
+/// Each lane has a Recorder, which looks at a step of the lane as it does at a step of a single
+/// run.
 #pragma once
 
 #include <array>
@@ -42,7 +42,7 @@ class RecordingLanes : public LaneRunner {
     return steps().interpolates_every_step ? steps().accepted[lane] : interpolated_[lane];
   }
 
-  void say_what_is_recorded(const LaneSource& source) {
+  void choose_what_is_recorded(const LaneSource& source) {
     const bool watches = source.watches();
     LaneSteps<width>& at = steps();
     std::vector<FoundEvent> none;

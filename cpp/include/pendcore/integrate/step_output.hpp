@@ -1,5 +1,5 @@
 /// \file
-/// What is seen of a step by those who record it: the states at its ends, and its dense output.
+/// Those who record a step see the states at its ends, and its dense output.
 #pragma once
 
 #include <cmath>

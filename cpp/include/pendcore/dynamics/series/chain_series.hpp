@@ -127,6 +127,9 @@ struct PivotAxisOf {
   int wave;
   Number held, slope, gain;
 };
+inline PivotAxisOf<double> axis_of(const DrivenPivot::Law::Axis& one) {
+  return {one.wave, one.held, one.slope, one.gain};
+}
 
 /// The effects of a trajectory, in the modes that are in force.
 template <class Row>
@@ -156,8 +159,8 @@ class EffectsOfChain {
 
   int pivots() const { return static_cast<int>(effects_->pivots.size()); }
   double start_of_pivot(int i) const { return effects_->pivots[i]->start; }
-  PivotAxisOf<double> pivot_x(int i) const { return axis(effects_->pivots[i]->x); }
-  PivotAxisOf<double> pivot_y(int i) const { return axis(effects_->pivots[i]->y); }
+  PivotAxisOf<double> pivot_x(int i) const { return axis_of(effects_->pivots[i]->x); }
+  PivotAxisOf<double> pivot_y(int i) const { return axis_of(effects_->pivots[i]->y); }
 
   int couples() const { return static_cast<int>(effects_->couples.size()); }
   const Couples<Row>& couple(int i) const { return effects_->couples[i]; }
@@ -169,9 +172,6 @@ class EffectsOfChain {
   }
 
  private:
-  static PivotAxisOf<double> axis(const DrivenPivot::Law::Axis& one) {
-    return {one.wave, one.held, one.slope, one.gain};
-  }
   std::shared_ptr<const ActingEffects<Row>> effects_;
 };
 
