@@ -11,11 +11,16 @@ namespace {
 
 std::unique_ptr<Run> simulate_run(const py::object& python_scene, py::handle q0, py::handle qd0,
                                   py::handle t0, py::handle t_end, const py::dict& given,
-                                  py::handle progress, py::handle warn) {
+                                  py::handle progress, py::handle warn,
+                                  DefectCorrection* correction) {
   const auto& scene = python_scene.cast<const Scene&>();
   PythonMonitor monitor(progress);
   Options options = options_of(given, scene.links.size());
   options.monitor = monitor.for_core();
+  if (correction != nullptr) {
+    correction->keep(options.store.value_or(usual_store(options)), options.t_eval);
+    options.watch = correction;
+  }
   const Start start = start_of(scene, q0, qd0, t0, t_end, warn);
   py::object event_functions;
   if (!options.events.empty()) {
@@ -37,7 +42,7 @@ std::unique_ptr<Run> simulate_run(const py::object& python_scene, py::handle q0,
 void bind_simulate(py::module_& module) {
   module.def("simulate", &simulate_run, py::arg("scene"), py::arg("q0"), py::arg("qd0"),
              py::arg("t0"), py::arg("t_end"), py::arg("options"), py::arg("progress"),
-             py::arg("warn"));
+             py::arg("warn"), py::arg("correction") = py::none());
 }
 
 }  // namespace pendcore::bindings

@@ -43,7 +43,7 @@ def share(outcomes, key, at_most):
 def test_on_200_scenes_no_error_exceeds_the_asked_one(outcomes):
     assert len(outcomes) == 200
     firsts = {one["method"].partition("-")[0] for one in outcomes}
-    assert firsts == {"dopri5", "dop853", "taylor"}
+    assert firsts == {"dop853", "taylor"}
     assert max(one["error"] for one in outcomes) <= 1
     assert max(one["told"] for one in outcomes) <= 1
 
@@ -57,10 +57,10 @@ def test_what_is_told_is_the_error_and_never_less(outcomes):
 
 @pytest.mark.unsanitized
 def test_the_run_takes_hardly_more_work_than_the_best_of_a_sweep(outcomes):
-    assert share(outcomes, "verified", 3.5) >= 0.8
-    assert share(outcomes, "verified", 6) >= 0.98
+    assert share(outcomes, "verified", 3.5) >= 0.97
+    assert share(outcomes, "verified", 6) == 1
     assert np.median([one["run"] for one in outcomes]) < 1.2
-    assert np.median([one["all"] for one in outcomes]) < 4.5
+    assert np.median([one["all"] for one in outcomes]) < 3
 
 
 def test_the_pages_table_is_that_of_the_record():
@@ -103,8 +103,9 @@ def test_what_was_asked_reached_and_paid_is_told():
     last = {p.purpose: p for p in found.paid}
     assert found.work("run") == last["run"].work
     assert sum(found.work(x) for x in ("choose", "run", "verify")) == pytest.approx(found.work())
-    assert found.verified_by == f"{last['verify'].method} at rtol {last['verify'].rtol:g}"
-    assert last["verify"].rtol <= last["run"].rtol / 10
+    assert last["verify"].method == f"defect of {last['run'].method}"
+    assert last["verify"].rtol == last["run"].rtol
+    assert found.verified_by == f"the {last['verify'].method} at rtol {last['verify'].rtol:g}"
     assert "asked 1.0e-06, achieved" in str(found)
     assert type(found).from_dict(found.to_dict()) == found
 

@@ -13,6 +13,8 @@ from pendcore.accuracy.position_error import distances, times_within_steps
 from pendcore.accuracy.trials import Trials
 
 BOOK = pc.Scene.textbook()
+DRAG = pc.effects.RodDrag(link=1, drag_coefficient=1.2, diameter=0.02)
+DRAGGED = pc.Scene(links=BOOK.links, effects=[DRAG])
 START = ([np.pi / 4, np.pi / 3], 0, (0, 5))
 
 
@@ -79,15 +81,20 @@ def test_second_runs_that_share_the_truncation_of_a_tight_trial_do_not_verify_it
     assert refusal.value.least > true
 
 
+@pytest.mark.parametrize(
+    ("scene", "estimate"),
+    [(BOOK, "error_from_defect"), (DRAGGED, "estimate")],
+    ids=["defect", "second"],
+)
 def test_a_trial_is_handed_over_if_the_interrupt_falls_while_runs_are_compared(
-    monkeypatch: Any,
+    monkeypatch: Any, scene: pc.Scene, estimate: str
 ) -> None:
     def interrupted(*_: Any) -> Any:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("pendcore.accuracy.trials.estimate", interrupted)
+    monkeypatch.setattr(f"pendcore.accuracy.trials.{estimate}", interrupted)
     with pytest.raises(KeyboardInterrupt) as stop:
-        pc.simulate(BOOK, [0.7, 1.2], t_span=(0, 10), error=1e-6)
+        pc.simulate(scene, [0.7, 1.2], t_span=(0, 10), error=1e-6)
     sol = stop.value.solution  # type: ignore[attr-defined]
     assert sol.success
     assert sol.accuracy.outcome == "ended early"

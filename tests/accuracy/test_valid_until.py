@@ -101,8 +101,8 @@ def test_printed_it_is_a_sentence() -> None:
     found = pc.simulate(scene, [1.0, 1.0], 0, (0, 2), method="dop853", rtol=1e-6).error()
     assert str(found) == (
         f"error estimated everywhere from t = 0 to 2 s: angles up to {found.angle.max():.1e} "
-        f"rad, positions up to {found.position.max():.1e} of the total length, from second runs "
-        f"by taylor at rtol 1e-08 and tighter"
+        f"rad, positions up to {found.position.max():.1e} of the total length, verified by "
+        f"taylor at rtol 1e-08 and tighter"
     )
     lost = pc.simulate(scene, [-2.0, -1.0], 0, (0, 30), rtol=1e-6).error()
     assert str(lost).endswith("; past that the runs have nothing to do with each other any more")

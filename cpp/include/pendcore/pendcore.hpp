@@ -3,6 +3,7 @@
 #pragma once
 
 #include "pendcore/analysis/defect.hpp"
+#include "pendcore/analysis/defect_correction.hpp"
 #include "pendcore/analysis/lyapunov.hpp"
 #include "pendcore/dynamics/cost.hpp"
 #include "pendcore/dynamics/energetics/energy.hpp"

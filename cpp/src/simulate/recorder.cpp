@@ -50,7 +50,7 @@ StepEnd Recorder::step_accepted(StepOutput& output, const TwoDouble& t_old, doub
     dense.h.push_back(h);
     dense.coefficients.insert(dense.coefficients.end(), polynomial_.begin(), polynomial_.end());
   }
-  if (watch_ != nullptr) show_step(output, t_end, end.is_within() ? end.theta : 1.0);
+  if (watch_ != nullptr) show_step(output, t_end, h, end.is_within() ? end.theta : 1.0);
   if (end.is_within()) {
     keep_clipped(output, t_old, h, end.theta, t_end);
   } else if (keeps_steps_) {
@@ -66,8 +66,8 @@ void Recorder::interpolate(StepOutput& output, double h) {
   output.finite_interpolant(h, polynomial_, dimension_);
 }
 
-/// Shows the step, up to a share of it at time t, to what looks on.
-void Recorder::show_step(StepOutput& output, double t, double share) {
+/// Shows a step of size h, up to a share of it at time t, to what looks on.
+void Recorder::show_step(StepOutput& output, double t, double h, double share) {
   shown_.resize(dimension_);
   if (share < 1.0) {
     output.sample(polynomial_.data(), {}, 1.0, &share, 1, shown_.data());
@@ -75,6 +75,7 @@ void Recorder::show_step(StepOutput& output, double t, double share) {
     output.get_new_state(shown_.data());
   }
   watch_->steps({.t = t,
+                 .h = h,
                  .y = shown_,
                  .rows = polynomial_.data(),
                  .degree = static_cast<int>(degree_),

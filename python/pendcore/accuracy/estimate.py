@@ -20,10 +20,11 @@ not all agree with a run that is wrong.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from itertools import combinations
 from math import inf
 from time import monotonic
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -88,23 +89,54 @@ def estimate(
     share : float
         The largest error of a single second run, as a share of the distance from it.
     """
-    angles, positions = [np.empty(0)], [np.empty(0)]
-    t = _common_times(solution, seconds)
     factor = (1 + share) * (BETWEEN if solution.store == "dense" else 1.0)
-    for times in np.array_split(t, len(t) // AT_ONCE + 1):
-        q, qd = np.hsplit(states_at(solution, times), 2)
-        others = [angles_at(second, times) for second in seconds]
-        angle = factor * np.max([_apart(q, r) for r in others], axis=0)
-        position = factor * np.max([distances(solution.scene, q, r) for r in others], axis=0)
-        pairs = [*combinations(others, 2)]
-        if pairs:
-            angle += np.max([_apart(r, s) for r, s in pairs], axis=0)
-            position += np.max([distances(solution.scene, r, s) for r, s in pairs], axis=0)
+    t = _common_times(solution, seconds)
+    found = apart(solution, t, lambda at: [angles_at(second, t[at]) for second in seconds])
+    angle = factor * found.angle_from_run + found.angle + found.rounding
+    position = factor * found.position_from_run + found.position + found.rounding
+    return error_over(solution, t, angle, position, verified_by)
+
+
+class Apart(NamedTuple):
+    """How far other motions are from a run, and from each other, at times; (n_t,) each.
+
+    Angles in rad, the largest over the links; positions as shares of the total length. ``rounding``
+    is what the rounding of states and times to doubles adds to both.
+    """
+
+    angle_from_run: Floats
+    angle: Floats
+    position_from_run: Floats
+    position: Floats
+    rounding: Floats
+
+
+def apart(solution: RunResult, t: Floats, others: Callable[[slice], list[Floats]]) -> Apart:
+    """Compare a run with other motions at times; ``others`` returns the angles of these, (k, n).
+
+    It is asked for the angles at some of the times at once, which bounds the memory.
+    """
+    found = [np.empty((5, 0))]
+    for first in range(0, len(t), AT_ONCE):
+        some = slice(first, first + AT_ONCE)
+        q, qd = np.hsplit(states_at(solution, t[some]), 2)
+        motions = others(some)
         rounding = np.finfo(np.float64).eps * np.abs(q).max(axis=-1)  # the state is a double
-        rounding += np.spacing(np.abs(times)) / 2 * np.abs(qd).max(axis=-1)  # and so is its time
-        angles.append(angle + rounding)
-        positions.append(position + rounding)
-    angle, position = np.concatenate(angles), np.concatenate(positions)
+        rounding += np.spacing(np.abs(t[some])) / 2 * np.abs(qd).max(axis=-1)  # so is its time
+        pairs = [(q, motion) for motion in motions], [*combinations(motions, 2)]
+        rows = [
+            np.max([measure(r, s) for r, s in of_whom], axis=0, initial=0.0)
+            for measure in (_apart, partial(distances, solution.scene))
+            for of_whom in (pairs if pairs[1] else (pairs[0], [(q, q)]))
+        ]
+        found.append(np.array([*rows, rounding]))
+    return Apart(*np.concatenate(found, axis=1))
+
+
+def error_over(
+    solution: RunResult, t: Floats, angle: Floats, position: Floats, verified_by: str
+) -> ErrorEstimate:
+    """Return errors at times as an estimate, up to where the run is lost."""
     lost = np.flatnonzero(~(angle < LOST))
     count = int(lost[0]) + 1 if len(lost) else len(t)
     end = solution.run.t_reached

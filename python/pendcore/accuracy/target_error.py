@@ -1,15 +1,17 @@
 """A run that keeps an error: method and tolerance are chosen, and what comes out is verified.
 
-Two kinds of runs are made in a loop. A *trial* is what was asked for, at some tolerance. A *second
-run* is better: it takes the same method at a twenty-fifth of the tolerance or less (`taylor` at a
-hundredth), its constants and start are moved by some last bits, and its steps are others. The
-distance of the two tells how large the error is on this scene, and so which tolerance to try next.
-A trial is returned when its error is at most the one asked for, and the second run is known to be
-the better of the two. Either of these shows that:
+A *trial* is a run of what was asked for, at some tolerance. Its error tells which tolerance to try
+next. There are two ways to know the error.
 
-* another trial at a different tolerance, if the errors of both trials are in about the ratio of
-  their tolerances: then the error of the second run is smaller in proportion too; or
-* one more second run, whose distance from the first is added (`pendcore.accuracy.estimate`).
+**From the defect** of the trial's own curve, for smooth scenes that have Taylor series
+(`pendcore.accuracy.defect_correction`). If it cannot be trusted, there may be another way to
+integrate it, and at last second runs.
+
+**From second runs**, for all other scenes. A second run is better: it takes the same method at a
+twenty-fifth of the tolerance or less (`taylor` at a hundredth), its constants and start are moved
+by some last bits, and its steps are others. Its distance from the trial tells how large the error
+is; one more second run shows that the first one is indeed better, as the distance of the two is
+added (`pendcore.accuracy.estimate`).
 
 Where tolerances are so tight that rounding may matter, two or three second runs as tight as doubles
 allow take the place of these. The loop ends with a trial whose error is small enough, with an
@@ -18,11 +20,10 @@ allow take the place of these. The loop ends with a trial whose error is small e
 
 from __future__ import annotations
 
-from math import inf, log
+from math import inf
 from typing import Any
 
 from pendcore.accuracy.estimate import SPARE_OF_SEVERAL
-from pendcore.accuracy.method_choice import LOOSEST
 from pendcore.accuracy.trials import TrialRun, Trials, leading
 from pendcore.messages.arguments import finite_array
 from pendcore.messages.progress import callback, close
@@ -32,49 +33,33 @@ from pendcore.run.error_estimate import ErrorEstimate
 from pendcore.run.result import RunResult
 
 # Where trials and second runs aim: factors of the error asked for, or of another run's scale.
-FIRST, LOOSE = 3.0, 1e-3
-"""The first trial aims at FIRST times an error asked for below LOOSE, else at AIM times it."""
+FIRST_BY_DEFECT, FIRST, AT_FEW_TIMES, IF_DAMPED = 0.5, 3.0, 4.0, 4.0
+"""The first trial whose defect is known aims at FIRST_BY_DEFECT times the error: most need no other
+trial. Any other first trial aims at FIRST times the error. Both may be looser where few times are
+kept, as the error is hardly largest there, and where dampers make the motion forget its errors."""
 AIM = 0.65
 """Later trials aim at this multiple of the error asked for."""
 LEAST_CHANGE, FARTHER = 1.5, 100.0
 """Factors by which the next trial is tighter: at least, and after a failed or chaotic one."""
-LOOSER, NEXT_LOOSER, APART = 50.0, 8.0, 1.9
-"""A trial that measures an exponent is looser by the factor LOOSER, or else NEXT_LOOSER. Its scale
-differs from that of every other trial by at least the factor APART."""
 BETTER, BETTER_SERIES, SPARED = 25.0, 100.0, 1.6
 """The least factors by which a second run is tighter than its trial. BETTER_SERIES is for `taylor`,
 to which a digit more costs little, and whose order changes with the tolerance. SPARED is a further
 factor that most second runs are tighter by, which lets them verify slightly tighter trials too."""
-FAR_BETTER = 1000.0
-"""The same factor for the first second run of `taylor`, which can verify tighter trials too."""
 BETTER_STILL = 8.0
 """One more second run is tighter than all others by this factor."""
-# When something counts as known: bounds of distances, ratios and exponents.
+# When something counts as known: bounds of distances and ratios.
 NOTHING_IN_COMMON = 0.2
 """Beyond this distance of two runs, the error is known only to be large."""
 LIKELY = 0.9
 """A trial no farther from a second run than this share of the error is likely good enough."""
-RATIO = 5.0
-"""The least ratio of two scales from which an exponent is measured."""
-FOLLOWS, FOLLOWS_AT_FEW_TIMES, FEW = 2.0, 1.4, 50
-"""The largest exponents of the tolerance with which an error may seem to fall. The second is for
-fewer than FEW times, where an error that is small by chance looks as if it fell faster."""
-CAUTION = 0.6
-"""The share of a measured exponent that is trusted at tolerances beyond those measured."""
-SHARE, SPARE = 0.35, 0.35
-"""SHARE is the largest share of their distance that the error of a single second run may be. SPARE
-is added to the share, as methods do not all follow their tolerances alike."""
+RATIO, SPARE = 5.0, 0.35
+"""Two second runs whose scales differ by less than RATIO may be off alike: then SPARE is added."""
 ALIKE, SHARE_IF_ALIKE = 20.0, 1.0
 """Second runs as tight as doubles allow, but not tighter than the trial by the factor ALIKE, may
 share errors with it: an implicit step's remainder, or that of steps which stability limits. Then at
 least SHARE_IF_ALIKE times the distance is added."""
 CAUTION_IF_TIGHT = 0.5
 """The exponent by which the error of looser runs is scaled down to that of these second runs."""
-ROUNDING = 1.5e-12
-"""The largest scale of the error that moved constants and starts made on three hundred scenes.
-
-The median was 5e-14. Rounding itself makes at most an eighth of that error.
-"""
 ROUNDING_MATTERS = ((1e-12, 3), (5e-12, 2))
 """Pairs: a trial below this scale needs this many second runs as tight as doubles allow."""
 HOPELESS = 1e-6
@@ -120,22 +105,49 @@ def run_to_error(start: Start, error: float, options: dict[str, Any]) -> RunResu
 
 
 def _kept(runs: Trials) -> RunResult:
-    first = _first_trial(runs)
-    if not first.solution.success:
-        return _ended_early(runs, first)
-    runs.is_stiff = first.solution.stats.stiff
+    while runs.ways:
+        trial = _first_trial(runs, FIRST_BY_DEFECT * runs.error)
+        kept = _kept_by_defect(runs, trial)
+        if kept is not None:
+            return kept
+        if trial.solution.stats.stiff:
+            break
+        runs.next_way()
+    return _kept_by_second_runs(runs)
+
+
+def _kept_by_defect(runs: Trials, trial: TrialRun) -> RunResult | None:
+    """Return a run whose defect shows how large its error is; None if the defect does not."""
+    while not trial.solution.stats.stiff:
+        if not trial.solution.success:
+            return _not_finished(runs, trial)
+        error = runs.error_from_defect(trial)
+        if error is None:
+            return None
+        if error.tells_the_end and error.largest <= runs.error:
+            return runs.labelled(trial.solution, "kept", error)
+        if trial.rtol <= runs.tightest or len(runs.paid) >= MOST_RUNS:
+            raise _refusal(runs)
+        aimed = min(_aimed(runs, trial, error), trial.scale / LEAST_CHANGE)
+        trial = runs.trial(aimed, trial.method)
+    return None
+
+
+def _kept_by_second_runs(runs: Trials) -> RunResult:
+    if not runs.trials:
+        _first_trial(runs, FIRST * runs.error)
+    if not runs.trials[0].solution.success:
+        return _ended_early(runs, runs.trials[0])
+    runs.is_stiff = any(trial.solution.stats.stiff for trial in runs.trials)
     while len(runs.paid) < MOST_RUNS:
         latest = _next_run(runs)
         if latest is None:
             break
         if not latest.solution.success:
-            status = latest.solution.status
             if latest in runs.trials and latest.scale > min(trial.scale for trial in runs.trials):
                 runs.drop(latest)  # a tighter trial came to the end, so this one shows nothing
                 continue
-            if status == "time_limit" or (latest in runs.trials and status != "max_steps"):
-                return _ended_early(runs, latest)
-            raise _refusal(runs, f"{latest.text}: {latest.solution.message}")
+            return _not_finished(runs, latest)
         for trial in sorted(runs.trials, key=lambda trial: -trial.scale):
             error = _known_error(runs, trial)
             if error is not None and error.tells_the_end and error.largest <= runs.error:
@@ -143,9 +155,19 @@ def _kept(runs: Trials) -> RunResult:
     raise _refusal(runs)
 
 
-def _first_trial(runs: Trials) -> TrialRun:
+def _not_finished(runs: Trials, latest: TrialRun) -> RunResult:
+    """Return a trial that did not get to its end, or raise why that ends the search."""
+    status, is_first = latest.solution.status, latest in runs.trials[:1]
+    is_end = latest in runs.trials and (is_first or status != "max_steps")
+    if status == "time_limit" or is_end:
+        return _ended_early(runs, latest)
+    raise _refusal(runs, f"{latest.text}: {latest.solution.message}")
+
+
+def _first_trial(runs: Trials, scale: float) -> TrialRun:
     """Run at a tolerance that is not too loose to follow the motion to its end."""
-    scale = runs.error * (FIRST if runs.error < LOOSE else AIM)
+    scale *= AT_FEW_TIMES if runs.keeps_few_times else 1.0
+    scale *= IF_DAMPED if runs.has_effect_of("viscous") else 1.0
     trial = runs.trial(scale, runs.method_for(runs.error))
     while trial.solution.status in FOLLOWED_BADLY and trial.rtol > runs.tightest:
         before = trial.solution.run.t_reached
@@ -163,34 +185,15 @@ def _next_run(runs: Trials) -> TrialRun | None:
     if len(better) < max(_tight_runs(last), 1):
         return _second(runs, last)
     known = _known_error(runs, last)
-    error = known or runs.compared(last, better[:1], 0.0)
-    if error.is_lost or error.largest > max(NOTHING_IN_COMMON, runs.error):
-        aimed = _scale_before_it_grew(runs, last, better[0])
-    else:
-        aimed = last.scale * AIM * runs.error / max(error.largest, 1e-9 * runs.error)
+    distance = runs.compared(last, better[:1], 0.0)
+    error = known or distance
+    aimed = _aimed(runs, last, error, distance)
     if known is None and error.largest <= LIKELY * runs.error and not error.is_lost:
-        looser = _looser(runs, last, aimed)
-        if looser is not None:
-            return runs.trial(looser, last.method)
         return None if _tight_runs(last) else _second(runs, last)
     if last.rtol <= runs.tightest:
         return None
     aimed = min(aimed, last.scale / LEAST_CHANGE)
     return runs.trial(aimed, runs.method_for(aimed))
-
-
-def _looser(runs: Trials, trial: TrialRun, aimed: float) -> float | None:
-    """Return the scale of a looser trial from which an exponent can be measured, if any."""
-    scales = [LOOSER * trial.scale, NEXT_LOOSER * trial.scale]
-    if aimed > RATIO * trial.scale:
-        scales.insert(0, aimed)
-    loosest = LOOSEST * trial.scale / trial.rtol
-    for scale in (min(scale, loosest) for scale in scales):
-        ratios = [scale / other.scale for other in runs.trials]
-        is_useful = RATIO * trial.scale <= scale < runs.too_loose
-        if is_useful and not any(1 / APART < r < APART for r in ratios):
-            return scale
-    return None
 
 
 def _second(runs: Trials, trial: TrialRun) -> TrialRun:
@@ -199,9 +202,7 @@ def _second(runs: Trials, trial: TrialRun) -> TrialRun:
         return runs.second(trial, 0.0)
     if _better_than(runs, trial):
         return runs.second(trial, min(second.scale for second in runs.seconds) / BETTER_STILL)
-    is_first_of_series = not runs.seconds and leading(trial.method) == "taylor"
-    better_by = FAR_BETTER if is_first_of_series else SPARED * _better_by(trial)
-    return runs.second(trial, trial.scale / better_by)
+    return runs.second(trial, trial.scale / (SPARED * _better_by(trial)))
 
 
 def _better_by(trial: TrialRun) -> float:
@@ -209,13 +210,21 @@ def _better_by(trial: TrialRun) -> float:
     return BETTER_SERIES if leading(trial.method) == "taylor" else BETTER
 
 
-def _scale_before_it_grew(runs: Trials, trial: TrialRun, second: TrialRun) -> float:
+def _aimed(
+    runs: Trials, trial: TrialRun, error: ErrorEstimate, distance: ErrorEstimate | None = None
+) -> float:
+    """Return the scale at which a run likely keeps the error, as the error of a trial tells."""
+    if error.is_lost or error.largest > max(NOTHING_IN_COMMON, runs.error):
+        return _scale_before_it_grew(runs, trial, distance or error)
+    return trial.scale * AIM * runs.error / max(error.largest, 1e-9 * runs.error)
+
+
+def _scale_before_it_grew(runs: Trials, trial: TrialRun, distance: ErrorEstimate) -> float:
     """Return the scale at which a chaotic motion keeps the error to its end.
 
-    Errors grow as exp(rate t); the rate follows from the time at which the two runs part.
+    Errors grow as exp(rate t); the rate follows from the time at which the error becomes large.
     """
     begin = runs.start.t_start
-    distance = runs.compared(trial, [second], 0.0)
     until = distance.valid_until(NOTHING_IN_COMMON, of="position") - begin
     farther = trial.scale / FARTHER
     if not until or trial.scale >= NOTHING_IN_COMMON:
@@ -226,41 +235,18 @@ def _scale_before_it_grew(runs: Trials, trial: TrialRun, second: TrialRun) -> fl
 
 
 def _known_error(runs: Trials, trial: TrialRun) -> ErrorEstimate | None:
-    """Return the error of a trial, if its second runs are known to be better; else None."""
-    better = _better_than(runs, trial)
-    count = _tight_runs(trial) or 2
-    if len(better) >= count:
-        if _tight_runs(trial):
-            share = _share_if_tight(runs, trial, better[:count])
-            return None if share is None else runs.compared(trial, better[:count], share)
-        if better[0].scale * RATIO > better[1].scale:
-            return runs.compared(trial, better[:count], SPARE)  # they may be off alike
-        return runs.compared(trial, better[:count])
-    if _tight_runs(trial) or not better:
+    """Return the error of a trial, if its defect or better second runs show it; else None."""
+    if (error := runs.error_from_defect(trial)) is not None:
+        return error
+    better = _better_than(runs, trial)[: _tight_runs(trial) or 2]
+    if len(better) < (_tight_runs(trial) or 2):
         return None
-    share = _share(runs, trial, better[0])
-    return runs.compared(trial, better[:1], share + SPARE) if share <= SHARE else None
-
-
-def _share(runs: Trials, trial: TrialRun, second: TrialRun) -> float:
-    """Return a bound of a second run's error as a share of its trial's, from other trials."""
-    least = inf
-    own = runs.distance(trial, second)
-    times = len(runs.compared(trial, [second], 0.0).t)
-    most = FOLLOWS if times >= FEW else FOLLOWS_AT_FEW_TIMES
-    for other in runs.trials:
-        ratio = other.scale / trial.scale
-        if 1 / RATIO < ratio < RATIO or second not in _better_than(runs, other):
-            continue
-        if not other.method == trial.method == second.method:
-            continue  # a scene may suit one method and not the other
-        distance = runs.distance(other, second)
-        if min(own, distance) > 0 and max(own, distance) < NOTHING_IN_COMMON:
-            exponent = log(distance / own) / log(ratio)
-            if 0 < exponent <= most:
-                trusted = CAUTION * min(exponent, 1.0)
-                least = min(least, (second.scale / trial.scale) ** trusted)
-    return least + ROUNDING / trial.scale
+    if _tight_runs(trial):
+        share = _share_if_tight(runs, trial, better)
+        return None if share is None else runs.compared(trial, better, share)
+    if better[0].scale * RATIO > better[1].scale:
+        return runs.compared(trial, better, SPARE)
+    return runs.compared(trial, better)
 
 
 def _share_if_tight(runs: Trials, trial: TrialRun, seconds: list[TrialRun]) -> float | None:
@@ -309,8 +295,10 @@ def _ended_early(runs: Trials, latest: TrialRun) -> RunResult:
         if whole := runs.best():
             why = "the time limit was reached before it was verified"
         return runs.labelled(whole or latest.solution, "ended early", None, why)
-    seconds = [_second(runs, latest) for _ in range(_tight_runs(latest) or 2)]
-    error = runs.compared(latest, seconds)
+    error = runs.error_from_defect(latest)
+    if error is None:
+        seconds = [_second(runs, latest) for _ in range(_tight_runs(latest) or 2)]
+        error = runs.compared(latest, seconds)
     solution = runs.labelled(latest.solution, "ended early", error)
     if not error.is_complete:
         solution.known_error = None  # a later call with more time may complete the estimate
@@ -348,6 +336,5 @@ def _refusal(runs: Trials, why: str = "") -> AccuracyError:
 
 def _does_not_follow(runs: Trials) -> str:
     """Return why no tolerance was found, as far as this is known."""
-    has_own_law = any(effect.kind == "user" for effect in runs.start.scene.effects)
-    question = ": is a law of your own not smooth?" if has_own_law else ""
+    question = ": is a law of your own not smooth?" if runs.has_effect_of("user") else ""
     return f"the error does not follow the tolerances{question}"

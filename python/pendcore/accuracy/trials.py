@@ -8,6 +8,10 @@ from math import inf
 from time import monotonic
 from typing import Any
 
+import numpy as np
+
+from pendcore._core import DefectCorrection
+from pendcore.accuracy.defect_correction import correction_along, error_from_defect, ways
 from pendcore.accuracy.estimate import (
     MORE_STEPS,
     SPARE_OF_SEVERAL,
@@ -26,11 +30,12 @@ from pendcore.accuracy.method_choice import (
 from pendcore.accuracy.rounding import moved
 from pendcore.messages.arguments import time_limit_of
 from pendcore.messages.warning import warn
-from pendcore.run.accuracy import Accuracy, Outcome, Paid
+from pendcore.run.accuracy import DEFECT, Accuracy, Outcome, Paid
 from pendcore.run.call import Choice, Start, atol_beside, resumed, run, silent
 from pendcore.run.error_estimate import ErrorEstimate
 from pendcore.run.methods import error_over_rtol, implicit_method, pair_of
 from pendcore.run.result import RunResult
+from pendcore.scene.effect_description import account_of
 
 FOR_BOTH = 5.0
 """A method is chosen for an error smaller by this factor, as second runs take the same method."""
@@ -39,6 +44,8 @@ COMPENSATED_BELOW = 1e-12
 MOST_STEPS, LEAST_STEPS = 300, 100
 """A later run may take MOST_STEPS times as many steps as the first trial, which counts as
 LEAST_STEPS if it took fewer."""
+FEW = 50
+"""At fewer times than these, the error of a run may be small by chance."""
 _ADVANCE = 0.35
 """The share of what is left of the progress bar that a run fills."""
 
@@ -47,7 +54,8 @@ _ADVANCE = 0.35
 class TrialRun:
     """A run: how it was made, and its work in right-hand sides.
 
-    Its ``scale`` is its typical error, which makes tolerances of different methods comparable.
+    Its ``scale`` is its typical error, which makes tolerances of different methods comparable. Its
+    ``correction`` was integrated along with it, if the scene and the method allow that.
     """
 
     method: str
@@ -55,6 +63,7 @@ class TrialRun:
     scale: float
     work: float
     solution: RunResult
+    correction: DefectCorrection | None = None
 
     @property
     def text(self) -> str:
@@ -84,7 +93,7 @@ class Trials:
         self.time_limit = time_limit_of(options.pop("time_limit", None))
         self.compensated: bool = options.pop("compensated", False)
         self.is_stiff = False
-        self.too_loose = inf
+        self.ways = ways(start, error)
         self.trials: list[TrialRun] = []
         self.seconds: list[TrialRun] = []
         self.paid: list[TrialRun] = []
@@ -95,11 +104,22 @@ class Trials:
     def tightest(self) -> float:
         return TIGHTEST_IMPLICIT if self.is_stiff else TIGHTEST
 
+    @property
+    def keeps_few_times(self) -> bool:
+        t_eval = self.options["t_eval"]
+        return self.options["store"] == "end" or (t_eval is not None and np.size(t_eval) < FEW)
+
+    def has_effect_of(self, account: str) -> bool:
+        """Whether the scene has an effect whose work the ledger books there."""
+        return any(account_of(effect.kind) == account for effect in self.start.scene.effects)
+
     def method_for(self, scale: float) -> str:
         """Return the method that typically takes the least work to reach an error and verify it."""
-        return (
-            implicit_method() if self.is_stiff else pair_of(cheapest(self.start, scale / FOR_BOTH))
-        )
+        if self.is_stiff:
+            return implicit_method()
+        if self.ways:
+            return pair_of(self.ways[0].method)
+        return pair_of(cheapest(self.start, scale / FOR_BOTH))
 
     def trial(self, scale: float, method: str) -> TrialRun:
         """Make a run with all the options that the user gave."""
@@ -107,15 +127,26 @@ class Trials:
         options = self.options
         if self.trials:
             options = options | {"max_steps": self._most_steps()}
-        trial = self._run(self.start, method, rtol, options)
+        correction = None
+        if self.ways and not self.is_stiff:
+            correction = correction_along(self.start, self.ways[0], scale)
+        trial = self._run(self.start, method, rtol, options, correction)
         self.trials.append(trial)
         self.seconds = [self._as_far_as(trial, second) for second in self.seconds]
         return trial
 
     def drop(self, trial: TrialRun) -> None:
-        """Forget a trial that was too loose to come to its end, and try none as loose again."""
+        """Forget a trial that was too loose to come to its end."""
         self.trials.remove(trial)
-        self.too_loose = min(self.too_loose, trial.scale)
+
+    def next_way(self) -> None:
+        """Go on in another way: the defect of the trials did not show their error in this one.
+
+        After the last way, second runs may verify its trials.
+        """
+        del self.ways[0]
+        if self.ways:
+            self.trials.clear()
 
     def second(self, trial: TrialRun, scale: float) -> TrialRun:
         """Make a run that is better than a trial, with other steps, constants and start.
@@ -151,14 +182,28 @@ class Trials:
             self._estimates[key] = estimate(trial.solution, solutions, text, share)
         return self._estimates[key]
 
+    def error_from_defect(self, trial: TrialRun) -> ErrorEstimate | None:
+        """Return the error of a trial as its defect shows it; None where it does not."""
+        if trial.correction is None or trial.solution.stats.stiff or not self.ways:
+            return None
+        key = (trial,)
+        if key not in self._estimates:
+            text = f"the {DEFECT}{trial.text}"
+            error = error_from_defect(trial.solution, trial.correction, self.ways[0], text)
+            if error is None:
+                return None
+            self._estimates[key] = error
+        return self._estimates[key]
+
     def distance(self, trial: TrialRun, second: TrialRun) -> float:
         """Return the largest distance of a trial from one second run, as a share of the length."""
         return self.compared(trial, [second], 0.0).largest
 
     def best(self) -> RunResult | None:
         """Return the tightest of the trials that came to their end."""
-        complete = [trial for trial in self.trials if trial.solution.success]
-        return min(complete, key=lambda trial: trial.scale).solution if complete else None
+        own = [run for run in self.paid if run.solution.scene is self.start.scene]
+        complete = [run for run in own if run.solution.success]
+        return min(complete, key=lambda run: run.scale).solution if complete else None
 
     def labelled(
         self, solution: RunResult, outcome: Outcome, error: ErrorEstimate | None, why: str = ""
@@ -184,10 +229,13 @@ class Trials:
         verifying = next((key[1:-1] for key, value in estimates if value is error), ())
         paid = []
         for made in self.paid:
-            purpose = "verify" if made in verifying else "choose"
-            if made.solution is solution:
-                purpose = "run"
+            is_own = made.solution is solution
+            purpose = "run" if is_own else "verify" if made in verifying else "choose"
             paid.append(Paid(purpose, made.method, made.rtol, made.solution.stats.nfev, made.work))
+            if made.correction is not None:
+                purpose = "verify" if error is not None and is_own else "choose"
+                nfev = made.correction.nfev
+                paid.append(Paid(purpose, DEFECT + made.method, made.rtol, nfev, float(nfev)))
         return tuple(paid)
 
     def _most_steps(self, times: int = 1) -> int:
@@ -209,19 +257,26 @@ class Trials:
         self.paid[self.paid.index(second)] = went_on
         return went_on
 
-    def _run(self, start: Start, method: str, rtol: float, options: dict[str, Any]) -> TrialRun:
+    def _run(
+        self,
+        start: Start,
+        method: str,
+        rtol: float,
+        options: dict[str, Any],
+        correction: DefectCorrection | None = None,
+    ) -> TrialRun:
         is_second = start.scene is not self.start.scene
         compensated = is_second or self.compensated or rtol < COMPENSATED_BELOW
         solution = run(
             start, Choice(method, rtol, atol_beside(rtol), compensated), **options,
             time_limit=self._time_left(), progress=self._progress(),
-            warn=silent if self.paid else warn,
+            warn=silent if self.paid else warn, correction=correction,
         )  # fmt: skip
         work = float(solution.stats.nfev)
         if leading(method) == "taylor" and not solution.stats.stiff:
             work *= series_work(start.scene, rtol)
         scale = rtol * error_over_rtol(leading(method))
-        trial = TrialRun(method, rtol, scale, work, solution)
+        trial = TrialRun(method, rtol, scale, work, solution, correction)
         self.paid.append(trial)
         self._done += _ADVANCE * (1 - self._done)
         return trial

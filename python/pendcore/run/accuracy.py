@@ -11,15 +11,20 @@ from pendcore.messages.html import table
 Outcome: TypeAlias = Literal["kept", "refused", "ended early"]
 
 
+DEFECT = "defect of "
+"""How the method of a `Paid` begins that is no run, but the integration of a run's defect."""
+
+
 class Paid(NamedTuple):
-    """A run that was made.
+    """A run that was made, or the integration of its defect.
 
     Attributes
     ----------
     purpose : str
-        ``"run"`` for the run that is returned, ``"verify"`` for those that it is compared with,
-        ``"choose"`` for the others.
+        ``"run"`` for the run that is returned, ``"verify"`` for what verifies it, ``"choose"`` for
+        all else.
     method : str
+        That of the run; ``"defect of ..."`` for the integration of its defect.
     rtol : float
     nfev : int
         The number of right-hand sides, or of series for ``taylor``.
@@ -60,7 +65,7 @@ class Accuracy:
     verified_by : str
         How the verifying runs were made, or why there is none if ``times`` is 0.
     paid : tuple of Paid
-        All the runs, in their order.
+        All that was computed, in its order.
     seconds : float
         The time that all runs took together, s.
 
@@ -88,8 +93,13 @@ class Accuracy:
         """Whether the error is as small as asked."""
         return self.outcome == "kept"
 
+    @property
+    def runs(self) -> int:
+        """How many runs were made."""
+        return sum(not paid.method.startswith(DEFECT) for paid in self.paid)
+
     def work(self, purpose: str | None = None) -> float:
-        """Return the work of all runs, or of those with a purpose, in right-hand sides.
+        """Return the work of all that was computed, or of that with a purpose, in right-hand sides.
 
         A series of ``taylor`` counts as the many right-hand sides that take as long.
         """
@@ -125,6 +135,10 @@ class Accuracy:
             f"verified by {self.verified_by}"
         )
 
+    @property
+    def _runs(self) -> str:
+        return f"{self.runs} run{'s'[: self.runs != 1]}"
+
     def _repr_html_(self) -> str:
         reached = f"{self.achieved:.1e}" if self.times else "not known"
         rows = [
@@ -132,14 +146,14 @@ class Accuracy:
             ("achieved", reached),
             ("outcome", self.outcome),
             ("verified by", self.verified_by),
-            ("paid", f"{len(self.paid)} runs, {self.work():.0f} right-hand sides in all, "
+            ("paid", f"{self._runs}, {self.work():.0f} right-hand sides in all, "
              f"{self.work('run'):.0f} of them in this run; {self.seconds:.2g} s"),
         ]  # fmt: skip
         return table(rows)
 
     def __repr__(self) -> str:
         return (
-            f"{self.text()}; paid {len(self.paid)} runs, as long as "
+            f"{self.text()}; paid {self._runs}, as long as "
             f"{self.work():.0f} right-hand sides: {self.work('run'):.0f} the run, "
             f"{self.work('verify'):.0f} to verify it, {self.work('choose'):.0f} to choose it"
         )

@@ -60,13 +60,20 @@ def run(
     *,
     progress: Progress = False,
     warn: Callable[[str], object] = silent,
+    correction: _core.DefectCorrection | None = None,
     **options: Any,
 ) -> RunResult:
-    """Run; the keywords are those of `simulate`, but that ``events`` are the core's."""
+    """Run; the keywords are those of `simulate`, but that ``events`` are the core's.
+
+    ``correction`` looks on and finds the error of the run; see
+    `pendcore.accuracy.defect_correction`.
+    """
     report = callback(progress)
     options |= choice._asdict() | {"t_eval": t_eval}
     scene, q0, qd0, t_start, t_end = start
-    run = _core.simulate(scene._compiled, q0, qd0, t_start, t_end, options, report, warn)
+    run = _core.simulate(
+        scene._compiled, q0, qd0, t_start, t_end, options, report, warn, correction
+    )
     return completed(RunResult(scene, run), report)
 
 

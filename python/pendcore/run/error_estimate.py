@@ -27,7 +27,7 @@ class ErrorEstimate:
     position : ndarray, (n_t,)
         The largest error over the joints and the tip, as a share of the total length.
     verified_by : str
-        How the second runs were made.
+        How the second runs were made, or that the run's own defect took their place.
     is_lost : bool
         Whether the second runs had nothing in common with the run any more at the last time.
     is_complete : bool
@@ -103,6 +103,6 @@ class ErrorEstimate:
         return (
             f"error estimated {where} from t = {self.begin:.6g} to {until:.6g} s: "
             f"angles up to {self.angle.max(initial=0.0):.1e} rad, positions up to "
-            f"{self.position.max(initial=0.0):.1e} of the total length, from second runs by "
+            f"{self.position.max(initial=0.0):.1e} of the total length, verified by "
             f"{self.verified_by}{ends}"
         )

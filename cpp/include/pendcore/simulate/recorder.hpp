@@ -50,7 +50,7 @@ class Recorder final : public Observer {
                    bool with_end = true);
   void keep_clipped(StepOutput& output, const TwoDouble& t_old, double h, double theta, double t);
   double* append(double t);  ///< returns memory for the state at t
-  void show_step(StepOutput& output, double t, double share);
+  void show_step(StepOutput& output, double t, double h, double share);
 
   Solution& solution_;
   StepWatch* watch_;

@@ -9,6 +9,7 @@ namespace pendcore {
 /// An accepted step. Of a step in which an event ends the run, only the part before counts.
 struct WatchedStep {
   double t;                   ///< s, at its end
+  double h;                   ///< s, from theta = 0 to 1; negative in a backward run
   std::span<const double> y;  ///< the state there: angles, rates, accounts of the ledger
   /// The dense output in powers of theta, (degree + 1, size of y), if the watch asks for it.
   const double* rows;

@@ -1,0 +1,109 @@
+/// \file
+/// The error of a run, from the defect of its own curve: integrated along the run, step by step.
+///
+/// The run is u(t) = (q, qd), its dense output. The true motion is u + e, and e obeys
+///
+///     d(e_q)/dt  = qd + e_qd - dq/dt
+///     d(e_qd)/dt = qdd(t, u + e) - d(qd)/dt
+///
+/// with the accelerations qdd of the equations of motion. Only the slopes of the dense output enter
+/// beside these: the run's method, its coefficients and its error estimate do not. e needs few
+/// digits, so a few right-hand sides a step find it. They are taken at the points of a Lobatto
+/// quadrature. With the polynomial through all r_j = h (qdd - d(qd)/dt) at the points theta_j,
+///
+///     e_qd(theta) = e_qd(0) + integral of r
+///     e_q(theta)  = e_q(0) + theta h e_qd(0) + h (double integral of r) + integral of s
+///
+/// where s = h (qd - dq/dt) is zero but for the last power of a dense output. The state at a point
+/// is found in the same way from the points before it, as in an explicit Runge-Kutta-Nystrom
+/// method. The right-hand side at the last point serves the next step as well.
+///
+/// It suits Taylor series best: their error inside a step is no larger than at its ends. That of
+/// Dormand and Prince's methods is larger inside, which takes more points; e is less certain then.
+///
+/// Every neighbour is a scene and a start that differ from the run's by some last bits. So its e
+/// also has what rounding may do to the motion. The distance of two neighbours that differ only in
+/// the number of their points shows how well e itself is known.
+///
+/// Source: Zadunaisky, Numerische Mathematik 27 (1976) 21-39; Skeel, SIAM Journal on Numerical
+/// Analysis 23 (1986) 1-20, "solving for the correction". The points are those of Abramowitz and
+/// Stegun (1964), 25.4.32. Cost: for each part of a step and neighbour one right-hand side less
+/// than there are points.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "pendcore/scene/scene.hpp"
+#include "pendcore/simulate/options.hpp"
+#include "pendcore/simulate/step_watch.hpp"
+
+namespace pendcore {
+
+/// Whether the error of a run of a scene can be found in this way: no law changes with the state
+/// along it, and no joint is held.
+bool has_defect_correction(const Scene& scene);
+
+/// How far the errors of the first two neighbours are apart at the ends of the steps, up to where
+/// one of them is beyond 0.2 rad. Chaos makes it a little larger in that step, an unstable
+/// integration many times.
+struct Agreement {
+  double between = 0.0;  ///< rad, the largest distance
+  double largest = 0.0;  ///< rad, the largest error
+  double at_loss = 0.0;  ///< rad, the first error beyond; 0 if there is none
+};
+
+/// Looks on while a run is made, with dense output of any store.
+class DefectCorrection final : public StepWatch {
+ public:
+  /// Integrates each step in so many equal parts, >= 1: a motion may be too strongly damped, or a
+  /// run too long, for one.
+  explicit DefectCorrection(int parts);
+  ~DefectCorrection() override;
+  DefectCorrection(DefectCorrection&&) noexcept;
+
+  /// Adds a neighbour: a scene of as many links as the run's, its angles at the start, (n) rad, and
+  /// the number of points in a step, 5 to 9. Throws std::invalid_argument for another number, or if
+  /// the scene has no defect correction.
+  void add(const Scene& scene, const std::vector<double>& q0, int points);
+  /// Keeps errors where a run keeps its states: at t_eval, at the steps, or at the end; of a run
+  /// with dense output at six times in each step.
+  void keep(Store store, const std::vector<double>& t_eval);
+
+  bool asks_for_dense_output() const override { return true; }
+  void starts(double t, std::span<const double> y) override;
+  void steps(const WatchedStep& step) override;
+  void jumps(double t, std::span<const double> y) override;
+
+  const std::vector<double>& t() const { return t_; }  ///< s, (n_t)
+  /// The errors of the angles, (n_t, neighbours, n) row-major, rad. Not finite where e has grown
+  /// beyond all bounds.
+  const std::vector<double>& errors() const { return errors_; }
+  const Agreement& agreement() const { return agreement_; }
+  std::vector<double> errors_at_end() const;  ///< the same where the run is now, (neighbours, n)
+  std::size_t neighbours() const { return neighbours_.size(); }
+  std::size_t links() const;                ///< n
+  long long nfev() const { return nfev_; }  ///< right-hand sides
+
+ private:
+  struct Points;
+  struct Part;
+  struct Neighbour;
+  static const Points& points_of(int count);
+  void keep_errors(const Part& part);
+  void compare();
+  double* append(double t);
+
+  int parts_;
+  std::vector<std::unique_ptr<Neighbour>> neighbours_;
+  Store store_ = Store::end;
+  std::vector<double> t_eval_;
+  std::size_t next_time_ = 0;
+  double t_start_ = 0.0;  ///< s, of the step
+  std::vector<double> t_, errors_;
+  Agreement agreement_;
+  long long nfev_ = 0;
+};
+
+}  // namespace pendcore

@@ -1,0 +1,129 @@
+"""The error of a run, from the defect of its own curve.
+
+While the run is made, the core integrates the equation that its error obeys
+(cpp/include/pendcore/analysis/defect_correction.hpp). This takes the closed-form right-hand side,
+which shares no code with a series, a few times in each step. Neighbours of the scene, whose
+constants and starts are some last bits off (`pendcore.accuracy.rounding`), take the place of second
+runs. The first two are the same neighbour, integrated with different numbers of points: their
+distance is the error of the correction itself. Where rounding may matter, others follow. With the
+errors e_1, e_2, ... the error is at most
+
+    max_i |e_i| + share (the largest max_i |e_i| so far) + max_ij |e_i - e_j|
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from pendcore import _core
+from pendcore.accuracy.estimate import apart, error_over
+from pendcore.accuracy.method_choice import series_work
+from pendcore.accuracy.position_error import angles_at
+from pendcore.accuracy.rounding import moved
+from pendcore.run.call import Start, supports
+from pendcore.run.error_estimate import ErrorEstimate
+from pendcore.run.result import RunResult
+
+
+class Way(NamedTuple):
+    """How the defect of a run tells its error.
+
+    Attributes
+    ----------
+    method : str
+        The method of the run.
+    points : (int, int)
+        The numbers of points in a step with which the first neighbour is integrated.
+    agree : float
+        The two are trusted if their distance is at most this share of the larger one, up to where
+        they are lost. They differ by more where a motion is strongly damped, and after thousands
+        of steps.
+    share : float
+        The share of the largest correction so far that is added to the error.
+    parts : int
+        The number of parts of a step that are integrated one after the other.
+    """
+
+    method: str
+    points: tuple[int, int]
+    agree: float
+    share: float
+    parts: int = 1
+
+
+# The shares are two to five times what all of 400 scenes (seeds 200 to 999 of
+# tests/models/regular_scenes.py, every other one) needed at nine tolerances.
+SERIES = Way("taylor", (6, 5), agree=0.15, share=0.35)
+SERIES_OF_MORE_POINTS = Way("taylor", (8, 7), agree=0.2, share=0.25)
+SERIES_IN_PARTS = Way("taylor", (8, 7), agree=0.2, share=0.25, parts=2)
+RUNGE_KUTTA = Way("dop853", (9, 8), agree=0.1, share=1.0)
+MORE_POINTS_BELOW = 1e-8
+"""The error asked for below which a series has so many terms that it needs more points."""
+EXPENSIVE, LOOSE = 18.0, 1e-5
+"""Where a series takes as long as more than EXPENSIVE right-hand sides, and the error asked for is
+larger than LOOSE, dop853 takes less work."""
+LOST = 0.2
+"""A larger error, as a share of the total length, is known only to be large."""
+LARGE = 0.1
+"""A larger error asked for is left to second runs, which still know it."""
+UNSTABLE = 5.0
+"""rad; a correction that exceeds this value at once is not that of a chaotic motion."""
+OTHERS = ((1e-12, 2), (5e-12, 1))
+"""Pairs: a trial below this scale needs this many other neighbours, as rounding may matter."""
+
+
+def ways(start: Start, error: float) -> list[Way]:
+    """Return the ways to know the error of a run from its defect, the first one to be tried first.
+
+    There is none where a law changes with the state or has no series, or where a joint is held.
+    """
+    if error > LARGE or not (
+        _core.has_defect_correction(start.scene._compiled) and supports("taylor", start)
+    ):
+        return []
+    if error < MORE_POINTS_BELOW:
+        return [SERIES_OF_MORE_POINTS, SERIES_IN_PARTS]
+    by_series = [SERIES, SERIES_OF_MORE_POINTS, SERIES_IN_PARTS]
+    if error > LOOSE and series_work(start.scene, 1e-3) > EXPENSIVE:
+        return [RUNGE_KUTTA, *by_series]
+    return by_series
+
+
+def correction_along(start: Start, way: Way, scale: float) -> _core.DefectCorrection:
+    """Return what is to look on while a run of a typical error, ``scale``, is made."""
+    others = next((count for below, count in OTHERS if scale < below), 0)
+    first = moved(start, 0)
+    made = [(first, points) for points in way.points]
+    made += [(moved(start, seed), way.points[1]) for seed in range(1, 1 + others)]
+    return _core.DefectCorrection(
+        [(one.scene._compiled, one.q0, points) for one, points in made], way.parts
+    )
+
+
+def error_from_defect(
+    solution: RunResult, correction: _core.DefectCorrection, way: Way, verified_by: str
+) -> ErrorEstimate | None:
+    """Return the error of a run as its correction shows it; None if this cannot be trusted.
+
+    A run that is lost has no known error from there on.
+    """
+    between, largest, at_loss = correction.agreement
+    if not (between <= way.agree * largest and at_loss < UNSTABLE):
+        return None
+    t, corrections = correction.t, np.moveaxis(correction.errors, 1, 0)
+    if not len(t):
+        t, corrections = np.array([solution.run.t_reached]), correction.errors_at_end
+    with np.errstate(all="ignore"):
+        corrected = corrections + angles_at(solution, t)
+        found = apart(solution, t, lambda at: [*corrected[:, at]])
+        angle, position = (
+            from_run + way.share * np.maximum.accumulate(from_run) + between + found.rounding
+            for from_run, between in (
+                (found.angle_from_run, found.angle),
+                (found.position_from_run, found.position),
+            )
+        )
+    angle[~(found.position_from_run < LOST)] = np.inf
+    return error_over(solution, t, angle, position, verified_by)

@@ -1,0 +1,172 @@
+"""The error that the core finds from the defect of a run is the distance from the true motion."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pendcore as pc
+import pytest
+from pendcore import _core
+from pendcore.accuracy import defect_correction
+from pendcore.run.call import Choice, Start, atol_beside, run
+
+CHAIN = pc.Scene(
+    links=[
+        pc.Link(mass=1.0, length=0.5),
+        pc.Link(mass=2.0, length=0.3),
+        pc.Link(mass=0.5, length=1),
+    ],
+    effects=[pc.effects.ViscousJoint(joint=2, damping=0.1)],
+)
+DRIVEN = pc.Scene(
+    links=[pc.Link(mass=1.0, length=1.0)],
+    effects=[pc.effects.DrivenPivot(y=pc.effects.Sinusoid(0.05, angular_frequency=7.0))],
+)
+SCENES = {
+    "textbook": Start(pc.Scene.textbook(), [0.8, 1.0], 0.0, 0.0, 5.0),
+    "backward": Start(pc.Scene.textbook(), [0.8, 1.0], [1.0, -1.0], 2.0, -1.0),
+    "three links": Start(CHAIN, [2.0, 1.0, 1.5], 0.0, 0.0, 4.0),
+    "driven": Start(DRIVEN, [0.3], 0.0, 12.5, 20.0),
+}
+WAYS = [
+    defect_correction.SERIES,
+    defect_correction.SERIES_OF_MORE_POINTS,
+    defect_correction.SERIES_IN_PARTS,
+    defect_correction.RUNGE_KUTTA,
+]
+KEPT: dict[str, dict[str, Any]] = {
+    "dense": {},
+    "steps": {"store": "steps"},
+    "end": {"store": "end"},
+    "times": {"t_eval": 7},
+}
+
+
+def corrected(
+    start: Start, scene: pc.Scene, way: defect_correction.Way, rtol: float = 1e-6, **kept: Any
+) -> tuple[pc.Solution, _core.DefectCorrection]:
+    """Run, and integrate the distance from the motion of a scene with the same start."""
+    neighbours = [(scene._compiled, start.q0, points) for points in way.points]
+    correction = _core.DefectCorrection(neighbours, way.parts)
+    if "t_eval" in kept:
+        kept["t_eval"] = np.linspace(start.t_start, start.t_end, kept["t_eval"])
+    solution = run(
+        start, Choice(way.method, rtol, atol_beside(rtol)), correction=correction, **kept
+    )
+    return solution, correction
+
+
+def angles(start: Start, t: np.ndarray) -> np.ndarray:
+    """Return the angles of the motion, (n_t, n) rad, by a method that none of the runs took."""
+    exact = Choice("dop853", 1e-13, 1e-16, compensated=True)
+    return run(start, exact)(t)[: len(start.scene.links)].T
+
+
+@pytest.mark.parametrize("way", WAYS, ids=lambda way: f"{way.method} {way.points} {way.parts}")
+@pytest.mark.parametrize("name", SCENES)
+def test_correction_is_the_error_of_the_run(name: str, way: defect_correction.Way) -> None:
+    start = SCENES[name]
+    solution, correction = corrected(start, start.scene, way)
+    t = correction.t
+    assert (t[0], t[-1]) == (start.t_start, start.t_end)
+    assert len(t) >= 6 * solution.stats.accepted
+    error = angles(start, t) - solution(t)[: len(start.scene.links)].T
+    assert np.abs(error).max() > 1e-9
+    for one in np.moveaxis(correction.errors, 1, 0):
+        assert np.abs(one - error).max() <= 0.15 * np.abs(error).max()
+
+
+@pytest.mark.parametrize("kept", KEPT)
+def test_errors_are_kept_where_states_are(kept: str) -> None:
+    start = SCENES["textbook"]
+    solution, correction = corrected(start, start.scene, WAYS[1], **KEPT[kept])
+    t = correction.t if kept == "dense" else solution.t
+    assert correction.t.tolist() == t.tolist()
+    q = solution(t)[:2].T if kept == "dense" else solution.q
+    error = angles(start, t) - q
+    assert np.abs(correction.errors[:, 0] - error).max() <= 0.1 * np.abs(error).max()
+    assert correction.errors_at_end[:, 0].tolist() == correction.errors[-1].tolist()
+
+
+def test_neighbour_that_is_another_scene_gives_the_distance_from_its_motion() -> None:
+    start = SCENES["textbook"]
+    first, second = start.scene.links
+    heavier = pc.Scene(links=[first, pc.Link(mass=second.mass * (1 + 1e-6), length=second.length)])
+    solution, correction = corrected(start, heavier, WAYS[1], rtol=1e-11)
+    t = correction.t
+    distance = angles(start._replace(scene=heavier), t) - solution(t)[:2].T
+    assert np.abs(distance).max() > 1e-7
+    assert np.abs(correction.errors[:, 0] - distance).max() <= 1e-3 * np.abs(distance).max()
+
+
+def test_correction_ends_at_an_event_within_a_step() -> None:
+    start = SCENES["textbook"]._replace(t_end=50.0)
+    event = pc.events.JointAngle(joint=1, value=1.2, terminal=True)._as_pair()
+    solution, correction = corrected(start, start.scene, WAYS[0], events=[event])
+    assert solution.status == "event"
+    assert correction.t[-1] == solution.t[-1] < 50.0
+    t = correction.t
+    error = angles(start._replace(t_end=5.0), t) - solution(t)[:2].T
+    assert np.abs(correction.errors[:, 0] - error).max() <= 0.15 * np.abs(error).max()
+
+
+def test_run_has_the_same_bits_with_and_without_a_correction() -> None:
+    start = SCENES["three links"]
+    for way in WAYS:
+        with_it, _ = corrected(start, start.scene, way)
+        alone = run(start, Choice(way.method, 1e-6, 1e-9))
+        assert with_it.y.tobytes() == alone.y.tobytes()
+
+
+def test_unstable_correction_is_not_trusted_and_second_runs_take_its_place() -> None:
+    damped = pc.Scene(links=CHAIN.links, effects=[pc.effects.ViscousJoint(joint=1, damping=300.0)])
+    start = Start(damped, [2.0, 1.0, 1.5], 0.0, 0.0, 1.0)
+    solution, correction = corrected(start, damped, WAYS[0], rtol=1e-8)
+    assert defect_correction.error_from_defect(solution, correction, WAYS[0], "") is None
+    sol = pc.simulate(damped, start.q0, 0.0, (0, 1), error=1e-7)
+    assert sol.accuracy.outcome == "kept"
+    assert not sol.accuracy.verified_by.startswith("the defect")
+    t = np.linspace(0, 1, 101)
+    assert np.abs(angles(start, t) - sol(t)[:3].T).max() <= 1e-6
+
+
+def test_chaotic_motion_is_lost_and_its_early_part_known() -> None:
+    scene = pc.Scene.textbook()
+    start = Start(scene, [-1.5, -1.4], 0.0, 0.0, 60.0)
+    way = defect_correction.SERIES_OF_MORE_POINTS
+    correction = defect_correction.correction_along(start, way, 1e-10)
+    solution = run(start, Choice("taylor", 1e-10, 1e-13), correction=correction)
+    error = defect_correction.error_from_defect(solution, correction, way, "its defect")
+    assert error.is_lost
+    assert 5.0 < error.t[-1] < 60.0
+    early = error.t[error.position < 1e-4]
+    apart = np.abs(angles(start._replace(t_end=early[-1]), early) - solution(early)[:2].T)
+    assert (apart.max(axis=1) <= error.angle[: len(early)]).all()
+
+
+def test_scene_whose_law_changes_with_the_state_has_no_correction() -> None:
+    stopped = pc.Scene(
+        links=CHAIN.links, effects=[pc.effects.JointStop(joint=2, range=(-1.0, 1.0))]
+    )
+    drag = pc.effects.RodDrag(link=1, drag_coefficient=1.2, diameter=0.01)
+    dragged = pc.Scene(links=CHAIN.links, effects=[drag])
+    for scene in (stopped, dragged):
+        assert defect_correction.ways(Start(scene, [1.5] * 3, 0.0, 0.0, 1.0), 1e-6) == []
+    with pytest.raises(ValueError, match="changes with the state"):
+        _core.DefectCorrection([(stopped._compiled, [1.5] * 3, 6)], 1)
+
+
+@pytest.mark.parametrize("points", [4, 10])
+def test_number_of_points_is_bounded(points: int) -> None:
+    with pytest.raises(ValueError, match=f"points = {points}: must be from 5 to 9"):
+        _core.DefectCorrection([(CHAIN._compiled, [1.5] * 3, points)], 1)
+
+
+def test_rounding_of_the_states_is_part_of_the_error() -> None:
+    start = Start(pc.Scene.textbook(), [0.6, 1.0], 0.0, 0.0, 60.0)
+    solution, correction = corrected(start, start.scene, WAYS[1], rtol=1e-14, store="steps")
+    exact = Choice("dop853", 1e-15, 1e-18, compensated=True)
+    error = run(start, exact, solution.t).q - solution.q
+    assert np.abs(error).max() > 5e-14
+    assert np.abs(correction.errors[:, 0] - error).max() <= 0.5 * np.abs(error).max()
