@@ -44,7 +44,8 @@ void bind_defect_correction(py::module_& module) {
       .def_property_readonly("agreement",
                              [](const DefectCorrection& correction) {
                                const Agreement& found = correction.agreement();
-                               return py::make_tuple(found.between, found.largest, found.at_loss);
+                               return py::make_tuple(found.between, found.largest, found.at_loss,
+                                                     found.t_known);
                              })
       .def_property_readonly("nfev", &DefectCorrection::nfev);
   module.def("has_defect_correction", &has_defect_correction, py::arg("scene"));

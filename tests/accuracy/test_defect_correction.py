@@ -58,7 +58,7 @@ def corrected(
 
 
 def angles(start: Start, t: np.ndarray) -> np.ndarray:
-    """Return the angles of the motion, (n_t, n) rad, by a method that none of the runs took."""
+    """Return the angles of the motion, (n_t, n) rad."""
     exact = Choice("dop853", 1e-13, 1e-16, compensated=True)
     return run(start, exact)(t)[: len(start.scene.links)].T
 
@@ -145,7 +145,7 @@ def test_chaotic_motion_is_lost_and_its_early_part_known() -> None:
     assert (apart.max(axis=1) <= error.angle[: len(early)]).all()
 
 
-def test_scene_whose_law_changes_with_the_state_has_no_correction() -> None:
+def test_scene_that_switches_or_has_no_series_has_no_way() -> None:
     stopped = pc.Scene(
         links=CHAIN.links, effects=[pc.effects.JointStop(joint=2, range=(-1.0, 1.0))]
     )
@@ -153,8 +153,55 @@ def test_scene_whose_law_changes_with_the_state_has_no_correction() -> None:
     dragged = pc.Scene(links=CHAIN.links, effects=[drag])
     for scene in (stopped, dragged):
         assert defect_correction.ways(Start(scene, [1.5] * 3, 0.0, 0.0, 1.0), 1e-6) == []
-    with pytest.raises(ValueError, match="changes with the state"):
+    with pytest.raises(ValueError, match="a law switches"):
         _core.DefectCorrection([(stopped._compiled, [1.5] * 3, 6)], 1)
+
+
+def test_run_of_no_length_and_one_with_a_ledger_are_corrected_too() -> None:
+    still = SCENES["textbook"]._replace(t_end=0.0)
+    _, correction = corrected(still, still.scene, WAYS[0])
+    assert correction.errors.tolist() == [[[0.0, 0.0], [0.0, 0.0]]]
+    start = SCENES["three links"]
+    _, alone = corrected(start, start.scene, WAYS[0])
+    _, with_ledger = corrected(start, start.scene, WAYS[0], ledger=True)
+    assert with_ledger.errors[-1] == pytest.approx(alone.errors[-1], rel=0.2)
+
+
+@pytest.mark.parametrize("way", [WAYS[0], WAYS[2]], ids=["one part", "two parts"])
+def test_times_before_an_event_are_kept_and_none_after_it(way: defect_correction.Way) -> None:
+    start = SCENES["textbook"]._replace(t_end=50.0)
+    event = pc.events.JointAngle(joint=1, value=1.2, terminal=True)._as_pair()
+    solution, correction = corrected(start, start.scene, way, events=[event], t_eval=2001)
+    assert solution.status == "event"
+    assert 3 < len(solution.t) < 2001
+    assert correction.t.tolist() == solution.t.tolist()
+    error = angles(start._replace(t_end=5.0), solution.t) - solution.q
+    assert np.abs(correction.errors[:, 0] - error).max() <= 0.15 * np.abs(error).max()
+
+
+def test_correction_looks_on_one_run_only_and_wants_neighbours_alike() -> None:
+    start = SCENES["textbook"]
+    correction = defect_correction.correction_along(start, WAYS[0], 1e-6)
+    run(start, Choice("taylor", 1e-6, 1e-9), correction=correction)
+    with pytest.raises(ValueError, match="a run already"):
+        run(start, Choice("taylor", 1e-6, 1e-9), correction=correction)
+    with pytest.raises(ValueError, match="as many links"):
+        _core.DefectCorrection([(start.scene._compiled, [1.0] * 3, 6)], 1)
+    mixed = [(start.scene._compiled, [1.0] * 2, 6), (CHAIN._compiled, [1.0] * 3, 5)]
+    with pytest.raises(ValueError, match="as many links"):
+        _core.DefectCorrection(mixed, 1)
+    three = _core.DefectCorrection([(CHAIN._compiled, [1.0] * 3, 6)], 1)
+    with pytest.raises(ValueError, match="more links than the run"):
+        run(start, Choice("taylor", 1e-6, 1e-9), correction=three)
+
+
+def test_what_was_not_trusted_did_not_verify() -> None:
+    damped = pc.Scene(links=CHAIN.links, effects=[pc.effects.ViscousJoint(joint=1, damping=300.0)])
+    told = pc.simulate(damped, [2.0, 1.0, 1.5], 0.0, (0, 1), error=1e-7).accuracy
+    verified = [paid.method for paid in told.paid if paid.purpose == "verify"]
+    assert verified
+    assert not any(method.startswith("defect of") for method in verified)
+    assert told.runs < len(told.paid)
 
 
 @pytest.mark.parametrize("points", [4, 10])

@@ -3,116 +3,77 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "pendcore/analysis/lobatto_points.hpp"
+#include "pendcore/arithmetic/instruction_set.hpp"
+#include "pendcore/arithmetic/pack.hpp"
 #include "pendcore/dynamics/equations_of_motion.hpp"
-#include "pendcore/integrate/horner.hpp"
 #include "pendcore/simulate/switching.hpp"
 
 namespace pendcore {
 namespace {
 
-constexpr std::size_t most_points = 9;
-constexpr std::size_t extrapolated_from = 3;
-constexpr double lost = 0.2;  ///< rad
-constexpr int within = 6;     ///< times kept in each step of a run with dense output
+constexpr double lost = 0.2;  ///< of the total length
+constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
-using Weights = std::array<double, most_points>;
-
-/// A polynomial in theta: its coefficients, that of theta^0 first.
-using Polynomial = std::array<double, most_points>;
-
-double integral(const Polynomial& p, double theta) {
-  double sum = 0.0;
-  for (std::size_t i = p.size(); i-- > 0;) sum = theta * sum + p[i] / static_cast<double>(i + 1);
-  return theta * sum;
-}
-
-double double_integral(const Polynomial& p, double theta) {
-  double sum = 0.0;
-  for (std::size_t i = p.size(); i-- > 0;) {
-    sum = theta * sum + p[i] / static_cast<double>((i + 1) * (i + 2));
+/// The dense output of a step at so many points, for a block of its columns, and its slopes times a
+/// factor. The points are the inner loop, so that none waits for another.
+template <class Block, int count>
+PENDCORE_INLINE void evaluate_block(const double* rows, int degree, std::ptrdiff_t row,
+                                    const double* at, double factor, std::ptrdiff_t to_row,
+                                    double* y, double* slope) {
+  Block value[count];
+  Block derivative[count];
+  const Block top = load<Block>(rows + degree * row);
+  for (int i = 0; i < count; ++i) {
+    value[i] = top;
+    derivative[i] = broadcast<Block>(0.0);
   }
-  return theta * theta * sum;
-}
-
-/// The polynomial that is 1 at point j and 0 at the others.
-Polynomial lagrange(std::span<const double> points, std::size_t j) {
-  Polynomial product{1.0};
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (i == j) continue;
-    const double scale = 1.0 / (points[j] - points[i]);
-    for (std::size_t p = product.size(); p-- > 0;) {
-      product[p] = scale * ((p > 0 ? product[p - 1] : 0.0) - points[i] * product[p]);
+  for (std::ptrdiff_t p = degree - 1; p >= 0; --p) {
+    const Block c = load<Block>(rows + p * row);
+#pragma GCC unroll 16
+    for (int i = 0; i < count; ++i) {
+      derivative[i] = fma(at[i], derivative[i], value[i]);
+      value[i] = fma(at[i], value[i], c);
     }
   }
-  return product;
+#pragma GCC unroll 16
+  for (int i = 0; i < count; ++i) {
+    store(y + i * to_row, value[i]);
+    store(slope + i * to_row, factor * derivative[i]);
+  }
+}
+
+/// The same for all of the columns, an even number.
+template <int count>
+PENDCORE_INLINE void evaluate_dense_output(const double* rows, int degree, std::ptrdiff_t row,
+                                           const double* at, double factor, std::ptrdiff_t columns,
+                                           double* y, double* slope) {
+  std::ptrdiff_t k = 0;
+  for (; k + 4 <= columns; k += 4) {
+    evaluate_block<Pack<4>, count>(rows + k, degree, row, at, factor, columns, y + k, slope + k);
+  }
+  for (; k + 2 <= columns; k += 2) {
+    evaluate_block<Pair, count>(rows + k, degree, row, at, factor, columns, y + k, slope + k);
+  }
+}
+
+using Evaluate = void (*)(const double*, int, std::ptrdiff_t, const double*, double, std::ptrdiff_t,
+                          double*, double*);
+
+Evaluate evaluation_at(std::size_t points) {
+  static const std::array<Evaluate, 5> all = {
+      fastest<&evaluate_dense_output<5>>(), fastest<&evaluate_dense_output<6>>(),
+      fastest<&evaluate_dense_output<7>>(), fastest<&evaluate_dense_output<8>>(),
+      fastest<&evaluate_dense_output<9>>()};
+  return all.at(points - 5);
 }
 
 }  // namespace
-
-/// The points of a Lobatto quadrature in [0, 1], and what a step needs of them.
-struct DefectCorrection::Points {
-  std::size_t count;
-  Weights theta{};
-  std::array<Polynomial, most_points> through_all{};
-  /// For each point, the weights of the values at all points in the integral up to it.
-  std::array<Weights, most_points> of_all{};
-  /// The same with the values at the points before it alone, and those of the double integral.
-  std::array<Weights, most_points> of_earlier{}, twice_of_earlier{};
-
-  explicit Points(std::span<const double> points) : count(points.size()) {
-    std::ranges::copy(points, theta.begin());
-    for (std::size_t j = 0; j < count; ++j) through_all[j] = lagrange(points, j);
-    for (std::size_t i = 0; i < count; ++i) {
-      for (std::size_t j = 0; j < count; ++j) of_all[i][j] = integral(through_all[j], theta[i]);
-      if (i > 0) weigh_earlier(points.first(i), i);
-    }
-  }
-
- private:
-  /// Up to the last of the earlier points the polynomial goes through all of them. From there on
-  /// one through the last few is more stable.
-  void weigh_earlier(std::span<const double> earlier, std::size_t i) {
-    const std::size_t few = std::min(extrapolated_from, earlier.size());
-    const std::size_t first = earlier.size() - few;
-    const double known = earlier.back();
-    const double left = theta[i] - known;
-    for (std::size_t j = 0; j < earlier.size(); ++j) {
-      const Polynomial p = lagrange(earlier, j);
-      of_earlier[i][j] = integral(p, known);
-      twice_of_earlier[i][j] = double_integral(p, known) + left * integral(p, known);
-    }
-    for (std::size_t j = 0; j < few; ++j) {
-      const Polynomial p = lagrange(earlier.last(few), j);
-      of_earlier[i][first + j] += integral(p, theta[i]) - integral(p, known);
-      twice_of_earlier[i][first + j] +=
-          double_integral(p, theta[i]) - double_integral(p, known) - left * integral(p, known);
-    }
-  }
-};
-
-const DefectCorrection::Points& DefectCorrection::points_of(int count) {
-  // (1 + x)/2 for the zeros x of the derivative of Legendre's polynomials, and for x = -1 and 1
-  static const std::array all = {
-      Points(std::array{0.0, 0.17267316464601143, 0.5, 0.82732683535398857, 1.0}),
-      Points(std::array{0.0, 0.11747233803526765, 0.35738424175967745, 0.64261575824032255,
-                        0.88252766196473235, 1.0}),
-      Points(std::array{0.0, 0.084888051860716535, 0.26557560326464289, 0.5, 0.73442439673535711,
-                        0.91511194813928346, 1.0}),
-      Points(std::array{0.0, 0.064129925745196692, 0.20414990928342885, 0.39535039104876057,
-                        0.60464960895123943, 0.79585009071657115, 0.93587007425480331, 1.0}),
-      Points(std::array{0.0, 0.050121002294269921, 0.16140686024463112, 0.31844126808691092, 0.5,
-                        0.68155873191308908, 0.83859313975536888, 0.94987899770573008, 1.0})};
-  const int least = static_cast<int>(all.front().count);
-  const int most = static_cast<int>(all.back().count);
-  if (count < least || count > most) {
-    throw std::invalid_argument("points = " + std::to_string(count) + ": must be from 5 to 9");
-  }
-  return all[static_cast<std::size_t>(count - least)];
-}
 
 bool has_defect_correction(const Scene& scene) { return !Switching::is_needed(scene); }
 
@@ -125,51 +86,56 @@ struct DefectCorrection::Part {
   bool ends_the_step;
 
   double theta(double share) const { return from + share * size; }
-  double at(std::size_t column, double share) const {
-    const auto row = static_cast<int>(step.y.size());
-    return horner<double>(step.rows + column, step.degree, row, theta(share));
-  }
   /// By how much the run's state is off the end of the dense output: a sum was rounded there. The
   /// state at the start comes last, so that little is rounded here.
   double jump(std::size_t column) const {
-    const auto row = static_cast<int>(step.y.size());
     const double end = theta(1.0);
-    const double turned = end * horner<double>(step.rows + row + column, step.degree - 1, row, end);
-    return turned + (step.rows[column] - step.y[column]);
-  }
-  /// The derivative with respect to the share of the part.
-  double slope(std::size_t column, double share) const {
-    double sum = 0.0;
-    for (int p = step.degree; p > 0; --p) {
-      sum =
-          theta(share) * sum + p * step.rows[static_cast<std::size_t>(p) * step.y.size() + column];
+    double turned = 0.0;
+    for (std::size_t p = static_cast<std::size_t>(step.degree); p > 0; --p) {
+      turned = end * (turned + step.rows[p * step.y.size() + column]);
     }
-    return size * sum;
+    return turned + (step.rows[column] - step.y[column]);
   }
 };
 
 /// A neighbour of the run: its error now, and along the last part of a step.
 struct DefectCorrection::Neighbour {
-  Neighbour(const Scene& scene, std::vector<double> angles, const Points& its_points)
+  Neighbour(const Scene& scene, std::vector<double> angles, const LobattoPoints& its_points)
       : equations(equations_of_motion(scene)),
         qdd_of(right_hand_side(equations)),
         points(its_points),
+        evaluate(evaluation_at(its_points.count)),
         n(scene.links.size()),
         q0(std::move(angles)) {
     for (auto* one : {&e_q, &e_qd, &e_q_before, &e_qd_before, &q, &qd, &qdd}) one->resize(n);
     r.resize(points.count * n);
     s.resize(points.count * n);
+    y.resize(points.count * 2 * n);
+    slope.resize(points.count * 2 * n);
+    double total = 0.0;
+    for (const Link& link : scene.links) total += link.length;
+    for (const Link& link : scene.links) shares.push_back(link.length / total);
+  }
+
+  /// It is lost: nothing of its error is known any more.
+  void forget() {
+    std::ranges::fill(e_q, not_known);
+    std::ranges::fill(e_q_before, not_known);
   }
 
   /// Goes to the end of a part of a step. Returns the right-hand sides taken.
   int go_on(const Part& part) {
     e_q_before = e_q;
     e_qd_before = e_qd;
+    LobattoPoints::Numbers at{};
+    for (std::size_t i = 0; i < points.count; ++i) at[i] = part.theta(points.theta[i]);
+    evaluate(part.step.rows, part.step.degree, static_cast<std::ptrdiff_t>(part.step.y.size()),
+             at.data(), part.size, static_cast<std::ptrdiff_t>(2 * n), y.data(), slope.data());
     for (std::size_t i = 0; i < points.count; ++i) {
       for (std::size_t link = 0; link < n; ++link) {
-        const double theta = points.theta[i];
-        s[i * n + link] = part.h * part.at(n + link, theta) - part.slope(link, theta);
-        r[i * n + link] = -part.slope(n + link, theta);
+        const std::size_t angle = i * 2 * n + link;
+        s[i * n + link] = part.h * y[angle + n] - slope[angle];
+        r[i * n + link] = -slope[angle + n];
       }
     }
     for (std::size_t i = 0; i < points.count; ++i) {
@@ -181,11 +147,10 @@ struct DefectCorrection::Neighbour {
       }
       for (std::size_t link = 0; link < n; ++link) r[i * n + link] += part.h * qdd[link];
     }
+    const LobattoPoints::Numbers& weights = points.of_all[points.count - 1];
+    angles_at(points.equal_parts.back(), part.h, e_q.data());
     for (std::size_t link = 0; link < n; ++link) {
-      e_q[link] = angle_at(link, 1.0, part.h);
-      for (std::size_t j = 0; j < points.count; ++j) {
-        e_qd[link] += points.of_all[points.count - 1][j] * r[j * n + link];
-      }
+      for (std::size_t j = 0; j < points.count; ++j) e_qd[link] += weights[j] * r[j * n + link];
       if (!part.ends_the_step) continue;
       e_q[link] += part.jump(link);
       e_qd[link] += part.jump(n + link);
@@ -195,40 +160,47 @@ struct DefectCorrection::Neighbour {
     return taken;
   }
 
-  /// The error of an angle within the last part, of length h, s.
-  double angle_at(std::size_t link, double theta, double h) const {
-    double angle = e_q_before[link] + theta * h * e_qd_before[link];
-    for (std::size_t j = 0; j < points.count; ++j) {
-      angle += h * double_integral(points.through_all[j], theta) * r[j * n + link];
-      angle += integral(points.through_all[j], theta) * s[j * n + link];
+  /// The errors of the angles within the last part, of length h, s.
+  void angles_at(const LobattoPoints::Within& at, double h, double* errors) const {
+    for (std::size_t link = 0; link < n; ++link) {
+      double angle = e_q_before[link] + at.theta * h * e_qd_before[link];
+      for (std::size_t j = 0; j < points.count; ++j) {
+        angle += h * at.twice[j] * r[j * n + link] + at.once[j] * s[j * n + link];
+      }
+      errors[link] = angle;
     }
-    return angle;
   }
 
   EquationsOfMotion equations;
   RightHandSide qdd_of;
-  const Points& points;
+  const LobattoPoints& points;
+  Evaluate evaluate;
   std::size_t n;
   std::vector<double> q0;
-  std::vector<double> e_q{}, e_qd{}, e_q_before{}, e_qd_before{}, q{}, qd{}, qdd{}, r{}, s{};
+  std::vector<double> shares{};  ///< of the links in the total length
+  std::vector<double> e_q{}, e_qd{}, e_q_before{}, e_qd_before{}, q{}, qd{}, qdd{};
+  std::vector<double> r{}, s{};      ///< (points, n)
+  std::vector<double> y{}, slope{};  ///< the dense output and its slopes, (points, 2n)
   bool is_first = true;
 
  private:
   /// Sets q and qd at a point to the run's and their errors, as the points before it have them.
   void set_state(const Part& part, std::size_t i) {
     const double theta = points.theta[i];
+    const double* const once = points.of_earlier[i].data();
+    const double* const twice = points.twice_of_earlier[i].data();
+    const double* const all = points.of_all[i].data();
     for (std::size_t link = 0; link < n; ++link) {
-      double rate = e_qd[link];
-      double angle = e_q[link] + theta * part.h * e_qd[link];
+      double rate = 0.0;
+      double angle = 0.0;
+      double sum = 0.0;
       for (std::size_t j = 0; j < i; ++j) {
-        rate += points.of_earlier[i][j] * r[j * n + link];
-        angle += part.h * points.twice_of_earlier[i][j] * r[j * n + link];
+        rate += once[j] * r[j * n + link];
+        angle += twice[j] * r[j * n + link];
       }
-      for (std::size_t j = 0; j < points.count; ++j) {
-        angle += points.of_all[i][j] * s[j * n + link];
-      }
-      q[link] = part.at(link, theta) + angle;
-      qd[link] = part.at(n + link, theta) + rate;
+      for (std::size_t j = 0; j < points.count; ++j) sum += all[j] * s[j * n + link];
+      q[link] = y[i * 2 * n + link] + (e_q[link] + part.h * (theta * e_qd[link] + angle) + sum);
+      qd[link] = y[i * 2 * n + n + link] + (e_qd[link] + rate);
     }
   }
 };
@@ -244,10 +216,13 @@ DefectCorrection::DefectCorrection(DefectCorrection&&) noexcept = default;
 void DefectCorrection::add(const Scene& scene, const std::vector<double>& q0, int points) {
   if (!has_defect_correction(scene)) {
     throw std::invalid_argument(
-        "scene: a law changes with the state, or a joint is held: its runs have no defect "
-        "correction");
+        "scene: a law switches or a joint may be held: its runs have no defect correction");
   }
-  neighbours_.push_back(std::make_unique<Neighbour>(scene, q0, points_of(points)));
+  const std::size_t n = scene.links.size();
+  if (q0.size() != n || (!neighbours_.empty() && links() != n)) {
+    throw std::invalid_argument("q0: the neighbours must have as many links, and angles, alike");
+  }
+  neighbours_.push_back(std::make_unique<Neighbour>(scene, q0, lobatto_points(points)));
 }
 
 void DefectCorrection::keep(Store store, const std::vector<double>& t_eval) {
@@ -256,7 +231,13 @@ void DefectCorrection::keep(Store store, const std::vector<double>& t_eval) {
 }
 
 void DefectCorrection::starts(double t, std::span<const double> y) {
+  if (has_started_) throw std::invalid_argument("correction: it has looked on a run already");
+  if (y.size() < 2 * links()) {
+    throw std::invalid_argument("correction: its neighbours have more links than the run");
+  }
+  has_started_ = true;
   t_start_ = t;
+  agreement_.t_known = t;
   for (const auto& one : neighbours_) {
     for (std::size_t link = 0; link < one->n; ++link) one->e_q[link] = one->q0[link] - y[link];
   }
@@ -269,6 +250,7 @@ void DefectCorrection::starts(double t, std::span<const double> y) {
 }
 
 void DefectCorrection::steps(const WatchedStep& step) {
+  if (step.share == 0.0) return;  // an event at the start of a step
   const double size = step.share / parts_;
   const double h = size * step.h;
   const double t_start = t_start_;
@@ -285,43 +267,45 @@ void DefectCorrection::steps(const WatchedStep& step) {
                     .t = is_last ? step.t : t_start + (k + 1) * h,
                     .h = h,
                     .ends_the_step = is_last};
-    for (const auto& one : neighbours_) nfev_ += one->go_on(part);
+    if (!agreement_.is_lost()) {
+      for (const auto& one : neighbours_) nfev_ += one->go_on(part);
+    }
     keep_errors(part);
   }
-  compare();
   t_start_ = step.t;
+  if (!neighbours_.empty() && !agreement_.is_lost()) compare();
 }
 
 void DefectCorrection::compare() {
-  if (neighbours_.size() < 2 || agreement_.at_loss != 0.0) return;
   double between = 0.0;
   double largest = 0.0;
-  const auto raise = [](double& to, double x) {
-    if (!(std::abs(x) <= to)) to = std::abs(x);
-  };
   for (std::size_t link = 0; link < links(); ++link) {
-    const double first = neighbours_[0]->e_q[link];
-    const double second = neighbours_[1]->e_q[link];
-    raise(between, first - second);
-    raise(largest, first);
-    raise(largest, second);
+    const double share = neighbours_.front()->shares[link];
+    const double first = neighbours_.front()->e_q[link];
+    const double second = neighbours_[std::min<std::size_t>(1, neighbours_.size() - 1)]->e_q[link];
+    between += share * std::abs(first - second);
+    largest += share * std::max(std::abs(first), std::abs(second));
   }
-  if (!(largest <= lost)) {
-    agreement_.at_loss = largest;
+  if (!(largest <= lost && between <= lost)) {  // NaN too
+    agreement_.at_loss =
+        std::isfinite(between + largest) ? largest : std::numeric_limits<double>::infinity();
+    for (const auto& one : neighbours_) one->forget();
     return;
   }
-  raise(agreement_.between, between);
-  raise(agreement_.largest, largest);
+  agreement_.between = std::max(agreement_.between, between);
+  agreement_.largest = std::max(agreement_.largest, largest);
+  agreement_.t_known = t_start_;
 }
 
 /// A scene whose laws do not change has no impacts: its state is only settled.
 void DefectCorrection::jumps(double, std::span<const double>) {}
 
 void DefectCorrection::keep_errors(const Part& part) {
-  const auto keep_at = [&](double t, double theta) {
+  const auto keep_at = [&](double t, const auto& weights_of) {
     double* to = append(t);
     for (const auto& one : neighbours_) {
-      for (std::size_t link = 0; link < one->n; ++link) *to++ = one->angle_at(link, theta, part.h);
+      one->angles_at(weights_of(one->points), part.h, to);
+      to += one->n;
     }
   };
   const auto keep_at_end = [&] {
@@ -332,15 +316,20 @@ void DefectCorrection::keep_errors(const Part& part) {
     for (; next_time_ < t_eval_.size(); ++next_time_) {
       const double t = t_eval_[next_time_];
       if ((t - part.t) * part.h > 0.0) break;
-      t == part.t ? keep_at_end() : keep_at(t, (t - part.t_start) / part.h);
+      const double theta = (t - part.t_start) / part.h;
+      if (t == part.t) {
+        keep_at_end();
+      } else {
+        keep_at(t, [theta](const LobattoPoints& points) { return points.at(theta); });
+      }
     }
     return;
   }
   if (store_ == Store::dense) {
-    const int times = (within + parts_ - 1) / parts_;
-    for (int k = 1; k < times; ++k) {
-      const double theta = static_cast<double>(k) / times;
-      keep_at(part.t_start + theta * part.h, theta);
+    for (std::size_t k = 1; k < LobattoPoints::parts; ++k) {
+      const double theta = static_cast<double>(k) / LobattoPoints::parts;
+      keep_at(part.t_start + theta * part.h,
+              [k](const LobattoPoints& points) { return points.equal_parts[k]; });
     }
   }
   if (part.ends_the_step || store_ == Store::dense) keep_at_end();

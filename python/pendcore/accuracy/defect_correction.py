@@ -1,14 +1,16 @@
 """The error of a run, from the defect of its own curve.
 
 While the run is made, the core integrates the equation that its error obeys
-(cpp/include/pendcore/analysis/defect_correction.hpp). This takes the closed-form right-hand side,
-which shares no code with a series, a few times in each step. Neighbours of the scene, whose
-constants and starts are some last bits off (`pendcore.accuracy.rounding`), take the place of second
-runs. The first two are the same neighbour, integrated with different numbers of points: their
-distance is the error of the correction itself. Where rounding may matter, others follow. With the
-errors e_1, e_2, ... the error is at most
+(cpp/include/pendcore/analysis/defect_correction.hpp). This takes the right-hand side of the
+equations of motion, which shares no code with a Taylor series, a few times in each step. It is done
+twice, with different numbers of points: the distance of the two is the error of the correction
+itself. Where rounding may matter, it is also done for neighbours of the scene, whose constants and
+starts are some last bits off (`pendcore.accuracy.rounding`). With all errors e_1, e_2, ... the
+error is at most
 
     max_i |e_i| + share (the largest max_i |e_i| so far) + max_ij |e_i - e_j|
+
+and what the rounding of states and times to doubles adds.
 """
 
 from __future__ import annotations
@@ -35,10 +37,10 @@ class Way(NamedTuple):
     method : str
         The method of the run.
     points : (int, int)
-        The numbers of points in a step with which the first neighbour is integrated.
+        The numbers of points in a step with which the scene itself is integrated.
     agree : float
         The two are trusted if their distance is at most this share of the larger one, up to where
-        they are lost. They differ by more where a motion is strongly damped, and after thousands
+        the run is lost. They differ by more where a motion is strongly damped, and after thousands
         of steps.
     share : float
         The share of the largest correction so far that is added to the error.
@@ -64,20 +66,19 @@ MORE_POINTS_BELOW = 1e-8
 EXPENSIVE, LOOSE = 18.0, 1e-5
 """Where a series takes as long as more than EXPENSIVE right-hand sides, and the error asked for is
 larger than LOOSE, dop853 takes less work."""
-LOST = 0.2
-"""A larger error, as a share of the total length, is known only to be large."""
 LARGE = 0.1
-"""A larger error asked for is left to second runs, which still know it."""
+"""A larger error asked for is left to second runs: from 0.2 on, a correction counts as lost."""
 UNSTABLE = 5.0
-"""rad; a correction that exceeds this value at once is not that of a chaotic motion."""
+"""A run that is lost with a larger error than this is not chaotic; its correction is unstable."""
 OTHERS = ((1e-12, 2), (5e-12, 1))
-"""Pairs: a trial below this scale needs this many other neighbours, as rounding may matter."""
+"""Pairs: a trial below this scale needs this many neighbours, as rounding may matter."""
 
 
 def ways(start: Start, error: float) -> list[Way]:
     """Return the ways to know the error of a run from its defect, the first one to be tried first.
 
-    There is none where a law changes with the state or has no series, or where a joint is held.
+    There is none for an error above LARGE, and none where a law switches or has no series, or
+    where a joint may be held.
     """
     if error > LARGE or not (
         _core.has_defect_correction(start.scene._compiled) and supports("taylor", start)
@@ -94,11 +95,15 @@ def ways(start: Start, error: float) -> list[Way]:
 def correction_along(start: Start, way: Way, scale: float) -> _core.DefectCorrection:
     """Return what is to look on while a run of a typical error, ``scale``, is made."""
     others = next((count for below, count in OTHERS if scale < below), 0)
-    first = moved(start, 0)
-    made = [(first, points) for points in way.points]
-    made += [(moved(start, seed), way.points[1]) for seed in range(1, 1 + others)]
+    neighbours = [(start, points) for points in way.points]
+    neighbours += [(moved(start, seed), way.points[1]) for seed in range(others)]
+    count = len(start.scene.links)
     return _core.DefectCorrection(
-        [(one.scene._compiled, one.q0, points) for one, points in made], way.parts
+        [
+            (one.scene._compiled, np.broadcast_to(one.q0, count), points)
+            for one, points in neighbours
+        ],
+        way.parts,
     )
 
 
@@ -109,7 +114,7 @@ def error_from_defect(
 
     A run that is lost has no known error from there on.
     """
-    between, largest, at_loss = correction.agreement
+    between, largest, at_loss, t_known = correction.agreement
     if not (between <= way.agree * largest and at_loss < UNSTABLE):
         return None
     t, corrections = correction.t, np.moveaxis(correction.errors, 1, 0)
@@ -119,11 +124,14 @@ def error_from_defect(
         corrected = corrections + angles_at(solution, t)
         found = apart(solution, t, lambda at: [*corrected[:, at]])
         angle, position = (
-            from_run + way.share * np.maximum.accumulate(from_run) + between + found.rounding
-            for from_run, between in (
+            from_run + way.share * np.maximum.accumulate(from_run) + from_others + found.rounding
+            for from_run, from_others in (
                 (found.angle_from_run, found.angle),
                 (found.position_from_run, found.position),
             )
         )
-    angle[~(found.position_from_run < LOST)] = np.inf
+    if at_loss:
+        t_start = solution.run.arguments["t_start"]
+        is_lost = np.abs(t - t_start) > abs(t_known - t_start)
+        angle[is_lost] = position[is_lost] = np.inf
     return error_over(solution, t, angle, position, verified_by)

@@ -1,7 +1,8 @@
 """The estimate of a run's error over its whole curve.
 
-`Solution.error`, `Solution.valid_until` and what ``simulate(error=...)`` verifies come from here.
-The run is compared with better second runs. How good these are is known, as they are compared with
+`Solution.error` and `Solution.valid_until` come from here, and what ``simulate(error=...)`` tells
+where it does not know the error from the defect (`pendcore.accuracy.defect_correction`). The run is
+compared with better second runs. How good these are is known, as they are compared with
 each other as well. Those of `Solution.error` take another method where one supports the scene, at
 tolerances a hundredth and less, as far as doubles allow; those of ``simulate(error=...)`` take the
 trial's own (`pendcore.accuracy.target_error`). All take other steps, and the constants and the

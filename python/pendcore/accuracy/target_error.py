@@ -3,15 +3,15 @@
 A *trial* is a run of what was asked for, at some tolerance. Its error tells which tolerance to try
 next. There are two ways to know the error.
 
-**From the defect** of the trial's own curve, for smooth scenes that have Taylor series
-(`pendcore.accuracy.defect_correction`). If it cannot be trusted, there may be another way to
-integrate it, and at last second runs.
+**From the defect** of the trial's own curve, for smooth scenes that have Taylor series and errors
+that are not too large (`pendcore.accuracy.defect_correction`). If one way to integrate it cannot be
+trusted, another one may be.
 
-**From second runs**, for all other scenes. A second run is better: it takes the same method at a
-twenty-fifth of the tolerance or less (`taylor` at a hundredth), its constants and start are moved
-by some last bits, and its steps are others. Its distance from the trial tells how large the error
-is; one more second run shows that the first one is indeed better, as the distance of the two is
-added (`pendcore.accuracy.estimate`).
+**From second runs**, wherever the defect does not tell. A second run is better: it takes the same
+method at a twenty-fifth of the tolerance or less (`taylor` at a hundredth), its constants and start
+are moved by some last bits, and its steps are others. Its distance from the trial tells how large
+the error is; one more second run shows that the first one is indeed better, as the distance of the
+two is added (`pendcore.accuracy.estimate`).
 
 Where tolerances are so tight that rounding may matter, two or three second runs as tight as doubles
 allow take the place of these. The loop ends with a trial whose error is small enough, with an
@@ -33,10 +33,12 @@ from pendcore.run.error_estimate import ErrorEstimate
 from pendcore.run.result import RunResult
 
 # Where trials and second runs aim: factors of the error asked for, or of another run's scale.
-FIRST_BY_DEFECT, FIRST, AT_FEW_TIMES, IF_DAMPED = 0.5, 3.0, 4.0, 4.0
-"""The first trial whose defect is known aims at FIRST_BY_DEFECT times the error: most need no other
-trial. Any other first trial aims at FIRST times the error. Both may be looser where few times are
-kept, as the error is hardly largest there, and where dampers make the motion forget its errors."""
+FIRST_BY_DEFECT, FIRST = 0.5, 3.0
+"""The multiples of the error asked for at which the first trial aims: if its defect is to be known,
+after which most runs need no other trial, and if not."""
+AT_FEW_TIMES, IF_DAMPED = 4.0, 10.0
+"""Both are multiplied by these where few times are kept, as the error is hardly largest there, and
+where dampers make the motion forget its errors."""
 AIM = 0.65
 """Later trials aim at this multiple of the error asked for."""
 LEAST_CHANGE, FARTHER = 1.5, 100.0
@@ -105,15 +107,26 @@ def run_to_error(start: Start, error: float, options: dict[str, Any]) -> RunResu
 
 
 def _kept(runs: Trials) -> RunResult:
+    scale = _first_scale(runs, FIRST_BY_DEFECT)
     while runs.ways:
-        trial = _first_trial(runs, FIRST_BY_DEFECT * runs.error)
+        trial = _first_trial(runs, scale)
         kept = _kept_by_defect(runs, trial)
         if kept is not None:
             return kept
-        if trial.solution.stats.stiff:
+        if any(trial.solution.stats.stiff for trial in runs.trials):
             break
+        scale = runs.trials[-1].scale
         runs.next_way()
     return _kept_by_second_runs(runs)
+
+
+def _first_scale(runs: Trials, factor: float) -> float:
+    """Return the scale of a first trial: a factor times the error asked for, or looser."""
+    if runs.keeps_few_times:
+        factor *= AT_FEW_TIMES
+    if runs.has_effect_of("viscous"):
+        factor *= IF_DAMPED
+    return factor * runs.error
 
 
 def _kept_by_defect(runs: Trials, trial: TrialRun) -> RunResult | None:
@@ -135,7 +148,7 @@ def _kept_by_defect(runs: Trials, trial: TrialRun) -> RunResult | None:
 
 def _kept_by_second_runs(runs: Trials) -> RunResult:
     if not runs.trials:
-        _first_trial(runs, FIRST * runs.error)
+        _first_trial(runs, _first_scale(runs, FIRST))
     if not runs.trials[0].solution.success:
         return _ended_early(runs, runs.trials[0])
     runs.is_stiff = any(trial.solution.stats.stiff for trial in runs.trials)
@@ -166,8 +179,6 @@ def _not_finished(runs: Trials, latest: TrialRun) -> RunResult:
 
 def _first_trial(runs: Trials, scale: float) -> TrialRun:
     """Run at a tolerance that is not too loose to follow the motion to its end."""
-    scale *= AT_FEW_TIMES if runs.keeps_few_times else 1.0
-    scale *= IF_DAMPED if runs.has_effect_of("viscous") else 1.0
     trial = runs.trial(scale, runs.method_for(runs.error))
     while trial.solution.status in FOLLOWED_BADLY and trial.rtol > runs.tightest:
         before = trial.solution.run.t_reached

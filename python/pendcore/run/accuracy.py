@@ -12,7 +12,7 @@ Outcome: TypeAlias = Literal["kept", "refused", "ended early"]
 
 
 DEFECT = "defect of "
-"""How the method of a `Paid` begins that is no run, but the integration of a run's defect."""
+"""With this the method of a `Paid` begins if a defect was integrated and no run made."""
 
 
 class Paid(NamedTuple):
@@ -27,7 +27,7 @@ class Paid(NamedTuple):
         That of the run; ``"defect of ..."`` for the integration of its defect.
     rtol : float
     nfev : int
-        The number of right-hand sides, or of series for ``taylor``.
+        The number of right-hand sides, or of series for a run by ``taylor``.
     work : float
         The same in right-hand sides; a series counts as the many that take as long.
     """
@@ -52,18 +52,19 @@ class Accuracy:
     asked : float
         The error that was asked for.
     achieved : float
-        The error of the run, estimated from above; infinite where nothing verified it.
+        The error of the run, estimated from above; infinite where nothing verified it, and where
+        the run is lost before its end.
     outcome : {"kept", "refused", "ended early"}
         ``"kept"``: the error is kept. ``"refused"``: that could not be shown. ``"ended early"``:
         the run did not reach its end; ``achieved`` and ``until`` describe the part that there is.
     until : float
         The time until which the error is kept, s.
     times : int
-        The number of times at which the runs were compared.
+        The number of times at which the error is known.
     everywhere : bool
         Whether these times lie within every step, so that the error is that of the whole curve.
     verified_by : str
-        How the verifying runs were made, or why there is none if ``times`` is 0.
+        What verified the run, or why nothing did if ``times`` is 0.
     paid : tuple of Paid
         All that was computed, in its order.
     seconds : float
@@ -127,13 +128,14 @@ class Accuracy:
             "refused": ", not reached",
             "ended early": f" as far as it is known (kept until t = {self.until:.6g} s)",
         }[self.outcome]
-        where = f"at {self.times} times"
+        where = f"at {self.times} time{'s'[: self.times != 1]}"
         if self.everywhere:
             where = "over the curve" if self.outcome == "ended early" else "over the whole curve"
-        return (
-            f"{asked}, achieved {self.achieved:.1e} of the total length {where}{verdict}: "
-            f"verified by {self.verified_by}"
-        )
+        achieved = f"achieved {self.achieved:.1e} of the total length {where}"
+        if self.achieved == inf:
+            achieved = f"kept until t = {self.until:.6g} s and lost before the end"
+            verdict = ""
+        return f"{asked}, {achieved}{verdict}: verified by {self.verified_by}"
 
     @property
     def _runs(self) -> str:

@@ -20,18 +20,18 @@ class ErrorEstimate:
         s, the start of the run.
     t : ndarray, (n_t,)
         Times, s: several in every step of a run with dense output, otherwise those that the run
-        kept. They end before the run does if a second run had nothing in common with it any more,
-        or did not get further.
+        kept. They end before the run does if the run is lost, or if a second run did not get
+        further.
     angle : ndarray, (n_t,)
         The largest error over the links, rad.
     position : ndarray, (n_t,)
         The largest error over the joints and the tip, as a share of the total length.
     verified_by : str
-        How the second runs were made, or that the run's own defect took their place.
+        How the second runs were made, or which run's defect took their place.
     is_lost : bool
-        Whether the second runs had nothing in common with the run any more at the last time.
+        Whether the run had nothing in common with the motion any more at the last time.
     is_complete : bool
-        Whether the times go to where the runs part, or to the end of the run.
+        Whether the times go to where the run is lost, or to its end.
     is_dense : bool
         Whether the times cover the whole curve.
 
@@ -97,7 +97,7 @@ class ErrorEstimate:
         where = "everywhere" if self.is_dense else f"at {len(self.t)} time{'s'[: len(self.t) != 1]}"
         ends = ""
         if self.is_lost:
-            ends = "; past that the runs have nothing to do with each other any more"
+            ends = "; past that nothing of it is known any more"
         elif not self.is_complete:
             ends = "; the run goes on past that: it is not known there yet"
         return (

@@ -57,9 +57,9 @@ ERROR = RunOption(
     "float | None",
     "The largest allowed error of the positions, as a share of the total length. It takes the "
     "place of ``method``, ``rtol``, ``atol`` and ``step``: pendcore chooses these and verifies the "
-    "run by independent runs. The error is the largest distance of a joint or the tip from its "
-    "true place, over the whole curve of a run with dense output, otherwise over the times that "
-    "the run keeps. ``sol.accuracy`` says what was reached and what it cost; "
+    "run, from its defect or by better runs. The error is the largest distance of a joint or the "
+    "tip from its true place, over the whole curve of a run with dense output, otherwise over the "
+    "times that the run keeps. ``sol.accuracy`` says what was reached and what it cost; "
     "``docs/background/accuracy_cost.md`` says what is promised.",
     range="> 0 and < 1",
     if_none="no error is verified",

@@ -21,14 +21,13 @@
 /// It suits Taylor series best: their error inside a step is no larger than at its ends. That of
 /// Dormand and Prince's methods is larger inside, which takes more points; e is less certain then.
 ///
-/// Every neighbour is a scene and a start that differ from the run's by some last bits. So its e
-/// also has what rounding may do to the motion. The distance of two neighbours that differ only in
-/// the number of their points shows how well e itself is known.
+/// A neighbour is a scene and its angles at the start: the run's own, or some that differ by last
+/// bits. The e of such a one also has what rounding may do to the motion. The distance of two
+/// neighbours that differ only in the number of their points shows how well e itself is known.
 ///
-/// Source: Zadunaisky, Numerische Mathematik 27 (1976) 21-39; Skeel, SIAM Journal on Numerical
-/// Analysis 23 (1986) 1-20, "solving for the correction". The points are those of Abramowitz and
-/// Stegun (1964), 25.4.32. Cost: for each part of a step and neighbour one right-hand side less
-/// than there are points.
+/// Source: Zadunaisky, Numerische Mathematik 27 (1976) 21-39; Skeel, Numerische Mathematik 48
+/// (1986) 1-20, "solving for the correction". The points are those of lobatto_points.hpp. Cost: for
+/// each part of a step and neighbour one right-hand side less than there are points.
 #pragma once
 
 #include <memory>
@@ -41,31 +40,37 @@
 
 namespace pendcore {
 
-/// Whether the error of a run of a scene can be found in this way: no law changes with the state
-/// along it, and no joint is held.
+/// Whether the error of a run of a scene can be found in this way: no law switches, in time or with
+/// the state, and no joint may be held.
 bool has_defect_correction(const Scene& scene);
 
-/// How far the errors of the first two neighbours are apart at the ends of the steps, up to where
-/// one of them is beyond 0.2 rad. Chaos makes it a little larger in that step, an unstable
-/// integration many times.
+/// How far the errors of the first two neighbours are apart at the ends of the steps. The measure
+/// is the sum of the errors of the links, each times its share in the total length, which bounds
+/// the distance of any joint. Beyond 0.2 the run is lost, and its error is not known any more.
+/// Where chaos made the error grow, it is hardly larger than that at first; where the integration
+/// is unstable, it is many times as large.
 struct Agreement {
-  double between = 0.0;  ///< rad, the largest distance
-  double largest = 0.0;  ///< rad, the largest error
-  double at_loss = 0.0;  ///< rad, the first error beyond; 0 if there is none
+  double between = 0.0;  ///< the largest distance
+  double largest = 0.0;  ///< the largest error
+  double at_loss = 0.0;  ///< the error with which the run was lost; 0 if it is not
+  double t_known = 0.0;  ///< s, until when the errors are known
+
+  bool is_lost() const { return at_loss != 0.0; }
 };
 
-/// Looks on while a run is made, with dense output of any store.
+/// Finds the error of one run while it is made. It needs the dense output of every step; the run
+/// may keep anything.
 class DefectCorrection final : public StepWatch {
  public:
-  /// Integrates each step in so many equal parts, >= 1: a motion may be too strongly damped, or a
-  /// run too long, for one.
+  /// Each step is integrated in so many equal parts, >= 1. More parts serve motions that are
+  /// strongly damped, and long runs.
   explicit DefectCorrection(int parts);
   ~DefectCorrection() override;
   DefectCorrection(DefectCorrection&&) noexcept;
 
   /// Adds a neighbour: a scene of as many links as the run's, its angles at the start, (n) rad, and
-  /// the number of points in a step, 5 to 9. Throws std::invalid_argument for another number, or if
-  /// the scene has no defect correction.
+  /// the number of points in a part of a step, 5 to 9. Throws std::invalid_argument for other
+  /// sizes, and for a scene that has no defect correction.
   void add(const Scene& scene, const std::vector<double>& q0, int points);
   /// Keeps errors where a run keeps its states: at t_eval, at the steps, or at the end; of a run
   /// with dense output at six times in each step.
@@ -77,8 +82,7 @@ class DefectCorrection final : public StepWatch {
   void jumps(double t, std::span<const double> y) override;
 
   const std::vector<double>& t() const { return t_; }  ///< s, (n_t)
-  /// The errors of the angles, (n_t, neighbours, n) row-major, rad. Not finite where e has grown
-  /// beyond all bounds.
+  /// The errors of the angles, (n_t, neighbours, n) row-major, rad. NaN where the run is lost.
   const std::vector<double>& errors() const { return errors_; }
   const Agreement& agreement() const { return agreement_; }
   std::vector<double> errors_at_end() const;  ///< the same where the run is now, (neighbours, n)
@@ -87,10 +91,8 @@ class DefectCorrection final : public StepWatch {
   long long nfev() const { return nfev_; }  ///< right-hand sides
 
  private:
-  struct Points;
   struct Part;
   struct Neighbour;
-  static const Points& points_of(int count);
   void keep_errors(const Part& part);
   void compare();
   double* append(double t);
@@ -100,6 +102,7 @@ class DefectCorrection final : public StepWatch {
   Store store_ = Store::end;
   std::vector<double> t_eval_;
   std::size_t next_time_ = 0;
+  bool has_started_ = false;
   double t_start_ = 0.0;  ///< s, of the step
   std::vector<double> t_, errors_;
   Agreement agreement_;
