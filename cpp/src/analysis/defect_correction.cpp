@@ -147,10 +147,10 @@ struct DefectCorrection::Neighbour {
       }
       for (std::size_t link = 0; link < n; ++link) r[i * n + link] += part.h * qdd[link];
     }
-    const LobattoPoints::Numbers& weights = points.of_all[points.count - 1];
-    angles_at(points.equal_parts.back(), part.h, e_q.data());
+    const LobattoPoints::Within& end = points.equal_parts.back();
+    angles_at(end, part.h, e_q.data());
     for (std::size_t link = 0; link < n; ++link) {
-      for (std::size_t j = 0; j < points.count; ++j) e_qd[link] += weights[j] * r[j * n + link];
+      for (std::size_t j = 0; j < points.count; ++j) e_qd[link] += end.once[j] * r[j * n + link];
       if (!part.ends_the_step) continue;
       e_q[link] += part.jump(link);
       e_qd[link] += part.jump(n + link);
@@ -243,10 +243,7 @@ void DefectCorrection::starts(double t, std::span<const double> y) {
   }
   const bool is_asked_for = !t_eval_.empty() && t_eval_.front() == t;
   if (is_asked_for) ++next_time_;
-  if (store_ != Store::times || is_asked_for) {
-    double* to = append(t);
-    for (const auto& one : neighbours_) to = std::ranges::copy(one->e_q, to).out;
-  }
+  if (store_ != Store::times || is_asked_for) keep_errors_now(t);
 }
 
 void DefectCorrection::steps(const WatchedStep& step) {
@@ -308,17 +305,13 @@ void DefectCorrection::keep_errors(const Part& part) {
       to += one->n;
     }
   };
-  const auto keep_at_end = [&] {
-    double* to = append(part.t);
-    for (const auto& one : neighbours_) to = std::ranges::copy(one->e_q, to).out;
-  };
   if (store_ == Store::times) {
     for (; next_time_ < t_eval_.size(); ++next_time_) {
       const double t = t_eval_[next_time_];
       if ((t - part.t) * part.h > 0.0) break;
       const double theta = (t - part.t_start) / part.h;
       if (t == part.t) {
-        keep_at_end();
+        keep_errors_now(part.t);
       } else {
         keep_at(t, [theta](const LobattoPoints& points) { return points.at(theta); });
       }
@@ -326,14 +319,16 @@ void DefectCorrection::keep_errors(const Part& part) {
     return;
   }
   if (store_ == Store::dense) {
-    for (std::size_t k = 1; k < LobattoPoints::parts; ++k) {
-      const double theta = static_cast<double>(k) / LobattoPoints::parts;
+    for (std::size_t k = 1; k < LobattoPoints::divisions; ++k) {
+      const double theta = static_cast<double>(k) / LobattoPoints::divisions;
       keep_at(part.t_start + theta * part.h,
               [k](const LobattoPoints& points) { return points.equal_parts[k]; });
     }
   }
-  if (part.ends_the_step || store_ == Store::dense) keep_at_end();
+  if (part.ends_the_step || store_ == Store::dense) keep_errors_now(part.t);
 }
+
+void DefectCorrection::keep_errors_now(double t) { std::ranges::copy(errors_at_end(), append(t)); }
 
 std::vector<double> DefectCorrection::errors_at_end() const {
   std::vector<double> errors;

@@ -7,6 +7,8 @@
 namespace pendcore {
 namespace {
 
+using Polynomial = LobattoPoints::Polynomial;
+
 /// How many of the last points a value beyond them is extrapolated from. More are less stable.
 constexpr std::size_t extrapolated_from = 3;
 
@@ -62,7 +64,7 @@ LobattoPoints::LobattoPoints(std::span<const double> points) : count(points.size
     twice_[j] = integrated_twice(lagrange(points, j));
   }
   for (std::size_t k = 0; k < equal_parts.size(); ++k) {
-    equal_parts[k] = at(static_cast<double>(k) / parts);
+    equal_parts[k] = at(static_cast<double>(k) / divisions);
   }
   for (std::size_t i = 0; i < count; ++i) {
     of_all[i] = at(theta[i]).once;

@@ -55,7 +55,7 @@ class Way(NamedTuple):
     parts: int = 1
 
 
-# The shares are two to five times what all of 400 scenes (seeds 200 to 999 of
+# The shares are somewhat larger than what all of 400 scenes (seeds 200 to 999 of
 # tests/models/regular_scenes.py, every other one) needed at nine tolerances.
 SERIES = Way("taylor", (6, 5), agree=0.15, share=0.35)
 SERIES_OF_MORE_POINTS = Way("taylor", (8, 7), agree=0.2, share=0.25)
@@ -70,7 +70,7 @@ LARGE = 0.1
 """A larger error asked for is left to second runs: from 0.2 on, a correction counts as lost."""
 UNSTABLE = 5.0
 """A run that is lost with a larger error than this is not chaotic; its correction is unstable."""
-OTHERS = ((1e-12, 2), (5e-12, 1))
+NEIGHBOURS = ((1e-12, 2), (5e-12, 1))
 """Pairs: a trial below this scale needs this many neighbours, as rounding may matter."""
 
 
@@ -94,15 +94,12 @@ def ways(start: Start, error: float) -> list[Way]:
 
 def correction_along(start: Start, way: Way, scale: float) -> _core.DefectCorrection:
     """Return what is to look on while a run of a typical error, ``scale``, is made."""
-    others = next((count for below, count in OTHERS if scale < below), 0)
-    neighbours = [(start, points) for points in way.points]
-    neighbours += [(moved(start, seed), way.points[1]) for seed in range(others)]
-    count = len(start.scene.links)
+    count = next((count for below, count in NEIGHBOURS if scale < below), 0)
+    starts = [(start, points) for points in way.points]
+    starts += [(moved(start, seed), way.points[1]) for seed in range(count)]
+    links = len(start.scene.links)
     return _core.DefectCorrection(
-        [
-            (one.scene._compiled, np.broadcast_to(one.q0, count), points)
-            for one, points in neighbours
-        ],
+        [(one.scene._compiled, np.broadcast_to(one.q0, links), points) for one, points in starts],
         way.parts,
     )
 

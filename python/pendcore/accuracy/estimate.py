@@ -124,13 +124,14 @@ def apart(solution: RunResult, t: Floats, others: Callable[[slice], list[Floats]
         motions = others(some)
         rounding = np.finfo(np.float64).eps * np.abs(q).max(axis=-1)  # the state is a double
         rounding += np.spacing(np.abs(t[some])) / 2 * np.abs(qd).max(axis=-1)  # so is its time
-        pairs = [(q, motion) for motion in motions], [*combinations(motions, 2)]
-        rows = [
-            np.max([measure(r, s) for r, s in of_whom], axis=0, initial=0.0)
+        from_run = [(q, motion) for motion in motions]
+        from_each_other = [*combinations(motions, 2)] or [(q, q)]  # one alone is 0 apart
+        largest = [
+            np.max([measure(r, s) for r, s in pairs], axis=0)
             for measure in (_apart, partial(distances, solution.scene))
-            for of_whom in (pairs if pairs[1] else (pairs[0], [(q, q)]))
+            for pairs in (from_run, from_each_other)
         ]
-        found.append(np.array([*rows, rounding]))
+        found.append(np.array([*largest, rounding]))
     return Apart(*np.concatenate(found, axis=1))
 
 

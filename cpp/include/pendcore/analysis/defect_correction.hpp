@@ -73,7 +73,7 @@ class DefectCorrection final : public StepWatch {
   /// sizes, and for a scene that has no defect correction.
   void add(const Scene& scene, const std::vector<double>& q0, int points);
   /// Keeps errors where a run keeps its states: at t_eval, at the steps, or at the end; of a run
-  /// with dense output at six times in each step.
+  /// with dense output at six times in each part of a step.
   void keep(Store store, const std::vector<double>& t_eval);
 
   bool asks_for_dense_output() const override { return true; }
@@ -94,6 +94,7 @@ class DefectCorrection final : public StepWatch {
   struct Part;
   struct Neighbour;
   void keep_errors(const Part& part);
+  void keep_errors_now(double t);
   void compare();
   double* append(double t);
 

@@ -13,12 +13,11 @@
 
 namespace pendcore {
 
-/// A polynomial in theta: its coefficients, that of theta^0 first.
-using Polynomial = std::array<double, 9>;
-
 struct LobattoPoints {
-  static constexpr std::size_t most = 9, parts = 6;
+  static constexpr std::size_t most = 9;
+  static constexpr std::size_t divisions = 6;
   using Numbers = std::array<double, most>;
+  using Polynomial = std::array<double, most>;  ///< coefficients in theta, that of theta^0 first
 
   std::size_t count;
   Numbers theta{};
@@ -33,7 +32,7 @@ struct LobattoPoints {
     Numbers once, twice;
   };
   Within at(double share) const;
-  std::array<Within, parts + 1> equal_parts{};  ///< at 0, 1/6, ... 1
+  std::array<Within, divisions + 1> equal_parts{};  ///< at 0, 1/6, ... 1
 
   explicit LobattoPoints(std::span<const double> points);
 
