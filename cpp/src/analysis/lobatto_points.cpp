@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace pendcore {
 namespace {
@@ -18,19 +19,16 @@ double value(const Polynomial& p, double theta) {
   return sum;
 }
 
-/// The integral from 0 to theta, and its integral; both without the factor theta, or theta^2.
-Polynomial integrated(Polynomial p) {
-  for (std::size_t i = 0; i < p.size(); ++i) p[i] /= static_cast<double>(i + 1);
-  return p;
-}
-Polynomial integrated_twice(Polynomial p) {
-  for (std::size_t i = 0; i < p.size(); ++i) p[i] /= static_cast<double>((i + 1) * (i + 2));
-  return p;
+/// The integral from 0 on.
+Polynomial integrated(const Polynomial& p) {
+  Polynomial result{};
+  for (std::size_t i = 1; i < p.size(); ++i) result[i] = p[i - 1] / static_cast<double>(i);
+  return result;
 }
 
-double integral(const Polynomial& p, double theta) { return theta * value(integrated(p), theta); }
+double integral(const Polynomial& p, double theta) { return value(integrated(p), theta); }
 double double_integral(const Polynomial& p, double theta) {
-  return theta * theta * value(integrated_twice(p), theta);
+  return value(integrated(integrated(p)), theta);
 }
 
 /// The polynomial that is 1 at point j and 0 at the others.
@@ -48,47 +46,45 @@ Polynomial lagrange(std::span<const double> points, std::size_t j) {
 
 }  // namespace
 
-LobattoPoints::Within LobattoPoints::at(double share) const {
-  Within weights{.theta = share, .once = {}, .twice = {}};
-  for (std::size_t j = 0; j < count; ++j) {
-    weights.once[j] = share * value(once_[j], share);
-    weights.twice[j] = share * share * value(twice_[j], share);
-  }
-  return weights;
-}
-
 LobattoPoints::LobattoPoints(std::span<const double> points) : count(points.size()) {
   std::ranges::copy(points, theta.begin());
+  Sums& to_end = sums[count];
+  to_end.theta = 1.0;
   for (std::size_t j = 0; j < count; ++j) {
-    once_[j] = integrated(lagrange(points, j));
-    twice_[j] = integrated_twice(lagrange(points, j));
+    const Polynomial once = integrated(lagrange(points, j));
+    twice_at[j] = integrated(once);
+    to_end.once[j] = value(once, 1.0);
+    to_end.twice[j] = value(twice_at[j], 1.0);
   }
-  for (std::size_t k = 0; k < equal_parts.size(); ++k) {
-    equal_parts[k] = at(static_cast<double>(k) / divisions);
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    of_all[i] = at(theta[i]).once;
-    if (i > 0) weigh_earlier(points.first(i), i);
+  for (std::size_t i = 1; i <= count; ++i) {
+    Sums& to = sums[i];
+    if (i < count) {
+      to.theta = theta[i];
+      weigh_earlier(points.first(i));
+    }
+    to.once_of_last = std::exchange(to.once[i - 1], 0.0);
+    to.twice_of_last = std::exchange(to.twice[i - 1], 0.0);
   }
 }
 
-/// Up to the last of the earlier points the polynomial goes through all of them. From there on
-/// one through the last few is more stable.
-void LobattoPoints::weigh_earlier(std::span<const double> earlier, std::size_t i) {
+/// Sets the weights of the earlier points at the point after them. Up to the last of them the
+/// polynomial goes through all of them. From there on one through the last few is more stable.
+void LobattoPoints::weigh_earlier(std::span<const double> earlier) {
   const std::size_t few = std::min(extrapolated_from, earlier.size());
   const std::size_t first = earlier.size() - few;
+  Sums& to = sums[earlier.size()];
   const double known = earlier.back();
-  const double left = theta[i] - known;
+  const double left = to.theta - known;
   for (std::size_t j = 0; j < earlier.size(); ++j) {
     const Polynomial p = lagrange(earlier, j);
-    of_earlier[i][j] = integral(p, known);
-    twice_of_earlier[i][j] = double_integral(p, known) + left * integral(p, known);
+    to.once[j] = integral(p, known);
+    to.twice[j] = double_integral(p, known) + left * integral(p, known);
   }
   for (std::size_t j = 0; j < few; ++j) {
     const Polynomial p = lagrange(earlier.last(few), j);
-    of_earlier[i][first + j] += integral(p, theta[i]) - integral(p, known);
-    twice_of_earlier[i][first + j] +=
-        double_integral(p, theta[i]) - double_integral(p, known) - left * integral(p, known);
+    to.once[first + j] += integral(p, to.theta) - integral(p, known);
+    to.twice[first + j] +=
+        double_integral(p, to.theta) - double_integral(p, known) - left * integral(p, known);
   }
 }
 
@@ -105,8 +101,8 @@ const LobattoPoints& lobatto_points(int count) {
       LobattoPoints(std::array{0.0, 0.050121002294269921, 0.16140686024463112, 0.31844126808691092,
                                0.5, 0.68155873191308908, 0.83859313975536888, 0.94987899770573008,
                                1.0})};
-  const int least = static_cast<int>(all.front().count);
-  const int most = static_cast<int>(all.back().count);
+  constexpr int least = LobattoPoints::least;
+  constexpr int most = LobattoPoints::most;
   if (count < least || count > most) {
     throw std::invalid_argument("points = " + std::to_string(count) + ": must be from " +
                                 std::to_string(least) + " to " + std::to_string(most));

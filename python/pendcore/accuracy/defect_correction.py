@@ -59,7 +59,7 @@ class Way(NamedTuple):
 # tests/models/regular_scenes.py, every other one) needed at nine tolerances.
 SERIES = Way("taylor", (6, 5), agree=0.15, share=0.35)
 SERIES_OF_MORE_POINTS = Way("taylor", (8, 7), agree=0.2, share=0.25)
-SERIES_IN_PARTS = Way("taylor", (8, 7), agree=0.2, share=0.25, parts=2)
+SERIES_IN_PARTS = Way("taylor", (7, 6), agree=0.2, share=0.3, parts=2)
 RUNGE_KUTTA = Way("dop853", (9, 8), agree=0.1, share=1.0)
 MORE_POINTS_BELOW = 1e-8
 """The error asked for below which a series has so many terms that it needs more points."""

@@ -34,8 +34,6 @@ DOPRI5_ABOVE = {1: 1e-3}
 """By number of links, the error above which dopri5 takes less work than dop853."""
 DOPRI5_ABOVE_ELSE = 3e-7
 """The same bound with any other number of links."""
-INERTIA_ALONE = {"payload", "rotor_inertia"}
-"""Effects that change the mass matrix and add no torque of their own."""
 HOLDING = {"dry_joint_friction", "joint_stop"}
 """Effects that may hold a joint where it is."""
 _DIGITS = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
@@ -59,15 +57,13 @@ def series_work(scene: SceneData, rtol: float) -> float:
     docs/generators/series_work.py measures it for every kind of effect.
     """
     n, free = len(scene.links), scene._compiled.mobility()[-1]
-    moving = any(account_of(effect.kind) == "drive" for effect in scene.effects)
-    waves = sum(getattr(effect, "sinusoid", None) is not None for effect in scene.effects)
+    moving, waves = _is_driven(scene), _waves(scene)
     if n == 1:  # the sines of the time are most of a right-hand side
         base, exponent = (14.2, 0.035) if moving or waves else (26.0, 0.036)
     elif n == 2 and (moving or waves > 2 or free < n):  # these take the series of longer chains
         base, exponent = 20.0, 0.037
     elif n == 2:
-        bare = all(effect.kind in INERTIA_ALONE for effect in scene.effects)
-        base, exponent = (8.3, 0.030) if bare else (11.2, 0.029)
+        base, exponent = 11.7, 0.023
     elif n <= 4 and not (moving or waves > 2 or free < n or _may_hold_or_couple(scene)):
         base, exponent = 6.0, 0.030  # the series of few links
     else:
@@ -75,6 +71,26 @@ def series_work(scene: SceneData, rtol: float) -> float:
     if free < n:
         base *= 1.5
     return float(base * (1e-3 / rtol) ** exponent)
+
+
+def correction_work(scene: SceneData) -> float:
+    """Return how many right-hand sides take as long as one in a correction of the error.
+
+    The dense output at its point and the sums that belong to it are counted
+    (`pendcore.accuracy.defect_correction`). They weigh most where the right-hand side has a closed
+    form and no sine of the time. docs/generators/series_work.py measures it for every effect.
+    """
+    if len(scene.links) > 2:
+        return 1.45
+    return 1.6 if _is_driven(scene) or _waves(scene) else 2.0
+
+
+def _is_driven(scene: SceneData) -> bool:
+    return any(account_of(effect.kind) == "drive" for effect in scene.effects)
+
+
+def _waves(scene: SceneData) -> int:
+    return sum(getattr(effect, "sinusoid", None) is not None for effect in scene.effects)
 
 
 def _may_hold_or_couple(scene: SceneData) -> bool:

@@ -36,7 +36,7 @@ from pendcore.run.result import RunResult
 FIRST_BY_DEFECT, FIRST = 0.5, 3.0
 """The multiples of the error asked for at which the first trial aims: if its defect is to be known,
 after which most runs need no other trial, and if not."""
-AT_FEW_TIMES, IF_DAMPED = 4.0, 10.0
+AT_FEW_TIMES, IF_DAMPED = 4.0, 20.0
 """Both are multiplied by these where few times are kept, as the error is hardly largest there, and
 where dampers make the motion forget its errors."""
 AIM = 0.65

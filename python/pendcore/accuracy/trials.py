@@ -24,6 +24,7 @@ from pendcore.accuracy.method_choice import (
     TIGHTEST_IMPLICIT,
     TIGHTEST_SECOND,
     cheapest,
+    correction_work,
     rounded,
     series_work,
 )
@@ -44,9 +45,6 @@ COMPENSATED_BELOW = 1e-12
 MOST_STEPS, LEAST_STEPS = 300, 100
 """A later run may take MOST_STEPS times as many steps as the first trial, which counts as
 LEAST_STEPS if it took fewer."""
-IN_CORRECTIONS = 1.8
-"""How many right-hand sides take as long as one in a correction, with the dense output and the sums
-that belong to it: 1.3 to 2.6 on chains of two to four links."""
 FEW = 50
 """At fewer times than these, the error of a run may be small by chance."""
 _ADVANCE = 0.35
@@ -242,7 +240,7 @@ class Trials:
                 is_known_by_it = error is not None and self._estimates.get((made,)) is error
                 purpose = "verify" if is_known_by_it else "choose"
                 nfev = made.correction.nfev
-                work = IN_CORRECTIONS * nfev
+                work = correction_work(self.start.scene) * nfev
                 paid.append(Paid(purpose, DEFECT + made.method, made.rtol, nfev, work))
         return tuple(paid)
 

@@ -14,33 +14,29 @@
 namespace pendcore {
 
 struct LobattoPoints {
+  static constexpr std::size_t least = 5;
   static constexpr std::size_t most = 9;
-  static constexpr std::size_t divisions = 6;
+  static constexpr std::size_t powers = 12;  ///< of a polynomial: filled with zeros to whole packs
   using Numbers = std::array<double, most>;
-  using Polynomial = std::array<double, most>;  ///< coefficients in theta, that of theta^0 first
+  using Polynomial = std::array<double, powers>;  ///< coefficients in theta, from theta^0 on
+
+  /// The weights of the values at the points, in integrals up to a point or up to the end.
+  struct Sums {
+    double theta = 0.0;
+    Numbers once{}, twice{};  ///< in the integral and its integral; of the points before alone
+    double once_of_last = 0.0, twice_of_last = 0.0;  ///< those of the last point before it
+  };
 
   std::size_t count;
   Numbers theta{};
-  /// For each point, the weights of the values at all points in the integral up to it.
-  std::array<Numbers, most> of_all{};
-  /// The same with the values at the points before it alone, and those of the double integral.
-  std::array<Numbers, most> of_earlier{}, twice_of_earlier{};
-
-  /// The weights of the values at all points in the integral up to theta, and in its integral.
-  struct Within {
-    double theta;
-    Numbers once, twice;
-  };
-  Within at(double share) const;
-  std::array<Within, divisions + 1> equal_parts{};  ///< at 0, 1/6, ... 1
+  std::array<Sums, most + 1> sums{};  ///< up to each point; the last ones up to the end
+  /// For each point the double integral of the polynomial that is 1 there and 0 at all others.
+  std::array<Polynomial, most> twice_at{};
 
   explicit LobattoPoints(std::span<const double> points);
 
  private:
-  void weigh_earlier(std::span<const double> earlier, std::size_t i);
-
-  /// For each point the integral of the polynomial that is 1 there and 0 at all others.
-  std::array<Polynomial, most> once_{}, twice_{};
+  void weigh_earlier(std::span<const double> earlier);
 };
 
 /// So many points, from 5 to 9. Throws std::invalid_argument for any other number.

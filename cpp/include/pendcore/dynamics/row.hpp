@@ -76,11 +76,17 @@ struct RowInArrays {
         i(row * Lanes<Row>::width),
         links(arrays) {}
 
-  PENDCORE_INLINE Row phi() const { return q - load<Row>(links.q + i - 1); }
-  PENDCORE_INLINE Row phid() const { return qd - load<Row>(links.qd + i - 1); }
+  PENDCORE_INLINE Row phi() const { return q - before_of(q, links.q); }
+  PENDCORE_INLINE Row phid() const { return qd - before_of(qd, links.qd); }
   PENDCORE_INLINE Row length() const { return load<Row>(links.length + i); }
   PENDCORE_INLINE Row vx() const { return load<Row>(links.vx + i); }
   PENDCORE_INLINE Row vy() const { return load<Row>(links.vy + i); }
+
+ private:
+  template <class Number>
+  PENDCORE_INLINE Row before_of(const Row& x, const Number* array) const {
+    return i == 0 ? before(x) : load<Row>(array + i - 1);
+  }
 };
 
 }  // namespace pendcore

@@ -9,12 +9,27 @@
 
 namespace pendcore {
 
+/// Copies n links, in whole packs: a processor waits where it loads a pack that was stored in
+/// pieces.
+PENDCORE_INLINE void copy_in_packs(const double* from, int n, double* to) {
+  int i = 0;
+  for (; i + 4 <= n; i += 4) store(to + i, load<Pack<4>>(from + i));
+  if (i == n) return;
+  Pack<4> rest{from[i], 0.0, 0.0, 0.0};
+  if (i + 1 < n) rest[1] = from[i + 1];
+  if (i + 2 < n) rest[2] = from[i + 2];
+  store(to + i, rest);
+}
+PENDCORE_INLINE void copy_in_packs(const Dual<double>* from, int n, Dual<double>* to) {
+  std::copy_n(from, n, to);
+}
+
 template <class Number>
 PENDCORE_INLINE void ChainOf<Number>::prepare(const Number* q, const Number* qd) const {
   Number* const s = in(s_);
   Number* const c = in(c_);
-  std::copy_n(q, n_, in(q_));
-  std::copy_n(qd, n_, in(qd_));
+  copy_in_packs(q, n_, in(q_));
+  copy_in_packs(qd, n_, in(qd_));
   for (int i = 0; i < padded_; i += 4) {
     const Row rate = load<Row>(in(qd_) + i);
     Row sine, cosine;
@@ -28,8 +43,8 @@ PENDCORE_INLINE void ChainOf<Number>::prepare(const Number* q, const Number* qd)
   for (int i = 0; i < padded_; i += 4) {
     const Row sine = load<Row>(s + i);
     const Row cosine = load<Row>(c + i);
-    const Row sine_before = load<Row>(s + i - 1);
-    const Row cosine_before = load<Row>(c + i - 1);
+    const Row sine_before = before(sine, load<Row>(s + i - 4));
+    const Row cosine_before = before(cosine, load<Row>(c + i - 4));
     const Row cos = fma(cosine, cosine_before, sine * sine_before);
     const Row sin = fma(sine, cosine_before, -(cosine * sine_before));
     store(in(cos_) + i, cos);
@@ -106,8 +121,9 @@ PENDCORE_INLINE void ChainOf<Number>::collect_loads(double t) const {
     for (int i = 0; i < n_; ++i) torque[i] += Q[i];
   }
   for (int i = 0; i < padded_; i += 4) {
+    const Row couples = load<Row>(couple + i);
     store(torque + i,
-          Row(load<Row>(torque + i) + load<Row>(couple + i) - load<Row>(couple + i + 1)));
+          Row(load<Row>(torque + i) + couples - after(couples, load<Row>(couple + i + 4))));
     if (forces) {
       const Row x = load<Row>(fx + i);
       const Row y = load<Row>(fy + i);
