@@ -35,11 +35,13 @@ struct DefectCorrection::Part {
 
 /// A neighbour of the run: its error now, and along the last part of a step.
 struct DefectCorrection::Neighbour {
-  Neighbour(const Scene& scene, std::vector<double> angles, const LobattoPoints& its_points)
-      : equations(equations_of_motion(scene)),
-        qdd_of(right_hand_side(equations)),
+  Neighbour(const Scene& scene, std::shared_ptr<const EquationsOfMotion> of_scene,
+            std::vector<double> angles, const LobattoPoints& its_points)
+      : equations(std::move(of_scene)),
+        qdd_of(right_hand_side(*equations)),
         points(its_points),
-        kernels(kernels_for(its_points.count)),
+        set_out_kernel(set_out_for(its_points.count)),
+        go_on_kernel(fastest<&defect_detail::go_on>()),
         n(scene.links.size()),
         q0(std::move(angles)),
         memory(n, points.count),
@@ -74,14 +76,14 @@ struct DefectCorrection::Neighbour {
   }
 
   void set_out(const CurveOfStep& curve, const Part& part) {
-    memory.e_q = memory.end_e_q;
-    memory.e_qd = memory.end_e_qd;
-    kernels.set_out(points, curve, part.from, part.size, part.h, memory);
+    std::swap(memory.e_q, memory.end_e_q);
+    std::swap(memory.e_qd, memory.end_e_qd);
+    set_out_kernel(points, curve, part.from, part.size, part.h, memory);
   }
 
   /// Goes on to point i and takes the right-hand side there, or to the end.
   void go_on(const Part& part, std::size_t i) {
-    kernels.go_on(points, i, part.h, memory);
+    go_on_kernel(points, i, part.h, memory);
     if (i < points.count) take(part.t_start + points.theta[i] * part.h);
   }
 
@@ -99,19 +101,11 @@ struct DefectCorrection::Neighbour {
     look(points, h, memory, along.data());
   }
 
-  /// The errors of the curve's angles there, at a theta of the part.
-  void angles_at(double theta, double* errors) const {
-    for (std::size_t link = 0; link < n; ++link) {
-      double sum = 0.0;
-      for (std::size_t k = points.count + 2; k-- > 0;) sum = theta * sum + along[link][k];
-      errors[link] = sum;
-    }
-  }
-
-  EquationsOfMotion equations;
+  std::shared_ptr<const EquationsOfMotion> equations;
   RightHandSide qdd_of;
   const LobattoPoints& points;
-  const Kernels& kernels;
+  SetOut set_out_kernel;
+  GoOn go_on_kernel;
   std::size_t n;
   std::vector<double> q0;
   std::vector<double> shares{};  ///< of the links in the total length
@@ -137,7 +131,12 @@ void DefectCorrection::add(const Scene& scene, const std::vector<double>& q0, in
   if (q0.size() != n || (!neighbours_.empty() && links() != n)) {
     throw std::invalid_argument("q0: the neighbours must have as many links, and angles, alike");
   }
-  neighbours_.push_back(std::make_unique<Neighbour>(scene, q0, lobatto_points(points)));
+  if (&scene != last_scene_) {
+    last_equations_ = std::make_shared<const EquationsOfMotion>(equations_of_motion(scene));
+    last_scene_ = &scene;
+  }
+  neighbours_.push_back(
+      std::make_unique<Neighbour>(scene, last_equations_, q0, lobatto_points(points)));
   if (!curve_) curve_ = std::make_unique<CurveOfStep>(n);
 }
 
@@ -209,9 +208,9 @@ void DefectCorrection::go_on(const Part& part) {
 void DefectCorrection::jump(const WatchedStep& step) {
   if (neighbours_.empty()) return;
   static const auto find = fastest<&find_jump>();
-  memory_.resize(2 * curve_->row);
-  find(*curve_, step.share, step.y.data(), memory_.data());
-  for (const auto& one : neighbours_) one->jump(memory_.data());
+  jump_.resize(2 * curve_->row);
+  find(*curve_, step.share, step.y.data(), jump_.data());
+  for (const auto& one : neighbours_) one->jump(jump_.data());
 }
 
 void DefectCorrection::compare() {
@@ -220,7 +219,8 @@ void DefectCorrection::compare() {
   for (std::size_t link = 0; link < links(); ++link) {
     const double share = neighbours_.front()->shares[link];
     const double first = neighbours_.front()->e_q()[link];
-    const double second = neighbours_[std::min<std::size_t>(1, neighbours_.size() - 1)]->e_q()[link];
+    const double second =
+        neighbours_[std::min<std::size_t>(1, neighbours_.size() - 1)]->e_q()[link];
     between += share * std::abs(first - second);
     largest += share * std::max(std::abs(first), std::abs(second));
   }
@@ -239,49 +239,52 @@ void DefectCorrection::compare() {
 void DefectCorrection::jumps(double, std::span<const double>) {}
 
 void DefectCorrection::keep_errors(const Part& part, bool ends_the_step) {
-  if (store_ == Store::end) {
-    if (ends_the_step) keep_errors_now(part.t);
-    return;
-  }
-  bool has_looked = false;
-  const auto keep_at = [&](double t, double theta) {
-    if (ends_the_step && t == part.t) {
-      keep_errors_now(t);
-      return;
-    }
-    keep_errors_at(t, part, theta, !std::exchange(has_looked, true));
-  };
   if (store_ == Store::times) {
+    theta_.clear();
+    const std::size_t first = next_time_;
     for (; next_time_ < t_eval_.size(); ++next_time_) {
       const double t = t_eval_[next_time_];
       if ((t - part.t) * part.h > 0.0) break;
-      keep_at(t, (t - part.t_start) / part.h);
+      if (ends_the_step && t == part.t) continue;
+      theta_.push_back((t - part.t_start) / part.h);
     }
-  } else if (store_ == Store::dense) {
-    for (int k = 1; k <= divisions; ++k) {
-      const double theta = static_cast<double>(k) / divisions;
-      keep_at(k < divisions ? part.t_start + theta * part.h : part.t, theta);
-    }
-  } else if (ends_the_step) {
-    keep_errors_now(part.t);
+    const std::size_t within = theta_.size();
+    keep_errors_within(part, t_eval_.data() + first);
+    for (std::size_t i = first + within; i < next_time_; ++i) keep_errors_now(part.t);
+    return;
   }
+  if (store_ == Store::dense) {
+    std::array<double, divisions> t;
+    theta_.clear();
+    for (int k = 1; k <= divisions - (ends_the_step ? 1 : 0); ++k) {
+      theta_.push_back(static_cast<double>(k) / divisions);
+      t[theta_.size() - 1] = k < divisions ? part.t_start + theta_.back() * part.h : part.t;
+    }
+    keep_errors_within(part, t.data());
+  }
+  if (ends_the_step) keep_errors_now(part.t);
 }
 
-void DefectCorrection::keep_errors_at(double t, const Part& part, double theta, bool is_first) {
-  double* to = append(t);
+/// Keeps errors at all theta_, where the times are t.
+void DefectCorrection::keep_errors_within(const Part& part, const double* t) {
+  if (theta_.empty()) return;
+  t_.insert(t_.end(), t, t + theta_.size());
+  double* const to = append(theta_.size());
   if (neighbours_.empty()) return;
-  static const auto find = fastest<&find_farther>();
-  memory_.resize(2 * curve_->row);
-  find(*curve_, part.from + theta * part.size, memory_.data());
+  along_.clear();
   for (const auto& one : neighbours_) {
-    if (is_first) one->look_along(part.h);
-    one->angles_at(theta, to);
-    for (std::size_t link = 0; link < one->n; ++link) to[link] += memory_[link];
-    to += one->n;
+    one->look_along(part.h);
+    along_.push_back(one->along.data());
   }
+  static const auto find = fastest<&find_errors>();
+  find({curve_.get(), part.from, part.size, along_, theta_, to});
 }
 
-void DefectCorrection::keep_errors_now(double t) { std::ranges::copy(errors_at_end(), append(t)); }
+void DefectCorrection::keep_errors_now(double t) {
+  t_.push_back(t);
+  double* to = append(1);
+  for (const auto& one : neighbours_) to = std::copy_n(one->e_q(), one->n, to);
+}
 
 std::vector<double> DefectCorrection::errors_at_end() const {
   std::vector<double> errors;
@@ -299,11 +302,11 @@ std::size_t DefectCorrection::links() const {
   return neighbours_.empty() ? 0 : neighbours_.front()->n;
 }
 
-double* DefectCorrection::append(double t) {
-  t_.push_back(t);
-  const std::size_t size = neighbours() * links();
+/// Makes room for the errors at so many times.
+double* DefectCorrection::append(std::size_t times) {
+  const std::size_t size = times * neighbours() * links();
   errors_.resize(errors_.size() + size);
-  return errors_.data() + errors_.size() - size;
+  return errors_.data() + (errors_.size() - size);
 }
 
 }  // namespace pendcore

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
-#include <utility>
 
 namespace pendcore {
 namespace {
@@ -56,15 +55,7 @@ LobattoPoints::LobattoPoints(std::span<const double> points) : count(points.size
     to_end.once[j] = value(once, 1.0);
     to_end.twice[j] = value(twice_at[j], 1.0);
   }
-  for (std::size_t i = 1; i <= count; ++i) {
-    Sums& to = sums[i];
-    if (i < count) {
-      to.theta = theta[i];
-      weigh_earlier(points.first(i));
-    }
-    to.once_of_last = std::exchange(to.once[i - 1], 0.0);
-    to.twice_of_last = std::exchange(to.twice[i - 1], 0.0);
-  }
+  for (std::size_t i = 1; i < count; ++i) weigh_earlier(points.first(i));
 }
 
 /// Sets the weights of the earlier points at the point after them. Up to the last of them the
@@ -73,6 +64,7 @@ void LobattoPoints::weigh_earlier(std::span<const double> earlier) {
   const std::size_t few = std::min(extrapolated_from, earlier.size());
   const std::size_t first = earlier.size() - few;
   Sums& to = sums[earlier.size()];
+  to.theta = theta[earlier.size()];
   const double known = earlier.back();
   const double left = to.theta - known;
   for (std::size_t j = 0; j < earlier.size(); ++j) {

@@ -58,11 +58,12 @@ class Way(NamedTuple):
 # The shares are somewhat larger than what all of 400 scenes (seeds 200 to 999 of
 # tests/models/regular_scenes.py, every other one) needed at nine tolerances.
 SERIES = Way("taylor", (6, 5), agree=0.15, share=0.35)
-SERIES_OF_MORE_POINTS = Way("taylor", (8, 7), agree=0.2, share=0.25)
-SERIES_IN_PARTS = Way("taylor", (7, 6), agree=0.2, share=0.3, parts=2)
+SERIES_OF_MORE_POINTS = Way("taylor", (7, 6), agree=0.2, share=0.35)
+SERIES_OF_MANY_POINTS = Way("taylor", (8, 7), agree=0.2, share=0.25)
+SERIES_IN_PARTS = Way("taylor", (6, 5), agree=0.2, share=0.5, parts=2)
 RUNGE_KUTTA = Way("dop853", (9, 8), agree=0.1, share=1.0)
-MORE_POINTS_BELOW = 1e-8
-"""The error asked for below which a series has so many terms that it needs more points."""
+MANY_POINTS_BELOW = 1e-8
+"""The error asked for below which a series has so many terms that it needs many points."""
 EXPENSIVE, LOOSE = 18.0, 1e-5
 """Where a series takes as long as more than EXPENSIVE right-hand sides, and the error asked for is
 larger than LOOSE, dop853 takes less work."""
@@ -84,8 +85,8 @@ def ways(start: Start, error: float) -> list[Way]:
         _core.has_defect_correction(start.scene._compiled) and supports("taylor", start)
     ):
         return []
-    if error < MORE_POINTS_BELOW:
-        return [SERIES_OF_MORE_POINTS, SERIES_IN_PARTS]
+    if error < MANY_POINTS_BELOW:
+        return [SERIES_OF_MANY_POINTS, SERIES_IN_PARTS]
     by_series = [SERIES, SERIES_OF_MORE_POINTS, SERIES_IN_PARTS]
     if error > LOOSE and series_work(start.scene, 1e-3) > EXPENSIVE:
         return [RUNGE_KUTTA, *by_series]
@@ -97,10 +98,8 @@ def correction_along(start: Start, way: Way, scale: float) -> _core.DefectCorrec
     count = next((count for below, count in NEIGHBOURS if scale < below), 0)
     starts = [(start, points) for points in way.points]
     starts += [(moved(start, seed), way.points[1]) for seed in range(count)]
-    links = len(start.scene.links)
     return _core.DefectCorrection(
-        [(one.scene._compiled, np.broadcast_to(one.q0, links), points) for one, points in starts],
-        way.parts,
+        [(one.scene._compiled, one.q0, points) for one, points in starts], way.parts
     )
 
 

@@ -81,8 +81,8 @@ def correction_work(scene: SceneData) -> float:
     form and no sine of the time. docs/generators/series_work.py measures it for every effect.
     """
     if len(scene.links) > 2:
-        return 1.45
-    return 1.6 if _is_driven(scene) or _waves(scene) else 2.0
+        return 1.3
+    return 1.4 if _is_driven(scene) or _waves(scene) else 1.8
 
 
 def _is_driven(scene: SceneData) -> bool:

@@ -1,8 +1,8 @@
 /// \file
 /// The error of a run, from the defect of its own curve: integrated along the run, step by step.
 ///
-/// The run's dense output has angles q and rates qd. Its rates and their integral in each step make a
-/// curve, u(t) = (q(0) + integral of qd, qd). The true motion is u + e, and e obeys
+/// The dense output of the run has angles q and rates qd. Its rates and their integral in each step
+/// make a curve, u(t) = (q(0) + integral of qd, qd). The true motion is u + e, and e obeys
 ///
 ///     d(e_q)/dt  = e_qd
 ///     d(e_qd)/dt = qdd(t, u + e) - d(qd)/dt
@@ -35,11 +35,13 @@
 #include <span>
 #include <vector>
 
+#include "pendcore/analysis/lobatto_points.hpp"
 #include "pendcore/scene/scene.hpp"
 #include "pendcore/simulate/options.hpp"
 #include "pendcore/simulate/step_watch.hpp"
 
 namespace pendcore {
+struct EquationsOfMotion;
 namespace defect_detail {
 struct CurveOfStep;
 }
@@ -101,19 +103,22 @@ class DefectCorrection final : public StepWatch {
   void go_on(const Part& part);
   void jump(const WatchedStep& step);
   void keep_errors(const Part& part, bool ends_the_step);
-  void keep_errors_at(double t, const Part& part, double theta, bool is_first);
+  void keep_errors_within(const Part& part, const double* t);
   void keep_errors_now(double t);
   void compare();
-  double* append(double t);
+  double* append(std::size_t times);
 
   int parts_;
   std::vector<std::unique_ptr<Neighbour>> neighbours_;
+  const Scene* last_scene_ = nullptr;  ///< that was added, only to know it again
+  std::shared_ptr<const EquationsOfMotion> last_equations_;
   Store store_ = Store::end;
   std::vector<double> t_eval_;
   std::size_t next_time_ = 0;
   bool has_started_ = false;
   double t_start_ = 0.0;  ///< s, of the step
-  std::vector<double> t_, errors_, memory_;
+  std::vector<double> t_, errors_, theta_, jump_;
+  std::vector<const LobattoPoints::Polynomial*> along_;
   std::unique_ptr<defect_detail::CurveOfStep> curve_;
   Agreement agreement_;
 };

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -78,7 +79,7 @@ constexpr std::size_t most_powers = 64;
 static_assert(highest_order + 1 < most_powers);
 constexpr auto inverse = inverses(std::make_index_sequence<most_powers>());
 
-/// Takes the curve from the dense output of a step of length h, s: (degree, `stride`) numbers, which
+/// Takes the curve from the dense output of a step of length h, s: rows of `stride` numbers, which
 /// begin with angles and rates. The memory of the curve suffices.
 template <class Row>
 PENDCORE_INLINE void take_rows(const double* rows, std::size_t stride, double h,
@@ -105,9 +106,8 @@ PENDCORE_INLINE void take_rows(const double* rows, std::size_t stride, double h,
 }
 PENDCORE_INLINE void take_curve(const double* rows, std::size_t stride, double h,
                                 CurveOfStep* curve) {
-  in_rows(curve->n, [=]<class Row>() __attribute__((always_inline)) {
-    take_rows<Row>(rows, stride, h, curve);
-  });
+  in_rows(curve->n, [=]<class Row>()
+                        __attribute__((always_inline)) { take_rows<Row>(rows, stride, h, curve); });
 }
 
 /// The values of a block of columns of the curve at so many theta, and their slopes times a factor.
@@ -172,8 +172,8 @@ PENDCORE_INLINE void set_out(const LobattoPoints& points, const CurveOfStep& cur
 
 /// Goes on with the right-hand side in qdd, at the point before i: sets q and qd at point i, or the
 /// errors at the end. A pack that a right-hand side loads is stored as one, for a processor waits
-/// where it loads what was stored in pieces. The last right-hand side comes last: no sum waits.
-template <int count, class Row>
+/// where it loads what was stored in pieces.
+template <class Row>
 PENDCORE_INLINE void go_on_in_rows(const LobattoPoints& points, std::size_t i, double h,
                                    Memory& memory) {
   const std::size_t row = memory.row;
@@ -182,22 +182,21 @@ PENDCORE_INLINE void go_on_in_rows(const LobattoPoints& points, std::size_t i, d
     const Row e_qd = load<Row>(&memory.e_qd[k]);
     Row rate = e_qd;
     Row angle = to.theta * e_qd;
-#pragma GCC unroll 16
-    for (std::size_t j = 0; j + 1 < count; ++j) {
+    for (std::size_t j = 0; j + 1 < i; ++j) {
       const Row r = load<Row>(memory.r_at(j) + k);
       rate = fma(to.once[j], r, rate);
       angle = fma(to.twice[j], r, angle);
     }
-    double* const slot = memory.r_at(i - 1) + k;
-    Row r = load<Row>(slot);
+    double* const last = memory.r_at(i - 1) + k;
+    Row r = load<Row>(last);
     if (i > 1) {
       r = fma(h, load<Row>(&memory.qdd[k]), r);
-      store(slot, r);
+      store(last, r);
     }
-    rate = fma(to.once_of_last, r, rate);
-    angle = fma(to.twice_of_last, r, angle);
+    rate = fma(to.once[i - 1], r, rate);
+    angle = fma(to.twice[i - 1], r, angle);
     angle = fma(h, angle, load<Row>(&memory.e_q[k]));
-    if (i < count) {
+    if (i < points.count) {
       const double* const curve = &memory.y[2 * i * row + k];
       store(&memory.q[k], Row(load<Row>(curve) + angle));
       store(&memory.qd[k], Row(load<Row>(curve + row) + rate));
@@ -207,10 +206,9 @@ PENDCORE_INLINE void go_on_in_rows(const LobattoPoints& points, std::size_t i, d
     }
   }
 }
-template <int count>
 PENDCORE_INLINE void go_on(const LobattoPoints& points, std::size_t i, double h, Memory& memory) {
   in_rows(memory.n, [&, i, h]<class Row>() __attribute__((always_inline)) {
-    go_on_in_rows<count, Row>(points, i, h, memory);
+    go_on_in_rows<Row>(points, i, h, memory);
   });
 }
 
@@ -232,17 +230,41 @@ PENDCORE_INLINE void look_along(const LobattoPoints& points, double h, const Mem
   }
 }
 
-/// By how much the angles of the curve are larger than those of the dense output, (row).
-PENDCORE_INLINE void find_farther(const CurveOfStep& curve, double theta, double* angles) {
-  in_rows(curve.n, [&, theta, angles]<class Row>() __attribute__((always_inline)) {
-    for (std::size_t k = 0; k < curve.row; k += Lanes<Row>::width) {
-      Row sum = broadcast<Row>(0.0);
+/// Errors of the run's angles at some theta of a part, four at a time: those of the curve, which
+/// each neighbour has `along` the part, and by how much its angles are farther than the run's.
+struct ErrorsWithin {
+  const CurveOfStep* curve;
+  double from, size;                                        ///< of the part, in theta of the step
+  std::span<const LobattoPoints::Polynomial* const> along;  ///< of each neighbour, (n)
+  std::span<const double> theta;                            ///< of the part
+  double* errors;                                           ///< (theta, neighbours, n)
+};
+PENDCORE_INLINE void find_errors(const ErrorsWithin& wanted) {
+  const CurveOfStep& curve = *wanted.curve;
+  const std::size_t n = curve.n;
+  const std::size_t neighbours = wanted.along.size();
+  for (std::size_t first = 0; first < wanted.theta.size(); first += 4) {
+    const std::size_t some = std::min<std::size_t>(4, wanted.theta.size() - first);
+    Pack<4> theta{};
+    for (std::size_t i = 0; i < some; ++i) theta[i] = wanted.theta[first + i];
+    const Pack<4> of_step = fma(wanted.size, theta, broadcast<Pack<4>>(wanted.from));
+    for (std::size_t link = 0; link < n; ++link) {
+      Pack<4> farther{};
       for (std::size_t p = curve.degree + 1; p-- > 0;) {
-        sum = fma(broadcast<Row>(theta), sum, load<Row>(&curve.farther[p * curve.row + k]));
+        farther = fma(of_step, farther, broadcast<Pack<4>>(curve.farther[p * curve.row + link]));
       }
-      store(angles + k, sum);
+      for (std::size_t k = 0; k < neighbours; ++k) {
+        const LobattoPoints::Polynomial& along = wanted.along[k][link];
+        Pack<4> error{};
+        for (std::size_t p = LobattoPoints::most + 2; p-- > 0;) {
+          error = fma(theta, error, broadcast<Pack<4>>(along[p]));
+        }
+        error = error + farther;
+        double* const to = wanted.errors + (first * neighbours + k) * n + link;
+        for (std::size_t i = 0; i < some; ++i) to[i * neighbours * n] = error[i];
+      }
     }
-  });
+  }
 }
 
 /// By how much the curve is off the run's state y where a step ends, (2 row). The state at the
@@ -268,19 +290,13 @@ PENDCORE_INLINE void find_jump(const CurveOfStep& curve, double theta, const dou
   });
 }
 
-struct Kernels {
-  void (*set_out)(const LobattoPoints&, const CurveOfStep&, double, double, double, Memory&);
-  void (*go_on)(const LobattoPoints&, std::size_t, double, Memory&);
-};
+using GoOn = void (*)(const LobattoPoints&, std::size_t, double, Memory&);
+using SetOut = void (*)(const LobattoPoints&, const CurveOfStep&, double, double, double, Memory&);
 
-template <int count>
-Kernels kernels() {
-  return {fastest<&set_out<count>>(), fastest<&go_on<count>>()};
-}
-
-inline const Kernels& kernels_for(std::size_t points) {
-  static const std::array all = {kernels<5>(), kernels<6>(), kernels<7>(), kernels<8>(),
-                                 kernels<9>()};
+inline SetOut set_out_for(std::size_t points) {
+  static const std::array all = {fastest<&set_out<5>>(), fastest<&set_out<6>>(),
+                                 fastest<&set_out<7>>(), fastest<&set_out<8>>(),
+                                 fastest<&set_out<9>>()};
   return all.at(points - LobattoPoints::least);
 }
 

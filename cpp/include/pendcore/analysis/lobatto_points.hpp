@@ -20,16 +20,16 @@ struct LobattoPoints {
   using Numbers = std::array<double, most>;
   using Polynomial = std::array<double, powers>;  ///< coefficients in theta, from theta^0 on
 
-  /// The weights of the values at the points, in integrals up to a point or up to the end.
+  /// The weights of the values at the points before a point in the integral up to it, and in the
+  /// integral of that.
   struct Sums {
     double theta = 0.0;
-    Numbers once{}, twice{};  ///< in the integral and its integral; of the points before alone
-    double once_of_last = 0.0, twice_of_last = 0.0;  ///< those of the last point before it
+    Numbers once{}, twice{};
   };
 
   std::size_t count;
   Numbers theta{};
-  std::array<Sums, most + 1> sums{};  ///< up to each point; the last ones up to the end
+  std::array<Sums, most + 1> sums{};  ///< up to each point, and then up to the end from them all
   /// For each point the double integral of the polynomial that is 1 there and 0 at all others.
   std::array<Polynomial, most> twice_at{};
 
