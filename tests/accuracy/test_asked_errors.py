@@ -57,16 +57,26 @@ def test_what_is_told_is_the_error_and_never_less(outcomes):
 
 @pytest.mark.unsanitized
 def test_the_run_takes_hardly_more_work_than_the_best_of_a_sweep(outcomes):
-    assert share(outcomes, "verified", 3.5) >= 0.78
-    assert share(outcomes, "verified", 6) >= 0.98
+    assert share(outcomes, "verified", 3.5) >= 0.88
+    assert share(outcomes, "verified", 6) >= 0.99
     assert np.median([one["run"] for one in outcomes]) < 1.2
     assert np.median([one["all"] for one in outcomes]) < 4
 
 
-def test_the_pages_table_is_that_of_the_record():
-    kept = json.loads((DOCS / "records/asked_errors.json").read_text())
-    assert len(kept) == len(asked_errors.SCENES)
-    assert asked_errors.table(kept) in (DOCS / "background/accuracy_cost.md").read_text()
+@pytest.fixture(scope="module")
+def record():
+    return json.loads((DOCS / "records/asked_errors.json").read_text())
+
+
+def test_the_record_keeps_the_goal_of_the_time(record):
+    """`make asked-errors` measures it: verified runs take at most 3.5 times the fastest run."""
+    assert share(record, "verified_time", 3.5) >= 0.97
+    assert share(record, "verified_time", 6) == 1
+
+
+def test_the_pages_table_is_that_of_the_record(record):
+    assert len(record) == len(asked_errors.SCENES)
+    assert asked_errors.table(record) in (DOCS / "background/accuracy_cost.md").read_text()
 
 
 @pytest.mark.parametrize("name", ["textbook", "unequal", "fast_spin", "three_links", "single_rod"])
