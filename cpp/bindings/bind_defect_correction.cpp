@@ -1,4 +1,5 @@
 #include <tuple>
+#include <vector>
 
 #include "arguments.hpp"
 #include "pendcore/analysis/defect_correction.hpp"
@@ -9,7 +10,8 @@ namespace {
 DefectCorrection with_neighbours(const py::list& neighbours, int parts) {
   DefectCorrection correction(parts);
   for (const py::handle one : neighbours) {
-    const auto [scene, q0, points] = one.cast<std::tuple<py::object, py::object, int>>();
+    const auto [scene, q0, points] =
+        one.cast<std::tuple<py::object, py::object, std::vector<int>>>();
     const auto& neighbour = scene.cast<const Scene&>();
     correction.add(neighbour, numbers("q0", q0, "(n,)", neighbour.links.size()), points);
   }

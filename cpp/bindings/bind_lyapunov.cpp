@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "pendcore/analysis/lyapunov.hpp"
 #include "python_monitor.hpp"
 #include "run_state.hpp"
@@ -14,11 +12,7 @@ py::dict exponents(const Scene& scene, py::handle q0, py::handle qd0, py::handle
                    py::handle time_limit, py::handle progress, py::handle warn) {
   PythonMonitor monitor(progress);
   LyapunovOptions options;
-  if (!count.is_none()) {
-    // In the core, 0 means all exponents.
-    const long long given = whole_number("count", count);
-    options.count = static_cast<int>(std::clamp<long long>(given == 0 ? -1 : given, -1, 1 << 20));
-  }
+  if (!count.is_none()) options.count = whole_number("count", count);
   options.rtol = number("rtol", rtol);
   options.atol = number("atol", atol);
   options.t_eval = numbers("t_eval", t_eval);

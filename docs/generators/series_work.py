@@ -1,11 +1,12 @@
-"""Whether a series of taylor costs what `simulate(error=)` takes it to cost, with every effect.
+"""Whether series of taylor and corrections cost what `simulate(error=)` takes them to cost.
 
     make asked-errors
 
-Series of taylor and right-hand sides of dop853 on the same scene are timed in turns. The ratio of
-the two times is divided by what `series_work` of `pendcore.accuracy.method_choice` says. The
-program prints the results, and fails if one of them is not within a factor of two. No test measures
-times; tests/methods/test_series_work.py sees that every kind of effect is measured here.
+Series of taylor, right-hand sides in the correction of their error and right-hand sides of dop853
+are timed in turns on the same scene, with every effect. The ratios of the times are divided by what
+`series_work` and `correction_work` of `pendcore.accuracy.method_choice` say. The program prints the
+results, and fails if one of them is not within a factor of two. No test measures times;
+tests/methods/test_series_work.py sees that every kind of effect is measured here.
 """
 
 from __future__ import annotations
@@ -17,7 +18,10 @@ from time import perf_counter
 from typing import Any
 
 import pendcore as pc
-from pendcore.accuracy.method_choice import series_work
+from pendcore._core import DefectCorrection, has_defect_correction
+from pendcore.accuracy.defect_correction import SERIES_8_7, correction_along
+from pendcore.accuracy.method_choice import correction_work, series_work
+from pendcore.run.call import Choice, Start, atol_beside, run
 
 E = pc.effects
 WAVE = E.Sinusoid(0.5, angular_frequency=3.0)
@@ -48,8 +52,11 @@ TOGETHER: dict[str, tuple[Any, ...]] = {
     ),
 }
 LINKS = (1, 2, 3, 4, 5)
+SECONDS = 20.0
+"""s of motion: so many that the call itself takes no part in the time."""
 YARDSTICK = ("dop853", 1e-9)
 WAYS = (("taylor", 1e-4), ("taylor", 1e-8), ("taylor", 1e-12))
+CORRECTED = (WAYS[1], SERIES_8_7)
 ROUNDS = 15
 WITHIN = 2.0
 
@@ -62,30 +69,41 @@ def scenes() -> Iterator[tuple[str, pc.Scene]]:
                 yield name, pc.Scene(links=[pc.Link(mass=1, length=1)] * n, effects=effects)
 
 
-def seconds_of_one(scene: pc.Scene, method: str, rtol: float) -> float:
-    """Return the time of a run over the number of its right-hand sides or series, s."""
-    q0 = [0.7 + 0.1 * i for i in range(len(scene.links))]
-    begin = perf_counter()
-    solution = pc.simulate(
-        scene, q0, 0, (0, 5), method=method, rtol=rtol, atol=rtol / 1000, store="end",
-        progress=False,
-    )  # fmt: skip
-    return (perf_counter() - begin) / solution.stats.nfev
-
-
 def measured_over_forecast(scene: pc.Scene) -> list[float]:
-    """Return the time of a series as a multiple of the forecast, for each of the ways."""
-    least = dict.fromkeys((YARDSTICK, *WAYS), inf)
+    """Return the times of series, and of a correction, as multiples of the forecasts."""
+    n = len(scene.links)
+    start = Start(scene, [0.7 + 0.1 * i for i in range(n)], 0.0, 0.0, SECONDS)
+    is_corrected = has_defect_correction(scene._compiled)
+    one, whole = dict.fromkeys((YARDSTICK, *WAYS), inf), inf
     for _ in range(ROUNDS):
-        for way in least:
-            least[way] = min(least[way], seconds_of_one(scene, *way))
-    return [least[way] / least[YARDSTICK] / series_work(scene, way[1]) for way in WAYS]
+        for way in one:
+            seconds, nfev = timed(start, way)
+            one[way] = min(one[way], seconds / nfev)
+        if is_corrected:
+            correction = correction_along(start, CORRECTED[1], 1.0)
+            seconds, nfev = timed(start, CORRECTED[0], correction)
+            whole = min(whole, (seconds - nfev * one[CORRECTED[0]]) / correction.nfev)
+    ratios = [one[way] / series_work(scene, way[1]) for way in WAYS]
+    if is_corrected:
+        ratios.append(whole / correction_work(scene))
+    return [ratio / one[YARDSTICK] for ratio in ratios]
+
+
+def timed(
+    start: Start, way: tuple[str, float], correction: DefectCorrection | None = None
+) -> tuple[float, int]:
+    """Return the time of a run, s, and the number of its right-hand sides or series."""
+    choice = Choice(*way, atol_beside(way[1]))
+    begin = perf_counter()
+    result = run(start, choice, store="end", correction=correction)
+    return perf_counter() - begin, result.stats.nfev
 
 
 def main() -> None:
     from tqdm import tqdm
 
-    print("time of a series, measured / forecast, at rtol", *(f"{rtol:g}" for _, rtol in WAYS))
+    tolerances = ", ".join(f"{rtol:g}" for _, rtol in WAYS)
+    print(f"time, measured / forecast: of a series at rtol {tolerances}; of a correction")
     beyond = 0
     for name, scene in tqdm([*scenes()], unit="scene", disable=not sys.stderr.isatty()):
         ratios = measured_over_forecast(scene)
@@ -94,9 +112,7 @@ def main() -> None:
         cells = " ".join(f"{x:6.2f}" for x in ratios)
         tqdm.write(f"{len(scene.links)} links, {name:24} {cells}{'  <<' * wrong}", file=sys.stdout)
     if beyond:
-        sys.exit(
-            f"series_work in pendcore.accuracy.method_choice.py: wrong in {beyond} scenes (<<)"
-        )
+        sys.exit(f"pendcore.accuracy.method_choice: a work is wrong in {beyond} scenes (<<)")
 
 
 if __name__ == "__main__":

@@ -68,10 +68,9 @@ def record():
     return json.loads((DOCS / "records/asked_errors.json").read_text())
 
 
-def test_the_record_keeps_the_goal_of_the_time(record):
-    """`make asked-errors` measures it: verified runs take at most 3.5 times the fastest run."""
-    assert share(record, "verified_time", 3.5) >= 0.97
-    assert share(record, "verified_time", 6) == 1
+def test_the_record_keeps_the_goals(record):
+    for _, key, goal in asked_errors.ROWS:
+        assert goal is None or share(record, key, goal[0]) >= goal[1]
 
 
 def test_the_pages_table_is_that_of_the_record(record):
@@ -175,7 +174,8 @@ def test_beyond_rounding_it_is_refused_with_what_was_reached():
 
 
 def test_a_chaotic_span_is_refused_and_told_until_when_it_holds():
-    with pytest.raises(pc.AccuracyError, match=r"chaos.*holds until t = ") as caught:
+    says = r"part too fast .* it holds until t = [\d.]+ s: end t_span there$"
+    with pytest.raises(pc.AccuracyError, match=says) as caught:
         pc.simulate(BOOK, *CHAOTIC, error=1e-3)
     until = caught.value.solution.accuracy.until
     assert 10 < until < 40
@@ -190,7 +190,14 @@ def test_the_page_says_until_when_it_holds(capsys):
     exec(code, {})
     refusal, until = capsys.readouterr().out.splitlines()
     assert refusal.endswith(told)
-    assert told.endswith(f"until t = {float(until):g} s")
+    assert told.endswith(f"until t = {float(until):.8g} s: end t_span there")
+
+
+def test_the_rounding_of_a_late_start_is_told():
+    """Near t = 1e6 s a time in doubles is off by up to 6e-11 s, which no tolerance mends."""
+    with pytest.raises(pc.AccuracyError, match="to 1e-10 s; begin nearer to 0") as caught:
+        pc.simulate(BOOK, START[0], 0, (1e6, 1e6 + 5), error=1e-10)
+    assert 1e-10 < caught.value.least < 1e-9
 
 
 def test_it_is_refused_as_well_when_no_round_is_left(monkeypatch):
@@ -377,7 +384,7 @@ def test_a_case_and_the_command_know_it(tmp_path, monkeypatch, capsys):
     assert "asked 1.0e-07, achieved" in Path("out/swing/summary.txt").read_text()
     assert main(["run", "swing.toml", "--error", "1e-17"]) == 1
     refusal = capsys.readouterr().err.splitlines()[-1]
-    assert re.fullmatch("error = 1e-17: not reached: .* the rounding of doubles", refusal)
+    assert re.fullmatch("error = 1e-17: not reached: .* doubles: ask for that or more", refusal)
     summary = " ".join(Path("out/swing/summary.txt").read_text().split())
     assert f"refused {refusal} end t = 5 s" in summary
     assert json.loads(Path("out/swing/summary.json").read_text())["refusal"] == refusal
@@ -387,6 +394,6 @@ def test_a_case_and_the_command_know_it(tmp_path, monkeypatch, capsys):
     assert main(["run", "chaotic.toml"]) == 1
     summary = " ".join(Path("out/chaotic/summary.txt").read_text().split())
     assert re.search(
-        r"refused error = 0.001: not reached: .* it holds until t = [\d.]+ s end", summary
+        r"refused error = 0.001: not reached: .* it holds until t = [\d.]+ s: end", summary
     )
     assert main(["run", "swing.toml", "--error", "7"]) == 2

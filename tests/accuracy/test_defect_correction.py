@@ -23,16 +23,24 @@ DRIVEN = pc.Scene(
     links=[pc.Link(mass=1.0, length=1.0)],
     effects=[pc.effects.DrivenPivot(y=pc.effects.Sinusoid(0.05, angular_frequency=7.0))],
 )
+LONG = pc.Scene(
+    links=[pc.Link(mass=1.0 + 0.1 * i, length=0.3 + 0.05 * i) for i in range(6)],
+    effects=[pc.effects.ViscousJoint(joint=i, damping=0.05) for i in range(1, 7)],
+)
 SCENES = {
     "textbook": Start(pc.Scene.textbook(), [0.8, 1.0], 0.0, 0.0, 5.0),
     "backward": Start(pc.Scene.textbook(), [0.8, 1.0], [1.0, -1.0], 2.0, -1.0),
     "three links": Start(CHAIN, [2.0, 1.0, 1.5], 0.0, 0.0, 4.0),
     "driven": Start(DRIVEN, [0.3], 0.0, 12.5, 20.0),
+    "four links": Start(pc.Scene(links=LONG.links[:4]), [0.8, 1.0, 1.3, 1.5], 0.0, 0.0, 2.0),
+    "six links": Start(LONG, [0.8, 1.0, 1.3, 1.5, 1.6, 1.4], 0.0, 0.0, 2.0),
 }
 WAYS = [
-    defect_correction.SERIES,
-    defect_correction.SERIES_OF_MORE_POINTS,
-    defect_correction.SERIES_IN_PARTS,
+    defect_correction.SERIES_6_5,
+    defect_correction.SERIES_7_6,
+    defect_correction.SERIES_8_7,
+    defect_correction.SERIES_6_5_TWICE,
+    defect_correction.SERIES_7_6_TWICE,
     defect_correction.RUNGE_KUTTA,
 ]
 KEPT: dict[str, dict[str, Any]] = {
@@ -47,8 +55,7 @@ def corrected(
     start: Start, scene: pc.Scene, way: defect_correction.Way, rtol: float = 1e-6, **kept: Any
 ) -> tuple[pc.Solution, _core.DefectCorrection]:
     """Run, and integrate the distance from the motion of a scene with the same start."""
-    neighbours = [(scene._compiled, start.q0, points) for points in way.points]
-    correction = _core.DefectCorrection(neighbours, way.parts)
+    correction = _core.DefectCorrection([(scene._compiled, start.q0, way.points)], way.parts)
     if "t_eval" in kept:
         kept["t_eval"] = np.linspace(start.t_start, start.t_end, kept["t_eval"])
     solution = run(
@@ -78,9 +85,13 @@ def test_correction_is_the_error_of_the_run(name: str, way: defect_correction.Wa
 
 
 @pytest.mark.parametrize("kept", KEPT)
-def test_errors_are_kept_where_states_are(kept: str) -> None:
-    start = SCENES["textbook"]
-    solution, correction = corrected(start, start.scene, WAYS[1], **KEPT[kept])
+@pytest.mark.parametrize("name", ["textbook", "backward"])
+@pytest.mark.parametrize("way", [WAYS[1], WAYS[3]], ids=["one part", "two parts"])
+def test_errors_are_kept_where_states_are(
+    name: str, way: defect_correction.Way, kept: str
+) -> None:
+    start = SCENES[name]
+    solution, correction = corrected(start, start.scene, way, **KEPT[kept])
     t = correction.t if kept == "dense" else solution.t
     assert correction.t.tolist() == t.tolist()
     q = solution(t)[:2].T if kept == "dense" else solution.q
@@ -89,15 +100,64 @@ def test_errors_are_kept_where_states_are(kept: str) -> None:
     assert correction.errors_at_end[:, 0].tolist() == correction.errors[-1].tolist()
 
 
+def test_errors_at_ends_of_steps_and_parts_are_those_within_them() -> None:
+    start, way = SCENES["textbook"], defect_correction.SERIES_6_5_TWICE
+    dense, whole = corrected(start, start.scene, way)
+    halves = np.sort(np.append(dense.run.step_starts, whole.t[6::12]))[1:]
+    choice = Choice("taylor", 1e-6, atol_beside(1e-6))
+    correction = _core.DefectCorrection([(start.scene._compiled, start.q0, way.points)], 2)
+    run(start, choice, halves, correction=correction)
+    at = np.searchsorted(whole.t, halves)
+    assert correction.errors == pytest.approx(whole.errors[at], rel=1e-9, abs=1e-22)
+
+
+@pytest.mark.parametrize("way", WAYS, ids=lambda way: f"{way.method} {way.points} {way.parts}")
+def test_right_hand_sides_are_counted(way: defect_correction.Way) -> None:
+    start = SCENES["three links"]
+    solution, correction = corrected(start, start.scene, way)
+    steps = way.parts * solution.stats.accepted
+    assert correction.nfev == sum(1 + steps * (points - 1) for points in way.points)
+
+
+@pytest.mark.parametrize("method", ["taylor", "dop853"])
+def test_first_step_has_the_error_of_its_dense_output_inside(method: str) -> None:
+    """There is none at its start: by how much the curve is off the dense output weighs most."""
+    start, way = SCENES["textbook"], defect_correction.SERIES_8_7._replace(method=method)
+    solution, correction = corrected(start, start.scene, way, rtol=1e-5, first_step=0.1)
+    inside = slice(1, 6)
+    t = correction.t[inside]
+    assert t[-1] > 0.05
+    error = angles(start, t) - solution(t)[:2].T
+    assert np.abs(error).max() > 1e-9
+    assert np.abs(correction.errors[inside, 0] - error).max() <= 0.05 * np.abs(error).max()
+
+
+@pytest.mark.parametrize("kept", KEPT)
+def test_nothing_is_known_after_the_run_is_lost(kept: str) -> None:
+    start = Start(pc.Scene.textbook(), [-1.5, -1.4], 0.0, 0.0, 60.0)
+    way = defect_correction.SERIES_8_7
+    _, correction = corrected(start, start.scene, way, rtol=1e-7, **KEPT[kept])
+    _, _, at_loss, t_known = correction.agreement
+    assert 0.2 <= at_loss < 10
+    after = correction.t > t_known + 1.0
+    assert np.isnan(correction.errors[after]).all()
+    assert not np.isnan(correction.errors[correction.t <= t_known]).any()
+    assert np.isnan(correction.errors_at_end).all()
+
+
 def test_neighbour_that_is_another_scene_gives_the_distance_from_its_motion() -> None:
     start = SCENES["textbook"]
     first, second = start.scene.links
     heavier = pc.Scene(links=[first, pc.Link(mass=second.mass * (1 + 1e-6), length=second.length)])
-    solution, correction = corrected(start, heavier, WAYS[1], rtol=1e-11)
+    correction = _core.DefectCorrection(
+        [(one._compiled, start.q0, [8]) for one in (start.scene, heavier)], 1
+    )
+    solution = run(start, Choice("taylor", 1e-11, 1e-14), correction=correction)
     t = correction.t
     distance = angles(start._replace(scene=heavier), t) - solution(t)[:2].T
     assert np.abs(distance).max() > 1e-7
-    assert np.abs(correction.errors[:, 0] - distance).max() <= 1e-3 * np.abs(distance).max()
+    assert np.abs(correction.errors[:, 1] - distance).max() <= 1e-3 * np.abs(distance).max()
+    assert np.abs(correction.errors[:, 0]).max() < 1e-9
 
 
 def test_correction_ends_at_an_event_within_a_step() -> None:
@@ -134,7 +194,7 @@ def test_unstable_correction_is_not_trusted_and_second_runs_take_its_place() -> 
 def test_chaotic_motion_is_lost_and_its_early_part_known() -> None:
     scene = pc.Scene.textbook()
     start = Start(scene, [-1.5, -1.4], 0.0, 0.0, 60.0)
-    way = defect_correction.SERIES_OF_MORE_POINTS
+    way = defect_correction.SERIES_8_7
     correction = defect_correction.correction_along(start, way, 1e-10)
     solution = run(start, Choice("taylor", 1e-10, 1e-13), correction=correction)
     error = defect_correction.error_from_defect(solution, correction, way, "its defect")
@@ -154,7 +214,7 @@ def test_scene_that_switches_or_has_no_series_has_no_way() -> None:
     for scene in (stopped, dragged):
         assert defect_correction.ways(Start(scene, [1.5] * 3, 0.0, 0.0, 1.0), 1e-6) == []
     with pytest.raises(ValueError, match="a law switches"):
-        _core.DefectCorrection([(stopped._compiled, [1.5] * 3, 6)], 1)
+        _core.DefectCorrection([(stopped._compiled, [1.5] * 3, [6])], 1)
 
 
 def test_run_of_no_length_and_one_with_a_ledger_are_corrected_too() -> None:
@@ -167,7 +227,11 @@ def test_run_of_no_length_and_one_with_a_ledger_are_corrected_too() -> None:
     assert with_ledger.errors[-1] == pytest.approx(alone.errors[-1], rel=0.2)
 
 
-@pytest.mark.parametrize("way", [WAYS[0], WAYS[2]], ids=["one part", "two parts"])
+@pytest.mark.parametrize(
+    "way",
+    [defect_correction.SERIES_6_5, defect_correction.SERIES_6_5_TWICE],
+    ids=["one part", "two parts"],
+)
 def test_times_before_an_event_are_kept_and_none_after_it(way: defect_correction.Way) -> None:
     start = SCENES["textbook"]._replace(t_end=50.0)
     event = pc.events.JointAngle(joint=1, value=1.2, terminal=True)._as_pair()
@@ -186,11 +250,11 @@ def test_correction_looks_on_one_run_only_and_wants_neighbours_alike() -> None:
     with pytest.raises(ValueError, match="a run already"):
         run(start, Choice("taylor", 1e-6, 1e-9), correction=correction)
     with pytest.raises(ValueError, match="as many links"):
-        _core.DefectCorrection([(start.scene._compiled, [1.0] * 3, 6)], 1)
-    mixed = [(start.scene._compiled, [1.0] * 2, 6), (CHAIN._compiled, [1.0] * 3, 5)]
+        _core.DefectCorrection([(start.scene._compiled, [1.0] * 3, [6])], 1)
+    mixed = [(start.scene._compiled, [1.0] * 2, [6]), (CHAIN._compiled, [1.0] * 3, [5])]
     with pytest.raises(ValueError, match="as many links"):
         _core.DefectCorrection(mixed, 1)
-    three = _core.DefectCorrection([(CHAIN._compiled, [1.0] * 3, 6)], 1)
+    three = _core.DefectCorrection([(CHAIN._compiled, [1.0] * 3, [6])], 1)
     with pytest.raises(ValueError, match="more links than the run"):
         run(start, Choice("taylor", 1e-6, 1e-9), correction=three)
 
@@ -207,12 +271,12 @@ def test_what_was_not_trusted_did_not_verify() -> None:
 @pytest.mark.parametrize("points", [4, 10])
 def test_number_of_points_is_bounded(points: int) -> None:
     with pytest.raises(ValueError, match=f"points = {points}: must be from 5 to 9"):
-        _core.DefectCorrection([(CHAIN._compiled, [1.5] * 3, points)], 1)
+        _core.DefectCorrection([(CHAIN._compiled, [1.5] * 3, [points])], 1)
 
 
 def test_rounding_of_the_states_is_part_of_the_error() -> None:
     start = Start(pc.Scene.textbook(), [0.6, 1.0], 0.0, 0.0, 60.0)
-    solution, correction = corrected(start, start.scene, WAYS[1], rtol=1e-14, store="steps")
+    solution, correction = corrected(start, start.scene, WAYS[2], rtol=1e-14, store="steps")
     exact = Choice("dop853", 1e-15, 1e-18, compensated=True)
     error = run(start, exact, solution.t).q - solution.q
     assert np.abs(error).max() > 5e-14

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import pickle
 from collections.abc import Callable
-from types import SimpleNamespace
 
 import numpy as np
 import pendcore as pc
 import pytest
 from chaotic_starts import EACH, T_END, ChaoticStart, chaotic_starts
 from numpy.typing import NDArray
-from pendcore.horizon.lyapunov import _check_is_smooth
 
 E = pc.effects
 GRAVITY = 9.807
@@ -267,12 +265,6 @@ def test_which_effects_jump_is_a_fact_of_theirs_not_of_the_ledger() -> None:
         "dry_joint_friction",
         "joint_stop",
     }
-    told = pc.effects.ViscousJoint.description
-    lossy = SimpleNamespace(kind="lossy", description=told._replace(account="dry"))
-    _check_is_smooth(SimpleNamespace(effects=[lossy]))
-    jumpy = SimpleNamespace(kind="jumpy", description=told._replace(jumps_or_sticks=True))
-    with pytest.raises(ValueError, match=r"effect 2 \(jumpy\): motions jump or stick"):
-        _check_is_smooth(SimpleNamespace(effects=[lossy, jumpy]))
 
 
 def test_backward_the_spectrum_changes_its_sign() -> None:

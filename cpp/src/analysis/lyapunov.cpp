@@ -229,8 +229,9 @@ void check_has_exponents(const Scene& scene) {
     if (!info_of(scene.effects[i]).jumps_or_sticks) continue;
     throw std::invalid_argument(
         effect_name(scene, i) +
-        ": makes the motion jump or stick, where the variational equations do not hold: only "
-        "scenes without dry friction and stops have Lyapunov exponents");
+        ": motions jump or stick under it, each at a time of its own, so neighbouring motions do "
+        "not diverge at a rate: remove dry friction and stops to get exponents; sol.valid_until() "
+        "and pendcore.horizon_work tell how long a run is right with them, too");
   }
 }
 
@@ -248,9 +249,10 @@ TangentGrowth lyapunov(const Scene& scene, const std::vector<double>& q0,
   const std::vector<double> basis = tangent_basis(scene);
   const int n = static_cast<int>(scene.links.size());
   const int all = static_cast<int>(basis.size()) / (2 * n);
-  if (options.count < 0 || options.count > all) {
+  const long long wanted = options.count.value_or(all);
+  if (wanted > all || (options.count && wanted < 1)) {
     throw std::invalid_argument(
-        "count: must be " +
+        "count = " + std::to_string(wanted) + ": must be " +
         (all == 0 ? "left out: nothing of the scene can move"
                   : "1 to " + std::to_string(all) + ", twice the degrees of freedom"));
   }
@@ -259,7 +261,7 @@ TangentGrowth lyapunov(const Scene& scene, const std::vector<double>& q0,
   check_times(times, t0, t_end);
 
   TangentGrowth result;
-  result.count = options.count == 0 ? all : options.count;
+  result.count = static_cast<int>(wanted);
   const int numbers = n * (1 + result.count);
   const std::unique_ptr<Stepper> made = tangent_stepper(scene, result.count, t_end, !(t_end < t0));
   Stepper& stepper = *made;

@@ -63,7 +63,7 @@ def series_work(scene: SceneData, rtol: float) -> float:
     elif n == 2 and (moving or waves > 2 or free < n):  # these take the series of longer chains
         base, exponent = 20.0, 0.037
     elif n == 2:
-        base, exponent = 11.7, 0.023
+        base, exponent = 11.5, 0.024
     elif n <= 4 and not (moving or waves > 2 or free < n or _may_hold_or_couple(scene)):
         base, exponent = 6.0, 0.030  # the series of few links
     else:

@@ -124,18 +124,6 @@ def distances(scene: SceneData, q: npt.ArrayLike, reference: npt.ArrayLike) -> F
     return apart
 
 
-def position_error(solution: RunResult, reference: RunResult, t: Floats) -> float:
-    """Return the largest distance of two solutions at times t (n_t,), s, as a share of the length.
-
-    It is NaN where a state is not finite, and infinite where a solution does not reach the last
-    time.
-    """
-    if not (reached(solution, t[-1:]).all() and reached(reference, t[-1:]).all()):
-        return np.inf
-    q, r = angles_at(solution, t), angles_at(reference, t)
-    return float(distances(solution.scene, q, r).max(initial=0.0))
-
-
 def reached(solution: RunResult, t: Floats) -> npt.NDArray[np.bool]:
     """Return at which of the times (n_t,), s, a run was."""
     start, end = solution.run.arguments["t_start"], solution.run.t_reached

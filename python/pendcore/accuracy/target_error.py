@@ -23,6 +23,8 @@ from __future__ import annotations
 from math import inf
 from typing import Any
 
+import numpy as np
+
 from pendcore.accuracy.estimate import SPARE_OF_SEVERAL
 from pendcore.accuracy.trials import TrialRun, Trials, leading
 from pendcore.messages.arguments import finite_array
@@ -38,7 +40,8 @@ FIRST_BY_DEFECT, FIRST = 0.5, 3.0
 after which most runs need no other trial, and if not."""
 AT_FEW_TIMES, IF_DAMPED = 4.0, 20.0
 """Both are multiplied by these where few times are kept, as the error is hardly largest there, and
-where dampers make the motion forget its errors."""
+where dampers make the motion forget its errors. With these, the true error of stiff scenes is 0.07
+of the one asked for, in the median."""
 AIM = 0.65
 """Later trials aim at this multiple of the error asked for."""
 LEAST_CHANGE, FARTHER = 1.5, 100.0
@@ -65,7 +68,9 @@ CAUTION_IF_TIGHT = 0.5
 ROUNDING_MATTERS = ((1e-12, 3), (5e-12, 2))
 """Pairs: a trial below this scale needs this many second runs as tight as doubles allow."""
 HOPELESS = 1e-6
-"""A larger error at the tightest tolerances is not rounding alone, but its growth (chaos)."""
+"""A larger error at the tightest tolerances is not rounding alone, but its growth."""
+LATE = 0.1
+"""Where the rounding of times takes this share of the least error, a late start is to blame."""
 FOLLOWED_BADLY = ("step_too_small", "non_finite")
 """The statuses that loose tolerances may cause."""
 MOST_RUNS = 16
@@ -89,7 +94,7 @@ def run_to_error(start: Start, error: float, options: dict[str, Any]) -> RunResu
     report = callback(options.pop("progress", None))
     runs = Trials(start, error, options, report)
     try:
-        return _kept(runs)
+        return kept_run(runs)
     except AccuracyError:
         raise
     except BaseException as stop:
@@ -106,7 +111,8 @@ def run_to_error(start: Start, error: float, options: dict[str, Any]) -> RunResu
         close(report)
 
 
-def _kept(runs: Trials) -> RunResult:
+def kept_run(runs: Trials) -> RunResult:
+    """Return a run that keeps the error, or one that ended early."""
     scale = _first_scale(runs, FIRST_BY_DEFECT)
     while runs.ways:
         trial = _first_trial(runs, scale)
@@ -333,16 +339,30 @@ def _refusal(runs: Trials, why: str = "") -> AccuracyError:
     if last.rtol > runs.tightest:
         why = _does_not_follow(runs)
     elif error.is_lost or error.largest > HOPELESS:
-        why = "neighbouring motions part too fast for double precision (chaos)"
+        why = "neighbouring motions part too fast for double precision"
     else:
-        why = "tighter tolerances are lost in the rounding of doubles"
+        why = _what_rounding_takes(last.solution, error)
     least = inf if error.is_lost else error.largest
     reached = f"the least that can be kept is {least:.1e}"
+    remedies = ["ask for that or more"]
     if error.is_lost:
-        reached = "no error can be kept to the end"
+        reached, remedies = "no error can be kept to the end", []
     until = error.valid_until(runs.error, of="position")
-    held = f"; it holds until t = {until:.6g} s" if until != runs.start.t_start else ""
-    return AccuracyError(f"{asked}: not reached: {reached}: {why}{held}", last.solution, least)
+    if until != runs.start.t_start:
+        why += f"; it holds until t = {until:.8g} s"
+        remedies.append("end t_span there")
+    message = ": ".join((asked, "not reached", reached, why, " or ".join(remedies)))
+    return AccuracyError(message.removesuffix(": "), last.solution, least)
+
+
+def _what_rounding_takes(solution: RunResult, error: ErrorEstimate) -> str:
+    """Return which rounding keeps the error from becoming smaller."""
+    begin, end, n = error.begin, solution.run.t_reached, len(solution.scene.links)
+    last_bit = np.spacing(max(abs(begin), abs(end)))
+    turned = last_bit / 2 * np.abs(solution.run.y_reached[n : 2 * n]).max()
+    if abs(begin) > abs(end - begin) and turned > LATE * error.largest:
+        return f"times from {begin:g} s on are rounded to {last_bit:.0e} s; begin nearer to 0"
+    return "tighter tolerances are lost in the rounding of doubles"
 
 
 def _does_not_follow(runs: Trials) -> str:

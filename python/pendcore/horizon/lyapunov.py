@@ -12,14 +12,12 @@ import numpy.typing as npt
 
 from pendcore import _core
 from pendcore.accuracy.position_error import time_grid
-from pendcore.horizon.figure import plot_exponents
 from pendcore.messages.arguments import (
     Floats,
     known_keywords,
     number,
     numbers,
     time_span,
-    whole_number,
 )
 from pendcore.messages.progress import Progress, callback, close
 from pendcore.messages.warning import warn
@@ -135,7 +133,18 @@ class LyapunovExponents:
 
         ``ax`` is an axes of matplotlib's; the rest are properties of its ``Line2D``.
         """
-        return plot_exponents(self.t, self.finite_time, ax, **line_properties)
+        if ax is None:
+            import matplotlib.pyplot as plt
+
+            ax = plt.figure(figsize=(6.4, 4.0), layout="constrained").subplots()
+        properties = {"color": "k", "linewidth": 1.2, **line_properties}
+        lines: list[Line2D] = ax.plot(self.t, self.finite_time, **properties)
+        ax.set_xlabel("t (s)")
+        ax.set_ylabel("finite-time Lyapunov exponents (1/s)")
+        ax.axhline(0.0, color="0.6", linewidth=0.8, zorder=0)
+        ax.margins(x=0)
+        ax.grid(True, alpha=0.4)
+        return lines
 
 
 @known_keywords
@@ -223,8 +232,6 @@ def lyapunov(
             "counts from its end to that of t_span"
         )
     times = _times(t_eval, since, t_end)
-    _check_is_smooth(scene)
-    _check_count(scene, count)
     report = callback(progress, "following neighbours")
     try:
         found = _core.lyapunov(
@@ -264,27 +271,6 @@ def lyapunov_of(
         max_step=asked["max_step"],
         progress=progress,
     )
-
-
-def _check_is_smooth(scene: SceneData) -> None:
-    for i, effect in enumerate(scene.effects, start=1):
-        if effect.description.jumps_or_sticks:
-            raise ValueError(
-                f"effect {i} ({effect.kind}): motions jump or stick under it, each at a time of "
-                "its own, so neighbouring motions do not diverge at a rate: remove dry friction "
-                "and stops to get exponents; sol.valid_until() and pendcore.horizon_work tell how "
-                "long a run is right with them, too"
-            )
-
-
-def _check_count(scene: SceneData, count: int | None) -> None:
-    if count is None:
-        return
-    given, most = whole_number("count", count), 2 * scene.mobility().degrees_of_freedom
-    if most == 0:
-        raise ValueError(f"count = {given}: must be left out: nothing of the scene can move")
-    if not 1 <= given <= most:
-        raise ValueError(f"count = {given}: must be 1 to {most}, twice the degrees of freedom")
 
 
 def _times(t_eval: npt.ArrayLike | None, since: float, t_end: float) -> Floats:

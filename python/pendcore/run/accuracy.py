@@ -29,7 +29,8 @@ class Paid(NamedTuple):
     nfev : int
         The number of right-hand sides, or of series for a run by ``taylor``.
     work : float
-        The same in right-hand sides; a series counts as the many that take as long.
+        The same in right-hand sides of a run; a series, and a right-hand side of an integration of
+        the defect, count as the number of these that take as long.
     """
 
     purpose: str
@@ -102,7 +103,7 @@ class Accuracy:
     def work(self, purpose: str | None = None) -> float:
         """Return the work of all that was computed, or of that with a purpose, in right-hand sides.
 
-        A series of ``taylor`` counts as the many right-hand sides that take as long.
+        What is not a right-hand side of a run counts as the number of these that take as long.
         """
         return sum(p.work for p in self.paid if purpose in (None, p.purpose))
 

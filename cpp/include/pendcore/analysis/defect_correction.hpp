@@ -17,7 +17,7 @@
 ///
 /// The state at a point is found in the same way from the points before it, as in an explicit
 /// Runge-Kutta-Nystrom method. The right-hand side at the last point serves the next step as well.
-/// By how much the curve's angles differ from the run's is added where an error is told.
+/// Where an error is reported, the difference between the curve's angles and the run's is added.
 ///
 /// It suits Taylor series best: their error inside a step is no larger than at its ends. That of
 /// Dormand and Prince's methods is larger inside, which takes more points; e is less certain then.
@@ -28,23 +28,19 @@
 ///
 /// Source: Zadunaisky, Numerische Mathematik 27 (1976) 21-39; Skeel, Numerische Mathematik 48
 /// (1986) 1-20, "solving for the correction". The points are those of lobatto_points.hpp. Cost: for
-/// each part of a step and neighbour one right-hand side less than there are points.
+/// each part of a step and neighbour one right-hand side less than there are points, and one at the
+/// start.
 #pragma once
 
 #include <memory>
 #include <span>
 #include <vector>
 
-#include "pendcore/analysis/lobatto_points.hpp"
 #include "pendcore/scene/scene.hpp"
 #include "pendcore/simulate/options.hpp"
 #include "pendcore/simulate/step_watch.hpp"
 
 namespace pendcore {
-struct EquationsOfMotion;
-namespace defect_detail {
-struct CurveOfStep;
-}
 
 /// Whether the error of a run of a scene can be found in this way: no law switches, in time or with
 /// the state, and no joint may be held.
@@ -74,10 +70,10 @@ class DefectCorrection final : public StepWatch {
   ~DefectCorrection() override;
   DefectCorrection(DefectCorrection&&) noexcept;
 
-  /// Adds a neighbour: a scene of as many links as the run's, its angles at the start, (n) rad, and
-  /// the number of points in a part of a step, 5 to 9. Throws std::invalid_argument for other
-  /// sizes, and for a scene that has no defect correction.
-  void add(const Scene& scene, const std::vector<double>& q0, int points);
+  /// Adds a neighbour for each of some numbers of points in a part of a step, 5 to 9: a scene of as
+  /// many links as the run's, and its angles at the start, (n) rad. Throws std::invalid_argument
+  /// for other sizes, and for a scene that has no defect correction.
+  void add(const Scene& scene, const std::vector<double>& q0, std::span<const int> points);
   /// Keeps errors where a run keeps its states: at t_eval, at the steps, or at the end; of a run
   /// with dense output at six times in each part of a step.
   void keep(Store store, const std::vector<double>& t_eval);
@@ -99,27 +95,25 @@ class DefectCorrection final : public StepWatch {
  private:
   struct Part;
   struct Neighbour;
-  void set_curve(const WatchedStep& step);
+  struct Scratch;
+  void take_curve(const WatchedStep& step);
   void go_on(const Part& part);
-  void jump(const WatchedStep& step);
-  void keep_errors(const Part& part, bool ends_the_step);
+  void end_step(const WatchedStep& step);
+  void compare();
+  void keep_errors(const Part& part);
   void keep_errors_within(const Part& part, const double* t);
   void keep_errors_now(double t);
-  void compare();
   double* append(std::size_t times);
 
   int parts_;
   std::vector<std::unique_ptr<Neighbour>> neighbours_;
-  const Scene* last_scene_ = nullptr;  ///< that was added, only to know it again
-  std::shared_ptr<const EquationsOfMotion> last_equations_;
+  std::unique_ptr<Scratch> scratch_;
   Store store_ = Store::end;
   std::vector<double> t_eval_;
   std::size_t next_time_ = 0;
   bool has_started_ = false;
   double t_start_ = 0.0;  ///< s, of the step
-  std::vector<double> t_, errors_, theta_, jump_;
-  std::vector<const LobattoPoints::Polynomial*> along_;
-  std::unique_ptr<defect_detail::CurveOfStep> curve_;
+  std::vector<double> t_, errors_;
   Agreement agreement_;
 };
 

@@ -33,6 +33,8 @@ struct LobattoPoints {
   /// For each point the double integral of the polynomial that is 1 there and 0 at all others.
   std::array<Polynomial, most> twice_at{};
 
+  static_assert(most + 2 <= powers && powers % 4 == 0);
+
   explicit LobattoPoints(std::span<const double> points);
 
  private:

@@ -21,6 +21,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,10 +31,10 @@
 namespace pendcore {
 
 struct LyapunovOptions {
-  int count = 0;               ///< k, the number of exponents; 0 for all
-  double rtol = 1e-9;          ///< relative tolerance of the state
-  double atol = 1e-12;         ///< rad and rad/s; the changes have `rtol` of their length
-  std::vector<double> t_eval;  ///< s, strictly monotone along the run; empty: the end alone
+  std::optional<long long> count{};  ///< k, the number of exponents; else all
+  double rtol = 1e-9;                ///< relative tolerance of the state
+  double atol = 1e-12;               ///< rad and rad/s; the changes have `rtol` of their length
+  std::vector<double> t_eval;        ///< s, strictly monotone along the run; empty: the end alone
   double max_step = std::numeric_limits<double>::infinity();  ///< s
   long long max_steps = 10'000'000;
   double time_limit = std::numeric_limits<double>::infinity();  ///< s of computing

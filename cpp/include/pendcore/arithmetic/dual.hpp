@@ -131,16 +131,16 @@ PENDCORE_INLINE Dual<Row> before(const Dual<Row>& x) {
   return {before(x.value), before(x.slope)};
 }
 template <class Row>
+PENDCORE_INLINE Dual<Row> after(const Dual<Row>& x) {
+  return {after(x.value), after(x.slope)};
+}
+template <class Row>
 PENDCORE_INLINE Dual<Row> before(const Dual<Row>& x, const Dual<Row>& row_before) {
   return {before(x.value, row_before.value), before(x.slope, row_before.slope)};
 }
 template <class Row>
 PENDCORE_INLINE Dual<Row> after(const Dual<Row>& x, const Dual<Row>& row_after) {
   return {after(x.value, row_after.value), after(x.slope, row_after.slope)};
-}
-template <class Row>
-PENDCORE_INLINE Dual<Row> after(const Dual<Row>& x) {
-  return {after(x.value), after(x.slope)};
 }
 
 template <class Row>

@@ -90,7 +90,9 @@ PENDCORE_INLINE void set_lane(Real& x, int index, double value) {
   }
 }
 
-/// Loads a pack from consecutive numbers in memory, or stores it; any alignment.
+/// Loads a pack from consecutive numbers in memory, or stores it; any alignment. A pack that is
+/// loaded soon is best stored as that pack: a processor waits until numbers that were stored one by
+/// one, or as parts of other packs, are in memory.
 template <class Real>
 PENDCORE_INLINE Real load(const double* from) {
   Real x;

@@ -126,8 +126,7 @@ PENDCORE_INLINE Pack<4> before(const Pack<4>& x) {
 PENDCORE_INLINE Pack<4> after(const Pack<4>& x) {
   return __builtin_shufflevector(x, Pack<4>{}, 1, 2, 3, 4);
 }
-/// The same in a row that is not alone. Shuffles are quicker here than the load of a pack that was
-/// stored as parts of two others: that one waits until both are in memory.
+/// The same in a row that is not alone, from what was stored as packs (pack.hpp).
 PENDCORE_INLINE Pack<4> before(const Pack<4>& x, const Pack<4>& row_before) {
   return __builtin_shufflevector(row_before, x, 3, 4, 5, 6);
 }

@@ -9,9 +9,8 @@
 
 namespace pendcore {
 
-/// Copies n links, in whole packs: a processor waits where it loads a pack that was stored in
-/// pieces.
-PENDCORE_INLINE void copy_in_packs(const double* from, int n, double* to) {
+/// Copies n links, plain ones in whole packs.
+PENDCORE_INLINE void copy_links(const double* from, int n, double* to) {
   int i = 0;
   for (; i + 4 <= n; i += 4) store(to + i, load<Pack<4>>(from + i));
   if (i == n) return;
@@ -20,7 +19,7 @@ PENDCORE_INLINE void copy_in_packs(const double* from, int n, double* to) {
   if (i + 2 < n) rest[2] = from[i + 2];
   store(to + i, rest);
 }
-PENDCORE_INLINE void copy_in_packs(const Dual<double>* from, int n, Dual<double>* to) {
+PENDCORE_INLINE void copy_links(const Dual<double>* from, int n, Dual<double>* to) {
   std::copy_n(from, n, to);
 }
 
@@ -28,8 +27,8 @@ template <class Number>
 PENDCORE_INLINE void ChainOf<Number>::prepare(const Number* q, const Number* qd) const {
   Number* const s = in(s_);
   Number* const c = in(c_);
-  copy_in_packs(q, n_, in(q_));
-  copy_in_packs(qd, n_, in(qd_));
+  copy_links(q, n_, in(q_));
+  copy_links(qd, n_, in(qd_));
   for (int i = 0; i < padded_; i += 4) {
     const Row rate = load<Row>(in(qd_) + i);
     Row sine, cosine;
