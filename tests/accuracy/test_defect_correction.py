@@ -87,9 +87,7 @@ def test_correction_is_the_error_of_the_run(name: str, way: defect_correction.Wa
 @pytest.mark.parametrize("kept", KEPT)
 @pytest.mark.parametrize("name", ["textbook", "backward"])
 @pytest.mark.parametrize("way", [WAYS[1], WAYS[3]], ids=["one part", "two parts"])
-def test_errors_are_kept_where_states_are(
-    name: str, way: defect_correction.Way, kept: str
-) -> None:
+def test_errors_are_kept_where_states_are(name: str, way: defect_correction.Way, kept: str) -> None:
     start = SCENES[name]
     solution, correction = corrected(start, start.scene, way, **KEPT[kept])
     t = correction.t if kept == "dense" else solution.t
