@@ -2,12 +2,9 @@
 
 `Solution.error` and `Solution.valid_until` come from here, and what ``simulate(error=...)`` tells
 where it does not know the error from the defect (`pendcore.accuracy.defect_correction`). The run is
-compared with better second runs. How good these are is known, as they are compared with
-each other as well. Those of `Solution.error` take another method where one supports the scene, at
-tolerances a hundredth and less, as far as doubles allow; those of ``simulate(error=...)`` take the
-trial's own (`pendcore.accuracy.target_error`). All take other steps, and the constants and the
-start of each are moved by a few last bits (`pendcore.accuracy.rounding`). With the second runs
-r_1, r_2, ... the error is at most
+compared with better second runs: by another method for `Solution.error`, by the trial's own for
+``simulate(error=...)``. Their steps are others, and their constants and starts are moved by a few
+last bits (`pendcore.accuracy.rounding`). With the second runs r_1, r_2, ... the error is at most
 
     (1 + share) max_i |run - r_i| + max_ij |r_i - r_j|
 
@@ -234,14 +231,9 @@ def _compared(
     try:
         for seed in range(count):
             choice = tightened(first, TIGHTER[seed], TIGHTEST)
-            begin = moved(start, seed)
-
-            def share(fraction: float, done: int = seed) -> None:
-                if report is not None:
-                    report((done + fraction) / count)
-
+            share = _part_of(report, seed, count)
             second: RunResult | None = None
-            for second in _legs(solution, begin, choice, until, share):
+            for second in _legs(solution, moved(start, seed), choice, until, share):
                 if _is_lost(solution, second):
                     break
             assert second is not None
@@ -273,10 +265,7 @@ def _legs(
     second: RunResult | None = None
     for done, (end, part) in enumerate(zip(ends, parts, strict=True)):
         left = None if until == inf else max(1e-3, until - monotonic())
-
-        def share(fraction: float, done: int = done) -> None:
-            report((done + fraction) / count)
-
+        share = _part_of(report, done, count)
         share(0.0)  # a leg may be over before the core first reports
         if part is not None:
             if not len(part):
@@ -294,6 +283,11 @@ def _legs(
         yield second
         if not second.success or monotonic() > until:
             return
+
+
+def _part_of(report: Report | None, done: int, count: int) -> Report:
+    """Return what reports the progress of one of several parts."""
+    return lambda fraction: None if report is None else report((done + fraction) / count)
 
 
 def _choice_of(solution: RunResult) -> Choice:

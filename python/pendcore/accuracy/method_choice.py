@@ -30,10 +30,8 @@ TAYLOR_BELOW = ((0.9, 5e-3), (1.08, 2e-5), (1.2, 1e-6), (1.6, 3e-6), (4.0, 1e-10
 the others for errors below this bound. Each row stands for a kind of scene that `series_work` tells
 apart, so the bounds need not fall.
 """
-DOPRI5_ABOVE = {1: 1e-3}
-"""By number of links, the error above which dopri5 takes less work than dop853."""
-DOPRI5_ABOVE_ELSE = 3e-7
-"""The same bound with any other number of links."""
+DOPRI5_ABOVE, DOPRI5_ABOVE_IF_ONE_LINK = 3e-7, 1e-3
+"""The errors above which dopri5 takes less work than dop853."""
 HOLDING = {"dry_joint_friction", "joint_stop"}
 """Effects that may hold a joint where it is."""
 _DIGITS = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
@@ -45,8 +43,8 @@ def cheapest(start: Start, error: float) -> str:
     below = next((error for most, error in TAYLOR_BELOW if share <= most), 0.0)
     if error < below and supports("taylor", start):
         return "taylor"
-    is_loose = error > DOPRI5_ABOVE.get(len(start.scene.links), DOPRI5_ABOVE_ELSE)
-    return "dopri5" if is_loose else "dop853"
+    above = DOPRI5_ABOVE_IF_ONE_LINK if len(start.scene.links) == 1 else DOPRI5_ABOVE
+    return "dopri5" if error > above else "dop853"
 
 
 def series_work(scene: SceneData, rtol: float) -> float:

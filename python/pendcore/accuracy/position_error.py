@@ -36,15 +36,15 @@ def time_grid(t_start: float, t_end: float, points: int = POINTS) -> Floats:
         return np.array([t_end])
     times = np.linspace(t_start, t_end, points)
     times[-1] = t_end
-    distinct: Floats = times[
-        np.append(True, np.diff(times) != 0)
-    ]  # a span of a few last bits has fewer times than points
-    return distinct
+    return _distinct(times)  # a span of a few last bits has fewer times than points
 
 
 def kept_times(solution: RunResult) -> Floats:
     """Return the times that a solution kept, s, each once; at a jump it keeps a time twice."""
-    t = solution.t
+    return _distinct(solution.t)
+
+
+def _distinct(t: Floats) -> Floats:
     distinct: Floats = t[np.append(True, np.diff(t) != 0)[: len(t)]]
     return distinct
 
@@ -67,9 +67,7 @@ def times_within_steps(runs: Iterable[RunResult]) -> Floats:
     few = np.bincount(own)[own] <= CUTS
     shares = np.arange(1, SAMPLES) / SAMPLES
     inside = nodes[:-1][few, np.newaxis] + np.diff(nodes)[few, np.newaxis] * shares
-    times = np.sort(np.append(inside.ravel(), nodes))
-    distinct: Floats = direction * times[np.append(True, np.diff(times) > 0)]
-    return distinct
+    return direction * _distinct(np.sort(np.append(inside.ravel(), nodes)))
 
 
 def angles_at(solution: RunResult, t: Floats) -> Floats:

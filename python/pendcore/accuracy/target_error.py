@@ -7,14 +7,12 @@ next. There are two ways to know the error.
 that are not too large (`pendcore.accuracy.defect_correction`). If one way to integrate it cannot be
 trusted, another one may be.
 
-**From second runs**, wherever the defect does not tell. A second run is better: it takes the same
-method at a twenty-fifth of the tolerance or less (`taylor` at a hundredth), its constants and start
-are moved by some last bits, and its steps are others. Its distance from the trial tells how large
-the error is; one more second run shows that the first one is indeed better, as the distance of the
-two is added (`pendcore.accuracy.estimate`).
+**From second runs**, wherever the defect does not tell. A second run takes the same method at much
+tighter tolerances. Its distance from the trial tells how large the error is; one more second run
+shows that the first one is indeed better (`pendcore.accuracy.estimate`). Where rounding may matter,
+two or three second runs as tight as doubles allow take the place of these.
 
-Where tolerances are so tight that rounding may matter, two or three second runs as tight as doubles
-allow take the place of these. The loop ends with a trial whose error is small enough, with an
+The loop ends with a trial whose error is small enough, with an
 `AccuracyError` that says the least error that can be reached, or with a run that ended early.
 """
 

@@ -167,9 +167,8 @@ class Trials:
             "max_step": other_steps(trial.solution, self.options["max_step"]),
             "max_steps": self._most_steps(MORE_STEPS),
         }
-        ends = [
-            each.solution.run.t_reached for each in self.trials
-        ]  # each has its own terminal event
+        # each trial has its own terminal event
+        ends = [each.solution.run.t_reached for each in self.trials]
         start = self.start._replace(t_end=max(ends, key=lambda t: abs(t - self.start.t_start)))
         second = self._run(moved(start, len(self.seconds)), method, rtol, options)
         self.seconds.append(second)

@@ -12,13 +12,7 @@ import numpy.typing as npt
 
 from pendcore import _core
 from pendcore.accuracy.position_error import time_grid
-from pendcore.messages.arguments import (
-    Floats,
-    known_keywords,
-    number,
-    numbers,
-    time_span,
-)
+from pendcore.messages.arguments import Floats, known_keywords, number, numbers, time_span
 from pendcore.messages.progress import Progress, callback, close
 from pendcore.messages.warning import warn
 from pendcore.run.options import RUN_DEFAULTS
@@ -259,18 +253,11 @@ def lyapunov_of(
     if solution.run.t_reached == asked["t_start"]:
         raise ValueError("lyapunov: the run ended where it began: nothing had time to grow")
     return lyapunov(
-        solution.scene,
-        asked["q0"],
-        asked["qd0"],
-        (asked["t_start"], solution.run.t_reached),
-        count=count,
-        transient=transient,
-        rtol=float(np.min(asked["rtol"])),
-        atol=float(np.min(asked["atol"])),
-        t_eval=t_eval,
-        max_step=asked["max_step"],
+        solution.scene, asked["q0"], asked["qd0"], (asked["t_start"], solution.run.t_reached),
+        count=count, transient=transient, rtol=float(np.min(asked["rtol"])),
+        atol=float(np.min(asked["atol"])), t_eval=t_eval, max_step=asked["max_step"],
         progress=progress,
-    )
+    )  # fmt: skip
 
 
 def _times(t_eval: npt.ArrayLike | None, since: float, t_end: float) -> Floats:
