@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from typing import Any
 
 import mpmath
@@ -215,3 +216,42 @@ def test_what_no_double_knows_is_refused_and_not_called_known_everywhere() -> No
     assert told.until < 60
     assert not told.everywhere
     assert "whole curve" not in told.text()
+
+
+def test_second_runs_take_other_steps_where_breaks_limit_them() -> None:
+    """A rod bounces ever faster and stays: all runs by one method would take the same steps."""
+    rod = pc.Link(mass=0.25, length=0.8, center=0.35, inertia=0.004)
+    effects = [
+        pc.effects.TorsionalSpring(joint=1, stiffness=170.0, rest_angle=-0.95),
+        pc.effects.DryJointFriction(joint=1, coulomb=0.65),
+        pc.effects.JointStop(joint=1, range=(2.5, 3.7), restitution=0.85),
+    ]
+    scene = pc.Scene(links=[rod], effects=effects)
+    start = ([2.8], [2.0], (5.3, 10.3))
+    exact = pc.simulate(scene, *start, method="taylor", rtol=1e-15, atol=1e-18)
+    for error in (1e-3, 1e-6):
+        sol = pc.simulate(scene, *start, error=error)
+        assert 2 * sol.stats.limited_by_break > sol.stats.accepted
+        t = np.linspace(5.3, sol.t[-2], 2001)
+        apart = distances(scene, sol(t)[:1].T, exact(t)[:1].T).max()
+        assert 1e-12 < apart <= sol.accuracy.achieved <= error
+
+
+@pytest.mark.filterwarnings("ignore::pendcore.PendcoreWarning")
+def test_what_is_told_of_a_run_that_ended_early_is_one_estimate() -> None:
+    blows_up = [pc.effects.ViscousJoint(joint=1, damping=0, damping3=-1.0)]
+    scene = pc.Scene.textbook().replace(effects=blows_up)
+    sol = pc.simulate(scene, [0.7, 1.0], 0, (0, 5), error=1e-6)
+    told = sol.accuracy
+    assert told.outcome == "ended early"
+    assert told.achieved == sol.error().largest
+    assert told.until == sol.valid_until(1e-6, of="position")
+
+
+@pytest.mark.parametrize("error", [1e-15, 3e-15])
+def test_the_least_error_that_is_told_is_kept(error) -> None:
+    with pytest.raises(pc.AccuracyError) as caught:
+        pc.simulate(BOOK, *START, error=error)
+    (told,) = re.findall(r"ask for error = (\S+) or more$", str(caught.value))
+    assert caught.value.least <= float(told) < 1.1 * caught.value.least
+    assert pc.simulate(BOOK, *START, error=float(told)).accuracy.reached

@@ -18,6 +18,7 @@ The loop ends with a trial whose error is small enough, with an
 
 from __future__ import annotations
 
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from math import inf
 from typing import Any
 
@@ -315,7 +316,7 @@ def _ended_early(runs: Trials, latest: TrialRun) -> RunResult:
         seconds = [_second(runs, latest) for _ in range(_tight_runs(latest) or 2)]
         error = runs.compared(latest, seconds)
     solution = runs.labelled(latest.solution, "ended early", error)
-    if not error.is_complete:
+    if not error.is_complete and runs.is_out_of_time:
         solution.known_error = None  # a later call with more time may complete the estimate
     return solution
 
@@ -341,16 +342,22 @@ def _refusal(runs: Trials, why: str = "") -> AccuracyError:
     else:
         why = _what_rounding_takes(last.solution, error)
     least = inf if error.is_lost else error.largest
-    reached = f"the least that can be kept is {least:.1e}"
-    remedies = ["ask for that or more"]
-    if error.is_lost:
-        reached, remedies = "no error can be kept to the end", []
-    until = error.valid_until(runs.error, of="position")
-    if until != runs.start.t_start:
-        why += f"; it holds until t = {until:.8g} s"
-        remedies.append("end t_span there")
-    message = ": ".join((asked, "not reached", reached, why, " or ".join(remedies)))
+    reached, remedies = "no error can be kept to the end", []
+    if not error.is_lost:
+        told = f"{_rounded(least, 2, ROUND_CEILING):.1e}"
+        reached = f"the least that can be kept is {told}"
+        remedies = [f"ask for error = {told} or more"]
+    until, begin = error.valid_until(runs.error, of="position"), runs.start.t_start
+    if until != begin:
+        not_past = ROUND_FLOOR if until > begin else ROUND_CEILING
+        why += f"; it holds until t = {_rounded(until, 8, not_past):f} s"
+        remedies.append("end t_span before that")
+    message = ": ".join((asked, "not reached", reached, why, ", or ".join(remedies)))
     return AccuracyError(message.removesuffix(": "), last.solution, least)
+
+
+def _rounded(x: float, digits: int, rounding: str) -> Decimal:
+    return Context(prec=digits, rounding=rounding).create_decimal_from_float(x)
 
 
 def _what_rounding_takes(solution: RunResult, error: ErrorEstimate) -> str:

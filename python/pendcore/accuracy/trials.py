@@ -106,6 +106,10 @@ class Trials:
         return TIGHTEST_IMPLICIT if self.is_stiff else TIGHTEST
 
     @property
+    def is_out_of_time(self) -> bool:
+        return monotonic() - self.began >= self.time_limit
+
+    @property
     def keeps_few_times(self) -> bool:
         store, t_eval = self.options["store"], self.options["t_eval"]
         few = t_eval is not None and np.size(t_eval) < FEW
@@ -156,9 +160,15 @@ class Trials:
         """Make a run that is better than a trial, with other steps, constants and start.
 
         The method is the trial's, or radau5 where the scene is stiff. By how much another method is
-        better could only be guessed, as a scene may suit one method and not another.
+        better could only be guessed, as a scene may suit one method and not another. Where most
+        steps end at impacts and other breaks, the same method would take the same steps and make
+        the same error in them: there it is another one.
         """
-        method = implicit_method() if self.is_stiff else trial.method
+        method, stats = trial.method, trial.solution.stats
+        if self.is_stiff:
+            method = implicit_method()
+        elif 2 * stats.limited_by_break > stats.accepted:
+            method = pair_of("dopri5" if leading(method) == "dop853" else "dop853")
         tightest = TIGHTEST_SECOND.get(leading(method), self.tightest)
         rtol = rounded(scale / error_over_rtol(leading(method)), tightest)
         ends_anywhere = any(values.get("terminal") for _, values in self.options["events"])
