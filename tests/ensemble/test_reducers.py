@@ -78,7 +78,7 @@ def test_the_largest_exponent_is_that_of_lyapunov(name):
 
 
 def test_a_scene_without_exponents_is_refused():
-    with pytest.raises(ValueError, match="only scenes without dry friction and stops"):
+    with pytest.raises(ValueError, match="remove dry friction and stops"):
         pc.ensemble(SCENES["stop"], [0.1, 0.1], t_span=(0, 1), keep=pc.keep.LargestExponent())
     with pytest.raises(TypeError, match=r"rtol: must be one number with pc.keep.LargestExponent"):
         pc.ensemble(

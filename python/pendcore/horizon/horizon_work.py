@@ -67,6 +67,13 @@ class HorizonWork:
         Why the exponent was refused; else empty.
     untried : tuple of (str, float)
         The methods and tolerances that were left when the time was up or the work was interrupted.
+
+    Examples
+    --------
+    >>> scene = pc.Scene.textbook()
+    >>> work = pc.horizon_work(scene, q0=0.0, t_span=(0, 40), methods="taylor", rtols=[1e-3, 1e-9])
+    >>> f"a digit more is worth {work.seconds_a_digit:.1f} s"
+    'a digit more is worth 2.5 s'
     """
 
     limit: float

@@ -83,8 +83,6 @@ def horizon_work(
     >>> work = pc.horizon_work(scene, q0=0.0, t_span=(0, 40), methods="taylor", rtols=[1e-3, 1e-9])
     >>> [f"{point.rtol:.0e}: {point.valid:.0f} s" for point in work.points]
     ['1e-03: 8 s', '1e-09: 18 s']
-    >>> f"a digit more is worth {work.seconds_a_digit:.1f} s"
-    'a digit more is worth 2.5 s'
     """
     q0 = require_start(scene, q0)
     start = Start(scene, q0, qd0, *time_span(t_span))
