@@ -3,11 +3,10 @@
     make asked-errors
 
 On 200 random regular scenes, it measures the error against another method's most accurate run. It
-compares the work with that of the best of all methods and tolerances swept, and then the times in
-turns: of the best run, of the run that was chosen, of that run with its verification,
-and of the whole call. It writes docs/records/asked_errors.json and the table of
-docs/background/accuracy_cost.md. tests/accuracy/test_asked_errors.py runs the same without the
-clock.
+compares the work with that of the best of all methods and tolerances swept. Then it times, in
+turns, the best run, the run that was chosen, that run with its verification, and the whole call. It
+writes docs/records/asked_errors.json and the table of docs/background/accuracy_cost.md.
+tests/accuracy/test_asked_errors.py runs the same without the clock.
 """
 
 from __future__ import annotations

@@ -166,7 +166,8 @@ void DefectCorrection::steps(const WatchedStep& step) {
     t_.clear();
     errors_.clear();
   }
-  if (!agreement_.is_lost()) take_curve(step);
+  const bool goes_on = !agreement_.is_lost();
+  if (goes_on) take_curve(step);
   for (int k = 0; k < parts_; ++k) {
     const bool is_last = k + 1 == parts_;
     const Part part{.from = k * size,
@@ -175,12 +176,12 @@ void DefectCorrection::steps(const WatchedStep& step) {
                     .t = is_last ? step.t : t_start + (k + 1) * h,
                     .h = h,
                     .ends_the_step = is_last};
-    if (!agreement_.is_lost()) go_on(part);
-    if (!agreement_.is_lost() && is_last) end_step(step);
+    if (goes_on) go_on(part);
+    if (goes_on && is_last) end_step(step);
     keep_errors(part);
   }
   t_start_ = step.t;
-  if (!agreement_.is_lost()) compare();
+  if (goes_on) compare();
 }
 
 void DefectCorrection::take_curve(const WatchedStep& step) {

@@ -2,9 +2,10 @@
 
 `Solution.error` and `Solution.valid_until` come from here, and what ``simulate(error=...)`` tells
 where it does not know the error from the defect (`pendcore.accuracy.defect_correction`). The run is
-compared with better second runs: by another method for `Solution.error`, by the trial's own for
-``simulate(error=...)``. Their steps are others, and their constants and starts are moved by a few
-last bits (`pendcore.accuracy.rounding`). With the second runs r_1, r_2, ... the error is at most
+compared with better second runs: by another method for `Solution.error`, mostly by the trial's own
+for ``simulate(error=...)``. Their steps are others, and their constants and starts are moved by a
+few last bits (`pendcore.accuracy.rounding`). With the second runs r_1, r_2, ... the error is at
+most
 
     (1 + share) max_i |run - r_i| + max_ij |r_i - r_j|
 

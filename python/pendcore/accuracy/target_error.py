@@ -7,13 +7,14 @@ next. There are two ways to know the error.
 that are not too large (`pendcore.accuracy.defect_correction`). If one way to integrate it cannot be
 trusted, another one may be.
 
-**From second runs**, wherever the defect does not tell. A second run takes the same method at much
-tighter tolerances. Its distance from the trial tells how large the error is; one more second run
-shows that the first one is indeed better (`pendcore.accuracy.estimate`). Where rounding may matter,
-two or three second runs as tight as doubles allow take the place of these.
+**From second runs**, wherever the defect does not tell. A second run takes much tighter tolerances,
+by the same method unless impacts set its steps. Its distance from the trial tells how large the
+error is; one more second run shows that the first one is indeed better
+(`pendcore.accuracy.estimate`). Where rounding may matter, two or three second runs as tight as
+doubles allow take the place of these.
 
-The loop ends with a trial whose error is small enough, with an
-`AccuracyError` that says the least error that can be reached, or with a run that ended early.
+The loop ends with a trial whose error is small enough, with an `AccuracyError` that says the least
+error that can be reached, or with a run that ended early.
 """
 
 from __future__ import annotations

@@ -103,7 +103,8 @@ class Accuracy:
     def work(self, purpose: str | None = None) -> float:
         """Return the work of all that was computed, or of that with a purpose, in right-hand sides.
 
-        What is not a right-hand side of a run counts as the number of these that take as long.
+        Each series counts as the number of right-hand sides that take as long, and so does each
+        right-hand side in the integration of a defect.
         """
         return sum(p.work for p in self.paid if purpose in (None, p.purpose))
 
