@@ -3,7 +3,7 @@
 /// output, and as angles their integral, from the dense output's angles at theta = 0 on.
 #pragma once
 
-#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <vector>
 

@@ -6,6 +6,8 @@
 /// pack, whatever the instruction set, alone or beside others. A plain double is a pack of one.
 #pragma once
 
+#include <bit>
+
 #include "pendcore/arithmetic/instruction_set.hpp"
 
 // Only inlined functions pass packs to each other, so that the calling convention does not matter;
@@ -152,10 +154,29 @@ PENDCORE_INLINE Real absolute(const Real& x) {
   return result;
 }
 
+/// A comparison in every lane: integers whose bits are all set where it holds. What < and <= return
+/// must not be joined by & and |: GCC 12 takes such results apart, number by number, if packs have
+/// eight of them.
+template <class Real>
+PENDCORE_INLINE auto is_less(const Real& a, const Real& b) {
+  using Integers = typename Lanes<Real>::Integers;
+  return std::bit_cast<Integers>(a < b ? std::bit_cast<Real>(Integers{} - 1) : Real{});
+}
+template <class Real>
+PENDCORE_INLINE auto is_at_most(const Real& a, const Real& b) {
+  using Integers = typename Lanes<Real>::Integers;
+  return std::bit_cast<Integers>(a <= b ? std::bit_cast<Real>(Integers{} - 1) : Real{});
+}
+
 /// The larger number in every lane; `b` where either is NaN.
 template <class Real>
 PENDCORE_INLINE Real larger(const Real& a, const Real& b) {
   return a > b ? a : b;
+}
+/// The same, but `a` where either is NaN, as std::max(a, b) has it.
+template <class Real>
+PENDCORE_INLINE Real larger_or_first(const Real& a, const Real& b) {
+  return a < b ? b : a;
 }
 
 /// The sum of the lanes, from the first to the last.

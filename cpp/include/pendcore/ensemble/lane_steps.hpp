@@ -76,12 +76,6 @@ PENDCORE_INLINE LaneBits bits_of(const Integers& holds) {
   return bits;
 }
 
-/// std::max(a, b) in each lane: a unless it is smaller.
-template <class Real>
-PENDCORE_INLINE Real larger_of(const Real& a, const Real& b) {
-  return a < b ? b : a;
-}
-
 /// a + b as an unevaluated sum of two numbers in each lane (arithmetic/two_double.hpp).
 template <class Real>
 struct TwoReals {
@@ -167,14 +161,15 @@ PENDCORE_INLINE NextStep<width> next_step(const LaneSteps<width>& lanes,
   const Real t_end = broadcast<Real>(interval.t_end);
   const Real left = detail::difference(t_end, detail::TwoReals<Real>{lanes.t, lanes.t_low});
   const Real size = absolute(lanes.h);
-  const Real stretched = 1.01 * size;
-  const Real allowed = detail::larger_of(size, broadcast<Real>(interval.max_step));
+  const Real stretched = last_step_stretch * size;
+  const Real allowed = larger_or_first(size, broadcast<Real>(interval.max_step));
   const Real reach = allowed < stretched ? allowed : stretched;
   NextStep<width> next;
-  next.bits = last_bits_share * detail::larger_of(absolute(lanes.t), absolute(t_end));
-  next.is_in_reach = absolute(left) <= reach + next.bits;
-  next.is_odd = (size <= few * epsilon * absolute(lanes.t)) | (size < 1e-300) |
-                (next.is_in_reach & (absolute(left) <= few * next.bits));
+  next.bits = last_bits_share * larger_or_first(absolute(lanes.t), absolute(t_end));
+  next.is_in_reach = is_at_most(absolute(left), Real(reach + next.bits));
+  next.is_odd = is_at_most(size, Real(few * epsilon * absolute(lanes.t))) |
+                is_less(size, broadcast<Real>(Limits{}.least_step)) |
+                (next.is_in_reach & is_at_most(absolute(left), Real(few * next.bits)));
   next.h = next.is_in_reach ? left : lanes.h;
   return next;
 }
@@ -193,8 +188,9 @@ PENDCORE_INLINE typename NextStep<width>::Integers finish_step(
   const Real t_end = broadcast<Real>(interval.t_end);
   const Real max_step = broadcast<Real>(interval.max_step);
   const Real h = next.h;
-  const Integers is_accepted = (found.squared_error <= 1.0) & tried;
-  const Integers is_rejected = ~(found.squared_error <= 1.0) & tried;
+  const Integers is_right = is_at_most(found.squared_error, broadcast<Real>(1.0));
+  const Integers is_accepted = is_right & tried;
+  const Integers is_rejected = ~is_right & tried;
 
   // The step control of step_control.hpp, and the loop's bound on the next step.
   const Real log2_error = 0.5 * approximate_log2(found.squared_error);
@@ -207,11 +203,11 @@ PENDCORE_INLINE typename NextStep<width>::Integers finish_step(
   Real shorter = lanes.h;
   if ((detail::bits_of(is_rejected) & lanes.active) != 0) {
     const Real log2_factor = info.log2_safety - exponent(info) * log2_error;
-    shorter = h * detail::larger_of(approximate_exp2(log2_factor), broadcast<Real>(info.shrink));
+    shorter = h * larger_or_first(approximate_exp2(log2_factor), broadcast<Real>(info.shrink));
   }
   const Real smallest = broadcast<Real>(StepControl::log2_smallest_error);
   lanes.log2_error_before =
-      is_accepted ? detail::larger_of(log2_error, smallest) : lanes.log2_error_before;
+      is_accepted ? larger_or_first(log2_error, smallest) : lanes.log2_error_before;
   lanes.after_rejection = is_rejected;
   lanes.accepted -= is_accepted;
   lanes.rejected -= is_rejected;
@@ -221,7 +217,7 @@ PENDCORE_INLINE typename NextStep<width>::Integers finish_step(
   const detail::TwoReals<Real> t{lanes.t, lanes.t_low};
   const detail::TwoReals<Real> after = t + h;
   const Real missed = detail::difference(t_end, after);
-  const Integers lands = next.is_in_reach & ((h < 0.0 ? Real(-missed) : missed) <= next.bits);
+  const Integers lands = next.is_in_reach & is_at_most(h < 0.0 ? Real(-missed) : missed, next.bits);
   lanes.t_before = lanes.t;
   lanes.t_low_before = lanes.t_low;
   lanes.h_before = h;

@@ -82,17 +82,18 @@ PENDCORE_INLINE Attention take_steps(RungeKuttaLanes<method, Form, width>* all,
     const NextStep<width> next = next_step<width>(*all, *interval);
     const Real gain = method.info.log2_safety + method.info.beta * all->log2_error_before;
     const ErrorAndFactor<Real> found = judged_step(&memory, all->t, next.h, gain);
-    Integers is_odd =
-        next.is_odd | ~(found.squared_error < std::numeric_limits<double>::infinity());
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    Integers is_odd = next.is_odd | ~is_less(found.squared_error, broadcast<Real>(infinity));
 
     if constexpr (method.info.stability != 0.0) {
-      const Integers is_looked_at = (all->steps_to_look == 0) & (found.squared_error <= 1.0);
+      const Integers is_looked_at =
+          (all->steps_to_look == 0) & is_at_most(found.squared_error, broadcast<Real>(1.0));
       if (detail::bits_of(is_looked_at) != 0) [[unlikely]] {
         const Real stiffness =
             stiffness_of_step<method, Real>(next.h, All::Memory::blocks, [&](int i) {
               return std::tuple(memory.y[i], memory.y_new[i], StageBlock(memory.k, i));
             });
-        is_odd |= is_looked_at & (stiffness > method.info.stability);
+        is_odd |= is_looked_at & is_less(broadcast<Real>(method.info.stability), stiffness);
         all->steps_to_look = is_looked_at ? Integers{} + stiffness_looks_every : all->steps_to_look;
       }
     }

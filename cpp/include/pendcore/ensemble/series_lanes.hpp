@@ -81,12 +81,13 @@ PENDCORE_INLINE Real log2_of_step(const All* all, const Real* y, const Real* row
   const Real log2_high = coarse_log2(high);
   const Real decay = low == 0.0 ? Real{} : Real(0.25 * (coarse_log2(low) - log2_high));
   const Real log2_error =
-      larger_of(larger_of(Real(log2_high - 3.0 * decay), coarse_log2(sum(last))),
-                Real(coarse_log2(sum(before_last)) - decay)) -
+      larger_or_first(larger_or_first(Real(log2_high - 3.0 * decay), coarse_log2(sum(last))),
+                      Real(coarse_log2(sum(before_last)) - decay)) -
       all->log2_count;
   const Real log2_step = -0.5 * inverse_of[all->order] * log2_error;
-  // Where no high power is left, or one is not finite, the step is not of this kind.
-  const auto is_usual = (high > 0.0) & (high < std::numeric_limits<double>::infinity());
+  // Where no high power is left, or one is not finite, the lane goes on alone.
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const auto is_usual = is_less(Real{}, high) & is_less(high, broadcast<Real>(infinity));
   return is_usual ? log2_step : broadcast<Real>(std::numeric_limits<double>::quiet_NaN());
 }
 
@@ -96,21 +97,21 @@ template <class All, class Real>
 PENDCORE_INLINE typename All::Integers expand(All* all, const Real& t, const Real* y, Real* rows,
                                               Real& sigma, Real& largest) {
   using Integers = typename All::Integers;
-  constexpr double reach = 8.0;
-  constexpr int most_tries = 12;
+  namespace detail = taylor_detail;
   Integers is_done{};
-  for (int tries = 0; tries < most_tries; ++tries) {
+  for (int tries = 0; tries < detail::most_tries; ++tries) {
     all->equations.expand(t, y, sigma, all->order, rows);
     const Real log2_step = log2_of_step(all, y, rows);
-    is_done = absolute(log2_step) <= reach;
+    is_done = is_at_most(absolute(log2_step), broadcast<Real>(detail::reach));
     largest = sigma * coarse_exp2(is_done ? log2_step : Real{});
     const LaneBits missing = ~bits_of(is_done) & all->active;
     if (missing == 0) break;
-    const auto is_number = (log2_step < 0.0) | (log2_step > 0.0);
-    Real shift = is_number ? log2_step : broadcast<Real>(-20.0);
-    shift = shift < -60.0 ? broadcast<Real>(-60.0) : 60.0 < shift ? broadcast<Real>(60.0) : shift;
+    const auto is_number = is_less(log2_step, Real{}) | is_less(Real{}, log2_step);
+    const Real most = broadcast<Real>(detail::largest_shift);
+    Real shift = is_number ? log2_step : broadcast<Real>(detail::usual_shift);
+    shift = shift < -most ? Real(-most) : most < shift ? most : shift;
     const Real shifted = sigma * approximate_exp2(shift);
-    const Real other_sigma = taylor_detail::power_of_two_below(shifted);
+    const Real other_sigma = detail::power_of_two_below(shifted);
     sigma = is_done ? sigma : other_sigma;
   }
   return is_done;
@@ -158,17 +159,19 @@ PENDCORE_INLINE Attention take_series_steps(SeriesLanes<Form, width>* all,
     const Real square = share * share;
     const Real of_order = (square * square) * (square * square);
     const Real squared_error = of_order * of_order;
-    is_odd |= ~(squared_error <= 1.0) & ~begins;  // rejections are rare here
+    // Rejections are rare here.
+    is_odd |= ~is_at_most(squared_error, broadcast<Real>(1.0)) & ~begins;
 
-    const Real from_here = all->largest < 0x1p400 ? all->largest : size_of_step;
+    const Real from_here =
+        all->largest < taylor_detail::largest_sigma ? all->largest : size_of_step;
     all->sigma_new = begins ? all->sigma : taylor_detail::power_of_two_below(from_here);
     const detail::TwoReals<Real> start{all->t, all->t_low};
     const Real t_new = begins ? all->t : (start + h).high;
     const Integers has_series =
         detail::expand(all, t_new, all->y_new, all->rows_new, all->sigma_new, all->largest_new);
     is_odd |= ~has_series;
-    constexpr double safety = 0.95;  // as in attempt_series()
-    const ErrorAndFactor<Real> found{squared_error, (safety / size_of_step) * all->largest_new};
+    const ErrorAndFactor<Real> found{squared_error,
+                                     (taylor_detail::safety / size_of_step) * all->largest_new};
 
     const Integers tried = ~begins;
     const Integers is_looked_at = (all->steps_to_look == 0) & tried;

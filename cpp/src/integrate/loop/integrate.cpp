@@ -108,7 +108,7 @@ class Run {
       const bool is_coarse = integrator_.trial_was_finite || was_stretched_;
       return end(is_coarse ? Status::step_too_small : Status::non_finite);
     }
-    was_stretched_ = target.is_in_reach && std::abs(target.left) > 1.01 * std::abs(h);
+    was_stretched_ = target.is_in_reach && std::abs(target.left) > last_step_stretch * std::abs(h);
     if (target.is_in_reach) {
       h = target.left;
       if (!target.is_break) resume_.cut_from_here();
@@ -153,9 +153,10 @@ class Run {
 
   Target next_target(double left) const {
     const double h = integrator_.h;
-    // The last step may be a hundredth longer (Hairer's rule), but not longer than max_step. It may
-    // exceed max_step by the last bits of t, because a step over these bits alone would be no step.
-    const double reach = std::min(1.01 * std::abs(h), std::max(std::abs(h), limits_.max_step));
+    // A stretched step is not longer than max_step. It may exceed max_step by the last bits of t,
+    // because a step over these bits alone would be no step.
+    const double stretched = last_step_stretch * std::abs(h);
+    const double reach = std::min(stretched, std::max(std::abs(h), limits_.max_step));
     Target target{limits_.t_end, left, false, false};
     if (discontinuities_ != nullptr) {
       const double next = discontinuities_->next_time(integrator_.t.high);

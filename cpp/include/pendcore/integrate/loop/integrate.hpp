@@ -53,6 +53,9 @@ struct Limits {
   bool begins_anew = false;  ///< a continued run begins at the start again
 };
 
+/// The last step may be longer by this factor (Hairer's rule).
+inline constexpr double last_step_stretch = 1.01;
+
 /// Called for each accepted step before the state advances.
 class Observer {
  public:

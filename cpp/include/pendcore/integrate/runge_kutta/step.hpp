@@ -121,8 +121,9 @@ class SquaredErrors {
     } else {
       const Scale others = sum_of_numbers(others_) * share;
       const Scale both = sum + 0.01 * others;
-      const auto is_number = (both > 0.0) & (both < std::numeric_limits<double>::infinity());
-      return is_number ? Scale(sum * (sum / both)) : both;
+      constexpr double infinity = std::numeric_limits<double>::infinity();
+      const Scale if_positive = both < infinity ? Scale(sum * (sum / both)) : both;
+      return both > 0.0 ? if_positive : both;
     }
   }
 

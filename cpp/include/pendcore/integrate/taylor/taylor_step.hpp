@@ -42,11 +42,20 @@ struct TaylorMemory {
 
 namespace taylor_detail {
 
+/// Sigma is chosen anew where the step that tolerances allow is not within 2^+-reach of it.
+inline constexpr double reach = 8.0;
+inline constexpr int most_tries = 12;
+inline constexpr double largest_shift = 60.0;  ///< of log2 of sigma, in one try
+inline constexpr double usual_shift = -20.0;   ///< where the series does not say how far
+inline constexpr double largest_sigma = 0x1p400;
+/// A step aims at this share of the longest one, as a last step may be a hundredth longer.
+inline constexpr double safety = 0.95;
+
 /// The power 2^k <= x < 2^(k+1), within limits that leave room for its powers.
 template <class Real>
 PENDCORE_INLINE Real power_of_two_below(const Real& x) {
-  const Real least = broadcast<Real>(0x1p-400);
-  const Real most = broadcast<Real>(0x1p400);
+  const Real least = broadcast<Real>(1.0 / largest_sigma);
+  const Real most = broadcast<Real>(largest_sigma);
   const Real above = x < least ? least : x;
   const Real within = most < above ? most : above;
   using Integers = typename Lanes<Real>::Integers;
@@ -149,8 +158,6 @@ PENDCORE_INLINE double log2_of_step(const TaylorMemory<Series>* memory, const do
 template <class Series>
 PENDCORE_INLINE bool expand(TaylorMemory<Series>* memory, double t, const double* y, double* rows,
                             double& sigma, double& largest) {
-  constexpr double reach = 8.0;
-  constexpr int most_tries = 12;
   for (int tries = 0; tries < most_tries; ++tries) {
     memory->series.expand(t, y, sigma, memory->order, rows);
     const double log2_step = log2_of_step(memory, y, rows);
@@ -162,8 +169,9 @@ PENDCORE_INLINE bool expand(TaylorMemory<Series>* memory, double t, const double
       largest = log2_step;
       return true;
     }
-    const double shift = log2_step < 0.0 || log2_step > 0.0 ? log2_step : -20.0;
-    sigma = power_of_two_below(sigma * approximate_exp2(std::clamp(shift, -60.0, 60.0)));
+    const double shift = log2_step < 0.0 || log2_step > 0.0 ? log2_step : usual_shift;
+    const double clamped = std::clamp(shift, -largest_shift, largest_shift);
+    sigma = power_of_two_below(sigma * approximate_exp2(clamped));
   }
   return false;
 }
@@ -205,14 +213,13 @@ PENDCORE_INLINE Attempt attempt_series(TaylorMemory<Series>* memory, double t_ne
   const double of_order = (square * square) * (square * square);
   const double squared_error = of_order * of_order;
 
-  const double from_here = memory->largest < 0x1p400 ? memory->largest : size_of_step;
+  const double from_here = memory->largest < detail::largest_sigma ? memory->largest : size_of_step;
   memory->sigma_new = detail::power_of_two_below(from_here);
   if (!expand(memory, t_new, memory->y_new, memory->rows_new, memory->sigma_new,
               memory->largest_new)) {
     return {{std::numeric_limits<double>::quiet_NaN(), 0.0}};
   }
-  constexpr double safety = 0.95;  // in size, as a last step may be a hundredth longer
-  return {{squared_error, (safety / size_of_step) * memory->largest_new}};
+  return {{squared_error, (detail::safety / size_of_step) * memory->largest_new}};
 }
 
 /// The same in one kernel, which is a twentieth faster where the series is short. Longer series are
