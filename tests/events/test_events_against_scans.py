@@ -21,6 +21,9 @@ METHODS = [m["name"] for m in _core.methods() if m["error_order"] and m["kind"] 
 CLEAR = 1e-6
 """Roots nearer to each other, in shares of a step, may be found by only one of scan and event."""
 
+LAST_BITS = 8
+"""By how many last bits of the sum of their sizes a sum of terms may be off."""
+
 
 def pieces(sol: pc.Solution) -> Iterator[tuple[float, float, Array]]:
     """Yield start, size and coefficients (degree + 1, dimension) of each step's polynomial."""
@@ -30,8 +33,12 @@ def pieces(sol: pc.Solution) -> Iterator[tuple[float, float, Array]]:
     yield from zip(state["dense_start"], state["dense_h"], rows, strict=True)
 
 
-def crossings(sol: pc.Solution, weights: Array, value: float) -> list[tuple[float, float]]:
-    """Return the zeros of ``weights . y - value`` between the steps, with the run's slopes."""
+def crossings(sol: pc.Solution, weights: Array, value: float) -> list[tuple[float, float, float]]:
+    """Return the zeros of ``weights . y - value`` between the steps.
+
+    Each comes with the slope there, and with the size of the polynomial's terms, whose last bit is
+    what the value there is rounded to.
+    """
     found = []
     for start, h, rows in pieces(sol):
         p = rows @ weights
@@ -42,8 +49,9 @@ def crossings(sol: pc.Solution, weights: Array, value: float) -> list[tuple[floa
         assume(np.all(np.abs(np.abs(near.real - 0.5) - 0.5) > CLEAR))
         assume(np.all(np.diff(np.sort(near.real)) > CLEAR))
         slopes = polynomial.polyval(near.real, polynomial.polyder(p)) / abs(h)
-        found += sorted(zip(start + near.real * h, slopes, strict=True),
-                        key=lambda one: one[0] * np.sign(h))  # fmt: skip
+        size = (np.abs(rows) @ np.abs(weights)).sum()
+        of_step = zip(start + near.real * h, slopes, [size] * len(slopes), strict=True)
+        found += sorted(of_step, key=lambda one: one[0] * np.sign(h))
     return found
 
 
@@ -81,11 +89,12 @@ def test_angles_and_rates_are_found_where_a_scan_finds_them(
         # A start that is on the level but for rounding has no event; the scan would see a crossing.
         assume(abs(weights @ np.concatenate([q0, qd0]) - level) > 1e-12)
         expected = crossings(sol, weights, level)
-        assert [one.direction for one in found] == [np.sign(slope) for _, slope in expected]
-        assert np.allclose([one.t for one in found], [t for t, _ in expected], rtol=0, atol=1e-9)
-        for one, (t, slope) in zip(found, expected, strict=True):
+        assert [one.direction for one in found] == [np.sign(slope) for _, slope, _ in expected]
+        assert np.allclose([one.t for one in found], [t for t, *_ in expected], rtol=0, atol=1e-9)
+        for one, (t, slope, size) in zip(found, expected, strict=True):
             within_two_last_bits_of_time = 2 * abs(slope) * np.spacing(abs(t))
-            assert abs(weights @ one.y - level) <= 1e-11 + within_two_last_bits_of_time
+            rounding = LAST_BITS * np.spacing(size + abs(level))
+            assert abs(weights @ one.y - level) <= rounding + within_two_last_bits_of_time
 
 
 @pytest.mark.parametrize("method", METHODS)
