@@ -8,13 +8,14 @@ namespace {
 
 py::dict exponents(const Scene& scene, py::handle q0, py::handle qd0, py::handle t0,
                    py::handle t_end, py::handle count, py::handle rtol, py::handle atol,
-                   py::handle t_eval, py::handle max_step, py::handle max_steps,
+                   py::handle since, py::handle t_eval, py::handle max_step, py::handle max_steps,
                    py::handle time_limit, py::handle progress, py::handle warn) {
   PythonMonitor monitor(progress);
   LyapunovOptions options;
   if (!count.is_none()) options.count = whole_number("count", count);
   options.rtol = number("rtol", rtol);
   options.atol = number("atol", atol);
+  options.since = number("since", since);
   options.t_eval = numbers("t_eval", t_eval);
   options.max_step = number("max_step", max_step);
   options.max_steps = whole_number("max_steps", max_steps);
@@ -45,7 +46,7 @@ py::dict exponents(const Scene& scene, py::handle q0, py::handle qd0, py::handle
 
 void bind_lyapunov(py::module_& module) {
   module.def("lyapunov", &exponents, py::arg("scene"), py::arg("q0"), py::arg("qd0"), py::arg("t0"),
-             py::arg("t_end"), py::arg("count"), py::arg("rtol"), py::arg("atol"),
+             py::arg("t_end"), py::arg("count"), py::arg("rtol"), py::arg("atol"), py::arg("since"),
              py::arg("t_eval"), py::arg("max_step"), py::arg("max_steps"), py::arg("time_limit"),
              py::arg("progress"), py::arg("warn"));
 }

@@ -25,7 +25,6 @@ ROOT = Path(__file__).parents[2]
 sys.path += [str(ROOT / "tests"), str(ROOT / "tests/models")]
 
 import chaotic_starts as record  # noqa: E402
-from pendcore.horizon.horizon_work import draw_work  # noqa: E402
 from reference.taylor_series import RodChain, motion  # noqa: E402
 
 BOOK = pc.Scene.textbook()
@@ -248,7 +247,7 @@ def main() -> None:
     from matplotlib.figure import Figure
 
     sheet = Figure(figsize=(9.0, 4.2), layout="constrained")
-    draw_work(work, sheet)
+    work.plot(sheet)
     sheet.savefig(FIGURES / "horizon_work.png", dpi=110)
     print(table(found))
     late = [one for one in found["trusted"] if (np.array(one["valid"]) > one["right"]).any()]

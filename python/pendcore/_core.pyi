@@ -150,6 +150,7 @@ def lyapunov(
     count: int | None,
     rtol: float,
     atol: float,
+    since: float,
     t_eval: npt.ArrayLike,
     max_step: float,
     max_steps: int,

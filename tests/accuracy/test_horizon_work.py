@@ -16,7 +16,6 @@ import pendcore as pc
 import pytest
 from chaotic_starts import EACH, chaotic_starts
 from matplotlib.figure import Figure
-from pendcore.horizon.horizon_work import draw_work
 
 ROOT = Path(__file__).parents[2]
 sys.path.append(str(ROOT / "docs/generators"))
@@ -43,7 +42,7 @@ def test_a_digit_buys_ln_10_over_lambda_seconds_on_average() -> None:
     shares: dict[str, list[float]] = {}
     for case in chaotic_starts()[::2]:
         found = pc.horizon_work(case.scene, case.q0, case.qd0, (0, 30), rtols=FEW)
-        assert found.seconds_a_digit == np.log(10) / found.exponent
+        assert found.seconds_a_digit == pytest.approx(np.log(10) / found.exponent)
         for method in found.methods:
             shares.setdefault(method, []).append(found.measured(method) / found.seconds_a_digit)
     assert [*shares] == ["dopri5", "dop853", "taylor"]
@@ -84,7 +83,7 @@ def test_its_text_says_it_all(work: pc.HorizonWork) -> None:
 def test_horizon_work_is_drawn(work: pc.HorizonWork) -> None:
     mpl.use("Agg")
     sheet = Figure()
-    draw_work(work, sheet)
+    work.plot(sheet)
     by_digits, by_cost = sheet.axes
     assert len(by_digits.lines) == len(work.methods) + 1
     assert len(by_cost.lines) == len(work.methods)
@@ -108,7 +107,7 @@ def test_what_is_valid_to_the_end_is_marked_as_that() -> None:
     assert len(rows) == 6
     assert all(re.fullmatch(r"\w+ +1e-0[68] +2.00 s +\d+ us  to the end", row) for row in rows)
     sheet = Figure()
-    draw_work(regular, sheet)
+    regular.plot(sheet)
     for axis in sheet.axes:
         hollow = [x for x in axis.lines if x.get_markerfacecolor() == "w" and len(x.get_xdata())]
         assert sum(len(line.get_xdata()) for line in hollow) == 6
@@ -148,7 +147,7 @@ def test_the_labels_of_its_figure_do_not_meet(work: pc.HorizonWork, spread: floa
         for k, point in enumerate(work.points)
     )
     sheet = Figure(figsize=(9.6, 4.2), layout="constrained")
-    draw_work(dataclasses.replace(work, points=points), sheet)
+    dataclasses.replace(work, points=points).plot(sheet)
     sheet.canvas.draw()
     for axis in sheet.axes:
         boxes = sorted((x.get_window_extent() for x in labels(axis)), key=lambda box: box.x0)
@@ -193,7 +192,7 @@ def test_who_stops_it_does_not_wait_for_exponents(monkeypatch: pytest.MonkeyPatc
     def pressed(*args: object, **named: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("pendcore.horizon.work.lyapunov", pressed)
+    monkeypatch.setattr("pendcore.horizon.measure.lyapunov", pressed)
     options: dict[str, Any] = {"methods": "dopri5", "rtols": [1e-3, 1e-5, 1e-7]}
     with pytest.raises(KeyboardInterrupt) as raised:
         pc.horizon_work(BOOK, CHAOTIC, 0, (0, 10), progress=stop, **options)

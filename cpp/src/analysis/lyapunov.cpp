@@ -239,6 +239,22 @@ int lyapunov_count(const Scene& scene) {
   return static_cast<int>(tangent_basis(scene).size() / (2 * scene.links.size()));
 }
 
+namespace {
+
+std::vector<double> times_of_growth(const LyapunovOptions& options, double t0, double t_end) {
+  const double since = options.since.value_or(t0);
+  std::vector<double> times = options.t_eval;
+  if (times.empty()) times = {t_end};
+  check_times(times, since, t_end);
+  if (times.back() == since && since != t_end) {
+    refuse("t_eval", since, "followed by later times (s): growth counts from there");
+  }
+  if (times.front() != since) times.insert(times.begin(), since);
+  return times;
+}
+
+}  // namespace
+
 TangentGrowth lyapunov(const Scene& scene, const std::vector<double>& q0,
                        const std::vector<double>& qd0, double t0, double t_end,
                        const LyapunovOptions& options) {
@@ -257,8 +273,7 @@ TangentGrowth lyapunov(const Scene& scene, const std::vector<double>& q0,
                   : "1 to " + std::to_string(all) + ", twice the degrees of freedom"));
   }
   const Options run = options_of_run(options);
-  const std::vector<double> times = options.t_eval.empty() ? std::vector{t_end} : options.t_eval;
-  check_times(times, t0, t_end);
+  const std::vector<double> times = times_of_growth(options, t0, t_end);
 
   TangentGrowth result;
   result.count = static_cast<int>(wanted);

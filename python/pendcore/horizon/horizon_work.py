@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import inf, nan
 from textwrap import wrap
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -34,7 +34,7 @@ class HorizonPoint(NamedTuple):
     nfev : int
         The number of right-hand sides of that run.
     early : float
-        rad, the error at the time ``HorizonWork.early``.
+        rad, the largest error up to the time ``HorizonWork.early``.
     """
 
     method: str
@@ -92,7 +92,7 @@ class HorizonWork:
     @property
     def seconds_a_digit(self) -> float:
         """ln(10)/exponent, s: the time that one more right digit buys; inf if no error grows."""
-        return float(np.log(10)) / self.exponent if self.exponent > 0 else inf
+        return inf if self.growth is None else self.growth.seconds_a_digit
 
     @property
     def methods(self) -> list[str]:
@@ -120,15 +120,45 @@ class HorizonWork:
         digits = -np.log10([point.early for point in inside])
         return float(np.polyfit(digits, [point.valid for point in inside], 1)[0])
 
-    def plot(self) -> Figure:
-        """Draw seconds of validity against digits and against work.
+    def plot(self, figure: Figure | None = None) -> Figure:
+        """Draw seconds of validity against digits and against work; return the figure.
 
-        Returns a new figure of pyplot's.
+        ``figure`` is an empty one of matplotlib's. Default: a new one of pyplot's.
         """
-        import matplotlib.pyplot as plt
+        if figure is None:
+            import matplotlib.pyplot as plt
 
-        figure = plt.figure(figsize=(9.6, 4.2), layout="constrained")
-        draw_work(self, figure)
+            figure = plt.figure(figsize=(9.6, 4.2), layout="constrained")
+        by_digits, by_cost = figure.subplots(1, 2, sharey=True)
+        for method in self.methods:
+            points = self.of(method)
+            valid = [point.valid for point in points]
+            properties = {**line_style(method), "markersize": 5}
+            by_digits.plot([point.early for point in points], valid, label=method, **properties)
+            by_cost.plot([1e6 * point.seconds for point in points], valid, **properties)
+            to_the_end = [point for point in points if self.is_to_the_end(point)]
+            hollow = {**properties, "linestyle": "", "markerfacecolor": "w", "zorder": 3}
+            valid = [point.valid for point in to_the_end]
+            if to_the_end:
+                by_digits.plot([point.early for point in to_the_end], valid, **hollow)
+                by_cost.plot([1e6 * point.seconds for point in to_the_end], valid, **hollow)
+        if self.growth is not None:
+            _as_neighbours_part(by_digits, self)
+        columns = len(self.methods) + 1
+        if any(self.is_to_the_end(point) for point in self.points):
+            columns += 1
+            by_digits.plot([], [], "o", color="k", markerfacecolor="w", label="hollow: to the end")
+        by_digits.set_xscale("log")
+        by_digits.invert_xaxis()
+        by_digits.set_xlabel(f"error of the angles in the first {self.early:.2g} s (rad)")
+        by_digits.set_ylabel(f"time until an angle is off by {self.limit:g} rad (s)")
+        by_cost.set_xscale("log")
+        by_cost.set_xlabel("computing time for these seconds (\N{MICRO SIGN}s)")
+        for axis in (by_digits, by_cost):
+            axis.grid(True, alpha=0.4)
+            axis.set_ylim(bottom=0)
+            _few_ticks(axis)
+        figure.legend(loc="outside upper center", ncols=columns, frameon=False)
         return figure
 
     def __repr__(self) -> str:
@@ -164,49 +194,14 @@ class HorizonWork:
         )
 
 
-def draw_work(work: HorizonWork, figure: Figure) -> None:
-    """Draw the work into an empty figure, with legends beside the data."""
-    by_digits, by_cost = figure.subplots(1, 2, sharey=True)
-    for method in work.methods:
-        points = work.of(method)
-        valid = [point.valid for point in points]
-        properties = {**line_style(method), "markersize": 5}
-        by_digits.plot([point.early for point in points], valid, label=method, **properties)
-        by_cost.plot([1e6 * point.seconds for point in points], valid, **properties)
-        to_the_end = [point for point in points if work.is_to_the_end(point)]
-        hollow = {**properties, "linestyle": "", "markerfacecolor": "w", "zorder": 3}
-        valid = [point.valid for point in to_the_end]
-        if to_the_end:
-            by_digits.plot([point.early for point in to_the_end], valid, **hollow)
-            by_cost.plot([1e6 * point.seconds for point in to_the_end], valid, **hollow)
-    if work.growth is not None:
-        _as_neighbours_part(by_digits, work)
-    columns = len(work.methods) + 1
-    if any(work.is_to_the_end(point) for point in work.points):
-        columns += 1
-        by_digits.plot([], [], "o", color="k", markerfacecolor="w", label="hollow: to the end")
-    by_digits.set_xscale("log")
-    by_digits.invert_xaxis()
-    by_digits.set_xlabel(f"error of the angles after {work.early:.2g} s (rad)")
-    by_digits.set_ylabel(f"time until an angle is off by {work.limit:g} rad (s)")
-    by_cost.set_xscale("log")
-    by_cost.set_xlabel("computing time for these seconds (\N{MICRO SIGN}s)")
-    for axis in (by_digits, by_cost):
-        axis.grid(True, alpha=0.4)
-        axis.set_ylim(bottom=0)
-        _few_ticks(axis)
-    figure.legend(loc="outside upper center", ncols=columns, frameon=False)
-
-
 def _few_ticks(axis: Axes) -> None:
     """Label a few round numbers where an axis shows hardly any powers of ten."""
     from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
     low, high = sorted(axis.get_xlim())
     if 0 < high < FEW_DECADES * low:
-        is_narrow = high < NARROW * low
-        ticks = MaxNLocator(4) if is_narrow else LogLocator(subs=(1, 3), numticks=20)
-        axis.xaxis.set_major_locator(ticks)
+        some = LogLocator(subs=(1, 3), numticks=20)
+        axis.xaxis.set_major_locator(MaxNLocator(4) if high < NARROW * low else some)
         axis.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
         axis.xaxis.set_minor_formatter(NullFormatter())
 
@@ -222,12 +217,6 @@ def _as_neighbours_part(axis: Axes, work: HorizonWork) -> None:
     at_points = np.interp([point.valid for point in work.points], horizons, grown)
     known = np.array([point.early > 0 for point in work.points])
     early = np.log([point.early for point in work.points if point.early > 0])
-    axis.plot(
-        np.exp(np.median(early + at_points[known]) - grown),
-        horizons,
-        color="0.5",
-        linewidth=4,
-        alpha=0.5,
-        zorder=1,
-        label=rf"as neighbours part: ln(10)/$\lambda$ = {work.seconds_a_digit:.2f} s a digit",
-    )
+    label = rf"as neighbours part: ln(10)/$\lambda$ = {work.seconds_a_digit:.2f} s a digit"
+    band: dict[str, Any] = {"color": "0.5", "linewidth": 4, "alpha": 0.5, "zorder": 1}
+    axis.plot(np.exp(np.median(early + at_points[known]) - grown), horizons, label=label, **band)

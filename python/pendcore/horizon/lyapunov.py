@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from pendcore import _core
 from pendcore.accuracy.position_error import time_grid
-from pendcore.messages.arguments import Floats, known_keywords, number, numbers, time_span
+from pendcore.messages.arguments import Floats, known_keywords, number, time_span
 from pendcore.messages.progress import Progress, callback, close
 from pendcore.messages.warning import warn
 from pendcore.run.options import RUN_DEFAULTS
@@ -225,11 +225,11 @@ def lyapunov(
             f"transient = {transient}: must be >= 0 and < {abs(t_end - t_start)} (s): growth "
             "counts from its end to that of t_span"
         )
-    times = _times(t_eval, since, t_end)
+    times = time_grid(since, t_end, TIMES) if t_eval is None else t_eval
     report = callback(progress, "following neighbours")
     try:
         found = _core.lyapunov(
-            scene._compiled, q0, qd0, t_start, t_end, count, rtol, atol, [*times],
+            scene._compiled, q0, qd0, t_start, t_end, count, rtol, atol, since, times,
             max_step, max_steps, time_limit, report, warn,
         )  # fmt: skip
     finally:
@@ -238,6 +238,8 @@ def lyapunov(
     if found["error"] is not None:
         found["error"].exponents = result
         raise found["error"]
+    if not result.success:
+        warn(f"the exponents are not those of the whole span: {result.message}")
     return result
 
 
@@ -258,26 +260,6 @@ def lyapunov_of(
         atol=float(np.min(asked["atol"])), t_eval=t_eval, max_step=asked["max_step"],
         progress=progress,
     )  # fmt: skip
-
-
-def _times(t_eval: npt.ArrayLike | None, since: float, t_end: float) -> Floats:
-    """Return the times to keep; growth counts from the first."""
-    if t_eval is None:
-        return time_grid(since, t_end, TIMES)
-    given = np.array(numbers("t_eval", t_eval, "s"))
-    forward = np.sign(t_end - since)
-    along, first, last = forward * given, forward * since, forward * t_end
-    is_wrong = ~((first <= along) & (along <= last))
-    is_wrong[1:] |= along[1:] <= along[:-1]
-    way = f"must {'rise' if forward > 0 else 'fall'} from {since} s to the end, {t_end} s"
-    if is_wrong.any():
-        k = int(np.argmax(is_wrong))
-        raise ValueError(f"t_eval[{k}] = {given[k]}: {way}")
-    if not len(given) or given[-1] == since:
-        raise ValueError(
-            f"t_eval = {given.tolist()}: {way}, and hold a time beyond the first of these"
-        )
-    return given if given[0] == since else np.append(since, given)
 
 
 def _exponents(found: dict[str, Any], since: float, n: int) -> LyapunovExponents:

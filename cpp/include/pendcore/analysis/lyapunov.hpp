@@ -34,6 +34,7 @@ struct LyapunovOptions {
   std::optional<long long> count{};  ///< k, the number of exponents; else all
   double rtol = 1e-9;                ///< relative tolerance of the state
   double atol = 1e-12;               ///< rad and rad/s; the changes have `rtol` of their length
+  std::optional<double> since{};     ///< s, from which growth counts; else the start
   std::vector<double> t_eval;        ///< s, strictly monotone along the run; empty: the end alone
   double max_step = std::numeric_limits<double>::infinity();  ///< s
   long long max_steps = 10'000'000;
@@ -47,7 +48,7 @@ struct TangentGrowth {
   std::string message;
   Statistics statistics;
   int count = 0;               ///< k
-  std::vector<double> t;       ///< s, (n_t), those of t_eval that were reached
+  std::vector<double> t;       ///< s, (n_t), `since` and those of t_eval that were reached
   std::vector<double> growth;  ///< (n_t, k) row-major, without a unit
   std::vector<double> states;  ///< (n_t, 2n) row-major: the motion itself
   double t_reached = 0.0;      ///< s

@@ -163,11 +163,11 @@ def _work(
         point._replace(early=float(error.angle[np.abs(error.t - start.t_start) <= early].max()))
         for error, point in found
     ]
-    span = start.t_start, start.t_end
     untried = tuple((one.method, float(np.min(one.rtol))) for one in choices[len(found) :])
     return HorizonWork(
-        limit=limit, t_span=span, points=tuple(points), early=early, growth=None, untried=untried
-    )
+        limit=limit, t_span=(start.t_start, start.t_end), points=tuple(points), early=early,
+        growth=None, untried=untried,
+    )  # fmt: skip
 
 
 def _growth(start: Start, work: HorizonWork) -> LyapunovExponents | None:
