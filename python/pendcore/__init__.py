@@ -44,7 +44,7 @@ from pendcore.cost.sweep import accuracy_cost
 from pendcore.explanation.explanation import Explanation
 from pendcore.horizon.horizon_work import HorizonWork
 from pendcore.horizon.lyapunov import LyapunovExponents, lyapunov
-from pendcore.horizon.work import horizon_work
+from pendcore.horizon.measure import horizon_work
 from pendcore.messages.warning import PendcoreWarning
 from pendcore.run.accuracy import Accuracy, AccuracyError
 from pendcore.run.energy import Energy, Ledger

@@ -102,7 +102,7 @@ def test_a_resumed_run_is_checked_by_what_resume_is_told() -> None:
 def test_a_run_for_an_error_is_checked_as_well(options: Any) -> None:
     how = START | {"error": 1e-6} | options
     (status,) = options
-    with pytest.warns(pc.PendcoreWarning, match=f"{status}: .* asked for was not verified"):
+    with pytest.warns(pc.PendcoreWarning, match=f"{status}: .*; its error: asked"):
         pc.simulate(BOOK, **how)
     with pytest.raises(pc.RunError, match=status) as end:
         pc.simulate(BOOK, **how, check=True)

@@ -105,19 +105,14 @@ def defect(scene: SceneData, run: _core.Run, progress: Progress = None) -> Defec
                 report(some.stop / max(len(starts), 1))
     finally:
         close(report)
+    mass, length = sum(link.mass for link in scene.links), sum(link.length for link in scene.links)
     method = known_methods()[run.last_method]
     is_series = method["dense_output_is_series"]  # whose order the tolerances choose
     return Defect(
         t=starts,
         torque=torque,
         apart=apart,
-        weight=_weight(scene),
+        weight=abs(scene.gravity) * mass * length,
         order=run.dense_degree if is_series else method["interpolant_order"],
         is_bound=not is_series and method["interpolant_order"] < method["order"],
     )
-
-
-def _weight(scene: SceneData) -> float:
-    masses = sum(link.mass for link in scene.links)
-    lengths = sum(link.length for link in scene.links)
-    return float(abs(scene.gravity) * masses * lengths)

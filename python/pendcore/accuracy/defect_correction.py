@@ -23,7 +23,7 @@ from pendcore import _core
 from pendcore.accuracy.estimate import apart, error_over
 from pendcore.accuracy.method_choice import series_work
 from pendcore.accuracy.position_error import angles_at
-from pendcore.accuracy.rounding import moved
+from pendcore.accuracy.rounding import moved, neighbours
 from pendcore.run.call import Start, supports
 from pendcore.run.error_estimate import ErrorEstimate
 from pendcore.run.result import RunResult
@@ -39,9 +39,9 @@ class Way(NamedTuple):
     points : (int, int)
         The numbers of points in a step with which the scene itself is integrated.
     agree : float
-        The two are trusted if their distance is at most this share of the larger one, up to where
-        the run is lost. They differ by more where a motion is strongly damped, and after thousands
-        of steps.
+        The two are trusted if their largest distance is at most this share of the largest error,
+        up to where the run is lost. They differ by more where a motion is strongly damped, and
+        after thousands of steps.
     share : float
         The share of the largest correction so far that is added to the error.
     parts : int
@@ -72,8 +72,6 @@ LARGE = 0.1
 """A larger error asked for is left to second runs: from 0.2 on, a correction counts as lost."""
 UNSTABLE = 5.0
 """A run that is lost with a larger error than this is not chaotic; its correction is unstable."""
-NEIGHBOURS = ((1e-12, 2), (5e-12, 1))
-"""Pairs: a trial below this scale needs this many neighbours, as rounding may matter."""
 
 
 def ways(start: Start, error: float) -> list[Way]:
@@ -96,11 +94,10 @@ def ways(start: Start, error: float) -> list[Way]:
 
 def correction_along(start: Start, way: Way, scale: float) -> _core.DefectCorrection:
     """Return what is to look on while a run of a typical error, ``scale``, is made."""
-    count = next((count for below, count in NEIGHBOURS if scale < below), 0)
-    neighbours: list[tuple[Start, tuple[int, ...]]] = [(start, way.points)]
-    neighbours += [(moved(start, seed), way.points[1:]) for seed in range(count)]
+    motions: list[tuple[Start, tuple[int, ...]]] = [(start, way.points)]
+    motions += [(moved(start, seed), way.points[1:]) for seed in range(neighbours(scale))]
     return _core.DefectCorrection(
-        [(one.scene._compiled, one.q0, points) for one, points in neighbours], way.parts
+        [(one.scene._compiled, one.q0, points) for one, points in motions], way.parts
     )
 
 

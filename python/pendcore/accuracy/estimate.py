@@ -23,7 +23,7 @@ from functools import partial
 from itertools import combinations
 from math import inf
 from time import monotonic
-from typing import NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -47,7 +47,7 @@ Report: TypeAlias = Callable[[float], object]
 
 TIGHTER = (100.0, 1000.0, 1000.0)
 """The factors by which the tolerances of the second runs are tighter than the run's."""
-ROUNDING_MATTERS = 1e-11
+THIRD_RUN_BELOW = 1e-11
 """The rtol below which a third second run is made, as rounding may exceed truncation."""
 FOR_FIXED_STEPS = 1e-10
 """The rtol and atol that a run in fixed steps is taken to have."""
@@ -55,7 +55,7 @@ MORE_STEPS = 10
 """The factor by which a second run's max_steps is larger than the run's."""
 OTHER_STEPS = 0.6
 """The longest step of a second run in mean steps of the run, if tolerances did not limit these."""
-LEAST_STEPS = 5
+STEPS_TO_GROW = 5
 """A run of fewer steps may be over before its steps have grown to what the tolerance allows."""
 LOST = np.pi
 """rad; runs that are farther apart have nothing to do with each other."""
@@ -77,16 +77,9 @@ def estimate(
 ) -> ErrorEstimate:
     """Return the error of a run, compared with second runs up to the first end among them all.
 
-    Parameters
-    ----------
-    solution : RunResult
-        The run whose error is estimated.
-    seconds : sequence of RunResult
-        Better runs of the same motion, dense or with the times that the solution kept.
-    verified_by : str
-        How the second runs were made.
-    share : float
-        The largest error of a single second run, as a share of the distance from it.
+    These are better runs of the same motion, dense or with the times that the solution kept;
+    ``verified_by`` says how they were made. ``share`` is the largest error of a single second run,
+    as a share of the distance from it.
     """
     factor = (1 + share) * (BETWEEN if solution.store == "dense" else 1.0)
     t = _common_times(solution, seconds)
@@ -177,21 +170,18 @@ def error_estimate(
         )
     until = monotonic() + time_limit_of(time_limit)
     report = callback(progress, "estimating the error")
-    farthest: ErrorEstimate | None = None
+    found: list[ErrorEstimate] = []
     try:
         for method in second_methods(start_of(solution), solution.method, solution.stats.stiff):
-            error = _compared(solution, method, until, report)
-            if farthest is None or len(error.t) > len(farthest.t):
-                farthest = error
-            if error.is_complete or monotonic() > until:
+            found.append(_compared(solution, method, until, report))
+            if found[-1].is_complete or monotonic() > until:
                 break
     except BaseException as stop:
         stop.solution = solution  # type: ignore[attr-defined]
         raise
     finally:
         close(report)
-    assert farthest is not None, "an explicit Runge-Kutta method supports every scene"
-    return farthest
+    return max(found, key=lambda error: len(error.t))  # some method supports every scene
 
 
 def other_steps(solution: RunResult, max_step: float) -> float:
@@ -204,7 +194,7 @@ def other_steps(solution: RunResult, max_step: float) -> float:
     if stats.limited_by_max_step:
         max_step = min(max_step, OTHER_STEPS * stats.max_step)
     span = float(abs(run.t_reached - run.arguments["t_start"]))
-    if 2 * stats.limited_by_tolerance > stats.accepted >= LEAST_STEPS or not span:
+    if 2 * stats.limited_by_tolerance > stats.accepted >= STEPS_TO_GROW or not span:
         return max_step
     return min(max_step, OTHER_STEPS * span / max(stats.accepted, 1))
 
@@ -221,7 +211,7 @@ def _compared(
 ) -> ErrorEstimate:
     """Return the error of a solution, compared with second runs by a method."""
     asked, first = solution.run.arguments, _choice_of(solution)
-    tight = float(np.min(first.rtol)) < ROUNDING_MATTERS or asked["step"] is not None
+    tight = float(np.min(first.rtol)) < THIRD_RUN_BELOW or asked["step"] is not None
     tight |= other_steps(solution, inf) < inf
     start = start_of(solution)
     seconds: list[RunResult] = []
@@ -272,15 +262,11 @@ def _legs(
             if not len(part):
                 return
             end = part[-1]
+        limits: dict[str, Any] = {"max_steps": max_steps, "time_limit": left, "progress": share}
         if second is None:
-            second = run(
-                start._replace(t_end=end), choice, part, max_step=max_step, max_steps=max_steps,
-                time_limit=left, progress=share,
-            )  # fmt: skip
+            second = run(start._replace(t_end=end), choice, part, max_step=max_step, **limits)
         else:
-            second = resumed(
-                second, end, part, max_steps=max_steps, time_limit=left, progress=share
-            )
+            second = resumed(second, end, part, **limits)
         yield second
         if not second.success or monotonic() > until:
             return

@@ -11,14 +11,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import floor, log10
 
+import numpy as np
+
 from pendcore.run.call import Start, supports
 from pendcore.run.methods import known_methods, most_accurate, pair_of
+from pendcore.run.statistics import Statistics
 from pendcore.scene.effect_description import account_of
 from pendcore.scene.scene import SceneData
 
 LOOSEST, TIGHTEST = 1e-2, 1e-14
 """Bounds of rtol. Below the tightest, smaller steps add more rounding than they save truncation."""
-TIGHTEST_SECOND = {"taylor": 1e-15}
+TIGHTEST_SECOND = {"taylor": 10 * float(np.finfo(np.float64).eps)}
 """The tightest rtol of a second run of ``taylor``, whose truncation is to be less than a trial's.
 Rounding cannot mislead its step size, as it has no error estimate."""
 TIGHTEST_IMPLICIT = 1e-13
@@ -28,12 +31,9 @@ SERIES_TO_DOP853 = 0.092
 TAYLOR_BELOW = ((0.9, 5e-3), (1.08, 2e-5), (1.2, 1e-6), (1.6, 3e-6), (4.0, 1e-10))
 """Pairs: where taylor at 1e-3 takes up to this multiple of dop853's work, it takes less work than
 the others for errors below this bound. Each row stands for a kind of scene that `series_work` tells
-apart, so the bounds need not fall.
-"""
+apart, so the bounds need not fall."""
 DOPRI5_ABOVE, DOPRI5_ABOVE_IF_ONE_LINK = 3e-7, 1e-3
 """The errors above which dopri5 takes less work than dop853."""
-HOLDING = {"dry_joint_friction", "joint_stop"}
-"""Effects that may hold a joint where it is."""
 _DIGITS = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
 
 
@@ -56,13 +56,12 @@ def series_work(scene: SceneData, rtol: float) -> float:
     """
     n, free = len(scene.links), scene._compiled.mobility()[-1]
     moving, waves = _is_driven(scene), _waves(scene)
+    is_simple = not (moving or waves > 2 or free < n)  # others take the series of longer chains
     if n == 1:  # the sines of the time are most of a right-hand side
         base, exponent = (14.2, 0.035) if moving or waves else (26.0, 0.036)
-    elif n == 2 and (moving or waves > 2 or free < n):  # these take the series of longer chains
-        base, exponent = 20.0, 0.037
     elif n == 2:
-        base, exponent = 11.5, 0.024
-    elif n <= 4 and not (moving or waves > 2 or free < n or _may_hold_or_couple(scene)):
+        base, exponent = (11.5, 0.024) if is_simple else (20.0, 0.037)
+    elif n <= 4 and is_simple and not _may_hold_or_couple(scene):
         base, exponent = 6.0, 0.030  # the series of few links
     else:
         base, exponent = 12.2, 0.040
@@ -93,22 +92,37 @@ def _waves(scene: SceneData) -> int:
 
 def _may_hold_or_couple(scene: SceneData) -> bool:
     """Whether a joint may be held, or a rotor couples two links."""
-    holds = any(effect.kind in HOLDING for effect in scene.effects)
-    return holds or any(
-        effect.kind == "rotor_inertia" and getattr(effect, "joint", 1) > 1
+    return any(
+        effect.description.jumps_or_sticks
+        or (effect.kind == "rotor_inertia" and getattr(effect, "joint", 1) > 1)
         for effect in scene.effects
     )
 
 
 def rounded(rtol: float, tightest: float = TIGHTEST) -> float:
-    """Return the next tolerance of few digits at or below one, within the bounds of rtol."""
-    if not rtol > tightest:
-        return tightest
-    if rtol >= LOOSEST:
-        return LOOSEST
+    """Return the next tolerance of few digits at or below a given one, within the bounds."""
+    if not tightest < rtol < LOOSEST:
+        return LOOSEST if rtol >= LOOSEST else tightest
     power = floor(log10(rtol) + 1e-9)
     digit = max((d for d in _DIGITS if d * 10.0**power <= rtol * 1.0001), default=1.0)
     return float(f"{digit}e{power}")
+
+
+def leading(method: str) -> str:
+    """Return the first method of a pair."""
+    return method.partition("-")[0]
+
+
+def same_or_other(method: str, stats: Statistics) -> str:
+    """Return the method of a second run whose tolerance is to tell by how much it is better.
+
+    It is the run's own: by how much another one is better could only be guessed, as a scene may
+    suit one method and not another. Where most steps end at impacts and other breaks, the same
+    method would take the same steps and make the same error in them; there it is another one.
+    """
+    if 2 * stats.limited_by_break > stats.accepted:
+        return pair_of("dopri5" if leading(method) == "dop853" else "dop853")
+    return method
 
 
 def second_methods(start: Start, method: str, stiff: bool) -> Iterator[str]:

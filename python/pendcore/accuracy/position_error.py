@@ -26,14 +26,11 @@ POINTS = 101
 SAMPLES, CUTS = 6, 60
 """The steps of the other runs cut a step of the run into intervals. Each interval holds SAMPLES
 times, or a single one where it is one of more than CUTS: the error within a step is a polynomial of
-low degree.
-"""
+low degree."""
 
 
 def time_grid(t_start: float, t_end: float, points: int = POINTS) -> Floats:
     """Return evenly spaced times of a run, s, (points,): both ends to the last bit, none twice."""
-    if t_start == t_end:
-        return np.array([t_end])
     times = np.linspace(t_start, t_end, points)
     times[-1] = t_end
     return _distinct(times)  # a span of a few last bits has fewer times than points
@@ -78,10 +75,7 @@ def angles_at(solution: RunResult, t: Floats) -> Floats:
 def states_at(solution: RunResult, t: Floats) -> Floats:
     """Return angles, rad, and rates, rad/s, at times, (n_t, 2n): kept ones, or interpolated.
 
-    Raises
-    ------
-    ValueError
-        If the solution has neither kept them nor its interpolants.
+    Raise a `ValueError` if the solution has neither kept them nor its interpolants.
     """
     if solution.store == "dense":
         return solution(t).T
@@ -98,20 +92,10 @@ def states_at(solution: RunResult, t: Floats) -> Floats:
 
 
 def distances(scene: SceneData, q: npt.ArrayLike, reference: npt.ArrayLike) -> Floats:
-    """Return how far apart two motions of a scene are over time.
+    """Return how far apart two motions of a scene are, as a share of the total length, (...).
 
-    Parameters
-    ----------
-    scene : Scene
-        Its lengths are used; a driven pivot moves alike in both motions.
-    q, reference : array_like, (..., n)
-        Absolute angles, rad.
-
-    Returns
-    -------
-    ndarray, (...)
-        The largest distance over the joints and the tip, as a share of the total length; NaN where
-        an angle is not finite.
+    It is the largest distance over the joints and the tip; NaN where an angle is not finite. Both
+    are absolute angles, rad, (..., n). A driven pivot moves alike in both motions.
     """
     q, r = np.asarray(q, dtype=np.float64), np.asarray(reference, dtype=np.float64)
     lengths = np.array([link.length for link in scene.links])

@@ -16,11 +16,18 @@ from pendcore.scene.link import Link
 from pendcore.scene.scene import SceneData
 
 CONSTANTS = ("mass", "length", "center", "inertia")
+NEIGHBOURS = ((1e-12, 2), (5e-12, 1))
+"""Pairs: rounding may matter in a run below this scale, so that it takes this many neighbours."""
 LAST_BITS = 8 * np.finfo(np.float64).eps
 """The largest relative change of a number; an angle below 1 rad changes by up to as many radians.
 
 Constants are formed in two or three operations, each of which is off by half a last bit at most.
 """
+
+
+def neighbours(scale: float) -> int:
+    """Return how many moved motions show what rounding does to a run of a typical error."""
+    return next((count for below, count in NEIGHBOURS if scale < below), 0)
 
 
 def moved(start: Start, seed: int) -> Start:

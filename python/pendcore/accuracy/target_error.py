@@ -12,9 +12,6 @@ by the same method unless impacts set its steps. Its distance from the trial tel
 error is; one more second run shows that the first one is indeed better
 (`pendcore.accuracy.estimate`). Where rounding may matter, two or three second runs as tight as
 doubles allow take the place of these.
-
-The loop ends with a trial whose error is small enough, with an `AccuracyError` that says the least
-error that can be reached, or with a run that ended early.
 """
 
 from __future__ import annotations
@@ -26,7 +23,9 @@ from typing import Any
 import numpy as np
 
 from pendcore.accuracy.estimate import SPARE_OF_SEVERAL
-from pendcore.accuracy.trials import TrialRun, Trials, leading
+from pendcore.accuracy.method_choice import leading
+from pendcore.accuracy.rounding import neighbours
+from pendcore.accuracy.trials import TrialRun, Trials
 from pendcore.messages.arguments import finite_array
 from pendcore.messages.progress import callback, close
 from pendcore.run.accuracy import AccuracyError
@@ -38,10 +37,9 @@ from pendcore.run.result import RunResult
 FIRST_BY_DEFECT, FIRST = 0.5, 3.0
 """The multiples of the error asked for at which the first trial aims: if its defect is to be known,
 after which most runs need no other trial, and if not."""
-AT_FEW_TIMES, IF_DAMPED = 4.0, 20.0
+AT_FEW_TIMES, IF_DAMPED = 4.0, 100.0
 """Both are multiplied by these where few times are kept, as the error is hardly largest there, and
-where dampers make the motion forget its errors. With these, the true error of stiff scenes is 0.07
-of the one asked for, in the median."""
+where dampers make the motion forget its errors."""
 AIM = 0.65
 """Later trials aim at this multiple of the error asked for."""
 LEAST_CHANGE, FARTHER = 1.5, 100.0
@@ -58,23 +56,23 @@ NOTHING_IN_COMMON = 0.2
 LIKELY = 0.9
 """A trial no farther from a second run than this share of the error is likely good enough."""
 RATIO, SPARE = 5.0, 0.35
-"""Two second runs whose scales differ by less than RATIO may be off alike: then SPARE is added."""
+"""Two second runs whose scales differ by less than RATIO may be off alike, and by how much another
+method than the trial's is better is not known: then SPARE is added."""
 ALIKE, SHARE_IF_ALIKE = 20.0, 1.0
-"""Second runs as tight as doubles allow, but not tighter than the trial by the factor ALIKE, may
-share errors with it: an implicit step's remainder, or that of steps which stability limits. Then at
-least SHARE_IF_ALIKE times the distance is added."""
+"""A trial whose rtol is less than ALIKE times the tightest may share errors with second runs as
+tight as doubles allow: an implicit step's remainder, or that of steps which stability limits. Then
+at least SHARE_IF_ALIKE times the distance is added."""
 CAUTION_IF_TIGHT = 0.5
 """The exponent by which the error of looser runs is scaled down to that of these second runs."""
-ROUNDING_MATTERS = ((1e-12, 3), (5e-12, 2))
-"""Pairs: a trial below this scale needs this many second runs as tight as doubles allow."""
 HOPELESS = 1e-6
 """A larger error at the tightest tolerances is not rounding alone, but its growth."""
-LATE = 0.1
-"""Where the rounding of times takes this share of the least error, a late start is to blame."""
+LATE, LARGE_ANGLE = 0.1, 100.0
+"""A late start is to blame where the rounding of times makes the share LATE of the error; angles
+above LARGE_ANGLE, rad, unless without them the error would be hopeless too."""
 FOLLOWED_BADLY = ("step_too_small", "non_finite")
 """The statuses that loose tolerances may cause."""
-MOST_RUNS = 16
-"""The number of runs after which the search ends."""
+MOST_RUNS, MOST_SEARCHES = 16, 3
+"""The number of runs after which a search ends, and of searches for the least error."""
 
 
 def run_to_error(start: Start, error: float, options: dict[str, Any]) -> RunResult:
@@ -206,7 +204,10 @@ def _next_run(runs: Trials) -> TrialRun | None:
     error = known or distance
     aimed = _aimed(runs, last, error, distance)
     if known is None and error.largest <= LIKELY * runs.error and not error.is_lost:
-        return None if _tight_runs(last) else _second(runs, last)
+        if not _tight_runs(last):
+            return _second(runs, last)
+        is_missing = not _looser_runs(runs, last, better[0])
+        return runs.second(last, FARTHER * better[0].scale) if is_missing else None
     if last.rtol <= runs.tightest:
         return None
     aimed = min(aimed, last.scale / LEAST_CHANGE)
@@ -261,7 +262,8 @@ def _known_error(runs: Trials, trial: TrialRun) -> ErrorEstimate | None:
     if _tight_runs(trial):
         share = _share_if_tight(runs, trial, better)
         return None if share is None else runs.compared(trial, better, share)
-    if better[0].scale * RATIO > better[1].scale:
+    is_other = better[0].method != trial.method and not runs.is_stiff
+    if is_other or better[0].scale * RATIO > better[1].scale:
         return runs.compared(trial, better, SPARE)
     return runs.compared(trial, better)
 
@@ -274,10 +276,7 @@ def _share_if_tight(runs: Trials, trial: TrialRun, seconds: list[TrialRun]) -> f
     """
     own = max(runs.distance(trial, second) for second in seconds)
     truncation = inf
-    for other in (*runs.trials, *runs.seconds):
-        is_looser = other is not trial and other.scale >= LEAST_CHANGE * seconds[0].scale
-        if not (is_looser and other.method == seconds[0].method and other.solution.success and own):
-            continue
+    for other in _looser_runs(runs, trial, seconds[0]) if own else []:
         distance = runs.distance(other, seconds[0])
         if distance < NOTHING_IN_COMMON:
             ratio = seconds[0].scale / other.scale
@@ -286,6 +285,13 @@ def _share_if_tight(runs: Trials, trial: TrialRun, seconds: list[TrialRun]) -> f
     if truncation == inf:
         return None if runs.is_stiff and own > 0 else least + SPARE
     return max(least, truncation / own) + SPARE
+
+
+def _looser_runs(runs: Trials, trial: TrialRun, second: TrialRun) -> list[TrialRun]:
+    """Return the runs that tell how the error of a second run's method depends on its tolerance."""
+    others = (run for run in (*runs.trials, *runs.seconds) if run is not trial)
+    alike = (run for run in others if run.method == second.method and run.solution.success)
+    return [run for run in alike if run.scale >= LEAST_CHANGE * second.scale]
 
 
 def _better_than(runs: Trials, trial: TrialRun) -> list[TrialRun]:
@@ -299,7 +305,7 @@ def _better_than(runs: Trials, trial: TrialRun) -> list[TrialRun]:
 
 def _tight_runs(trial: TrialRun) -> int:
     """Return how many second runs as tight as doubles allow a trial needs; 0: looser ones do."""
-    return next((count for below, count in ROUNDING_MATTERS if trial.scale < below), 0)
+    return count + 1 if (count := neighbours(trial.scale)) else 0
 
 
 def _ended_early(runs: Trials, latest: TrialRun) -> RunResult:
@@ -308,9 +314,9 @@ def _ended_early(runs: Trials, latest: TrialRun) -> RunResult:
     At the time limit it is the tightest complete trial, if there is one, which is not verified.
     """
     if latest.solution.status == "time_limit":
-        why = "the run ended early: time_limit"
-        if whole := runs.best():
-            why = "the time limit was reached before it was verified"
+        whole, why = runs.best(), "the time limit was reached before it was verified"
+        if whole is None:
+            why = "the run ended early: time_limit"
         return runs.labelled(whole or latest.solution, "ended early", None, why)
     error = runs.error_from_defect(latest)
     if error is None:
@@ -330,48 +336,65 @@ def _refusal(runs: Trials, why: str = "") -> AccuracyError:
     error = _known_error(runs, last)
     if len(runs.paid) >= MOST_RUNS:
         why = why or f"the search ended after {MOST_RUNS} runs: another error may be kept"
-    if error is None or why:
-        why = why or _does_not_follow(runs)
+    why = why or _in_the_way(runs, last, error)
+    if error is None:
         runs.labelled(last.solution, "refused", None, why)
-        message = f"{asked}: the run by {last.text} could not be verified: {why}"
-        return AccuracyError(message, last.solution)
+        return AccuracyError(f"{asked}: {last.text} could not be verified: {why}", last.solution)
+    least = inf if error.is_lost else _least_kept(runs, error.largest)
     runs.labelled(last.solution, "refused", error)
-    if last.rtol > runs.tightest:
-        why = _does_not_follow(runs)
-    elif error.is_lost or error.largest > HOPELESS:
-        why = "neighbouring motions part too fast for double precision"
-    else:
-        why = _what_rounding_takes(last.solution, error)
-    least = inf if error.is_lost else error.largest
     reached, remedies = "no error can be kept to the end", []
     if not error.is_lost:
-        told = f"{_rounded(least, 2, ROUND_CEILING):.1e}"
-        reached = f"the least that can be kept is {told}"
-        remedies = [f"ask for error = {told} or more"]
+        reached = f"the least that could be verified is {least:.1e}"
+        remedies = [f"ask for error = {least:.1e} or more"]
     until, begin = error.valid_until(runs.error, of="position"), runs.start.t_start
     if until != begin:
         not_past = ROUND_FLOOR if until > begin else ROUND_CEILING
-        why += f"; it holds until t = {_rounded(until, 8, not_past):f} s"
-        remedies.append("end t_span before that")
+        digits = 8 + round(max(0.0, np.log10(abs(until / (until - begin)))))
+        why += f"; it holds until t = {_rounded(until, digits, not_past):f} s"
+        remedies.append("end t_span well before that")
     message = ": ".join((asked, "not reached", reached, why, ", or ".join(remedies)))
     return AccuracyError(message.removesuffix(": "), last.solution, least)
+
+
+def _least_kept(runs: Trials, least: float) -> float:
+    """Return an error of two digits, the known one or a larger, that a search for it keeps.
+
+    For a larger error the trials are looser, and what verifies them may tell larger errors.
+    """
+    for _ in range(MOST_SEARCHES if runs.tries_the_least else 0):
+        least = float(_rounded(least, 2, ROUND_CEILING))
+        try:
+            kept_run(again := runs.for_least(least))
+        except AccuracyError as larger:
+            if larger.least == inf:
+                break
+            least = larger.least
+        else:
+            break
+        finally:
+            runs.paid += again.paid
+    return least
 
 
 def _rounded(x: float, digits: int, rounding: str) -> Decimal:
     return Context(prec=digits, rounding=rounding).create_decimal_from_float(x)
 
 
-def _what_rounding_takes(solution: RunResult, error: ErrorEstimate) -> str:
-    """Return which rounding keeps the error from becoming smaller."""
+def _in_the_way(runs: Trials, trial: TrialRun, error: ErrorEstimate | None) -> str:
+    """Return what keeps the error from becoming smaller, as far as this is known."""
+    if error is None or trial.rtol > runs.tightest:
+        question = ": is a law of your own not smooth?" if runs.has_effect_of("user") else ""
+        return f"the error does not follow the tolerances{question}"
+    solution = trial.solution
     begin, end, n = error.begin, solution.run.t_reached, len(solution.scene.links)
     last_bit = np.spacing(max(abs(begin), abs(end)))
     turned = last_bit / 2 * np.abs(solution.run.y_reached[n : 2 * n]).max()
     if abs(begin) > abs(end - begin) and turned > LATE * error.largest:
         return f"times from {begin:g} s on are rounded to {last_bit:.0e} s; begin nearer to 0"
+    angle = np.abs(solution.run.arguments["q0"]).max()
+    if angle > LARGE_ANGLE and not error.is_lost and error.largest < HOPELESS * angle:
+        bit = np.spacing(angle)
+        return f"angles of {angle:.0e} rad are rounded to {bit:.0e} rad; begin with fewer turns"
+    if error.is_lost or error.largest > HOPELESS:
+        return "neighbouring motions part too fast for double precision"
     return "tighter tolerances are lost in the rounding of doubles"
-
-
-def _does_not_follow(runs: Trials) -> str:
-    """Return why no tolerance was found, as far as this is known."""
-    question = ": is a law of your own not smooth?" if runs.has_effect_of("user") else ""
-    return f"the error does not follow the tolerances{question}"

@@ -25,7 +25,9 @@ from pendcore.accuracy.method_choice import (
     TIGHTEST_SECOND,
     cheapest,
     correction_work,
+    leading,
     rounded,
+    same_or_other,
     series_work,
 )
 from pendcore.accuracy.rounding import moved
@@ -42,9 +44,9 @@ FOR_BOTH = 5.0
 """A method is chosen for an error smaller by this factor, as second runs take the same method."""
 COMPENSATED_BELOW = 1e-12
 """The rtol below which trials use compensated sums of the state."""
-MOST_STEPS, LEAST_STEPS = 300, 100
+MOST_STEPS, FIRST_COUNTS_AS = 300, 100
 """A later run may take MOST_STEPS times as many steps as the first trial, which counts as
-LEAST_STEPS if it took fewer."""
+FIRST_COUNTS_AS if it took fewer."""
 FEW = 50
 """At fewer times than these, the error of a run may be small by chance."""
 _ADVANCE = 0.35
@@ -71,11 +73,6 @@ class TrialRun:
         return f"{self.method} at rtol {self.rtol:g}"
 
 
-def leading(method: str) -> str:
-    """Return the first method of a pair."""
-    return method.partition("-")[0]
-
-
 class Trials:
     """Makes the runs for one error, compares them and keeps count of them."""
 
@@ -94,6 +91,7 @@ class Trials:
         self.time_limit = time_limit_of(options.pop("time_limit", None))
         self.compensated: bool = options.pop("compensated", False)
         self.is_stiff = False
+        self.tries_the_least = True
         self.ways = ways(start, error)
         self.trials: list[TrialRun] = []
         self.seconds: list[TrialRun] = []
@@ -143,6 +141,12 @@ class Trials:
         self.seconds = [self._as_far_as(trial, second) for second in self.seconds]
         return trial
 
+    def for_least(self, error: float) -> Trials:
+        """Return a search for another error, in the time that is left, which tries no other one."""
+        other = Trials(self.start, error, {**self.options, "compensated": self.compensated}, None)
+        other.began, other.time_limit, other.tries_the_least = self.began, self.time_limit, False
+        return other
+
     def drop(self, trial: TrialRun) -> None:
         """Forget a trial that was too loose to come to its end."""
         self.trials.remove(trial)
@@ -157,18 +161,10 @@ class Trials:
             self.trials.clear()
 
     def second(self, trial: TrialRun, scale: float) -> TrialRun:
-        """Make a run that is better than a trial, with other steps, constants and start.
-
-        The method is the trial's, or radau5 where the scene is stiff. By how much another method is
-        better could only be guessed, as a scene may suit one method and not another. Where most
-        steps end at impacts and other breaks, the same method would take the same steps and make
-        the same error in them: there it is another one.
-        """
-        method, stats = trial.method, trial.solution.stats
-        if self.is_stiff:
-            method = implicit_method()
-        elif 2 * stats.limited_by_break > stats.accepted:
-            method = pair_of("dopri5" if leading(method) == "dop853" else "dop853")
+        """Make a run that is better than a trial, with other steps, constants and start."""
+        method = implicit_method()
+        if not self.is_stiff:
+            method = same_or_other(trial.method, trial.solution.stats)
         tightest = TIGHTEST_SECOND.get(leading(method), self.tightest)
         rtol = rounded(scale / error_over_rtol(leading(method)), tightest)
         ends_anywhere = any(values.get("terminal") for _, values in self.options["events"])
@@ -209,7 +205,7 @@ class Trials:
         return self._estimates[key]
 
     def distance(self, trial: TrialRun, second: TrialRun) -> float:
-        """Return the largest distance of a trial from one second run, as a share of the length."""
+        """Return how far a trial is at most from one second run, as a share of the length."""
         return self.compared(trial, [second], 0.0).largest
 
     def best(self) -> RunResult | None:
@@ -254,7 +250,7 @@ class Trials:
         return tuple(paid)
 
     def _most_steps(self, times: int = 1) -> int:
-        enough = MOST_STEPS * max(self.trials[0].solution.stats.accepted, LEAST_STEPS)
+        enough = MOST_STEPS * max(self.trials[0].solution.stats.accepted, FIRST_COUNTS_AS)
         return min(times * int(self.options["max_steps"]), enough)
 
     def _as_far_as(self, trial: TrialRun, second: TrialRun) -> TrialRun:
@@ -296,9 +292,7 @@ class Trials:
         self._done += _ADVANCE * (1 - self._done)
         return trial
 
-    def _time_left(self) -> float | None:
-        if self.time_limit == inf:
-            return None
+    def _time_left(self) -> float:
         return max(self.time_limit - (monotonic() - self.began), 1e-6)
 
     def _progress(self) -> Callable[[float], object] | bool:

@@ -70,8 +70,8 @@ def add_parser(commands: Any) -> None:
         "--error",
         type=float,
         metavar="E",
-        help="largest position error / total length to keep: method and tolerances are chosen, and "
-        "the run is verified",
+        help="largest position error / total length to keep: method and tolerances are chosen, in "
+        "place of those of the case, and the run is verified",
     )
     parser.add_argument(
         "--parameters",

@@ -53,11 +53,13 @@ class Accuracy:
     asked : float
         The error that was asked for.
     achieved : float
-        The error of the run, estimated from above; infinite where nothing verified it, and where
-        the run is lost before its end.
+        The error of the run, estimated from above: the true one is larger in about 1 of 500 runs,
+        and mostly where both are far below the error asked for. Infinite where nothing verified the
+        run, and where it is lost before its end.
     outcome : {"kept", "refused", "ended early"}
         ``"kept"``: the error is kept. ``"refused"``: that could not be shown. ``"ended early"``:
-        the run did not reach its end; ``achieved`` and ``until`` describe the part that there is.
+        the run did not reach its end, and ``achieved`` and ``until`` describe the part that there
+        is; or it was not verified before the time was up.
     until : float
         The time until which the error is kept, s.
     times : int
@@ -69,7 +71,7 @@ class Accuracy:
     paid : tuple of Paid
         All that was computed, in its order.
     seconds : float
-        The time that all runs took together, s.
+        The time that the whole search took, s.
 
     Examples
     --------
@@ -128,14 +130,14 @@ class Accuracy:
         verdict = {
             "kept": "",
             "refused": ", not reached",
-            "ended early": f" as far as it is known (kept until t = {self.until:.6g} s)",
+            "ended early": f" as far as it is known (kept until t = {self.until:.10g} s)",
         }[self.outcome]
         where = f"at {self.times} time{'s'[: self.times != 1]}"
         if self.everywhere:
             where = "over the curve" if self.outcome == "ended early" else "over the whole curve"
         achieved = f"achieved {self.achieved:.1e} of the total length {where}"
         if self.achieved == inf:
-            achieved = f"kept until t = {self.until:.6g} s and lost before the end"
+            achieved = f"kept until t = {self.until:.10g} s and lost before the end"
             verdict = ""
         return f"{asked}, {achieved}{verdict}: verified by {self.verified_by}"
 

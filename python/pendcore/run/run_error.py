@@ -1,4 +1,4 @@
-"""What follows if a run does not get to its end: a warning, an exception, or nothing."""
+"""What follows a run that was not finished, or not verified: a warning, an exception, nothing."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ functions."""
 
 
 class RunError(RuntimeError):
-    """A run ended before it got to its end, and ``check=True`` asked for an exception.
+    """A run was not finished, or not verified in time, and ``check=True`` asked for an exception.
 
     Attributes
     ----------
@@ -47,7 +47,7 @@ def require_check(check: object) -> None:
 
 
 def checked(solution: Result, check: bool | None) -> Result:
-    """Return a solution; unless it is a success, warn or raise as ``check`` says."""
+    """Return a solution; unless it is finished and verified, warn or raise as ``check`` says."""
     accuracy = solution.accuracy
     is_verified = accuracy is None or accuracy.outcome != "ended early"
     if check is False or (solution.success and is_verified):
@@ -63,7 +63,7 @@ def checked(solution: Result, check: bool | None) -> Result:
 
 
 def _complaint(solution: RunResult) -> str:
-    """Return status, time and remedy in a sentence; the message has the time, and some remedies."""
+    """Say why a run ended and what continues it; some messages say the latter themselves."""
     if solution.success and solution.accuracy is not None:
         return f"the run got to its end, but {solution.accuracy.text()}"
     t_end, message = solution.run.arguments["t_end"], solution.message
@@ -72,7 +72,7 @@ def _complaint(solution: RunResult) -> str:
         f"{message.removeprefix(f'{solution.status}: ')}"
     )
     if solution.accuracy is not None:
-        return f"{complaint}; the error asked for was not verified: {solution.accuracy.text()}"
+        return f"{complaint}; its error: {solution.accuracy.text()}"
     if solution.status in CAN_GO_ON and "resume" not in message:
         complaint += f"; solution.resume({t_end!r}) continues it"
     return complaint
