@@ -65,6 +65,8 @@ def test_the_page_shows_the_record() -> None:
     for of_it in record["families"].values():
         assert not any(of_it[name] for name in ("above", "contradicted", "late", "exceptions"))
         assert of_it["unverified"] <= report.UNVERIFIED * of_it["scenes"]
+        assert of_it["told_too_little"] <= report.TOLD_TOO_LITTLE * of_it["scenes"]
+        assert of_it["limit_not_known"] <= report.NO_REFERENCE * of_it["scenes"]
         assert report.MEDIAN[0] <= of_it["ratios"]["50"] <= report.MEDIAN[1]
 
 

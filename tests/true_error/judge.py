@@ -48,6 +48,8 @@ class Verdict:
     achieved, true, estimated : float or None
         What the run says it reached, the truth, and what ``sol.error()`` says of it, all as shares
         of the total length; ``true`` is missing where the reference is not good enough.
+    unsure : float
+        The largest uncertainty of ``true``.
     is_one_estimate : bool
         Whether ``accuracy.until`` of a run that is kept is its end, and ``sol.error()`` gives the
         same end.
@@ -76,6 +78,7 @@ class Verdict:
     says: str = ""
     achieved: float | None = None
     true: float | None = None
+    unsure: float = 0.0
     estimated: float | None = None
     is_one_estimate: bool = True
     exception: str = ""
@@ -93,6 +96,13 @@ class Verdict:
     def is_above(self) -> bool:
         """Whether the run says that the error is kept, and it is not."""
         return self.outcome == "kept" and self.true is not None and self.true > self.asked
+
+    @property
+    def is_told_too_little(self) -> bool:
+        """Whether a run that keeps the error says that its own is smaller than it is."""
+        if self.outcome != "kept" or self.true is None or self.achieved is None:
+            return False
+        return self.true - self.unsure > self.achieved
 
     @property
     def is_contradicted(self) -> bool:
@@ -224,7 +234,9 @@ def _compare(drawn: Drawn, verdict: Verdict, t: Any, q: Any, reference: Referenc
         return
     verdict.true = _true_error(drawn, q, truth)
     if verdict.true is None:
-        verdict.true = _true_error(drawn, q, reference.angles(t, finest=True))
+        truth = reference.angles(t, finest=True)
+        verdict.true = _true_error(drawn, q, truth)
+    verdict.unsure = float(truth.unsure.max())
     if verdict.true is None:
         verdict.no_reference = "more digits than quadruple precision has would be needed"
 

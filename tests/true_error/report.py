@@ -11,10 +11,10 @@ from true_error.judge import Verdict
 
 SHARES = (5, 25, 50, 75, 95, 99, 100)
 NO_REFERENCE, MANY = 0.02, 20
-"""The share of scenes that may lack a reference; and the number of scenes from which on at least
-one is kept and the median tells something."""
-UNVERIFIED = 1 / 100
-"""The share of scenes that may end unverified."""
+"""The share of scenes whose error, or whose time of validity, the reference may not know; and the
+number of scenes from which on at least one is kept and the median tells something."""
+UNVERIFIED, TOLD_TOO_LITTLE = 1 / 100, 1 / 100
+"""The shares of scenes that may end unverified, and whose ``achieved`` may be below the truth."""
 MEDIAN = (0.05, 0.8)
 """The bounds between which the median of true over asked has to lie."""
 SHOWN = 40
@@ -31,6 +31,7 @@ def record_of(verdicts: list[Verdict]) -> dict[str, Any]:
         "scenes": len(verdicts),
         "kept": outcomes["kept"],
         "above": faults["above"],
+        "told_too_little": sum(verdict.is_told_too_little for verdict in verdicts),
         "contradicted": faults["contradicted"],
         "late": faults["late"],
         "refused": len(refused),
@@ -74,12 +75,18 @@ def broken(verdicts: list[Verdict]) -> list[str]:
         )
         if record[name]
     ]
-    if record["no_reference"] > NO_REFERENCE * len(verdicts):
-        found.append(f"{record['no_reference']} of {len(verdicts)} without a reference")
+    for name, most in (
+        ("no_reference", NO_REFERENCE),
+        ("limit_not_known", NO_REFERENCE),
+        ("unverified", UNVERIFIED),
+    ):
+        if record[name] > most * len(verdicts):
+            found.append(f"{record[name]} of {len(verdicts)} {name.replace('_', ' ')}")
     if len(verdicts) >= MANY and not record["kept"]:
         found.append("no error was kept: nothing was tested")
-    if record["unverified"] > UNVERIFIED * len(verdicts):
-        found.append(f"{record['unverified']} of {len(verdicts)} unverified")
+    at_least_one = max(1.0, TOLD_TOO_LITTLE * len(verdicts))
+    if record["told_too_little"] > at_least_one:
+        found.append(f"{record['told_too_little']} of {len(verdicts)} told too little")
     low, high = MEDIAN
     if len(verdicts) >= MANY and record["ratios"] and not low <= record["ratios"]["50"] <= high:
         found.append(f"the median of true over asked is {record['ratios']['50']}")
@@ -92,19 +99,32 @@ def offenders(found: dict[str, list[Verdict]]) -> str:
     for family, verdicts in found.items():
         kinds: dict[str, list[Verdict]] = {}
         for verdict in sorted(verdicts, key=lambda verdict: verdict.seed):
-            for fault in verdict.faults or [verdict.outcome] * (verdict.outcome == "unverified"):
-                kinds.setdefault(fault, []).append(verdict)
+            for kind in verdict.faults or _kinds(verdict):
+                kinds.setdefault(kind, []).append(verdict)
         for fault, those in kinds.items():
             lines.append(f"==== {family}, {fault}: {len(those)}")
             lines += [line_of(verdict, fault) for verdict in those[:SHOWN]]
     return "\n".join(lines)
 
 
+def _kinds(verdict: Verdict) -> list[str]:
+    """Return what is no fault of a scene, but must not be so in many."""
+    found = {
+        "unverified": verdict.outcome == "unverified",
+        "told too little": verdict.is_told_too_little,
+    }
+    return [name for name, is_so in found.items() if is_so]
+
+
 def line_of(verdict: Verdict, fault: str) -> str:
     """Return one scene that breaks a claim, and what repeats it."""
+    errors = (
+        f"true {times(verdict.true, verdict.asked)} of {verdict.asked:.2e}, told "
+        f"{times(verdict.achieved, verdict.asked)}"
+    )
     what = {
-        "above": f"true {times(verdict.true, verdict.asked)} of {verdict.asked:.2e}, told "
-        f"{times(verdict.achieved, verdict.asked)}",
+        "above": errors,
+        "told too little": errors,
         "contradicted": f"sol.error() {times(verdict.estimated, verdict.asked)}, true "
         f"{times(verdict.true, verdict.asked)} of {verdict.asked:.2e}",
         "late": f"valid_until {verdict.valid_until}, past {verdict.limit} at {verdict.first_past}",
@@ -120,8 +140,8 @@ def times(value: float | None, asked: float) -> str:
 
 def markdown(record: dict[str, Any]) -> str:
     """Return what the page shows of a record: a row for each family."""
-    names = ["scenes", "kept", "above", "late", "refused", "ended_early", "unverified"]
-    names += ["exceptions", "no_reference"]
+    names = ["scenes", "kept", "above", "told_too_little", "late", "refused", "ended_early"]
+    names += ["unverified", "exceptions", "no_reference"]
     heads = ["family", *(name.replace("_", " ") for name in names)]
     heads += ["true / asked, median", "largest"]
     lines = [f"| {' | '.join(heads)} |", "|---|" + "--:|" * (len(heads) - 1)]
