@@ -32,6 +32,7 @@ from pendcore.accuracy.position_error import (
     angles_at,
     distances,
     kept_times,
+    largest_difference,
     reached,
     states_at,
     times_within_steps,
@@ -113,13 +114,13 @@ def apart(solution: RunResult, t: Floats, others: Callable[[slice], list[Floats]
         some = slice(first, first + AT_ONCE)
         q, qd = np.hsplit(states_at(solution, t[some]), 2)
         motions = others(some)
-        rounding = np.finfo(np.float64).eps * np.abs(q).max(axis=-1)  # the state is a double
-        rounding += np.spacing(np.abs(t[some])) / 2 * np.abs(qd).max(axis=-1)  # so is its time
+        rounding = np.finfo(np.float64).eps * largest_difference(q)  # the state is a double
+        rounding += np.spacing(np.abs(t[some])) / 2 * largest_difference(qd)  # so is its time
         from_run = [(q, motion) for motion in motions]
         from_each_other = [*combinations(motions, 2)] or [(q, q)]  # one alone is 0 apart
         largest = [
             np.max([measure(r, s) for r, s in pairs], axis=0)
-            for measure in (_apart, partial(distances, solution.scene))
+            for measure in (largest_difference, partial(distances, solution.scene))
             for pairs in (from_run, from_each_other)
         ]
         found.append(np.array([*largest, rounding]))
@@ -303,10 +304,5 @@ def _is_lost(solution: RunResult, second: RunResult) -> bool:
         last = last[reached(second, last)][-1:]
     if not len(last):
         return False
-    return not bool((_apart(angles_at(solution, last), angles_at(second, last)) < LOST).all())
-
-
-def _apart(q: Floats, reference: Floats) -> Floats:
-    """Return the largest difference over the links, rad."""
-    largest: Floats = np.abs(q - reference).max(axis=-1, initial=0.0)
-    return largest
+    difference = largest_difference(angles_at(solution, last), angles_at(second, last))
+    return not bool((difference < LOST).all())

@@ -13,6 +13,7 @@ whose right-hand side loses no digits where q and r are close.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import reduce
 
 import numpy as np
 import numpy.typing as npt
@@ -100,10 +101,18 @@ def distances(scene: SceneData, q: npt.ArrayLike, reference: npt.ArrayLike) -> F
     q, r = np.asarray(q, dtype=np.float64), np.asarray(reference, dtype=np.float64)
     lengths = np.array([link.length for link in scene.links])
     lengths = lengths / lengths.sum()
+    place, apart = np.complex128(), np.float64()
     with np.errstate(all="ignore"):
-        chord = 2 * lengths * np.sin((q - r) / 2)
-        apart: Floats = np.abs(np.cumsum(chord * np.exp(0.5j * (q + r)), axis=-1)).max(axis=-1)
-    return apart
+        for i, length in enumerate(lengths):  # numpy is slow along an axis as short as a chain
+            chord = 2 * length * np.sin((q[..., i] - r[..., i]) / 2)
+            place = place + chord * np.exp(0.5j * (q[..., i] + r[..., i]))
+            apart = np.maximum(apart, np.abs(place))
+    return np.asarray(apart)
+
+
+def largest_difference(q: Floats, reference: Floats | float = 0.0) -> Floats:
+    """Return the largest difference over the links of numbers (..., n), (...)."""
+    return np.asarray(reduce(np.maximum, np.moveaxis(np.abs(q - reference), -1, 0)))
 
 
 def reached(solution: RunResult, t: Floats) -> npt.NDArray[np.bool]:

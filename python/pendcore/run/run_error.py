@@ -48,9 +48,7 @@ def require_check(check: object) -> None:
 
 def checked(solution: Result, check: bool | None) -> Result:
     """Return a solution; unless it is finished and verified, warn or raise as ``check`` says."""
-    accuracy = solution.accuracy
-    is_verified = accuracy is None or accuracy.outcome != "ended early"
-    if check is False or (solution.success and is_verified):
+    if check is False or (solution.success and not unverified(solution)):
         return solution
     if check:
         raise RunError(_complaint(solution), solution)
@@ -62,10 +60,18 @@ def checked(solution: Result, check: bool | None) -> Result:
     return solution
 
 
+def unverified(solution: Result) -> str:
+    """Say why a finished run for an error was not verified; empty if it was, or is no such run."""
+    accuracy = solution.accuracy
+    if accuracy is None or accuracy.outcome != "ended early":
+        return ""
+    return f"the run is finished, but not its verification: {accuracy.text()}"
+
+
 def _complaint(solution: RunResult) -> str:
     """Say why a run ended and what continues it; some messages say the latter themselves."""
-    if solution.success and solution.accuracy is not None:
-        return f"the run got to its end, but {solution.accuracy.text()}"
+    if solution.success:
+        return unverified(solution)
     t_end, message = solution.run.arguments["t_end"], solution.message
     complaint = (
         f"the run ended before t_end = {t_end:.6g} s, with status {solution.status}: "
