@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pendcore as pc
 import pytest
-from pendcore.accuracy.method_choice import HOLDING, series_work
+from pendcore.accuracy.method_choice import series_work
 from pendcore.scene.effect_class import OwnEffect
 
 sys.path.append(str(Path(__file__).parents[2] / "docs/generators"))
@@ -32,7 +32,7 @@ def test_every_kind_of_effect_is_considered():
 
 
 def test_what_is_named_are_kinds_of_effects():
-    assert set(EFFECTS) | NOT_CARRIED | HOLDING <= set(KINDS)
+    assert set(EFFECTS) | NOT_CARRIED <= set(KINDS)
     assert all(effect.kind == kind for kind, effect in EFFECTS.items())
 
 
