@@ -144,6 +144,7 @@ def test_the_readmes_counts_are_those_of_the_records():
     )
     families = json.loads((ROOT / "docs/records/true_error.json").read_text())["families"].values()
     assert f"In [{sum(one['scenes'] for one in families):,} random scenes]" in readme
+    assert f"could not tell of {sum(one['no_reference'] for one in families)} runs" in readme
     assert sum(one["above"] for one in families) == 0
 
 
