@@ -173,8 +173,8 @@ class AccuracyError(ArithmeticError):
     solution : Solution
         The most accurate run that was made; its ``accuracy`` says what was reached.
     least : float
-        The least error that can be verified here, as a share of the total length; infinite where
-        none can.
+        The least error, as a share of the total length, that was found to be kept when it is asked
+        for; infinite if none was.
 
     Examples
     --------
