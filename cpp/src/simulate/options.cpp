@@ -30,9 +30,8 @@ std::vector<double> tolerances(const OptionInfo& info, const std::vector<double>
     const std::string index = given.size() == 1 ? "" : "[" + std::to_string(i) + "]";
     refuse(std::string(info.name) + index, given[i], range_with_unit(info));
   }
-  std::vector<double> result(given);
-  for (double& one : result) one = std::max(one, least);
-  result.resize(dimension, result.front());
+  std::vector<double> result(dimension, std::max(given.front(), least));
+  for (std::size_t i = 1; i < given.size(); ++i) result[i] = std::max(given[i], least);
   return result;
 }
 
