@@ -20,8 +20,8 @@ from typing import Any
 import pendcore as pc
 from pendcore._core import DefectCorrection, has_defect_correction
 from pendcore.accuracy.defect_correction import SERIES_8_7, correction_along
-from pendcore.accuracy.method_choice import correction_work, series_work
 from pendcore.run.call import Choice, Start, atol_beside, run
+from pendcore.run.work import correction_work, series_work
 
 E = pc.effects
 WAVE = E.Sinusoid(0.5, angular_frequency=3.0)

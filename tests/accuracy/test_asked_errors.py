@@ -174,7 +174,7 @@ def test_beyond_rounding_it_is_refused_with_what_was_reached():
 
 
 def test_a_chaotic_span_is_refused_and_told_until_when_it_holds():
-    says = r"part too fast .* it holds until t = [\d.]+ s: end t_span well before that$"
+    says = r"part too fast .* the error is kept until t = [\d.]+ s: end t_span well before that$"
     with pytest.raises(pc.AccuracyError, match=says) as caught:
         pc.simulate(BOOK, *CHAOTIC, error=1e-3)
     until = caught.value.solution.accuracy.until
@@ -393,6 +393,6 @@ def test_a_case_and_the_command_know_it(tmp_path, monkeypatch, capsys):
     assert main(["run", "chaotic.toml"]) == 1
     summary = " ".join(Path("out/chaotic/summary.txt").read_text().split())
     assert re.search(
-        r"refused error = 0.001: not reached: .* it holds until t = [\d.]+ s: end", summary
+        r"refused error = 0.001: not reached: .* the error is kept until t = [\d.]+ s: end", summary
     )
     assert main(["run", "swing.toml", "--error", "7"]) == 2

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import warnings
+from typing import Any
+
 import numpy as np
 import pendcore as pc
 import pytest
@@ -51,3 +54,59 @@ def test_the_least_error_is_kept(
     told = pc.simulate(scene, q0, 0, (0, t_end), error=least).accuracy
     assert told is not None
     assert told.reached
+
+
+def test_no_least_error_is_told_that_no_search_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first search for a least error of this scene is refused, too."""
+    how: dict[str, Any] = {"q0": [-1.2, -0.6], "t_span": (0, 12), "error": 1e-9}
+    monkeypatch.setattr("pendcore.accuracy.target_error.MOST_SEARCHES", 1)
+    with pytest.raises(pc.AccuracyError, match="reached, but no search kept an error so") as caught:
+        pc.simulate(BOOK, **how)
+    assert caught.value.least == np.inf
+    assert caught.value.solution.accuracy.achieved < 1e-4
+
+
+def test_the_search_for_the_least_error_gives_no_warning_again() -> None:
+    with warnings.catch_warnings(record=True) as given:
+        warnings.simplefilter("always")
+        with pytest.raises(pc.AccuracyError):
+            pc.simulate(BOOK, [90, 30], 0, (0, 5), error=1e-15)  # degrees, by mistake
+    assert len([one for one in given if "rad" in str(one.message)]) == 1
+
+
+def test_what_breaks_off_the_search_for_the_least_error_leaves_the_refused_run(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    fractions: list[float] = []
+
+    class Stop(Exception):
+        pass
+
+    def searched(*_: Any) -> None:
+        raise Stop
+
+    monkeypatch.setattr("pendcore.accuracy.trials.Trials.for_least", searched)
+    with pytest.raises(Stop) as caught:
+        pc.simulate(BOOK, [0.7, 1.0], 0, (0, 5), error=1e-16, progress=fractions.append)
+    accuracy = caught.value.solution.accuracy  # type: ignore[attr-defined]
+    assert accuracy.outcome == "refused"
+    assert 1e-16 < accuracy.achieved < 1e-12
+    assert fractions == sorted(fractions)
+
+
+def test_the_search_for_the_least_error_ends_with_the_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(
+        "pendcore.accuracy.trials.Trials._time_left",
+        lambda runs: np.inf if runs.tries_the_least else 1e-6,
+    )
+    with pytest.raises(pc.AccuracyError, match="no search kept an error so small") as caught:
+        pc.simulate(BOOK, [0.7, 1.0], 0, (0, 5), error=1e-16)
+    assert caught.value.least == np.inf
+
+
+def test_progress_goes_on_in_the_search_for_the_least_error() -> None:
+    fractions: list[float] = []
+    with pytest.raises(pc.AccuracyError) as caught:
+        pc.simulate(BOOK, [0.7, 1.0], 0, (0, 5), error=1e-16, progress=fractions.append)
+    assert fractions == sorted(fractions)
+    assert sum(paid.purpose == "choose" for paid in caught.value.solution.accuracy.paid) > 1

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pendcore as pc
 import pytest
-from pendcore.accuracy.method_choice import series_work
+from pendcore.run.work import series_work
 from pendcore.scene.effect_class import OwnEffect
 
 sys.path.append(str(Path(__file__).parents[2] / "docs/generators"))

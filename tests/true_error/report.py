@@ -108,7 +108,7 @@ def offenders(found: dict[str, list[Verdict]]) -> str:
 
 
 def _kinds(verdict: Verdict) -> list[str]:
-    """Return what is no fault of a scene, but must not be so in many."""
+    """Return what is no fault of a scene, but must not happen in many."""
     found = {
         "unverified": verdict.outcome == "unverified",
         "told too little": verdict.is_told_too_little,

@@ -21,12 +21,12 @@ import numpy as np
 
 from pendcore import _core
 from pendcore.accuracy.estimate import apart, error_over
-from pendcore.accuracy.method_choice import series_work
 from pendcore.accuracy.position_error import angles_at
 from pendcore.accuracy.rounding import moved, neighbours
 from pendcore.run.call import Start, supports
 from pendcore.run.error_estimate import ErrorEstimate
 from pendcore.run.result import RunResult
+from pendcore.run.work import series_work
 
 
 class Way(NamedTuple):

@@ -22,10 +22,18 @@ from typing import Any
 
 import numpy as np
 
-from pendcore.accuracy.estimate import SPARE_OF_SEVERAL
-from pendcore.accuracy.method_choice import leading
-from pendcore.accuracy.rounding import neighbours
-from pendcore.accuracy.trials import TrialRun, Trials
+from pendcore.accuracy.known_error import (
+    FARTHER,
+    LEAST_CHANGE,
+    NOTHING_IN_COMMON,
+    SPARED,
+    better_by,
+    better_than,
+    known_error,
+    looser_runs,
+    tight_runs,
+)
+from pendcore.accuracy.trials import MOST_STEPS, TrialRun, Trials
 from pendcore.messages.arguments import finite_array
 from pendcore.messages.progress import callback, close
 from pendcore.run.accuracy import AccuracyError
@@ -42,28 +50,11 @@ AT_FEW_TIMES, IF_DAMPED = 4.0, 100.0
 where dampers make the motion forget its errors."""
 AIM = 0.65
 """Later trials aim at this multiple of the error asked for."""
-LEAST_CHANGE, FARTHER = 1.5, 100.0
-"""Factors by which the next trial is tighter: at least, and after a failed or chaotic one."""
-BETTER, BETTER_SERIES, SPARED = 25.0, 100.0, 1.6
-"""The least factors by which a second run is tighter than its trial. BETTER_SERIES is for `taylor`,
-to which a digit more costs little, and whose order changes with the tolerance. SPARED is a further
-factor that most second runs are tighter by, which lets them verify slightly tighter trials too."""
 BETTER_STILL = 8.0
 """One more second run is tighter than all others by this factor."""
 # When something counts as known: bounds of distances and ratios.
-NOTHING_IN_COMMON = 0.2
-"""Beyond this distance of two runs, the error is known only to be large."""
 LIKELY = 0.9
 """A trial no farther from a second run than this share of the error is likely good enough."""
-RATIO, SPARE = 5.0, 0.35
-"""Two second runs whose scales differ by less than RATIO may be off alike, and by how much another
-method than the trial's is better is not known: then SPARE is added."""
-ALIKE, SHARE_IF_ALIKE = 20.0, 1.0
-"""A trial whose rtol is less than ALIKE times the tightest may share errors with second runs as
-tight as doubles allow: an implicit step's remainder, or that of steps which stability limits. Then
-at least SHARE_IF_ALIKE times the distance is added."""
-CAUTION_IF_TIGHT = 0.5
-"""The exponent by which the error of looser runs is scaled down to that of these second runs."""
 HOPELESS = 1e-6
 """A larger error at the tightest tolerances is not rounding alone, but its growth."""
 LATE, LARGE_ANGLE = 0.1, 100.0
@@ -96,13 +87,14 @@ def run_to_error(start: Start, error: float, options: dict[str, Any]) -> RunResu
     except AccuracyError:
         raise
     except BaseException as stop:
-        best = runs.best()
+        best = runs.refused or runs.best()
         if isinstance(partly := getattr(stop, "solution", None), RunResult):
             best = best or (partly if partly.scene is start.scene else None)
             del stop.solution  # type: ignore[attr-defined]
-        if best is not None:
+        if best is not None and best is not runs.refused:
             during = "while it was verified" if best.success else "during the run itself"
             runs.labelled(best, "ended early", None, f"interrupted {during}")
+        if best is not None:
             stop.solution = best  # type: ignore[attr-defined]
         raise
     finally:
@@ -166,7 +158,7 @@ def _kept_by_second_runs(runs: Trials) -> RunResult:
                 continue
             return _not_finished(runs, latest)
         for trial in sorted(runs.trials, key=lambda trial: -trial.scale):
-            error = _known_error(runs, trial)
+            error = known_error(runs, trial)
             if error is not None and error.tells_the_end and error.largest <= runs.error:
                 return runs.labelled(trial.solution, "kept", error)
     raise _refusal(runs)
@@ -178,7 +170,10 @@ def _not_finished(runs: Trials, latest: TrialRun) -> RunResult:
     is_end = latest in runs.trials and (is_first or status != "max_steps")
     if status == "time_limit" or is_end:
         return _ended_early(runs, latest)
-    raise _refusal(runs, f"{latest.text}: {latest.solution.message}")
+    why = f"{latest.text}: {latest.solution.message}"
+    if latest.solution.run.arguments["max_steps"] < runs.options["max_steps"]:
+        why = f"{latest.text} takes more than {MOST_STEPS} times the steps of the first trial"
+    raise _refusal(runs, why)
 
 
 def _first_trial(runs: Trials, scale: float) -> TrialRun:
@@ -196,17 +191,17 @@ def _first_trial(runs: Trials, scale: float) -> TrialRun:
 def _next_run(runs: Trials) -> TrialRun | None:
     """Make the run that is expected to verify a trial; None where no run can."""
     last = min(runs.trials, key=lambda trial: trial.scale)
-    better = _better_than(runs, last)
-    if len(better) < max(_tight_runs(last), 1):
+    better = better_than(runs, last)
+    if len(better) < max(tight_runs(last), 1):
         return _second(runs, last)
-    known = _known_error(runs, last)
+    known = known_error(runs, last)
     distance = runs.compared(last, better[:1], 0.0)
     error = known or distance
     aimed = _aimed(runs, last, error, distance)
     if known is None and error.largest <= LIKELY * runs.error and not error.is_lost:
-        if not _tight_runs(last):
+        if not tight_runs(last):
             return _second(runs, last)
-        is_missing = not _looser_runs(runs, last, better[0])
+        is_missing = not looser_runs(runs, last, better[0])
         return runs.second(last, FARTHER * better[0].scale) if is_missing else None
     if last.rtol <= runs.tightest:
         return None
@@ -216,16 +211,11 @@ def _next_run(runs: Trials) -> TrialRun | None:
 
 def _second(runs: Trials, trial: TrialRun) -> TrialRun:
     """Make a second run that is better than a trial, and than all second runs that verify it."""
-    if _tight_runs(trial):
+    if tight_runs(trial):
         return runs.second(trial, 0.0)
-    if _better_than(runs, trial):
+    if better_than(runs, trial):
         return runs.second(trial, min(second.scale for second in runs.seconds) / BETTER_STILL)
-    return runs.second(trial, trial.scale / (SPARED * _better_by(trial)))
-
-
-def _better_by(trial: TrialRun) -> float:
-    """Return the least factor by which a second run of its method is tighter than a trial."""
-    return BETTER_SERIES if leading(trial.method) == "taylor" else BETTER
+    return runs.second(trial, trial.scale / (SPARED * better_by(trial)))
 
 
 def _aimed(
@@ -252,62 +242,6 @@ def _scale_before_it_grew(runs: Trials, trial: TrialRun, distance: ErrorEstimate
     return min(farther, max(AIM * runs.error * grown, farther / FARTHER))
 
 
-def _known_error(runs: Trials, trial: TrialRun) -> ErrorEstimate | None:
-    """Return the error of a trial, if its defect or better second runs show it; else None."""
-    if (error := runs.error_from_defect(trial)) is not None:
-        return error
-    better = _better_than(runs, trial)[: _tight_runs(trial) or 2]
-    if len(better) < (_tight_runs(trial) or 2):
-        return None
-    if _tight_runs(trial):
-        share = _share_if_tight(runs, trial, better)
-        return None if share is None else runs.compared(trial, better, share)
-    is_other = better[0].method != trial.method and not runs.is_stiff
-    if is_other or better[0].scale * RATIO > better[1].scale:
-        return runs.compared(trial, better, SPARE)
-    return runs.compared(trial, better)
-
-
-def _share_if_tight(runs: Trials, trial: TrialRun, seconds: list[TrialRun]) -> float | None:
-    """Return the share that is added to the distance from second runs as tight as doubles allow.
-
-    They may all have the same truncation error, which is estimated from looser runs of the method.
-    None if there is no such run in a stiff scene, where it is needed.
-    """
-    own = max(runs.distance(trial, second) for second in seconds)
-    truncation = inf
-    for other in _looser_runs(runs, trial, seconds[0]) if own else []:
-        distance = runs.distance(other, seconds[0])
-        if distance < NOTHING_IN_COMMON:
-            ratio = seconds[0].scale / other.scale
-            truncation = min(truncation, distance * ratio**CAUTION_IF_TIGHT)
-    least = SHARE_IF_ALIKE if trial.rtol < ALIKE * runs.tightest else SPARE_OF_SEVERAL
-    if truncation == inf:
-        return None if runs.is_stiff and own > 0 else least + SPARE
-    return max(least, truncation / own) + SPARE
-
-
-def _looser_runs(runs: Trials, trial: TrialRun, second: TrialRun) -> list[TrialRun]:
-    """Return the runs that tell how the error of a second run's method depends on its tolerance."""
-    others = (run for run in (*runs.trials, *runs.seconds) if run is not trial)
-    alike = (run for run in others if run.method == second.method and run.solution.success)
-    return [run for run in alike if run.scale >= LEAST_CHANGE * second.scale]
-
-
-def _better_than(runs: Trials, trial: TrialRun) -> list[TrialRun]:
-    """Return the second runs that may verify a trial, the best first."""
-    if _tight_runs(trial):
-        better = [run for run in runs.seconds if run.rtol <= runs.tightest]
-    else:
-        better = [run for run in runs.seconds if run.scale * _better_by(run) <= trial.scale * 1.01]
-    return sorted(better, key=lambda run: run.scale)
-
-
-def _tight_runs(trial: TrialRun) -> int:
-    """Return how many second runs as tight as doubles allow a trial needs; 0: looser ones do."""
-    return count + 1 if (count := neighbours(trial.scale)) else 0
-
-
 def _ended_early(runs: Trials, latest: TrialRun) -> RunResult:
     """Return a trial that did not get to its end, with what is known of its error.
 
@@ -320,7 +254,7 @@ def _ended_early(runs: Trials, latest: TrialRun) -> RunResult:
         return runs.labelled(whole or latest.solution, "ended early", None, why)
     error = runs.error_from_defect(latest)
     if error is None:
-        seconds = [_second(runs, latest) for _ in range(_tight_runs(latest) or 2)]
+        seconds = [_second(runs, latest) for _ in range(tight_runs(latest) or 2)]
         error = runs.compared(latest, seconds)
     solution = runs.labelled(latest.solution, "ended early", error)
     if not error.is_complete and runs.is_out_of_time:
@@ -331,26 +265,30 @@ def _ended_early(runs: Trials, latest: TrialRun) -> RunResult:
 def _refusal(runs: Trials, why: str = "") -> AccuracyError:
     """Return the exception that says which error was reached, and why not a smaller one."""
     asked = f"error = {runs.error:g}"
-    complete = [trial for trial in runs.trials if trial.solution.success]
-    last = min(complete or runs.trials, key=lambda trial: trial.scale)
-    error = _known_error(runs, last)
+    complete = [trial for trial in runs.trials if trial.solution.success] or runs.trials
+    complete.sort(key=lambda trial: trial.scale)
+    last = next((one for one in complete if known_error(runs, one) is not None), complete[0])
+    error = known_error(runs, last)
     if len(runs.paid) >= MOST_RUNS:
-        why = why or f"the search ended after {MOST_RUNS} runs: another error may be kept"
+        why = why or f"the search ended after {MOST_RUNS} runs: a larger error may be kept"
     why = why or _in_the_way(runs, last, error)
-    if error is None:
+    if error is None or not error.is_complete:
         runs.labelled(last.solution, "refused", None, why)
         return AccuracyError(f"{asked}: {last.text} could not be verified: {why}", last.solution)
+    runs.refused = runs.labelled(last.solution, "refused", error)
     least = inf if error.is_lost else _least_kept(runs, error.largest)
-    runs.labelled(last.solution, "refused", error)
+    runs.labelled(last.solution, "refused", error)  # with all that was paid
     reached, remedies = "no error can be kept to the end", []
-    if not error.is_lost:
+    if least < inf:
         reached = f"the least that could be verified is {least:.1e}"
         remedies = [f"ask for error = {least:.1e} or more"]
+    elif not error.is_lost:
+        reached = f"{error.largest:.1e} was reached, but no search kept an error so small"
     until, begin = error.valid_until(runs.error, of="position"), runs.start.t_start
     if until != begin:
         not_past = ROUND_FLOOR if until > begin else ROUND_CEILING
-        digits = 8 + round(max(0.0, np.log10(abs(until / (until - begin)))))
-        why += f"; it holds until t = {_rounded(until, digits, not_past):f} s"
+        digits = 8 + round(np.log10(max(1.0, abs(until / (until - begin)))))
+        why += f"; the error is kept until t = {_rounded(until, digits, not_past):f} s"
         remedies.append("end t_span well before that")
     message = ": ".join((asked, "not reached", reached, why, ", or ".join(remedies)))
     return AccuracyError(message.removesuffix(": "), last.solution, least)
@@ -359,21 +297,24 @@ def _refusal(runs: Trials, why: str = "") -> AccuracyError:
 def _least_kept(runs: Trials, least: float) -> float:
     """Return an error of two digits, the known one or a larger, that a search for it keeps.
 
-    For a larger error the trials are looser, and what verifies them may tell larger errors.
+    For a larger error the trials are looser, and their verification may give a larger error.
+    Infinite if no such error was found.
     """
-    for _ in range(MOST_SEARCHES if runs.tries_the_least else 0):
-        least = float(_rounded(least, 2, ROUND_CEILING))
-        try:
-            kept_run(again := runs.for_least(least))
-        except AccuracyError as larger:
-            if larger.least == inf:
-                break
-            least = larger.least
-        else:
+    if not runs.tries_the_least:
+        return least
+    for _ in range(MOST_SEARCHES):
+        least = float(_rounded(least, 2, ROUND_CEILING)) if least < 1 else inf
+        if least >= 1:
             break
+        again = runs.for_least(least)
+        try:
+            told = kept_run(again).accuracy
+            return least if told is not None and told.reached else inf
+        except AccuracyError as larger:
+            least = larger.least
         finally:
-            runs.paid += again.paid
-    return least
+            runs.add(again)
+    return inf
 
 
 def _rounded(x: float, digits: int, rounding: str) -> Decimal:
@@ -388,7 +329,8 @@ def _in_the_way(runs: Trials, trial: TrialRun, error: ErrorEstimate | None) -> s
     solution = trial.solution
     begin, end, n = error.begin, solution.run.t_reached, len(solution.scene.links)
     last_bit = np.spacing(max(abs(begin), abs(end)))
-    turned = last_bit / 2 * np.abs(solution.run.y_reached[n : 2 * n]).max()
+    rates = np.vstack([solution.qd, solution.run.y_reached[n : 2 * n]])
+    turned = last_bit / 2 * np.abs(rates).max()
     if abs(begin) > abs(end - begin) and turned > LATE * error.largest:
         return f"times from {begin:g} s on are rounded to {last_bit:.0e} s; begin nearer to 0"
     angle = np.abs(solution.run.arguments["q0"]).max()

@@ -24,11 +24,9 @@ from pendcore.accuracy.method_choice import (
     TIGHTEST_IMPLICIT,
     TIGHTEST_SECOND,
     cheapest,
-    correction_work,
     leading,
     rounded,
     same_or_other,
-    series_work,
 )
 from pendcore.accuracy.rounding import moved
 from pendcore.messages.arguments import time_limit_of
@@ -38,6 +36,7 @@ from pendcore.run.call import Choice, Start, atol_beside, resumed, run, silent
 from pendcore.run.error_estimate import ErrorEstimate
 from pendcore.run.methods import error_over_rtol, implicit_method, pair_of
 from pendcore.run.result import RunResult
+from pendcore.run.work import correction_work, series_work
 from pendcore.scene.effect_description import account_of
 
 FOR_BOTH = 5.0
@@ -92,6 +91,7 @@ class Trials:
         self.compensated: bool = options.pop("compensated", False)
         self.is_stiff = False
         self.tries_the_least = True
+        self.refused: RunResult | None = None
         self.ways = ways(start, error)
         self.trials: list[TrialRun] = []
         self.seconds: list[TrialRun] = []
@@ -116,6 +116,11 @@ class Trials:
     def has_effect_of(self, account: str) -> bool:
         """Whether the scene has an effect whose work the ledger books to an account."""
         return any(account_of(effect.kind) == account for effect in self.start.scene.effects)
+
+    @property
+    def warns(self) -> bool:
+        """Whether the next run is the first of all, which gives the warnings about the start."""
+        return self.tries_the_least and not self.paid
 
     def method_for(self, scale: float) -> str:
         """Return the method that typically takes the least work to reach an error and verify it."""
@@ -143,9 +148,16 @@ class Trials:
 
     def for_least(self, error: float) -> Trials:
         """Return a search for another error, in the time that is left, which tries no other one."""
-        other = Trials(self.start, error, {**self.options, "compensated": self.compensated}, None)
+        options = {**self.options, "compensated": self.compensated}
+        other = Trials(self.start, error, options, self.report)
         other.began, other.time_limit, other.tries_the_least = self.began, self.time_limit, False
+        other._done = self._done
         return other
+
+    def add(self, other: Trials) -> None:
+        """Count the runs of another search as paid for by this one."""
+        self.paid += other.paid
+        self._done = other._done
 
     def drop(self, trial: TrialRun) -> None:
         """Forget a trial that was too loose to come to its end."""
@@ -219,6 +231,7 @@ class Trials:
     ) -> RunResult:
         """Attach to a trial what is known of its error, or ``why`` nothing is known."""
         begin = self.start.t_start
+        is_whole = error is not None and error.is_complete and not error.is_lost
         solution.known_error = error
         solution.accuracy = Accuracy(
             asked=self.error,
@@ -226,7 +239,7 @@ class Trials:
             outcome=outcome,
             until=begin if error is None else error.valid_until(self.error, of="position"),
             times=0 if error is None else len(error.t),
-            everywhere=error is not None and error.is_dense and not error.is_lost,
+            everywhere=error is not None and error.is_dense and is_whole,
             verified_by=why if error is None else error.verified_by,
             paid=self._bill(solution, error),
             seconds=monotonic() - self.began,
@@ -281,7 +294,7 @@ class Trials:
         solution = run(
             start, Choice(method, rtol, atol_beside(rtol), compensated), **options,
             time_limit=self._time_left(), progress=self._progress(),
-            warn=silent if self.paid else warn, correction=correction,
+            warn=warn if self.warns else silent, correction=correction,
         )  # fmt: skip
         work = float(solution.stats.nfev)
         if leading(method) == "taylor" and not solution.stats.stiff:

@@ -65,7 +65,7 @@ def unverified(solution: Result) -> str:
     accuracy = solution.accuracy
     if accuracy is None or accuracy.outcome != "ended early":
         return ""
-    return f"the run is finished, but not its verification: {accuracy.text()}"
+    return f"the run is finished, but not verified: {accuracy.verified_by}"
 
 
 def _complaint(solution: RunResult) -> str:
