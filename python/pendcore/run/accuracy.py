@@ -53,7 +53,7 @@ class Accuracy:
     asked : float
         The error that was asked for.
     achieved : float
-        The error of the run, estimated from above: the true one is larger in about 1 of 500 runs,
+        The error of the run, estimated from above: the true one is larger in about 1 of 300 runs,
         and mostly where both are far below the error asked for. Infinite where nothing verified the
         run, and where it is lost before its end.
     outcome : {"kept", "refused", "ended early"}
