@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import warnings
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pendcore as pc
 import pytest
 from pendcore import effects as E
+from pendcore.cli import main
 
 BOOK = pc.Scene.textbook()
 CHAOTIC = ([-1.5, -1.4], 0, (0, 100))
@@ -108,3 +110,19 @@ def test_progress_goes_on_in_the_search_for_the_least_error() -> None:
     assert len(fractions) > 1
     assert fractions == sorted(fractions)
     assert sum(paid.purpose == "choose" for paid in caught.value.solution.accuracy.paid) > 1
+
+
+def test_the_command_says_that_a_finished_run_was_not_verified(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(
+        "pendcore.accuracy.trials.Trials._time_left", lambda runs: 1e-6 if runs.paid else np.inf
+    )
+    stick = pc.Case(
+        scene=BOOK.replace(effects=[E.DryJointFriction(joint=1, coulomb=0.01)]), q0=[0.7, 1.0],
+        t_span=(0, 1), options={"error": 1e-6, "time_limit": 60.0},
+    )  # fmt: skip
+    Path("stick.toml").write_text(stick.to_toml())
+    assert main(["run", "stick.toml", "--no-horizon"]) == 1
+    assert "finished, but not verified: the time limit was reached" in capsys.readouterr().err
