@@ -84,8 +84,8 @@ def broken(verdicts: list[Verdict]) -> list[str]:
             found.append(f"{record[name]} of {len(verdicts)} {name.replace('_', ' ')}")
     if len(verdicts) >= MANY and not record["kept"]:
         found.append("no error was kept: nothing was tested")
-    at_least_one = max(1.0, TOLD_TOO_LITTLE * len(verdicts))
-    if record["told_too_little"] > at_least_one:
+    most_told = max(1.0, TOLD_TOO_LITTLE * len(verdicts))
+    if record["told_too_little"] > most_told:
         found.append(f"{record['told_too_little']} of {len(verdicts)} told too little")
     low, high = MEDIAN
     if len(verdicts) >= MANY and record["ratios"] and not low <= record["ratios"]["50"] <= high:
@@ -99,7 +99,7 @@ def offenders(found: dict[str, list[Verdict]]) -> str:
     for family, verdicts in found.items():
         kinds: dict[str, list[Verdict]] = {}
         for verdict in sorted(verdicts, key=lambda verdict: verdict.seed):
-            for kind in verdict.faults or _kinds(verdict):
+            for kind in verdict.faults or _rarities(verdict):
                 kinds.setdefault(kind, []).append(verdict)
         for fault, those in kinds.items():
             lines.append(f"==== {family}, {fault}: {len(those)}")
@@ -107,7 +107,7 @@ def offenders(found: dict[str, list[Verdict]]) -> str:
     return "\n".join(lines)
 
 
-def _kinds(verdict: Verdict) -> list[str]:
+def _rarities(verdict: Verdict) -> list[str]:
     """Return what is no fault of a scene, but must not happen in many."""
     found = {
         "unverified": verdict.outcome == "unverified",

@@ -57,7 +57,8 @@ def rounded(rtol: float, tightest: float = TIGHTEST) -> float:
 
 def leading(method: str) -> str:
     """Return the first method of a pair."""
-    return method.partition("-")[0]
+    first: str = known_methods()[method]["first"]
+    return first
 
 
 def same_or_other(method: str, stats: Statistics) -> str:

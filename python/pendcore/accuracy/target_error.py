@@ -303,9 +303,9 @@ def _least_kept(runs: Trials, least: float) -> float:
     if not runs.tries_the_least:
         return least
     for _ in range(MOST_SEARCHES):
-        least = float(_rounded(least, 2, ROUND_CEILING)) if least < 1 else inf
-        if least >= 1:
-            break
+        least = float(_rounded(min(least, 1.0), 2, ROUND_CEILING))
+        if least == 1:
+            break  # no error can be asked for that is not below 1
         again = runs.for_least(least)
         try:
             told = kept_run(again).accuracy

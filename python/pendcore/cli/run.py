@@ -17,7 +17,7 @@ from pendcore.cli.parameters import with_parameters
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder
 from pendcore.figures.plot import save_figure
 from pendcore.run.accuracy import AccuracyError
-from pendcore.run.run_error import CAN_GO_ON, unverified
+from pendcore.run.run_error import CAN_GO_ON, why_unverified
 from pendcore.views.export import write_csv
 from pendcore.views.summary import facts, text
 
@@ -108,7 +108,7 @@ def execute(args: argparse.Namespace) -> int:
         print(files.outcome(), file=sys.stderr)
         if not solution.success:
             complaint = f"the run is not complete: {solution.message}"
-        complaint = complaint or unverified(solution)
+        complaint = complaint or why_unverified(solution)
         if complaint:
             print(complaint, file=sys.stderr)
         if solution.status in CAN_GO_ON and "solution.npz" not in files.left_out:

@@ -48,7 +48,7 @@ def require_check(check: object) -> None:
 
 def checked(solution: Result, check: bool | None) -> Result:
     """Return a solution; unless it is finished and verified, warn or raise as ``check`` says."""
-    if check is False or (solution.success and not unverified(solution)):
+    if check is False or (solution.success and not why_unverified(solution)):
         return solution
     if check:
         raise RunError(_complaint(solution), solution)
@@ -60,7 +60,7 @@ def checked(solution: Result, check: bool | None) -> Result:
     return solution
 
 
-def unverified(solution: Result) -> str:
+def why_unverified(solution: Result) -> str:
     """Say why a finished run for an error was not verified; empty if it was, or is no such run."""
     accuracy = solution.accuracy
     if accuracy is None or accuracy.outcome != "ended early":
@@ -71,7 +71,7 @@ def unverified(solution: Result) -> str:
 def _complaint(solution: RunResult) -> str:
     """Say why a run ended and what continues it; some messages say the latter themselves."""
     if solution.success:
-        return unverified(solution)
+        return why_unverified(solution)
     t_end, message = solution.run.arguments["t_end"], solution.message
     complaint = (
         f"the run ended before t_end = {t_end:.6g} s, with status {solution.status}: "
