@@ -69,6 +69,10 @@ template <class Real>
 PENDCORE_INLINE Real broadcast(double x) {
   if constexpr (Lanes<Real>::width == 1) {
     return x;
+  } else if constexpr (Lanes<Real>::width == 8) {
+    Real all;  // written otherwise, it takes GCC 12 eight instructions where fma() uses it
+    for (int i = 0; i < Lanes<Real>::width; ++i) all[i] = x;
+    return all;
   } else {
     return x - Real{};  // x - 0 is x, minus zero included
   }
@@ -112,6 +116,12 @@ PENDCORE_INLINE Pack<4> joined(const Pack<2>& low, const Pack<2>& high) {
 }
 PENDCORE_INLINE Pack<2> low_half(const Pack<4>& x) { return __builtin_shufflevector(x, x, 0, 1); }
 PENDCORE_INLINE Pack<2> high_half(const Pack<4>& x) { return __builtin_shufflevector(x, x, 2, 3); }
+PENDCORE_INLINE Pack<4> low_half(const Pack<8>& x) {
+  return __builtin_shufflevector(x, x, 0, 1, 2, 3);
+}
+PENDCORE_INLINE Pack<4> high_half(const Pack<8>& x) {
+  return __builtin_shufflevector(x, x, 4, 5, 6, 7);
+}
 
 #if defined(__wasm__)
 /// Calls of this function are what the loader replaces by an instruction, in an engine that has one
@@ -186,12 +196,12 @@ PENDCORE_INLINE double sum_of_lanes(const Real& x) {
   for (int i = 1; i < Lanes<Real>::width; ++i) sum += lane(x, i);
   return sum;
 }
-/// The sum of a pack. A pack of four adds its halves first, which shortens the chain of dependent
+/// The sum of a pack. Wide packs add their halves first, which shortens the chain of dependent
 /// operations.
 template <class Real>
 PENDCORE_INLINE double sum_by_halves(const Real& x) {
-  if constexpr (Lanes<Real>::width == 4) {
-    return sum_of_lanes(Pack<2>(low_half(x) + high_half(x)));
+  if constexpr (Lanes<Real>::width > 2) {
+    return sum_by_halves(low_half(x) + high_half(x));
   } else {
     return sum_of_lanes(x);
   }

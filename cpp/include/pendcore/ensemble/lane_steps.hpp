@@ -67,13 +67,26 @@ struct LaneSteps {
 
 namespace lanes_detail {
 
+/// The bits of all lanes in one number.
+template <class Integers>
+PENDCORE_INLINE LaneBits joined_bits(const Integers& x) {
+  constexpr int width = sizeof(Integers) / sizeof(long long);
+  if constexpr (width == 8) {
+    return joined_bits(__builtin_shufflevector(x, x, 0, 1, 2, 3) |
+                       __builtin_shufflevector(x, x, 4, 5, 6, 7));
+  } else if constexpr (width == 4) {
+    return joined_bits(__builtin_shufflevector(x, x, 0, 1) | __builtin_shufflevector(x, x, 2, 3));
+  } else {
+    return static_cast<LaneBits>(x[0] | x[1]);
+  }
+}
 /// Whether each lane of a comparison holds, as bits.
 template <class Integers>
 PENDCORE_INLINE LaneBits bits_of(const Integers& holds) {
   constexpr int width = sizeof(Integers) / sizeof(long long);
-  LaneBits bits = 0;
-  for (int i = 0; i < width; ++i) bits |= static_cast<LaneBits>(holds[i] & 1) << i;
-  return bits;
+  Integers bit_of_lane;
+  for (int i = 0; i < width; ++i) bit_of_lane[i] = 1LL << i;
+  return joined_bits(holds & bit_of_lane);
 }
 
 /// a + b as an unevaluated sum of two numbers in each lane (arithmetic/two_double.hpp).
@@ -236,7 +249,7 @@ PENDCORE_INLINE typename NextStep<width>::Integers finish_step(
   if (lanes.has_times) {
     const Real missing = lanes.next_time - lanes.t;
     const Real ahead = h < 0.0 ? Real(-missing) : missing;
-    attention.sampled = detail::bits_of((ahead <= 0.0) & is_accepted) & usual;
+    attention.sampled = detail::bits_of(is_at_most(ahead, Real{}) & is_accepted) & usual;
   }
   attention.recorded =
       lanes.every_step_is_recorded ? detail::bits_of(is_accepted) & usual : attention.sampled;

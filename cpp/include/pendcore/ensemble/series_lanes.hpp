@@ -6,6 +6,7 @@
 /// round, in which it stays where it is, computes it.
 #pragma once
 
+#include <array>
 #include <utility>
 
 #include "pendcore/ensemble/lane_steps.hpp"
@@ -58,6 +59,7 @@ PENDCORE_INLINE Real log2_of_step(const All* all, const Real* y, const Real* row
       return Real(scale * end[i - static_cast<std::ptrdiff_t>(k) * size]);
     };
     const auto add = [&](Real& sum, int first, int count) __attribute__((always_inline)) {
+#pragma GCC unroll 4
       for (int k = first; k < first + count; ++k) sum = fma(share(k), share(k), sum);
     };
     constexpr int links = All::Equations::links;
@@ -75,6 +77,7 @@ PENDCORE_INLINE Real log2_of_step(const All* all, const Real* y, const Real* row
       return Real((x[0] + x[2]) + (x[1] + x[3]));
   };
   Real all_high[block];
+#pragma GCC unroll 4
   for (int i = 0; i < block; ++i) all_high[i] = last[i] + before_last[i] + others[i];
   const Real high = sum(all_high);
   const Real low = sum(before);
@@ -117,19 +120,27 @@ PENDCORE_INLINE typename All::Integers expand(All* all, const Real& t, const Rea
   return is_done;
 }
 
-/// sum_{k >= 1} x^k y_k for one number of the state (integrate/taylor/taylor_step.hpp).
-template <int size, class Real>
-PENDCORE_INLINE Real increment(const Real* rows, int order, const Real& x) {
+/// sum_{k >= 1} x^k y_k for a few numbers of the state (integrate/taylor/taylor_step.hpp), which
+/// stand side by side in rows of `size`.
+template <int count, int size, class Real>
+PENDCORE_INLINE std::array<Real, count> increments(const Real* rows, int order, const Real& x) {
   const Real square = x * x;
   const Real* row = rows + static_cast<std::ptrdiff_t>(order) * size;
-  Real even = row[0];
-  Real odd = row[-size];
+  std::array<Real, count> even, odd;
+  for (int i = 0; i < count; ++i) {
+    even[i] = row[i];
+    odd[i] = row[i - size];
+  }
   for (int k = order - 2; k >= 2; k -= 2) {
     row -= 2 * size;
-    even = fma(square, even, row[0]);
-    odd = fma(square, odd, row[-size]);
+#pragma GCC unroll 4
+    for (int i = 0; i < count; ++i) {
+      even[i] = fma(square, even[i], row[i]);
+      odd[i] = fma(square, odd[i], row[i - size]);
+    }
   }
-  return x * fma(x, even, odd);
+  for (int i = 0; i < count; ++i) even[i] = x * fma(x, even[i], odd[i]);
+  return even;
 }
 
 }  // namespace lanes_detail
@@ -150,9 +161,13 @@ PENDCORE_INLINE Attention take_series_steps(SeriesLanes<Form, width>* all,
     Integers is_odd = next.is_odd & ~begins;
     const Real h = next.h;
     const Real x = h * (1.0 / all->sigma);  // exact: a power of two
-    for (int i = 0; i < size; ++i) {
-      const Real after = all->y[i] + detail::increment<size>(all->rows + i, all->order, x);
-      all->y_new[i] = begins ? all->y[i] : after;
+    constexpr int together = 2;  // whose sums fit into the registers
+    for (int i = 0; i < size; i += together) {
+      const auto moves = detail::increments<together, size>(all->rows + i, all->order, x);
+      for (int j = 0; j < together; ++j) {
+        const Real after = all->y[i + j] + moves[j];
+        all->y_new[i + j] = begins ? all->y[i + j] : after;
+      }
     }
     const Real size_of_step = absolute(h);
     const Real share = size_of_step / all->largest;

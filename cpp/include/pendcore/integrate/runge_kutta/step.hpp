@@ -122,8 +122,13 @@ class SquaredErrors {
       const Scale others = sum_of_numbers(others_) * share;
       const Scale both = sum + 0.01 * others;
       constexpr double infinity = std::numeric_limits<double>::infinity();
-      const Scale if_positive = both < infinity ? Scale(sum * (sum / both)) : both;
-      return both > 0.0 ? if_positive : both;
+      if constexpr (Lanes<Scale>::width == 1) {
+        const Scale if_positive = both < infinity ? Scale(sum * (sum / both)) : both;
+        return both > 0.0 ? if_positive : both;
+      } else {
+        const auto is_usual = is_less(Scale{}, both) & is_less(both, broadcast<Scale>(infinity));
+        return is_usual ? Scale(sum * (sum / both)) : both;
+      }
     }
   }
 
