@@ -55,7 +55,7 @@ SCENES = {
     ),
     "four links": pc.Scene(links=chain(4), effects=[E.TorsionalSpring(joint=4, stiffness=3.0)]),
     "five links": pc.Scene(links=chain(5)),
-    "six links": pc.Scene(links=chain(6), effects=[E.RotorInertia(joint=3, armature=0.1)]),
+    "eight links": pc.Scene(links=chain(8), effects=[E.RotorInertia(joint=3, armature=0.1)]),
     "drag": pc.Scene(
         links=chain(2), effects=[E.RodDrag(link=2, drag_coefficient=1.2, diameter=0.1)]
     ),

@@ -23,27 +23,27 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
  public:
   /// `one` has the kinds of the laws of all members.
   SeriesRunner(const One& one, const Scene& scene, double t0, double t_end, const Options& options)
-      : LaneLoop<width>(scene, t0, t_end, options, taylor.info.name) {
-    all_.equations.prepare(one);
+      : LaneLoop<width>(scene, t0, t_end, options, taylor.info.name),
+        eigenvalue_(static_cast<int>(scene.links.size()), 0) {
     double tightest = 1.0;
-    for (int i = 0; i < All::size; ++i) {
+    for (std::size_t i = 0; i < this->rtol().size(); ++i) {
       tightest = std::min(tightest, std::max(this->rtol()[i], this->atol()[i]));
+    }
+    all_.equations.prepare(one);
+    all_.set_order(taylor_order(tightest));
+    for (int i = 0; i < all_.size(); ++i) {
       all_.rtol[i] = broadcast<Pack<width>>(this->rtol()[i]);
       all_.atol[i] = broadcast<Pack<width>>(this->atol()[i]);
     }
-    all_.order = taylor_order(tightest);
-    if constexpr (requires { all_.equations.set_order(all_.order); }) {
-      all_.equations.set_order(all_.order);
-    }
-    all_.log2_count = approximate_log2(static_cast<double>(All::size));
+    all_.log2_count = approximate_log2(static_cast<double>(all_.size()));
     // Lanes without a member have numbers that do no harm.
     all_.sigma = all_.sigma_new = all_.largest = all_.largest_new = broadcast<Pack<width>>(1.0);
   }
 
  private:
   void get_derivative(int lane, double* dydt) override {
-    for (int i = 0; i < All::size; ++i) {
-      dydt[i] = all_.rows[All::size + i][lane] / all_.sigma[lane];
+    for (int i = 0; i < all_.size(); ++i) {
+      dydt[i] = all_.rows[all_.size() + i][lane] / all_.sigma[lane];
     }
   }
   std::vector<double> saved_state(int lane) override { return {all_.sigma[lane]}; }
@@ -56,20 +56,20 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
   bool put_equations(int lane) override { return one_ && all_.equations.put(lane, *one_); }
   void put_start(int lane, const std::vector<double>& y) override {
     put_state(lane, y.data());
-    const double rate = taylor_detail::squared_rate(this->rate().data(), All::Equations::links);
+    const double rate = taylor_detail::squared_rate(this->rate().data(), all_.links());
     all_.sigma[lane] = taylor_detail::first_sigma(rate);
     all_.begins[lane] = -1;
     all_.h[lane] = this->direction();
     look_count_[lane] = 0;
   }
   void put_state(int lane, const double* y) override {
-    for (int i = 0; i < All::size; ++i) all_.y[i][lane] = y[i];
+    for (int i = 0; i < all_.size(); ++i) all_.y[i][lane] = y[i];
   }
   void get_state(int lane, double* y) const override {
-    for (int i = 0; i < All::size; ++i) y[i] = all_.y[i][lane];
+    for (int i = 0; i < all_.size(); ++i) y[i] = all_.y[i][lane];
   }
   void get_state_before(int lane, double* y) const override {
-    for (int i = 0; i < All::size; ++i) y[i] = all_.y_new[i][lane];  // they have been swapped
+    for (int i = 0; i < all_.size(); ++i) y[i] = all_.y_new[i][lane];  // they have been swapped
   }
   /// A single run does otherwise if powers may be too large.
   bool write_interpolant(int lane, double* coefficients) const override {
@@ -77,7 +77,7 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
     const double x = all_.h_before[lane] / all_.sigma_new[lane];  // sigma before the step
     double power = x;
     for (int k = 1; k <= all_.order; ++k, power *= x) {
-      for (int at = k * All::size; at < (k + 1) * All::size; ++at) {
+      for (int at = k * all_.size(); at < (k + 1) * all_.size(); ++at) {
         coefficients[at] = power * all_.rows_new[at][lane];
       }
     }
@@ -91,9 +91,9 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
   bool looks_stiff(int lane) override {
     ++look_count_[lane];
     double* const direction = eigenvalue_.direction();
-    std::array<double, All::size> y{};
-    for (int i = 0; i < All::size; ++i) {
-      direction[i] = all_.rows_new[all_.order * All::size + i][lane];
+    std::vector<double> y(all_.size());
+    for (int i = 0; i < all_.size(); ++i) {
+      direction[i] = all_.rows_new[all_.order * all_.size() + i][lane];
       y[i] = all_.y_new[i][lane];
     }
     const auto rates = [this, lane](double t, const double* state, double* dydt) {
@@ -105,7 +105,7 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
 
   All all_{};
   std::array<long long, width> look_count_{};
-  DominantEigenvalue eigenvalue_{All::Equations::links, 0};
+  DominantEigenvalue eigenvalue_;
   std::optional<One> one_;
   Attention (*take_steps_)(All*, const LaneInterval*,
                            int) = only<&take_series_steps<Form, width>, set>();
@@ -132,8 +132,7 @@ template <InstructionSet set>
 std::unique_ptr<LaneRunner> make_series_lanes(const Scene& scene, double t0, double t_end,
                                               const Options& options) {
   return first_of<set, BareDoublePendulumSeries, LoadedDoublePendulumSeries, ThreeLinksSeries,
-                  FourLinksSeries, ChainOfTwo, ChainOfThree, ChainOfFour, ChainOfFive, ChainOfSix>(
-      scene, t0, t_end, options);
+                  FourLinksSeries, ChainOfTwo, AnyChain>(scene, t0, t_end, options);
 }
 
 template std::unique_ptr<LaneRunner> make_series_lanes<InstructionSet::x86_64_v3>(const Scene&,

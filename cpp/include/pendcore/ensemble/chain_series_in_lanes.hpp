@@ -162,39 +162,43 @@ void EffectsOfChainInLanes<Real>::put(int lane, const One& one) {
   }
 }
 
-/// A chain of n links with smooth effects, for what the forms of series_equations.hpp do not have.
+/// A chain with smooth effects, for what the forms of series_equations.hpp do not have. `n` is the
+/// number of its links, or 0 for any number from three on, which is known at run time.
 template <class Real, int n>
 class ChainSeriesInLanes {
  public:
   static constexpr int links = n;
   static constexpr int block = n == 2 ? 2 : 4;
-  static constexpr int row = (n + block - 1) / block * block;
+  static constexpr int row = n;
   using Effects = EffectsOfChainInLanes<Real>;
   using Series = ChainSeries<Real, Effects>;
   struct One {
+    int count;  ///< links
     ConstantsOfChain<double> constants;
     typename Effects::One effects;
   };
 
   static std::optional<One> one_of(const Scene& scene, const EquationsOfMotion& equations) {
-    if (scene.links.size() != n || !equations.effects || without_series(scene) ||
-        !are_steady(equations)) {
+    const int count = static_cast<int>(scene.links.size());
+    const bool is_right = n == 0 ? count >= 3 : count == n;
+    if (!is_right || !equations.effects || without_series(scene) || !are_steady(equations)) {
       return std::nullopt;
     }
     using Row = std::conditional_t<n == 2, Pair, Pack<4>>;
     const auto& effects = dynamic_cast<const ActingEffects<Row>&>(*equations.effects);
-    return One{ConstantsOfChain<double>(scene), {effects, n}};
+    return One{count, ConstantsOfChain<double>(scene), {effects, count}};
   }
+  int count() const { return series_->links(); }
   /// All lanes have the constants of the given trajectory until others are put.
   void prepare(const One& one) {
-    ConstantsOfChain<Real> constants(n);
+    ConstantsOfChain<Real> constants(one.count);
     for (int lane = 0; lane < Lanes<Real>::width; ++lane) constants.put(lane, one.constants);
-    series_ = std::make_unique<Series>(n, std::move(constants), Effects(one.effects));
+    series_ = std::make_unique<Series>(one.count, std::move(constants), Effects(one.effects));
     for (int lane = 0; lane < Lanes<Real>::width; ++lane) series_->effects().put(lane, one.effects);
   }
   void set_order(int order) { series_->set_order(order); }
   bool put(int lane, const One& one) {
-    const bool is_alike = one.effects.is_like(series_->effects().kinds()) &&
+    const bool is_alike = one.count == count() && one.effects.is_like(series_->effects().kinds()) &&
                           one.constants.has_rotors() == series_->has_rotors();
     if (!is_alike) return false;
     series_->constants().put(lane, one.constants);
@@ -212,12 +216,6 @@ class ChainSeriesInLanes {
 template <class Real>
 using ChainOfTwo = ChainSeriesInLanes<Real, 2>;
 template <class Real>
-using ChainOfThree = ChainSeriesInLanes<Real, 3>;
-template <class Real>
-using ChainOfFour = ChainSeriesInLanes<Real, 4>;
-template <class Real>
-using ChainOfFive = ChainSeriesInLanes<Real, 5>;
-template <class Real>
-using ChainOfSix = ChainSeriesInLanes<Real, 6>;
+using AnyChain = ChainSeriesInLanes<Real, 0>;
 
 }  // namespace pendcore

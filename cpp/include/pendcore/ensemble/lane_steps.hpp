@@ -114,10 +114,11 @@ PENDCORE_INLINE Real difference(const Real& b, const TwoReals<Real>& a) {
 /// Whether a difference may reach its level within a step of x, whose dense output is a polynomial
 /// with rows of `size` numbers, from the first power on, and which begins at y: not if the level is
 /// farther away than the sizes of all terms together.
-template <int size, class Real>
+template <class Real>
 PENDCORE_INLINE typename Lanes<Real>::Integers may_reach(const EventFinder::Difference& level,
                                                          const Real* y, const Real* powers,
-                                                         int degree, const Real& x) {
+                                                         std::ptrdiff_t size, int degree,
+                                                         const Real& x) {
   constexpr double turn = 6.283185307179586;
   const auto difference = [&](const Real* row) __attribute__((always_inline)) {
     return level.minus < 0 ? row[level.plus] : Real(row[level.plus] - row[level.minus]);
@@ -125,7 +126,7 @@ PENDCORE_INLINE typename Lanes<Real>::Integers may_reach(const EventFinder::Diff
   const Real step = absolute(x);
   Real moves{};
   for (int k = degree - 1; k >= 0; --k) {
-    moves = (moves + absolute(difference(powers + static_cast<std::ptrdiff_t>(k) * size))) * step;
+    moves = (moves + absolute(difference(powers + k * size))) * step;
   }
   const Real here = difference(y);
   Real away = here - level.value;
@@ -143,14 +144,15 @@ PENDCORE_INLINE typename Lanes<Real>::Integers may_reach(const EventFinder::Diff
 }  // namespace lanes_detail
 
 /// Whether an event may lie within a step of x: see may_reach().
-template <int size, int width, class Real>
+template <int width, class Real>
 PENDCORE_INLINE typename LaneSteps<width>::Integers may_have_event(const LaneSteps<width>& lanes,
                                                                    const Real* y,
-                                                                   const Real* powers, int degree,
+                                                                   const Real* powers,
+                                                                   std::ptrdiff_t size, int degree,
                                                                    const Real& x) {
   typename LaneSteps<width>::Integers may_happen{};
   for (const EventFinder::Difference& one : lanes.differences) {
-    may_happen |= lanes_detail::may_reach<size>(one, y, powers, degree, x);
+    may_happen |= lanes_detail::may_reach(one, y, powers, size, degree, x);
   }
   return may_happen;
 }

@@ -64,8 +64,8 @@ PENDCORE_INLINE LaneBits interpolate_step(RungeKuttaLanes<method, Form, width>* 
     }
   }
   swap_rates();
-  return lanes_detail::bits_of(may_have_event<All::size>(*all, all->rows, all->rows + All::size,
-                                                         Memory::degree, broadcast<Real>(1.0)));
+  return lanes_detail::bits_of(may_have_event(*all, all->rows, all->rows + All::size, All::size,
+                                              Memory::degree, broadcast<Real>(1.0)));
 }
 
 /// Takes up to `rounds` steps in each lane, until some need attention.

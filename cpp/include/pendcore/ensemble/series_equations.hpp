@@ -2,7 +2,8 @@
 /// The forms of the equations whose Taylor series are computed in lanes: those of a single run
 /// (dynamics/series), with a trajectory, and its constants, in each lane.
 ///
-/// A form has, for a pack of trajectories: the number of `links`; `row`, the numbers that a single
+/// A form has, for a pack of trajectories: the number of `links`, or 0 if it is known at run time
+/// and count() tells it; `row`, the numbers that a single
 /// run has in a row of its state, which it takes in blocks of `block`; `One`, the constants of one
 /// trajectory; one_of(), the constants of a scene, or nothing if its equations have another form;
 /// prepare(), which sets the kinds of laws and gives lanes without a member numbers that do no

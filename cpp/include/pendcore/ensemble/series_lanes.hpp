@@ -7,6 +7,8 @@
 #pragma once
 
 #include <array>
+#include <memory>
+#include <type_traits>
 #include <utility>
 
 #include "pendcore/ensemble/lane_steps.hpp"
@@ -22,22 +24,56 @@ struct SeriesLanes : LaneSteps<width> {
   using Real = Pack<width>;
   using Integers = typename Lanes<Real>::Integers;
   using Equations = Form<Real>;
-  static constexpr int size = 2 * Equations::links;
+  static constexpr bool is_fixed = Equations::links != 0;
+  /// Some states. GCC aligns packs in vectors for 16 bytes alone.
+  template <int count>
+  using States = std::conditional_t<is_fixed, std::array<Real, count * 2 * Equations::links>,
+                                    std::unique_ptr<Real[]>>;
 
   Equations equations;
-  Real y[size] = {};
-  Real y_new[size] = {};
-  Real rtol[size] = {};
-  Real atol[size] = {};
+  States<1> y{}, y_new{}, rtol{}, atol{};
   Real sigma = {}, sigma_new = {};      ///< s, the unit of time of a series
   Real largest = {}, largest_new = {};  ///< s, the step that the tolerances allow
   Integers begins = {};                 ///< all bits set where a member has no series yet
   int order = lowest_taylor_order;
-  double log2_count = 0.0;                     ///< log2 of the count of numbers in a state
-  Real of_y[(highest_order + 1) * size] = {};  ///< two series: those from y, and from y_new
-  Real of_y_new[(highest_order + 1) * size] = {};
-  Real* rows = of_y;
-  Real* rows_new = of_y_new;
+  double log2_count = 0.0;                       ///< log2 of the count of numbers in a state
+  States<highest_order + 1> of_y{}, of_y_new{};  ///< two series: those from y, and from y_new
+  Real *rows = nullptr, *rows_new = nullptr;
+
+  PENDCORE_INLINE int links() const {
+    if constexpr (is_fixed) {
+      return Equations::links;
+    } else {
+      return equations.count();
+    }
+  }
+  /// The numbers of a state.
+  PENDCORE_INLINE int size() const { return 2 * links(); }
+  /// The numbers in a row of a single run's state.
+  PENDCORE_INLINE int row() const {
+    if constexpr (is_fixed) {
+      return Equations::row;
+    } else {
+      constexpr int block = Equations::block;
+      return (links() + block - 1) / block * block;
+    }
+  }
+
+  /// Makes room, once the equations are prepared.
+  void set_order(int highest) {
+    order = highest;
+    if constexpr (!is_fixed) {
+      for (auto* const state : {&y, &y_new, &rtol, &atol}) {
+        *state = std::make_unique<Real[]>(size());
+      }
+      for (auto* const series : {&of_y, &of_y_new}) {
+        *series = std::make_unique<Real[]>((order + 1) * size());
+      }
+    }
+    rows = &of_y[0];
+    rows_new = &of_y_new[0];
+    if constexpr (requires { equations.set_order(order); }) equations.set_order(order);
+  }
 };
 
 namespace lanes_detail {
@@ -45,13 +81,13 @@ namespace lanes_detail {
 /// log2 of the step, in units of sigma, that the tolerances allow for the series from y.
 template <class All, class Real>
 PENDCORE_INLINE Real log2_of_step(const All* all, const Real* y, const Real* rows) {
-  constexpr int size = All::size;
+  const int links = all->links();
+  const int size = 2 * links;
   // A single run adds up the blocks of a state, and then the numbers of the sum: as here.
   constexpr int block = All::Equations::block;
   Real last[block]{}, before_last[block]{}, others[block]{}, before[block]{};
   const Real* const end = rows + static_cast<std::ptrdiff_t>(all->order) * size;
-#pragma GCC unroll 8
-  for (int i = 0; i < size; ++i) {
+  const auto judge = [&](int i, int at) __attribute__((always_inline)) {
     const Real moves = larger(absolute(rows[size + i]), absolute(rows[2 * size + i]));
     const Real most = larger(absolute(y[i]), moves);
     const Real scale = 1.0 / fma(all->rtol[i], most, all->atol[i]);
@@ -62,13 +98,15 @@ PENDCORE_INLINE Real log2_of_step(const All* all, const Real* y, const Real* row
 #pragma GCC unroll 4
       for (int k = first; k < first + count; ++k) sum = fma(share(k), share(k), sum);
     };
-    constexpr int links = All::Equations::links;
-    const int at = (i / links * All::Equations::row + i % links) % block;
     add(last[at], 0, 1);
     add(before_last[at], 1, 1);
     add(others[at], 2, 2);
     add(before[at], 4, 4);
-  }
+  };
+#pragma GCC unroll 4
+  for (int i = 0; i < links; ++i) judge(i, i % block);
+#pragma GCC unroll 4
+  for (int i = 0; i < links; ++i) judge(links + i, (all->row() + i) % block);
   // The order of the sums is that of sum_by_halves().
   const auto sum = [](const Real* x) __attribute__((always_inline)) {
     if constexpr (block == 2)
@@ -122,10 +160,11 @@ PENDCORE_INLINE typename All::Integers expand(All* all, const Real& t, const Rea
 
 /// sum_{k >= 1} x^k y_k for a few numbers of the state (integrate/taylor/taylor_step.hpp), which
 /// stand side by side in rows of `size`.
-template <int count, int size, class Real>
-PENDCORE_INLINE std::array<Real, count> increments(const Real* rows, int order, const Real& x) {
+template <int count, class Real>
+PENDCORE_INLINE std::array<Real, count> increments(const Real* rows, std::ptrdiff_t size, int order,
+                                                   const Real& x) {
   const Real square = x * x;
-  const Real* row = rows + static_cast<std::ptrdiff_t>(order) * size;
+  const Real* row = rows + order * size;
   std::array<Real, count> even, odd;
   for (int i = 0; i < count; ++i) {
     even[i] = row[i];
@@ -153,7 +192,7 @@ PENDCORE_INLINE Attention take_series_steps(SeriesLanes<Form, width>* all,
   using All = SeriesLanes<Form, width>;
   using Real = typename All::Real;
   using Integers = typename All::Integers;
-  constexpr int size = All::size;
+  const int size = all->size();
   Attention attention;
   for (int round = 0; round < rounds && !attention.is_needed(); ++round) {
     const Integers begins = all->begins;
@@ -161,9 +200,9 @@ PENDCORE_INLINE Attention take_series_steps(SeriesLanes<Form, width>* all,
     Integers is_odd = next.is_odd & ~begins;
     const Real h = next.h;
     const Real x = h * (1.0 / all->sigma);  // exact: a power of two
-    constexpr int together = 2;  // whose sums fit into the registers
+    constexpr int together = 2;             // whose sums fit into the registers
     for (int i = 0; i < size; i += together) {
-      const auto moves = detail::increments<together, size>(all->rows + i, all->order, x);
+      const auto moves = detail::increments<together>(all->rows + i, size, all->order, x);
       for (int j = 0; j < together; ++j) {
         const Real after = all->y[i + j] + moves[j];
         all->y_new[i + j] = begins ? all->y[i + j] : after;
@@ -183,7 +222,7 @@ PENDCORE_INLINE Attention take_series_steps(SeriesLanes<Form, width>* all,
     const detail::TwoReals<Real> start{all->t, all->t_low};
     const Real t_new = begins ? all->t : (start + h).high;
     const Integers has_series =
-        detail::expand(all, t_new, all->y_new, all->rows_new, all->sigma_new, all->largest_new);
+        detail::expand(all, t_new, &all->y_new[0], all->rows_new, all->sigma_new, all->largest_new);
     is_odd |= ~has_series;
     const ErrorAndFactor<Real> found{squared_error,
                                      (taylor_detail::safety / size_of_step) * all->largest_new};
@@ -195,7 +234,7 @@ PENDCORE_INLINE Attention take_series_steps(SeriesLanes<Form, width>* all,
     attention.looks = detail::bits_of(is_looked_at) & all->active & ~attention.odd;
     if (attention.searched != 0) {
       const Integers may_happen =
-          may_have_event<size>(*all, all->y, all->rows + size, all->order, x);
+          may_have_event(*all, &all->y[0], all->rows + size, size, all->order, x);
       attention.recorded |= detail::bits_of(may_happen) & attention.searched;
       attention.searched = 0;
     }
