@@ -10,7 +10,6 @@
 
 #include "pendcore/analysis/defect_correction_kernels.hpp"
 #include "pendcore/dynamics/equations_of_motion.hpp"
-#include "pendcore/simulate/switching.hpp"
 
 namespace pendcore {
 namespace {
@@ -21,7 +20,7 @@ constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
-bool has_defect_correction(const Scene& scene) { return !Switching::is_needed(scene); }
+bool has_defect_correction(const Scene& scene) { return !laws_may_change(scene); }
 
 /// A part of a step, from one theta of its curve on.
 struct DefectCorrection::Part {

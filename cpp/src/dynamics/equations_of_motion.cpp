@@ -14,6 +14,18 @@ bool is_bare(const Scene& scene) {
   });
 }
 
+bool laws_may_change(const Scene& scene) {
+  return std::ranges::any_of(scene.effects, [](const Effect& effect) {
+    return std::visit(
+        []<class Kind>(const Kind& one) {
+          if constexpr (std::is_same_v<Kind, Lock> || std::is_same_v<Kind, JointStop>) return true;
+          if constexpr (HasModes<Kind>) return one.has_modes();
+          return false;
+        },
+        effect);
+  });
+}
+
 namespace {
 
 template <class Form>
@@ -61,7 +73,7 @@ bool are_steady(const EquationsOfMotion& equations) {
 
 EquationsOfMotion equations_of_motion(const Scene& scene) {
   EquationsOfMotion equations = form_of_motion(scene);
-  if (equations.effects) equations.held_joints = std::make_shared<HeldJoints>(scene);
+  if (laws_may_change(scene)) equations.held_joints = std::make_shared<HeldJoints>(scene);
   return equations;
 }
 
@@ -108,7 +120,7 @@ void accelerations(const EquationsOfMotion& equations, double t, const double* q
   if (equations.effects && equations.effects->has_modes) {
     choose_modes(*equations.effects, t, q, qd, true);
   }
-  if (equations.held_joints && equations.held_joints->can_hold()) {
+  if (equations.can_hold()) {
     equations.held_joints->choose(equations, t, q, qd);
   }
   accelerations_in_force(equations, t, q, qd, qdd);

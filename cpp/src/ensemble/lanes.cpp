@@ -3,7 +3,6 @@
 #include "pendcore/ensemble/lane_loop.hpp"
 #include "pendcore/ensemble/runge_kutta_lanes.hpp"
 #include "pendcore/integrate/loop/first_step.hpp"
-#include "pendcore/simulate/switching.hpp"
 
 namespace pendcore {
 namespace {
@@ -119,7 +118,7 @@ std::unique_ptr<LaneRunner> lanes_of(std::string_view method, const Scene& scene
 }  // namespace
 
 std::vector<std::string_view> methods_with_lanes(const Scene& scene) {
-  if (instruction_set() < least_of_special_kernels || Switching::is_needed(scene)) return {};
+  if (instruction_set() < least_of_special_kernels || laws_may_change(scene)) return {};
   const EquationsOfMotion equations = equations_of_motion(scene);
   if (!are_steady(equations)) return {};
   std::vector<std::string_view> methods;

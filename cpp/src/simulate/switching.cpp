@@ -10,18 +10,6 @@
 
 namespace pendcore {
 
-bool Switching::is_needed(const Scene& scene) {
-  return std::ranges::any_of(scene.effects, [](const Effect& effect) {
-    return std::visit(
-        []<class Kind>(const Kind& one) {
-          if constexpr (std::is_same_v<Kind, Lock> || std::is_same_v<Kind, JointStop>) return true;
-          if constexpr (HasModes<Kind>) return one.has_modes();
-          return false;
-        },
-        effect);
-  });
-}
-
 Switching::Switching(const Scene& scene, const EquationsOfMotion& equations,
                      const std::vector<Account>& accounts)
     : scene_(compiled(scene)),

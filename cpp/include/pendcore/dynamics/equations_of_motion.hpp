@@ -23,12 +23,18 @@ struct EquationsOfMotion {
                std::shared_ptr<Chain>>
       form;
   std::shared_ptr<EffectsInForce> effects = nullptr;  ///< null for a bare form
-  std::shared_ptr<HeldJoints> held_joints = nullptr;  ///< null for a bare form
+  std::shared_ptr<HeldJoints> held_joints = nullptr;  ///< null if no law changes
+
+  /// Whether friction and stops may hold a joint.
+  bool can_hold() const { return held_joints && held_joints->can_hold(); }
 };
 
 /// Whether all effects of a scene only change constants of links that turn freely: payloads, and
 /// rotors in joint 1.
 bool is_bare(const Scene& scene);
+
+/// Whether laws of effects may change along a run: dry friction, stops, locks, limits of motors.
+bool laws_may_change(const Scene& scene);
 
 /// Whether no effect of the equations changes its law or holds a joint along a run.
 bool are_steady(const EquationsOfMotion& equations);

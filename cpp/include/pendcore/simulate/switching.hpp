@@ -29,9 +29,6 @@ class Switching final : public Discontinuities {
   Switching(const Scene& scene, const EquationsOfMotion& equations,
             const std::vector<Account>& accounts);
 
-  /// Whether the scene needs an object of this class.
-  static bool is_needed(const Scene& scene);
-
   bool begin(double t, double* y, bool forward) override;
   double next_time(double t) const override;
   double longest_step() const override { return longest_step_; }
