@@ -76,10 +76,13 @@ TEST_CASE("members of other constants go in the lanes of a scene") {
   if (instruction_set() < least_of_special_kernels) return;
   const auto heavier = [](Scene& scene, int i) { scene.links[0].mass += 0.05 * i; };
   const DrivenPivot shaken{.y = Sinusoid{0.1, 5.0}};
-  for (const std::size_t n : {2, 3, 4, 5, 6, 13}) {
+  for (const std::size_t n : {2, 3, 4, 5, 6, 13, 33}) {
+    const ViscousJoint damped{.joint = static_cast<int>(n), .damping = 0.1};
     CHECK(left_to_single_runs(chain(n), "taylor", heavier) == 0);
     CHECK(left_to_single_runs(chain(n, {shaken}), "taylor", heavier) == 0);
+    CHECK(left_to_single_runs(chain(n, {damped}), "taylor", heavier) == 0);
   }
+  CHECK(left_to_single_runs(chain(most_links_in_lanes), "taylor", heavier) == 0);
   const RodDrag drag{.link = 1, .drag_coefficient = 1.2, .diameter = 0.03};
   const auto wider = [](Scene& scene, int i) {
     std::get<RodDrag>(scene.effects[0]).diameter = 0.01 * i;

@@ -89,6 +89,23 @@ def test_any_chain_in_lanes_has_the_bits_of_single_runs(name, n, rtol):
     assert_same(scene, q0, qd0, (0.0, 1.0), **same, max_step=0.007)  # looks whether it is stiff
 
 
+@pytest.mark.parametrize("n", [5, 8, 9])
+def test_effects_of_all_rows_of_joints_have_lanes(n):
+    effects = [
+        E.ViscousJoint(joint=4, damping=0.1, damping3=0.05),
+        E.ViscousJoint(joint=n, damping=0.2, damping3=0.02),
+        E.Motor(joint=5, sinusoid=E.Sinusoid(1.0, 5.0)),
+        E.TorsionalSpring(joint=n, stiffness=2.0),
+        E.RotorInertia(joint=n, armature=0.05),
+    ]
+    scene = chain(n, effects)
+    if has_lanes():
+        assert scene.explain().lanes == ("taylor",)
+    q0, qd0 = starts(21, n, 2, np.pi), starts(21, n, 3, 4.0)
+    found = assert_same(scene, q0, qd0, (0.3, 1.3), method="taylor", rtol=1e-8)
+    assert found.success.all()
+
+
 def long_chain(n):
     return pc.Scene(links=[pc.Link(mass=0.1, length=0.1)] * n)
 
@@ -98,7 +115,8 @@ def test_long_chains_in_lanes_have_the_bits_of_single_runs(n):
     scene = long_chain(n)
     if has_lanes():
         assert scene.explain().lanes == ("taylor",)
-    assert_same(scene, starts(11, n, 2, 0.5), 0.0, (0, 0.2), method="taylor", rtol=1e-6)
+    found = assert_same(scene, starts(11, n, 2, 0.5), 0.0, (0, 0.2), method="taylor", rtol=1e-6)
+    assert found.success.all()
 
 
 def test_chains_that_are_too_long_for_lanes():

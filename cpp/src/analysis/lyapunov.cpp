@@ -80,7 +80,7 @@ std::unique_ptr<Stepper> tangent_stepper(const Scene& scene, int count, double t
         TangentSeries<Series>(std::move(series), count), std::move(rates), 0);
   };
   if (auto bare = bare_series(equations)) return by_series(*std::move(bare));
-  if (effects && are_steady(equations) && !without_series(scene)) {
+  if (effects && equations.are_steady() && !without_series(scene)) {
     if (auto loaded = series_with_torque(equations)) return by_series(*std::move(loaded));
     if (FewLinksSeries::has(scene, equations)) {
       return by_series(

@@ -67,10 +67,6 @@ EquationsOfMotion form_of_motion(const Scene& scene) {
 
 }  // namespace
 
-bool are_steady(const EquationsOfMotion& equations) {
-  return !equations.effects || (!equations.effects->has_modes && !equations.effects->any_held);
-}
-
 EquationsOfMotion equations_of_motion(const Scene& scene) {
   EquationsOfMotion equations = form_of_motion(scene);
   if (laws_may_change(scene)) equations.held_joints = std::make_shared<HeldJoints>(scene);

@@ -118,9 +118,9 @@ std::unique_ptr<LaneRunner> lanes_of(std::string_view method, const Scene& scene
 }  // namespace
 
 std::vector<std::string_view> methods_with_lanes(const Scene& scene) {
-  if (instruction_set() < least_of_special_kernels || laws_may_change(scene)) return {};
+  if (instruction_set() < least_of_special_kernels) return {};
   const EquationsOfMotion equations = equations_of_motion(scene);
-  if (!are_steady(equations)) return {};
+  if (!equations.are_steady()) return {};
   std::vector<std::string_view> methods;
   if (std::holds_alternative<DoublePendulum>(equations.form) ||
       LaneEquations<TwoLinksWithEffects, Pack<4>>::has(equations) ||

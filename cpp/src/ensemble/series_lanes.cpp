@@ -30,7 +30,7 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
       tightest = std::min(tightest, std::max(this->rtol()[i], this->atol()[i]));
     }
     all_.equations.prepare(one);
-    all_.set_order(taylor_order(tightest));
+    all_.make_room(taylor_order(tightest));
     for (int i = 0; i < all_.size(); ++i) {
       all_.rtol[i] = broadcast<Pack<width>>(this->rtol()[i]);
       all_.atol[i] = broadcast<Pack<width>>(this->atol()[i]);
@@ -132,7 +132,7 @@ template <InstructionSet set>
 std::unique_ptr<LaneRunner> make_series_lanes(const Scene& scene, double t0, double t_end,
                                               const Options& options) {
   return first_of<set, BareDoublePendulumSeries, LoadedDoublePendulumSeries, ThreeLinksSeries,
-                  FourLinksSeries, ChainOfTwo, AnyChain>(scene, t0, t_end, options);
+                  FourLinksSeries, ChainOfTwo, LongerChain>(scene, t0, t_end, options);
 }
 
 template std::unique_ptr<LaneRunner> make_series_lanes<InstructionSet::x86_64_v3>(const Scene&,

@@ -127,7 +127,7 @@ void run(const Scene& scene, Solution& solution, double t_end, Limits limits, Be
   const auto stepper =
       make_stepper(scene, equations, options.method, options.ledger, options.compensated);
   std::optional<Switching> switching;
-  if (laws_may_change(scene)) switching.emplace(scene, equations, solution.accounts);
+  if (equations.held_joints) switching.emplace(scene, equations, solution.accounts);
   const std::size_t n = scene.links.size();
   const std::vector<double> rtol = relative_tolerances(options, n);
   const std::vector<double> atol = absolute_tolerances(options, n);

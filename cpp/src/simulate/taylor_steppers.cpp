@@ -35,9 +35,9 @@ std::unique_ptr<Stepper> make_taylor_stepper(const Scene& scene, const Equations
   if (auto bare = bare_series(equations)) return of(*std::move(bare));
   const auto& effects = equations.effects;
   if (auto free = series_with_torque(equations)) {
-    const bool may_hold = equations.can_hold() || effects->any_held;
     if constexpr (has_special_kernels_of_rare_runs) {
-      if (!may_hold && instruction_set() >= free->least) return of(*std::move(free));
+      if (!equations.may_have_held_joints() && instruction_set() >= free->least)
+        return of(*std::move(free));
     }
     return of(SeriesWithHolds(*std::move(free), chain.template operator()<Pair>(), effects));
   }

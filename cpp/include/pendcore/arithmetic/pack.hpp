@@ -70,7 +70,7 @@ PENDCORE_INLINE Real broadcast(double x) {
   if constexpr (Lanes<Real>::width == 1) {
     return x;
   } else if constexpr (Lanes<Real>::width == 8) {
-    Real all;  // written otherwise, it takes GCC 12 eight instructions where fma() uses it
+    Real all;  // in fma(), GCC 12 makes eight masked instructions of x - Real{}
     for (int i = 0; i < Lanes<Real>::width; ++i) all[i] = x;
     return all;
   } else {
@@ -110,7 +110,7 @@ PENDCORE_INLINE void store(double* to, const Real& x) {
   __builtin_memcpy(to, &x, sizeof x);
 }
 
-/// Joins two packs of two into one of four, or takes a half of it.
+/// Joins two packs of two into one of four; low_half and high_half take a half of a pack.
 PENDCORE_INLINE Pack<4> joined(const Pack<2>& low, const Pack<2>& high) {
   return __builtin_shufflevector(low, high, 0, 1, 2, 3);
 }
@@ -164,9 +164,9 @@ PENDCORE_INLINE Real absolute(const Real& x) {
   return result;
 }
 
-/// A comparison in every lane: integers whose bits are all set where it holds. What < and <= return
-/// must not be joined by & and |: GCC 12 takes such results apart, number by number, if packs have
-/// eight of them.
+/// A comparison in every lane: integers whose bits are all set where it holds. What < and <= of
+/// doubles return must not be joined with each other by & and |: GCC 12 takes such results apart,
+/// number by number, if packs have eight of them.
 template <class Real>
 PENDCORE_INLINE auto is_less(const Real& a, const Real& b) {
   using Integers = typename Lanes<Real>::Integers;

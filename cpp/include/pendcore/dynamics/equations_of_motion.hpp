@@ -23,21 +23,21 @@ struct EquationsOfMotion {
                std::shared_ptr<Chain>>
       form;
   std::shared_ptr<EffectsInForce> effects = nullptr;  ///< null for a bare form
-  std::shared_ptr<HeldJoints> held_joints = nullptr;  ///< null if no law changes
+  std::shared_ptr<HeldJoints> held_joints = nullptr;  ///< null where no law may change
 
-  /// Whether friction and stops may hold a joint.
+  /// Whether no effect changes its law or holds a joint along a run.
+  bool are_steady() const { return held_joints == nullptr; }
+  /// Whether friction or stops may hold a joint; locks do in any case.
   bool can_hold() const { return held_joints && held_joints->can_hold(); }
+  bool may_have_held_joints() const { return can_hold() || (effects && effects->any_held); }
 };
 
 /// Whether all effects of a scene only change constants of links that turn freely: payloads, and
 /// rotors in joint 1.
 bool is_bare(const Scene& scene);
 
-/// Whether laws of effects may change along a run: dry friction, stops, locks, limits of motors.
+/// Whether some effect has modes (effects/hooks.hpp), a stop or a lock.
 bool laws_may_change(const Scene& scene);
-
-/// Whether no effect of the equations changes its law or holds a joint along a run.
-bool are_steady(const EquationsOfMotion& equations);
 
 /// The equations of a scene that check() passed.
 EquationsOfMotion equations_of_motion(const Scene& scene);

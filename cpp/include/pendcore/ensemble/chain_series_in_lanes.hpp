@@ -169,36 +169,37 @@ class ChainSeriesInLanes {
  public:
   static constexpr int links = n;
   static constexpr int block = n == 2 ? 2 : 4;
-  static constexpr int row = n;
+  static constexpr int place_of_rates = 0;
   using Effects = EffectsOfChainInLanes<Real>;
   using Series = ChainSeries<Real, Effects>;
   struct One {
-    int count;  ///< links
     ConstantsOfChain<double> constants;
     typename Effects::One effects;
   };
 
   static std::optional<One> one_of(const Scene& scene, const EquationsOfMotion& equations) {
     const int count = static_cast<int>(scene.links.size());
-    const bool is_right = n == 0 ? count >= 3 : count == n;
-    if (!is_right || !equations.effects || without_series(scene) || !are_steady(equations)) {
+    const bool has_right_count = n == 0 ? count >= 3 : count == n;
+    if (!has_right_count || !equations.effects || without_series(scene) ||
+        !equations.are_steady()) {
       return std::nullopt;
     }
     using Row = std::conditional_t<n == 2, Pair, Pack<4>>;
     const auto& effects = dynamic_cast<const ActingEffects<Row>&>(*equations.effects);
-    return One{count, ConstantsOfChain<double>(scene), {effects, count}};
+    return One{ConstantsOfChain<double>(scene), {effects, count}};
   }
   int count() const { return series_->links(); }
   /// All lanes have the constants of the given trajectory until others are put.
   void prepare(const One& one) {
-    ConstantsOfChain<Real> constants(one.count);
+    const int count = one.constants.links();
+    ConstantsOfChain<Real> constants(count);
     for (int lane = 0; lane < Lanes<Real>::width; ++lane) constants.put(lane, one.constants);
-    series_ = std::make_unique<Series>(one.count, std::move(constants), Effects(one.effects));
+    series_ = std::make_unique<Series>(count, std::move(constants), Effects(one.effects));
     for (int lane = 0; lane < Lanes<Real>::width; ++lane) series_->effects().put(lane, one.effects);
   }
   void set_order(int order) { series_->set_order(order); }
   bool put(int lane, const One& one) {
-    const bool is_alike = one.count == count() && one.effects.is_like(series_->effects().kinds()) &&
+    const bool is_alike = one.effects.is_like(series_->effects().kinds()) &&
                           one.constants.has_rotors() == series_->has_rotors();
     if (!is_alike) return false;
     series_->constants().put(lane, one.constants);
@@ -216,6 +217,6 @@ class ChainSeriesInLanes {
 template <class Real>
 using ChainOfTwo = ChainSeriesInLanes<Real, 2>;
 template <class Real>
-using AnyChain = ChainSeriesInLanes<Real, 0>;
+using LongerChain = ChainSeriesInLanes<Real, 0>;
 
 }  // namespace pendcore

@@ -163,7 +163,7 @@ struct LaneEquations<TwoLinksWithEffects, Real> : BothLinks<Real> {
   }
   /// Whether the equations have lanes.
   static bool has(const EquationsOfMotion& from) {
-    if (!are_steady(from)) return false;
+    if (!from.are_steady()) return false;
     if (const auto* const laws = std::get_if<CouplesAndLaws>(&from.form)) {
       return DragInLanes<Two<Real>>::has(*laws->effects);
     }

@@ -80,7 +80,7 @@ PENDCORE_INLINE LaneBits joined_bits(const Integers& x) {
     return static_cast<LaneBits>(x[0] | x[1]);
   }
 }
-/// Whether each lane of a comparison holds, as bits.
+/// The lanes, as bits, in which a comparison holds: those whose bits are all set.
 template <class Integers>
 PENDCORE_INLINE LaneBits bits_of(const Integers& holds) {
   constexpr int width = sizeof(Integers) / sizeof(long long);

@@ -62,9 +62,10 @@ class LaneRunner {
 
 /// The methods that have lanes for the equations of a scene; none where a law may change. Those of
 /// Dormand and Prince have them for one and two links with some effects (one_link_in_lanes.hpp,
-/// lane_equations.hpp), Taylor series for two links and more with all effects that have a series.
+/// lane_equations.hpp), Taylor series for two to `most_links_in_lanes` links with all effects that
+/// have a series.
 std::vector<std::string_view> methods_with_lanes(const Scene& scene);
-/// The series of eight chains of a few hundred links are too large for a processor's cache.
+/// Longer chains run one by one: the series of eight of them leave a processor's second cache.
 inline constexpr std::size_t most_links_in_lanes = 100;
 
 /// The lanes for a scene and its options, or null if its members are run one by one: for example

@@ -86,7 +86,7 @@ struct LaneEquations<SinglePendulum, Real> : OneLink<Real> {
   static bool has(const EquationsOfMotion& equations) {
     if (std::holds_alternative<SinglePendulum>(equations.form)) return true;
     const auto* const form = std::get_if<SinglePendulumWithEffects>(&equations.form);
-    if (form == nullptr || !are_steady(equations)) return false;
+    if (form == nullptr || !equations.are_steady()) return false;
     const ActingEffects<double>& effects = *form->effects;
     return DragInLanes<EachLink<Real, 1>>::has(effects) && effects.users.empty() &&
            effects.waves <= Type::most_waves && effects.joint_waves.size() <= Type::most_waves &&

@@ -3,15 +3,16 @@
 /// (dynamics/series), with a trajectory, and its constants, in each lane.
 ///
 /// A form has, for a pack of trajectories: the number of `links`, or 0 if it is known at run time
-/// and count() tells it; `row`, the numbers that a single
-/// run has in a row of its state, which it takes in blocks of `block`; `One`, the constants of one
+/// and count() tells it; `block`, how many numbers of its state a single run takes at once, and
+/// `place_of_rates`, the place of the first rate in its block; `One`, the constants of one
 /// trajectory; one_of(), the constants of a scene, or nothing if its equations have another form;
 /// prepare(), which sets the kinds of laws and gives lanes without a member numbers that do no
 /// harm; put(), which puts constants into a lane and returns false if their laws are of other
 /// kinds, so that the lane must not be used; set_order(), if it needs memory for the orders; and
 /// expand(), which computes the series.
 ///
-/// Here are the forms of a few links; chain_series_in_lanes.hpp has that of any chain.
+/// Here are the forms of a few links; chain_series_in_lanes.hpp has those of chains with any smooth
+/// effects.
 #pragma once
 
 #include <optional>
@@ -60,8 +61,8 @@ struct TorquesInLanes {
 template <class Real>
 struct BareDoublePendulumSeries {
   static constexpr int links = 2;
-  static constexpr int row = 2;
   static constexpr int block = 4;
+  static constexpr int place_of_rates = 2;
   using One = DoublePendulumConstants;
 
   ConstantsOfDoublePendulum<Real> constants{};
@@ -85,8 +86,8 @@ struct BareDoublePendulumSeries {
 template <class Real>
 struct LoadedDoublePendulumSeries {
   static constexpr int links = 2;
-  static constexpr int row = 2;
   static constexpr int block = 4;
+  static constexpr int place_of_rates = 2;
   struct One {
     DoublePendulumConstants constants;
     TorqueLaws<Pair, double> laws;
@@ -96,7 +97,7 @@ struct LoadedDoublePendulumSeries {
   TorquesInLanes<Two<Real>, Pair, Real> torques;
 
   static std::optional<One> one_of(const Scene& /*scene*/, const EquationsOfMotion& equations) {
-    if (!are_steady(equations)) return std::nullopt;
+    if (!equations.are_steady()) return std::nullopt;
     const auto series = series_with_torque(equations);
     return series ? std::optional(One{series->constants(), series->laws()}) : std::nullopt;
   }
@@ -118,8 +119,8 @@ struct LoadedDoublePendulumSeries {
 template <class Real, int n>
 struct FewLinksSeriesInLanes {
   static constexpr int links = n;
-  static constexpr int row = FewLinksSeries::row();
   static constexpr int block = 4;
+  static constexpr int place_of_rates = 0;
   struct One {
     ConstantsOfFewLinks<double, n> constants;
     TorqueLaws<Pack<4>, double> laws;
@@ -130,7 +131,7 @@ struct FewLinksSeriesInLanes {
 
   static std::optional<One> one_of(const Scene& scene, const EquationsOfMotion& equations) {
     if (scene.links.size() != n || !FewLinksSeries::has(scene, equations) ||
-        !are_steady(equations)) {
+        !equations.are_steady()) {
       return std::nullopt;
     }
     One one{constants_of_few_links<n>(scene), {}};

@@ -8,7 +8,6 @@
 
 #include <array>
 #include <memory>
-#include <type_traits>
 #include <utility>
 
 #include "pendcore/ensemble/lane_steps.hpp"
@@ -24,24 +23,21 @@ struct SeriesLanes : LaneSteps<width> {
   using Real = Pack<width>;
   using Integers = typename Lanes<Real>::Integers;
   using Equations = Form<Real>;
-  static constexpr bool is_fixed = Equations::links != 0;
-  /// Some states. GCC aligns packs in vectors for 16 bytes alone.
-  template <int count>
-  using States = std::conditional_t<is_fixed, std::array<Real, count * 2 * Equations::links>,
-                                    std::unique_ptr<Real[]>>;
+  /// Not std::vector: its allocator asks alignof, which GCC reports as on the baseline
+  /// (effects/law.hpp), while `new` has the true alignment.
+  using Packs = std::unique_ptr<Real[]>;
 
   Equations equations;
-  States<1> y{}, y_new{}, rtol{}, atol{};
+  Packs y, y_new, rtol, atol;
   Real sigma = {}, sigma_new = {};      ///< s, the unit of time of a series
   Real largest = {}, largest_new = {};  ///< s, the step that the tolerances allow
   Integers begins = {};                 ///< all bits set where a member has no series yet
   int order = lowest_taylor_order;
-  double log2_count = 0.0;                       ///< log2 of the count of numbers in a state
-  States<highest_order + 1> of_y{}, of_y_new{};  ///< two series: those from y, and from y_new
-  Real *rows = nullptr, *rows_new = nullptr;
+  double log2_count = 0.0;  ///< log2 of the count of numbers in a state
+  Packs rows, rows_new;     ///< the series from y, and from y_new
 
   PENDCORE_INLINE int links() const {
-    if constexpr (is_fixed) {
+    if constexpr (Equations::links != 0) {
       return Equations::links;
     } else {
       return equations.count();
@@ -49,29 +45,16 @@ struct SeriesLanes : LaneSteps<width> {
   }
   /// The numbers of a state.
   PENDCORE_INLINE int size() const { return 2 * links(); }
-  /// The numbers in a row of a single run's state.
-  PENDCORE_INLINE int row() const {
-    if constexpr (is_fixed) {
-      return Equations::row;
-    } else {
-      constexpr int block = Equations::block;
-      return (links() + block - 1) / block * block;
-    }
-  }
 
-  /// Makes room, once the equations are prepared.
-  void set_order(int highest) {
-    order = highest;
-    if constexpr (!is_fixed) {
-      for (auto* const state : {&y, &y_new, &rtol, &atol}) {
-        *state = std::make_unique<Real[]>(size());
-      }
-      for (auto* const series : {&of_y, &of_y_new}) {
-        *series = std::make_unique<Real[]>((order + 1) * size());
-      }
+  /// Makes room for series of an order, once the equations are prepared.
+  void make_room(int one) {
+    order = one;
+    for (Packs* const state : {&y, &y_new, &rtol, &atol}) {
+      *state = std::make_unique<Real[]>(size());
     }
-    rows = &of_y[0];
-    rows_new = &of_y_new[0];
+    for (Packs* const series : {&rows, &rows_new}) {
+      *series = std::make_unique<Real[]>((order + 1) * size());
+    }
     if constexpr (requires { equations.set_order(order); }) equations.set_order(order);
   }
 };
@@ -87,7 +70,7 @@ PENDCORE_INLINE Real log2_of_step(const All* all, const Real* y, const Real* row
   constexpr int block = All::Equations::block;
   Real last[block]{}, before_last[block]{}, others[block]{}, before[block]{};
   const Real* const end = rows + static_cast<std::ptrdiff_t>(all->order) * size;
-  const auto judge = [&](int i, int at) __attribute__((always_inline)) {
+  const auto add_number = [&](int i, int at) __attribute__((always_inline)) {
     const Real moves = larger(absolute(rows[size + i]), absolute(rows[2 * size + i]));
     const Real most = larger(absolute(y[i]), moves);
     const Real scale = 1.0 / fma(all->rtol[i], most, all->atol[i]);
@@ -103,10 +86,16 @@ PENDCORE_INLINE Real log2_of_step(const All* all, const Real* y, const Real* row
     add(others[at], 2, 2);
     add(before[at], 4, 4);
   };
+  const auto add_links = [&](int begin, int place) __attribute__((always_inline)) {
+    for (int i = 0; i < links; i += block) {
 #pragma GCC unroll 4
-  for (int i = 0; i < links; ++i) judge(i, i % block);
-#pragma GCC unroll 4
-  for (int i = 0; i < links; ++i) judge(links + i, (all->row() + i) % block);
+      for (int k = 0; k < block; ++k) {
+        if (i + k < links) add_number(begin + i + k, (place + k) % block);
+      }
+    }
+  };
+  add_links(0, 0);
+  add_links(links, All::Equations::place_of_rates);
   // The order of the sums is that of sum_by_halves().
   const auto sum = [](const Real* x) __attribute__((always_inline)) {
     if constexpr (block == 2)
@@ -158,8 +147,8 @@ PENDCORE_INLINE typename All::Integers expand(All* all, const Real& t, const Rea
   return is_done;
 }
 
-/// sum_{k >= 1} x^k y_k for a few numbers of the state (integrate/taylor/taylor_step.hpp), which
-/// stand side by side in rows of `size`.
+/// sum_{k >= 1} x^k y_k for `count` neighbouring numbers of the state, in rows of `size`
+/// (integrate/taylor/taylor_step.hpp).
 template <int count, class Real>
 PENDCORE_INLINE std::array<Real, count> increments(const Real* rows, std::ptrdiff_t size, int order,
                                                    const Real& x) {
@@ -202,7 +191,7 @@ PENDCORE_INLINE Attention take_series_steps(SeriesLanes<Form, width>* all,
     const Real x = h * (1.0 / all->sigma);  // exact: a power of two
     constexpr int together = 2;             // whose sums fit into the registers
     for (int i = 0; i < size; i += together) {
-      const auto moves = detail::increments<together>(all->rows + i, size, all->order, x);
+      const auto moves = detail::increments<together>(all->rows.get() + i, size, all->order, x);
       for (int j = 0; j < together; ++j) {
         const Real after = all->y[i + j] + moves[j];
         all->y_new[i + j] = begins ? all->y[i + j] : after;
@@ -221,8 +210,8 @@ PENDCORE_INLINE Attention take_series_steps(SeriesLanes<Form, width>* all,
     all->sigma_new = begins ? all->sigma : taylor_detail::power_of_two_below(from_here);
     const detail::TwoReals<Real> start{all->t, all->t_low};
     const Real t_new = begins ? all->t : (start + h).high;
-    const Integers has_series =
-        detail::expand(all, t_new, &all->y_new[0], all->rows_new, all->sigma_new, all->largest_new);
+    const Integers has_series = detail::expand(all, t_new, all->y_new.get(), all->rows_new.get(),
+                                               all->sigma_new, all->largest_new);
     is_odd |= ~has_series;
     const ErrorAndFactor<Real> found{squared_error,
                                      (taylor_detail::safety / size_of_step) * all->largest_new};
@@ -234,7 +223,7 @@ PENDCORE_INLINE Attention take_series_steps(SeriesLanes<Form, width>* all,
     attention.looks = detail::bits_of(is_looked_at) & all->active & ~attention.odd;
     if (attention.searched != 0) {
       const Integers may_happen =
-          may_have_event(*all, &all->y[0], all->rows + size, size, all->order, x);
+          may_have_event(*all, all->y.get(), all->rows.get() + size, size, all->order, x);
       attention.recorded |= detail::bits_of(may_happen) & attention.searched;
       attention.searched = 0;
     }
@@ -243,7 +232,7 @@ PENDCORE_INLINE Attention take_series_steps(SeriesLanes<Form, width>* all,
     const Real first = max_step < all->largest_new ? max_step : all->largest_new;
     all->h = begins ? (all->h < 0.0 ? Real(-first) : first) : all->h;
     all->begins = Integers{};
-    for (int i = 0; i < size; ++i) std::swap(all->y[i], all->y_new[i]);
+    std::swap(all->y, all->y_new);
     std::swap(all->rows, all->rows_new);
     std::swap(all->sigma, all->sigma_new);
     std::swap(all->largest, all->largest_new);

@@ -28,8 +28,7 @@ bool FewLinksSeries::has(const Scene& scene, const EquationsOfMotion& equations)
   if ((n != 3 && n != 4) || !equations.effects) return false;
   const EffectsInForce& effects = *equations.effects;
   const auto couples_links = [](const RotorInertia& rotor) { return rotor.joint > 1; };
-  const bool may_hold = equations.can_hold() || effects.any_held;
-  return !may_hold && effects.pivots.empty() && effects.waves <= 2 &&
+  return !equations.may_have_held_joints() && effects.pivots.empty() && effects.waves <= 2 &&
          std::ranges::none_of(effects_of<RotorInertia>(scene), couples_links);
 }
 

@@ -92,6 +92,7 @@ class ConstantsOfChain {
     for (std::ptrdiff_t i = 0; i < count(); ++i) numbers_.put(i, lane, one.number(i));
   }
 
+  int links() const { return links_; }
   PENDCORE_INLINE ChainLinkOf<Number> link(int i) const {
     const auto number = [this, i](int k) __attribute__((always_inline)) {
       return numbers_.number(each * i + k);

@@ -126,6 +126,7 @@ class SquaredErrors {
         const Scale if_positive = both < infinity ? Scale(sum * (sum / both)) : both;
         return both > 0.0 ? if_positive : both;
       } else {
+        // Nested selects are joined comparisons to GCC 12, which takes them apart (pack.hpp).
         const auto is_usual = is_less(Scale{}, both) & is_less(both, broadcast<Scale>(infinity));
         return is_usual ? Scale(sum * (sum / both)) : both;
       }
