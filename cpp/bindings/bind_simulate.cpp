@@ -11,15 +11,16 @@ namespace {
 
 std::unique_ptr<Run> simulate_run(const py::object& python_scene, py::handle q0, py::handle qd0,
                                   py::handle t0, py::handle t_end, const py::dict& given,
-                                  py::handle progress, py::handle warn,
-                                  DefectCorrection* correction) {
+                                  py::handle progress, py::handle warn, py::handle correction) {
   const auto& scene = python_scene.cast<const Scene&>();
   PythonMonitor monitor(progress);
   Options options = options_of(given, scene.links.size());
   options.monitor = monitor.for_core();
-  if (correction != nullptr) {
-    correction->keep(options.store.value_or(usual_store(options)), options.t_eval);
-    options.watch = correction;
+  // As a pointer, None takes pybind11 a microsecond: it looks for a foreign class first.
+  if (!correction.is_none()) {
+    auto& watch = correction.cast<DefectCorrection&>();
+    watch.keep(options.store.value_or(usual_store(options)), options.t_eval);
+    options.watch = &watch;
   }
   const Start start = start_of(scene, q0, qd0, t0, t_end, warn);
   py::object event_functions;
