@@ -120,7 +120,9 @@ def test_long_chains_in_lanes_have_the_bits_of_single_runs(n):
 
 
 def test_chains_that_are_too_long_for_lanes():
-    assert long_chain(101).explain().lanes == ()
+    scene = long_chain(101)
+    assert scene.explain().lanes == ()
+    assert_same(scene, starts(5, 101, 2, 0.5), 0.0, (0, 0.05), method="taylor")
 
 
 @pytest.mark.parametrize("name", ONE_BY_ONE)

@@ -47,8 +47,8 @@ struct SeriesLanes : LaneSteps<width> {
   PENDCORE_INLINE int size() const { return 2 * links(); }
 
   /// Makes room for series of an order, once the equations are prepared.
-  void make_room(int one) {
-    order = one;
+  void make_room(int order_of_series) {
+    order = order_of_series;
     for (Packs* const state : {&y, &y_new, &rtol, &atol}) {
       *state = std::make_unique<Real[]>(size());
     }
