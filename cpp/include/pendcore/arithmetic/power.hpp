@@ -110,6 +110,14 @@ PENDCORE_INLINE Real coarse_exp2(const Real& x) {
   return std::bit_cast<Real>(std::bit_cast<Integers>(of_fraction) + exponent);
 }
 
+/// 1/x, exactly, for x = 2^k, |k| < 1023.
+template <class Real>
+PENDCORE_INLINE Real inverse_of_power_of_two(const Real& x) {
+  using Integers = typename Lanes<Real>::Integers;
+  constexpr long long bits_of_both = 2 * std::bit_cast<long long>(1.0);
+  return std::bit_cast<Real>(bits_of_both - std::bit_cast<Integers>(x));
+}
+
 /// 2^gain x^power within a relative 1e-9, for |power| <= 0.25. The next step waits for it, so its
 /// chain of operations is short. The exponent of x goes through exp2 while the small power of the
 /// mantissa, 2^w with w = power log2(1 + u), is summed.

@@ -15,8 +15,6 @@
 
 namespace pendcore {
 
-/// As many lanes as a register of the processor holds.
-constexpr int width_on(InstructionSet set) { return set == InstructionSet::x86_64_v4 ? 8 : 4; }
 /// So many members take less time one after the other than in lanes.
 template <int width>
 constexpr int few_lanes = width / 2;

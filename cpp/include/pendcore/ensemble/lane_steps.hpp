@@ -18,6 +18,9 @@
 
 namespace pendcore {
 
+/// As many lanes as a register of the processor holds.
+constexpr int width_on(InstructionSet set) { return set == InstructionSet::x86_64_v4 ? 8 : 4; }
+
 /// What the steps of all lanes have in common.
 struct LaneInterval {
   double t_end;  ///< s

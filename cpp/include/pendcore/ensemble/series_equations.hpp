@@ -43,11 +43,11 @@ struct TorquesInLanes {
   void prepare(const One& one) {
     laws.couples = one.couples != nullptr ? &couples : nullptr;
     laws.has_powers = one.has_powers;
-    laws.has_waves = one.has_waves;
+    laws.waves = one.waves;
   }
   bool put(int lane, const One& one) {
     const bool is_alike = (laws.couples != nullptr) == (one.couples != nullptr) &&
-                          laws.has_powers == one.has_powers && laws.has_waves == one.has_waves;
+                          laws.has_powers == one.has_powers && laws.waves == one.waves;
     if (!is_alike) return false;
     if (one.couples != nullptr) put_couples(couples, lane, *one.couples);
     put_row(laws.angular_frequency, lane, one.angular_frequency);

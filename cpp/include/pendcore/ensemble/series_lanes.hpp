@@ -16,6 +16,31 @@
 
 namespace pendcore {
 
+/// Computes the series from y at time t in units of sigma. It is a kernel of its own, so that it
+/// can be compiled by other options than the steps (CMakeLists.txt).
+template <template <class> class Form, int width>
+PENDCORE_INLINE void expand_in_lanes(const Form<Pack<width>>* equations, const Pack<width>* t,
+                                     const Pack<width>* y, const Pack<width>* sigma, int order,
+                                     Pack<width>* rows) {
+  equations->expand(*t, y, *sigma, order, rows);
+}
+template <template <class> class Form, int width>
+using Expansion = decltype(&expand_in_lanes<Form, width>);
+template <template <class> class Form, InstructionSet set>
+Expansion<Form, width_on(set)> expansion_on() {
+  return only<&expand_in_lanes<Form, width_on(set)>, set>();
+}
+
+// Those of double pendulums are compiled in a file of their own (double_pendulum_lanes.cpp).
+#define PENDCORE_DOUBLE_PENDULUM_LANES(Form, set) \
+  template Expansion<Form, width_on(InstructionSet::set)> expansion_on<Form, InstructionSet::set>()
+extern PENDCORE_DOUBLE_PENDULUM_LANES(BareDoublePendulumSeries, x86_64_v3);
+extern PENDCORE_DOUBLE_PENDULUM_LANES(LoadedDoublePendulumSeries, x86_64_v3);
+#if PENDCORE_CLONES
+extern PENDCORE_DOUBLE_PENDULUM_LANES(BareDoublePendulumSeries, x86_64_v4);
+extern PENDCORE_DOUBLE_PENDULUM_LANES(LoadedDoublePendulumSeries, x86_64_v4);
+#endif
+
 /// The lanes of the method of Taylor series on a form of the equations (series_equations.hpp). A
 /// state is (q, qd).
 template <template <class> class Form, int width>
@@ -28,6 +53,7 @@ struct SeriesLanes : LaneSteps<width> {
   using Packs = std::unique_ptr<Real[]>;
 
   Equations equations;
+  Expansion<Form, width> expand = nullptr;  ///< a clone of expand_in_lanes()
   Packs y, y_new, rtol, atol;
   Real sigma = {}, sigma_new = {};      ///< s, the unit of time of a series
   Real largest = {}, largest_new = {};  ///< s, the step that the tolerances allow
@@ -130,7 +156,7 @@ PENDCORE_INLINE typename All::Integers expand(All* all, const Real& t, const Rea
   namespace detail = taylor_detail;
   Integers is_done{};
   for (int tries = 0; tries < detail::most_tries; ++tries) {
-    all->equations.expand(t, y, sigma, all->order, rows);
+    all->expand(&all->equations, &t, y, &sigma, all->order, rows);
     const Real log2_step = log2_of_step(all, y, rows);
     is_done = is_at_most(absolute(log2_step), broadcast<Real>(detail::reach));
     largest = sigma * coarse_exp2(is_done ? log2_step : Real{});
@@ -188,8 +214,8 @@ PENDCORE_INLINE Attention take_series_steps(SeriesLanes<Form, width>* all,
     const NextStep<width> next = next_step<width>(*all, *interval);
     Integers is_odd = next.is_odd & ~begins;
     const Real h = next.h;
-    const Real x = h * (1.0 / all->sigma);  // exact: a power of two
-    constexpr int together = 2;             // whose sums fit into the registers
+    const Real x = h * inverse_of_power_of_two(all->sigma);
+    constexpr int together = 2;  // whose sums fit into the registers
     for (int i = 0; i < size; i += together) {
       const auto moves = detail::increments<together>(all->rows.get() + i, size, all->order, x);
       for (int j = 0; j < together; ++j) {

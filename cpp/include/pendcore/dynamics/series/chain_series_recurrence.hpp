@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "pendcore/arithmetic/power.hpp"
 #include "pendcore/dynamics/series/chain_series.hpp"
 
 namespace pendcore {
@@ -225,7 +226,7 @@ PENDCORE_INLINE void ChainSeries<Row, Effects>::expand(const Number& t, const Nu
   };
   const auto put_row = [](Number* to, const Row& x)
                            __attribute__((always_inline)) { __builtin_memcpy(to, &x, sizeof x); };
-  const Number per_sigma = 1.0 / sigma;  // exact: a power of two
+  const Number per_sigma = inverse_of_power_of_two(sigma);
   for (int g = 0; g < groups_; ++g) {
     const int at = g * places;
     Row s, c;

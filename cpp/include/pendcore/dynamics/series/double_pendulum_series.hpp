@@ -44,6 +44,7 @@
 
 #include "pendcore/arithmetic/order_of_series.hpp"
 #include "pendcore/arithmetic/pair.hpp"
+#include "pendcore/arithmetic/power.hpp"
 #include "pendcore/arithmetic/row_of_pairs.hpp"
 #include "pendcore/arithmetic/sine_cosine.hpp"
 #include "pendcore/dynamics/equations_of_motion.hpp"
@@ -182,7 +183,7 @@ struct DoublePendulumOrders {
 template <class Number>
 PENDCORE_INLINE DoublePendulumOrders<Number>::DoublePendulumOrders(
     const ConstantsOfDoublePendulum<Constant>& constants, const Number* y, const Constant& sigma) {
-  per_sigma = 1.0 / sigma;  // exact: a power of two
+  per_sigma = inverse_of_power_of_two(sigma);
   Half s0, c0;
   sine_cosine(Of::pair_at(y), s0, c0);
   angle_of_order = Of::pair_at(y);

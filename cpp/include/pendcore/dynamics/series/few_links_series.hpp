@@ -35,6 +35,7 @@
 #include <memory>
 
 #include "pendcore/arithmetic/order_of_series.hpp"
+#include "pendcore/arithmetic/power.hpp"
 #include "pendcore/arithmetic/row_of_links.hpp"
 #include "pendcore/arithmetic/sine_cosine.hpp"
 #include "pendcore/dynamics/chain/chain_link.hpp"
@@ -209,7 +210,7 @@ struct FewLinksOrders {
 
   PENDCORE_INLINE FewLinksOrders(const ConstantsOfFewLinks<Constant, links>& given, const Number* y,
                                  const Constant& sigma)
-      : constants(given), per_sigma(1.0 / sigma) {  // exact: a power of two
+      : constants(given), per_sigma(inverse_of_power_of_two(sigma)) {
     Row s, c;
     angle_of_order = Rows::get(y);
     sine_cosine(angle_of_order, s, c);

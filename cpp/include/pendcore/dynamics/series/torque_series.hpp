@@ -12,13 +12,14 @@
 ///
 ///     s_{k+1} = omega sigma c_k/(k + 1),    c_{k+1} = -omega sigma s_k/(k + 1)
 ///
-/// Cost: some 10 operations for each order, and k products for each square or cube.
+/// Cost: for each order some 10 operations, 4 for each wave, k products for each square or cube.
 #pragma once
 
 #include <memory>
 
 #include "pendcore/arithmetic/dual_rows.hpp"
 #include "pendcore/arithmetic/order_of_series.hpp"
+#include "pendcore/arithmetic/power.hpp"
 #include "pendcore/dynamics/acting_effects.hpp"
 
 namespace pendcore {
@@ -32,9 +33,9 @@ struct NoTorque {
 /// lane.
 template <class Links, class Number>
 struct TorqueLaws {
-  const Couples<Links>* couples = nullptr;  ///< of effects that outlive this; null without any
-  bool has_powers = false;                  ///< whether a law has a square or cube of a rate
-  bool has_waves = false;
+  const Couples<Links>* couples = nullptr;      ///< of effects that outlive this; null without any
+  bool has_powers = false;                      ///< whether a law has a square or cube of a rate
+  int waves = 0;                                ///< at most two
   PairOf<Number> angular_frequency{}, phase{};  ///< of each wave, rad/s and rad
   Links gain[2]{};                              ///< what each wave gives to the joints, N m
   Links factor{};                               ///< multiplies the result
@@ -51,7 +52,7 @@ PENDCORE_INLINE TorqueLaws<Links, double> torque_laws(const ActingEffects<Links>
     laws.has_powers = laws.couples->has_powers();
   }
   if (effects.waves == 0) return laws;
-  laws.has_waves = true;
+  laws.waves = effects.waves;
   laws.angular_frequency = effects.two_waves.angular_frequency;
   laws.phase = effects.two_waves.phase;
   for (const JointWave& one : effects.joint_waves) laws.gain[one.wave][one.joint] += one.gain;
@@ -66,14 +67,20 @@ class TorqueOrders {
 
  public:
   PENDCORE_INLINE TorqueOrders(const Laws& laws, const Number& t, const Number& sigma)
-      : laws_(laws), sigma_(sigma), per_sigma_(1.0 / sigma), by_(sigma * sigma * laws.factor) {
-    if (laws.couples != nullptr) in_time_ = laws.couples->template in_time<ConstantOf<Links>>(t);
-    if (!laws.has_waves) return;
+      : laws_(laws),
+        sigma_(sigma),
+        per_sigma_(inverse_of_power_of_two(sigma)),
+        by_(sigma * sigma * laws.factor) {
+    if (laws.couples != nullptr) {
+      in_time_ = laws.couples->template in_time<ConstantOf<Links>>(t);
+      damping_ = per_sigma_ * laws.couples->on_phid;
+    }
+    if (laws.waves == 0) return;
     sine_cosine(fma(laws.angular_frequency, Waves{t, t}, laws.phase), sine_, cosine_);
     turn_ = sigma * laws.angular_frequency;
   }
 
-  PENDCORE_INLINE bool are_any() const { return laws_.couples != nullptr || laws_.has_waves; }
+  PENDCORE_INLINE bool are_any() const { return laws_.couples != nullptr || laws_.waves != 0; }
   /// Order k from the angles and rates of order k. The orders are called one after the other, from
   /// 0.
   PENDCORE_INLINE_UNLESS_SMALL Links next(int k, const Links& angle, const Links& rate) {
@@ -81,24 +88,38 @@ class TorqueOrders {
     if (laws_.couples != nullptr) {
       const auto& couples = *laws_.couples;
       // The fourth place of a pack for three links has a rate but no law: its terms are 0.
-      const Links w = per_sigma_ * (rate - before(rate));
-      couple = fma(couples.on_phid, w, couples.on_phi * (angle - before(angle)));
+      const Links turn = rate - before(rate);
+      couple = fma(damping_, turn, Links(couples.on_phi * (angle - before(angle))));
       if (k == 0) couple = couple + in_time_;
       if (k == 1) couple = couple + sigma_ * couples.slope;
-      if (laws_.has_powers) couple = couple + of_powers(k, w);
+      if (laws_.has_powers) couple = couple + of_powers(k, per_sigma_ * turn);
     }
-    if (laws_.has_waves) {
+    if (laws_.waves != 0) {
       couple = fma(number_of(sine_, 0), laws_.gain[0], couple);
-      couple = fma(number_of(sine_, 1), laws_.gain[1], couple);
-      const Waves factor = inverse_of[k + 1] * turn_;
-      const Waves sine = sine_;
-      sine_ = factor * cosine_;
-      cosine_ = -(factor * sine);
+      if (laws_.waves > 1) couple = fma(number_of(sine_, 1), laws_.gain[1], couple);
+      advance_waves(k);
     }
     return by_ * (couple - after(couple));
   }
 
  private:
+  /// Computes order k + 1 of the waves.
+  PENDCORE_INLINE void advance_waves(int k) {
+    const double share = inverse_of[k + 1];
+    if constexpr (Lanes<Number>::width > 1) {
+      advance(share, turn_.first, sine_.first, cosine_.first);
+      if (laws_.waves > 1) advance(share, turn_.second, sine_.second, cosine_.second);
+    } else {
+      advance(share, turn_, sine_, cosine_);
+    }
+  }
+  template <class Wave>
+  PENDCORE_INLINE static void advance(double share, const Wave& turn, Wave& sine, Wave& cosine) {
+    const Wave factor = share * turn;
+    const Wave sine_before = sine;
+    sine = factor * cosine;
+    cosine = -(factor * sine_before);
+  }
   PENDCORE_INLINE Links of_powers(int k, const Links& w) {
     const auto rate = [this](int j) __attribute__((always_inline)) { return rates_[j]; };
     const auto square = [this](int j) __attribute__((always_inline)) { return squares_[j]; };
@@ -112,6 +133,7 @@ class TorqueOrders {
   Number sigma_, per_sigma_;
   ConstantOf<Links> by_;         ///< sigma^2 times the factor
   ConstantOf<Links> in_time_{};  ///< held + slope (t - start)
+  ConstantOf<Links> damping_{};  ///< on_phid/sigma
   Waves sine_{}, cosine_{}, turn_{};
   Links rates_[highest_order];
   Links squares_[highest_order];

@@ -185,7 +185,7 @@ PENDCORE_INLINE void advance_series(TaylorMemory<Series>* memory, double h) {
   using Block = typename Series::Block;
   constexpr int width = Lanes<Block>::width;
   const int size = detail::blocks_of(memory) * width;
-  const double x = h * (1.0 / memory->sigma);  // exact: a power of two
+  const double x = h * inverse_of_power_of_two(memory->sigma);
   for (int at = 0; at < size; at += width) {
     const Block before = load<Block>(memory->y + at);
     const Block change = detail::increment<Block>(memory->rows + at, size, memory->order, x);
