@@ -7,6 +7,7 @@
 #include "bind_options.hpp"
 #include "pendcore/ensemble/ensemble.hpp"
 #include "pendcore/ensemble/lanes.hpp"
+#include "pendcore/scene/degrees.hpp"
 #include "pendcore/scene/parameters.hpp"
 #include "python_monitor.hpp"
 #include "run_state.hpp"
@@ -129,6 +130,16 @@ void bind_ensemble(py::module_& module) {
       [](const Scene& scene) { return py::tuple(py::cast(methods_with_lanes(scene))); },
       py::arg("scene"));
   module.def("parameters", &named_numbers, py::arg("scene"));
+  module.def(
+      "place_of_degrees",
+      [](const py::array_t<double, py::array::c_style>& angles) {
+        return place_of_degrees({angles.data(), static_cast<std::size_t>(angles.size())});
+      },
+      py::arg("angles"));
+  module.def(
+      "warning_of_degrees",
+      [](const std::string& name, double x) { return warning_of_degrees(name, x); },
+      py::arg("name"), py::arg("angle"));
   module.def("check_parameter_names",
              [](const Scene& scene, const std::vector<std::string>& names) {
                static_cast<void>(ParameterChoice(scene, names));

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import warnings
 
 import numpy as np
 import pendcore as pc
@@ -160,7 +161,11 @@ class OwnReducer(pc.keep.Reducer):
     [
         ({"q0": np.zeros((3, 3))}, r"q0: shape \(3, 3\): must be \(\.\.\., 2\)"),
         ({"q0": np.zeros((3, 2)), "qd0": np.zeros((4, 2))}, r"do not broadcast: q0 \(3,\), qd0"),
-        ({"vary": {"link[3].mass": 1.0}}, r'"link\[3\].mass".*did you mean "link\[1\].mass"'),
+        ({"vary": {"link[3].mass": 1.0}}, r'"link\[3\].mass".*that name: it has 2 links'),
+        ({"vary": {"effect[1].damping": 1.0}}, "that name: it has 0 effects"),
+        ({"vary": {"mass": 1.0}}, r'did you mean "link\[1\].mass"'),
+        ({"vary": {"q0[1]": 1.0}}, "that name: starts are not parameters: q0 and qd0 take arrays"),
+        ({"vary": {"damping": 1.0}}, r"that name: scene.parameters\(\) lists all"),
         ({"vary": {"gravty": 1.0}}, 'did you mean "gravity"'),
         ({"keep": "all"}, 'keep = \'all\': must be "end", "times"'),
         ({"keep": "times"}, "t_eval is missing"),
@@ -252,3 +257,13 @@ def test_xarray_has_units_and_coordinates():
     assert data.q.dims == ("member_0", "link")
     assert data.gravity.attrs["units"] == "m/s^2"
     assert data.sel(link=2).q.values.tolist() == found.q[:, 1].tolist()
+
+
+def test_starts_in_degrees_are_told_once():
+    with pytest.warns(pc.PendcoreWarning, match=r"q0\[0, 0\] = 45.0 rad: that is 2578 deg") as told:
+        pc.ensemble(BOOK, [[45, 60], [30, 90]], t_span=(0, 0.1))
+    assert len(told) == 1
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        pc.ensemble(BOOK, [[45.5, 60], [30, 90]], t_span=(0, 0.1))
+        pc.ensemble(BOOK, [[0, 5], [10, 0]], t_span=(0, 0.1))

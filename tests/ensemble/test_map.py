@@ -84,3 +84,13 @@ def test_wrong_arguments(tmp_path, capsys):
     ]:
         assert run(tmp_path / "out", *arguments) == 2
         assert told in capsys.readouterr().err
+
+
+def test_a_folder_that_cannot_be_written_is_refused_before_the_map(tmp_path, capsys, monkeypatch):
+    def refuse(dir):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr("pendcore.cli.usage.TemporaryFile", refuse)  # root may write everywhere
+    assert run(tmp_path, "--count", "4") == 2
+    told = f"{tmp_path}: cannot be written: Permission denied: choose another folder"
+    assert told in capsys.readouterr().err

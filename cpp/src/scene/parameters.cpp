@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 namespace pendcore {
 namespace {
@@ -65,6 +68,31 @@ std::size_t distance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
+/// What to do about a name that the scene does not have.
+std::string remedy(const Scene& scene, const std::vector<NamedNumber>& known,
+                   const std::string& name) {
+  if (name.starts_with("q0") || name.starts_with("qd0")) {
+    return "starts are not parameters: q0 and qd0 take arrays of them";
+  }
+  for (const auto& [part, count] :
+       {std::pair("link", scene.links.size()), std::pair("effect", scene.effects.size())}) {
+    const std::string prefix = std::string(part) + "[";
+    if (!name.starts_with(prefix)) continue;
+    const long long number = std::atoll(name.c_str() + prefix.size());
+    if (number < 1 || number > static_cast<long long>(count)) {
+      return "it has " + std::to_string(count) + " " + part + (count == 1 ? "" : "s");
+    }
+  }
+  const auto ends_with_it = [&](const NamedNumber& one) { return one.name.ends_with("." + name); };
+  auto meant = std::ranges::find_if(known, ends_with_it);
+  if (meant == known.end()) {
+    meant = std::ranges::min_element(
+        known, {}, [&](const NamedNumber& one) { return distance(one.name, name); });
+    if (distance(meant->name, name) > name.size() / 2) return "scene.parameters() lists all";
+  }
+  return "did you mean \"" + meant->name + "\"?";
+}
+
 }  // namespace
 
 std::vector<NamedNumber> parameters(const Scene& scene) {
@@ -89,10 +117,8 @@ ParameterChoice::ParameterChoice(const Scene& scene, const std::vector<std::stri
   for (const std::string& name : names) {
     const auto found = std::ranges::find(known, name, &NamedNumber::name);
     if (found == known.end()) {
-      const auto nearest = std::ranges::min_element(
-          known, {}, [&](const NamedNumber& one) { return distance(one.name, name); });
       throw std::invalid_argument("parameter \"" + name + "\": the scene has none of that name: " +
-                                  "did you mean \"" + nearest->name + "\"?");
+                                  remedy(scene, known, name));
     }
     places_.push_back(static_cast<std::size_t>(found - known.begin()));
   }

@@ -113,10 +113,8 @@ std::string span_of(const Effect& effect) {
 std::vector<std::string> run_warnings(const Scene& scene, const std::vector<double>& q0, double t0,
                                       double t_end) {
   std::vector<std::string> warnings;
-  const auto large = std::ranges::find_if(q0, is_large_angle);
-  if (std::ranges::all_of(q0, may_be_degrees) && large != q0.end()) {
-    const std::string name = "q0[" + std::to_string(large - q0.begin()) + "]";
-    warnings.push_back(warning_of_degrees(name, *large));
+  if (const std::ptrdiff_t i = place_of_degrees(q0); i >= 0) {
+    warnings.push_back(warning_of_degrees("q0[" + std::to_string(i) + "]", q0[i]));
   }
   const double first = std::min(t0, t_end);
   const double last = std::max(t0, t_end);

@@ -10,13 +10,15 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from pendcore import _core
 from pendcore.api.ensemble_solution import Ensemble, run_ensemble
 from pendcore.api.scene import Scene
 from pendcore.ensemble.keep import REDUCERS, Reducer
-from pendcore.ensemble.members import members_of
+from pendcore.ensemble.members import Members, members_of
 from pendcore.ensemble.request import Request
 from pendcore.messages.arguments import known_keywords, numbers, time_span
 from pendcore.messages.progress import Progress
+from pendcore.messages.warning import warn
 from pendcore.run.events import Event, events_asked_for
 from pendcore.run.options import RUN_DEFAULTS
 from pendcore.scene.scene import require_start
@@ -120,6 +122,7 @@ def ensemble(
     """
     q0 = require_start(scene, q0)
     members = members_of(scene, q0, qd0, vary)
+    _warn_of_degrees(members)
     options = {
         "method": method, "rtol": rtol, "atol": atol, "events": tuple(events_asked_for(events)),
         "max_steps": max_steps, "max_step": max_step,
@@ -131,6 +134,15 @@ def ensemble(
         "time_limit": time_limit, "check": check, "progress": progress,
     }  # fmt: skip
     return run_ensemble(members, request, of_the_whole)
+
+
+def _warn_of_degrees(members: Members) -> None:
+    """Warn once if the starts look like degrees, as `simulate` does of each."""
+    some = members.q0[tuple(slice(64) for _ in members.shape)]  # a few tell
+    place = _core.place_of_degrees(some)
+    if place >= 0:
+        where = ", ".join(str(int(i)) for i in np.unravel_index(place, some.shape))
+        warn(_core.warning_of_degrees(f"q0[{where}]", float(some.flat[place])))
 
 
 def _reducers(keep: Keep) -> dict[str, Reducer]:

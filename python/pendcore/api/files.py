@@ -18,6 +18,7 @@ from pendcore.ensemble.archive import load as load_ensemble
 from pendcore.ensemble.members import Members
 from pendcore.ensemble.store import opened
 from pendcore.messages.arguments import known_keywords
+from pendcore.messages.warning import warn
 from pendcore.scene.scene import SceneData
 
 
@@ -43,6 +44,11 @@ def load(path: str | os.PathLike[str]) -> Solution | Ensemble:
     OSError
         If the file cannot be read.
 
+    Warns
+    -----
+    PendcoreWarning
+        If members of a store were not run yet.
+
     Examples
     --------
     >>> sol = pc.Case.textbook().simulate()
@@ -53,10 +59,17 @@ def load(path: str | os.PathLike[str]) -> Solution | Ensemble:
     """
     if Path(path).is_dir():
         store = opened(Path(path))
-        return _ensemble(store.members, store.request, store.arrays)
+        found = _ensemble(store.members, store.request, store.arrays)
+        if missing := found.counts().get("not_run"):
+            warn(
+                f"{path}: {missing} of {len(found)} members were not run: the call of pc.ensemble "
+                "that made the store goes on with it"
+            )
+            found.ending = "interrupted"
+        return found
     if is_ensemble(path):
-        found = load_ensemble(path)
-        return _ensemble(found.members, found.request, found.arrays, found.ending, found.statistics)
+        saved = load_ensemble(path)
+        return _ensemble(saved.members, saved.request, saved.arrays, saved.ending, saved.statistics)
     result = archive.load(path)
     result.scene = _public(result.scene)
     return result_as(Solution, result)

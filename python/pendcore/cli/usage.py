@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from tempfile import TemporaryFile
 
 
 class UsageError(Exception):
@@ -30,10 +31,19 @@ def written(to: Path, files: Iterable[Path]) -> str:
 
 @contextmanager
 def new_folder(folder: Path) -> Iterator[None]:
-    """Make the folder before a run that may take hours; remove it if nothing is written."""
+    """Make the folder before a run that may take hours, and see that it can be written.
+
+    It is removed if nothing is written.
+    """
     new = [path for path in (folder, *folder.parents) if not path.exists()]
     with blamed_on_usage():
         folder.mkdir(parents=True, exist_ok=True)
+    try:
+        TemporaryFile(dir=folder).close()
+    except OSError as error:
+        raise UsageError(
+            f"{folder}: cannot be written: {error.strerror}: choose another folder"
+        ) from None
     try:
         yield
     except BaseException:
