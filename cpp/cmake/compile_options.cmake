@@ -14,7 +14,8 @@ if(PENDCORE_KNOWS_MMX)
   list(APPEND pendcore_arithmetic -mno-mmx)
 endif()
 
-# The kernels say themselves what is unrolled; -O3 made their steps slower (GCC 12).
+# The kernels say themselves what is unrolled; -O3 makes the steps, and the series of three links,
+# slower (GCC 12).
 set(pendcore_optimisation $<$<CONFIG:Release>:-O2>)
 
 # Two things make GCC compile an eighth faster: it collects its garbage later, for 200 MB more of

@@ -87,7 +87,7 @@ TEST_CASE("members of other constants go in the lanes of a scene") {
   const auto wider = [](Scene& scene, int i) {
     std::get<RodDrag>(scene.effects[0]).diameter = 0.01 * i;
   };
-  for (const std::size_t n : {1, 2}) {
+  for (const std::size_t n : {1, 2, 3, 4}) {
     for (const char* method : {"dopri5", "dop853"}) {
       CHECK(left_to_single_runs(chain(n), method, heavier) == 0);
       CHECK(left_to_single_runs(chain(n, {shaken}), method, heavier) == 0);
@@ -122,7 +122,9 @@ TEST_CASE("scenes and methods that have lanes, and those that have none") {
     CHECK(have_lanes(chain(1), method));
     CHECK(have_lanes(chain(1, {DrivenPivot{.y = Sinusoid{0.1, 5.0}}}), method));
     CHECK(have_lanes(chain(2), method));
-    CHECK_FALSE(have_lanes(chain(3), method));
+    CHECK(have_lanes(chain(3), method));
+    CHECK(have_lanes(chain(4), method));
+    CHECK_FALSE(have_lanes(chain(5), method));
   }
   CHECK(have_lanes(chain(1), "auto"));
   CHECK_FALSE(have_lanes(chain(1), "taylor"));
@@ -155,4 +157,5 @@ TEST_CASE("times and events have lanes, but for functions of one's own") {
     CHECK_FALSE(have_lanes(chain(n), method, with_function));
   }
   CHECK(have_lanes(chain(2), "dopri5", both));
+  CHECK(have_lanes(chain(3), "dopri5", both));
 }

@@ -31,6 +31,15 @@ TEST_CASE("the power is right to a relative 1e-10") {
   }
 }
 
+TEST_CASE("the inverse of a power of two is exact, alone and in packs") {
+  for (int k = -1022; k <= 1022; ++k) {
+    const double x = std::ldexp(1.0, k);
+    CHECK(inverse_of_power_of_two(x) == std::ldexp(1.0, -k));
+    const Pack<4> pack = inverse_of_power_of_two(broadcast<Pack<4>>(x));
+    for (int i = 0; i < 4; ++i) CHECK(pack[i] == std::ldexp(1.0, -k));
+  }
+}
+
 TEST_CASE("the scaled power is right to a relative 1e-9") {
   std::mt19937_64 random(2);
   std::uniform_real_distribution exponent(-300.0, 300.0);

@@ -147,7 +147,7 @@ def test_explain_names_the_methods_with_lanes():
 
 
 def test_explain_names_a_single_method_with_lanes():
-    told = BOOK.replace(links=[pc.Link(mass=1.0, length=1.0)] * 3).explain()
+    told = BOOK.replace(links=[pc.Link(mass=1.0, length=1.0)] * 5).explain()
     if has_lanes():
         words = " ".join(str(told).split())
         assert "a lane each, by taylor; it runs them one by one" in words

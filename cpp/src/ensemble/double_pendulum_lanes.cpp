@@ -3,11 +3,6 @@
 
 namespace pendcore {
 
-PENDCORE_DOUBLE_PENDULUM_LANES(BareDoublePendulumSeries, x86_64_v3);
-PENDCORE_DOUBLE_PENDULUM_LANES(LoadedDoublePendulumSeries, x86_64_v3);
-#if PENDCORE_CLONES
-PENDCORE_DOUBLE_PENDULUM_LANES(BareDoublePendulumSeries, x86_64_v4);
-PENDCORE_DOUBLE_PENDULUM_LANES(LoadedDoublePendulumSeries, x86_64_v4);
-#endif
+PENDCORE_SERIES_OF_DOUBLE_PENDULUMS()
 
 }  // namespace pendcore

@@ -12,7 +12,6 @@
 #include "pendcore/integrate/taylor/dominant_eigenvalue.hpp"
 
 namespace pendcore {
-
 namespace {
 
 template <template <class> class Form, InstructionSet set>
@@ -31,7 +30,7 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
       tightest = std::min(tightest, std::max(this->rtol()[i], this->atol()[i]));
     }
     all_.equations.prepare(one);
-    all_.expand = expansion_on<Form, set>();
+    all_.expand_kernel = expand_kernel_on<Form, set>();
     all_.make_room(taylor_order(tightest));
     for (int i = 0; i < all_.size(); ++i) {
       all_.rtol[i] = broadcast<Pack<width>>(this->rtol()[i]);

@@ -10,19 +10,19 @@ import numpy.typing as npt
 from pendcore.api.scene import Scene
 from pendcore.api.solution import Solution
 from pendcore.api.solve import solve
-from pendcore.messages.arguments import REQUIRED, refuse_wrong_call
+from pendcore.messages.arguments import known_keywords
 from pendcore.run.keywords import RunKeywords
 from pendcore.run.methods import described_methods
 from pendcore.run.options import with_options
 
 
+@known_keywords
 @with_options()
 def simulate(
-    scene: Scene = REQUIRED,
+    scene: Scene,
     q0: npt.ArrayLike | None = None,
     qd0: npt.ArrayLike = 0.0,
     t_span: Iterable[float] | None = None,
-    *more: object,
     **options: Unpack[RunKeywords],
 ) -> Solution:
     """Solve the equations of motion of a scene from a start.
@@ -86,14 +86,7 @@ def simulate(
     >>> sol.accuracy.achieved <= 1e-9
     True
     """
-    try:  # not @known_keywords, which packs all arguments again: half a microsecond of some three
-        if more:
-            raise TypeError
-        return solve(Solution, scene, q0, qd0, t_span, options)  # type: ignore[arg-type]
-    except TypeError:
-        by_place = () if scene is REQUIRED else (scene, q0, qd0, t_span, *more)
-        refuse_wrong_call(simulate, by_place, options)  # type: ignore[arg-type]
-        raise
+    return solve(Solution, scene, q0, qd0, t_span, options)  # type: ignore[arg-type]
 
 
 simulate.__doc__ = described_methods(simulate.__doc__)

@@ -22,9 +22,6 @@ Floats: TypeAlias = npt.NDArray[np.float64]
 Taken = ParamSpec("Taken")
 Given = TypeVar("Given")
 
-REQUIRED: Any = Parameter.empty
-"""The default of an argument that must be given, as `inspect` has it: the function looks itself
-whether it is."""
 OTHER_NAMES = {"t_span": ("t_end", "t_max", "t_stop", "t_final", "duration")}
 """Our names of parameters, and those of other programs for them; `_` may be missing."""
 
@@ -41,36 +38,25 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
 
 def known_keywords(function: Callable[Taken, Given]) -> Callable[Taken, Given]:
     """Make a function refuse unknown keywords, and suggest the nearest known one."""
+    parameters = signature(function).parameters
+    known = [name for name in parameters if name not in ("self", "cls")]
+    takes_any = any(one.kind is Parameter.VAR_KEYWORD for one in parameters.values())
 
     @wraps(function)
     def called(*args: Taken.args, **named: Taken.kwargs) -> Given:
         try:
             return function(*args, **named)
-        except TypeError:
-            refuse_wrong_call(function, args, named)
+        except TypeError:  # looked at only then: a run of microseconds need not pay for it
+            for name in named:
+                if name not in known and not takes_any:
+                    remedy = did_you_mean(name, known)
+                    owner = _owner(function, args)
+                    raise TypeError(f"{owner}: has no parameter {name!r}: {remedy}") from None
+            if complaint := _call_complaint(function, args, named):
+                raise TypeError(complaint) from None
             raise
 
     return called
-
-
-def refuse_wrong_call(
-    function: Callable[..., object], args: tuple[object, ...], named: dict[str, object]
-) -> None:
-    """Raise a TypeError that says what is wrong with how a function was called, if anything is.
-
-    This is for a call that raised a TypeError: others need not pay for looking.
-    """
-    parameters = signature(function).parameters
-    known = [name for name in parameters if name not in ("self", "cls")]
-    takes_any = any(one.kind is Parameter.VAR_KEYWORD for one in parameters.values())
-    for name in named:
-        if name not in known and not takes_any:
-            remedy = did_you_mean(name, known)
-            raise TypeError(
-                f"{_owner(function, args)}: has no parameter {name!r}: {remedy}"
-            ) from None
-    if complaint := _call_complaint(function, args, named):
-        raise TypeError(complaint) from None
 
 
 def _call_complaint(

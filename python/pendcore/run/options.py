@@ -103,15 +103,13 @@ def with_options(
 ) -> Callable[[Function], Function]:
     """Show the options in the signature of a function, and for ``{options}`` in its docstring.
 
-    The function takes them as ``**options``; ``wanted`` says which. What it takes by ``*more``,
-    only to refuse it, is not shown.
+    The function takes them as ``**options``; ``wanted`` says which.
     """
     listed = [option for option in OPTIONS.values() if wanted(option)]
 
     def described(function: Function) -> Function:
         own = signature(function)
-        various = (Parameter.VAR_POSITIONAL, Parameter.VAR_KEYWORD)
-        first = [one for one in own.parameters.values() if one.kind not in various]
+        first = [one for one in own.parameters.values() if one.kind is not Parameter.VAR_KEYWORD]
         options = [
             Parameter(
                 one.name, Parameter.KEYWORD_ONLY, default=one.default, annotation=one.annotation

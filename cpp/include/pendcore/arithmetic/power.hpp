@@ -1,11 +1,10 @@
 /// \file
 /// Powers for the step control, with the same bits on every processor.
 ///
-/// A step size needs few digits, but must not depend on a library. So these functions are minimax
-/// polynomials of the mantissa (tests/reference/minimax.py). `Real` is a double, or a pack that
-/// holds a number of each of several trajectories. `approximate_log2` and
-/// `approximate_exp2` do not use fma: code that is not cloned calls them, and there fma would be a
-/// call.
+/// A step size needs few digits, but must not depend on a library. So the approximate functions are
+/// minimax polynomials of the mantissa (tests/reference/minimax.py). `Real` is a double, or a pack
+/// that holds a number of each of several trajectories. `approximate_log2` and `approximate_exp2`
+/// do not use fma: code that is not cloned calls them, and there fma would be a call.
 #pragma once
 
 #include <array>
@@ -110,12 +109,12 @@ PENDCORE_INLINE Real coarse_exp2(const Real& x) {
   return std::bit_cast<Real>(std::bit_cast<Integers>(of_fraction) + exponent);
 }
 
-/// 1/x, exactly, for x = 2^k, |k| < 1023.
+/// 1/x, exactly, for x = 2^k, |k| < 1023: the bits of x and of 1/x add up to twice those of 1.
 template <class Real>
 PENDCORE_INLINE Real inverse_of_power_of_two(const Real& x) {
   using Integers = typename Lanes<Real>::Integers;
-  constexpr long long bits_of_both = 2 * std::bit_cast<long long>(1.0);
-  return std::bit_cast<Real>(bits_of_both - std::bit_cast<Integers>(x));
+  constexpr long long sum_of_bits = 2 * std::bit_cast<long long>(1.0);
+  return std::bit_cast<Real>(sum_of_bits - std::bit_cast<Integers>(x));
 }
 
 /// 2^gain x^power within a relative 1e-9, for |power| <= 0.25. The next step waits for it, so its

@@ -171,9 +171,12 @@ template <class Row>
 PENDCORE_INLINE double sum_of_numbers(const Row& x) {
   return sum_of_lanes(x);
 }
-template <class Real>
-PENDCORE_INLINE Real sum_of_numbers(const EachLink<Real, 1>& x) {
-  return x.of[0];
+template <class Real, int links>
+PENDCORE_INLINE Real sum_of_numbers(const EachLink<Real, links>& x) {
+  Real sum = x.of[0];
+#pragma GCC unroll 4
+  for (int i = 1; i < links; ++i) sum = sum + x.of[i];
+  return sum;
 }
 template <class Real>
 PENDCORE_INLINE Real sum_of_numbers(const Two<Real>& x) {
@@ -181,8 +184,8 @@ PENDCORE_INLINE Real sum_of_numbers(const Two<Real>& x) {
 }
 template <class Row>
 constexpr int count_of_numbers = Lanes<Row>::width;
-template <class Real>
-constexpr int count_of_numbers<EachLink<Real, 1>> = 1;
+template <class Real, int links>
+constexpr int count_of_numbers<EachLink<Real, links>> = links;
 template <class Real>
 constexpr int count_of_numbers<Two<Real>> = 2;
 

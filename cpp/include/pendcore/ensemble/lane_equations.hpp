@@ -4,7 +4,7 @@
 ///
 /// With effects, these are couples that never change their mode, waves of motors and the pivot, and
 /// drag. Here are the forms of two links, with at most two waves, or with drag and no wave;
-/// one_link_in_lanes.hpp has those of one.
+/// one_link_in_lanes.hpp has those of one, few_links_in_lanes.hpp those of three and four.
 #pragma once
 
 #include "pendcore/arithmetic/row_of_links.hpp"
@@ -25,6 +25,17 @@ void put_row(Two<Real>& row, int lane, const Pair& one) {
 template <class Real, int links>
 void put_row(EachLink<Real, links>& row, int lane, const Pack<4>& one) {
   for (int i = 0; i < links; ++i) row.of[i][lane] = one[i];
+}
+template <class Real>
+void put_link(ChainLinkOf<Real>& to, int lane, const ChainLink& from) {
+  to.m[lane] = from.m;
+  to.L[lane] = from.L;
+  to.mc[lane] = from.mc;
+  to.I[lane] = from.I;
+  to.Io[lane] = from.Io;
+  to.LL[lane] = from.LL;
+  to.turn[lane] = from.turn;
+  to.across[lane] = from.across;
 }
 /// Puts what the equations of a double pendulum and their series have in common.
 template <class Equations, class One>
@@ -91,6 +102,26 @@ struct BothLinks {
   PENDCORE_INLINE static Two<Real> select(const Integers& which, const Two<Real>& yes,
                                           const Two<Real>& no) {
     return {which ? yes.first : no.first, which ? yes.second : no.second};
+  }
+};
+
+/// Puts states of a few links into a lane, and takes them out.
+template <class Real, int n>
+struct FewLinks {
+  using Integers = typename Lanes<Real>::Integers;
+  using Row = EachLink<Real, n>;
+  static constexpr int links = n;
+
+  static void put_state(Row& row, int lane, const double* from) {
+    for (int i = 0; i < n; ++i) row.of[i][lane] = from[i];
+  }
+  static void get_state(const Row& row, int lane, double* to) {
+    for (int i = 0; i < n; ++i) to[i] = row.of[i][lane];
+  }
+  PENDCORE_INLINE static const Real& number(const Row& row, int link) { return row.of[link]; }
+  PENDCORE_INLINE static Row select(const Integers& which, const Row& yes, const Row& no) {
+    return row_detail::each<Real, n>(
+        [&](int i) __attribute__((always_inline)) { return which ? yes.of[i] : no.of[i]; });
   }
 };
 

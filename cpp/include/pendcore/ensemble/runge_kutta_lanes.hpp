@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "pendcore/dynamics/first_order.hpp"
+#include "pendcore/ensemble/few_links_in_lanes.hpp"
 #include "pendcore/ensemble/lane_steps.hpp"
 #include "pendcore/ensemble/one_link_in_lanes.hpp"
 #include "pendcore/integrate/runge_kutta/step.hpp"

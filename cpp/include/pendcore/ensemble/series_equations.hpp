@@ -146,16 +146,7 @@ struct FewLinksSeriesInLanes {
   }
   bool put(int lane, const One& one) {
     for (int i = 0; i < n; ++i) {
-      ChainLinkOf<Real>& to = constants.link[i];
-      const ChainLink& from = one.constants.link[i];
-      to.m[lane] = from.m;
-      to.L[lane] = from.L;
-      to.mc[lane] = from.mc;
-      to.I[lane] = from.I;
-      to.Io[lane] = from.Io;
-      to.LL[lane] = from.LL;
-      to.turn[lane] = from.turn;
-      to.across[lane] = from.across;
+      put_link(constants.link[i], lane, one.constants.link[i]);
     }
     constants.payload_mass[lane] = one.constants.payload_mass;
     put_row(constants.weight, lane, one.constants.weight);

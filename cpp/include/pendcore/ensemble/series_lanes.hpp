@@ -25,21 +25,28 @@ PENDCORE_INLINE void expand_in_lanes(const Form<Pack<width>>* equations, const P
   equations->expand(*t, y, *sigma, order, rows);
 }
 template <template <class> class Form, int width>
-using Expansion = decltype(&expand_in_lanes<Form, width>);
+using ExpandKernel = decltype(&expand_in_lanes<Form, width>);
 template <template <class> class Form, InstructionSet set>
-Expansion<Form, width_on(set)> expansion_on() {
+ExpandKernel<Form, width_on(set)> expand_kernel_on() {
   return only<&expand_in_lanes<Form, width_on(set)>, set>();
 }
 
-// Those of double pendulums are compiled in a file of their own (double_pendulum_lanes.cpp).
-#define PENDCORE_DOUBLE_PENDULUM_LANES(Form, set) \
-  template Expansion<Form, width_on(InstructionSet::set)> expansion_on<Form, InstructionSet::set>()
-extern PENDCORE_DOUBLE_PENDULUM_LANES(BareDoublePendulumSeries, x86_64_v3);
-extern PENDCORE_DOUBLE_PENDULUM_LANES(LoadedDoublePendulumSeries, x86_64_v3);
+// Those of double pendulums are compiled in a file of their own (double_pendulum_lanes.cpp), which
+// has this list without `extern`.
+#define PENDCORE_ON(maybe_extern, Form, set)                              \
+  maybe_extern template ExpandKernel<Form, width_on(InstructionSet::set)> \
+  expand_kernel_on<Form, InstructionSet::set>();
 #if PENDCORE_CLONES
-extern PENDCORE_DOUBLE_PENDULUM_LANES(BareDoublePendulumSeries, x86_64_v4);
-extern PENDCORE_DOUBLE_PENDULUM_LANES(LoadedDoublePendulumSeries, x86_64_v4);
+#define PENDCORE_ON_EACH_SET(maybe_extern, Form) \
+  PENDCORE_ON(maybe_extern, Form, x86_64_v3)     \
+  PENDCORE_ON(maybe_extern, Form, x86_64_v4)
+#else
+#define PENDCORE_ON_EACH_SET(maybe_extern, Form) PENDCORE_ON(maybe_extern, Form, x86_64_v3)
 #endif
+#define PENDCORE_SERIES_OF_DOUBLE_PENDULUMS(maybe_extern)      \
+  PENDCORE_ON_EACH_SET(maybe_extern, BareDoublePendulumSeries) \
+  PENDCORE_ON_EACH_SET(maybe_extern, LoadedDoublePendulumSeries)
+PENDCORE_SERIES_OF_DOUBLE_PENDULUMS(extern)
 
 /// The lanes of the method of Taylor series on a form of the equations (series_equations.hpp). A
 /// state is (q, qd).
@@ -53,7 +60,7 @@ struct SeriesLanes : LaneSteps<width> {
   using Packs = std::unique_ptr<Real[]>;
 
   Equations equations;
-  Expansion<Form, width> expand = nullptr;  ///< a clone of expand_in_lanes()
+  ExpandKernel<Form, width> expand_kernel = nullptr;  ///< a clone of expand_in_lanes()
   Packs y, y_new, rtol, atol;
   Real sigma = {}, sigma_new = {};      ///< s, the unit of time of a series
   Real largest = {}, largest_new = {};  ///< s, the step that the tolerances allow
@@ -156,7 +163,7 @@ PENDCORE_INLINE typename All::Integers expand(All* all, const Real& t, const Rea
   namespace detail = taylor_detail;
   Integers is_done{};
   for (int tries = 0; tries < detail::most_tries; ++tries) {
-    all->expand(&all->equations, &t, y, &sigma, all->order, rows);
+    all->expand_kernel(&all->equations, &t, y, &sigma, all->order, rows);
     const Real log2_step = log2_of_step(all, y, rows);
     is_done = is_at_most(absolute(log2_step), broadcast<Real>(detail::reach));
     largest = sigma * coarse_exp2(is_done ? log2_step : Real{});

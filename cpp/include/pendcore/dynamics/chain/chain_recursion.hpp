@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "pendcore/dynamics/chain/chain.hpp"
+#include "pendcore/dynamics/chain/free_links.hpp"
 #include "pendcore/dynamics/row.hpp"
 
 namespace pendcore {
@@ -138,37 +139,19 @@ template <class Number>
 template <bool loaded, int size>
 PENDCORE_INLINE void ChainOf<Number>::tip_to_base() const {
   const int n = size > 0 ? size : n_;
-  ForcePerAcceleration<Number> B{payload_mass_, 0.0, payload_mass_};
-  Number b_u = 0.0;
-  Number b_n = 0.0;
+  JointForce<Number> force{{payload_mass_, 0.0, payload_mass_}, 0.0, 0.0};
 #pragma GCC unroll 3
   for (int i = n - 1; i >= 0; --i) {
-    const ChainLink& k = links_[i];
-    const Number D = fma(k.LL, B.nn, k.Io);
-    const Number r = 1.0 / D;
-    const Number speed = in(centripetal_)[i];
-    const Number pu = fma(-speed, B.uu, b_u);
-    const Number pn = fma(-speed, B.un, b_n);
-    const Number torque = loaded ? fma(-k.L, pn, in(torque_)[i]) : -k.L * pn;
-    const Number free = torque * r;
-    const Number wu = k.L * B.un;
-    const Number wn = fma(k.L, B.nn, k.mc);
-    Number fu = pu - in(center_)[i];
-    Number fn = pn;
+    LinkInMotion<Number> at{in(s_)[i],      in(c_)[i],  in(cos_)[i], in(sin_)[i],
+                            in(cc_)[i],     in(ss_)[i], in(sc_)[i],  in(centripetal_)[i],
+                            in(center_)[i], {},         {},          {}};
     if constexpr (loaded) {
-      fu -= in(fx_)[i];
-      fn -= in(fy_)[i];
+      at.torque = in(torque_)[i];
+      at.fx = in(fx_)[i];
+      at.fy = in(fy_)[i];
     }
-    fu = fma(wu, free, fu);
-    fn = fma(wn, free, fn);
-    const Number s = in(s_)[i];
-    const Number c = in(c_)[i];
-    response_[i] = {free, r * fma(wu, c, -(wn * s)), r * fma(wu, s, wn * c), 0.0};
-
-    // B and b are rotated into the frame of the link before.
-    B.add_free(k, r, wu, in(cc_)[i], in(ss_)[i], in(sc_)[i]);
-    b_u = fma(fu, in(cos_)[i], -(fn * in(sin_)[i]));
-    b_n = fma(fu, in(sin_)[i], fn * in(cos_)[i]);
+    const FreeResponse<Number> found = force.template add_free<loaded>(links_[i], at);
+    response_[i] = {found.free, found.x, found.y, 0.0};
   }
 }
 
@@ -179,16 +162,9 @@ PENDCORE_INLINE void ChainOf<Number>::base_to_tip(Number ax, Number ay, Number* 
 #pragma GCC unroll 3
   for (int i = 0; i < n; ++i) {
     const Response& k = response_[i];
-    const Number s = in(s_)[i];
-    const Number c = in(c_)[i];
     const Number L = in(length_)[i];
-    const Number speed = in(centripetal_)[i];
-    const Number x = fma(-speed, c, ax);
-    const Number y = fma(-speed, s, ay);
-    const Number found = fma(-k.y, ay, fma(-k.x, ax, k.free));
-    qdd[i] = found;
-    ax = fma(-(L * s), found, x);
-    ay = fma(L * c, found, y);
+    qdd[i] = accelerate(FreeResponse<Number>{k.free, k.x, k.y}, in(s_)[i], in(c_)[i], L,
+                        in(centripetal_)[i], ax, ay);
   }
 }
 

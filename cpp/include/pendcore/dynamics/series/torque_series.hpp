@@ -12,7 +12,8 @@
 ///
 ///     s_{k+1} = omega sigma c_k/(k + 1),    c_{k+1} = -omega sigma s_k/(k + 1)
 ///
-/// Cost: for each order some 10 operations, 4 for each wave, k products for each square or cube.
+/// Cost: for each order some 10 operations, 5 more for each wave, and k products for each square or
+/// cube.
 #pragma once
 
 #include <memory>
@@ -77,7 +78,7 @@ class TorqueOrders {
     }
     if (laws.waves == 0) return;
     sine_cosine(fma(laws.angular_frequency, Waves{t, t}, laws.phase), sine_, cosine_);
-    turn_ = sigma * laws.angular_frequency;
+    omega_sigma_ = sigma * laws.angular_frequency;
   }
 
   PENDCORE_INLINE bool are_any() const { return laws_.couples != nullptr || laws_.waves != 0; }
@@ -88,11 +89,11 @@ class TorqueOrders {
     if (laws_.couples != nullptr) {
       const auto& couples = *laws_.couples;
       // The fourth place of a pack for three links has a rate but no law: its terms are 0.
-      const Links turn = rate - before(rate);
-      couple = fma(damping_, turn, Links(couples.on_phi * (angle - before(angle))));
+      const Links scaled_rate = rate - before(rate);  // w sigma
+      couple = fma(damping_, scaled_rate, Links(couples.on_phi * (angle - before(angle))));
       if (k == 0) couple = couple + in_time_;
       if (k == 1) couple = couple + sigma_ * couples.slope;
-      if (laws_.has_powers) couple = couple + of_powers(k, per_sigma_ * turn);
+      if (laws_.has_powers) couple = couple + of_powers(k, per_sigma_ * scaled_rate);
     }
     if (laws_.waves != 0) {
       couple = fma(number_of(sine_, 0), laws_.gain[0], couple);
@@ -103,19 +104,21 @@ class TorqueOrders {
   }
 
  private:
-  /// Computes order k + 1 of the waves.
+  /// Computes order k + 1 of the waves. Two waves of a single run share a register; in lanes, a
+  /// second one is left out if there is none.
   PENDCORE_INLINE void advance_waves(int k) {
     const double share = inverse_of[k + 1];
     if constexpr (Lanes<Number>::width > 1) {
-      advance(share, turn_.first, sine_.first, cosine_.first);
-      if (laws_.waves > 1) advance(share, turn_.second, sine_.second, cosine_.second);
+      advance(share, omega_sigma_.first, sine_.first, cosine_.first);
+      if (laws_.waves > 1) advance(share, omega_sigma_.second, sine_.second, cosine_.second);
     } else {
-      advance(share, turn_, sine_, cosine_);
+      advance(share, omega_sigma_, sine_, cosine_);
     }
   }
   template <class Wave>
-  PENDCORE_INLINE static void advance(double share, const Wave& turn, Wave& sine, Wave& cosine) {
-    const Wave factor = share * turn;
+  PENDCORE_INLINE static void advance(double share, const Wave& omega_sigma, Wave& sine,
+                                      Wave& cosine) {
+    const Wave factor = share * omega_sigma;
     const Wave sine_before = sine;
     sine = factor * cosine;
     cosine = -(factor * sine_before);
@@ -134,7 +137,7 @@ class TorqueOrders {
   ConstantOf<Links> by_;         ///< sigma^2 times the factor
   ConstantOf<Links> in_time_{};  ///< held + slope (t - start)
   ConstantOf<Links> damping_{};  ///< on_phid/sigma
-  Waves sine_{}, cosine_{}, turn_{};
+  Waves sine_{}, cosine_{}, omega_sigma_{};
   Links rates_[highest_order];
   Links squares_[highest_order];
 };

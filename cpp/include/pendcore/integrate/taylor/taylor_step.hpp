@@ -7,8 +7,8 @@
 ///
 ///     expand(t, y, sigma, order, coefficients)
 ///
-/// expand() fills rows 1 .. order with y_k, y(t + theta sigma) = sum_k theta^k y_k. The step knows
-/// nothing of pendulums.
+/// expand() fills rows 1 .. order with y_k, y(t + theta sigma) = sum_k theta^k y_k. Sigma is a
+/// power of two: its inverse is taken by its exponent. The step knows nothing of pendulums.
 #pragma once
 
 #include <algorithm>

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -179,7 +180,12 @@ class Taylor final : public Stepper {
     if (compensated_) {
       if (has_low_part(low, dimension())) read_rows(low.data(), memory_.low);
     }
-    memory_.sigma = memory.back();
+    const double sigma = memory.back();
+    if (!(sigma > 0.0) || taylor_detail::power_of_two_below(sigma) != sigma) {
+      throw std::invalid_argument(
+          "the unit of time kept in this solution is no power of two: it was not written by a run");
+    }
+    memory_.sigma = sigma;
     starts_at_rest_ = false;
   }
 

@@ -1,0 +1,184 @@
+/// \file
+/// The equations of three and four links in lanes of Runge-Kutta methods (lane_equations.hpp): the
+/// recursion of chain.hpp, bare or with couples, up to four waves of motors and the pivot, and
+/// drag; drag only where the pivot stands still, and no rotors between links.
+#pragma once
+
+#include "pendcore/dynamics/chain/free_links.hpp"
+#include "pendcore/ensemble/driven_in_lanes.hpp"
+#include "pendcore/ensemble/lane_equations.hpp"
+
+namespace pendcore {
+
+/// What the laws of effects see of a few links (dynamics/row.hpp).
+template <class V, class Time>
+struct FewLinksAt {
+  using Value = V;
+
+  Time t;
+  V q, qd, s, c, L;
+  V vx_of_joint, vy_of_joint;  ///< m/s
+
+  PENDCORE_INLINE V phi() const { return q - before(q); }
+  PENDCORE_INLINE V phid() const { return qd - before(qd); }
+  PENDCORE_INLINE V length() const { return L; }
+  PENDCORE_INLINE V vx() const { return vx_of_joint; }
+  PENDCORE_INLINE V vy() const { return vy_of_joint; }
+};
+
+/// n links in every lane.
+template <class Real, int n>
+struct FewLinksInLanes {
+  using Links = EachLink<Real, n>;
+  static constexpr bool is_long = true;
+
+  ChainLinkOf<Real> link[n] = {};
+  Links mass_moment{};
+  Real payload_mass = {}, gravity = {};
+  Couples<Links> couples;
+  DragInLanes<Links> drag;
+  DrivenInLanes<Real> driven;
+  bool is_loaded = false, has_couples = false;
+
+  /// As ChainOf computes it, in the same order.
+  PENDCORE_INLINE Links accelerations(const Real& t, const Links& q, const Links& qd) const {
+    Links s, c;
+    sine_cosine(q, s, c);
+    if (!is_loaded) return recursion<false>(qd, s, c, {}, {Real{}, Real(Real{} - gravity)});
+    Real wave[DrivenInLanes<Real>::most];
+    driven.compute_waves(t, wave);
+    Acceleration of_pivot{};
+    driven.add_acceleration(wave, of_pivot.x, of_pivot.y);
+    of_pivot.y = of_pivot.y - gravity;
+    return recursion<true>(qd, s, c, loads(t, q, qd, s, c, wave), of_pivot);
+  }
+
+ private:
+  struct Acceleration {
+    Real x, y;
+  };
+  struct Loads {
+    Links torque, fx, fy;  ///< the forces in the frame of each link
+  };
+
+  PENDCORE_INLINE Links length() const {
+    return row_detail::each<Real, n>([this](int i)
+                                         __attribute__((always_inline)) { return link[i].L; });
+  }
+
+  PENDCORE_INLINE Loads loads(const Real& t, const Links& q, const Links& qd, const Links& s,
+                              const Links& c, const Real* wave) const {
+    FewLinksAt<Links, Real> at{t, q, qd, s, c, length(), {}, {}};
+    if (drag.is_there) {
+      Real x{}, y{};
+#pragma GCC unroll 4
+      for (int i = 0; i < n; ++i) {
+        at.vx_of_joint.of[i] = x;
+        at.vy_of_joint.of[i] = y;
+        const Real speed = link[i].L * qd.of[i];
+        x = fma(Real(-speed), s.of[i], x);
+        y = fma(speed, c.of[i], y);
+      }
+    }
+    RowLoads<Links> sums;
+    if (has_couples) sums.couple(couples.torque(at));
+    for (int k = 0; k < driven.motors; ++k) {
+      const auto& motor = driven.motor[k];
+      Real& couple = sums.couples.of[motor.joint];
+      couple = couple + motor.gain * wave[motor.wave];
+    }
+    if (drag.is_there) drag.law.add(at, sums);
+    Loads found{(sums.moments + sums.couples) - after(sums.couples), {}, {}};
+    if (drag.is_there) {
+      found.fx = fma(c, sums.fx, s * sums.fy);
+      found.fy = fma(c, sums.fy, -(s * sums.fx));
+    }
+    return found;
+  }
+
+  template <bool loaded>
+  PENDCORE_INLINE Links recursion(const Links& qd, const Links& s, const Links& c,
+                                  const Loads& loads, Acceleration of_joint) const {
+    const Links square = qd * qd;
+    const Links centripetal = length() * square;
+    const Links center = mass_moment * square;
+    JointForce<Real> force{{payload_mass, Real{}, payload_mass}, Real{}, Real{}};
+    FreeResponse<Real> response[n];
+#pragma GCC unroll 4
+    for (int i = n - 1; i >= 0; --i) {
+      LinkInMotion<Real> at{};
+      at.s = s.of[i];
+      at.c = c.of[i];
+      if (i > 0) {  // nothing is before the first link
+        at.cos = fma(at.c, c.of[i - 1], Real(at.s * s.of[i - 1]));
+        at.sin = fma(at.s, c.of[i - 1], Real(-(at.c * s.of[i - 1])));
+        at.cc = at.cos * at.cos;
+        at.ss = at.sin * at.sin;
+        at.sc = at.sin * at.cos;
+      }
+      at.centripetal = centripetal.of[i];
+      at.center = center.of[i];
+      if constexpr (loaded) {
+        at.torque = loads.torque.of[i];
+        at.fx = loads.fx.of[i];
+        at.fy = loads.fy.of[i];
+      }
+      response[i] = force.template add_free<loaded>(link[i], at);
+    }
+    Links found;
+#pragma GCC unroll 4
+    for (int i = 0; i < n; ++i) {
+      found.of[i] = accelerate(response[i], s.of[i], c.of[i], link[i].L, centripetal.of[i],
+                               of_joint.x, of_joint.y);
+    }
+    return found;
+  }
+};
+
+/// A chain of n links, as a form of the equations in lanes.
+template <int n>
+struct ChainOfFew;
+
+template <class Real, int n>
+struct LaneEquations<ChainOfFew<n>, Real> : FewLinks<Real, n> {
+  using Type = FewLinksInLanes<Real, n>;
+
+  /// Whether the equations of a chain have lanes.
+  static bool has(const EquationsOfMotion& equations) {
+    const auto* const form = std::get_if<std::shared_ptr<Chain>>(&equations.form);
+    if (form == nullptr || (*form)->links() != n || !equations.are_steady()) return false;
+    const ActingEffects<Pack<4>>& effects = *(*form)->effects();
+    return !(*form)->has_rotors() && effects.users.empty() && !effects.any_held &&
+           DragInLanes<EachLink<Real, n>>::has(effects) && DrivenInLanes<Real>::has(effects);
+  }
+  static void prepare(Type& equations, const EquationsOfMotion& one) {
+    const Chain& chain = *std::get<std::shared_ptr<Chain>>(one.form);
+    const ActingEffects<Pack<4>>& effects = *chain.effects();
+    for (ChainLinkOf<Real>& link : equations.link) link.Io = broadcast<Real>(1.0);
+    equations.is_loaded = chain.is_loaded();
+    equations.has_couples = !effects.couples.empty();
+    equations.drag.is_there = !effects.entries.empty();
+    equations.driven.prepare(effects);
+  }
+  static bool put(Type& equations, int lane, const EquationsOfMotion& from) {
+    if (!has(from)) return false;
+    const Chain& chain = *std::get<std::shared_ptr<Chain>>(from.form);
+    const ActingEffects<Pack<4>>& effects = *chain.effects();
+    const bool is_alike = equations.is_loaded == chain.is_loaded() &&
+                          equations.has_couples == !effects.couples.empty() &&
+                          equations.drag.is_there == !effects.entries.empty();
+    if (!is_alike) return false;
+    for (int i = 0; i < n; ++i) {
+      put_link(equations.link[i], lane, chain.link(i));
+      equations.mass_moment.of[i][lane] = chain.mass_moment(i);
+    }
+    equations.payload_mass[lane] = chain.payload_mass();
+    equations.gravity[lane] = chain.gravity();
+    if (equations.has_couples) put_couples(equations.couples, lane, effects.couples.front());
+    const auto* const drag = DragInLanes<EachLink<Real, n>>::law_of(effects);
+    if (drag != nullptr) equations.drag.put(lane, *drag);
+    return equations.driven.put(lane, effects);
+  }
+};
+
+}  // namespace pendcore
