@@ -81,11 +81,15 @@ def section(record: Record) -> str:
 
 def threads(record: Record) -> str:
     found = record["scenes"][0]["threads"]
-    return (
+    share = found["ensemble"] / found["loops"]
+    told = (
         f"Two threads make the ensemble {found['ensemble']:.2f} times as fast as one. Two "
-        f"processes of a bare loop were {found['loops']:.2f} times as fast as one in the same run, "
-        f"so the ensemble gained {found['ensemble'] / found['loops']:.2f} of what was to be had."
+        f"processes of a bare loop were {found['loops']:.2f} times as fast as one in the same run: "
+        f"the ensemble gained {share:.2f} of that."
     )
+    if share > 1:
+        told += " More than 1 means that other work on the machine slowed the loops more."
+    return told
 
 
 def page(record: Record) -> str:
