@@ -55,6 +55,17 @@ def starts(count, n, seed, reach):
     return pc.draw.uniform(-reach, reach, (count, n), seed=seed)
 
 
+def assert_bits(scene, method, rtol, t_end):
+    """Assert the bits of members, to their ends and out of steps; return how they were run."""
+    n = len(scene.links)
+    q0, qd0 = starts(21, n, 2, np.pi), starts(21, n, 3, 4.0)
+    q0[5], qd0[5] = 0.0, 0.0
+    same = {"method": method, "rtol": rtol, "atol": rtol / 10}
+    assert assert_same(scene, q0, qd0, (0.3, t_end), **same).success.all()
+    assert_same(scene, q0, qd0, (1.0, 0.0), **same, max_steps=11)
+    return q0, qd0, same
+
+
 @pytest.mark.parametrize("rtol", [1e-3, 1e-7, 1e-12])
 @pytest.mark.parametrize("n", [3, 4])
 @pytest.mark.parametrize("name", SCENES)
@@ -62,12 +73,8 @@ def test_chains_in_lanes_have_the_bits_of_single_runs(name, n, rtol):
     scene = chain(n, SCENES[name])
     if has_lanes():
         assert scene.explain().lanes == ("dopri5", "dop853", "taylor")
-    q0, qd0 = starts(21, n, 2, np.pi), starts(21, n, 3, 4.0)
     for method in ("taylor", "taylor-radau5"):
-        same = {"method": method, "rtol": rtol, "atol": rtol / 10}
-        found = assert_same(scene, q0, qd0, (0.3, 2.3), **same)
-        assert found.success.all()
-        assert_same(scene, q0, qd0, (1.0, 0.0), **same, max_steps=11)
+        q0, qd0, same = assert_bits(scene, method, rtol, 2.3)
         assert_same(scene, q0[:3], qd0[:3], (0.0, 1.0), **same, max_step=0.02)
 
 
@@ -80,12 +87,7 @@ def test_any_chain_in_lanes_has_the_bits_of_single_runs(name, n, rtol):
     scene = chain(n, (OF_ANY_CHAIN | SCENES)[name])
     if has_lanes():
         assert "taylor" in scene.explain().lanes
-    q0, qd0 = starts(21, n, 2, np.pi), starts(21, n, 3, 4.0)
-    q0[5], qd0[5] = 0.0, 0.0
-    same = {"method": "taylor", "rtol": rtol, "atol": rtol / 10}
-    found = assert_same(scene, q0, qd0, (0.3, 2.3), **same)
-    assert found.success.all()
-    assert_same(scene, q0, qd0, (1.0, 0.0), **same, max_steps=11)
+    q0, qd0, same = assert_bits(scene, "taylor", rtol, 2.3)
     assert_same(scene, q0, qd0, (0.0, 1.0), **same, max_step=0.007)  # looks whether it is stiff
 
 

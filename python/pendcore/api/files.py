@@ -60,7 +60,8 @@ def load(path: str | os.PathLike[str]) -> Solution | Ensemble:
     if Path(path).is_dir():
         store = opened(Path(path))
         found = _ensemble(store.members, store.request, store.arrays)
-        if missing := found.counts().get("not_run"):
+        if not store.is_complete:
+            missing = found.counts()["not_run"]
             warn(
                 f"{path}: {missing} of {len(found)} members were not run: the call of pc.ensemble "
                 "that made the store goes on with it"

@@ -39,15 +39,19 @@ def new_folder(folder: Path) -> Iterator[None]:
     with blamed_on_usage():
         folder.mkdir(parents=True, exist_ok=True)
     try:
-        TemporaryFile(dir=folder).close()
-    except OSError as error:
-        raise UsageError(
-            f"{folder}: cannot be written: {error.strerror}: choose another folder"
-        ) from None
-    try:
+        _require_writable(folder)
         yield
     except BaseException:
         with suppress(OSError):
             for path in new:
                 path.rmdir()
         raise
+
+
+def _require_writable(folder: Path) -> None:
+    try:
+        TemporaryFile(dir=folder).close()
+    except OSError as error:
+        raise UsageError(
+            f"{folder}: cannot be written: {error.strerror}: choose another folder"
+        ) from None

@@ -61,6 +61,12 @@ class Store:
         """Return the arrays of the result, which read from the disk when they are indexed."""
         return {one.name: self.group[one.name] for one in self.variables}
 
+    @property
+    def is_complete(self) -> bool:
+        """Return whether every block was written, without reading any."""
+        status: Any = self.group["status"]
+        return bool(status.nchunks_initialized == status.nchunks)
+
     def is_done(self, block: Block) -> bool:
         """Return whether a block was written."""
         first = tuple(slice(one.start, one.start + 1) for one in block)

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "pendcore/arithmetic/epsilon.hpp"
+#include "pendcore/arithmetic/instruction_set.hpp"
 #include "pendcore/arithmetic/pack.hpp"
 #include "pendcore/arithmetic/power.hpp"
 #include "pendcore/arithmetic/two_double.hpp"
