@@ -142,9 +142,18 @@ PENDCORE_INLINE void ChainOf<Number>::tip_to_base() const {
   JointForce<Number> force{{payload_mass_, 0.0, payload_mass_}, 0.0, 0.0};
 #pragma GCC unroll 3
   for (int i = n - 1; i >= 0; --i) {
-    LinkInMotion<Number> at{in(s_)[i],      in(c_)[i],  in(cos_)[i], in(sin_)[i],
-                            in(cc_)[i],     in(ss_)[i], in(sc_)[i],  in(centripetal_)[i],
-                            in(center_)[i], {},         {},          {}};
+    LinkInMotion<Number> at{.s = in(s_)[i],
+                            .c = in(c_)[i],
+                            .cos = in(cos_)[i],
+                            .sin = in(sin_)[i],
+                            .cc = in(cc_)[i],
+                            .ss = in(ss_)[i],
+                            .sc = in(sc_)[i],
+                            .centripetal = in(centripetal_)[i],
+                            .center = in(center_)[i],
+                            .torque = {},
+                            .fx = {},
+                            .fy = {}};
     if constexpr (loaded) {
       at.torque = in(torque_)[i];
       at.fx = in(fx_)[i];
