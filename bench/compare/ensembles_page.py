@@ -81,14 +81,14 @@ def section(record: Record) -> str:
 
 def threads(record: Record) -> str:
     found = record["scenes"][0]["threads"]
-    share = found["ensemble"] / found["loops"]
+    ratio = found["ensemble"] / found["loops"]
     told = (
         f"Two threads make the ensemble {found['ensemble']:.2f} times as fast as one. Two "
         f"processes of a bare loop were {found['loops']:.2f} times as fast as one in the same run: "
-        f"the ensemble gained {share:.2f} of that."
+        f"the gain of the ensemble is {ratio:.2f} times that of the loops."
     )
-    if share > 1:
-        told += " More than 1 means that other work on the machine slowed the loops more."
+    if ratio > 1:
+        told += " The loops are a yardstick of the machine at that moment, not a bound."
     return told
 
 

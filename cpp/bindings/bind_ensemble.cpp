@@ -131,15 +131,12 @@ void bind_ensemble(py::module_& module) {
       py::arg("scene"));
   module.def("parameters", &named_numbers, py::arg("scene"));
   module.def(
-      "place_of_degrees",
+      "first_in_degrees",
       [](const py::array_t<double, py::array::c_style>& angles) {
-        return place_of_degrees({angles.data(), static_cast<std::size_t>(angles.size())});
+        return first_in_degrees({angles.data(), static_cast<std::size_t>(angles.size())});
       },
       py::arg("angles"));
-  module.def(
-      "warning_of_degrees",
-      [](const std::string& name, double x) { return warning_of_degrees(name, x); },
-      py::arg("name"), py::arg("angle"));
+  module.def("warning_of_degrees", &warning_of_degrees, py::arg("name"), py::arg("angle"));
   module.def("check_parameter_names",
              [](const Scene& scene, const std::vector<std::string>& names) {
                static_cast<void>(ParameterChoice(scene, names));

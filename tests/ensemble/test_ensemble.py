@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import math
-import warnings
 
 import numpy as np
 import pendcore as pc
@@ -161,11 +160,13 @@ class OwnReducer(pc.keep.Reducer):
     [
         ({"q0": np.zeros((3, 3))}, r"q0: shape \(3, 3\): must be \(\.\.\., 2\)"),
         ({"q0": np.zeros((3, 2)), "qd0": np.zeros((4, 2))}, r"do not broadcast: q0 \(3,\), qd0"),
-        ({"vary": {"link[3].mass": 1.0}}, r'"link\[3\].mass".*that name: it has 2 links'),
-        ({"vary": {"effect[1].damping": 1.0}}, "that name: it has 0 effects"),
+        ({"vary": {"link[3].mass": 1.0}}, r'\[3\].mass".*name: it has 2 links, counted from 1'),
+        ({"vary": {"link[0].mass": 1.0}}, "that name: it has 2 links, counted from 1"),
+        ({"vary": {"effect[1].damping": 1.0}}, "that name: it has no effects"),
+        ({"vary": {"link[1].damping": 1.0}}, r"that name: parameters\(\) lists those that it has"),
         ({"vary": {"mass": 1.0}}, r'did you mean "link\[1\].mass"'),
-        ({"vary": {"q0[1]": 1.0}}, "that name: starts are not parameters: q0 and qd0 take arrays"),
-        ({"vary": {"damping": 1.0}}, r"that name: scene.parameters\(\) lists all"),
+        ({"vary": {"q0[1]": 1.0}}, "starts are no parameters: give arrays of them as q0"),
+        ({"vary": {"damping": 1.0}}, r"that name: parameters\(\) lists those that it has"),
         ({"vary": {"gravty": 1.0}}, 'did you mean "gravity"'),
         ({"keep": "all"}, 'keep = \'all\': must be "end", "times"'),
         ({"keep": "times"}, "t_eval is missing"),
@@ -263,7 +264,17 @@ def test_starts_in_degrees_are_told_once():
     with pytest.warns(pc.PendcoreWarning, match=r"q0\[0, 0\] = 45.0 rad: that is 2578 deg") as told:
         pc.ensemble(BOOK, [[45, 60], [30, 90]], t_span=(0, 0.1))
     assert len(told) == 1
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        pc.ensemble(BOOK, [[45.5, 60], [30, 90]], t_span=(0, 0.1))
-        pc.ensemble(BOOK, [[0, 5], [10, 0]], t_span=(0, 0.1))
+    with pytest.warns(pc.PendcoreWarning, match=r"^q0\[1\] = 60.0 rad"):  # as it was given
+        pc.ensemble(BOOK, [0, 60], t_span=(0, 0.1), vary={"gravity": [9.8, 1.6]})
+    with pytest.warns(pc.PendcoreWarning, match=r"^q0 = 45.0 rad"):
+        pc.ensemble(BOOK, 45, t_span=(0, 0.1))
+    pc.ensemble(BOOK, [[45.5, 60], [30, 90]], t_span=(0, 0.1))
+    pc.ensemble(BOOK, [[0, 5], [10, 0]], t_span=(0, 0.1))
+
+
+def test_a_parameter_of_another_part_is_named():
+    with pytest.raises(ValueError, match=r'did you mean "effect\[1\].damping"'):
+        DAMPED.with_parameters({"link[1].damping": 0.1})
+    shaken = BOOK.replace(effects=[E.DrivenPivot(x=E.Sinusoid(0.1, 9.0))])
+    with pytest.raises(ValueError, match=r'did you mean "effect\[1\].x.amplitude"'):
+        shaken.with_parameters({"effect[1].x": 0.1})

@@ -55,15 +55,18 @@ def starts(count, n, seed, reach):
     return pc.draw.uniform(-reach, reach, (count, n), seed=seed)
 
 
-def assert_bits(scene, method, rtol, t_end):
-    """Assert the bits of members, to their ends and out of steps; return how they were run."""
+def asked(method, rtol):
+    return {"method": method, "rtol": rtol, "atol": rtol / 10}
+
+
+def assert_bits(scene, how, t_end):
+    """Assert the bits of members, to their ends and out of steps; return their starts."""
     n = len(scene.links)
     q0, qd0 = starts(21, n, 2, np.pi), starts(21, n, 3, 4.0)
     q0[5], qd0[5] = 0.0, 0.0
-    same = {"method": method, "rtol": rtol, "atol": rtol / 10}
-    assert assert_same(scene, q0, qd0, (0.3, t_end), **same).success.all()
-    assert_same(scene, q0, qd0, (1.0, 0.0), **same, max_steps=11)
-    return q0, qd0, same
+    assert assert_same(scene, q0, qd0, (0.3, t_end), **how).success.all()
+    assert_same(scene, q0, qd0, (1.0, 0.0), **how, max_steps=11)
+    return q0, qd0
 
 
 @pytest.mark.parametrize("rtol", [1e-3, 1e-7, 1e-12])
@@ -74,8 +77,9 @@ def test_chains_in_lanes_have_the_bits_of_single_runs(name, n, rtol):
     if has_lanes():
         assert scene.explain().lanes == ("dopri5", "dop853", "taylor")
     for method in ("taylor", "taylor-radau5"):
-        q0, qd0, same = assert_bits(scene, method, rtol, 2.3)
-        assert_same(scene, q0[:3], qd0[:3], (0.0, 1.0), **same, max_step=0.02)
+        how = asked(method, rtol)
+        q0, qd0 = assert_bits(scene, how, 2.3)
+        assert_same(scene, q0[:3], qd0[:3], (0.0, 1.0), **how, max_step=0.02)
 
 
 @pytest.mark.parametrize("rtol", [1e-3, 1e-7, 1e-12])
@@ -87,8 +91,9 @@ def test_any_chain_in_lanes_has_the_bits_of_single_runs(name, n, rtol):
     scene = chain(n, (OF_ANY_CHAIN | SCENES)[name])
     if has_lanes():
         assert "taylor" in scene.explain().lanes
-    q0, qd0, same = assert_bits(scene, "taylor", rtol, 2.3)
-    assert_same(scene, q0, qd0, (0.0, 1.0), **same, max_step=0.007)  # looks whether it is stiff
+    how = asked("taylor", rtol)
+    q0, qd0 = assert_bits(scene, how, 2.3)
+    assert_same(scene, q0, qd0, (0.0, 1.0), **how, max_step=0.007)  # looks whether it is stiff
 
 
 @pytest.mark.parametrize("n", [5, 8, 9])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -122,7 +123,7 @@ def test_an_interrupted_store_ends_as_the_same_bytes(tmp_path, stored, kind):
         pc.ensemble(BOOK, STARTS, progress=stop_early, executor=pool, **how)
     done = stop.value.ensemble.counts()
     assert 0 < done.get("not_run", 0) < len(STARTS) * 9
-    missing = f"{done['not_run']} of 54 members were not run: the call of pc.ensemble that made"
+    missing = f"{done['not_run']} of 54 members were not run: repeat the call of pc.ensemble"
     with pytest.warns(pc.PendcoreWarning, match=missing):
         assert pc.load(path).ending == "interrupted"
     found = pc.ensemble(BOOK, STARTS, **how)
@@ -190,6 +191,7 @@ def test_another_version_is_refused(stored, tmp_path):
 
 def test_what_cannot_be_a_store(tmp_path):
     (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "notes.txt").touch()
     with pytest.raises(ValueError, match="is no store of an ensemble"):
         pc.ensemble(BOOK, STARTS, t_span=(0, 1), store=tmp_path / "other")
     with pytest.raises(ValueError, match="is no store of an ensemble"):
@@ -267,3 +269,37 @@ print(result, 1024 * (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - befor
     result, used = map(int, told.split())
     assert result == 41_000_000
     assert used < result + 20_000_000
+
+
+def test_a_store_has_one_writer_at_a_time(tmp_path, stored):
+    how = {"store": tmp_path / "plain.zarr", "chunk": 7} | ASKED
+
+    def write_too(fraction):
+        pc.ensemble(BOOK, STARTS, **how)
+
+    with pytest.raises(OSError, match=r"plain.zarr': another run is writing it: wait until"):
+        pc.ensemble(BOOK, STARTS, progress=write_too, **how)
+    pc.ensemble(BOOK, STARTS, **how)
+    assert contents(tmp_path / "plain.zarr") == contents(stored)
+
+
+def test_an_empty_folder_becomes_a_store(tmp_path, stored):
+    pc.ensemble(BOOK, STARTS, store=tmp_path, chunk=7, **ASKED)
+    assert contents(tmp_path) == contents(stored)
+
+
+@pytest.mark.parametrize("name", ["q", "status", "extremes"])
+def test_a_chunk_that_is_damaged_is_named_and_can_be_made_anew(tmp_path, stored, name):
+    path = tmp_path / "damaged.zarr"
+    shutil.copytree(stored, path)
+    chunk = sorted(path.glob(f"{name}/c/**/*"))[-1]
+    chunk.write_bytes(chunk.read_bytes()[:-5])
+    where = re.escape(chunk.relative_to(path).as_posix())
+    read = {"q": lambda found: found.q, "status": lambda found: found.codes}
+    found = pc.load(path)
+    with pytest.raises(OSError, match=f"damaged.zarr': {where} cannot be read .*: remove ") as said:
+        read.get(name, lambda found: found[name])(found)
+    (remedy,) = re.findall(r"remove (\S+) from the store", str(said.value))
+    (path / remedy).unlink()
+    pc.ensemble(BOOK, STARTS, store=path, **ASKED)
+    assert contents(path) == contents(stored)

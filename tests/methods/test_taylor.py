@@ -228,13 +228,19 @@ def test_dense_output_is_finite_where_powers_of_the_step_overflow() -> None:
     assert not sol.qd.any()
 
 
+def continued_with_unit_of_time(factor):
+    begun = pc.simulate(pc.Scene.textbook(), [0.8, 1.0], t_span=(0, 1), method="taylor")
+    state = begun.run.__getstate__()
+    (unit,) = state["position_stepper"]
+    state["position_stepper"] = [factor * unit]
+    run = pc._core.Run.__new__(pc._core.Run)
+    run.__setstate__(state)
+    return run.resume(2.0, None, 1000, None, None)
+
+
 @pytest.mark.parametrize("factor", [3.0, 1.5, -1.0, 0.0, np.nan, np.inf])
 def test_a_unit_of_time_that_no_run_wrote_is_refused(factor):
     """Its inverse is taken by its exponent: another number would give a wrong series."""
-    begun = pc.simulate(pc.Scene.textbook(), [0.8, 1.0], t_span=(0, 1), method="taylor")
-    state = begun.run.__getstate__()
-    state["position_stepper"] = [factor * state["position_stepper"][0]]
-    run = pc._core.Run.__new__(pc._core.Run)
-    run.__setstate__(state)
-    with pytest.raises(ValueError, match="unit of time kept in this solution is no power of two"):
-        run.resume(2.0, None, 1000, None, None)
+    assert continued_with_unit_of_time(2.0).success
+    with pytest.raises(ValueError, match=r"unit of time of the Taylor series = .* must be a power"):
+        continued_with_unit_of_time(factor)

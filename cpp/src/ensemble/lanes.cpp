@@ -105,14 +105,11 @@ std::unique_ptr<LaneRunner> lanes_of(std::string_view method, const Scene& scene
   if (method == taylor.info.name) {
     return options.first_step ? nullptr : make_series_lanes<set>(scene, t0, t_end, options);
   }
-  if (scene.links.size() == 1) {
-    return runge_kutta_lanes<SinglePendulum, set>(method, scene, t0, t_end, options);
-  }
-  if (scene.links.size() == 3) {
-    return runge_kutta_lanes<ChainOfFew<3>, set>(method, scene, t0, t_end, options);
-  }
-  if (scene.links.size() == 4) {
-    return runge_kutta_lanes<ChainOfFew<4>, set>(method, scene, t0, t_end, options);
+  switch (scene.links.size()) {
+    case 1: return runge_kutta_lanes<SinglePendulum, set>(method, scene, t0, t_end, options);
+    case 3: return runge_kutta_lanes<FreeChain<3>, set>(method, scene, t0, t_end, options);
+    case 4: return runge_kutta_lanes<FreeChain<4>, set>(method, scene, t0, t_end, options);
+    default: break;
   }
   const EquationsOfMotion equations = equations_of_motion(scene);
   if (std::holds_alternative<DoublePendulum>(equations.form)) {
@@ -131,8 +128,8 @@ std::vector<std::string_view> methods_with_lanes(const Scene& scene) {
   if (std::holds_alternative<DoublePendulum>(equations.form) ||
       LaneEquations<TwoLinksWithEffects, Pack<4>>::has(equations) ||
       LaneEquations<SinglePendulum, Pack<4>>::has(equations) ||
-      LaneEquations<ChainOfFew<3>, Pack<4>>::has(equations) ||
-      LaneEquations<ChainOfFew<4>, Pack<4>>::has(equations)) {
+      LaneEquations<FreeChain<3>, Pack<4>>::has(equations) ||
+      LaneEquations<FreeChain<4>, Pack<4>>::has(equations)) {
     methods = {dormand_prince_5.info.name, dormand_prince_8.info.name};
   }
   const std::size_t n = scene.links.size();

@@ -9,6 +9,7 @@
 
 #include "pendcore/ensemble/chain_series_in_lanes.hpp"
 #include "pendcore/ensemble/lane_loop.hpp"
+#include "pendcore/ensemble/series_of_double_pendulums.hpp"
 #include "pendcore/integrate/taylor/dominant_eigenvalue.hpp"
 
 namespace pendcore {

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
+#include <charconv>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -68,28 +69,45 @@ std::size_t distance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-/// What to do about a name that the scene does not have.
-std::string remedy(const Scene& scene, const std::vector<NamedNumber>& known,
-                   const std::string& name) {
-  if (name.starts_with("q0") || name.starts_with("qd0")) {
-    return "starts are not parameters: q0 and qd0 take arrays of them";
-  }
+/// What is wrong with the number of a link or an effect in a name, or nothing.
+std::string wrong_number(const Scene& scene, const std::string& name) {
   for (const auto& [part, count] :
        {std::pair("link", scene.links.size()), std::pair("effect", scene.effects.size())}) {
     const std::string prefix = std::string(part) + "[";
     if (!name.starts_with(prefix)) continue;
-    const long long number = std::atoll(name.c_str() + prefix.size());
-    if (number < 1 || number > static_cast<long long>(count)) {
-      return "it has " + std::to_string(count) + " " + part + (count == 1 ? "" : "s");
-    }
+    std::size_t number = 0;  // which stays 0 where there are no digits, or too many
+    std::from_chars(name.data() + prefix.size(), name.data() + name.size(), number);
+    if (number >= 1 && number <= count) continue;
+    if (count == 0) return "it has no " + std::string(part) + "s";
+    return "it has " + std::to_string(count) + " " + part + (count == 1 ? "" : "s") +
+           ", counted from 1";
   }
-  const auto ends_with_it = [&](const NamedNumber& one) { return one.name.ends_with("." + name); };
-  auto meant = std::ranges::find_if(known, ends_with_it);
-  if (meant == known.end()) {
-    meant = std::ranges::min_element(
-        known, {}, [&](const NamedNumber& one) { return distance(one.name, name); });
-    if (distance(meant->name, name) > name.size() / 2) return "scene.parameters() lists all";
+  return "";
+}
+
+/// What to do about a name that the scene does not have.
+std::string remedy(const Scene& scene, const std::vector<NamedNumber>& known,
+                   const std::string& name) {
+  if (name.starts_with("q0") || name.starts_with("qd0")) {
+    return "it is of the start of a run, such as q0[1] and qd0[1]";
   }
+  if (const std::string wrong = wrong_number(scene, name); !wrong.empty()) return wrong;
+  const auto is_part = [&](const NamedNumber& one) { return one.name.starts_with(name + "."); };
+  if (const auto part = std::ranges::find_if(known, is_part); part != known.end()) {
+    return "did you mean \"" + part->name + "\"?";
+  }
+  // Links have other numbers than effects: the last part of the name says what is meant.
+  const auto last_part = [](const std::string& all) { return all.substr(all.rfind('.') + 1); };
+  const std::string wanted = last_part(name);
+  const auto far = [&](const NamedNumber& one) { return distance(last_part(one.name), wanted); };
+  const std::size_t nearest = far(*std::ranges::min_element(known, {}, far));
+  if (nearest > wanted.size() / 2) return "parameters() lists those that it has";
+  // If there are several, the one whose whole name is nearest is meant.
+  std::vector<NamedNumber> near;
+  std::ranges::copy_if(known, std::back_inserter(near),
+                       [&](const NamedNumber& one) { return far(one) == nearest; });
+  const auto meant = std::ranges::min_element(
+      near, {}, [&](const NamedNumber& one) { return distance(one.name, name); });
   return "did you mean \"" + meant->name + "\"?";
 }
 

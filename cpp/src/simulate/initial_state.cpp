@@ -113,8 +113,8 @@ std::string span_of(const Effect& effect) {
 std::vector<std::string> run_warnings(const Scene& scene, const std::vector<double>& q0, double t0,
                                       double t_end) {
   std::vector<std::string> warnings;
-  if (const std::ptrdiff_t i = place_of_degrees(q0); i >= 0) {
-    warnings.push_back(warning_of_degrees("q0[" + std::to_string(i) + "]", q0[i]));
+  if (const auto i = first_in_degrees(q0)) {
+    warnings.push_back(warning_of_degrees("q0[" + std::to_string(*i) + "]", q0[*i]));
   }
   const double first = std::min(t0, t_end);
   const double last = std::max(t0, t_end);

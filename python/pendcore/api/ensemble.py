@@ -14,9 +14,9 @@ from pendcore import _core
 from pendcore.api.ensemble_solution import Ensemble, run_ensemble
 from pendcore.api.scene import Scene
 from pendcore.ensemble.keep import REDUCERS, Reducer
-from pendcore.ensemble.members import Members, members_of
+from pendcore.ensemble.members import members_of
 from pendcore.ensemble.request import Request
-from pendcore.messages.arguments import known_keywords, numbers, time_span
+from pendcore.messages.arguments import Floats, known_keywords, numbers, time_span
 from pendcore.messages.progress import Progress
 from pendcore.messages.warning import warn
 from pendcore.run.events import Event, events_asked_for
@@ -109,9 +109,15 @@ def ensemble(
         If an argument is wrong for every member; the message names it. A store with results of
         another scene, start, option or version is refused.
     OSError
-        If the disk is too small for the store, or full, or cannot be written.
+        If the disk is too small for the store, or full, or cannot be written, or if another run is
+        writing the store.
     KeyboardInterrupt, or any exception of ``progress``, a worker or the disk
         The attribute ``ensemble`` has the members that were run.
+
+    Warns
+    -----
+    PendcoreWarning
+        If the starts look like degrees, or if members fail and ``check`` is not given.
 
     Examples
     --------
@@ -122,7 +128,7 @@ def ensemble(
     """
     q0 = require_start(scene, q0)
     members = members_of(scene, q0, qd0, vary)
-    _warn_of_degrees(members)
+    _warn_of_degrees(np.asarray(q0, dtype=np.float64))
     options = {
         "method": method, "rtol": rtol, "atol": atol, "events": tuple(events_asked_for(events)),
         "max_steps": max_steps, "max_step": max_step,
@@ -136,13 +142,13 @@ def ensemble(
     return run_ensemble(members, request, of_the_whole)
 
 
-def _warn_of_degrees(members: Members) -> None:
+def _warn_of_degrees(q0: Floats) -> None:
     """Warn once if the starts look like degrees, as `simulate` does of each."""
-    some = members.q0[tuple(slice(64) for _ in members.shape)]  # a few tell
-    place = _core.place_of_degrees(some)
-    if place >= 0:
-        where = ", ".join(str(int(i)) for i in np.unravel_index(place, some.shape))
-        warn(_core.warning_of_degrees(f"q0[{where}]", float(some.flat[place])))
+    place = _core.first_in_degrees(q0)
+    if place is not None:
+        index = [str(int(i)) for i in np.unravel_index(place, q0.shape)]
+        name = f"q0[{', '.join(index)}]" if index else "q0"
+        warn(_core.warning_of_degrees(name, float(q0.flat[place])))
 
 
 def _reducers(keep: Keep) -> dict[str, Reducer]:

@@ -15,14 +15,14 @@ from pendcore.api.simulate import simulate
 from pendcore.api.solution import Solution
 from pendcore.ensemble.archive import save
 from pendcore.ensemble.blocks import blocks_of, usual_block
-from pendcore.ensemble.distribution import InMemory, Limits, run_by, run_here
+from pendcore.ensemble.distribution import InMemory, Limits, run_blocks
 from pendcore.ensemble.export import to_xarray
 from pendcore.ensemble.figure import plot
 from pendcore.ensemble.members import Members
 from pendcore.ensemble.request import Request
 from pendcore.ensemble.result import EnsembleResult
 from pendcore.ensemble.run import run_members
-from pendcore.ensemble.store import Store, bytes_of, in_words, store_for
+from pendcore.ensemble.store import bytes_of, in_words, store_for
 from pendcore.ensemble.trust import resolved, second
 from pendcore.messages.arguments import (
     did_you_mean,
@@ -291,27 +291,23 @@ def run_ensemble(members: Members, request: Request, given: dict[str, Any]) -> E
     if chunk and executor is None and path is None:
         raise TypeError("chunk: counts only with a store or an executor")
     what = f"running {members.count} members"
-    target: InMemory | Store | None = None
     if path is not None:
-        target = store_for(Path(path), members, request, chunk)
         what += f" into {path}, up to {in_words(bytes_of(members, request))}"
-        blocks = target.blocks
-    elif executor is not None:
-        target = InMemory(members, request)
-        blocks = blocks_of(members.shape, chunk or usual_block(members, request))
     report = callback(given["progress"], what, members.count, "members")
+    limits = Limits(workers, limit, report)
     try:
-        if target is None:
-            found = run_members(members, request, workers, limit, report)
-        elif executor is None:
-            found = run_here(members, request, blocks, target, Limits(workers, limit, report))
+        if path is not None:
+            with store_for(Path(path), members, request, chunk) as store:
+                found = run_blocks(members, request, store.blocks, store, limits, executor)
+        elif executor is not None:
+            blocks = blocks_of(members.shape, chunk or usual_block(members, request))
+            target = InMemory(members, request)
+            found = run_blocks(members, request, blocks, target, limits, executor)
         else:
-            limits = Limits(workers, limit, report)
-            found = run_by(executor, members, request, blocks, target, limits)
+            found = run_members(members, request, workers, limit, report)
     finally:
         close(report)
-    arrays = found.arrays if target is None else target.arrays
-    result = Ensemble(members, request, arrays, found.ending, found.statistics)
+    result = Ensemble(members, request, found.arrays, found.ending, found.statistics)
     if found.error is not None:
         found.error.ensemble = result  # type: ignore[attr-defined]
         raise found.error

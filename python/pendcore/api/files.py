@@ -58,16 +58,7 @@ def load(path: str | os.PathLike[str]) -> Solution | Ensemble:
     'to 10 s'
     """
     if Path(path).is_dir():
-        store = opened(Path(path))
-        found = _ensemble(store.members, store.request, store.arrays)
-        if not store.is_complete:
-            missing = found.counts()["not_run"]
-            warn(
-                f"{path}: {missing} of {len(found)} members were not run: the call of pc.ensemble "
-                "that made the store goes on with it"
-            )
-            found.ending = "interrupted"
-        return found
+        return _from_store(Path(path))
     if is_ensemble(path):
         saved = load_ensemble(path)
         return _ensemble(saved.members, saved.request, saved.arrays, saved.ending, saved.statistics)
@@ -116,6 +107,18 @@ def load_solution(path: str | os.PathLike[str]) -> Solution:
     found = load(path)
     if isinstance(found, Ensemble):
         raise ValueError(f"{path}: is an ensemble, not a solution: pc.load() reads it, in Python")
+    return found
+
+
+def _from_store(path: Path) -> Ensemble:
+    store = opened(path)
+    found = _ensemble(store.members, store.request, store.arrays)
+    if not store.is_complete and (missing := found.counts().get("not_run", 0)):
+        found.ending = "interrupted"
+        warn(
+            f"{path}: {missing} of {len(found)} members were not run: repeat the call of "
+            "pc.ensemble that made the store to run them"
+        )
     return found
 
 

@@ -26,6 +26,8 @@ def with_parameters(case: Case, given: list[str]) -> Case:
         if not equals:
             raise UsageError(f"--parameters {one}: must be NAME=VALUE, such as link[2].mass=0.9")
         start = START.fullmatch(name)
+        if name in starts:
+            raise UsageError(f"--parameters {one}: must say of which link, such as {name}[1]")
         if start is None:
             of_scene[name] = value
         elif not 1 <= int(start[2]) <= len(case.q0):

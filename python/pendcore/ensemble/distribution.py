@@ -57,7 +57,7 @@ class InMemory:
 
     def __init__(self, members: Members, request: Request) -> None:
         variables = request.variables(len(members.scene.links))
-        self.arrays: Arrays = {one.name: one.empty(members.shape) for one in variables}
+        self.arrays = {one.name: one.empty(members.shape) for one in variables}
 
     def is_done(self, block: Block) -> bool:
         """Return whether a block was written: none is, to begin with."""
@@ -69,10 +69,24 @@ class InMemory:
             self.arrays[name][block] = values
 
 
-def run_here(
+def run_blocks(
+    members: Members,
+    request: Request,
+    blocks: Blocks,
+    target: InMemory | Store,
+    limits: Limits,
+    executor: Any = None,
+) -> Outcome:
+    """Run the blocks that are not done: by the workers of an executor, or else by threads."""
+    if executor is not None:
+        return _run_by(executor, members, request, blocks, target, limits)
+    return _run_here(members, request, blocks, target, limits)
+
+
+def _run_here(
     members: Members, request: Request, blocks: Blocks, target: InMemory | Store, limits: Limits
 ) -> Outcome:
-    """Run the blocks that are not done, one after the other, by threads."""
+    """Run one block after the other."""
     until, done, total = monotonic() + limits.time_limit, 0, max(members.count, 1)
     statistics: Counter[str] = Counter()
     try:
@@ -83,18 +97,18 @@ def run_here(
                 left = max(until - monotonic(), 0.0)
                 found = run_members(members.block(block), request, limits.workers, left, report)
                 if found.ending != "finished" or found.error is not None:
-                    return Outcome({}, found.ending, dict(statistics), found.error)
+                    return Outcome(target.arrays, found.ending, dict(statistics), found.error)
                 target.write(block, found.arrays)
                 statistics.update(found.statistics)
             done += size
             if limits.report is not None:
                 limits.report(done / total)
     except BaseException as stop:  # Ctrl-C between blocks, an exception of progress, a full disk
-        return Outcome({}, "interrupted", dict(statistics), stop)
-    return Outcome({}, "finished", dict(statistics), None)
+        return Outcome(target.arrays, "interrupted", dict(statistics), stop)
+    return Outcome(target.arrays, "finished", dict(statistics), None)
 
 
-def run_by(
+def _run_by(
     executor: Any,
     members: Members,
     request: Request,
@@ -102,7 +116,7 @@ def run_by(
     target: InMemory | Store,
     limits: Limits,
 ) -> Outcome:
-    """Run the blocks that are not done by the workers of an executor."""
+    """Run blocks side by side."""
     store = target.path.resolve() if isinstance(target, Store) else None
     left = (block for block in blocks if not target.is_done(block))
     tasks = (
@@ -130,7 +144,7 @@ def run_by(
     finally:
         for one in running:
             one.cancel()
-    return Outcome({}, ending, dict(statistics), error)
+    return Outcome(target.arrays, ending, dict(statistics), error)
 
 
 def run_task(task: Task) -> tuple[Block, Arrays | None, dict[str, Any]]:

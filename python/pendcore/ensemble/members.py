@@ -122,5 +122,10 @@ def _parameters(scene: SceneData, vary: Mapping[str, npt.ArrayLike] | None) -> d
             f"vary = {vary!r}: must be a dictionary of names and values, such as "
             '{"link[1].mass": [0.9, 1.0, 1.1]}'
         )
+    for name in vary:
+        if isinstance(name, str) and name.startswith(("q0", "qd0")):
+            raise ValueError(
+                f"vary[{name!r}]: starts are no parameters: give arrays of them as q0 and qd0"
+            )
     _core.check_parameter_names(scene._compiled, list(vary))
     return {name: real_array(f'vary["{name}"]', value, "") for name, value in vary.items()}

@@ -11,8 +11,10 @@ import numpy.typing as npt
 from pendcore import _core
 from pendcore.ensemble.members import Members
 from pendcore.ensemble.request import Request
-from pendcore.messages.arguments import Floats
+from pendcore.ensemble.states import Quantity, of_states
+from pendcore.messages.arguments import Floats, known_keywords
 from pendcore.messages.html import table
+from pendcore.run.energy import Energy
 
 
 class EnsembleResult:
@@ -58,7 +60,7 @@ class EnsembleResult:
     @property
     def t_reached(self) -> Floats:
         """The time that each member reached, s, (...)."""
-        return np.asarray(self.arrays["t_reached"][...])
+        return self.values("t_reached")
 
     @property
     def t(self) -> Floats:
@@ -68,12 +70,12 @@ class EnsembleResult:
     @property
     def q(self) -> Floats:
         """The angles of each member at its end, rad, (..., n), or at the times, (..., n_t, n)."""
-        return np.asarray(self.arrays["q"][...])
+        return self.values("q")
 
     @property
     def qd(self) -> Floats:
         """The rates there, rad/s, with the shape of ``q``."""
-        return np.asarray(self.arrays["qd"][...])
+        return self.values("qd")
 
     @property
     def status(self) -> npt.NDArray[np.str_]:
@@ -95,7 +97,49 @@ class EnsembleResult:
         if name not in self.request.reducers:
             known = ", ".join(map(repr, self.request.reducers)) or "none were kept"
             raise KeyError(f"no reducer is called {name!r}: {known}")
+        return self.values(name)
+
+    def values(self, name: str) -> Floats:
+        """Return an array by the name that it has in ``arrays``."""
         return np.asarray(self.arrays[name][...])
+
+    @known_keywords
+    def energy(self) -> Energy:
+        """Return kinetic, potential and total energy of the kept states, J, each (...).
+
+        They are those of each member's own scene. With ``keep="times"`` they are (..., n_t). Varied
+        parameters take some 20 us a member.
+
+        Examples
+        --------
+        >>> found = pc.ensemble(
+        ...     pc.Scene.textbook(), q0=[0.5, 1.0], t_span=(0, 5), vary={"gravity": [9.8, 1.62]}
+        ... )
+        >>> found.energy().total.round(4)
+        array([-11.0938,  -1.8339])
+        """
+        both = self._of_states(lambda scene, *state: np.stack(scene.energy(*state), axis=-1))
+        kinetic, potential = both[..., 0], both[..., 1]
+        with np.errstate(all="ignore"):  # the energies of a blow-up may be infinite
+            return Energy(kinetic, potential, kinetic + potential)
+
+    @known_keywords
+    def positions(self) -> Floats:
+        """Return pivot, joints and tip of the kept states, m, (..., n+1, 2): x right, y down.
+
+        With ``keep="times"`` they are (..., n_t, n+1, 2).
+
+        Examples
+        --------
+        >>> found = pc.ensemble(pc.Scene.textbook(), q0=[[0.5, 1.0], [0.6, 1.0]], t_span=(0, 5))
+        >>> found.positions()[:, -1].round(3)  # the tips
+        array([[1.611, 1.18 ],
+               [1.555, 1.163]])
+        """
+        return self._of_states(lambda scene, t, q, qd: scene.positions(t, q))
+
+    def _of_states(self, quantity: Quantity) -> Floats:
+        return of_states(quantity, self.members, self.t, self.q, self.qd)
 
     def counts(self) -> dict[str, int]:
         """Return how many members have each status that occurs.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,7 +13,8 @@ from pendcore.ensemble.keep import EnergyDrift, Extremes, FirstEvent, LargestExp
 from pendcore.ensemble.members import Members
 from pendcore.ensemble.request import Request
 
-Arrays = dict[str, npt.NDArray[Any]]
+Arrays = Mapping[str, Any]
+"""By the names of `Request.variables`, in memory or in a store."""
 
 SUMMED = ("nfev", "njev", "nlu", "accepted", "rejected")
 """The statistics that are sums over the members."""
@@ -22,7 +24,6 @@ class Outcome(NamedTuple):
     """What running members came to."""
 
     arrays: Arrays
-    """By the names of `Request.variables`."""
     ending: str
     """``"finished"``, or what ended the whole: ``"time_limit"``, ``"interrupted"``."""
     statistics: dict[str, Any]

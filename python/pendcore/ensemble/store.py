@@ -22,8 +22,10 @@ from pendcore.ensemble.about import CASE, KEEP, VARY, VERSION, about, read_about
 from pendcore.ensemble.blocks import Block, Blocks, blocks_of, usual_block
 from pendcore.ensemble.coordinates import coordinates, member_axes, members_from
 from pendcore.ensemble.members import Members
+from pendcore.ensemble.one_writer import one_writer
 from pendcore.ensemble.request import NOT_RUN, Request, Variable
 from pendcore.ensemble.run import Arrays
+from pendcore.ensemble.stored_array import StoredArray
 
 if TYPE_CHECKING:
     import zarr
@@ -37,7 +39,7 @@ _OTHER = {
 
 
 class Store:
-    """A store that is open; `opened` and `created` make one.
+    """A store that is open; `opened` makes one.
 
     Attributes
     ----------
@@ -57,9 +59,12 @@ class Store:
         self.variables = request.variables(len(members.scene.links))
 
     @property
-    def arrays(self) -> dict[str, Any]:
+    def arrays(self) -> dict[str, StoredArray]:
         """Return the arrays of the result, which read from the disk when they are indexed."""
-        return {one.name: self.group[one.name] for one in self.variables}
+        return {one.name: self._array(one.name) for one in self.variables}
+
+    def _array(self, name: str) -> StoredArray:
+        return StoredArray(self.path, self.group[name], self.group["status"])
 
     @property
     def is_complete(self) -> bool:
@@ -70,8 +75,7 @@ class Store:
     def is_done(self, block: Block) -> bool:
         """Return whether a block was written."""
         first = tuple(slice(one.start, one.start + 1) for one in block)
-        status: Any = self.group["status"]
-        return bool((np.asarray(status[first]) != NOT_RUN).all())
+        return bool((np.asarray(self._array("status")[first]) != NOT_RUN).all())
 
     def write(self, block: Block, arrays: Arrays) -> None:
         """Write the results of a block."""
@@ -119,22 +123,27 @@ def in_words(size: int) -> str:
     return f"{size} bytes"
 
 
-def store_for(path: Path, members: Members, request: Request, chunk: int) -> Store:
-    """Return the store at a path, to go on with it, or a new one.
+@contextmanager
+def store_for(path: Path, members: Members, request: Request, chunk: int) -> Iterator[Store]:
+    """Hold the store at a path, to go on with it, or a new one; nothing else may write into it.
 
     ``chunk`` is the number of members in a block of a new store; 0 leaves it to their work.
     """
-    if path.exists():
-        if not path.is_dir():
-            raise FileExistsError(f"store = {str(path)!r}: is a file: choose another name")
-        return continued(path, members, request)
+    if path.exists() and not path.is_dir():
+        raise FileExistsError(f"store = {str(path)!r}: is a file: choose another name")
+    if is_new := not path.exists() or not any(path.iterdir()):
+        _create_store(path, members, request, chunk)
+    with one_writer(path):
+        yield opened(path, "r+") if is_new else continued(path, members, request)
+
+
+def _create_store(path: Path, members: Members, request: Request, chunk: int) -> None:
     about(members.scene, list(members.vary), request)  # says what cannot be saved, before all work
     require_space(path, bytes_of(members, request))
-    blocks = blocks_of(members.shape, chunk or usual_block(members, request))
-    return created(path, members, request, blocks)
+    create(path, members, request, blocks_of(members.shape, chunk or usual_block(members, request)))
 
 
-def created(path: Path, members: Members, request: Request, blocks: Blocks) -> Store:
+def create(path: Path, members: Members, request: Request, blocks: Blocks) -> None:
     """Make a store without results. It appears under its name when it has all starts."""
     zarr = _zarr()
     told = about(members.scene, list(members.vary), request)
@@ -160,11 +169,10 @@ def created(path: Path, members: Members, request: Request, blocks: Blocks) -> S
             building.rename(path)
         finally:
             shutil.rmtree(building, ignore_errors=True)
-    return opened(path, "r+")
 
 
 def opened(path: Path, mode: str = "r") -> Store:
-    """Open a store that `created` made; a ValueError says that it is none."""
+    """Open a store that `create` made; a ValueError says that it is none."""
     zarr = _zarr()
     try:
         group = zarr.open_group(path, mode=mode)

@@ -98,12 +98,13 @@ def _again(entries: dict[str, Floats]) -> Ledger:
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Energy:
-    """Energies over time; the potential energy is zero at the height of the origin.
+    """Energies of states; the potential energy is zero at the height of the origin.
 
     Attributes
     ----------
     kinetic, potential, total : ndarray, (n_t,)
-        J; springs are part of the potential energy, rotors and payload of the kinetic one.
+        J; for the members of an ensemble (...). Springs are part of the potential energy, rotors
+        and payload of the kinetic one.
     ledger : Ledger or None
         Work and loss of every effect, if the run kept them: ``simulate(..., ledger=True)``.
 
@@ -122,6 +123,6 @@ class Energy:
     ledger: Ledger | None = None
 
     def __repr__(self) -> str:
-        n_t = len(self.total)
-        ends = f", total {self.total[0]:.6g} ... {self.total[-1]:.6g} J" if n_t else ""
-        return f"<Energy: kinetic, potential, total at {n_t} times{ends}>"
+        values = self.total.reshape(-1)
+        ends = f", total {values[0]:.6g} ... {values[-1]:.6g} J" if values.size else ""
+        return f"<Energy: kinetic, potential, total, each {self.total.shape}{ends}>"

@@ -16,7 +16,7 @@ struct FirstOrder {
   static constexpr bool is_short =
       requires(const Dynamics& bare, const Block& y) { bare.accelerations(y, y); };
 
-  /// Whether the equations support any effects at all.
+  /// Whether a right-hand side is so long that a step has one copy of it.
   static constexpr bool is_long = requires { requires Dynamics::is_long; };
 
   Dynamics dynamics;

@@ -1,6 +1,7 @@
 /// \file
 /// What the laws of effects see, and what they add to (effects/law.hpp has the contract). A chain
-/// of one or two links is a single row in registers; a longer chain is in arrays.
+/// of one or two links is a single row in registers; a longer chain is in arrays. In lanes, three
+/// and four links are a row in registers, too (ensemble/few_links_in_lanes.hpp).
 #pragma once
 
 #include "pendcore/arithmetic/dual.hpp"
@@ -22,6 +23,23 @@ struct RowAt {
   PENDCORE_INLINE V length() const { return L; }
   PENDCORE_INLINE V vx() const { return Constants<V>::of(pivot_vx) - before(L * qd * s); }
   PENDCORE_INLINE V vy() const { return Constants<V>::of(pivot_vy) + before(L * qd * c); }
+};
+
+/// The same for three and more links: the velocities of their joints are sums over all links
+/// before.
+template <class V, class Time>
+struct RowOfLinksAt {
+  using Value = V;
+
+  Time t;
+  V q, qd, s, c, L;
+  V vx_of_joint, vy_of_joint;  ///< m/s
+
+  PENDCORE_INLINE V phi() const { return q - before(q); }
+  PENDCORE_INLINE V phid() const { return qd - before(qd); }
+  PENDCORE_INLINE V length() const { return L; }
+  PENDCORE_INLINE V vx() const { return vx_of_joint; }
+  PENDCORE_INLINE V vy() const { return vy_of_joint; }
 };
 
 template <class V>

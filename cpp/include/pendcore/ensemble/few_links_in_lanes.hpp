@@ -1,43 +1,32 @@
 /// \file
-/// The equations of three and four links in lanes of Runge-Kutta methods (lane_equations.hpp): the
-/// recursion of chain.hpp, bare or with couples, up to four waves of motors and the pivot, and
-/// drag; drag only where the pivot stands still, and no rotors between links.
+/// The equations of three and four links in lanes of Runge-Kutta methods: the recursion of
+/// chain.hpp, bare, or with couples, waves (waves_in_lanes.hpp) and drag (DragInLanes in
+/// lane_equations.hpp), but without rotors between links.
 #pragma once
 
+#include <memory>
+#include <variant>
+
+#include "pendcore/dynamics/chain/chain.hpp"
 #include "pendcore/dynamics/chain/free_links.hpp"
-#include "pendcore/ensemble/driven_in_lanes.hpp"
+#include "pendcore/dynamics/row.hpp"
 #include "pendcore/ensemble/lane_equations.hpp"
+#include "pendcore/ensemble/waves_in_lanes.hpp"
 
 namespace pendcore {
-
-/// What the laws of effects see of a few links (dynamics/row.hpp).
-template <class V, class Time>
-struct FewLinksAt {
-  using Value = V;
-
-  Time t;
-  V q, qd, s, c, L;
-  V vx_of_joint, vy_of_joint;  ///< m/s
-
-  PENDCORE_INLINE V phi() const { return q - before(q); }
-  PENDCORE_INLINE V phid() const { return qd - before(qd); }
-  PENDCORE_INLINE V length() const { return L; }
-  PENDCORE_INLINE V vx() const { return vx_of_joint; }
-  PENDCORE_INLINE V vy() const { return vy_of_joint; }
-};
 
 /// n links in every lane.
 template <class Real, int n>
 struct FewLinksInLanes {
   using Links = EachLink<Real, n>;
+  /// Stages are a loop around one copy of these equations: they are too long for eight.
   static constexpr bool is_long = true;
 
-  ChainLinkOf<Real> link[n] = {};
-  Links mass_moment{};
-  Real payload_mass = {}, gravity = {};
   Couples<Links> couples;
+  ChainLinkOf<Real> link[n] = {};
+  Real payload_mass = {}, gravity = {};
   DragInLanes<Links> drag;
-  DrivenInLanes<Real> driven;
+  WavesInLanes<Real> waves;
   bool is_loaded = false, has_couples = false;
 
   /// As ChainOf computes it, in the same order.
@@ -45,20 +34,18 @@ struct FewLinksInLanes {
     Links s, c;
     sine_cosine(q, s, c);
     if (!is_loaded) return recursion<false>(qd, s, c, {}, {Real{}, Real(Real{} - gravity)});
-    Real wave[DrivenInLanes<Real>::most];
-    driven.compute_waves(t, wave);
-    Acceleration of_pivot{};
-    driven.add_acceleration(wave, of_pivot.x, of_pivot.y);
+    Real wave[most_waves_in_lanes];
+    waves.compute(t, wave);
+    JointAcceleration<Real> of_pivot{};
+    waves.add_acceleration(wave, of_pivot.x, of_pivot.y);
     of_pivot.y = of_pivot.y - gravity;
     return recursion<true>(qd, s, c, loads(t, q, qd, s, c, wave), of_pivot);
   }
 
  private:
-  struct Acceleration {
-    Real x, y;
-  };
   struct Loads {
-    Links torque, fx, fy;  ///< the forces in the frame of each link
+    Links torque;            ///< N m
+    Links force_u, force_n;  ///< N, along the link and across it
   };
 
   PENDCORE_INLINE Links length() const {
@@ -68,7 +55,7 @@ struct FewLinksInLanes {
 
   PENDCORE_INLINE Loads loads(const Real& t, const Links& q, const Links& qd, const Links& s,
                               const Links& c, const Real* wave) const {
-    FewLinksAt<Links, Real> at{t, q, qd, s, c, length(), {}, {}};
+    RowOfLinksAt<Links, Real> at{t, q, qd, s, c, length(), {}, {}};
     if (drag.is_there) {
       Real x{}, y{};
 #pragma GCC unroll 4
@@ -82,26 +69,25 @@ struct FewLinksInLanes {
     }
     RowLoads<Links> sums;
     if (has_couples) sums.couple(couples.torque(at));
-    for (int k = 0; k < driven.motors; ++k) {
-      const auto& motor = driven.motor[k];
+    for (int k = 0; k < waves.motor_count; ++k) {
+      const auto& motor = waves.motor[k];
       Real& couple = sums.couples.of[motor.joint];
       couple = couple + motor.gain * wave[motor.wave];
     }
     if (drag.is_there) drag.law.add(at, sums);
     Loads found{(sums.moments + sums.couples) - after(sums.couples), {}, {}};
     if (drag.is_there) {
-      found.fx = fma(c, sums.fx, s * sums.fy);
-      found.fy = fma(c, sums.fy, -(s * sums.fx));
+      found.force_u = fma(c, sums.fx, s * sums.fy);
+      found.force_n = fma(c, sums.fy, -(s * sums.fx));
     }
     return found;
   }
 
   template <bool loaded>
   PENDCORE_INLINE Links recursion(const Links& qd, const Links& s, const Links& c,
-                                  const Loads& loads, Acceleration of_joint) const {
+                                  const Loads& loads, JointAcceleration<Real> of_joint) const {
     const Links square = qd * qd;
     const Links centripetal = length() * square;
-    const Links center = mass_moment * square;
     JointForce<Real> force{{payload_mass, Real{}, payload_mass}, Real{}, Real{}};
     FreeResponse<Real> response[n];
 #pragma GCC unroll 4
@@ -117,30 +103,30 @@ struct FewLinksInLanes {
         at.sc = at.sin * at.cos;
       }
       at.centripetal = centripetal.of[i];
-      at.center = center.of[i];
+      at.center = link[i].mc * square.of[i];
       if constexpr (loaded) {
         at.torque = loads.torque.of[i];
-        at.fx = loads.fx.of[i];
-        at.fy = loads.fy.of[i];
+        at.force_u = loads.force_u.of[i];
+        at.force_n = loads.force_n.of[i];
       }
       response[i] = force.template add_free<loaded>(link[i], at);
     }
     Links found;
 #pragma GCC unroll 4
     for (int i = 0; i < n; ++i) {
-      found.of[i] = accelerate(response[i], s.of[i], c.of[i], link[i].L, centripetal.of[i],
-                               of_joint.x, of_joint.y);
+      found.of[i] =
+          go_to_next_joint(response[i], s.of[i], c.of[i], link[i].L, centripetal.of[i], of_joint);
     }
     return found;
   }
 };
 
-/// A chain of n links, as a form of the equations in lanes.
+/// A chain of n links without rotors between them: only a name for a form of LaneEquations.
 template <int n>
-struct ChainOfFew;
+struct FreeChain;
 
 template <class Real, int n>
-struct LaneEquations<ChainOfFew<n>, Real> : FewLinks<Real, n> {
+struct LaneEquations<FreeChain<n>, Real> : StatesOfLinks<Real, n> {
   using Type = FewLinksInLanes<Real, n>;
 
   /// Whether the equations of a chain have lanes.
@@ -149,16 +135,17 @@ struct LaneEquations<ChainOfFew<n>, Real> : FewLinks<Real, n> {
     if (form == nullptr || (*form)->links() != n || !equations.are_steady()) return false;
     const ActingEffects<Pack<4>>& effects = *(*form)->effects();
     return !(*form)->has_rotors() && effects.users.empty() && !effects.any_held &&
-           DragInLanes<EachLink<Real, n>>::has(effects) && DrivenInLanes<Real>::has(effects);
+           DragInLanes<EachLink<Real, n>>::has(effects) && WavesInLanes<Real>::has(effects);
   }
   static void prepare(Type& equations, const EquationsOfMotion& one) {
     const Chain& chain = *std::get<std::shared_ptr<Chain>>(one.form);
     const ActingEffects<Pack<4>>& effects = *chain.effects();
+    // Lanes without a member divide by D, too: it must not be 0.
     for (ChainLinkOf<Real>& link : equations.link) link.Io = broadcast<Real>(1.0);
     equations.is_loaded = chain.is_loaded();
     equations.has_couples = !effects.couples.empty();
     equations.drag.is_there = !effects.entries.empty();
-    equations.driven.prepare(effects);
+    equations.waves.prepare(effects);
   }
   static bool put(Type& equations, int lane, const EquationsOfMotion& from) {
     if (!has(from)) return false;
@@ -168,16 +155,13 @@ struct LaneEquations<ChainOfFew<n>, Real> : FewLinks<Real, n> {
                           equations.has_couples == !effects.couples.empty() &&
                           equations.drag.is_there == !effects.entries.empty();
     if (!is_alike) return false;
-    for (int i = 0; i < n; ++i) {
-      put_link(equations.link[i], lane, chain.link(i));
-      equations.mass_moment.of[i][lane] = chain.mass_moment(i);
-    }
+    for (int i = 0; i < n; ++i) put_link(equations.link[i], lane, chain.link(i));
     equations.payload_mass[lane] = chain.payload_mass();
     equations.gravity[lane] = chain.gravity();
     if (equations.has_couples) put_couples(equations.couples, lane, effects.couples.front());
     const auto* const drag = DragInLanes<EachLink<Real, n>>::law_of(effects);
     if (drag != nullptr) equations.drag.put(lane, *drag);
-    return equations.driven.put(lane, effects);
+    return equations.waves.put(lane, effects);
   }
 };
 

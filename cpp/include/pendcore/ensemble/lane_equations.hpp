@@ -4,7 +4,7 @@
 ///
 /// With effects, these are couples that never change their mode, waves of motors and the pivot, and
 /// drag. Here are the forms of two links, with at most two waves, or with drag and no wave;
-/// one_link_in_lanes.hpp has those of one, few_links_in_lanes.hpp those of three and four.
+/// one_link_in_lanes.hpp has those of one link, few_links_in_lanes.hpp those of three and four.
 #pragma once
 
 #include "pendcore/arithmetic/row_of_links.hpp"
@@ -53,7 +53,7 @@ void put_couples(Couples<Rows>& couples, int lane, const Couples<Row>& one) {
                    [lane](Rows& all, const Row& of_one) { put_row(all, lane, of_one); });
 }
 
-/// The drag on rods in lanes, at most one for each link.
+/// The drag on rods in lanes: at most one for each link, and only where the pivot stands still.
 template <class Row>
 struct DragInLanes {
   RodDrag::Law<Row> law;
@@ -84,7 +84,7 @@ struct DragInLanes {
 
 /// Puts states of both links into a lane, and takes them out.
 template <class Real>
-struct BothLinks {
+struct StatesOfTwoLinks {
   using Integers = typename Lanes<Real>::Integers;
   static constexpr int links = 2;
 
@@ -105,9 +105,9 @@ struct BothLinks {
   }
 };
 
-/// Puts states of a few links into a lane, and takes them out.
+/// Puts states of n links into a lane, and takes them out.
 template <class Real, int n>
-struct FewLinks {
+struct StatesOfLinks {
   using Integers = typename Lanes<Real>::Integers;
   using Row = EachLink<Real, n>;
   static constexpr int links = n;
@@ -132,7 +132,7 @@ template <class Form, class Real>
 struct LaneEquations;
 
 template <class Real>
-struct LaneEquations<DoublePendulum, Real> : BothLinks<Real> {
+struct LaneEquations<DoublePendulum, Real> : StatesOfTwoLinks<Real> {
   using Type = DoublePendulumEquations<Two<Real>, Real>;
   static void prepare(Type& /*equations*/, const EquationsOfMotion& /*one*/) {}
   static bool put(Type& equations, int lane, const EquationsOfMotion& from) {
@@ -185,7 +185,7 @@ using CouplesAndWaves = DoublePendulumWithEffects<Parts::waves>;
 struct TwoLinksWithEffects;
 
 template <class Real>
-struct LaneEquations<TwoLinksWithEffects, Real> : BothLinks<Real> {
+struct LaneEquations<TwoLinksWithEffects, Real> : StatesOfTwoLinks<Real> {
   using Type = LoadedDoublePendulumInLanes<Real>;
 
   static void prepare(Type& equations, const EquationsOfMotion& one) {

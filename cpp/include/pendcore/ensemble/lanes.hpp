@@ -61,9 +61,8 @@ class LaneRunner {
 };
 
 /// The methods that have lanes for the equations of a scene; none where a law may change. Those of
-/// Dormand and Prince have them for one to four links with some effects (one_link_in_lanes.hpp,
-/// lane_equations.hpp, few_links_in_lanes.hpp), Taylor series for two to `most_links_in_lanes`
-/// links with all effects that have a series.
+/// Dormand and Prince have them for one to four links with some effects (lane_equations.hpp),
+/// Taylor series for two to `most_links_in_lanes` links with all effects that have a series.
 std::vector<std::string_view> methods_with_lanes(const Scene& scene);
 /// Longer chains run one by one: the series of eight of them leave a processor's second cache.
 inline constexpr std::size_t most_links_in_lanes = 100;

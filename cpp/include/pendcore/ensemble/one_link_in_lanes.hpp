@@ -1,10 +1,10 @@
 /// \file
-/// The equations of one link in lanes (lane_equations.hpp): bare, or with couples and up to four
-/// waves of motors and the pivot, or with drag and a pivot that stands still.
+/// The equations of one link in lanes of Runge-Kutta methods: bare, or with couples, waves
+/// (waves_in_lanes.hpp) and drag (DragInLanes in lane_equations.hpp).
 #pragma once
 
-#include "pendcore/ensemble/driven_in_lanes.hpp"
 #include "pendcore/ensemble/lane_equations.hpp"
+#include "pendcore/ensemble/waves_in_lanes.hpp"
 
 namespace pendcore {
 
@@ -17,7 +17,7 @@ struct SinglePendulumInLanes {
   Couples<Links> couples;
   Links length{};
   DragInLanes<Links> drag;
-  DrivenInLanes<Real> driven;
+  WavesInLanes<Real> waves;
   bool is_bare = true;
   bool has_couples = false;
 
@@ -27,18 +27,18 @@ struct SinglePendulumInLanes {
     sine_cosine(q, s, c);
     Links pull = weight * c;
     if (is_bare) return pull;
-    Real wave[DrivenInLanes<Real>::most];
-    driven.compute_waves(t, wave);
-    if (driven.pivots > 0) {
+    Real wave[most_waves_in_lanes];
+    waves.compute(t, wave);
+    if (waves.pivot_count > 0) {
       Real x{}, y{};
-      driven.add_acceleration(wave, x, y);
+      waves.add_acceleration(wave, x, y);
       pull = fma(moment, x * s - y * c, pull);
     }
     const RowAt<Links, Real> at{t, q, qd, s, c, length, 0.0, 0.0};
     RowLoads<Links> loads;
     if (has_couples) loads.couple(couples.torque(at));
-    for (int k = 0; k < driven.motors; ++k) {
-      loads.couple({{driven.motor[k].gain * wave[driven.motor[k].wave]}});
+    for (int k = 0; k < waves.motor_count; ++k) {
+      loads.couple({{waves.motor[k].gain * wave[waves.motor[k].wave]}});
     }
     if (drag.is_there) drag.law.add(at, loads);
     return fma(inverse_inertia, loads.torque_of_couples() + loads.moments, pull);
@@ -46,7 +46,7 @@ struct SinglePendulumInLanes {
 };
 
 template <class Real>
-struct LaneEquations<SinglePendulum, Real> : FewLinks<Real, 1> {
+struct LaneEquations<SinglePendulum, Real> : StatesOfLinks<Real, 1> {
   using Type = SinglePendulumInLanes<Real>;
 
   /// Whether the equations of one link have lanes.
@@ -56,7 +56,7 @@ struct LaneEquations<SinglePendulum, Real> : FewLinks<Real, 1> {
     if (form == nullptr || !equations.are_steady()) return false;
     const ActingEffects<double>& effects = *form->effects;
     return DragInLanes<EachLink<Real, 1>>::has(effects) && effects.users.empty() &&
-           DrivenInLanes<Real>::has(effects);
+           WavesInLanes<Real>::has(effects);
   }
   static void prepare(Type& equations, const EquationsOfMotion& one) {
     const auto* const form = std::get_if<SinglePendulumWithEffects>(&one.form);
@@ -65,7 +65,7 @@ struct LaneEquations<SinglePendulum, Real> : FewLinks<Real, 1> {
     const ActingEffects<double>& effects = *form->effects;
     equations.has_couples = !effects.couples.empty();
     equations.drag.is_there = !effects.entries.empty();
-    equations.driven.prepare(effects);
+    equations.waves.prepare(effects);
   }
   static bool put(Type& equations, int lane, const EquationsOfMotion& from) {
     if (const auto* const bare = std::get_if<SinglePendulum>(&from.form)) {
@@ -85,7 +85,7 @@ struct LaneEquations<SinglePendulum, Real> : FewLinks<Real, 1> {
     const auto* const drag = DragInLanes<EachLink<Real, 1>>::law_of(effects);
     if (drag != nullptr) equations.drag.put(lane, *drag);
     if (equations.has_couples) put_couples(equations.couples, lane, effects.couples.front());
-    return equations.driven.put(lane, effects);
+    return equations.waves.put(lane, effects);
   }
 };
 

@@ -31,23 +31,6 @@ ExpandKernel<Form, width_on(set)> expand_kernel_on() {
   return only<&expand_in_lanes<Form, width_on(set)>, set>();
 }
 
-// Those of double pendulums are compiled in a file of their own (double_pendulum_lanes.cpp), which
-// has this list without `extern`.
-#define PENDCORE_ON(maybe_extern, Form, set)                              \
-  maybe_extern template ExpandKernel<Form, width_on(InstructionSet::set)> \
-  expand_kernel_on<Form, InstructionSet::set>();
-#if PENDCORE_CLONES
-#define PENDCORE_ON_EACH_SET(maybe_extern, Form) \
-  PENDCORE_ON(maybe_extern, Form, x86_64_v3)     \
-  PENDCORE_ON(maybe_extern, Form, x86_64_v4)
-#else
-#define PENDCORE_ON_EACH_SET(maybe_extern, Form) PENDCORE_ON(maybe_extern, Form, x86_64_v3)
-#endif
-#define PENDCORE_SERIES_OF_DOUBLE_PENDULUMS(maybe_extern)      \
-  PENDCORE_ON_EACH_SET(maybe_extern, BareDoublePendulumSeries) \
-  PENDCORE_ON_EACH_SET(maybe_extern, LoadedDoublePendulumSeries)
-PENDCORE_SERIES_OF_DOUBLE_PENDULUMS(extern)
-
 /// The lanes of the method of Taylor series on a form of the equations (series_equations.hpp). A
 /// state is (q, qd).
 template <template <class> class Form, int width>

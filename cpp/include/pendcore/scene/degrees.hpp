@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -19,11 +20,11 @@ inline bool may_be_degrees(double x) { return std::fmod(x, 5.0) == 0.0 && std::a
 /// Whether it hardly is one in radians.
 inline bool is_large_angle(double x) { return std::abs(x) >= 15.0; }
 
-/// The place of the first angle that hardly is one in radians, if all may be in degrees; else -1.
-inline std::ptrdiff_t place_of_degrees(std::span<const double> angles) {
+/// The place of the first angle that hardly is one in radians, if all may be in degrees.
+inline std::optional<std::size_t> first_in_degrees(std::span<const double> angles) {
   const auto large = std::ranges::find_if(angles, is_large_angle);
-  if (large == angles.end() || !std::ranges::all_of(angles, may_be_degrees)) return -1;
-  return large - angles.begin();
+  if (large == angles.end() || !std::ranges::all_of(angles, may_be_degrees)) return std::nullopt;
+  return static_cast<std::size_t>(large - angles.begin());
 }
 
 inline std::string warning_of_degrees(const std::string& name, double x) {

@@ -27,7 +27,8 @@ std::vector<NamedNumber> parameters(const Scene& scene);
 /// A choice of parameters of a scene, which are found by name once and set often.
 class ParameterChoice {
  public:
-  /// Throws std::invalid_argument for a name that the scene does not have, naming the nearest.
+  /// Throws std::invalid_argument for a name that the scene does not have, and says what may be
+  /// meant.
   ParameterChoice(const Scene& scene, const std::vector<std::string>& names);
 
   std::size_t size() const { return places_.size(); }

@@ -55,9 +55,8 @@ class ChainOf {
 
   const ActingEffects<Pack<4>>* effects() const { return effects_.get(); }
   const ChainLink& link(int i) const { return links_[i]; }
-  double mass_moment(int i) const { return in(mass_moment_)[i]; }  ///< m c, kg m
-  double payload_mass() const { return payload_mass_; }            ///< kg
-  double gravity() const { return gravity_; }                      ///< m/s^2
+  double payload_mass() const { return payload_mass_; }  ///< kg
+  double gravity() const { return gravity_; }            ///< m/s^2
   bool is_loaded() const { return loaded_; }
   /// Whether a rotor couples the rotations of two links.
   bool has_rotors() const { return has_rotors_; }

@@ -152,12 +152,12 @@ PENDCORE_INLINE void ChainOf<Number>::tip_to_base() const {
                             .centripetal = in(centripetal_)[i],
                             .center = in(center_)[i],
                             .torque = {},
-                            .fx = {},
-                            .fy = {}};
+                            .force_u = {},
+                            .force_n = {}};
     if constexpr (loaded) {
       at.torque = in(torque_)[i];
-      at.fx = in(fx_)[i];
-      at.fy = in(fy_)[i];
+      at.force_u = in(fx_)[i];
+      at.force_n = in(fy_)[i];
     }
     const FreeResponse<Number> found = force.template add_free<loaded>(links_[i], at);
     response_[i] = {found.free, found.x, found.y, 0.0};
@@ -168,12 +168,13 @@ template <class Number>
 template <int size>
 PENDCORE_INLINE void ChainOf<Number>::base_to_tip(Number ax, Number ay, Number* qdd) const {
   const int n = size > 0 ? size : n_;
+  JointAcceleration<Number> of_joint{ax, ay};
 #pragma GCC unroll 3
   for (int i = 0; i < n; ++i) {
     const Response& k = response_[i];
     const Number L = in(length_)[i];
-    qdd[i] = accelerate(FreeResponse<Number>{k.free, k.x, k.y}, in(s_)[i], in(c_)[i], L,
-                        in(centripetal_)[i], ax, ay);
+    qdd[i] = go_to_next_joint(FreeResponse<Number>{k.free, k.x, k.y}, in(s_)[i], in(c_)[i], L,
+                              in(centripetal_)[i], of_joint);
   }
 }
 
@@ -188,9 +189,9 @@ PENDCORE_INLINE void ChainOf<Number>::tip_to_base_coupled() const {
   Number t = 0.0;      // the rest of the torque
   for (int i = n_ - 1; i >= 0; --i) {
     const ChainLink& k = links_[i];
-    const Number speed = in(centripetal_)[i];
-    const Number pu = fma(-speed, B.uu, b_u);
-    const Number pn = fma(-speed, B.un, b_n);
+    const Number centripetal = in(centripetal_)[i];
+    const Number pu = fma(-centripetal, B.uu, b_u);
+    const Number pn = fma(-centripetal, B.un, b_n);
     const Number D = fma(k.LL, B.nn, k.Io) + fma(2.0 * k.L, beta_n, kappa);
     const double J = rotor_[i];
     const bool is_held = effects_->held[i];
@@ -198,7 +199,7 @@ PENDCORE_INLINE void ChainOf<Number>::tip_to_base_coupled() const {
     const Number share = is_held ? Number(1.0) : J * r;
     const Number wu = fma(k.L, B.un, beta_u);
     const Number wn = fma(k.L, B.nn, k.mc) + beta_n;
-    const Number torque = in(torque_)[i] - fma(k.L, pn, fma(-speed, beta_u, t));
+    const Number torque = in(torque_)[i] - fma(k.L, pn, fma(-centripetal, beta_u, t));
     const Number free = r * torque;
     const Number fu = fma(wu, free, pu - in(center_)[i] - in(fx_)[i]);
     const Number fn = fma(wn, free, pn - in(fy_)[i]);
@@ -226,11 +227,11 @@ PENDCORE_INLINE void ChainOf<Number>::base_to_tip_coupled(Number ax, Number ay, 
     const Number s = in(s_)[i];
     const Number c = in(c_)[i];
     const Number L = in(length_)[i];
-    const Number speed = in(centripetal_)[i];
+    const Number centripetal = in(centripetal_)[i];
     const Number found = fma(-k.y, ay, fma(-k.x, ax, fma(k.from_before, before, k.free)));
     qdd[i] = before = found;
-    ax = fma(-(L * s), found, fma(-speed, c, ax));
-    ay = fma(L * c, found, fma(-speed, s, ay));
+    ax = fma(-(L * s), found, fma(-centripetal, c, ax));
+    ay = fma(L * c, found, fma(-centripetal, s, ay));
   }
 }
 

@@ -8,13 +8,22 @@
 
 namespace pendcore {
 
-/// What a link has at a state, for the recursion: the sine and cosine of its angle, those of the
-/// angle to the link before and their products, L qd^2 and m c qd^2, and the loads on it.
+/// What the recursion needs of a link at a state.
 template <class Number>
 struct LinkInMotion {
-  Number s, c, cos, sin, cc, ss, sc;
-  Number centripetal, center;
-  Number torque, fx, fy;  ///< not read if nothing loads the chain
+  Number s, c;              ///< sin q, cos q
+  Number cos, sin;          ///< of q_i - q_{i-1}
+  Number cc, ss, sc;        ///< the products of these
+  Number centripetal;       ///< L qd^2, m/s^2
+  Number center;            ///< m c qd^2, N
+  Number torque;            ///< N m; neither this nor the force is read if nothing loads the chain
+  Number force_u, force_n;  ///< N, along the link and across it
+};
+
+/// The acceleration of a joint, m/s^2, in the frame of the ground.
+template <class Number>
+struct JointAcceleration {
+  Number x, y;
 };
 
 /// How a link that turns freely responds: qdd = free - (x, y) . a.
@@ -23,21 +32,21 @@ struct FreeResponse {
   Number free, x, y;
 };
 
-/// The force on the joint of a link as the links beyond it have it, F = B a + b.
+/// The force at a joint, F = B a + b, with all links beyond it.
 template <class Number>
 struct JointForce {
   ForcePerAcceleration<Number> B;
   Number b_u, b_n;
 
-  /// Goes on to the joint of a link that turns freely, in the frame of the link before.
+  /// Adds link k, which turns freely. F is then the force at the joint of link k, in the frame of
+  /// the link before.
   template <bool loaded, class Constant>
   PENDCORE_INLINE FreeResponse<Number> add_free(const ChainLinkOf<Constant>& k,
                                                 const LinkInMotion<Number>& at) {
     const Number D = fma(k.LL, B.nn, k.Io);
     const Number r = 1.0 / D;
-    const Number speed = at.centripetal;
-    const Number pu = fma(-speed, B.uu, b_u);
-    const Number pn = fma(-speed, B.un, b_n);
+    const Number pu = fma(-at.centripetal, B.uu, b_u);
+    const Number pn = fma(-at.centripetal, B.un, b_n);
     const Number torque = loaded ? fma(-k.L, pn, at.torque) : -k.L * pn;
     const Number free = torque * r;
     const Number wu = k.L * B.un;
@@ -45,8 +54,8 @@ struct JointForce {
     Number fu = pu - at.center;
     Number fn = pn;
     if constexpr (loaded) {
-      fu = fu - at.fx;
-      fn = fn - at.fy;
+      fu = fu - at.force_u;
+      fn = fn - at.force_n;
     }
     fu = fma(wu, free, fu);
     fn = fma(wn, free, fn);
@@ -59,17 +68,17 @@ struct JointForce {
   }
 };
 
-/// qdd of a link whose joint has the acceleration (ax, ay), which becomes that of the next joint.
+/// Returns qdd of a link whose joint accelerates by a, and makes a the acceleration of the next
+/// joint.
 template <class Number>
-PENDCORE_INLINE Number accelerate(const FreeResponse<Number>& k, const Number& s, const Number& c,
-                                  const Number& L, const Number& centripetal, Number& ax,
-                                  Number& ay) {
-  const Number x = fma(-centripetal, c, ax);
-  const Number y = fma(-centripetal, s, ay);
-  const Number found = fma(-k.y, ay, fma(-k.x, ax, k.free));
-  ax = fma(-(L * s), found, x);
-  ay = fma(L * c, found, y);
-  return found;
+PENDCORE_INLINE Number go_to_next_joint(const FreeResponse<Number>& k, const Number& s,
+                                        const Number& c, const Number& L, const Number& centripetal,
+                                        JointAcceleration<Number>& a) {
+  const Number x = fma(-centripetal, c, a.x);
+  const Number y = fma(-centripetal, s, a.y);
+  const Number qdd = fma(-k.y, a.y, fma(-k.x, a.x, k.free));
+  a = {fma(-(L * s), qdd, x), fma(L * c, qdd, y)};
+  return qdd;
 }
 
 }  // namespace pendcore

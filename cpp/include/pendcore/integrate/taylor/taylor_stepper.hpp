@@ -15,6 +15,7 @@
 #include "pendcore/integrate/taylor/dominant_eigenvalue.hpp"
 #include "pendcore/integrate/taylor/gauss_quadrature.hpp"
 #include "pendcore/integrate/taylor/taylor_step.hpp"
+#include "pendcore/text/message.hpp"
 
 namespace pendcore {
 
@@ -182,8 +183,9 @@ class Taylor final : public Stepper {
     }
     const double sigma = memory.back();
     if (!(sigma > 0.0) || taylor_detail::power_of_two_below(sigma) != sigma) {
-      throw std::invalid_argument(
-          "the unit of time kept in this solution is no power of two: it was not written by a run");
+      throw std::invalid_argument("unit of time of the Taylor series = " + text(sigma) +
+                                  " s: must be a power of two, as in every run: this solution was "
+                                  "changed or damaged: run its scene again");
     }
     memory_.sigma = sigma;
     starts_at_rest_ = false;
