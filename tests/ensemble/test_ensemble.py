@@ -278,3 +278,21 @@ def test_a_parameter_of_another_part_is_named():
     shaken = BOOK.replace(effects=[E.DrivenPivot(x=E.Sinusoid(0.1, 9.0))])
     with pytest.raises(ValueError, match=r'did you mean "effect\[1\].x.amplitude"'):
         shaken.with_parameters({"effect[1].x": 0.1})
+
+
+def test_a_name_that_is_no_text_is_refused():
+    with pytest.raises(TypeError, match="parameter 1: must be a name, such as"):
+        pc.ensemble(BOOK, [0.5, 1.0], t_span=(0, 1), vary={1: [1.0]})
+    with pytest.raises(TypeError, match="parameter 1: must be a name, such as"):
+        BOOK.with_parameters({1: 1.0})
+
+
+def test_one_member_without_axes_is_run_once_more():
+    short = pc.ensemble(BOOK, [1.0, 1.0], t_span=(0, 5), max_steps=3, check=False)
+    assert short.rerun(max_steps=1000).status == ["finished"]
+
+
+def test_a_member_that_was_not_run_says_so():
+    found = pc.ensemble(BOOK, starts(5, 2), t_span=(0, 1), time_limit=1e-9, check=False)
+    assert found.status[4] == "not_run"
+    assert found.message(4).startswith("was not run: ")

@@ -288,12 +288,22 @@ def test_an_empty_folder_becomes_a_store(tmp_path, stored):
     assert contents(tmp_path) == contents(stored)
 
 
+def without_its_end(chunk):
+    return chunk[:-5]
+
+
+def with_one_other_bit(chunk):
+    place = len(chunk) - 9  # in the numbers, before the checksum
+    return chunk[:place] + bytes([chunk[place] ^ 1]) + chunk[place + 1 :]
+
+
+@pytest.mark.parametrize("damaged", [without_its_end, with_one_other_bit])
 @pytest.mark.parametrize("name", ["q", "status", "extremes"])
-def test_a_chunk_that_is_damaged_is_named_and_can_be_made_anew(tmp_path, stored, name):
+def test_a_chunk_that_is_damaged_is_named_and_can_be_made_anew(tmp_path, stored, name, damaged):
     path = tmp_path / "damaged.zarr"
     shutil.copytree(stored, path)
-    chunk = sorted(path.glob(f"{name}/c/**/*"))[-1]
-    chunk.write_bytes(chunk.read_bytes()[:-5])
+    chunk = max(path for path in path.glob(f"{name}/c/**/*") if path.is_file())
+    chunk.write_bytes(damaged(chunk.read_bytes()))
     where = re.escape(chunk.relative_to(path).as_posix())
     read = {"q": lambda found: found.q, "status": lambda found: found.codes}
     found = pc.load(path)
@@ -303,3 +313,33 @@ def test_a_chunk_that_is_damaged_is_named_and_can_be_made_anew(tmp_path, stored,
     (path / remedy).unlink()
     pc.ensemble(BOOK, STARTS, store=path, **ASKED)
     assert contents(path) == contents(stored)
+
+
+def test_starts_that_are_damaged_are_told(tmp_path, stored):
+    path = tmp_path / "damaged.zarr"
+    shutil.copytree(stored, path)
+    chunk = path / "q0" / "c" / "0" / "0" / "0"
+    chunk.write_bytes(with_one_other_bit(chunk.read_bytes()))
+    with pytest.raises(OSError, match=r"damaged.zarr': its starts cannot be read"):
+        pc.load(path)
+
+
+def test_of_two_runs_that_make_one_store_the_later_is_refused(tmp_path, monkeypatch):
+    made = Path.rename
+
+    def be_late(building, path):
+        made(building, path)
+        (tmp_path / "late").mkdir()
+        made(tmp_path / "late", path)
+
+    monkeypatch.setattr(Path, "rename", be_late)
+    with pytest.raises(OSError, match=r"one.zarr': another run is writing it"):
+        pc.ensemble(BOOK, STARTS, store=tmp_path / "one.zarr", **ASKED)
+
+
+@pytest.mark.parametrize("chunk", [None, 1])
+def test_a_store_of_one_member_without_axes(tmp_path, chunk):
+    how = {"t_span": (0, 1), "vary": {"gravity": 5.0}}
+    found = pc.ensemble(BOOK, [0.5, 1.0], store=tmp_path / "one.zarr", chunk=chunk, **how)
+    assert found.shape == ()
+    assert np.array_equal(found.q, pc.ensemble(BOOK, [0.5, 1.0], **how).q)

@@ -313,7 +313,8 @@ def test_nobody_reading_is_no_failure_of_the_run(argv):
 
 
 def test_parameters_replace_numbers_of_the_case(tmp_path, capsys):
-    given = ["--parameters", "gravity=1.62", "link[2].mass=0.5", "q0[1]=0.1", "qd0[2]=2"]
+    given = ["--parameters", "gravity=1.62", "link[2].mass=0.5"]
+    given += ["--parameters", "q0[1]=0.1", "qd0[2]=2"]
     assert main(["run", "-o", str(tmp_path), "--no-horizon", *given]) == 0
     sol = pc.load(tmp_path / "solution.npz")
     assert (sol.scene.gravity, sol.scene.links[1].mass) == (1.62, 0.5)
@@ -324,8 +325,12 @@ def test_parameters_replace_numbers_of_the_case(tmp_path, capsys):
         ("gravityy=1", "gravity"),
         ("gravity", "must be NAME=VALUE"),
         ("gravity=x", "must be NAME=VALUE"),
-        ("q0[3]=1", "the scene has 2 links"),
+        ("q0[3]=1", "the scene has 2 links, counted from 1"),
+        ("q0=1", "must say of which link, such as q0[1]"),
         ("link[2].mass=-1", "must be finite and > 0"),
     ]:
         assert main(["run", "-o", str(tmp_path / "none"), "--parameters", wrong]) == 2
         assert told in capsys.readouterr().err
+    twice = ["--parameters", "gravity=1", "--parameters", "gravity=2"]
+    assert main(["run", "-o", str(tmp_path / "none"), *twice]) == 2
+    assert "gravity is given twice" in capsys.readouterr().err

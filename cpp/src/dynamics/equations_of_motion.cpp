@@ -34,6 +34,12 @@ PENDCORE_INLINE void accelerations_of_form(const void* form, double t, const dou
   accelerations_in_memory(static_cast<const Form*>(form), t, q, qd, qdd);
 }
 
+template <class Form>
+PENDCORE_INLINE void derivatives_of_three_states(const void* form, const double* t, const double* y,
+                                                 double* dydt) {
+  derivatives_of_three(static_cast<const Form*>(form), t, y, dydt);
+}
+
 EquationsOfMotion form_of_motion(const Scene& scene) {
   const Inertia inertia(scene);
   const std::size_t n = scene.links.size();
@@ -100,6 +106,10 @@ RightHandSide right_hand_side(const EquationsOfMotion& equations) {
           return {form.get(), compute};
         } else {
           static const auto compute = fastest<&accelerations_of_form<Form>, best_for(2)>();
+          if constexpr (has_special_kernels_of_rare_runs && takes_states_in_lanes<Form>) {
+            static const auto three = fastest<&derivatives_of_three_states<Form>>();
+            return {&form, compute, three};
+          }
           return {&form, compute};
         }
       },

@@ -6,6 +6,25 @@
 namespace pendcore {
 namespace {
 
+/// Both matrices of equations of two links, with a direction in each lane.
+template <class Form>
+PENDCORE_INLINE void jacobian_in_lanes(const Form& form, double t, const double* q,
+                                       const double* qd, double* by_q, double* by_qd) {
+  using Four = Pack<4>;
+  const auto both = [](const double* x, const Four& along_first, const Four& along_second) {
+    return Dual<Two<Four>>({broadcast<Four>(x[0]), broadcast<Four>(x[1])},
+                           {along_first, along_second});
+  };
+  const auto angles = both(q, Four{1.0, 0.0, 0.0, 0.0}, Four{0.0, 1.0, 0.0, 0.0});
+  const auto rates = both(qd, Four{0.0, 0.0, 1.0, 0.0}, Four{0.0, 0.0, 0.0, 1.0});
+  const Dual<Two<Four>> qdd = accelerations_at(form, t, angles, rates);
+  const Two<Four>& by_all = qdd.slope;
+  store(by_q, low_half(by_all.first));
+  store(by_q + 2, low_half(by_all.second));
+  store(by_qd, high_half(by_all.first));
+  store(by_qd + 2, high_half(by_all.second));
+}
+
 /// Both matrices of closed-form equations. Written out for all directions, what does not depend on
 /// the direction is computed once.
 template <class Form>
@@ -13,6 +32,7 @@ PENDCORE_INLINE void jacobian_in_memory(const Form* form, double t, const double
                                         const double* qd, double* by_q, double* by_qd) {
   using Row = typename Form::Links;
   constexpr int n = Lanes<Row>::width;
+  if constexpr (takes_states_in_lanes<Form>) return jacobian_in_lanes(*form, t, q, qd, by_q, by_qd);
   const Row angles = load<Row>(q);
   const Row rates = load<Row>(qd);
 #pragma GCC unroll 2

@@ -89,7 +89,7 @@ std::string wrong_number(const Scene& scene, const std::string& name) {
 std::string remedy(const Scene& scene, const std::vector<NamedNumber>& known,
                    const std::string& name) {
   if (name.starts_with("q0") || name.starts_with("qd0")) {
-    return "it is of the start of a run, such as q0[1] and qd0[1]";
+    return "it is of the start of a run, which q0 and qd0 give";
   }
   if (const std::string wrong = wrong_number(scene, name); !wrong.empty()) return wrong;
   const auto is_part = [&](const NamedNumber& one) { return one.name.starts_with(name + "."); };

@@ -20,6 +20,13 @@ void SceneSystem::operator()(double t, const double* y, double* dydt) const {
   }
 }
 
+bool SceneSystem::derivatives_of_three(const double* t, const double* y, double* dydt) const {
+  // The kernel knows states of two links, and nothing beside them.
+  if (right_hand_side_.three == nullptr || row != 2 || quadratures > 0) return false;
+  right_hand_side_.three(right_hand_side_.form, t, y, dydt);
+  return true;
+}
+
 void SceneSystem::differentiate(const Scene& scene) {
   jacobian_ = std::make_unique<Jacobian>(scene, equations_);
 }

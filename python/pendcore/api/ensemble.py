@@ -111,13 +111,16 @@ def ensemble(
     OSError
         If the disk is too small for the store, or full, or cannot be written, or if another run is
         writing the store.
+    RuntimeError
+        With ``check=True``, if members fail.
     KeyboardInterrupt, or any exception of ``progress``, a worker or the disk
         The attribute ``ensemble`` has the members that were run.
 
     Warns
     -----
     PendcoreWarning
-        If the starts look like degrees, or if members fail and ``check`` is not given.
+        If all starts are multiples of 5 and some are large, as angles in degrees are; or if members
+        fail and ``check`` is not given.
 
     Examples
     --------

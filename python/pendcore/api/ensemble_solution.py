@@ -89,7 +89,7 @@ class Ensemble(EnsembleResult):
     def message(self, index: Any) -> str:
         """Return what the run of one member says of its end, or why it was refused.
 
-        The member is run again: an ensemble keeps no texts.
+        The member is run again, because an ensemble keeps no texts.
 
         Examples
         --------
@@ -97,6 +97,8 @@ class Ensemble(EnsembleResult):
         >>> found.message(0)
         'q0[1] = nan: must be finite (rad)'
         """
+        if self.status[_place(index, self.shape)] == "not_run":
+            return "was not run: the call that made the ensemble runs it if it is repeated"
         try:
             return self.member(index).message
         except ValueError as refusal:

@@ -17,8 +17,12 @@ def with_parameters(case: Case, given: list[str]) -> Case:
     """
     starts = {"q0": list(case.q0), "qd0": list(case.qd0)}
     of_scene: dict[str, float] = {}
+    names: set[str] = set()
     for one in given:
         name, equals, text = one.partition("=")
+        if name in names:
+            raise UsageError(f"--parameters {one}: {name} is given twice: give it once")
+        names.add(name)
         try:
             value = float(text)
         except ValueError:
@@ -31,7 +35,9 @@ def with_parameters(case: Case, given: list[str]) -> Case:
         if start is None:
             of_scene[name] = value
         elif not 1 <= int(start[2]) <= len(case.q0):
-            raise UsageError(f"--parameters {one}: the scene has {len(case.q0)} links")
+            raise UsageError(
+                f"--parameters {one}: the scene has {len(case.q0)} links, counted from 1"
+            )
         else:
             starts[start[1]][int(start[2]) - 1] = value
     return Case(

@@ -76,6 +76,7 @@ def add_parser(commands: Any) -> None:
     parser.add_argument(
         "--parameters",
         nargs="+",
+        action="extend",
         default=[],
         metavar="NAME=VALUE",
         help="replace numbers of the case: gravity=1.62, link[2].mass=0.9, q0[1]=0.5, ...; "

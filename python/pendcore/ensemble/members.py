@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pendcore import _core
 from pendcore.messages.arguments import Floats, real_array
+from pendcore.scene.parameters import check_parameter_names
 from pendcore.scene.scene import SceneData
 
 Index = tuple[int, ...]
@@ -63,13 +63,17 @@ class Members:
 
     def selected(self, places: npt.NDArray[np.intp]) -> Members:
         """Return the members at flat places, along one axis."""
-        where = np.unravel_index(places, self.shape)
+        shape = self.shape or (1,)
+        where = np.unravel_index(places, shape)
+        n = self.q0.shape[-1:]
         return replace(
             self,
             shape=places.shape,
-            q0=self.q0[where],
-            qd0=self.qd0[where],
-            vary={name: values[where] for name, values in self.vary.items()},
+            q0=np.broadcast_to(self.q0, shape + n)[where],
+            qd0=np.broadcast_to(self.qd0, shape + n)[where],
+            vary={
+                name: np.broadcast_to(values, shape)[where] for name, values in self.vary.items()
+            },
         )
 
 
@@ -127,5 +131,5 @@ def _parameters(scene: SceneData, vary: Mapping[str, npt.ArrayLike] | None) -> d
             raise ValueError(
                 f"vary[{name!r}]: starts are no parameters: give arrays of them as q0 and qd0"
             )
-    _core.check_parameter_names(scene._compiled, list(vary))
+    check_parameter_names(scene._compiled, vary)
     return {name: real_array(f'vary["{name}"]', value, "") for name, value in vary.items()}

@@ -39,9 +39,14 @@ def _lock(folder: int, path: Path) -> None:
     try:
         fcntl.flock(folder, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
-        raise OSError(
-            f"store = {str(path)!r}: another run is writing it: wait until that has ended, or "
-            "choose another name"
-        ) from None
+        raise is_being_written(path) from None
     except OSError:  # this file system has no such locks
         pass
+
+
+def is_being_written(path: Path) -> OSError:
+    """Return the error that another run is writing a store."""
+    return OSError(
+        f"store = {str(path)!r}: another run is writing it: wait until that has ended, or choose "
+        "another name"
+    )

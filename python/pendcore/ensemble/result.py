@@ -107,8 +107,8 @@ class EnsembleResult:
     def energy(self) -> Energy:
         """Return kinetic, potential and total energy of the kept states, J, each (...).
 
-        They are those of each member's own scene. With ``keep="times"`` they are (..., n_t). Varied
-        parameters take some 20 us a member.
+        They are those of each member's own scene, and NaN where a member was refused or not run.
+        With ``keep="times"`` they are (..., n_t). Varied parameters take some 20 us a member.
 
         Examples
         --------
@@ -127,7 +127,7 @@ class EnsembleResult:
     def positions(self) -> Floats:
         """Return pivot, joints and tip of the kept states, m, (..., n+1, 2): x right, y down.
 
-        With ``keep="times"`` they are (..., n_t, n+1, 2).
+        With ``keep="times"`` they are (..., n_t, n+1, 2). The rest is as for `energy`.
 
         Examples
         --------

@@ -36,4 +36,5 @@ def of_states(quantity: Quantity, members: Members, t: Floats, q: Floats, qd: Fl
                 values[place] = np.nan
             else:
                 values[place] = of(scene._compiled, times[place], q[place], qd[place])
+    values[np.isnan(q).any(axis=-1)] = np.nan  # the pivot has a place without a state
     return values

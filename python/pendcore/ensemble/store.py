@@ -14,6 +14,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from uuid import uuid4
 
 import numpy as np
 
@@ -22,7 +23,7 @@ from pendcore.ensemble.about import CASE, KEEP, VARY, VERSION, about, read_about
 from pendcore.ensemble.blocks import Block, Blocks, blocks_of, usual_block
 from pendcore.ensemble.coordinates import coordinates, member_axes, members_from
 from pendcore.ensemble.members import Members
-from pendcore.ensemble.one_writer import one_writer
+from pendcore.ensemble.one_writer import is_being_written, one_writer
 from pendcore.ensemble.request import NOT_RUN, Request, Variable
 from pendcore.ensemble.run import Arrays
 from pendcore.ensemble.stored_array import StoredArray
@@ -148,7 +149,7 @@ def create(path: Path, members: Members, request: Request, blocks: Blocks) -> No
     zarr = _zarr()
     told = about(members.scene, list(members.vary), request)
     axes = member_axes(members.shape)
-    building = path.with_name(f"{path.name}.{os.getpid()}.part")
+    building = path.with_name(f"{path.name}.{uuid4().hex[:8]}.part")
     with _named(path):
         try:
             group = zarr.create_group(building, overwrite=True)
@@ -166,9 +167,18 @@ def create(path: Path, members: Members, request: Request, blocks: Blocks) -> No
             with warnings.catch_warnings():  # readers of the bare format pass over what it adds
                 warnings.simplefilter("ignore")
                 zarr.consolidate_metadata(building)
-            building.rename(path)
+            _appear(building, path)
         finally:
             shutil.rmtree(building, ignore_errors=True)
+
+
+def _appear(building: Path, path: Path) -> None:
+    try:
+        building.rename(path)
+    except OSError:
+        if path.is_dir() and any(path.iterdir()):
+            raise is_being_written(path) from None
+        raise
 
 
 def opened(path: Path, mode: str = "r") -> Store:
@@ -188,8 +198,10 @@ def opened(path: Path, mode: str = "r") -> Store:
         members = members_from(scene, shape, found)
     except (KeyError, TypeError, ValueError, FileNotFoundError):
         raise ValueError(
-            f"store = {str(path)!r}: is no store of an ensemble: choose another name"
+            f"store = {str(path)!r}: is no store of an ensemble: name another folder"
         ) from None
+    except RuntimeError as error:
+        raise OSError(f"store = {str(path)!r}: its starts cannot be read ({error})") from error
     return Store(path, group, members, request, Blocks(shape, block_shape))
 
 
@@ -228,15 +240,24 @@ def _zarr() -> Any:
     return zarr
 
 
+def _compressor() -> Any:
+    """Return the compressor of all arrays, which knows a chunk that a disk has changed."""
+    return _zarr().codecs.ZstdCodec(checksum=True)
+
+
 def _put(group: zarr.Group, name: str, values: Any, axes: tuple[str, ...], unit: str) -> None:
     attributes = {"units": unit} if unit else {}
     if values.dtype.kind == "U":  # of a fixed length, texts have no specification in Zarr 3
         array: Any = group.create_array(
-            name, shape=values.shape, dtype="string", dimension_names=axes, attributes=attributes
-        )
+            name, shape=values.shape, dtype="string", dimension_names=axes, attributes=attributes,
+            compressors=_compressor(),
+        )  # fmt: skip
         array[...] = values
     else:
-        group.create_array(name, data=values, dimension_names=axes, attributes=attributes)
+        group.create_array(
+            name, data=values, dimension_names=axes, attributes=attributes,
+            compressors=_compressor(),
+        )  # fmt: skip
 
 
 def _create(
@@ -252,6 +273,7 @@ def _create(
         chunks=tuple(max(size, 1) for size in (*blocks.block_shape, *one.shape)),
         dtype=np.dtype(one.dtype),
         fill_value=one.fill,
+        compressors=_compressor(),
         dimension_names=(*axes, *one.labels),
         attributes=attributes,
     )
@@ -269,6 +291,8 @@ def _named(path: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
+        if error.errno is None:  # it is one of ours
+            raise
         raise OSError(
             error.errno,
             f"{error.strerror}: what was finished stays; the same call goes on with it",

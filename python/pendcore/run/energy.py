@@ -123,6 +123,6 @@ class Energy:
     ledger: Ledger | None = None
 
     def __repr__(self) -> str:
-        values = self.total.reshape(-1)
-        ends = f", total {values[0]:.6g} ... {values[-1]:.6g} J" if values.size else ""
-        return f"<Energy: kinetic, potential, total, each {self.total.shape}{ends}>"
+        numbers = self.total[~np.isnan(self.total)]
+        span = f", total {numbers.min():.6g} to {numbers.max():.6g} J" if numbers.size else ""
+        return f"<Energy: kinetic, potential, total, each {self.total.shape}{span}>"

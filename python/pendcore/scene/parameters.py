@@ -7,7 +7,7 @@ with other values.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from pendcore import _core
@@ -26,7 +26,7 @@ def changed(
     values: Mapping[str, Any],
 ) -> tuple[list[Link], float, list[Effect]]:
     """Return links, gravity and effects with other values of some parameters."""
-    _core.check_parameter_names(scene, list(values))
+    check_parameter_names(scene, values)
     links_changed: dict[int, dict[str, float]] = {}
     new_links, new_effects = list(links), list(effects)
     for name, value in values.items():
@@ -44,6 +44,14 @@ def changed(
     for i, fields in links_changed.items():
         new_links[i] = links[i].replace(**fields)
     return new_links, gravity, new_effects
+
+
+def check_parameter_names(scene: _core.Scene, names: Iterable[object]) -> None:
+    """Raise a ValueError for a name that the scene does not have, a TypeError for no name."""
+    for name in names:
+        if not isinstance(name, str):
+            raise TypeError(f'parameter {name!r}: must be a name, such as "link[1].mass"')
+        _core.check_parameter_names(scene, [name])
 
 
 def _with(owner: Any, path: list[str], value: float) -> Any:

@@ -94,11 +94,11 @@ struct Lanes<Dual<Row>> {
 
 template <class Row>
 struct Constants<Dual<Row>> {
-  PENDCORE_INLINE static Dual<Row> of(const Row& x) { return x; }
-  PENDCORE_INLINE static Dual<Row> of(double x)
-    requires(Lanes<Row>::width > 1)
+  template <class Constant>
+  PENDCORE_INLINE static Dual<Row> of(const Constant& x)
+    requires requires { Constants<Row>::of(x); }
   {
-    return broadcast<Row>(x);
+    return Dual<Row>(Constants<Row>::of(x));
   }
 };
 

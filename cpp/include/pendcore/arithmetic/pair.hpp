@@ -130,6 +130,10 @@ PENDCORE_INLINE Two<Real> operator*(const Two<Real>& x, double y) {
   return {x.first * y, x.second * y};
 }
 template <class Real>
+PENDCORE_INLINE Two<Real> operator/(const Two<Real>& x, const Two<Real>& y) {
+  return {x.first / y.first, x.second / y.second};
+}
+template <class Real>
 PENDCORE_INLINE Two<Real> operator/(double x, const Two<Real>& y) {
   return {x / y.first, x / y.second};
 }

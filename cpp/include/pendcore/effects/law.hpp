@@ -88,8 +88,13 @@ struct alignas(std::bit_floor(sizeof(Row))) Couples {
   /// held + slope (t - start)
   template <class V, class Time>
   PENDCORE_INLINE V in_time(const Time& t) const {
-    return fma(Constants<V>::of(slope), Constants<V>::of(Constants<Row>::of(t) - start),
-               Constants<V>::of(held));
+    V since_start;
+    if constexpr (requires { Constants<Row>::of(t); }) {
+      since_start = Constants<V>::of(Constants<Row>::of(t) - start);
+    } else {  // each lane has a time of its own, and the constants are those of all
+      since_start = Constants<V>::of(t) - Constants<V>::of(start);
+    }
+    return fma(Constants<V>::of(slope), since_start, Constants<V>::of(held));
   }
   /// Whether some torque depends on the square or the cube of its rate.
   PENDCORE_INLINE bool has_powers() const {

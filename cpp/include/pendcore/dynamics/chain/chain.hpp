@@ -71,7 +71,7 @@ class ChainOf {
   template <bool loaded, int size>
   PENDCORE_INLINE void tip_to_base() const;
   template <int size>
-  PENDCORE_INLINE void base_to_tip(Number ax, Number ay, Number* qdd) const;
+  PENDCORE_INLINE void base_to_tip(const Number& ax, const Number& ay, Number* qdd) const;
   PENDCORE_INLINE void tip_to_base_coupled() const;
   PENDCORE_INLINE void base_to_tip_coupled(Number ax, Number ay, Number* qdd) const;
 

@@ -166,7 +166,8 @@ PENDCORE_INLINE void ChainOf<Number>::tip_to_base() const {
 
 template <class Number>
 template <int size>
-PENDCORE_INLINE void ChainOf<Number>::base_to_tip(Number ax, Number ay, Number* qdd) const {
+PENDCORE_INLINE void ChainOf<Number>::base_to_tip(const Number& ax, const Number& ay,
+                                                  Number* qdd) const {
   const int n = size > 0 ? size : n_;
   JointAcceleration<Number> of_joint{ax, ay};
 #pragma GCC unroll 3

@@ -100,8 +100,10 @@ struct DoublePendulumWithEffects : LoadedDoublePendulum<Pair, double> {
   DoublePendulumWithEffects(const Scene& scene, const Inertia& inertia,
                             const ActingEffects<Pair>* in_force);
 
-  template <class V>
-  PENDCORE_INLINE V accelerations(double t, const V& q, const V& qd) const {
+  /// `t` is a pack if each lane of V has a time of its own, which couples alone take.
+  template <class V, class Time>
+    requires(std::is_same_v<Time, double> || parts == Parts::couples)
+  PENDCORE_INLINE V accelerations(const Time& t, const V& q, const V& qd) const {
     using Constant = Constants<V>;
     constexpr bool everything = parts == Parts::everything;
     V s, c;
@@ -113,7 +115,7 @@ struct DoublePendulumWithEffects : LoadedDoublePendulum<Pair, double> {
     }
     const Between<V> between(s, c);
     V pull = Constant::of(weight) * c;
-    RowAt<V> at{t, q, qd, s, c, Constant::of(length), 0.0, 0.0};
+    RowAt<V, Time> at{t, q, qd, s, c, Constant::of(length), 0.0, 0.0};
     RowLoads<V> loads{.couples = couples->torque(at)};
     if constexpr (everything) {
       for (const JointWave& one : effects->joint_waves) add_wave(one, loads);

@@ -57,7 +57,8 @@ struct CollocationStep {
   double newton_tolerance = 0.0;
   Rows<1> rtol, atol, y, dydt, y_new;
   Rows<3> stages, transformed, rates, increment;
-  Rows<1> trial, error;
+  Rows<3> trial;  ///< the states at the stages
+  Rows<1> error;
   Rows<1> slope;  ///< h u'(t) of the dense output
   Rows<1> scale;  ///< what the tolerances allow at y and y_new
   NewtonSystems<Sizes> systems;
@@ -78,10 +79,10 @@ struct CollocationStep {
   CollocationStep(const Collocation& one, const DifferentiableSystem& rates_of, const Sizes& given,
                   bool carries_rounding)
       : method(one), system(rates_of), sizes(given), compensated(carries_rounding) {
-    for (auto* row : {&rtol, &atol, &y, &dydt, &y_new, &trial, &error, &slope, &scale}) {
+    for (auto* row : {&rtol, &atol, &y, &dydt, &y_new, &error, &slope, &scale}) {
       Sizes::allocate(*row, sizes.size);
     }
-    for (auto* rows : {&stages, &transformed, &rates, &increment, &polynomial}) {
+    for (auto* rows : {&stages, &transformed, &rates, &increment, &trial, &polynomial}) {
       Sizes::allocate(*rows, 3 * sizes.size);
     }
     for (auto* row : {&low, &low_new}) Sizes::allocate(*row, compensated ? sizes.size : 0);
@@ -167,13 +168,20 @@ struct CollocationStep {
   /// Evaluates the right-hand side at the three stages.
   PENDCORE_INLINE void evaluate_stages(double t, double h) {
     const int size = sizes.size;
-#pragma GCC unroll 1
+    double times[3];
+#pragma GCC unroll 3
     for (int k = 0; k < 3; ++k) {
+      times[k] = t + method.c[k] * h;
       for (int i = 0; i < sizes.state; i += width) {
-        store(&trial[i], at(y.data(), i) + at(&stages[k * size], i));
+        store(&trial[k * size + i], at(y.data(), i) + at(&stages[k * size], i));
       }
-      evaluate(t + method.c[k] * h, trial.data(), &rates[k * size]);
     }
+    if (system.derivatives_of_three(times, trial.data(), rates.data())) {
+      evaluations += 3;
+      return;
+    }
+#pragma GCC unroll 1
+    for (int k = 0; k < 3; ++k) evaluate(times[k], &trial[k * size], &rates[k * size]);
   }
 
   /// Improves the stages by one iteration of Newton's, and returns the size of the improvement.
@@ -262,11 +270,14 @@ struct CollocationStep {
     }
 #pragma GCC unroll 3
     for (int k = 0; k < 3; ++k) {
-      for (int i = 0; i < n; ++i) {
+      const auto angle = [&](int i) __attribute__((always_inline)) {
         const double* const rate = &stages[n + i];
-        stages[k * size + i] = h * (method.c[k] * y[n + i] +
-                                    product(method.a[k], rate[0], rate[size], rate[2 * size]));
-      }
+        return h *
+               (method.c[k] * y[n + i] + product(method.a[k], rate[0], rate[size], rate[2 * size]));
+      };
+      const auto rate = [&](int i)
+                            __attribute__((always_inline)) { return stages[k * size + n + i]; };
+      Sizes::store_state(&stages[k * size], n, angle, rate);
     }
   }
 

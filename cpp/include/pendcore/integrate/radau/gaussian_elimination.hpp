@@ -100,7 +100,16 @@ template <class Number>
 PENDCORE_INLINE void solve_factored(int n, const Number* a, const int* pivots, Number* x) {
   using namespace elimination_detail;
 #pragma GCC unroll 2
-  for (int k = 0; k < n; ++k) exchange(x[k], x[pivots[k]]);
+  for (int k = 0; k < n - 1; ++k) {  // the last row stays
+    if (__builtin_constant_p(n)) {   // the places are constants, so that x may be in registers
+#pragma GCC unroll 2
+      for (int i = k + 1; i < n; ++i) {
+        if (pivots[k] == i) exchange(x[k], x[i]);
+      }
+    } else {
+      exchange(x[k], x[pivots[k]]);
+    }
+  }
 #pragma GCC unroll 2
   for (int i = 1; i < n; ++i) {
 #pragma GCC unroll 2

@@ -35,6 +35,7 @@ struct NewtonSystems {
     Sizes::allocate(complex_pivots_, n);
     Sizes::allocate(real_side_, n);
     Sizes::allocate(complex_side_, n);
+    Sizes::allocate(complex_angle_, n);
   }
 
   /// Factors both systems for a step of size h: g = real/h, and (alpha + i beta)/h. Calls
@@ -64,7 +65,7 @@ struct NewtonSystems {
 
   /// Replaces (r, s) by (x, y), 2n numbers.
   PENDCORE_INLINE void solve_real(int n, double* x) {
-    double* const s = x + n;
+    const double* const s = x + n;
 #pragma GCC unroll 2
     for (int i = 0; i < n; ++i) {
       double sum = 0.0;
@@ -73,11 +74,9 @@ struct NewtonSystems {
       real_side_[i] = h_ * (s[i] + h_ * sum);
     }
     solve_factored(n, real_.data(), real_pivots_.data(), real_side_.data());
-#pragma GCC unroll 2
-    for (int i = 0; i < n; ++i) {
-      s[i] = real_side_[i];
-      x[i] = h_ * (x[i] + s[i]);
-    }
+    const auto rate = [this](int i) __attribute__((always_inline)) { return real_side_[i]; };
+    const auto angle = [&](int i) __attribute__((always_inline)) { return h_ * (x[i] + rate(i)); };
+    Sizes::store_state(x, n, angle, rate);
   }
   PENDCORE_INLINE void solve_complex(int n, double* re, double* im) {
     const Complex h = complex_h_;
@@ -99,13 +98,14 @@ struct NewtonSystems {
     solve_factored(n, complex_.data(), complex_pivots_.data(), complex_side_.data());
 #pragma GCC unroll 2
     for (int i = 0; i < n; ++i) {
-      const Complex y = complex_side_[i];
-      const Complex x = times_h(re[i] + y.re, im[i] + y.im);
-      re[n + i] = y.re;
-      im[n + i] = y.im;
-      re[i] = x.re;
-      im[i] = x.im;
+      complex_angle_[i] = times_h(re[i] + complex_side_[i].re, im[i] + complex_side_[i].im);
     }
+    Sizes::store_state(
+        re, n, [this](int i) __attribute__((always_inline)) { return complex_angle_[i].re; },
+        [this](int i) __attribute__((always_inline)) { return complex_side_[i].re; });
+    Sizes::store_state(
+        im, n, [this](int i) __attribute__((always_inline)) { return complex_angle_[i].im; },
+        [this](int i) __attribute__((always_inline)) { return complex_side_[i].im; });
   }
 
  private:
@@ -115,7 +115,7 @@ struct NewtonSystems {
   Matrix<Complex> complex_;
   Row<int> real_pivots_, complex_pivots_;
   Row<double> real_side_;
-  Row<Complex> complex_side_;
+  Row<Complex> complex_side_, complex_angle_;
 };
 
 }  // namespace pendcore

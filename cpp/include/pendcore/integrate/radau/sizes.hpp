@@ -31,6 +31,18 @@ struct SizesOf {
   PENDCORE_INLINE static void allocate(Any& memory, int /*count*/) {
     memory = {};
   }
+  /// Stores what angle(i) and rate(i) are for each link, as a pack (pack.hpp says why).
+  template <class Angle, class Rate>
+  PENDCORE_INLINE static void store_state(double* to, int /*n*/, const Angle& angle,
+                                          const Rate& rate) {
+    Block both;
+#pragma GCC unroll 2
+    for (int i = 0; i < n; ++i) {
+      set_lane(both, i, angle(i));
+      set_lane(both, n + i, rate(i));
+    }
+    store(to, both);
+  }
 };
 
 /// A state of any size, in memory.
@@ -50,6 +62,11 @@ struct SizesInMemory {
   template <class Any>
   static void allocate(Any& memory, int count) {
     memory.assign(count, {});
+  }
+  template <class Angle, class Rate>
+  PENDCORE_INLINE static void store_state(double* to, int n, const Angle& angle, const Rate& rate) {
+    for (int i = 0; i < n; ++i) to[i] = angle(i);
+    for (int i = 0; i < n; ++i) to[n + i] = rate(i);
   }
 };
 
