@@ -39,7 +39,7 @@ template <class Kind>
 std::optional<int> operations_of(const Kind& effect) {
   counted = 0;
   double waves[8] = {};
-  const RowAt<Counted> at{0.0, 0.5, 1.0, 0.6, 0.8, 1.0, 0.1, 0.2};
+  const RowAt<Counted> at{0.5, 1.0, 0.6, 0.8, 1.0, 0.0, 0.1, 0.2};
   RowLoads<Counted> loads;
   if constexpr (HasCouple<Kind>) {
     if (effect.couple(0)) {

@@ -13,9 +13,8 @@ template <class V, class Time = double>
 struct RowAt {
   using Value = V;
 
+  V q, qd, s, c, L;
   Time t;
-  V q, qd, s, c;
-  V L;
   double pivot_vx, pivot_vy;
 
   PENDCORE_INLINE V phi() const { return q - before(q); }
@@ -31,8 +30,8 @@ template <class V, class Time>
 struct RowOfLinksAt {
   using Value = V;
 
-  Time t;
   V q, qd, s, c, L;
+  Time t;
   V vx_of_joint, vy_of_joint;  ///< m/s
 
   PENDCORE_INLINE V phi() const { return q - before(q); }

@@ -55,7 +55,7 @@ struct FewLinksInLanes {
 
   PENDCORE_INLINE Loads loads(const Real& t, const Links& q, const Links& qd, const Links& s,
                               const Links& c, const Real* wave) const {
-    RowOfLinksAt<Links, Real> at{t, q, qd, s, c, length(), {}, {}};
+    RowOfLinksAt<Links, Real> at{q, qd, s, c, length(), t, {}, {}};
     if (drag.is_there) {
       Real x{}, y{};
 #pragma GCC unroll 4

@@ -161,7 +161,7 @@ struct LoadedDoublePendulumInLanes : LoadedDoublePendulum<Two<Real>, Real> {
     V s, c;
     sine_cosine(q, s, c);
     const typename LoadedDoublePendulum<V, Real>::template Between<V> between(s, c);
-    const RowAt<V, Real> at{t, q, qd, s, c, length, 0.0, 0.0};
+    const RowAt<V, Real> at{q, qd, s, c, length, t, 0.0, 0.0};
     RowLoads<V> loads{.couples = couples.torque(at)};
     if (drag.is_there) drag.law.add(at, loads);
     V torque = loads.torque_of_couples();

@@ -34,7 +34,7 @@ struct SinglePendulumInLanes {
       waves.add_acceleration(wave, x, y);
       pull = fma(moment, x * s - y * c, pull);
     }
-    const RowAt<Links, Real> at{t, q, qd, s, c, length, 0.0, 0.0};
+    const RowAt<Links, Real> at{q, qd, s, c, length, t, 0.0, 0.0};
     RowLoads<Links> loads;
     if (has_couples) loads.couple(couples.torque(at));
     for (int k = 0; k < waves.motor_count; ++k) {

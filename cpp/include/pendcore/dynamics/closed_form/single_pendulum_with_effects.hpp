@@ -33,7 +33,7 @@ struct SinglePendulumWithEffects {
     V s, c;
     sines(t, q, s, c);
     V pull = weight * c;
-    RowAt<V> at{t, q, qd, s, c, length, 0.0, 0.0};
+    RowAt<V> at{q, qd, s, c, length, t, 0.0, 0.0};
     if (!effects->pivots.empty()) {
       double x, y;
       effects->pivot_acceleration(t, x, y);
