@@ -63,3 +63,8 @@ def test_one_member_and_none():
     none = pc.ensemble(BOOK, np.zeros((0, 2)), t_span=(0, 2))
     assert (none.energy().total.shape, none.positions().shape) == ((0,), (0, 3, 2))
     assert repr(none.energy()) == "<Energy: kinetic, potential, total, each (0,)>"
+
+
+def test_implausible_members_do_not_warn_again():
+    found = pc.ensemble(BOOK, [0.5, 1.0], t_span=(0, 0.1), vary={"link[1].inertia": [0.1, 1e9]})
+    assert np.isfinite(found.energy().total).all()

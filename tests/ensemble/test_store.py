@@ -272,6 +272,7 @@ print(result, 1024 * (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - befor
 
 
 def test_a_store_has_one_writer_at_a_time(tmp_path, stored):
+    pytest.importorskip("fcntl")
     how = {"store": tmp_path / "plain.zarr", "chunk": 7} | ASKED
 
     def write_too(fraction):
@@ -281,6 +282,12 @@ def test_a_store_has_one_writer_at_a_time(tmp_path, stored):
         pc.ensemble(BOOK, STARTS, progress=write_too, **how)
     pc.ensemble(BOOK, STARTS, **how)
     assert contents(tmp_path / "plain.zarr") == contents(stored)
+
+
+def test_arrays_of_a_store_are_as_those_in_memory(stored, plain):
+    array = pc.load(stored).arrays["q"]
+    assert (array.shape, array.dtype) == (plain.q.shape, plain.q.dtype)
+    assert np.array_equal(np.asarray(array), plain.q)
 
 
 def test_an_empty_folder_becomes_a_store(tmp_path, stored):

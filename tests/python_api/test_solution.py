@@ -317,6 +317,6 @@ def test_it_has_a_line_of_the_accuracy_that_was_asked_for():
 
 def test_energy_is_shown_in_a_line(sol):
     assert re.fullmatch(
-        r"<Energy: kinetic, potential, total, each \(\d+,\), total \S+ to \S+ J>",
+        r"<Energy: kinetic, potential, total, each \(\d+,\); the total is \S+ to \S+ J>",
         repr(sol.energy()),
     )

@@ -39,7 +39,14 @@ template <class Kind>
 std::optional<int> operations_of(const Kind& effect) {
   counted = 0;
   double waves[8] = {};
-  const RowAt<Counted> at{0.5, 1.0, 0.6, 0.8, 1.0, 0.0, 0.1, 0.2};
+  const RowAt<Counted> at{.q = 0.5,
+                          .qd = 1.0,
+                          .s = 0.6,
+                          .c = 0.8,
+                          .L = 1.0,
+                          .t = 0.0,
+                          .pivot_vx = 0.1,
+                          .pivot_vy = 0.2};
   RowLoads<Counted> loads;
   if constexpr (HasCouple<Kind>) {
     if (effect.couple(0)) {

@@ -35,8 +35,8 @@ PENDCORE_INLINE void accelerations_of_form(const void* form, double t, const dou
 }
 
 template <class Form>
-PENDCORE_INLINE void derivatives_of_three_states(const void* form, const double* t, const double* y,
-                                                 double* dydt) {
+PENDCORE_INLINE void derivatives_of_three_of_form(const void* form, const double* t,
+                                                  const double* y, double* dydt) {
   derivatives_of_three(static_cast<const Form*>(form), t, y, dydt);
 }
 
@@ -107,7 +107,7 @@ RightHandSide right_hand_side(const EquationsOfMotion& equations) {
         } else {
           static const auto compute = fastest<&accelerations_of_form<Form>, best_for(2)>();
           if constexpr (has_special_kernels_of_rare_runs && takes_states_in_lanes<Form>) {
-            static const auto three = fastest<&derivatives_of_three_states<Form>>();
+            static const auto three = fastest<&derivatives_of_three_of_form<Form>>();
             return {&form, compute, three};
           }
           return {&form, compute};

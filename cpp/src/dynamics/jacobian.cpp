@@ -30,22 +30,25 @@ PENDCORE_INLINE void jacobian_in_lanes(const Form& form, double t, const double*
 template <class Form>
 PENDCORE_INLINE void jacobian_in_memory(const Form* form, double t, const double* q,
                                         const double* qd, double* by_q, double* by_qd) {
-  using Row = typename Form::Links;
-  constexpr int n = Lanes<Row>::width;
-  if constexpr (takes_states_in_lanes<Form>) return jacobian_in_lanes(*form, t, q, qd, by_q, by_qd);
-  const Row angles = load<Row>(q);
-  const Row rates = load<Row>(qd);
+  if constexpr (takes_states_in_lanes<Form>) {
+    jacobian_in_lanes(*form, t, q, qd, by_q, by_qd);
+  } else {
+    using Row = typename Form::Links;
+    constexpr int n = Lanes<Row>::width;
+    const Row angles = load<Row>(q);
+    const Row rates = load<Row>(qd);
 #pragma GCC unroll 2
-  for (int j = 0; j < n; ++j) {
-    Row direction{};
-    set_lane(direction, j, 1.0);
-    const Dual<Row> of_angle =
-        accelerations_at(*form, t, Dual<Row>(angles, direction), Dual<Row>(rates));
-    const Dual<Row> of_rate =
-        accelerations_at(*form, t, Dual<Row>(angles), Dual<Row>(rates, direction));
-    for (int i = 0; i < n; ++i) {
-      by_q[i * n + j] = lane(of_angle.slope, i);
-      by_qd[i * n + j] = lane(of_rate.slope, i);
+    for (int j = 0; j < n; ++j) {
+      Row direction{};
+      set_lane(direction, j, 1.0);
+      const Dual<Row> of_angle =
+          accelerations_at(*form, t, Dual<Row>(angles, direction), Dual<Row>(rates));
+      const Dual<Row> of_rate =
+          accelerations_at(*form, t, Dual<Row>(angles), Dual<Row>(rates, direction));
+      for (int i = 0; i < n; ++i) {
+        by_q[i * n + j] = lane(of_angle.slope, i);
+        by_qd[i * n + j] = lane(of_rate.slope, i);
+      }
     }
   }
 }

@@ -89,14 +89,14 @@ std::string wrong_number(const Scene& scene, const std::string& name) {
 std::string remedy(const Scene& scene, const std::vector<NamedNumber>& known,
                    const std::string& name) {
   if (name.starts_with("q0") || name.starts_with("qd0")) {
-    return "it is of the start of a run, which q0 and qd0 give";
+    return "starts are not parameters: give them as q0 and qd0";
   }
   if (const std::string wrong = wrong_number(scene, name); !wrong.empty()) return wrong;
   const auto is_part = [&](const NamedNumber& one) { return one.name.starts_with(name + "."); };
   if (const auto part = std::ranges::find_if(known, is_part); part != known.end()) {
     return "did you mean \"" + part->name + "\"?";
   }
-  // Links have other numbers than effects: the last part of the name says what is meant.
+  // A right name may stand after a wrong one, as in link[1].damping: the last parts are compared.
   const auto last_part = [](const std::string& all) { return all.substr(all.rfind('.') + 1); };
   const std::string wanted = last_part(name);
   const auto far = [&](const NamedNumber& one) { return distance(last_part(one.name), wanted); };

@@ -20,11 +20,11 @@ void SceneSystem::operator()(double t, const double* y, double* dydt) const {
   }
 }
 
-bool SceneSystem::derivatives_of_three(const double* t, const double* y, double* dydt) const {
+void SceneSystem::derivatives_of_three(const double* t, const double* y, double* dydt) const {
   // The kernel knows states of two links, and nothing beside them.
-  if (right_hand_side_.three == nullptr || row != 2 || quadratures > 0) return false;
-  right_hand_side_.three(right_hand_side_.form, t, y, dydt);
-  return true;
+  const bool has_kernel = right_hand_side_.compute_three != nullptr && row == 2 && quadratures == 0;
+  if (!has_kernel) return DifferentiableSystem::derivatives_of_three(t, y, dydt);
+  right_hand_side_.compute_three(right_hand_side_.form, t, y, dydt);
 }
 
 void SceneSystem::differentiate(const Scene& scene) {

@@ -19,7 +19,7 @@ from pendcore.ensemble.distribution import InMemory, Limits, run_blocks
 from pendcore.ensemble.export import to_xarray
 from pendcore.ensemble.figure import plot
 from pendcore.ensemble.members import Members
-from pendcore.ensemble.request import Request
+from pendcore.ensemble.request import NOT_RUN, Request
 from pendcore.ensemble.result import EnsembleResult
 from pendcore.ensemble.run import run_members
 from pendcore.ensemble.store import bytes_of, in_words, store_for
@@ -97,8 +97,8 @@ class Ensemble(EnsembleResult):
         >>> found.message(0)
         'q0[1] = nan: must be finite (rad)'
         """
-        if self.status[_place(index, self.shape)] == "not_run":
-            return "was not run: the call that made the ensemble runs it if it is repeated"
+        if self.codes[_place(index, self.shape)] == NOT_RUN:
+            return "was not run: .rerun() runs it, and with a store the same call of pc.ensemble"
         try:
             return self.member(index).message
         except ValueError as refusal:

@@ -29,6 +29,8 @@ AHEAD = 4
 """The number of tasks that wait for each processor: enough that no worker has nothing to do."""
 LOOK = 0.2
 """s between two looks at the clock."""
+PATIENCE = 60.0
+"""s that the end of the whole waits for blocks that workers have begun."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,8 +144,9 @@ def _run_by(
     except BaseException as stop:  # Ctrl-C, an exception of progress, or what a worker raised
         ending, error = "interrupted", _in_words(stop)
     finally:
-        for one in running:
-            one.cancel()
+        begun = [one for one in running if not one.cancel()]
+        if store is not None:  # these still write into it, so it must be held until they have
+            wait(begun, PATIENCE)
     return Outcome(target.arrays, ending, dict(statistics), error)
 
 

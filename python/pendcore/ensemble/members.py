@@ -63,7 +63,7 @@ class Members:
 
     def selected(self, places: npt.NDArray[np.intp]) -> Members:
         """Return the members at flat places, along one axis."""
-        shape = self.shape or (1,)
+        shape = self.shape or (1,)  # an ensemble without axes has one member
         where = np.unravel_index(places, shape)
         n = self.q0.shape[-1:]
         return replace(
@@ -126,10 +126,5 @@ def _parameters(scene: SceneData, vary: Mapping[str, npt.ArrayLike] | None) -> d
             f"vary = {vary!r}: must be a dictionary of names and values, such as "
             '{"link[1].mass": [0.9, 1.0, 1.1]}'
         )
-    for name in vary:
-        if isinstance(name, str) and name.startswith(("q0", "qd0")):
-            raise ValueError(
-                f"vary[{name!r}]: starts are no parameters: give arrays of them as q0 and qd0"
-            )
     check_parameter_names(scene._compiled, vary)
     return {name: real_array(f'vary["{name}"]', value, "") for name, value in vary.items()}

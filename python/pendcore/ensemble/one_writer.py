@@ -12,6 +12,9 @@ try:
 except ImportError:  # not on Windows
     fcntl = None  # type: ignore[assignment]
 
+_held: set[int] = set()
+"""Descriptors of the folders that this process holds."""
+
 
 @contextmanager
 def one_writer(path: Path) -> Iterator[None]:
@@ -23,30 +26,42 @@ def one_writer(path: Path) -> Iterator[None]:
     if fcntl is None:
         yield
         return
-    folder = os.open(path, os.O_RDONLY)
+    descriptor = os.open(path, os.O_RDONLY)
+    _held.add(descriptor)
     try:
-        _lock(folder, path)
-        try:
-            yield
-        finally:  # a process that this one made may still have the folder open
-            with suppress(OSError):
-                fcntl.flock(folder, fcntl.LOCK_UN)
+        _lock(descriptor, path)
+        yield
     finally:
-        os.close(folder)
+        if descriptor in _held:  # not in a process that was forked meanwhile
+            _held.remove(descriptor)
+            with suppress(OSError):  # a worker that has just been forked may not have closed it yet
+                fcntl.flock(descriptor, fcntl.LOCK_UN)
+            os.close(descriptor)
 
 
-def _lock(folder: int, path: Path) -> None:
-    try:
-        fcntl.flock(folder, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        raise is_being_written(path) from None
-    except OSError:  # this file system has no such locks
-        pass
-
-
-def is_being_written(path: Path) -> OSError:
+def other_writer(path: Path) -> OSError:
     """Return the error that another run is writing a store."""
     return OSError(
         f"store = {str(path)!r}: another run is writing it: wait until that has ended, or choose "
         "another name"
     )
+
+
+def _lock(descriptor: int, path: Path) -> None:
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise other_writer(path) from None
+    except OSError:  # this file system has no such locks
+        pass
+
+
+def _let_go() -> None:
+    """Close what a forked process has inherited: it would hold the store longer than its parent."""
+    for descriptor in _held:
+        os.close(descriptor)
+    _held.clear()
+
+
+if fcntl is not None:
+    os.register_at_fork(after_in_child=_let_go)

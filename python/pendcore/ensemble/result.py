@@ -11,7 +11,7 @@ import numpy.typing as npt
 from pendcore import _core
 from pendcore.ensemble.members import Members
 from pendcore.ensemble.request import Request
-from pendcore.ensemble.states import Quantity, of_states
+from pendcore.ensemble.states import Quantity, quantity_of_states
 from pendcore.messages.arguments import Floats, known_keywords
 from pendcore.messages.html import table
 from pendcore.run.energy import Energy
@@ -108,7 +108,8 @@ class EnsembleResult:
         """Return kinetic, potential and total energy of the kept states, J, each (...).
 
         They are those of each member's own scene, and NaN where a member was refused or not run.
-        With ``keep="times"`` they are (..., n_t). Varied parameters take some 20 us a member.
+        With ``keep="times"`` they are (..., n_t). With varied parameters, the scene of each member
+        is made anew.
 
         Examples
         --------
@@ -139,7 +140,7 @@ class EnsembleResult:
         return self._of_states(lambda scene, t, q, qd: scene.positions(t, q))
 
     def _of_states(self, quantity: Quantity) -> Floats:
-        return of_states(quantity, self.members, self.t, self.q, self.qd)
+        return quantity_of_states(quantity, self.members, self.t, self.q, self.qd)
 
     def counts(self) -> dict[str, int]:
         """Return how many members have each status that occurs.

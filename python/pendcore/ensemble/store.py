@@ -23,7 +23,7 @@ from pendcore.ensemble.about import CASE, KEEP, VARY, VERSION, about, read_about
 from pendcore.ensemble.blocks import Block, Blocks, blocks_of, usual_block
 from pendcore.ensemble.coordinates import coordinates, member_axes, members_from
 from pendcore.ensemble.members import Members
-from pendcore.ensemble.one_writer import is_being_written, one_writer
+from pendcore.ensemble.one_writer import one_writer, other_writer
 from pendcore.ensemble.request import NOT_RUN, Request, Variable
 from pendcore.ensemble.run import Arrays
 from pendcore.ensemble.stored_array import StoredArray
@@ -133,26 +133,26 @@ def store_for(path: Path, members: Members, request: Request, chunk: int) -> Ite
     if path.exists() and not path.is_dir():
         raise FileExistsError(f"store = {str(path)!r}: is a file: choose another name")
     if is_new := not path.exists() or not any(path.iterdir()):
-        _create_store(path, members, request, chunk)
+        create(path, members, request, chunk)
     with one_writer(path):
         yield opened(path, "r+") if is_new else continued(path, members, request)
 
 
-def _create_store(path: Path, members: Members, request: Request, chunk: int) -> None:
-    about(members.scene, list(members.vary), request)  # says what cannot be saved, before all work
-    require_space(path, bytes_of(members, request))
-    create(path, members, request, blocks_of(members.shape, chunk or usual_block(members, request)))
-
-
-def create(path: Path, members: Members, request: Request, blocks: Blocks) -> None:
+def create(path: Path, members: Members, request: Request, chunk: int) -> None:
     """Make a store without results. It appears under its name when it has all starts."""
     zarr = _zarr()
-    told = about(members.scene, list(members.vary), request)
+    if path.exists() and (path.samefile(Path.cwd()) or path.is_mount()):
+        raise OSError(
+            f"store = {str(path)!r}: is the current folder or a disk: name a folder in it"
+        )
+    told = about(members.scene, list(members.vary), request)  # says what cannot be saved
+    require_space(path, bytes_of(members, request))
+    blocks = blocks_of(members.shape, chunk or usual_block(members, request))
     axes = member_axes(members.shape)
     building = path.with_name(f"{path.name}.{uuid4().hex[:8]}.part")
     with _named(path):
         try:
-            group = zarr.create_group(building, overwrite=True)
+            group = zarr.create_group(building)
             starts = coordinates(members)
             for start in starts:
                 _put(group, start.name, start.values, start.axes, start.unit)
@@ -161,7 +161,7 @@ def create(path: Path, members: Members, request: Request, blocks: Blocks) -> No
             for axis, values in labels.items():
                 _put(group, axis, np.asarray(values), (axis,), "s" if axis == "time" else "")
             for one in variables:
-                _create(group, one, axes, members.shape, blocks)
+                _create_array(group, one, axes, members.shape, blocks)
             own = {"coordinates": " ".join(one.name for one in starts)}  # as xarray reads them
             group.attrs.update(own | told | {SHAPE: members.shape, BLOCK: blocks.block_shape})
             with warnings.catch_warnings():  # readers of the bare format pass over what it adds
@@ -177,7 +177,7 @@ def _appear(building: Path, path: Path) -> None:
         building.rename(path)
     except OSError:
         if path.is_dir() and any(path.iterdir()):
-            raise is_being_written(path) from None
+            raise other_writer(path) from None
         raise
 
 
@@ -201,7 +201,10 @@ def opened(path: Path, mode: str = "r") -> Store:
             f"store = {str(path)!r}: is no store of an ensemble: name another folder"
         ) from None
     except RuntimeError as error:
-        raise OSError(f"store = {str(path)!r}: its starts cannot be read ({error})") from error
+        raise OSError(
+            f"store = {str(path)!r}: its starts cannot be read ({error}): put q0, qd0 and the "
+            "varied parameters back from a copy, or remove the store"
+        ) from error
     return Store(path, group, members, request, Blocks(shape, block_shape))
 
 
@@ -260,7 +263,7 @@ def _put(group: zarr.Group, name: str, values: Any, axes: tuple[str, ...], unit:
         )  # fmt: skip
 
 
-def _create(
+def _create_array(
     group: zarr.Group, one: Variable, axes: list[str], shape: tuple[int, ...], blocks: Blocks
 ) -> None:
     attributes: dict[str, Any] = {"units": one.unit} if one.unit else {}

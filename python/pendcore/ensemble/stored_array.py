@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,15 +26,30 @@ class StoredArray:
     array: Any
     status: Any
 
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Return the shape, without reading."""
+        shape: tuple[int, ...] = self.array.shape
+        return shape
+
+    @property
+    def dtype(self) -> np.dtype[Any]:
+        """Return the type of the numbers, without reading."""
+        dtype: np.dtype[Any] = self.array.dtype
+        return dtype
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> npt.NDArray[Any]:
+        return np.asarray(self[...], dtype)
+
     def __getitem__(self, index: Any) -> Any:
-        """Read; an OSError names a chunk that cannot be read, and says how it is made anew."""
+        """Read; an OSError names a chunk that is damaged, and says how it is made anew."""
         try:
             return self.array[index]
-        except (OSError, RuntimeError, ValueError) as error:
+        except (RuntimeError, ValueError) as error:
             for place in np.ndindex(self.array.cdata_shape):
                 try:
                     self.array.blocks[place]
-                except (OSError, RuntimeError, ValueError):
+                except (RuntimeError, ValueError):
                     raise OSError(self._complaint(place, error)) from error
             raise
 

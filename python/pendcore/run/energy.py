@@ -124,5 +124,7 @@ class Energy:
 
     def __repr__(self) -> str:
         numbers = self.total[~np.isnan(self.total)]
-        span = f", total {numbers.min():.6g} to {numbers.max():.6g} J" if numbers.size else ""
+        span = ""
+        if numbers.size:
+            span = f"; the total is {numbers.min():.6g} to {numbers.max():.6g} J"
         return f"<Energy: kinetic, potential, total, each {self.total.shape}{span}>"

@@ -7,7 +7,7 @@ with other values.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 from pendcore import _core
@@ -46,12 +46,12 @@ def changed(
     return new_links, gravity, new_effects
 
 
-def check_parameter_names(scene: _core.Scene, names: Iterable[object]) -> None:
+def check_parameter_names(scene: _core.Scene, names: Collection[Any]) -> None:
     """Raise a ValueError for a name that the scene does not have, a TypeError for no name."""
     for name in names:
         if not isinstance(name, str):
             raise TypeError(f'parameter {name!r}: must be a name, such as "link[1].mass"')
-        _core.check_parameter_names(scene, [name])
+    _core.check_parameter_names(scene, list(names))
 
 
 def _with(owner: Any, path: list[str], value: float) -> Any:

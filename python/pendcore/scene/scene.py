@@ -160,7 +160,9 @@ class SceneData:
         Raises
         ------
         ValueError
-            If the scene has no parameter of that name; the message has the nearest one.
+            If the scene has no parameter of that name; the message says what may be meant.
+        TypeError
+            If a name is no text.
 
         Examples
         --------

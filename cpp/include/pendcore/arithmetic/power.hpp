@@ -61,6 +61,7 @@ PENDCORE_INLINE Real approximate_log2(const Real& x) {
   const auto& c = power_detail::log2_of_mantissa;
   const auto [exponent, u] = power_detail::split(x);
   Real p = broadcast<Real>(c.back());
+  // Written out, as a loop's own instructions would keep the processor from what comes after it.
 #pragma GCC unroll 16
   for (int i = c.size() - 2; i >= 0; --i) p = c[i] + p * u;
   return exponent + p * u;

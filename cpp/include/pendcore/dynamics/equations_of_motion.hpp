@@ -58,7 +58,7 @@ struct RightHandSide {
   void (*compute)(const void* form, double t, const double* q, const double* qd, double* qdd);
   /// The derivatives (qd, qdd) of three states (q, qd) of two links at three times, all in a row,
   /// at less than the cost of three; null if this form has no kernel for them.
-  void (*three)(const void* form, const double* t, const double* y, double* dydt) = nullptr;
+  void (*compute_three)(const void* form, const double* t, const double* y, double* dydt) = nullptr;
 
   void operator()(double t, const double* q, const double* qd, double* qdd) const {
     compute(form, t, q, qd, qdd);

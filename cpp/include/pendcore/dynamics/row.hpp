@@ -13,7 +13,7 @@ template <class V, class Time = double>
 struct RowAt {
   using Value = V;
 
-  V q, qd, s, c, L;
+  V q, qd, s, c, L;  // packs first, so that no padding parts them
   Time t;
   double pivot_vx, pivot_vy;
 
@@ -24,8 +24,8 @@ struct RowAt {
   PENDCORE_INLINE V vy() const { return Constants<V>::of(pivot_vy) + before(L * qd * c); }
 };
 
-/// The same for three and more links: the velocities of their joints are sums over all links
-/// before.
+/// The same for three and four links in lanes: the velocities of their joints are sums over all
+/// links before.
 template <class V, class Time>
 struct RowOfLinksAt {
   using Value = V;

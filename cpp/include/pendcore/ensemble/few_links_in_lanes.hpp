@@ -19,7 +19,7 @@ namespace pendcore {
 template <class Real, int n>
 struct FewLinksInLanes {
   using Links = EachLink<Real, n>;
-  /// Stages are a loop around one copy of these equations: they are too long for eight.
+  /// These equations are so long that a step loops over its stages around one copy of them.
   static constexpr bool is_long = true;
 
   Couples<Links> couples;
@@ -55,7 +55,14 @@ struct FewLinksInLanes {
 
   PENDCORE_INLINE Loads loads(const Real& t, const Links& q, const Links& qd, const Links& s,
                               const Links& c, const Real* wave) const {
-    RowOfLinksAt<Links, Real> at{q, qd, s, c, length(), t, {}, {}};
+    RowOfLinksAt<Links, Real> at{.q = q,
+                                 .qd = qd,
+                                 .s = s,
+                                 .c = c,
+                                 .L = length(),
+                                 .t = t,
+                                 .vx_of_joint = {},
+                                 .vy_of_joint = {}};
     if (drag.is_there) {
       Real x{}, y{};
 #pragma GCC unroll 4

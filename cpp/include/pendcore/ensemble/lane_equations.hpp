@@ -161,7 +161,8 @@ struct LoadedDoublePendulumInLanes : LoadedDoublePendulum<Two<Real>, Real> {
     V s, c;
     sine_cosine(q, s, c);
     const typename LoadedDoublePendulum<V, Real>::template Between<V> between(s, c);
-    const RowAt<V, Real> at{q, qd, s, c, length, t, 0.0, 0.0};
+    const RowAt<V, Real> at{
+        .q = q, .qd = qd, .s = s, .c = c, .L = length, .t = t, .pivot_vx = 0.0, .pivot_vy = 0.0};
     RowLoads<V> loads{.couples = couples.torque(at)};
     if (drag.is_there) drag.law.add(at, loads);
     V torque = loads.torque_of_couples();

@@ -34,7 +34,8 @@ struct SinglePendulumInLanes {
       waves.add_acceleration(wave, x, y);
       pull = fma(moment, x * s - y * c, pull);
     }
-    const RowAt<Links, Real> at{q, qd, s, c, length, t, 0.0, 0.0};
+    const RowAt<Links, Real> at{
+        .q = q, .qd = qd, .s = s, .c = c, .L = length, .t = t, .pivot_vx = 0.0, .pivot_vy = 0.0};
     RowLoads<Links> loads;
     if (has_couples) loads.couple(couples.torque(at));
     for (int k = 0; k < waves.motor_count; ++k) {

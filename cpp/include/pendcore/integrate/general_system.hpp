@@ -23,11 +23,10 @@ class DifferentiableSystem : public GeneralSystem {
  public:
   using GeneralSystem::GeneralSystem;
   virtual void jacobian(double t, const double* y, double* by_q, double* by_qd) const = 0;
-  /// Computes the derivatives of three states at three times, all in a row, if that costs less than
-  /// three times one; else returns false.
-  virtual bool derivatives_of_three(const double* /*t*/, const double* /*y*/,
-                                    double* /*dydt*/) const {
-    return false;
+  /// Computes the derivatives of three states at three times, all in a row.
+  virtual void derivatives_of_three(const double* t, const double* y, double* dydt) const {
+    const int size = 2 * row + quadratures;
+    for (int k = 0; k < 3; ++k) (*this)(t[k], y + k * size, dydt + k * size);
   }
 };
 

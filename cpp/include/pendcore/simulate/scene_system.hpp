@@ -25,7 +25,7 @@ class SceneSystem final : public DifferentiableSystem {
   /// Makes jacobian() available.
   void differentiate(const Scene& scene);
   void jacobian(double t, const double* y, double* by_q, double* by_qd) const override;
-  bool derivatives_of_three(const double* t, const double* y, double* dydt) const override;
+  void derivatives_of_three(const double* t, const double* y, double* dydt) const override;
 
  private:
   EquationsOfMotion equations_;

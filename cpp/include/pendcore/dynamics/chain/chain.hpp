@@ -102,6 +102,7 @@ class ChainOf {
   mutable std::vector<Number> centripetal_;               // L qd^2
   mutable std::vector<Number> center_;                    // m c qd^2
   mutable std::vector<Number> cc_, ss_, sc_, cos_, sin_;  // products and cos, sin of q_i - q_{i-1}
+  // Forces (fx, fy) are collected in the frame of the ground, and then turned into each link's.
   mutable std::vector<Number> couple_, torque_, fx_, fy_, vx_, vy_, user_;
   struct Response {
     Number free, x, y, from_before;  // qdd = free - (x, y) . a + from_before qdd_{i-1}

@@ -115,7 +115,14 @@ struct DoublePendulumWithEffects : LoadedDoublePendulum<Pair, double> {
     }
     const Between<V> between(s, c);
     V pull = Constant::of(weight) * c;
-    RowAt<V, Time> at{q, qd, s, c, Constant::of(length), t, 0.0, 0.0};
+    RowAt<V, Time> at{.q = q,
+                      .qd = qd,
+                      .s = s,
+                      .c = c,
+                      .L = Constant::of(length),
+                      .t = t,
+                      .pivot_vx = 0.0,
+                      .pivot_vy = 0.0};
     RowLoads<V> loads{.couples = couples->torque(at)};
     if constexpr (everything) {
       for (const JointWave& one : effects->joint_waves) add_wave(one, loads);

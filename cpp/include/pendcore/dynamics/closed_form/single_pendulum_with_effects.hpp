@@ -33,7 +33,8 @@ struct SinglePendulumWithEffects {
     V s, c;
     sines(t, q, s, c);
     V pull = weight * c;
-    RowAt<V> at{q, qd, s, c, length, t, 0.0, 0.0};
+    RowAt<V> at{
+        .q = q, .qd = qd, .s = s, .c = c, .L = length, .t = t, .pivot_vx = 0.0, .pivot_vy = 0.0};
     if (!effects->pivots.empty()) {
       double x, y;
       effects->pivot_acceleration(t, x, y);

@@ -57,7 +57,7 @@ struct CollocationStep {
   double newton_tolerance = 0.0;
   Rows<1> rtol, atol, y, dydt, y_new;
   Rows<3> stages, transformed, rates, increment;
-  Rows<3> trial;  ///< the states at the stages
+  Rows<3> trial;  ///< states for which rates are wanted: mostly those of the stages
   Rows<1> error;
   Rows<1> slope;  ///< h u'(t) of the dense output
   Rows<1> scale;  ///< what the tolerances allow at y and y_new
@@ -176,12 +176,8 @@ struct CollocationStep {
         store(&trial[k * size + i], at(y.data(), i) + at(&stages[k * size], i));
       }
     }
-    if (system.derivatives_of_three(times, trial.data(), rates.data())) {
-      evaluations += 3;
-      return;
-    }
-#pragma GCC unroll 1
-    for (int k = 0; k < 3; ++k) evaluate(times[k], &trial[k * size], &rates[k * size]);
+    system.derivatives_of_three(times, trial.data(), rates.data());
+    evaluations += 3;
   }
 
   /// Improves the stages by one iteration of Newton's, and returns the size of the improvement.
