@@ -44,7 +44,7 @@ void print(double qd) {
   const MagneticBrake brake{.joint = 1, .peak = 0.3, .critical_rate = 2.0};
   MagneticBrake::Law<Row> law;
   brake.put(law, 0, LinkConstants{});
-  const RowAt<Row> at{.t = 0.0, .q = Constants<Row>::of(1.0), .qd = Constants<Row>::of(qd)};
+  const RowAt<Row> at{.q = Constants<Row>::of(1.0), .qd = Constants<Row>::of(qd), .t = 0.0};
   RowLoads<Row> loads;
   law.add(at, loads);
   std::printf("%a\\n", lane(loads.couples, 0));

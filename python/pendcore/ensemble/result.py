@@ -60,7 +60,7 @@ class EnsembleResult:
     @property
     def t_reached(self) -> Floats:
         """The time that each member reached, s, (...)."""
-        return self.values("t_reached")
+        return self._read("t_reached")
 
     @property
     def t(self) -> Floats:
@@ -70,12 +70,12 @@ class EnsembleResult:
     @property
     def q(self) -> Floats:
         """The angles of each member at its end, rad, (..., n), or at the times, (..., n_t, n)."""
-        return self.values("q")
+        return self._read("q")
 
     @property
     def qd(self) -> Floats:
         """The rates there, rad/s, with the shape of ``q``."""
-        return self.values("qd")
+        return self._read("qd")
 
     @property
     def status(self) -> npt.NDArray[np.str_]:
@@ -97,9 +97,9 @@ class EnsembleResult:
         if name not in self.request.reducers:
             known = ", ".join(map(repr, self.request.reducers)) or "none were kept"
             raise KeyError(f"no reducer is called {name!r}: {known}")
-        return self.values(name)
+        return self._read(name)
 
-    def values(self, name: str) -> Floats:
+    def _read(self, name: str) -> Floats:
         """Return an array by the name that it has in ``arrays``."""
         return np.asarray(self.arrays[name][...])
 
@@ -117,7 +117,7 @@ class EnsembleResult:
         ...     pc.Scene.textbook(), q0=[0.5, 1.0], t_span=(0, 5), vary={"gravity": [9.8, 1.62]}
         ... )
         >>> found.energy().total.round(4)
-        array([-11.0938,  -1.8339])
+        array([-11.1708,  -1.8466])
         """
         both = self._of_states(lambda scene, *state: np.stack(scene.energy(*state), axis=-1))
         kinetic, potential = both[..., 0], both[..., 1]
