@@ -1,4 +1,4 @@
-"""Who writes into a store, and until when."""
+"""Nobody writes into a store after its run has ended, and nobody holds it any longer."""
 
 from __future__ import annotations
 

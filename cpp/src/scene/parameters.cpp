@@ -69,7 +69,7 @@ std::size_t distance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-/// What is wrong with the number of a link or an effect in a name, or nothing.
+/// Says what is wrong with the number of a link or an effect in a name; empty if it is right.
 std::string wrong_number(const Scene& scene, const std::string& name) {
   for (const auto& [part, count] :
        {std::pair("link", scene.links.size()), std::pair("effect", scene.effects.size())}) {

@@ -47,7 +47,7 @@ def changed(
 
 
 def check_parameter_names(scene: _core.Scene, names: Collection[Any]) -> None:
-    """Raise a ValueError for a name that the scene does not have, a TypeError for no name."""
+    """Raise a ValueError for a name that the scene does not have, a TypeError if it is no text."""
     for name in names:
         if not isinstance(name, str):
             raise TypeError(f'parameter {name!r}: must be a name, such as "link[1].mass"')

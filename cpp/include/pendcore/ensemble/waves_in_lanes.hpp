@@ -15,7 +15,6 @@ inline constexpr int most_waves_in_lanes = 4;
 /// each of them moves, is the same in all lanes.
 template <class Real>
 struct WavesInLanes {
-  static constexpr int most = most_waves_in_lanes;
   /// What a wave gives, by its number: N m of a motor, m/s^2 of the pivot along x or y.
   struct WaveWithGain {
     int wave = 0;
@@ -28,13 +27,14 @@ struct WavesInLanes {
     WaveWithGain x, y;
   };
 
-  Real angular_frequency[most] = {}, phase[most] = {};
-  Motor motor[most];
-  Pivot pivot[most];
+  Real angular_frequency[most_waves_in_lanes] = {}, phase[most_waves_in_lanes] = {};
+  Motor motor[most_waves_in_lanes];
+  Pivot pivot[most_waves_in_lanes];
   int wave_count = 0, motor_count = 0, pivot_count = 0;
 
   /// Whether there is room for what a trajectory has.
   static bool has(const EffectsInForce& effects) {
+    constexpr int most = most_waves_in_lanes;
     return effects.waves <= most && effects.joint_waves.size() <= most &&
            effects.pivots.size() <= most;
   }
