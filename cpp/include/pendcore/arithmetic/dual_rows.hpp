@@ -20,6 +20,9 @@ PENDCORE_INLINE Dual<Pairs> joined(const Dual<Pair>& low, const Dual<Pair>& high
 PENDCORE_INLINE Dual<Pair> low_half(const Dual<Pairs>& x) {
   return {low_half(x.value), low_half(x.slope)};
 }
+PENDCORE_INLINE Dual<Pair> high_half(const Dual<Pairs>& x) {
+  return {high_half(x.value), high_half(x.slope)};
+}
 PENDCORE_INLINE Dual<Pairs> twice(const Dual<Pair>& x) { return {twice(x.value), twice(x.slope)}; }
 PENDCORE_INLINE Dual<Pairs> halves_added(const Dual<Pairs>& x) {
   return {halves_added(x.value), halves_added(x.slope)};

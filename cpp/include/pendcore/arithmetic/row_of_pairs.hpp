@@ -22,6 +22,10 @@ template <class Real>
 PENDCORE_INLINE Two<Real> low_half(const TwoPairs<Real>& x) {
   return x.first;
 }
+template <class Real>
+PENDCORE_INLINE Two<Real> high_half(const TwoPairs<Real>& x) {
+  return x.second;
+}
 /// The numbers of the other link, in both pairs.
 template <class Real>
 PENDCORE_INLINE TwoPairs<Real> other(const TwoPairs<Real>& x) {

@@ -1,7 +1,8 @@
 /// \file
-/// The sums of products in two orders of the series of a pendulum (double_pendulum_series.hpp,
-/// few_links_series.hpp). Two orders are computed at a time, so that what their sums share is
-/// loaded once.
+/// The sums of products in two orders of the series of three and four links
+/// (few_links_series.hpp). Two orders are computed at a time, so that what their sums share is
+/// loaded once. The sums by age of two links (terms_by_age.hpp) gain nothing here: single runs of
+/// three and four links take 1.00 to 1.05 of the time with them, lanes 1.2 to 1.7.
 #pragma once
 
 #include "pendcore/arithmetic/pair.hpp"
