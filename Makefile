@@ -21,8 +21,8 @@ BUILT := build/installed
 SOURCES := pyproject.toml CMakeLists.txt $(shell find cpp python ! -path '*__pycache__*')
 
 .DEFAULT_GOAL := help
-.PHONY: demo test test-all compare hard-cases bench build-bench lint tidy sanitize sanitize-few \
-    sanitized references threads long horizon asked-errors default-method book-speed fuzz fuzz-readers \
+.PHONY: demo test test-all compare hard-cases bench against build-bench lint tidy sanitize sanitize-few \
+    sanitized references threads lowest long horizon asked-errors default-method book-speed fuzz fuzz-readers \
     test-error elsewhere wasm page wheel site core clean help flip-map film
 
 demo: $(DONE)/installed  ## build, run the textbook's case, say where its figure and summary are
@@ -64,6 +64,12 @@ hard-cases: build-bench  ## what breaks simulators, here and in other programs
 
 bench: build-bench  ## what the parts of the core cost, in nanoseconds
 	$(BUILT)/bench/pendcore_bench
+
+OLD ?= $(error say which commit to compare with: make against OLD=COMMIT)
+NEW ?= HEAD
+ROUNDS ?= 30
+against: $(DONE)/installed  ## is a commit slower? OLD=COMMIT and NEW=COMMIT (HEAD), the same calls in turns; ONLY="taylor chain"
+	python bench/against.py $(OLD) $(NEW) --rounds $(ROUNDS) $(if $(ONLY),--only $(ONLY))
 
 build-bench: $(DONE)/installed $(DONE)/bench-requirements
 	cmake -B $(BUILT) -DPENDCORE_BENCH=ON
@@ -133,6 +139,20 @@ site: page $(DONE)/site-requirements  ## the documentation as a site: build/site
 	cp -r docs examples cpp tests bench python setup *.md CMakeLists.txt Makefile $(SITE)/source
 	cd $(SITE) && sphinx-build -W --keep-going -q -j auto -d cache -c source/docs/site source/docs html
 	@echo "site:     $(SITE)/html/index.html"
+
+# The core is compiled anew, with the lowest versions of what the build needs. What these packages need
+# themselves is new, and warns of their age.
+LOWEST := build/lowest
+TRIED_WITH_LOWEST := tests/core/test_threads.py tests/python_api tests/ensemble tests/events tests/drawing \
+    tests/derive/test_derivation.py
+lowest: export PATH := $(CURDIR)/$(LOWEST)/bin:$(PATH)
+lowest: $(DONE)/venv  ## the lowest versions that pyproject.toml names: installed, built and tested with
+	rm -rf $(LOWEST)
+	$(PYTHON) -m venv $(LOWEST)
+	python setup/requirements.py --lowest build run test export store symbolic completion notebook \
+	    | $(PIP_INSTALL) -r /dev/stdin
+	$(PIP_INSTALL) --no-deps --no-build-isolation .
+	MPLBACKEND=Agg pytest -n auto --values 1 -W ignore::DeprecationWarning $(TRIED_WITH_LOWEST)
 
 threads: $(DONE)/build-requirements  ## threads that share a scene, under the thread sanitizer
 	@sh setup/debian_packages.sh doctest
@@ -205,7 +225,7 @@ $(DONE)/build-requirements: pyproject.toml | $(DONE)/venv
 # is newer than the stamp, so the next call builds it.
 $(DONE)/installed: $(SOURCES) $(DONE)/build-requirements
 	@touch $@.begun
-	@echo "pip compiles the core and installs it into .venv: one to two minutes the first time"
+	@echo "pip compiles the core and installs it into .venv: four minutes of one processor the first time"
 	@$(MAKE) --silent --jobs=2 $(DONE)/run-requirements core
 	@mv $@.begun $@
 

@@ -256,6 +256,17 @@ def version_is_the_same_everywhere(root: Path) -> Iterator[str]:
         yield f"CITATION.cff has version {', '.join(cited)}, pyproject.toml {version}"
 
 
+def workflows_are_pinned(root: Path) -> Iterator[str]:
+    """A tag of an action can be moved to other code, and what is not forbidden is allowed."""
+    for path in sorted((root / ".github/workflows").glob("*.yml")):
+        text = path.read_text()
+        for action in re.findall(r"uses: (?!\./)(\S+(?: #.*)?)", text):
+            if not re.fullmatch(r"\S+@[0-9a-f]{40} # v\d\S*", action):
+                yield f"{path.relative_to(root)} uses {action}, not a commit and its version"
+        if not re.search(r"^permissions:\n  contents: read$", text, re.MULTILINE):
+            yield f"{path.relative_to(root)} does not begin with the permission to read alone"
+
+
 RULES: list[Rule] = [
     includes_follow_the_flow,
     sources_stand_where_their_headers_do,
@@ -267,6 +278,7 @@ RULES: list[Rule] = [
     kernels_call_no_libm,
     builds_use_no_flag_that_changes_bits,
     version_is_the_same_everywhere,
+    workflows_are_pinned,
 ]
 
 if __name__ == "__main__":

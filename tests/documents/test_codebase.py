@@ -103,6 +103,11 @@ BREACHES = {
         (f"{CORE}/integrate/control.hpp", "x = -__builtin_expf (y);", "__builtin_expf"),
         ("cpp/src/simulate/simulate.cpp", "sincos(q, &s, &c);", "sincos"),
     ],
+    rules.workflows_are_pinned: [
+        (".github/workflows/a.yml", "- uses: actions/checkout@v4", "uses actions/checkout@v4, not"),
+        (".github/workflows/a.yml", f"- uses: a/b@{40 * 'c'}", "not a commit and its version"),
+        (".github/workflows/a.yml", "permissions: write-all", "the permission to read alone"),
+    ],
     rules.builds_use_no_flag_that_changes_bits: [
         ("CMakeLists.txt", "add_compile_options(-march=native)", "-march=native"),
         ("cpp/cmake/speed.cmake", "set(fast -O3 -ffast-math)", "-ffast-math"),

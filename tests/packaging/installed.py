@@ -4,7 +4,8 @@
 
 It repeats runs of tests/cpp/trajectory_hash.cpp, and their hashes must be those that are recorded:
 the textbook's case, a backward run, a chain, and scenes with effects. The exit status is 1 if one
-differs, if a page of a run has no core inside, or if pendcore is not the installed one.
+differs, if pickle does not find an effect, if a page of a run has no core inside, or if pendcore is
+not the installed one.
 """
 
 from __future__ import annotations
@@ -72,6 +73,11 @@ def hash_of(solution: pc.Solution) -> str:
     return f"{h:016x}"
 
 
+def is_found_by_its_name(cls: type) -> bool:
+    """Say whether a pickle, and so another process, knows the class; its maker is not its home."""
+    return getattr(sys.modules[cls.__module__], cls.__qualname__, None) is cls
+
+
 def main() -> int:
     recorded = dict(line.rsplit(" ", 1) for line in RECORDED.read_text().splitlines())
     here = Path(pc.__file__).resolve()
@@ -86,6 +92,9 @@ def main() -> int:
         print(f"{name:20} {found} {'the recorded hash' if same else f'NOT {recorded[name]}'}")
     with tempfile.TemporaryDirectory() as folder:
         page = pc.Case.textbook().simulate().to_html(Path(folder, "run.html")).read_text()
+    lost = [kind for kind, cls in fx.kinds().items() if not is_found_by_its_name(cls)]
+    wrong += len(lost)
+    print(f"pickle finds {'every effect' if not lost else f'NOT {lost}'}")
     alive = "plays back" not in page
     wrong += not alive
     print(f"a page has {len(page)} bytes, and {'' if alive else 'NOT '}the core inside")

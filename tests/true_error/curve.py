@@ -36,7 +36,7 @@ def angles_of(sol: pc.Solution, t: Floats, is_dense: bool) -> Floats:
     return sol.q[first_of_each(sol.t)] if len(sol.t) else _end(sol)[1]
 
 
-def first_of_each(t: Floats) -> npt.NDArray[np.bool]:
+def first_of_each(t: Floats) -> npt.NDArray[np.bool_]:
     """Return where each time stands first; at a jump it stands twice, with the same angles."""
     return np.append(True, np.diff(t) != 0)[: len(t)]
 

@@ -115,8 +115,8 @@ def largest_difference(q: Floats, reference: Floats | float = 0.0) -> Floats:
     return np.asarray(reduce(np.maximum, np.moveaxis(np.abs(q - reference), -1, 0)))
 
 
-def reached(solution: RunResult, t: Floats) -> npt.NDArray[np.bool]:
+def reached(solution: RunResult, t: Floats) -> npt.NDArray[np.bool_]:
     """Return at which of the times (n_t,), s, a run was."""
     start, end = solution.run.arguments["t_start"], solution.run.t_reached
-    there: npt.NDArray[np.bool] = (min(start, end) <= t) & (t <= max(start, end))
+    there: npt.NDArray[np.bool_] = (min(start, end) <= t) & (t <= max(start, end))
     return there

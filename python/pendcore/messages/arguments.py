@@ -117,7 +117,7 @@ def positive(name: str, value: object, unit: str) -> float:
 def whole_number(name: str, value: Any, most: int = 2**31 - 1) -> int:
     """Return a whole number up to ``most`` in size as an int."""
     try:
-        if isinstance(value, bool | np.bool):
+        if isinstance(value, bool | np.bool_):
             raise TypeError
         whole = index(value)
     except TypeError:

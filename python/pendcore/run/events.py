@@ -48,7 +48,7 @@ class Event:
         where = f"{type(self).__name__}: "
         self._take(where)
         self._set("direction", whole_number(where + "direction", self.direction))
-        if isinstance(self.terminal, np.bool):
+        if isinstance(self.terminal, np.bool_):
             self._set("terminal", bool(self.terminal))
         if not isinstance(self.terminal, bool):
             self._set("terminal", whole_number(where + "terminal", self.terminal))

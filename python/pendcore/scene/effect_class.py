@@ -201,7 +201,6 @@ def _class(told: Description, base: type[Any]) -> type[Any]:
         usual = Argument.empty if p.required else p.default
         arguments.append(Argument(p.name, Argument.POSITIONAL_OR_KEYWORD, default=usual))
     names = {
-        "__module__": "pendcore.effects",
         "__doc__": docstring(told),
         "__signature__": Signature(arguments),
         "description": told,
@@ -216,7 +215,8 @@ def _class(told: Description, base: type[Any]) -> type[Any]:
         init=False,
         repr=False,
     )
-    return frozen_state(made)  # fmt: skip
+    made.__module__ = "pendcore.effects"  # from Python 3.12 on, make_dataclass enters its caller
+    return frozen_state(made)
 
 
 def _bound(told: Description, values: tuple[Any, ...], named: dict[str, Any]) -> dict[str, Any]:

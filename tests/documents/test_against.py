@@ -1,0 +1,101 @@
+"""What says whether a commit is slower: the ratios of its turns, and calls that there still are."""
+
+from __future__ import annotations
+
+import math
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "bench"))
+
+import against
+import timed_calls
+from against import Build, Comparison, Worker
+
+NEVER_CALLED = Path("the folder of no build")
+
+
+def test_the_ratio_is_that_of_the_least_times_and_the_median_that_of_the_turns() -> None:
+    """By hand: 2 / 1; the turns have 2 / 4, 6 / 1 and 6 / 2, of which 3 is the middle one."""
+    compared = Comparison("one step", old=[4.0, 1.0, 2.0], new=[2.0, 6.0, 6.0])
+    assert compared.ratio == 2.0
+    assert compared.median == 3.0
+    assert "2.000   3.000" in str(compared)
+
+
+@pytest.mark.parametrize(
+    ("new", "slower"),
+    [
+        ([1.06, 1.06, 1.06], True),
+        ([1.04, 1.04, 1.04], False),
+        ([1.00, 1.10, 1.10], False),  # by the median alone
+        ([1.06, 9.00, 1.06], True),
+        ([0.50, 0.50, 0.50], False),
+    ],
+)
+def test_a_call_is_slower_when_both_ratios_say_so(new: list[float], slower: bool) -> None:
+    compared = Comparison("one step", old=[1.0, 1.0, 1.0], new=new)
+    assert compared.is_slower is slower
+    assert str(compared).endswith(" slower") is slower
+
+
+def test_one_lucky_turn_of_the_old_commit_makes_no_call_slower() -> None:
+    assert not Comparison("one step", old=[0.9, 1.0, 1.0], new=[1.0, 1.0, 1.0]).is_slower
+
+
+def test_a_call_that_a_commit_lacks_has_a_dash_and_is_not_slower() -> None:
+    compared = Comparison("error=1e-6", old=[], new=[1.5])
+    assert str(compared).split() == ["error=1e-6", "-", "1.50"]
+    assert not compared.is_slower
+
+
+class Recorded(Worker):
+    """Answers what it is told to, and writes down that it was asked."""
+
+    def __init__(self, name: str, asked: list[str], answer: float | None) -> None:
+        self.name, self.asked, self.told = name, asked, answer
+
+    def microseconds(self, name: str, seconds: float) -> float | None:
+        self.asked.append(self.name)
+        return self.told
+
+
+def test_each_commit_is_first_in_every_other_turn() -> None:
+    asked: list[str] = []
+    old, new = Recorded("old", asked, 1.0), Recorded("new", asked, 2.0)
+    compared = against.in_turns("one step", old, new, rounds=4, seconds=math.inf)
+    assert asked == ["new", "old", "old", "new"] * 2
+    assert compared.ratios == [2.0] * 4
+
+
+def test_turns_end_with_their_time_and_with_the_first_lack() -> None:
+    asked: list[str] = []
+    old, new = Recorded("old", asked, 1.0), Recorded("new", asked, 1.0)
+    assert len(against.in_turns("one step", old, new, rounds=99, seconds=0.0).old) == 3
+    lacks = Recorded("lacks", asked, None)
+    assert against.in_turns("one step", lacks, new, rounds=99, seconds=math.inf).new == [1.0]
+
+
+@pytest.mark.parametrize("prepare", timed_calls.prepared_calls().values())
+@pytest.mark.filterwarnings("ignore")
+def test_this_build_has_every_call(prepare: Callable[[], Callable[[], object]]) -> None:
+    prepare()()
+
+
+def test_the_worker_answers_with_seconds_or_with_what_is_lacking() -> None:
+    asked = '["one step", 0]\n["no such call", 0]\n'
+    answers = subprocess.run(
+        [sys.executable, timed_calls.__file__], input=asked, capture_output=True, text=True
+    ).stdout.splitlines()
+    assert Path(answers[0]).name == "__init__.py"
+    assert 0 < float(answers[1]) < 1
+    assert answers[2] == "- KeyError"
+
+
+def test_a_worker_that_loads_another_build_is_not_believed() -> None:
+    with pytest.raises(SystemExit, match=r"0123456: the worker loads .*pendcore"):
+        Worker(Build("0123456", NEVER_CALLED, 0.0))
