@@ -27,6 +27,14 @@ BOOKED = {
     "user": "`user`: the work of the effect, the integral of Q . qd, J.",
 }
 
+TRUST = "[trust.md](../background/trust.md#points-where-a-law-changes)"
+WHERE = {
+    "dry": TRUST,
+    "impact": TRUST,
+    "motor": "[conventions.md](../reference/conventions.md#angles-and-torques-of-another-source)",
+}
+"""The page that has more on the note of an account."""
+
 
 def pages() -> dict[str, str]:
     """Return the text of every page by its name."""
@@ -67,8 +75,7 @@ def _sections(told: Description, cls: type[Effect]) -> Iterator[str]:
     yield f"    {told.law}"
     yield ""
     if told.account in CAVEATS:
-        more = "[trust.md](../background/trust.md#points-where-a-law-changes) has more."
-        yield f"**{CAVEATS[told.account]}** {more}"
+        yield f"**{CAVEATS[told.account]}** {WHERE[told.account]} has more."
         yield ""
     conventions = "[conventions.md](../reference/conventions.md)"
     yield f"Source: {told.source}. The symbols are those of {conventions}."
