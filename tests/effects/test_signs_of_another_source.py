@@ -14,7 +14,7 @@ MASS, LENGTH, CENTER, INERTIA = (1.3, 0.8), (0.7, 0.5), (0.3, 0.2), (0.05, 0.02)
 G = 9.81
 KP, KD = 20.0, 3.0
 TARGET = np.array([0.4, -0.3])
-"""Of both joints, in the arm's angles, rad."""
+"""The angles psi at which springs and controllers rest, rad."""
 PSI, PSI_DOT = np.array([0.9, -1.4]), np.array([1.1, -2.0])
 THETA = np.cumsum(PSI)
 
@@ -59,14 +59,18 @@ CASES = {
     "controller": (
         STIFF + DAMPED,
         [
-            pc.effects.Motor(joint=j, pd=PD(kp=KP, kd=KD, reference=TURNED[j - 1]))
-            for j in (1, 2)
+            pc.effects.Motor(joint=1, pd=PD(kp=KP, kd=KD, reference=TURNED[0])),
+            pc.effects.Motor(joint=2, pd=PD(kp=KP, kd=KD, reference=TURNED[1])),
         ],
     ),
     "spring and damper": (
         STIFF + DAMPED,
-        [pc.effects.TorsionalSpring(joint=j, stiffness=KP, rest_angle=TURNED[j - 1]) for j in (1, 2)]
-        + [pc.effects.ViscousJoint(joint=j, damping=KD) for j in (1, 2)],
+        [
+            pc.effects.TorsionalSpring(joint=1, stiffness=KP, rest_angle=TURNED[0]),
+            pc.effects.TorsionalSpring(joint=2, stiffness=KP, rest_angle=TURNED[1]),
+            pc.effects.ViscousJoint(joint=1, damping=KD),
+            pc.effects.ViscousJoint(joint=2, damping=KD),
+        ],
     ),
     # A torque from the ground on the second link turns both of the arm's angles.
     "from the ground": (np.array([1.9, 1.9]), [pc.effects.User(lambda t, q, qd: [0.0, -1.9])]),
