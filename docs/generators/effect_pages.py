@@ -163,7 +163,7 @@ A scene simulates gravity and the effects that it lists, and nothing else; unlis
 nothing. Each effect may act on any joint or link, and a scene may have several effects of one
 kind. The torque `tau_j` at joint j acts on link j, and `-tau_j` on link j-1;
 `phi_j = q_j - q_(j-1)` is the angle of joint j, `w` its rate. All grow clockwise as seen, because y
-points down: see [the signs of other sources](../reference/conventions.md#angles-and-torques-of-another-source).
+points down; {WHERE["motor"]} has the signs of other sources.
 `scene.explain()` says what a scene simulates, what it leaves out, and what each effect costs.
 
 {table}
