@@ -225,7 +225,7 @@ $(DONE)/build-requirements: pyproject.toml | $(DONE)/venv
 # is newer than the stamp, so the next call builds it.
 $(DONE)/installed: $(SOURCES) $(DONE)/build-requirements
 	@touch $@.begun
-	@echo "pip compiles the core and installs it into .venv: four minutes of one processor the first time"
+	@echo "pip compiles the core and installs it into .venv: two to three minutes on two processors the first time"
 	@$(MAKE) --silent --jobs=2 $(DONE)/run-requirements core
 	@mv $@.begun $@
 

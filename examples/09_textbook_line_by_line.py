@@ -1,8 +1,8 @@
 """Section 2.1 of the textbook, line by line: each MATLAB command, and below it what does the same.
 
 The MATLAB lines are the book's, marked with %. What stands below them is SymPy, by pendcore.derive
-(pip install "pendcore[symbolic]"), and every result is compared with what the derivation has. At
-the end stand the book's figure, its function file RR.m, and its inline function.
+(`pip install ".[symbolic]"` in a clone), and every result is compared with what the derivation has.
+At the end stand the book's figure, its function file RR.m, and its inline function.
 """
 
 from __future__ import annotations

@@ -2,8 +2,8 @@
 
     pendcore derive examples/10_generated_header.toml --to python -o arm.py
 
-`pip install "pendcore[symbolic]"` brings SymPy. This writes the module, runs it in the same fixed
-steps as the C++ program, and holds the result against pendcore's own.
+Both need SymPy: `pip install ".[symbolic]"` in a clone. This writes the module, runs it in the same
+fixed steps as the C++ program, and holds the result against pendcore's own.
 """
 
 from __future__ import annotations

@@ -187,8 +187,10 @@ REASONS = {
     "heyoka": (
         "It compiles the equations of one scene, masses and lengths as constants, at one order, "
         "into straight machine code for Taylor series, without loops, branches or anything that "
-        "only other scenes need. Compiling takes {compiling}, as long as thousands of its solves, "
-        "and is needed again for another scene or tolerance. Where pendcore's best is a "
+        "only other scenes need. Compiling takes tenths of a second the first time on a machine, "
+        "a second for three links at high orders: as long as thousands of its solves, and again "
+        "for another scene or tolerance. Since 7.10 a cache on disk keeps the code; these runs "
+        "read most of it from there, which took {compiling}. Where pendcore's best is a "
         "Runge-Kutta method, heyoka has the higher order as well."
     ),
     "Boost.odeint": (

@@ -27,6 +27,14 @@ BOOKED = {
     "user": "`user`: the work of the effect, the integral of Q . qd, J.",
 }
 
+TRUST = "[trust.md](../background/trust.md#points-where-a-law-changes)"
+WHERE = {
+    "dry": TRUST,
+    "impact": TRUST,
+    "motor": "[conventions.md](../reference/conventions.md#angles-and-torques-of-another-source)",
+}
+"""The page that has more on the note of an account."""
+
 
 def pages() -> dict[str, str]:
     """Return the text of every page by its name."""
@@ -67,8 +75,7 @@ def _sections(told: Description, cls: type[Effect]) -> Iterator[str]:
     yield f"    {told.law}"
     yield ""
     if told.account in CAVEATS:
-        more = "[trust.md](../background/trust.md#points-where-a-law-changes) has more."
-        yield f"**{CAVEATS[told.account]}** {more}"
+        yield f"**{CAVEATS[told.account]}** {WHERE[told.account]} has more."
         yield ""
     conventions = "[conventions.md](../reference/conventions.md)"
     yield f"Source: {told.source}. The symbols are those of {conventions}."
@@ -155,8 +162,9 @@ def _index() -> str:
 A scene simulates gravity and the effects that it lists, and nothing else; unlisted effects cost
 nothing. Each effect may act on any joint or link, and a scene may have several effects of one
 kind. The torque `tau_j` at joint j acts on link j, and `-tau_j` on link j-1;
-`phi_j = q_j - q_(j-1)` is the angle of joint j, `w` its rate. `scene.explain()` says what a scene
-simulates, what it leaves out, and what each effect costs.
+`phi_j = q_j - q_(j-1)` is the angle of joint j, `w` its rate. All grow clockwise as seen, because y
+points down; {WHERE["motor"]} has the signs of other sources.
+`scene.explain()` says what a scene simulates, what it leaves out, and what each effect costs.
 
 {table}
 

@@ -16,16 +16,18 @@ APART = 1e-4  # rad
 UNTIL = 12.0  # s
 
 
-def main() -> None:
+def runs() -> list[pc.Solution]:
     scene = pc.Scene.textbook()
-    runs = [
+    return [
         pc.simulate(scene, [-0.6, -0.9 + k * APART], t_span=(0, UNTIL), rtol=1e-11, atol=1e-12)
         for k in range(3)
     ]
+
+
+def main() -> None:
+    first, second, third = runs()
     names = ("q2 = -0.9 rad", "-0.8999 rad", "-0.8998 rad")
-    runs[2].to_video(
-        TARGET, runs[1], runs[0], names=names[::-1], fps=20, trace=0.6, size=(560, 420)
-    )
+    third.to_video(TARGET, second, first, names=names[::-1], fps=20, trace=0.6, size=(560, 420))
     print(f"{TARGET}: {TARGET.stat().st_size} bytes")
 
 

@@ -133,7 +133,7 @@ def test_without_sympy_the_error_says_what_to_install() -> None:
     said = done.stderr.strip().splitlines()[-1]
     assert said == (
         "ModuleNotFoundError: pendcore.derive needs sympy, which is not installed: "
-        'pip install "pendcore[symbolic]"'
+        "pip install sympy"
     )
 
 

@@ -140,6 +140,7 @@ def test_a_loss_is_named_on_the_page_and_in_the_overview() -> None:
     assert "does not get to 1e-10 (heyoka), 1e-11 (heyoka), 1e-12 (heyoka)" in lines[1]
     written = overview.page({"textbook": record(*EVERYBODY)})
     assert "* **heyoka**. It compiles" in written
+    assert "the first time on a machine" in written
     assert "[textbook, 5 s](textbook.md) in C++: from 1e-7 to 1e-12" in written
     nowhere = record(contender("pendcore_dop853_cpp", {1e-13: 0.1}, ("compiled",)), BOOST)
     assert page.losses(nowhere) == []

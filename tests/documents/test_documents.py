@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import re
+import runpy
 import subprocess
 import sys
 from pathlib import Path
@@ -111,6 +113,58 @@ def test_make_demo_says_where_the_command_is_what_takes_long_and_brings_what_com
     readme = (ROOT / "README.md").read_text()
     assert re.search(r"compiles the\s+core", readme)
     assert re.search(r"`pip install \.` in a clone compiles", readme)
+
+
+def test_everybody_says_how_long_the_first_build_takes():
+    told = "two to three minutes on two processors"
+    for name in ("README.md", "Makefile", "docs/index.md", "docs/how_to/install.md"):
+        assert told in " ".join((ROOT / name).read_text().split()), name
+
+
+SAYS_WHAT_TO_INSTALL = [
+    *DOCUMENTS,
+    *(path for name in ("python", "examples") for path in (ROOT / name).rglob("*.py")),
+]
+
+
+def test_nobody_is_told_to_get_pendcore_from_an_index_where_it_is_not():
+    for path in SAYS_WHAT_TO_INSTALL:
+        asked = re.search(r"pip install \"?pendcore\b", path.read_text())
+        assert not asked, f"{path}: {asked}"
+
+
+def test_the_readme_names_the_page_of_a_run_and_what_makes_it():
+    readme = (ROOT / "README.md").read_text()
+    for name in ("sol.to_html(", "pendcore show ", "`make page`", "docs/how_to/see_it.md"):
+        assert name in readme
+
+
+def test_the_pendulums_of_the_film_part_when_the_caption_says():
+    film = runpy.run_path(str(ROOT / "docs/generators/film.py"))
+    runs = film["runs"]()
+    readme = (ROOT / "README.md").read_text()
+    assert "a ten-thousandth of a radian apart part for good after seven seconds" in readme
+    assert film["APART"] == 1e-4
+
+    def farthest(t):  # of two tips, m
+        y = [run(t) for run in runs]
+        tips = [[np.cos(x[:2]).sum(axis=0), np.sin(x[:2]).sum(axis=0)] for x in y]
+        pairs = itertools.combinations(np.array(tips), 2)
+        return np.max([np.hypot(*(one - other)) for one, other in pairs], axis=0)
+
+    assert farthest(np.array([7.0])) < 0.05
+    assert farthest(np.linspace(7.1, film["UNTIL"], 500)).min() > 0.2
+
+
+def test_the_page_on_asked_errors_quotes_the_measured_work():
+    page = " ".join((ROOT / "docs/how_to/ask_for_an_error.md").read_text().split())
+    measured = (ROOT / "docs/background/accuracy_cost.md").read_text()
+    (row,) = re.findall(r"^\| work of all that it took / best \| (.*?) \|  \|", measured, re.M)
+    _, median, tenth, _, worst = map(float, row.split(" | "))
+    assert (
+        f"half took more than {median:.1f} times the work of the cheapest run that keeps the "
+        f"error, one in ten more than {tenth:.0f} times, and the worst {worst:.0f} times" in page
+    )
 
 
 def test_the_page_by_hand_has_the_numbers_of_its_formulas(capsys):

@@ -14,6 +14,7 @@ import pendcore as pc
 import pytest
 
 PROJECT = Path(__file__).parents[1] / "consumer"
+PAGE = (PROJECT.parents[1] / "docs/how_to/cpp.md").read_text()
 CMAKE = Path(cmake.CMAKE_BIN_DIR) / "cmake"
 
 
@@ -43,14 +44,40 @@ def test_an_outside_project_gets_the_bits_of_python_whatever_its_flags(
     printed = [float.fromhex(word) for word in run(tmp_path / "end_angles").split()]
     solution = pc.simulate(pc.Scene.textbook(), q0=[np.pi / 4, np.pi / 3], t_span=(0, 5))
     assert printed == list(solution.q[-1])
+    assert run(tmp_path / "forces") == forces_of_python()
+
+
+def forces_of_python() -> str:
+    """Return what forces.cpp prints, by the same run in Python."""
+    rod = pc.Link(mass=1.0, length=1.0)
+    effects = [
+        pc.effects.ViscousJoint(joint=1, damping=0.1), pc.effects.Motor(joint=2, constant=0.5)
+    ]  # fmt: skip
+    scene = pc.Scene(links=[rod, rod], gravity=9.81, effects=effects)
+    solution = pc.simulate(
+        scene, [0.8, 1.0], 0, (0, 5), t_eval=[0.0, 2.5, 5.0],
+        method="dop853", rtol=1e-10, atol=1e-12, ledger=True,
+    )  # fmt: skip
+    energy = solution.energy()
+    rows = zip(
+        solution.t, solution.accelerations(), solution.reactions(), energy.total,
+        energy.ledger.motor, strict=True,
+    )  # fmt: skip
+    return "".join(
+        f"{t:.1f} s: qdd {qdd[0]:8.4f} {qdd[1]:8.4f}, F_01 {forces[0, 0]:8.4f} "
+        f"{forces[0, 1]:8.4f}, T + V {total:9.5f} J, motor {motor:8.5f} J\n"
+        for t, qdd, forces, total, motor in rows
+    )
 
 
 def test_the_page_shows_this_project_and_what_it_prints() -> None:
-    page = (PROJECT.parents[1] / "docs/how_to/cpp.md").read_text()
-    assert f"```cpp\n{(PROJECT / 'end_angles.cpp').read_text()}```" in page
-    for line in (PROJECT / "CMakeLists.txt").read_text().splitlines()[-2:]:
-        assert f"\n{line}\n" in page
+    programs = [(PROJECT / f"{name}.cpp").read_text() for name in ("end_angles", "forces")]
+    assert re.findall(r"```cpp\n(.*?)```", PAGE, re.DOTALL) == programs
+    assert f"```text\n{forces_of_python()}```" in PAGE
+    lines = (PROJECT / "CMakeLists.txt").read_text().splitlines()
+    for line in (line for line in lines if "end_angles" in line):
+        assert f"\n{line}\n" in PAGE
     solution = pc.simulate(pc.Scene.textbook(), q0=[np.pi / 4, np.pi / 3], t_span=(0, 5))
-    shown = re.search(r"build/end_angles +# (\S+) (\S+), the bits", page)
+    shown = re.search(r"build/end_angles +# (\S+) (\S+), the bits", PAGE)
     assert shown
     assert [float.fromhex(word) for word in shown.groups()] == list(solution.q[-1])

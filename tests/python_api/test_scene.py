@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import pickle
+import re
 import warnings
 from dataclasses import FrozenInstanceError, replace
 from math import pi
@@ -156,6 +157,33 @@ def test_angles_from_the_vertical_and_back():
     np.testing.assert_allclose(pc.angles_from_vertical(theta), [pi / 2, 0, -pi / 2], atol=1e-16)
     assert pc.angles_to_vertical(pi / 2) == 0.0
     assert np.array_equal(pc.angles_to_vertical(pc.angles_from_vertical(theta)), theta)
+
+
+def test_angles_from_upright_and_back():
+    theta = [0.0, pi / 2, -pi / 2, -pi]  # upright, to the left, to the right, hanging
+    q = pc.angles_from_vertical(theta, zero="upright")
+    assert np.array_equal(q, [-pi / 2, -pi, 0, pi / 2])
+    assert np.array_equal(pc.angles_to_vertical(q, zero="upright"), theta)
+    x, y = np.cos(q), np.sin(q)  # right and down
+    np.testing.assert_allclose(x, -np.sin(theta), atol=1e-15)  # counter-clockwise as seen
+    np.testing.assert_allclose(y, -np.cos(theta), atol=1e-15)
+
+
+@given(x=st.floats(-100, 100))
+@pytest.mark.parametrize("zero", ["hanging", "upright"])
+def test_an_angle_from_a_vertical_comes_back_from_it(zero, x):
+    there = pc.angles_from_vertical(x, zero=zero)
+    assert abs(pc.angles_to_vertical(there, zero=zero) - x) <= np.spacing(102.0)
+
+
+@pytest.mark.parametrize("zero", ["up", "Upright", "", None, 1, ["upright"]])
+@pytest.mark.parametrize("turn", [pc.angles_from_vertical, pc.angles_to_vertical])
+def test_another_vertical_than_the_two_is_refused_and_both_are_named(turn, zero):
+    wanted = re.escape(f'zero = {zero!r}: must be "hanging" or "upright"')
+    with pytest.raises(ValueError, match=f"^{wanted}$"):
+        turn(0.0, zero=zero)
+    with pytest.raises(TypeError, match=r"takes (theta|q) by position, and by name: zero="):
+        turn(0.0, "upright")
 
 
 def test_more_inertia_than_the_rod_could_have_is_warned_of_once_and_by_name():

@@ -60,7 +60,7 @@ CONTENDERS = [
         name="heyoka",
         label="heyoka Taylor",
         about=f"heyoka {heyoka.__version__} taylor_adaptive with fast_math, propagate_grid, "
-        "called from Python; a setting for each order",
+        "called from Python; a setting for each order, compiled or read from its cache on disk",
         prepare=prepare,
         sides=(COMPILED, PYTHON),
         settings=lambda per_decade: [

@@ -16,8 +16,7 @@ try:
     import sympy  # noqa: F401
 except ModuleNotFoundError as error:
     raise ModuleNotFoundError(
-        f"pendcore.derive needs {error.name}, which is not installed: "
-        'pip install "pendcore[symbolic]"',
+        f"pendcore.derive needs {error.name}, which is not installed: pip install {error.name}",
         name=error.name,
     ) from None
 

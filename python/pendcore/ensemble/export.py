@@ -19,7 +19,7 @@ def to_xarray(found: EnsembleResult) -> xr.Dataset:
     try:
         import xarray as xr
     except ImportError:
-        raise ImportError('to_xarray() needs xarray: pip install "pendcore[export]"') from None
+        raise ImportError("to_xarray() needs xarray: pip install xarray") from None
     axes = member_axes(found.shape)
     members, request = found.members, found.request
     data: dict[str, Any] = {}

@@ -239,7 +239,7 @@ def _zarr() -> Any:
     try:
         import zarr
     except ImportError:
-        raise ImportError('store needs zarr: pip install "pendcore[store]"') from None
+        raise ImportError("store needs zarr: pip install zarr") from None
     return zarr
 
 

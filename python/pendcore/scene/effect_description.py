@@ -122,6 +122,8 @@ CAVEATS = {
     'status "at_rest".',
     "impact": "A joint at rest at a stop is held there until what holds it would have to pull. "
     'A run in which nothing can move any more has the status "at_rest".',
+    "motor": "A positive torque turns its link towards growing angles, clockwise as seen, because "
+    "y points down. A torque that a source counts counter-clockwise needs a minus.",
 }
 """Notes on the laws whose work the ledger books on an account, by that account."""
 

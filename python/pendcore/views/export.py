@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 ROWS_AT_ONCE = 10_000
 """The number of rows of a CSV file between two reports of progress."""
-_HINT = 'needs {}: pip install "pendcore[export]"'
+_HINT = "needs {0}: pip install {0}"
 
 
 def to_pandas(solution: RunResult) -> pd.DataFrame:
