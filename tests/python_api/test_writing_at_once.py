@@ -116,7 +116,7 @@ def test_threads_that_save_to_one_path_always_leave_a_whole_file(sol: pc.Solutio
     assert [path.name for path in Path().iterdir()] == ["a.npz"]
 
 
-@pytest.mark.parametrize("stem", ["a" * 246, "é" * 123, "摆" * 82])
+@pytest.mark.parametrize("stem", ["a" * 246, "é" * 123, "摆" * 82], ids=["1", "2", "3"])
 def test_a_name_as_long_as_the_system_takes_can_be_written(stem: str, sol: pc.Solution) -> None:
     sol.save(f"{stem}.npz")
     assert np.array_equal(pc.load(f"{stem}.npz").y, sol.y)
