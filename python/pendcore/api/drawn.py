@@ -14,7 +14,7 @@ from pendcore.figures.plot import plot as draw
 from pendcore.films.animate import animate
 from pendcore.films.stage import Choices
 from pendcore.films.video import to_video
-from pendcore.messages.arguments import known_keywords, whole_number
+from pendcore.messages.arguments import known_keywords, text, whole_number
 from pendcore.messages.progress import Progress
 from pendcore.page.html import page_of
 from pendcore.page.notebook import NotebookPage, widget_of
@@ -213,9 +213,9 @@ class DrawnResult(RunResult):
         """
         if Path(path).suffix.lower() not in (".html", ".htm"):
             raise ValueError(f"path = {os.fspath(path)!r}: must end with .html")
-        text = page_of(self, title)
+        page = page_of(self, title)
         with whole_file(path) as file:
-            file.write_text(text, encoding="utf-8")
+            file.write_text(page, encoding="utf-8")
         return Path(path)
 
     @known_keywords
@@ -259,4 +259,6 @@ def _names(runs: tuple[RunResult, ...], given: tuple[str, ...] | None) -> tuple[
         return tuple(one.name if len(runs) > 1 else "" for one in runs)
     if isinstance(given, str) or len(given) != len(runs):
         raise ValueError(f"names = {given!r}: must be {len(runs)}, one for each run")
-    return tuple(given)
+    return tuple(
+        text(f"names[{k}]", "" if one is None else str(one)) for k, one in enumerate(given)
+    )

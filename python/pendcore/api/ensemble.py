@@ -16,7 +16,7 @@ from pendcore.api.scene import Scene
 from pendcore.ensemble.keep import REDUCERS, Reducer
 from pendcore.ensemble.members import members_of
 from pendcore.ensemble.request import Request
-from pendcore.messages.arguments import Floats, known_keywords, numbers, time_span
+from pendcore.messages.arguments import Floats, known_keywords, numbers, text, time_span
 from pendcore.messages.progress import Progress
 from pendcore.messages.warning import warn
 from pendcore.run.events import Event, events_asked_for
@@ -168,6 +168,7 @@ def _reducers(keep: Keep) -> dict[str, Reducer]:
     for name, reducer in keep.items():
         if not isinstance(name, str):
             raise TypeError(f"keep[{name!r}]: the name must be a text")
+        text("keep: name", name)
         _require_reducer(f"keep[{name!r}]", reducer)
         if name in _TAKEN:
             raise ValueError(f"keep[{name!r}]: this name is taken: choose another one")

@@ -11,7 +11,7 @@ from typing import Any, Self
 import numpy as np
 import numpy.typing as npt
 
-from pendcore.messages.arguments import finite_array, known_keywords, vector
+from pendcore.messages.arguments import finite_array, known_keywords, text, vector
 from pendcore.run.events import Event, Function, events_asked_for
 from pendcore.run.options import RUN_DEFAULTS
 from pendcore.run.result import RunResult
@@ -55,7 +55,7 @@ class CaseData:
         object.__setattr__(self, "q0", vector("q0", q0, n, "rad"))
         object.__setattr__(self, "qd0", vector("qd0", qd0, n, "rad/s"))
         object.__setattr__(self, "t_span", _pair("t_span", t_span, "s"))
-        object.__setattr__(self, "name", name)
+        object.__setattr__(self, "name", text("name", name))
         object.__setattr__(self, "options", MappingProxyType(given))
 
     @classmethod

@@ -7,10 +7,13 @@ import os
 import sys
 import warnings
 from collections.abc import Sequence
+from typing import Any
 
 from pendcore import _core
 from pendcore.cli import completion, cost, derive, explain, map, plot, run, show, trust
-from pendcore.cli.usage import UsageError
+from pendcore.cli.surroundings import make_surroundings_safe
+from pendcore.cli.usage import NotWritten, UsageError
+from pendcore.cli.words import known_words
 from pendcore.messages.warning import PendcoreWarning
 
 _EXAMPLES = """
@@ -26,8 +29,8 @@ examples:
   pendcore map flips.toml                 a number over a plane of starts, and which pixels are true
   pendcore derive swing.toml              its equations of motion in symbols, as code, as a report
 
-exit status: 0 fine, 1 the run failed or was interrupted (what it has is written all the same),
-2 wrong usage, 141 nobody reads what is printed (what is written is whole)
+exit status: 0 fine, 1 the run failed or was interrupted (what it has is written all the same) or
+a file could not be written (the others are), 2 wrong usage, 141 nobody reads what is printed
 """
 
 
@@ -42,13 +45,15 @@ def main(argv: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        Exit status: 0 fine, 1 the run failed or was interrupted, 2 wrong usage, 141 nobody reads.
+        Exit status: 0 fine, 1 the run failed or was interrupted, or a file is not written, 2 wrong
+        usage, 141 nobody reads.
     """
-    parser = _parser()
+    make_surroundings_safe()
+    parser, commands = _parser()
     if "_ARGCOMPLETE" in os.environ:
         completion.complete(parser)
     try:
-        args = parser.parse_args(argv)
+        args = known_words(parser, commands, sys.argv[1:] if argv is None else argv)
     except SystemExit as stop:  # after --help, --version and wrong usage
         return int(stop.code or 0)
     with warnings.catch_warnings():
@@ -61,6 +66,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         except UsageError as error:
             print(f"pendcore {args.command}: {error}", file=sys.stderr)
             return 2
+        except NotWritten as error:
+            print(f"pendcore {args.command}: {error}", file=sys.stderr)
+            return 1
         except KeyboardInterrupt:  # outside the run, which handles its own
             print(f"pendcore {args.command}: interrupted", file=sys.stderr)
             return 1
@@ -81,7 +89,8 @@ def _print_no_more() -> None:
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-def _parser() -> argparse.ArgumentParser:
+def _parser() -> tuple[argparse.ArgumentParser, Any]:
+    """Return the parser, and that of the sub-commands."""
     parser = argparse.ArgumentParser(
         prog="pendcore",
         description="Direct dynamics of pendulum chains.",
@@ -94,7 +103,7 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for command in (run, explain, plot, show, trust, cost, map, derive, completion):
         command.add_parser(commands)
-    return parser
+    return parser, commands
 
 
 class _Version(argparse.Action):

@@ -8,9 +8,9 @@ import sys
 from typing import Any
 
 from pendcore.api.solution import Case
-from pendcore.cases.whole_file import whole_file
 from pendcore.cli.case_and_folder import add_case_and_folder, case_of, folder_of
-from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder, written
+from pendcore.cli.files_to_write import FilesToWrite
+from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder
 from pendcore.cost.accuracy_cost import AccuracyCost, save_figure, text
 from pendcore.cost.sweep import REPEATS, TIME_LIMIT, accuracy_cost
 from pendcore.run.options import OPTIONS, limits_of_every_method
@@ -25,7 +25,7 @@ example:
   pendcore cost swing.toml --error 1e-9
 """
 
-FILES = ("cost.txt", "cost.png", "cost.json")
+FILES = ("cost.txt", "cost.json", "cost.png")
 
 
 def add_parser(commands: Any) -> None:
@@ -80,19 +80,20 @@ def execute(args: argparse.Namespace) -> int:
     folder = folder_of(args)
     with new_folder(folder):
         cost, whole = _measured(case, args)
-    where = written(folder, [folder / name for name in FILES])
-    table = text(cost, args.error)
-    with whole_file(folder / "cost.txt") as path:
-        path.write_text(table, encoding="utf-8")
-    with whole_file(folder / "cost.json") as path:
-        cost.to_json(path)
-    with whole_file(folder / "cost.png") as path:
-        save_figure(cost, path)
-    print(where, file=sys.stderr)
-    if not whole:
-        print("interrupted: this is what was measured until then", file=sys.stderr)
-    print(json.dumps(cost.to_dict(), indent=2) if args.json else table, end="\n" * args.json)
-    return 0 if whole else 1
+        files = FilesToWrite(folder, FILES)
+        table = text(cost, args.error)
+        with files.one("cost.txt") as path:
+            path.write_text(table, encoding="utf-8")
+        with files.one("cost.json") as path:
+            path.write_text(cost.to_json() + "\n", encoding="utf-8")
+        with files.one("cost.png") as path:
+            save_figure(cost, path)
+        print(files.outcome(), file=sys.stderr)
+        if not whole:
+            print("interrupted: this is what was measured until then", file=sys.stderr)
+        print(json.dumps(cost.to_dict(), indent=2) if args.json else table, end="\n" * args.json)
+        files.refuse_if_none()
+    return 0 if whole and not files.left_out else 1
 
 
 def _measured(case: Case, args: argparse.Namespace) -> tuple[AccuracyCost, bool]:

@@ -12,6 +12,7 @@ import pendcore
 from pendcore.api.solution import Case
 from pendcore.cases.whole_file import whole_file
 from pendcore.cli.case_and_folder import case_of, folder_of
+from pendcore.cli.files_to_write import named_if_lost
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder, written
 
 _EPILOG = """
@@ -79,8 +80,8 @@ def execute(args: argparse.Namespace) -> int:
     where = written(args.out, [args.out])
     with blamed_on_usage():
         args.out.parent.mkdir(parents=True, exist_ok=True)
-        with whole_file(args.out) as path:
-            path.write_text(text, encoding="utf-8")
+    with named_if_lost(args.out), whole_file(args.out) as path:
+        path.write_text(text, encoding="utf-8")
     print(where, file=sys.stderr)
     return 0
 
@@ -108,9 +109,9 @@ def _text(derivation: Any, args: argparse.Namespace) -> str:
 def _report(derivation: Any, case: Case, args: argparse.Namespace) -> int:
     folder = folder_of(args)
     write = pendcore.derive.report.write_report
-    with new_folder(folder), blamed_on_usage():
+    with new_folder(folder), blamed_on_usage(), named_if_lost(folder):
         made = write(derivation, case, folder, with_worksheet=args.worksheet)
     print(f"written to {folder}: {', '.join(path.name for path in made.files)}", file=sys.stderr)
     if not pendcore.derive.report.conversion.has_pandoc():
         print("no .html and .pdf: these need pandoc, which is not installed", file=sys.stderr)
-    return 1 if made.complaint else 0
+    return 1 if made.complaint or made.left_out else 0

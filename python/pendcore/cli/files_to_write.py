@@ -8,14 +8,14 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from pendcore.cases.whole_file import whole_file
-from pendcore.cli.usage import written
+from pendcore.cli.usage import NotWritten, written
 
 
 class FilesToWrite:
     """Files of a folder, to be written one after the other, each whole or not at all.
 
-    Ctrl-C or an error of the system leaves out the file that is being written; a line on standard
-    error says so at once.
+    Ctrl-C or an error leaves out the file that is being written; a line on standard error says so
+    at once.
     """
 
     def __init__(self, folder: Path, names: Iterable[str]) -> None:
@@ -23,21 +23,16 @@ class FilesToWrite:
         self.names = tuple(names)
         self.left_out: list[str] = []
         self._told = written(folder, [folder / name for name in self.names])
-        self._last: BaseException | None = None
 
     @contextmanager
     def needed_for(self, *names: str) -> Iterator[None]:
         """Leave out these files if the body of the `with` statement is interrupted or fails."""
         try:
             yield
-        except (KeyboardInterrupt, OSError) as stop:
-            why = (stop.strerror or stop) if isinstance(stop, OSError) else "interrupted"
+        except (KeyboardInterrupt, Exception) as stop:  # whatever it is, the others are written
             for name in names:
-                path = self.folder / name
-                earlier = "; the earlier one is still there" if path.exists() else ""
-                print(f"{path}: not written: {why}{earlier}", file=sys.stderr)
+                print(_not_written(self.folder / name, stop), file=sys.stderr)
             self.left_out += names
-            self._last = stop
 
     @contextmanager
     def one(self, name: str) -> Iterator[Path]:
@@ -53,6 +48,30 @@ class FilesToWrite:
         return f"written to {self.folder}: {', '.join(done) or 'nothing'}"
 
     def refuse_if_none(self) -> None:
-        """Raise what kept the last file from being written, if none was written."""
-        if self._last is not None and len(self.left_out) == len(self.names):
-            raise self._last
+        """Raise `NotWritten` if no file was written."""
+        if len(self.left_out) == len(self.names):
+            raise NotWritten(f"{self.folder}: nothing was written")
+
+
+@contextmanager
+def named_if_lost(path: Path) -> Iterator[None]:
+    """Turn what keeps the only file of a command from being written into `NotWritten`.
+
+    Errors of values stay: they are about what was asked for.
+    """
+    try:
+        yield
+    except (ValueError, TypeError):
+        raise
+    except Exception as stop:
+        raise NotWritten(_not_written(path, stop)) from stop
+
+
+def _not_written(path: Path, stop: BaseException) -> str:
+    why = f"{type(stop).__name__}: {stop}"
+    if isinstance(stop, OSError):
+        why = stop.strerror or str(stop)
+    if isinstance(stop, KeyboardInterrupt):
+        why = "interrupted"
+    earlier = "; the earlier one is still there" if path.exists() else ""
+    return f"{path}: not written: {why}{earlier}"

@@ -56,10 +56,10 @@ def unasked_horizon(solution: Solution) -> Horizon:
         return Horizon(None, f"not known: second runs take a while; {ask}")
     try:
         found = horizon_of(solution, solution.error(time_limit=PATIENCE), LIMIT)
-    except ValueError as refusal:
-        return Horizon(None, f"not known: {refusal}")
     except KeyboardInterrupt:
         return Horizon(None, f"not known: interrupted; {ask}")
+    except Exception as refusal:  # whatever stops second runs takes nothing from the first
+        return Horizon(None, f"not known: {refusal}")
     if found.may_be_later:
         return Horizon(None, f"{found.sentence}; {ask} how much longer")
     return found

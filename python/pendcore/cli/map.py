@@ -272,10 +272,12 @@ def _summary(case: Case, table: MapTable, pixels: Pixels, args: argparse.Namespa
 def _save_figure(
     table: MapTable, reducer: Reducer | None, pixels: Pixels, args: argparse.Namespace, path: Path
 ) -> None:
+    from matplotlib.figure import Figure
+
     unit = reducer.unit if reducer else "rad" if table.show.startswith("q[") else "rad/s"
     is_log = isinstance(reducer, FirstEvent | EnergyDrift) and is_wide(pixels.values)
     shown = Shown(f"{table.show.replace('_', ' ')} ({unit})", pixels.values, is_log)
-    axes = new_axes(1 if args.no_trust else 2)
+    axes = new_axes(1 if args.no_trust else 2, Figure)
     mask = None if args.no_trust else pixels.resolved
     draw_map(axes, _axis(table.x), _axis(table.y), shown, mask, {})
     axes[0].figure.savefig(path, dpi=150)

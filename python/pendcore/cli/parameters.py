@@ -5,7 +5,9 @@ from __future__ import annotations
 import re
 
 from pendcore.api.solution import Case
+from pendcore.cases.case_file import KEYS
 from pendcore.cli.usage import UsageError
+from pendcore.cli.words import CHOSEN_FOR_ERROR, of_the_run
 
 START = re.compile(r"(q0|qd0)\[(\d+)\]")
 
@@ -23,6 +25,9 @@ def with_parameters(case: Case, given: list[str]) -> Case:
         if name in names:
             raise UsageError(f"--parameters {one}: {name} is given twice: give it once")
         names.add(name)
+        if name in KEYS["run"]:
+            shorter = f", or give --{name} {text}" if name in ("error", *CHOSEN_FOR_ERROR) else ""
+            raise UsageError(f"--parameters {one}: {of_the_run(name, text)}{shorter}")
         try:
             value = float(text)
         except ValueError:

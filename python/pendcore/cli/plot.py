@@ -10,6 +10,7 @@ from typing import Any
 
 from pendcore.api.files import load_solution
 from pendcore.cases.whole_file import whole_file
+from pendcore.cli.files_to_write import named_if_lost
 from pendcore.cli.usage import blamed_on_usage, written
 from pendcore.figures.plot import KINDS, save_figure
 
@@ -68,7 +69,7 @@ def execute(args: argparse.Namespace) -> int:
         solution = load_solution(args.solution)
         where = written(out, [out])
         out.parent.mkdir(parents=True, exist_ok=True)
-        with whole_file(out) as path:
+        with named_if_lost(out), whole_file(out) as path:
             save_figure(solution, path, what=args.what, t=args.at, horizon=args.horizon)
     print(where, file=sys.stderr)
     if args.json:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import re
 import sys
 from typing import Any
 
@@ -15,6 +16,7 @@ from pendcore.cli.files_to_write import FilesToWrite
 from pendcore.cli.horizon import Horizon, unasked_horizon
 from pendcore.cli.parameters import with_parameters
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder
+from pendcore.cli.words import CHOSEN_FOR_ERROR
 from pendcore.figures.plot import save_figure
 from pendcore.run.accuracy import AccuracyError
 from pendcore.run.run_error import CAN_GO_ON, why_unverified
@@ -28,8 +30,9 @@ what is written into the folder:
   summary.json   the same facts for programs
   angles.png     the angles in degrees over time
   states.csv     t (s), q (rad), qd (rad/s) for spreadsheets, with --csv
-Ctrl-C ends the run, and all of these files are written. If a file is being written, Ctrl-C or an
-error, such as a full disk, leaves that file out, and the others are written. No file is incomplete.
+Ctrl-C ends the run, and all of these files are written, the figure last. If a file is being
+written, Ctrl-C or an error, such as a full disk, leaves that file out, and the others are written.
+No file is incomplete.
 
 a case:
   gravity = 9.807                  # m/s^2
@@ -50,7 +53,7 @@ a case:
   # docs/how_to/case_files.md has every key, docs/effects a page per effect
 """
 
-FILES = ("summary.txt", "summary.json", "angles.png", "solution.npz")
+FILES = ("summary.txt", "summary.json", "solution.npz", "angles.png")
 CSV = "states.csv"
 _MANY_STEPS = 100_000
 """The number of steps above which writing the solution takes seconds."""
@@ -73,6 +76,13 @@ def add_parser(commands: Any) -> None:
         help="largest position error / total length to keep: method and tolerances are chosen, in "
         "place of those of the case, and the run is verified",
     )
+    parser.add_argument("--method", metavar="NAME", help="method, in place of that of the case")
+    for name, told in (
+        ("rtol", "relative tolerance, in place of that of the case"),
+        ("atol", "absolute tolerance, in place of that of the case"),
+        ("step", "s, a fixed step, in place of tolerances"),
+    ):
+        parser.add_argument(f"--{name}", type=float, metavar="X", help=told)
     parser.add_argument(
         "--parameters",
         nargs="+",
@@ -99,7 +109,7 @@ def execute(args: argparse.Namespace) -> int:
     with blamed_on_usage():
         case = case_of(args)
         case = with_parameters(case, args.parameters) if args.parameters else case
-        case = case if args.error is None else _with_error(case, args.error)
+        case = _with_options(case, _options_of(args))
     folder = folder_of(args)
     with new_folder(folder):
         solution, complaint, refusal = _simulated(case, args)
@@ -127,7 +137,10 @@ def _simulated(case: Case, args: argparse.Namespace) -> tuple[Solution, str, str
     try:
         return case.simulate(check=False), "", ""  # the complaint comes once, at the end
     except (ValueError, TypeError) as error:
-        is_of_the_command = args.error is not None and str(error).startswith("error =")
+        given = [*_options_of(args)]
+        if "method" in given and "step" not in case.options:
+            given.append("step")  # which the method needs
+        is_of_the_command = re.split(r"\W", str(error))[0] in given
         if args.case is None or is_of_the_command:
             raise UsageError(f"--{error}" if is_of_the_command else str(error)) from None
         raise UsageError(with_line(args.case, str(error))) from None
@@ -137,20 +150,32 @@ def _simulated(case: Case, args: argparse.Namespace) -> tuple[Solution, str, str
         raise
 
 
-def _with_error(case: Case, error: float) -> Case:
-    """Return the case with an error asked for, in place of method and tolerances."""
-    chosen = ("method", "rtol", "atol", "step", "error")
-    kept = {key: value for key, value in case.options.items() if key not in chosen}
+def _options_of(args: argparse.Namespace) -> dict[str, Any]:
+    """Return the options of the run that the command line has."""
+    found = {name: getattr(args, name) for name in ("error", *CHOSEN_FOR_ERROR)}
+    return {name: value for name, value in found.items() if value is not None}
+
+
+def _with_options(case: Case, given: dict[str, Any]) -> Case:
+    """Return the case with other options, and without those that they take the place of."""
+    gone = set(given)
+    if "error" in given:
+        gone.update(CHOSEN_FOR_ERROR)
+    elif given:
+        gone.add("error")
+    if "rtol" in given or "atol" in given:
+        gone.add("step")
+    kept = {name: value for name, value in case.options.items() if name not in gone}
     return Case(
         scene=case.scene, q0=case.q0, qd0=case.qd0, t_span=case.t_span, name=case.name,
-        options=kept | {"error": error},
+        options=kept | given,
     )  # fmt: skip
 
 
 def _write(
     files: FilesToWrite, solution: Solution, refusal: str, horizon: Horizon | None
 ) -> dict[str, Any]:
-    """Write small files first; return the facts, if there was time to find them."""
+    """Write small files first, the figure last; return the facts, if there was time for them."""
     found: dict[str, Any] = {}
     until = None if horizon is None else horizon.valid_until
     if (steps := len(solution.run.step_starts)) > _MANY_STEPS:
@@ -163,11 +188,11 @@ def _write(
             path.write_text(text(found), encoding="utf-8")
         with files.one("summary.json") as path:
             path.write_text(json.dumps(found, indent=2) + "\n", encoding="utf-8")
-    with files.one("angles.png") as path:
-        save_figure(solution, path, until)
     with files.needed_for("solution.npz"):
         save(solution, files.folder / "solution.npz")
     if CSV in files.names:
         with files.one(CSV) as path:
             write_csv(solution, path)
+    with files.one("angles.png") as path:
+        save_figure(solution, path, until)
     return found

@@ -11,6 +11,7 @@ from typing import Any
 from pendcore.api.solution import Solution
 from pendcore.cases.whole_file import whole_file
 from pendcore.cli.case_or_solution import add_case_or_solution, solution_of
+from pendcore.cli.files_to_write import named_if_lost
 from pendcore.cli.usage import UsageError, blamed_on_usage, written
 from pendcore.figures.plot import save_figure
 
@@ -73,7 +74,8 @@ def execute(args: argparse.Namespace) -> int:
         solution = solution_of(args)
         args.out.parent.mkdir(parents=True, exist_ok=True)
         where = written(args.out, [args.out])
-        out = _write(solution, args)
+        with named_if_lost(args.out):
+            out = _write(solution, args)
     print(where if out == args.out else f"written to {out}", file=sys.stderr)
     if not solution.success:
         print(f"the run is not complete: {solution.message}", file=sys.stderr)

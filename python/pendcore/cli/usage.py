@@ -12,6 +12,10 @@ class UsageError(Exception):
     """The command cannot do what it was asked for; exit status 2."""
 
 
+class NotWritten(Exception):
+    """A file that was asked for is not there; exit status 1."""
+
+
 @contextmanager
 def blamed_on_usage(what: str = "") -> Iterator[None]:
     """Turn errors of files and values in the body of the `with` statement into `UsageError`."""

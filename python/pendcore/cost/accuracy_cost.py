@@ -7,10 +7,10 @@ import os
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from math import inf, isfinite
-from pathlib import Path
 from textwrap import shorten, wrap
 from typing import TYPE_CHECKING, Any
 
+from pendcore.cases.whole_file import whole_file
 from pendcore.cost.figure import plot
 from pendcore.cost.point import Point, duration, front, seconds_at
 from pendcore.messages.arguments import number
@@ -149,7 +149,8 @@ class AccuracyCost:
         """Return the same as JSON text, and write it to a file if one is named."""
         written = json.dumps(self.to_dict(), indent=2)
         if path is not None:
-            Path(path).write_text(written + "\n", encoding="utf-8")
+            with whole_file(path) as name:
+                name.write_text(written + "\n", encoding="utf-8")
         return written
 
     def __iter__(self) -> Iterator[Point]:

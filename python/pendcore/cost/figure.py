@@ -7,6 +7,7 @@ from math import inf
 from typing import TYPE_CHECKING, Any
 
 from pendcore.cost.point import Point
+from pendcore.figures.axes import as_drawn
 from pendcore.run.methods import line_style
 
 if TYPE_CHECKING:
@@ -79,7 +80,7 @@ def plot(
                 color=line.get_color(), markersize=line.get_markersize() + 1.5, zorder=3,
             )  # fmt: skip
     _dress(ax, points, uncertainty, y, unit)
-    ax.set_title(title, fontsize=11)
+    ax.set_title(as_drawn(title), fontsize=11)
     return lines
 
 

@@ -18,6 +18,7 @@ from pendcore.messages.arguments import (
     finite_array,
     known_keywords,
     number,
+    text,
     time_limit_of,
     time_span,
     vector,
@@ -124,7 +125,7 @@ def accuracy_cost(
     measurement = Measurement(
         scene=scene,
         start=start,
-        name=name,
+        name=text("name", name),
         methods=None if methods is None else methods_named(methods),
         tolerances=[(r, atol_beside(r) if absolute is None else absolute) for r in tolerances],
         steps=None if step is None else _positive("step", step, "s"),

@@ -95,6 +95,7 @@ class Derivation(Algebra):
         -------
         list of Path
             The files, the report first: Markdown always, HTML and PDF where there are converters.
+            One that cannot be written is left out, with a warning.
         """
         if case.scene != self.scene:
             raise ValueError("case: has another scene than the derivation: derive case.scene")

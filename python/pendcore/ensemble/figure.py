@@ -10,6 +10,7 @@ import numpy.typing as npt
 from pendcore import _core
 from pendcore.ensemble.keep import EnergyDrift, FirstEvent
 from pendcore.ensemble.result import EnsembleResult
+from pendcore.figures.axes import NewFigure, as_drawn, figure_of_pyplot
 from pendcore.messages.arguments import Floats
 
 WIDE = 30.0
@@ -56,11 +57,9 @@ def plot(
     return draw_map(axes, axis_of(found, 0), axis_of(found, 1), shown, mask, properties)
 
 
-def new_axes(count: int) -> list[Any]:
+def new_axes(count: int, new_figure: NewFigure = figure_of_pyplot) -> list[Any]:
     """Return so many axes of a new figure, side by side."""
-    from matplotlib import pyplot as plt
-
-    figure = plt.figure(layout="constrained", figsize=(6.0 * count, 4.8))
+    figure = new_figure(layout="constrained", figsize=(6.0 * count, 4.8))
     return list(np.atleast_1d(figure.subplots(1, count, sharex=True, sharey=True)))
 
 
@@ -75,7 +74,7 @@ def shown_of(found: EnsembleResult, name: str | None) -> Shown:
         reducer = reducers[name]
         if reducer.labels(1):
             raise ValueError(f"name = {name!r}: has several numbers for each member: draw them")
-        label = f"{name.replace('_', ' ')} ({reducer.unit})"
+        label = as_drawn(f"{name.replace('_', ' ')} ({reducer.unit})")
         may_be_log = isinstance(reducer, FirstEvent | EnergyDrift)
         return Shown(label, found[name], may_be_log and is_wide(found[name]))
     if found.request.t_eval is not None:

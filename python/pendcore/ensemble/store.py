@@ -149,7 +149,7 @@ def create(path: Path, members: Members, request: Request, chunk: int) -> None:
     require_space(path, bytes_of(members, request))
     blocks = blocks_of(members.shape, chunk or usual_block(members, request))
     axes = member_axes(members.shape)
-    building = path.with_name(f"{path.name}.{uuid4().hex[:8]}.part")
+    building = path.with_name(f"{path.name}.{uuid4().hex}.part")
     with _named(path):
         try:
             group = zarr.create_group(building)

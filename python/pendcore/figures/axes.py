@@ -66,6 +66,27 @@ def one_axes(ax: Any, new_figure: NewFigure, size: tuple[float, float]) -> Axes:
     return axes_among(ax, (1,), "")[0]
 
 
+def as_drawn(text: str) -> str:
+    """Return a user's text as matplotlib has to be told it, so that any can be drawn.
+
+    What stands between dollars is mathematics where matplotlib can read it, else it stays as it is.
+    """
+    from matplotlib.cbook import is_math_text
+    from matplotlib.mathtext import MathTextParser
+
+    if is_math_text(text):
+        try:
+            MathTextParser("path").parse(text)
+        except ValueError:
+            return text.replace("$", r"\$")
+    return text
+
+
+def in_legend(name: str) -> str:
+    """Return a user's name for a legend, which leaves out what begins with an underscore."""
+    return as_drawn(f" {name}" if name.startswith("_") else name)
+
+
 def in_plane(axis: Axes) -> None:
     """Let the axes show the plane as the project has it: to scale, with y downwards."""
     axis.set_aspect("equal", adjustable="datalim")

@@ -10,11 +10,17 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, get_args
 
 import numpy.typing as npt
 
-from pendcore.figures.axes import NewFigure, figure_of_pyplot, horizon_time, shade_past
+from pendcore.figures.axes import (
+    NewFigure,
+    figure_of_pyplot,
+    horizon_time,
+    in_legend,
+    shade_past,
+)
 from pendcore.figures.in_plane import draw_path, draw_phase, draw_section
 from pendcore.figures.over_time import draw_energy, draw_links, draw_reactions
 from pendcore.figures.poses import draw_free_bodies, draw_strip
-from pendcore.messages.arguments import did_you_mean, positive
+from pendcore.messages.arguments import did_you_mean, positive, text
 from pendcore.run.result import RunResult
 
 if TYPE_CHECKING:
@@ -56,7 +62,7 @@ def plot(
         If there is no such figure, or the number of axes is not that of the figure, or a parameter
         is not one of this figure.
     """
-    own = _Own(t, event, link, label)
+    own = _Own(t, event, link, None if label is None else in_legend(text("label", label)))
     _check(what, own, horizon)
     from matplotlib.artist import ArtistInspector
     from matplotlib.cbook import normalize_kwargs

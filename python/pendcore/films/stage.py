@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pendcore.figures.axes import horizon_time, in_plane
+from pendcore.figures.axes import horizon_time, in_legend, in_plane
 from pendcore.figures.over_time import draw_energies
 from pendcore.films.frames import PATH_PARTS, Moves, frame_times, moves_of
 from pendcore.messages.arguments import Floats, number, positive
@@ -70,7 +70,7 @@ class Stage:
             player = _Player(axis, one, _CHAINS[k % len(_CHAINS)], choices, until, scale)
             self._players.append(player)
             if names[k]:
-                axis.plot([], [], color=player.color, linewidth=3, label=names[k])
+                axis.plot([], [], color=player.color, linewidth=3, label=in_legend(names[k]))
         for axis in scenes:
             if axis.get_legend_handles_labels()[0]:
                 axis.legend(loc="upper right", fontsize="small")

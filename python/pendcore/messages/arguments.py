@@ -106,6 +106,22 @@ def number(name: str, value: object, unit: str) -> float:
         raise _too_large(name, unit) from None
 
 
+def text(name: str, value: object) -> str:
+    """Return a text that files can hold: UTF-8 has no lone surrogates."""
+    if not isinstance(value, str):
+        raise TypeError(f"{name} = {value!r}: must be a text")
+    try:
+        value.encode()
+    except UnicodeEncodeError as error:
+        half = value[error.start]
+        raise ValueError(
+            f"{name} = {value!r}: holds {half!r}, half a character, which no file in UTF-8 can "
+            "hold: leave it out; os.fsencode(x).decode(errors='replace') makes a text of the name "
+            "of a file"
+        ) from None
+    return value
+
+
 def positive(name: str, value: object, unit: str) -> float:
     """Return one real number above 0 as a float."""
     given = number(name, value, unit)

@@ -17,6 +17,7 @@ from pendcore import _core
 from pendcore.accuracy.estimate import error_of
 from pendcore.cases.case import CaseData
 from pendcore.films.frames import moves_of
+from pendcore.messages.arguments import text
 from pendcore.run.call import Choice, run, start_of
 from pendcore.run.methods import known_methods
 from pendcore.run.result import RunResult
@@ -75,7 +76,7 @@ def page_of(solution: RunResult, title: str | None = None) -> str:
         "about": f"pendcore {_core.__version__}. {told}".strip(),
     }
     parts = {
-        "TITLE": escape(title or solution.name or "A pendulum"),
+        "TITLE": escape(text("title", title or "") or solution.name or "A pendulum"),
         "STYLE": _source("style.css"),
         "DATA": json.dumps(_finite(data), allow_nan=False).replace("<", "\\u003c"),
         "WASM": "" if core is None else b64encode(core).decode(),

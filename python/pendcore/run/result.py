@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore import _core
-from pendcore.messages.arguments import Floats, finite_array, known_keywords
+from pendcore.messages.arguments import Floats, finite_array, known_keywords, text
 from pendcore.messages.progress import Progress
 from pendcore.run.accuracy import Accuracy
 from pendcore.run.energy import Energy, Ledger
@@ -43,7 +43,7 @@ class RunResult:
         How far off the run is, once it has been estimated.
     """
 
-    __slots__ = ("_events", "accuracy", "known_error", "name", "run", "scene")
+    __slots__ = ("_events", "_name", "accuracy", "known_error", "run", "scene")
 
     def __init__(
         self,
@@ -56,6 +56,15 @@ class RunResult:
         self.scene, self.run, self.name = scene, run, name
         self.accuracy, self.known_error = accuracy, error
         self._events: list[FoundEvents] | None = None
+
+    @property
+    def name(self) -> str:
+        """A name for people; it may be set to any text that a file can hold."""
+        return self._name
+
+    @name.setter
+    def name(self, name: str) -> None:
+        self._name = text("name", name) if name != "" else name  # a short run has no time for it
 
     @property
     def t(self) -> Floats:

@@ -34,10 +34,13 @@ class Report(NamedTuple):
         The files that were written.
     complaint : str
         A complaint about the run that the report shows; empty if there is none.
+    left_out : list of Path
+        The files that could not be written; a warning says why.
     """
 
     files: list[Path]
     complaint: str
+    left_out: list[Path]
 
 
 def report(derivation: Algebra, case: Case, solution: Solution, refusal: str = "") -> Document:
@@ -135,36 +138,48 @@ def _written(
     if with_worksheet:
         documents["worksheet"] = worksheet(derivation, case, solution)
     told(0.4)
-    texts: list[Path] = []
-    figures: dict[str, Path] = {}
-    for k, (name, document) in enumerate(documents.items()):
-        texts += _texts(document, folder, name)
-        for drawing in document.drawings:
-            figures[drawing.name] = drawing.save(folder, Reader.PEOPLE)
-        told(0.4 + 0.6 * (k + 1) / len(documents))
-    return Report([*texts, *figures.values()], complaint)
+    figures = {one.name: one for document in documents.values() for one in document.drawings}
+    writers = [
+        *(one for name, document in documents.items() for one in _texts(document, folder, name)),
+        *((one.path(folder, Reader.PEOPLE), one.save) for one in figures.values()),
+    ]
+    files: list[Path] = []
+    failures: dict[Path, Exception] = {}
+    for k, (path, write) in enumerate(writers):
+        try:
+            with whole_file(path) as unfinished:
+                write(unfinished)
+            files.append(path)
+        except Exception as failure:  # whatever it is, the others are written
+            failures[path] = failure
+        told(0.4 + 0.6 * (k + 1) / len(writers))
+    if not files:
+        raise failures[path]
+    for path, why in failures.items():
+        warn(f"{path.name} is not written: {why}")
+    return Report(files, complaint, [*failures])
 
 
-def _texts(document: Document, folder: Path, name: str) -> Iterator[Path]:
-    """Write a document in every form that the machine can make; report converters that fail."""
-    path = folder / f"{name}.md"
-    with whole_file(path) as unfinished:
-        unfinished.write_text(document.markdown(), encoding="utf-8")
-    yield path
-    if not conversion.has_pandoc():
-        return
-    try:
-        path = folder / f"{name}.html"
-        page = conversion.page(document)
-        with whole_file(path) as unfinished:
-            unfinished.write_text(page, encoding="utf-8")
-        yield path
-        if (engine := conversion.latex_engine()) is not None:
-            path = folder / f"{name}.pdf"
-            conversion.pdf(document, path, engine)
-            yield path
-    except conversion.ConversionError as error:
-        warn(f"{path.name} is not written: {error}")
+def _texts(
+    document: Document, folder: Path, name: str
+) -> Iterator[tuple[Path, Callable[[Path], object]]]:
+    """Return every form of a document that the machine can make, and what writes it."""
+
+    def markdown(path: Path) -> None:
+        path.write_text(document.markdown(), encoding="utf-8")
+
+    def html(path: Path) -> None:
+        path.write_text(conversion.page(document), encoding="utf-8")
+
+    def pdf(path: Path) -> None:
+        conversion.pdf(document, path, str(engine))
+
+    yield folder / f"{name}.md", markdown
+    engine = conversion.latex_engine()
+    if conversion.has_pandoc():
+        yield folder / f"{name}.html", html
+        if engine is not None:
+            yield folder / f"{name}.pdf", pdf
 
 
 def _questions(

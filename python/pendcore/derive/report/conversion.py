@@ -78,7 +78,7 @@ def page(document: Document) -> str:
     with TemporaryDirectory() as place:
         folder = Path(place)
         for drawing in document.drawings:
-            drawing.save(folder, Reader.HTML)
+            drawing.save(drawing.path(folder, Reader.HTML))
         header = folder / "style.html"
         header.write_text(f"<style>\n{STYLE.read_text('utf-8')}</style>\n", encoding="utf-8")
         made = _pandoc(
@@ -121,7 +121,7 @@ def pdf(document: Document, path: Path, engine: str) -> None:
     with TemporaryDirectory() as place:
         folder = Path(place)
         for drawing in document.drawings:
-            drawing.save(folder, Reader.LATEX)
+            drawing.save(drawing.path(folder, Reader.LATEX))
         (folder / "preamble.tex").write_text(PREAMBLE, encoding="utf-8")
         made = _pandoc(
             document, Reader.LATEX, folder, "--to=latex", f"--pdf-engine={engine}",

@@ -7,7 +7,6 @@ from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
-from pendcore.cases.whole_file import whole_file
 from pendcore.derive.report.drawing import lettering
 
 if TYPE_CHECKING:
@@ -136,16 +135,17 @@ class Drawing:
         link = f"![{self.caption}]({self.name}.{suffix})"
         return f"{link}\n\n*{self.caption}*" if reader is Reader.PEOPLE else link
 
-    def save(self, folder: Path, reader: Reader) -> Path:
-        """Write the picture that this reader looks at; return where it is."""
-        path = folder / self.written(reader).splitlines()[0].rpartition("(")[2].rstrip(")")
+    def path(self, folder: Path, reader: Reader) -> Path:
+        """Return where the picture belongs that this reader looks at."""
+        return folder / self.written(reader).splitlines()[0].rpartition("(")[2].rstrip(")")
+
+    def save(self, path: Path) -> None:
+        """Write the picture into a file, of the kind that its suffix says."""
         dates = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(path.suffix)
         with lettering():
             self.figure.draw_without_rendering()
             self.figure.set_layout_engine("none")  # every picture of it has the first one's layout
-            with whole_file(path) as name:
-                self.figure.savefig(name, dpi=150, metadata=dates)
-        return path
+            self.figure.savefig(path, dpi=150, metadata=dates)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,90 @@
+"""Any text of a user's can be drawn: a legend shows every run, and dollars raise nothing."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pendcore as pc
+import pytest
+from matplotlib.figure import Figure
+from pendcore.figures.axes import as_drawn
+from pendcore.films.stage import Choices, Stage
+
+UNREADABLE = ["Ba$$in", r"$\nonsense$", "$a_{$ b", r"\$ $$"]
+NAMES = [*UNREADABLE, "_a", "__", "_$$", "5 $", r"$\theta$ sweep", "plain", "#%&{}^~"]
+
+
+@pytest.fixture(scope="module")
+def sol() -> pc.Solution:
+    return pc.simulate(pc.Scene.textbook(), [0.8, 1.0], t_span=(0, 0.5))
+
+
+def pixels(figure: Figure) -> Any:
+    figure.draw_without_rendering()
+    canvas: Any = figure.canvas
+    canvas.draw()
+    return np.array(canvas.buffer_rgba())
+
+
+def drawn(text: str, **properties: Any) -> Any:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    figure = Figure(figsize=(3, 0.5))
+    FigureCanvasAgg(figure)
+    figure.text(0.1, 0.3, text, **properties)
+    return pixels(figure)
+
+
+@pytest.mark.parametrize("text", UNREADABLE)
+def test_what_is_no_mathematics_is_drawn_as_it_is_written(text: str) -> None:
+    with pytest.raises(ValueError, match=r"Expected|Unknown"):
+        drawn(text)
+    assert np.array_equal(drawn(as_drawn(text)), drawn(text, parse_math=False))
+
+
+@pytest.mark.parametrize("text", [r"$\theta$ sweep", "plain", "5 $", "_a"])
+def test_other_texts_are_drawn_as_matplotlib_draws_them(text: str) -> None:
+    assert np.array_equal(drawn(as_drawn(text)), drawn(text))
+
+
+def test_a_film_shows_the_name_of_every_run(sol: pc.Solution) -> None:
+    figure = Figure()
+    Stage([sol] * len(NAMES), figure, Choices(), NAMES)
+    legend = figure.axes[0].get_legend()
+    assert legend is not None
+    texts = [one.get_text().strip() for one in legend.get_texts()]
+    assert texts == [as_drawn(name) for name in NAMES]
+    figure.draw_without_rendering()
+
+
+@pytest.mark.parametrize("what", ["angles", "reactions", "energy", "path", "phase"])
+@pytest.mark.parametrize("name", NAMES)
+def test_a_figure_shows_its_label(sol: pc.Solution, what: Any, name: str) -> None:
+    figure = Figure()
+    count = {"angles": 2, "reactions": 2}.get(what, 1)
+    axes = figure.subplots(count, 1)
+    sol.plot(axes, what=what, label=name)
+    for axis in figure.axes:
+        legend = axis.get_legend()
+        assert legend is not None
+        shown = [one.get_text() for one in legend.get_texts()]
+        assert shown
+        assert all(one.endswith(as_drawn(name)) for one in shown)
+    figure.draw_without_rendering()
+
+
+@pytest.mark.parametrize("name", UNREADABLE)
+def test_a_comparison_and_a_map_can_be_drawn_under_any_name(name: str) -> None:
+    book = pc.Case.textbook()
+    cost = pc.accuracy_cost(
+        book.scene, book.q0, t_span=(0, 0.1), methods="dopri5", rtol=[1e-3], repeats=1, name=name
+    )
+    figure = Figure()
+    cost.plot(figure.subplots())
+    found = pc.ensemble(
+        book.scene, np.linspace(0, 1, 4)[:, None] * [1.0, 0.5], t_span=(0, 0.1),
+        keep={name: pc.keep.EnergyDrift()},
+    )  # fmt: skip
+    found.plot(name, ax=figure.add_subplot())
+    figure.draw_without_rendering()
