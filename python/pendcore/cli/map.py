@@ -44,7 +44,7 @@ example:
 """
 
 MOST_PIXELS = 100_000_000
-"""Of a map: 2 GB of values and masks."""
+"""The largest map: its values and masks take some 2 GB."""
 FILES = ("summary.txt", "map.npz", "map.png")
 
 
