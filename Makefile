@@ -199,7 +199,7 @@ test-error: $(DONE)/installed $(DONE)/error-requirements  ## true errors (SEEDS,
 
 SECONDS_EACH ?= 60
 fuzz-readers: $(DONE)/installed $(DONE)/fuzz-requirements  ## damaged files and pickles, by coverage
-	for reader in case archive state scene; do \
+	for reader in case archive state scene store; do \
 	    PYTHONPATH=tests:tests/models python -m fuzz.guided $$reader out/fuzz/corpus -verbosity=0 \
 	        -max_total_time=$(SECONDS_EACH) -artifact_prefix=out/fuzz/ || exit 1; \
 	done

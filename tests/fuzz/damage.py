@@ -7,6 +7,7 @@ not among them: a pickle runs what it says by design.
 from __future__ import annotations
 
 import io
+import json
 import re
 from collections.abc import Mapping
 from typing import Any
@@ -28,6 +29,8 @@ LINES = (
     'kind = "lock"', 'kind = "motor"', "joint = 1", "joint = 99", "= 3", "[[", "\x00", "#", '"""',
     "start.q = 2", "run = 5", "link = 3", "effect = [1]", 'name = ["x"]', "ledger = 1", "[a.b.c]",
     "store = \"times\"", "t_eval = [0.5]", "max_steps = 0", "first_step = 1e-3", "constant = 1",
+    3000 * " ", "x = " + 2000 * "[", 5000 * "a." + "b = 1", 2000 * '"""\\', 2000 * "'",
+    "t_eval = {start = 0, stop = 5, count = 10000000}",
 )  # fmt: skip
 
 VALUES = (
@@ -113,6 +116,39 @@ def state(choices: Choices, whole: Mapping[str, Any]) -> dict[str, Any]:
             damaged[key] = whole[choices.one_of(sorted(whole))]
         else:
             damaged[key] = value(choices, whole[key])
+    return damaged
+
+
+def _json(choices: Choices, whole: Any) -> Any:
+    """Return JSON with one value replaced, or left out, at any depth."""
+    if isinstance(whole, dict | list) and whole and happens(choices, 80):
+        keys = sorted(whole) if isinstance(whole, dict) else list(range(len(whole)))
+        key = choices.one_of(keys)
+        changed = whole.copy()
+        if happens(choices, 10):
+            del changed[key]
+        else:
+            changed[key] = _json(choices, whole[key])
+        return changed
+    if isinstance(whole, str) and len(whole) > 20 and happens(choices, 70):
+        return text(choices, whole)
+    return choices.one_of([one for one in VALUES if not isinstance(one, bytes | complex)])
+
+
+def folder(choices: Choices, whole: Mapping[str, bytes]) -> dict[str, bytes]:
+    """Return the files of a store with some changed, left out, or taken from one another."""
+    damaged = dict(whole)
+    for _ in range(choices.integer(1, 3)):
+        name = choices.one_of(sorted(whole))
+        how = choices.integer(0, 9)
+        if how == 0:
+            damaged.pop(name, None)
+        elif how == 1:
+            damaged[name] = whole[choices.one_of(sorted(whole))]
+        elif name.endswith(".json") and how < 9:
+            damaged[name] = json.dumps(_json(choices, json.loads(whole[name]))).encode()
+        else:
+            damaged[name] = raw(choices, whole[name])
     return damaged
 
 

@@ -4,8 +4,10 @@
 
 The arguments after the reader and the folder are libFuzzer's own flags. A case file and an archive
 are the fuzzer's bytes themselves. For a state, a scene, and the entries of an archive (whose
-checksums bytes alone would hardly meet), the bytes choose the damage. The fuzzer stops at the first
-finding and leaves its bytes in a file `crash-...`. This reads them again:
+checksums bytes alone would hardly meet) and of a store, the bytes choose the damage. The fuzzer
+stops at the first finding and leaves its bytes in a file: `crash-...`, also for one that took more
+processor time than `fuzz.readers.MOST_SECONDS`; `timeout-...` for one that takes more than a
+minute; `oom-...` for one that takes more than 2 GB. This reads them again:
 
     PYTHONPATH=tests:tests/models python -m fuzz.guided case out/fuzz/corpus crash-...
 """
@@ -31,6 +33,7 @@ SEEDS: dict[str, list[bytes]] = {
     "archive": [*whole_archives(), *CHOICES],
     "state": CHOICES,
     "scene": CHOICES,
+    "store": CHOICES,
 }
 
 
@@ -73,7 +76,7 @@ def main() -> None:
 
     inputs = [flag for flag in flags if not flag.startswith("-")] or [str(corpus)]
     own = [flag for flag in flags if flag.startswith("-")]
-    atheris.Setup([sys.argv[0], *own, "-timeout=30", *inputs], one)
+    atheris.Setup([sys.argv[0], "-timeout=60", *own, *inputs], one)
     atheris.Fuzz()
 
 

@@ -1,14 +1,16 @@
 """The readers: each takes choices, damages valid input, reads it, and uses the result.
 
-A reader either works or raises one of `REFUSALS` with a message; anything else is a finding.
+A reader either works or raises one of `REFUSALS` with a message, within `MOST_SECONDS`; anything
+else is a finding.
 """
 
 from __future__ import annotations
 
 import copyreg
 import tempfile
+import time
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -23,6 +25,8 @@ from fuzz.choices import Choices
 REFUSALS = (ValueError, TypeError, KeyError)
 EXAMPLES = Path(__file__).parents[2] / "examples"
 STEPS = {"max_steps": 200, "time_limit": 2.0}
+MOST_SECONDS = 5.0
+"""Processor time that an input may take, also on a busy machine. Most take 0.02 s."""
 
 
 def whole_cases() -> list[str]:
@@ -100,6 +104,29 @@ def whole_archives() -> list[bytes]:
     return found
 
 
+@cache
+def whole_stores() -> list[dict[str, bytes]]:
+    """Return stores, as the contents of their files: with reducers, with times, not all run."""
+    scene, starts = pc.Scene.textbook(), pc.draw.uniform(-2, 2, (2, 3, 2), seed=1)
+    over = pc.events.LinkAngle(2, 0.5, every_turn=True)
+    asked: list[dict[str, Any]] = [
+        {"vary": {"gravity": [5.0, 7.0, 9.0]}, "keep": {
+            "over": pc.keep.FirstEvent(over), "extremes": pc.keep.Extremes()}},
+        {"keep": "times", "t_eval": [0.1, 0.2], "max_steps": 3},
+        {},
+    ]  # fmt: skip
+    found = []
+    for one in asked:
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "a.zarr")
+            pc.ensemble(scene, starts, t_span=(0, 0.2), store=path, chunk=2, check=False, **one)
+            files = sorted(file for file in path.rglob("*") if file.is_file())
+            found.append({file.relative_to(path).as_posix(): file.read_bytes() for file in files})
+    left_out = [name for name in found[-1] if name.startswith("status/c/1/")]
+    found[-1] = {name: content for name, content in found[-1].items() if name not in left_out}
+    return found
+
+
 def use(solution: pc.Solution) -> None:
     """Ask a solution for all that it has."""
     solution.t, solution.y, solution.stats, solution.message, solution.success, solution.case()
@@ -144,6 +171,24 @@ def an_archive(choices: Choices) -> None:
     read_archive(damage.archive(choices, choices.one_of(whole_archives())))
 
 
+def read_store(files: Mapping[str, bytes]) -> None:
+    """Load a folder of these files, and use all of it. A file may well be unreadable."""
+    with tempfile.TemporaryDirectory() as folder:
+        for name, content in files.items():
+            path = Path(folder, name)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(content)
+        try:
+            found = pc.load(folder)
+            repr(found), str(found), found.status, found.q, found.qd, found.t, found.energy()
+        except OSError as refusal:
+            raise ValueError(str(refusal)) from refusal
+
+
+def a_store(choices: Choices) -> None:
+    read_store(damage.folder(choices, choices.one_of(whole_stores())))
+
+
 def a_state(choices: Choices) -> None:
     solution = choices.one_of(whole_solutions())
     run = _core.Run.__new__(_core.Run)
@@ -183,17 +228,21 @@ READERS: dict[str, Callable[[Choices], None]] = {
     "archive": an_archive,
     "state": a_state,
     "scene": a_scene,
+    "store": a_store,
 }
 
 
-def finding(read: Callable[[], None]) -> str | None:
+def finding(read: Callable[[], None], most_seconds: float = MOST_SECONDS) -> str | None:
     """Return what is wrong with how a reader took something damaged; None where it did well."""
+    begin = time.process_time()
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore", pc.PendcoreWarning)
         try:
             read()
         except REFUSALS as refusal:
-            return None if len(str(refusal)) > 5 else f"{refusal!r} says nothing"
+            if len(str(refusal)) <= 5:
+                return f"{refusal!r} says nothing"
         except Exception as error:
             return f"{type(error).__name__}: {error}"
-    return None
+    taken = time.process_time() - begin
+    return f"took {taken:.1f} s of processor time" if taken > most_seconds else None

@@ -19,10 +19,11 @@ from pendcore.ensemble.distribution import InMemory, Limits, run_blocks
 from pendcore.ensemble.export import to_xarray
 from pendcore.ensemble.figure import plot
 from pendcore.ensemble.members import Members
+from pendcore.ensemble.new_store import bytes_of, in_words
 from pendcore.ensemble.request import NOT_RUN, Request
 from pendcore.ensemble.result import EnsembleResult
 from pendcore.ensemble.run import run_members
-from pendcore.ensemble.store import bytes_of, in_words, store_for
+from pendcore.ensemble.store import store_for
 from pendcore.ensemble.trust import resolved, second
 from pendcore.messages.arguments import (
     did_you_mean,

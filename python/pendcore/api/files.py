@@ -47,7 +47,7 @@ def load(path: str | os.PathLike[str]) -> Solution | Ensemble:
     Warns
     -----
     PendcoreWarning
-        If members of a store were not run yet.
+        If members of a store were not run yet, or files of theirs are missing.
 
     Examples
     --------
@@ -113,11 +113,11 @@ def load_solution(path: str | os.PathLike[str]) -> Solution:
 def _from_store(path: Path) -> Ensemble:
     store = opened(path)
     found = _ensemble(store.members, store.request, store.arrays)
-    if not store.is_complete and (missing := found.counts().get("not_run", 0)):
+    if missing := store.not_done():
         found.ending = "interrupted"
         warn(
-            f"{path}: {missing} of {len(found)} members were not run: repeat the call of "
-            "pc.ensemble that made the store to run them"
+            f"{path}: {missing} of {len(found)} members were not run, or files of theirs are "
+            "missing: repeat the call of pc.ensemble that made the store to run them"
         )
     return found
 

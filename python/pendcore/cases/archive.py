@@ -21,6 +21,7 @@ import numpy as np
 from pendcore import _core
 from pendcore.cases.case import CaseData
 from pendcore.cases.case_file import case_from_text
+from pendcore.cases.npz import Entries, entries_of
 from pendcore.cases.whole_file import whole_file
 from pendcore.messages.progress import Progress, callback, close
 from pendcore.messages.warning import PendcoreWarning
@@ -100,7 +101,8 @@ def load(path: str | os.PathLike[str]) -> RunResult:
     """Read what `save` wrote; see `pendcore.load`."""
     with Path(path).open("rb") as file:
         try:
-            return _loaded(file)
+            with entries_of(file) as entries:
+                return _loaded(entries)
         except Exception as error:  # whatever a damaged file makes of zip, npy, TOML or the core
             if Path(path).suffix == ".toml":
                 raise ValueError(
@@ -110,14 +112,10 @@ def load(path: str | os.PathLike[str]) -> RunResult:
             raise ValueError(f"{path}: is not a solution that pendcore saved ({error})") from None
 
 
-def _loaded(file: BinaryIO) -> RunResult:
-    if not zipfile.is_zipfile(file):
-        raise ValueError("it is no npz file, or was cut short")
-    file.seek(0)
-    with np.load(file, allow_pickle=False) as entries:
-        case = _case(str(entries["case"]))
-        state, error = _group(entries, _RUN), _group(entries, _ERROR)
-        told = json.loads(str(entries["accuracy"])) if "accuracy" in entries else None
+def _loaded(entries: Entries) -> RunResult:
+    case = _case(str(entries["case"]))
+    state, error = _group(entries, _RUN), _group(entries, _ERROR)
+    told = json.loads(str(entries["accuracy"])) if "accuracy" in entries else None
     run = _core.Run.__new__(_core.Run)
     run.__setstate__(state)
     accuracy = None if told is None else Accuracy.from_dict(told)
@@ -128,7 +126,7 @@ def _loaded(file: BinaryIO) -> RunResult:
     return solution
 
 
-def _group(entries: Any, prefix: str) -> dict[str, Any]:
+def _group(entries: Entries, prefix: str) -> dict[str, Any]:
     """Return the entries under a prefix; numbers and strings are arrays without axes there."""
     found = {key.removeprefix(prefix): entries[key] for key in entries if key.startswith(prefix)}
     return {key: one.item() if one.ndim == 0 else one for key, one in found.items()}

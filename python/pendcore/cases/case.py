@@ -139,7 +139,11 @@ def _plain(value: Any) -> Any:
     """Return NumPy's numbers and arrays as Python's own, lists as tuples."""
     if isinstance(value, np.ndarray | np.generic):
         value = value.tolist()
-    return tuple(map(_plain, value)) if isinstance(value, list | tuple) else value
+    if not isinstance(value, list | tuple):
+        return value
+    if {*map(type, value)} <= {float, int}:  # as of a million times
+        return tuple(value)
+    return tuple(map(_plain, value))
 
 
 def _effect_table(effect: Effect) -> dict[str, Any]:

@@ -59,9 +59,10 @@ KEYS = {
 }
 """The known keys of every kind of table; "" stands for what is above all tables."""
 
-MOST_TIMES = 10_000_000
-"""That ``t_eval`` of a file may stand for: 80 MB of times."""
-
+MOST_TIMES = 1_000_000
+"""That a few words of a file may stand for in ``t_eval``."""
+MOST_BYTES = 2**26
+"""The largest file: room for a million times, and tables of a million rows."""
 
 EFFECT_KEYS = {
     kind: (*KEYS["effect"], *(parameter.name for parameter in cls.description.parameters))
@@ -98,10 +99,15 @@ def with_line(path: Path, complaint: str) -> str:
 
 def text_of(path: Path) -> str:
     """Return the text of a file in UTF-8."""
+    with path.open("rb") as file:
+        content = file.read(MOST_BYTES + 1)
+    if len(content) > MOST_BYTES:
+        raise ValueError(f"{path}: is too large for a case: at most {MOST_BYTES:,} bytes")
     try:
-        return path.read_text(encoding="utf-8-sig")  # Windows' editors write a byte order mark
+        text = content.decode("utf-8-sig")  # Windows' editors write a byte order mark
     except UnicodeDecodeError:
         raise ValueError(f"{path}: is not a text file in UTF-8") from None
+    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def case_from_text(content: str, name: str) -> CaseData:
@@ -270,7 +276,8 @@ def _even_times(text: TomlText, table: dict[str, Any]) -> list[float]:
     if isinstance(count, bool) or not isinstance(count, int) or not 2 <= count <= MOST_TIMES:
         complaint = f"t_eval.count = {count!r}: must be a whole number from 2 to {MOST_TIMES:,}"
         raise text.error(place, complaint)
-    return [float(t) for t in np.linspace(start, stop, count)]
+    times: list[float] = np.linspace(start, stop, count).tolist()
+    return times
 
 
 def _place(message: str) -> Place:

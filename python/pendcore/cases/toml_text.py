@@ -11,11 +11,21 @@ from typing import Any, TypeAlias
 Place: TypeAlias = tuple[str | int, ...]
 """Way to a key: ``("link", 1, "mass")`` is the mass in the second ``[[link]]``."""
 
+MOST_NESTED = 32
+"""Arrays and tables within one another, and names in a dotted key. A case needs four; the parser
+takes the square of the names in time, and one level of Python's stack or more for each array."""
+
 _STRING_OR_COMMENT = re.compile(
-    r'"""(?:\\.|[^\\])*?"""|\'\'\'.*?\'\'\'|"(?:\\.|[^"\\\n])*"|\'[^\'\n]*\'|#[^\n]*', re.DOTALL
+    r'"""(?:\\.|[^\\])*?(?:"{3,5}|\Z)'
+    r"|'{3}.*?(?:'{3,5}|\Z)"
+    r'|"(?:\\.|[^"\\\n])*"?'
+    r"|'[^'\n]*'?"
+    r"|#[^\n]*",
+    re.DOTALL,
 )
+"""Where one does not end, it takes the rest: what is no TOML is scanned once as well."""
 _HEADER = re.compile(r"\s*\[(\[?)([^\[\]]+)\]")
-_KEY = re.compile(r"""\s*([\w\-."' ]+?)\s*=""")
+_STRUCTURE = re.compile(r"([\[\]{},=])")
 
 
 class TomlText:
@@ -31,25 +41,38 @@ class TomlText:
     Raises
     ------
     ValueError
-        If the text is not TOML.
+        If the text is not TOML, or nested too deeply.
     """
 
     def __init__(self, text: str, name: str) -> None:
         self.name = name
-        self._lines = dict(_lines_of_keys(text))
+        self._hushed = _STRING_OR_COMMENT.sub(_hushed, text).split("\n")
+        self._require_flat()
         try:
             self.content: dict[str, Any] = tomllib.loads(text)
         except ValueError as error:  # TOMLDecodeError, and an integer of too many digits
-            twice = "twice" in str(error) and _HEADER.search(text)
+            twice = "twice" in str(error) and "[" in text
             remedy = ": a table that is there more than once is [[link]], in two brackets"
             raise ValueError(f"{name}: {error}{remedy if twice else ''}") from None
 
     def error(self, place: Place, complaint: str) -> ValueError:
         """Return an error that names the line of the place, or of the table that holds it."""
+        lines = dict(_lines_of_keys(self._hushed))
         for length in range(len(place), 0, -1):
-            if place[:length] in self._lines:
-                return ValueError(f"{self.name}, line {self._lines[place[:length]]}: {complaint}")
+            if place[:length] in lines:
+                return ValueError(f"{self.name}, line {lines[place[:length]]}: {complaint}")
         return ValueError(f"{self.name}: {complaint}")
+
+    def _require_flat(self) -> None:
+        depth = 0
+        for number, line in enumerate(self._hushed, start=1):
+            for piece in _STRUCTURE.split(line):
+                depth += (piece in ("[", "{")) - (piece in ("]", "}"))
+                if max(depth, piece.count(".") + 1) > MOST_NESTED:
+                    raise ValueError(
+                        f"{self.name}, line {number}: is nested too deeply: at most {MOST_NESTED} "
+                        "arrays, tables or names within one another"
+                    )
 
     def check_keys(self, place: Place, known: Mapping[str, Iterable[str]]) -> None:
         """Refuse the first unknown key of a table, and name the nearest known one.
@@ -116,22 +139,22 @@ def _is_number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def _lines_of_keys(text: str) -> Iterator[tuple[Place, int]]:
+def _lines_of_keys(hushed: list[str]) -> Iterator[tuple[Place, int]]:
     tables: Place = ()
     last: dict[tuple[str, ...], int] = {}  # of the tables [[name]], the index of the last one
     depth = 0
-    for number, line in enumerate(_STRING_OR_COMMENT.sub(_hushed, text).split("\n"), start=1):
+    for number, line in enumerate(hushed, start=1):
         if depth == 0 and (header := _HEADER.match(line)):
             names = _split(header[2])
             if header[1]:
                 last[names] = last.get(names, -1) + 1
             tables = _with_indices(names, last)
             yield tables, number
-        elif depth == 0 and (key := _KEY.match(line)):
-            names = _split(key[1])
+        elif depth == 0 and "=" in line:
+            names = _split(line.partition("=")[0])
             for length in range(len(names)):
                 yield (*tables, *names[: length + 1]), number
-        depth += len(re.findall(r"[\[{]", line)) - len(re.findall(r"[\]}]", line))
+        depth += line.count("[") + line.count("{") - line.count("]") - line.count("}")
 
 
 def _hushed(match: re.Match[str]) -> str:
@@ -139,7 +162,7 @@ def _hushed(match: re.Match[str]) -> str:
     found = match[0]
     if found.startswith(("#", '"""', "'''")):
         return "\n" * found.count("\n")
-    return re.sub(r"[\[\]{}=]", "_", found)
+    return re.sub(r"[\[\]{},=.]", "_", found)
 
 
 def _split(dotted: str) -> tuple[str, ...]:

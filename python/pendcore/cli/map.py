@@ -43,6 +43,8 @@ example:
   pendcore map examples/11_flip_map.toml --zoom -120 -60 20 80 -o out/zoom
 """
 
+MOST_PIXELS = 100_000_000
+"""The largest map: its values and masks take some 2 GB."""
 FILES = ("summary.txt", "map.npz", "map.png")
 
 
@@ -133,6 +135,8 @@ def _asked_for(table: MapTable, args: argparse.Namespace) -> MapTable:
         if not (x0 < x1 and y0 < y1):
             raise UsageError(f"--zoom {x0:g} {x1:g} {y0:g} {y1:g}: X0 < X1 and Y0 < Y1 are needed")
         x, y = x.across(x0, x1), y.across(y0, y1)
+    if x.count * y.count > MOST_PIXELS:
+        raise UsageError(f"{x.count:,} x {y.count:,} pixels: must be at most {MOST_PIXELS:,}")
     if args.refine < 0:
         raise UsageError(f"--refine = {args.refine}: must be 0 or more levels")
     return MapTable(table.show, x, y)

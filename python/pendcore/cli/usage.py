@@ -22,7 +22,8 @@ def blamed_on_usage(what: str = "") -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise UsageError(f"{error.filename}: {error.strerror}") from None
+        told = f"{error.filename}: {error.strerror}" if error.filename else str(error)
+        raise UsageError(told) from None
     except (ValueError, TypeError) as error:
         raise UsageError(f"{what}: {error}" if what else str(error)) from None
 

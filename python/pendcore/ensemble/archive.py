@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
+from pendcore.cases.npz import Entries, entries_of
 from pendcore.cases.whole_file import whole_file
-from pendcore.ensemble.about import VARY, about, read_about
+from pendcore.ensemble.about import SHAPE, VARY, about, read_about, read_sizes
 from pendcore.ensemble.coordinates import coordinates, members_from
 from pendcore.ensemble.result import EnsembleResult
+from pendcore.ensemble.run import SUMMED
 
 ENTRY = "ensemble"
 """The entry with everything that is no array, in JSON."""
@@ -40,7 +40,7 @@ def save(found: EnsembleResult, path: str | os.PathLike[str]) -> None:
 def is_ensemble(path: str | os.PathLike[str]) -> bool:
     """Return whether a file is an npz file with an ensemble."""
     try:
-        with Path(path).open("rb") as file, np.load(file, allow_pickle=False) as entries:
+        with Path(path).open("rb") as file, entries_of(file) as entries:
             return ENTRY in entries
     except Exception:  # whatever a damaged file makes of zip and npy
         return False
@@ -49,21 +49,34 @@ def is_ensemble(path: str | os.PathLike[str]) -> bool:
 def load(path: str | os.PathLike[str]) -> EnsembleResult:
     """Read what `save` wrote."""
     try:
-        with Path(path).open("rb") as file, np.load(file, allow_pickle=False) as entries:
-            return _loaded({name: entries[name] for name in entries})
+        with Path(path).open("rb") as file, entries_of(file) as entries:
+            return _loaded(entries)
     except Exception as error:  # whatever a damaged file makes of zip, npy, JSON or TOML
         raise ValueError(f"{path}: is no ensemble that pendcore saved ({error})") from None
 
 
-def _loaded(entries: Mapping[str, Any]) -> EnsembleResult:
+def _loaded(entries: Entries) -> EnsembleResult:
     told = json.loads(str(entries[ENTRY]))
+    if not isinstance(told, dict):
+        raise ValueError(f"{ENTRY}: must be a table")
+    shape = read_sizes(told, SHAPE, 0)
     scene, request = read_about(told, entries.get("time"))
+    ending, statistics, axes = (told.get(name) for name in ("ending", "statistics", "axes"))
+    if ending not in ("finished", "time_limit", "interrupted"):
+        raise ValueError(f"ending = {ending!r}: must be finished, time_limit or interrupted")
+    if not isinstance(statistics, dict) or statistics.keys() not in ({*()}, {*SUMMED}):
+        raise ValueError(f"statistics = {statistics!r}: must have {', '.join(SUMMED)}, or nothing")
     names = ["q0", "qd0", *told[VARY]]
-    found = {name: (tuple(told["axes"][name]), entries[name]) for name in names}
-    members = members_from(scene, tuple(told["shape"]), found)
-    variables = request.variables(len(scene.links))
-    arrays = {one.name: entries[one.name] for one in variables}
-    for one in variables:
-        if arrays[one.name].shape != (*members.shape, *one.shape):
-            raise ValueError(f"{one.name} has another shape than the members")
-    return EnsembleResult(members, request, arrays, told["ending"], told["statistics"])
+    if not isinstance(axes, dict) or not all(isinstance(axes.get(name), list) for name in names):
+        raise ValueError(f"axes = {axes!r}: must have lists of axes of {', '.join(names)}")
+    starts = {name: (tuple(axes[name]), entries[name]) for name in names}
+    for name, (_, values) in starts.items():
+        if values.dtype != np.float64:
+            raise ValueError(f"{name} is of type {values.dtype}: must be float64")
+    members = members_from(scene, shape, starts)
+    arrays = {}
+    for one in request.variables(len(scene.links)):
+        found = arrays[one.name] = entries[one.name]
+        if found.shape != (*shape, *one.shape) or found.dtype != one.dtype:
+            raise ValueError(f"{one.name} has another shape or type than that of the members")
+    return EnsembleResult(members, request, arrays, ending, statistics)

@@ -65,6 +65,9 @@ class InMemory:
         """Return whether a block was written: none is, to begin with."""
         return False
 
+    def require_all(self) -> None:
+        """Raise an error if results were lost: none are."""
+
     def write(self, block: Block, arrays: Arrays) -> None:
         """Take the results of a block."""
         for name, values in arrays.items():
@@ -105,6 +108,7 @@ def _run_here(
             done += size
             if limits.report is not None:
                 limits.report(done / total)
+        target.require_all()
     except BaseException as stop:  # Ctrl-C between blocks, an exception of progress, a full disk
         return Outcome(target.arrays, "interrupted", dict(statistics), stop)
     return Outcome(target.arrays, "finished", dict(statistics), None)
@@ -135,12 +139,16 @@ def _run_by(
         for block, arrays, counted in results:
             if arrays is not None:
                 target.write(block, arrays)
+            elif isinstance(target, Store):
+                target.require_there()
             statistics.update(counted)
             done += size_of(block)
             if limits.report is not None:
                 limits.report(done / total)
         if monotonic() >= until and done < total:
             ending = "time_limit"
+        else:
+            target.require_all()
     except BaseException as stop:  # Ctrl-C, an exception of progress, or what a worker raised
         ending, error = "interrupted", _in_words(stop)
     finally:

@@ -8,30 +8,39 @@ neither times of day nor names of machines: two runs of one ensemble write the s
 from __future__ import annotations
 
 import os
-import shutil
-import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
-from uuid import uuid4
+from typing import Any
 
 import numpy as np
 
-from pendcore import _core
-from pendcore.ensemble.about import CASE, KEEP, VARY, VERSION, about, read_about
-from pendcore.ensemble.blocks import Block, Blocks, blocks_of, usual_block
-from pendcore.ensemble.coordinates import coordinates, member_axes, members_from
-from pendcore.ensemble.members import Members
-from pendcore.ensemble.one_writer import one_writer, other_writer
-from pendcore.ensemble.request import NOT_RUN, Request, Variable
+from pendcore.ensemble.about import (
+    BLOCK,
+    CASE,
+    KEEP,
+    SHAPE,
+    VARY,
+    VERSION,
+    about,
+    read_about,
+    read_sizes,
+)
+from pendcore.ensemble.blocks import Block, Blocks, size_of
+from pendcore.ensemble.coordinates import member_axes, members_from
+from pendcore.ensemble.members import Index, Members
+from pendcore.ensemble.new_store import create, named, zarr_module
+from pendcore.ensemble.one_writer import one_writer
+from pendcore.ensemble.request import Request, Variable
 from pendcore.ensemble.run import Arrays
-from pendcore.ensemble.stored_array import StoredArray
+from pendcore.ensemble.stored_array import StoredArray, file_of, is_there, moved
+from pendcore.ensemble.stored_metadata import (
+    DOCUMENT,
+    attributes_of,
+    axes_of,
+    require_array,
+)
 
-if TYPE_CHECKING:
-    import zarr
-
-SHAPE, BLOCK = "shape", "block_shape"
 _OTHER = {
     CASE: "another scene, or other options or events",
     KEEP: "other reducers",
@@ -44,84 +53,141 @@ class Store:
 
     Attributes
     ----------
-    path : Path
-        The folder.
+    path, place : Path
+        The folder as it was named, and where it is.
+    told : dict
+        The attributes of the group.
     members, request, blocks
         What is run, and how it is cut.
     """
 
-    __slots__ = ("blocks", "group", "members", "path", "request", "variables")
+    __slots__ = ("_folder", "_zarr_arrays", "blocks", "members", "path", "place", "request", "told")
 
     def __init__(
-        self, path: Path, group: zarr.Group, members: Members, request: Request, blocks: Blocks
+        self,
+        path: Path,
+        place: Path,
+        told: dict[str, Any],
+        zarr_arrays: dict[str, Any],
+        members: Members,
+        request: Request,
+        blocks: Blocks,
     ) -> None:
-        self.path, self.group = path, group
+        self.path, self.place, self.told = path, place, told
         self.members, self.request, self.blocks = members, request, blocks
-        self.variables = request.variables(len(members.scene.links))
+        self._zarr_arrays = zarr_arrays
+        self._folder = self.place.stat()
 
     @property
     def arrays(self) -> dict[str, StoredArray]:
         """Return the arrays of the result, which read from the disk when they are indexed."""
-        return {one.name: self._array(one.name) for one in self.variables}
+        status = self._zarr_arrays["status"]
+        return {
+            name: StoredArray(self.path, self.place, one, status)
+            for name, one in self._zarr_arrays.items()
+        }
 
-    def _array(self, name: str) -> StoredArray:
-        return StoredArray(self.path, self.group[name], self.group["status"])
-
-    @property
-    def is_complete(self) -> bool:
-        """Return whether every block was written, without reading any."""
-        status: Any = self.group["status"]
-        return bool(status.nchunks_initialized == status.nchunks)
+    def not_done(self) -> int:
+        """Return the number of members in blocks of which files are missing, without reading."""
+        arrays = self._zarr_arrays.values()
+        if all(one.nchunks_initialized == one.nchunks for one in arrays):
+            return 0
+        return sum(size_of(block) for block in self.blocks if not self.is_done(block))
 
     def is_done(self, block: Block) -> bool:
-        """Return whether a block was written."""
-        first = tuple(slice(one.start, one.start + 1) for one in block)
-        return bool((np.asarray(self._array("status")[first]) != NOT_RUN).all())
+        """Return whether all files of a block are there."""
+        files = _files(self._zarr_arrays, block)
+        return all((self.place / one).exists() for one in files)
 
     def write(self, block: Block, arrays: Arrays) -> None:
         """Write the results of a block."""
-        _write(self.path, self.group, self.variables, block, arrays)
+        self.require_there()
+        with _writing(self.path, self.place):
+            _write(self.place, self._zarr_arrays, block, arrays)
+
+    def require_there(self) -> None:
+        """Raise an OSError if the folder that was opened is no longer under its name."""
+        if not is_there(self.place) or not os.path.samestat(self.place.stat(), self._folder):
+            raise moved(self.path)
+
+    def require_all(self) -> None:
+        """Raise an OSError if files are missing, now that every block was written."""
+        self.require_there()
+        if lost := self.not_done():
+            raise OSError(
+                f"store = {str(self.path)!r}: files of {lost} of {self.members.count} members are "
+                "gone: something removed them while it was written; the same call computes these "
+                "members again"
+            )
 
 
 def write_block(path: Path, variables: list[Variable], block: Block, arrays: Arrays) -> None:
     """Write the results of a block into a store, without reading the rest of it."""
-    _write(path, _zarr().open_group(path, mode="r+"), variables, block, arrays)
+    with _writing(path, path):
+        zarr_arrays = {one.name: _zarr_array(path, one.name, "r+") for one in variables}
+        _write(path, zarr_arrays, block, arrays)
 
 
-def _write(path: Path, group: Any, variables: list[Variable], block: Block, arrays: Arrays) -> None:
-    with _named(path):
-        for one in reversed(variables):  # the status is the first of them, and is written last
-            group[one.name][block] = arrays[one.name]
+@contextmanager
+def _writing(path: Path, place: Path) -> Iterator[None]:
+    """See that a store is there before and after it is written: Zarr would make folders anew."""
+    if not is_there(place):
+        raise moved(path)
+    try:
+        with named(path):
+            yield
+    except Exception as error:
+        if is_there(place) and not isinstance(error, FileNotFoundError):
+            raise
+        raise moved(path) from error
+    if not is_there(place):
+        raise moved(path)
 
 
-def bytes_of(members: Members, request: Request) -> int:
-    """Return the disk space that a store takes at most: nothing here counts on compression."""
-    variables = request.variables(len(members.scene.links))
-    starts = sum(one.values.nbytes for one in coordinates(members))
-    return starts + members.count * sum(one.bytes_a_member for one in variables)
+def _write(place: Path, zarr_arrays: dict[str, Any], block: Block, arrays: Arrays) -> None:
+    try:
+        for name in reversed(zarr_arrays):  # the status is the first of them, and is written last
+            zarr_arrays[name][block] = arrays[name]
+    finally:
+        if not is_there(place):
+            _take_back(place, _files(zarr_arrays, block))
 
 
-def require_space(path: Path, size: int) -> None:
-    """Raise an OSError if the disk has less space than a store may take."""
-    folder = path.resolve().parent
-    if not folder.is_dir():
-        raise FileNotFoundError(f"store = {str(path)!r}: the folder {folder} does not exist")
-    if not os.access(folder, os.W_OK):
-        raise PermissionError(f"store = {str(path)!r}: the folder {folder} cannot be written")
-    free = shutil.disk_usage(folder).free
-    if size > free:
-        raise OSError(
-            f"store = {str(path)!r}: needs up to {in_words(size)}, but {in_words(free)} are free "
-            f"in {folder}"
-        )
+def _take_back(place: Path, files: list[str]) -> None:
+    """Remove files, and the folders down to the place itself that hold nothing else."""
+    for name in files:
+        with suppress(OSError):
+            (place / name).unlink(missing_ok=True)
+        with suppress(OSError):
+            for folder in Path(name).parents:
+                (place / folder).rmdir()
 
 
-def in_words(size: int) -> str:
-    """Return a number of bytes for people."""
-    for unit, one in (("GB", 10**9), ("MB", 10**6), ("kB", 10**3)):
-        if size >= one:
-            return f"{size / one:.3g} {unit}"
-    return f"{size} bytes"
+def _files(zarr_arrays: dict[str, Any], block: Block) -> list[str]:
+    """Return the names of the files of a block in a store, without arrays that hold nothing."""
+    some = [one for one in zarr_arrays.values() if 0 not in one.shape]
+    return [file_of(one, _chunk(one, block)) for one in some]
+
+
+def _chunk(zarr_array: Any, block: Block) -> Index:
+    """Return the place of a block among the chunks of an array."""
+    sizes = zarr_array.chunks
+    first = [one.start for one in block] + [0] * (len(sizes) - len(block))
+    return tuple(start // size for start, size in zip(first, sizes, strict=True))
+
+
+def _zarr_array(path: Path, name: str, mode: str) -> Any:
+    """Open an array, which writes chunks of nothing but fill values too: a missing one is lost."""
+    zarr = zarr_module()
+    try:
+        found = zarr.open_array(path, path=name, mode=mode, zarr_format=3)
+    except OSError:
+        raise
+    except Exception as error:  # whatever Zarr makes of a value that it does not expect
+        raise ValueError(f"{name}/{DOCUMENT}: {error}") from error
+    return zarr.Array(
+        zarr.AsyncArray(found.metadata, found.store_path, config={"write_empty_chunks": True})
+    )
 
 
 @contextmanager
@@ -138,74 +204,60 @@ def store_for(path: Path, members: Members, request: Request, chunk: int) -> Ite
         yield opened(path, "r+") if is_new else continued(path, members, request)
 
 
-def create(path: Path, members: Members, request: Request, chunk: int) -> None:
-    """Make a store without results. It appears under its name when it has all starts."""
-    zarr = _zarr()
-    if path.exists() and (path.samefile(Path.cwd()) or path.is_mount()):
-        raise OSError(
-            f"store = {str(path)!r}: is the current folder or a disk: name a folder in it"
-        )
-    told = about(members.scene, list(members.vary), request)  # says what cannot be saved
-    require_space(path, bytes_of(members, request))
-    blocks = blocks_of(members.shape, chunk or usual_block(members, request))
-    axes = member_axes(members.shape)
-    building = path.with_name(f"{path.name}.{uuid4().hex}.part")
-    with _named(path):
-        try:
-            group = zarr.create_group(building)
-            starts = coordinates(members)
-            for start in starts:
-                _put(group, start.name, start.values, start.axes, start.unit)
-            variables = request.variables(len(members.scene.links))
-            labels = {axis: values for one in variables for axis, values in one.labels.items()}
-            for axis, values in labels.items():
-                _put(group, axis, np.asarray(values), (axis,), "s" if axis == "time" else "")
-            for one in variables:
-                _create_array(group, one, axes, members.shape, blocks)
-            own = {"coordinates": " ".join(one.name for one in starts)}  # as xarray reads them
-            group.attrs.update(own | told | {SHAPE: members.shape, BLOCK: blocks.block_shape})
-            with warnings.catch_warnings():  # readers of the bare format pass over what it adds
-                warnings.simplefilter("ignore")
-                zarr.consolidate_metadata(building)
-            _appear(building, path)
-        finally:
-            shutil.rmtree(building, ignore_errors=True)
-
-
-def _appear(building: Path, path: Path) -> None:
-    try:
-        building.rename(path)
-    except OSError:
-        if path.is_dir() and any(path.iterdir()):
-            raise other_writer(path) from None
-        raise
-
-
 def opened(path: Path, mode: str = "r") -> Store:
-    """Open a store that `create` made; a ValueError says that it is none."""
-    zarr = _zarr()
+    """Open a store that `create` made; a ValueError says that it is none, or what is damaged."""
+    zarr_module()
+    if not (path / DOCUMENT).is_file():
+        raise ValueError(f"store = {str(path)!r}: is no store of an ensemble: name another folder")
     try:
-        group = zarr.open_group(path, mode=mode)
-        told = dict(group.attrs)
-        shape, block_shape = tuple(told[SHAPE]), tuple(told[BLOCK])
-        t_eval = np.asarray(group["time"][...]) if "time" in group else None
-        scene, request = read_about(told, t_eval)
-        names = ["q0", "qd0", *told[VARY]]
-        found = {
-            name: (tuple(group[name].metadata.dimension_names or ()), np.asarray(group[name][...]))
-            for name in names
-        }
-        members = members_from(scene, shape, found)
-    except (KeyError, TypeError, ValueError, FileNotFoundError):
-        raise ValueError(
-            f"store = {str(path)!r}: is no store of an ensemble: name another folder"
-        ) from None
-    except RuntimeError as error:
+        return _opened(path, mode)
+    except FileNotFoundError as error:
+        told: object = f"{error.filename} is missing"
+        cause: Exception = error
+    except (RuntimeError, MemoryError) as error:
         raise OSError(
             f"store = {str(path)!r}: its starts cannot be read ({error}): put q0, qd0 and the "
             "varied parameters back from a copy, or remove the store"
         ) from error
-    return Store(path, group, members, request, Blocks(shape, block_shape))
+    except (KeyError, TypeError, ValueError) as error:
+        told = cause = error
+    raise ValueError(
+        f"store = {str(path)!r}: is no store of an ensemble, or is damaged ({told}): put the file "
+        "back from a copy, or name another folder"
+    ) from cause
+
+
+def _opened(path: Path, mode: str) -> Store:
+    place = path.resolve()  # whatever becomes the current folder
+    told = attributes_of(place)
+    shape, block_shape = read_sizes(told, SHAPE, 0), read_sizes(told, BLOCK, 1)
+    if len(shape) != len(block_shape):
+        raise ValueError(f"{BLOCK} = {list(block_shape)}: must have {len(shape)} numbers")
+    t_eval = _read(place, "time", {"time": None})[1] if (place / "time").exists() else None
+    scene, request = read_about(told, t_eval)
+    n, axes = len(scene.links), member_axes(shape)
+    lengths: dict[str, int | None] = dict(zip(axes, shape, strict=True))
+    of_states = lengths | {"link": n}
+    found = {name: _read(place, name, of_states) for name in ("q0", "qd0")}
+    found |= {name: _read(place, name, lengths) for name in told[VARY]}
+    zarr_arrays: dict[str, Any] = {}
+    for one in request.variables(n):
+        if ".." in Path(one.name).parts or Path(one.name).is_absolute():
+            raise ValueError(f"{KEEP}: {one.name!r} is no name of a reducer")
+        whole = (*shape, *one.shape)
+        chunk = [max(size, 1) for size in (*block_shape, *one.shape)]
+        dtype = np.dtype(one.dtype).name
+        require_array(place, one.name, dtype, (*axes, *one.labels), whole, chunk)
+        zarr_arrays[one.name] = _zarr_array(place, one.name, mode)
+    members = members_from(scene, shape, found)
+    return Store(path, place, told, zarr_arrays, members, request, Blocks(shape, block_shape))
+
+
+def _read(path: Path, name: str, lengths: Mapping[str, int | None]) -> tuple[tuple[str, ...], Any]:
+    """Return axes and values of starts, of a parameter or of times."""
+    axes = axes_of(path, name, lengths)
+    require_array(path, name, "float64", axes, [lengths[axis] for axis in axes])
+    return axes, np.asarray(_zarr_array(path, name, "r")[...])
 
 
 def continued(path: Path, members: Members, request: Request) -> Store:
@@ -213,7 +265,7 @@ def continued(path: Path, members: Members, request: Request) -> Store:
     store = opened(path, "r+")
     told = about(members.scene, list(members.vary), request)
     for name, value in told.items():
-        there = store.group.attrs[name]
+        there = store.told[name]
         if there != value:
             what = f"pendcore {there}, not {value}" if name == VERSION else _OTHER[name]
             raise ValueError(
@@ -235,69 +287,7 @@ def continued(path: Path, members: Members, request: Request) -> Store:
     return store
 
 
-def _zarr() -> Any:
-    try:
-        import zarr
-    except ImportError:
-        raise ImportError("store needs zarr: pip install zarr") from None
-    return zarr
-
-
-def _compressor() -> Any:
-    """Return the compressor of all arrays, which knows a chunk that a disk has changed."""
-    return _zarr().codecs.ZstdCodec(checksum=True)
-
-
-def _put(group: zarr.Group, name: str, values: Any, axes: tuple[str, ...], unit: str) -> None:
-    attributes = {"units": unit} if unit else {}
-    if values.dtype.kind == "U":  # of a fixed length, texts have no specification in Zarr 3
-        array: Any = group.create_array(
-            name, shape=values.shape, dtype="string", dimension_names=axes, attributes=attributes,
-            compressors=_compressor(),
-        )  # fmt: skip
-        array[...] = values
-    else:
-        group.create_array(
-            name, data=values, dimension_names=axes, attributes=attributes,
-            compressors=_compressor(),
-        )  # fmt: skip
-
-
-def _create_array(
-    group: zarr.Group, one: Variable, axes: list[str], shape: tuple[int, ...], blocks: Blocks
-) -> None:
-    attributes: dict[str, Any] = {"units": one.unit} if one.unit else {}
-    if one.name == "status":  # as the CF conventions have it
-        attributes["flag_values"] = list(range(len(_core.member_statuses)))
-        attributes["flag_meanings"] = " ".join(_core.member_statuses)
-    group.create_array(
-        one.name,
-        shape=(*shape, *one.shape),
-        chunks=tuple(max(size, 1) for size in (*blocks.block_shape, *one.shape)),
-        dtype=np.dtype(one.dtype),
-        fill_value=one.fill,
-        compressors=_compressor(),
-        dimension_names=(*axes, *one.labels),
-        attributes=attributes,
-    )
-
-
 def _equal(one: Any, other: Any) -> bool:
     if one is None or other is None:
         return one is other
     return np.array_equal(one, other, equal_nan=True)
-
-
-@contextmanager
-def _named(path: Path) -> Iterator[None]:
-    """Make an `OSError`, such as that of a full disk, name the store and what to do."""
-    try:
-        yield
-    except OSError as error:
-        if error.errno is None:  # it is one of ours
-            raise
-        raise OSError(
-            error.errno,
-            f"{error.strerror}: what was finished stays; the same call goes on with it",
-            str(path),
-        ) from error
