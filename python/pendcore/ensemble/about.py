@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -13,7 +12,7 @@ from pendcore.ensemble import keep
 from pendcore.ensemble.keep import FirstEvent, Reducer
 from pendcore.ensemble.request import Request
 from pendcore.messages.arguments import Floats
-from pendcore.messages.warning import PendcoreWarning
+from pendcore.messages.warning import silence
 from pendcore.run.events import Function
 from pendcore.scene.effect_class import OwnEffect
 from pendcore.scene.scene import SceneData
@@ -54,8 +53,7 @@ def about(scene: SceneData, vary: list[str], request: Request) -> dict[str, Any]
 
 def read_about(told: Mapping[str, Any], t_eval: Floats | None) -> tuple[SceneData, Request]:
     """Return scene and request of what `about` told."""
-    with warnings.catch_warnings():  # what is implausible was said when the scene was made
-        warnings.simplefilter("ignore", PendcoreWarning)
+    with silence():  # what is implausible was said when the scene was made
         case = case_from_text(told[CASE], "case")
     options = dict(case.options)
     events = tuple(options.get("events", ()))
