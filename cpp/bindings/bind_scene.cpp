@@ -26,8 +26,8 @@ Scene make_scene(const std::vector<LinkNumbers>& links, double gravity, const py
   return scene;
 }
 
-/// A scene as Python holds it. Its attribute keeps the functions among its effects alive, in view of
-/// the collector: a function may know the scene.
+/// A scene as Python holds it. Its attribute keeps the functions among its effects alive, and the
+/// collector sees it: a function may know the scene.
 py::object scene_of_python(const std::vector<LinkNumbers>& links, double gravity,
                            const py::list& effects) {
   py::object scene = py::cast(make_scene(links, gravity, effects));

@@ -58,6 +58,7 @@ def test_data_with_masked_values_is_refused():
 
 D, P = ctypes.c_double, ctypes.POINTER
 POINTERS = [DOUBLES] * 3
+SINGLES = np.ctypeslib.ndpointer(np.float32)
 WRONG = {
     "of time alone": [None, D],
     "without data": [None, D, ctypes.c_int, *POINTERS],
@@ -67,13 +68,7 @@ WRONG = {
     "angles in singles": [None, D, ctypes.c_int, *[P(ctypes.c_float)] * 3, ctypes.c_void_p],
     "one angle": [None, D, ctypes.c_int, D, D, DOUBLES, ctypes.c_void_p],
     "pointers to pointers": [None, D, ctypes.c_int, *[P(DOUBLES)] * 3, ctypes.c_void_p],
-    "arrays of singles": [
-        None,
-        D,
-        ctypes.c_int,
-        *[np.ctypeslib.ndpointer(np.float32)] * 3,
-        DOUBLES,
-    ],
+    "arrays of singles": [None, D, ctypes.c_int, *[SINGLES] * 3, DOUBLES],
     "data by value": [None, D, ctypes.c_int, *POINTERS, D],
     "a result": [D, D, ctypes.c_int, *POINTERS, ctypes.c_void_p],
     "a status": [ctypes.c_int, D, ctypes.c_int, *POINTERS, ctypes.c_void_p],
@@ -151,7 +146,7 @@ class Cfunc:
 
 
 class CfuncOfRecords:
-    """Of a pointer to a record, numba knows no type of ctypes."""
+    """Pointers to records have no type of ctypes in numba."""
 
     address = 4096
 

@@ -75,7 +75,7 @@ KEPT: dict[str, dict[str, Any]] = {
 }  # fmt: skip
 
 
-def resumed(**changed: Any) -> None:
+def resumed() -> None:
     pc.simulate(BOOK, [-1.0, -1.0], t_span=(0, 1)).resume(1e9, progress=show)
 
 
@@ -88,10 +88,6 @@ def for_an_error() -> None:
     pc.simulate(BOOK.replace(effects=[fx.User(late)]), **HERE, error=1e-6)
 
 
-def for_an_error_by_progress() -> None:
-    pc.simulate(BOOK, [-1.0, -1.0], t_span=(0, 1e4), error=1e-6, progress=show)
-
-
 def of_a_case() -> None:
     options = {"events": [pc.events.Function(crossing)]}
     pc.Case(scene=BOOK, **HERE, options=options).simulate()
@@ -99,10 +95,6 @@ def of_a_case() -> None:
 
 def of_its_error() -> None:
     pc.simulate(BOOK, [0.5, 0.5], t_span=(0, 2000)).error(progress=show)
-
-
-def of_exponents() -> None:
-    pc.lyapunov(BOOK, [0.5, 0.5], t_span=(0, 1e6), progress=show)
 
 
 def members(**options: Any) -> None:
@@ -127,12 +119,13 @@ def with_check() -> None:
     pc.simulate(BOOK, **HERE, max_steps=50, check=True)
 
 
-OTHERS: dict[str, Callable[[], None]] = {
+OTHERS: dict[str, Callable[[], object]] = {
     "resume": resumed, "resume by event": resumed_by_event, "error=": for_an_error,
-    "error= by progress": for_an_error_by_progress, "case": of_a_case, "sol.error": of_its_error,
-    "lyapunov": of_exponents, "ensemble": members, "ensemble in blocks": in_blocks,
-    "ensemble by threads": by_threads,
-    "ensemble with check": members_with_check, "check": with_check,
+    "error= by progress": lambda: by_progress(error=1e-6), "case": of_a_case,
+    "lyapunov": lambda: pc.lyapunov(BOOK, [0.5, 0.5], t_span=(0, 1e6), progress=show),
+    "sol.error": of_its_error, "ensemble": members, "ensemble in blocks": in_blocks,
+    "ensemble by threads": by_threads, "ensemble with check": members_with_check,
+    "check": with_check,
 }  # fmt: skip
 
 
@@ -220,9 +213,6 @@ class Rig:
     def compiled(self, t: float, n: int, q: Any, qd: Any, forces: Any, data: Any) -> None:
         forces[0] -= 0.1 * qd[0]
 
-    def show(self, done: float) -> None:
-        pass
-
     def scene(self) -> pc.Scene:
         return BOOK.replace(effects=[fx.User(self.law)])
 
@@ -241,8 +231,6 @@ MADE: dict[str, Callable[[Rig], Any]] = {
     "run with a law": lambda rig: pc.simulate(rig.scene(), **START),
     "run with an event": lambda rig: pc.simulate(BOOK, **START, events=rig.events()),
     "run with both": lambda rig: pc.simulate(rig.scene(), **START, events=rig.events()),
-    "run with progress": lambda rig: pc.simulate(BOOK, **START, progress=rig.show),
-    "run of a compiled law": lambda rig: pc.simulate(compiled_scene(rig), **START),
     "run resumed": lambda rig: pc.simulate(rig.scene(), **START, events=rig.events()).resume(2),
     "run for an error": lambda rig: pc.simulate(rig.scene(), **START, error=1e-6),
     "error": lambda rig: pc.simulate(rig.scene(), **START).error(),

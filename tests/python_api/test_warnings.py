@@ -69,6 +69,11 @@ def test_a_loop_hears_of_each_kind_once(loop: str, shown: list[Any]) -> None:
     assert any(c.isdigit() for c in str(shown[0].message))  # the text itself has its values
 
 
+def test_code_without_a_module_hears_of_it_too(shown: list[Any]) -> None:
+    exec("pc.Scene(links=[pc.Link(mass=1e5, length=1)])", {"pc": pc})
+    assert len(shown) == 1
+
+
 def test_another_line_hears_of_it_again(shown: list[Any]) -> None:
     heavy = [pc.Link(mass=HEAVY, length=1.0)]
     pc.Scene(links=heavy)

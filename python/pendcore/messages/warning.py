@@ -66,8 +66,7 @@ def warn(message: str) -> None:
     kind = (_VALUE.sub("#", message), PendcoreWarning, line, frame.f_code)
     if kind in shown:
         shown[text] = True  # Python drops both notes if filters have changed since
-    warnings.warn_explicit(
-        message, PendcoreWarning, frame.f_code.co_filename, line, names.get("__name__"), shown
-    )
+    module = names.get("__name__", "<string>")
+    warnings.warn_explicit(message, PendcoreWarning, frame.f_code.co_filename, line, module, shown)
     if shown.pop(text, False):
         shown[kind] = True

@@ -53,7 +53,7 @@ def _address_of_function(name: str, value: Any) -> Any:
         return getattr(value, "address", value)
     takes, returns = function.argtypes, function.restype
     if takes is not None:  # else it is a library's, of which ctypes was told nothing
-        # Of what such a function returns, ctypes says c_int until it is told.
+        # As what such a function returns, ctypes has c_int until it is told.
         is_told = returns is not ctypes.c_int or hasattr(type(function), "_argtypes_")
         kinds = [_kind_of(one) for one in takes]
         fits = len(kinds) == len(_TAKEN) and all(map(_fits, kinds, _TAKEN))
