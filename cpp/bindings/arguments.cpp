@@ -26,9 +26,23 @@ double plain_number(const char* name, py::handle value) {
   return x;
 }
 
+/// NumPy's array itself, and none of its kin, which may mean something else by their numbers.
+bool is_plain_array(py::handle value) {
+  return Py_TYPE(value.ptr()) == py::detail::npy_api::get().PyArray_Type_;
+}
+
+void refuse_masked(const char* name, py::handle value) {
+  if (is_plain_array(value) || !py::detail::npy_api::get().PyArray_Check_(value.ptr())) return;
+  if (!py::module_::import("numpy.ma").attr("is_masked")(value).cast<bool>()) return;
+  throw py::value_error(
+      std::string(name) +
+      ": has masked values: must have a number everywhere: x.compressed() leaves masked ones out, "
+      "x.filled(...) replaces them");
+}
+
 /// An array that needs no conversion. The same question to py::array_t makes a new dtype each time.
 bool is_array_of_doubles(py::handle value) {
-  if (!py::detail::npy_api::get().PyArray_Check_(value.ptr())) return false;
+  if (!is_plain_array(value)) return false;
   const auto* const array = py::detail::array_proxy(value.ptr());
   const auto type = py::reinterpret_borrow<py::dtype>(array->descr);
   constexpr int plain =
@@ -38,8 +52,9 @@ bool is_array_of_doubles(py::handle value) {
 }
 
 /// Any array-like of real numbers, or an empty optional where it is something else.
-std::optional<Array> real_array(py::handle value) {
+std::optional<Array> real_array(const char* name, py::handle value) {
   if (is_array_of_doubles(value)) return py::reinterpret_borrow<Array>(value);
+  refuse_masked(name, value);
   if (py::isinstance<py::str>(value) || py::isinstance<py::bytes>(value)) return std::nullopt;
   const py::array any = py::array::ensure(value);
   if (!any) {
@@ -55,7 +70,7 @@ std::optional<Array> real_array(py::handle value) {
 
 double number(const char* name, py::handle value) {
   if (is_plain_number(value)) return plain_number(name, value);
-  const auto array = real_array(value);
+  const auto array = real_array(name, value);
   if (!array || array->ndim() != 0) refuse_type(name, value, "a real number");
   return *array->data();
 }
@@ -95,8 +110,9 @@ std::vector<double> numbers(const char* name, py::handle value, const std::strin
       ++i;
     }
     if (i == size) return result;
+    for (; i < size; ++i) refuse_masked(name, items[i]);
   }
-  const auto array = real_array(value);
+  const auto array = real_array(name, value);
   if (!array) refuse_type(name, value, "real numbers");
   if (array->ndim() == 0) return std::vector<double>(copies, *array->data());
   if (array->ndim() != 1) {

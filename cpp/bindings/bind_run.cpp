@@ -3,6 +3,7 @@
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "arguments.hpp"
 #include "bind_events.hpp"
@@ -73,6 +74,27 @@ Run resume_run(const Run& run, py::handle t_end, py::handle t_eval, py::handle m
   return longer;
 }
 
+/// The exception that broke the run off, or None. It belongs to whoever raises it: it will hold the
+/// solution, and if the run held it as well, neither would ever be freed.
+py::object take_error(Run& run) { return std::exchange(run.error, py::none()); }
+
+/// Shows Python's collector what a run holds: a function among its events may know the solution.
+/// There is no tp_clear, because every cycle through a run has Python's own objects to break it at,
+/// and a run without its functions could not go on.
+void collect_cycles(PyHeapTypeObject* heap_type) {
+  PyTypeObject& type = heap_type->ht_type;
+  type.tp_flags |= Py_TPFLAGS_HAVE_GC;
+  type.tp_traverse = [](PyObject* self, visitproc visit, void* arg) -> int {
+    Py_VISIT(Py_TYPE(self));
+    if (!py::detail::is_holder_constructed(self)) return 0;
+    const Run& run = py::cast<const Run&>(py::handle(self));
+    Py_VISIT(run.scene.ptr());
+    Py_VISIT(run.event_functions.ptr());
+    Py_VISIT(run.error.ptr());
+    return 0;
+  };
+}
+
 /// Some columns of the rows that a solution keeps: angles, rates, then the ledger's entries.
 py::array columns(const py::array& rows, int begin, int end) {
   return rows[py::make_tuple(py::slice(0, rows.shape(0), 1), py::slice(begin, end, 1))];
@@ -116,7 +138,8 @@ py::tuple defect_of_steps(const Run& run, std::size_t first, std::size_t end, co
 }  // namespace
 
 void bind_run(py::module_& module) {
-  py::class_<Run>(module, "Run", "The result of a simulation, as the core holds it.")
+  py::class_<Run>(module, "Run", py::custom_type_setup(&collect_cycles),
+                  "The result of a simulation, as the core holds it.")
       .def_property_readonly("t",
                              [](py::object self) {
                                const Solution& s = self.cast<const Run&>().solution;
@@ -155,7 +178,7 @@ void bind_run(py::module_& module) {
                                              fingerprint(run.solution));
                                return std::string(digits);
                              })
-      .def_readonly("error", &Run::error)
+      .def("take_error", &take_error)
       .def("evaluate", &evaluate, py::arg("t"))
       .def_property_readonly("step_starts",
                              [](py::object self) {

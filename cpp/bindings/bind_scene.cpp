@@ -26,6 +26,15 @@ Scene make_scene(const std::vector<LinkNumbers>& links, double gravity, const py
   return scene;
 }
 
+/// A scene as Python holds it. Its attribute keeps the functions among its effects alive, and the
+/// collector sees it: a function may know the scene.
+py::object scene_of_python(const std::vector<LinkNumbers>& links, double gravity,
+                           const py::list& effects) {
+  py::object scene = py::cast(make_scene(links, gravity, effects));
+  scene.attr("effects") = effects;
+  return scene;
+}
+
 /// The rows of an (m, n) array of the Python layer, seen as vectors of n numbers.
 class Rows {
  public:
@@ -139,9 +148,9 @@ Array reaction_forces(const Scene& scene, const Array& t, const Array& q, const 
 }  // namespace
 
 void bind_scene(py::module_& module) {
-  py::class_<Scene>(module, "Scene", "A scene that was checked, as the core holds it.")
-      .def(py::init(&make_scene), py::arg("links"), py::arg("gravity"), py::arg("effects"),
-           py::keep_alive<1, 4>())  // the functions among the effects
+  module.def("scene", &scene_of_python, py::arg("links"), py::arg("gravity"), py::arg("effects"));
+  py::class_<Scene>(module, "Scene", py::dynamic_attr(),
+                    "A scene that was checked, as the core holds it.")
       .def_property_readonly("n", [](const Scene& scene) { return scene.links.size(); })
       .def_property_readonly("warnings", &plausibility_warnings)
       .def("run_warnings", &run_warnings, py::arg("q0"), py::arg("t0"), py::arg("t_end"))

@@ -17,13 +17,7 @@ void call(double t, int n, const double* q, const double* qd, double* forces, vo
   const py::handle function(static_cast<PyObject*>(data));
   const py::object result = function(t, Array(n, q), Array(n, qd));
   const auto size = static_cast<std::size_t>(n);
-  if (py::isinstance<Array>(result)) {
-    const auto array = py::reinterpret_borrow<Array>(result);
-    if (array.ndim() == 1 && array.size() == n) {
-      std::copy_n(array.data(), size, forces);
-      return;
-    }
-  }
+  if (take_plain(result, std::span(forces, size))) return;
   const std::string name = name_of("User: ", function);
   const std::string wanted =
       "(" + std::to_string(n) + ",), the generalised forces of the absolute angles (N m)";

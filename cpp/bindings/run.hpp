@@ -1,6 +1,6 @@
 /// \file
 /// A solution as Python holds it: with its scene, so that it can be resumed, and with the exception
-/// that ended it, if there was one.
+/// that ended it, until Python raises that.
 #pragma once
 
 #include <pybind11/pybind11.h>

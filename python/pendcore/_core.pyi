@@ -10,13 +10,13 @@ import numpy.typing as npt
 
 __version__: str
 
+def scene(
+    links: list[tuple[float, float, float, float]],
+    gravity: float,
+    effects: list[tuple[str, Any]],
+) -> Scene: ...
+
 class Scene:
-    def __init__(
-        self,
-        links: list[tuple[float, float, float, float]],
-        gravity: float,
-        effects: list[tuple[str, Any]],
-    ) -> None: ...
     @property
     def n(self) -> int: ...
     @property
@@ -90,8 +90,7 @@ class Run:
     def statistics(self) -> dict[str, Any]: ...
     @property
     def arguments(self) -> dict[str, Any]: ...
-    @property
-    def error(self) -> BaseException | None: ...
+    def take_error(self) -> BaseException | None: ...
     @property
     def fingerprint(self) -> str: ...
     def evaluate(self, t: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]: ...

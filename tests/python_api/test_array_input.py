@@ -98,6 +98,70 @@ def test_an_array_of_any_make_is_read_for_what_it_holds(taken: str, form: str) -
     assert np.array_equal(np.asarray(given, dtype=float), values)  # left as it was
 
 
+def members(name: str) -> Ask:
+    def ask(values: Any) -> np.ndarray:
+        given: dict[str, Any] = {"q0": [0.25, 1.0], "t_span": (0, 1)}
+        return pc.ensemble(SCENE, **(given | {name: values})).q
+
+    return ask
+
+
+ALSO_TAKEN: dict[str, tuple[Any, Ask]] = {
+    "ensemble q0": ([[0.25, 1.0], [0.5, 1.0]], members("q0")),
+    "ensemble qd0": ([[0.25, 1.0], [0.5, 1.0]], members("qd0")),
+    "vary": ([9.0, 10.0], lambda x: members("vary")({"gravity": x})),
+    "t_eval of members": (
+        [0.25, 1.0],
+        lambda x: pc.ensemble(SCENE, [0.25, 1.0], t_span=(0, 1), keep="times", t_eval=x).q,
+    ),
+    "jacobian's neighbour": ([0.25, 1.0], lambda x: SCENE.accelerations(0.5, [0, 0], x)),
+    "times of accelerations": ([0.25, 1.0], lambda x: SCENE.accelerations(x, [0, 0], [0, 0])),
+    "angles_to_vertical": ([0.25, 1.0], pc.angles_to_vertical),
+    "spline": (
+        [0.0, 1.0, 0.5],
+        lambda x: np.array([pc.effects.Spline(t=[0, 1, 2], x=x, y=[0, 0, 0]).x]),
+    ),
+    "case": ([0.25, 1.0], lambda x: np.array(pc.Case(scene=SCENE, q0=x, t_span=(0, 1)).q0)),
+    "t_span": ([0.0, 1.0], lambda x: pc.simulate(SCENE, 0.5, t_span=x).t),
+    "resume": (
+        [0.5, 1.0],
+        lambda x: pc.simulate(SCENE, 0.5, t_span=(0, 0.25), t_eval=[0.25]).resume(2, x).t,
+    ),
+    "lyapunov": ([0.25, 1.0], lambda x: pc.lyapunov(SCENE, x, t_span=(0, 1)).exponents),
+    "tip line": ([0.25, 1.0], lambda x: np.array([pc.events.TipLine(x, normal=(0, 1)).point])),
+    "forces of a law": (
+        [0.25, 1.0],
+        lambda x: SCENE.replace(effects=[pc.effects.User(lambda *_: x)]).accelerations(
+            0.0, [0, 0], [0, 0]
+        ),
+    ),
+}
+
+
+def masked(values: Any) -> np.ma.MaskedArray[Any, Any]:
+    given = np.ma.array(values, dtype=float)
+    given[(0,) * given.ndim] = np.ma.masked
+    return given
+
+
+MASKED: dict[str, Callable[[Any], Any]] = {
+    "an array": masked,
+    "an array of whole numbers": lambda x: np.ma.array(np.ones(np.shape(x), int), mask=True),
+    "a list": lambda x: [*masked(x)],
+}
+
+
+@pytest.mark.every_value("taken", "form")
+@pytest.mark.parametrize("form", MASKED)
+@pytest.mark.parametrize("taken", TAKEN | ALSO_TAKEN)
+def test_masked_values_are_refused_where_numbers_are_taken(taken: str, form: str) -> None:
+    values, ask = (TAKEN | ALSO_TAKEN)[taken]
+    unmasked = np.ma.array(values, dtype=float)
+    assert np.array_equal(ask(unmasked), ask(values))
+    with pytest.raises(ValueError, match=r"^[^=]+: has masked values: must have a number"):
+        ask(MASKED[form](values))
+
+
 @pytest.mark.parametrize("order", ["C", "F"])
 def test_tables_of_states_are_read_in_either_order(order: Any) -> None:
     q = np.arange(24.0).reshape(3, 4, 2)

@@ -49,6 +49,14 @@ MISSPELLED = {
         lambda: pc.events.JointAngle(joint=1, val=0.0),
         "JointAngle: has no parameter 'val': did you mean 'value'?",
     ),
+    "a method of none": (
+        lambda: pc.simulate(SCENE, 1.0, t_span=(0, 1)).reactions(joint=1),
+        "Solution.reactions: has no parameter 'joint': there are none",
+    ),
+    "a method of none, by place": (
+        lambda: pc.simulate(SCENE, 1.0, t_span=(0, 1)).reactions(1),
+        "Solution.reactions: takes nothing: Solution.reactions()",
+    ),
     "explanation": (lambda: SCENE.explain(q0=1.0), "Scene.explain: has no parameter 'q0'"),
 }
 

@@ -17,6 +17,19 @@ def begun(t_end=5.0, **options):
     return pc.simulate(BOOK, Q0, 0, (0, t_end), **options)
 
 
+def test_a_run_that_goes_back_in_time_goes_on_to_earlier_times() -> None:
+    back = pc.simulate(BOOK, 0.5, t_span=(3, 2), t_eval=[2.5, 2.0])
+    way = "s: this run goes back in time$"
+    with pytest.raises(ValueError, match=rf"^t_end = 2\.5: .* at or before .* 2\.0 {way}"):
+        back.resume(2.5)
+    with pytest.raises(ValueError, match=rf"^t_eval\[0\] = 2\.0: must be before .* 2\.0 {way}"):
+        back.resume(1.0, [2.0, 1.5])
+    later = pc.simulate(BOOK, 0.5, t_span=(3, 1), t_eval=[1.5], max_steps=2, check=False)
+    with pytest.raises(ValueError, match=rf"^t_end = 1\.75: .* at or before .* 1\.5 {way}"):
+        later.resume(1.75)
+    assert back.resume(1.0, [1.5]).t[-1] == 1.5
+
+
 def test_times_that_have_passed_are_refused_by_the_users_own_index():
     with pytest.raises(ValueError, match=r"^t_eval\[0\] = 2\.0: must be within .*5\.0 to 10\.0"):
         begun(t_eval=[0, 1]).resume(10, t_eval=[2, 6])

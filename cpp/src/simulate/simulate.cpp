@@ -30,12 +30,16 @@ void check_continuation(const Solution& solution, double t_end, const std::vecto
   const bool has_length = solution.t_end != solution.t0;
   const double span = (has_length ? solution.t_end : t_end) - solution.t0;
   auto before = [span](double a, double b) { return span < 0.0 ? b < a : span > 0.0 && a < b; };
+  const std::string beyond = span < 0.0 ? "before " : "beyond ";
+  const std::string way = span < 0.0 ? " s: this run goes back in time" : " s";
   if (!std::isfinite(t_end) || before(t_end, reached)) {
-    refuse("t_end", t_end, "finite and at or beyond the end reached, " + text(reached) + " s");
+    refuse("t_end", t_end,
+           "finite and at or " + beyond + "the end reached, " + text(reached) + way);
   }
   const std::vector<double>& asked = solution.options.t_eval;
   if (!asked.empty() && before(t_end, asked.back())) {
-    refuse("t_end", t_end, "at or beyond the last time asked for, " + text(asked.back()) + " s");
+    refuse("t_end", t_end,
+           "at or " + beyond + "the last time asked for, " + text(asked.back()) + way);
   }
   if (t_eval.empty()) return;
   if (asked.empty()) {
@@ -46,7 +50,7 @@ void check_continuation(const Solution& solution, double t_end, const std::vecto
   check_times(t_eval, reached, t_end);
   if (!before(asked.back(), t_eval.front())) {
     refuse("t_eval[0]", t_eval.front(),
-           "beyond the last time asked for so far, " + text(asked.back()) + " s");
+           beyond + "the last time asked for so far, " + text(asked.back()) + way);
   }
 }
 

@@ -313,7 +313,10 @@ def run_ensemble(members: Members, request: Request, given: dict[str, Any]) -> E
     result = Ensemble(members, request, found.arrays, found.ending, found.statistics)
     if found.error is not None:
         found.error.ensemble = result  # type: ignore[attr-defined]
-        raise found.error
+        try:
+            raise found.error
+        finally:
+            del found  # the traceback holds this frame: what it holds would wait for the collector
     return _checked(result, given["check"])
 
 
@@ -335,9 +338,11 @@ def _checked(found: Ensemble, check: bool | None) -> Ensemble:
     complaint = f"of {len(found)} members {told}; .failed lists those that failed, the first is "
     complaint += f"{place}: .message({place}) says why"
     if check:
-        error = RuntimeError(complaint)
-        error.ensemble = found  # type: ignore[attr-defined]
-        raise error
+        try:
+            raise RuntimeError(complaint)
+        except RuntimeError as error:
+            error.ensemble = found  # type: ignore[attr-defined]
+            raise
     try:
         warn(f"{complaint}; check=True raises an error, check=False says nothing")
     except PendcoreWarning as error:

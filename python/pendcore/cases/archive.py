@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import json
 import os
-import warnings
 import zipfile
 from collections.abc import Callable
 from dataclasses import fields
@@ -24,7 +23,7 @@ from pendcore.cases.case_file import case_from_text
 from pendcore.cases.npz import Entries, entries_of
 from pendcore.cases.whole_file import whole_file
 from pendcore.messages.progress import Progress, callback, close
-from pendcore.messages.warning import PendcoreWarning
+from pendcore.messages.warning import silence
 from pendcore.run.accuracy import Accuracy
 from pendcore.run.error_estimate import ErrorEstimate
 from pendcore.run.events import Function
@@ -133,8 +132,7 @@ def _group(entries: Entries, prefix: str) -> dict[str, Any]:
 
 
 def _case(text: str) -> CaseData:
-    with warnings.catch_warnings():  # what is implausible was said when the scene was made
-        warnings.simplefilter("ignore", PendcoreWarning)
+    with silence():  # what is implausible was said when the scene was made
         return case_from_text(text, "case")
 
 

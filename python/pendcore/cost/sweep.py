@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterable
 from math import inf
 from typing import Any
@@ -25,7 +24,7 @@ from pendcore.messages.arguments import (
     whole_number,
 )
 from pendcore.messages.progress import Progress, callback, close
-from pendcore.messages.warning import PendcoreWarning, warn
+from pendcore.messages.warning import silence, warn
 from pendcore.run.call import Start, atol_beside, forget_inner_runs
 from pendcore.run.methods import methods_named
 from pendcore.run.options import limits_of_every_method, require_options, with_options
@@ -140,8 +139,7 @@ def accuracy_cost(
     for message in scene._compiled.run_warnings(angles, start.t_start, start.t_end):
         warn(message)
     try:
-        with warnings.catch_warnings():  # they were given above
-            warnings.simplefilter("ignore", PendcoreWarning)
+        with silence():  # they were given above
             measurement.measure()
     except BaseException as stop:
         forget_inner_runs(stop)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -15,7 +14,7 @@ from pendcore.ensemble import keep
 from pendcore.ensemble.keep import FirstEvent, Reducer
 from pendcore.ensemble.request import Request
 from pendcore.messages.arguments import Floats
-from pendcore.messages.warning import PendcoreWarning
+from pendcore.messages.warning import silence
 from pendcore.run.events import Event, Function
 from pendcore.scene.effect_class import OwnEffect
 from pendcore.scene.parameters import check_parameter_names
@@ -65,8 +64,7 @@ def read_about(told: Mapping[str, Any], t_eval: Floats | None) -> tuple[SceneDat
     """
     _require(told, VERSION, isinstance(told.get(VERSION), str), "a version")
     _require(told, CASE, isinstance(told.get(CASE), str), "a case in TOML")
-    with warnings.catch_warnings():  # what is implausible was said when the scene was made
-        warnings.simplefilter("ignore", PendcoreWarning)
+    with silence():  # what is implausible was said when the scene was made
         case = case_from_text(told[CASE], CASE)
     options = dict(case.options)
     for name in _OPTIONS:

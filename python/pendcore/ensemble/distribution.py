@@ -102,7 +102,10 @@ def _run_here(
                 left = max(until - monotonic(), 0.0)
                 found = run_members(members.block(block), request, limits.workers, left, report)
                 if found.ending != "finished" or found.error is not None:
-                    return Outcome(target.arrays, found.ending, dict(statistics), found.error)
+                    try:
+                        return found._replace(arrays=target.arrays, statistics=dict(statistics))
+                    finally:
+                        del found  # its exception may hold this frame, and wait for the collector
                 target.write(block, found.arrays)
                 statistics.update(found.statistics)
             done += size
@@ -155,7 +158,10 @@ def _run_by(
         begun = [one for one in running if not one.cancel()]
         if store is not None:  # these still write into it, so it must be held until they have
             wait(begun, PATIENCE)
-    return Outcome(target.arrays, ending, dict(statistics), error)
+    try:
+        return Outcome(target.arrays, ending, dict(statistics), error)
+    finally:
+        del error  # as above
 
 
 def run_task(task: Task) -> tuple[Block, Arrays | None, dict[str, Any]]:
@@ -167,7 +173,10 @@ def run_task(task: Task) -> tuple[Block, Arrays | None, dict[str, Any]]:
         )
     found = run_members(task.members, task.request, task.workers, inf, None)
     if found.error is not None:
-        raise found.error
+        try:
+            raise found.error
+        finally:
+            del found  # as above
     if task.store is None:
         return task.block, found.arrays, found.statistics
     variables = task.request.variables(len(task.members.scene.links))

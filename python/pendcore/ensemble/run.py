@@ -52,19 +52,27 @@ def run_members(
         "t_eval": request.t_eval,
         "events": [event._as_pair() for event in events],
     }
-    ending, statistics, error = _core.ensemble(
-        members.scene._compiled, shape, members.q0, members.qd0,
-        list(members.vary), [values[..., np.newaxis] for values in members.vary.values()],
-        *request.t_span, given, workers, time_limit, progress,
-        arrays["status"], arrays["t_reached"], states, first,
-        kept.get(Extremes), kept.get(EnergyDrift), kept.get(LargestExponent),
-    )  # fmt: skip
     arrays |= {"q": states[..., :n], "qd": states[..., n:]}
     for name, one in request.reducers.items():
         if isinstance(one, FirstEvent) and first is not None:
             arrays[name] = first[..., request.event_number(name)]
         elif type(one) in kept:  # two of a kind are one
             arrays[name] = kept[type(one)]
-    sums = {name: statistics[name] for name in SUMMED}
-    ordered = {one.name: arrays[one.name] for one in variables}
-    return Outcome(ordered, ending, sums, error)
+    filled = {one.name: arrays[one.name] for one in variables}
+    return _outcome(filled, *_core.ensemble(
+        members.scene._compiled, shape, members.q0, members.qd0,
+        list(members.vary), [values[..., np.newaxis] for values in members.vary.values()],
+        *request.t_span, given, workers, time_limit, progress,
+        arrays["status"], arrays["t_reached"], states, first,
+        kept.get(Extremes), kept.get(EnergyDrift), kept.get(LargestExponent),
+    ))  # fmt: skip
+
+
+def _outcome(
+    arrays: Arrays, ending: str, statistics: dict[str, Any], error: BaseException | None
+) -> Outcome:
+    """Return what a run came to: the frame of that run must not keep the exception.
+
+    The exception of a callback holds the frames that led to it, and would wait for the collector.
+    """
+    return Outcome(arrays, ending, {name: statistics[name] for name in SUMMED}, error)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable
 from contextlib import suppress
 
@@ -11,7 +10,7 @@ import numpy as np
 from pendcore import _core
 from pendcore.ensemble.members import Members
 from pendcore.messages.arguments import Floats
-from pendcore.messages.warning import PendcoreWarning
+from pendcore.messages.warning import silence
 
 Quantity = Callable[[_core.Scene, Floats, Floats, Floats], Floats]
 """A quantity of k states of one scene, (k, ...), from times (k,), angles and rates (k, n)."""
@@ -37,8 +36,7 @@ def quantity_of_states(
     else:
         one = computed(members.scene._compiled, np.zeros(1), np.zeros((1, n)), np.zeros((1, n)))
         values = np.full((*axes, *one.shape[1:]), np.nan)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", PendcoreWarning)  # of implausible parameters
+        with silence():  # of implausible parameters
             for place in np.ndindex(members.shape):
                 with suppress(ValueError):  # it was refused
                     scene = members.scene_of(place)

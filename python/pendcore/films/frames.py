@@ -89,8 +89,9 @@ def states_of(solution: RunResult, times: Floats) -> Floats:
         return solution.run.evaluate(times)
     t, q, qd = solution.t, solution.q, solution.qd
     if len(t) < 2:
+        kept = "one time only" if len(t) else "no time"
         raise ValueError(
-            "this run kept one time only: a film needs more: run it with store='dense', the default"
+            f"this run kept {kept}: a film needs more: run it with store='dense', the default"
         )
     direction = 1.0 if t[-1] >= t[0] else -1.0
     before = np.searchsorted(direction * t, direction * times, side="right") - 1

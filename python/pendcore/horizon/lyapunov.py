@@ -237,7 +237,7 @@ def lyapunov(
     result = _exponents(found, since, len(scene.links))
     if found["error"] is not None:
         found["error"].exponents = result
-        raise found["error"]
+        raise found.pop("error")  # a frame that held it would make it wait for the collector
     if not result.success:
         warn(f"the exponents are not those of the whole span: {result.message}")
     return result

@@ -6,6 +6,7 @@ ValueError.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterable
 from difflib import get_close_matches
 from functools import wraps
@@ -33,7 +34,8 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
         if meant in names and name.replace("_", "") in [x.replace("_", "") for x in others]:
             return f"did you mean {meant!r}?"
     near = get_close_matches(name, names, n=1, cutoff=0.55)
-    return f"did you mean {near[0]!r}?" if near else f"known are {', '.join(names)}"
+    known_ones = f"known are {', '.join(names)}" if names else "there are none"
+    return f"did you mean {near[0]!r}?" if near else known_ones
 
 
 def known_keywords(function: Callable[Taken, Given]) -> Callable[Taken, Given]:
@@ -78,6 +80,8 @@ def _call_complaint(
         by_itself = ", ".join(one.name for one in by_place if one.name in own)
         if by_itself:
             return f"{owner}: takes {by_itself} by position, and by name: {by_name or 'no more'}"
+        if not own:
+            return f"{owner}: takes nothing: {owner}()"
         return f"{owner}: takes what it is given by name: {owner}({by_name})"
     if missing:
         call = ", ".join(f"{name}=..." for name in own if name in missing or name in given)
@@ -199,6 +203,7 @@ def finite_array(name: str, value: npt.ArrayLike, unit: str) -> Floats:
 
 def real_array(name: str, value: npt.ArrayLike, unit: str) -> Floats:
     """Return real numbers of any shape, infinite ones too, as an array of floats."""
+    refuse_masked(name, value)
     try:
         array = np.asarray(value)
     except ValueError:
@@ -214,6 +219,21 @@ def real_array(name: str, value: npt.ArrayLike, unit: str) -> Floats:
         held = {"U": "text", "O": "objects", "b": "truth values"}.get(array.dtype.kind, array.dtype)
         raise TypeError(f"{name}: holds {held}: must hold real numbers{in_unit(unit)}")
     return array.astype(np.float64, copy=False)
+
+
+def refuse_masked(name: str, value: Any, depth: int = 2) -> None:
+    """Refuse an array with masked values, and lists with such arrays: NumPy forgets the masks."""
+    if "numpy.ma" not in sys.modules:  # nobody has made one
+        return
+    if isinstance(value, list | tuple):
+        for one in value if depth else ():  # a list may hold itself
+            if isinstance(one, list | tuple | np.ndarray):
+                refuse_masked(name, one, depth - 1)
+    elif np.ma.is_masked(value):
+        raise ValueError(
+            f"{name}: has masked values: must have a number everywhere: x.compressed() leaves "
+            "masked ones out, x.filled(...) replaces them"
+        )
 
 
 def numbers(

@@ -95,10 +95,13 @@ def resumed(
 def completed(result: Result, report: Callable[[float], object] | None) -> Result:
     """End the bar of a run; if an exception broke it off, raise that with the run so far."""
     close(report)
-    error = result.run.error
+    error = result.run.take_error()
     if error is not None:
         error.solution = result  # type: ignore[attr-defined]
-        raise error
+        try:
+            raise error
+        finally:
+            del error  # its traceback holds this frame: it would wait for the collector
     return result
 
 

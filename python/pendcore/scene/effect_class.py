@@ -5,8 +5,6 @@ Nothing here knows a single effect: one that is added to the core has its class.
 
 from __future__ import annotations
 
-import ctypes
-from _ctypes import CFuncPtr
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import MISSING, field, make_dataclass
 from functools import partial
@@ -14,10 +12,9 @@ from inspect import Parameter as Argument
 from inspect import Signature
 from typing import Any, ClassVar, NoReturn, Self
 
-import numpy as np
-
 from pendcore import _core
 from pendcore.messages.arguments import did_you_mean, in_unit, number, numbers, whole_number
+from pendcore.scene.compiled_function import address
 from pendcore.scene.effect_description import Description, Parameter, docstring, effects, parts
 from pendcore.scene.frozen_state import frozen_state
 
@@ -257,35 +254,10 @@ def _plain(name: str, parameter: Parameter, value: Any) -> Any:
         "optional float": partial(number, unit=unit),
         "pair": partial(numbers, unit=unit, count=2, finite="inf" not in parameter.range),
         "floats": partial(numbers, unit=unit),
-        "address": partial(_address, of_function=parameter.required),
+        "address": partial(address, of_function=parameter.required),
         "function": lambda _, function: function,
     }
     return converted[parameter.type](name, value)
-
-
-def _address(name: str, value: Any, of_function: bool) -> int:
-    """Return the memory address of a function, or of the data that it is handed."""
-    if isinstance(value, CFuncPtr):
-        value = ctypes.cast(value, ctypes.c_void_p).value or 0
-    elif isinstance(value, np.ndarray) and not of_function:
-        if value.dtype != np.float64 or not value.flags.c_contiguous:
-            gaps = "" if value.flags.c_contiguous else ", not contiguous"
-            raise TypeError(
-                f"{name}: is an array of {value.dtype}{gaps}: must be a C-contiguous one of "
-                "float64, as np.ascontiguousarray(data, dtype=np.float64) makes it: its memory is "
-                "handed on as it is"
-            )
-        value = value.ctypes.data
-    else:
-        value = getattr(value, "address", value)  # of numba's cfunc
-    remedy = "a ctypes function or a numba cfunc" if of_function else "or a NumPy array"
-    try:
-        found = whole_number(name, value, most=2**64 - 1)
-    except TypeError:
-        raise TypeError(f"{name} = {value!r}: must be an address, {remedy}") from None
-    if found < 0:
-        raise ValueError(f"{name} = {value!r}: must be an address, {remedy}")
-    return found
 
 
 def _base(told: Description) -> type[Effect]:

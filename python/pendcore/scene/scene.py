@@ -86,7 +86,7 @@ class SceneData:
         object.__setattr__(self, "links", links)
         object.__setattr__(self, "gravity", gravity)
         object.__setattr__(self, "effects", effects)
-        object.__setattr__(self, "_compiled", _core.Scene(rows, gravity, acting))
+        object.__setattr__(self, "_compiled", _core.scene(rows, gravity, acting))
 
     def _warn(self) -> None:
         for message in self._compiled.warnings:

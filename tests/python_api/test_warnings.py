@@ -1,0 +1,170 @@
+"""A warning is shown once for each line of a program and each kind, and filters do as they say."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import warnings
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pendcore as pc
+import pytest
+from pendcore.messages.warning import _VALUE
+
+HEAVY = 123456.0
+
+
+def scene(mass: float) -> pc.Scene:
+    return pc.Scene(links=[pc.Link(mass=mass, length=1.0), pc.Link(mass=2 * mass, length=1.0)])
+
+
+def short(k: int) -> None:
+    pc.simulate(pc.Scene.textbook(), [0.5, 0.1 * k], t_span=(0, 5 + k), max_steps=5 + k)
+
+
+def in_degrees(k: int) -> None:
+    pc.simulate(pc.Scene.textbook(), [45.0, 60.0 + 5 * k], t_span=(0, 0.1))
+
+
+def members(k: int) -> None:
+    pc.ensemble(pc.Scene.textbook(), np.zeros((k + 1, 2)), t_span=(0, 5), max_steps=2)
+
+
+def wave(k: int) -> None:
+    driven = pc.effects.Motor(1, table=pc.effects.Table(t=[0, 0.5 + k], torque=[1, 2]))
+    one = pc.Scene.textbook().replace(effects=[driven])
+    pc.simulate(one, 0.3, t_span=(0, 1 + k), check=False)
+
+
+LOOPS: dict[str, tuple[Callable[[int], object], int]] = {
+    "scenes with two odd links": (lambda k: scene(HEAVY + k), 2),
+    "runs that end early": (short, 1),
+    "starts in degrees": (in_degrees, 1),
+    "ensembles that fail": (members, 1),
+    "tables that end": (wave, 1),
+}
+
+
+@pytest.fixture
+def shown() -> Iterator[list[str]]:
+    """Record what Python shows by its own filters."""
+    with warnings.catch_warnings(record=True) as told:
+        warnings.resetwarnings()
+        seen: list[Any] = told
+        yield seen
+    del told
+
+
+@pytest.mark.every_value("loop")
+@pytest.mark.parametrize("loop", LOOPS)
+def test_a_loop_hears_of_each_kind_once(loop: str, shown: list[Any]) -> None:
+    call, kinds = LOOPS[loop]
+    for k in range(5):
+        call(k)
+    assert len(shown) == kinds
+    assert all(one.filename == __file__ for one in shown)
+    assert any(c.isdigit() for c in str(shown[0].message))  # the text itself has its values
+
+
+def test_code_without_a_module_hears_of_it_too(shown: list[Any]) -> None:
+    exec("pc.Scene(links=[pc.Link(mass=1e5, length=1)])", {"pc": pc})
+    assert len(shown) == 1
+
+
+def test_another_line_hears_of_it_again(shown: list[Any]) -> None:
+    heavy = [pc.Link(mass=HEAVY, length=1.0)]
+    pc.Scene(links=heavy)
+    pc.Scene(links=heavy)
+    first, second = shown
+    assert second.lineno == first.lineno + 1
+
+
+def test_what_was_shown_takes_no_memory_for_each_text(shown: list[Any]) -> None:
+    for k in range(50):
+        scene(HEAVY + k)
+    noted = globals()["__warningregistry__"]
+    assert sum("osmium" in key[0] for key in noted if isinstance(key, tuple)) == 2
+
+
+@pytest.mark.parametrize("action", ["always", "ignore", "error", "once", "module", "default"])
+def test_filters_do_as_they_say(action: Any, shown: list[Any]) -> None:
+    for k in range(3):  # the kinds are noted as shown
+        scene(HEAVY + k)
+    shown.clear()
+    warnings.simplefilter(action, pc.PendcoreWarning)
+    if action == "error":
+        for k in range(3):
+            with pytest.raises(pc.PendcoreWarning, match="osmium"):
+                scene(HEAVY + k)
+        return
+    for k in range(3):
+        scene(HEAVY + k)
+    assert len(shown) == {"always": 6, "ignore": 0}.get(action, 2)
+
+
+def test_what_the_package_does_in_silence_leaves_pythons_filters_alone(
+    tmp_path: Path, shown: list[Any]
+) -> None:
+    sol = pc.simulate(scene(HEAVY), 0.5, t_span=(0, 0.1))
+    sol.save(tmp_path / "run.npz")
+    varied = {"link[1].mass": [HEAVY, 2 * HEAVY]}
+    found = pc.ensemble(sol.scene, [0.5, 0.5], t_span=(0, 0.1), vary=varied)
+    assert len(shown) == 2
+    for k in range(3):
+        scene(HEAVY + k)
+        pc.load(tmp_path / "run.npz")
+        found.energy()
+    assert len(shown) == 2
+
+
+def test_pytest_warns_sees_each_whatever_was_shown_before(shown: list[Any]) -> None:
+    for k in range(3):
+        with pytest.warns(pc.PendcoreWarning, match=r"link 2: mass = 24691\d\.0"):
+            scene(HEAVY + k)
+
+
+@pytest.mark.outside_build
+def test_what_is_typed_by_hand_is_answered_each_time() -> None:
+    """Each input has line 1 of a file of one name."""
+    lines = "import pendcore as pc\n" + "".join(
+        f"pc.Scene(links=[pc.Link(mass={mass}, length=1)])\n" for mass in (123456, 234567, 123456)
+    )
+    loop = "for m in (345678, 456789): _ = pc.Scene(links=[pc.Link(mass=m, length=1)])\n\n"
+    ran = subprocess.run(
+        [sys.executable, "-i", "-q"], input=lines + loop, text=True, capture_output=True, check=True
+    )
+    told = [line.partition("mass = ")[2][:8] for line in ran.stderr.splitlines() if "osm" in line]
+    assert told == ["123456.0", "234567.0", "345678.0"]
+
+
+@pytest.mark.parametrize(
+    ("text", "kind"),
+    [
+        ("link 2: mass = 1e-05: a", "link 2: mass = #: a"),
+        ("q0[1] = -45.0 rad: that is -2578 degrees", "q0[1] = # rad: that is # degrees"),
+        ("effect 3 (lock): from -inf to nan s", "effect 3 (lock): from # to # s"),
+        ("qd_2 by ode45 (at t = 0.5 s)", "qd_2 by ode45 (at t = # s)"),
+        ("of 40 members 3 failed: (0, 2)", "of # members # failed: (#, #)"),
+        ("/data/12/run-07.zarr: 3 were not run", "/data/12/run-07.zarr: # were not run"),
+        ("information and nanometres", "information and nanometres"),
+    ],
+)
+def test_texts_of_a_kind_differ_in_values_alone(text: str, kind: str) -> None:
+    assert _VALUE.sub("#", text) == kind
+
+
+def test_the_page_says_how_to_silence_and_to_raise_them(shown: list[Any]) -> None:
+    page = (Path(__file__).parents[2] / "docs/background/trust.md").read_text()
+    section = page.partition("## Warnings")[2].partition("\n## ")[0]
+    for line in (
+        'warnings.filterwarnings("ignore", category=pc.PendcoreWarning)',
+        'warnings.filterwarnings("error", category=pc.PendcoreWarning)',
+        'warnings.filterwarnings("always", category=pc.PendcoreWarning)',
+    ):
+        assert line in section
+        warnings.resetwarnings()
+        exec(line, {"warnings": warnings, "pc": pc})
+        assert warnings.filters[0][0] == line.split('"')[1]
