@@ -19,19 +19,22 @@ from pendcore.cases.case import CaseData
 from pendcore.films.frames import moves_of
 from pendcore.run.call import Choice, run, start_of
 from pendcore.run.methods import known_methods
+from pendcore.run.options import OPTIONS
 from pendcore.run.result import RunResult
 from pendcore.scene.effect_class import KINDS, PARTS
 
 CORE_MODULES = ("engine.mjs", "pendcore.mjs")
 """They stand in cpp/wasm, and are installed beside the page."""
 PAGE_MODULES = (
-    "scene_view.mjs", "chart.mjs", "simulate.mjs", "curves.mjs", "case.mjs", "runs.mjs", "copy.mjs",
-    "background.mjs", "controls.mjs", "touch.mjs", "main.mjs",
+    "scene_view.mjs", "chart.mjs", "simulate.mjs", "curves.mjs", "known_case.mjs", "case.mjs",
+    "runs.mjs", "copy.mjs", "background.mjs", "controls.mjs", "touch.mjs", "main.mjs",
 )  # fmt: skip
 WORKER_MODULES = ("simulate.mjs", "worker.mjs")
 CORE = "pendcore.wasm.gz"
 PYTHON_ONLY_KINDS = ("user", "compiled_user")
 """The kinds of effects that only Python has."""
+LEFT_OUT = {"error", "events", "progress", "check"}
+"""The options of a run that a page does without."""
 WITHOUT_CORE = (
     "This page plays back what Python computed: the install that made it has no core for browsers "
     "(`make page` in a clone builds it; wheels have it)."
@@ -69,6 +72,7 @@ def page_of(solution: RunResult, title: str | None = None) -> str:
             {**one._asdict(), "parameters": [x._asdict() for x in one.parameters]}
             for one in _descriptors()
         ],
+        "options": _options(),
         "defaults": _defaults(),
         "methods": ["auto", *(x for x, one in known_methods().items() if one["error_order"] > 0)],
         "recording": None if core is not None else _recording(solution),
@@ -118,8 +122,7 @@ def _bundle(names: tuple[str, ...]) -> str:
 def _plain_case(case: CaseData, solution: RunResult) -> dict[str, Any]:
     """Return the case as plain data, named as in a case file, with every link in full."""
     start = solution.run.arguments
-    left_out = ("error", "events", "progress", "check")
-    options = {name: value for name, value in case.options.items() if name not in left_out}
+    options = {name: value for name, value in case.options.items() if name not in LEFT_OUT}
     return {
         **({"name": solution.name} if solution.name else {}),
         "gravity": case.scene.gravity,
@@ -159,6 +162,19 @@ def _descriptors() -> list[Any]:
     """Return what is known of effects and of their parts."""
     kinds = [one.description for name, one in KINDS.items() if name not in PYTHON_ONLY_KINDS]
     return [*kinds, *(one.description for one in PARTS.values())]
+
+
+def _options() -> list[dict[str, Any]]:
+    """Return the options of a run that a page takes: their words, or their type."""
+    stores = re.findall('"(.*?)"', OPTIONS["store"].type)
+    words = {"method": ["auto", *known_methods()], "store": stores}
+    types = {"npt.ArrayLike": "float or floats", "bool": "bool"}
+    return [
+        {"name": one.name, "words": words.get(one.name)}
+        | {"type": types.get(one.annotation.removesuffix(" | None"), "float")}
+        for one in OPTIONS.values()
+        if one.name not in LEFT_OUT
+    ]
 
 
 @cache
