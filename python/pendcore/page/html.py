@@ -18,6 +18,7 @@ from pendcore.accuracy.estimate import error_of
 from pendcore.cases.case import CaseData
 from pendcore.films.frames import moves_of
 from pendcore.run.call import Choice, run, start_of
+from pendcore.run.dense_output import with_dense_output
 from pendcore.run.methods import known_methods
 from pendcore.run.options import OPTIONS
 from pendcore.run.result import RunResult
@@ -44,7 +45,9 @@ LIMIT = 0.1
 """rad: a run can be trusted until its error passes this."""
 _PATIENCE = 10.0
 """s, for second runs of a page that cannot make them itself."""
-_MOST_FRAMES = 3600
+_FRAME_RATE, _FRAME_TURN, _MOST_FRAMES = 60, 0.1, 3600
+"""A page that plays back has so many frames a second, or one whenever a link has turned by so much,
+rad: it draws straight lines from one to the next."""
 _IMPORT = re.compile(r'^import [^;]*? from "[^"]+";\n', re.MULTILINE)
 _EXPORT = re.compile(
     r"^export (?=(async )?(function|class|const))|^export \{[^}]*\};\n", re.MULTILINE
@@ -122,7 +125,10 @@ def _bundle(names: tuple[str, ...]) -> str:
 def _plain_case(case: CaseData, solution: RunResult) -> dict[str, Any]:
     """Return the case as plain data, named as in a case file, with every link in full."""
     start = solution.run.arguments
-    options = {name: value for name, value in case.options.items() if name not in LEFT_OUT}
+    # The page knows no events: its run ends where one ended this run, before some times to keep.
+    ended = solution.status == "event"
+    left_out = {*LEFT_OUT, "t_eval", "store"} if ended else LEFT_OUT
+    options = {name: value for name, value in case.options.items() if name not in left_out}
     return {
         **({"name": solution.name} if solution.name else {}),
         "gravity": case.scene.gravity,
@@ -139,7 +145,7 @@ def _plain_case(case: CaseData, solution: RunResult) -> dict[str, Any]:
         "run": {
             **options,
             "t_start": start["t_start"],
-            "t_end": start["t_end"],
+            "t_end": solution.run.t_reached if ended else start["t_end"],
             "method": _method(solution),
             "rtol": start["rtol"],
         },
@@ -205,17 +211,21 @@ def _parameters(value: Any) -> dict[str, Any]:
 
 def _recording(solution: RunResult) -> dict[str, Any]:
     """Return the run at equal steps of time, for a page that only plays back."""
+    solution = with_dense_output(solution)
     begin, end = float(solution.run.arguments["t_start"]), solution.run.t_reached
-    count = min(max(round(60 * abs(end - begin)), 2), _MOST_FRAMES)
-    t = np.linspace(begin, end, count)
-    moves, n = moves_of(solution, t), len(solution.scene.links)
+    n = len(solution.scene.links)
+    rates = solution.run.evaluate(solution.run.step_starts)[:, n:]
+    fastest = float(np.abs(rates[np.isfinite(rates)]).max(initial=0.0))
+    frames = abs(end - begin) * max(_FRAME_RATE, fastest / _FRAME_TURN)
+    t = np.linspace(begin, end, round(min(max(frames, 2), _MOST_FRAMES)))
+    moves = moves_of(solution, t)
     q, qd = moves.states[:, :n], moves.states[:, n:]
     kinetic, potential = solution.scene._compiled.energy(t, q, qd)
     return {
         "t": _rounded(t),
         "states": _rounded(moves.states),
-        "places": _rounded(moves.places.reshape(count, -1)),
-        "reactions": _rounded(moves.reactions.reshape(count, -1)),
+        "places": _rounded(moves.places.reshape(len(t), -1)),
+        "reactions": _rounded(moves.reactions.reshape(len(t), -1)),
         "energies": _rounded(np.stack([kinetic, potential], axis=1)),
         "message": solution.message,
         "success": solution.success,
