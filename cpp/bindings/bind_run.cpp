@@ -105,21 +105,32 @@ py::array rows(const py::object& self) {
   return view(s.states, {size(s.t), s.dimension}, self);
 }
 
-py::dict ledger(const py::object& self) {
-  const Solution& s = self.cast<const Run&>().solution;
+/// The entries of the ledger in rows of a solution's dimension.
+py::dict entries(const Solution& s, const py::array& rows) {
   py::dict result;
   int column = 2 * s.n;
   for (const Account account : s.accounts) {
-    const py::array entry = columns(rows(self), column, column + 1);
+    const py::array entry = columns(rows, column, column + 1);
     result[string(account_name(account))] = entry.attr("reshape")(-1);
     ++column;
   }
   return result;
 }
 
+py::dict ledger(const py::object& self) {
+  return entries(self.cast<const Run&>().solution, rows(self));
+}
+
+py::array rows_at(const Solution& s, const Array& t) {
+  return copy(s.at({t.data(), t.data() + t.size()}), {t.size(), s.dimension});
+}
+
 py::array evaluate(const Run& run, const Array& t) {
-  const std::vector<double> states = run.solution.at({t.data(), t.data() + t.size()});
-  return columns(copy(states, {t.size(), run.solution.dimension}), 0, 2 * run.solution.n);
+  return columns(rows_at(run.solution, t), 0, 2 * run.solution.n);
+}
+
+py::dict ledger_at(const Run& run, const Array& t) {
+  return entries(run.solution, rows_at(run.solution, t));
 }
 
 /// The defect of steps first .. end - 1: (torques, distances of the angles, the curve's angles at
@@ -180,6 +191,7 @@ void bind_run(py::module_& module) {
                              })
       .def("take_error", &take_error)
       .def("evaluate", &evaluate, py::arg("t"))
+      .def("ledger_at", &ledger_at, py::arg("t"))
       .def_property_readonly("step_starts",
                              [](py::object self) {
                                const Solution& s = self.cast<const Run&>().solution;

@@ -77,16 +77,6 @@ def test_impacts_and_rest_are_shown_where_they_are(bouncing: pc.Solution) -> Non
     assert angle[:60] == pytest.approx(bouncing(film.times[:60])[0], abs=1e-12)
 
 
-def test_between_the_times_that_were_kept_the_chain_moves_smoothly(sol: pc.Solution) -> None:
-    kept = pc.simulate(sol.scene, [0.8, 1.0], t_span=(0, 2), t_eval=np.linspace(0, 2, 41))
-    times = frame_times([kept], 30.0, 1.0)
-    apart = moves_of(kept, times).places - moves_of(sol, times).places
-    assert np.abs(apart).max() < 1e-4  # m; a pixel of a film is twenty times as large
-    alone = pc.simulate(sol.scene, 0.8, t_span=(0, 2), store="end")
-    with pytest.raises(ValueError, match="kept one time only: a film needs more"):
-        moves_of(alone, times)
-
-
 def test_two_runs_last_as_long_as_the_longer_one(sol: pc.Solution) -> None:
     longer = pc.simulate(sol.scene, 1.0, t_span=(0, 3))
     film = stage(sol, longer)

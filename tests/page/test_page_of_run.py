@@ -112,10 +112,19 @@ def test_an_address_that_is_refused_shows_the_run_of_the_page(
     page = opened(sol, "#case=" + quote(json.dumps(case)))
     assert page.text("message").startswith("The address holds a run that is refused: link 1: mass")
     assert page.text("bits").startswith("the bits of Python")
-    for nonsense in ("{}", "null", "[1", '{"link":[{}],"effect":[]}'):
+    case["link"][0] = {"mass": 1, "x=0) or print(1), pc.Link(mass": 1}
+    for nonsense, told in (
+        ("{}", "link: must be a list of one or more"),
+        ("[1", "it is damaged, or was cut short"),
+        (json.dumps(case), 'link 1: there is no "x=0) or print(1), pc.Link(mass"'),
+    ):
         page = opened(sol, "#case=" + quote(nonsense))
         assert page.text("bits").startswith("the bits of Python"), nonsense
-        assert page.ask("message.hidden")
+        assert page.text("message") == f"The address holds a run that is refused: {told}"
+    page = opened(sol)
+    page.do("location.hash = 'case=null'")
+    page.wait("!message.hidden")
+    assert page.text("bits").startswith("the bits of Python")
 
 
 def test_another_address_in_the_same_page_is_followed(sol: pc.Solution, opened: Open) -> None:
@@ -236,3 +245,9 @@ def test_whoever_wants_less_motion_gets_a_page_that_waits(
     finally:
         browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
     assert opened(sol).text("play") == "Pause"
+
+
+def test_the_phase_portrait_of_a_fast_link_has_no_corners(opened: Open) -> None:
+    page = opened(pc.simulate(pc.Scene.textbook(), [0.3, 0.3], [0.0, 48.0], t_span=(0, 10)))
+    x = np.array(page.ask("pendcorePage.curves.chosen.curves[1].x"))
+    assert np.abs(np.diff(x)).max() < 0.12  # rad

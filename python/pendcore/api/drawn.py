@@ -45,6 +45,9 @@ class DrawnResult(RunResult):
     ) -> list[Artist]:
         """Draw a figure; without ``what``, the textbook's: the angles, deg, over time, s.
 
+        Curves go from the first to the last time that was kept, or from start to end if there is
+        but one. A run without dense output is simulated anew where it is not known between them.
+
         =================  ========================================================================
         ``"angles"``       the absolute angle of each link, deg, over time
         ``"rates"``        the rate of each link, rad/s, over time
@@ -74,7 +77,7 @@ class DrawnResult(RunResult):
             rad. What lies past the time at which the estimated error passes it is shaded or pale
             (`valid_until`: that takes further runs, when it is first asked for).
         t, event, link
-            As above. Defaults: eight times from start to end, or the start; 0; 1.
+            As above. Defaults: eight times along the curves, or where they begin; 0; 1.
         **line_properties
             Passed on to matplotlib's ``Line2D``, such as ``color``, ``linestyle`` or ``linewidth``.
 
@@ -82,6 +85,13 @@ class DrawnResult(RunResult):
         -------
         list of Artist
             The lines; of poses also texts and arrows. ``artists[0].axes`` leads to the rest.
+
+        Raises
+        ------
+        ValueError, TypeError
+            If there is no such figure, or a parameter is not one of it; in the words of ``sol(t)``
+            if the run kept no dense output and cannot be simulated anew: a function of the user's
+            gives other values now, say.
 
         Examples
         --------
@@ -145,6 +155,8 @@ class DrawnResult(RunResult):
         progress: Progress = None,
     ) -> Path:
         """Write a film of the run, in true time; return where it is.
+
+        A run without dense output is simulated anew for it, or refused in the words of ``sol(t)``.
 
         Parameters
         ----------

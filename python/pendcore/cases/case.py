@@ -124,6 +124,12 @@ class CaseData:
         return _case, (type(self), self._values())
 
 
+def has_own_functions(solution: RunResult) -> bool:
+    """Whether an effect or an event is a function, which no file can hold."""
+    acting = any(isinstance(effect, OwnEffect) for effect in solution.scene.effects)
+    return acting or any(isinstance(event, Function) for event in solution.events_asked_for())
+
+
 def _case(cls: type[CaseData], values: dict[str, Any]) -> CaseData:
     return cls(**values)
 

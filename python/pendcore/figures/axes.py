@@ -1,9 +1,8 @@
-"""What the figures of a run share: axes, smooth curves, and the shade past the horizon."""
+"""What the figures of a run share: axes, and the shade past the horizon."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from math import ceil
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -28,8 +27,6 @@ PAST: dict[str, Any] = {
 }
 NewFigure: TypeAlias = Callable[..., "Figure"]
 """Makes a new figure: pyplot's, or one of its own."""
-FEW = 200
-"""Without dense output, points are marked if they are fewer than this."""
 
 
 def figure_of_pyplot(*args: Any, **named: Any) -> Figure:
@@ -97,21 +94,9 @@ def in_plane(axis: Axes) -> None:
     axis.grid(True, alpha=0.4)
 
 
-def is_bare(solution: RunResult, t: Floats) -> bool:
-    """Whether there are but a few points with nothing known between them."""
-    return (solution.store != "dense" and len(t) < FEW) or len(t) == 1
-
-
-def smooth_states(solution: RunResult) -> tuple[Floats, Floats]:
-    """Return times (k,) and states (k, 2n), close enough for the eye if possible."""
-    t = solution.t
-    states = np.hstack([solution.q, solution.qd])
-    if solution.store == "dense" and 1 < len(t) < 1000:
-        parts = ceil(2000 / (len(t) - 1))
-        places = np.linspace(0, len(t) - 1, parts * (len(t) - 1) + 1)
-        t = np.interp(places, np.arange(len(t)), t)
-        states = solution(t).T
-    return t, states
+def point_style(t: Floats) -> str:
+    """Return how points are marked: a single one can be seen, those of a curve cannot."""
+    return "." if len(t) == 1 else ""
 
 
 def horizon_time(solution: RunResult, horizon: float | None) -> float | None:

@@ -11,11 +11,11 @@ from pendcore.figures.axes import (
     STYLES,
     NewFigure,
     in_plane,
-    is_bare,
     one_axes,
-    smooth_states,
+    point_style,
 )
 from pendcore.messages.arguments import Floats, whole_number
+from pendcore.run.curve import curve_of
 from pendcore.run.result import RunResult
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ def draw_path(
 ) -> list[Line2D]:
     """Draw the path of the tip, m, with the chain at the start and at the end."""
     axis = one_axes(ax, new_figure, _SIZE)
-    t, states = smooth_states(solution)
+    t, states, _ = curve_of(solution)
     places = solution.scene._compiled.positions(t, states[:, : len(solution.scene.links)])
     count = len(axis.lines)
     for pose, shade in ((places[0], "0.7"), (places[-1], "0.2")):
@@ -49,7 +49,7 @@ def draw_path(
         "linewidth": 1.0,
         "label": label or "tip",
     }
-    lines = _curve(axis, t, tip, valid_until, ours | given, solution)
+    lines = _curve(axis, t, tip, valid_until, ours | given)
     in_plane(axis)
     if label is not None:
         axis.legend()
@@ -67,7 +67,7 @@ def draw_phase(
     """Draw the rate of each link (rad/s) over its angle (rad)."""
     axis = one_axes(ax, new_figure, _SIZE)
     n = len(solution.scene.links)
-    t, states = smooth_states(solution)
+    t, states, _ = curve_of(solution)
     lines = []
     style = STYLES[len(axis.lines) // n % len(STYLES)]
     for i in range(n):
@@ -79,7 +79,7 @@ def draw_phase(
             "label": name,
         }
         curve = states[:, [i, n + i]]
-        lines += _curve(axis, t, curve, valid_until, ours | given, solution)
+        lines += _curve(axis, t, curve, valid_until, ours | given)
     _name_phase(axis, "q", "qd")
     axis.legend()
     return lines
@@ -132,10 +132,9 @@ def _curve(
     points: Floats,
     valid_until: float | None,
     given: dict[str, Any],
-    solution: RunResult,
 ) -> list[Line2D]:
     """Draw a curve (k, 2), pale where it is past the horizon."""
-    how: dict[str, Any] = {"marker": "." if is_bare(solution, t) else "", **given}
+    how: dict[str, Any] = {"marker": point_style(t), **given}
     if valid_until is None:
         return axis.plot(*points.T, **how)
     forward = t[-1] >= t[0]

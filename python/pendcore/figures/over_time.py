@@ -11,12 +11,12 @@ from pendcore.figures.axes import (
     STYLES,
     NewFigure,
     axes_among,
-    is_bare,
-    smooth_states,
+    point_style,
     stacked,
 )
 from pendcore.messages.arguments import Floats
-from pendcore.run.energy import LOSSES
+from pendcore.run.curve import curve_of
+from pendcore.run.energy import LOSSES, Energy, energy_over
 from pendcore.run.result import RunResult
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ def draw_links(
     """Draw an angle (deg) or a rate (rad/s) of each link; ``what`` says which."""
     n = len(solution.scene.links)
     axes = axes_among(stacked(new_figure, n) if ax is None else ax, (1, n), "one for each link")
-    t, states = smooth_states(solution)
+    t, states, _ = curve_of(solution)
     is_angle = what == "angles"
     values = np.rad2deg(states[:, :n]) if is_angle else states[:, n:]
     symbol, unit = ("q", "deg") if is_angle else ("qd", "rad/s")
@@ -67,7 +67,7 @@ def draw_links(
         ours = {
             "color": COLORS[i % len(COLORS)],
             "linestyle": style,
-            "marker": "." if is_bare(solution, t) else "",
+            "marker": point_style(t),
             "label": _label(name, label, alone=len(axes) == n),
         }
         lines += axis.plot(t, curve, **{**ours, **given})
@@ -87,7 +87,7 @@ def draw_reactions(
     given: dict[str, Any],
 ) -> list[Line2D]:
     """Draw the force on each link at its joint, N: x, y (downwards) and size."""
-    t, states = smooth_states(solution)
+    t, states, _ = curve_of(solution)
     n = len(solution.scene.links)
     forces = solution.scene._compiled.reactions(t, states[:, :n], states[:, n:])
     panels = []
@@ -109,10 +109,13 @@ def draw_energy(
     given: dict[str, Any],
 ) -> list[Line2D]:
     """Draw kinetic, potential and total energy, J, and below them the entries of the ledger."""
-    panels = [_energies(solution)]
-    if (ledger := solution.energy().ledger) is not None:
-        entries = [(f"{name} (lost)" if name in LOSSES else name, x) for name, x in ledger.items()]
-        panels.append(Panel(solution.t, "work and loss (J)", entries))
+    t, energy = _energy(solution)
+    panels = [_energies(t, energy)]
+    if energy.ledger is not None:
+        booked = [
+            (f"{name} (lost)" if name in LOSSES else name, x) for name, x in energy.ledger.items()
+        ]
+        panels.append(Panel(t, "work and loss (J)", booked))
     if ax is None:
         ax = stacked(new_figure, len(panels))
     which = "one for the energies and one for the ledger"
@@ -121,18 +124,18 @@ def draw_energy(
 
 def draw_energies(solution: RunResult, axis: Axes) -> list[Line2D]:
     """Draw kinetic, potential and total energy, J, on one axes, whatever else there is."""
-    panels = [_energies(solution)]
+    panels = [_energies(*_energy(solution))]
     return _draw_panels(solution, panels, axis, "", None, {})
 
 
-def _energies(solution: RunResult) -> Panel:
-    t, states = smooth_states(solution)
-    n = len(solution.scene.links)
-    kinetic, potential = solution.scene._compiled.energy(t, states[:, :n], states[:, n:])
-    with np.errstate(all="ignore"):  # a blow-up's energies may be infinite
-        total = kinetic + potential
-    curves = [("kinetic", kinetic), ("potential", potential), ("total", total)]
-    return Panel(t, "energy (J)", curves)
+def _energy(solution: RunResult) -> tuple[Floats, Energy]:
+    t, states, ledger = curve_of(solution)
+    return t, energy_over(solution.scene, solution.run.arguments, t, states, ledger)
+
+
+def _energies(t: Floats, energy: Energy) -> Panel:
+    names = ("kinetic", "potential", "total")
+    return Panel(t, "energy (J)", [(name, getattr(energy, name)) for name in names])
 
 
 def _draw_panels(
@@ -153,7 +156,7 @@ def _draw_panels(
                 "color": "0.4" if is_sum else COLORS[k % len(COLORS)],
                 "linestyle": style,
                 "linewidth": 1.0 if is_sum else 1.5,
-                "marker": "." if is_bare(solution, panel.t) else "",
+                "marker": point_style(panel.t),
                 "label": _label(name, label, alone=False),
             }
             lines += axis.plot(panel.t, curve, **{**ours, **given})

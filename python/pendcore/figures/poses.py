@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from pendcore.figures.axes import NewFigure, in_plane, one_axes, smooth_states
+from pendcore.figures.axes import NewFigure, in_plane, one_axes
 from pendcore.messages.arguments import Floats, finite_array
+from pendcore.run.curve import curve_of, span_of
+from pendcore.run.dense_output import with_dense_output
 from pendcore.run.result import RunResult
 from pendcore.scene.scene import SceneData
 
@@ -33,10 +35,11 @@ def draw_strip(
     given: dict[str, Any],
 ) -> list[Artist]:
     """Draw the chain at some times, s, from left to right, each with the tip's path until then."""
-    t, states = smooth_states(solution)
-    at = _times(solution, times, _usual_times(solution))
+    solution = with_dense_output(solution)
+    t, states, _ = curve_of(solution)
+    at = _times(times, np.linspace(t[0], t[-1], _POSES))
     n = len(solution.scene.links)
-    poses = solution.scene._compiled.positions(at, _states(solution, at)[:, :n])
+    poses = solution.scene._compiled.positions(at, solution.run.evaluate(at)[:, :n])
     path = solution.scene._compiled.positions(t, states[:, :n])[:, -1]
     reach = float(sum(link.length for link in solution.scene.links))
     pivot = poses[:, 0, 0]
@@ -60,16 +63,6 @@ def draw_strip(
     return artists
 
 
-def _usual_times(solution: RunResult) -> Floats:
-    """Return a few times from the start to the end; of those that the run kept, if it must."""
-    if solution.store == "dense":
-        start = float(solution.run.arguments["t_start"])
-        return np.linspace(start, solution.run.t_reached, _POSES)
-    places = np.unique(np.linspace(0, len(solution.t) - 1, _POSES).round().astype(int))
-    times: Floats = solution.t[places]
-    return times
-
-
 def draw_free_bodies(
     solution: RunResult,
     ax: Any,
@@ -78,10 +71,10 @@ def draw_free_bodies(
     given: dict[str, Any],
 ) -> list[Artist]:
     """Draw each link by itself with the forces on it, N, at a time, s."""
-    at = _times(solution, t, _usual_times(solution)[:1])
+    at = _times(t, np.array(span_of(solution)[:1]))
     if len(at) > 1:
         raise ValueError(f"t: {len(at)} times: must be one (s): free bodies are of an instant")
-    state = _states(solution, at)
+    state = with_dense_output(solution).run.evaluate(at)
     scene, n = solution.scene, len(solution.scene.links)
     q, qd = state[:, :n], state[:, n:]
     pose = scene._compiled.positions(at, q)[0]
@@ -209,7 +202,7 @@ def _payload(scene: SceneData) -> float:
     )
 
 
-def _times(solution: RunResult, given: npt.ArrayLike | None, usual: Floats) -> Floats:
+def _times(given: npt.ArrayLike | None, usual: Floats) -> Floats:
     """Return times (k,) of the run, s."""
     if given is None:
         return usual
@@ -217,19 +210,3 @@ def _times(solution: RunResult, given: npt.ArrayLike | None, usual: Floats) -> F
     if times.ndim > 1 or not len(times):
         raise ValueError(f"t: shape {times.shape}: must be a time, or (k,) (s)")
     return times
-
-
-def _states(solution: RunResult, times: Floats) -> Floats:
-    """Return the states (k, 2n) at times of a run, from its dense output or the times it kept."""
-    if solution.store == "dense":
-        return solution.run.evaluate(times)
-    kept = np.hstack([solution.q, solution.qd])
-    nearest = np.abs(solution.t[:, np.newaxis] - times).argmin(axis=0)
-    wrong = solution.t[nearest] != times
-    if wrong.any():
-        raise ValueError(
-            f"t = {times[wrong][0]}: this run kept no dense output and not this time: take one of "
-            'its times, or run with store="dense"'
-        )
-    states: Floats = kept[nearest]
-    return states

@@ -8,13 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from pendcore.messages.arguments import Floats, positive
+from pendcore.run.dense_output import with_dense_output
 from pendcore.run.result import RunResult
 
 MOST_FRAMES = 54_000
 """Half an hour at 30 frames a second."""
-PATH_PARTS = 4
+FEWEST_PARTS, MOST_PARTS = 4, 64
 """The tip's path has so many parts between two frames, so that it is smooth where the tip is
 fast."""
+PART = 0.1
+"""rad: links turn by no more than this in a part of the path, unless it has `MOST_PARTS`."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -29,8 +32,10 @@ class Moves:
         Pivot, joints and tip, m.
     reactions : ndarray, (k, n, 2)
         The force on each link at its joint, N.
-    path : ndarray, (PATH_PARTS (k-1) + 1, 2)
+    path : ndarray, (parts (k-1) + 1, 2)
         The tip, m, also between frames.
+    parts : int
+        The number of parts of the path between two frames.
     total_length : float
         m.
     """
@@ -39,6 +44,7 @@ class Moves:
     places: Floats
     reactions: Floats
     path: Floats
+    parts: int
     total_length: float
 
 
@@ -64,46 +70,27 @@ def frame_times(solutions: Sequence[RunResult], fps: float, speed: float) -> Flo
 
 def moves_of(solution: RunResult, times: Floats) -> Moves:
     """Return where a run is at the times of frames; it stays where it ends."""
+    solution = with_dense_output(solution)
     start, end = float(solution.run.arguments["t_start"]), solution.run.t_reached
     at = np.clip(times, min(start, end), max(start, end))
-    states = states_of(solution, at)
+    states = solution.run.evaluate(at)
     n = len(solution.scene.links)
-    parts = np.linspace(0, len(at) - 1, PATH_PARTS * (len(at) - 1) + 1)
-    along = np.interp(parts, np.arange(len(at)), at)
+    parts = _parts(at, states[:, n:])
+    places = np.linspace(0, len(at) - 1, parts * (len(at) - 1) + 1)
+    along = np.interp(places, np.arange(len(at)), at)
     compiled = solution.scene._compiled
     return Moves(
         states,
         compiled.positions(at, states[:, :n]),
         compiled.reactions(at, states[:, :n], states[:, n:]),
-        compiled.positions(along, states_of(solution, along)[:, :n])[:, -1],
+        compiled.positions(along, solution.run.evaluate(along)[:, :n])[:, -1],
+        parts,
         float(sum(link.length for link in solution.scene.links)),
     )
 
 
-def states_of(solution: RunResult, times: Floats) -> Floats:
-    """Return the states at times of a run, (k, 2n).
-
-    Without dense output they are cubic between the times that were kept, which know the rates.
-    """
-    if solution.store == "dense":
-        return solution.run.evaluate(times)
-    t, q, qd = solution.t, solution.q, solution.qd
-    if len(t) < 2:
-        kept = "one time only" if len(t) else "no time"
-        raise ValueError(
-            f"this run kept {kept}: a film needs more: run it with store='dense', the default"
-        )
-    direction = 1.0 if t[-1] >= t[0] else -1.0
-    before = np.searchsorted(direction * t, direction * times, side="right") - 1
-    k = np.clip(before, 0, len(t) - 2)
-    h = (t[k + 1] - t[k])[:, np.newaxis]
-    with np.errstate(invalid="ignore", divide="ignore"):  # two states at the time of an impact
-        x = np.where(h == 0, 0.0, (times - t[k])[:, np.newaxis] / h)
-    x = np.clip(x, 0.0, 1.0)
-    angle = (
-        (1 + 2 * x) * (1 - x) ** 2 * q[k]
-        + x**2 * (3 - 2 * x) * q[k + 1]
-        + h * x * (1 - x) ** 2 * qd[k]
-        - h * x**2 * (1 - x) * qd[k + 1]
-    )
-    return np.hstack([angle, (1 - x) * qd[k] + x * qd[k + 1]])
+def _parts(times: Floats, rates: Floats) -> int:
+    """Return into how many parts the path between two frames is cut."""
+    turn = np.abs(rates).max(axis=1) * np.abs(np.diff(times)).max(initial=0.0)
+    fastest = float(np.nan_to_num(turn, nan=np.inf).max())
+    return int(np.clip(fastest / PART, FEWEST_PARTS, MOST_PARTS))

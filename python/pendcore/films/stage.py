@@ -10,7 +10,7 @@ import numpy as np
 
 from pendcore.figures.axes import horizon_time, in_legend, in_plane
 from pendcore.figures.over_time import draw_energies
-from pendcore.films.frames import PATH_PARTS, Moves, frame_times, moves_of
+from pendcore.films.frames import Moves, frame_times, moves_of
 from pendcore.messages.arguments import Floats, number, positive
 from pendcore.run.result import RunResult
 
@@ -137,8 +137,9 @@ class _Player:
         self._chain.set_data(*places[k].T)
         self._chain.set_color(color)
         if self._behind > 0:
-            first = PATH_PARTS * max(k - self._behind, 0)
-            self._trace.set_data(*self._moves.path[first : PATH_PARTS * k + 1].T)
+            parts = self._moves.parts
+            first = parts * max(k - self._behind, 0)
+            self._trace.set_data(*self._moves.path[first : parts * k + 1].T)
             self._trace.set_color(color)
         if self._arrows is not None:
             self._arrows.set_offsets(places[k, :-1])

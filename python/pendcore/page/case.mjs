@@ -5,6 +5,8 @@
  *       start: {q, qd}, run: {t_start, t_end, method, rtol, atol, ...} }
  */
 
+import { knownCase } from "./known_case.mjs";
+
 /** JSON has no infinity, so that it is written as a word. */
 export function parseCase(text) {
   return JSON.parse(text, (_key, value) =>
@@ -18,30 +20,17 @@ export function writeCase(given) {
   );
 }
 
-/** The case in the address, or null. */
-export function caseInAddress() {
+/** The case in the address, or null if there is none. What is no case is refused with an error. */
+export function caseInAddress(known) {
   const found = /[#&]case=([^&]+)/.exec(location.hash);
   if (!found) return null;
+  let given;
   try {
-    const given = parseCase(decodeURIComponent(found[1]));
-    return isCase(given) ? given : null;
+    given = parseCase(decodeURIComponent(found[1]));
   } catch {
-    return null;
+    throw new Error("it is damaged, or was cut short");
   }
-}
-
-/** Whether a case has its parts; the core checks their values. */
-function isCase(given) {
-  const n = given?.link?.length;
-  const isRow = (row) => Array.isArray(row) && row.length === n && row.every(Number.isFinite);
-  return (
-    n > 0 &&
-    Array.isArray(given.effect) &&
-    Number.isFinite(given.gravity) &&
-    isRow(given.start?.q) &&
-    isRow(given.start?.qd) &&
-    Number.isFinite(given.run?.t_end)
-  );
+  return knownCase(given, known);
 }
 
 export function addressOf(given) {
@@ -50,7 +39,7 @@ export function addressOf(given) {
 
 function tomlValue(value) {
   if (Array.isArray(value)) return `[${value.map(tomlValue).join(", ")}]`;
-  if (typeof value === "string") return JSON.stringify(value);
+  if (typeof value === "string") return JSON.stringify(value).replaceAll("\x7f", "\\u007f");
   if (typeof value === "boolean") return String(value);
   if (typeof value === "object") {
     const parts = Object.entries(value).map(([name, one]) => `${name} = ${tomlValue(one)}`);
@@ -105,7 +94,7 @@ export function toPython(given, kinds) {
   const lines = ["import pendcore as pc", "", "scene = pc.Scene("];
   lines.push("    links=[");
   for (const one of given.link) lines.push(`        ${pythonCall("pc.Link", one, {})},`);
-  lines.push("    ],", `    gravity=${given.gravity},`);
+  lines.push("    ],", `    gravity=${pythonValue(given.gravity)},`);
   if (given.effect.length > 0) {
     lines.push("    effects=[");
     for (const { kind, ...parameters } of given.effect) {

@@ -5,7 +5,7 @@ import { grid } from "./simulate.mjs";
 
 const COLORS = ["first", "second", "third", "fourth"];
 const ACCOUNTS = ["fourth", "faint", "ink"];
-const POINTS = 1500;
+const POINTS = { least: 1500, most: 6000, angle: 0.1 }; // between two, a link turns by this, rad
 
 /** What can be drawn. Those of a link have an index; `of` gets a run, a time, a state and it. */
 const QUANTITIES = [
@@ -56,9 +56,9 @@ export class Curves {
 
   set(run) {
     this.run = run;
-    const count = Math.min(run.count, POINTS);
-    this.times = grid(run.begin, run.end, count);
-    this.states = run.states(this.times);
+    this.#sample(POINTS.least);
+    const needed = Math.ceil((this.fastest * Math.abs(run.end - run.begin)) / POINTS.angle);
+    if (needed > POINTS.least) this.#sample(Math.min(needed, POINTS.most));
     this.#fillMenus();
     const { times, states } = this;
     this.angles.set(
@@ -84,6 +84,12 @@ export class Curves {
     }));
     this.energy.set([...own, ...booked]);
     this.choose();
+  }
+
+  #sample(count) {
+    const { run } = this;
+    this.times = grid(run.begin, run.end, Math.min(run.count, count));
+    this.states = run.states(this.times);
   }
 
   /** The largest rate of a link, rad/s. */

@@ -19,20 +19,24 @@ from pendcore.cases.case import CaseData
 from pendcore.films.frames import moves_of
 from pendcore.messages.arguments import text
 from pendcore.run.call import Choice, run, start_of
+from pendcore.run.dense_output import with_dense_output
 from pendcore.run.methods import known_methods
+from pendcore.run.options import OPTIONS
 from pendcore.run.result import RunResult
 from pendcore.scene.effect_class import KINDS, PARTS
 
 CORE_MODULES = ("engine.mjs", "pendcore.mjs")
 """They stand in cpp/wasm, and are installed beside the page."""
 PAGE_MODULES = (
-    "scene_view.mjs", "chart.mjs", "simulate.mjs", "curves.mjs", "case.mjs", "runs.mjs", "copy.mjs",
-    "background.mjs", "controls.mjs", "touch.mjs", "main.mjs",
+    "scene_view.mjs", "chart.mjs", "simulate.mjs", "curves.mjs", "known_case.mjs", "case.mjs",
+    "runs.mjs", "copy.mjs", "background.mjs", "controls.mjs", "touch.mjs", "main.mjs",
 )  # fmt: skip
 WORKER_MODULES = ("simulate.mjs", "worker.mjs")
 CORE = "pendcore.wasm.gz"
 PYTHON_ONLY_KINDS = ("user", "compiled_user")
 """The kinds of effects that only Python has."""
+LEFT_OUT = {"error", "events", "progress", "check"}
+"""The options of a run that a page does without."""
 WITHOUT_CORE = (
     "This page plays back what Python computed: the install that made it has no core for browsers "
     "(`make page` in a clone builds it; wheels have it)."
@@ -42,7 +46,9 @@ LIMIT = 0.1
 """rad: a run can be trusted until its error passes this."""
 _PATIENCE = 10.0
 """s, for second runs of a page that cannot make them itself."""
-_MOST_FRAMES = 3600
+_FRAME_RATE, _FRAME_TURN, _MOST_FRAMES = 60, 0.1, 3600
+"""A page that plays back has so many frames a second, or one whenever a link has turned by so much,
+rad: it draws straight lines from one to the next."""
 _IMPORT = re.compile(r'^import [^;]*? from "[^"]+";\n', re.MULTILINE)
 _EXPORT = re.compile(
     r"^export (?=(async )?(function|class|const))|^export \{[^}]*\};\n", re.MULTILINE
@@ -70,6 +76,7 @@ def page_of(solution: RunResult, title: str | None = None) -> str:
             {**one._asdict(), "parameters": [x._asdict() for x in one.parameters]}
             for one in _descriptors()
         ],
+        "options": _options(),
         "defaults": _defaults(),
         "methods": ["auto", *(x for x, one in known_methods().items() if one["error_order"] > 0)],
         "recording": None if core is not None else _recording(solution),
@@ -119,7 +126,9 @@ def _bundle(names: tuple[str, ...]) -> str:
 def _plain_case(case: CaseData, solution: RunResult) -> dict[str, Any]:
     """Return the case as plain data, named as in a case file, with every link in full."""
     start = solution.run.arguments
-    left_out = ("error", "events", "progress", "check")
+    # The page knows no events: its run ends where one ended this run, before some times to keep.
+    ended = solution.status == "event"
+    left_out = {*LEFT_OUT, "t_eval", "store"} if ended else LEFT_OUT
     options = {name: value for name, value in case.options.items() if name not in left_out}
     return {
         **({"name": solution.name} if solution.name else {}),
@@ -137,7 +146,7 @@ def _plain_case(case: CaseData, solution: RunResult) -> dict[str, Any]:
         "run": {
             **options,
             "t_start": start["t_start"],
-            "t_end": start["t_end"],
+            "t_end": solution.run.t_reached if ended else start["t_end"],
             "method": _method(solution),
             "rtol": start["rtol"],
         },
@@ -160,6 +169,19 @@ def _descriptors() -> list[Any]:
     """Return what is known of effects and of their parts."""
     kinds = [one.description for name, one in KINDS.items() if name not in PYTHON_ONLY_KINDS]
     return [*kinds, *(one.description for one in PARTS.values())]
+
+
+def _options() -> list[dict[str, Any]]:
+    """Return the options of a run that a page takes: their words, or their type."""
+    stores = re.findall('"(.*?)"', OPTIONS["store"].type)
+    words = {"method": ["auto", *known_methods()], "store": stores}
+    types = {"npt.ArrayLike": "float or floats", "bool": "bool"}
+    return [
+        {"name": one.name, "words": words.get(one.name)}
+        | {"type": types.get(one.annotation.removesuffix(" | None"), "float")}
+        for one in OPTIONS.values()
+        if one.name not in LEFT_OUT
+    ]
 
 
 @cache
@@ -190,17 +212,21 @@ def _parameters(value: Any) -> dict[str, Any]:
 
 def _recording(solution: RunResult) -> dict[str, Any]:
     """Return the run at equal steps of time, for a page that only plays back."""
+    solution = with_dense_output(solution)
     begin, end = float(solution.run.arguments["t_start"]), solution.run.t_reached
-    count = min(max(round(60 * abs(end - begin)), 2), _MOST_FRAMES)
-    t = np.linspace(begin, end, count)
-    moves, n = moves_of(solution, t), len(solution.scene.links)
+    n = len(solution.scene.links)
+    rates = solution.run.evaluate(solution.run.step_starts)[:, n:]
+    fastest = float(np.abs(rates[np.isfinite(rates)]).max(initial=0.0))
+    frames = abs(end - begin) * max(_FRAME_RATE, fastest / _FRAME_TURN)
+    t = np.linspace(begin, end, round(min(max(frames, 2), _MOST_FRAMES)))
+    moves = moves_of(solution, t)
     q, qd = moves.states[:, :n], moves.states[:, n:]
     kinetic, potential = solution.scene._compiled.energy(t, q, qd)
     return {
         "t": _rounded(t),
         "states": _rounded(moves.states),
-        "places": _rounded(moves.places.reshape(count, -1)),
-        "reactions": _rounded(moves.reactions.reshape(count, -1)),
+        "places": _rounded(moves.places.reshape(len(t), -1)),
+        "reactions": _rounded(moves.reactions.reshape(len(t), -1)),
         "energies": _rounded(np.stack([kinetic, potential], axis=1)),
         "message": solution.message,
         "success": solution.success,

@@ -39,12 +39,14 @@ class Page {
   since = 0;
   before = undefined;
   later = undefined;
+  /** Why the address was refused, if it was. */
+  refusal = "";
   traceParts = TRACE_PARTS.least;
 
   constructor(core, bytes) {
     this.core = core;
     this.original = writeCase(data.case);
-    this.given = (core && caseInAddress()) ?? parseCase(this.original);
+    this.given = this.#fromAddress() ?? parseCase(this.original);
     this.t = this.given.run.t_start ?? 0;
     this.speed = 1;
     this.isPlaying = false;
@@ -69,15 +71,30 @@ class Page {
     requestAnimationFrame((now) => this.frame(now));
   }
 
+  /** The case in the address, or null: one that is refused is refused as a whole. */
+  #fromAddress() {
+    this.refusal = "";
+    try {
+      return this.core && caseInAddress(data);
+    } catch (error) {
+      this.refusal = error.message;
+      return null;
+    }
+  }
+
+  #sayRefusal() {
+    if (this.refusal) this.say(`The address holds a run that is refused: ${this.refusal}`);
+  }
+
   /** The first run: if the core refuses the case in the address, that of the page. */
   begin() {
     this.rerun();
     if (this.run === null) {
-      const refusal = byId("message").textContent;
+      this.refusal = byId("message").textContent;
       this.given = parseCase(this.original);
       this.rerun();
-      this.say(`The address holds a run that is refused: ${refusal}`);
     }
+    this.#sayRefusal();
     this.showFields();
   }
 
@@ -363,7 +380,8 @@ class Page {
     window.addEventListener("resize", () => this.draw());
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
     window.addEventListener("hashchange", () => {
-      const given = this.core && caseInAddress();
+      const given = this.#fromAddress();
+      this.#sayRefusal();
       if (!given || writeCase(given) === writeCase(this.given)) return;
       this.given = given;
       this.changed();

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from pendcore import _core
 from pendcore.messages.arguments import Floats
+from pendcore.scene.scene import SceneData
 
 LOSSES = frozenset(name for name, is_loss in _core.accounts().items() if is_loss)
 """The entries that count what is lost; the others count work done on the chain."""
@@ -128,3 +130,27 @@ class Energy:
         if numbers.size:
             span = f"; the total is {numbers.min():.6g} to {numbers.max():.6g} J"
         return f"<Energy: kinetic, potential, total, each {self.total.shape}{span}>"
+
+
+def energy_over(
+    scene: SceneData,
+    asked: Mapping[str, Any],
+    t: Floats,
+    states: Floats,
+    entries: Mapping[str, Floats],
+) -> Energy:
+    """Return the energies of states (n_t, 2n) of a run, and its ledger where it has entries.
+
+    ``asked`` are the arguments of the run, ``entries`` those of its ledger at these times, J.
+    """
+    n = len(scene.links)
+    kinetic, potential = scene._compiled.energy(t, states[:, :n], states[:, n:])
+    with np.errstate(all="ignore"):  # a blow-up's energies may be infinite
+        total = kinetic + potential
+    if not asked["ledger"]:
+        return Energy(kinetic, potential, total)
+    start = scene._compiled.energy(
+        np.array([asked["t_start"]]), asked["q0"][np.newaxis], asked["qd0"][np.newaxis]
+    )
+    with np.errstate(all="ignore"):
+        return Energy(kinetic, potential, total, Ledger(entries, total - sum(start)))

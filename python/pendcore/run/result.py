@@ -15,7 +15,7 @@ from pendcore import _core
 from pendcore.messages.arguments import Floats, finite_array, known_keywords, text
 from pendcore.messages.progress import Progress
 from pendcore.run.accuracy import Accuracy
-from pendcore.run.energy import Energy, Ledger
+from pendcore.run.energy import Energy, energy_over
 from pendcore.run.error_estimate import ErrorEstimate
 from pendcore.run.events import Event, event_of
 from pendcore.run.found_events import FoundEvents, found_events
@@ -253,18 +253,8 @@ class RunResult:
         >>> f"{energy.total[0]:.4f} J at first, {energy.total[-1]:.4f} J at last"
         '-14.6484 J at first, -14.6484 J at last'
         """
-        kinetic, potential = self.scene._compiled.energy(self.t, self.q, self.qd)
-        with np.errstate(all="ignore"):  # a blow-up's energies may be infinite
-            total = kinetic + potential
-        asked = self.run.arguments
-        if not asked["ledger"]:
-            return Energy(kinetic, potential, total)
-        start = self.scene._compiled.energy(
-            np.array([asked["t_start"]]), asked["q0"][np.newaxis], asked["qd0"][np.newaxis]
-        )
-        with np.errstate(all="ignore"):
-            gain = total - sum(start)
-            return Energy(kinetic, potential, total, Ledger(self.run.ledger, gain))
+        run = self.run
+        return energy_over(self.scene, run.arguments, run.t, run.states, run.ledger)
 
     @known_keywords
     def largest_reactions(self, *, progress: Progress = None) -> list[LargestReaction]:

@@ -9,11 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pendcore.cases.case import CaseData
+from pendcore.cases.case import CaseData, has_own_functions
 from pendcore.messages.progress import callback, close
-from pendcore.run.events import Function
 from pendcore.run.result import RunResult
-from pendcore.scene.effect_class import OwnEffect
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -100,7 +98,6 @@ def write_csv(solution: RunResult, path: Path) -> None:
 
 def _case(solution: RunResult) -> dict[Hashable, Any]:
     """Return the case as TOML, or nothing if an effect or an event is a function."""
-    acting = any(isinstance(effect, OwnEffect) for effect in solution.scene.effects)
-    if acting or any(isinstance(event, Function) for event in solution.events_asked_for()):
+    if has_own_functions(solution):
         return {}
     return {"case": CaseData.of_solution(solution).to_toml()}

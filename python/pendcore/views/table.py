@@ -6,16 +6,23 @@ from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
+from pendcore.cases.case import has_own_functions
 from pendcore.messages.arguments import Floats
 from pendcore.messages.html import beside, drawing, table
+from pendcore.run.curve import curve_of, span_of
+from pendcore.run.dense_output import with_dense_output
 from pendcore.run.methods import known_methods
 from pendcore.run.result import RunResult
 from pendcore.views import energy_drift
 
-_POSES, _MOST_POINTS = 6, 400
-"""The poses in a drawing of a run, and the most points of the tip's path."""
+_POSES = 6
+"""The number of poses in a drawing of a run."""
+_POINTS, _STEPS, _TURN = 1000, 250, 0.2
+"""The most points of the tip's path and the most steps; by how much links turn from one point to
+the next, rad, which nobody sees in a drawing of this size."""
+_QUICK = 200_000
+"""The product of right-hand sides and links up to which a run is simulated anew for a drawing."""
 _MANY = 4000
 """With more times than this, a repr computes the energy at some of them only."""
 
@@ -30,21 +37,45 @@ def text(solution: RunResult) -> str:
 def html(solution: RunResult) -> str:
     """Return these lines as an HTML table, beside a drawing of the run."""
     rows = table(_rows(solution))
-    t, q = solution.t, solution.q
-    right = np.isfinite(q).all(axis=1)
-    if not right.any():
+    dense = _with_dense_output(solution)
+    if dense is None:
+        count = len(solution.t)
+        k = np.unique(np.linspace(0, count - 1, min(count, _POSES)).round().astype(np.intp))
+        poses = _places(solution, solution.t[k], solution.run.states[k])
+    else:
+        t = np.linspace(*span_of(solution), _POSES)
+        poses = _places(solution, t, dense.run.evaluate(t))
+    if not len(poses):
         return rows
-    finite = np.flatnonzero(right)
-    some = finite[_spread(len(finite), _MOST_POINTS)]
-    places = solution.scene._compiled.positions(t[some], np.ascontiguousarray(q[some]))
-    chosen = _spread(len(places), _POSES)
-    title = f"the chain at {len(chosen)} times, the last of them plainest, and the path of its tip"
-    return beside(rows, drawing(places[chosen], places[:, -1], title))
+    many = f"{len(poses)} times, the last of them plainest"
+    title = f"the chain at {many if len(poses) > 1 else 'one time'}"
+    if dense is None:
+        return beside(rows, drawing(poses, None, title))
+    t, states, _ = curve_of(dense, _TURN, _POINTS // 4, _STEPS)
+    t, path = t[-_POINTS:], _places(solution, t[-_POINTS:], states[-_POINTS:])[:, -1]
+    last = "" if t[0] == span_of(solution)[0] else f" in the last {abs(t[-1] - t[0]):.3g} s"
+    return beside(rows, drawing(poses, path, f"{title}, and the path of its tip{last}"))
 
 
-def _spread(count: int, most: int) -> npt.NDArray[np.intp]:
-    """Return numbers from 0 to count - 1, the first and the last among them, at most so many."""
-    return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(np.intp))
+def _with_dense_output(solution: RunResult) -> RunResult | None:
+    """Return a run that has a state at any time, or None.
+
+    A notebook that shows a run waits for no long one, and calls no function of the user's.
+    """
+    work = solution.stats.nfev * len(solution.scene.links)
+    if solution.store != "dense" and (work > _QUICK or has_own_functions(solution)):
+        return None
+    try:
+        return with_dense_output(solution)
+    except ValueError:  # it cannot be had again
+        return None
+
+
+def _places(solution: RunResult, t: Floats, states: Floats) -> Floats:
+    """Return the places of a chain where its states are finite, m, (k, n+1, 2)."""
+    right = np.isfinite(states).all(axis=1)
+    q = np.ascontiguousarray(states[right, : len(solution.scene.links)])
+    return solution.scene._compiled.positions(t[right], q)
 
 
 def listed(values: Sequence[float] | Floats, most: int = 6) -> str:

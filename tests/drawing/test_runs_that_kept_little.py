@@ -1,0 +1,143 @@
+"""What is drawn of a run is its dense output, whether the run kept that, a few times or its end."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pendcore as pc
+import pytest
+from pendcore.cli import main
+from pendcore.films.stage import Stage
+from runs_that_kept_little import BOUNCING, RUNS, STOP, axes, few, places, simulate, stage
+
+
+@pytest.fixture(params=RUNS)
+def pair(request: pytest.FixtureRequest, tmp_path: Path) -> tuple[pc.Solution, pc.Solution]:
+    """Return a run that kept little, and the same run with its dense output."""
+    kept, dense = RUNS[request.param]
+    return kept(tmp_path), dense()
+
+
+@pytest.mark.every_value("pair")
+def test_each_frame_of_a_film_is_the_dense_output(pair: tuple[pc.Solution, pc.Solution]) -> None:
+    kept, dense = pair
+    if kept.accuracy is None:  # the runs that an error asks for depend on what is kept
+        assert kept.run.t_reached == dense.run.t_reached
+    else:
+        dense = pc.simulate(
+            kept.scene, [1.8, 2.5], t_span=(0, 10), method=kept.method,
+            **{name: kept.run.arguments[name] for name in ("rtol", "atol", "compensated")},
+        )  # fmt: skip
+    film = stage(kept, reactions=True, trace=np.inf)
+    low, high = sorted([dense.run.arguments["t_start"], dense.run.t_reached])
+    at = np.clip(film.times, low, high)
+    state = dense(at)
+    n = len(kept.scene.links)
+    q, qd = np.ascontiguousarray(state[:n].T), np.ascontiguousarray(state[n:].T)
+    true, forces = kept.scene._compiled.positions(at, q), kept.scene._compiled.reactions(at, q, qd)
+    for k in range(0, len(at), 7):
+        trace, chain, arrows = film.show(k)[:3]
+        assert np.abs(np.array(chain.get_data()).T - true[k]).max() < 1e-12
+        drawn = np.stack([arrows.U, arrows.V], axis=-1)
+        assert drawn / np.abs(drawn).max() == pytest.approx(
+            forces[k] / np.abs(forces[k]).max(), abs=1e-9
+        )
+        assert np.abs(np.array(trace.get_data())[:, -1] - true[k, -1]).max() < 1e-12
+
+
+def test_no_frame_shows_a_rod_beyond_its_stop() -> None:
+    kept = few(BOUNCING)
+    film = stage(kept)
+    shown = np.array([film.show(k)[1].get_data() for k in range(len(film.times))])
+    angle = np.arctan2(shown[:, 1, 1], shown[:, 0, 1])
+    assert angle.max() <= STOP + 1e-9
+    assert (angle > STOP - 0.1).any()
+    assert np.rad2deg(STOP) + 1e-7 >= kept.plot(axes(2))[0].get_ydata().max() > np.rad2deg(1.8)
+
+
+def values(what: str, run: pc.Solution, t: Any) -> list[Any]:
+    """Return what the curves of a figure have to be, from dense output and the scene alone."""
+    state = run(t)
+    n = len(run.scene.links)
+    q, qd = np.ascontiguousarray(state[:n].T), np.ascontiguousarray(state[n:].T)
+    if what == "angles":
+        return [*np.rad2deg(q.T)]
+    if what == "rates":
+        return [*qd.T]
+    if what == "energy":
+        kinetic, potential = run.scene._compiled.energy(t, q, qd)
+        return [kinetic, potential, kinetic + potential]
+    forces = np.moveaxis(run.scene._compiled.reactions(t, q, qd), 1, 0)
+    return [x for one in forces for x in (one[:, 0], one[:, 1], np.hypot(*one.T))]
+
+
+@pytest.mark.parametrize("what", ["angles", "rates", "reactions", "energy"])
+@pytest.mark.parametrize("kept", ["times", "stop", "loaded", "resumed past events", "broken off"])
+def test_each_curve_over_time_is_the_dense_output(kept: str, what: str, tmp_path: Path) -> None:
+    run, dense = RUNS[kept][0](tmp_path), RUNS[kept][1]()
+    lines = run.plot(axes(1 if what == "energy" else 2), what=what)
+    true = values(what, dense, lines[0].get_xdata())
+    assert len(lines) == len(true)
+    for line, curve in zip(lines, true, strict=True):
+        assert len(line.get_xdata()) > 1000
+        assert np.abs(line.get_ydata() - curve).max() <= 1e-12 * np.abs(curve).max()
+
+
+@pytest.mark.parametrize("kept", ["times", "end", "stop", "member"])
+def test_paths_phases_and_poses_are_the_dense_output(kept: str, tmp_path: Path) -> None:
+    run, dense = RUNS[kept][0](tmp_path), RUNS[kept][1]()
+    t = run.plot(axes(2))[0].get_xdata()
+    (path,) = run.plot(axes(), what="path")
+    assert np.abs(np.array(path.get_data()).T - places(dense, t)[:, -1]).max() < 1e-12
+    first, second = run.plot(axes(), what="phase")
+    for i, line in enumerate((first, second)):
+        assert np.array_equal(line.get_xdata(), dense(t)[i])
+        assert np.array_equal(line.get_ydata(), dense(t)[2 + i])
+    at = np.array([0.35, 3.7, 9.9])
+    strip = run.plot(axes(), what="strip", t=at)
+    for k, pose in enumerate(places(dense, at)):
+        drawn = np.array(strip[2 * k].get_data()).T
+        assert np.abs(drawn - drawn[0] - (pose - pose[0])).max() < 1e-12
+    bodies = [run.plot(axes(), what="free_bodies", t=0.35)[0].axes for run in (run, dense)]
+    told = [[text.get_text() for text in one.texts] for one in bodies]
+    assert told[0] == told[1]
+
+
+def test_the_ledger_is_drawn_between_the_times_that_were_kept() -> None:
+    kept, at_steps = few(BOUNCING, ledger=True), simulate(BOUNCING, ledger=True)
+    lines = {line.get_label(): line for line in kept.plot(axes(2), what="energy")}
+    ledger = at_steps.energy().ledger
+    assert ledger is not None
+    t = at_steps.t[np.diff(at_steps.t, append=np.inf) > 0]
+    entry = ledger["impact"][np.diff(at_steps.t, append=np.inf) > 0]
+    drawn = lines["impact (lost)"]
+    shared = np.isin(t, drawn.get_xdata())
+    assert shared.sum() > 50
+    at = np.searchsorted(drawn.get_xdata(), t[shared])
+    assert np.abs(drawn.get_ydata()[at] - entry[shared]).max() < 1e-12
+    assert np.abs(lines["residual"].get_ydata()).max() < 1e-7
+
+
+def test_a_case_that_keeps_few_times_is_shown_as_it_moves(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    case = few(BOUNCING).case()
+    (tmp_path / "case.toml").write_text(case.to_toml())
+    shown: list[Any] = []
+    draw = Stage.show
+
+    def show(self: Stage, k: int) -> Any:
+        found = draw(self, k)
+        shown.append((self.times[k], np.array(found[1].get_data()).T))
+        return found
+
+    monkeypatch.setattr(Stage, "show", show)
+    out = tmp_path / "case.gif"
+    assert (
+        main(["show", str(tmp_path / "case.toml"), "-o", str(out), "--fps", "4", "--speed", "2"])
+        == 0
+    )
+    times, chains = zip(*shown, strict=True)
+    assert np.abs(np.array(chains) - places(simulate(BOUNCING), np.array(times))).max() < 1e-12
