@@ -17,7 +17,7 @@ from typing import Any, ClassVar, NoReturn, Self
 import numpy as np
 
 from pendcore import _core
-from pendcore.messages.arguments import did_you_mean, in_unit, number, numbers, whole_number
+from pendcore.messages.arguments import did_you_mean, flag, in_unit, number, numbers, whole_number
 from pendcore.scene.effect_description import Description, Parameter, docstring, effects, parts
 from pendcore.scene.frozen_state import frozen_state
 
@@ -123,10 +123,7 @@ class Effect(Described):
 
 
 class OwnEffect(Effect):
-    """An effect that is a function: it acts, and cannot be kept anywhere.
-
-    It keeps alive what it was made from.
-    """
+    """A function as an effect: no file can keep it, and it keeps alive what it is made from."""
 
     __slots__ = ("_origins",)
     _origins: dict[str, Any]
@@ -161,13 +158,15 @@ class PythonEffect(OwnEffect):
 
     __slots__ = ()
     function: Callable[..., Any]
+    breaks: tuple[float, ...]
 
     def _check(self, where: str) -> None:
         if not callable(self.function):
             raise TypeError(f"{where}function = {self.function!r}: must be a function of t, q, qd")
+        super()._check(where)
 
     def _as_pair(self) -> tuple[str, Any]:
-        return self.kind, self.function
+        return self.kind, (self.function, self.breaks)
 
 
 def made(cls: type[Described], values: Mapping[str, Any], where: str | None = None) -> Any:
@@ -252,6 +251,7 @@ def _plain(name: str, parameter: Parameter, value: Any) -> Any:
             raise TypeError(f"{name} = {value!r}: must be a pendcore.effects.{part}")
         return value
     converted: dict[str, Callable[[str, Any], Any]] = {
+        "bool": flag,
         "int": whole_number,
         "float": partial(number, unit=unit),
         "optional float": partial(number, unit=unit),
