@@ -49,7 +49,7 @@ def restarts(
     kind: str, method: str, sense: int, seeds: int
 ) -> Iterator[tuple[pc.Solution, pc.Solution]]:
     """Yield runs that start on an event, each with the run that went on instead of ending."""
-    options = {"method": method, "step": 0.01 if method == "rk4" else None}
+    options = {"method": method, "step": 0.002 if method == "rk4" else None}
     for seed in range(seeds):
         dice = np.random.default_rng(seed)
         n = int(dice.integers(1, 4))
@@ -78,14 +78,14 @@ def test_a_run_from_an_event_finds_next_what_the_run_that_goes_on_finds(
     kind: str, method: str, sense: int
 ) -> None:
     count = 0
-    for again, goes_on in restarts(kind, method, sense, seeds=12):
+    for again, goes_on in restarts(kind, method, sense, seeds=18):
         (found,), (all_found,) = again.events, goes_on.events
         start = again.t[0]
         expected = [one.t for one in all_found if (one.t - start) * sense > 0]
         assert [one.t for one in found] == pytest.approx(expected, abs=2e-4)
         assert all(abs(one.t - start) > 1e-9 for one in found)
         count += 1
-    assert count >= 15
+    assert count >= 10
 
 
 def switched(
@@ -117,7 +117,7 @@ def switched(
         ev.JointAngle(1, DOWN, terminal=True),
         ev.LinkAngle(1, DOWN, terminal=True),
         ev.TipLine((0.0, 0.3), (1.0, 0.0), terminal=True),
-        ev.Function(lambda t, q, qd: np.cos(q[0]), terminal=True),
+        ev.Function(lambda t, q, qd: np.cos(q[0]), max_step=0.1, terminal=True),
     ],
     ids=lambda event: event.kind,
 )
@@ -192,8 +192,9 @@ def test_a_rate_that_is_zero_close_after_the_start_is_found(
 @pytest.mark.parametrize("rate", [1.0, 1e-3, 1e-5])
 @pytest.mark.parametrize("method", METHODS)
 def test_a_run_that_starts_on_an_event_finds_the_way_back(method: str, rate: float) -> None:
-    """Phi = w t - t^2/2 from an angle that rounding leaves beside the event: back after 2 w."""
+    """Phi = w t - t^2/2 from an angle that rounding leaves beside the event: back after some 2 w."""
     off = 0.7 + 1e-15  # on the side from which rounding would make the start a crossing
+    back = rate + np.sqrt(rate**2 - 2 * (off - 0.7))
     scene = rod(fx.Motor(1, constant=-1.0))
     step = rate / 50 if method == "rk4" else None
     line = ev.TipLine((np.cos(off), np.sin(off)), (-np.sin(off), np.cos(off)))
@@ -201,7 +202,7 @@ def test_a_run_that_starts_on_an_event_finds_the_way_back(method: str, rate: flo
     sol = pc.simulate(scene, 0.7, rate, (0, 3 * rate), events=watched, method=method, step=step)
     for found in sol.events:
         (one,) = found
-        assert one.t == pytest.approx(2 * rate, rel=1e-7)
+        assert one.t == pytest.approx(back, rel=1e-9, abs=2e-15 / rate)
         assert one.direction == -1
 
 

@@ -46,18 +46,30 @@ double EventFinder::rounding_at_start(const Difference& difference, const Step& 
   return share * size;
 }
 
-/// The same for a TipLine or a Function with the value `start`. Nothing is known of a Function but
-/// its values along the run: it is compared with the value at the next time that rounding tells
-/// from the start.
+/// The same for a TipLine or a Function with the value `start`. A Function is asked how much it
+/// changes as each of its arguments goes on by its rounding; it may be undefined there.
 double EventFinder::rounding_at_start(std::size_t k, const Step& step, double start) {
   const double t = step.t_old.high;
   if (tip_line_of_[k] >= 0) return 8.0 * tip_lines_[tip_line_of_[k]].rounding(t, step.rows);
-  const double h = std::abs(step.h);
+  const auto n = static_cast<std::size_t>(n_);
+  const double* const moves = step.rows + step.output.dimension();
   const double rate = natural_rate(step.rows, n_, step.output.dimension(), step.h);
-  const double longest = 1e4 * h;  // a motion that hardly begins has no time of its own
-  const double period = rate * longest > 1.0 ? 1.0 / rate : longest;
-  const double moment = share * (std::abs(t) + h + period);
-  return std::abs(sampled(k, step, std::min(moment / h, 1.0)) - start);
+  std::copy_n(step.rows, 2 * n, y_.begin());
+  double sum = 0.0;
+  double time = t;
+  const auto& function = std::get<events::Function>(events_[k].function);
+  const auto add_change = [&](double& argument, double size, double way) {
+    const double before = argument;
+    argument += std::copysign(share * size, way);
+    const double value = function.f(time, std::span(y_.data(), n), std::span(y_.data() + n, n));
+    if (!std::isnan(value)) sum += std::abs(value - start);
+    argument = before;
+  };
+  add_change(time, std::abs(t) + std::abs(step.h), step.h);
+  for (std::size_t i = 0; i < 2 * n; ++i) {
+    add_change(y_[i], i < n ? 1.0 + std::abs(y_[i]) : rate, moves[i]);
+  }
+  return sum;
 }
 
 }  // namespace pendcore
