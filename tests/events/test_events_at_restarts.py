@@ -192,7 +192,7 @@ def test_a_rate_that_is_zero_close_after_the_start_is_found(
 @pytest.mark.parametrize("rate", [1.0, 1e-3, 1e-5])
 @pytest.mark.parametrize("method", METHODS)
 def test_a_run_that_starts_on_an_event_finds_the_way_back(method: str, rate: float) -> None:
-    """Phi = w t - t^2/2 from an angle that rounding leaves beside the event: back after some 2 w."""
+    """Phi = w t - t^2/2 from an angle that rounding leaves beside the event: back after 2 w."""
     off = 0.7 + 1e-15  # on the side from which rounding would make the start a crossing
     back = rate + np.sqrt(rate**2 - 2 * (off - 0.7))
     scene = rod(fx.Motor(1, constant=-1.0))
