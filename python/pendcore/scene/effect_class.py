@@ -158,7 +158,6 @@ class PythonEffect(OwnEffect):
 
     __slots__ = ()
     function: Callable[..., Any]
-    breaks: tuple[float, ...]
 
     def _check(self, where: str) -> None:
         if not callable(self.function):
@@ -166,7 +165,7 @@ class PythonEffect(OwnEffect):
         super()._check(where)
 
     def _as_pair(self) -> tuple[str, Any]:
-        return self.kind, (self.function, self.breaks)
+        return self.kind, tuple(self._for_the_core().values())
 
 
 def made(cls: type[Described], values: Mapping[str, Any], where: str | None = None) -> Any:
