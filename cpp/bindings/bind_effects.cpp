@@ -11,7 +11,9 @@ namespace {
 /// The name of a parameter's type in Python; a part has its own name.
 template <class Value>
 std::string_view type_name() {
-  if constexpr (std::is_same_v<Value, int>) {
+  if constexpr (std::is_same_v<Value, bool>) {
+    return "bool";
+  } else if constexpr (std::is_same_v<Value, int>) {
     return "int";
   } else if constexpr (std::is_same_v<Value, double>) {
     return "float";
@@ -169,7 +171,10 @@ void check_part_named(const std::string& name, const std::string& where, const p
 
 Effect make_effect(py::handle kind_and_values) {
   const auto [kind, values] = kind_and_values.cast<std::pair<std::string, py::object>>();
-  if (kind == "user") return effect_of_function(values);
+  if (kind == "user") {
+    const auto [function, breaks] = values.cast<std::pair<py::object, std::vector<double>>>();
+    return effect_of_function(function, breaks);
+  }
   Effect effect = effect_of_kind(kind);
   std::visit([&](auto& one) { fill(one, values.cast<py::dict>()); }, effect);
   return effect;

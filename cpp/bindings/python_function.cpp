@@ -31,9 +31,10 @@ void call(double t, int n, const double* q, const double* qd, double* forces, vo
 
 }  // namespace
 
-CompiledUser effect_of_function(py::handle function) {
+CompiledUser effect_of_function(py::handle function, const std::vector<double>& breaks) {
   return {.address = reinterpret_cast<std::uintptr_t>(&call),
-          .data = reinterpret_cast<std::uintptr_t>(function.ptr())};
+          .data = reinterpret_cast<std::uintptr_t>(function.ptr()),
+          .breaks = breaks};
 }
 
 std::function<double(double, std::span<const double>, std::span<const double>)> event_function(

@@ -14,8 +14,9 @@ namespace pendcore::bindings {
 
 namespace py = pybind11;
 
-/// f(t, q, qd) -> Q as an effect. Whoever holds the effect keeps the function alive.
-CompiledUser effect_of_function(py::handle function);
+/// f(t, q, qd) -> Q as an effect that may jump at the times of `breaks`. Whoever holds the effect
+/// keeps the function alive.
+CompiledUser effect_of_function(py::handle function, const std::vector<double>& breaks);
 
 /// f(t, q, qd) -> a number, as the function of an event. Whoever holds the event keeps f alive:
 /// copies are made without Python's lock, and count no references.

@@ -29,6 +29,8 @@ sol = pc.simulate(scene, q0=[0.5, 1.0], t_span=(0, 1), ledger=True)
 print(sol.energy().ledger)
 ```
 
+Where the forces jump in time, `breaks` names the times: see [`User`](user.md).
+
 `Q` is zero when the function is called; its entries are generalised forces of the absolute angles,
 N m. `data` is passed on unchanged. It is an address or a NumPy array; the function gets the
 array's memory, so the array has to be C-contiguous float64, and any other is refused. Nothing
@@ -98,5 +100,49 @@ follow a zero of the angle, so it misses the shortest bounces; a `RateZero` also
 between bounces.
 """
 
-MORE = {"torsional_spring": MOVING_END, "joint_stop": IMPACTS}
+JUMPS_OF_TABLES = """## A torque that jumps
+
+With `hold=True` each torque holds until the next time, as a controller with a clock commands it;
+the last one holds for no time. In a linear table, two equal times make a step: the first has the
+torque before it, the second the torque after it.
+
+```python
+held = pc.effects.Table(t=[0.0, 0.1, 0.2, 1.0], torque=[2.0, -1.0, 0.5, 0.0], hold=True)
+pulse = pc.effects.Table(t=[0, 0.4, 0.4, 0.5, 0.5, 1], torque=[0, 0, 3, 3, 0, 0])
+driven = scene.replace(effects=[pc.effects.Motor(1, table=t) for t in (held, pulse)])
+sol = pc.simulate(driven, q0=[0.5, 1.0], t_span=(0, 1), ledger=True)
+print(sol.stats.limited_by_break)  # a step ends at each of these times
+```
+
+Angles and rates do not jump with the torque; accelerations and reactions do. At the time of a jump
+they are those after it.
+"""
+
+JUMPS_OF_FUNCTIONS = """## Forces that jump
+
+A function is taken to be smooth. At a jump the steps shrink until the errors are within the
+tolerances, or a run ends with `step_too_small`. If the times of the jumps are known, name them:
+
+```python
+def push(t, q, qd):
+    return [2.0 if t < 0.5 else -2.0, 0.0]
+
+
+pushed = scene.replace(effects=[pc.effects.User(push, breaks=[0.5])])
+sol = pc.simulate(pushed, q0=[0.5, 1.0], t_span=(0, 1), ledger=True)
+print(0.5 in sol.t)  # True: no step goes across it
+```
+
+The function is not called at a break itself but at the nearest double on the side of the step, so
+`t < 0.5` and `t <= 0.5` give the same run. Accelerations and reactions at a break are those after
+it. What jumps with the state, such as sign(w), has no times: use
+[DryJointFriction](dry_joint_friction.md), or smooth the law.
+"""
+
+MORE = {
+    "torsional_spring": MOVING_END,
+    "joint_stop": IMPACTS,
+    "motor": JUMPS_OF_TABLES,
+    "user": JUMPS_OF_FUNCTIONS,
+}
 """Further sections by kind; each goes on from the example of its page."""

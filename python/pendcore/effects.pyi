@@ -37,20 +37,23 @@ class Sinusoid(Part):
     def phase(self) -> float: ...
 
 class Table(Part):
-    """Torque at given times, linear between them; the run ends where the table ends."""
+    """Torque at given times, linear between them or held; the run ends where the table ends."""
 
-    __match_args__: Final = ("t", "torque")
-    def __init__(self, t: npt.ArrayLike, torque: npt.ArrayLike) -> None: ...
+    __match_args__: Final = ("t", "torque", "hold")
+    def __init__(self, t: npt.ArrayLike, torque: npt.ArrayLike, hold: bool = ...) -> None: ...
     def replace(  # type: ignore[override]
         self,
         *,
         t: npt.ArrayLike = ...,
         torque: npt.ArrayLike = ...,
+        hold: bool = ...,
     ) -> Table: ...
     @property
     def t(self) -> tuple[float, ...]: ...
     @property
     def torque(self) -> tuple[float, ...]: ...
+    @property
+    def hold(self) -> bool: ...
 
 class PD(Part):
     """A controller that holds the joint at an angle: kp (reference - phi) - kd w."""
@@ -351,27 +354,37 @@ class CompiledUser(OwnEffect):
     """An effect of the user's own, as a compiled function of t, q and qd."""
 
     kind: ClassVar[Literal["compiled_user"]]
-    __match_args__: Final = ("address", "data")
-    def __init__(self, address: Any, data: Any = ...) -> None: ...
+    __match_args__: Final = ("address", "data", "breaks")
+    def __init__(self, address: Any, data: Any = ..., breaks: npt.ArrayLike = ...) -> None: ...
     def replace(  # type: ignore[override]
         self,
         *,
         address: Any = ...,
         data: Any = ...,
+        breaks: npt.ArrayLike = ...,
     ) -> CompiledUser: ...
     @property
     def address(self) -> int: ...
     @property
     def data(self) -> int: ...
+    @property
+    def breaks(self) -> tuple[float, ...]: ...
 
 class User(PythonEffect):
     """An effect of the user's own, as a Python function of t, q and qd."""
 
     kind: ClassVar[Literal["user"]]
-    __match_args__: Final = ("function",)
-    def __init__(self, function: Callable[..., npt.ArrayLike]) -> None: ...
+    __match_args__: Final = ("function", "breaks")
+    def __init__(
+        self,
+        function: Callable[..., npt.ArrayLike],
+        breaks: npt.ArrayLike = ...,
+    ) -> None: ...
     def replace(  # type: ignore[override]
         self,
         *,
         function: Callable[..., npt.ArrayLike] = ...,
+        breaks: npt.ArrayLike = ...,
     ) -> User: ...
+    @property
+    def breaks(self) -> tuple[float, ...]: ...

@@ -45,7 +45,7 @@ TEST_CASE("a jump through zero is an event with the states on both sides") {
                                             std::span<const double> qd) { return qd[0] - 0.25; }}},
   };
   std::vector<FoundEvent> found;
-  EventFinder finder(turning.scene, events, found, {});
+  EventFinder finder(turning.scene, events, found, {}, 0.0);
   const StepEnd end = finder.look(*turning.stepper, turning.rows.data(), {0.0, 0.0}, 1.0, 1.0);
   CHECK(end.kind == StepEnd::Kind::whole);
   REQUIRE(found.size() == 2);  // angle 0.5 within the step, angle 1 at its end
@@ -72,7 +72,7 @@ TEST_CASE("a jump into zero is an event, and a jump from zero is not") {
   Turning turning;
   const std::vector<Event> events = {{.function = events::RateZero{.joint = 1, .link = {}}}};
   std::vector<FoundEvent> found;
-  EventFinder finder(turning.scene, events, found, {});
+  EventFinder finder(turning.scene, events, found, {}, 0.0);
   finder.look(*turning.stepper, turning.rows.data(), {0.0, 0.0}, 1.0, 1.0);
   CHECK(found.empty());
   const double moves[] = {1.0, 1.0};
@@ -91,7 +91,7 @@ TEST_CASE("a jump may end the run, once") {
   const double after[] = {1.0, -1.0};
   for (const long long passed : {0, 1}) {
     std::vector<FoundEvent> found;
-    EventFinder finder(turning.scene, events, found, {passed});
+    EventFinder finder(turning.scene, events, found, {passed}, 0.0);
     CHECK(finder.may_end());
     finder.look(*turning.stepper, turning.rows.data(), {0.0, 0.0}, 1.0, 1.0);
     finder.jump(1.0, before, after);
@@ -110,12 +110,33 @@ TEST_CASE("after a jump a step begins with the value that the jump left") {
                                                                        },
                                                                    .samples = 1}}};
   std::vector<FoundEvent> found;
-  EventFinder finder(turning.scene, events, found, {});
+  EventFinder finder(turning.scene, events, found, {}, -2.0);
   finder.look(*turning.stepper, turning.rows.data(), {-1.0, 0.0}, 1.0, 0.0);
   CHECK(calls == 2);
   finder.look(*turning.stepper, turning.rows.data(), {0.0, 0.0}, 1.0, 1.0);
   CHECK(found.size() == 1);
   CHECK(found[0].t == 0.5);
+}
+
+TEST_CASE("an event within rounding of the start of a run is not armed, and elsewhere it is") {
+  Turning turning;
+  for (const double off : {1e-16, 1e-12}) {
+    const std::vector<Event> events = {
+        {.function = events::LinkAngle{.link = 1, .value = off}},
+        {.function = events::JointAngle{.joint = 1, .value = off + 4e-13, .every_turn = true}},
+        {.function = events::TipLine{.point = {0.0, off}, .normal = {0.0, 2.0}}},
+        {.function = events::Function{.f = [off](double, std::span<const double> q,
+                                                 auto) { return q[0] - off; }}},
+    };
+    for (const double t0 : {0.0, -2.0}) {
+      std::vector<FoundEvent> found;
+      EventFinder finder(turning.scene, events, found, {}, t0);
+      finder.look(*turning.stepper, turning.rows.data(), {0.0, 0.0}, 1.0, 1.0);
+      const bool is_on_it = off == 1e-16 && t0 == 0.0;
+      CHECK(found.size() == (is_on_it ? 1 : 4));
+      for (const FoundEvent& one : found) CHECK(one.t < 1e-11);
+    }
+  }
 }
 
 TEST_CASE("events that are out of range are refused by name") {

@@ -58,6 +58,8 @@ def couples(kind: str, t: float = 0.4, **told: object) -> list[float]:
         ("motor", {"constant": -3.0, "limit": 2.0}, -2.0),
         ("motor", {"sinusoid": {"amplitude": 2, "angular_frequency": 1}}, 2 * np.sin(0.4)),
         ("motor", {"table": {"t": [0, 1, 2], "torque": [1, 2, 9]}}, 1.4),
+        ("motor", {"table": {"t": [0, 1, 2], "torque": [1, 2, 9], "hold": True}}, 1.0),
+        ("motor", {"table": {"t": [0, 0.4, 0.4, 2], "torque": [1, 2, 9, 9]}}, 9.0),
         ("motor", {"table": {"t": [0, 0.4, 2], "torque": [1, 2, 9]}}, 2.0),
         ("motor", {"pd": {"kp": 3, "kd": 0.5, "reference": 1}}, 3 * 3.4 + 0.5 * 4.5),
         ("motor", {"pd": {"kp": 3, "kd": 0.5, "reference": 1}, "limit": 8}, 8.0),

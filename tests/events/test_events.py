@@ -220,11 +220,11 @@ def test_a_step_of_more_turns_than_numbers_ends_the_run() -> None:
 
 
 def test_an_event_before_time_can_tell_ends_the_run_where_the_step_began() -> None:
-    here = ev.LinkAngle(1, 1e-295, terminal=True)
-    sol = pc.simulate(rod(), 0.0, 1.0, (1, 2), events=[here])
+    here = ev.LinkAngle(1, 1e-13, terminal=True)  # after 1e-18 s, and more than rounding away
+    sol = pc.simulate(rod(), 0.0, 1e5, (1, 1.001), step=1e-5, events=[here])
     assert (sol.status, [*sol.t], len(sol.events[0])) == ("event", [1.0], 1)
     np.testing.assert_array_equal(sol(sol.t).T, sol.y.T)
-    assert sol.resume(2.0).status == "finished"
+    assert sol.resume(1.001).status == "finished"
 
 
 @pytest.mark.parametrize("method", METHODS)

@@ -66,6 +66,8 @@ class SceneMaker:
     def value(self, p: Parameter, points: int) -> Any:
         if p.part:
             return self.of(getattr(pc.effects, p.part))
+        if p.type == "bool":
+            return happens(self.choices, 50)
         if p.type == "int":
             return self.choices.integer(1, self.n)
         if p.type == "pair" and "range" in p.name:

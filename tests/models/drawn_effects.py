@@ -36,6 +36,8 @@ def value(parameter: Parameter, n: int, points: int) -> st.SearchStrategy[Any]:
         return st.integers(2, 5).flatmap(
             lambda k: made(getattr(pc.effects, str(parameter.part)), n, k)
         )
+    if parameter.type == "bool":
+        return st.booleans()
     if parameter.type == "int":
         return st.integers(1, n)
     numbers = RANGES[parameter.range]

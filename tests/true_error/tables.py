@@ -28,8 +28,8 @@ def tables_of(scene: pc.Scene, nothing: float) -> list[Tables]:
     for effect in scene.effects:
         if effect.kind == "motor" and effect.table is not None:
             j = effect.joint - 1
-            points = zip(effect.table.t, effect.table.torque, strict=True)
-            found.append(_linear([(f"c{j}", f"d{j}", list(points))]))
+            points = list(zip(effect.table.t, effect.table.torque, strict=True))
+            found.append(_linear([(f"c{j}", f"d{j}", points)], effect.table.hold))
         elif effect.kind == "driven_pivot" and effect.spline is not None:
             spline = effect.spline
             found.append(_linear([
@@ -46,12 +46,14 @@ def tables_of(scene: pc.Scene, nothing: float) -> list[Tables]:
     return found
 
 
-def _linear(of: list[tuple[str, str, list[tuple[Any, Any]]]]) -> Tables:
+def _linear(of: list[tuple[str, str, list[tuple[Any, Any]]]], hold: bool = False) -> Tables:
     intervals: dict[tuple[float, float], Parameters] = {}
     for constant, slope, points in of:
         exact = [(Fraction(t), Fraction(value)) for t, value in points]
         for (t0, a), (t1, b) in pairwise(exact):
-            rise = (b - a) / (t1 - t0)
+            if t0 == t1:
+                continue
+            rise = Fraction(0) if hold else (b - a) / (t1 - t0)
             values = intervals.setdefault((float(t0), float(t1)), {})
             values |= {constant: a - rise * t0, slope: rise}
     return Tables([(*ends, values) for ends, values in intervals.items()])

@@ -143,6 +143,7 @@ template <class Row>
 ActingEffects<Row>::ActingEffects(const Scene& scene)
     : EffectsInForce(scene), places_(effects.size()) {
   std::size_t pivots_so_far = 0;
+  std::size_t users_so_far = 0;
   for (std::size_t i = 0; i < effects.size(); ++i) {
     std::visit(
         [&]<class Kind>(const Kind& effect) {
@@ -150,6 +151,7 @@ ActingEffects<Row>::ActingEffects(const Scene& scene)
             if (const auto wave = effect.wave()) number_of_wave[i] = add_wave(*wave);
           }
           if constexpr (std::is_same_v<Kind, DrivenPivot>) places_[i].number = pivots_so_far++;
+          if constexpr (std::is_same_v<Kind, CompiledUser>) places_[i].number = users_so_far++;
           if constexpr (HasCouple<Kind>) {
             if (is_couple(effect)) {
               const int row = place_of(effect) / width;
@@ -212,6 +214,7 @@ void ActingEffects<Row>::put_mode(std::size_t i, int mode) {
         if constexpr (std::is_same_v<Kind, DrivenPivot>) {
           effect.put_mode(*pivots[places_[i].number], 0, mode);
         }
+        if constexpr (std::is_same_v<Kind, CompiledUser>) users[places_[i].number].enter(mode);
         if constexpr (HasCouple<Kind>) {
           if (is_couple(effect)) {
             sum_couples(place_of(effect));

@@ -35,11 +35,11 @@ void Motor::check(const std::string& where) const {
 Motor Motor::compiled() const {
   Motor motor = *this;
   if (!table || !std::isfinite(limit)) return motor;
-  Table result;
+  Table result{.hold = table->hold};
   for (std::size_t i = 0; i < table->t.size(); ++i) {
     const double t = table->t[i];
     const double torque = table->torque[i];
-    if (i > 0) {
+    if (i > 0 && !table->hold) {
       const double t_before = table->t[i - 1];
       const double before = table->torque[i - 1];
       std::vector<double> meets;
@@ -117,9 +117,10 @@ int Motor::next_mode(int mode, std::size_t guard) const {
 std::optional<Couple> Motor::couple(int mode) const {
   if (constant) return Couple{.held = clipped(*constant)};
   if (table) {
-    const auto& [t, torque] = *table;
+    const auto& [t, torque, hold] = *table;
     const int last = static_cast<int>(t.size()) - 1;
     if (mode < 0 || mode >= last) return Couple{.held = std::nan("")};
+    if (hold) return Couple{.held = torque[mode]};
     const double rise = torque[mode + 1] - torque[mode];
     return Couple{.held = torque[mode], .slope = rise / (t[mode + 1] - t[mode]), .start = t[mode]};
   }

@@ -6,17 +6,28 @@
 
 namespace pendcore {
 
-void check_times(const std::string& where, const std::vector<double>& times) {
-  if (times.size() < 2) {
-    throw std::invalid_argument(where + "t: has " + std::to_string(times.size()) +
-                                " times: must have two or more (s)");
-  }
+namespace {
+
+void check_two_or_more(const std::string& where, const std::vector<double>& times) {
+  if (times.size() >= 2) return;
+  throw std::invalid_argument(where + "t: has " + std::to_string(times.size()) +
+                              " times: must have two or more (s)");
+}
+
+}  // namespace
+
+void check_increasing(const std::string& name, const std::vector<double>& times) {
   for (std::size_t i = 1; i < times.size(); ++i) {
     if (!(times[i] > times[i - 1])) {
-      refuse(where + "t[" + std::to_string(i) + "]", times[i],
+      refuse(name + "[" + std::to_string(i) + "]", times[i],
              "above the time before, " + text(times[i - 1]) + " (s)");
     }
   }
+}
+
+void check_times(const std::string& where, const std::vector<double>& times) {
+  check_two_or_more(where, times);
+  check_increasing(where + "t", times);
 }
 
 void check_count(const std::string& where, const std::vector<double>& values, std::size_t count) {
@@ -27,7 +38,20 @@ void check_count(const std::string& where, const std::vector<double>& values, st
 }
 
 void Table::check(const std::string& where) const {
-  check_times(where, t);
+  check_two_or_more(where, t);
+  const std::size_t last = t.size() - 1;
+  for (std::size_t i = 1; i <= last; ++i) {
+    if (t[i] > t[i - 1]) continue;
+    const bool may_step = !hold && i > 1 && i < last && t[i - 1] > t[i - 2];
+    if (t[i] == t[i - 1] && may_step) continue;
+    std::string range = "above the time before, " + text(t[i - 1]) + " (s)";
+    if (t[i] == t[i - 1] && hold)
+      range += ": with hold = true each torque needs its time only once";
+    if (t[i] == t[i - 1] && !hold) {
+      range += ": a time may stand twice, for a step of the torque, between the first and the last";
+    }
+    refuse(where + "t[" + std::to_string(i) + "]", t[i], range);
+  }
   check_count(where + "torque", torque, t.size());
 }
 

@@ -28,6 +28,18 @@ bool jumps_under_users(const Scene& scene, const Statistics& statistics) {
   return !effects_of<CompiledUser>(scene).empty() && statistics.rejected > statistics.accepted;
 }
 
+/// What may be behind steps that became too small, if there are users' laws.
+std::string laws_that_may_jump(const Scene& scene) {
+  std::string names;
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    if (!std::holds_alternative<CompiledUser>(scene.effects[i])) continue;
+    names += (names.empty() ? "" : ", ") + effect_name(scene, i);
+  }
+  if (names.empty()) return names;
+  return "; or a law jumps here: " + names +
+         ": name the times of its jumps, breaks=[...], and smooth what jumps with the state";
+}
+
 }  // namespace
 
 std::string ending_message(const Ending& ending, const Scene& scene, const Solution& solution,
@@ -81,6 +93,7 @@ std::string ending_message(const Ending& ending, const Scene& scene, const Solut
         "friction that can hold a joint at rest: use DryJointFriction";
     return message + ')';
   }
+  if (ending.status == Status::step_too_small) return message + laws_that_may_jump(scene) + ')';
   if (ending.status != Status::non_finite) return message + ')';
   NotFinite found = find_what_is_not_finite(scene, integrator, solution.t_end);
   if (found.component < 0) found.component = ending.bad;

@@ -19,13 +19,16 @@ constexpr double most_turns = 1e6;  // these take seconds, and fit into a list
 }  // namespace
 
 EventFinder::EventFinder(const Scene& scene, const std::vector<Event>& events,
-                         std::vector<FoundEvent>& found, std::vector<long long> passed)
+                         std::vector<FoundEvent>& found, std::vector<long long> passed, double t0)
     : events_(events),
       found_(found),
       passed_(std::move(passed)),
       counts_(events.size()),
       tip_line_of_(events.size(), -1),
       n_(static_cast<int>(scene.links.size())),
+      unarmed_within_(events.size()),
+      t0_(t0),
+      node_t_(t0),
       node_y_(2 * scene.links.size(), std::nan("")),
       node_values_(events.size()) {
   passed_.resize(events.size());
@@ -145,22 +148,30 @@ void EventFinder::find_difference(std::size_t k, const Step& step) {
   // A held joint passes no level, whatever the last bits of its links' angles do.
   if (moved <= 64.0 * epsilon * moved_with_its_links) return;
   const double end = difference.of(y_new_.data());
+  if (step.t_old.high == t0_) unarmed_within_[k] = rounding_at_start(difference, step);
   const Levels levels = levels_along(difference, degree, end, 8.0 * epsilon * size);
   const int count = count_turns(k, levels);
+  bool is_armed = true;
   for (int i = 0; i < count; ++i) {
     const double level = levels.at(i);
-    polynomial_[0] = difference.from(level, step.rows);
-    const double noise = 8.0 * epsilon * (size + std::abs(level));
-    find_roots(polynomial_.data(), degree, difference.from(level, y_new_.data()), noise, roots_);
+    const double start = difference.from(level, step.rows);
+    const double there = difference.from(level, y_new_.data());
+    polynomial_[0] = armed_value(k, start);
+    const double within = polynomial_[0] == 0.0 ? unarmed_within_[k] : 0.0;
+    const double noise = std::max(8.0 * epsilon * (size + std::abs(level)), within);
+    const bool has_left = find_roots(polynomial_.data(), degree, there, noise, roots_);
+    is_armed &= has_left || std::abs(there) > within;
   }
+  if (is_armed) unarmed_within_[k] = 0.0;
 }
 
 void EventFinder::find_tip_line(std::size_t k, const Step& step) {
   double start, end;
   node_values(k, step, start, end);
-  tip_lines_[tip_line_of_[k]].find(step.rows, step.output.interpolant_degree(),
-                                   step.output.dimension(), step.t_old.high, step.h, start, end,
-                                   roots_);
+  const bool has_left = tip_lines_[tip_line_of_[k]].find(
+      step.rows, step.output.interpolant_degree(), step.output.dimension(), step.t_old.high, step.h,
+      armed_value(k, start), end, unarmed_within_[k], roots_);
+  if (has_left || std::abs(end) > unarmed_within_[k]) unarmed_within_[k] = 0.0;
 }
 
 void EventFinder::find_function(std::size_t k, const events::Function& event, const Step& step) {
@@ -173,8 +184,10 @@ void EventFinder::find_function(std::size_t k, const events::Function& event, co
     const double theta = static_cast<double>(i) / samples;
     samples_.push_back({theta, sampled(k, step, theta)});
   }
-  find_roots([&](double theta) { return sampled(k, step, theta); }, start, samples_, end, 0.0,
-             roots_);
+  const bool has_left =
+      find_roots([&](double theta) { return sampled(k, step, theta); }, armed_value(k, start),
+                 samples_, end, unarmed_within_[k], roots_);
+  if (has_left || std::abs(end) > unarmed_within_[k]) unarmed_within_[k] = 0.0;
 }
 
 /// The values at both ends of a step, for functions that cost more than a difference. The value at
@@ -183,6 +196,8 @@ void EventFinder::node_values(std::size_t k, const Step& step, double& start, do
   const bool is_known =
       node_t_ == step.t_old.high && std::equal(node_y_.begin(), node_y_.end(), step.rows);
   start = is_known ? node_values_[k] : function_at(k, step.t_old.high, step.rows);
+  if (step.t_old.high == t0_) unarmed_within_[k] = rounding_at_start(k, step, start);
+  if (std::abs(start) > unarmed_within_[k]) unarmed_within_[k] = 0.0;
   end = node_values_[k] = function_at(k, step.t_new, y_new_.data());
 }
 
@@ -226,6 +241,7 @@ StepEnd EventFinder::look(const StepOutput& output, const double* rows, const Tw
   const Step step{output, rows, t_old, h, t_new};
   candidates_.clear();
   at_the_end_.clear();
+  if (t_old.high != node_t_) std::ranges::fill(unarmed_within_, 0.0);
   for (std::size_t k = 0; k < events_.size() && too_many_of_ < 0; ++k) find(k, step);
   if (too_many_of_ >= 0) {
     ended_by_ = too_many_of_;
@@ -275,8 +291,9 @@ void EventFinder::jump(double t, const double* before, const double* after) {
     const bool is_difference =
         tip_line_of_[k] < 0 && !std::holds_alternative<events::Function>(function);
     if (!is_difference) {
-      const double value_before = function_at(k, t, before);
+      const double value_before = armed_value(k, function_at(k, t, before));
       node_values_[k] = function_at(k, t, after);
+      if (std::abs(node_values_[k]) > unarmed_within_[k]) unarmed_within_[k] = 0.0;
       cross(k, value_before, node_values_[k], t, before, after);
       continue;
     }
@@ -285,10 +302,14 @@ void EventFinder::jump(double t, const double* before, const double* after) {
     const double high = difference.of(after);
     const Levels levels = levels_between(difference, std::min(low, high), std::max(low, high));
     const int count = count_turns(k, levels);
+    bool is_armed = true;
     for (int i = 0; i < count; ++i) {
       const double level = levels.at(i);
-      cross(k, difference.from(level, before), difference.from(level, after), t, before, after);
+      const double there = difference.from(level, after);
+      is_armed &= std::abs(there) > unarmed_within_[k];
+      cross(k, armed_value(k, difference.from(level, before)), there, t, before, after);
     }
+    if (is_armed) unarmed_within_[k] = 0.0;
   }
   node_t_ = t;
   std::copy_n(after, node_y_.size(), node_y_.begin());

@@ -20,7 +20,7 @@ Recorder::Recorder(Solution& solution, const StepOutput& output, const Scene& sc
   if (!events.empty() && degree_ > highest_degree) {
     throw std::invalid_argument("events: the dense output of this method has too high a degree");
   }
-  if (!events.empty()) finder_.emplace(scene, events, solution.found, passed_events);
+  if (!events.empty()) finder_.emplace(scene, events, solution.found, passed_events, solution.t0);
   solution_.t.reserve(solution_.options.t_eval.size());
   solution_.states.reserve(solution_.options.t_eval.size() * dimension_);
 }

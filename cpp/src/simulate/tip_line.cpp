@@ -64,6 +64,18 @@ double TipLine::at(double t, const double* q) {
   return of_directions(t);
 }
 
+double TipLine::rounding(double t, const double* q) const {
+  const PivotMotion pivot = pivot_motion(scene_, t);
+  double lengths = std::abs(line_.point[0]) + std::abs(line_.point[1]);
+  for (int axis = 0; axis < 2; ++axis) {
+    lengths += std::abs(pivot.position[axis]) + std::abs(t * pivot.velocity[axis]);
+  }
+  for (std::size_t i = 0; i < sines_.size(); ++i) {
+    lengths += scene_.links[i].length * (1.0 + std::abs(q[i]));
+  }
+  return last_bits_share * size_of_normal_ * lengths;
+}
+
 double TipLine::of_directions(double t) {
   const PivotMotion pivot = pivot_motion(scene_, t);
   double x = pivot.position[0] - line_.point[0];
@@ -133,8 +145,8 @@ void TipLine::search(double low, double high, int depth) {
   search(middle, high, depth + 1);
 }
 
-void TipLine::find(const double* rows, int degree, int dimension, double t, double h, double start,
-                   double end, std::vector<Root>& found) {
+bool TipLine::find(const double* rows, int degree, int dimension, double t, double h, double start,
+                   double end, double noise, std::vector<Root>& found) {
   rows_ = rows;
   degree_ = degree;
   dimension_ = dimension;
@@ -144,8 +156,8 @@ void TipLine::find(const double* rows, int degree, int dimension, double t, doub
   points_.clear();
   points_left_ = 100'000;  // no sensible step has so many turns
   search(0.0, 1.0, 0);
-  find_roots([this](double theta) { return along(theta).value; }, start, points_, end, noise_,
-             found);
+  return find_roots([this](double theta) { return along(theta).value; }, start, points_, end,
+                    std::max(noise, noise_), found);
 }
 
 }  // namespace pendcore

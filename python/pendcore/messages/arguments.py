@@ -147,6 +147,13 @@ def whole_number(name: str, value: Any, most: int = 2**31 - 1) -> int:
     return whole
 
 
+def flag(name: str, value: object) -> bool:
+    """Return a bool of Python or NumPy as one of Python."""
+    if not isinstance(value, bool | np.bool):
+        raise TypeError(f"{name} = {value!r}: must be True or False")
+    return bool(value)
+
+
 def two_times(t_span: Any) -> tuple[Any, Any]:
     """Return what is given as the start and the end of a run; the core checks them as times."""
     if t_span is None:

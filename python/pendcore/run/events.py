@@ -10,7 +10,7 @@ from typing import Any, ClassVar, NoReturn, Self
 import numpy as np
 
 from pendcore import _core
-from pendcore.messages.arguments import Floats, known_keywords, number, numbers, whole_number
+from pendcore.messages.arguments import Floats, flag, known_keywords, number, numbers, whole_number
 from pendcore.scene.frozen_state import frozen_state
 
 
@@ -71,8 +71,7 @@ class Event:
         values: Any = self
         self._set(number_of, whole_number(where + number_of, getattr(values, number_of)))
         self._set("value", number(where + "value", values.value, "rad"))
-        if not isinstance(values.every_turn, bool):
-            raise TypeError(f"{where}every_turn = {values.every_turn!r}: must be True or False")
+        self._set("every_turn", flag(where + "every_turn", values.every_turn))
 
     def particulars(self) -> dict[str, Any]:
         """Return the parameters that differ from their defaults, enough to make it again."""

@@ -13,7 +13,7 @@ from inspect import Signature
 from typing import Any, ClassVar, NoReturn, Self
 
 from pendcore import _core
-from pendcore.messages.arguments import did_you_mean, in_unit, number, numbers, whole_number
+from pendcore.messages.arguments import did_you_mean, flag, in_unit, number, numbers, whole_number
 from pendcore.scene.compiled_function import address
 from pendcore.scene.effect_description import Description, Parameter, docstring, effects, parts
 from pendcore.scene.frozen_state import frozen_state
@@ -120,10 +120,7 @@ class Effect(Described):
 
 
 class OwnEffect(Effect):
-    """An effect that is a function: it acts, and cannot be kept anywhere.
-
-    It keeps alive what it was made from.
-    """
+    """A function as an effect: no file can keep it, and it keeps alive what it is made from."""
 
     __slots__ = ("_origins",)
     _origins: dict[str, Any]
@@ -162,9 +159,10 @@ class PythonEffect(OwnEffect):
     def _check(self, where: str) -> None:
         if not callable(self.function):
             raise TypeError(f"{where}function = {self.function!r}: must be a function of t, q, qd")
+        super()._check(where)
 
     def _as_pair(self) -> tuple[str, Any]:
-        return self.kind, self.function
+        return self.kind, tuple(self._for_the_core().values())
 
 
 def made(cls: type[Described], values: Mapping[str, Any], where: str | None = None) -> Any:
@@ -249,6 +247,7 @@ def _plain(name: str, parameter: Parameter, value: Any) -> Any:
             raise TypeError(f"{name} = {value!r}: must be a pendcore.effects.{part}")
         return value
     converted: dict[str, Callable[[str, Any], Any]] = {
+        "bool": flag,
         "int": whole_number,
         "float": partial(number, unit=unit),
         "optional float": partial(number, unit=unit),

@@ -32,8 +32,8 @@ class Parameter(NamedTuple):
     sentence : str
         What it is.
     type : str
-        ``"int"``, ``"float"``, ``"optional float"``, ``"pair"``, ``"floats"``, ``"address"``,
-        ``"function"``, or the name of a part.
+        ``"bool"``, ``"int"``, ``"float"``, ``"optional float"``, ``"pair"``, ``"floats"``,
+        ``"address"``, ``"function"``, or the name of a part.
     range : str
         Allowed values, in words.
     required : bool
@@ -127,6 +127,13 @@ CAVEATS = {
 }
 """Notes on the laws whose work the ledger books on an account, by that account."""
 
+
+def _of(name: str, parameter: str) -> Parameter:
+    """Return a parameter as the core describes it, of an effect by name."""
+    rows = (told["parameters"] for told in _core.effect_descriptors() if told["name"] == name)
+    return next(Parameter(**row) for row in next(rows) if row["name"] == parameter)
+
+
 USER = Description(
     name="User",
     kind="user",
@@ -147,8 +154,10 @@ USER = Description(
             required=True,
             default=None,
         ),
+        _of("CompiledUser", "breaks"),
     ),
-    examples="User(function=lambda t, q, qd: -0.1 * qd)",
+    examples="User(function=lambda t, q, qd: -0.1 * qd)\n"
+    "User(function=lambda t, q, qd: [2.0 if t < 0.5 else -2.0, 0.0], breaks=[0.5])",
     outcome="user: -1.305 J",
 )
 

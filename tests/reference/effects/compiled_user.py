@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,6 +25,7 @@ SIGNATURE = ctypes.CFUNCTYPE(
 class CompiledUser(Law):
     address: int
     data: int = 0
+    breaks: Sequence[float] = ()
 
     def called(self) -> User:
         def function(t: Number, q: object, qd: object) -> list[float]:

@@ -1,14 +1,15 @@
 """The couple of a motor at a joint, never more than its limit.
 
-Constant; a sinusoid of time; a table of time, linear between its points; or
-tau = kp (reference - phi) - kd phid.
+Constant; a sinusoid of time; a table of time, linear between its points or held from each to the
+next; or tau = kp (reference - phi) - kd phid.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from reference.arithmetic import Number
 from reference.effects.law import Law
@@ -23,7 +24,7 @@ class Motor(Law):
     joint: int
     constant: float | None = None
     sinusoid: Mapping[str, float] | None = None
-    table: Mapping[str, Sequence[float]] | None = None
+    table: Mapping[str, Any] | None = None
     pd: Mapping[str, float] | None = None
     limit: float = math.inf
 
@@ -36,8 +37,10 @@ class Motor(Law):
         if self.table is not None:
             knots = [number(k) for k in self.table["t"]]
             i = max(k for k in range(len(knots) - 1) if knots[k] <= t or k == 0)
-            on = (number(t) - knots[i]) / (knots[i + 1] - knots[i])
             before, after = map(number, self.table["torque"][i : i + 2])
+            if self.table.get("hold"):
+                return [before]
+            on = (number(t) - knots[i]) / (knots[i + 1] - knots[i])
             return [(1 - on) * before, on * after]
         assert self.pd is not None
         kp, kd, reference = (number(self.pd[name]) for name in ("kp", "kd", "reference"))

@@ -6,7 +6,7 @@ it does work as that angle turns, and only then.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,6 +22,7 @@ from reference.newton_euler import Motion
 @dataclass(frozen=True, kw_only=True)
 class User(Law):
     function: Callable[[Any, Any, Any], Any]
+    breaks: Sequence[float] = ()
 
     def forces(self, instant: Instant) -> list[Number]:
         number = instant.arithmetic.number

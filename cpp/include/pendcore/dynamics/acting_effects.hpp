@@ -197,7 +197,7 @@ class ActingEffects final : public EffectsInForce {
   void add_law(std::size_t i, const Kind& effect, const Scene& scene);
 
   struct Place {
-    std::size_t number = 0;  ///< among the laws of its kind, or among the pivots
+    std::size_t number = 0;  ///< among the laws of its kind, or the pivots or functions
     int lane = 0;
   };
   std::vector<Place> places_;  ///< one for each effect of the scene

@@ -3,7 +3,7 @@
 ///
 ///     constant    tau = value
 ///     sinusoid    tau = A sin(omega t + phase)
-///     table       tau linear between given points; the run ends where the table does
+///     table       tau linear between given points, or held; the run ends where the table does
 ///     pd          tau = kp (reference - phi) - kd w
 ///
 /// Power: tau w. The modes of a table are its pieces, each between two points. A sinusoid and a PD
@@ -31,7 +31,7 @@ struct Motor {
       .kind = "motor",
       .sentence = "A motor in a joint: constant torque, sinusoid, table or PD controller.",
       .law =
-          "tau = constant | A sin(omega t + phase) | linear between points | "
+          "tau = constant | A sin(omega t + phase) | linear between points, or held | "
           "kp (reference - phi) - kd w,  clipped at +-limit",
       .source =
           "Spong, Hutchinson, Vidyasagar, Robot Modeling and Control (2006), section 6.3, "
@@ -41,6 +41,7 @@ struct Motor {
           "Motor(joint=1, constant=2.0)\n"
           "Motor(joint=1, sinusoid=Sinusoid(amplitude=3.0, angular_frequency=6.0))\n"
           "Motor(joint=2, table=Table(t=(0.0, 0.5, 2.0), torque=(0.0, 1.5, -1.5)))\n"
+          "Motor(joint=2, table=Table(t=(0.0, 0.5, 2.0), torque=(1.5, -1.5, 0.0), hold=True))\n"
           "Motor(joint=2, pd=PD(kp=40.0, kd=2.0, reference=0.3), limit=8.0)",
       .outcome = "motor: 3.625 J"};
   static constexpr Hooks hooks{.couple = true,

@@ -7,13 +7,17 @@
 /// equations. The address may be that of a C or C++ function, of a function that numba compiled, or
 /// of a ctypes callback. The function must give the same forces for the same arguments. Power:
 /// Q . qd. The joint reactions treat Q as couples, because they do not know what forces Q may stand
-/// for. In C++, any callable object can be used:
+/// for. Where the forces jump at times that are known, `breaks` names them: the steps end there, as
+/// at the points of a table, and between two breaks the function is called with times between them
+/// only, whichever value it has at a break itself. The modes are the pieces between breaks. In C++,
+/// any callable object can be used:
 ///
 ///     auto magnet = [&](double t, std::span<const double> q, std::span<const double> qd,
 ///                       std::span<double> Q) { Q[0] -= strength * std::sin(q[0]); };
 ///     scene.effects.push_back(CompiledUser::of(magnet));   // magnet must outlive the scene
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 
@@ -27,6 +31,7 @@ using UserFunction = void (*)(double t, int n, const double* q, const double* qd
 struct CompiledUser {
   std::uintptr_t address = 0;
   std::uintptr_t data = 0;
+  std::vector<double> breaks = {};
 
   static constexpr EffectInfo info{
       .name = "CompiledUser",
@@ -42,7 +47,7 @@ struct CompiledUser {
           "    Q[0] -= 0.1 * qd[0]\n"
           "CompiledUser(damp)",
       .outcome = "user: -0.339 J"};
-  static constexpr Hooks hooks{.check = true};
+  static constexpr Hooks hooks{.modes = true, .next_time = true, .check = true};
   static constexpr auto parameters = std::tuple{
       parameter(&CompiledUser::address,
                 {.name = "address",
@@ -55,6 +60,11 @@ struct CompiledUser {
                                       .symbol = "",
                                       .unit = "",
                                       .sentence = "passed to the function unchanged"}),
+      parameter(&CompiledUser::breaks, {.name = "breaks",
+                                        .symbol = "",
+                                        .unit = "s",
+                                        .sentence = "times at which the forces may jump, "
+                                                    "increasing"}),
   };
   /// Calls f(t, q, qd, Q) with spans, (n) each; f is not copied. An exception in f ends the run;
   /// an exception before the first step passes through simulate().
@@ -66,19 +76,34 @@ struct CompiledUser {
       (*static_cast<Function*>(data))(t, std::span(q, size), std::span(qd, size),
                                       std::span(Q, size));
     };
-    return {reinterpret_cast<std::uintptr_t>(call), reinterpret_cast<std::uintptr_t>(&f)};
+    return {.address = reinterpret_cast<std::uintptr_t>(call),
+            .data = reinterpret_cast<std::uintptr_t>(&f)};
   }
 
   void check(const std::string& where) const {
     if (address == 0) {
       throw std::invalid_argument(where + "address = 0: must be the address of a function");
     }
+    check_increasing(where + "breaks", breaks);
   }
 
+  bool has_modes() const { return !breaks.empty(); }
+  int mode_at(double t, double phi, double phid, bool forward) const;
+  std::vector<Guard> guards(int /*mode*/) const { return {}; }
+  int next_mode(int mode, std::size_t /*guard*/) const { return mode; }
+  double next_time(double t, bool forward) const { return next_of(breaks, t, forward); }
+
+  /// From here on the function is called with times of one piece.
+  void enter(int mode);
+
   void operator()(double t, int n, const double* q, const double* qd, double* Q) const {
+    const double within = std::min(std::max(t, earliest), latest);
     // NOLINTNEXTLINE(performance-no-int-to-ptr): that is what the user gave
-    reinterpret_cast<UserFunction>(address)(t, n, q, qd, Q, reinterpret_cast<void*>(data));
+    reinterpret_cast<UserFunction>(address)(within, n, q, qd, Q, reinterpret_cast<void*>(data));
   }
+
+  double earliest = -never;  ///< s, the times of the piece that the law is in
+  double latest = never;
 };
 
 }  // namespace pendcore

@@ -2,7 +2,7 @@
 /// The laws of time that motors and pivots follow: a sinusoid, a table, a natural cubic spline.
 ///
 ///     sinusoid  amplitude sin(angular_frequency t + phase)
-///     Table     linear between its points
+///     Table     linear between its points, or held from each point to the next
 ///     Spline    natural cubic through its points: x'' is linear between them, 0 at both ends
 ///
 /// A table and a spline end where their points end. Beyond, they have no value (NaN), and a run
@@ -37,25 +37,33 @@ struct Sinusoid {
   };
 };
 
-/// The value is value + slope (t - t_k) from t_k to t_{k+1}.
+/// The value is value + slope (t - t_k) from t_k to t_{k+1}; the slope is 0 if values are held. Two
+/// equal times make a step: the first has the value before it, the second the value after it.
 struct Table {
   std::vector<double> t = {};
   std::vector<double> torque = {};
+  bool hold = false;
 
   static constexpr std::string_view name = "Table";
   static constexpr std::string_view sentence =
-      "Torque at given times, linear between them; the run ends where the table ends.";
+      "Torque at given times, linear between them or held; the run ends where the table ends.";
   static constexpr auto parameters = std::tuple{
       parameter(&Table::t, {.name = "t",
                             .symbol = "t",
                             .unit = "s",
-                            .sentence = "times, increasing, two or more",
+                            .sentence = "times, increasing, two or more; where the torque steps, "
+                                        "the time stands twice",
                             .required = true}),
       parameter(&Table::torque, {.name = "torque",
                                  .symbol = "tau",
                                  .unit = "N m",
                                  .sentence = "torque at those times",
                                  .required = true}),
+      parameter(&Table::hold, {.name = "hold",
+                               .symbol = "",
+                               .unit = "",
+                               .sentence = "whether each torque holds until the next time, the "
+                                           "last one for no time"}),
   };
   void check(const std::string& where) const;
 };
@@ -122,16 +130,18 @@ struct Spline {
   std::vector<double> ydd = {};
 };
 
-/// The piece k of t_0 < t_1 < ... that a run at time t is in: t_k <= t < t_{k+1} forward, t_k < t
+/// The piece k of t_0 <= t_1 <= ... that a run at time t is in: t_k <= t < t_{k+1} forward, t_k < t
 /// <= t_{k+1} backward. The end of the times in the direction of the run belongs to the last
 /// (first) piece. The result is -1 before the first time and size - 1 after the last.
 int piece_at(const std::vector<double>& times, double t, bool forward);
 
-/// The first of t_0 < t_1 < ... after t, or the last before t if not `forward`; infinite if there
+/// The first of t_0 <= t_1 <= ... after t, or the last before t if not `forward`; infinite if there
 /// is none.
 double next_of(const std::vector<double>& times, double t, bool forward);
 
-/// Throws unless there are at least two times and they increase.
+/// Throws unless the times increase; `name` is theirs.
+void check_increasing(const std::string& name, const std::vector<double>& times);
+/// Throws unless there are at least two times t and they increase.
 void check_times(const std::string& where, const std::vector<double>& times);
 void check_count(const std::string& where, const std::vector<double>& values, std::size_t count);
 

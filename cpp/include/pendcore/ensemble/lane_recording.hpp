@@ -20,7 +20,10 @@ class RecordingLanes : public LaneRunner {
  protected:
   RecordingLanes(const Scene& scene, double t0, double t_end, const Options& options)
       : scene_(scene), t0_(t0), t_end_(t_end), options_(options) {
-    for (LaneMember& member : members_) member.recorded = Solution(options);
+    for (LaneMember& member : members_) {
+      member.recorded = Solution(options);
+      member.recorded.t0 = t0_;
+    }
   }
 
   virtual LaneSteps<width>& steps() = 0;
@@ -46,7 +49,7 @@ class RecordingLanes : public LaneRunner {
     const bool watches = source.watches();
     LaneSteps<width>& at = steps();
     std::vector<FoundEvent> none;
-    differences_ = EventFinder(scene_, options_.events, none, {}).differences();
+    differences_ = EventFinder(scene_, options_.events, none, {}, t0_).differences();
     const bool may_be_screened = differences_.size() == options_.events.size();
     at.every_step_is_recorded = watches || !may_be_screened;
     if (may_be_screened && !watches) at.differences = differences_;

@@ -2,10 +2,14 @@
 /// Finds events along a run: looks at each accepted step, and at each jump of the state.
 ///
 /// Each event is a number at the ends of a step, computed from the states there, and a list of
-/// zeros in between (integrate/events/root.hpp). What happened before a step never matters: an
-/// event whose function is zero where the step begins is not armed until the function leaves zero,
-/// at the start of the run as after an event at the end of the step before. So a resumed run finds
-/// the same events as a run that never stopped.
+/// zeros in between (integrate/events/root.hpp). An event whose function is zero where a step
+/// begins is not armed until the function leaves zero, at the start of the run as after an event at
+/// the end of the step before.
+///
+/// A run may start where an event ended another one, on a zero to rounding only. There, an event is
+/// not armed until its function has left zero by more than rounding (event_start.cpp). After that,
+/// what happened before a step never matters, so that a resumed run finds the same events as a run
+/// that never stopped.
 #pragma once
 
 #include <string>
@@ -21,9 +25,9 @@ namespace pendcore {
 class EventFinder {
  public:
   /// Adds events to `found`, which may have some already. The first passed[k] occurrences of event
-  /// number k do not end the run: a run that ended there was continued.
+  /// number k do not end the run: a run that ended there was continued. The run starts at t0.
   EventFinder(const Scene& scene, const std::vector<Event>& events, std::vector<FoundEvent>& found,
-              std::vector<long long> passed);
+              std::vector<long long> passed, double t0);
 
   /// Whether an event may end the run: a terminal one, a function that may throw, too many turns.
   bool may_end() const;
@@ -75,6 +79,9 @@ class EventFinder {
   Difference difference_of(const EventFunction& function) const;
   double function_at(std::size_t k, double t, const double* y);
   void find(std::size_t k, const Step& step);
+  double rounding_at_start(const Difference& difference, const Step& step) const;
+  double rounding_at_start(std::size_t k, const Step& step, double start);
+  double armed_value(std::size_t k, double value) const;
   void find_difference(std::size_t k, const Step& step);
   int count_turns(std::size_t k, const Levels& levels);
   void find_tip_line(std::size_t k, const Step& step);
@@ -105,8 +112,12 @@ class EventFinder {
   std::vector<double> bernstein_;
   std::vector<double> y_new_;
   std::vector<double> y_;
+  /// How close to zero an event's function may come by rounding before the event is armed; 0 from
+  /// then on.
+  std::vector<double> unarmed_within_;
+  double t0_;
   // Values at the end of the last step, which are used again at the start of the next.
-  double node_t_ = 0.0;
+  double node_t_;
   std::vector<double> node_y_;
   std::vector<double> node_values_;
 };

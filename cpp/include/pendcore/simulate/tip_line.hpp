@@ -29,10 +29,14 @@ class TipLine {
   /// At time t (s) and angles q (n).
   double at(double t, const double* q);
 
+  /// What rounding may do to it there.
+  double rounding(double t, const double* q) const;
+
   /// The zeros in 0 < theta <= 1 of a step of size h from time t, with the dense output in
   /// `rows`, (degree + 1) of `dimension` numbers; `start` and `end` are the values at its ends.
-  void find(const double* rows, int degree, int dimension, double t, double h, double start,
-            double end, std::vector<Root>& found);
+  /// Values up to `noise` count as zero. Returns whether it has left the zero in which it starts.
+  bool find(const double* rows, int degree, int dimension, double t, double h, double start,
+            double end, double noise, std::vector<Root>& found);
 
  private:
   struct Point {

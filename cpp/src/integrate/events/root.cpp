@@ -171,23 +171,23 @@ void find_turning_points(const double* coefficients, int degree, std::vector<Tur
   TurningPoints(coefficients, degree, found).search(slopes, 0.0, 1.0, 0);
 }
 
-void find_roots(const double* coefficients, int degree, double end, double noise,
+bool find_roots(const double* coefficients, int degree, double end, double noise,
                 std::vector<Root>& found) {
   const double start = coefficients[0];
   double reach = noise;  // an upper bound of |p(theta) - p(0)|
   for (int k = 1; k <= degree; ++k) reach += std::abs(coefficients[k]);
-  if (std::abs(start) > reach && sign(start) == sign(end)) return;
+  if (std::abs(start) > reach && sign(start) == sign(end)) return true;
   LongForm b{};
   bernstein_form(coefficients, degree, b.data());
   b[degree] = end;
   const auto [least, largest] = std::minmax_element(b.begin(), b.begin() + degree + 1);
-  if (*least > noise || *largest < -noise) return;
+  if (*least > noise || *largest < -noise) return true;
   LongForm slopes{};
   for (int i = 0; i < degree; ++i) slopes[i] = b[i + 1] - b[i];
   std::vector<TurningPoint> turning_points;
   TurningPoints(coefficients, degree, turning_points).search(slopes, 0.0, 1.0, 0);
-  find_roots([=](double theta) { return value(coefficients, degree, theta); }, start,
-             turning_points, end, noise, found);
+  return find_roots([=](double theta) { return value(coefficients, degree, theta); }, start,
+                    turning_points, end, noise, found);
 }
 
 }  // namespace pendcore

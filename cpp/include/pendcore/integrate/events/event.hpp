@@ -12,10 +12,10 @@
 /// polynomial. For the line of the tip, every sign change is found by bounds on the second
 /// derivative. A Function is only sampled.
 ///
-/// A zero at the start is not an event: an event is armed when its function leaves zero. A zero at
-/// the end of a step, or of the run, is an event. After an event, its function must leave zero
-/// again. The sign at the end of a step is the sign at the state there; the time of an event comes
-/// from its share of the step.
+/// A zero at the start is not an event: an event is armed when its function leaves zero, and at the
+/// start of a run zero is whatever rounding makes of it. A zero at the end of a step, or of the
+/// run, is an event. After an event, its function must leave zero again. The sign at the end of a
+/// step is the sign at the state there; the time of an event comes from its share of the step.
 #pragma once
 
 #include <array>

@@ -65,9 +65,10 @@ double bisect(const Function& f, double low, double high, int after) {
 /// Adds the zeros of f in 0 < theta <= 1 to `found`, in their order. At the ends, the values
 /// `start` and `end` replace what f computes, so that two neighbouring steps agree on the sign
 /// between them. A zero at 0 does not count, and one at 1 does. Values up to `noise` at a turning
-/// point count as zero.
+/// point count as zero. Returns whether f has left the zero in which it starts, at the last turning
+/// point at the latest; true if it does not start in one.
 template <class Function>
-void find_roots(const Function& f, double start, const std::vector<TurningPoint>& turning_points,
+bool find_roots(const Function& f, double start, const std::vector<TurningPoint>& turning_points,
                 double end, double noise, std::vector<Root>& found) {
   int side = sign(start);  // 0 until f leaves the zero where it starts
   double low = 0.0;
@@ -89,7 +90,7 @@ void find_roots(const Function& f, double start, const std::vector<TurningPoint>
     low = point.theta;
   }
   const int here = sign(end);
-  if (side == 0) return;
+  if (side == 0) return false;
   if (touch.theta <= 1.0) {
     found.push_back({touch.theta, here == side ? 0 : -side});
   } else if (here == 0) {
@@ -97,11 +98,12 @@ void find_roots(const Function& f, double start, const std::vector<TurningPoint>
   } else if (here != side) {
     found.push_back({bisect(f, low, 1.0, here), here});
   }
+  return true;
 }
 
 /// The same for p(theta) = sum_k coefficients[k] theta^k, with the value `end` at 1. The degree is
 /// at most 63.
-void find_roots(const double* coefficients, int degree, double end, double noise,
+bool find_roots(const double* coefficients, int degree, double end, double noise,
                 std::vector<Root>& found);
 
 }  // namespace pendcore
