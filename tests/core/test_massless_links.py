@@ -6,23 +6,19 @@ digits, with the reference's own runs, and with the links that locks make one.
 
 from __future__ import annotations
 
-import itertools
-import warnings
+import functools
 from typing import Any
 
 import numpy as np
 import pendcore as pc
 import pytest
 from described_scenes import scene_of
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from numpy.typing import NDArray
 from pendcore import effects as fx
 from reference.arithmetic import multiple_precision
 from reference.effects import Described, law
 from reference.newton_euler import Body, uniform_rod
 from reference.rig import Rig
-from scipy.integrate import solve_ivp
 
 FORTY = multiple_precision(40)
 EMPTY, SHORT = Body(0.0, 1.2, 0.6, 0.0), Body(0.0, 0.5, 0.0, 0.0)
@@ -33,24 +29,24 @@ SPINNING = Body(0.0, 0.7, 0.0, 0.2)
 
 
 def lock(joint: int) -> Described:
-    return Described("lock", {"joint": joint})
+    return ("lock", {"joint": joint})
 
 
 def rotor(joint: int) -> Described:
-    return Described("rotor_inertia", {"joint": joint, "armature": 0.3})
+    return ("rotor_inertia", {"joint": joint, "armature": 0.3})
 
 
 def motor(joint: int) -> Described:
     wave = {"amplitude": 2.0, "angular_frequency": 3.0, "phase": 0.4}
-    return Described("motor", {"joint": joint, "sinusoid": wave})
+    return ("motor", {"joint": joint, "sinusoid": wave})
 
 
 def damper(joint: int) -> Described:
-    return Described("viscous_joint", {"joint": joint, "damping": 0.2})
+    return ("viscous_joint", {"joint": joint, "damping": 0.2})
 
 
-PAYLOAD = Described("payload", {"mass": 0.7, "inertia": 0.02})
-POINT_PAYLOAD = Described("payload", {"mass": 0.7})
+PAYLOAD = ("payload", {"mass": 0.7, "inertia": 0.02})
+POINT_PAYLOAD = ("payload", {"mass": 0.7})
 
 # Each was refused, though its mass matrix is regular wherever it can go.
 SCENES: dict[str, tuple[list[Body], list[Described]]] = {
@@ -83,7 +79,7 @@ RATES = [0.7, -1.3, 2.1, 0.4, -0.8, 1.7]
 def case(name: str) -> tuple[pc.Scene, Rig, list[float], list[float]]:
     """Return a scene, the reference, and a start at which locked joints are at rest."""
     bodies, described = SCENES[name]
-    locked = [one.parameters["joint"] - 1 for one in described if one.kind == "lock"]
+    locked = [told["joint"] - 1 for kind, told in described if kind == "lock"]
     rates: list[float] = []
     for i in range(len(bodies)):
         before = rates[i - 1] if i else 0.0
@@ -111,20 +107,33 @@ def test_accelerations_reactions_and_energy_are_those_of_newton_and_euler(name: 
     assert energy.potential[0] == pytest.approx(float(exact.potential), rel=1e-13)
 
 
-@pytest.mark.parametrize("method", ["dopri5", "dop853", "taylor", "radau5", "auto"])
-@pytest.mark.parametrize("name", SCENES)
-def test_every_method_follows_the_run_of_the_reference(name: str, method: str) -> None:
-    scene, rig, q, qd = case(name)
+@functools.cache
+def end_of_the_reference(name: str) -> NDArray[np.float64]:
+    """Return the state after 0.2 s by the classical Runge-Kutta method and Newton and Euler."""
+    _, rig, q, qd = case(name)
     n = len(q)
     plain = Rig(bodies=rig.bodies, gravity=rig.gravity, effects=rig.effects)
 
-    def rates(t: float, y: NDArray[np.float64]) -> list[float]:
-        return [*y[n:], *map(float, plain.motion(t, list(y[:n]), list(y[n:])).accelerations)]
+    def slope(t: float, y: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.r_[y[n:], plain.motion(t, list(y[:n]), list(y[n:])).accelerations]
 
-    known = solve_ivp(rates, (0, 0.4), [*q, *qd], method="DOP853", rtol=1e-10, atol=1e-11)
-    sol = pc.simulate(scene, q, qd, (0, 0.4), method=method, rtol=1e-9, atol=1e-11, ledger=True)
+    y, h = np.r_[q, qd], 0.0005
+    for t in h * np.arange(400):
+        a = slope(t, y)
+        b = slope(t + h / 2, y + h / 2 * a)
+        c = slope(t + h / 2, y + h / 2 * b)
+        y = y + h / 6 * (a + 2 * b + 2 * c + slope(t + h, y + h * c))
+    return y
+
+
+@pytest.mark.parametrize("method", ["dopri5", "dop853", "taylor", "radau5", "auto"])
+@pytest.mark.parametrize("name", SCENES)
+def test_every_method_follows_the_run_of_the_reference(name: str, method: str) -> None:
+    scene, _, q, qd = case(name)
+    y = end_of_the_reference(name)
+    sol = pc.simulate(scene, q, qd, (0, 0.2), method=method, rtol=1e-9, atol=1e-11, ledger=True)
     assert sol.success, sol.message
-    np.testing.assert_allclose(np.r_[sol.q[-1], sol.qd[-1]], known.y[:, -1], rtol=0, atol=1e-7)
+    np.testing.assert_allclose(np.r_[sol.q[-1], sol.qd[-1]], y, rtol=0, atol=1e-7)
     energy = sol.energy()
     drift = energy.kinetic + energy.potential if energy.ledger is None else energy.ledger.residual
     assert np.abs(drift - drift[0]).max() < 1e-7
@@ -136,16 +145,16 @@ def test_members_of_an_ensemble_have_the_bits_of_the_run_alone(name: str) -> Non
     for method in ("dop853", "taylor"):
         options: dict[str, Any] = {"method": method, "store": "end"}
         sweep = np.array(q) + 0.01 * np.arange(9)[:, None]
-        many = pc.simulate_ensemble(scene, q0=sweep, qd0=qd, t_span=(0, 0.5), **options)
+        many = pc.ensemble(scene, sweep, qd, t_span=(0, 0.5), method=method)
         for k in (0, 8):
             alone = pc.simulate(scene, sweep[k], qd, (0, 0.5), **options)
-            np.testing.assert_array_equal(many.final_q[k], alone.q[-1])
+            np.testing.assert_array_equal(many.q[k], alone.q[-1])
 
 
 @pytest.mark.parametrize("name", SCENES)
 def test_explain_has_a_word_for_each(name: str) -> None:
     scene, _, q, _ = case(name)
-    assert str(pc.explain(scene))
+    assert str(scene.explain(0.0, q))
 
 
 def merged(angle: float) -> pc.Link:
@@ -168,8 +177,9 @@ def test_friction_and_stops_see_locked_links_as_one(angle: float, effects: list[
     """The locked pair swings, sticks and bounces like one link that is bent at the joint."""
     pair = [pc.Link(mass=0.0, length=1.2), pc.Link.point_mass(mass=1.5, length=0.8)]
     bent = float(np.arctan2(0.8 * np.sin(angle), 1.2 + 0.8 * np.cos(angle)))
-    moved = [e.replace(range=tuple(np.add(e.range, bent))) if hasattr(e, "range") else e for e in
-             effects]
+    moved = [
+        e.replace(range=tuple(np.add(e.range, bent))) if hasattr(e, "range") else e for e in effects
+    ]
     two = pc.Scene(links=pair, gravity=9.81, effects=[*effects, fx.Lock(joint=2, angle=angle)])
     one = pc.Scene(links=[merged(angle)], gravity=9.81, effects=moved)
     options: dict[str, Any] = {"rtol": 1e-11, "atol": 1e-12, "ledger": True}
@@ -195,105 +205,3 @@ def test_a_lock_where_the_run_starts_is_looked_at_there() -> None:
         pc.simulate(scene, [0.3, 0.3 + np.pi], 0.0, (0, 1))
     with pytest.raises(ValueError, match="link 1: inertia about its joint"):
         scene.replace(effects=[fx.Lock(joint=2, angle=-np.pi)])
-
-
-# What is refused is singular, and what is taken is not ---------------------------------------
-
-
-def mass_matrix(links: list[Body], effects: list[Any], q: NDArray[np.float64]) -> Any:
-    """Sum the Jacobians of all that has a mass or an inertia, for the bodies that locks leave."""
-    n = len(links)
-    across = np.stack([-np.sin(q), np.cos(q)])
-    m = np.zeros((n, n))
-    arm = np.zeros((2, n))
-
-    def add(mass: float, at: NDArray[np.float64]) -> None:
-        nonlocal m
-        m = m + mass * at.T @ at
-
-    for i, link in enumerate(links):
-        center = arm.copy()
-        center[:, i] += link.center * across[:, i]
-        add(link.mass, center)
-        m[i, i] += link.inertia
-        arm[:, i] += link.length * across[:, i]
-    body = np.cumsum([not any(isinstance(e, fx.Lock) and e.joint == i + 1 for e in effects)
-                      for i in range(n)]) - 1
-    for e in effects:
-        if isinstance(e, fx.Payload):
-            add(e.mass, arm)
-            m[-1, -1] += e.inertia
-        if isinstance(e, fx.RotorInertia):
-            row = np.eye(n)[e.joint - 1] - (np.eye(n)[e.joint - 2] if e.joint > 1 else 0.0)
-            m = m + e.armature * np.outer(row, row)
-    count = body[-1] + 1
-    together = (body[:, None] == np.arange(count)).astype(float)
-    return together.T @ m @ together
-
-
-def least(links: list[Body], effects: list[Any]) -> float:
-    """The least eigenvalue of the mass matrix wherever joints can go, by trying out and descending.
-    """
-    from scipy.optimize import minimize
-
-    n = len(links)
-    locked = {e.joint: e.angle for e in effects if isinstance(e, fx.Lock)}
-    ranges = {e.joint: e.range for e in effects if isinstance(e, fx.JointStop)}
-    free = [j for j in range(2, n + 1) if j not in locked]
-
-    def value(angles: Any) -> float:
-        phi = np.zeros(n)
-        for j, x in zip(free, angles, strict=True):
-            phi[j - 1] = np.clip(x, *ranges.get(j, (-np.inf, np.inf)))
-        for j, x in locked.items():
-            phi[j - 1] = x
-        m = mass_matrix(links, effects, np.cumsum(phi))
-        return float(np.linalg.eigvalsh(m)[0]) if m.size else 1.0
-
-    lined_up = [[0.0, np.pi, 1.3, -2.0] for _ in free]
-    starts = sorted(itertools.product(*lined_up), key=value)[:6]
-    best = min(map(value, starts))
-    for start in starts if free else []:
-        found = minimize(lambda x: np.log(max(value(x), 1e-40)), start, method="Nelder-Mead",
-                         options={"maxiter": 300})
-        best = min(best, value(found.x))
-    return best
-
-
-bodies = st.sampled_from([EMPTY, SHORT, POINT, ROD, AT_THE_JOINT, Body(0.9, 1.0, 0.4, 0.0)])
-
-
-@st.composite
-def drawn(draw: st.DrawFn) -> tuple[list[Body], list[Any]]:
-    links = draw(st.lists(bodies, min_size=1, max_size=4))
-    effects: list[Any] = []
-    for joint in range(1, len(links) + 1):
-        kind = draw(st.sampled_from(["", "", "lock", "rotor", "stop"]))
-        if kind == "lock":
-            effects.append(fx.Lock(joint=joint, angle=draw(st.sampled_from([0.0, 0.7, np.pi]))))
-        if kind == "rotor":
-            effects.append(fx.RotorInertia(joint=joint, armature=0.4))
-        if kind == "stop" and joint > 1:
-            effects.append(fx.JointStop(joint=joint, range=draw(
-                st.sampled_from([(0.4, 2.5), (-0.5, 1.0), (2.0, 4.0)]))))
-    if draw(st.booleans()):
-        effects.append(fx.Payload(mass=0.6))
-    return links, effects
-
-
-@settings(max_examples=150, deadline=None)
-@given(drawn())
-def test_a_scene_is_refused_where_and_only_where_its_mass_matrix_is_singular(
-    given_: tuple[list[Body], list[Any]],
-) -> None:
-    links, effects = given_
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", pc.PendcoreWarning)
-        try:
-            pc.Scene(links=[pc.Link(**one._asdict()) for one in links], effects=effects)
-            is_taken = True
-        except ValueError as refused:
-            assert str(refused).startswith("link ")
-            is_taken = False
-    smallest = least(links, effects)
-    assert smallest > 1e-6 if is_taken else smallest < 1e-9, (is_taken, smallest)

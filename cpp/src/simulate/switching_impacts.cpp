@@ -26,9 +26,9 @@ void Switching::strike(double t, double* y, bool begins) {
   book(Account::drive, joints_.work_of_drive(equations_, t, before, qd), y);
 }
 
-/// Computes impacts at one time until no joint moves into its stop. A joint at rest that nothing pushes against its stop counts as leaving it, which more exact
-/// numbers might show. At the beginning of a run, all joints that touch their stops take part in
-/// the first impacts.
+/// Computes impacts at one time until no joint moves into its stop. A joint at rest that nothing
+/// pushes against its stop counts as leaving it, which more exact numbers might show. At the
+/// beginning of a run, all joints that touch their stops take part in the first impacts.
 void Switching::bounce_in_turn(double t, double* y, bool begins) {
   double* const qd = y + n_;
   const bool is_plastic = changes_at_once_ > many_at_once;

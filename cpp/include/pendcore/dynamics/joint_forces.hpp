@@ -33,8 +33,8 @@ struct JointForces {
   /// Adds M^-1 J^T lambda to x, (n).
   void add_response(double* x) const { add_response(problem.lambda, x); }
   /// Computes x = M^-1 J^T lambda, (n), and refines lambda and x until J x + a = 0 in the joints
-  /// between their bounds and M x = J^T lambda, both to the rounding of x: what W and the factors of
-  /// M alone give loses as many digits as the condition of M has.
+  /// between their bounds and M x = J^T lambda, both to the rounding of x. What W and the factors
+  /// of M alone give loses as many digits as the condition of M has.
   void refined_response(double* x);
 
  private:
