@@ -114,7 +114,7 @@ def drawn(draw: st.DrawFn) -> tuple[list[Body], list[Any]]:
     return links, effects
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(drawn())
 def test_a_scene_is_refused_where_and_only_where_its_mass_matrix_is_singular(
     given_: tuple[list[Body], list[Any]],
