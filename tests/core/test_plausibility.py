@@ -161,23 +161,44 @@ def test_a_run_under_a_table_ends_where_that_does():
 POINT = pc.Link.point_mass(mass=1.0, length=1.0)
 EMPTY = pc.Link(mass=0.0, length=1.0)
 AT_THE_JOINT = pc.Link(mass=1.0, length=1.0, center=0.0, inertia=0.0)
+NEITHER = "has neither mass nor inertia about its joint: the mass matrix is singular when it lines"
 SINGULAR = {
     "a mass in its joint": (
         [AT_THE_JOINT],
+        [],
         "link 1: inertia about its joint, with what it carries",
     ),
-    "a mass in the last joint": ([EMPTY, AT_THE_JOINT], "link 2: inertia about its joint"),
-    "a point on a massless link": ([EMPTY, POINT], "link 1: has neither mass nor inertia"),
-    "the same further out": ([ROD, EMPTY, POINT], "link 2: has neither mass nor inertia"),
-    "massless links in a row": ([EMPTY, EMPTY, ROD], "link 1: has neither mass nor inertia"),
+    "a mass in the last joint": ([EMPTY, AT_THE_JOINT], [], "link 2: inertia about its joint"),
+    "nothing at all": ([ROD, EMPTY], [], "link 2: mass = 0.0: must be finite and > 0 .kg."),
+    "a point on a massless link": ([EMPTY, POINT], [], f"link 1: {NEITHER} up with link 2"),
+    "the same further out": ([ROD, EMPTY, POINT], [], f"link 2: {NEITHER}"),
+    "massless links in a row": ([EMPTY, EMPTY, ROD], [], f"link 1: {NEITHER}"),
+    "a payload on two": ([EMPTY, EMPTY], [fx.Payload(1.0)], f"link 1: {NEITHER}"),
+    "a stop that is passed": ([EMPTY, POINT], [fx.JointStop(2, (-1, 1))], f"link 1: {NEITHER}"),
+    "friction holds for a while": (
+        [EMPTY, POINT],
+        [fx.DryJointFriction(2, 1e9)],
+        f"link 1: {NEITHER}",
+    ),
+    "a lock before": ([ROD, EMPTY, POINT], [fx.Lock(1)], f"link 2: {NEITHER}"),
+    "a mass that a lock folds into the joint": (
+        [EMPTY, POINT],
+        [fx.Lock(2, np.pi)],
+        "link 1: inertia about its joint",
+    ),
+    "a rotor between links as long": (
+        [EMPTY, POINT],
+        [fx.RotorInertia(2, 0.3)],
+        f"link 1: {NEITHER}",
+    ),
 }
 
 
 @pytest.mark.parametrize("case", SINGULAR)
 def test_a_mass_matrix_that_is_not_positive_definite_is_refused_by_link_and_reason(case):
-    links, message = SINGULAR[case]
-    with pytest.raises(ValueError, match=f"^{message}"):
-        pc.Scene(links=links)
+    links, effects, message = SINGULAR[case]
+    with pytest.raises(ValueError, match=f"^{message}.*Link.point_mass"):
+        pc.Scene(links=links, effects=effects)
 
 
 heavy = st.builds(

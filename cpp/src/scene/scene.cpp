@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "pendcore/scene/degrees.hpp"
+#include "pendcore/scene/singular.hpp"
 #include "pendcore/text/message.hpp"
 
 namespace pendcore {
@@ -11,14 +12,11 @@ namespace {
 
 std::string link_name(std::size_t i) { return "link " + std::to_string(i + 1); }
 
-void check_link(const Link& link, std::size_t i, bool last) {
+void check_link(const Link& link, std::size_t i) {
   const double m = link.mass;
-  if (last && !(std::isfinite(m) && m > 0)) {
-    refuse(link_name(i) + ": mass", m, "finite and > 0 (kg)");
-  }
   if (!(std::isfinite(m) && m >= 0)) {
     refuse(link_name(i) + ": mass", m,
-           "finite and >= 0 (kg; 0 only where another link hangs on it)");
+           "finite and > 0 (kg), or 0 where something else resists its rotation");
   }
   if (!(std::isfinite(link.length) && link.length > 0)) {
     refuse(link_name(i) + ": length", link.length, "finite and > 0 (m)");
@@ -78,12 +76,6 @@ void check_effects(const Scene& scene) {
   }
 }
 
-bool has_rotor(const Scene& scene, std::size_t joint) {
-  return std::ranges::any_of(effects_of<RotorInertia>(scene), [&](const RotorInertia& one) {
-    return static_cast<std::size_t>(one.joint) == joint && one.armature > 0;
-  });
-}
-
 /// Adds a sentence for an angle that seems to be in degrees. A phase may be that large, because it
 /// moves a wave in time.
 void warn_of_degrees(const std::string& where, const ParameterInfo& info, double x,
@@ -126,37 +118,22 @@ void check(const Scene& scene) {
   if (!std::isfinite(scene.gravity)) {
     refuse("gravity", scene.gravity, "finite (m/s^2, downward; 0 switches it off)");
   }
-  for (std::size_t i = 0; i < n; ++i) check_link(scene.links[i], i, i + 1 == n);
+  for (std::size_t i = 0; i < n; ++i) check_link(scene.links[i], i);
 
   check_effects(scene);
-  // A straight or folded chain resists rotation least. There, beta is the mass that the joint of
-  // link i feels across the link, and D is the inertia of link i about its joint (chain.hpp: D
-  // B_nn).
   double carried = 0.0;
-  double payload_inertia = 0.0;
-  for (const Payload& payload : effects_of<Payload>(scene)) {
-    carried += payload.mass;
-    payload_inertia += payload.inertia;
-  }
-  double beta = carried;
+  for (const Payload& payload : effects_of<Payload>(scene)) carried += payload.mass;
   for (std::size_t i = n; i-- > 0;) {
-    const auto& [m, L, c, own_inertia] = scene.links[i];
-    const double I = own_inertia + (i + 1 == n ? payload_inertia : 0.0);
-    const double about_joint = I + m * c * c + L * L * carried;
-    if (!(about_joint > 0 && std::isfinite(about_joint))) {
+    const Link& link = scene.links[i];
+    const double about_joint = link.inertia_about_joint() + link.length * link.length * carried;
+    if (!std::isfinite(about_joint)) {
       refuse(link_name(i) + ": inertia about its joint, with what it carries,", about_joint,
-             "finite and > 0 (kg m^2): give it an inertia, or move its mass centre off the joint");
+             "finite (kg m^2): choose smaller masses or lengths");
     }
-    const double D = I + m * c * c + L * L * beta;
-    if (!(D > 0) && !has_rotor(scene, i + 1)) {
-      throw std::invalid_argument(
-          link_name(i) +
-          ": has neither mass nor inertia about its joint: the mass matrix is singular when it "
-          "lines up with the next link: give one of the two an inertia");
-    }
-    beta = D > 0 ? ((m + beta) * I + m * beta * (L - c) * (L - c)) / D : m + beta;
-    carried += m;
+    carried += link.mass;
   }
+  const std::string reason = singular_somewhere(scene);
+  if (!reason.empty()) throw std::invalid_argument(reason);
 }
 
 std::string effect_name(const Scene& scene, std::size_t i) {

@@ -6,6 +6,7 @@
 
 #include "pendcore/dynamics/kinematics.hpp"
 #include "pendcore/scene/degrees.hpp"
+#include "pendcore/scene/singular.hpp"
 #include "pendcore/text/message.hpp"
 
 namespace pendcore {
@@ -81,6 +82,17 @@ void check_start(const Scene& scene, const std::vector<double>& q0, const std::v
     refuse("t_span[1]", t_end, "less than 1.8e308 s from t_span[0] = " + text(t0));
   }
   check_effects_at_start(scene, q0, qd0, t0, t_end);
+  Scene locked = scene;
+  bool is_known = true;
+  for (Effect& effect : locked.effects) {
+    auto* const lock = std::get_if<Lock>(&effect);
+    if (lock == nullptr || lock->angle) continue;
+    lock->angle = relative(q0.data(), lock->joint);
+    is_known = false;
+  }
+  if (is_known) return;
+  const std::string reason = singular_somewhere(locked);
+  if (!reason.empty()) throw std::invalid_argument("q0: with joints locked as it says: " + reason);
 }
 
 bool is_outside_table(const Effect& effect, double t, bool forward) {

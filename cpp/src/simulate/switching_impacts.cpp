@@ -15,39 +15,40 @@ void Switching::strike(double t, double* y, bool begins) {
   double* const qd = y + n_;
   const std::vector<double> before(qd, qd + n_);
   joints_.begin_impact(y);
-  double loss = bounce_in_turn(t, y, begins);
+  bounce_in_turn(t, y, begins);
   while (capture(t, y, qd)) {
-    loss += joints_.stay_at_stops(y, qd);
+    joints_.stay_at_stops(y, qd);
     choose_all_modes(t, y);
   }
   if (loses_order_ && any_struck_leaves(y) && std::isnan(order_lost_)) order_lost_ = t;
   if (joints_.has_failed()) std::ranges::copy(before, qd);
-  book(Account::impact, loss, y);
+  book(Account::impact, joints_.loss(before.data(), qd), y);
   book(Account::drive, joints_.work_of_drive(equations_, t, before, qd), y);
 }
 
-/// Computes impacts at one time until no joint moves into its stop, and returns the loss of energy.
-/// A joint at rest that nothing pushes against its stop counts as leaving it, which more exact
-/// numbers might show. At the beginning of a run, all joints that touch their stops take part in
-/// the first impacts.
-double Switching::bounce_in_turn(double t, double* y, bool begins) {
+/// Computes impacts at one time until no joint moves into its stop. A joint at rest that nothing
+/// pushes against its stop counts as leaving it, which more exact numbers might show. At the
+/// beginning of a run, all joints that touch their stops take part in the first impacts.
+void Switching::bounce_in_turn(double t, double* y, bool begins) {
   double* const qd = y + n_;
   const bool is_plastic = changes_at_once_ > many_at_once;
   const double rounding = epsilon * joints_.fastest_strike(y, qd);
   loses_order_ = false;
   if (!(std::abs(t - time_of_impact_) <= shortest_moment(t))) std::ranges::fill(struck_, 0);
   time_of_impact_ = t;
-  double loss = 0.0;
   for (int i = 1; i <= most_impacts_at_once && !joints_.has_failed(); ++i) {
     const double speed = joints_.fastest_strike(y, qd);
     if (speed == 0.0) break;
     const bool is_last = i == most_impacts_at_once || speed <= rounding;
     if (!begins) loses_order_ |= loses_order_of(y);
-    loss += is_last ? joints_.stay_at_stops(y, qd) : joints_.bounce(y, qd, is_plastic, begins);
+    if (is_last) {
+      joints_.stay_at_stops(y, qd);
+    } else {
+      joints_.bounce(y, qd, is_plastic, begins);
+    }
     choose_all_modes(t, y);
     if (is_last) break;
   }
-  return loss;
 }
 
 /// Whether the order of the joints that strike now and have struck at this time is unknown. In a

@@ -16,7 +16,8 @@ class Link:
     Parameters
     ----------
     mass : float
-        kg; finite and >= 0, and > 0 for the last link.
+        kg; finite and > 0, or 0 where something else resists the link's rotation: what hangs on
+        it, an inertia, a payload, a rotor, or a lock that makes it one body with another link.
     length : float
         From joint to joint, m; finite and > 0.
     center : float, optional

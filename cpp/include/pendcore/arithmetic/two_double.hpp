@@ -44,6 +44,15 @@ PENDCORE_INLINE constexpr TwoDouble operator+(const TwoDouble& a, double b) {
   return two_sum(sum.high, sum.low + a.low);
 }
 
+PENDCORE_INLINE constexpr TwoDouble operator+(const TwoDouble& a, const TwoDouble& b) {
+  const TwoDouble sum = two_sum(a.high, b.high);
+  return two_sum(sum.high, sum.low + (a.low + b.low));
+}
+PENDCORE_INLINE constexpr TwoDouble operator*(const TwoDouble& a, double b) {
+  const double product = a.high * b;
+  return two_sum(product, product_error(a.high, b, product) + a.low * b);
+}
+
 /// b - a, rounded to a double.
 PENDCORE_INLINE constexpr double difference(double b, const TwoDouble& a) {
   const TwoDouble sum = two_sum(b, -a.high);

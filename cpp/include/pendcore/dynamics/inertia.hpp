@@ -23,6 +23,10 @@ struct LinkInertia {
   double diagonal;      ///< M_ii: A_ii and the rotors
   double length;        ///< L_i
   double rotor;         ///< J_i
+
+  /// What the closed forms divide the equation of the link by: M_ii, or 1 for a link without any
+  /// inertia, which a lock turns with another one.
+  double divisor() const { return diagonal > 0.0 ? diagonal : 1.0; }
 };
 
 struct Inertia {

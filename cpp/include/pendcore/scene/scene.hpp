@@ -27,7 +27,7 @@ namespace pendcore {
 
 /// A rigid link between its proximal joint (towards the pivot) and its distal one.
 struct Link {
-  double mass;     ///< m, kg; > 0, or 0 for a link that carries another
+  double mass;     ///< m, kg; > 0, or 0 where something else resists its rotation
   double length;   ///< L, m, from joint to joint; > 0
   double center;   ///< c, m, from the proximal joint to the mass centre, along the link
   double inertia;  ///< I, kg m^2, about the mass centre; >= 0
@@ -76,7 +76,7 @@ std::vector<bool> locked_joints(const Scene& scene);
 
 /// Throws std::invalid_argument, naming the link or effect, the field, the value, the allowed range
 /// and the remedy, for a scene that has no motion: values that are not finite or out of range, or a
-/// mass matrix that is not positive definite.
+/// mass matrix that is singular somewhere (singular.hpp).
 void check(const Scene& scene);
 
 /// Warnings of values that the equations allow but a workshop hardly has, a sentence each.

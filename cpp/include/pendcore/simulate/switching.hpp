@@ -94,7 +94,7 @@ class Switching final : public Discontinuities {
   double shortest_moment(double t) const;  ///< s, the shortest that time resolves
   void choose(double t, const double* y, int joint);
   void strike(double t, double* y, bool begins);
-  double bounce_in_turn(double t, double* y, bool begins);
+  void bounce_in_turn(double t, double* y, bool begins);
   void choose_all_modes(double t, const double* y);
   bool loses_order_of(const double* y);
   bool any_struck_leaves(const double* y) const;

@@ -6,8 +6,8 @@ DoublePendulum::DoublePendulum(const Scene& scene, const Inertia& inertia) {
   const Link& first = scene.links[0];
   const Link& second = scene.links[1];
   for (int i = 0; i < 2; ++i) {
-    weight[i] = inertia.links[i].first_moment * scene.gravity / inertia.links[i].diagonal;
-    coupling[i] = inertia.coupling(0, 1) / inertia.links[i].diagonal;
+    weight[i] = inertia.links[i].first_moment * scene.gravity / inertia.links[i].divisor();
+    coupling[i] = inertia.coupling(0, 1) / inertia.links[i].divisor();
   }
   product = coupling[0] * coupling[1];
   // A_11 A_22 - A_12^2 = (I_1 + m_1 c_1^2) A_22 + L_1^2 m_2 I_2, and with a payload
@@ -20,8 +20,8 @@ DoublePendulum::DoublePendulum(const Scene& scene, const Inertia& inertia) {
     const double share = inertia.payload_mass / (second.mass + inertia.payload_mass);
     about_center += second.mass * share * apart * apart;
   }
-  delta = about_joint / inertia.links[0].diagonal +
-          (hung / inertia.links[0].diagonal) * (about_center / inertia.links[1].diagonal);
+  delta = about_joint / inertia.links[0].divisor() +
+          (hung / inertia.links[0].divisor()) * (about_center / inertia.links[1].divisor());
 }
 
 }  // namespace pendcore

@@ -27,13 +27,16 @@ DoublePendulumWithEffects<parts>::DoublePendulumWithEffects(const Scene& scene,
   double share[2];  // A'/A
   for (int i = 0; i < 2; ++i) {
     length[i] = inertia.links[i].length;
-    diagonal[i] = inertia.links[i].diagonal;
-    inverse_diagonal[i] = 1.0 / inertia.links[i].diagonal;
-    moment[i] = inertia.links[i].first_moment / inertia.links[i].diagonal;
-    share[i] = plain.links[i].diagonal / inertia.links[i].diagonal;
-    weight[i] = inertia.links[i].first_moment * scene.gravity / inertia.links[i].diagonal;
-    coupling[i] = inertia.coupling(0, 1) / inertia.links[i].diagonal;
-    rotor[i] = inertia.links[1].rotor / inertia.links[i].diagonal;
+    diagonal[i] = inertia.links[i].divisor();
+    inverse_diagonal[i] = 1.0 / inertia.links[i].divisor();
+    moment[i] = inertia.links[i].first_moment / inertia.links[i].divisor();
+    share[i] = plain.links[i].diagonal / inertia.links[i].divisor();
+    weight[i] = inertia.links[i].first_moment * scene.gravity / inertia.links[i].divisor();
+    coupling[i] = inertia.coupling(0, 1) / inertia.links[i].divisor();
+    rotor[i] = inertia.links[1].rotor / inertia.links[i].divisor();
+    // A link without inertia has A = 1 here. As J = 1 takes that back, the pair has the inertia of
+    // the other link alone.
+    if (inertia.links[i].diagonal == 0.0) rotor[i] = 1.0;
   }
   product = coupling[0] * coupling[1];
   delta = bare.delta * share[0] * share[1] + rotor[1] * share[0] + rotor[0] * share[1];

@@ -51,27 +51,44 @@ void ForcesBetweenBounds::resize(int count) {
   at.assign(n, Bound::between);
 }
 
-/// Solves for the forces between the bounds, such that w = 0 there, and computes all w.
-void ForcesBetweenBounds::solve_between() {
-  if (look) look();
+void ForcesBetweenBounds::factor_between() {
   free_.clear();
   for (int i = 0; i < size; ++i) {
     if (at[i] == Bound::between) free_.push_back(i);
-    lambda[i] = at[i] == Bound::lower ? lower[i] : at[i] == Bound::upper ? upper[i] : 0.0;
   }
   const int n = static_cast<int>(free_.size());
   factor_.resize(static_cast<std::size_t>(n) * static_cast<std::size_t>(n));
-  std::vector<double> x(free_.size());
   for (int i = 0; i < n; ++i) {
-    double sum = a[free_[i]];
-    for (int j = 0; j < size; ++j) sum += W[place(free_[i], j, size)] * lambda[j];
-    x[i] = -sum;
     for (int j = 0; j <= i; ++j) factor_[place(i, j, n)] = W[place(free_[i], free_[j], size)];
   }
   factor_symmetric(n, factor_.data());
+}
+
+std::vector<double> ForcesBetweenBounds::forces_against(const std::vector<double>& slip) const {
+  const int n = static_cast<int>(free_.size());
+  std::vector<double> x(free_.size());
+  for (int i = 0; i < n; ++i) x[i] = -slip[free_[i]];
   solve_lower(n, factor_.data(), x.data());
   solve_upper(n, factor_.data(), x.data());
-  for (int i = 0; i < n; ++i) lambda[free_[i]] = x[i];
+  std::vector<double> forces(slip.size(), 0.0);
+  for (int i = 0; i < n; ++i) forces[free_[i]] = x[i];
+  return forces;
+}
+
+/// Solves for the forces between the bounds, such that w = 0 there, and computes all w.
+void ForcesBetweenBounds::solve_between() {
+  if (look) look();
+  factor_between();
+  for (int i = 0; i < size; ++i) {
+    lambda[i] = at[i] == Bound::lower ? lower[i] : at[i] == Bound::upper ? upper[i] : 0.0;
+  }
+  std::vector<double> slip(lambda.size());
+  for (const int i : free_) {
+    slip[i] = a[i];
+    for (int j = 0; j < size; ++j) slip[i] += W[place(i, j, size)] * lambda[j];
+  }
+  const std::vector<double> forces = forces_against(slip);
+  for (const int i : free_) lambda[i] = forces[i];
   for (int i = 0; i < size; ++i) {
     w[i] = 0.0;
     if (at[i] == Bound::between) continue;

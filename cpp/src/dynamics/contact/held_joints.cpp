@@ -6,11 +6,25 @@
 #include "pendcore/arithmetic/epsilon.hpp"
 #include "pendcore/dynamics/equations_of_motion.hpp"
 #include "pendcore/dynamics/kinematics.hpp"
+#include "pendcore/scene/singular.hpp"
 
 namespace pendcore {
+namespace {
+
+std::vector<bool> rigid_joints(const Scene& scene) {
+  Scene free = scene;
+  const auto locks = std::erase_if(
+      free.effects, [](const Effect& effect) { return std::holds_alternative<Lock>(effect); });
+  if (locks == 0 || singular_somewhere(free).empty()) return {};
+  return locked_joints(scene);
+}
+
+}  // namespace
+
 HeldJoints::HeldJoints(const Scene& scene)
     : n_(static_cast<int>(scene.links.size())),
-      forces_(scene),
+      rigid_(rigid_joints(scene)),
+      forces_(scene, rigid_),
       captured_(scene.links.size()),
       bounced_(scene.links.size()),
       holds_(scene.links.size()) {
@@ -47,7 +61,7 @@ void HeldJoints::lock(int joint, double angle, double* q) {
 }
 
 void HeldJoints::set_free(EffectsInForce& effects) {
-  for (int j = 0; j < n_; ++j) effects.hold(j, false);
+  for (int j = 0; j < n_; ++j) effects.hold(j, is_rigid(j));
 }
 
 void HeldJoints::release(EffectsInForce& effects, int joint, int direction) {
@@ -89,6 +103,10 @@ void HeldJoints::choose(const EquationsOfMotion& equations, double t, const doub
     const bool is_at_rest =
         rate == 0.0 && (!support.friction_effects.empty() || contact(j, q) != Side::none);
     any |= is_at_rest && !support.is_locked;
+    if (is_rigid(j)) {
+      hold(effects, j, holds_[j].angle);
+      continue;
+    }
     if (support.is_locked || is_at_rest) joints.push_back(j);
     if (!support.is_locked) holds_[j] = Hold{};
     put_friction(effects, j, is_at_rest || support.is_locked ? 0 : rate < 0.0 ? -1 : 1);

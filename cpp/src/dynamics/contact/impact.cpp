@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "pendcore/dynamics/contact/held_joints.hpp"
+#include "pendcore/dynamics/contact/momenta.hpp"
 #include "pendcore/dynamics/equations_of_motion.hpp"
 #include "pendcore/dynamics/kinematics.hpp"
 
@@ -33,6 +34,7 @@ void HeldJoints::set_up_impact(const double* q, const double* qd, TakesPart take
   joints.clear();
   for (int j = 0; j < n_; ++j) {
     const bool touches = contact(j, q) != Side::none;
+    if (is_rigid(j)) continue;
     if (supports_[j].is_locked || (touches && takes_part(j))) joints.push_back(j);
   }
   forces_.set_up();
@@ -46,33 +48,29 @@ void HeldJoints::set_up_impact(const double* q, const double* qd, TakesPart take
   }
 }
 
-/// Computes the impulses and the rates after them, and returns the loss of energy. A rate is
-/// exactly zero where a joint is stopped, and where rounding would leave it moving into its stop.
-/// `before` has the rates of the rows before the impact.
-double HeldJoints::solve_impact(const std::vector<double>& before, const double* q, double* qd) {
+/// Computes the impulses and the rates after them. A rate is exactly zero where a joint is stopped,
+/// and where rounding would leave it moving into its stop.
+void HeldJoints::solve_impact(const double* q, double* qd) {
   const ForcesBetweenBounds& problem = forces_.problem;
   solve();
-  std::vector<double> change(n_, 0.0);
-  forces_.add_response(change.data());
+  if (has_failed_) return;
+  std::vector<double> change(n_);
+  forces_.refined_response(change.data());
   for (int i = 0; i < n_; ++i) qd[i] += direction_ * change[i];
-  double loss = 0.0;
   for (int r = 0; r < problem.size; ++r) {
     const int j = forces_.joints[r];
     const bool stops = bounces_[r] == 0 && problem.at[r] == Bound::between;
     if (stops || into(j, q, qd) > 0.0) set_relative(qd, j + 1, 0.0);
-    loss -= 0.5 * problem.lambda[r] * (before[r] + direction_ * relative(qd, j + 1));
   }
-  return std::max(loss, 0.0);  // rounding may make it negative in an elastic impact
 }
 
-double HeldJoints::bounce(const double* q, double* qd, bool is_plastic, bool with_all_at_rest) {
+void HeldJoints::bounce(const double* q, double* qd, bool is_plastic, bool with_all_at_rest) {
   set_up_impact(q, qd, [&](int j) {
     const double speed = into(j, q, qd);
     return speed > 0.0 || (speed == 0.0 && (with_all_at_rest || is_held(j)));
   });
   ForcesBetweenBounds& problem = forces_.problem;
-  const std::vector<double> before = problem.a;
-  bounces_.assign(before.size(), 0);
+  bounces_.assign(forces_.joints.size(), 0);
   for (int r = 0; r < problem.size; ++r) {
     const int j = forces_.joints[r];
     const Stop& stop = supports_[j].stop(contact(j, q));
@@ -80,16 +78,24 @@ double HeldJoints::bounce(const double* q, double* qd, bool is_plastic, bool wit
     const bool bounces = !supports_[j].is_locked && !is_plastic && stop.restitution > 0.0 &&
                          speed > 0.0 && speed >= stop.capture_speed;
     bounced_[j] = bounces_[r] = bounces ? 1 : 0;
-    if (bounces) problem.a[r] += stop.restitution * before[r];
+    if (bounces) problem.a[r] += stop.restitution * problem.a[r];
   }
-  return solve_impact(before, q, qd);
+  solve_impact(q, qd);
 }
 
-double HeldJoints::stay_at_stops(const double* q, double* qd) {
+void HeldJoints::stay_at_stops(const double* q, double* qd) {
   set_up_impact(q, qd, [](int) { return true; });
-  const std::vector<double> before = forces_.problem.a;
-  bounces_.assign(before.size(), 0);
-  return solve_impact(before, q, qd);
+  bounces_.assign(forces_.joints.size(), 0);
+  solve_impact(q, qd);
+}
+
+double HeldJoints::loss(const double* before, const double* after) const {
+  const auto twice = [this](const double* qd) {
+    return twice_the_energy(
+        momenta(forces_.links, forces_.inertia, forces_.sine, forces_.cosine, qd), qd);
+  };
+  const double lost = 0.5 * (twice(before) + twice(after) * -1.0).high;
+  return std::max(lost, 0.0);  // the rounding of the rates may make it negative
 }
 
 double HeldJoints::work_of_drive(const EquationsOfMotion& equations, double t,

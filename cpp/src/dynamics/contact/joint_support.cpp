@@ -32,8 +32,10 @@ void set_natural_speeds(const Scene& scene, const Inertia& inertia,
   for (std::size_t j = 0; j < supports.size(); ++j) {
     JointSupport& joint = supports[j];
     const double weight = inertia.links[j].first_moment * std::abs(scene.gravity);
-    joint.natural_speed =
-        std::sqrt((weight + joint.torque + joint.stiffness) / inertia.links[j].diagonal);
+    const double drive = weight + joint.torque + joint.stiffness;
+    if (inertia.links[j].diagonal > 0.0) {  // else a lock turns it with another link
+      joint.natural_speed = std::sqrt(drive / inertia.links[j].diagonal);
+    }
     largest = std::max(largest, joint.natural_speed);
   }
   if (largest == 0.0) largest = 1.0;  // nothing drives the joints: 1 rad/s

@@ -23,9 +23,9 @@ struct SinglePendulumWithEffects {
   SinglePendulumWithEffects(const Scene& scene, const Inertia& inertia,
                             const ActingEffects<double>* in_force)
       : length(inertia.links[0].length),
-        inverse_inertia(1.0 / inertia.links[0].diagonal),
-        moment(inertia.links[0].first_moment / inertia.links[0].diagonal),
-        weight(inertia.links[0].first_moment * scene.gravity / inertia.links[0].diagonal),
+        inverse_inertia(1.0 / inertia.links[0].divisor()),
+        moment(inertia.links[0].first_moment / inertia.links[0].divisor()),
+        weight(inertia.links[0].first_moment * scene.gravity / inertia.links[0].divisor()),
         effects(in_force) {}
 
   template <class V>

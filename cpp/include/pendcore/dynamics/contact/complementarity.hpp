@@ -34,6 +34,12 @@ struct ForcesBetweenBounds {
   /// Returns false if it has not found the solution.
   bool solve();
 
+  /// Factors the part of W of the forces that are between their bounds in the solution.
+  void factor_between();
+  /// The forces that change w by -slip where the solution is between its bounds, and are 0
+  /// elsewhere, from these factors.
+  std::vector<double> forces_against(const std::vector<double>& slip) const;
+
  private:
   void solve_between();
   int wrong(int i) const;

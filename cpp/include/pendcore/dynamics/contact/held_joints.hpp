@@ -108,17 +108,18 @@ class HeldJoints {
 
   /// Begins an impact at these angles, by the laws of impact.hpp.
   void begin_impact(const double* q);
-  /// Applies Newton's law of impact to all joints that move into their stops, and returns the loss
-  /// of energy. Joints at rest at a stop take part if they are held, or all of them if
-  /// `with_all_at_rest`. If `is_plastic`, there is no restitution.
-  double bounce(const double* q, double* qd, bool is_plastic, bool with_all_at_rest);
+  /// Applies Newton's law of impact to all joints that move into their stops. Joints at rest at a
+  /// stop take part if they are held, or all of them if `with_all_at_rest`. If `is_plastic`, there
+  /// is no restitution.
+  void bounce(const double* q, double* qd, bool is_plastic, bool with_all_at_rest);
   bool has_bounced(int joint) const { return bounced_[joint] != 0; }  ///< in this impact
   /// Captures a joint: it is to stay at its stop.
   void capture(int joint) { captured_[joint] = 1; }
   bool is_captured(int joint) const { return captured_[joint] != 0; }
-  /// Stops the captured joints and lets no other joint move into its stop; returns the loss of
-  /// energy.
-  double stay_at_stops(const double* q, double* qd);
+  /// Stops the captured joints and lets no other joint move into its stop.
+  void stay_at_stops(const double* q, double* qd);
+  /// The kinetic energy that the links lose in an impact, J, from the rates before and after it.
+  double loss(const double* before, const double* after) const;
   /// The work that the drive of the pivot does in an impact, J, from the rates before and after it.
   double work_of_drive(const EquationsOfMotion& equations, double t,
                        const std::vector<double>& before, const double* after) const;
@@ -133,6 +134,7 @@ class HeldJoints {
   void restore(EffectsInForce& effects, const std::vector<SavedHold>& saved, bool has_failed);
 
  private:
+  bool is_rigid(int joint) const { return !rigid_.empty() && rigid_[joint]; }
   void put_friction(EffectsInForce& effects, int joint, int mode);
   void hold(EffectsInForce& effects, int joint, double angle);
   void set_free(EffectsInForce& effects);
@@ -140,9 +142,12 @@ class HeldJoints {
   void set_slack(const EquationsOfMotion& equations, double t, const double* q, const double* qd);
   template <class TakesPart>
   void set_up_impact(const double* q, const double* qd, TakesPart takes_part);
-  double solve_impact(const std::vector<double>& before, const double* q, double* qd);
+  void solve_impact(const double* q, double* qd);
 
   int n_;
+  /// The locked joints, if the mass matrix were singular without their locks. These are never set
+  /// free; the torque of any other lock is an unknown of the problem. Empty if there are none.
+  std::vector<bool> rigid_;
   JointForces forces_;
   std::vector<JointSupport> supports_;
   double natural_speed_;
