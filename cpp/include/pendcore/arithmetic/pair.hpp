@@ -37,8 +37,8 @@ struct PairOf<double> {
 template <class Number>
 using PairOf = typename pair_detail::PairOf<Number>::Type;
 
-/// (x_2, x_1). The empty instruction keeps GCC 12 from seeing through the exchange: it would compute
-/// whatever depends on it twice, in both orders.
+/// (x_2, x_1). The empty instruction keeps GCC 12 from seeing through the exchange: it would
+/// compute whatever depends on it twice, in both orders.
 PENDCORE_INLINE Pair other(const Pair& x) {
   Pair exchanged = __builtin_shufflevector(x, x, 1, 0);
 #if defined(__x86_64__)

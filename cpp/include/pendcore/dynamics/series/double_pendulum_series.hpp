@@ -20,7 +20,8 @@
 /// every order:
 ///
 ///     u''_k = alpha n_0 + beta,   alpha = (k + 1) qd_{k+1},   beta = (k + 1) v
-///     alpha = f - kappa f',       f = (gamma c_k - rho (n_0 . beta' + sum_{j<k} n_{k-j} . u''_j'))/D
+///     alpha = f - kappa f'
+///     D f   = gamma c_k - rho (n_0 . beta' + sum_{j<k} n_{k-j} . u''_j')
 ///
 /// Here kappa = rho C - J_2/A and D = 1 - kappa kappa', with J_2 the rotor in joint 2 (the sigma of
 /// double_pendulum_with_effects.hpp is J_2/A). Torques on the joints, over D, add to f; a `Torque`
@@ -43,11 +44,11 @@
 /// No sine, cosine, product or quotient needs a series of its own: each order is two sums of
 /// products of rows of four, (x, x', y, y').
 ///
-/// What bounds a single run is how long an order waits for the one before: from alpha[k-1] by beta_x
-/// or pull_x to f and to alpha there are five operations and two exchanges of links, some 22 cycles,
-/// and beside them go some 50 operations on 4 or 2 numbers. If nothing waited, a step of order 18
+/// What bounds a single run is how long an order waits for the one before: from alpha[k-1] by
+/// beta_x or pull_x to f and to alpha there are five operations and two exchanges of links, some 22
+/// cycles, beside which go some 35 operations and the sums. If nothing waited, a step of order 18
 /// would take 0.88 of its time. What bounds a trajectory in lanes is the number of operations: an
-/// order has 44 beside the sums, 4 less than in axes that all links share.
+/// order has 44 beside the sums, 4 less than along axes that all links share.
 ///
 /// Source: the recurrences of automatic differentiation (Moore, Interval Analysis, 1966, chapter
 /// 11; Jorba and Zou, Exp. Math. 14, 2005); the elimination is this project's.
@@ -200,8 +201,8 @@ struct DoublePendulumOrders {
   using Row = typename Of::Row;
   using Rate = typename Of::Rate;
 
-  /// What an order leaves for the next. It stands apart from the arrays below: GCC keeps a structure
-  /// with arrays in memory, and lanes took a twentieth more.
+  /// What an order leaves for the next. It stands apart from the arrays below: GCC keeps a
+  /// structure with arrays in memory, and lanes took a twentieth more.
   struct Last {
     Half angle;  ///< q_k
     Half alpha;
@@ -309,8 +310,8 @@ PENDCORE_INLINE void DoublePendulumOrders<Number>::finish(std::ptrdiff_t k, Numb
   pulls[k] = joined(pull_x, fma(cosine, y, sine * x));
 }
 
-/// Calls `add` with a type of values and with functions that return pull_j, qd_j and n_j; it returns
-/// TermsByAge of them. In lanes, the numbers of one link are added up after those of the other: the
+/// Calls `add` with a type of values and with functions that return pull_j, qd_j and n_j; it
+/// returns TermsByAge of them. In lanes, the numbers of one link are added up after those of the other: the
 /// sums of a whole row would not fit into the registers.
 template <class Number, class Add>
 PENDCORE_INLINE auto sums_of(const DoublePendulumOrders<Number>& orders, const Add& add) {

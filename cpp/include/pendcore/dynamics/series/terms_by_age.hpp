@@ -1,12 +1,12 @@
 /// \file
-/// The sums of products in the orders of the series of two links (double_pendulum_series.hpp), with
-/// their terms in the order in which they become known.
+/// The sums of products in the orders of the series of two links (double_pendulum_series.hpp),
+/// with their terms in the order in which they become known.
 ///
 ///     along_k  = sum_{0 < j < k}   qd_j n_{k+1-j}
 ///     across_k = sum_{j <= k-2}    pull_j . n_{k-j}
 ///
-/// The terms with qd_0 and n_1 are left to the caller: they wait for the order before. Two orders, k
-/// and k + 1, are computed at a time, so that what their sums share is loaded once.
+/// The terms with qd_0 and n_1 are left to the caller: they wait for the order before. Two orders,
+/// k and k + 1, are computed at a time, so that what their sums share is loaded once.
 ///
 /// What bounds an order of a single run is how long it waits for the orders before it. The sums do
 /// not have to wait with it: of orders k + 2 and k + 3, all terms but those that orders k and k + 1
