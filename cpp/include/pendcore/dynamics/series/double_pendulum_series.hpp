@@ -287,7 +287,7 @@ PENDCORE_INLINE void DoublePendulumOrders<Number>::next(std::ptrdiff_t k, const 
   const Half older = fma(cosine, other(beta_y), high_half(across)) + low_half(across);
   Half f = fma(minus_rate, pull_x, fma(sine, other(beta_x), older));
   if constexpr (!std::is_same_v<TorqueOrders, NoTorque>) {
-    f = fma(inverse, torque.next(k, angle, Of::pair(rates[k])), f);
+    f = fma(inverse, torque.next(static_cast<int>(k), angle, Of::pair(rates[k])), f);
   }
   alpha = fma(minus_kappa, other(f), f);
   finish(k, coefficients, last);
@@ -311,8 +311,8 @@ PENDCORE_INLINE void DoublePendulumOrders<Number>::finish(std::ptrdiff_t k, Numb
 }
 
 /// Calls `add` with a type of values and with functions that return pull_j, qd_j and n_j; it
-/// returns TermsByAge of them. In lanes, the numbers of one link are added up after those of the other: the
-/// sums of a whole row would not fit into the registers.
+/// returns TermsByAge of them. In lanes, the numbers of one link are added up after those of the
+/// other: the sums of a whole row would not fit into the registers.
 template <class Number, class Add>
 PENDCORE_INLINE auto sums_of(const DoublePendulumOrders<Number>& orders, const Add& add) {
   using Row = typename SeriesOf<Number>::Row;
