@@ -273,9 +273,10 @@ def test_number_of_points_is_bounded(points: int) -> None:
 
 
 def test_rounding_of_the_states_is_part_of_the_error() -> None:
-    start = Start(pc.Scene.textbook(), [0.6, 1.0], 0.0, 0.0, 60.0)
+    # From other starts the error is smaller, and the rounding of the reference is as large.
+    start = Start(pc.Scene.textbook(), [0.9, 1.2], 0.0, 0.0, 60.0)
     solution, correction = corrected(start, start.scene, WAYS[2], rtol=1e-14, store="steps")
     exact = Choice("dop853", 1e-15, 1e-18, compensated=True)
     error = run(start, exact, solution.t).q - solution.q
-    assert np.abs(error).max() > 5e-14
+    assert np.abs(error).max() > 1e-13
     assert np.abs(correction.errors[:, 0] - error).max() <= 0.5 * np.abs(error).max()

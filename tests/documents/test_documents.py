@@ -243,7 +243,7 @@ def test_ten_lines_draw_the_hard_case_of_the_first_steps(tmp_path, monkeypatch):
 
 
 def test_a_ledger_is_as_good_as_its_steps_and_trust_says_how_good(capsys):
-    (code,) = blocks_of("docs/background/trust.md")
+    *_, code = blocks_of("docs/background/trust.md")
     exec(code, {})
     residuals = [float(line.split()[1]) for line in capsys.readouterr().out.splitlines()]
     (told,) = re.findall(r"# (.*)$", code, re.MULTILINE)

@@ -77,7 +77,7 @@ def in_units(drawn: Drawn, units: Units) -> Drawn:
     """Return the same run, told in other units; the first step must be given, or a fixed one."""
 
     def scale(where: str, p: Parameter, value: Any, unit: str) -> Any:
-        if p.type == "int":
+        if p.type in ("int", "bool"):
             return value
         return _each(value, lambda x: x * units.factor(unit))
 

@@ -11,7 +11,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from itertools import cycle, islice
 from pathlib import Path
-from tempfile import TemporaryDirectory
+from tempfile import TemporaryDirectory, mkdtemp
 from typing import Any
 
 import numpy as np
@@ -101,9 +101,11 @@ def members(**options: Any) -> None:
     pc.ensemble(BOOK, np.zeros((64, 2)), t_span=(0, 2e3), progress=show, **options)
 
 
+STORES = TemporaryDirectory()
+
+
 def in_blocks() -> None:
-    with TemporaryDirectory() as folder:
-        members(store=f"{folder}/store", chunk=8)
+    members(store=f"{mkdtemp(dir=STORES.name)}/store", chunk=8)
 
 
 def by_threads() -> None:

@@ -126,10 +126,10 @@ void accelerations(const EquationsOfMotion& equations, double t, const double* q
   if (equations.effects && equations.effects->has_modes) {
     choose_modes(*equations.effects, t, q, qd, true);
   }
-  if (equations.can_hold()) {
-    equations.held_joints->choose(equations, t, q, qd);
-  }
-  accelerations_in_force(equations, t, q, qd, qdd);
+  if (!equations.can_hold()) return accelerations_in_force(equations, t, q, qd, qdd);
+  const std::vector<double> rates = equations.held_joints->without_rounding(qd);
+  equations.held_joints->choose(equations, t, q, rates.data());
+  accelerations_in_force(equations, t, q, rates.data(), qdd);
 }
 
 }  // namespace pendcore

@@ -7,6 +7,7 @@
 // run may be much shorter than the step on which the event lay, so it does not tell these sizes.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "pendcore/arithmetic/epsilon.hpp"
 #include "pendcore/simulate/event_finder.hpp"
@@ -47,7 +48,8 @@ double EventFinder::rounding_at_start(const Difference& difference, const Step& 
 }
 
 /// The same for a TipLine or a Function with the value `start`. A Function is asked how much it
-/// changes as each of its arguments goes on by its rounding; it may be undefined there.
+/// changes as each of its arguments goes on by its rounding; it may be undefined there. A stored
+/// time is off by half a unit in its last place.
 double EventFinder::rounding_at_start(std::size_t k, const Step& step, double start) {
   const double t = step.t_old.high;
   if (tip_line_of_[k] >= 0) return 8.0 * tip_lines_[tip_line_of_[k]].rounding(t, step.rows);
@@ -58,16 +60,17 @@ double EventFinder::rounding_at_start(std::size_t k, const Step& step, double st
   double sum = 0.0;
   double time = t;
   const auto& function = std::get<events::Function>(events_[k].function);
-  const auto add_change = [&](double& argument, double size, double way) {
-    const double before = argument;
-    argument += std::copysign(share * size, way);
+  const auto change_to = [&](double& argument, double there) {
+    const double before = std::exchange(argument, there);
     const double value = function.f(time, std::span(y_.data(), n), std::span(y_.data() + n, n));
-    if (!std::isnan(value)) sum += std::abs(value - start);
     argument = before;
+    return std::isnan(value) ? 0.0 : std::abs(value - start);
   };
-  add_change(time, std::abs(t) + std::abs(step.h), step.h);
+  sum += 0.5 * change_to(time, std::nextafter(t, std::copysign(never, step.h)));
+  sum += change_to(time, t + share * step.h);
   for (std::size_t i = 0; i < 2 * n; ++i) {
-    add_change(y_[i], i < n ? 1.0 + std::abs(y_[i]) : rate, moves[i]);
+    const double size = i < n ? 1.0 + std::abs(y_[i]) : rate;
+    sum += change_to(y_[i], y_[i] + std::copysign(share * size, moves[i]));
   }
   return sum;
 }

@@ -112,11 +112,6 @@ def _drawn(
     own: _Own,
     given: dict[str, Any],
 ) -> list[Artist]:
-    if what in ("path", "strip", "free_bodies") and not len(solution.t):
-        raise ValueError(
-            f"what = {what!r}: this run ended before the first of its t_eval and kept no time: ask "
-            "for earlier times, or for none"
-        )
     place, label = (solution, ax, new_figure), own.label
     if what == "path":
         return [*draw_path(*place, label, valid_until, given)]

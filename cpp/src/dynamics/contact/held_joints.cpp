@@ -85,6 +85,20 @@ Side HeldJoints::contact(int joint, const double* q) const {
   return Side::none;
 }
 
+std::vector<double> HeldJoints::without_rounding(const double* qd) const {
+  std::vector<double> rates(qd, qd + n_);
+  for (int j = 0; j < n_; ++j) {
+    const JointSupport& support = supports_[j];
+    const bool may_rest = !support.friction_effects.empty() || std::isfinite(support.lower.angle) ||
+                          std::isfinite(support.upper.angle);
+    const double size = std::abs(qd[j]) + (j > 0 ? std::abs(qd[j - 1]) : 0.0) + natural_speed_;
+    if (may_rest && std::abs(relative(qd, j + 1)) <= last_bits_share * size) {
+      set_relative(rates.data(), j + 1, 0.0);
+    }
+  }
+  return rates;
+}
+
 void HeldJoints::solve() {
   has_failed_ |= !forces_.problem.solve();
   for (const double force : forces_.problem.lambda) has_failed_ |= !std::isfinite(force);

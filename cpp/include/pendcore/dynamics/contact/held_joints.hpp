@@ -106,6 +106,10 @@ class HeldJoints {
   /// The highest rate into a stop among all joints, or 0.
   double fastest_strike(const double* q, const double* qd) const;
 
+  /// Rates (n) in which joints rest that turn by no more than rounding, if something could hold
+  /// them: the dense output of a joint that is held is off by it.
+  std::vector<double> without_rounding(const double* qd) const;
+
   /// Begins an impact at these angles, by the laws of impact.hpp.
   void begin_impact(const double* q);
   /// Applies Newton's law of impact to all joints that move into their stops. Joints at rest at a
