@@ -149,7 +149,10 @@ class Worker:
         answer = self.answer()
         if not answer:
             raise SystemExit(f"{self.built.commit}: the worker ended in {name!r}")
-        return None if answer.startswith("-") else 1e6 * float(answer)
+        if answer.startswith("-"):
+            print(f"{self.built.commit} has no {name!r}: {answer[2:]}", file=sys.stderr)
+            return None
+        return 1e6 * float(answer)
 
 
 def in_turns(name: str, old: Worker, new: Worker, rounds: int, seconds: float) -> Comparison:
@@ -202,8 +205,11 @@ def main() -> int:
         print(
             f"{len(medians)} calls: the median of their medians is {statistics.median(medians):.3f}"
         )
+    lost = [one.name for one in compared if one.old and not one.new]
     print(f"slower by more than 5 %: {', '.join(slower) or 'none'}")
-    return bool(slower)
+    if lost:
+        print(f"calls that {new.commit} no longer has: {', '.join(lost)}")
+    return bool(slower or lost)
 
 
 if __name__ == "__main__":

@@ -177,7 +177,7 @@ def main() -> None:
                 ready[name] = prepared[name]()
             print(least_time(ready[name], seconds), flush=True)
         except Exception as lack:
-            print("-", type(lack).__name__, flush=True)
+            print(f"- {type(lack).__name__}: {lack}".splitlines()[0], flush=True)
 
 
 if __name__ == "__main__":

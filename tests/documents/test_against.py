@@ -93,7 +93,7 @@ def test_the_worker_answers_with_seconds_or_with_what_is_lacking() -> None:
     ).stdout.splitlines()
     assert Path(answers[0]).name == "__init__.py"
     assert 0 < float(answers[1]) < 1
-    assert answers[2] == "- KeyError"
+    assert answers[2] == "- KeyError: 'no such call'"
 
 
 def test_a_worker_that_loads_another_build_is_not_believed() -> None:

@@ -223,7 +223,7 @@ def test_an_array_that_is_missing_is_named(tmp_path, stored, reduced, name):
         pc.load(path)
 
 
-@pytest.mark.parametrize("name", ["../q", "/q", "a/../../q"])
+@pytest.mark.parametrize("name", ["../q", "/q", "a/../../q", "C:q", "\\q"])
 def test_the_name_of_a_reducer_does_not_lead_out_of_a_store(tmp_path, reduced, name):
     path = tmp_path / "a.zarr"
     shutil.copytree(reduced, path)
@@ -231,6 +231,16 @@ def test_the_name_of_a_reducer_does_not_lead_out_of_a_store(tmp_path, reduced, n
     told["attributes"]["keep"] = {name: ["EnergyDrift"]}
     write(path / "zarr.json", told)
     with pytest.raises(ValueError, match=r"is no name of a reducer|reducers and events"):
+        pc.load(path)
+
+
+def test_more_blocks_than_a_folder_holds_are_refused_before_they_are_counted(tmp_path, stored):
+    path = tmp_path / "a.zarr"
+    shutil.copytree(stored, path)
+    told = json.loads((path / "zarr.json").read_text())
+    told["attributes"] |= {"shape": [10**6, 10**6], "block_shape": [1, 1]}
+    write(path / "zarr.json", told)
+    with pytest.raises(ValueError, match=r"makes 1,000,000,000,000 blocks: must make at most 262,"):
         pc.load(path)
 
 

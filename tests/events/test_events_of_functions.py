@@ -50,7 +50,7 @@ def test_a_function_sees_states_of_the_run_in_arrays_of_its_own() -> None:
     for t, q, qd in seen:
         assert np.concatenate([q, qd]) == pytest.approx(sol(t), abs=1e-13)
     steps = len(sol.t) - 1
-    moves = 6  # at the start, each argument is moved by its rounding, time twice
+    moves = 5  # at the start, each argument is moved by its rounding
     assert len(seen) == 4 * steps + 1 + moves  # each end of a step is sampled once
 
 

@@ -184,10 +184,11 @@ void EventFinder::find_function(std::size_t k, const events::Function& event, co
     const double theta = static_cast<double>(i) / samples;
     samples_.push_back({theta, sampled(k, step, theta)});
   }
-  const bool has_left =
-      find_roots([&](double theta) { return sampled(k, step, theta); }, armed_value(k, start),
-                 samples_, end, unarmed_within_[k], roots_);
-  if (has_left || std::abs(end) > unarmed_within_[k]) unarmed_within_[k] = 0.0;
+  // After the start, a value tells nothing of rounding: the function may jump.
+  start = armed_value(k, start);
+  unarmed_within_[k] = 0.0;
+  find_roots([&](double theta) { return sampled(k, step, theta); }, start, samples_, end, 0.0,
+             roots_);
 }
 
 /// The values at both ends of a step, for functions that cost more than a difference. The value at

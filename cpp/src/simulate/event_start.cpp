@@ -48,8 +48,8 @@ double EventFinder::rounding_at_start(const Difference& difference, const Step& 
 }
 
 /// The same for a TipLine or a Function with the value `start`. A Function is asked how much it
-/// changes as each of its arguments goes on by its rounding; it may be undefined there. A stored
-/// time is off by half a unit in its last place.
+/// changes as each of its arguments goes on by its rounding; it may be undefined there. A run of a
+/// few units in the last place of its time has events of time in each of them.
 double EventFinder::rounding_at_start(std::size_t k, const Step& step, double start) {
   const double t = step.t_old.high;
   if (tip_line_of_[k] >= 0) return 8.0 * tip_lines_[tip_line_of_[k]].rounding(t, step.rows);
@@ -66,8 +66,9 @@ double EventFinder::rounding_at_start(std::size_t k, const Step& step, double st
     argument = before;
     return std::isnan(value) ? 0.0 : std::abs(value - start);
   };
-  sum += 0.5 * change_to(time, std::nextafter(t, std::copysign(never, step.h)));
-  sum += change_to(time, t + share * step.h);
+  const double moment =
+      std::min(share * (std::abs(t) + std::abs(step.h)), 0x1p-12 * std::abs(step.h));
+  sum += change_to(time, t + std::copysign(moment, step.h));
   for (std::size_t i = 0; i < 2 * n; ++i) {
     const double size = i < n ? 1.0 + std::abs(y_[i]) : rate;
     sum += change_to(y_[i], y_[i] + std::copysign(share * size, moves[i]));

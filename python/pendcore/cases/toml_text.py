@@ -16,14 +16,15 @@ MOST_NESTED = 32
 takes the square of the names in time, and one level of Python's stack or more for each array."""
 
 _STRING_OR_COMMENT = re.compile(
-    r'"""(?:\\.|[^\\])*?(?:"{3,5}|\Z)'
+    r'"""(?:\\.|[^"\\]|"{1,2}(?!"))*+(?:"{3,5}|\Z)'
     r"|'{3}.*?(?:'{3,5}|\Z)"
-    r'|"(?:\\.|[^"\\\n])*"?'
+    r'|"(?:\\.|[^"\\\n])*+"?'
     r"|'[^'\n]*'?"
     r"|#[^\n]*",
     re.DOTALL,
 )
-"""Where one does not end, it takes the rest: what is no TOML is scanned once as well."""
+"""Where one does not end, it takes the rest: what is no TOML is scanned once as well. The groups
+are possessive: one that may be entered anew keeps a hundred bytes for each character."""
 _HEADER = re.compile(r"\s*\[(\[?)([^\[\]]+)\]")
 _STRUCTURE = re.compile(r"([\[\]{},=])")
 

@@ -73,5 +73,5 @@ def _not_written(path: Path, stop: BaseException) -> str:
         why = stop.strerror or str(stop)
     if isinstance(stop, KeyboardInterrupt):
         why = "interrupted"
-    earlier = "; the earlier one is still there" if path.exists() else ""
+    earlier = "; the earlier one is still there" if path.is_file() else ""
     return f"{path}: not written: {why}{earlier}"

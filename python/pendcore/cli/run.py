@@ -165,6 +165,10 @@ def _with_options(case: Case, given: dict[str, Any]) -> Case:
         gone.add("error")
     if "rtol" in given or "atol" in given:
         gone.add("step")
+    lost = {name: value for name, value in case.options.items() if name in gone - set(given)}
+    if lost:
+        told = ", ".join(f"{name} = {value}" for name, value in lost.items())
+        print(f"left out of the case: {told} (--{' --'.join(given)} in its place)", file=sys.stderr)
     kept = {name: value for name, value in case.options.items() if name not in gone}
     return Case(
         scene=case.scene, q0=case.q0, qd0=case.qd0, t_span=case.t_span, name=case.name,

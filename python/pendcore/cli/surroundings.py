@@ -16,7 +16,7 @@ def make_surroundings_safe() -> None:
     os.environ["MPLBACKEND"] = "agg"
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
-        if stream is None:  # it is closed, and print() takes standard output for no file
+        if stream is None:  # closed: print(file=None) would go to standard output
             setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_WRONLY), "w", encoding="utf-8"))
         elif isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import re
 from collections.abc import Sequence
 from typing import Any
 
@@ -12,7 +11,7 @@ from pendcore.messages.arguments import did_you_mean
 from pendcore.run.options import OPTIONS
 
 CHOSEN_FOR_ERROR = tuple(name for name, one in OPTIONS.items() if one.chosen_for_error)
-"""The options of a run that the command line has too, each in the place of an error."""
+"""The options of a run that the command line takes too; an error that is asked for chooses all."""
 
 
 def known_words(
@@ -45,4 +44,4 @@ def _remedy(word: str, used: argparse.ArgumentParser) -> str:
         return ""
     if key in KEYS["run"]:
         return f": {of_the_run(key, '...')}"
-    return f": {did_you_mean(name, re.findall(r'--[a-z-]+', used.format_usage()))}"
+    return f": {did_you_mean(name, [x for x in used._option_string_actions if x[:2] == '--'])}"

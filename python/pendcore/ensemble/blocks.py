@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import inf, log2
+from math import inf, log2, prod
 
 import numpy as np
 
@@ -25,6 +25,8 @@ SECONDS_A_STEP = 1e-6
 every machine: the blocks of a store follow from it."""
 MOST_BYTES = 2**26
 """The largest block of a result."""
+MOST_BLOCKS = 2**18
+"""A store has as many files, or several times as many."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,12 +50,21 @@ class Blocks:
         return tuple(-(-a // b) for a, b in zip(self.shape, self.block_shape, strict=True))
 
     def __len__(self) -> int:
-        return int(np.prod(self.grid, dtype=np.int64))
+        return prod(self.grid)
 
     def __iter__(self) -> Iterator[Block]:
         for place in np.ndindex(self.grid):
             edges = zip(place, self.block_shape, self.shape, strict=True)
             yield tuple(slice(k * size, min((k + 1) * size, end)) for k, size, end in edges)
+
+
+def require_few_blocks(blocks: Blocks) -> None:
+    """Raise a ValueError unless a folder can hold the files of all blocks."""
+    if len(blocks) > MOST_BLOCKS:
+        raise ValueError(
+            f"block_shape = {list(blocks.block_shape)}: makes {len(blocks):,} blocks: must make at "
+            f"most {MOST_BLOCKS:,}: give a larger chunk"
+        )
 
 
 def size_of(block: Block) -> int:

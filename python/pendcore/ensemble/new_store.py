@@ -15,7 +15,7 @@ import numpy as np
 
 from pendcore import _core
 from pendcore.ensemble.about import BLOCK, SHAPE, about
-from pendcore.ensemble.blocks import Blocks, blocks_of, usual_block
+from pendcore.ensemble.blocks import Blocks, blocks_of, require_few_blocks, usual_block
 from pendcore.ensemble.coordinates import coordinates, member_axes
 from pendcore.ensemble.members import Members
 from pendcore.ensemble.one_writer import other_writer
@@ -65,6 +65,7 @@ def create(path: Path, members: Members, request: Request, chunk: int) -> None:
     told = about(members.scene, list(members.vary), request)  # says what cannot be saved
     require_space(path, bytes_of(members, request))
     blocks = blocks_of(members.shape, chunk or usual_block(members, request))
+    require_few_blocks(blocks)
     axes = member_axes(members.shape)
     building = path.with_name(f"{path.name}.{uuid4().hex}.part")
     with named(path):
@@ -123,7 +124,7 @@ def _put(group: zarr.Group, name: str, values: Any, axes: tuple[str, ...], unit:
     else:
         group.create_array(
             name, data=values, dimension_names=axes, attributes=attributes,
-            compressors=_compressor(),
+            compressors=_compressor(), fill_value=np.nan if values.dtype.kind == "f" else 0,
         )  # fmt: skip
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
-from pathlib import Path
+from pathlib import Path, PureWindowsPath
 from typing import Any
 
 import numpy as np
@@ -26,7 +26,7 @@ from pendcore.ensemble.about import (
     read_about,
     read_sizes,
 )
-from pendcore.ensemble.blocks import Block, Blocks, size_of
+from pendcore.ensemble.blocks import Block, Blocks, require_few_blocks, size_of
 from pendcore.ensemble.coordinates import member_axes, members_from
 from pendcore.ensemble.members import Index, Members
 from pendcore.ensemble.new_store import create, named, zarr_module
@@ -233,6 +233,8 @@ def _opened(path: Path, mode: str) -> Store:
     shape, block_shape = read_sizes(told, SHAPE, 0), read_sizes(told, BLOCK, 1)
     if len(shape) != len(block_shape):
         raise ValueError(f"{BLOCK} = {list(block_shape)}: must have {len(shape)} numbers")
+    blocks = Blocks(shape, block_shape)
+    require_few_blocks(blocks)
     t_eval = _read(place, "time", {"time": None})[1] if (place / "time").exists() else None
     scene, request = read_about(told, t_eval)
     n, axes = len(scene.links), member_axes(shape)
@@ -242,7 +244,8 @@ def _opened(path: Path, mode: str) -> Store:
     found |= {name: _read(place, name, lengths) for name in told[VARY]}
     zarr_arrays: dict[str, Any] = {}
     for one in request.variables(n):
-        if ".." in Path(one.name).parts or Path(one.name).is_absolute():
+        name = PureWindowsPath(one.name)  # it knows the separators of every system
+        if name.drive or name.root or ".." in name.parts:
             raise ValueError(f"{KEEP}: {one.name!r} is no name of a reducer")
         whole = (*shape, *one.shape)
         chunk = [max(size, 1) for size in (*block_shape, *one.shape)]
@@ -250,14 +253,17 @@ def _opened(path: Path, mode: str) -> Store:
         require_array(place, one.name, dtype, (*axes, *one.labels), whole, chunk)
         zarr_arrays[one.name] = _zarr_array(place, one.name, mode)
     members = members_from(scene, shape, found)
-    return Store(path, place, told, zarr_arrays, members, request, Blocks(shape, block_shape))
+    return Store(path, place, told, zarr_arrays, members, request, blocks)
 
 
 def _read(path: Path, name: str, lengths: Mapping[str, int | None]) -> tuple[tuple[str, ...], Any]:
     """Return axes and values of starts, of a parameter or of times."""
     axes = axes_of(path, name, lengths)
     require_array(path, name, "float64", axes, [lengths[axis] for axis in axes])
-    return axes, np.asarray(_zarr_array(path, name, "r")[...])
+    values = np.asarray(_zarr_array(path, name, "r")[...])
+    if not np.isfinite(values).all():  # so reads a file that is gone
+        raise ValueError(f"{name}: a file of it is missing, or it has a value that is not finite")
+    return axes, values
 
 
 def continued(path: Path, members: Members, request: Request) -> Store:

@@ -93,4 +93,4 @@ def _parts(times: Floats, rates: Floats) -> int:
     """Return into how many parts the path between two frames is cut."""
     turn = np.abs(rates).max(axis=1) * np.abs(np.diff(times)).max(initial=0.0)
     fastest = float(np.nan_to_num(turn, nan=np.inf).max())
-    return int(np.clip(fastest / PART, FEWEST_PARTS, MOST_PARTS))
+    return int(np.clip(np.ceil(fastest / PART), FEWEST_PARTS, MOST_PARTS))

@@ -12,6 +12,7 @@ from pendcore.figures.axes import horizon_time, in_legend, in_plane
 from pendcore.figures.over_time import draw_energies
 from pendcore.films.frames import Moves, frame_times, moves_of
 from pendcore.messages.arguments import Floats, number, positive
+from pendcore.run.dense_output import with_dense_output
 from pendcore.run.result import RunResult
 
 if TYPE_CHECKING:
@@ -57,7 +58,8 @@ class Stage:
         self.figure = figure
         self.times = frame_times(solutions, choices.fps, choices.speed)
         self._players: list[_Player] = []
-        moves = [moves_of(one, self.times) for one in solutions]
+        dense = [with_dense_output(one) for one in solutions]
+        moves = [moves_of(one, self.times) for one in dense]
         scenes, strip = _layout(figure, len(solutions), choices)
         largest = max(float(np.hypot(*np.moveaxis(one.reactions, -1, 0)).max()) for one in moves)
         length = max(one.total_length for one in moves)
@@ -78,7 +80,7 @@ class Stage:
             0.02, 0.98, "", transform=scenes[0].transAxes, ha="left", va="top", family="monospace"
         )
         self._pace = "" if choices.speed == 1.0 else f"  (x{choices.speed:g})"
-        self._now = None if strip is None else _energy_strip(strip, solutions[0])
+        self._now = None if strip is None else _energy_strip(strip, dense[0])
         for artist in self.moving():
             artist.set_animated(True)
 

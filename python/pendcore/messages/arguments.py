@@ -149,7 +149,7 @@ def whole_number(name: str, value: Any, most: int = 2**31 - 1) -> int:
 
 def flag(name: str, value: object) -> bool:
     """Return a bool of Python or NumPy as one of Python."""
-    if not isinstance(value, bool | np.bool):
+    if not isinstance(value, bool | np.bool_):
         raise TypeError(f"{name} = {value!r}: must be True or False")
     return bool(value)
 

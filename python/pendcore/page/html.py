@@ -175,10 +175,10 @@ def _options() -> list[dict[str, Any]]:
     """Return the options of a run that a page takes: their words, or their type."""
     stores = re.findall('"(.*?)"', OPTIONS["store"].type)
     words = {"method": ["auto", *known_methods()], "store": stores}
-    types = {"npt.ArrayLike": "float or floats", "bool": "bool"}
+    types = {"npt.ArrayLike": "float or floats"} | {one: one for one in ("bool", "int", "float")}
     return [
         {"name": one.name, "words": words.get(one.name)}
-        | {"type": types.get(one.annotation.removesuffix(" | None"), "float")}
+        | {"type": "" if one.name in words else types[one.annotation.removesuffix(" | None")]}
         for one in OPTIONS.values()
         if one.name not in LEFT_OUT
     ]

@@ -52,7 +52,7 @@ def curve_of(
         return Curve(kept.t, kept.states, kept.ledger)
     run, (first, last) = with_dense_output(solution).run, span_of(solution)
     inside = run.step_starts[(run.step_starts - first) * (last - run.step_starts) > 0]
-    nodes = np.concatenate([[first], inside, [last]])[first == last :]
+    nodes = np.array([first] if first == last else [first, *inside, last])
     nodes = nodes if last_steps is None else nodes[-last_steps - 1 :]
     t = _refined(solution.scene, nodes, run.evaluate(nodes), turn, fewest)
     return Curve(t, run.evaluate(t), run.ledger_at(t))

@@ -64,7 +64,7 @@ class RunResult:
 
     @name.setter
     def name(self, name: str) -> None:
-        self._name = text("name", name) if name != "" else name  # a short run has no time for it
+        self._name = text("name", name)
 
     @property
     def t(self) -> Floats:

@@ -70,6 +70,8 @@ def _kind_of(taken: Any) -> str:
     """Return what ctypes is told of an argument, in C's words; ``"void*"`` for any address."""
     if taken in (ctypes.c_double, ctypes.c_int):
         return "double" if taken is ctypes.c_double else "int"
+    if not hasattr(taken, "from_param"):  # it is no type of ctypes
+        return "other"
     if issubclass(taken, ctypes._Pointer):
         pointed = taken._type_
         while issubclass(pointed, ctypes.Array):
@@ -77,7 +79,8 @@ def _kind_of(taken: Any) -> str:
         return f"{_kind_of(pointed)}*"
     if (dtype := getattr(taken, "_dtype_", None)) is not None:  # of NumPy's ndpointer
         return "double*" if dtype == np.float64 else "other*"
-    is_address = getattr(taken, "_type_", "?") in _ADDRESSES
+    letter = getattr(taken, "_type_", "?")  # that of an array is a class
+    is_address = isinstance(letter, str) and letter in _ADDRESSES
     is_wide = is_address and ctypes.sizeof(taken) == ctypes.sizeof(ctypes.c_void_p)
     return "void*" if is_wide else "other"
 
