@@ -145,10 +145,10 @@ void EventFinder::find_difference(std::size_t k, const Step& step) {
     moved += std::abs(polynomial_[p]);
     moved_with_its_links = std::max(moved_with_its_links, size_of_row);
   }
+  if (step.t_old.high == t0_) unarmed_within_[k] = rounding_at_start(difference, step);
   // A held joint passes no level, whatever the last bits of its links' angles do.
   if (moved <= 64.0 * epsilon * moved_with_its_links) return;
   const double end = difference.of(y_new_.data());
-  if (step.t_old.high == t0_) unarmed_within_[k] = rounding_at_start(difference, step);
   const Levels levels = levels_along(difference, degree, end, 8.0 * epsilon * size);
   const int count = count_turns(k, levels);
   bool is_armed = true;

@@ -69,6 +69,19 @@ void check_effects_at_start(const Scene& scene, const std::vector<double>& q0,
   }
 }
 
+/// Looks again at locks that take the angle of the start.
+void check_locks_of_start(const Scene& scene, const std::vector<double>& q0) {
+  const auto takes_start = [](const Lock& lock) { return !lock.angle; };
+  if (std::ranges::none_of(effects_of<Lock>(scene), takes_start)) return;
+  Scene locked = scene;
+  for (Effect& effect : locked.effects) {
+    auto* const lock = std::get_if<Lock>(&effect);
+    if (lock != nullptr && takes_start(*lock)) lock->angle = relative(q0.data(), lock->joint);
+  }
+  const std::string reason = singular_somewhere(locked);
+  if (!reason.empty()) throw std::invalid_argument("q0: with joints locked as it says: " + reason);
+}
+
 }  // namespace
 
 void check_start(const Scene& scene, const std::vector<double>& q0, const std::vector<double>& qd0,
@@ -82,17 +95,7 @@ void check_start(const Scene& scene, const std::vector<double>& q0, const std::v
     refuse("t_span[1]", t_end, "less than 1.8e308 s from t_span[0] = " + text(t0));
   }
   check_effects_at_start(scene, q0, qd0, t0, t_end);
-  Scene locked = scene;
-  bool is_known = true;
-  for (Effect& effect : locked.effects) {
-    auto* const lock = std::get_if<Lock>(&effect);
-    if (lock == nullptr || lock->angle) continue;
-    lock->angle = relative(q0.data(), lock->joint);
-    is_known = false;
-  }
-  if (is_known) return;
-  const std::string reason = singular_somewhere(locked);
-  if (!reason.empty()) throw std::invalid_argument("q0: with joints locked as it says: " + reason);
+  check_locks_of_start(scene, q0);
 }
 
 bool is_outside_table(const Effect& effect, double t, bool forward) {

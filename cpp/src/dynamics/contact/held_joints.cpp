@@ -89,8 +89,8 @@ std::vector<double> HeldJoints::without_rounding(const double* qd) const {
   std::vector<double> rates(qd, qd + n_);
   for (int j = 0; j < n_; ++j) {
     const JointSupport& support = supports_[j];
-    const bool may_rest = !support.friction_effects.empty() || std::isfinite(support.lower.angle) ||
-                          std::isfinite(support.upper.angle);
+    const bool may_rest = support.is_locked || !support.friction_effects.empty() ||
+                          std::isfinite(support.lower.angle) || std::isfinite(support.upper.angle);
     const double size = std::abs(qd[j]) + (j > 0 ? std::abs(qd[j - 1]) : 0.0) + natural_speed_;
     if (may_rest && std::abs(relative(qd, j + 1)) <= last_bits_share * size) {
       set_relative(rates.data(), j + 1, 0.0);

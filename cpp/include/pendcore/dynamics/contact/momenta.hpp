@@ -6,8 +6,9 @@
 ///
 /// A heavy link on light ones makes entries of M that cancel in p: a product with M loses as many
 /// digits as the condition of M has. The velocities of mass centres do not cancel, so that p has
-/// its error from the sines and cosines alone. A payload is a mass at the tip, a rotor adds J phid
-/// to its two links. (n) each, kg m^2/s. Cost: some 300 operations for each link.
+/// its error from the sines and cosines alone. A payload is a mass and an inertia at the tip; a
+/// rotor adds J phid to its link and takes it from the link before. (n) each, kg m^2/s. Cost: some
+/// 300 operations for each link.
 #pragma once
 
 #include <span>

@@ -213,7 +213,7 @@ struct DoublePendulumOrders {
   Constant per_sigma;
   Half minus_kappa;
   Half inverse;                   ///< 1/D
-  Half sine, cosine;              ///< -rho S/D and -rho C/D
+  Half pull_sine, pull_cosine;    ///< -rho S/D and -rho C/D
   Half minus_rate;                ///< -qd_0
   Rate rates[highest_order + 1];  ///< qd_k
   Row n[highest_order + 3];
@@ -252,8 +252,8 @@ PENDCORE_INLINE DoublePendulumOrders<Number>::DoublePendulumOrders(
   inverse = 1.0 / fma(constants.product * sin, sin, rest);
   minus_kappa = fma(Half(-constants.coupling), cos, constants.rotor);
   const Half coupling = constants.coupling * inverse;
-  sine = coupling * sin;
-  cosine = -(coupling * cos);
+  pull_sine = coupling * sin;
+  pull_cosine = -(coupling * cos);
   const Half weight = Constant(sigma * sigma) * constants.weight * inverse;
   const Half weight_x = weight * s0;
   const Half weight_y = weight * c0;
@@ -261,7 +261,7 @@ PENDCORE_INLINE DoublePendulumOrders<Number>::DoublePendulumOrders(
   minus_rate = -rate;
   beta_x = minus_rate * rate;
   beta_y = Half{};
-  Half f = fma(sine, other(beta_x), weight_y);
+  Half f = fma(pull_sine, other(beta_x), weight_y);
   if constexpr (!std::is_same_v<TorqueOrders, NoTorque>) {
     f = fma(inverse, torque.next(0, angle, rate), f);
   }
@@ -278,14 +278,14 @@ PENDCORE_INLINE void DoublePendulumOrders<Number>::next(std::ptrdiff_t k, const 
                                                         Number* coefficients, Last& last) {
   auto& [angle, alpha, beta_x, beta_y, pull_x] = last;
   const NumbersOfOrder& of = numbers_of_order[k];
-  const Half share = of.inverse * minus_rate;
-  const Half of_alpha = of.second_over * minus_rate;
+  const Half turn = of.inverse * minus_rate;
+  const Half turn_of_alpha = of.second_over * minus_rate;
   const Half next = Constants<Half>::of(of.next);
-  const Half x = fma(of_alpha, alpha, fma(next, low_half(along), share * beta_y));
-  beta_y = fma(next, high_half(along), -(share * beta_x));
+  const Half x = fma(turn_of_alpha, alpha, fma(next, low_half(along), turn * beta_y));
+  beta_y = fma(next, high_half(along), -(turn * beta_x));
   beta_x = x;
-  const Half older = fma(cosine, other(beta_y), high_half(across)) + low_half(across);
-  Half f = fma(minus_rate, pull_x, fma(sine, other(beta_x), older));
+  const Half older = fma(pull_cosine, other(beta_y), high_half(across)) + low_half(across);
+  Half f = fma(minus_rate, pull_x, fma(pull_sine, other(beta_x), older));
   if constexpr (!std::is_same_v<TorqueOrders, NoTorque>) {
     f = fma(inverse, torque.next(static_cast<int>(k), angle, Of::pair(rates[k])), f);
   }
@@ -306,8 +306,8 @@ PENDCORE_INLINE void DoublePendulumOrders<Number>::finish(std::ptrdiff_t k, Numb
   n[k + 2] = joined(Half(of.minus_share_of_n * bend_y), Half(of.share_of_n * beta_x));
   const Half x = other(beta_x);
   const Half y = other(bend_y);
-  pull_x = fma(-sine, y, cosine * x);
-  pulls[k] = joined(pull_x, fma(cosine, y, sine * x));
+  pull_x = fma(-pull_sine, y, pull_cosine * x);
+  pulls[k] = joined(pull_x, fma(pull_cosine, y, pull_sine * x));
 }
 
 /// Calls `add` with a type of values and with functions that return pull_j, qd_j and n_j; it
