@@ -1,4 +1,4 @@
-"""What is drawn of a run is its dense output, whether the run kept that, a few times or its end."""
+"""Figures and films show the dense output of a run, whether it kept that, few times or its end."""
 
 from __future__ import annotations
 

@@ -83,7 +83,7 @@ void JointForces::refined_response(double* x) {
   problem.factor_between();
   double error = never;
   for (int round = 0; round < most_rounds; ++round) {
-    // What is missing in M x = J^T lambda and in J x + a = 0.
+    // By how much x and lambda miss M x = J^T lambda and J x + a = 0.
     const std::vector<TwoDouble> p = momenta(links, inertia, sine, cosine, x);
     std::vector<TwoDouble> missing(bodies_);
     for (std::size_t i = 0; i < n; ++i) {
