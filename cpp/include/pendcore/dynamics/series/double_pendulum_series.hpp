@@ -281,9 +281,9 @@ PENDCORE_INLINE void DoublePendulumOrders<Number>::next(std::ptrdiff_t k, const 
   const Half turn = of.inverse * minus_rate;
   const Half turn_of_alpha = of.second_over * minus_rate;
   const Half next = Constants<Half>::of(of.next);
-  const Half x = fma(turn_of_alpha, alpha, fma(next, low_half(along), turn * beta_y));
-  beta_y = fma(next, high_half(along), -(turn * beta_x));
-  beta_x = x;
+  const Half turned_x = turn * beta_x;
+  beta_x = fma(turn_of_alpha, alpha, fma(next, low_half(along), turn * beta_y));
+  beta_y = fma(next, high_half(along), -turned_x);
   const Half older = fma(pull_cosine, other(beta_y), high_half(across)) + low_half(across);
   Half f = fma(minus_rate, pull_x, fma(pull_sine, other(beta_x), older));
   if constexpr (!std::is_same_v<TorqueOrders, NoTorque>) {
