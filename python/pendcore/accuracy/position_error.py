@@ -112,7 +112,8 @@ def distances(scene: SceneData, q: npt.ArrayLike, reference: npt.ArrayLike) -> F
 
 def largest_difference(q: Floats, reference: Floats | float = 0.0) -> Floats:
     """Return the largest difference over the links of numbers (..., n), (...)."""
-    return np.asarray(reduce(np.maximum, np.moveaxis(np.abs(q - reference), -1, 0)))
+    apart = np.abs(q - reference)
+    return np.asarray(reduce(np.maximum, (apart[..., i] for i in range(apart.shape[-1]))))
 
 
 def reached(solution: RunResult, t: Floats) -> npt.NDArray[np.bool_]:

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from functools import cache
 from textwrap import fill
+from types import MappingProxyType
 from typing import Any
 
 from pendcore import _core
 
 
-def known_methods() -> dict[str, dict[str, Any]]:
+@cache
+def known_methods() -> Mapping[str, Mapping[str, Any]]:
     """Return the methods of the core by their names."""
-    return {method["name"]: method for method in _core.methods()}
+    return MappingProxyType({one["name"]: MappingProxyType(one) for one in _core.methods()})
 
 
 def error_over_rtol(method: str) -> float:
@@ -21,13 +24,13 @@ def error_over_rtol(method: str) -> float:
 
 def most_accurate() -> tuple[str, ...]:
     """Return the methods that give second opinions and serve as references, the best first."""
-    ranked = [(one["second_opinion"], one["name"]) for one in _core.methods()]
+    ranked = [(one["second_opinion"], one["name"]) for one in known_methods().values()]
     return tuple(name for rank, name in sorted(ranked) if rank)
 
 
 def implicit_method() -> str:
     """Return the method for stiff scenes."""
-    return next(str(one["name"]) for one in _core.methods() if one["kind"] == "implicit")
+    return next(str(one["name"]) for one in known_methods().values() if one["kind"] == "implicit")
 
 
 def line_style(method: str) -> dict[str, Any]:
@@ -45,7 +48,7 @@ def described_methods(docstring: str | None) -> str | None:
     before = docstring.partition("{methods}")[0]
     margin = " " * (len(before) - len(before.rstrip(" ")))
     names_of: dict[str, list[str]] = {}  # one sentence may describe several, such as the pairs
-    for one in _core.methods():
+    for one in known_methods().values():
         names = [f'``"{name}"``' for name in (one["name"], *one["aliases"])]
         names_of.setdefault(one["sentence"], []).extend(names)
     sentences = [f"{', '.join(names)}: {sentence}" for sentence, names in names_of.items()]
@@ -85,5 +88,5 @@ def has_error_estimate(method: str) -> bool:
 
 def pair_of(first: str) -> str:
     """Return the pair that begins with a method."""
-    pairs = [one for one in _core.methods() if one["kind"] == "pair"]
+    pairs = [one for one in known_methods().values() if one["kind"] == "pair"]
     return str(next(pair["name"] for pair in pairs if pair["first"] == first))
