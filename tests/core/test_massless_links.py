@@ -205,3 +205,18 @@ def test_a_lock_where_the_run_starts_is_looked_at_there() -> None:
         pc.simulate(scene, [0.3, 0.3 + np.pi], 0.0, (0, 1))
     with pytest.raises(ValueError, match="link 1: inertia about its joint"):
         scene.replace(effects=[fx.Lock(joint=2, angle=-np.pi)])
+
+
+def test_a_lock_that_makes_a_link_as_long_as_the_next_only_if_straight_is_taken_bent() -> None:
+    """Straight, the pair is as long as the next link, which its rotor can fold back on it."""
+    links = [pc.Link(mass=0.0, length=1.0)] * 2 + [pc.Link.point_mass(mass=1.0, length=2.0)]
+    effects = [fx.Lock(joint=2), fx.RotorInertia(joint=3, armature=0.3)]
+    scene = pc.Scene(links=links, effects=effects)
+    bent, straight = [0.3, 1.3, 0.5], [0.3, 0.3, 0.5]
+    assert pc.simulate(scene, bent, t_span=(0, 1)).success
+    message = "q0: with joints locked as it says: link 1: has neither mass nor inertia"
+    with pytest.raises(ValueError, match=message):
+        pc.simulate(scene, straight, t_span=(0, 1))
+    many = pc.ensemble(scene, [bent, straight], t_span=(0, 1), check=False)
+    assert list(many.status) == ["finished", "refused"]
+    assert many.message((1,)).startswith(message)

@@ -124,7 +124,7 @@ def test_an_interrupted_store_ends_as_the_same_bytes(tmp_path, stored, kind):
     done = stop.value.ensemble.counts()
     assert 0 < done.get("not_run", 0) < len(STARTS) * 9
     missing = (
-        f"{done['not_run']} of 54 members were not run, or files of theirs are missing: repeat"
+        f"{done['not_run']} of 54 members were not run, or files of theirs are missing, the first"
     )
     with pytest.warns(pc.PendcoreWarning, match=missing):
         assert pc.load(path).ending == "interrupted"

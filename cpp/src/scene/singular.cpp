@@ -148,21 +148,25 @@ std::string why_singular(const Body& body, const Motions& next) {
            "lines up with link " +
            std::to_string(body.first + body.links + 1) +
            ": give one of the two an inertia; one massless rod with a mass at its end is "
-           "Link.point_mass(mass, length)";
+           "Link.point_mass(mass=..., length=...)";
   }
   if (body.mass > 0.0) {
     return link +
            ": inertia about its joint, with what it carries, = 0.0: must be finite and > 0 (kg "
            "m^2): give it an inertia, or move its mass centre off the joint; "
-           "Link.point_mass(mass, length) has it at the other end";
+           "Link.point_mass(mass=..., length=...) has it at the other end";
   }
   return link +
          ": mass = 0.0: must be finite and > 0 (kg), as nothing else resists its rotation, no "
-         "inertia, payload or rotor; Link.point_mass(mass, length) is a massless rod with a mass "
-         "at its end";
+         "inertia, payload or rotor; a massless rod with a mass at its end is "
+         "Link.point_mass(mass=..., length=...)";
 }
 
 }  // namespace
+
+bool takes_angles_of_start(const Scene& scene) {
+  return std::ranges::any_of(effects_of<Lock>(scene), [](const Lock& lock) { return !lock.angle; });
+}
 
 std::string singular_somewhere(const Scene& scene) {
   const bool has_payload = std::ranges::any_of(

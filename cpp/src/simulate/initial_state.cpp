@@ -71,12 +71,11 @@ void check_effects_at_start(const Scene& scene, const std::vector<double>& q0,
 
 /// Looks again at locks that take the angle of the start.
 void check_locks_of_start(const Scene& scene, const std::vector<double>& q0) {
-  const auto takes_start = [](const Lock& lock) { return !lock.angle; };
-  if (std::ranges::none_of(effects_of<Lock>(scene), takes_start)) return;
+  if (!takes_angles_of_start(scene)) return;
   Scene locked = scene;
   for (Effect& effect : locked.effects) {
     auto* const lock = std::get_if<Lock>(&effect);
-    if (lock != nullptr && takes_start(*lock)) lock->angle = relative(q0.data(), lock->joint);
+    if (lock != nullptr && !lock->angle) lock->angle = relative(q0.data(), lock->joint);
   }
   const std::string reason = singular_somewhere(locked);
   if (!reason.empty()) throw std::invalid_argument("q0: with joints locked as it says: " + reason);

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from pendcore.cases.case_file import KEYS
@@ -27,7 +27,8 @@ def known_words(
     args, unknown = parser.parse_known_args(argv)
     if unknown:
         used = commands.choices[args.command]
-        used.error(f"unrecognized arguments: {' '.join(unknown)}{_remedy(unknown[0], used)}")
+        remedy = _remedy(unknown[0], args.command, commands.choices)
+        used.error(f"unrecognized arguments: {' '.join(unknown)}{remedy}")
     return args
 
 
@@ -36,12 +37,26 @@ def of_the_run(name: str, value: str) -> str:
     return f"{name} is an option of the run: write {name} = {value} below [run] in the case"
 
 
-def _remedy(word: str, used: argparse.ArgumentParser) -> str:
-    """Return what to write for an option that a sub-command does not have."""
+def _remedy(word: str, command: str, parsers: Mapping[str, argparse.ArgumentParser]) -> str:
+    """Return what to write for an option that a command does not have."""
     name = word.partition("=")[0]
     key = name.lstrip("-").replace("-", "_")
     if not name.startswith("--"):
         return ""
     if key in KEYS["run"]:
         return f": {of_the_run(key, '...')}"
-    return f": {did_you_mean(name, [x for x in used._option_string_actions if x[:2] == '--'])}"
+    own = _options(parsers[command])
+    if key == "gravity":
+        here = " or give --parameters gravity=..." if "--parameters" in own else ""
+        return f": write gravity = ... into the case{here}"
+    others = [other for other, parser in parsers.items() if name in _options(parser)]
+    if command in others:
+        return f": write it behind `pendcore {command}`"
+    if others:
+        commands = " and ".join(f"`pendcore {other}`" for other in others)
+        return f": it is an option of {commands}"
+    return f": {did_you_mean(name, own)}"
+
+
+def _options(parser: argparse.ArgumentParser) -> list[str]:
+    return [option for option in parser._option_string_actions if option[:2] == "--"]

@@ -87,17 +87,25 @@ class Store:
             for name, one in self._zarr_arrays.items()
         }
 
-    def not_done(self) -> int:
-        """Return the number of members in blocks of which files are missing, without reading."""
+    def not_done(self) -> tuple[int, str]:
+        """Return how many members are in blocks of which files are missing, and the first of these.
+
+        Nothing is read.
+        """
         arrays = self._zarr_arrays.values()
         if all(one.nchunks_initialized == one.nchunks for one in arrays):
-            return 0
-        return sum(size_of(block) for block in self.blocks if not self.is_done(block))
+            return 0, ""
+        lost = [block for block in self.blocks if not self.is_done(block)]
+        first = next((file for block in lost for file in self._missing(block)), "")
+        return sum(map(size_of, lost)), first
 
     def is_done(self, block: Block) -> bool:
         """Return whether all files of a block are there."""
+        return not any(self._missing(block))
+
+    def _missing(self, block: Block) -> Iterator[str]:
         files = _files(self._zarr_arrays, block)
-        return all((self.place / one).exists() for one in files)
+        return (file for file in files if not (self.place / file).exists())
 
     def write(self, block: Block, arrays: Arrays) -> None:
         """Write the results of a block."""
@@ -113,11 +121,12 @@ class Store:
     def require_all(self) -> None:
         """Raise an OSError if files are missing, now that every block was written."""
         self.require_there()
-        if lost := self.not_done():
+        lost, first = self.not_done()
+        if lost:
             raise OSError(
                 f"store = {str(self.path)!r}: files of {lost} of {self.members.count} members are "
-                "gone: something removed them while it was written; the same call computes these "
-                "members again"
+                f"gone, the first is {first}: something removed them while it was written; the same "
+                "call computes these members again"
             )
 
 

@@ -86,6 +86,28 @@ class RunResult:
         """States as SciPy lays them out, (2n, n_t): q_1..q_n (rad), then qd_1..qd_n (rad/s)."""
         return self.run.states.T
 
+    @property
+    def t_reached(self) -> float:
+        """The time to which the run came, s: its end, or where it broke off.
+
+        With ``t_eval`` or ``store="end"`` it may lie beyond all of ``t``.
+        """
+        return self.run.t_reached
+
+    @property
+    def y_reached(self) -> Floats:
+        """The state at ``t_reached``, (2n,): q_1..q_n (rad), then qd_1..qd_n (rad/s).
+
+        Examples
+        --------
+        >>> sol = pc.simulate(
+        ...     pc.Scene.textbook(), q0=0.5, t_span=(0, 9), t_eval=[9.0], max_steps=5, check=False
+        ... )
+        >>> len(sol.t), f"{sol.t_reached:.1f} s", sol.y_reached.shape
+        (0, '0.5 s', (4,))
+        """
+        return self.run.y_reached
+
     @known_keywords
     def __call__(self, t: npt.ArrayLike) -> Floats:
         """State at any time within the run, from the method's own interpolant.

@@ -21,8 +21,11 @@
 
 namespace pendcore {
 
+/// Whether a lock has the angle at which its joint starts.
+bool takes_angles_of_start(const Scene& scene);
+
 /// Names the link that no kinetic energy keeps from turning, why, and the remedy; empty for a scene
-/// whose mass matrix is regular. A lock without an angle counts as straight.
+/// whose mass matrix is regular. All locks must have angles.
 std::string singular_somewhere(const Scene& scene);
 
 }  // namespace pendcore
