@@ -280,7 +280,7 @@ class Payload(Effect):
     def inertia(self) -> float: ...
 
 class Lock(Effect):
-    """A joint locked at an angle: one degree of freedom less."""
+    """A joint locked at an angle: one degree of freedom less. It may join massless links."""
 
     kind: ClassVar[Literal["lock"]]
     __match_args__: Final = ("joint", "angle")

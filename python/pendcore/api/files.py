@@ -118,7 +118,8 @@ def _from_store(path: Path) -> Ensemble:
         found.ending = "interrupted"
         warn(
             f"{path}: {missing} of {len(found)} members were not run, or files of theirs are "
-            f"missing, the first is {first}: repeat the call of pc.ensemble that made the store to run them"
+            f"missing, the first is {first}: repeat the call of pc.ensemble that made the store to "
+            "run them"
         )
     return found
 

@@ -125,8 +125,8 @@ class Store:
         if lost:
             raise OSError(
                 f"store = {str(self.path)!r}: files of {lost} of {self.members.count} members are "
-                f"gone, the first is {first}: something removed them while it was written; the same "
-                "call computes these members again"
+                f"gone, the first is {first}: something removed them while it was written; the "
+                "same call computes these members again"
             )
 
 

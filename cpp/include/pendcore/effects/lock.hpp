@@ -18,7 +18,9 @@ struct Lock {
   static constexpr EffectInfo info{
       .name = "Lock",
       .kind = "lock",
-      .sentence = "A joint locked at an angle: one degree of freedom less.",
+      .sentence =
+          "A joint locked at an angle: one degree of freedom less. It may join massless "
+          "links.",
       .law = "phi = constant",
       .source = "the textbook's mobility, 3 n - 2 c5 - c4, with two links made one",
       .bounds_joint = true,
@@ -34,7 +36,8 @@ struct Lock {
                 {.name = "angle",
                  .symbol = "phi",
                  .unit = "rad",
-                 .sentence = "angle of the joint; its angle at the start if left out"}),
+                 .sentence = "angle of the joint, at which a run must start; its angle there if "
+                             "left out"}),
   };
 };
 

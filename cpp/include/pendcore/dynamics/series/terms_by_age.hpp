@@ -149,12 +149,11 @@ PENDCORE_INLINE void expand_by_two(int order, const SumsOf& sums_of, const Next&
     }
   } else {
     for (std::ptrdiff_t k = 4; k < order; k += 2) {
-      two_orders(k, sums_of([k]<class Value>(const auto& pull, const auto& rate, const auto& n)
-                                __attribute__((always_inline)) {
-                                  return with_newest_terms<Value>(
-                                      older_terms<Value>(k, pull, rate, n), k, unknown_one(), pull,
-                                      rate, n);
-                                }));
+      two_orders(k, sums_of([k]<class Value>(const auto& pull, const auto& rate,
+                                             const auto& n) __attribute__((always_inline)) {
+                   return with_newest_terms<Value>(older_terms<Value>(k, pull, rate, n), k,
+                                                   unknown_one(), pull, rate, n);
+                 }));
     }
   }
 }
