@@ -69,7 +69,8 @@ std::vector<Body> bodies_of(const Scene& scene) {
       square += link.mass * std::norm(center);
       body.reach += link.length * along;
       body.size += link.length;
-    } while (++i < n && !std::isnan(lock[i]));
+      ++i;
+    } while (i < n && !std::isnan(lock[i]));
     if (body.mass > 0.0) body.center = moment / body.mass;
     if (body.links == 1) {
       body.center = scene.links[body.first].center;
