@@ -82,13 +82,13 @@ tidy: $(DONE)/build-requirements $(DONE)/lint-requirements  ## clang-tidy over t
 	cmake --preset tidy
 	run-clang-tidy.py -quiet -hide-progress -p build/tidy
 
-# Sanitizers need each line of code to run once, not often: tests that are slow for other reasons are
-# marked `unsanitized` and left out. Python itself is not built with the sanitizers, so their
-# libraries are loaded before it; memory that Python never frees is not reported.
+# Sanitizers need each line of code to run once, not often: sweeps are those of `make test`, and tests
+# that are slow for other reasons are marked `unsanitized` and left out. Python itself is not built
+# with the sanitizers, so their libraries are loaded before it; memory that Python never frees is not
+# reported.
 SANITIZED := $(CURDIR)/build/sanitizer/site
 PRELOAD = $(shell g++ -print-file-name=libasan.so) $(shell g++ -print-file-name=libstdc++.so)
 
-sanitize: SWEEP = --full
 sanitize: sanitized  ## all tests under sanitizers
 
 # One case of one Python test in three, and at least one test of every file.
