@@ -89,7 +89,7 @@ tidy: $(DONE)/build-requirements $(DONE)/lint-requirements  ## clang-tidy over t
 SANITIZED := $(CURDIR)/build/sanitizer/site
 PRELOAD = $(shell g++ -print-file-name=libasan.so) $(shell g++ -print-file-name=libstdc++.so)
 
-sanitize: sanitized  ## all tests under sanitizers
+sanitize: sanitized  ## the cases of make test under sanitizers
 
 # One case of one Python test in three, and at least one test of every file.
 sanitize-few: SWEEP = --values 1 --share 3

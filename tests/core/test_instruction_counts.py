@@ -27,12 +27,6 @@ pytestmark = pytest.mark.outside_build
 CORE = Path(__file__).parents[2] / "cpp"
 CPU_INFO = Path("/proc/cpuinfo")
 SMOOTH = [effect for effect in EFFECTS if effect.most_instructions is not None]
-# The core still owes these: a test fails as long as its effect costs more than promised, and its
-# entry here fails once it does not.
-OWED = {
-    "motor_sinusoid": "a quarter too many: registers spilled around a pack of four",
-    "driven_pivot": "a quarter too many: registers spilled around a pack of four",
-}
 
 
 @pytest.fixture(scope="module")
@@ -115,19 +109,7 @@ def test_an_effect_with_coefficient_0_pays_that_effect_and_no_other(
     assert bare < nil == full
 
 
-@pytest.mark.parametrize(
-    "effect",
-    [
-        pytest.param(
-            effect,
-            id=effect.name,
-            marks=[pytest.mark.xfail(strict=True, reason=OWED[effect.name])]
-            if effect.name in OWED
-            else [],
-        )
-        for effect in SMOOTH
-    ],
-)
+@pytest.mark.parametrize("effect", SMOOTH, ids=lambda effect: effect.name)
 def test_a_present_effect_adds_at_most_what_is_promised(
     effect: Effect, programs: tuple[Path, Path]
 ) -> None:

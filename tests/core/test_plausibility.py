@@ -180,7 +180,8 @@ SINGULAR = {
         [fx.DryJointFriction(2, 1e9)],
         f"link 1: {NEITHER}",
     ),
-    "a lock before": ([ROD, EMPTY, POINT], [fx.Lock(1, 0.3)], f"link 2: {NEITHER}"),
+    "a lock before": ([ROD, EMPTY, POINT], [fx.Lock(1)], f"link 2: {NEITHER}"),
+    "beyond a lock that takes the start": ([EMPTY, POINT, EMPTY], [fx.Lock(2)], "link 3: mass ="),
     "a mass that a lock folds into the joint": (
         [EMPTY, POINT],
         [fx.Lock(2, np.pi)],

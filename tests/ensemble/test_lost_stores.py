@@ -10,6 +10,7 @@ import numpy as np
 import pendcore as pc
 import pytest
 from pendcore.ensemble import store as store_module
+from pendcore.ensemble.distribution import Task, run_task
 from test_store import ASKED, BOOK, STARTS, contents, pool_of
 
 pytest.importorskip("zarr", exc_type=ImportError)
@@ -66,6 +67,18 @@ def test_a_store_that_goes_while_it_is_written_is_told_and_made_by_nobody(tmp_pa
         pc.ensemble(BOOK, STARTS, progress=once(lost, path), executor=pool, **how)
     if lost not in (remove, empty):  # which take their time, in which a worker may write on
         assert not path.exists()
+
+
+def test_what_a_worker_raises_can_be_pickled_with_its_causes(tmp_path, stored):
+    """Dask pickles the causes of an exception as well, and cannot read all of Zarr's."""
+    path = tmp_path / "a.zarr"
+    shutil.copytree(stored, path)
+    found = pc.load(path)
+    shutil.rmtree(path / "q")
+    block = (slice(0, 7),)
+    with pytest.raises(OSError, match="is no longer there") as raised:
+        run_task(Task(pc.__version__, found.members, found.request, 1, path, block))
+    assert raised.value.__cause__ is raised.value.__context__ is None
 
 
 @pytest.mark.unsanitized
@@ -139,7 +152,7 @@ def test_a_file_that_goes_while_a_store_is_written_is_told_and_made_anew(
     def remove_one(path):
         min(one for one in path.glob(f"{name}/c/**/*") if one.is_file()).unlink()
 
-    told = rf"files of 7 of 54 members are gone, the first is {name}/c/[0-9/]+: something removed"
+    told = rf"files of 7 of 54 members are gone, the first of them is {name}/c/[0-9/]+: some"
     with pool_of(kind) as pool, pytest.raises(OSError, match=told):
         pc.ensemble(BOOK, STARTS, progress=once(remove_one, path), executor=pool, **how)
     pc.ensemble(BOOK, STARTS, **how)
@@ -150,9 +163,10 @@ def test_a_file_that_goes_while_a_store_is_written_is_told_and_made_anew(
 def test_a_file_that_is_missing_is_told_by_load_and_made_anew(tmp_path, stored, name):
     path = tmp_path / "a.zarr"
     shutil.copytree(stored, path)
-    lost = max(one for one in path.glob(f"{name}/c/**/*") if one.is_file())
-    lost.unlink()
-    told = f"2 of 54 members .* files of theirs are missing, the first is {lost.relative_to(path)}"
+    *_, first, last = sorted(one for one in path.glob(f"{name}/c/**/*") if one.is_file())
+    first.unlink()
+    last.unlink()
+    told = f"of 54 members .* missing, the first of them is {first.relative_to(path)}: repeat"
     with pytest.warns(pc.PendcoreWarning, match=told):
         assert pc.load(path).ending == "interrupted"
     pc.ensemble(BOOK, STARTS, store=path, **ASKED)

@@ -123,9 +123,7 @@ def test_an_interrupted_store_ends_as_the_same_bytes(tmp_path, stored, kind):
         pc.ensemble(BOOK, STARTS, progress=stop_early, executor=pool, **how)
     done = stop.value.ensemble.counts()
     assert 0 < done.get("not_run", 0) < len(STARTS) * 9
-    missing = (
-        f"{done['not_run']} of 54 members were not run, or files of theirs are missing, the first"
-    )
+    missing = f"{done['not_run']} of 54 members were not run, or files of theirs are missing, the"
     with pytest.warns(pc.PendcoreWarning, match=missing):
         assert pc.load(path).ending == "interrupted"
     found = pc.ensemble(BOOK, STARTS, **how)

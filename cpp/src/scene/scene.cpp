@@ -132,8 +132,6 @@ void check(const Scene& scene) {
     }
     carried += link.mass;
   }
-  // Where the angles of locks come from the start, check_start() decides.
-  if (takes_angles_of_start(scene)) return;
   const std::string reason = singular_somewhere(scene);
   if (!reason.empty()) throw std::invalid_argument(reason);
 }

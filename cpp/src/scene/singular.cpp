@@ -23,6 +23,7 @@ struct Body {
   Plane center{}, reach{};           ///< from its joint to the mass centre, and to the next joint
   double size = 0.0;                 ///< the sum of the lengths
   double turn = 0.0;                 ///< the angle of the last link
+  bool is_known = true;              ///< whether all its locks have angles
 
   /// What rounding may leave of a distance that is zero. A link alone has none.
   double slack() const { return links == 1 ? 0.0 : lost_sine * size; }
@@ -47,12 +48,12 @@ constexpr Motions no_motion{never, -1.0};
 
 std::vector<Body> bodies_of(const Scene& scene) {
   const std::size_t n = scene.links.size();
-  std::vector<double> lock(n, std::numeric_limits<double>::quiet_NaN());
-  for (const Lock& one : effects_of<Lock>(scene)) lock[one.joint - 1] = one.angle.value_or(0.0);
+  std::vector<const Lock*> lock(n, nullptr);
+  for (const Lock& one : effects_of<Lock>(scene)) lock[one.joint - 1] = &one;
   std::vector<Body> bodies;
   for (std::size_t i = 0; i < n;) {
     Body body{.first = static_cast<int>(i)};
-    const bool is_ground = !std::isnan(lock[i]);
+    const bool is_ground = lock[i] != nullptr;
     for (const RotorInertia& rotor : effects_of<RotorInertia>(scene)) {
       body.has_rotor |= rotor.joint == body.first + 1 && rotor.armature > 0;
     }
@@ -60,7 +61,10 @@ std::vector<Body> bodies_of(const Scene& scene) {
     double square = 0.0;
     do {
       const Link& link = scene.links[i];
-      if (body.links++ > 0) body.turn += lock[i];
+      if (body.links++ > 0) {
+        body.turn += lock[i]->angle.value_or(0.0);
+        body.is_known &= lock[i]->angle.has_value();
+      }
       const Plane along = body.links == 1 ? 1.0 : std::polar(1.0, body.turn);
       const Plane center = body.reach + link.center * along;
       body.mass += link.mass;
@@ -70,7 +74,7 @@ std::vector<Body> bodies_of(const Scene& scene) {
       body.reach += link.length * along;
       body.size += link.length;
       ++i;
-    } while (i < n && !std::isnan(lock[i]));
+    } while (i < n && lock[i] != nullptr);
     if (body.mass > 0.0) body.center = moment / body.mass;
     if (body.links == 1) {
       body.center = scene.links[body.first].center;
@@ -165,16 +169,13 @@ std::string why_singular(const Body& body, const Motions& next) {
 
 }  // namespace
 
-bool takes_angles_of_start(const Scene& scene) {
-  return std::ranges::any_of(effects_of<Lock>(scene), [](const Lock& lock) { return !lock.angle; });
-}
-
 std::string singular_somewhere(const Scene& scene) {
   const bool has_payload = std::ranges::any_of(
       effects_of<Payload>(scene), [](const Payload& payload) { return payload.mass > 0.0; });
   Motions motions = has_payload ? joint_rests : any_motion;
   const std::vector<Body> bodies = bodies_of(scene);
   for (std::size_t i = bodies.size(); i-- > 0;) {
+    if (!bodies[i].is_known) return {};
     const auto found = with_body(scene, bodies[i], motions);
     if (!found) return why_singular(bodies[i], motions);
     motions = *found;

@@ -71,7 +71,8 @@ void check_effects_at_start(const Scene& scene, const std::vector<double>& q0,
 
 /// Looks again at locks that take the angle of the start.
 void check_locks_of_start(const Scene& scene, const std::vector<double>& q0) {
-  if (!takes_angles_of_start(scene)) return;
+  const auto takes_start = [](const Lock& lock) { return !lock.angle; };
+  if (std::ranges::none_of(effects_of<Lock>(scene), takes_start)) return;
   Scene locked = scene;
   for (Effect& effect : locked.effects) {
     auto* const lock = std::get_if<Lock>(&effect);

@@ -113,6 +113,7 @@ def distances(scene: SceneData, q: npt.ArrayLike, reference: npt.ArrayLike) -> F
 def largest_difference(q: Floats, reference: Floats | float = 0.0) -> Floats:
     """Return the largest difference over the links of numbers (..., n), (...)."""
     apart = np.abs(q - reference)
+    # numpy is slow along an axis as short as a chain
     return np.asarray(reduce(np.maximum, (apart[..., i] for i in range(apart.shape[-1]))))
 
 

@@ -113,13 +113,13 @@ def load_solution(path: str | os.PathLike[str]) -> Solution:
 def _from_store(path: Path) -> Ensemble:
     store = opened(path)
     found = _ensemble(store.members, store.request, store.arrays)
-    missing, first = store.not_done()
+    missing, first_file = store.not_done()
     if missing:
         found.ending = "interrupted"
         warn(
             f"{path}: {missing} of {len(found)} members were not run, or files of theirs are "
-            f"missing, the first is {first}: repeat the call of pc.ensemble that made the store to "
-            "run them"
+            f"missing, the first of them is {first_file}: repeat the call of pc.ensemble that made "
+            "the store to run them"
         )
     return found
 

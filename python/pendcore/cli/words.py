@@ -24,11 +24,15 @@ def known_words(
         if first.endswith(".toml"):
             remedy = f"did you mean `pendcore run {first}`?"
         parser.error(f"argument COMMAND: invalid choice: {first!r}: {remedy}")
+    if first.startswith("--") and first.partition("=")[0] not in _options(parser):
+        used = next((word for word in argv if word in commands.choices), "")
+        remedy = f": {_remedy(first, used, commands.choices)}" if used else ""
+        parser.error(f"unrecognized arguments: {first}{remedy}")
     args, unknown = parser.parse_known_args(argv)
     if unknown:
-        used = commands.choices[args.command]
         remedy = _remedy(unknown[0], args.command, commands.choices)
-        used.error(f"unrecognized arguments: {' '.join(unknown)}{remedy}")
+        told = f"unrecognized arguments: {' '.join(unknown)}{remedy and f': {remedy}'}"
+        commands.choices[args.command].error(told)
     return args
 
 
@@ -38,24 +42,21 @@ def of_the_run(name: str, value: str) -> str:
 
 
 def _remedy(word: str, command: str, parsers: Mapping[str, argparse.ArgumentParser]) -> str:
-    """Return what to write for an option that a command does not have."""
+    """Return what to write for an option where a command does not take it."""
     name = word.partition("=")[0]
     key = name.lstrip("-").replace("-", "_")
     if not name.startswith("--"):
         return ""
-    if key in KEYS["run"]:
-        return f": {of_the_run(key, '...')}"
     own = _options(parsers[command])
+    if name in own:
+        return f"write it after `pendcore {command}`"
+    if key in KEYS["run"]:
+        return of_the_run(key, "...")
     if key == "gravity":
         here = " or give --parameters gravity=..." if "--parameters" in own else ""
-        return f": write gravity = ... into the case{here}"
-    others = [other for other, parser in parsers.items() if name in _options(parser)]
-    if command in others:
-        return f": write it behind `pendcore {command}`"
-    if others:
-        commands = " and ".join(f"`pendcore {other}`" for other in others)
-        return f": it is an option of {commands}"
-    return f": {did_you_mean(name, own)}"
+        return f"write gravity = ... into the case{here}"
+    others = [f"`pendcore {one}`" for one, parser in parsers.items() if name in _options(parser)]
+    return f"{name} is an option of {', '.join(others)}" if others else did_you_mean(name, own)
 
 
 def _options(parser: argparse.ArgumentParser) -> list[str]:

@@ -180,7 +180,13 @@ def run_task(task: Task) -> tuple[Block, Arrays | None, dict[str, Any]]:
     if task.store is None:
         return task.block, found.arrays, found.statistics
     variables = task.request.variables(len(task.members.scene.links))
-    write_block(task.store, variables, task.block, found.arrays)
+    try:
+        write_block(task.store, variables, task.block, found.arrays)
+    except Exception as error:
+        # Dask's way to pickle exceptions takes their causes with them, and cannot read all of
+        # Zarr's: the pool would count as broken.
+        error.__cause__ = error.__context__ = None
+        raise
     return task.block, None, found.statistics
 
 

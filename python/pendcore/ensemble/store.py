@@ -88,16 +88,16 @@ class Store:
         }
 
     def not_done(self) -> tuple[int, str]:
-        """Return how many members are in blocks of which files are missing, and the first of these.
+        """Return the number of members whose files are missing, and the first missing file.
 
         Nothing is read.
         """
         arrays = self._zarr_arrays.values()
         if all(one.nchunks_initialized == one.nchunks for one in arrays):
             return 0, ""
-        lost = [block for block in self.blocks if not self.is_done(block)]
-        first = next((file for block in lost for file in self._missing(block)), "")
-        return sum(map(size_of, lost)), first
+        lost = [(block, files) for block in self.blocks if (files := [*self._missing(block)])]
+        first_file = lost[0][1][0] if lost else ""
+        return sum(size_of(block) for block, _ in lost), first_file
 
     def is_done(self, block: Block) -> bool:
         """Return whether all files of a block are there."""
@@ -121,12 +121,12 @@ class Store:
     def require_all(self) -> None:
         """Raise an OSError if files are missing, now that every block was written."""
         self.require_there()
-        lost, first = self.not_done()
-        if lost:
+        lost_members, first_file = self.not_done()
+        if lost_members:
             raise OSError(
-                f"store = {str(self.path)!r}: files of {lost} of {self.members.count} members are "
-                f"gone, the first is {first}: something removed them while it was written; the "
-                "same call computes these members again"
+                f"store = {str(self.path)!r}: files of {lost_members} of {self.members.count} "
+                f"members are gone, the first of them is {first_file}: something removed them "
+                "while it was written; the same call computes these members again"
             )
 
 

@@ -90,7 +90,7 @@ class RunResult:
     def t_reached(self) -> float:
         """The time to which the run came, s: its end, or where it broke off.
 
-        With ``t_eval`` or ``store="end"`` it may lie beyond all of ``t``.
+        With ``t_eval`` it may lie beyond all of ``t``.
         """
         return self.run.t_reached
 

@@ -21,11 +21,9 @@
 
 namespace pendcore {
 
-/// Whether a lock has the angle at which its joint starts.
-bool takes_angles_of_start(const Scene& scene);
-
 /// Names the link that no kinetic energy keeps from turning, why, and the remedy; empty for a scene
-/// whose mass matrix is regular. All locks must have angles.
+/// whose mass matrix is regular. Where this depends on a lock without an angle, which takes that of
+/// the start, nothing is said: check_start() asks again with the angle.
 std::string singular_somewhere(const Scene& scene);
 
 }  // namespace pendcore

@@ -281,7 +281,7 @@ PENDCORE_INLINE void DoublePendulumOrders<Number>::next(std::ptrdiff_t k, const 
   const Half turn = of.inverse * minus_rate;
   const Half turn_of_alpha = of.second_over * minus_rate;
   const Half next = Constants<Half>::of(of.next);
-  const Half turned_x = turn * beta_x;
+  const Half turned_x = turn * beta_x;  // first: lanes would keep a copy of beta_x in memory
   beta_x = fma(turn_of_alpha, alpha, fma(next, low_half(along), turn * beta_y));
   beta_y = fma(next, high_half(along), -turned_x);
   const Half older = fma(pull_cosine, other(beta_y), high_half(across)) + low_half(across);

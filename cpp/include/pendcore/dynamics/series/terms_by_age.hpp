@@ -91,8 +91,8 @@ PENDCORE_INLINE TermsByAge<Value> older_terms(std::ptrdiff_t k, const Pull& pull
   return sum;
 }
 
-/// Adds the terms that orders k - 2 and k - 1 gave. The oldest numbers are those of order `first`,
-/// which is 1.
+/// Adds the terms that orders k - 2 and k - 1 gave, each of them with one of the oldest numbers.
+/// `first` is 1, the order of the oldest rate: see unknown_one().
 template <class Value, class Pull, class Rate, class Normal>
 PENDCORE_INLINE TermsByAge<Value> with_newest_terms(const TermsByAge<Value>& older,
                                                     std::ptrdiff_t k, std::ptrdiff_t first,
