@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
+from contextlib import suppress
 from dataclasses import dataclass
 from math import inf
 from os import cpu_count
@@ -98,8 +99,10 @@ def _run_here(
         for block in blocks:
             size = size_of(block)
             if not target.is_done(block):
+                left = until - monotonic()
+                if left <= 0:  # threads may run a whole block before they look at a limit of 0
+                    return Outcome(target.arrays, "time_limit", dict(statistics), None)
                 report = _part(limits.report, done / total, size / total)
-                left = max(until - monotonic(), 0.0)
                 found = run_members(members.block(block), request, limits.workers, left, report)
                 if found.ending != "finished" or found.error is not None:
                     try:
@@ -156,6 +159,8 @@ def _run_by(
         ending, error = "interrupted", _in_words(stop)
     finally:
         begun = [one for one in running if not one.cancel()]
+        if len(begun) < len(running):
+            _let_forget(pool)
         if store is not None:  # these still write into it, so it must be held until they have
             wait(begun, PATIENCE)
     try:
@@ -207,6 +212,17 @@ def _results(
         for one in wait(running, LOOK, FIRST_COMPLETED).done:
             running.discard(one)
             yield one.result()
+
+
+def _let_forget(pool: Executor) -> None:
+    """Let a pool of processes see which tasks were cancelled.
+
+    In Python 3.11.2 and before, a pool that is shut down right after that waits for them for ever
+    (github.com/python/cpython/issues/94440), unless the result of another task comes.
+    """
+    if isinstance(pool, ProcessPoolExecutor):
+        with suppress(RuntimeError):  # it is broken, or shut down
+            pool.submit(int)
 
 
 def _pool(executor: Any) -> tuple[Executor, int]:
