@@ -273,7 +273,7 @@ void ActingEffects<Row>::sum_couples(int joint) {
   }
   Couples<Row>& row = *std::ranges::find(couples, joint / width, &Couples<Row>::row);
   const int lane = joint % width;
-  each_coefficient(row, sum, [lane](Row& all, double one) { set_lane(all, lane, one); });
+  each_field(row, sum, [lane](Row& all, double one) { set_lane(all, lane, one); });
 }
 
 /// Finds what the first two waves do to the pivot; sum_couples() does this for motors.

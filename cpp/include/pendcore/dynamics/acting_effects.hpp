@@ -25,6 +25,11 @@ struct WavesOf {
   Links torque[2]{};     ///< amplitudes of motors
   Links on_sine[2]{};    ///< amplitudes of a xdd_0 of the pivot
   Links on_cosine[2]{};  ///< amplitudes of -a ydd_0 of the pivot
+
+  template <class Any>
+  static auto fields(Any& x) {
+    return std::tie(x.angular_frequency, x.phase, x.torque, x.on_sine, x.on_cosine);
+  }
 };
 using TwoWaves = WavesOf<Pair>;
 

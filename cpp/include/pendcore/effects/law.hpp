@@ -31,6 +31,7 @@
 #include <limits>
 #include <vector>
 
+#include "pendcore/arithmetic/fields.hpp"
 #include "pendcore/arithmetic/pair.hpp"
 
 namespace pendcore {
@@ -63,6 +64,12 @@ struct Couple {
   double on_phid3 = 0.0;
   double gain = 0.0;
 
+  /// Those that Couples add up.
+  template <class Any>
+  static auto fields(Any& x) {
+    return std::tie(x.held, x.slope, x.start, x.on_phi, x.on_phid, x.on_phid2, x.on_phid3);
+  }
+
   double torque(double t, double phi, double phid, double sine) const {
     const double of_rate = ((on_phid3 * phid + on_phid2) * phid + on_phid) * phid;
     return held + slope * (t - start) + on_phi * phi + of_rate + gain * sine;
@@ -75,6 +82,11 @@ template <class Row>
 struct alignas(std::bit_floor(sizeof(Row))) Couples {
   int row = 0;
   Row held{}, slope{}, start{}, on_phi{}, on_phid{}, on_phid2{}, on_phid3{};
+
+  template <class Any>
+  static auto fields(Any& x) {
+    return std::tie(x.held, x.slope, x.start, x.on_phi, x.on_phid, x.on_phid2, x.on_phid3);
+  }
 
   template <class At>
   PENDCORE_INLINE typename At::Value torque(const At& at) const {
@@ -101,18 +113,6 @@ struct alignas(std::bit_floor(sizeof(Row))) Couples {
     return sum_of_lanes(Row(absolute(on_phid2) + absolute(on_phid3))) != 0.0;
   }
 };
-
-/// Calls use(to, from) with each coefficient of couples and of a Couple, or of other couples.
-template <class To, class From, class Use>
-void each_coefficient(To& to, const From& from, const Use& use) {
-  use(to.held, from.held);
-  use(to.slope, from.slope);
-  use(to.start, from.start);
-  use(to.on_phi, from.on_phi);
-  use(to.on_phid, from.on_phid);
-  use(to.on_phid2, from.on_phid2);
-  use(to.on_phid3, from.on_phid3);
-}
 
 /// A wave that drives a joint: tau += gain sin(wave).
 struct JointWave {

@@ -84,6 +84,11 @@ struct RodDrag {
     Row wind_x{};
     Row wind_y{};
 
+    template <class Any>
+    static auto fields(Any& x) {
+      return std::tie(x.minus_k, x.minus_k_arm, x.wind_x, x.wind_y);
+    }
+
     template <class At, class Loads>
     PENDCORE_INLINE void add(const At& at, Loads& loads) const {
       using V = typename At::Value;

@@ -110,7 +110,7 @@ EffectsOfChainInLanes<Real>::One::One(const ActingEffects<Row>& effects, int lin
     for (int i = 0; i < places && of_row.row * places + i < links; ++i) {
       Couples<double> joint;
       joint.row = of_row.row * places + i;
-      each_coefficient(joint, of_row, [i](double& to, const Row& row) { to = lane(row, i); });
+      each_field(joint, of_row, [i](double& to, const Row& row) { to = lane(row, i); });
       joints.push_back({joint, of_row.has_powers()});
     }
   }
@@ -157,8 +157,8 @@ void EffectsOfChainInLanes<Real>::put(int lane, const One& one) {
     }
   }
   for (int i = 0; i < couples(); ++i) {
-    each_coefficient(couples_[i], one.joints[i].couples,
-                     [lane](Real& all, double number) { set_lane(all, lane, number); });
+    each_field(couples_[i], one.joints[i].couples,
+               [lane](Real& all, double number) { set_lane(all, lane, number); });
   }
 }
 

@@ -162,12 +162,12 @@ struct LaneEquations<FreeChain<n>, Real> : StatesOfLinks<Real, n> {
                           equations.has_couples == !effects.couples.empty() &&
                           equations.drag.is_there == !effects.entries.empty();
     if (!is_alike) return false;
-    for (int i = 0; i < n; ++i) put_link(equations.link[i], lane, chain.link(i));
+    for (int i = 0; i < n; ++i) put_constants(equations.link[i], lane, chain.link(i));
     equations.payload_mass[lane] = chain.payload_mass();
     equations.gravity[lane] = chain.gravity();
-    if (equations.has_couples) put_couples(equations.couples, lane, effects.couples.front());
+    if (equations.has_couples) put_constants(equations.couples, lane, effects.couples.front());
     const auto* const drag = DragInLanes<EachLink<Real, n>>::law_of(effects);
-    if (drag != nullptr) equations.drag.put(lane, *drag);
+    if (drag != nullptr) put_constants(equations.drag.law, lane, *drag);
     return equations.waves.put(lane, effects);
   }
 };

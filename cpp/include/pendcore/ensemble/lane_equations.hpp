@@ -12,45 +12,29 @@
 
 namespace pendcore {
 
-/// Puts the numbers of one trajectory into a lane.
+/// Puts a number of one trajectory, or a row of them, into a lane.
 template <class Real>
-void put_row(EachLink<Real, 1>& row, int lane, double one) {
+void put_number(Real& x, int lane, double one) {
+  x[lane] = one;
+}
+template <class Real>
+void put_number(EachLink<Real, 1>& row, int lane, double one) {
   row.of[0][lane] = one;
 }
 template <class Real>
-void put_row(Two<Real>& row, int lane, const Pair& one) {
+void put_number(Two<Real>& row, int lane, const Pair& one) {
   row.first[lane] = one[0];
   row.second[lane] = one[1];
 }
 template <class Real, int links>
-void put_row(EachLink<Real, links>& row, int lane, const Pack<4>& one) {
+void put_number(EachLink<Real, links>& row, int lane, const Pack<4>& one) {
   for (int i = 0; i < links; ++i) row.of[i][lane] = one[i];
 }
-template <class Real>
-void put_link(ChainLinkOf<Real>& to, int lane, const ChainLink& from) {
-  to.m[lane] = from.m;
-  to.L[lane] = from.L;
-  to.mc[lane] = from.mc;
-  to.I[lane] = from.I;
-  to.Io[lane] = from.Io;
-  to.LL[lane] = from.LL;
-  to.turn[lane] = from.turn;
-  to.across[lane] = from.across;
-}
-/// Puts what the equations of a double pendulum and their series have in common.
-template <class Equations, class One>
-void put_constants(Equations& equations, int lane, const One& one) {
-  put_row(equations.weight, lane, one.weight);
-  put_row(equations.coupling, lane, one.coupling);
-  put_row(equations.rotor, lane, one.rotor);
-  equations.product[lane] = one.product;
-  equations.delta[lane] = one.delta;
-  equations.epsilon[lane] = one.epsilon;
-}
-template <class Rows, class Row>
-void put_couples(Couples<Rows>& couples, int lane, const Couples<Row>& one) {
-  each_coefficient(couples, one,
-                   [lane](Rows& all, const Row& of_one) { put_row(all, lane, of_one); });
+/// Puts the constants of one trajectory into a lane.
+template <class Constants, class One>
+void put_constants(Constants& constants, int lane, const One& one) {
+  each_field(constants, one,
+             [lane](auto& all, const auto& of_one) { put_number(all, lane, of_one); });
 }
 
 /// The drag on rods in lanes: at most one for each link, and only where the pivot stands still.
@@ -72,13 +56,6 @@ struct DragInLanes {
     const auto* const shared =
         std::get_if<const SharedLaw<RodDrag, OfRun>*>(&effects.entries.front().law);
     return shared != nullptr ? &(*shared)->law : nullptr;
-  }
-  template <class OfRun>
-  void put(int lane, const RodDrag::Law<OfRun>& one) {
-    put_row(law.minus_k, lane, one.minus_k);
-    put_row(law.minus_k_arm, lane, one.minus_k_arm);
-    put_row(law.wind_x, lane, one.wind_x);
-    put_row(law.wind_y, lane, one.wind_y);
   }
 };
 
@@ -138,10 +115,7 @@ struct LaneEquations<DoublePendulum, Real> : StatesOfTwoLinks<Real> {
   static bool put(Type& equations, int lane, const EquationsOfMotion& from) {
     const auto* const one = std::get_if<DoublePendulum>(&from.form);
     if (one == nullptr) return false;
-    put_row(equations.weight, lane, one->weight);
-    put_row(equations.coupling, lane, one->coupling);
-    equations.product[lane] = one->product;
-    equations.delta[lane] = one->delta;
+    put_constants(equations, lane, *one);
     return true;
   }
 };
@@ -207,33 +181,17 @@ struct LaneEquations<TwoLinksWithEffects, Real> : StatesOfTwoLinks<Real> {
     const auto put_form = [&](const auto* one, bool has_waves, bool has_drag) {
       const bool is_alike = has_waves == equations.has_waves && has_drag == equations.drag.is_there;
       if (one == nullptr || !is_alike) return false;
-      put(equations, lane, *one);
-      put_couples(equations.couples, lane, *one->couples);
-      put(equations.waves, lane, one->effects->two_waves);
-      put_row(equations.length, lane, one->length);
+      put_constants(equations, lane, *one);
+      put_constants(equations.couples, lane, *one->couples);
+      put_constants(equations.waves, lane, one->effects->two_waves);
+      put_number(equations.length, lane, one->length);
       const auto* const drag = DragInLanes<Two<Real>>::law_of(*one->effects);
-      if (drag != nullptr) equations.drag.put(lane, *drag);
+      if (drag != nullptr) put_constants(equations.drag.law, lane, *drag);
       return true;
     };
     return put_form(std::get_if<CouplesAlone>(&from.form), false, false) ||
            put_form(std::get_if<CouplesAndWaves>(&from.form), true, false) ||
            put_form(std::get_if<CouplesAndLaws>(&from.form), false, true);
-  }
-
- private:
-  static void put(LoadedDoublePendulum<Two<Real>, Real>& equations, int lane,
-                  const LoadedDoublePendulum<Pair, double>& one) {
-    put_row(equations.inverse_diagonal, lane, one.inverse_diagonal);
-    put_constants(equations, lane, one);
-  }
-  static void put(WavesOf<Two<Real>>& waves, int lane, const TwoWaves& one) {
-    put_row(waves.angular_frequency, lane, one.angular_frequency);
-    put_row(waves.phase, lane, one.phase);
-    for (int k = 0; k < 2; ++k) {
-      put_row(waves.torque[k], lane, one.torque[k]);
-      put_row(waves.on_sine[k], lane, one.on_sine[k]);
-      put_row(waves.on_cosine[k], lane, one.on_cosine[k]);
-    }
   }
 };
 

@@ -82,10 +82,10 @@ struct LaneEquations<SinglePendulum, Real> : StatesOfLinks<Real, 1> {
     equations.weight[lane] = form.weight;
     equations.inverse_inertia[lane] = form.inverse_inertia;
     equations.moment[lane] = form.moment;
-    put_row(equations.length, lane, form.length);
+    put_number(equations.length, lane, form.length);
     const auto* const drag = DragInLanes<EachLink<Real, 1>>::law_of(effects);
-    if (drag != nullptr) equations.drag.put(lane, *drag);
-    if (equations.has_couples) put_couples(equations.couples, lane, effects.couples.front());
+    if (drag != nullptr) put_constants(equations.drag.law, lane, *drag);
+    if (equations.has_couples) put_constants(equations.couples, lane, effects.couples.front());
     return equations.waves.put(lane, effects);
   }
 };

@@ -49,11 +49,8 @@ struct TorquesInLanes {
     const bool is_alike = (laws.couples != nullptr) == (one.couples != nullptr) &&
                           laws.has_powers == one.has_powers && laws.waves == one.waves;
     if (!is_alike) return false;
-    if (one.couples != nullptr) put_couples(couples, lane, *one.couples);
-    put_row(laws.angular_frequency, lane, one.angular_frequency);
-    put_row(laws.phase, lane, one.phase);
-    for (int k = 0; k < 2; ++k) put_row(laws.gain[k], lane, one.gain[k]);
-    put_row(laws.factor, lane, one.factor);
+    if (one.couples != nullptr) put_constants(couples, lane, *one.couples);
+    put_constants(laws, lane, one);
     return true;
   }
 };
@@ -145,14 +142,7 @@ struct FewLinksSeriesInLanes {
     torques.prepare(one.laws);
   }
   bool put(int lane, const One& one) {
-    for (int i = 0; i < n; ++i) {
-      put_link(constants.link[i], lane, one.constants.link[i]);
-    }
-    constants.payload_mass[lane] = one.constants.payload_mass;
-    put_row(constants.weight, lane, one.constants.weight);
-    for (int by = 1; by < n; ++by) {
-      put_row(constants.coupling[by], lane, one.constants.coupling[by]);
-    }
+    put_constants(constants, lane, one.constants);
     return torques.put(lane, one.laws);
   }
   PENDCORE_INLINE void expand(const Real& t, const Real* y, const Real& sigma, int order,

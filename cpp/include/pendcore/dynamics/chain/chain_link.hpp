@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "pendcore/arithmetic/fields.hpp"
 #include "pendcore/arithmetic/pair.hpp"
 #include "pendcore/dynamics/inertia.hpp"
 
@@ -15,6 +16,11 @@ namespace pendcore {
 template <class Number>
 struct ChainLinkOf {
   Number m, L, mc, I, Io, LL, turn, across;  // turn: I_o - m c L, across: I + m (L - c)^2
+
+  template <class Any>
+  static auto fields(Any& x) {
+    return std::tie(x.m, x.L, x.mc, x.I, x.Io, x.LL, x.turn, x.across);
+  }
 };
 using ChainLink = ChainLinkOf<double>;
 

@@ -41,6 +41,11 @@ struct DoublePendulumEquations {
   Number product;     ///< rho rho'
   Number delta;       ///< 1 - rho rho'
 
+  template <class Any>
+  static auto fields(Any& x) {
+    return std::tie(x.weight, x.coupling, x.product, x.delta);
+  }
+
   /// qdd (rad/s^2) from q (rad) and qd (rad/s), for each type of pair in pair.hpp.
   template <class AnyPair>
   PENDCORE_INLINE AnyPair accelerations(const AnyPair& q, const AnyPair& qd) const {

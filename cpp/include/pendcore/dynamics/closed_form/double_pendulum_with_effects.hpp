@@ -42,6 +42,12 @@ struct LoadedDoublePendulum {
   Number delta;
   Number epsilon;
 
+  template <class Any>
+  static auto fields(Any& x) {
+    return std::tie(x.inverse_diagonal, x.weight, x.coupling, x.rotor, x.product, x.delta,
+                    x.epsilon);
+  }
+
   /// C and S of a state.
   template <class V>
   struct Between {

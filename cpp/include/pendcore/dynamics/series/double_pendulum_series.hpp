@@ -122,6 +122,11 @@ struct ConstantsOfDoublePendulum {
   Number product;  ///< rho rho'
   Number delta;
   Number epsilon;
+
+  template <class Any>
+  static auto fields(Any& x) {
+    return std::tie(x.weight, x.coupling, x.rotor, x.product, x.delta, x.epsilon);
+  }
 };
 using DoublePendulumConstants = ConstantsOfDoublePendulum<double>;
 

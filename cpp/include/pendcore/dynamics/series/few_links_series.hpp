@@ -54,6 +54,11 @@ struct ConstantsOfFewLinks {
   Number payload_mass;  ///< kg
   Row weight;           ///< g a_i
   Row coupling[links];  ///< [d] has A_{i,i+d}; [0] is not used
+
+  template <class Any>
+  static auto fields(Any& x) {
+    return std::tie(x.link, x.payload_mass, x.weight, x.coupling);
+  }
 };
 
 /// The constants of a chain without rotors between its links.

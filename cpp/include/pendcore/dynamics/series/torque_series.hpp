@@ -40,6 +40,11 @@ struct TorqueLaws {
   PairOf<Number> angular_frequency{}, phase{};  ///< of each wave, rad/s and rad
   Links gain[2]{};                              ///< what each wave gives to the joints, N m
   Links factor{};                               ///< multiplies the result
+
+  template <class Any>
+  static auto fields(Any& x) {
+    return std::tie(x.angular_frequency, x.phase, x.gain, x.factor);
+  }
 };
 
 /// The laws of a scene that are in force now: a motor at its limit has no wave.
