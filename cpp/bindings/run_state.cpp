@@ -146,7 +146,9 @@ void visit(Archive& io, AnySolution& s) {
   io("position_stiff_misses", p.stiff_misses);
   io("position_stiff_since", p.stiff_since);
   visit_statistics(io, "position_", p.statistics);
-  io("position_stepper", p.stepper);
+  io("position_stepper", p.stepper.memory);
+  io("position_stepper_has_switched", p.stepper.has_switched);
+  io("position_stepper_h_asked", p.stepper.h_asked);
   io("position_breaks", p.discontinuities);
   io("position_y", p.y);
   io("position_dydt", p.dydt);

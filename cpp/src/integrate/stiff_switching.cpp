@@ -14,11 +14,6 @@ namespace {
 /// 1 to 6 series, 2 to 13 steps of dop853, or 3 to 16 steps of dopri5.
 constexpr double longer = 10.0;
 
-/// The last number of a saved state.
-constexpr double is_first = 0.0;
-constexpr double is_second = 1.0;
-constexpr double is_asked = 2.0;  ///< the first method; the number before is the step to try
-
 }  // namespace
 
 StiffSwitchingStepper::StiffSwitchingStepper(std::unique_ptr<Stepper> first, Make make_implicit)
@@ -133,22 +128,17 @@ double StiffSwitchingStepper::stiffness(double h) {
   return found;
 }
 
-std::vector<double> StiffSwitchingStepper::saved_state() const {
-  std::vector<double> memory = now().saved_state();
-  if (h_asked_ != 0.0) memory.push_back(h_asked_);
-  memory.push_back(has_changed_ ? is_second : h_asked_ != 0.0 ? is_asked : is_first);
-  return memory;
+StepperState StiffSwitchingStepper::saved_state() const {
+  StepperState saved = now().saved_state();
+  saved.has_switched = has_changed_;
+  saved.h_asked = h_asked_;
+  return saved;
 }
 
-void StiffSwitchingStepper::restore(const std::vector<double>& memory) {
-  if (memory.empty()) return;
-  std::vector<double> rest(memory.begin(), memory.end() - 1);
-  if (memory.back() == is_second) change();
-  if (memory.back() == is_asked && !rest.empty()) {
-    h_asked_ = rest.back();
-    rest.pop_back();
-  }
-  now().restore(rest);
+void StiffSwitchingStepper::restore(const StepperState& saved) {
+  if (saved.has_switched) change();
+  h_asked_ = saved.h_asked;
+  now().restore(saved);
 }
 
 }  // namespace pendcore

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <bit>
+#include <type_traits>
 
 #include "pendcore/arithmetic/instruction_set.hpp"
 
@@ -47,6 +48,11 @@ struct Vector<8> {
 
 template <int width>
 using Pack = typename pack_detail::Vector<width>::Reals;
+
+/// Whether something holds: for one number, or in each lane, where all bits are set if it does.
+template <class Real>
+using Condition =
+    std::conditional_t<std::is_same_v<Real, double>, bool, typename Lanes<Real>::Integers>;
 
 template <>
 struct Lanes<Pack<2>> : pack_detail::Vector<2> {
@@ -168,14 +174,22 @@ PENDCORE_INLINE Real absolute(const Real& x) {
 /// doubles return must not be joined with each other by & and |: GCC 12 takes such results apart,
 /// number by number, if packs have eight of them.
 template <class Real>
-PENDCORE_INLINE auto is_less(const Real& a, const Real& b) {
-  using Integers = typename Lanes<Real>::Integers;
-  return std::bit_cast<Integers>(a < b ? std::bit_cast<Real>(Integers{} - 1) : Real{});
+PENDCORE_INLINE Condition<Real> is_less(const Real& a, const Real& b) {
+  if constexpr (std::is_same_v<Real, double>) {
+    return a < b;
+  } else {
+    using Integers = typename Lanes<Real>::Integers;
+    return std::bit_cast<Integers>(a < b ? std::bit_cast<Real>(Integers{} - 1) : Real{});
+  }
 }
 template <class Real>
-PENDCORE_INLINE auto is_at_most(const Real& a, const Real& b) {
-  using Integers = typename Lanes<Real>::Integers;
-  return std::bit_cast<Integers>(a <= b ? std::bit_cast<Real>(Integers{} - 1) : Real{});
+PENDCORE_INLINE Condition<Real> is_at_most(const Real& a, const Real& b) {
+  if constexpr (std::is_same_v<Real, double>) {
+    return a <= b;
+  } else {
+    using Integers = typename Lanes<Real>::Integers;
+    return std::bit_cast<Integers>(a <= b ? std::bit_cast<Real>(Integers{} - 1) : Real{});
+  }
 }
 
 /// The larger number in every lane; `b` where either is NaN.

@@ -6,14 +6,19 @@
 /// Programming, volume 2, section 4.2.2 (TwoSum) and Dekker (1971).
 #pragma once
 
+#include <type_traits>
+
 #include "pendcore/arithmetic/instruction_set.hpp"
 
 namespace pendcore {
 
-struct TwoDouble {
-  double high = 0.0;  ///< the sum, rounded to a double
-  double low = 0.0;   ///< the rounding error of `high`
+/// `Real` is a double, or a pack with a sum in each lane.
+template <class Real>
+struct TwoNumbers {
+  Real high{};  ///< the sum, rounded to a double
+  Real low{};   ///< the rounding error of `high`
 };
+using TwoDouble = TwoNumbers<double>;
 
 /// a + b - sum, exactly, where sum is a + b rounded.
 template <class Real>
@@ -34,14 +39,17 @@ PENDCORE_INLINE constexpr Real product_error(const Real& a, const Real& b, const
   return ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low;
 }
 
-PENDCORE_INLINE constexpr TwoDouble two_sum(double a, double b) {
-  const double sum = a + b;
+template <class Real>
+PENDCORE_INLINE constexpr TwoNumbers<Real> two_sum(const Real& a, const Real& b) {
+  const Real sum = a + b;
   return {sum, left_over(a, b, sum)};
 }
 
-PENDCORE_INLINE constexpr TwoDouble operator+(const TwoDouble& a, double b) {
-  const TwoDouble sum = two_sum(a.high, b);
-  return two_sum(sum.high, sum.low + a.low);
+template <class Real>
+PENDCORE_INLINE constexpr TwoNumbers<Real> operator+(const TwoNumbers<Real>& a,
+                                                     const std::type_identity_t<Real>& b) {
+  const TwoNumbers<Real> sum = two_sum(a.high, b);
+  return two_sum(sum.high, Real(sum.low + a.low));
 }
 
 PENDCORE_INLINE constexpr TwoDouble operator+(const TwoDouble& a, const TwoDouble& b) {
@@ -54,8 +62,10 @@ PENDCORE_INLINE constexpr TwoDouble operator*(const TwoDouble& a, double b) {
 }
 
 /// b - a, rounded to a double.
-PENDCORE_INLINE constexpr double difference(double b, const TwoDouble& a) {
-  const TwoDouble sum = two_sum(b, -a.high);
+template <class Real>
+PENDCORE_INLINE constexpr Real difference(const std::type_identity_t<Real>& b,
+                                          const TwoNumbers<Real>& a) {
+  const TwoNumbers<Real> sum = two_sum(b, Real(-a.high));
   return sum.high + (sum.low - a.low);
 }
 

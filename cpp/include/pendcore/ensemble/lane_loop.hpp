@@ -168,9 +168,7 @@ class LaneLoop : public RecordingLanes<width> {
     state.dydt.resize(size);
     get_state(lane, state.y.data());
     get_derivative(lane, state.dydt.data());
-    state.stepper = saved_state(lane);
-    const bool is_pair = run.options.method != method_;
-    if (is_pair) state.stepper.push_back(0.0);  // its first method is at work
+    state.stepper.memory = saved_state(lane);
     run.dense.degree = stepper_->interpolant_degree();
     run.statistics = state.statistics;
     run.t_reached = state.t.high;

@@ -1,7 +1,7 @@
 /// \file
 /// What integrate/loop does around a step of a run, for a trajectory in each lane: where the step
-/// ends, whether it is accepted, how long the next one is. The operations are the same, as selects
-/// instead of branches, so that each lane has the bits of its run alone.
+/// ends, whether it is accepted, how long the next one is. The rules are those of step_control.hpp,
+/// so that each lane has the bits of its run alone; what they decide is selected, not branched to.
 #pragma once
 
 #include <limits>
@@ -93,28 +93,6 @@ PENDCORE_INLINE LaneBits bits_of(const Integers& holds) {
   return joined_bits(holds & bit_of_lane);
 }
 
-/// a + b as an unevaluated sum of two numbers in each lane (arithmetic/two_double.hpp).
-template <class Real>
-struct TwoReals {
-  Real high, low;
-};
-template <class Real>
-PENDCORE_INLINE TwoReals<Real> exact_sum(const Real& a, const Real& b) {
-  const Real sum = a + b;
-  return {sum, left_over(a, b, sum)};
-}
-template <class Real>
-PENDCORE_INLINE TwoReals<Real> operator+(const TwoReals<Real>& a, const Real& b) {
-  const TwoReals<Real> sum = exact_sum(a.high, b);
-  return exact_sum(sum.high, Real(sum.low + a.low));
-}
-/// b - a, rounded.
-template <class Real>
-PENDCORE_INLINE Real difference(const Real& b, const TwoReals<Real>& a) {
-  const TwoReals<Real> sum = exact_sum(b, Real(-a.high));
-  return sum.high + (sum.low - a.low);
-}
-
 /// Whether a difference may reach its level within a step of x, whose dense output is a polynomial
 /// with rows of `size` numbers, from the first power on, and which begins at y: not if the level is
 /// farther away than the sizes of all terms together.
@@ -175,20 +153,15 @@ struct NextStep {
 template <int width>
 PENDCORE_INLINE NextStep<width> next_step(const LaneSteps<width>& lanes,
                                           const LaneInterval& interval) {
-  namespace detail = lanes_detail;
   using Real = Pack<width>;
   const Real t_end = broadcast<Real>(interval.t_end);
-  const Real left = detail::difference(t_end, detail::TwoReals<Real>{lanes.t, lanes.t_low});
-  const Real size = absolute(lanes.h);
-  const Real stretched = last_step_stretch * size;
-  const Real allowed = larger_or_first(size, broadcast<Real>(interval.max_step));
-  const Real reach = allowed < stretched ? allowed : stretched;
+  const Real left = difference(t_end, TwoNumbers<Real>{lanes.t, lanes.t_low});
   NextStep<width> next;
-  next.bits = last_bits_share * larger_or_first(absolute(lanes.t), absolute(t_end));
-  next.is_in_reach = is_at_most(absolute(left), Real(reach + next.bits));
-  next.is_odd = is_at_most(size, Real(few * epsilon * absolute(lanes.t))) |
-                is_less(size, broadcast<Real>(Limits{}.least_step)) |
-                (next.is_in_reach & is_at_most(absolute(left), Real(few * next.bits)));
+  next.bits = last_bits(lanes.t, t_end);
+  next.is_in_reach = is_at_most(
+      absolute(left), Real(reach(lanes.h, broadcast<Real>(interval.max_step)) + next.bits));
+  next.is_odd = is_too_small(lanes.h, lanes.t, broadcast<Real>(Limits{}.least_step)) |
+                (next.is_in_reach & is_at_most(absolute(left), Real(few_bits * next.bits)));
   next.h = next.is_in_reach ? left : lanes.h;
   return next;
 }
@@ -211,18 +184,12 @@ PENDCORE_INLINE typename NextStep<width>::Integers finish_step(
   const Integers is_accepted = is_right & tried;
   const Integers is_rejected = ~is_right & tried;
 
-  // The step control of step_control.hpp, and the loop's bound on the next step.
-  const Real log2_error = 0.5 * approximate_log2(found.squared_error);
-  const Real most = lanes.after_rejection ? broadcast<Real>(1.0) : broadcast<Real>(info.growth);
-  const Real factor = found.factor < info.shrink ? broadcast<Real>(info.shrink)
-                      : most < found.factor      ? most
-                                                 : found.factor;
-  Real longer = h * factor;
-  longer = absolute(longer) >= max_step ? (h < 0.0 ? Real(-max_step) : max_step) : longer;
+  const Real log2_error = log2_of_error(found);
+  const Real longer =
+      limited(Real(h * factor_if_accepted(info, found.factor, lanes.after_rejection)), max_step);
   Real shorter = lanes.h;
   if ((detail::bits_of(is_rejected) & lanes.active) != 0) {
-    const Real log2_factor = info.log2_safety - exponent(info) * log2_error;
-    shorter = h * larger_or_first(approximate_exp2(log2_factor), broadcast<Real>(info.shrink));
+    shorter = h * factor_if_rejected(info, log2_error);
   }
   const Real smallest = broadcast<Real>(StepControl::log2_smallest_error);
   lanes.log2_error_before =
@@ -233,15 +200,14 @@ PENDCORE_INLINE typename NextStep<width>::Integers finish_step(
   lanes.steps_to_look += is_accepted;
   lanes.h = is_accepted ? longer : is_rejected ? shorter : lanes.h;
 
-  const detail::TwoReals<Real> t{lanes.t, lanes.t_low};
-  const detail::TwoReals<Real> after = t + h;
-  const Real missed = detail::difference(t_end, after);
-  const Integers lands = next.is_in_reach & is_at_most(h < 0.0 ? Real(-missed) : missed, next.bits);
+  const TwoNumbers<Real> t{lanes.t, lanes.t_low};
+  const TwoNumbers<Real> after = t + h;
+  const Integers is_at_end = next.is_in_reach & lands(h, difference(t_end, after), next.bits);
   lanes.t_before = lanes.t;
   lanes.t_low_before = lanes.t_low;
   lanes.h_before = h;
-  lanes.t = is_accepted ? (lands ? t_end : after.high) : t.high;
-  lanes.t_low = is_accepted ? (lands ? Real{} : after.low) : t.low;
+  lanes.t = is_accepted ? (is_at_end ? t_end : after.high) : t.high;
+  lanes.t_low = is_accepted ? (is_at_end ? Real{} : after.low) : t.low;
 
   const Integers has_ended = is_accepted & (lanes.t == t_end);
   const Integers max_steps = interval.max_steps - Integers{};

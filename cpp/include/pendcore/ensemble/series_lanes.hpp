@@ -224,7 +224,7 @@ PENDCORE_INLINE Attention take_series_steps(SeriesLanes<Form, width>* all,
     const Real from_here =
         all->largest < taylor_detail::largest_sigma ? all->largest : size_of_step;
     all->sigma_new = begins ? all->sigma : taylor_detail::power_of_two_below(from_here);
-    const detail::TwoReals<Real> start{all->t, all->t_low};
+    const TwoNumbers<Real> start{all->t, all->t_low};
     const Real t_new = begins ? all->t : (start + h).high;
     const Integers has_series = detail::expand(all, t_new, all->y_new.get(), all->rows_new.get(),
                                                all->sigma_new, all->largest_new);

@@ -14,6 +14,13 @@ namespace pendcore {
 /// A right-hand side on plain numbers, with the rates of quadratures after it.
 using Rates = std::function<void(double t, const double* y, double* dydt)>;
 
+/// What the next step depends on beside y and dydt.
+struct StepperState {
+  std::vector<double> memory = {};  ///< of the method that is at work; its own to read
+  bool has_switched = false;        ///< whether the second method of a pair is at work
+  double h_asked = 0.0;  ///< s, the implicit step that a pair is to try first; 0 for none
+};
+
 class Stepper : public StepOutput {
  public:
   virtual const MethodInfo& info() const = 0;
@@ -55,10 +62,10 @@ class Stepper : public StepOutput {
   /// fixed, or is the longest allowed. Returns whether to call it again after as many more hits.
   virtual bool stiffness_found(bool /*size_is_given*/) { return false; }
 
-  /// What the next step depends on beside y and dydt: nothing for most methods.
-  virtual std::vector<double> saved_state() const { return {}; }
+  /// Nothing for most methods.
+  virtual StepperState saved_state() const { return {}; }
   /// Continues from a saved state, instead of from what start() left.
-  virtual void restore(const std::vector<double>& /*memory*/) {}
+  virtual void restore(const StepperState& /*saved*/) {}
 
   long long evaluations = 0;     ///< right-hand sides so far
   long long jacobians = 0;       ///< derivatives of them so far, for implicit methods

@@ -86,10 +86,8 @@ class StiffSwitchingStepper final : public Stepper {
   double stiffness(double h) override;
   bool stiffness_found(bool size_is_given) override;
 
-  /// The memory of the current method, and whether the method has changed, or is to try the
-  /// implicit one at its next attempt; then also the size of the step to be tried.
-  std::vector<double> saved_state() const override;
-  void restore(const std::vector<double>& memory) override;
+  StepperState saved_state() const override;
+  void restore(const StepperState& saved) override;
 
  private:
   Stepper& now() { return has_changed_ ? *implicit_ : *first_; }

@@ -101,10 +101,9 @@ class Run {
     }
     const Target target = next_target(left);
     double h = integrator_.h;
-    const bool is_too_small =
-        std::abs(h) <= few * epsilon * std::abs(t) || std::abs(h) < limits_.least_step;
+    const bool resolves_nothing = is_too_small(h, t, limits_.least_step);
     // If the target is the next time that a double can hold, one step to it may be tried.
-    if (is_too_small && (!target.is_in_reach || integrator_.control.after_rejection)) {
+    if (resolves_nothing && (!target.is_in_reach || integrator_.control.after_rejection)) {
       const bool is_coarse = integrator_.trial_was_finite || was_stretched_;
       return end(is_coarse ? Status::step_too_small : Status::non_finite);
     }
@@ -119,8 +118,8 @@ class Run {
     trial_.attempt(h);
     can_stop_ = false;  // from here on the step has been tried already
     if (stopped_ != Status::finished) return end(stopped_);
-    const bool is_shortest = target.is_in_reach && std::abs(h) <= few * last_bits(t, target.t);
-    switch (trial_.judge(is_shortest, is_shortest && !is_too_small)) {
+    const bool is_shortest = target.is_in_reach && std::abs(h) <= few_bits * last_bits(t, target.t);
+    switch (trial_.judge(is_shortest, is_shortest && !resolves_nothing)) {
       case Trial::Verdict::accepted: break;
       case Trial::Verdict::is_tried_again:
         ++integrator_.statistics.rejected;
@@ -152,11 +151,6 @@ class Run {
   }
 
   Target next_target(double left) const {
-    const double h = integrator_.h;
-    // A stretched step is not longer than max_step. It may exceed max_step by the last bits of t,
-    // because a step over these bits alone would be no step.
-    const double stretched = last_step_stretch * std::abs(h);
-    const double reach = std::min(stretched, std::max(std::abs(h), limits_.max_step));
     Target target{limits_.t_end, left, false, false};
     if (discontinuities_ != nullptr) {
       const double next = discontinuities_->next_time(integrator_.t.high);
@@ -164,7 +158,10 @@ class Run {
         target = {next, difference(next, integrator_.t), true, false};
       }
     }
-    target.is_in_reach = std::abs(target.left) <= reach + last_bits(integrator_.t.high, target.t);
+    // A stretched step may exceed max_step by the last bits of t, because a step over these bits
+    // alone would be no step.
+    target.is_in_reach = std::abs(target.left) <= reach(integrator_.h, limits_.max_step) +
+                                                      last_bits(integrator_.t.high, target.t);
     return target;
   }
   /// The law changes where the step begins.
@@ -189,10 +186,10 @@ class Run {
     if (quadratures_overflow()) return end(Status::non_finite);
     TwoDouble t_new = integrator_.t + h;
     // A guard's zero within the last bits of the target counts as at the target.
-    const bool lands = target.is_in_reach && difference(target.t, t_new) * std::copysign(1.0, h) <=
-                                                 last_bits(integrator_.t.high, target.t);
-    if (lands) t_new = {target.t, 0.0};
-    const bool law_changes = guard >= 0 || (lands && target.is_break);
+    const bool is_at_target = target.is_in_reach && lands(h, difference(target.t, t_new),
+                                                          last_bits(integrator_.t.high, target.t));
+    if (is_at_target) t_new = {target.t, 0.0};
+    const bool law_changes = guard >= 0 || (is_at_target && target.is_break);
     if (law_changes) resume_.begin_change();
     test_stiffness(stepper_, h, integrator_);
     if (guard >= 0 || (discontinuities_ != nullptr && discontinuities_->settles_every_step())) {
@@ -215,11 +212,11 @@ class Run {
       if (limits_.fixed_step) return true;
       integrator_.h = h * integrator_.control.accept(stepper_.info(), attempt);
       integrator_.h_is_max_step = std::abs(integrator_.h) >= limits_.max_step;
-      if (integrator_.h_is_max_step) integrator_.h = std::copysign(limits_.max_step, h);
+      integrator_.h = limited(integrator_.h, limits_.max_step);
       return true;
     }
     if (guard >= 0 && !change_law(guard)) return false;
-    return lands && target.is_break ? change_law(-1) : true;
+    return is_at_target && target.is_break ? change_law(-1) : true;
   }
 
   /// An event lies within the step. The clipped state is for output only, and resume repeats the

@@ -28,10 +28,6 @@ int bad_component_of(Stepper& stepper, double t_new) {
 
 }  // namespace
 
-double last_bits(double t, double t_new) {
-  return last_bits_share * std::max(std::abs(t), std::abs(t_new));
-}
-
 Trial::Trial(Stepper& stepper, IntegratorState& integrator, bool fixed_step,
              Discontinuities* discontinuities)
     : stepper_(stepper), integrator_(integrator), fixed_step_(fixed_step) {
@@ -74,7 +70,7 @@ Trial::Verdict Trial::follow_guards() {
     }
     // A shorter step may resolve what the whole step passed over, such as friction's peak at rest.
     h_ *= std::max(0.5 * crossing_.theta, fixed_step_ ? least_share_of_fixed : 0.0);
-    if (std::abs(h_) <= few * last_bits(t_, t_ + h_)) return Verdict::changes_at_start;
+    if (std::abs(h_) <= few_bits * last_bits(t_, t_ + h_)) return Verdict::changes_at_start;
     if (!fixed_step_) return Verdict::is_tried_again;
     if (!take_again()) return give_up(h_);
   }
@@ -84,9 +80,9 @@ Trial::Verdict Trial::follow_guards() {
 /// output may be wrong by its own error.
 Trial::Verdict Trial::verify_guard_start() {
   for (int halvings = 0;; ++halvings) {
-    const bool is_short = std::abs(h_) <= few * last_bits(t_, t_);
+    const bool is_short = std::abs(h_) <= few_bits * last_bits(t_, t_);
     crossing_ = guards_->first(t_, h_, !is_short);
-    const double at_start = epsilon * std::max(few * std::abs(t_), 2.0 * std::abs(h_));
+    const double at_start = epsilon * std::max(few_bits * std::abs(t_), 2.0 * std::abs(h_));
     if (crossing_.guard >= 0 && crossing_.theta * std::abs(h_) <= at_start) {
       // A fixed step that is too long for its method shows slopes that the motion does not have.
       if (is_short || (crossing_.is_of_slope && !fixed_step_) ||
@@ -110,7 +106,7 @@ bool Trial::take_again() {
     look_for_bad_component();
     if (!fixed_step_) return integrator_.trial_was_finite && attempt_.squared_error <= 1.0;
     if (integrator_.trial_was_finite) return true;
-    if (std::abs(h_) <= few * last_bits(t_, t_)) return false;
+    if (std::abs(h_) <= few_bits * last_bits(t_, t_)) return false;
     h_ *= 0.5;
   }
 }

@@ -169,15 +169,16 @@ class ImplicitRungeKutta final : public Stepper {
 
   /// The low part of the state, if compensated. The polynomial, size and error of the accepted
   /// step, and the contraction of its iteration. Whether a step from here was tried already.
-  std::vector<double> saved_state() const override {
+  StepperState saved_state() const override {
     const CollocationStep<Sizes>& s = step_;
     std::vector<double> memory(s.low.begin(), s.low.begin() + low_size());
     memory.insert(memory.end(), s.polynomial.begin(), s.polynomial.end());
     memory.insert(memory.end(),
                   {s.h_before, s.log2_error_before, s.contraction, s.is_retry ? 1.0 : 0.0});
-    return memory;
+    return {.memory = std::move(memory)};
   }
-  void restore(const std::vector<double>& memory) override {
+  void restore(const StepperState& saved) override {
+    const std::vector<double>& memory = saved.memory;
     CollocationStep<Sizes>& s = step_;
     if (memory.size() != s.polynomial.size() + 4 + low_size()) {
       throw std::invalid_argument(

@@ -232,17 +232,17 @@ class RungeKuttaInMemory final : public Stepper {
               int count, double* states) const override {
     sample_(coefficients, start, h, times, count, states, dimension(), degree);
   }
-  std::vector<double> saved_state() const override {
+  StepperState saved_state() const override {
     std::vector<double> low;
     if (compensated_) {
       low.resize(dimension());
       write(memory_.low, low.data());
     }
-    return low;
+    return {.memory = std::move(low)};
   }
-  void restore(const std::vector<double>& memory) override {
+  void restore(const StepperState& saved) override {
     if (compensated_) {
-      if (has_low_part(memory, dimension())) read(memory.data(), memory_.low);
+      if (has_low_part(saved.memory, dimension())) read(saved.memory.data(), memory_.low);
     }
   }
   double stiffness(double h) override {

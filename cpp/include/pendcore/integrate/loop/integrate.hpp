@@ -33,9 +33,9 @@ struct IntegratorState {
   int stiff_misses = 0;      ///< since the last hit
   double stiff_since = 0.0;  ///< s, when the run was first called stiff; for a pair, when last
   Statistics statistics;
-  std::vector<double> y;        ///< (dimension)
-  std::vector<double> dydt;     ///< (dimension)
-  std::vector<double> stepper;  ///< Stepper::saved_state(): what the method keeps between steps
+  std::vector<double> y;     ///< (dimension)
+  std::vector<double> dydt;  ///< (dimension)
+  StepperState stepper;
   std::vector<double> discontinuities;  ///< Discontinuities::saved_state()
 };
 
@@ -52,9 +52,6 @@ struct Limits {
   Monitor monitor;
   bool begins_anew = false;  ///< a continued run begins at the start again
 };
-
-/// The last step may be longer by this factor (Hairer's rule).
-inline constexpr double last_step_stretch = 1.01;
 
 /// Called for each accepted step before the state advances.
 class Observer {

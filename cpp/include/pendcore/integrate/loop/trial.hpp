@@ -15,11 +15,6 @@
 
 namespace pendcore {
 
-/// A few times the spacing of doubles at these times: times within this distance count as the same.
-double last_bits(double t, double t_new);
-/// A step of at most this many last bits of time resolves nothing.
-inline constexpr double few = 10.0;
-
 class Trial {
  public:
   /// What happens with the step.

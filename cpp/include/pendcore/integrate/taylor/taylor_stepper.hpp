@@ -166,16 +166,17 @@ class Taylor final : public Stepper {
 
   /// The low part of the state, if compensated, and sigma: with another sigma, the size of a step
   /// would have other last bits.
-  std::vector<double> saved_state() const override {
+  StepperState saved_state() const override {
     std::vector<double> memory;
     if (compensated_) {
       memory.resize(dimension());
       write_rows(memory_.low, memory.data());
     }
     memory.push_back(memory_.sigma);
-    return memory;
+    return {.memory = std::move(memory)};
   }
-  void restore(const std::vector<double>& memory) override {
+  void restore(const StepperState& saved) override {
+    const std::vector<double>& memory = saved.memory;
     if (memory.empty()) return;
     std::vector<double> low(memory.begin(), memory.end() - 1);
     if (compensated_) {
