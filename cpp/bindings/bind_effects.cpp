@@ -128,6 +128,9 @@ py::list effect_descriptors() {
     row["account"] = string(account_name(Kind::info.account));
     row["bounds_joint"] = Kind::info.bounds_joint;
     row["jumps_or_sticks"] = Kind::info.jumps_or_sticks;
+    row["moves_pivot"] = Kind::info.moves_pivot;
+    row["is_function"] = Kind::info.is_function;
+    row["damps_small_motions"] = Kind::info.damps_small_motions;
     row["examples"] = string(Kind::info.examples);
     row["outcome"] = string(Kind::info.outcome);
     row["parameters"] = parameters_of(effect);

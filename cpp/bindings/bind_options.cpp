@@ -16,6 +16,7 @@ struct Taken {
   const char* name;
   py::handle value;
   std::size_t n;  ///< links
+  const Options& options;
 
   void into(double& x) const { x = number(name, value); }
   void into(std::optional<double>& x) const { x = optional_number(name, value); }
@@ -36,13 +37,15 @@ struct Taken {
     store = found;
   }
 
-  void into(std::vector<double>& tolerances) const {
+  void into(std::vector<double>& list) const {
     double alone = 0.0;
-    if (take_plain(value, alone)) {
-      tolerances.assign(1, alone);
-      return;
+    if (&list == &options.t_eval) {
+      times_into(list);
+    } else if (take_plain(value, alone)) {
+      list.assign(1, alone);
+    } else {
+      list = numbers(name, value, "a number or (" + std::to_string(2 * n) + ",)");
     }
-    tolerances = numbers(name, value, "a number or (" + std::to_string(2 * n) + ",)");
   }
 
   void into(std::vector<Event>& events) const {
@@ -70,32 +73,22 @@ struct Taken {
   }
 };
 
-template <class Option>
-void take(Options& options, py::handle value, std::size_t n) {
-  const Taken taken{Option::info.name.data(), value, n};
-  if constexpr (std::same_as<Option, TEvalOption>) {
-    taken.times_into(options.t_eval);
-  } else {
-    taken.into(options.*Option::field);
-  }
-}
-
 py::array all(const std::vector<double>& numbers) {
   return copy(numbers, {static_cast<py::ssize_t>(numbers.size())});
 }
 
-template <class Option>
-py::object given(const Options& options) {
-  const auto& value = options.*Option::field;
-  if constexpr (std::same_as<Option, EventsOption>) {
+/// The value of one of the options, for Python.
+template <class Value>
+py::object given(const Options& options, const Value& value) {
+  if constexpr (std::same_as<Value, std::vector<Event>>) {
     return py::tuple();
-  } else if constexpr (std::same_as<Option, StoreOption>) {
+  } else if constexpr (std::same_as<Value, std::optional<Store>>) {
     const bool is_usual = value.value_or(usual_store(options)) == usual_store(options);
     return is_usual ? py::object(py::none()) : string(store_name(*value));
-  } else if constexpr (std::same_as<Option, TEvalOption>) {
-    return value.empty() ? py::object(py::none()) : all(value);
-  } else if constexpr (std::same_as<decltype(value), const std::vector<double>&>) {
-    return value.size() == 1 ? py::object(py::float_(value[0])) : all(value);
+  } else if constexpr (std::same_as<Value, std::vector<double>>) {
+    if (value.empty()) return py::none();
+    const bool is_one = value.size() == 1 && &value != &options.t_eval;
+    return is_one ? py::object(py::float_(value[0])) : all(value);
   } else {
     return py::cast(value);
   }
@@ -111,30 +104,19 @@ constexpr std::string_view annotation(const std::optional<Store>& /*x*/) { retur
 constexpr std::string_view annotation(const std::vector<double>& /*x*/) { return "npt.ArrayLike"; }
 constexpr std::string_view annotation(const std::vector<Event>& /*x*/) { return "Iterable[Event]"; }
 
-template <class Field>
-inline constexpr bool is_number =
-    std::same_as<Field, double> || std::same_as<Field, std::optional<double>> ||
-    std::same_as<Field, long long> || std::same_as<Field, std::vector<double>>;
-
-template <class Option>
-py::dict descriptor(const Options& usual) {
-  const auto& value = usual.*Option::field;
-  const bool is_none = given<Option>(usual).is_none();
-  std::string annotated(annotation(value));
-  if (is_none && annotated.find("None") == std::string::npos) annotated += " | None";
-  constexpr bool has_range =
-      is_number<std::remove_cvref_t<decltype(value)>> && !std::same_as<Option, TEvalOption>;
+py::dict descriptor(const ParameterInfo& info, std::string_view annotation, py::object usual) {
+  const bool adds_none = usual.is_none() && annotation.find("None") == std::string_view::npos;
   py::dict result;
-  result["name"] = Option::info.name;
-  result["annotation"] = annotated;
-  result["type"] = Option::info.type;
-  result["unit"] = Option::info.unit;
-  result["default"] = given<Option>(usual);
-  result["range"] = has_range ? in_words(Option::info.range) : "";
-  result["if_none"] = Option::info.if_none;
-  result["sentence"] = Option::info.sentence;
-  result["chosen_for_error"] = Option::info.chosen_for_error;
-  result["limits_every_method"] = Option::info.limits_every_method;
+  result["name"] = info.name;
+  result["annotation"] = std::string(annotation) + (adds_none ? " | None" : "");
+  result["type"] = info.type;
+  result["unit"] = info.unit;
+  result["default"] = std::move(usual);
+  result["range"] = info.range == Range::any ? "" : text(info.range);
+  result["if_none"] = info.if_none;
+  result["sentence"] = info.sentence;
+  result["chosen_for_error"] = info.chosen_for_error;
+  result["limits_every_method"] = info.limits_every_method;
   return result;
 }
 
@@ -152,10 +134,11 @@ Options options_of(const py::dict& given, std::size_t n) {
   Options options;
   for (const auto& [key, value] : given) {
     const std::string_view name = text_of(key);
-    const bool is_known = Options::any_of([&, &value = value]<class Option>() {
-      if (Option::info.name != name) return false;
-      take<Option>(options, value, n);
-      return true;
+    bool is_known = false;
+    for_each_parameter(options, [&, &value = value](const ParameterInfo& info, auto& field) {
+      if (is_known || info.name != name) return;
+      Taken{info.name.data(), value, n, options}.into(field);
+      is_known = true;
     });
     if (!is_known) throw py::type_error("no option of a run is called " + std::string(name));
   }
@@ -164,8 +147,9 @@ Options options_of(const py::dict& given, std::size_t n) {
 
 py::dict as_python(const Options& options) {
   py::dict result;
-  Options::for_each(
-      [&]<class Option>() { result[string(Option::info.name)] = given<Option>(options); });
+  for_each_parameter(options, [&](const ParameterInfo& info, const auto& value) {
+    result[string(info.name)] = given(options, value);
+  });
   return result;
 }
 
@@ -173,7 +157,9 @@ void bind_options(py::module_& module) {
   module.def("run_options", [] {
     py::list result;
     const Options usual;
-    Options::for_each([&]<class Option>() { result.append(descriptor<Option>(usual)); });
+    for_each_parameter(usual, [&](const ParameterInfo& info, const auto& value) {
+      result.append(descriptor(info, annotation(value), given(usual, value)));
+    });
     return result;
   });
 }

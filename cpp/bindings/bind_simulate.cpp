@@ -25,7 +25,7 @@ std::unique_ptr<Run> simulate_run(const py::object& python_scene, py::handle q0,
   const Start start = start_of(scene, q0, qd0, t0, t_end, warn);
   py::object event_functions;
   if (!options.events.empty()) {
-    event_functions = functions_of(given[EventsOption::info.name.data()]);
+    event_functions = functions_of(given["events"]);
   }
   const auto without_lock = [&] {
     const py::gil_scoped_release released;

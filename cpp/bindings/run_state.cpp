@@ -120,9 +120,9 @@ void visit(Archive& io, AnySolution& s) {
   io("dense_start_low", s.dense.start_low);
   io("dense_h", s.dense.h);
   io("dense_coefficients", s.dense.coefficients);
-  Options::for_each([&]<class Option>() {
-    if constexpr (!std::same_as<Option, EventsOption>) {  // event_state.hpp has these
-      io(std::string(Option::info.name), s.options.*Option::field);
+  for_each_parameter(s.options, [&]<class Value>(const ParameterInfo& info, Value& value) {
+    if constexpr (!std::same_as<std::remove_const_t<Value>, std::vector<Event>>) {
+      io(std::string(info.name), value);  // event_state.hpp has the events
     }
   });
   io("t_start", s.t0);

@@ -89,11 +89,9 @@ bool fill(Struct& effect, std::string_view name, const std::string& where) {
   return found;
 }
 
-/// Sets the option called `name` from the numbers given, or from a word.
-template <class Option>
-void set_option(const std::string& name, const std::string* word) {
-  auto& value = options.*Option::field;
-  using Value = std::remove_cvref_t<decltype(value)>;
+/// Sets an option from the numbers given, or from a word.
+template <class Value>
+void set_option(const std::string& name, const std::string* word, Value& value) {
   if constexpr (std::same_as<Value, std::string>) {
     if (word == nullptr) throw std::invalid_argument(name + ": must be a word");
     value = *word;
@@ -112,10 +110,11 @@ void set_option(const std::string& name, const std::string* word) {
 }
 
 void set_option_called(const std::string& name, const std::string* word) {
-  const bool is_known = Options::any_of([&]<class Option>() {
-    if (Option::info.name != name) return false;
-    set_option<Option>(name, word);
-    return true;
+  bool is_known = false;
+  for_each_parameter(options, [&](const ParameterInfo& info, auto& value) {
+    if (info.name != name) return;
+    set_option(name, word, value);
+    is_known = true;
   });
   if (!is_known) refuse_name("option ", name);
 }

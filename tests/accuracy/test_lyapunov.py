@@ -324,7 +324,7 @@ def test_exponents_of_a_solution_follow_its_run() -> None:
         ({"t_span": (-np.inf, 0)}, r"t_span\[0\] = -inf: must be finite \(s\)"),
         ({"t_span": (-1.7e308, 1.7e308)}, "t_span = .*: is inf s long: must be below"),
         ({"t_span": np.zeros((1, 2))}, "t_span = array.*must be"),
-        ({"time_limit": np.nan}, r"time_limit = nan: must be > 0 \(s\)"),
+        ({"time_limit": np.nan}, r"time_limit = nan: must be > 0, inf for no limit \(s\)"),
     ],
 )
 def test_bad_arguments_are_named(bad: dict[str, object], message: str) -> None:

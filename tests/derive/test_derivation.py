@@ -19,7 +19,7 @@ from pendcore.derive.chain import of_differences
 from pendcore.derive.laws import LAWS
 from pendcore.derive.laws.rod_drag import RodDrag
 from pendcore.derive.laws.viscous_joint import ViscousJoint
-from pendcore.scene.effect_description import account_of
+from pendcore.scene.effect_description import effects
 from reference.arithmetic import multiple_precision
 from reference.effects import law
 from reference.newton_euler import Body
@@ -144,7 +144,9 @@ def test_the_energy_s_rate_is_found_the_long_way_too(n: int) -> None:
 
 
 @pytest.mark.parametrize("n", [1, 2, 3])
-@pytest.mark.parametrize("kind", [kind for kind in SMOOTH if account_of(kind) != "none"])
+@pytest.mark.parametrize(
+    "kind", [one.kind for one in effects() if one.kind in SMOOTH and one.account != "none"]
+)
 def test_the_powers_are_those_of_the_reference(kind: str, n: int) -> None:
     derivation = derived(kind, n)
     evaluated = Evaluated(derivation, [sum(derivation.powers.values())])

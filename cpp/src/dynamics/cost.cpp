@@ -67,7 +67,7 @@ std::optional<int> operations_of(const Kind& effect) {
     Counted x, y;
     law.add_acceleration(0.0, waves, x, y);
     return counted;
-  } else if constexpr (Kind::info.account == Account::user) {
+  } else if constexpr (Kind::info.is_function) {
     return std::nullopt;
   } else {
     return 0;

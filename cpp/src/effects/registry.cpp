@@ -2,13 +2,6 @@
 
 namespace pendcore {
 
-void check_value(const std::string& where, const ParameterInfo& info, double value) {
-  if (holds(info.range, value)) return;
-  std::string range(text(info.range));
-  if (!info.unit.empty() && info.unit != "1") range += " (" + std::string(info.unit) + ")";
-  refuse(where + std::string(info.name), value, range);
-}
-
 namespace {
 
 template <std::size_t... kinds>

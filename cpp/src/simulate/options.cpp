@@ -12,54 +12,27 @@
 namespace pendcore {
 namespace {
 
-bool is_within(const NumberRange& range, double value) {
-  if (!(range.includes_infinity || std::isfinite(value))) return false;
-  return value > range.least || (range.includes_least && value == range.least);
-}
-
 /// One number for all components or one for each, none below `least`.
-std::vector<double> tolerances(const OptionInfo& info, const std::vector<double>& given,
+std::vector<double> tolerances(const std::string& name, const std::vector<double>& given,
                                std::size_t dimension, double least) {
   if (given.size() != 1 && given.size() != dimension) {
-    throw std::invalid_argument(std::string(info.name) + ": has " + std::to_string(given.size()) +
+    throw std::invalid_argument(name + ": has " + std::to_string(given.size()) +
                                 " numbers: must have 1, or " + std::to_string(dimension) +
                                 " (q_1 .. q_n, qd_1 .. qd_n)");
-  }
-  for (std::size_t i = 0; i < given.size(); ++i) {
-    if (is_within(info.range, given[i])) continue;
-    const std::string index = given.size() == 1 ? "" : "[" + std::to_string(i) + "]";
-    refuse(std::string(info.name) + index, given[i], range_with_unit(info));
   }
   std::vector<double> result(dimension, std::max(given.front(), least));
   for (std::size_t i = 1; i < given.size(); ++i) result[i] = std::max(given[i], least);
   return result;
 }
 
-void check_range(const OptionInfo& info, double value) {
-  if (!is_within(info.range, value)) refuse(std::string(info.name), value, range_with_unit(info));
-}
-
-void check_range(const OptionInfo& info, const std::optional<double>& value) {
-  if (value) check_range(info, *value);
-}
-
-void check_range(const OptionInfo& info, long long value) {
-  if (is_within(info.range, static_cast<double>(value))) return;
-  throw std::invalid_argument(std::string(info.name) + " = " + std::to_string(value) +
-                              ": must be " + range_with_unit(info));
-}
-
-template <class Other>
-void check_range(const OptionInfo& /*info*/, const Other& /*value*/) {}
-
 }  // namespace
 
 std::vector<double> relative_tolerances(const Options& options, std::size_t n) {
-  return tolerances(RtolOption::info, options.rtol, 2 * n, 10 * epsilon);
+  return tolerances("rtol", options.rtol, 2 * n, 10 * epsilon);
 }
 
 std::vector<double> absolute_tolerances(const Options& options, std::size_t n) {
-  return tolerances(AtolOption::info, options.atol, 2 * n, 1e-150);
+  return tolerances("atol", options.atol, 2 * n, 1e-150);
 }
 
 void check_times(const std::vector<double>& times, double t0, double t_end) {
@@ -87,7 +60,8 @@ void check_times(const std::vector<double>& times, double t0, double t_end) {
 }
 
 void check(const Options& options) {
-  Options::for_each([&]<class Option>() { check_range(Option::info, options.*Option::field); });
+  for_each_parameter(
+      options, [](const ParameterInfo& info, const auto& value) { check_value("", info, value); });
   if (options.step && options.first_step) {
     throw std::invalid_argument("first_step: a fixed step is given as step: leave one of them out");
   }

@@ -199,9 +199,12 @@ long long attempts(const Statistics& statistics) {
 }
 
 Limits limits_of(const Options& options, double t_end) {
-  Limits limits{.t_end = t_end, .monitor = options.monitor};
-  options.limit(limits);
-  return limits;
+  return {.t_end = t_end,
+          .max_step = options.max_step,
+          .fixed_step = options.step.has_value(),
+          .max_steps = options.max_steps,
+          .time_limit = options.time_limit.value_or(std::numeric_limits<double>::infinity()),
+          .monitor = options.monitor};
 }
 
 }  // namespace

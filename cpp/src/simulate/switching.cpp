@@ -262,7 +262,7 @@ bool Switching::is_for_good() const {
           if constexpr (HasSpan<Kind>) {
             if (one.last_time() < never) return true;
           }
-          return one.info.account == Account::drive || one.info.account == Account::user;
+          return one.info.depends_on_time;
         },
         effect);
   });

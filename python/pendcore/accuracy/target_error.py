@@ -120,7 +120,7 @@ def _first_scale(runs: Trials, factor: float) -> float:
     """Return the scale of a first trial: a factor times the error asked for, or looser."""
     if runs.keeps_few_times:
         factor *= AT_FEW_TIMES
-    if runs.has_effect_of("viscous"):
+    if runs.any_effect(lambda effect: effect.damps_small_motions):
         factor *= IF_DAMPED
     return factor * runs.error
 
@@ -324,7 +324,8 @@ def _rounded(x: float, digits: int, rounding: str) -> Decimal:
 def _in_the_way(runs: Trials, trial: TrialRun, error: ErrorEstimate | None) -> str:
     """Return what keeps the error from becoming smaller, as far as this is known."""
     if error is None or trial.rtol > runs.tightest:
-        question = ": is a law of your own not smooth?" if runs.has_effect_of("user") else ""
+        is_own = runs.any_effect(lambda effect: effect.is_function)
+        question = ": is a law of your own not smooth?" if is_own else ""
         return f"the error does not follow the tolerances{question}"
     solution = trial.solution
     begin, end, n = error.begin, solution.run.t_reached, len(solution.scene.links)

@@ -37,7 +37,7 @@ from pendcore.run.error_estimate import ErrorEstimate
 from pendcore.run.methods import error_over_rtol, implicit_method, pair_of
 from pendcore.run.result import RunResult
 from pendcore.run.work import correction_work, series_work
-from pendcore.scene.effect_description import account_of
+from pendcore.scene.effect_description import Description
 
 FOR_BOTH = 5.0
 """A method is chosen for an error smaller by this factor, as second runs take the same method."""
@@ -113,9 +113,9 @@ class Trials:
         few = t_eval is not None and np.size(t_eval) < FEW
         return store == "end" or (few and store != "dense")
 
-    def has_effect_of(self, account: str) -> bool:
-        """Whether the scene has an effect whose work the ledger books to an account."""
-        return any(account_of(effect.kind) == account for effect in self.start.scene.effects)
+    def any_effect(self, has: Callable[[Description], bool]) -> bool:
+        """Whether some effect of the scene has a property."""
+        return any(has(effect.description) for effect in self.start.scene.effects)
 
     @property
     def warns(self) -> bool:

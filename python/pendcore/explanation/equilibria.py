@@ -39,11 +39,12 @@ _SLOW = 1e-3
 _SINGULAR = 1e-12
 """The share of A's largest singular value below which one means that nothing turns back."""
 _LEFT_OUT = {
-    "dry": "dry friction is left out of the equilibria: it can hold the scene near them",
-    "impact": "stops are left out of the equilibria: the scene can rest against them, and not "
+    "dry_joint_friction": "dry friction is left out of the equilibria: it can hold the scene near "
+    "them",
+    "joint_stop": "stops are left out of the equilibria: the scene can rest against them, and not "
     "beyond them",
 }
-"""Effects without a slope about a state of rest, by the account on which their work is booked."""
+"""Effects under which a motion jumps or sticks have no slope about a state of rest."""
 
 
 Complexes = npt.NDArray[np.complex128]
@@ -170,9 +171,9 @@ def find_equilibria(
     n = len(scene.links)
     poses = {"hanging": np.full(n, pi / 2), "upright": np.full(n, -pi / 2)}
     poses |= {} if start is None else {"start": np.array(start)}
-    smooth = [one for one in scene.effects if one.description.account not in _LEFT_OUT]
-    present = {effect.description.account for effect in scene.effects}
-    remarks += [remark for account, remark in _LEFT_OUT.items() if account in present]
+    smooth = [one for one in scene.effects if not one.description.jumps_or_sticks]
+    present = {effect.kind for effect in scene.effects}
+    remarks += [remark for kind, remark in _LEFT_OUT.items() if kind in present]
     scene = SceneData._unpickled(scene.links, scene.gravity, smooth)
     unknown = [str(joint) for joint, angle in locks(scene).items() if angle is None]
     if start is None and unknown:

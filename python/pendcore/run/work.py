@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pendcore.scene.effect_description import account_of
 from pendcore.scene.scene import SceneData
 
 
@@ -42,7 +41,7 @@ def correction_work(scene: SceneData) -> float:
 
 
 def _is_driven(scene: SceneData) -> bool:
-    return any(account_of(effect.kind) == "drive" for effect in scene.effects)
+    return any(effect.description.moves_pivot for effect in scene.effects)
 
 
 def _waves(scene: SceneData) -> int:

@@ -86,6 +86,12 @@ class Description(NamedTuple):
         Whether the effect may forbid a start that is next to one that it allows.
     jumps_or_sticks : bool
         Whether the motion jumps or sticks under it, each time at an instant of its own.
+    moves_pivot : bool
+        Whether it moves the pivot.
+    is_function : bool
+        Whether it is a function of the user's, of whose cost and smoothness nothing is known.
+    damps_small_motions : bool
+        Whether it damps motions however small they are, so that a run forgets its errors.
     examples : str
         Calls that make one, a line each, after lines that prepare them.
     outcome : str
@@ -101,6 +107,9 @@ class Description(NamedTuple):
     account: str = "none"
     bounds_joint: bool = False
     jumps_or_sticks: bool = False
+    moves_pivot: bool = False
+    is_function: bool = False
+    damps_small_motions: bool = False
     examples: str = ""
     outcome: str = ""
 
@@ -141,6 +150,7 @@ USER = Description(
     law="Q += f(t, q, qd)",
     source="the user's",
     account="user",
+    is_function=True,
     parameters=(
         Parameter(
             name="function",
@@ -172,11 +182,6 @@ def effects() -> tuple[Description, ...]:
 def parts() -> tuple[Description, ...]:
     """Return the kinds of what parameters of effects hold that have parameters of their own."""
     return tuple(map(_description, _core.part_descriptors()))
-
-
-def account_of(kind: str) -> str:
-    """Return where the ledger books the work of a kind of effects."""
-    return next(described.account for described in effects() if described.kind == kind)
 
 
 def _description(told: dict[str, Any]) -> Description:

@@ -31,6 +31,8 @@ struct DrivenPivot {
       .law = "x_0 = A_x sin(omega_x t + phase_x),  y_0 likewise;  or natural cubic splines",
       .source = "d'Alembert's principle",
       .account = Account::drive,
+      .depends_on_time = true,
+      .moves_pivot = true,
       .has_series = true,
       .examples =
           "DrivenPivot(y=Sinusoid(amplitude=0.02, angular_frequency=90.0))\n"

@@ -4,15 +4,11 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <concepts>
-#include <optional>
 #include <string>
 #include <string_view>
-#include <tuple>
-#include <vector>
 
-#include "pendcore/text/message.hpp"
+#include "pendcore/text/descriptor.hpp"
 
 namespace pendcore {
 
@@ -53,6 +49,13 @@ struct EffectInfo {
   /// The effect makes the motion jump or stick, at instants that depend on the motion. There, the
   /// distance between neighbouring motions has no rate of growth.
   bool jumps_or_sticks = false;
+  /// The effect may change at any time: it moves the pivot, or is a function of the user's.
+  bool depends_on_time = false;
+  bool moves_pivot = false;
+  /// The effect is a function of the user's: nothing is known of its cost, or of its smoothness.
+  bool is_function = false;
+  /// The effect damps motions however small they are, so that a run forgets its errors.
+  bool damps_small_motions = false;
   /// Whether the Taylor series support the effect, if it is part of the equations of motion. Among
   /// effects that are laws, couples have a series and others do not.
   bool has_series = false;
@@ -62,56 +65,6 @@ struct EffectInfo {
   /// What that one does to the textbook's rods within 1 s: its entry in the ledger, or the angles.
   std::string_view outcome = {};
 };
-
-/// Allowed values of a number.
-enum class Range { any, not_negative, positive, at_least_one, positive_or_infinite, share, number };
-
-constexpr std::string_view text(Range range) {
-  switch (range) {
-    case Range::any: return "finite";
-    case Range::not_negative: return "finite and >= 0";
-    case Range::positive: return "finite and > 0";
-    case Range::at_least_one: return "finite and >= 1";
-    case Range::positive_or_infinite: return "> 0, inf for no limit";
-    case Range::share: return "0 to 1";
-    case Range::number: return "a number; -inf or inf for none";
-  }
-  return "";
-}
-
-inline bool holds(Range range, double x) {
-  switch (range) {
-    case Range::any: return std::isfinite(x);
-    case Range::not_negative: return std::isfinite(x) && x >= 0;
-    case Range::positive: return std::isfinite(x) && x > 0;
-    case Range::at_least_one: return std::isfinite(x) && x >= 1;
-    case Range::positive_or_infinite: return x > 0;
-    case Range::share: return x >= 0 && x <= 1;
-    case Range::number: return !std::isnan(x);
-  }
-  return false;
-}
-
-struct ParameterInfo {
-  std::string_view name;    ///< as in Python and TOML
-  std::string_view symbol;  ///< as in the law; empty if it is not a quantity
-  std::string_view unit;
-  std::string_view sentence;
-  Range range = Range::any;
-  bool required = false;                                    ///< if not, the struct has the default
-  std::array<std::string_view, 2> components = {"x", "y"};  ///< the names of a pair's two numbers
-};
-
-template <class Struct, class Value>
-struct Parameter {
-  Value Struct::* field;
-  ParameterInfo info;
-};
-
-template <class Struct, class Value>
-constexpr Parameter<Struct, Value> parameter(Value Struct::* field, ParameterInfo info) {
-  return {field, info};
-}
 
 inline constexpr ParameterInfo joint_number{
     .name = "joint",
@@ -125,13 +78,6 @@ inline constexpr ParameterInfo link_number{.name = "link",
                                            .sentence = "the link on which it acts, counted from 1",
                                            .required = true};
 
-/// Calls visit(info, value) for each parameter.
-template <class Struct, class Visitor>
-void for_each_parameter(Struct& effect, Visitor visit) {
-  std::apply([&](const auto&... p) { (visit(p.info, effect.*(p.field)), ...); },
-             std::remove_cvref_t<Struct>::parameters);
-}
-
 /// A part of an effect with parameters of its own, such as a Sinusoid, that may be left out.
 template <class Value>
 concept OptionalPart = requires { Value::value_type::parameters; };
@@ -144,28 +90,11 @@ concept HasCheck = requires(const Struct& one, const std::string& where) {
 
 /// Throws std::invalid_argument for a parameter out of its range, naming it after `where`, as in
 /// "effect 2 (viscous_joint): ".
-void check_value(const std::string& where, const ParameterInfo& info, double value);
-
 template <class Struct>
 void check_parameters(const std::string& where, const Struct& effect) {
   for_each_parameter(effect, [&]<class Value>(const ParameterInfo& info, const Value& value) {
-    if constexpr (std::is_same_v<Value, int>) {
-      if (value < 1) {
-        throw std::invalid_argument(where + std::string(info.name) + " = " + std::to_string(value) +
-                                    ": must be a whole number, 1 or more");
-      }
-    } else if constexpr (std::is_same_v<Value, double>) {
-      check_value(where, info, value);
-    } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
-      if (value) check_value(where, info, *value);
-    } else if constexpr (requires { value.begin(); }) {
-      for (std::size_t i = 0; i < value.size(); ++i) {
-        ParameterInfo element = info;
-        const std::string name = std::string(info.name) + "[" + std::to_string(i) + "]";
-        element.name = name;
-        check_value(where, element, value[i]);
-      }
-    } else if constexpr (OptionalPart<Value>) {
+    check_value(where, info, value);
+    if constexpr (OptionalPart<Value>) {
       if (value) check_parameters(where + std::string(info.name) + ".", *value);
     }
   });

@@ -40,6 +40,8 @@ struct CompiledUser {
       .law = "Q += f(t, q, qd)",
       .source = "the user's",
       .account = Account::user,
+      .depends_on_time = true,
+      .is_function = true,
       .examples =
           "from ctypes import CFUNCTYPE, POINTER, c_double, c_int, c_void_p\n"
           "@CFUNCTYPE(None, c_double, c_int, *[POINTER(c_double)] * 3, c_void_p)\n"

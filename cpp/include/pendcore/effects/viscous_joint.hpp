@@ -27,6 +27,7 @@ struct ViscousJoint {
       .law = "tau = -(b w + b2 w abs(w) + b3 w^3),  w = phid",
       .source = "Rayleigh, The Theory of Sound I (1877), section 81, for the linear term",
       .account = Account::viscous,
+      .damps_small_motions = true,
       .examples = "ViscousJoint(joint=2, damping=0.05)",
       .outcome = "viscous: 0.504 J"};
   static constexpr Hooks hooks{.couple = true, .modes = true, .warnings = true};
