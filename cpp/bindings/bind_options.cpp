@@ -139,7 +139,7 @@ Options options_of(const py::dict& given, std::size_t n) {
       Taken{one.info.name.data(), value, n, options}.into(options.*(one.field));
       return true;
     };
-    // Asked until one takes it: a run of one step takes 4 % less than if all are asked.
+    // They are asked until one takes the value.
     const bool is_known =
         std::apply([&](const auto&... each) { return (take(each) || ...); }, Options::parameters);
     if (!is_known) throw py::type_error("no option of a run is called " + std::string(name));

@@ -160,7 +160,7 @@ def _run_by(
     finally:
         begun = [one for one in running if not one.cancel()]
         if len(begun) < len(running):
-            _let_forget(pool)
+            _let_see_cancelled(pool)
         if store is not None:  # these still write into it, so it must be held until they have
             wait(begun, PATIENCE)
     try:
@@ -214,7 +214,7 @@ def _results(
             yield one.result()
 
 
-def _let_forget(pool: Executor) -> None:
+def _let_see_cancelled(pool: Executor) -> None:
     """Let a pool of processes see which tasks were cancelled.
 
     In Python 3.11.2 and before, a pool that is shut down right after that waits for them for ever

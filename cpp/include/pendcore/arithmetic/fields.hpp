@@ -25,6 +25,7 @@ void each_field(To& to, const From& from, const Use& use) {
   if constexpr (HasFields<To>) {
     const auto into = To::fields(to);
     const auto given = From::fields(from);
+    static_assert(std::tuple_size_v<decltype(into)> == std::tuple_size_v<decltype(given)>);
     [&]<std::size_t... i>(std::index_sequence<i...>) {
       (each_field(std::get<i>(into), std::get<i>(given), use), ...);
     }(std::make_index_sequence<std::tuple_size_v<decltype(into)>>{});

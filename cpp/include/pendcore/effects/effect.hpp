@@ -49,7 +49,8 @@ struct EffectInfo {
   /// The effect makes the motion jump or stick, at instants that depend on the motion. There, the
   /// distance between neighbouring motions has no rate of growth.
   bool jumps_or_sticks = false;
-  /// The effect may change at any time: it moves the pivot, or is a function of the user's.
+  /// The effect may change at any time, in ways that its hooks do not tell: it moves the pivot, or
+  /// is a function of the user's.
   bool depends_on_time = false;
   bool moves_pivot = false;
   /// The effect is a function of the user's: nothing is known of its cost, or of its smoothness.

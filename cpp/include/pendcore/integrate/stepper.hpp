@@ -62,7 +62,7 @@ class Stepper : public StepOutput {
   /// fixed, or is the longest allowed. Returns whether to call it again after as many more hits.
   virtual bool stiffness_found(bool /*size_is_given*/) { return false; }
 
-  /// Nothing for most methods.
+  /// Returns what this method keeps; most methods keep nothing.
   virtual StepperState saved_state() const { return {}; }
   /// Continues from a saved state, instead of from what start() left.
   virtual void restore(const StepperState& /*saved*/) {}

@@ -17,7 +17,7 @@
 
 namespace pendcore {
 
-/// What is kept of a run. The last mode keeps everything; the first two need constant memory.
+/// A run keeps what its mode says: the last one everything; the first two need constant memory.
 enum class Store {
   end,    ///< the end
   times,  ///< the times asked for

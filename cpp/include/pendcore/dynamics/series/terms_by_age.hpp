@@ -110,9 +110,9 @@ PENDCORE_INLINE TermsByAge<Value> with_newest_terms(const TermsByAge<Value>& old
   return sum;
 }
 
-/// 1, which the compiler does not know. If it did, GCC would load the oldest numbers ahead of the
-/// loops of older_terms(), and store them again for lack of registers: a ninth of a series in lanes
-/// on processors that store 32 bytes at a time (Zen 4).
+/// Returns 1 so that the compiler does not know it. If it did, GCC would load the oldest numbers
+/// ahead of the loops of older_terms(), and store them again for lack of registers: a ninth of a
+/// series in lanes on processors that store 32 bytes at a time (Zen 4).
 PENDCORE_INLINE std::ptrdiff_t unknown_one() {
   std::ptrdiff_t one = 1;
   asm volatile("" : "+r"(one));
