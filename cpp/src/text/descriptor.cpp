@@ -21,8 +21,9 @@ void check_numbers(const std::string& where, const ParameterInfo& info,
                    std::span<const double> values) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (holds(info.range, values[i])) continue;
-    const std::string index = values.size() == 1 ? "" : "[" + std::to_string(i) + "]";
-    refuse_number(where + std::string(info.name) + index, info, values[i]);
+    std::string name = where + std::string(info.name);
+    if (values.size() > 1) name += "[" + std::to_string(i) + "]";
+    refuse_number(name, info, values[i]);
   }
 }
 

@@ -9,6 +9,9 @@
 /// ends there. Between two points they are a polynomial in the time since the first of the two.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "pendcore/effects/effect.hpp"
 
 namespace pendcore {
