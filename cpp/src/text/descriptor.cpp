@@ -22,7 +22,7 @@ void check_numbers(const std::string& where, const ParameterInfo& info,
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (holds(info.range, values[i])) continue;
     std::string name = where + std::string(info.name);
-    if (values.size() > 1) name += "[" + std::to_string(i) + "]";
+    if (values.size() > 1 || !info.one_may_stand_for_all) name += "[" + std::to_string(i) + "]";
     refuse_number(name, info, values[i]);
   }
 }

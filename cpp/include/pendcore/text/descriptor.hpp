@@ -69,8 +69,9 @@ struct ParameterInfo {
   std::array<std::string_view, 2> components = {"x", "y"};  ///< the names of a pair's two numbers
   std::string_view type = {};     ///< as docstrings give it, unless the type of the field says it
   std::string_view if_none = {};  ///< what happens if it is not given and has no default
-  bool chosen_for_error = false;  ///< an option that `simulate(error=...)` chooses
-  bool limits_every_method = false;  ///< an option that a comparison gives to each method
+  bool one_may_stand_for_all = false;  ///< a list that a single number may stand for
+  bool chosen_for_error = false;       ///< an option that `simulate(error=...)` chooses
+  bool limits_every_method = false;    ///< an option that a comparison gives to each method
 };
 
 template <class Struct, class Value>
