@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pendcore as pc
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -114,6 +115,7 @@ def drawn(draw: st.DrawFn) -> tuple[list[Body], list[Any]]:
     return links, effects
 
 
+@pytest.mark.unsanitized  # the search for the smallest mass matrix is NumPy's
 @settings(max_examples=60, deadline=None)
 @given(drawn())
 def test_a_scene_is_refused_where_and_only_where_its_mass_matrix_is_singular(
