@@ -56,11 +56,12 @@ class LaneLoop : public RecordingLanes<width> {
       Attention attention = take_steps();
       for (int lane = 0; lane < width; ++lane) {
         const LaneBits bit = 1U << lane;
-        if ((attention.looks & bit) != 0 && looks_stiff(lane)) attention.odd |= bit;
-        const bool is_recorded = (attention.recorded & bit) != 0 && (attention.odd & bit) == 0;
+        if ((attention.looks & bit) != 0 && looks_stiff(lane)) attention.runs_alone |= bit;
+        const bool is_recorded =
+            (attention.recorded & bit) != 0 && (attention.runs_alone & bit) == 0;
         const AfterRecording after =
             is_recorded ? this->record_step(lane) : AfterRecording::goes_on;
-        if ((attention.odd & bit) != 0 || after == AfterRecording::is_odd) {
+        if ((attention.runs_alone & bit) != 0 || after == AfterRecording::runs_alone) {
           source.runs_alone(members_[lane].number);
         } else if (after == AfterRecording::ends) {
           end(lane, source, Status::event);

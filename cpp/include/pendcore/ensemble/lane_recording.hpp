@@ -78,7 +78,7 @@ class RecordingLanes : public LaneRunner {
   }
 
   /// What comes of a step that was recorded.
-  enum class AfterRecording : std::uint8_t { goes_on, ends, is_odd };
+  enum class AfterRecording : std::uint8_t { goes_on, ends, runs_alone };
   /// Records the last step of a lane, as a single run does.
   AfterRecording record_step(int lane) {
     LaneSteps<width>& at = steps();
@@ -88,12 +88,12 @@ class RecordingLanes : public LaneRunner {
     const double h = at.h_before[lane];
     const double t_new = at.t[lane];
     const StepEnd end = recorder.step_accepted(step, t_old, h, t_new);
-    if (step.is_odd() || end.has_too_many_turns()) return AfterRecording::is_odd;
+    if (step.runs_alone() || end.has_too_many_turns()) return AfterRecording::runs_alone;
     find_next_time(lane);
     if (!recorder.has_ended()) return AfterRecording::goes_on;
     if (end.is_within()) {
       const TwoDouble t = time_in_step(t_old, h, end.theta, t_new);
-      if (t.high == t_old.high) return AfterRecording::is_odd;
+      if (t.high == t_old.high) return AfterRecording::runs_alone;
       std::vector<double>& y = members_[lane].state;
       std::vector<double> rows((step.interpolant_degree() + 1) * y.size());
       step.finite_interpolant(h, rows, y.size());
@@ -121,19 +121,19 @@ class RecordingLanes : public LaneRunner {
     void interpolant(double /*h*/, double* coefficients) override {
       if (!has_interpolant_) ++lanes_.interpolated_[lane_];
       has_interpolant_ = true;
-      is_odd_ |= !lanes_.write_interpolant(lane_, coefficients);
+      runs_alone_ |= !lanes_.write_interpolant(lane_, coefficients);
     }
     void sample(const double* coefficients, const TwoDouble& start, double h, const double* times,
                 int count, double* states) const override {
       lanes_.stepper(lane_).sample(coefficients, start, h, times, count, states);
     }
-    bool is_odd() const { return is_odd_; }
+    bool runs_alone() const { return runs_alone_; }
 
    private:
     RecordingLanes& lanes_;
     int lane_;
     bool has_interpolant_ = false;
-    bool is_odd_ = false;
+    bool runs_alone_ = false;
   };
 
   /// Sets the time that is sampled next.

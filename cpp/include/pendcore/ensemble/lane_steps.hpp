@@ -34,14 +34,16 @@ using LaneBits = unsigned;
 
 /// The lanes that need attention after a round of steps.
 struct Attention {
-  LaneBits ended = 0;     ///< at the end of the interval
-  LaneBits used_up = 0;   ///< max_steps were attempted
-  LaneBits odd = 0;       ///< to be run alone
-  LaneBits looks = 0;     ///< their stiffness is to be looked at
-  LaneBits searched = 0;  ///< the dense output of their step is to be searched for events
-  LaneBits sampled = 0;   ///< a time that is asked for lies within their step
-  LaneBits recorded = 0;  ///< something may be recorded of their step
-  bool is_needed() const { return (ended | used_up | odd | looks | searched | recorded) != 0; }
+  LaneBits ended = 0;       ///< at the end of the interval
+  LaneBits used_up = 0;     ///< max_steps were attempted
+  LaneBits runs_alone = 0;  ///< they leave the lanes
+  LaneBits looks = 0;       ///< their stiffness is to be looked at
+  LaneBits searched = 0;    ///< the dense output of their step is to be searched for events
+  LaneBits sampled = 0;     ///< a time that is asked for lies within their step
+  LaneBits recorded = 0;    ///< something may be recorded of their step
+  bool is_needed() const {
+    return (ended | used_up | runs_alone | looks | searched | recorded) != 0;
+  }
 };
 
 /// Where the trajectories of all lanes stand, but for their states.
@@ -147,7 +149,7 @@ struct NextStep {
   Real h;                ///< s
   Real bits;             ///< s, a few last bits of the time
   Integers is_in_reach;  ///< whether it leads to the end of the interval
-  Integers is_odd;       ///< whether it is too small
+  Integers runs_alone;   ///< whether it is too small
 };
 
 template <int width>
@@ -160,8 +162,8 @@ PENDCORE_INLINE NextStep<width> next_step(const LaneSteps<width>& lanes,
   next.bits = last_bits(lanes.t, t_end);
   next.is_in_reach = is_at_most(
       absolute(left), Real(reach(lanes.h, broadcast<Real>(interval.max_step)) + next.bits));
-  next.is_odd = is_too_small(lanes.h, lanes.t, broadcast<Real>(Limits{}.least_step)) |
-                (next.is_in_reach & is_at_most(absolute(left), Real(few_bits * next.bits)));
+  next.runs_alone = is_too_small(lanes.h, lanes.t, broadcast<Real>(Limits{}.least_step)) |
+                    (next.is_in_reach & is_at_most(absolute(left), Real(few_bits * next.bits)));
   next.h = next.is_in_reach ? left : lanes.h;
   return next;
 }
@@ -171,7 +173,7 @@ PENDCORE_INLINE NextStep<width> next_step(const LaneSteps<width>& lanes,
 template <const auto& method, int width>
 PENDCORE_INLINE typename NextStep<width>::Integers finish_step(
     LaneSteps<width>& lanes, const LaneInterval& interval, const NextStep<width>& next,
-    const ErrorAndFactor<Pack<width>>& found, const typename NextStep<width>::Integers& is_odd,
+    const ErrorAndFactor<Pack<width>>& found, const typename NextStep<width>::Integers& runs_alone,
     const typename NextStep<width>::Integers& tried, Attention& attention) {
   namespace detail = lanes_detail;
   using Real = Pack<width>;
@@ -212,12 +214,12 @@ PENDCORE_INLINE typename NextStep<width>::Integers finish_step(
   const Integers has_ended = is_accepted & (lanes.t == t_end);
   const Integers max_steps = interval.max_steps - Integers{};
   const Integers is_used_up = ~has_ended & (lanes.accepted + lanes.rejected >= max_steps);
-  if ((detail::bits_of(is_odd | has_ended | is_used_up) & lanes.active) != 0) {
-    attention.odd = detail::bits_of(is_odd) & lanes.active;
-    attention.ended = detail::bits_of(has_ended) & lanes.active & ~attention.odd;
-    attention.used_up = detail::bits_of(is_used_up) & lanes.active & ~attention.odd;
+  if ((detail::bits_of(runs_alone | has_ended | is_used_up) & lanes.active) != 0) {
+    attention.runs_alone = detail::bits_of(runs_alone) & lanes.active;
+    attention.ended = detail::bits_of(has_ended) & lanes.active & ~attention.runs_alone;
+    attention.used_up = detail::bits_of(is_used_up) & lanes.active & ~attention.runs_alone;
   }
-  const LaneBits usual = lanes.active & ~attention.odd;
+  const LaneBits usual = lanes.active & ~attention.runs_alone;
   if (lanes.has_times) {
     const Real missing = lanes.next_time - lanes.t;
     const Real ahead = h < 0.0 ? Real(-missing) : missing;

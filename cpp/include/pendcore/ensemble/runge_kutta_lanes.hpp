@@ -84,7 +84,8 @@ PENDCORE_INLINE Attention take_steps(RungeKuttaLanes<method, Form, width>* all,
     const Real gain = method.info.log2_safety + method.info.beta * all->log2_error_before;
     const ErrorAndFactor<Real> found = judged_step(&memory, all->t, next.h, gain);
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    Integers is_odd = next.is_odd | ~is_less(found.squared_error, broadcast<Real>(infinity));
+    Integers runs_alone =
+        next.runs_alone | ~is_less(found.squared_error, broadcast<Real>(infinity));
 
     if constexpr (method.info.stability != 0.0) {
       const Integers is_looked_at =
@@ -94,13 +95,13 @@ PENDCORE_INLINE Attention take_steps(RungeKuttaLanes<method, Form, width>* all,
             stiffness_of_step<method, Real>(next.h, All::Memory::blocks, [&](int i) {
               return std::tuple(memory.y[i], memory.y_new[i], StageBlock(memory.k, i));
             });
-        is_odd |= is_looked_at & is_less(broadcast<Real>(method.info.stability), stiffness);
+        runs_alone |= is_looked_at & is_less(broadcast<Real>(method.info.stability), stiffness);
         all->steps_to_look = is_looked_at ? Integers{} + stiffness_looks_every : all->steps_to_look;
       }
     }
     const Integers all_tried = Integers{} - 1;
     const Integers is_accepted =
-        finish_step<method, width>(*all, *interval, next, found, is_odd, all_tried, attention);
+        finish_step<method, width>(*all, *interval, next, found, runs_alone, all_tried, attention);
     if (all->needs_dense_output) {
       for (int i = 0; i < All::Memory::blocks; ++i) {
         all->y_before[i] = memory.y[i];

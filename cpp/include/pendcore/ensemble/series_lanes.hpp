@@ -39,7 +39,7 @@ struct SeriesLanes : LaneSteps<width> {
   using Integers = typename Lanes<Real>::Integers;
   using Equations = Form<Real>;
   /// Not std::vector: its allocator asks alignof, which GCC reports as on the baseline
-  /// (effects/law.hpp), while `new` has the true alignment.
+  /// (effects/laws.hpp), while `new` has the true alignment.
   using Packs = std::unique_ptr<Real[]>;
 
   Equations equations;
@@ -202,7 +202,7 @@ PENDCORE_INLINE Attention take_series_steps(SeriesLanes<Form, width>* all,
   for (int round = 0; round < rounds && !attention.is_needed(); ++round) {
     const Integers begins = all->begins;
     const NextStep<width> next = next_step<width>(*all, *interval);
-    Integers is_odd = next.is_odd & ~begins;
+    Integers runs_alone = next.runs_alone & ~begins;
     const Real h = next.h;
     const Real x = h * inverse_of_power_of_two(all->sigma);
     constexpr int together = 2;  // whose sums fit into the registers
@@ -219,7 +219,7 @@ PENDCORE_INLINE Attention take_series_steps(SeriesLanes<Form, width>* all,
     const Real of_order = (square * square) * (square * square);
     const Real squared_error = of_order * of_order;
     // Rejections are rare here.
-    is_odd |= ~is_at_most(squared_error, broadcast<Real>(1.0)) & ~begins;
+    runs_alone |= ~is_at_most(squared_error, broadcast<Real>(1.0)) & ~begins;
 
     const Real from_here =
         all->largest < taylor_detail::largest_sigma ? all->largest : size_of_step;
@@ -228,15 +228,15 @@ PENDCORE_INLINE Attention take_series_steps(SeriesLanes<Form, width>* all,
     const Real t_new = begins ? all->t : (start + h).high;
     const Integers has_series = detail::expand(all, t_new, all->y_new.get(), all->rows_new.get(),
                                                all->sigma_new, all->largest_new);
-    is_odd |= ~has_series;
+    runs_alone |= ~has_series;
     const ErrorAndFactor<Real> found{squared_error,
                                      (taylor_detail::safety / size_of_step) * all->largest_new};
 
     const Integers tried = ~begins;
     const Integers is_looked_at = (all->steps_to_look == 0) & tried;
     all->steps_to_look = is_looked_at ? Integers{} + stiffness_looks_every : all->steps_to_look;
-    finish_step<taylor, width>(*all, *interval, next, found, is_odd, tried, attention);
-    attention.looks = detail::bits_of(is_looked_at) & all->active & ~attention.odd;
+    finish_step<taylor, width>(*all, *interval, next, found, runs_alone, tried, attention);
+    attention.looks = detail::bits_of(is_looked_at) & all->active & ~attention.runs_alone;
     if (attention.searched != 0) {
       const Integers may_happen =
           may_have_event(*all, all->y.get(), all->rows.get() + size, size, all->order, x);
