@@ -11,7 +11,7 @@ x86-64-v3 are counted.
     step     of a right-hand side within attempted steps of dopri5
 
 and three counts of the bare scene, in steps: as it is; by the kernel that is named by its type,
-which no effect can affect; and in a core that has one effect more in its registry.
+which no effect can affect; and in a core that has one law more in its list.
 """
 
 from __future__ import annotations
@@ -94,7 +94,7 @@ def count_effects(effects: list[str]) -> dict[str, dict[str, float]]:
 
 
 def count_bare() -> dict[str, float]:
-    """Count the bare scene: as it is, by its kernel's type, and with one effect more registered."""
+    """Count the bare scene: as it is, by its kernel's type, and with one law more in the list."""
     try:
         program, longer = programs()
     except NotCounted:

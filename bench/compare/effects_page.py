@@ -161,7 +161,7 @@ def absent(record: Record) -> str:
     return (
         f"A right-hand side of the bare scene executes {counted['scene']:.1f} instructions within "
         "a step,\nand the kernel that is named by its type and knows of no effect executes "
-        f"{counted['kernel']:.1f}.\nIn a core with one effect more in its registry the bare scene "
+        f"{counted['kernel']:.1f}.\nIn a core with one law more in its list the bare scene "
         "executes "
         f"{counted['one_effect_more']:.1f}: {'kept' if alike else '**missed**'}."
     )

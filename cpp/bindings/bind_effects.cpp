@@ -3,6 +3,8 @@
 #include <pybind11/stl.h>
 
 #include "arguments.hpp"
+#include "pendcore/effects/behaviour.hpp"
+#include "pendcore/effects/registry.hpp"
 #include "python_function.hpp"
 
 namespace pendcore::bindings {
@@ -76,20 +78,10 @@ void fill(Struct& filled, const py::dict& values) {
   });
 }
 
-/// Calls visit(effect) for an effect of each kind with its default parameters.
-template <class Visitor, std::size_t... i>
-void for_each_kind(Visitor visit, std::index_sequence<i...>) {
-  (visit(std::variant_alternative_t<i, Effect>{}), ...);
-}
-template <class Visitor>
-void for_each_kind(Visitor visit) {
-  for_each_kind(visit, std::make_index_sequence<std::variant_size_v<Effect>>{});
-}
-
 /// Calls visit(part) for each part of any effect, with its default parameters, possibly more than
 /// once.
 template <class Visitor>
-void for_each_part(Visitor visit) {
+void for_each_part(const Visitor& visit) {
   for_each_kind([&](const auto& effect) {
     for_each_parameter(effect, [&]<class Value>(const ParameterInfo&, const Value&) {
       if constexpr (OptionalPart<Value>) visit(typename Value::value_type{});
@@ -178,17 +170,16 @@ Effect make_effect(py::handle kind_and_values) {
     const auto [function, breaks] = values.cast<std::pair<py::object, std::vector<double>>>();
     return effect_of_function(function, breaks);
   }
-  Effect effect = effect_of_kind(kind);
-  std::visit([&](auto& one) { fill(one, values.cast<py::dict>()); }, effect);
-  return effect;
+  return effect_of_kind(kind, [&](auto& given) { fill(given, values.cast<py::dict>()); });
 }
 
 py::tuple kind_and_values(const std::string& where, const Effect& effect) {
-  if (std::holds_alternative<CompiledUser>(effect)) {
+  if (effect.info().is_function) {
     throw py::type_error(where + "is a function: a run with it cannot be pickled or saved");
   }
-  const py::dict values = std::visit([](const auto& one) { return values_of(one); }, effect);
-  return py::make_tuple(string(info_of(effect).kind), values);
+  py::dict values;
+  visit_parameters(effect, [&](const auto& given) { values = values_of(given); });
+  return py::make_tuple(string(effect.info().kind), values);
 }
 
 void bind_effects(py::module_& module) {
@@ -201,7 +192,7 @@ void bind_effects(py::module_& module) {
   module.def(
       "check_effect",
       [](const std::string& where, py::handle kind_and_values) {
-        check_effect(where, make_effect(kind_and_values));
+        make_effect(kind_and_values)->check(where);
       },
       py::arg("where"), py::arg("kind_and_values"),
       "Raise a ValueError that begins with `where` for parameters out of their ranges.");

@@ -5,7 +5,7 @@
 
 #include <pybind11/pybind11.h>
 
-#include "pendcore/effects/registry.hpp"
+#include "pendcore/effects/effect.hpp"
 
 namespace pendcore::bindings {
 

@@ -8,6 +8,7 @@
 #include "arguments.hpp"
 #include "bind_events.hpp"
 #include "bind_options.hpp"
+#include "pendcore/analysis/defect.hpp"
 #include "python_monitor.hpp"
 #include "run_state.hpp"
 

@@ -8,7 +8,12 @@
 #include "arguments.hpp"
 #include "bind_effects.hpp"
 #include "pendcore/arithmetic/floating_point_environment.hpp"
-#include "pendcore/pendcore.hpp"
+#include "pendcore/dynamics/cost.hpp"
+#include "pendcore/dynamics/energetics/energy.hpp"
+#include "pendcore/dynamics/energetics/reactions.hpp"
+#include "pendcore/dynamics/equations_of_motion.hpp"
+#include "pendcore/dynamics/jacobian.hpp"
+#include "pendcore/dynamics/kinematics.hpp"
 #include "pendcore/simulate/initial_state.hpp"
 
 namespace pendcore::bindings {
@@ -66,10 +71,9 @@ Array points_of_rows(Points compute, const Scene& scene, const Array& t, const A
                      std::size_t count) {
   const FloatingPointEnvironment ieee;
   const Rows angles(scene, "q", q);
-  const Scene ready = compiled(scene);
   Array result({angles.count(), static_cast<py::ssize_t>(count), py::ssize_t{2}});
   for (py::ssize_t i = 0; i < angles.count(); ++i) {
-    compute(ready, t.at(i), angles[i], row(result, i));
+    compute(scene, t.at(i), angles[i], row(result, i));
   }
   return result;
 }
@@ -135,11 +139,10 @@ Array reaction_forces(const Scene& scene, const Array& t, const Array& q, const 
   const Rows angles(scene, "q", q);
   const Rows rates(scene, "qd", qd);
   const Rows second(scene, "qdd", qdd);
-  const Scene ready = compiled(scene);
-  const auto effects = effects_in_force(ready);
+  const auto effects = effects_in_force(scene);
   Array result({q.shape(0), q.shape(1), py::ssize_t{2}});
   for (py::ssize_t i = 0; i < angles.count(); ++i) {
-    reactions(ready, *effects, t.at(i), angles[i], rates[i], second[i], row(result, i));
+    reactions(scene, *effects, t.at(i), angles[i], rates[i], second[i], row(result, i));
   }
   give_nan_one_sign(result);
   return result;
@@ -192,12 +195,11 @@ void bind_scene(py::module_& module) {
             const FloatingPointEnvironment ieee;
             const Rows angles(scene, "q", q);
             const Rows rates(scene, "qd", qd);
-            const Scene ready = compiled(scene);
             Array kinetic(angles.count());
             Array potential(angles.count());
             for (py::ssize_t i = 0; i < angles.count(); ++i) {
-              kinetic.mutable_at(i) = kinetic_energy(ready, t.at(i), angles[i], rates[i]);
-              potential.mutable_at(i) = potential_energy(ready, t.at(i), angles[i]);
+              kinetic.mutable_at(i) = kinetic_energy(scene, t.at(i), angles[i], rates[i]);
+              potential.mutable_at(i) = potential_energy(scene, t.at(i), angles[i]);
             }
             give_nan_one_sign(kinetic);
             give_nan_one_sign(potential);

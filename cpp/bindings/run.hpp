@@ -5,7 +5,7 @@
 
 #include <pybind11/pybind11.h>
 
-#include "pendcore/pendcore.hpp"
+#include "pendcore/simulate/simulate.hpp"
 
 namespace pendcore::bindings {
 

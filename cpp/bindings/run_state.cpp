@@ -8,6 +8,7 @@
 #include "arguments.hpp"
 #include "bind_effects.hpp"
 #include "event_state.hpp"
+#include "pendcore/dynamics/energetics/ledger.hpp"
 #include "pendcore/integrate/methods.hpp"
 
 namespace pendcore::bindings {

@@ -8,7 +8,7 @@ function(pendcore_compile_together target)
   foreach(source ${sources})
     string(REGEX REPLACE "^.*/cpp/src/([a-z]+)/.*$" "\\1" folder ${source})
     string(REPLACE analysis dynamics folder ${folder})
-    string(REGEX REPLACE "effects|scene" simulate folder ${folder})
+    string(REPLACE scene simulate folder ${folder})
     set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${folder})
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${PENDCORE_TOGETHER}

@@ -168,13 +168,16 @@ EXPORTED(add_link) void add_link(double mass, double length, double center, doub
 /// The text is its kind.
 EXPORTED(add_effect) void add_effect() {
   if (text_in == "user") refuse_name("kind = ", text_in);
-  draft.effects.push_back(effect_of_kind(text_in));
+  draft.effects.push_back(effect_of_kind(text_in, [](auto& /*given*/) {}));
 }
 /// Sets a parameter of the effect added last; the text is its name.
 EXPORTED(set_parameter) void set_parameter() {
   const std::string where = effect_name(draft, draft.effects.size() - 1) + ": ";
-  const bool found =
-      std::visit([&](auto& one) { return fill(one, text_in, where); }, draft.effects.back());
+  bool found = false;
+  visit_parameters(draft.effects.back(), [&](auto given) {
+    found = fill(given, text_in, where);
+    if (found) draft.effects.back() = std::move(given);
+  });
   if (!found) refuse_name(where, text_in);
 }
 EXPORTED(end_scene) const Scene* end_scene() {
@@ -184,7 +187,7 @@ EXPORTED(end_scene) const Scene* end_scene() {
                                 std::to_string(most_links));
   }
   check(draft);
-  return new Scene(compiled(std::move(draft)));
+  return new Scene(std::move(draft));
 }
 EXPORTED(free_scene) void free_scene(const Scene* scene) { delete scene; }
 

@@ -31,7 +31,7 @@ SMOOTH = [effect for effect in EFFECTS if effect.most_instructions is not None]
 
 @pytest.fixture(scope="module")
 def programs() -> tuple[Path, Path]:
-    """Return pendcore's program, and that of a core with one effect more in its registry."""
+    """Return pendcore's program, and that of a core with one law more in its list."""
     if not CPU_INFO.exists() or "avx2" not in CPU_INFO.read_text():
         pytest.skip("the kernels that are counted, for x86-64-v3, do not run here")
     try:
@@ -55,11 +55,11 @@ def in_step(program: Path, effect: str) -> float:
 
 
 def registered(program: Path) -> int:
-    """Ask a program how many effects its core has in the registry."""
+    """Ask a program how many laws its core has in the list."""
     about = subprocess.run(
         [program], input="about pendcore\n", capture_output=True, text=True, check=True
     )
-    (found,) = re.findall(r"(\d+) effects registered", about.stdout)
+    (found,) = re.findall(r"(\d+) laws registered", about.stdout)
     return int(found)
 
 
@@ -69,7 +69,7 @@ def test_bare_scene_executes_the_kernel_that_knows_no_effect(programs: tuple[Pat
 
 
 @pytest.mark.parametrize("way", count_instructions.WAYS.values())
-def test_bare_scene_executes_no_instruction_for_one_effect_more_in_the_registry(
+def test_bare_scene_executes_no_instruction_for_one_law_more_in_the_list(
     way: str, programs: tuple[Path, Path]
 ) -> None:
     program, longer = programs

@@ -43,8 +43,13 @@ events = [pc.events.LinkAngle(2, 1.5), pc.events.TipLine(point=(0.3, 0.9), norma
 """
 # The runs have angles near and far, a chaotic start and denormal rates; everything that a run
 # leaves behind is compared.
+# A scene with a table and a spline is made here, after what a test does in between.
 RUNS = """
+tabled = pc.Scene(links=bouncing.links, effects=[
+    fx.Motor(1, table=fx.Table((0.0, 0.3, 1.1, 4.0), (0.7, -2.3, 1.9, 0.1)), limit=1.7),
+    fx.DrivenPivot(spline=fx.Spline((0.0, 0.7, 1.3, 4.0), (0, 0.1, 0.05, 0.2), (0, 0.03, 0.1, 0)))])
 runs = [
+    pc.simulate(tabled, [0.4, 0.8], 0, (0, 3)),
     pc.simulate(book, [0.7853981633974483, 1.0471975511965976], 0, (0, 60)),
     pc.simulate(book, [-1.4, -1.1], 0, (0, 30), rtol=1e-12),
     pc.simulate(book, [3e8, -2e7], [30, -70], (5, 0)),

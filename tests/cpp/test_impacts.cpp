@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pendcore/dynamics/kinematics.hpp"
+#include "pendcore/effects/joint_stop.hpp"
 #include "pendcore/simulate/switching.hpp"
 
 using namespace pendcore;
@@ -22,7 +23,13 @@ struct Drawn {
   std::vector<int> sides;  ///< -1 at the lower stop, 1 at the upper one
 
   int n() const { return static_cast<int>(sides.size()); }
-  JointStop& stop(int j) { return std::get<JointStop>(scene.effects[j]); }
+  const JointStop& stop(int j) const { return *scene.effects[j].get_if<JointStop>(); }
+  template <class Value>
+  void set(int j, Value JointStop::* field, Value value) {
+    JointStop changed = stop(j);
+    changed.*field = value;
+    scene.effects[j] = changed;
+  }
 };
 
 Drawn draw(int n, std::mt19937_64& random) {
@@ -133,11 +140,11 @@ TEST_CASE("an impact at one stop is Newton's: the joint leaves with e times its 
     const int joint = i % drawn.n();
     for (int j = 0; j < drawn.n(); ++j) {
       if (j == joint) continue;
-      drawn.stop(j).range = {-100.0, 100.0};
+      drawn.set(j, &JointStop::range, {-100.0, 100.0});
     }
     drawn.phid[joint] = drawn.sides[joint] * std::abs(drawn.phid[joint]);
     const double speed = std::abs(drawn.phid[joint]);
-    const JointStop& stop = drawn.stop(joint);
+    const JointStop stop = drawn.stop(joint);
     const double e = speed < *stop.capture_speed ? 0.0 : stop.restitution;
     const Struck struck = strike(drawn);
     const double off = std::abs(struck.phid[joint] + e * drawn.phid[joint]);
@@ -152,13 +159,13 @@ TEST_CASE("with one restitution for all, an impact goes beyond the plastic one b
     Drawn drawn = draw(2 + i % 5, random);
     const double e = drawn.stop(0).restitution;
     for (int j = 0; j < drawn.n(); ++j) {
-      drawn.stop(j).capture_speed = 0.0;
+      drawn.set(j, &JointStop::capture_speed, std::optional(0.0));
       drawn.phid[j] = drawn.sides[j] * std::abs(drawn.phid[j]);  // no joint leaves its stop
     }
     Drawn plastic = drawn;
     for (int j = 0; j < drawn.n(); ++j) {
-      drawn.stop(j).restitution = e;
-      plastic.stop(j).restitution = 0.0;
+      drawn.set(j, &JointStop::restitution, e);
+      plastic.set(j, &JointStop::restitution, 0.0);
     }
     const Row after = strike(drawn).phid;
     const Row compressed = strike(plastic).phid;

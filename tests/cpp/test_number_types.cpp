@@ -9,6 +9,7 @@
 #include "pendcore/dynamics/closed_form/double_pendulum.hpp"
 #include "pendcore/dynamics/closed_form/double_pendulum_with_effects.hpp"
 #include "pendcore/dynamics/closed_form/single_pendulum.hpp"
+#include "pendcore/effects/registry.hpp"
 
 using namespace pendcore;
 

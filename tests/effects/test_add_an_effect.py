@@ -21,29 +21,29 @@ from reference.random_rigs import between
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs/how_to/add_an_effect.md").read_text()
 STEPS, OTHER_LAWS = PAGE.split("## Other kinds of law")
-HEADER, *LINES_OF_CPP = re.findall(r"```cpp\n(.*?)```", STEPS, re.DOTALL)
+HEADER, ROW_LAW, LIST, SOURCE, *LINES_OF_CPP = re.findall(r"```cpp\n(.*?)```", STEPS, re.DOTALL)
+EFFECTS = ROOT / "cpp/include/pendcore/effects"
 LAW, *LINES_OF_PYTHON = re.findall(r"```python\n(.*?)```", STEPS, re.DOTALL)
 PROJECT = """
 cmake_minimum_required(VERSION 3.25)
 project(effect LANGUAGES CXX)
 find_package(pendcore REQUIRED)
-add_executable(effect effect.cpp)
+add_executable(effect effect.cpp magnetic_brake.cpp)
+target_include_directories(effect BEFORE PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
 target_link_libraries(effect PRIVATE pendcore::pendcore)
 """
 PROGRAM = """
 #include <cstdio>
 #include <pendcore/pendcore.hpp>
 #include <pendcore/dynamics/row.hpp>
-#include "magnetic_brake.hpp"
+#include <pendcore/effects/magnetic_brake.hpp>
 using namespace pendcore;
 
-static_assert(hooks_are_named<std::variant<MagneticBrake>>);
-
 template <class Row>
-void print(double qd) {
-  const MagneticBrake brake{.joint = 1, .peak = 0.3, .critical_rate = 2.0};
-  MagneticBrake::Law<Row> law;
-  brake.put(law, 0, LinkConstants{});
+void print(const Effect& effect, double qd) {
+  EddyLaw<Row> law;
+  each_field(law, std::get<EddyLaw<double>>(*effect->law(0, {})),
+             [](Row& all, double one) { set_lane(all, 0, one); });
   const RowAt<Row> at{.q = Constants<Row>::of(1.0), .qd = Constants<Row>::of(qd), .t = 0.0};
   RowLoads<Row> loads;
   law.add(at, loads);
@@ -51,12 +51,13 @@ void print(double qd) {
 }
 
 int main() {
+  const Effect effect = MagneticBrake{.joint = 1, .peak = 0.3, .critical_rate = 2.0};
   for (const double qd : {-5.0, 0.0, 2.0}) {
-    print<double>(qd);
-    print<Pair>(qd);
+    print<double>(effect, qd);
+    print<Pair>(effect, qd);
   }
   try {
-    check_parameters("effect 1: ", MagneticBrake{.joint = 1, .peak = -1.0, .critical_rate = 1.0});
+    Effect(MagneticBrake{.joint = 1, .peak = -1.0, .critical_rate = 1.0})->check("effect 1: ");
   } catch (const std::invalid_argument& refused) {
     std::puts(refused.what());
   }
@@ -89,7 +90,7 @@ def test_its_law_in_the_reference_brakes_hardest_at_the_critical_rate(
 
 
 def test_the_lines_to_add_stand_where_it_says() -> None:
-    registry = (ROOT / "cpp/include/pendcore/effects/registry.hpp").read_text()
+    registry = (EFFECTS / "registry.hpp").read_text()
     laws = (ROOT / "tests/reference/effects/__init__.py").read_text()
     include, name = LINES_OF_CPP
     assert include.replace("magnetic_brake", "motor") in registry
@@ -113,15 +114,16 @@ ELSEWHERE = {
 
 
 def test_the_parts_of_the_contract_that_it_names_are_there() -> None:
-    headers = "".join(p.read_text() for p in (ROOT / "cpp/include/pendcore/effects").glob("*.hpp"))
-    named = set(re.findall(r"`(\w+)[(`]", OTHER_LAWS)) - {"put"}
+    headers = "".join(p.read_text() for p in EFFECTS.glob("*.hpp"))
+    named = set(re.findall(r"`(\w+)[(`]", OTHER_LAWS))
     assert {"couple", "potential", "warnings", "next_mode"} <= named
     for name in named:
         assert re.search(rf"\b{name}\b", headers) or name in ELSEWHERE, name
     for name, file in ELSEWHERE.items():
         assert name in (ROOT / file).read_text()
-    for file in re.findall(r"`(\w+\.hpp)`", OTHER_LAWS):
-        assert (ROOT / "cpp/include/pendcore/effects" / file).exists(), file
+    for file in re.findall(r"`(\w+\.[hc]pp)`", OTHER_LAWS):
+        folder = EFFECTS if file.endswith("hpp") else ROOT / "cpp/src/effects"
+        assert (folder / file).exists(), file
 
 
 @pytest.mark.outside_build
@@ -129,9 +131,21 @@ def test_its_header_compiles_and_says_the_same_as_the_reference(
     torque: Callable[[float], float], tmp_path: Path
 ) -> None:
     # Under another name: whoever has followed the page has one in the core.
-    for file, text in (("magnetic_brake.hpp", HEADER), ("effect.cpp", PROGRAM)):
-        (tmp_path / file).write_text(text.replace("MagneticBrake", "BrakeOfThePage"))
-    (tmp_path / "CMakeLists.txt").write_text(PROJECT)
+    laws = (EFFECTS / "laws.hpp").read_text()
+    assert LIST.replace(", EddyLaw<Row>", "") in laws or LIST in laws
+    law = ROW_LAW.replace("EddyLaw", "LawOfThePage")
+    laws = laws.replace("/// The list of laws.", f"{law}\n/// The list of laws.")
+    laws = re.sub(r"(using LawOn = [^;]*)>;", r"\1, LawOfThePage<Row>>;", laws)
+    for file, text in (
+        ("pendcore/effects/laws.hpp", laws),
+        ("pendcore/effects/magnetic_brake.hpp", HEADER),
+        ("magnetic_brake.cpp", SOURCE),
+        ("effect.cpp", PROGRAM),
+        ("CMakeLists.txt", PROJECT),
+    ):
+        (tmp_path / file).parent.mkdir(parents=True, exist_ok=True)
+        renamed = text.replace("MagneticBrake", "BrakeOfThePage").replace("EddyLaw", "LawOfThePage")
+        (tmp_path / file).write_text(text if text is laws else renamed)
     program = str(Path(cmake.CMAKE_BIN_DIR) / "cmake")
     where = [f"-Dpendcore_ROOT={Path(pc.__file__).parent}", f"-DPython_EXECUTABLE={sys.executable}"]
     build = str(tmp_path / "build")

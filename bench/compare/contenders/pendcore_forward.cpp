@@ -167,7 +167,7 @@ std::unique_ptr<Calls> steps_of_kernel(const Scene& given) {
 }
 
 const std::string registered =
-    ", " + std::to_string(std::variant_size_v<pendcore::Effect>) + " effects registered, ";
+    ", " + std::to_string(std::variant_size_v<pendcore::AnyLaw>) + " laws registered, ";
 
 template <class Kind>
 ForwardDynamics entry(const std::string& name, const std::string& label, const std::string& about) {

@@ -13,6 +13,7 @@
 #include "pendcore/dynamics/inertia.hpp"
 #include "pendcore/dynamics/jacobian.hpp"
 #include "pendcore/dynamics/kinematics.hpp"
+#include "pendcore/effects/registry.hpp"
 #include "pendcore/ensemble/ensemble.hpp"
 #include "pendcore/scene/scene.hpp"
 #include "pendcore/simulate/simulate.hpp"

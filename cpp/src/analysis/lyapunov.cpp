@@ -226,7 +226,7 @@ Options options_of_run(const LyapunovOptions& options) {
 
 void check_has_exponents(const Scene& scene) {
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
-    if (!info_of(scene.effects[i]).jumps_or_sticks) continue;
+    if (!scene.effects[i].info().jumps_or_sticks) continue;
     throw std::invalid_argument(
         effect_name(scene, i) +
         ": motions jump or stick under it, each at a time of its own, so neighbouring motions do "

@@ -4,31 +4,41 @@
 
 #include "pendcore/dynamics/inertia.hpp"
 #include "pendcore/dynamics/row.hpp"
+#include "pendcore/effects/lock.hpp"
 
 namespace pendcore {
 
 EffectsInForce::EffectsInForce(const Scene& scene)
-    : effects(compiled(scene).effects),
+    : effects(scene.effects),
       modes(scene.effects.size(), 0),
-      number_of_wave(scene.effects.size(), -1) {
+      number_of_wave(scene.effects.size(), -1),
+      number_of_law_(scene.effects.size(), 0) {
   held.assign(scene.links.size(), 0);
   for (const Lock& lock : effects_of<Lock>(scene)) hold(lock.joint - 1, true);
-  for (const Effect& effect : effects) {
-    if (const auto* user = std::get_if<CompiledUser>(&effect)) users.push_back(*user);
-    const auto* pivot = std::get_if<DrivenPivot>(&effect);
-    if (pivot == nullptr) continue;
-    auto law = std::make_shared<DrivenPivot::Law>();
-    auto swing = [this](const std::optional<Sinusoid>& wave, DrivenPivot::Law::Axis& axis) {
-      if (!wave) return;
-      const double w = wave->angular_frequency;
-      axis.gain = -wave->amplitude * w * w;
-      axis.swing = wave->amplitude * w;
-      axis.wave = add_wave(*wave);
-    };
-    swing(pivot->x, law->x);
-    swing(pivot->y, law->y);
-    pivots.push_back(law);
+  for (std::size_t i = 0; i < effects.size(); ++i) {  // the first waves are those of the pivots
+    const auto law = effects[i]->pivot_law(0);
+    if (!law) continue;
+    add_waves(i);
+    number_of_law_[i] = pivots.size();
+    pivots.emplace_back();
+    put_pivot(i, *law);
   }
+}
+
+void EffectsInForce::add_waves(std::size_t i) {
+  for (const Sinusoid& wave : effects[i]->waves()) {
+    if (number_of_wave[i] < 0) number_of_wave[i] = waves;
+    angular_frequency.push_back(wave.angular_frequency);
+    phase.push_back(wave.phase);
+    ++waves;
+  }
+}
+
+/// Puts the law of a pivot in force, with the numbers that its waves have among all.
+void EffectsInForce::put_pivot(std::size_t i, const PivotLaw& law) {
+  PivotLaw& pivot = pivots[number_of_law_[i]];
+  pivot = law;
+  for (PivotLaw::Axis* axis : {&pivot.x, &pivot.y}) axis->wave += std::max(number_of_wave[i], 0);
 }
 
 void EffectsInForce::hold(int joint, bool is_held) {
@@ -36,7 +46,7 @@ void EffectsInForce::hold(int joint, bool is_held) {
   any_held = std::ranges::find(held, 1) != held.end();
 }
 
-void EffectsInForce::call(const CompiledUser& user, double t, const Dual<double>* q,
+void EffectsInForce::call(const UserLaw& user, double t, const Dual<double>* q,
                           const Dual<double>* qd, Dual<double>* Q) const {
   const std::size_t n = held.size();
   user_room_.resize(3 * n);
@@ -70,12 +80,6 @@ void EffectsInForce::call(const CompiledUser& user, double t, const Dual<double>
   }
 }
 
-int EffectsInForce::add_wave(const Sinusoid& wave) {
-  angular_frequency.push_back(wave.angular_frequency);
-  phase.push_back(wave.phase);
-  return waves++;
-}
-
 void EffectsInForce::finish_waves() {
   for (int k = 0; k < std::min(waves, 2); ++k) {
     two_waves.angular_frequency[k] = angular_frequency[k];
@@ -89,25 +93,6 @@ void EffectsInForce::finish_waves() {
 }
 
 namespace {
-
-/// The joint or link that an effect acts on, counted from 0.
-template <class Kind>
-int place_of(const Kind& effect) {
-  if constexpr (OnJoint<Kind>) {
-    return effect.joint - 1;
-  } else {
-    return effect.link - 1;
-  }
-}
-
-template <class Kind>
-double group_of(const Kind& effect) {
-  if constexpr (HasGroup<Kind>) {
-    return effect.group();
-  } else {
-    return 0.0;
-  }
-}
 
 template <class Row>
 struct ForceProbe {
@@ -128,105 +113,83 @@ bool calls_force(const Law& law) {
   return probe.is_called;
 }
 
-template <class Kind>
-bool is_couple(const Kind& effect) {
-  if constexpr (HasCouple<Kind>) {
-    return effect.couple(0).has_value();
-  } else {
-    return false;
-  }
-}
+bool is_couple(const Effect& effect) { return effect->couple(0).has_value(); }
 
 }  // namespace
 
 template <class Row>
-ActingEffects<Row>::ActingEffects(const Scene& scene)
-    : EffectsInForce(scene), places_(effects.size()) {
-  std::size_t pivots_so_far = 0;
-  std::size_t users_so_far = 0;
+ActingEffects<Row>::ActingEffects(const Scene& scene) : EffectsInForce(scene) {
   for (std::size_t i = 0; i < effects.size(); ++i) {
-    std::visit(
-        [&]<class Kind>(const Kind& effect) {
-          if constexpr (HasWave<Kind>) {
-            if (const auto wave = effect.wave()) number_of_wave[i] = add_wave(*wave);
-          }
-          if constexpr (std::is_same_v<Kind, DrivenPivot>) places_[i].number = pivots_so_far++;
-          if constexpr (std::is_same_v<Kind, CompiledUser>) places_[i].number = users_so_far++;
-          if constexpr (HasCouple<Kind>) {
-            if (is_couple(effect)) {
-              const int row = place_of(effect) / width;
-              const bool is_new =
-                  std::ranges::find(couples, row, &Couples<Row>::row) == couples.end();
-              if (is_new) couples.push_back({.row = row});
-              return;
-            }
-          }
-          if constexpr (HasLaw<Kind>) add_law(i, effect, scene);
-        },
-        effects[i]);
+    const EffectBehaviour& effect = *effects[i];
+    const int place = std::max(effect.joint(), effect.link()) - 1;
+    place_of_.push_back(place);
+    const Link& link = scene.links[std::max(place, 0)];
+    link_there_.push_back({link.mass, link.length, link.center, scene.gravity});
+    if (number_of_wave[i] < 0) add_waves(i);  // those of pivots are there
+    if (auto law = effect.user_law(0)) {
+      number_of_law_[i] = users.size();
+      users.push_back(*law);
+    }
+    if (is_couple(effects[i])) {
+      const int row = place / width;
+      const bool is_new = std::ranges::find(couples, row, &Couples<Row>::row) == couples.end();
+      if (is_new) couples.push_back({.row = row});
+    } else {
+      add_law(i);
+    }
   }
   finish_waves();
   if constexpr (width == 2) find_two_waves(scene);
   for (std::size_t i = 0; i < effects.size(); ++i) {
-    std::visit(
-        [&]<class Kind>(const Kind& effect) {
-          if constexpr (HasModes<Kind>) {
-            has_modes |= effect.has_modes();
-            put_mode(i, effect.mode_at(0.0, 0.0, 0.0, true));
-          } else if (is_couple(effect)) {
-            put_mode(i, 0);
-          }
-        },
-        effects[i]);
+    has_modes |= effects[i]->has_modes();
+    put_mode(i, effects[i]->mode_at(0.0, 0.0, 0.0, true));
   }
 }
 
 /// Puts effect number i into a free lane of a law that it can share, or else into a new law.
 template <class Row>
-template <class Kind>
-void ActingEffects<Row>::add_law(std::size_t i, const Kind& effect, const Scene& scene) {
-  const int place = place_of(effect);
-  const int row = place / width;
-  const int lane = place % width;
-  const unsigned wanted = 1U << lane;
-  const double group = group_of(effect);
-  std::vector<SharedLaw<Kind, Row>>& laws = laws_of<Kind>();
-  auto found = std::ranges::find_if(laws, [&](const SharedLaw<Kind, Row>& one) {
-    return one.row == row && one.group == group && (one.taken & wanted) == 0;
-  });
-  if (found == laws.end()) {
-    laws.reserve(effects.size());  // entries point to them
-    found = laws.insert(laws.end(), {.law = {}, .row = row, .group = group});
-    entries.push_back({.law = &*found, .row = row});
-  }
-  found->taken |= wanted;
-  places_[i] = {static_cast<std::size_t>(found - laws.begin()), lane};
-  const Link& link = scene.links[place];
-  effect.put(found->law, lane, {link.mass, link.length, link.center, scene.gravity});
-  has_forces |= calls_force<Row>(found->law);
+void ActingEffects<Row>::add_law(std::size_t i) {
+  const auto any = effects[i]->law(0, link_there_[i]);
+  if (!any) return;
+  const int row = place_of_[i] / width;
+  const unsigned wanted = 1U << (place_of_[i] % width);
+  const Account account = effects[i].info().account;
+  std::visit(
+      [&]<template <class> class Law>(const Law<double>& one) {
+        auto& laws = laws_like(one);
+        auto found = std::ranges::find_if(laws, [&](const SharedLaw<Law, Row>& other) {
+          return other.row == row && other.account == account && (other.taken & wanted) == 0 &&
+                 Law<Row>::shared(other.law) == Law<double>::shared(one);
+        });
+        if (found == laws.end()) {
+          laws.reserve(effects.size());  // entries point to them
+          found = laws.insert(laws.end(), {.law = {}, .row = row, .account = account});
+          Law<Row>::shared(found->law) = Law<double>::shared(one);
+          entries.push_back({.law = &*found, .row = row, .account = account});
+        }
+        found->taken |= wanted;
+        number_of_law_[i] = static_cast<std::size_t>(found - laws.begin());
+        has_forces |= calls_force<Row>(found->law);
+      },
+      *any);
 }
 
 template <class Row>
 void ActingEffects<Row>::put_mode(std::size_t i, int mode) {
   modes[i] = mode;
-  std::visit(
-      [&]<class Kind>(const Kind& effect) {
-        if constexpr (std::is_same_v<Kind, DrivenPivot>) {
-          effect.put_mode(*pivots[places_[i].number], 0, mode);
-        }
-        if constexpr (std::is_same_v<Kind, CompiledUser>) users[places_[i].number].enter(mode);
-        if constexpr (HasCouple<Kind>) {
-          if (is_couple(effect)) {
-            sum_couples(place_of(effect));
-            return;
-          }
-        }
-        if constexpr (HasLaw<Kind> && HasModes<Kind>) {
-          const auto [number, lane] = places_[i];
-          effect.put_mode(laws_of<Kind>()[number].law, lane, mode);
-        }
-      },
-      effects[i]);
+  if (const auto law = effects[i]->pivot_law(mode)) {
+    put_pivot(i, *law);
+  } else if (const auto user = effects[i]->user_law(mode)) {
+    users[number_of_law_[i]] = *user;
+  } else if (is_couple(effects[i])) {
+    sum_couples(place_of_[i]);
+  } else if (const auto any = effects[i]->law(mode, link_there_[i])) {
+    const int lane = place_of_[i] % width;
+    const auto put = [lane](Row& all, double of_one) { set_lane(all, lane, of_one); };
+    std::visit(
+        [&](const auto& one) { each_field(laws_like(one)[number_of_law_[i]].law, one, put); },
+        *any);
+  }
 }
 
 /// Adds up the couples of all effects on one joint, in its lane.
@@ -236,31 +199,24 @@ void ActingEffects<Row>::sum_couples(int joint) {
   bool has_start = false;
   std::erase_if(joint_waves, [&](const JointWave& wave) { return wave.joint == joint; });
   for (std::size_t i = 0; i < effects.size(); ++i) {
-    std::visit(
-        [&]<class Kind>(const Kind& effect) {
-          if constexpr (HasCouple<Kind>) {
-            if (place_of(effect) != joint || !is_couple(effect)) return;
-            const Couple one = *effect.couple(modes[i]);
-            if (one.slope != 0.0 || one.start != 0.0) {
-              // The common start is the latest, even if starts are negative: it keeps t - start
-              // small.
-              const double start = has_start ? std::max(sum.start, one.start) : one.start;
-              sum.held +=
-                  sum.slope * (start - sum.start) + one.held + one.slope * (start - one.start);
-              sum.start = start;
-              sum.slope += one.slope;
-              has_start = true;
-            } else {
-              sum.held += one.held;
-            }
-            sum.on_phi += one.on_phi;
-            sum.on_phid += one.on_phid;
-            sum.on_phid2 += one.on_phid2;
-            sum.on_phid3 += one.on_phid3;
-            if (one.gain != 0.0) joint_waves.push_back({joint, number_of_wave[i], one.gain});
-          }
-        },
-        effects[i]);
+    if (place_of_[i] != joint) continue;
+    const std::optional<Couple> one = effects[i]->couple(modes[i]);
+    if (!one) continue;
+    if (one->slope != 0.0 || one->start != 0.0) {
+      // The common start is the latest, even if starts are negative: it keeps t - start small.
+      const double start = has_start ? std::max(sum.start, one->start) : one->start;
+      sum.held += sum.slope * (start - sum.start) + one->held + one->slope * (start - one->start);
+      sum.start = start;
+      sum.slope += one->slope;
+      has_start = true;
+    } else {
+      sum.held += one->held;
+    }
+    sum.on_phi += one->on_phi;
+    sum.on_phid += one->on_phid;
+    sum.on_phid2 += one->on_phid2;
+    sum.on_phid3 += one->on_phid3;
+    if (one->gain != 0.0) joint_waves.push_back({joint, number_of_wave[i], one->gain});
   }
   if constexpr (width == 2) {
     two_waves.torque[0] = two_waves.torque[1] = Pair{};
@@ -282,9 +238,9 @@ void ActingEffects<Row>::find_two_waves(const Scene& scene) {
   const Inertia inertia(scene);
   for (int i = 0; i < 2; ++i) {
     const double a = inertia.links[i].first_moment;
-    for (const auto& law : pivots) {
-      if (law->x.wave < 2) two_waves.on_sine[law->x.wave][i] += a * law->x.gain;
-      if (law->y.wave < 2) two_waves.on_cosine[law->y.wave][i] -= a * law->y.gain;
+    for (const auto& [x, y, start] : pivots) {
+      if (x.wave < 2) two_waves.on_sine[x.wave][i] += a * x.gain;
+      if (y.wave < 2) two_waves.on_cosine[y.wave][i] -= a * y.gain;
     }
   }
 }
@@ -302,7 +258,7 @@ Row of_users(const EffectsInForce& effects, double t, const Row& q, const Row& q
   store(angles, q);
   store(rates, qd);
   Row sum{};
-  for (const CompiledUser& user : effects.users) {
+  for (const UserLaw& user : effects.users) {
     Number forces[n] = {};
     effects.call(user, t, angles, rates, forces);
     sum += load<Row>(forces);

@@ -35,8 +35,8 @@ Counted power(Counted a, double p) { return count(pendcore::power(a.value, p), p
 Counted before(Counted /*x*/) { return {}; }
 
 /// The number of operations of one effect in a right-hand side.
-template <class Kind>
-std::optional<int> operations_of(const Kind& effect) {
+std::optional<int> operations_of(const EffectBehaviour& effect) {
+  if (effect.info().is_function) return std::nullopt;
   counted = 0;
   double waves[8] = {};
   const RowAt<Counted> at{.q = 0.5,
@@ -48,30 +48,17 @@ std::optional<int> operations_of(const Kind& effect) {
                           .pivot_vx = 0.1,
                           .pivot_vy = 0.2};
   RowLoads<Counted> loads;
-  if constexpr (HasCouple<Kind>) {
-    if (effect.couple(0)) {
-      loads.couple(Couples<double>{}.torque(at));
-      return counted;
-    }
-  }
-  if constexpr (HasLaw<Kind>) {
-    typename Kind::template Law<double> law;
-    effect.put(law, 0, {.mass = 1.0, .length = 1.0, .center = 0.5, .gravity = 9.807});
-    if constexpr (HasModes<Kind>) {
-      effect.put_mode(law, 0, effect.mode_at(0.0, 0.0, 0.0, true));
-    }
-    law.add(at, loads);
-    return counted;
-  } else if constexpr (std::is_same_v<Kind, DrivenPivot>) {
-    const DrivenPivot::Law law;
+  const int mode = effect.mode_at(0.0, 0.0, 0.0, true);
+  const LinkConstants on{.mass = 1.0, .length = 1.0, .center = 0.5, .gravity = 9.807};
+  if (effect.couple(mode)) {
+    loads.couple(Couples<double>{}.torque(at));
+  } else if (const auto any = effect.law(mode, on)) {
+    std::visit([&](const auto& law) { law.add(at, loads); }, *any);
+  } else if (const auto pivot = effect.pivot_law(mode)) {
     Counted x, y;
-    law.add_acceleration(0.0, waves, x, y);
-    return counted;
-  } else if constexpr (Kind::info.is_function) {
-    return std::nullopt;
-  } else {
-    return 0;
+    pivot->add_acceleration(0.0, waves, x, y);
   }
+  return counted;
 }
 
 class Contender {
@@ -106,11 +93,7 @@ class Contender {
   static double time_of(const Scene& scene) {
     double t = 0.0;
     for (const Effect& effect : scene.effects) {
-      std::visit(
-          [&]<class Kind>(const Kind& one) {
-            if constexpr (HasSpan<Kind>) t = std::max(t, one.first_time());
-          },
-          effect);
+      t = std::max(t, effect->first_time());
     }
     return t;
   }
@@ -138,9 +121,8 @@ std::vector<Cost> costs(const Scene& scene) {
   const double links = contenders.front().nanoseconds();
   std::vector<Cost> result{{"links", links, std::nullopt}};
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
-    result.push_back(
-        {effect_name(scene, i), contenders[i + 1].nanoseconds() - links,
-         std::visit([](const auto& one) { return operations_of(one); }, scene.effects[i])});
+    result.push_back({effect_name(scene, i), contenders[i + 1].nanoseconds() - links,
+                      operations_of(*scene.effects[i])});
   }
   result.push_back({"all", contenders.back().nanoseconds(), std::nullopt});
   return result;

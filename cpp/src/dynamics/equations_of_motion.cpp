@@ -5,24 +5,22 @@
 #include "pendcore/dynamics/accelerations_kernel.hpp"
 #include "pendcore/dynamics/chain/chain_recursion.hpp"
 #include "pendcore/dynamics/kinematics.hpp"
+#include "pendcore/effects/behaviour.hpp"
+#include "pendcore/effects/joint_stop.hpp"
+#include "pendcore/effects/lock.hpp"
+#include "pendcore/effects/payload.hpp"
+#include "pendcore/effects/rotor_inertia.hpp"
 
 namespace pendcore {
 bool is_bare(const Scene& scene) {
   return std::ranges::all_of(scene.effects, [](const Effect& effect) {
-    const auto* rotor = std::get_if<RotorInertia>(&effect);
-    return std::holds_alternative<Payload>(effect) || (rotor != nullptr && rotor->joint == 1);
+    return effect.is<Payload>() || (effect.is<RotorInertia>() && effect->joint() == 1);
   });
 }
 
 bool laws_may_change(const Scene& scene) {
   return std::ranges::any_of(scene.effects, [](const Effect& effect) {
-    return std::visit(
-        []<class Kind>(const Kind& one) {
-          if constexpr (std::is_same_v<Kind, Lock> || std::is_same_v<Kind, JointStop>) return true;
-          if constexpr (HasModes<Kind>) return one.has_modes();
-          return false;
-        },
-        effect);
+    return effect.is<Lock>() || effect.is<JointStop>() || effect->has_modes();
   });
 }
 
@@ -52,9 +50,9 @@ EquationsOfMotion form_of_motion(const Scene& scene) {
   if (n == 2) {
     auto effects = std::make_shared<ActingEffects<Pair>>(scene);
     const auto* in_force = effects.get();
-    const bool has_spline =
-        std::ranges::any_of(effects_of<DrivenPivot>(scene),
-                            [](const DrivenPivot& one) { return one.spline.has_value(); });
+    const bool has_spline = std::ranges::any_of(scene.effects, [](const Effect& effect) {
+      return effect.info().moves_pivot && effect->has_modes();
+    });
     if (effects->entries.empty() && effects->users.empty() && !has_spline && effects->waves > 0 &&
         effects->waves <= 2) {
       return {DoublePendulumWithEffects<Parts::waves>(scene, inertia, in_force), effects};
@@ -82,19 +80,12 @@ EquationsOfMotion equations_of_motion(const Scene& scene) {
 void choose_modes(EffectsInForce& effects, double t, const double* q, const double* qd,
                   bool forward) {
   for (std::size_t i = 0; i < effects.effects.size(); ++i) {
-    std::visit(
-        [&]<class Kind>(const Kind& effect) {
-          if constexpr (HasModes<Kind>) {
-            double phi = 0.0;
-            double phid = 0.0;
-            if constexpr (OnJoint<Kind>) {
-              phi = relative(q, effect.joint);
-              phid = relative(qd, effect.joint);
-            }
-            effects.put_mode(i, effect.mode_at(t, phi, phid, forward));
-          }
-        },
-        effects.effects[i]);
+    const EffectBehaviour& effect = *effects.effects[i];
+    if (!effect.has_modes()) continue;
+    const int joint = effect.joint();
+    const double phi = joint > 0 ? relative(q, joint) : 0.0;
+    const double phid = joint > 0 ? relative(qd, joint) : 0.0;
+    effects.put_mode(i, effect.mode_at(t, phi, phid, forward));
   }
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "pendcore/dynamics/kinematics.hpp"
+#include "pendcore/effects/payload.hpp"
+#include "pendcore/effects/rotor_inertia.hpp"
 #include "pendcore/text/message.hpp"
 
 namespace pendcore {

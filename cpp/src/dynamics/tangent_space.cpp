@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "pendcore/effects/lock.hpp"
+
 namespace pendcore {
 
 std::vector<double> tangent_basis(const Scene& scene) {

@@ -1,8 +1,12 @@
 #include "pendcore/effects/driven_pivot.hpp"
 
 #include <cmath>
+#include <stdexcept>
+#include <utility>
 
+#include "pendcore/arithmetic/floating_point_environment.hpp"
 #include "pendcore/arithmetic/sine_cosine.hpp"
+#include "pendcore/effects/behaviour.hpp"
 
 namespace pendcore {
 namespace {
@@ -20,47 +24,79 @@ Cubic cubic(const std::vector<double>& t, const std::vector<double>& values,
   return {t[k], values[k], velocity, second[k], (second[k + 1] - second[k]) / h};
 }
 
-}  // namespace
+class DrivenPivotBehaviour final : public EffectOf<DrivenPivot> {
+ public:
+  explicit DrivenPivotBehaviour(DrivenPivot given) : EffectOf(std::move(given)) {
+    const FloatingPointEnvironment ieee;
+    if (!given_.spline) return;
+    second_of_x_ = given_.spline->second_derivatives(given_.spline->x);
+    second_of_y_ = given_.spline->second_derivatives(given_.spline->y);
+  }
 
-void DrivenPivot::check(const std::string& where) const {
-  if (spline && (x || y)) {
-    throw std::invalid_argument(where + "x, y and spline given: give x, y or both, or a spline");
+  PivotMotion pivot_motion(double t) const override;
+  std::optional<PivotLaw> pivot_law(int mode) const override;
+  std::vector<Sinusoid> waves() const override {
+    std::vector<Sinusoid> waves;
+    for (const std::optional<Sinusoid>& axis : {given_.x, given_.y}) {
+      if (axis) waves.push_back(*axis);
+    }
+    return waves;
   }
-  if (!spline && !x && !y) {
-    throw std::invalid_argument(where + "no motion given: give x, y or both, or a spline");
+
+  bool has_modes() const override { return given_.spline.has_value(); }
+  int mode_at(double t, double /*phi*/, double /*phid*/, bool forward) const override {
+    return given_.spline ? piece_at(given_.spline->t, t, forward) : 0;
   }
+  double next_time(double t, bool forward) const override {
+    if (!given_.spline) return forward ? never : -never;
+    return next_of(given_.spline->t, t, forward);
+  }
+  double first_time() const override { return given_.spline ? given_.spline->t.front() : -never; }
+  double last_time() const override { return given_.spline ? given_.spline->t.back() : never; }
+
+ private:
+  void check_together(const std::string& where) const override {
+    if (given_.spline && (given_.x || given_.y)) {
+      throw std::invalid_argument(where + "x, y and spline given: give x, y or both, or a spline");
+    }
+    if (!given_.spline && !given_.x && !given_.y) {
+      throw std::invalid_argument(where + "no motion given: give x, y or both, or a spline");
+    }
+  }
+
+  std::vector<double> second_of_x_, second_of_y_;  // derivatives at the points of the spline
+};
+
+std::optional<PivotLaw> DrivenPivotBehaviour::pivot_law(int mode) const {
+  PivotLaw law;
+  if (given_.spline) {
+    const Spline& spline = *given_.spline;
+    const int pieces = static_cast<int>(spline.t.size()) - 1;
+    if (mode < 0 || mode >= pieces) {
+      law.x.held = law.y.held = std::nan("");
+      return law;
+    }
+    const Cubic along_x = cubic(spline.t, spline.x, second_of_x_, mode);
+    const Cubic along_y = cubic(spline.t, spline.y, second_of_y_, mode);
+    law.start = along_x.start;
+    law.x = {.held = along_x.second, .slope = along_x.third, .velocity = along_x.velocity};
+    law.y = {.held = along_y.second, .slope = along_y.third, .velocity = along_y.velocity};
+    return law;
+  }
+  int waves = 0;
+  const auto swing = [&waves](const std::optional<Sinusoid>& wave) -> PivotLaw::Axis {
+    if (!wave) return {};
+    const double w = wave->angular_frequency;
+    return {.gain = -wave->amplitude * w * w, .swing = wave->amplitude * w, .wave = waves++};
+  };
+  law.x = swing(given_.x);
+  law.y = swing(given_.y);
+  return law;
 }
 
-int DrivenPivot::mode_at(double t, double /*phi*/, double /*phid*/, bool forward) const {
-  return spline ? piece_at(spline->t, t, forward) : 0;
-}
-
-DrivenPivot DrivenPivot::compiled() const {
-  DrivenPivot pivot = *this;
-  if (spline) {
-    pivot.spline->xdd = spline->second_derivatives(spline->x);
-    pivot.spline->ydd = spline->second_derivatives(spline->y);
-  }
-  return pivot;
-}
-
-void DrivenPivot::put_mode(Law& law, int /*lane*/, int mode) const {
-  if (!spline) return;
-  const int pieces = static_cast<int>(spline->t.size()) - 1;
-  if (mode < 0 || mode >= pieces) {
-    law.x = law.y = {.held = std::nan("")};
-    return;
-  }
-  const Cubic along_x = cubic(spline->t, spline->x, spline->xdd, mode);
-  const Cubic along_y = cubic(spline->t, spline->y, spline->ydd, mode);
-  law.start = along_x.start;
-  law.x = {.held = along_x.second, .slope = along_x.third, .velocity = along_x.velocity};
-  law.y = {.held = along_y.second, .slope = along_y.third, .velocity = along_y.velocity};
-}
-
-PivotMotion DrivenPivot::at(double t) const {
+PivotMotion DrivenPivotBehaviour::pivot_motion(double t) const {
   PivotMotion motion;
-  const std::optional<Sinusoid>* const axes[] = {&x, &y};
+  const std::optional<Sinusoid>* const axes[] = {&given_.x, &given_.y};
   for (int axis = 0; axis < 2; ++axis) {
     if (const std::optional<Sinusoid>& one = *axes[axis]) {
       const double w = one->angular_frequency;
@@ -71,25 +107,29 @@ PivotMotion DrivenPivot::at(double t) const {
       motion.acceleration[axis] = -one->amplitude * w * w * sine;
     }
   }
-  if (!spline) return motion;
-  const int last = static_cast<int>(spline->t.size()) - 2;
-  const int piece = piece_at(spline->t, t, true);
+  if (!given_.spline) return motion;
+  const int last = static_cast<int>(given_.spline->t.size()) - 2;
+  const int piece = piece_at(given_.spline->t, t, true);
   for (int axis = 0; axis < 2; ++axis) {
-    const std::vector<double>& values = axis == 0 ? spline->x : spline->y;
-    const std::vector<double>& known = axis == 0 ? spline->xdd : spline->ydd;
+    const std::vector<double>& values = axis == 0 ? given_.spline->x : given_.spline->y;
+    const std::vector<double>& second = axis == 0 ? second_of_x_ : second_of_y_;
     if (piece < 0 || piece > last) {
       motion.position[axis] = motion.velocity[axis] = motion.acceleration[axis] = std::nan("");
       continue;
     }
-    const Cubic c = known.empty()
-                        ? cubic(spline->t, values, spline->second_derivatives(values), piece)
-                        : cubic(spline->t, values, known, piece);
+    const Cubic c = cubic(given_.spline->t, values, second, piece);
     const double s = t - c.start;
     motion.position[axis] = c.value + s * (c.velocity + s * (c.second / 2.0 + s * (c.third / 6.0)));
     motion.velocity[axis] = c.velocity + s * (c.second + s * (c.third / 2.0));
     motion.acceleration[axis] = c.second + s * c.third;
   }
   return motion;
+}
+
+}  // namespace
+
+std::shared_ptr<const EffectBehaviour> behaviour(DrivenPivot given) {
+  return std::make_shared<DrivenPivotBehaviour>(std::move(given));
 }
 
 }  // namespace pendcore

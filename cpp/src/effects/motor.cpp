@@ -1,6 +1,13 @@
 #include "pendcore/effects/motor.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "pendcore/arithmetic/floating_point_environment.hpp"
 #include "pendcore/arithmetic/sine_cosine.hpp"
+#include "pendcore/effects/behaviour.hpp"
 
 namespace pendcore {
 namespace {
@@ -21,27 +28,19 @@ double arc_sine(double x) {
   return angle;
 }
 
-}  // namespace
+double clipped(double torque, double limit) { return std::max(-limit, std::min(torque, limit)); }
 
-void Motor::check(const std::string& where) const {
-  const int given =
-      constant.has_value() + sinusoid.has_value() + table.has_value() + pd.has_value();
-  if (given != 1) {
-    throw std::invalid_argument(where + (given == 0 ? "no law" : "more than one law") +
-                                " given: give one of constant, sinusoid, table and pd");
-  }
-}
-
-Motor Motor::compiled() const {
-  Motor motor = *this;
-  if (!table || !std::isfinite(limit)) return motor;
-  Table result{.hold = table->hold};
-  for (std::size_t i = 0; i < table->t.size(); ++i) {
-    const double t = table->t[i];
-    const double torque = table->torque[i];
-    if (i > 0 && !table->hold) {
-      const double t_before = table->t[i - 1];
-      const double before = table->torque[i - 1];
+/// A table whose torques are clipped at +-limit, with points where it meets the limit. The table
+/// may be one that check() refuses.
+Table clipped_table(const Table& table, double limit) {
+  if (!std::isfinite(limit) || table.torque.size() != table.t.size()) return table;
+  Table result{.hold = table.hold};
+  for (std::size_t i = 0; i < table.t.size(); ++i) {
+    const double t = table.t[i];
+    const double torque = table.torque[i];
+    if (i > 0 && !table.hold) {
+      const double t_before = table.t[i - 1];
+      const double before = table.torque[i - 1];
       std::vector<double> meets;
       for (const double edge : {-limit, limit}) {
         if ((before - edge) * (torque - edge) < 0.0) {
@@ -53,24 +52,64 @@ Motor Motor::compiled() const {
         if (!(meet > result.t.back() && meet < t)) continue;
         result.t.push_back(meet);
         const double share = (meet - t_before) / (t - t_before);
-        result.torque.push_back(clipped(before + (torque - before) * share));
+        result.torque.push_back(clipped(before + (torque - before) * share, limit));
       }
     }
     result.t.push_back(t);
-    result.torque.push_back(clipped(torque));
+    result.torque.push_back(clipped(torque, limit));
   }
-  motor.table = result;
-  return motor;
+  return result;
 }
 
-double Motor::next_time(double t, bool forward) const {
-  if (table) return next_of(table->t, t, forward);
+class MotorBehaviour final : public EffectOf<Motor> {
+ public:
+  explicit MotorBehaviour(Motor given) : EffectOf(std::move(given)) {
+    const FloatingPointEnvironment ieee;
+    if (given_.table) table_ = clipped_table(*given_.table, given_.limit);
+  }
+
+  std::optional<Couple> couple(int mode) const override;
+  std::vector<Sinusoid> waves() const override {
+    if (given_.sinusoid) return {*given_.sinusoid};
+    return {};
+  }
+
+  bool has_modes() const override {
+    return table_ || (given_.limit < never && given_.pd) || is_clipped();
+  }
+  int mode_at(double t, double phi, double phid, bool forward) const override;
+  std::vector<Guard> guards(int mode) const override;
+  int next_mode(int mode, std::size_t guard) const override {
+    if (mode != 0) return 0;
+    return guard == 0 ? 1 : -1;
+  }
+  double next_time(double t, bool forward) const override;
+  double first_time() const override { return table_ ? table_->t.front() : -never; }
+  double last_time() const override { return table_ ? table_->t.back() : never; }
+
+ private:
+  void check_together(const std::string& where) const override {
+    const int laws = given_.constant.has_value() + given_.sinusoid.has_value() +
+                     given_.table.has_value() + given_.pd.has_value();
+    if (laws == 1) return;
+    throw std::invalid_argument(where + (laws == 0 ? "no law" : "more than one law") +
+                                " given: give one of constant, sinusoid, table and pd");
+  }
+  bool is_clipped() const {
+    return given_.sinusoid && std::abs(given_.sinusoid->amplitude) > given_.limit;
+  }
+
+  std::optional<Table> table_;
+};
+
+double MotorBehaviour::next_time(double t, bool forward) const {
+  if (table_) return next_of(table_->t, t, forward);
   const double none = forward ? never : -never;
-  if (!sinusoid || !is_clipped()) return none;
-  const auto& [amplitude, frequency, phase] = *sinusoid;
+  if (!given_.sinusoid || !is_clipped()) return none;
+  const auto& [amplitude, frequency, phase] = *given_.sinusoid;
   if (frequency == 0.0) return none;
   const double pi = 3.14159265358979323846;
-  const double edge = arc_sine(limit / std::abs(amplitude));
+  const double edge = arc_sine(given_.limit / std::abs(amplitude));
   const double half_waves = std::floor(fma(frequency, t, phase) / pi);
   double next = none;
   for (int k = -2; k <= 2; ++k) {
@@ -82,51 +121,56 @@ double Motor::next_time(double t, bool forward) const {
   return next;
 }
 
-int Motor::mode_at(double t, double phi, double phid, bool forward) const {
-  if (table) return piece_at(table->t, t, forward);
-  if (pd) {
-    const double torque = pd->kp * (pd->reference - phi) - pd->kd * phid;
-    return torque > limit ? 1 : torque < -limit ? -1 : 0;
+int MotorBehaviour::mode_at(double t, double phi, double phid, bool forward) const {
+  if (table_) return piece_at(table_->t, t, forward);
+  if (given_.pd) {
+    const double torque = given_.pd->kp * (given_.pd->reference - phi) - given_.pd->kd * phid;
+    return torque > given_.limit ? 1 : torque < -given_.limit ? -1 : 0;
   }
-  if (!sinusoid || !is_clipped()) return 0;
+  if (!given_.sinusoid || !is_clipped()) return 0;
   // The mode is the one halfway to the next change, because t may itself be a time of change.
   const double next = next_time(t, forward);
   const double middle = std::isfinite(next) ? 0.5 * (t + next) : t;
   double sine, cosine;
-  sine_cosine(fma(sinusoid->angular_frequency, middle, sinusoid->phase), sine, cosine);
-  const double torque = sinusoid->amplitude * sine;
-  return torque > limit ? 1 : torque < -limit ? -1 : 0;
+  sine_cosine(fma(given_.sinusoid->angular_frequency, middle, given_.sinusoid->phase), sine,
+              cosine);
+  const double torque = given_.sinusoid->amplitude * sine;
+  return torque > given_.limit ? 1 : torque < -given_.limit ? -1 : 0;
 }
 
-std::vector<Guard> Motor::guards(int mode) const {
-  if (!pd || !std::isfinite(limit)) return {};
+std::vector<Guard> MotorBehaviour::guards(int mode) const {
+  if (!given_.pd || !std::isfinite(given_.limit)) return {};
   auto guard = [&](double sign, double offset) {  // on the torque without the limit
-    return Guard{.offset = sign * pd->kp * pd->reference + offset,
-                 .on_phi = -sign * pd->kp,
-                 .on_phid = -sign * pd->kd};
+    return Guard{.offset = sign * given_.pd->kp * given_.pd->reference + offset,
+                 .on_phi = -sign * given_.pd->kp,
+                 .on_phid = -sign * given_.pd->kd};
   };
-  if (mode != 0) return {guard(sign_of(mode), -limit)};
-  return {guard(-1.0, limit), guard(1.0, limit)};
+  if (mode != 0) return {guard(sign_of(mode), -given_.limit)};
+  return {guard(-1.0, given_.limit), guard(1.0, given_.limit)};
 }
 
-int Motor::next_mode(int mode, std::size_t guard) const {
-  if (mode != 0) return 0;
-  return guard == 0 ? 1 : -1;
-}
-
-std::optional<Couple> Motor::couple(int mode) const {
-  if (constant) return Couple{.held = clipped(*constant)};
-  if (table) {
-    const auto& [t, torque, hold] = *table;
+std::optional<Couple> MotorBehaviour::couple(int mode) const {
+  if (given_.constant) return Couple{.held = clipped(*given_.constant, given_.limit)};
+  if (table_) {
+    const auto& [t, torque, hold] = *table_;
     const int last = static_cast<int>(t.size()) - 1;
     if (mode < 0 || mode >= last) return Couple{.held = std::nan("")};
     if (hold) return Couple{.held = torque[mode]};
     const double rise = torque[mode + 1] - torque[mode];
     return Couple{.held = torque[mode], .slope = rise / (t[mode + 1] - t[mode]), .start = t[mode]};
   }
-  if (mode != 0) return Couple{.held = sign_of(mode) * limit};
-  if (pd) return Couple{.held = pd->kp * pd->reference, .on_phi = -pd->kp, .on_phid = -pd->kd};
-  return sinusoid ? Couple{.gain = sinusoid->amplitude} : Couple{};
+  if (mode != 0) return Couple{.held = sign_of(mode) * given_.limit};
+  if (given_.pd)
+    return Couple{.held = given_.pd->kp * given_.pd->reference,
+                  .on_phi = -given_.pd->kp,
+                  .on_phid = -given_.pd->kd};
+  return given_.sinusoid ? Couple{.gain = given_.sinusoid->amplitude} : Couple{};
+}
+
+}  // namespace
+
+std::shared_ptr<const EffectBehaviour> behaviour(Motor given) {
+  return std::make_shared<MotorBehaviour>(std::move(given));
 }
 
 }  // namespace pendcore

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "pendcore/effects/law.hpp"
-
 namespace pendcore {
 
 namespace {
@@ -64,6 +62,7 @@ void Spline::check(const std::string& where) const {
 /// Solves the tridiagonal system of the natural spline by elimination.
 std::vector<double> Spline::second_derivatives(const std::vector<double>& values) const {
   const std::size_t n = t.size();
+  if (n < 2 || values.size() != n) return {};
   std::vector<double> second(n, 0.0);
   std::vector<double> ratio(n, 0.0);
   for (std::size_t i = 1; i + 1 < n; ++i) {

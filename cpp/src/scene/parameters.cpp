@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "pendcore/effects/behaviour.hpp"
+
 namespace pendcore {
 namespace {
 
@@ -27,30 +29,13 @@ constexpr std::array<LinkField, numbers_of_link> link_fields = {{
     {"inertia", "kg m^2", &Link::inertia},
 }};
 
-/// Calls visit(part, info, component, number) for every number of an effect, or of a part of one
-/// that is there. `part` names the parts before, `component` the number of a pair, if it is one.
-template <class Struct, class Visit>
-void for_each_number(Struct& effect, const std::string& part, const Visit& visit) {
-  for_each_parameter(effect, [&](const ParameterInfo& info, auto& value) {
-    using Value = std::remove_cvref_t<decltype(value)>;
-    if constexpr (std::is_same_v<Value, double>) {
-      visit(part, info, std::string_view(), value);
-    } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
-      if (value) visit(part, info, std::string_view(), *value);
-    } else if constexpr (std::is_same_v<Value, std::array<double, 2>>) {
-      for (std::size_t k = 0; k < 2; ++k) visit(part, info, info.components[k], value[k]);
-    } else if constexpr (OptionalPart<Value>) {
-      if (value) for_each_number(*value, part + std::string(info.name) + ".", visit);
-    }
-  });
-}
-
-/// Calls visit(part, info, component, number) for every number of the effects of a scene.
-template <class AnyScene, class Visit>
-void for_each_effect_number(AnyScene& scene, const Visit& visit) {
+/// Changes the numbers of all effects of a scene as `visit` does.
+void change_effects(Scene& scene, const NumberVisitor& visit) {
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
     const std::string prefix = "effect[" + std::to_string(i + 1) + "].";
-    std::visit([&](auto& effect) { for_each_number(effect, prefix, visit); }, scene.effects[i]);
+    scene.effects[i] = scene.effects[i]->with_numbers(
+        [&](const std::string& part, const ParameterInfo& info, std::string_view component,
+            double& number) { visit(prefix + part, info, component, number); });
   }
 }
 
@@ -121,8 +106,9 @@ std::vector<NamedNumber> parameters(const Scene& scene) {
           {"link[" + std::to_string(i + 1) + "]." + name, unit, scene.links[i].*field});
     }
   }
-  for_each_effect_number(scene, [&](const std::string& part, const ParameterInfo& info,
-                                    std::string_view component, double number) {
+  Scene copy = scene;
+  change_effects(copy, [&](const std::string& part, const ParameterInfo& info,
+                           std::string_view component, double number) {
     std::string name = part + std::string(info.name);
     if (!component.empty()) name += "." + std::string(component);
     result.push_back({std::move(name), std::string(info.unit), number});
@@ -169,8 +155,8 @@ void ParameterChoice::set(Scene& copy, std::span<const double> values) const {
   }
   if (!any_effect) return;
   std::size_t place = first_effect;
-  for_each_effect_number(copy, [&](const std::string& /*part*/, const ParameterInfo& /*info*/,
-                                   std::string_view /*component*/, double& number) {
+  change_effects(copy, [&](const std::string& /*part*/, const ParameterInfo& /*info*/,
+                           std::string_view /*component*/, double& number) {
     for (std::size_t k = 0; k < places_.size(); ++k) {
       if (places_[k] == place) number = values[k];
     }

@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pendcore/effects/behaviour.hpp"
+#include "pendcore/effects/joint_stop.hpp"
+#include "pendcore/effects/lock.hpp"
+#include "pendcore/effects/payload.hpp"
 #include "pendcore/scene/degrees.hpp"
 #include "pendcore/scene/singular.hpp"
 #include "pendcore/text/message.hpp"
@@ -46,57 +50,42 @@ void check_effects(const Scene& scene) {
   std::vector<std::array<double, 2>> ranges(n, {-never, never});  // the room that stops leave
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
     const std::string where = effect_name(scene, i) + ": ";
-    check_effect(where, scene.effects[i]);
-    std::visit(
-        [&]<class Kind>(const Kind& effect) {
-          if constexpr (OnJoint<Kind>) check_place(where, "joint", effect.joint, n);
-          if constexpr (OnLink<Kind>) check_place(where, "link", effect.link, n);
-          if constexpr (std::is_same_v<Kind, JointStop>) {
-            const auto [lower, upper] = effect.range;
-            std::array<double, 2>& room = ranges[effect.joint - 1];
-            room = {std::max(room[0], lower), std::min(room[1], upper)};
-            if (room[0] >= room[1]) {
-              throw std::invalid_argument(
-                  where + "range = (" + text(lower) + ", " + text(upper) +
-                  "): must overlap the ranges of the other stops of joint " +
-                  std::to_string(effect.joint) +
-                  " (rad): together they leave it no room; a Lock holds a "
-                  "joint at one angle");
-            }
-          }
-          if constexpr (std::is_same_v<Kind, Lock>) {
-            if (locked[effect.joint - 1]) {
-              throw std::invalid_argument(where + "joint " + std::to_string(effect.joint) +
-                                          " is locked already: leave one of the two out");
-            }
-            locked[effect.joint - 1] = true;
-          }
-        },
-        scene.effects[i]);
+    const EffectBehaviour& effect = *scene.effects[i];
+    effect.check(where);
+    const int joint = effect.joint();
+    check_place(where, "joint", joint, n);
+    check_place(where, "link", effect.link(), n);
+    if (const JointStop* const stop = scene.effects[i].get_if<JointStop>()) {
+      const auto [lower, upper] = stop->range;
+      std::array<double, 2>& room = ranges[joint - 1];
+      room = {std::max(room[0], lower), std::min(room[1], upper)};
+      if (room[0] >= room[1]) {
+        throw std::invalid_argument(where + "range = (" + text(lower) + ", " + text(upper) +
+                                    "): must overlap the ranges of the other stops of joint " +
+                                    std::to_string(joint) +
+                                    " (rad): together they leave it no room; a Lock holds a "
+                                    "joint at one angle");
+      }
+    }
+    if (scene.effects[i].is<Lock>()) {
+      if (locked[joint - 1]) {
+        throw std::invalid_argument(where + "joint " + std::to_string(joint) +
+                                    " is locked already: leave one of the two out");
+      }
+      locked[joint - 1] = true;
+    }
   }
 }
 
-/// Adds a sentence for an angle that seems to be in degrees. A phase may be that large, because it
-/// moves a wave in time.
-void warn_of_degrees(const std::string& where, const ParameterInfo& info, double x,
+/// Adds a sentence for each angle of an effect that seems to be in degrees. A phase may be that
+/// large, because it moves a wave in time.
+void warn_of_degrees(const std::string& where, const EffectBehaviour& effect,
                      std::vector<std::string>& warnings) {
-  if (info.unit != "rad" || info.name == "phase") return;
-  if (!may_be_degrees(x) || !is_large_angle(x)) return;
-  warnings.push_back(warning_of_degrees(where + std::string(info.name), x));
-}
-
-/// Does this for each angle among the parameters of an effect, or of its parts.
-template <class Struct>
-void warn_of_degrees(const std::string& where, const Struct& effect,
-                     std::vector<std::string>& warnings) {
-  for_each_parameter(effect, [&]<class Value>(const ParameterInfo& info, const Value& value) {
-    if constexpr (std::is_same_v<Value, double> || std::is_same_v<Value, std::optional<double>>) {
-      warn_of_degrees(where, info, std::optional<double>(value).value_or(0.0), warnings);
-    } else if constexpr (std::is_same_v<Value, std::array<double, 2>>) {
-      for (const double x : value) warn_of_degrees(where, info, x, warnings);
-    } else if constexpr (OptionalPart<Value>) {
-      if (value) warn_of_degrees(where + std::string(info.name) + ".", *value, warnings);
-    }
+  effect.with_numbers([&](const std::string& part, const ParameterInfo& info,
+                          std::string_view /*component*/, double x) {
+    if (info.unit != "rad" || info.name == "phase") return;
+    if (!may_be_degrees(x) || !is_large_angle(x)) return;
+    warnings.push_back(warning_of_degrees(where + part + std::string(info.name), x));
   });
 }
 
@@ -137,25 +126,14 @@ void check(const Scene& scene) {
 }
 
 std::string effect_name(const Scene& scene, std::size_t i) {
-  return "effect " + std::to_string(i + 1) + " (" + std::string(info_of(scene.effects[i]).kind) +
-         ")";
-}
-
-Scene compiled(Scene scene) {
-  for (Effect& effect : scene.effects) {
-    std::visit(
-        []<class Kind>(Kind& one) {
-          if constexpr (HasCompiled<Kind>) one = one.compiled();
-        },
-        effect);
-  }
-  return scene;
+  return "effect " + std::to_string(i + 1) + " (" + std::string(scene.effects[i].info().kind) + ")";
 }
 
 PivotMotion pivot_motion(const Scene& scene, double t) {
   PivotMotion sum;
-  for (const DrivenPivot& pivot : effects_of<DrivenPivot>(scene)) {
-    const PivotMotion one = pivot.at(t);
+  for (const Effect& effect : scene.effects) {
+    if (!effect.info().moves_pivot) continue;
+    const PivotMotion one = effect->pivot_motion(t);
     for (int axis = 0; axis < 2; ++axis) {
       sum.position[axis] += one.position[axis];
       sum.velocity[axis] += one.velocity[axis];
@@ -163,6 +141,11 @@ PivotMotion pivot_motion(const Scene& scene, double t) {
     }
   }
   return sum;
+}
+
+bool has_functions(const Scene& scene) {
+  return std::ranges::any_of(scene.effects,
+                             [](const Effect& effect) { return effect.info().is_function; });
 }
 
 std::vector<bool> locked_joints(const Scene& scene) {
@@ -195,22 +178,18 @@ std::vector<std::string> plausibility_warnings(const Scene& scene) {
     }
   }
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
-    std::visit(
-        [&]<class Kind>(const Kind& effect) {
-          warn_of_degrees(effect_name(scene, i) + ": ", effect, warnings);
-          if constexpr (HasWarnings<Kind>) {
-            for (const std::string& warning : effect.warnings()) {
-              warnings.push_back(effect_name(scene, i) + ": " + warning);
-            }
-          }
-        },
-        scene.effects[i]);
+    const std::string where = effect_name(scene, i) + ": ";
+    warn_of_degrees(where, *scene.effects[i], warnings);
+    for (const std::string& warning : scene.effects[i]->warnings()) {
+      warnings.push_back(where + warning);
+    }
   }
   return warnings;
 }
 
 std::optional<std::size_t> without_series(const Scene& scene) {
-  const auto found = std::ranges::find_if_not(scene.effects, has_series);
+  const auto found = std::ranges::find_if_not(
+      scene.effects, [](const Effect& effect) { return effect->has_series(); });
   if (found == scene.effects.end()) return std::nullopt;
   return static_cast<std::size_t>(found - scene.effects.begin());
 }

@@ -5,6 +5,11 @@
 #include <complex>
 #include <limits>
 
+#include "pendcore/effects/joint_stop.hpp"
+#include "pendcore/effects/lock.hpp"
+#include "pendcore/effects/payload.hpp"
+#include "pendcore/effects/rotor_inertia.hpp"
+
 namespace pendcore {
 namespace {
 

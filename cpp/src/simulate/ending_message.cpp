@@ -16,8 +16,8 @@ std::string component_name(int i, int n) {
 /// The message if a table or spline ends at time t, in the run's direction.
 std::string table_that_ends(const Scene& scene, double t, bool forward) {
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
-    if (!is_outside_table(scene.effects[i], t, forward)) continue;
-    return effect_name(scene, i) + ": " + span_of(scene.effects[i]) +
+    if (!is_outside_table(*scene.effects[i], t, forward)) continue;
+    return effect_name(scene, i) + ": " + span_of(*scene.effects[i]) +
            ", and the run is at t = " + text(t) + " s: extend it, or end the run earlier";
   }
   return {};
@@ -25,14 +25,14 @@ std::string table_that_ends(const Scene& scene, double t, bool forward) {
 
 /// Whether a user's law seems to jump: every step across a jump is rejected.
 bool jumps_under_users(const Scene& scene, const Statistics& statistics) {
-  return !effects_of<CompiledUser>(scene).empty() && statistics.rejected > statistics.accepted;
+  return has_functions(scene) && statistics.rejected > statistics.accepted;
 }
 
 /// What may be behind steps that became too small, if there are users' laws.
 std::string laws_that_may_jump(const Scene& scene) {
   std::string names;
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
-    if (!std::holds_alternative<CompiledUser>(scene.effects[i])) continue;
+    if (!scene.effects[i].info().is_function) continue;
     names += (names.empty() ? "" : ", ") + effect_name(scene, i);
   }
   if (names.empty()) return names;

@@ -151,11 +151,8 @@ std::optional<FastMode> fast_mode(const Scene& scene, const EquationsOfMotion& e
   }
   // The joint that turns most may be the next one, which the same torque moves.
   if (mode.effect) {
-    std::visit(
-        [&]<class Kind>(const Kind& one) {
-          if constexpr (OnJoint<Kind>) mode.joint = one.joint;
-        },
-        scene.effects[*mode.effect]);
+    const int joint = scene.effects[*mode.effect]->joint();
+    if (joint > 0) mode.joint = joint;
   }
   return mode;
 }
@@ -179,7 +176,7 @@ std::string remark_on_steps(const Scene& scene, const EquationsOfMotion& equatio
   }
   if (statistics.njev > 0) {
     for (std::size_t i = 0; i < scene.effects.size(); ++i) {
-      if (!std::holds_alternative<CompiledUser>(scene.effects[i])) continue;
+      if (!scene.effects[i].info().is_function) continue;
       remark += "; derivatives of " + effect_name(scene, i) + " by differences";
     }
   }

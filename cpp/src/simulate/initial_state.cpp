@@ -5,6 +5,9 @@
 #include <stdexcept>
 
 #include "pendcore/dynamics/kinematics.hpp"
+#include "pendcore/effects/behaviour.hpp"
+#include "pendcore/effects/joint_stop.hpp"
+#include "pendcore/effects/lock.hpp"
 #include "pendcore/scene/degrees.hpp"
 #include "pendcore/scene/singular.hpp"
 #include "pendcore/text/message.hpp"
@@ -46,14 +49,14 @@ void check_effects_at_start(const Scene& scene, const std::vector<double>& q0,
                             const std::vector<double>& qd0, double t0, double t_end) {
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
     const auto name = [&scene, i] { return effect_name(scene, i); };
-    if (t_end < t0 && holding_torque(scene.effects[i])) {
+    if (t_end < t0 && scene.effects[i]->holding_torque()) {
       throw std::invalid_argument("t_span: runs backward: " + name() +
                                   ": with dry friction the past is not unique: run it forward");
     }
-    if (const auto* stop = std::get_if<JointStop>(&scene.effects[i])) {
+    if (const auto* stop = scene.effects[i].get_if<JointStop>()) {
       check_stop(*stop, name(), q0, t_end < t0);
     }
-    const auto* lock = std::get_if<Lock>(&scene.effects[i]);
+    const auto* lock = scene.effects[i].get_if<Lock>();
     if (lock == nullptr) continue;
     const std::string joint = std::to_string(lock->joint);
     const double phi = relative(q0.data(), lock->joint);
@@ -75,8 +78,9 @@ void check_locks_of_start(const Scene& scene, const std::vector<double>& q0) {
   if (std::ranges::none_of(effects_of<Lock>(scene), takes_start)) return;
   Scene locked = scene;
   for (Effect& effect : locked.effects) {
-    auto* const lock = std::get_if<Lock>(&effect);
-    if (lock != nullptr && !lock->angle) lock->angle = relative(q0.data(), lock->joint);
+    const Lock* const lock = effect.get_if<Lock>();
+    if (lock == nullptr || lock->angle) continue;
+    effect = Lock{.joint = lock->joint, .angle = relative(q0.data(), lock->joint)};
   }
   const std::string reason = singular_somewhere(locked);
   if (!reason.empty()) throw std::invalid_argument("q0: with joints locked as it says: " + reason);
@@ -98,31 +102,15 @@ void check_start(const Scene& scene, const std::vector<double>& q0, const std::v
   check_locks_of_start(scene, q0);
 }
 
-bool is_outside_table(const Effect& effect, double t, bool forward) {
-  return std::visit(
-      [=]<class Kind>(const Kind& one) {
-        if constexpr (HasSpan<Kind>) {
-          const double first = one.first_time();
-          const double last = one.last_time();
-          return forward ? t < first || t >= last : t <= first || t > last;
-        } else {
-          return false;
-        }
-      },
-      effect);
+bool is_outside_table(const EffectBehaviour& effect, double t, bool forward) {
+  const double first = effect.first_time();
+  const double last = effect.last_time();
+  return forward ? t < first || t >= last : t <= first || t > last;
 }
 
-std::string span_of(const Effect& effect) {
-  return std::visit(
-      []<class Kind>(const Kind& one) -> std::string {
-        if constexpr (HasSpan<Kind>) {
-          const std::string what = std::is_same_v<Kind, DrivenPivot> ? "spline" : "table";
-          return "its " + what + " goes from " + text(one.first_time()) + " to " +
-                 text(one.last_time()) + " s";
-        }
-        return {};
-      },
-      effect);
+std::string span_of(const EffectBehaviour& effect) {
+  return std::string("its ") + (effect.info().moves_pivot ? "spline" : "table") + " goes from " +
+         text(effect.first_time()) + " to " + text(effect.last_time()) + " s";
 }
 
 std::vector<std::string> run_warnings(const Scene& scene, const std::vector<double>& q0, double t0,
@@ -134,16 +122,11 @@ std::vector<std::string> run_warnings(const Scene& scene, const std::vector<doub
   const double first = std::min(t0, t_end);
   const double last = std::max(t0, t_end);
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
-    std::visit(
-        [&]<class Kind>(const Kind& effect) {
-          if constexpr (HasSpan<Kind>) {
-            if (effect.first_time() <= first && last <= effect.last_time()) return;
-            warnings.push_back(effect_name(scene, i) + ": " + span_of(scene.effects[i]) +
-                               ", the run from " + text(t0) + " to " + text(t_end) +
-                               " s: the run ends where it leaves that span");
-          }
-        },
-        scene.effects[i]);
+    const EffectBehaviour& effect = *scene.effects[i];
+    if (effect.first_time() <= first && last <= effect.last_time()) continue;
+    warnings.push_back(effect_name(scene, i) + ": " + span_of(effect) + ", the run from " +
+                       text(t0) + " to " + text(t_end) +
+                       " s: the run ends where it leaves that span");
   }
   return warnings;
 }

@@ -10,7 +10,7 @@ Recorder::Recorder(Solution& solution, const StepOutput& output, const Scene& sc
     : solution_(solution),
       watch_(solution.options.watch),
       watch_asks_for_polynomials_(watch_ != nullptr && watch_->asks_for_dense_output()),
-      may_throw_(!effects_of<CompiledUser>(scene).empty()),
+      may_throw_(has_functions(scene)),
       keeps_polynomials_(solution.options.store == Store::dense),
       keeps_steps_(solution.options.store == Store::steps ||
                    (keeps_polynomials_ && solution.options.t_eval.empty())),

@@ -5,6 +5,8 @@
 
 #include "pendcore/arithmetic/epsilon.hpp"
 #include "pendcore/dynamics/kinematics.hpp"
+#include "pendcore/effects/behaviour.hpp"
+#include "pendcore/effects/lock.hpp"
 #include "pendcore/simulate/initial_state.hpp"
 #include "pendcore/simulate/switching_state.hpp"
 
@@ -12,7 +14,7 @@ namespace pendcore {
 
 Switching::Switching(const Scene& scene, const EquationsOfMotion& equations,
                      const std::vector<Account>& accounts)
-    : scene_(compiled(scene)),
+    : scene_(scene),
       equations_(equations),
       accounts_(accounts),
       n_(static_cast<int>(scene.links.size())),
@@ -42,7 +44,7 @@ bool Switching::begin(double t, double* y, bool forward) {
 void Switching::choose_modes_from(double t, const double* q, const double* qd) {
   choose_modes(*equations_.effects, t, q, qd, forward_);
   for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
-    if (!is_outside_table(scene_.effects[i], t, forward_)) continue;
+    if (!is_outside_table(*scene_.effects[i], t, forward_)) continue;
     put_mode(i, -1);
     is_over_ = true;
   }
@@ -54,28 +56,25 @@ void Switching::choose_modes_from(double t, const double* q, const double* qd) {
 void Switching::choose_sides(double t, const double* q, const double* qd) {
   std::vector<double> qdd;
   for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
-    std::visit(
-        [&]<class Kind>(const Kind& one) {
-          if constexpr (HasModes<Kind> && OnJoint<Kind>) {
-            if (holding_torque(scene_.effects[i])) return;  // as choose() has decided
-            if (relative(qd, one.joint) != 0.0 || joints_.is_held(one.joint - 1)) return;
-            const int mode = equations_.effects->modes[i];
-            const std::vector<Guard> guards = one.guards(mode);
-            for (std::size_t k = 0; k < guards.size(); ++k) {
-              if (!guards[k].is_on_rate()) continue;
-              if (qdd.empty()) {
-                qdd.resize(n_);
-                accelerations_in_force(equations_, t, q, qd, qdd.data());
-              }
-              const double phidd = relative(qdd.data(), one.joint);
-              const int direction = release_direction_[one.joint - 1];
-              const double way = direction != 0 ? direction : phidd;
-              const double slope = guards[k].on_phid * way;
-              if ((forward_ ? slope : -slope) < 0.0) put_mode(i, one.next_mode(mode, k));
-            }
-          }
-        },
-        scene_.effects[i]);
+    const EffectBehaviour& effect = *scene_.effects[i];
+    const int joint = effect.joint();
+    if (joint == 0 || !effect.has_modes()) continue;
+    if (effect.holding_torque()) continue;  // as choose() has decided
+    if (relative(qd, joint) != 0.0 || joints_.is_held(joint - 1)) continue;
+    const int mode = equations_.effects->modes[i];
+    const std::vector<Guard> guards = effect.guards(mode);
+    for (std::size_t k = 0; k < guards.size(); ++k) {
+      if (!guards[k].is_on_rate()) continue;
+      if (qdd.empty()) {
+        qdd.resize(n_);
+        accelerations_in_force(equations_, t, q, qd, qdd.data());
+      }
+      const double phidd = relative(qdd.data(), joint);
+      const int direction = release_direction_[joint - 1];
+      const double way = direction != 0 ? direction : phidd;
+      const double slope = guards[k].on_phid * way;
+      if ((forward_ ? slope : -slope) < 0.0) put_mode(i, effect.next_mode(mode, k));
+    }
   }
 }
 
@@ -85,14 +84,8 @@ double Switching::next_time(double t) const {
   asked_ = t;
   next_time_ = forward_ ? never : -never;
   for (const Effect& effect : scene_.effects) {
-    std::visit(
-        [&]<class Kind>(const Kind& one) {
-          if constexpr (HasNextTime<Kind>) {
-            const double next = one.next_time(t, forward_);
-            next_time_ = forward_ ? std::min(next_time_, next) : std::max(next_time_, next);
-          }
-        },
-        effect);
+    const double next = effect->next_time(t, forward_);
+    next_time_ = forward_ ? std::min(next_time_, next) : std::max(next_time_, next);
   }
   return next_time_;
 }
@@ -155,26 +148,27 @@ bool Switching::cross(int k, double t, double* y) {
   bool jumped = false;
   if (k >= linear_guards()) {
     release(held_guards_[k - linear_guards()], t, y);
-  } else if (guards_[k].stop != Side::none) {
-    jumped = reach_stop(k, t, y);
-  } else if (is_of_friction(guards_[k])) {
-    come_to_rest(k, t, y);
   } else {
-    change_side(guards_[k]);
+    switch (guards_[k].what) {
+      case Watched::law:
+      case Watched::side: change_side(guards_[k]); break;
+      case Watched::friction: come_to_rest(k, t, y); break;
+      case Watched::lower_stop:
+      case Watched::upper_stop: jumped = reach_stop(k, t, y); break;
+    }
   }
   for (int j = 0; j < n_; ++j) {
     if (jumped || joints_.is_held(j)) release_direction_[j] = 0;
   }
   forget_releases_away_from_the_border(t, y);
-  // After many changes at one time the steps decide: choose_sides() would undo each change if the
-  // acceleration is nothing but rounding.
-  if (changes_at_once_ <= many_at_once) choose_sides(t, y, y + n_);
+  // Otherwise the steps decide: choose_sides() would undo each change.
+  if (!may_be_rounding()) choose_sides(t, y, y + n_);
   collect_guards(y);
   return jumped;
 }
 
 void Switching::release(const HeldGuard& guard, double t, const double* y) {
-  if (changes_at_once_ > many_at_once) return choose(t, y, -1);
+  if (may_be_rounding()) return choose(t, y, -1);
   release_direction_[guard.joint] = guard.is_most ? -1 : 1;
   joints_.release(*equations_.effects, guard.joint, release_direction_[guard.joint]);
 }
@@ -198,10 +192,6 @@ bool Switching::reach_stop(int k, double t, double* y) {
   return !std::equal(before.begin(), before.end(), qd);
 }
 
-bool Switching::is_of_friction(const Watch& watch) const {
-  return watch.guard.is_on_rate() && !joints_.supports()[watch.joint].friction_effects.empty();
-}
-
 void Switching::come_to_rest(int k, double t, double* y) {
   settle(k, y);
   const int joint = guards_[k].joint;
@@ -215,14 +205,8 @@ void Switching::come_to_rest(int k, double t, double* y) {
 
 /// Changes a law to its next mode.
 void Switching::change_side(const Watch& watch) {
-  std::visit(
-      [&]<class Kind>(const Kind& one) {
-        if constexpr (HasModes<Kind>) {
-          const int mode = equations_.effects->modes[watch.effect];
-          put_mode(watch.effect, one.next_mode(mode, watch.number));
-        }
-      },
-      scene_.effects[watch.effect]);
+  const int mode = equations_.effects->modes[watch.effect];
+  put_mode(watch.effect, scene_.effects[watch.effect]->next_mode(mode, watch.number));
 }
 
 double Switching::shortest_moment(double t) const {
@@ -232,39 +216,23 @@ double Switching::shortest_moment(double t) const {
 /// Chooses which joints are held. After too many changes at one time, the joint that changed last
 /// is held in any case.
 void Switching::choose(double t, const double* y, int joint) {
-  const bool is_hopeless = changes_at_once_ > 3 * many_at_once;
-  joints_.choose(equations_, t, y, y + n_, is_hopeless ? joint : -1);
+  joints_.choose(equations_, t, y, y + n_, do_not_end() ? joint : -1);
 }
 
 void Switching::cross_time(double t) {
   for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
-    std::visit(
-        [&]<class Kind>(const Kind& one) {
-          if constexpr (HasNextTime<Kind>) {
-            if (!one.has_modes() || one.guards(equations_.effects->modes[i]).size() > 0) return;
-            const bool is_outside = is_outside_table(scene_.effects[i], t, forward_);
-            put_mode(i, is_outside ? -1 : one.mode_at(t, 0.0, 0.0, forward_));
-            is_over_ |= is_outside;
-          }
-        },
-        scene_.effects[i]);
+    const EffectBehaviour& effect = *scene_.effects[i];
+    if (!effect.has_modes() || !effect.guards(equations_.effects->modes[i]).empty()) continue;
+    const bool is_outside = is_outside_table(effect, t, forward_);
+    put_mode(i, is_outside ? -1 : effect.mode_at(t, 0.0, 0.0, forward_));
+    is_over_ |= is_outside;
   }
 }
 
 /// Whether no effect changes with time, so that what holds the joints now holds them for ever.
 bool Switching::is_for_good() const {
   return std::ranges::none_of(scene_.effects, [](const Effect& effect) {
-    return std::visit(
-        []<class Kind>(const Kind& one) {
-          if constexpr (HasWave<Kind>) {
-            if (one.wave()) return true;
-          }
-          if constexpr (HasSpan<Kind>) {
-            if (one.last_time() < never) return true;
-          }
-          return one.info.depends_on_time;
-        },
-        effect);
+    return !effect->waves().empty() || effect->last_time() < never || effect.info().depends_on_time;
   });
 }
 
@@ -287,8 +255,8 @@ std::vector<double> Switching::saved_state() const {
                        .release_direction = release_direction_,
                        .holds = joints_.saved_state(),
                        .has_failed = joints_.has_failed(),
-                       .zeros_at_start = {}};
-  for (const Watch& watch : guards_) state.zeros_at_start.push_back(watch.zeros_at_start);
+                       .multiplicities = {}};
+  for (const Watch& watch : guards_) state.multiplicities.push_back(watch.multiplicity);
   NumbersWriter io;
   visit(io, state);
   return std::move(io.numbers);
@@ -308,7 +276,7 @@ void Switching::restore(const std::vector<double>& memory, double t, const doubl
   visit(io, state);
   for (std::size_t i = 0; i < state.modes.size(); ++i) put_mode(i, state.modes[i]);
   is_over_ = std::ranges::any_of(
-      scene_.effects, [&](const Effect& one) { return is_outside_table(one, t, forward_); });
+      scene_.effects, [&](const Effect& one) { return is_outside_table(*one, t, forward_); });
   joints_.restore(*equations_.effects, state.holds, state.has_failed);
   time_of_change_ = state.time_of_change;
   changes_at_once_ = state.changes_at_once;
@@ -317,9 +285,9 @@ void Switching::restore(const std::vector<double>& memory, double t, const doubl
   struck_ = state.struck;
   release_direction_ = state.release_direction;
   collect_guards(y);
-  require_modes_fit(state.zeros_at_start.size() == guards_.size());
+  require_modes_fit(state.multiplicities.size() == guards_.size());
   for (std::size_t k = 0; k < guards_.size(); ++k) {
-    guards_[k].zeros_at_start = state.zeros_at_start[k];
+    guards_[k].multiplicity = state.multiplicities[k];
   }
 }
 

@@ -11,61 +11,63 @@ void Switching::collect_guards(const double* y) {
   any_held_ = equations_.effects->any_held;
   guards_.clear();
   for (std::size_t i = 0; i < scene_.effects.size(); ++i) {
-    std::visit(
-        [&]<class Kind>(const Kind& one) {
-          if constexpr (HasModes<Kind> && OnJoint<Kind>) {
-            const int joint = one.joint - 1;
-            if (!one.has_modes() || equations_.effects->held[joint] != 0) return;
-            const std::vector<Guard> guards = one.guards(equations_.effects->modes[i]);
-            for (std::size_t k = 0; k < guards.size(); ++k) {
-              guards_.push_back({i, k, joint, guards[k], Side::none, 0});
-            }
-          }
-        },
-        scene_.effects[i]);
+    const EffectBehaviour& effect = *scene_.effects[i];
+    const int joint = effect.joint() - 1;
+    if (joint < 0 || !effect.has_modes() || equations_.effects->held[joint] != 0) continue;
+    const std::vector<Guard> guards = effect.guards(equations_.effects->modes[i]);
+    const bool has_friction = !joints_.supports()[joint].friction_effects.empty();
+    for (std::size_t k = 0; k < guards.size(); ++k) {
+      const Watched what = !guards[k].is_on_rate() ? Watched::law
+                           : has_friction          ? Watched::friction
+                                                   : Watched::side;
+      guards_.push_back({what, joint, guards[k], i, k});
+    }
   }
-  collect_stops(y);
+  collect_stops();
   held_guards_.clear();
   for (int j = 0; j < n_; ++j) {
     if (!joints_.is_held(j)) continue;
     if (joints_.holds()[j].least > -never) held_guards_.push_back({j, false});
     if (joints_.holds()[j].most < never) held_guards_.push_back({j, true});
   }
-  for (Watch& watch : guards_) {
-    if (watch.stop != Side::none || !watch.guard.is_on_rate()) continue;
-    const bool is_zero = relative(y + n_, watch.joint + 1) == 0.0;
-    // A released joint has no acceleration yet. After many changes at one time, the acceleration is
-    // taken for rounding.
-    const bool accelerates =
-        release_direction_[watch.joint] == 0 && changes_at_once_ <= many_at_once;
-    watch.zeros_at_start = is_zero ? (accelerates ? 1 : 2) : 0;
-  }
+  for (Watch& watch : guards_) watch.multiplicity = multiplicity_at_start(watch, y);
   set_longest_step();
   see_whether_all_rests(y);
 }
 
-void Switching::collect_stops(const double* y) {
+void Switching::collect_stops() {
   for (int j = 0; j < n_; ++j) {
     const JointSupport& support = joints_.supports()[j];
     if (equations_.effects->held[j] != 0) continue;
-    const Side touches = joints_.contact(j, y);
-    // The rate and the acceleration of a joint that was held until now are zero too.
-    const bool is_doubtful = changes_at_once_ > many_at_once;
-    const bool is_still = relative(y + n_, j + 1) == 0.0;
-    const int zeros = is_still && (release_direction_[j] != 0 || is_doubtful) ? 3 : 1;
     if (support.lower.angle > -never) {
-      const Guard above{.offset = -support.lower.angle, .on_phi = 1.0, .on_phid = 0.0};
-      guards_.push_back({0, 0, j, above, Side::lower, touches == Side::lower ? zeros : 0});
+      guards_.push_back({Watched::lower_stop, j, {.offset = -support.lower.angle, .on_phi = 1.0}});
     }
     if (support.upper.angle < never) {
-      const Guard below{.offset = support.upper.angle, .on_phi = -1.0, .on_phid = 0.0};
-      guards_.push_back({0, 0, j, below, Side::upper, touches == Side::upper ? zeros : 0});
+      guards_.push_back({Watched::upper_stop, j, {.offset = support.upper.angle, .on_phi = -1.0}});
     }
   }
 }
 
+/// How many of a guard's value, slope and curvature are zero where the next step starts. A joint
+/// that was held until now has neither a rate nor an acceleration yet.
+int Switching::multiplicity_at_start(const Watch& watch, const double* y) const {
+  const int j = watch.joint;
+  const bool is_still = relative(y + n_, j + 1) == 0.0;
+  const bool was_held = release_direction_[j] != 0 || may_be_rounding();
+  switch (watch.what) {
+    case Watched::law: return 0;
+    case Watched::side:
+    case Watched::friction: return !is_still ? 0 : was_held ? 2 : 1;
+    case Watched::lower_stop:
+    case Watched::upper_stop:
+      if (joints_.contact(j, y) != watch.stop()) return 0;
+      return is_still && was_held ? 3 : 1;
+  }
+  return 0;
+}
+
 void Switching::step_taken() {
-  for (Watch& watch : guards_) watch.zeros_at_start = 0;
+  for (Watch& watch : guards_) watch.multiplicity = 0;
 }
 
 double Switching::guard(int k, const double* y) const {
@@ -79,7 +81,7 @@ double Switching::guard(int k, const double* y) const {
 double Switching::slope_at_rest(int k, double t, const double* y) {
   if (k >= linear_guards()) return std::nan("");
   const Watch& watch = guards_[k];
-  if (watch.stop != Side::none || !watch.guard.is_on_rate()) return std::nan("");
+  if (!watch.is_on_rate()) return std::nan("");
   still_.assign(y, y + 2 * static_cast<std::ptrdiff_t>(n_));
   qdd_.resize(n_);
   double* const qd = still_.data() + n_;
@@ -138,10 +140,10 @@ bool Switching::settle(int k, double* y) const {
   if (k >= 0 && k < linear_guards()) {
     const Watch& watch = guards_[k];
     const int j = watch.joint;
-    if (watch.stop != Side::none) {
-      set_relative(q, j + 1, joints_.supports()[j].stop(watch.stop).angle);
+    if (watch.stop() != Side::none) {
+      set_relative(q, j + 1, joints_.supports()[j].stop(watch.stop()).angle);
       changed = true;
-    } else if (watch.guard.is_on_rate()) {
+    } else if (watch.is_on_rate()) {
       stop_joint(j, qd);  // the guard is on the rate alone, which is zero there
       changed = true;
     }

@@ -31,7 +31,7 @@ void Switching::strike(double t, double* y, bool begins) {
 /// beginning of a run, all joints that touch their stops take part in the first impacts.
 void Switching::bounce_in_turn(double t, double* y, bool begins) {
   double* const qd = y + n_;
-  const bool is_plastic = changes_at_once_ > many_at_once;
+  const bool is_plastic = may_be_rounding();
   const double rounding = epsilon * joints_.fastest_strike(y, qd);
   loses_order_ = false;
   if (!(std::abs(t - time_of_impact_) <= shortest_moment(t))) std::ranges::fill(struck_, 0);

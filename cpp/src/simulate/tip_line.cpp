@@ -5,6 +5,7 @@
 
 #include "pendcore/arithmetic/epsilon.hpp"
 #include "pendcore/arithmetic/sine_cosine.hpp"
+#include "pendcore/effects/driven_pivot.hpp"
 
 namespace pendcore {
 namespace {
@@ -50,7 +51,7 @@ double bound(const double* rows, int degree, int dimension, int i, int order) {
 }  // namespace
 
 TipLine::TipLine(const Scene& scene, const events::TipLine& line)
-    : scene_(compiled(scene)),
+    : scene_(scene),
       line_(line),
       size_of_normal_(std::sqrt(line.normal[0] * line.normal[0] + line.normal[1] * line.normal[1])),
       pivot_acceleration_(largest_acceleration(scene)),

@@ -13,6 +13,7 @@
 
 #include "pendcore/arithmetic/dual.hpp"
 #include "pendcore/arithmetic/sine_cosine.hpp"
+#include "pendcore/effects/behaviour.hpp"
 #include "pendcore/scene/scene.hpp"
 
 namespace pendcore {
@@ -63,30 +64,30 @@ class EffectsInForce {
   /// The acceleration (m/s^2) and the velocity (m/s) of the pivot. compute_waves() comes first.
   PENDCORE_INLINE void pivot_acceleration(double t, double& x, double& y) const {
     x = y = 0.0;
-    for (const auto& law : pivots) law->add_acceleration(t, wave_sine.data(), x, y);
+    for (const PivotLaw& law : pivots) law.add_acceleration(t, wave_sine.data(), x, y);
   }
   PENDCORE_INLINE void pivot_velocity(double t, double& x, double& y) const {
     x = y = 0.0;
-    for (const auto& law : pivots) law->add_velocity(t, wave_cosine.data(), x, y);
+    for (const PivotLaw& law : pivots) law.add_velocity(t, wave_cosine.data(), x, y);
   }
 
   /// Computes what a user's function adds to Q (n); Q is zero on entry.
-  PENDCORE_INLINE void call(const CompiledUser& user, double t, const double* q, const double* qd,
+  PENDCORE_INLINE void call(const UserLaw& user, double t, const double* q, const double* qd,
                             double* Q) const {
     user(t, static_cast<int>(held.size()), q, qd, Q);
   }
   /// The same with the derivative along the slopes. It is taken by central differences, because the
   /// function takes doubles.
-  void call(const CompiledUser& user, double t, const Dual<double>* q, const Dual<double>* qd,
+  void call(const UserLaw& user, double t, const Dual<double>* q, const Dual<double>* qd,
             Dual<double>* Q) const;
 
-  std::vector<Effect> effects;      ///< compiled
+  std::vector<Effect> effects;
   std::vector<int> modes;           ///< the mode of each effect
-  std::vector<int> number_of_wave;  ///< the wave that drives each effect, or -1
+  std::vector<int> number_of_wave;  ///< the first wave of each effect, or -1
   std::vector<JointWave> joint_waves;
   std::vector<char> held;  ///< whether each joint is eliminated, as it does not turn
-  std::vector<std::shared_ptr<DrivenPivot::Law>> pivots;
-  std::vector<CompiledUser> users;
+  std::vector<PivotLaw> pivots;
+  std::vector<UserLaw> users;
   bool has_modes = false;   ///< some law is only piecewise smooth
   bool has_forces = false;  ///< some law adds forces, not only couples
   bool any_held = false;
@@ -100,33 +101,34 @@ class EffectsInForce {
 
  protected:
   explicit EffectsInForce(const Scene& scene);
-  int add_wave(const Sinusoid& wave);  ///< returns its number
+  void add_waves(std::size_t i);  ///< those of effect number i
+  void put_pivot(std::size_t i, const PivotLaw& law);
   void finish_waves();
+
+  /// The number of an effect among the pivots, the functions or the laws like its own.
+  std::vector<std::size_t> number_of_law_;
 
  private:
   mutable std::vector<double> user_room_;
 };
 
-/// A law that effects of one kind and group on one row share, with a lane for each. Its alignment
-/// is the one of Couples. It is empty for a kind of effect without a law.
-template <class Kind, class Row>
-struct alignas(sizeof(Row)) SharedLaw {};
-template <HasLaw Kind, class Row>
-struct alignas(sizeof(Row)) SharedLaw<Kind, Row> {
-  typename Kind::template Law<Row> law;
+/// A law that effects on one row share, with a lane for each. Its alignment is the one
+/// of Couples.
+template <template <class> class Law, class Row>
+struct alignas(sizeof(Row)) SharedLaw {
+  Law<Row> law;
   int row;
-  double group;
+  Account account;     ///< where the ledger books its work
   unsigned taken = 0;  ///< a bit for each lane in use
 };
 
-/// The laws of a scene, a vector for each kind in the order of the registry, and a pointer to one
-/// law.
-template <class Registry, class Row>
+/// The laws of a scene, a vector for each law of the list, and a pointer to one of them.
+template <class List>
 struct LawsOf;
-template <class... Kinds, class Row>
-struct LawsOf<std::variant<Kinds...>, Row> {
-  using Storage = std::tuple<std::vector<SharedLaw<Kinds, Row>>...>;
-  using Pointer = std::variant<const SharedLaw<Kinds, Row>*...>;
+template <template <class> class... Laws, class Row>
+struct LawsOf<std::variant<Laws<Row>...>> {
+  using Storage = std::tuple<std::vector<SharedLaw<Laws, Row>>...>;
+  using Pointer = std::variant<const SharedLaw<Laws, Row>*...>;
 };
 
 /// The compiled effects of a scene whose links are taken in rows of `width`.
@@ -135,13 +137,12 @@ class ActingEffects final : public EffectsInForce {
  public:
   static constexpr int width = Lanes<Row>::width;
 
-  using Laws = LawsOf<Effect, Row>;
+  using Laws = LawsOf<LawOn<Row>>;
 
   struct Entry {
     typename Laws::Pointer law;
     int row;
-
-    std::size_t kind() const { return law.index(); }  ///< its place in the registry
+    Account account;
   };
 
   explicit ActingEffects(const Scene& scene);
@@ -152,7 +153,8 @@ class ActingEffects final : public EffectsInForce {
   /// Calls visit(law) with the law of an entry in its own type.
   template <class Visit>
   PENDCORE_INLINE static void visit(const Entry& entry, Visit visit) {
-    visit_one_of(entry, visit, std::make_index_sequence<std::variant_size_v<Effect>>{});
+    visit_one_of(entry, visit,
+                 std::make_index_sequence<std::variant_size_v<typename Laws::Pointer>>{});
   }
 
   /// Adds the law of an entry to the loads of its row.
@@ -188,24 +190,17 @@ class ActingEffects final : public EffectsInForce {
   }
   template <std::size_t kind, class Visit>
   PENDCORE_INLINE static void visit_if(const Entry& entry, Visit& visit) {
-    using Kind = std::variant_alternative_t<kind, Effect>;
-    if constexpr (HasLaw<Kind>) {
-      if (entry.law.index() == kind) visit(std::get<kind>(entry.law)->law);
-    }
+    if (entry.law.index() == kind) visit(std::get<kind>(entry.law)->law);
   }
 
-  template <class Kind>
-  std::vector<SharedLaw<Kind, Row>>& laws_of() {
-    return std::get<std::vector<SharedLaw<Kind, Row>>>(laws_);
+  template <template <class> class Law>
+  std::vector<SharedLaw<Law, Row>>& laws_like(const Law<double>& /*one*/) {
+    return std::get<std::vector<SharedLaw<Law, Row>>>(laws_);
   }
-  template <class Kind>
-  void add_law(std::size_t i, const Kind& effect, const Scene& scene);
+  void add_law(std::size_t i);
 
-  struct Place {
-    std::size_t number = 0;  ///< among the laws of its kind, or the pivots or functions
-    int lane = 0;
-  };
-  std::vector<Place> places_;  ///< one for each effect of the scene
+  std::vector<int> place_of_;  ///< the joint or link of each effect, from 0; -1 if none
+  std::vector<LinkConstants> link_there_;
   typename Laws::Storage laws_;
 };
 

@@ -36,7 +36,7 @@ struct EquationsOfMotion {
 /// rotors in joint 1.
 bool is_bare(const Scene& scene);
 
-/// Whether some effect has modes (effects/hooks.hpp), a stop or a lock.
+/// Whether some effect has modes (effects/behaviour.hpp), a stop or a lock.
 bool laws_may_change(const Scene& scene);
 
 /// The equations of a scene that check() passed.

@@ -1,5 +1,5 @@
 /// \file
-/// What the laws of effects see, and what they add to (effects/law.hpp has the contract). A chain
+/// What the laws of effects see, and what they add to (effects/laws.hpp has the contract). A chain
 /// of one or two links is a single row in registers; a longer chain is in arrays. In lanes, three
 /// and four links are a row in registers, too (ensemble/few_links_in_lanes.hpp).
 #pragma once

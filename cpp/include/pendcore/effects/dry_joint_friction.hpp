@@ -8,8 +8,7 @@
 /// torques on it exceed t_s, and comes to rest otherwise.
 #pragma once
 
-#include "pendcore/arithmetic/exponential.hpp"
-#include "pendcore/effects/hooks.hpp"
+#include "pendcore/effects/effect.hpp"
 
 namespace pendcore {
 
@@ -30,12 +29,6 @@ struct DryJointFriction {
       .jumps_or_sticks = true,
       .examples = "DryJointFriction(joint=1, coulomb=0.2, static=0.3, stribeck_velocity=0.05)",
       .outcome = "dry: 0.323 J"};
-  static constexpr Hooks hooks{.couple = true,
-                               .law = true,
-                               .group = true,
-                               .modes = true,
-                               .holding_torque = true,
-                               .check = true};
   static constexpr auto parameters = std::tuple{
       parameter(&DryJointFriction::joint, joint_number),
       parameter(&DryJointFriction::coulomb, {.name = "coulomb",
@@ -64,58 +57,10 @@ struct DryJointFriction {
                                               .range = Range::at_least_one}),
   };
 
+  /// What the static torque is above the sliding one, N m.
   double peak() const { return static_.value_or(coulomb) - coulomb; }
-  void check(const std::string& where) const {
-    if (static_ && peak() < 0) {
-      refuse(where + "static", *static_, "at least coulomb = " + text(coulomb) + " (N m)");
-    }
-  }
-
-  /// The torque of Coulomb's law, if there is no static peak. With a peak, Law has the torque.
-  std::optional<Couple> couple(int mode) const {
-    if (peak() > 0) return std::nullopt;
-    return Couple{.held = -mode * coulomb};
-  }
-
-  template <class Row>
-  struct Law {
-    Row coulomb{};  // has the sign of w, as the next two have
-    Row peak{};
-    Row inverse_velocity{};
-    double exponent = 2.0;
-
-    template <class At, class Loads>
-    PENDCORE_INLINE void add(const At& at, Loads& loads) const {
-      using V = typename At::Value;
-      const V x = absolute(at.phid() * Constants<V>::of(inverse_velocity));
-      const V share = exponential(-power(x, exponent));
-      loads.couple(-fma(Constants<V>::of(peak), share, Constants<V>::of(coulomb)));
-    }
-  };
-
-  /// Joints of one row share a law only if they have the same exponent.
-  double group() const { return exponent; }
-
-  template <class Row>
-  void put(Law<Row>& law, int /*lane*/, const LinkConstants& /*on*/) const {
-    law.exponent = exponent;
-  }
-
-  bool has_modes() const { return true; }
-  int mode_at(double /*t*/, double /*phi*/, double phid, bool /*forward*/) const {
-    return phid < 0.0 ? -1 : 1;
-  }
-  std::vector<Guard> guards(int mode) const { return {{.on_phid = static_cast<double>(mode)}}; }
-  int next_mode(int mode, std::size_t /*guard*/) const { return -mode; }
-  template <class Row>
-  void put_mode(Law<Row>& law, int lane, int mode) const {
-    set_lane(law.coulomb, lane, mode * coulomb);
-    set_lane(law.peak, lane, mode * peak());
-    set_lane(law.inverse_velocity, lane, mode / stribeck_velocity);
-  }
-
-  /// The largest torque with which the friction holds the joint at rest, N m.
-  double holding_torque() const { return static_.value_or(coulomb); }
 };
+
+std::shared_ptr<const EffectBehaviour> behaviour(DryJointFriction given);
 
 }  // namespace pendcore

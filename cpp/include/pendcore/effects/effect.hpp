@@ -1,12 +1,25 @@
 /// \file
-/// What an effect says of itself, `info` and `parameters` (hooks.hpp has the whole contract), and
-/// the checks that follow from it.
+/// An effect of a scene, and what a kind of effect says of itself.
+///
+/// A kind is a plain structure of parameters, such as ViscousJoint, with
+///
+///     info         its name, a sentence, the source, where the ledger books its work, and what
+///                  else others must know of its kind
+///     parameters   a tuple of `parameter(&Struct::field, {...})`: symbol, unit, range, a sentence
+///
+/// and a field `joint` or `link`, if it acts on one. What it does is its behaviour (behaviour.hpp),
+/// which the function behaviour() in the source of the same name makes. The Python class,
+/// the TOML keys, the repr, the checks and their messages, the page of documentation and the tests
+/// come from `info` and `parameters`.
 #pragma once
 
 #include <array>
 #include <concepts>
+#include <limits>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "pendcore/text/descriptor.hpp"
 
@@ -49,8 +62,8 @@ struct EffectInfo {
   /// The effect makes the motion jump or stick, at instants that depend on the motion. There, the
   /// distance between neighbouring motions has no rate of growth.
   bool jumps_or_sticks = false;
-  /// The effect may change at any time, in ways that its hooks do not tell: it moves the pivot, or
-  /// is a function of the user's.
+  /// The effect may change at any time, in ways that its behaviour does not tell: it moves the
+  /// pivot, or is a function of the user's.
   bool depends_on_time = false;
   bool moves_pivot = false;
   /// The effect is a function of the user's: nothing is known of its cost, or of its smoothness.
@@ -83,7 +96,7 @@ inline constexpr ParameterInfo link_number{.name = "link",
 template <class Value>
 concept OptionalPart = requires { Value::value_type::parameters; };
 
-/// The hook `check` (hooks.hpp), which parts may have too.
+/// A part whose parameters must fit together: check(where) throws if they do not.
 template <class Struct>
 concept HasCheck = requires(const Struct& one, const std::string& where) {
   { one.check(where) } -> std::same_as<void>;
@@ -101,5 +114,51 @@ void check_parameters(const std::string& where, const Struct& effect) {
   });
   if constexpr (HasCheck<Struct>) effect.check(where);
 }
+
+/// A time that never comes, or a bound that does not exist.
+inline constexpr double never = std::numeric_limits<double>::infinity();
+
+class EffectBehaviour;
+
+/// A function of the user's (user.hpp).
+using UserFunction = void (*)(double t, int n, const double* q, const double* qd, double* Q,
+                              void* data);
+
+/// One effect of a scene, of any kind. It never changes: to change a parameter, assign another one.
+/// Copies share what they know, so that they cost nothing.
+///
+///     scene.effects = {ViscousJoint{.joint = 2, .damping = 0.05}, Payload{.mass = 0.5}};
+///     const ViscousJoint* joint = scene.effects[0].get_if<ViscousJoint>();
+class Effect {
+ public:
+  template <class Kind>
+    requires requires(Kind given) { behaviour(given); }
+  Effect(Kind given)  // NOLINT(google-explicit-constructor): a scene lists effects of many kinds
+      : Effect(behaviour(std::move(given))) {}
+
+  const EffectInfo& info() const { return *info_; }
+
+  /// The parameters, if the effect is of that kind; null if not. They are there until another
+  /// effect is assigned.
+  template <class Kind>
+  const Kind* get_if() const {
+    return info_ == &Kind::info ? static_cast<const Kind*>(parameters_) : nullptr;
+  }
+  template <class Kind>
+  bool is() const {
+    return info_ == &Kind::info;
+  }
+
+  /// What it does: effect->couple(mode).
+  const EffectBehaviour* operator->() const { return behaviour_.get(); }
+  const EffectBehaviour& operator*() const { return *behaviour_; }
+
+ private:
+  explicit Effect(std::shared_ptr<const EffectBehaviour> behaviour);
+
+  std::shared_ptr<const EffectBehaviour> behaviour_;
+  const EffectInfo* info_;
+  const void* parameters_;
+};
 
 }  // namespace pendcore

@@ -9,7 +9,7 @@
 /// Mechanics (2016), sections 4.1 (Newton's law of restitution) and 5.2 (several contacts).
 #pragma once
 
-#include "pendcore/effects/hooks.hpp"
+#include "pendcore/effects/effect.hpp"
 
 namespace pendcore {
 
@@ -33,7 +33,6 @@ struct JointStop {
           "JointStop(joint=2, range=(-0.5, 0.8), restitution=0.4)\n"
           "JointStop(joint=1, range=(0.0, inf), restitution=0.8, capture_speed=0.001)",
       .outcome = "impact: 0.563 J"};
-  static constexpr Hooks hooks{.check = true};
   static constexpr auto parameters = std::tuple{
       parameter(&JointStop::joint, joint_number),
       parameter(&JointStop::range, {.name = "range",
@@ -57,12 +56,8 @@ struct JointStop {
                              "natural speed sqrt(torque / inertia) of the joint",
                  .range = Range::not_negative}),
   };
-  void check(const std::string& where) const {
-    if (range[0] < range[1] && (range[0] > -never || range[1] < never)) return;
-    throw std::invalid_argument(
-        where + "range = (" + text(range[0]) + ", " + text(range[1]) +
-        "): must be (lo, hi) with lo < hi, at least one of them finite (rad)");
-  }
 };
+
+std::shared_ptr<const EffectBehaviour> behaviour(JointStop given);
 
 }  // namespace pendcore

@@ -7,7 +7,7 @@
 /// step, so that rounding does not make them drift. A lock does no work.
 #pragma once
 
-#include "pendcore/effects/hooks.hpp"
+#include "pendcore/effects/effect.hpp"
 
 namespace pendcore {
 
@@ -29,7 +29,6 @@ struct Lock {
           "Lock(joint=2)\n"
           "Lock(joint=2, angle=0.5)",
       .outcome = "q at 1 s: [2.26, 2.76] rad"};
-  static constexpr Hooks hooks{};
   static constexpr auto parameters = std::tuple{
       parameter(&Lock::joint, joint_number),
       parameter(&Lock::angle,
@@ -40,5 +39,7 @@ struct Lock {
                              "left out"}),
   };
 };
+
+std::shared_ptr<const EffectBehaviour> behaviour(Lock given);
 
 }  // namespace pendcore

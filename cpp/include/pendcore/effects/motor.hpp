@@ -11,10 +11,8 @@
 /// omega t + phase = k pi +- asin(limit/|A|).
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-
-#include "pendcore/effects/hooks.hpp"
+#include "pendcore/effects/effect.hpp"
+#include "pendcore/effects/wave.hpp"
 
 namespace pendcore {
 
@@ -44,13 +42,6 @@ struct Motor {
           "Motor(joint=2, table=Table(t=(0.0, 0.5, 2.0), torque=(1.5, -1.5, 0.0), hold=True))\n"
           "Motor(joint=2, pd=PD(kp=40.0, kd=2.0, reference=0.3), limit=8.0)",
       .outcome = "motor: 3.625 J"};
-  static constexpr Hooks hooks{.couple = true,
-                               .modes = true,
-                               .next_time = true,
-                               .span = true,
-                               .wave = true,
-                               .compiled = true,
-                               .check = true};
   static constexpr auto parameters = std::tuple{
       parameter(&Motor::joint, joint_number),
       parameter(
@@ -73,23 +64,8 @@ struct Motor {
                                 .sentence = "largest torque in either direction",
                                 .range = Range::positive_or_infinite}),
   };
-  void check(const std::string& where) const;  ///< exactly one of the four laws
-
-  std::optional<Couple> couple(int mode) const;
-  std::optional<Sinusoid> wave() const { return sinusoid; }
-
-  bool has_modes() const { return table || (limit < never && pd) || is_clipped(); }
-  int mode_at(double t, double phi, double phid, bool forward) const;
-  std::vector<Guard> guards(int mode) const;
-  int next_mode(int mode, std::size_t guard) const;
-  double next_time(double t, bool forward) const;
-  double first_time() const { return table ? table->t.front() : -never; }
-  double last_time() const { return table ? table->t.back() : never; }
-  Motor compiled() const;  ///< its table is clipped, with points at the limit
-
- private:
-  bool is_clipped() const { return sinusoid && std::abs(sinusoid->amplitude) > limit; }
-  double clipped(double torque) const { return std::max(-limit, std::min(torque, limit)); }
 };
+
+std::shared_ptr<const EffectBehaviour> behaviour(Motor given);
 
 }  // namespace pendcore

@@ -7,7 +7,7 @@
 /// the energy.
 #pragma once
 
-#include "pendcore/effects/hooks.hpp"
+#include "pendcore/effects/effect.hpp"
 
 namespace pendcore {
 
@@ -23,7 +23,6 @@ struct Payload {
                                    .has_series = true,
                                    .examples = "Payload(mass=0.5, inertia=0.001)",
                                    .outcome = "q at 1 s: [2.007, 2.612] rad"};
-  static constexpr Hooks hooks{};
   static constexpr auto parameters = std::tuple{
       parameter(&Payload::mass, {.name = "mass",
                                  .symbol = "m_p",
@@ -39,5 +38,7 @@ struct Payload {
                  .range = Range::not_negative}),
   };
 };
+
+std::shared_ptr<const EffectBehaviour> behaviour(Payload given);
 
 }  // namespace pendcore

@@ -1,8 +1,12 @@
 /// \file
-/// The list of effects. Each effect is a file in this folder, and a line here.
+/// The list of effects. Python, case files, documents and WebAssembly know those that it names.
 #pragma once
 
-#include <variant>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <utility>
 
 #include "pendcore/effects/driven_pivot.hpp"
 #include "pendcore/effects/dry_joint_friction.hpp"
@@ -18,47 +22,48 @@
 
 namespace pendcore {
 
-using Effect = std::variant<  //
-    ViscousJoint,             //
-    DryJointFriction,         //
-    RodDrag,                  //
-    TorsionalSpring,          //
-    Motor,                    //
-    RotorInertia,             //
-    Payload,                  //
-    Lock,                     //
-    JointStop,                //
-    DrivenPivot,              //
+/// Their kinds. Tables and documents have the order of this list.
+using EffectKinds = std::tuple<  //
+    ViscousJoint,                //
+    DryJointFriction,            //
+    RodDrag,                     //
+    TorsionalSpring,             //
+    Motor,                       //
+    RotorInertia,                //
+    Payload,                     //
+    Lock,                        //
+    JointStop,                   //
+    DrivenPivot,                 //
     CompiledUser>;
 
-static_assert(hooks_are_named<Effect>);
-
-/// Whether the recurrences of the Taylor series of the equations support the effect.
-inline bool has_series(const Effect& effect) {
-  return std::visit(
-      []<class Kind>(const Kind& one) {
-        if constexpr (HasCouple<Kind>) {
-          return one.couple(0).has_value();
-        } else {
-          return Kind::info.has_series;
-        }
-      },
-      effect);
+/// Calls visit(effect) for an effect of each kind with its default parameters.
+template <class Visit>
+void for_each_kind(const Visit& visit) {
+  std::apply([&](const auto&... kinds) { (visit(kinds), ...); }, EffectKinds{});
 }
 
-inline const EffectInfo& info_of(const Effect& effect) {
-  return std::visit([]<class Kind>(const Kind&) -> const EffectInfo& { return Kind::info; },
-                    effect);
+/// Calls visit(parameters) with the parameters of an effect in their own type.
+template <class Visit>
+void visit_parameters(const Effect& effect, const Visit& visit) {
+  for_each_kind([&]<class Kind>(const Kind&) {
+    if (const Kind* const given = effect.get_if<Kind>()) visit(*given);
+  });
 }
 
-/// The torque with which an effect can hold its joint at rest, N m; none if it cannot.
-std::optional<double> holding_torque(const Effect& effect);
-
-/// The effect of a kind with its default parameters, to be filled in. Throws std::invalid_argument
-/// for an unknown kind.
-Effect effect_of_kind(std::string_view kind);
-
-/// Throws std::invalid_argument for parameters out of their ranges; `where` begins the message.
-void check_effect(const std::string& where, const Effect& effect);
+/// The effect of a kind with the parameters that fill(parameters) puts in place of the defaults.
+/// Throws std::invalid_argument for an unknown kind.
+template <class Fill>
+Effect effect_of_kind(std::string_view kind, const Fill& fill) {
+  std::optional<Effect> made;
+  for_each_kind([&]<class Kind>(Kind given) {
+    if (Kind::info.kind != kind) return;
+    fill(given);
+    made = std::move(given);
+  });
+  if (!made) {
+    throw std::invalid_argument("kind = \"" + std::string(kind) + "\": there is no such effect");
+  }
+  return *std::move(made);
+}
 
 }  // namespace pendcore

@@ -8,7 +8,7 @@
 /// constants of the mass matrix.
 #pragma once
 
-#include "pendcore/effects/hooks.hpp"
+#include "pendcore/effects/effect.hpp"
 
 namespace pendcore {
 
@@ -25,7 +25,6 @@ struct RotorInertia {
       .has_series = true,
       .examples = "RotorInertia(joint=1, armature=0.02)",
       .outcome = "q at 1 s: [2.128, 2.936] rad"};
-  static constexpr Hooks hooks{};
   static constexpr auto parameters = std::tuple{
       parameter(&RotorInertia::joint, joint_number),
       parameter(&RotorInertia::armature, {.name = "armature",
@@ -36,5 +35,7 @@ struct RotorInertia {
                                           .required = true}),
   };
 };
+
+std::shared_ptr<const EffectBehaviour> behaviour(RotorInertia given);
 
 }  // namespace pendcore

@@ -6,7 +6,7 @@
 /// Source: Hooke's law. Its energy is part of the potential energy.
 #pragma once
 
-#include "pendcore/effects/hooks.hpp"
+#include "pendcore/effects/effect.hpp"
 
 namespace pendcore {
 
@@ -23,7 +23,6 @@ struct TorsionalSpring {
       .source = "Hooke's law",
       .examples = "TorsionalSpring(joint=2, stiffness=30.0, rest_angle=0.5)",
       .outcome = "q at 1 s: [2.239, 2.77] rad"};
-  static constexpr Hooks hooks{.couple = true, .potential = true};
   static constexpr auto parameters = std::tuple{
       parameter(&TorsionalSpring::joint, joint_number),
       parameter(&TorsionalSpring::stiffness,
@@ -38,15 +37,8 @@ struct TorsionalSpring {
                  .unit = "rad",
                  .sentence = "angle of the joint at which the torque is zero"}),
   };
-
-  std::optional<Couple> couple(int /*mode*/) const {
-    return Couple{.held = stiffness * rest_angle, .on_phi = -stiffness};
-  }
-
-  double potential(double phi) const {
-    const double stretch = phi - rest_angle;
-    return 0.5 * stiffness * stretch * stretch;
-  }
 };
+
+std::shared_ptr<const EffectBehaviour> behaviour(TorsionalSpring given);
 
 }  // namespace pendcore

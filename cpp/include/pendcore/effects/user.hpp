@@ -17,16 +17,13 @@
 ///     scene.effects.push_back(CompiledUser::of(magnet));   // magnet must outlive the scene
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <span>
+#include <vector>
 
-#include "pendcore/effects/hooks.hpp"
+#include "pendcore/effects/effect.hpp"
 
 namespace pendcore {
-
-using UserFunction = void (*)(double t, int n, const double* q, const double* qd, double* Q,
-                              void* data);
 
 struct CompiledUser {
   std::uintptr_t address = 0;
@@ -49,7 +46,6 @@ struct CompiledUser {
           "    Q[0] -= 0.1 * qd[0]\n"
           "CompiledUser(damp)",
       .outcome = "user: -0.339 J"};
-  static constexpr Hooks hooks{.modes = true, .next_time = true, .check = true};
   static constexpr auto parameters = std::tuple{
       parameter(&CompiledUser::address,
                 {.name = "address",
@@ -81,31 +77,8 @@ struct CompiledUser {
     return {.address = reinterpret_cast<std::uintptr_t>(call),
             .data = reinterpret_cast<std::uintptr_t>(&f)};
   }
-
-  void check(const std::string& where) const {
-    if (address == 0) {
-      throw std::invalid_argument(where + "address = 0: must be the address of a function");
-    }
-    check_increasing(where + "breaks", breaks);
-  }
-
-  bool has_modes() const { return !breaks.empty(); }
-  int mode_at(double t, double phi, double phid, bool forward) const;
-  std::vector<Guard> guards(int /*mode*/) const { return {}; }
-  int next_mode(int mode, std::size_t /*guard*/) const { return mode; }
-  double next_time(double t, bool forward) const { return next_of(breaks, t, forward); }
-
-  /// From here on the function is called with times of one piece.
-  void enter(int mode);
-
-  void operator()(double t, int n, const double* q, const double* qd, double* Q) const {
-    const double within = std::min(std::max(t, earliest), latest);
-    // NOLINTNEXTLINE(performance-no-int-to-ptr): that is what the user gave
-    reinterpret_cast<UserFunction>(address)(within, n, q, qd, Q, reinterpret_cast<void*>(data));
-  }
-
-  double earliest = -never;  ///< s, the times of the piece that the law is in
-  double latest = never;
 };
+
+std::shared_ptr<const EffectBehaviour> behaviour(CompiledUser given);
 
 }  // namespace pendcore

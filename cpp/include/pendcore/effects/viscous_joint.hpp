@@ -10,7 +10,7 @@
 /// |w| has a corner at w = 0. Where b2 is not 0, the sign of w is the mode, +1 or -1.
 #pragma once
 
-#include "pendcore/effects/hooks.hpp"
+#include "pendcore/effects/effect.hpp"
 
 namespace pendcore {
 
@@ -30,7 +30,6 @@ struct ViscousJoint {
       .damps_small_motions = true,
       .examples = "ViscousJoint(joint=2, damping=0.05)",
       .outcome = "viscous: 0.504 J"};
-  static constexpr Hooks hooks{.couple = true, .modes = true, .warnings = true};
   static constexpr auto parameters = std::tuple{
       parameter(&ViscousJoint::joint, joint_number),
       parameter(&ViscousJoint::damping,
@@ -48,21 +47,8 @@ struct ViscousJoint {
                                           .unit = "N m s^3/rad^3",
                                           .sentence = "cubic coefficient"}),
   };
-
-  bool has_modes() const { return damping2 != 0.0; }
-  int mode_at(double /*t*/, double /*phi*/, double phid, bool /*forward*/) const {
-    return phid < 0.0 ? -1 : 1;
-  }
-  std::vector<Guard> guards(int mode) const { return {{.on_phid = static_cast<double>(mode)}}; }
-  int next_mode(int mode, std::size_t /*guard*/) const { return -mode; }
-  std::optional<Couple> couple(int mode) const {
-    return Couple{.on_phid = -damping, .on_phid2 = -mode * damping2, .on_phid3 = -damping3};
-  }
-
-  std::vector<std::string> warnings() const {
-    if (damping >= 0 && damping2 >= 0 && damping3 >= 0) return {};
-    return {"a negative damping coefficient feeds energy into the motion"};
-  }
 };
+
+std::shared_ptr<const EffectBehaviour> behaviour(ViscousJoint given);
 
 }  // namespace pendcore

@@ -126,11 +126,8 @@ struct Spline {
   };
   void check(const std::string& where) const;
 
-  /// The second derivatives at the points, for the values of x or of y.
+  /// The second derivatives at the points, for the values of x or of y; none if the counts differ.
   std::vector<double> second_derivatives(const std::vector<double>& values) const;
-
-  std::vector<double> xdd = {};  ///< second derivatives of x and y, once compiled
-  std::vector<double> ydd = {};
 };
 
 /// The piece k of t_0 <= t_1 <= ... that a run at time t is in: t_k <= t < t_{k+1} forward, t_k < t

@@ -102,8 +102,8 @@ EffectsOfChainInLanes<Real>::One::One(const ActingEffects<Row>& effects, int lin
   for (const JointWave& wave : effects.joint_waves) {
     joint_waves.push_back({wave.joint, wave.wave, wave.gain});
   }
-  for (const auto& law : effects.pivots) {
-    pivots.push_back({law->start, axis_of(law->x), axis_of(law->y)});
+  for (const PivotLaw& law : effects.pivots) {
+    pivots.push_back({law.start, axis_of(law.x), axis_of(law.y)});
   }
   constexpr int places = Lanes<Row>::width;
   for (const Couples<Row>& of_row : effects.couples) {

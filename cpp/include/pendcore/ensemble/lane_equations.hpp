@@ -40,7 +40,7 @@ void put_constants(Constants& constants, int lane, const One& one) {
 /// The drag on rods in lanes: at most one for each link, and only where the pivot stands still.
 template <class Row>
 struct DragInLanes {
-  RodDrag::Law<Row> law;
+  RodDragLaw<Row> law;
   bool is_there = false;
 
   /// Whether a trajectory has no laws but this one, and none beside a moving pivot.
@@ -51,10 +51,10 @@ struct DragInLanes {
   }
   /// The law of a trajectory; null if it has none.
   template <class OfRun>
-  static const RodDrag::Law<OfRun>* law_of(const ActingEffects<OfRun>& effects) {
+  static const RodDragLaw<OfRun>* law_of(const ActingEffects<OfRun>& effects) {
     if (effects.entries.empty()) return nullptr;
     const auto* const shared =
-        std::get_if<const SharedLaw<RodDrag, OfRun>*>(&effects.entries.front().law);
+        std::get_if<const SharedLaw<RodDragLaw, OfRun>*>(&effects.entries.front().law);
     return shared != nullptr ? &(*shared)->law : nullptr;
   }
 };

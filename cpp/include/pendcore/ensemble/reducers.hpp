@@ -38,8 +38,7 @@ class Extremes final : public StepWatch {
 /// The largest energy drift, J. Where effects do work, the run must keep the ledger.
 class EnergyDrift final : public StepWatch {
  public:
-  explicit EnergyDrift(const Scene& scene)
-      : scene_(compiled(scene)), accounts_(accounts_of(scene)) {}
+  explicit EnergyDrift(const Scene& scene) : scene_(scene), accounts_(accounts_of(scene)) {}
   bool asks_for_dense_output() const override { return false; }
   void starts(double t, std::span<const double> y) override;
   void steps(const WatchedStep& step) override;

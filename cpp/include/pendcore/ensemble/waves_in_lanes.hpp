@@ -48,8 +48,8 @@ struct WavesInLanes {
       motor[k].joint = effects.joint_waves[k].joint;
     }
     for (int k = 0; k < pivot_count; ++k) {
-      pivot[k].x.wave = effects.pivots[k]->x.wave;
-      pivot[k].y.wave = effects.pivots[k]->y.wave;
+      pivot[k].x.wave = effects.pivots[k].x.wave;
+      pivot[k].y.wave = effects.pivots[k].y.wave;
     }
   }
   /// Puts the numbers of a trajectory into a lane; false if its waves move other things.
@@ -73,7 +73,7 @@ struct WavesInLanes {
       is_same &= put_wave(motor[k], one.wave, one.gain) && motor[k].joint == one.joint;
     }
     for (int k = 0; k < pivot_count; ++k) {
-      const DrivenPivot::Law& law = *effects.pivots[k];
+      const PivotLaw& law = effects.pivots[k];
       is_same &= put_wave(pivot[k].x, law.x.wave, law.x.gain);
       is_same &= put_wave(pivot[k].y, law.y.wave, law.y.gain);
     }

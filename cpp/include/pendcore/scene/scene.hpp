@@ -21,7 +21,8 @@
 #include <string>
 #include <vector>
 
-#include "pendcore/effects/registry.hpp"
+#include "pendcore/effects/effect.hpp"
+#include "pendcore/effects/pivot_motion.hpp"
 
 namespace pendcore {
 
@@ -52,15 +53,10 @@ struct Scene {
 /// The effects of one kind, in their order.
 template <class Kind>
 auto effects_of(const Scene& scene) {
-  return scene.effects |
-         std::views::filter([](const Effect& one) { return std::holds_alternative<Kind>(one); }) |
+  return scene.effects | std::views::filter(&Effect::is<Kind>) |
          std::views::transform(
-             [](const Effect& one) -> const Kind& { return std::get<Kind>(one); });
+             [](const Effect& one) -> const Kind& { return *one.get_if<Kind>(); });
 }
-
-/// The same scene with the values that its effects need to compute only once, such as the curvature
-/// of a spline. This saves time where a scene is evaluated at many times.
-Scene compiled(Scene scene);
 
 /// "effect 2 (viscous_joint)".
 std::string effect_name(const Scene& scene, std::size_t i);
@@ -70,6 +66,9 @@ PivotMotion pivot_motion(const Scene& scene, double t);
 
 /// The number of the first effect that has no Taylor series, counted from 0.
 std::optional<std::size_t> without_series(const Scene& scene);
+
+/// Whether some effect is a function of the user's.
+bool has_functions(const Scene& scene);
 
 /// Whether a Lock holds each joint.
 std::vector<bool> locked_joints(const Scene& scene);

@@ -22,9 +22,9 @@ std::vector<std::string> run_warnings(const Scene& scene, const std::vector<doub
                                       double t_end);
 
 /// Whether time t is outside the table or spline of an effect, in the direction of the run.
-bool is_outside_table(const Effect& effect, double t, bool forward);
+bool is_outside_table(const EffectBehaviour& effect, double t, bool forward);
 
-/// "its table goes from 0 to 1 s"; empty for an effect without a table or spline.
-std::string span_of(const Effect& effect);
+/// "its table goes from 0 to 1 s", for an effect that has a table or spline.
+std::string span_of(const EffectBehaviour& effect);
 
 }  // namespace pendcore

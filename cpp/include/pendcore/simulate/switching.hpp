@@ -3,7 +3,7 @@
 ///
 /// Dynamics and integration meet here. The loop sees discontinuities
 /// (integrate/loop/discontinuities.hpp), the laws see the mode that they are frozen to
-/// (effects/law.hpp), and held joints are eliminated from the equations
+/// (effects/behaviour.hpp), and held joints are eliminated from the equations
 /// (dynamics/contact/held_joints.hpp). The angles of held joints are set anew at the end of each
 /// step, so that rounding does not make them drift.
 ///
@@ -34,7 +34,7 @@ class Switching final : public Discontinuities {
   double longest_step() const override { return longest_step_; }
   int guards() const override { return linear_guards() + static_cast<int>(held_guards_.size()); }
   int linear_guards() const override { return static_cast<int>(guards_.size()); }
-  int zeros_at_start(int k) const override { return guards_[k].zeros_at_start; }
+  int multiplicity_at_start(int k) const override { return guards_[k].multiplicity; }
   void polynomial(int k, const double* rows, int degree, int dimension,
                   double* coefficients) const override;
   double guard(int k, const double* y) const override;
@@ -63,22 +63,38 @@ class Switching final : public Discontinuities {
   std::string remark_on_impacts() const;
 
  private:
-  /// What a guard watches: a mode of an effect, or a stop.
+  /// What a guard watches, which says what follows its zero.
+  enum class Watched : std::uint8_t {
+    law,       ///< an angle or a torque at which a law changes to its next mode
+    side,      ///< the rate of a joint, whose sign is the mode of a law
+    friction,  ///< the rate of a joint with dry friction, which may come to rest
+    lower_stop,
+    upper_stop
+  };
   struct Watch {
-    std::size_t effect;
-    std::size_t number;  ///< among the guards of the effect's mode
-    int joint;           ///< counted from 0
+    Watched what;
+    int joint;  ///< counted from 0
     Guard guard;
-    Side stop;
-    int zeros_at_start;
+    std::size_t effect = 0;
+    std::size_t number = 0;  ///< among the guards of the effect's mode
+    int multiplicity = 0;    ///< of its zero at the start of the next step
+
+    bool is_on_rate() const { return what == Watched::side || what == Watched::friction; }
+    Side stop() const {
+      return what == Watched::lower_stop   ? Side::lower
+             : what == Watched::upper_stop ? Side::upper
+                                           : Side::none;
+    }
   };
   /// A guard on the torque that holds a joint, at one end of its range.
   struct HeldGuard {
     int joint;
     bool is_most;
   };
-  /// More changes than this at one time may be caused by rounding.
-  static constexpr int many_at_once = 8;
+  /// After many changes at one time, the sign of an acceleration may be nothing but rounding.
+  bool may_be_rounding() const { return changes_at_once_ > 8; }
+  /// Whether the changes at this time do not end by themselves.
+  bool do_not_end() const { return changes_at_once_ > 24; }
   void put_mode(std::size_t i, int mode) { equations_.effects->put_mode(i, mode); }
   /// Chooses the modes from time t on: by the state, and -1 where a table has ended.
   void choose_modes_from(double t, const double* q, const double* qd);
@@ -90,7 +106,6 @@ class Switching final : public Discontinuities {
   void come_to_rest(int k, double t, double* y);
   void stop_joint(int joint, double* qd) const;
   void change_side(const Watch& watch);
-  bool is_of_friction(const Watch& watch) const;
   double shortest_moment(double t) const;  ///< s, the shortest that time resolves
   void choose(double t, const double* y, int joint);
   void strike(double t, double* y, bool begins);
@@ -104,7 +119,8 @@ class Switching final : public Discontinuities {
   void forget_releases_away_from_the_border(double t, const double* y);
   /// Collects the guards after modes and holds have changed.
   void collect_guards(const double* y);
-  void collect_stops(const double* y);
+  void collect_stops();
+  int multiplicity_at_start(const Watch& watch, const double* y) const;
   void see_whether_all_rests(const double* y);
   void set_longest_step();
   bool is_for_good() const;

@@ -22,7 +22,7 @@ struct SwitchingState {
   std::vector<int> release_direction;  ///< (n), 1, -1, or 0 where none was released
   std::vector<SavedHold> holds;        ///< (n)
   bool has_failed = false;             ///< whether a contact had no finite solution
-  std::vector<int> zeros_at_start;     ///< one for each linear guard of these modes
+  std::vector<int> multiplicities;     ///< of zeros at the start, one for each linear guard
 };
 
 /// Visits every field, for writing and for reading; whole numbers come with their range.
@@ -43,7 +43,7 @@ void visit(Archive& io, State& s) {
     io(one.torque_size);
   }
   io(s.has_failed);
-  io.the_rest(s.zeros_at_start, 0, 3);
+  io.the_rest(s.multiplicities, 0, 3);
 }
 
 inline void require_modes_fit(bool fits) {

@@ -1,5 +1,8 @@
 #include "pendcore/dynamics/closed_form/double_pendulum_with_effects.hpp"
 
+#include "pendcore/effects/behaviour.hpp"
+#include "pendcore/effects/rotor_inertia.hpp"
+
 namespace pendcore {
 
 namespace {
@@ -19,8 +22,7 @@ DoublePendulumWithEffects<parts>::DoublePendulumWithEffects(const Scene& scene,
   // a sum of positive terms.
   Scene without = scene;
   std::erase_if(without.effects, [](const Effect& effect) {
-    const auto* one = std::get_if<RotorInertia>(&effect);
-    return one != nullptr && one->joint == 2;
+    return effect.is<RotorInertia>() && effect->joint() == 2;
   });
   const Inertia plain(without);
   const DoublePendulum bare(scene, plain);

@@ -6,6 +6,9 @@
 #include "pendcore/arithmetic/epsilon.hpp"
 #include "pendcore/dynamics/equations_of_motion.hpp"
 #include "pendcore/dynamics/kinematics.hpp"
+#include "pendcore/effects/behaviour.hpp"
+#include "pendcore/effects/joint_stop.hpp"
+#include "pendcore/effects/lock.hpp"
 #include "pendcore/scene/singular.hpp"
 
 namespace pendcore {
@@ -13,8 +16,7 @@ namespace {
 
 std::vector<bool> rigid_joints(const Scene& scene) {
   Scene free = scene;
-  const auto locks = std::erase_if(
-      free.effects, [](const Effect& effect) { return std::holds_alternative<Lock>(effect); });
+  const auto locks = std::erase_if(free.effects, &Effect::is<Lock>);
   if (locks == 0 || singular_somewhere(free).empty()) return {};
   return locked_joints(scene);
 }
@@ -31,7 +33,7 @@ HeldJoints::HeldJoints(const Scene& scene)
   supports_ = joint_supports(scene, forces_.inertia);
   natural_speed_ = std::ranges::max(supports_, {}, &JointSupport::natural_speed).natural_speed;
   can_hold_ = std::ranges::any_of(scene.effects, [](const Effect& effect) {
-    return holding_torque(effect) || std::holds_alternative<JointStop>(effect);
+    return effect->holding_torque() || effect.is<JointStop>();
   });
   for (std::vector<double>* row : {&held_qdd_, &free_qdd_, &torque_, &size_}) {
     row->assign(scene.links.size(), 0.0);
@@ -105,7 +107,7 @@ void HeldJoints::solve() {
 }
 
 void HeldJoints::choose(const EquationsOfMotion& equations, double t, const double* q,
-                        const double* qd, int surely) {
+                        const double* qd, int held_in_any_case) {
   EffectsInForce& effects = *equations.effects;
   std::vector<int>& joints = forces_.joints;
   ForcesBetweenBounds& problem = forces_.problem;
@@ -148,7 +150,7 @@ void HeldJoints::choose(const EquationsOfMotion& equations, double t, const doub
     const double angle = supports_[j].is_locked ? holds_[j].angle
                          : side != Side::none   ? supports_[j].stop(side).angle
                                                 : relative(q, j + 1);
-    if (supports_[j].is_locked || problem.at[r] == Bound::between || j == surely) {
+    if (supports_[j].is_locked || problem.at[r] == Bound::between || j == held_in_any_case) {
       hold(effects, j, angle);
     } else {
       put_friction(effects, j, problem.at[r] == Bound::lower ? 1 : -1);

@@ -3,27 +3,25 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pendcore/effects/behaviour.hpp"
+#include "pendcore/effects/joint_stop.hpp"
+#include "pendcore/effects/lock.hpp"
+
 namespace pendcore {
 namespace {
 
 /// Adds the couple of an effect to the joint that it acts on.
-void add_law(const Effect& effect, std::vector<JointSupport>& supports) {
-  std::visit(
-      [&]<class Kind>(const Kind& one) {
-        if constexpr (HasCouple<Kind>) {
-          const auto couple = one.couple(0);
-          if (!couple) return;
-          const double torque = std::abs(couple->held) + std::abs(couple->gain);
-          const double stiffness = std::abs(couple->on_phi);
-          const double damping = std::abs(couple->on_phid);
-          if (!std::isfinite(torque + stiffness + damping)) return;
-          JointSupport& joint = supports[one.joint - 1];
-          joint.torque += torque;
-          joint.stiffness += stiffness;
-          joint.damping += damping;
-        }
-      },
-      effect);
+void add_law(const EffectBehaviour& effect, std::vector<JointSupport>& supports) {
+  const auto couple = effect.couple(0);
+  if (!couple) return;
+  const double torque = std::abs(couple->held) + std::abs(couple->gain);
+  const double stiffness = std::abs(couple->on_phi);
+  const double damping = std::abs(couple->on_phid);
+  if (!std::isfinite(torque + stiffness + damping)) return;
+  JointSupport& joint = supports[effect.joint() - 1];
+  joint.torque += torque;
+  joint.stiffness += stiffness;
+  joint.damping += damping;
 }
 
 void set_natural_speeds(const Scene& scene, const Inertia& inertia,
@@ -57,17 +55,11 @@ void add_stop(const JointStop& stop, std::vector<JointSupport>& supports) {
 std::vector<JointSupport> joint_supports(const Scene& scene, const Inertia& inertia) {
   std::vector<JointSupport> supports(scene.links.size());
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
-    const Effect& effect = scene.effects[i];
-    if (const auto* lock = std::get_if<Lock>(&effect)) supports[lock->joint - 1].is_locked = true;
-    if (const auto torque = holding_torque(effect)) {
-      std::visit(
-          [&]<class Kind>(const Kind& one) {
-            if constexpr (OnJoint<Kind>) {
-              supports[one.joint - 1].friction += *torque;
-              supports[one.joint - 1].friction_effects.push_back(i);
-            }
-          },
-          effect);
+    const EffectBehaviour& effect = *scene.effects[i];
+    if (scene.effects[i].is<Lock>()) supports[effect.joint() - 1].is_locked = true;
+    if (const auto torque = effect.holding_torque()) {
+      supports[effect.joint() - 1].friction += *torque;
+      supports[effect.joint() - 1].friction_effects.push_back(i);
     }
     add_law(effect, supports);
   }

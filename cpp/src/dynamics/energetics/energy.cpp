@@ -2,6 +2,9 @@
 
 #include <vector>
 
+#include "pendcore/effects/behaviour.hpp"
+#include "pendcore/effects/payload.hpp"
+#include "pendcore/effects/rotor_inertia.hpp"
 #include "pendcore/text/message.hpp"
 
 namespace pendcore {
@@ -50,11 +53,8 @@ double potential_energy(const Scene& scene, double t, std::span<const double> q)
   }
   double kept = 0.0;
   for (const Effect& effect : scene.effects) {
-    std::visit(
-        [&]<class Kind>(const Kind& one) {
-          if constexpr (HasPotential<Kind>) kept += one.potential(relative(q.data(), one.joint));
-        },
-        effect);
+    const int joint = effect->joint();
+    if (joint > 0) kept += effect->potential(relative(q.data(), joint));
   }
   return kept - scene.gravity * moment;
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "pendcore/dynamics/kinematics.hpp"
+#include "pendcore/effects/behaviour.hpp"
+#include "pendcore/effects/payload.hpp"
 
 namespace pendcore {
 namespace {
@@ -28,22 +30,6 @@ void for_each_law(const EffectsInForce& effects, double t, const LinkMemory& lin
       visit_rows<Pack<4>>(effects, t, links, visit);
 }
 
-Account account_of(std::size_t kind) {
-  return [kind]<std::size_t... kinds>(std::index_sequence<kinds...>) {
-    constexpr std::array accounts = {std::variant_alternative_t<kinds, Effect>::info.account...};
-    return accounts[kind];
-  }(std::make_index_sequence<std::variant_size_v<Effect>>{});
-}
-
-bool has_wind(const Effect& effect) {
-  return std::visit(
-      []<class Kind>(const Kind& one) {
-        if constexpr (HasWind<Kind>) return one.has_wind();
-        return false;
-      },
-      effect);
-}
-
 template <class Powers>
 void book(Powers& power, Account account, double value) {
   power[static_cast<std::size_t>(account)] += is_loss(account) ? -value : value;
@@ -54,9 +40,9 @@ void book(Powers& power, Account account, double value) {
 std::vector<Account> accounts_of(const Scene& scene) {
   std::vector<Account> found;
   for (const Effect& effect : scene.effects) {
-    const Account account = info_of(effect).account;
+    const Account account = effect.info().account;
     if (account != Account::none) found.push_back(account);
-    if (has_wind(effect)) found.push_back(Account::wind);
+    if (effect->has_wind()) found.push_back(Account::wind);
   }
   std::ranges::sort(found);
   found.erase(std::ranges::unique(found).begin(), found.end());
@@ -113,39 +99,33 @@ void Ledger::add_laws(double t, Powers& power) {
         loads.couples * at.phid() + loads.moments * at.qd + loads.fx * at.vx() + loads.fy * at.vy();
     force_x_ += sum_of_lanes(loads.fx);
     force_y_ += sum_of_lanes(loads.fy);
-    const Account account = account_of(entry.kind());
     double value = sum_of_lanes(all);
     ActingEffects<Row>::visit(entry, [&]<class Law>(const Law& law) {
-      if constexpr (Dissipates<Law>) {
+      if constexpr (requires { law.dissipation(at); }) {
         const double lost = sum_of_lanes(law.dissipation(at));
         book(power, Account::wind, value + lost);
         value = -lost;
       }
     });
-    book(power, account, value);
+    book(power, entry.account, value);
   });
 }
 
 void Ledger::add_couples(double t, Powers& power) const {
   for (std::size_t i = 0; i < effects_->effects.size(); ++i) {
-    std::visit(
-        [&]<class Kind>(const Kind& effect) {
-          if constexpr (HasCouple<Kind>) {
-            const auto couple = effect.couple(effects_->modes[i]);
-            if (!couple) return;
-            const double phi = relative(&links_.q[1], effect.joint);
-            const double phid = relative(&links_.qd[1], effect.joint);
-            const int wave = effects_->number_of_wave[i];
-            const double sine = wave < 0 ? 0.0 : effects_->wave_sine[wave];
-            book(power, Kind::info.account, couple->torque(t, phi, phid, sine) * phid);
-          }
-        },
-        effects_->effects[i]);
+    const Effect& effect = effects_->effects[i];
+    const auto couple = effect->couple(effects_->modes[i]);
+    if (!couple) continue;
+    const double phi = relative(&links_.q[1], effect->joint());
+    const double phid = relative(&links_.qd[1], effect->joint());
+    const int wave = effects_->number_of_wave[i];
+    const double sine = wave < 0 ? 0.0 : effects_->wave_sine[wave];
+    book(power, effect.info().account, couple->torque(t, phi, phid, sine) * phid);
   }
 }
 
 void Ledger::add_users(double t, const double* q, const double* qd, Powers& power) {
-  for (const CompiledUser& user : effects_->users) {
+  for (const UserLaw& user : effects_->users) {
     std::ranges::fill(user_forces_, 0.0);
     user(t, static_cast<int>(user_forces_.size()), q, qd, user_forces_.data());
     for (std::size_t i = 0; i < user_forces_.size(); ++i) {

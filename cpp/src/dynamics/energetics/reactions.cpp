@@ -4,6 +4,7 @@
 
 #include "pendcore/dynamics/energetics/ledger.hpp"
 #include "pendcore/dynamics/equations_of_motion.hpp"
+#include "pendcore/effects/payload.hpp"
 #include "pendcore/text/message.hpp"
 
 namespace pendcore {

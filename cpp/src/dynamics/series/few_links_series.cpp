@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "pendcore/effects/rotor_inertia.hpp"
+
 namespace pendcore {
 
 template <int links>

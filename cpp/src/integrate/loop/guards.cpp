@@ -85,7 +85,7 @@ int Guards::along_step(int k) {
   const int other = k - discontinuities_.linear_guards();
   if (other < 0) {
     discontinuities_.polynomial(k, rows_.data(), degree_, dimension_, polynomial_.data());
-    const int zeros = discontinuities_.zeros_at_start(k);
+    const int zeros = discontinuities_.multiplicity_at_start(k);
     for (int p = 0; p < zeros; ++p) polynomial_[p] = 0.0;
     return degree_;
   }
@@ -151,7 +151,7 @@ void Guards::slopes_along_step(int k, double t, double h, double from) {
 Crossing Guards::where_slope_allows(Crossing crossing, double t, double h, int degree) {
   const int k = crossing.guard;
   const bool was_released =
-      k < discontinuities_.linear_guards() && discontinuities_.zeros_at_start(k) > 1;
+      k < discontinuities_.linear_guards() && discontinuities_.multiplicity_at_start(k) > 1;
   for (int dips = 0; dips < points; ++dips) {
     const double theta = crossing.theta;
     const bool at_start = theta * std::abs(h) <= last_bits_share * std::abs(t);
@@ -209,7 +209,7 @@ std::array<double, 3> Guards::start_of(int k) {
 /// curvature; 0 where neither is known.
 double Guards::rise_at_start(int k, double h) {
   const std::array<double, 3> along = start_of(k);
-  for (int order = discontinuities_.zeros_at_start(k); order <= 2; ++order) {
+  for (int order = discontinuities_.multiplicity_at_start(k); order <= 2; ++order) {
     const double rise = order == 1 ? along[1] * h : along[2];
     if (rise != 0.0) return rise;
   }
@@ -218,7 +218,7 @@ double Guards::rise_at_start(int k, double h) {
 
 /// Whether guard k belongs to a joint that rests on its stop and is pushed away from it.
 bool Guards::rises_from_rest(int k) {
-  if (k >= discontinuities_.linear_guards() || discontinuities_.zeros_at_start(k) == 0)
+  if (k >= discontinuities_.linear_guards() || discontinuities_.multiplicity_at_start(k) == 0)
     return false;
   const std::array<double, 3> along = start_of(k);
   return along[1] == 0.0 && along[2] > 0.0;
@@ -236,7 +236,8 @@ bool Guards::leaves_its_zero(int k, double t, double h, double value, double rou
 bool Guards::falls_at_start(int k, double t, double h, int halvings) {
   if (halvings == most_halvings) return true;
   stepper_.get_state(state_.data());
-  const int zeros = k < discontinuities_.linear_guards() ? discontinuities_.zeros_at_start(k) : 0;
+  const int zeros =
+      k < discontinuities_.linear_guards() ? discontinuities_.multiplicity_at_start(k) : 0;
   if (zeros == 0) {
     const double value = value_at(k, t);  // comes first, because rounding() uses it
     const double rounding = discontinuities_.rounding(k, state_.data());
@@ -254,12 +255,13 @@ bool Guards::contradicts_law_at_start(const Crossing& crossing, double h) {
 /// twice the crossing's share of the step. Then the crossing is an error of the dense output.
 bool Guards::is_of_error(const Crossing& crossing, double h) {
   const int k = crossing.guard;
-  if (k < 0 || k >= discontinuities_.linear_guards() || discontinuities_.zeros_at_start(k) == 0)
+  if (k < 0 || k >= discontinuities_.linear_guards() ||
+      discontinuities_.multiplicity_at_start(k) == 0)
     return false;
   const int degree = along_step(k);
   const std::array<double, 3> along = start_of(k);
-  if (discontinuities_.zeros_at_start(k) < 2) polynomial_[1] = along[1] * h;
-  const bool has_curvature = discontinuities_.zeros_at_start(k) < 3 && along[2] != 0.0;
+  if (discontinuities_.multiplicity_at_start(k) < 2) polynomial_[1] = along[1] * h;
+  const bool has_curvature = discontinuities_.multiplicity_at_start(k) < 3 && along[2] != 0.0;
   if (has_curvature) polynomial_[2] = along[2] * h * h;
   return first_negative(polynomial_.data(), degree) > 2.0 * crossing.theta;
 }
@@ -267,7 +269,7 @@ bool Guards::is_of_error(const Crossing& crossing, double h) {
 bool Guards::goes_below(double theta) {
   const int linear = discontinuities_.linear_guards();
   for (int k = 0; k < linear; ++k) {
-    if (discontinuities_.zeros_at_start(k) < 3) continue;
+    if (discontinuities_.multiplicity_at_start(k) < 3) continue;
     stepper_.get_state(state_.data());
     discontinuities_.polynomial(k, rows_.data(), degree_, dimension_, polynomial_.data());
     polynomial_[0] = polynomial_[1] = 0.0;
@@ -300,7 +302,7 @@ Guards::Miss Guards::miss(const Crossing& crossing, double t, double h) {
   const double slope = slope_at_end(polynomial_.data(), degree);
   if (slope == 0.0) return {0.0, 0.0};
   double g = 0.0;
-  if (other < 0 && discontinuities_.zeros_at_start(k) > 0) {
+  if (other < 0 && discontinuities_.multiplicity_at_start(k) > 0) {
     // The growth since the start of the step, without the rounding of the state itself.
     for (int p = degree; p > 0; --p) g += polynomial_[p];
     return {g / slope, 0.0};

@@ -114,7 +114,7 @@ PENDCORE_INLINE void ChainOf<Number>::collect_loads(double t) const {
     ChainLoads<Row> loads = loads_of(entry.row);
     Effects::add(entry, RowInArrays<Row>(links, t, entry.row), loads);
   }
-  for (const CompiledUser& user : effects.users) {
+  for (const UserLaw& user : effects.users) {
     Number* const Q = in(user_);
     for (int i = 0; i < n_; ++i) Q[i] = Number{};
     effects.call(user, t, in(q_), in(qd_), Q);

@@ -74,9 +74,9 @@ class HeldJoints {
   void lock(int joint, double angle, double* q);
 
   /// Decides at a state which joints at rest are held, and in which direction the others slide.
-  /// Joint `surely`, if it is at rest, is held whatever the solution of the problem is.
+  /// Joint `held_in_any_case`, if it is at rest, is held whatever the solution of the problem is.
   void choose(const EquationsOfMotion& equations, double t, const double* q, const double* qd,
-              int surely = -1);
+              int held_in_any_case = -1);
 
   /// The torques that hold the joints, N m, (n).
   void torques(const EquationsOfMotion& equations, double t, const double* q, const double* qd,

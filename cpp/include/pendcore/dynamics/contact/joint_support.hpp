@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "pendcore/dynamics/inertia.hpp"
-#include "pendcore/effects/law.hpp"
+#include "pendcore/effects/effect.hpp"
 #include "pendcore/scene/scene.hpp"
 
 namespace pendcore {

@@ -20,10 +20,10 @@
 /// A trajectory alone takes its links in rows, as its effects do. With a trajectory in each lane
 /// (ensemble/), a row is one link, and the same operations on it have the same bits.
 ///
-/// The effects are those that have a Couple (effects/law.hpp): polynomials of time, angle and rate,
-/// and waves. The source is the one of double_pendulum_series.hpp. Cost: four sums of products and
-/// some 40 operations for each link and order; a sine and cosine, a division and some 60 operations
-/// for each link and series.
+/// The effects are those that have a Couple (effects/laws.hpp): polynomials of time, angle and
+/// rate, and waves. The source is the one of double_pendulum_series.hpp. Cost: four sums of
+/// products and some 40 operations for each link and order; a sine and cosine, a division and some
+/// 60 operations for each link and series.
 #pragma once
 
 #include <memory>
@@ -117,7 +117,7 @@ class ConstantsOfChain {
   RowsInMemory<Number, Number> numbers_;
 };
 
-/// A wave that drives a joint, and an axis of a pivot (effects/law.hpp, effects/driven_pivot.hpp).
+/// A wave that drives a joint, and an axis of a pivot (effects/laws.hpp).
 template <class Number>
 struct JointWaveOf {
   int joint, wave;
@@ -128,7 +128,7 @@ struct PivotAxisOf {
   int wave;
   Number held, slope, gain;
 };
-inline PivotAxisOf<double> axis_of(const DrivenPivot::Law::Axis& one) {
+inline PivotAxisOf<double> axis_of(const PivotLaw::Axis& one) {
   return {one.wave, one.held, one.slope, one.gain};
 }
 
@@ -159,9 +159,9 @@ class EffectsOfChain {
   }
 
   int pivots() const { return static_cast<int>(effects_->pivots.size()); }
-  double start_of_pivot(int i) const { return effects_->pivots[i]->start; }
-  PivotAxisOf<double> pivot_x(int i) const { return axis_of(effects_->pivots[i]->x); }
-  PivotAxisOf<double> pivot_y(int i) const { return axis_of(effects_->pivots[i]->y); }
+  double start_of_pivot(int i) const { return effects_->pivots[i].start; }
+  PivotAxisOf<double> pivot_x(int i) const { return axis_of(effects_->pivots[i].x); }
+  PivotAxisOf<double> pivot_y(int i) const { return axis_of(effects_->pivots[i].y); }
 
   int couples() const { return static_cast<int>(effects_->couples.size()); }
   const Couples<Row>& couple(int i) const { return effects_->couples[i]; }
@@ -212,7 +212,7 @@ class ChainSeries {
  private:
   using Rows = RowsInMemory<Row, Number>;
   /// The factors of one link, which are the same for all orders of a series. The alignment is set
-  /// for the same reason as that of Couples (effects/law.hpp).
+  /// for the same reason as that of Couples (effects/laws.hpp).
   struct alignas(sizeof(Number)) Factors {
     Number nx, ny;         ///< across the link
     Number Bxx, Bxy, Byy;  ///< B of the links beyond

@@ -28,9 +28,9 @@ class Discontinuities {
   /// Guards are numbered from 0; the first `linear_guards()` of them are linear in the state.
   virtual int guards() const = 0;
   virtual int linear_guards() const = 0;
-  /// How many of a guard's value, slope and curvature are zero at the start of the next step,
-  /// whatever rounding makes of them.
-  virtual int zeros_at_start(int k) const = 0;
+  /// The multiplicity of the zero that a guard has at the start of the next step: how many of its
+  /// value, slope and curvature are zero, whatever rounding makes of them.
+  virtual int multiplicity_at_start(int k) const = 0;
   /// The coefficients of a linear guard along the dense output, a polynomial given by (degree + 1)
   /// rows of `dimension` numbers.
   virtual void polynomial(int k, const double* rows, int degree, int dimension,

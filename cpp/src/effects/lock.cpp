@@ -1,0 +1,11 @@
+#include "pendcore/effects/lock.hpp"
+
+#include "pendcore/effects/behaviour.hpp"
+
+namespace pendcore {
+
+std::shared_ptr<const EffectBehaviour> behaviour(Lock given) {
+  return std::make_shared<EffectOf<Lock>>(given);
+}
+
+}  // namespace pendcore
