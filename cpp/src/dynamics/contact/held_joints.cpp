@@ -16,7 +16,8 @@ namespace {
 
 std::vector<bool> rigid_joints(const Scene& scene) {
   Scene free = scene;
-  const auto locks = std::erase_if(free.effects, &Effect::is<Lock>);
+  const auto locks =
+      std::erase_if(free.effects, [](const Effect& effect) { return effect.is<Lock>(); });
   if (locks == 0 || singular_somewhere(free).empty()) return {};
   return locked_joints(scene);
 }
