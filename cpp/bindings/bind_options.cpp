@@ -13,10 +13,10 @@ namespace {
 
 /// Each of these takes the value of an option from Python.
 struct Taken {
-  const char* name;
+  const ParameterInfo& info;
   py::handle value;
   std::size_t n;  ///< links
-  const Options& options;
+  const char* name = info.name.data();
 
   void into(double& x) const { x = number(name, value); }
   void into(std::optional<double>& x) const { x = optional_number(name, value); }
@@ -39,7 +39,7 @@ struct Taken {
 
   void into(std::vector<double>& list) const {
     double alone = 0.0;
-    if (&list == &options.t_eval) {
+    if (!info.one_may_stand_for_all) {
       times_into(list);
     } else if (take_plain(value, alone)) {
       list.assign(1, alone);
@@ -79,7 +79,7 @@ py::array all(const std::vector<double>& numbers) {
 
 /// The value of one of the options, for Python.
 template <class Value>
-py::object given(const Options& options, const Value& value) {
+py::object given(const Options& options, const ParameterInfo& info, const Value& value) {
   if constexpr (std::same_as<Value, std::vector<Event>>) {
     return py::tuple();
   } else if constexpr (std::same_as<Value, std::optional<Store>>) {
@@ -87,7 +87,7 @@ py::object given(const Options& options, const Value& value) {
     return is_usual ? py::object(py::none()) : string(store_name(*value));
   } else if constexpr (std::same_as<Value, std::vector<double>>) {
     if (value.empty()) return py::none();
-    const bool is_one = value.size() == 1 && &value != &options.t_eval;
+    const bool is_one = value.size() == 1 && info.one_may_stand_for_all;
     return is_one ? py::object(py::float_(value[0])) : all(value);
   } else {
     return py::cast(value);
@@ -136,7 +136,7 @@ Options options_of(const py::dict& given, std::size_t n) {
     const std::string_view name = text_of(key);
     const auto take = [&, &value = value](const auto& one) {
       if (one.info.name != name) return false;
-      Taken{one.info.name.data(), value, n, options}.into(options.*(one.field));
+      Taken{one.info, value, n}.into(options.*(one.field));
       return true;
     };
     // They are asked until one takes the value.
@@ -150,7 +150,7 @@ Options options_of(const py::dict& given, std::size_t n) {
 py::dict as_python(const Options& options) {
   py::dict result;
   for_each_parameter(options, [&](const ParameterInfo& info, const auto& value) {
-    result[string(info.name)] = given(options, value);
+    result[string(info.name)] = given(options, info, value);
   });
   return result;
 }
@@ -160,7 +160,7 @@ void bind_options(py::module_& module) {
     py::list result;
     const Options usual;
     for_each_parameter(usual, [&](const ParameterInfo& info, const auto& value) {
-      result.append(descriptor(info, annotation(value), given(usual, value)));
+      result.append(descriptor(info, annotation(value), given(usual, info, value)));
     });
     return result;
   });

@@ -124,7 +124,8 @@ double MotorBehaviour::next_time(double t, bool forward) const {
 int MotorBehaviour::mode_at(double t, double phi, double phid, bool forward) const {
   if (table_) return piece_at(table_->t, t, forward);
   if (given_.pd) {
-    const double torque = given_.pd->kp * (given_.pd->reference - phi) - given_.pd->kd * phid;
+    const auto& [kp, kd, reference] = *given_.pd;
+    const double torque = kp * (reference - phi) - kd * phid;
     return torque > given_.limit ? 1 : torque < -given_.limit ? -1 : 0;
   }
   if (!given_.sinusoid || !is_clipped()) return 0;
@@ -141,9 +142,9 @@ int MotorBehaviour::mode_at(double t, double phi, double phid, bool forward) con
 std::vector<Guard> MotorBehaviour::guards(int mode) const {
   if (!given_.pd || !std::isfinite(given_.limit)) return {};
   auto guard = [&](double sign, double offset) {  // on the torque without the limit
-    return Guard{.offset = sign * given_.pd->kp * given_.pd->reference + offset,
-                 .on_phi = -sign * given_.pd->kp,
-                 .on_phid = -sign * given_.pd->kd};
+    const auto& [kp, kd, reference] = *given_.pd;
+    return Guard{
+        .offset = sign * kp * reference + offset, .on_phi = -sign * kp, .on_phid = -sign * kd};
   };
   if (mode != 0) return {guard(sign_of(mode), -given_.limit)};
   return {guard(-1.0, given_.limit), guard(1.0, given_.limit)};
@@ -160,10 +161,10 @@ std::optional<Couple> MotorBehaviour::couple(int mode) const {
     return Couple{.held = torque[mode], .slope = rise / (t[mode + 1] - t[mode]), .start = t[mode]};
   }
   if (mode != 0) return Couple{.held = sign_of(mode) * given_.limit};
-  if (given_.pd)
-    return Couple{.held = given_.pd->kp * given_.pd->reference,
-                  .on_phi = -given_.pd->kp,
-                  .on_phid = -given_.pd->kd};
+  if (given_.pd) {
+    const auto& [kp, kd, reference] = *given_.pd;
+    return Couple{.held = kp * reference, .on_phi = -kp, .on_phid = -kd};
+  }
   return given_.sinusoid ? Couple{.gain = given_.sinusoid->amplitude} : Couple{};
 }
 

@@ -1,5 +1,5 @@
 /// \file
-/// What is computed in a right-hand side: the sums of couples and the other laws of effects.
+/// A right-hand side computes what stands here: the sums of couples and the other laws of effects.
 ///
 /// A law is written once, for a row of joints or links: `Row` is double for a chain of one link, a
 /// Pair for two links, and a Pack<4> for every four links of a longer chain. Its fields are rows of

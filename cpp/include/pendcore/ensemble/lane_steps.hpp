@@ -149,7 +149,7 @@ struct NextStep {
   Real h;                ///< s
   Real bits;             ///< s, a few last bits of the time
   Integers is_in_reach;  ///< whether it leads to the end of the interval
-  Integers runs_alone;   ///< whether it is too small
+  Integers runs_alone;   ///< whether it is too small for the lanes
 };
 
 template <int width>
