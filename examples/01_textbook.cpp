@@ -14,8 +14,8 @@ int main() {
   const pendcore::Solution solution = pendcore::simulate(
       pendcore::Scene::textbook(), {pi / 4, pi / 3}, {0.0, 0.0}, 0.0, 5.0, options);
 
-  const double* end = solution.states.data() + solution.states.size() - 4;  // q_1, q_2, qd_1, qd_2
+  const pendcore::StateView end = solution.back();
   for (int i = 0; i < 2; ++i) {
-    std::printf("q_%d(5) = %.17g rad, qd_%d(5) = %.17g rad/s\n", i + 1, end[i], i + 1, end[2 + i]);
+    std::printf("q_%d(5) = %.17g rad, qd_%d(5) = %.17g rad/s\n", i + 1, end.q(i), i + 1, end.qd(i));
   }
 }

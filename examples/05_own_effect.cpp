@@ -30,8 +30,9 @@ int main() {
   const pendcore::Solution solution =
       pendcore::simulate(scene, {1.5, 1.5}, {0.0, 0.0}, 0.0, 30.0, options);
 
-  // A row is q_1, q_2, qd_1, qd_2, and what the ledger keeps: viscous, user.
-  const double* end = solution.states.data() + solution.states.size() - solution.dimension;
-  for (int i = 0; i < 2; ++i) std::printf("q_%d(30) = %.4f deg\n", i + 1, end[i] * 180.0 / pi);
-  std::printf("work of the water %.6f J, lost in the joints %.6f J\n", end[5], end[4]);
+  const pendcore::StateView end = solution.back();
+  for (int i = 0; i < 2; ++i) std::printf("q_%d(30) = %.4f deg\n", i + 1, end.q(i) * 180.0 / pi);
+  // The ledger keeps, in this order: viscous, user.
+  std::printf("work of the water %.6f J, lost in the joints %.6f J\n", end.accounts(1),
+              end.accounts(0));
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "calls.hpp"
+#include "simulate/steppers.hpp"
 
 namespace {
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "calls.hpp"
+#include "simulate/steppers.hpp"
 
 namespace {
 

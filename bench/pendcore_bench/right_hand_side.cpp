@@ -2,8 +2,8 @@
 // latency: each call waits for the accelerations of the call before, as the stages of a step do.
 // throughput: calls on states that do not depend on each other.
 #include <benchmark/benchmark.h>
-#include <pendcore/dynamics/closed_form/double_pendulum.hpp>
 #include <vector>
+#include "dynamics/closed_form/double_pendulum.hpp"
 
 #include "calls.hpp"
 

@@ -2,10 +2,10 @@
 // more order. Each series can only begin when the one before has ended, as in steps.
 #include <benchmark/benchmark.h>
 
-#include <pendcore/arithmetic/instruction_set.hpp>
-#include <pendcore/dynamics/equations_of_motion.hpp>
-#include <pendcore/dynamics/series/double_pendulum_series.hpp>
 #include <variant>
+#include "arithmetic/instruction_set.hpp"
+#include "dynamics/equations_of_motion.hpp"
+#include "dynamics/series/double_pendulum_series.hpp"
 
 namespace {
 

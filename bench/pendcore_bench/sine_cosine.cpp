@@ -1,8 +1,8 @@
 // Sine and cosine of a pack of angles, beside the C library's.
 // latency: each angle waits for the sine of the angle before. throughput: no angle waits.
+#include "arithmetic/sine_cosine.hpp"
 #include <benchmark/benchmark.h>
 #include <cmath>
-#include <pendcore/arithmetic/sine_cosine.hpp>
 #include <vector>
 
 #include "calls.hpp"

@@ -3,7 +3,7 @@
 // "a call" is a right-hand side, or a series for taylor.
 #include <benchmark/benchmark.h>
 #include <cmath>
-#include <pendcore/simulate/simulate.hpp>
+#include <pendcore/simulate.hpp>
 #include <vector>
 
 #include "calls.hpp"

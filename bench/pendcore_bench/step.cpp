@@ -5,8 +5,9 @@
 
 #include <cmath>
 #include <memory>
-#include <pendcore/simulate/simulate.hpp>
+#include <pendcore/simulate.hpp>
 #include <vector>
+#include "simulate/steppers.hpp"
 
 namespace {
 

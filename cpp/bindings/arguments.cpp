@@ -157,7 +157,7 @@ py::array view(const std::vector<double>& numbers, std::vector<py::ssize_t> shap
   return array;
 }
 
-py::array copy(const std::vector<double>& numbers, std::vector<py::ssize_t> shape) {
+py::array copy(std::span<const double> numbers, std::vector<py::ssize_t> shape) {
   return Array(std::move(shape), numbers.data());
 }
 

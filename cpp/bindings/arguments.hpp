@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "pendcore/arithmetic/bits.hpp"
+#include "arithmetic/bits.hpp"
 
 namespace pendcore::bindings {
 
@@ -53,6 +53,6 @@ py::array view(const std::vector<double>& numbers, std::vector<py::ssize_t> shap
                py::handle owner);
 
 /// An array of that shape with a copy of the numbers.
-py::array copy(const std::vector<double>& numbers, std::vector<py::ssize_t> shape);
+py::array copy(std::span<const double> numbers, std::vector<py::ssize_t> shape);
 
 }  // namespace pendcore::bindings

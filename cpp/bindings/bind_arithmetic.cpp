@@ -1,6 +1,6 @@
 #include "arguments.hpp"
-#include "pendcore/arithmetic/floating_point_environment.hpp"
-#include "pendcore/arithmetic/sine_cosine.hpp"
+#include "arithmetic/floating_point_environment.hpp"
+#include "arithmetic/sine_cosine.hpp"
 
 namespace pendcore::bindings {
 

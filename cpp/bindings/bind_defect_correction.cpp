@@ -1,8 +1,8 @@
 #include <tuple>
 #include <vector>
 
+#include "analysis/defect_correction.hpp"
 #include "arguments.hpp"
-#include "pendcore/analysis/defect_correction.hpp"
 
 namespace pendcore::bindings {
 namespace {

@@ -3,8 +3,8 @@
 #include <pybind11/stl.h>
 
 #include "arguments.hpp"
-#include "pendcore/effects/behaviour.hpp"
-#include "pendcore/effects/registry.hpp"
+#include "effects/behaviour.hpp"
+#include "pendcore/effects.hpp"
 #include "python_function.hpp"
 
 namespace pendcore::bindings {

@@ -5,12 +5,12 @@
 #include "arguments.hpp"
 #include "bind_events.hpp"
 #include "bind_options.hpp"
-#include "pendcore/ensemble/ensemble.hpp"
-#include "pendcore/ensemble/lanes.hpp"
-#include "pendcore/scene/degrees.hpp"
-#include "pendcore/scene/parameters.hpp"
+#include "ensemble/lanes.hpp"
+#include "pendcore/ensemble.hpp"
+#include "pendcore/parameters.hpp"
 #include "python_monitor.hpp"
 #include "run_state.hpp"
+#include "scene/degrees.hpp"
 
 namespace pendcore::bindings {
 namespace {

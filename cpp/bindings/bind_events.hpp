@@ -5,7 +5,7 @@
 
 #include <pybind11/pybind11.h>
 
-#include "pendcore/simulate/solution.hpp"
+#include "pendcore/solution.hpp"
 
 namespace pendcore::bindings {
 

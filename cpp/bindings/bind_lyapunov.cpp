@@ -1,4 +1,4 @@
-#include "pendcore/analysis/lyapunov.hpp"
+#include "pendcore/lyapunov.hpp"
 #include "python_monitor.hpp"
 #include "run_state.hpp"
 #include "start.hpp"

@@ -1,7 +1,8 @@
 #include <pybind11/stl.h>
 
 #include "arguments.hpp"
-#include "pendcore/integrate/methods.hpp"
+#include "integrate/method_list.hpp"
+#include "pendcore/methods.hpp"
 
 namespace pendcore::bindings {
 namespace {
@@ -100,7 +101,7 @@ void bind_methods(py::module_& module) {
       "methods",
       [] {
         py::list result;
-        for (const MethodInfo* info : Methods::infos) result.append(describe(*info));
+        for (const MethodInfo* info : methods()) result.append(describe(*info));
         return result;
       },
       "A dictionary for each method, with what is known of it.");

@@ -7,6 +7,7 @@
 
 #include "arguments.hpp"
 #include "bind_events.hpp"
+#include "simulate/checked_options.hpp"
 
 namespace pendcore::bindings {
 namespace {
@@ -37,14 +38,20 @@ struct Taken {
     store = found;
   }
 
-  void into(std::vector<double>& list) const {
+  void into(Tolerance& tolerance) const {
     double alone = 0.0;
-    if (!info.one_may_stand_for_all) {
-      times_into(list);
-    } else if (take_plain(value, alone)) {
-      list.assign(1, alone);
+    if (take_plain(value, alone)) {
+      tolerance.assign(1, alone);
     } else {
-      list = numbers(name, value, "a number or (" + std::to_string(2 * n) + ",)");
+      tolerance = numbers(name, value, "a number or (" + std::to_string(2 * n) + ",)");
+    }
+  }
+
+  void into(std::vector<double>& times) const {
+    if (value.is_none()) return;
+    times = numbers(name, value);
+    if (times.empty()) {
+      throw py::value_error(std::string(name) + ": is empty: must hold a time (s), or be left out");
     }
   }
 
@@ -63,14 +70,6 @@ struct Taken {
   std::string name_and_value() const {
     return std::string(name) + " = " + py::repr(value).cast<std::string>();
   }
-
-  void times_into(std::vector<double>& times) const {
-    if (value.is_none()) return;
-    times = numbers(name, value);
-    if (times.empty()) {
-      throw py::value_error(std::string(name) + ": is empty: must hold a time (s), or be left out");
-    }
-  }
 };
 
 py::array all(const std::vector<double>& numbers) {
@@ -79,16 +78,16 @@ py::array all(const std::vector<double>& numbers) {
 
 /// The value of one of the options, for Python.
 template <class Value>
-py::object given(const Options& options, const ParameterInfo& info, const Value& value) {
+py::object given(const Options& options, const Value& value) {
   if constexpr (std::same_as<Value, std::vector<Event>>) {
     return py::tuple();
   } else if constexpr (std::same_as<Value, std::optional<Store>>) {
     const bool is_usual = value.value_or(usual_store(options)) == usual_store(options);
     return is_usual ? py::object(py::none()) : string(store_name(*value));
+  } else if constexpr (std::same_as<Value, Tolerance>) {
+    return value.size() == 1 ? py::object(py::float_(value[0])) : all(value);
   } else if constexpr (std::same_as<Value, std::vector<double>>) {
-    if (value.empty()) return py::none();
-    const bool is_one = value.size() == 1 && info.one_may_stand_for_all;
-    return is_one ? py::object(py::float_(value[0])) : all(value);
+    return value.empty() ? py::object(py::none()) : all(value);
   } else {
     return py::cast(value);
   }
@@ -101,6 +100,7 @@ constexpr std::string_view annotation(const long long& /*x*/) { return "int"; }
 constexpr std::string_view annotation(const bool& /*x*/) { return "bool"; }
 constexpr std::string_view annotation(const std::string& /*x*/) { return "str"; }
 constexpr std::string_view annotation(const std::optional<Store>& /*x*/) { return "str | None"; }
+constexpr std::string_view annotation(const Tolerance& /*x*/) { return "npt.ArrayLike"; }
 constexpr std::string_view annotation(const std::vector<double>& /*x*/) { return "npt.ArrayLike"; }
 constexpr std::string_view annotation(const std::vector<Event>& /*x*/) { return "Iterable[Event]"; }
 
@@ -150,7 +150,7 @@ Options options_of(const py::dict& given, std::size_t n) {
 py::dict as_python(const Options& options) {
   py::dict result;
   for_each_parameter(options, [&](const ParameterInfo& info, const auto& value) {
-    result[string(info.name)] = given(options, info, value);
+    result[string(info.name)] = given(options, value);
   });
   return result;
 }
@@ -160,7 +160,7 @@ void bind_options(py::module_& module) {
     py::list result;
     const Options usual;
     for_each_parameter(usual, [&](const ParameterInfo& info, const auto& value) {
-      result.append(descriptor(info, annotation(value), given(usual, info, value)));
+      result.append(descriptor(info, annotation(value), given(usual, value)));
     });
     return result;
   });

@@ -4,7 +4,7 @@
 
 #include <pybind11/pybind11.h>
 
-#include "pendcore/simulate/options.hpp"
+#include "pendcore/options.hpp"
 
 namespace pendcore::bindings {
 

@@ -5,10 +5,12 @@
 #include <cstdio>
 #include <utility>
 
+#include "analysis/defect.hpp"
 #include "arguments.hpp"
 #include "bind_events.hpp"
 #include "bind_options.hpp"
-#include "pendcore/analysis/defect.hpp"
+#include "pendcore/simulate.hpp"
+#include "pendcore/solution.hpp"
 #include "python_monitor.hpp"
 #include "run_state.hpp"
 
@@ -19,7 +21,9 @@ py::ssize_t size(const std::vector<double>& numbers) {
   return static_cast<py::ssize_t>(numbers.size());
 }
 
-py::array copy_flat(const std::vector<double>& numbers) { return copy(numbers, {size(numbers)}); }
+py::array copy_flat(std::span<const double> numbers) {
+  return copy(numbers, {static_cast<py::ssize_t>(numbers.size())});
+}
 
 /// Every event that was asked for, as (kind, values).
 py::tuple event_pairs(const Run& run) {
@@ -48,8 +52,8 @@ py::dict arguments(const Run& run) {
   const Solution& s = run.solution;
   const std::ptrdiff_t n = s.n;
   py::dict result = as_python(s.options);
-  result["q0"] = copy_flat({s.start.begin(), s.start.begin() + n});
-  result["qd0"] = copy_flat({s.start.begin() + n, s.start.begin() + 2 * n});
+  result["q0"] = copy_flat(std::span(s.start).first(n));
+  result["qd0"] = copy_flat(std::span(s.start).subspan(n, n));
   result["t_start"] = s.t0;
   result["t_end"] = s.t_end;
   result["events"] = event_pairs(run);
@@ -123,7 +127,8 @@ py::dict ledger(const py::object& self) {
 }
 
 py::array rows_at(const Solution& s, const Array& t) {
-  return copy(s.at({t.data(), t.data() + t.size()}), {t.size(), s.dimension});
+  const Matrix rows = s.sample(View(t.data(), t.size()));
+  return Array({t.size(), py::ssize_t{s.dimension}}, rows.data());
 }
 
 py::array evaluate(const Run& run, const Array& t) {
@@ -169,7 +174,7 @@ void bind_run(py::module_& module) {
       .def_property_readonly("y_reached",
                              [](const Run& run) {
                                const std::vector<double>& y = run.solution.y_reached;
-                               return copy_flat({y.begin(), y.begin() + 2 * run.solution.n});
+                               return copy_flat(std::span(y).first(2 * run.solution.n));
                              })
       .def_property_readonly("status",
                              [](const Run& run) { return text(run.solution.status).name; })

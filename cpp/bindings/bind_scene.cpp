@@ -6,15 +6,15 @@
 #include <vector>
 
 #include "arguments.hpp"
+#include "arithmetic/floating_point_environment.hpp"
 #include "bind_effects.hpp"
-#include "pendcore/arithmetic/floating_point_environment.hpp"
-#include "pendcore/dynamics/cost.hpp"
-#include "pendcore/dynamics/energetics/energy.hpp"
-#include "pendcore/dynamics/energetics/reactions.hpp"
-#include "pendcore/dynamics/equations_of_motion.hpp"
-#include "pendcore/dynamics/jacobian.hpp"
-#include "pendcore/dynamics/kinematics.hpp"
-#include "pendcore/simulate/initial_state.hpp"
+#include "dynamics/cost.hpp"
+#include "dynamics/energetics/reactions.hpp"
+#include "dynamics/equations_of_motion.hpp"
+#include "dynamics/jacobian.hpp"
+#include "dynamics/kinematics.hpp"
+#include "pendcore/mechanics.hpp"
+#include "simulate/initial_state.hpp"
 
 namespace pendcore::bindings {
 namespace {
@@ -156,7 +156,12 @@ void bind_scene(py::module_& module) {
                     "A scene that was checked, as the core holds it.")
       .def_property_readonly("n", [](const Scene& scene) { return scene.links.size(); })
       .def_property_readonly("warnings", &plausibility_warnings)
-      .def("run_warnings", &run_warnings, py::arg("q0"), py::arg("t0"), py::arg("t_end"))
+      .def(
+          "run_warnings",
+          [](const Scene& scene, const std::vector<double>& q0, double t0, double t_end) {
+            return run_warnings(scene, q0, t0, t_end);
+          },
+          py::arg("q0"), py::arg("t0"), py::arg("t_end"))
       .def("accelerations", &acceleration_rows, py::arg("t"), py::arg("q"), py::arg("qd"))
       .def("acceleration_of_state", &acceleration_of_state, py::arg("t"), py::arg("q"),
            py::arg("qd"))

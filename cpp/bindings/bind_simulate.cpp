@@ -1,9 +1,12 @@
 #include <memory>
 #include <utility>
 
+#include "analysis/defect_correction.hpp"
 #include "bind_events.hpp"
 #include "bind_options.hpp"
+#include "pendcore/simulate.hpp"
 #include "python_monitor.hpp"
+#include "simulate/checked_options.hpp"
 #include "start.hpp"
 
 namespace pendcore::bindings {

@@ -4,6 +4,7 @@
 
 #include "arguments.hpp"
 #include "bind_events.hpp"
+#include "pendcore/solution.hpp"
 
 namespace pendcore::bindings {
 namespace {

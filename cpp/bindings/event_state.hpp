@@ -2,6 +2,7 @@
 /// The events of a solution as strings and arrays of numbers, for pickles and npz.
 #pragma once
 
+#include "pendcore/solution.hpp"
 #include "run.hpp"
 
 namespace pendcore::bindings {

@@ -8,7 +8,7 @@
 #include <exception>
 
 #include "pendcore/effects/user.hpp"
-#include "pendcore/integrate/events/event.hpp"
+#include "pendcore/events.hpp"
 
 namespace pendcore::bindings {
 

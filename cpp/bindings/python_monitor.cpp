@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "pendcore/solution.hpp"
 #include "python_function.hpp"
 
 namespace pendcore::bindings {

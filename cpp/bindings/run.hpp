@@ -5,7 +5,8 @@
 
 #include <pybind11/pybind11.h>
 
-#include "pendcore/simulate/simulate.hpp"
+#include "pendcore/simulate.hpp"
+#include "pendcore/solution.hpp"
 
 namespace pendcore::bindings {
 

@@ -7,9 +7,14 @@
 
 #include "arguments.hpp"
 #include "bind_effects.hpp"
+#include "dynamics/energetics/ledger.hpp"
 #include "event_state.hpp"
-#include "pendcore/dynamics/energetics/ledger.hpp"
-#include "pendcore/integrate/methods.hpp"
+#include "integrate/loop/integrate.hpp"
+#include "integrate/method_list.hpp"
+#include "pendcore/effects/user.hpp"
+#include "pendcore/methods.hpp"
+#include "pendcore/solution.hpp"
+#include "scene/effects_of_scene.hpp"
 
 namespace pendcore::bindings {
 namespace {
@@ -25,6 +30,9 @@ class Writer {
   }
   void operator()(const std::string& key, const std::vector<double>& values) {
     fields[py::str(key)] = copy(values, {static_cast<py::ssize_t>(values.size())});
+  }
+  void operator()(const std::string& key, const Tolerance& values) {
+    (*this)(key, static_cast<const std::vector<double>&>(values));
   }
   /// A number that was not given is a NaN.
   void operator()(const std::string& key, const std::optional<double>& value) {
@@ -54,6 +62,9 @@ class Reader {
   }
   void operator()(const std::string& key, std::vector<double>& values) const {
     values = numbers(key.c_str(), field(key));
+  }
+  void operator()(const std::string& key, Tolerance& values) const {
+    (*this)(key, static_cast<std::vector<double>&>(values));
   }
   void operator()(const std::string& key, std::optional<double>& value) const {
     double number = 0.0;
@@ -134,7 +145,11 @@ void visit(Archive& io, AnySolution& s) {
   io("resumable_t", s.resumable_t);
   io("resumable_steps", s.resumable_steps);
   io("resumable_found", s.resumable_found);
-  auto& p = s.resumable;
+}
+
+/// Every field of the position from which a solution can be resumed.
+template <class Archive, class AnyState>
+void visit_position(Archive& io, AnyState& p) {
   io("position_t", p.t.high);
   io("position_t_low", p.t.low);
   io("position_h", p.h);
@@ -159,9 +174,10 @@ bool arrays_fit(const Solution& s) {
   const auto n = static_cast<std::size_t>(s.dimension);
   const std::size_t steps = s.dense.h.size();
   return s.states.size() == s.t.size() * n && s.start.size() == n && s.y_reached.size() == n &&
-         s.resumable.y.size() == n && s.resumable.dydt.size() == n && s.resumable_t <= s.t.size() &&
-         s.resumable_steps <= steps && s.dense.start.size() == steps &&
-         s.dense.start_low.size() == steps && s.dense.degree >= 0 && s.dense.degree <= 64 &&
+         s.resumable->y.size() == n && s.resumable->dydt.size() == n &&
+         s.resumable_t <= s.t.size() && s.resumable_steps <= steps &&
+         s.dense.start.size() == steps && s.dense.start_low.size() == steps &&
+         s.dense.degree >= 0 && s.dense.degree <= 64 &&
          s.dense.coefficients.size() == steps * (static_cast<std::size_t>(s.dense.degree) + 1) * n;
 }
 
@@ -226,7 +242,7 @@ std::vector<Effect> effects_of_json(const std::string& json) {
 /// A damaged file must end in an error, never in memory that is not ours.
 void check_parts(const Solution& s) {
   if (!arrays_fit(s) || !polynomials_fit(s) || !counts_fit(s.statistics) ||
-      !position_fits(s.resumable)) {
+      !position_fits(*s.resumable)) {
     throw py::value_error("the parts of this solution do not fit together");
   }
 }
@@ -250,6 +266,7 @@ py::dict get_state(const Run& run) {
   io("gravity", scene.gravity);
   io("effects", json_of_effects(scene));
   visit(io, run.solution);
+  visit_position(io, *run.solution.resumable);
   put_events(io.fields, run.solution);
   return io.fields;
 }
@@ -270,6 +287,9 @@ Run set_state(const py::dict& state) {
   check(scene);
   Solution s;
   visit(io, s);
+  IntegratorState position;
+  visit_position(io, position);
+  s.resumable = std::make_shared<const IntegratorState>(std::move(position));
   // In runs kept before "auto" was a rule, "auto" is an alias of this pair.
   const std::string_view method = s.options.method;
   s.options.method = method == automatic ? dopri5_radau5.info.name : find_method(method).name;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "arguments.hpp"
-#include "pendcore/simulate/initial_state.hpp"
+#include "simulate/initial_state.hpp"
 
 namespace pendcore::bindings {
 

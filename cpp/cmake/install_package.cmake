@@ -11,5 +11,5 @@ configure_package_config_file(cpp/cmake/pendcoreConfig.cmake.in pendcoreConfig.c
                               INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(pendcoreConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/pendcoreConfig.cmake
-              ${PROJECT_BINARY_DIR}/pendcoreConfigVersion.cmake
+              ${PROJECT_BINARY_DIR}/pendcoreConfigVersion.cmake cpp/cmake/FindEigen.cmake
         DESTINATION ${package_dir})

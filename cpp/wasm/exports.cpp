@@ -10,8 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "pendcore/arithmetic/bits.hpp"
+#include "arithmetic/bits.hpp"
 #include "pendcore/pendcore.hpp"
+#include "scene/effects_of_scene.hpp"
+#include "text/message.hpp"
 
 #define EXPORTED(name) [[clang::export_name(#name)]]
 
@@ -49,6 +51,7 @@ void take(const std::string& name, std::optional<double>& x) {
   x = numbers_in[0];
 }
 void take(const std::string& /*name*/, std::vector<double>& x) { x = numbers_in; }
+void take(const std::string& /*name*/, Tolerance& x) { x = numbers_in; }
 void take(const std::string& name, bool& x) {
   one_number(name);
   x = numbers_in[0] != 0.0;
@@ -120,10 +123,10 @@ void set_option_called(const std::string& name, const std::string* word) {
 }
 
 /// n angles and n rates.
-struct State {
+struct StateIn {
   std::span<const double> q, qd;
 };
-State state_in(const Scene& scene) {
+StateIn state_in(const Scene& scene) {
   const std::size_t n = scene.links.size();
   if (numbers_in.size() != 2 * n) {
     throw std::invalid_argument("a state: must be " + std::to_string(2 * n) + " numbers");
@@ -136,8 +139,10 @@ State state_in(const Scene& scene) {
   return {{numbers_in.data(), n}, {numbers_in.data() + n, n}};
 }
 
-const double* out(std::vector<double> numbers) {
-  numbers_out = std::move(numbers);
+/// Numbers in their order: of a matrix, row by row.
+template <class Result>
+const double* out(const Result& numbers) {
+  numbers_out.assign(numbers.data(), numbers.data() + numbers.size());
   give_nan_one_sign(numbers_out);
   return numbers_out.data();
 }
@@ -204,10 +209,9 @@ EXPORTED(set_word) void set_word() {
 }
 /// The numbers are the state at t0.
 EXPORTED(simulate) const Run* simulate_run(const Scene* scene, double t0, double t_end) {
-  const State start = state_in(*scene);
+  const StateIn start = state_in(*scene);
   auto own = std::make_shared<const Scene>(*scene);
-  Solution solution = simulate(*own, {start.q.begin(), start.q.end()},
-                               {start.qd.begin(), start.qd.end()}, t0, t_end, options);
+  Solution solution = simulate(*own, start.q, start.qd, t0, t_end, options);
   return new Run{std::move(own), std::move(solution)};
 }
 /// The same run, continued to t_end, as if it had never stopped.
@@ -237,12 +241,12 @@ EXPORTED(words) const char* words(const Run* run) {
 /// Right-hand sides, Jacobians, factorisations, accepted steps, rejected ones.
 EXPORTED(statistics) const double* statistics(const Run* run) {
   const Statistics& one = run->solution.statistics;
-  return out({static_cast<double>(one.nfev), static_cast<double>(one.njev),
-              static_cast<double>(one.nlu), static_cast<double>(one.accepted),
-              static_cast<double>(one.rejected)});
+  return out(std::array{static_cast<double>(one.nfev), static_cast<double>(one.njev),
+                        static_cast<double>(one.nlu), static_cast<double>(one.accepted),
+                        static_cast<double>(one.rejected)});
 }
 /// States at the times given as numbers, from the dense output: (times, dimension).
-EXPORTED(at) const double* at(const Run* run) { return out(run->solution.at(numbers_in)); }
+EXPORTED(at) const double* at(const Run* run) { return out(run->solution.sample(numbers_in)); }
 
 /// The entries of the ledger after angles and rates, a line each; those of losses begin with -.
 EXPORTED(accounts) const char* accounts(const Run* run) {
@@ -261,30 +265,23 @@ EXPORTED(hash) std::uint64_t hash(const Run* run) { return fingerprint(run->solu
 // These evaluate a scene in a state, which JavaScript has put into the numbers.
 
 EXPORTED(accelerations) const double* accelerations_of(const Scene* scene, double t) {
-  const State state = state_in(*scene);
-  std::vector<double> qdd(state.q.size());
-  accelerations(equations_of_motion(*scene), t, state.q.data(), state.qd.data(), qdd.data());
-  return out(std::move(qdd));
+  const StateIn state = state_in(*scene);
+  return out(accelerations(*scene, t, state.q, state.qd));
 }
 /// The force on link i from link i - 1, (n, 2).
 EXPORTED(reactions) const double* reactions_of(const Scene* scene, double t) {
-  const State state = state_in(*scene);
-  std::vector<double> qdd(state.q.size()), forces(2 * state.q.size());
-  accelerations(equations_of_motion(*scene), t, state.q.data(), state.qd.data(), qdd.data());
-  reactions(*scene, t, state.q, state.qd, qdd, forces);
-  return out(std::move(forces));
+  const StateIn state = state_in(*scene);
+  return out(reactions(*scene, t, state.q, state.qd));
 }
 /// Kinetic and potential energy.
 EXPORTED(energies) const double* energies(const Scene* scene, double t) {
-  const State state = state_in(*scene);
-  return out({kinetic_energy(*scene, t, state.q, state.qd), potential_energy(*scene, t, state.q)});
+  const StateIn state = state_in(*scene);
+  return out(std::vector{kinetic_energy(*scene, t, state.q, state.qd),
+                         potential_energy(*scene, t, state.q)});
 }
 /// The pivot, the joints and the tip, (n + 1, 2).
 EXPORTED(positions) const double* positions_of(const Scene* scene, double t) {
-  const State state = state_in(*scene);
-  std::vector<double> points(2 * state.q.size() + 2);
-  positions(*scene, t, state.q, points);
-  return out(std::move(points));
+  return out(positions(*scene, t, state_in(*scene).q));
 }
 
 }  // extern "C"

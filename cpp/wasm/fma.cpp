@@ -1,4 +1,4 @@
-#include "pendcore/arithmetic/emulated_fma.hpp"
+#include "arithmetic/emulated_fma.hpp"
 
 /// Its calls stay calls: the loader finds them by this function's number.
 extern "C" [[clang::export_name("pendcore_fma"), gnu::noinline]] pendcore::Pack<2> pendcore_fma(

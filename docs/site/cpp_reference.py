@@ -1,4 +1,4 @@
-"""Writes the pages of the C++ reference: one for each folder of headers, from their comments.
+"""Writes the pages of the C++ reference from the comments of the public headers.
 
 A header begins with a comment that says what it is for; declarations have their own. Both are shown
 as they are written, because their equations are laid out as text.
@@ -12,28 +12,32 @@ from pathlib import Path
 
 ABOUT = re.compile(r"\A/// \\file\n((?:///.*\n)+)")
 DIRECTIVE = re.compile(r"^#(?:.*\\\n)*.*\n", re.MULTILINE)
-TITLES = {
-    "scene": "Scenes", "effects": "Effects", "simulate": "Runs", "ensemble": "Ensembles",
-    "integrate": "Integrators",
-    "dynamics": "Equations of motion", "analysis": "Analysis", "arithmetic": "Arithmetic",
-    "text": "Messages",
-}  # fmt: skip
+PAGES = {
+    "Scenes": ["scene", "parameters", "descriptor", "vector"],
+    "Effects": ["effects", "effects/*"],
+    "Runs": ["simulate", "options", "methods", "events", "solution", "status"],
+    "Equations": ["equations", "mechanics"],
+    "Ensembles": ["ensemble", "lyapunov"],
+}
+"""The headers of each page. `pendcore.hpp` includes them all and says nothing itself."""
 
 
 def write(headers: Path, folder: Path) -> None:
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    folders = {path.name for path in headers.iterdir() if path.is_dir()}
-    if folders != {*TITLES}:
-        raise ValueError(f"TITLES and the folders of headers differ in {folders ^ {*TITLES}}")
-    for name, title in TITLES.items():
-        found = sorted((headers / name).rglob("*.hpp"))
-        text = [f"# {title}", "", f"Headers in `pendcore/{name}`.", ""]
-        for header in found:
-            text += section(headers / name, header)
-        (folder / f"{name}.md").write_text("\n".join(text) + "\n")
+    shown = {headers / "pendcore.hpp"}
+    for title, names in PAGES.items():
+        text = [f"# {title}", ""]
+        for name in names:
+            for header in sorted(headers.glob(f"{name}.hpp")):
+                text += section(headers, header)
+                shown.add(header)
+        (folder / f"{title.lower()}.md").write_text("\n".join(text) + "\n")
+    if missing := {*headers.rglob("*.hpp")} - shown:
+        raise ValueError(f"PAGES has no place for {sorted(map(str, missing))}")
     about = "The headers, from their comments. A first program: [](../../how_to/cpp.md)."
-    lines = ["# C++", "", about, "", ":::{toctree}", ":maxdepth: 1", "", *TITLES, ":::"]
+    pages = [title.lower() for title in PAGES]
+    lines = ["# C++", "", about, "", ":::{toctree}", ":maxdepth: 1", "", *pages, ":::"]
     (folder / "index.md").write_text("\n".join(lines) + "\n")
 
 

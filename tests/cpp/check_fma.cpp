@@ -10,7 +10,7 @@
 #include <iterator>
 #include <utility>
 
-#include "pendcore/arithmetic/emulated_fma.hpp"
+#include "arithmetic/emulated_fma.hpp"
 
 using namespace pendcore;
 

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include "pendcore/pendcore.hpp"
+#include "simulate/steppers.hpp"
 
 using namespace pendcore;
 

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "pendcore/integrate/radau/gaussian_elimination.hpp"
+#include "integrate/radau/gaussian_elimination.hpp"
 
 using namespace pendcore;
 

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "dynamics/equations_of_motion.hpp"
+#include "dynamics/jacobian.hpp"
 #include "pendcore/pendcore.hpp"
 
 using namespace pendcore;

@@ -3,8 +3,9 @@
 
 #include <vector>
 
-#include "pendcore/simulate/event_finder.hpp"
-#include "pendcore/simulate/simulate.hpp"
+#include "pendcore/simulate.hpp"
+#include "simulate/event_finder.hpp"
+#include "simulate/steppers.hpp"
 
 using namespace pendcore;
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "pendcore/arithmetic/exponential.hpp"
+#include "arithmetic/exponential.hpp"
 
 using namespace pendcore;
 

@@ -6,9 +6,9 @@
 #include <random>
 #include <vector>
 
-#include "pendcore/dynamics/kinematics.hpp"
+#include "dynamics/kinematics.hpp"
 #include "pendcore/effects/joint_stop.hpp"
-#include "pendcore/simulate/switching.hpp"
+#include "simulate/switching.hpp"
 
 using namespace pendcore;
 

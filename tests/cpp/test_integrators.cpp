@@ -5,12 +5,12 @@
 #include <memory>
 #include <vector>
 
-#include "pendcore/integrate/loop/first_step.hpp"
-#include "pendcore/integrate/loop/integrate.hpp"
-#include "pendcore/integrate/methods.hpp"
-#include "pendcore/integrate/radau/implicit_runge_kutta.hpp"
-#include "pendcore/integrate/runge_kutta/runge_kutta_fixed.hpp"
-#include "pendcore/integrate/runge_kutta/runge_kutta_in_memory.hpp"
+#include "integrate/loop/first_step.hpp"
+#include "integrate/loop/integrate.hpp"
+#include "integrate/method_list.hpp"
+#include "integrate/radau/implicit_runge_kutta.hpp"
+#include "integrate/runge_kutta/runge_kutta_fixed.hpp"
+#include "integrate/runge_kutta/runge_kutta_in_memory.hpp"
 
 using namespace pendcore;
 
@@ -153,7 +153,7 @@ template <const auto&... tables>
 constexpr auto and_one_without_error_estimate(MethodList<tables...>) {
   return MethodList<tables..., tested::classical_4>{};
 }
-const auto methods = and_one_without_error_estimate(Methods{});
+const auto every_method = and_one_without_error_estimate(Methods{});
 
 /// Whether a method is a series, which only pendulums have.
 template <const auto& method>
@@ -172,7 +172,7 @@ void for_each_method(MethodList<tables...>, Check check) {
 }  // namespace
 
 TEST_CASE("the error falls with the order of the method, time-dependent rates included") {
-  for_each_method(methods, []<const auto & method>() {
+  for_each_method(every_method, []<const auto & method>() {
     CAPTURE(method.info.name);
     const double exact = std::exp(std::sin(2.0));
     auto error = [&](double h) {
@@ -189,7 +189,7 @@ TEST_CASE("the error falls with the order of the method, time-dependent rates in
 }
 
 TEST_CASE("class A of DETEST ends within ten tolerances of its closed forms, or thirty") {
-  for_each_method(methods, []<const auto & method>() {
+  for_each_method(every_method, []<const auto & method>() {
     if (method.info.error_order == 0) return;
     CAPTURE(method.info.name);
     // SciPy's DOP853, another program with that table, is off by 21 times the finest tolerance.
@@ -209,7 +209,7 @@ TEST_CASE("class A of DETEST ends within ten tolerances of its closed forms, or 
 }
 
 TEST_CASE("a step limited by stability is flagged as stiff in bounded work") {
-  for_each_method(methods, []<const auto & method>() {
+  for_each_method(every_method, []<const auto & method>() {
     if (method.info.stability == 0.0 || method.info.kind == MethodKind::pair) return;
     CAPTURE(method.info.name);
     const Result stiff = solve<method, decaying>({.tolerance = 1e-3, .max_steps = 10'000});
@@ -222,7 +222,7 @@ TEST_CASE("a step limited by stability is flagged as stiff in bounded work") {
 }
 
 TEST_CASE("a motion that blows up ends as step_too_small or non_finite, near the pole") {
-  for_each_method(methods, []<const auto & method>() {
+  for_each_method(every_method, []<const auto & method>() {
     if (method.info.error_order == 0) return;
     CAPTURE(method.info.name);
     const Result result = solve<method, exploding>({.t_end = 2.0, .tolerance = 1e-6});
@@ -235,7 +235,7 @@ TEST_CASE("a motion that blows up ends as step_too_small or non_finite, near the
 }
 
 TEST_CASE("a rate that is not a number is never accepted") {
-  for_each_method(methods, []<const auto & method>() {
+  for_each_method(every_method, []<const auto & method>() {
     if (method.info.error_order == 0) return;
     CAPTURE(method.info.name);
     const Result from_one = solve<method, undefined_from_one>({.t_end = 2.0});
@@ -266,7 +266,7 @@ TEST_CASE("a rate that is not a number is never accepted") {
 }
 
 TEST_CASE("a fixed step that is not finite ends the run") {
-  for_each_method(methods, []<const auto & method>() {
+  for_each_method(every_method, []<const auto & method>() {
     CAPTURE(method.info.name);
     const Result result = solve<method, undefined_from_one>({.t_end = 2.0, .step = 0.125});
     CHECK(result.status == Status::non_finite);
@@ -278,7 +278,7 @@ TEST_CASE("a fixed step that is not finite ends the run") {
 }
 
 TEST_CASE("a time that is too large for the step is reported plainly") {
-  for_each_method(methods, []<const auto & method>() {
+  for_each_method(every_method, []<const auto & method>() {
     CAPTURE(method.info.name);
     const Result result =
         solve<method, growing>({.t0 = 1e17, .t_end = 1e17 + 1e6, .tolerance = 1e-9, .step = 0.01});
@@ -288,7 +288,7 @@ TEST_CASE("a time that is too large for the step is reported plainly") {
 }
 
 TEST_CASE("the interval of a hundred units in the last place is crossed") {
-  for_each_method(methods, []<const auto & method>() {
+  for_each_method(every_method, []<const auto & method>() {
     if (method.info.error_order == 0) return;
     const double t_end = 1.0 + 100 * std::numeric_limits<double>::epsilon();
     const Result result = solve<method, growing>({.t0 = 1.0, .t_end = t_end});
@@ -298,7 +298,7 @@ TEST_CASE("the interval of a hundred units in the last place is crossed") {
 }
 
 TEST_CASE("the cap on steps is exact") {
-  for_each_method(methods, []<const auto & method>() {
+  for_each_method(every_method, []<const auto & method>() {
     if (method.info.error_order == 0) return;
     const Result result =
         solve<method, growing>({.t_end = 100.0, .tolerance = 1e-10, .max_steps = 37});

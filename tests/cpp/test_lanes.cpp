@@ -5,8 +5,10 @@
 #include <memory>
 #include <utility>
 
-#include "pendcore/ensemble/lanes.hpp"
+#include "arithmetic/instruction_set.hpp"
+#include "ensemble/lanes.hpp"
 #include "pendcore/pendcore.hpp"
+#include "simulate/step_watch.hpp"
 
 using namespace pendcore;
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "pendcore/analysis/lobatto_points.hpp"
+#include "analysis/lobatto_points.hpp"
 
 using namespace pendcore;
 

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <random>
 
-#include "pendcore/arithmetic/dual.hpp"
-#include "pendcore/dynamics/closed_form/double_pendulum.hpp"
-#include "pendcore/dynamics/closed_form/double_pendulum_with_effects.hpp"
-#include "pendcore/dynamics/closed_form/single_pendulum.hpp"
-#include "pendcore/effects/registry.hpp"
+#include "arithmetic/dual.hpp"
+#include "dynamics/closed_form/double_pendulum.hpp"
+#include "dynamics/closed_form/double_pendulum_with_effects.hpp"
+#include "dynamics/closed_form/single_pendulum.hpp"
+#include "pendcore/effects.hpp"
 
 using namespace pendcore;
 

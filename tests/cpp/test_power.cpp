@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-#include "pendcore/arithmetic/power.hpp"
+#include "arithmetic/power.hpp"
 
 using namespace pendcore;
 

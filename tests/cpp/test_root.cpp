@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "pendcore/integrate/events/root.hpp"
+#include "integrate/events/root.hpp"
 #include "polynomials.hpp"
 
 using namespace pendcore;

@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "pendcore/arithmetic/sine_cosine.hpp"
+#include "arithmetic/sine_cosine.hpp"
 
 using namespace pendcore;
 

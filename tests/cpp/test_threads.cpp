@@ -10,7 +10,7 @@
 #include <limits>
 #include <thread>
 
-#include "pendcore/arithmetic/bits.hpp"
+#include "arithmetic/bits.hpp"
 #include "pendcore/pendcore.hpp"
 
 using namespace pendcore;
@@ -119,12 +119,12 @@ std::vector<double> all_of(const Shared& shared) {
     }
   }
   const double reached = shared.begun.t_reached;
-  keep(shared.begun.at({0.0, 0.1 * reached, 0.7 * reached, reached}));
-  const std::size_t n = shared.scene.links.size();
+  const Matrix sampled = shared.begun.sample({0.0, 0.1 * reached, 0.7 * reached, reached});
+  found.insert(found.end(), sampled.data(), sampled.data() + sampled.size());
   for (std::size_t i = 0; i < whole.t.size(); i += 20) {
-    const double* const q = whole.states.data() + i * static_cast<std::size_t>(whole.dimension);
-    found.push_back(kinetic_energy(shared.scene, whole.t[i], {q, n}, {q + n, n}));
-    found.push_back(potential_energy(shared.scene, whole.t[i], {q, n}));
+    const StateView at = whole[i];
+    found.push_back(kinetic_energy(shared.scene, at.t, at.q, at.qd));
+    found.push_back(potential_energy(shared.scene, at.t, at.q));
   }
   return found;
 }

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "pendcore/arithmetic/two_double.hpp"
+#include "arithmetic/two_double.hpp"
 
 using namespace pendcore;
 

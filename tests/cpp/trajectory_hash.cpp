@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "pendcore/arithmetic/bits.hpp"
+#include "arithmetic/bits.hpp"
 #include "pendcore/pendcore.hpp"
 
 using namespace pendcore;

@@ -36,7 +36,21 @@ CPP_FLOW = {
     },
 }
 ALL_OF_IT = "pendcore.hpp"
-"""The header that includes the whole core: for users, and for the bindings."""
+"""The header that includes the whole door: for users, and for WebAssembly."""
+
+# The door's headers are flat; each belongs to a stage.
+STAGE_OF_PUBLIC_HEADER = {
+    **dict.fromkeys(["descriptor.hpp"], "text"),
+    **dict.fromkeys(["vector.hpp"], "arithmetic"),
+    **dict.fromkeys(["effects.hpp"], "effects"),
+    **dict.fromkeys(["scene.hpp", "parameters.hpp"], "scene"),
+    **dict.fromkeys(["equations.hpp", "mechanics.hpp"], "dynamics"),
+    **dict.fromkeys(["status.hpp", "methods.hpp", "events.hpp"], "integrate"),
+    **dict.fromkeys(["options.hpp", "solution.hpp", "simulate.hpp"], "simulate"),
+    **dict.fromkeys(["lyapunov.hpp"], "analysis"),
+    **dict.fromkeys(["ensemble.hpp"], "ensemble"),
+}
+MOST_PUBLIC_HEADERS = 30
 
 # Python's layers, each above those that it may import: the folders of the package, the compiled
 # core below them. The package's own files, the names that users import, are `pendcore` itself.
@@ -84,23 +98,44 @@ def without_texts(code: str) -> str:
     return re.sub(r'"(?:\\.|[^"\\\n])*"', '""', code)
 
 
+def stage_of(header: str) -> str:
+    """Return the stage of a header by its place in the door or in cpp/src."""
+    first = header.partition("/")[0]
+    return STAGE_OF_PUBLIC_HEADER.get(first, first)
+
+
 def includes_follow_the_flow(root: Path) -> Iterator[str]:
     cpp = root / "cpp"
     for base in (cpp / "include/pendcore", cpp / "src"):
         for path in files(base, {".hpp", ".cpp"}, ""):
             place = path.relative_to(base)
-            stage = place.parts[0]
+            stage = stage_of(str(place))
             if place.name == ALL_OF_IT:
                 continue
             if stage not in CPP_FLOW:
                 yield f"{path.relative_to(root)} stands in no folder of the flow"
                 continue
             for mark, name in includes_of(path):
-                inside = name.removeprefix("pendcore/")
-                if inside == name and mark == '"':
-                    yield f"{path.relative_to(root)} includes {name}, not by its place in pendcore/"
-                elif inside != name and inside.partition("/")[0] not in CPP_FLOW[stage] | {stage}:
-                    yield f"{path.relative_to(root)} ({stage}) includes {name}"
+                included = stage_of(name.removeprefix("pendcore/"))
+                if included in CPP_FLOW:
+                    if included not in CPP_FLOW[stage] | {stage}:
+                        yield f"{path.relative_to(root)} ({stage}) includes {name}"
+                elif mark == '"':
+                    yield f"{path.relative_to(root)} includes {name}, not by its place"
+
+
+def the_door_is_small(root: Path) -> Iterator[str]:
+    """What is installed includes nothing that is not, and stays within its budget."""
+    door = root / "cpp/include/pendcore"
+    headers = list(files(door, {".hpp"}, ""))
+    if len(headers) > MOST_PUBLIC_HEADERS:
+        yield f"{len(headers)} public headers: more than {MOST_PUBLIC_HEADERS}"
+    for path in headers:
+        for mark, name in includes_of(path):
+            if mark == '"' and not (
+                name.startswith("pendcore/") and (door.parent / name).is_file()
+            ):
+                yield f"{path.relative_to(root)} includes {name}, which is not public"
 
 
 def includes_of(path: Path) -> list[tuple[str, str]]:
@@ -108,15 +143,11 @@ def includes_of(path: Path) -> list[tuple[str, str]]:
 
 
 def sources_stand_where_their_headers_do(root: Path) -> Iterator[str]:
-    """cpp/src has the folders of the headers."""
-    cpp = root / "cpp"
-    for path in files(cpp / "src", {".cpp"}, ""):
-        place = path.relative_to(cpp / "src")
-        folder = cpp / "include/pendcore" / place.parent
-        if not folder.is_dir():
-            yield f"{path.relative_to(root)}: cpp/include/pendcore has no folder {place.parent}"
-        elsewhere = list((cpp / "include/pendcore").rglob(f"{path.stem}.hpp"))
-        if elsewhere and not (folder / f"{path.stem}.hpp").is_file():
+    """A private header and the source of its name are neighbours."""
+    src = root / "cpp/src"
+    for path in files(src, {".cpp"}, ""):
+        elsewhere = list(src.rglob(f"{path.stem}.hpp"))
+        if elsewhere and not path.with_suffix(".hpp").is_file():
             yield f"{path.relative_to(root)} stands in another folder than {elsewhere[0].name}"
 
 
@@ -233,7 +264,7 @@ def kernels_call_no_libm(root: Path) -> Iterator[str]:
     cpp = root / "cpp"
     for base in (cpp / "include/pendcore", cpp / "src"):
         for path in files(base, {".hpp", ".cpp"}, ""):
-            if path.relative_to(base).parts[0] not in KERNELS:
+            if stage_of(str(path.relative_to(base))) not in KERNELS:
                 continue
             for found in call.findall(without_texts(without_comments(path.read_text()))):
                 yield f"{path.relative_to(root)} calls {found}...)"
@@ -269,6 +300,7 @@ def workflows_are_pinned(root: Path) -> Iterator[str]:
 
 RULES: list[Rule] = [
     includes_follow_the_flow,
+    the_door_is_small,
     sources_stand_where_their_headers_do,
     imports_go_down,
     imports_form_no_circle,

@@ -11,8 +11,8 @@ from reference import minimax
 pytestmark = pytest.mark.unsanitized
 
 CPP = Path(__file__).parents[2] / "cpp"
-SINE_COSINE = CPP / "include/pendcore/arithmetic/sine_cosine.hpp"
-POWER = CPP / "include/pendcore/arithmetic/power.hpp"
+SINE_COSINE = CPP / "src/arithmetic/sine_cosine.hpp"
+POWER = CPP / "src/arithmetic/power.hpp"
 
 
 def hexadecimal(x) -> str:

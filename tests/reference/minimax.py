@@ -1,7 +1,7 @@
 """The polynomials of the core's sine, cosine and powers of two, made anew: Remez exchange.
 
 Run it (``python tests/reference/minimax.py``) to print the coefficients of
-cpp/include/pendcore/arithmetic/{sine_cosine,power}.hpp with the largest error of each.
+cpp/src/arithmetic/{sine_cosine,power}.hpp with the largest error of each.
 """
 
 from __future__ import annotations

@@ -1,11 +1,11 @@
 // pendcore's own core as a C++ user calls it: pendcore::simulate with states at the given times,
 // including the result object.
 #include <cstddef>
-#include <pendcore/integrate/methods.hpp>
 #include <pendcore/pendcore.hpp>
 #include <utility>
 #include <vector>
 
+#include "arithmetic/instruction_set.hpp"
 #include "contender.hpp"
 
 namespace contenders {
@@ -81,7 +81,7 @@ Contender core(const std::string& method) {
 
 std::vector<Contender> contenders() {
   std::vector<Contender> all;
-  for (const pendcore::MethodInfo* known : pendcore::Methods::infos)
+  for (const pendcore::MethodInfo* known : pendcore::methods())
     all.push_back(core(std::string(known->name)));
   return all;
 }

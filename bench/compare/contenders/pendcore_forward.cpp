@@ -1,12 +1,15 @@
 // pendcore's right-hand side as a C++ user calls it, and within whole runs.
-#include <pendcore/dynamics/first_order.hpp>
-#include <pendcore/integrate/methods.hpp>
-#include <pendcore/integrate/runge_kutta/runge_kutta_fixed.hpp>
 #include <pendcore/pendcore.hpp>
 #include <utility>
+#include "dynamics/first_order.hpp"
+#include "integrate/method_list.hpp"
+#include "integrate/runge_kutta/runge_kutta_fixed.hpp"
 
+#include "arithmetic/instruction_set.hpp"
 #include "effect_parameters.hpp"
+#include "effects/laws.hpp"
 #include "forward_dynamics.hpp"
+#include "simulate/steppers.hpp"
 
 namespace contenders {
 namespace {

@@ -8,7 +8,7 @@
 
 #include <tuple>
 
-#include "pendcore/arithmetic/pair.hpp"
+#include "arithmetic/pair.hpp"
 
 namespace pendcore {
 

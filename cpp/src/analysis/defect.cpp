@@ -1,13 +1,13 @@
-#include "pendcore/analysis/defect.hpp"
+#include "analysis/defect.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "pendcore/arithmetic/floating_point_environment.hpp"
-#include "pendcore/arithmetic/pack.hpp"
-#include "pendcore/dynamics/equations_of_motion.hpp"
-#include "pendcore/dynamics/joint_forces.hpp"
+#include "arithmetic/floating_point_environment.hpp"
+#include "arithmetic/pack.hpp"
+#include "dynamics/equations_of_motion.hpp"
+#include "dynamics/joint_forces.hpp"
 
 namespace pendcore {
 namespace {

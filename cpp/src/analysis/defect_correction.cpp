@@ -1,4 +1,4 @@
-#include "pendcore/analysis/defect_correction.hpp"
+#include "analysis/defect_correction.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,8 +8,8 @@
 #include <string>
 #include <utility>
 
-#include "pendcore/analysis/defect_correction_kernels.hpp"
-#include "pendcore/dynamics/equations_of_motion.hpp"
+#include "analysis/defect_correction_kernels.hpp"
+#include "dynamics/equations_of_motion.hpp"
 
 namespace pendcore {
 namespace {

@@ -1,4 +1,4 @@
-#include "pendcore/analysis/lobatto_points.hpp"
+#include "analysis/lobatto_points.hpp"
 
 #include <algorithm>
 #include <stdexcept>

@@ -1,24 +1,27 @@
-#include "pendcore/analysis/lyapunov.hpp"
+#include "pendcore/lyapunov.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
 
-#include "pendcore/analysis/tangent_series.hpp"
-#include "pendcore/arithmetic/exponential.hpp"
-#include "pendcore/arithmetic/floating_point_environment.hpp"
-#include "pendcore/dynamics/jacobian.hpp"
-#include "pendcore/dynamics/series/double_pendulum_series.hpp"
-#include "pendcore/dynamics/series/few_links_series.hpp"
-#include "pendcore/dynamics/tangent_space.hpp"
-#include "pendcore/integrate/loop/first_step.hpp"
-#include "pendcore/integrate/runge_kutta/dormand_prince_8.hpp"
-#include "pendcore/integrate/runge_kutta/runge_kutta_in_memory.hpp"
-#include "pendcore/integrate/taylor/taylor_stepper.hpp"
-#include "pendcore/simulate/initial_state.hpp"
-#include "pendcore/simulate/options.hpp"
-#include "pendcore/text/message.hpp"
+#include "analysis/tangent_series.hpp"
+#include "arithmetic/exponential.hpp"
+#include "arithmetic/floating_point_environment.hpp"
+#include "dynamics/jacobian.hpp"
+#include "dynamics/series/double_pendulum_series.hpp"
+#include "dynamics/series/few_links_series.hpp"
+#include "dynamics/tangent_space.hpp"
+#include "integrate/loop/first_step.hpp"
+#include "integrate/loop/integrate.hpp"
+#include "integrate/runge_kutta/dormand_prince_8.hpp"
+#include "integrate/runge_kutta/runge_kutta_in_memory.hpp"
+#include "integrate/taylor/taylor_stepper.hpp"
+#include "pendcore/options.hpp"
+#include "scene/effects_of_scene.hpp"
+#include "simulate/checked_options.hpp"
+#include "simulate/initial_state.hpp"
+#include "text/message.hpp"
 
 namespace pendcore {
 
@@ -255,12 +258,11 @@ std::vector<double> times_of_growth(const LyapunovOptions& options, double t0, d
 
 }  // namespace
 
-TangentGrowth lyapunov(const Scene& scene, const std::vector<double>& q0,
-                       const std::vector<double>& qd0, double t0, double t_end,
-                       const LyapunovOptions& options) {
+TangentGrowth lyapunov(const Scene& scene, const Numbers& q0, const Numbers& qd0, double t0,
+                       double t_end, const LyapunovOptions& options) {
   const FloatingPointEnvironment ieee;
   check(scene);
-  check_start(scene, q0, qd0, t0, t_end);
+  check_start(scene, q0.span(), qd0.span(), t0, t_end);
   check_has_exponents(scene);
   const std::vector<double> basis = tangent_basis(scene);
   const int n = static_cast<int>(scene.links.size());

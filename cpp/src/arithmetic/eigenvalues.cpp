@@ -1,4 +1,4 @@
-#include "pendcore/arithmetic/eigenvalues.hpp"
+#include "arithmetic/eigenvalues.hpp"
 
 #include <Eigen/Eigenvalues>
 

@@ -1,4 +1,4 @@
-#include "pendcore/arithmetic/instruction_set.hpp"
+#include "arithmetic/instruction_set.hpp"
 
 #include <algorithm>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-#include "pendcore/arithmetic/sine_cosine.hpp"
+#include "arithmetic/sine_cosine.hpp"
 
 #include <array>
 #include <bit>

@@ -1,9 +1,9 @@
-#include "pendcore/dynamics/acting_effects.hpp"
+#include "dynamics/acting_effects.hpp"
 
 #include <algorithm>
 
-#include "pendcore/dynamics/inertia.hpp"
-#include "pendcore/dynamics/row.hpp"
+#include "dynamics/inertia.hpp"
+#include "dynamics/row.hpp"
 #include "pendcore/effects/lock.hpp"
 
 namespace pendcore {

@@ -1,11 +1,12 @@
-#include "pendcore/dynamics/cost.hpp"
+#include "dynamics/cost.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <limits>
 
-#include "pendcore/dynamics/equations_of_motion.hpp"
-#include "pendcore/dynamics/row.hpp"
+#include "dynamics/equations_of_motion.hpp"
+#include "dynamics/row.hpp"
+#include "scene/effects_of_scene.hpp"
 
 namespace pendcore {
 namespace {

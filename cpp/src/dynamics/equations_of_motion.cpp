@@ -1,11 +1,11 @@
-#include "pendcore/dynamics/equations_of_motion.hpp"
+#include "dynamics/equations_of_motion.hpp"
 
 #include <algorithm>
 
-#include "pendcore/dynamics/accelerations_kernel.hpp"
-#include "pendcore/dynamics/chain/chain_recursion.hpp"
-#include "pendcore/dynamics/kinematics.hpp"
-#include "pendcore/effects/behaviour.hpp"
+#include "dynamics/accelerations_kernel.hpp"
+#include "dynamics/chain/chain_recursion.hpp"
+#include "dynamics/kinematics.hpp"
+#include "effects/behaviour.hpp"
 #include "pendcore/effects/joint_stop.hpp"
 #include "pendcore/effects/lock.hpp"
 #include "pendcore/effects/payload.hpp"

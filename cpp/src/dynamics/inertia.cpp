@@ -1,11 +1,11 @@
-#include "pendcore/dynamics/inertia.hpp"
+#include "dynamics/inertia.hpp"
 
 #include <algorithm>
 
-#include "pendcore/dynamics/kinematics.hpp"
+#include "dynamics/kinematics.hpp"
 #include "pendcore/effects/payload.hpp"
 #include "pendcore/effects/rotor_inertia.hpp"
-#include "pendcore/text/message.hpp"
+#include "text/message.hpp"
 
 namespace pendcore {
 

@@ -1,7 +1,7 @@
-#include "pendcore/dynamics/jacobian.hpp"
+#include "dynamics/jacobian.hpp"
 
-#include "pendcore/dynamics/accelerations_kernel.hpp"
-#include "pendcore/dynamics/chain/chain_recursion.hpp"
+#include "dynamics/accelerations_kernel.hpp"
+#include "dynamics/chain/chain_recursion.hpp"
 
 namespace pendcore {
 namespace {

@@ -1,12 +1,12 @@
-#include "pendcore/dynamics/joint_forces.hpp"
+#include "dynamics/joint_forces.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 
-#include "pendcore/arithmetic/sine_cosine.hpp"
-#include "pendcore/dynamics/contact/momenta.hpp"
-#include "pendcore/dynamics/kinematics.hpp"
+#include "arithmetic/sine_cosine.hpp"
+#include "dynamics/contact/momenta.hpp"
+#include "dynamics/kinematics.hpp"
 
 namespace pendcore {
 

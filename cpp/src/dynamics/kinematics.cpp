@@ -1,10 +1,12 @@
-#include "pendcore/dynamics/kinematics.hpp"
+#include "dynamics/kinematics.hpp"
 
 #include <algorithm>
 #include <vector>
 
-#include "pendcore/arithmetic/sine_cosine.hpp"
-#include "pendcore/text/message.hpp"
+#include "arithmetic/sine_cosine.hpp"
+#include "effects/pivot_motion.hpp"
+#include "scene/effects_of_scene.hpp"
+#include "text/message.hpp"
 
 namespace pendcore {
 namespace {

@@ -1,4 +1,4 @@
-#include "pendcore/dynamics/tangent_space.hpp"
+#include "dynamics/tangent_space.hpp"
 
 #include <cmath>
 

@@ -4,9 +4,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "pendcore/arithmetic/floating_point_environment.hpp"
-#include "pendcore/arithmetic/sine_cosine.hpp"
-#include "pendcore/effects/behaviour.hpp"
+#include "arithmetic/floating_point_environment.hpp"
+#include "arithmetic/sine_cosine.hpp"
+#include "effects/behaviour.hpp"
+#include "effects/times.hpp"
 
 namespace pendcore {
 namespace {

@@ -1,6 +1,7 @@
 #include "pendcore/effects/dry_joint_friction.hpp"
 
-#include "pendcore/effects/behaviour.hpp"
+#include "effects/behaviour.hpp"
+#include "text/message.hpp"
 
 namespace pendcore {
 namespace {

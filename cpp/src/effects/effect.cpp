@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "pendcore/effects/behaviour.hpp"
+#include "effects/behaviour.hpp"
 
 namespace pendcore {
 

@@ -2,7 +2,9 @@
 
 #include <stdexcept>
 
-#include "pendcore/effects/behaviour.hpp"
+#include "effects/behaviour.hpp"
+
+#include "text/message.hpp"
 
 namespace pendcore {
 namespace {

@@ -1,6 +1,6 @@
 #include "pendcore/effects/payload.hpp"
 
-#include "pendcore/effects/behaviour.hpp"
+#include "effects/behaviour.hpp"
 
 namespace pendcore {
 

@@ -1,6 +1,6 @@
 #include "pendcore/effects/rotor_inertia.hpp"
 
-#include "pendcore/effects/behaviour.hpp"
+#include "effects/behaviour.hpp"
 
 namespace pendcore {
 

@@ -1,6 +1,6 @@
 #include "pendcore/effects/torsional_spring.hpp"
 
-#include "pendcore/effects/behaviour.hpp"
+#include "effects/behaviour.hpp"
 
 namespace pendcore {
 namespace {

@@ -5,7 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "pendcore/effects/behaviour.hpp"
+#include "effects/behaviour.hpp"
+#include "effects/times.hpp"
 
 namespace pendcore {
 namespace {

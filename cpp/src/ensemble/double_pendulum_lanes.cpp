@@ -1,5 +1,5 @@
 // The series of double pendulums in lanes, with options of their own (CMakeLists.txt).
-#include "pendcore/ensemble/series_of_double_pendulums.hpp"
+#include "ensemble/series_of_double_pendulums.hpp"
 
 namespace pendcore {
 

@@ -1,4 +1,4 @@
-#include "pendcore/ensemble/ensemble.hpp"
+#include "pendcore/ensemble.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,13 +10,17 @@
 #include <stdexcept>
 #include <utility>
 
-#include "pendcore/analysis/lyapunov.hpp"
-#include "pendcore/arithmetic/floating_point_environment.hpp"
-#include "pendcore/ensemble/lanes.hpp"
-#include "pendcore/ensemble/reducers.hpp"
-#include "pendcore/ensemble/workers.hpp"
-#include "pendcore/scene/parameters.hpp"
-#include "pendcore/simulate/method_choice.hpp"
+#include "arithmetic/floating_point_environment.hpp"
+#include "ensemble/lanes.hpp"
+#include "ensemble/reducers.hpp"
+#include "ensemble/workers.hpp"
+#include "pendcore/lyapunov.hpp"
+#include "pendcore/parameters.hpp"
+#include "pendcore/simulate.hpp"
+#include "pendcore/solution.hpp"
+#include "simulate/checked_options.hpp"
+#include "simulate/method_choice.hpp"
+#include "simulate/steppers.hpp"
 
 namespace pendcore {
 namespace {

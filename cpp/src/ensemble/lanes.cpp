@@ -1,8 +1,10 @@
-#include "pendcore/ensemble/lanes.hpp"
+#include "ensemble/lanes.hpp"
 
-#include "pendcore/ensemble/lane_loop.hpp"
-#include "pendcore/ensemble/runge_kutta_lanes.hpp"
-#include "pendcore/integrate/loop/first_step.hpp"
+#include "ensemble/lane_loop.hpp"
+#include "ensemble/runge_kutta_lanes.hpp"
+#include "integrate/loop/first_step.hpp"
+#include "pendcore/methods.hpp"
+#include "scene/effects_of_scene.hpp"
 
 namespace pendcore {
 namespace {

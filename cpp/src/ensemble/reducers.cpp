@@ -1,10 +1,10 @@
-#include "pendcore/ensemble/reducers.hpp"
+#include "ensemble/reducers.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "pendcore/arithmetic/epsilon.hpp"
-#include "pendcore/dynamics/energetics/energy.hpp"
+#include "arithmetic/epsilon.hpp"
+#include "pendcore/mechanics.hpp"
 
 namespace pendcore {
 

@@ -1,4 +1,4 @@
-#include "pendcore/ensemble/series_lanes.hpp"
+#include "ensemble/series_lanes.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,10 +7,10 @@
 #include <optional>
 #include <vector>
 
-#include "pendcore/ensemble/chain_series_in_lanes.hpp"
-#include "pendcore/ensemble/lane_loop.hpp"
-#include "pendcore/ensemble/series_of_double_pendulums.hpp"
-#include "pendcore/integrate/taylor/dominant_eigenvalue.hpp"
+#include "ensemble/chain_series_in_lanes.hpp"
+#include "ensemble/lane_loop.hpp"
+#include "ensemble/series_of_double_pendulums.hpp"
+#include "integrate/taylor/dominant_eigenvalue.hpp"
 
 namespace pendcore {
 namespace {

@@ -1,4 +1,4 @@
-#include "pendcore/ensemble/workers.hpp"
+#include "ensemble/workers.hpp"
 
 #include <algorithm>
 #include <thread>

@@ -1,4 +1,4 @@
-#include "pendcore/integrate/step_output.hpp"
+#include "integrate/step_output.hpp"
 
 #include <algorithm>
 #include <cmath>

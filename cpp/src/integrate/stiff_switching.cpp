@@ -1,11 +1,11 @@
-#include "pendcore/integrate/stiff_switching.hpp"
+#include "integrate/stiff_switching.hpp"
 
 #include <algorithm>
 #include <limits>
 #include <new>
 #include <utility>
 
-#include "pendcore/integrate/loop/run_limits.hpp"
+#include "integrate/loop/run_limits.hpp"
 
 namespace pendcore {
 namespace {

@@ -1,4 +1,4 @@
-#include "pendcore/scene/parameters.hpp"
+#include "pendcore/parameters.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "pendcore/effects/behaviour.hpp"
+#include "effects/behaviour.hpp"
 
 namespace pendcore {
 namespace {

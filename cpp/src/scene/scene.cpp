@@ -1,15 +1,16 @@
-#include "pendcore/scene/scene.hpp"
+#include "pendcore/scene.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "pendcore/effects/behaviour.hpp"
+#include "effects/behaviour.hpp"
 #include "pendcore/effects/joint_stop.hpp"
 #include "pendcore/effects/lock.hpp"
 #include "pendcore/effects/payload.hpp"
-#include "pendcore/scene/degrees.hpp"
-#include "pendcore/scene/singular.hpp"
-#include "pendcore/text/message.hpp"
+#include "scene/degrees.hpp"
+#include "scene/effects_of_scene.hpp"
+#include "scene/singular.hpp"
+#include "text/message.hpp"
 
 namespace pendcore {
 namespace {
@@ -95,6 +96,8 @@ Link Link::uniform_rod(double mass, double length) {
   return {mass, length, 0.5 * length, mass * length * length / 12.0};
 }
 
+double Link::inertia_about_joint() const { return inertia + mass * center * center; }
+
 Link Link::point_mass(double mass, double length) { return {mass, length, length, 0.0}; }
 
 Scene Scene::textbook() {
@@ -123,35 +126,6 @@ void check(const Scene& scene) {
   }
   const std::string reason = singular_somewhere(scene);
   if (!reason.empty()) throw std::invalid_argument(reason);
-}
-
-std::string effect_name(const Scene& scene, std::size_t i) {
-  return "effect " + std::to_string(i + 1) + " (" + std::string(scene.effects[i].info().kind) + ")";
-}
-
-PivotMotion pivot_motion(const Scene& scene, double t) {
-  PivotMotion sum;
-  for (const Effect& effect : scene.effects) {
-    if (!effect.info().moves_pivot) continue;
-    const PivotMotion one = effect->pivot_motion(t);
-    for (int axis = 0; axis < 2; ++axis) {
-      sum.position[axis] += one.position[axis];
-      sum.velocity[axis] += one.velocity[axis];
-      sum.acceleration[axis] += one.acceleration[axis];
-    }
-  }
-  return sum;
-}
-
-bool has_functions(const Scene& scene) {
-  return std::ranges::any_of(scene.effects,
-                             [](const Effect& effect) { return effect.info().is_function; });
-}
-
-std::vector<bool> locked_joints(const Scene& scene) {
-  std::vector<bool> locked(scene.links.size());
-  for (const Lock& lock : effects_of<Lock>(scene)) locked[lock.joint - 1] = true;
-  return locked;
 }
 
 std::vector<std::string> plausibility_warnings(const Scene& scene) {
@@ -185,13 +159,6 @@ std::vector<std::string> plausibility_warnings(const Scene& scene) {
     }
   }
   return warnings;
-}
-
-std::optional<std::size_t> without_series(const Scene& scene) {
-  const auto found = std::ranges::find_if_not(
-      scene.effects, [](const Effect& effect) { return effect->has_series(); });
-  if (found == scene.effects.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - scene.effects.begin());
 }
 
 Mobility mobility(const Scene& scene) {

@@ -1,4 +1,4 @@
-#include "pendcore/scene/singular.hpp"
+#include "scene/singular.hpp"
 
 #include <algorithm>
 #include <cmath>

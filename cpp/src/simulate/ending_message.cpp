@@ -1,9 +1,11 @@
-#include "pendcore/simulate/ending_message.hpp"
+#include "simulate/ending_message.hpp"
 
-#include "pendcore/integrate/methods.hpp"
-#include "pendcore/simulate/initial_state.hpp"
-#include "pendcore/simulate/not_finite.hpp"
-#include "pendcore/text/message.hpp"
+#include "integrate/loop/integrate.hpp"
+#include "pendcore/methods.hpp"
+#include "scene/effects_of_scene.hpp"
+#include "simulate/initial_state.hpp"
+#include "simulate/not_finite.hpp"
+#include "text/message.hpp"
 
 namespace pendcore {
 namespace {
@@ -51,7 +53,7 @@ std::string ending_message(const Ending& ending, const Scene& scene, const Solut
   // For a stiff run, the remark on stiffness gives the advice: another method, not more steps.
   if (ending.status == Status::max_steps && wants_another_method) message.resize(message.find(':'));
   if (ending.status == Status::at_rest) {
-    const double since = solution.resumable.t.high;
+    const double since = solution.resumable->t.high;
     return message + " (at t = " + text(since) + " s: " + remark + ")";
   }
   if (ending.status == Status::event) {

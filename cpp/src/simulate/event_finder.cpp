@@ -1,14 +1,14 @@
-#include "pendcore/simulate/event_finder.hpp"
+#include "simulate/event_finder.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <tuple>
 
-#include "pendcore/arithmetic/epsilon.hpp"
-#include "pendcore/arithmetic/pack.hpp"
-#include "pendcore/integrate/loop/integrate.hpp"
-#include "pendcore/text/message.hpp"
+#include "arithmetic/epsilon.hpp"
+#include "arithmetic/pack.hpp"
+#include "integrate/loop/integrate.hpp"
+#include "text/message.hpp"
 
 namespace pendcore {
 namespace {

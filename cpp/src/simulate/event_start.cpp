@@ -9,8 +9,8 @@
 #include <cmath>
 #include <utility>
 
-#include "pendcore/arithmetic/epsilon.hpp"
-#include "pendcore/simulate/event_finder.hpp"
+#include "arithmetic/epsilon.hpp"
+#include "simulate/event_finder.hpp"
 
 namespace pendcore {
 namespace {

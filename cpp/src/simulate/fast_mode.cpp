@@ -1,4 +1,4 @@
-#include "pendcore/simulate/fast_mode.hpp"
+#include "simulate/fast_mode.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,10 @@
 #include <cstdio>
 #include <vector>
 
-#include "pendcore/arithmetic/eigenvalues.hpp"
-#include "pendcore/dynamics/jacobian.hpp"
-#include "pendcore/text/message.hpp"
+#include "arithmetic/eigenvalues.hpp"
+#include "dynamics/jacobian.hpp"
+#include "scene/effects_of_scene.hpp"
+#include "text/message.hpp"
 
 namespace pendcore {
 namespace {

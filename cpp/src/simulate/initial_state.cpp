@@ -1,21 +1,22 @@
-#include "pendcore/simulate/initial_state.hpp"
+#include "simulate/initial_state.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "pendcore/dynamics/kinematics.hpp"
-#include "pendcore/effects/behaviour.hpp"
+#include "dynamics/kinematics.hpp"
+#include "effects/behaviour.hpp"
 #include "pendcore/effects/joint_stop.hpp"
 #include "pendcore/effects/lock.hpp"
-#include "pendcore/scene/degrees.hpp"
-#include "pendcore/scene/singular.hpp"
-#include "pendcore/text/message.hpp"
+#include "scene/degrees.hpp"
+#include "scene/effects_of_scene.hpp"
+#include "scene/singular.hpp"
+#include "text/message.hpp"
 
 namespace pendcore {
 namespace {
 
-void check_numbers(const char* name, const std::vector<double>& values, std::size_t n,
+void check_numbers(const char* name, std::span<const double> values, std::size_t n,
                    const char* unit) {
   if (values.size() != n) {
     throw std::invalid_argument(std::string(name) + ": has " + std::to_string(values.size()) +
@@ -28,7 +29,7 @@ void check_numbers(const char* name, const std::vector<double>& values, std::siz
   }
 }
 
-void check_stop(const JointStop& stop, const std::string& name, const std::vector<double>& q0,
+void check_stop(const JointStop& stop, const std::string& name, std::span<const double> q0,
                 bool backward) {
   const auto& [lower, upper] = stop.range;
   const double phi = relative(q0.data(), stop.joint);
@@ -45,8 +46,8 @@ void check_stop(const JointStop& stop, const std::string& name, const std::vecto
 }
 
 /// Checks what the effects of a scene require of a start and of an interval.
-void check_effects_at_start(const Scene& scene, const std::vector<double>& q0,
-                            const std::vector<double>& qd0, double t0, double t_end) {
+void check_effects_at_start(const Scene& scene, std::span<const double> q0,
+                            std::span<const double> qd0, double t0, double t_end) {
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
     const auto name = [&scene, i] { return effect_name(scene, i); };
     if (t_end < t0 && scene.effects[i]->holding_torque()) {
@@ -73,7 +74,7 @@ void check_effects_at_start(const Scene& scene, const std::vector<double>& q0,
 }
 
 /// Looks again at locks that take the angle of the start.
-void check_locks_of_start(const Scene& scene, const std::vector<double>& q0) {
+void check_locks_of_start(const Scene& scene, std::span<const double> q0) {
   const auto takes_start = [](const Lock& lock) { return !lock.angle; };
   if (std::ranges::none_of(effects_of<Lock>(scene), takes_start)) return;
   Scene locked = scene;
@@ -88,7 +89,7 @@ void check_locks_of_start(const Scene& scene, const std::vector<double>& q0) {
 
 }  // namespace
 
-void check_start(const Scene& scene, const std::vector<double>& q0, const std::vector<double>& qd0,
+void check_start(const Scene& scene, std::span<const double> q0, std::span<const double> qd0,
                  double t0, double t_end) {
   const std::size_t n = scene.links.size();
   check_numbers("q0", q0, n, "finite (rad)");
@@ -113,7 +114,7 @@ std::string span_of(const EffectBehaviour& effect) {
          text(effect.first_time()) + " to " + text(effect.last_time()) + " s";
 }
 
-std::vector<std::string> run_warnings(const Scene& scene, const std::vector<double>& q0, double t0,
+std::vector<std::string> run_warnings(const Scene& scene, std::span<const double> q0, double t0,
                                       double t_end) {
   std::vector<std::string> warnings;
   if (const auto i = first_in_degrees(q0)) {

@@ -1,8 +1,11 @@
-#include "pendcore/simulate/method_choice.hpp"
+#include "simulate/method_choice.hpp"
 
 #include <algorithm>
 
-#include "pendcore/integrate/methods.hpp"
+#include "integrate/method_list.hpp"
+#include "pendcore/methods.hpp"
+#include "scene/effects_of_scene.hpp"
+#include "simulate/checked_options.hpp"
 
 namespace pendcore {
 namespace {

@@ -1,6 +1,6 @@
-#include "pendcore/simulate/not_finite.hpp"
+#include "simulate/not_finite.hpp"
 
-#include "pendcore/dynamics/equations_of_motion.hpp"
+#include "dynamics/equations_of_motion.hpp"
 
 namespace pendcore {
 namespace {

@@ -1,7 +1,9 @@
-#include "pendcore/simulate/recorder.hpp"
+#include "simulate/recorder.hpp"
 
 #include <algorithm>
 #include <stdexcept>
+
+#include "scene/effects_of_scene.hpp"
 
 namespace pendcore {
 

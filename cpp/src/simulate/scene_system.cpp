@@ -1,4 +1,4 @@
-#include "pendcore/simulate/scene_system.hpp"
+#include "simulate/scene_system.hpp"
 
 namespace pendcore {
 

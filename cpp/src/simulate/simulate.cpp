@@ -1,4 +1,4 @@
-#include "pendcore/simulate/simulate.hpp"
+#include "pendcore/simulate.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,18 +7,22 @@
 #include <stdexcept>
 #include <utility>
 
-#include "pendcore/arithmetic/floating_point_environment.hpp"
-#include "pendcore/dynamics/energetics/ledger.hpp"
-#include "pendcore/integrate/loop/first_step.hpp"
-#include "pendcore/integrate/loop/run_limits.hpp"
-#include "pendcore/integrate/methods.hpp"
-#include "pendcore/simulate/ending_message.hpp"
-#include "pendcore/simulate/fast_mode.hpp"
-#include "pendcore/simulate/initial_state.hpp"
-#include "pendcore/simulate/method_choice.hpp"
-#include "pendcore/simulate/recorder.hpp"
-#include "pendcore/simulate/switching.hpp"
-#include "pendcore/text/message.hpp"
+#include "arithmetic/floating_point_environment.hpp"
+#include "dynamics/energetics/ledger.hpp"
+#include "integrate/loop/first_step.hpp"
+#include "integrate/loop/integrate.hpp"
+#include "integrate/loop/run_limits.hpp"
+#include "pendcore/methods.hpp"
+#include "pendcore/solution.hpp"
+#include "simulate/checked_options.hpp"
+#include "simulate/ending_message.hpp"
+#include "simulate/fast_mode.hpp"
+#include "simulate/initial_state.hpp"
+#include "simulate/method_choice.hpp"
+#include "simulate/recorder.hpp"
+#include "simulate/steppers.hpp"
+#include "simulate/switching.hpp"
+#include "text/message.hpp"
 
 namespace pendcore {
 namespace {
@@ -123,9 +127,9 @@ struct Beginning {
   }
 };
 
-/// Runs from the solution's resumable position to t_end.
-void run(const Scene& scene, Solution& solution, double t_end, Limits limits, Before before,
-         const std::vector<long long>& passed_events = {}) {
+/// Runs from where the integrator stands to t_end.
+void run(const Scene& scene, Solution& solution, IntegratorState integrator, double t_end,
+         Limits limits, Before before, const std::vector<long long>& passed_events = {}) {
   const Options& options = solution.options;
   const EquationsOfMotion equations = equations_of_motion(scene);
   const auto stepper =
@@ -142,7 +146,7 @@ void run(const Scene& scene, Solution& solution, double t_end, Limits limits, Be
     throw std::invalid_argument("the dense output of this solution is not that of its method");
   }
   solution.dense.degree = stepper->interpolant_degree();
-  IntegratorState integrator = solution.resumable;
+  IntegratorState resumable = integrator;
   if (before == Before::nothing) recorder.start(integrator.t.high, integrator.y);
   Switching* const discontinuities = switching ? &*switching : nullptr;
   std::optional<RunLimits> clock;
@@ -165,20 +169,21 @@ void run(const Scene& scene, Solution& solution, double t_end, Limits limits, Be
   } else {
     Beginning beginning{options, *stepper, discontinuities, recorder, rtol, atol};
     ending = beginning.make(integrator, t_end);
-    if (ending.cut) integrator = solution.resumable;  // which is the start
+    if (ending.cut) integrator = resumable;  // which is the start
     limits.begins_anew = beginning.depends_on_end;
     integrator.statistics.nfev = stepper->evaluations;
   }
   if (ending.status == Status::finished) {
     if (switching) integrator.discontinuities = switching->saved_state();
-    ending = integrate(*stepper, integrator, solution.resumable, limits, recorder, discontinuities);
+    ending = integrate(*stepper, integrator, resumable, limits, recorder, discontinuities);
   } else {
-    solution.resumable = integrator;
+    resumable = integrator;
   }
   if (!ending.cut) recorder.restarts_here();
   solution.status = ending.status;
   solution.statistics = integrator.statistics;
   solution.t_reached = integrator.t.high;
+  solution.resumable = std::make_shared<const IntegratorState>(std::move(resumable));
   solution.message = ending_message(ending, scene, solution, integrator,
                                     switching ? switching->remark() : "", recorder.ended_by());
   if (switching) solution.message += switching->remark_on_impacts();
@@ -209,21 +214,12 @@ Limits limits_of(const Options& options, double t_end) {
 
 }  // namespace
 
-void check_options(const Scene& scene, const Options& options, double t0, double t_end) {
-  check(options);
-  for (std::size_t i = 0; i < options.events.size(); ++i) {
-    const Event& event = options.events[i];
-    check_event(event_name(event, i) + ": ", event, static_cast<int>(scene.links.size()));
-  }
-  check_times(options.t_eval, t0, t_end);
-}
-
-Solution simulate(const Scene& scene, const std::vector<double>& q0, const std::vector<double>& qd0,
-                  double t0, double t_end, Options options) {
+Solution simulate(const Scene& scene, const Numbers& q0, const Numbers& qd0, double t0,
+                  double t_end, Options options) {
   const FloatingPointEnvironment ieee;
   const std::size_t n = scene.links.size();
   check(scene);
-  check_start(scene, q0, qd0, t0, t_end);
+  check_start(scene, q0.span(), qd0.span(), t0, t_end);
   check_options(scene, options, t0, t_end);
 
   options.method = chosen_method(scene, options);
@@ -237,13 +233,13 @@ Solution simulate(const Scene& scene, const std::vector<double>& q0, const std::
   if (solution.options.ledger) solution.accounts = accounts_of(scene);
   const std::size_t dimension = 2 * n + solution.accounts.size();
   solution.dimension = static_cast<int>(dimension);
-  IntegratorState& start = solution.resumable;
+  IntegratorState start;
   start.t = {t0, 0.0};
   start.y.resize(dimension);
-  std::ranges::copy(qd0, std::ranges::copy(q0, start.y.begin()).out);
+  std::ranges::copy(qd0.span(), std::ranges::copy(q0.span(), start.y.begin()).out);
   solution.start = start.y;
   start.dydt.resize(dimension);
-  run(scene, solution, t_end, std::move(limits), Before::nothing);
+  run(scene, solution, std::move(start), t_end, std::move(limits), Before::nothing);
   return solution;
 }
 
@@ -261,10 +257,11 @@ Solution resume(const Scene& scene, const Solution& solution, double t_end,
 
   longer.t_end = t_end;
   // A run without steps begins anew.
-  const bool has_begun = solution.resumable.h != 0.0;
+  const IntegratorState& from = *solution.resumable;
+  const bool has_begun = from.h != 0.0;
   if (!has_begun) {
-    const auto middle = solution.start.begin() + solution.n;
-    check_start(scene, {solution.start.begin(), middle}, {middle, middle + solution.n}, solution.t0,
+    const std::span start(solution.start);
+    check_start(scene, start.first(solution.n), start.subspan(solution.n, solution.n), solution.t0,
                 t_end);
   }
   std::vector<long long> passed_events(options.events.size());
@@ -283,11 +280,11 @@ Solution resume(const Scene& scene, const Solution& solution, double t_end,
   // If the end is the same, the run repeats what it did since the resumable position. That is not
   // counted as steps of the continuation.
   if (t_end == solution.t_end) {
-    const long long again = attempts(solution.statistics) - attempts(solution.resumable.statistics);
+    const long long again = attempts(solution.statistics) - attempts(from.statistics);
     const long long most = std::numeric_limits<long long>::max() - max_steps;
     limits.max_steps += std::clamp(again, 0LL, most);
   }
-  run(scene, longer, t_end, std::move(limits), has_begun ? Before::steps : Before::a_start,
+  run(scene, longer, from, t_end, std::move(limits), has_begun ? Before::steps : Before::a_start,
       passed_events);
   return longer;
 }

@@ -1,19 +1,20 @@
-#include "pendcore/simulate/solution.hpp"
+#include "pendcore/solution.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "pendcore/arithmetic/bits.hpp"
-#include "pendcore/arithmetic/floating_point_environment.hpp"
-#include "pendcore/arithmetic/pack.hpp"
-#include "pendcore/integrate/horner.hpp"
-#include "pendcore/integrate/methods.hpp"
-#include "pendcore/integrate/taylor/taylor_step.hpp"
-#include "pendcore/text/message.hpp"
+#include "arithmetic/bits.hpp"
+#include "arithmetic/floating_point_environment.hpp"
+#include "arithmetic/pack.hpp"
+#include "integrate/horner.hpp"
+#include "integrate/taylor/taylor_step.hpp"
+#include "pendcore/methods.hpp"
+#include "text/message.hpp"
 
 namespace pendcore {
-std::vector<double> Solution::at(const std::vector<double>& times) const {
+
+Matrix Solution::sample(const Numbers& times) const {
   const FloatingPointEnvironment ieee;
   if (options.store != Store::dense) {
     throw std::invalid_argument(
@@ -24,7 +25,7 @@ std::vector<double> Solution::at(const std::vector<double>& times) const {
   const auto sample = is_series ? fastest<&sample_series>() : fastest<&sample_rows>();
   const double direction = t_reached < t0 ? -1.0 : 1.0;
   const std::size_t row = static_cast<std::size_t>((dense.degree + 1) * dimension);
-  std::vector<double> result(times.size() * static_cast<std::size_t>(dimension));
+  Matrix result(times.size(), dimension);
   double* y = result.data();
   for (const double time : times) {
     if (!((time - t0) * direction >= 0.0 && (t_reached - time) * direction >= 0.0)) {
@@ -48,6 +49,26 @@ std::vector<double> Solution::at(const std::vector<double>& times) const {
     y += dimension;
   }
   return result;
+}
+
+State Solution::at(double time) const {
+  const Matrix row = sample({time});
+  const Eigen::Map<const Vector> y(row.data(), dimension);
+  return {.t = time, .q = y.head(n), .qd = y.segment(n, n), .accounts = y.tail(dimension - 2 * n)};
+}
+
+StateView Solution::operator[](std::size_t i) const {
+  const double* const y = states.data() + i * static_cast<std::size_t>(dimension);
+  return {.t = t[i], .q = {y, n}, .qd = {y + n, n}, .accounts = {y + 2 * n, dimension - 2 * n}};
+}
+
+Eigen::Map<const Matrix, 0, Eigen::OuterStride<>> Solution::q() const {
+  return {states.data(), static_cast<Eigen::Index>(t.size()), n, Eigen::OuterStride<>(dimension)};
+}
+
+Eigen::Map<const Matrix, 0, Eigen::OuterStride<>> Solution::qd() const {
+  return {states.data() + n, static_cast<Eigen::Index>(t.size()), n,
+          Eigen::OuterStride<>(dimension)};
 }
 
 std::uint64_t fingerprint(const Solution& solution) {

@@ -1,11 +1,12 @@
 // Makes the stepper of a method in the list for a scene, whatever form its equations have.
-#include "pendcore/dynamics/first_order.hpp"
-#include "pendcore/integrate/methods.hpp"
-#include "pendcore/integrate/radau/implicit_runge_kutta.hpp"
-#include "pendcore/integrate/runge_kutta/runge_kutta_fixed.hpp"
-#include "pendcore/integrate/runge_kutta/runge_kutta_in_memory.hpp"
-#include "pendcore/simulate/scene_system.hpp"
-#include "pendcore/simulate/simulate.hpp"
+#include "simulate/steppers.hpp"
+#include "dynamics/first_order.hpp"
+#include "integrate/method_list.hpp"
+#include "integrate/radau/implicit_runge_kutta.hpp"
+#include "integrate/runge_kutta/runge_kutta_fixed.hpp"
+#include "integrate/runge_kutta/runge_kutta_in_memory.hpp"
+#include "pendcore/methods.hpp"
+#include "simulate/scene_system.hpp"
 
 namespace pendcore {
 

@@ -1,14 +1,14 @@
-#include "pendcore/simulate/switching.hpp"
+#include "simulate/switching.hpp"
 
 #include <algorithm>
 #include <utility>
 
-#include "pendcore/arithmetic/epsilon.hpp"
-#include "pendcore/dynamics/kinematics.hpp"
-#include "pendcore/effects/behaviour.hpp"
+#include "arithmetic/epsilon.hpp"
+#include "dynamics/kinematics.hpp"
+#include "effects/behaviour.hpp"
 #include "pendcore/effects/lock.hpp"
-#include "pendcore/simulate/initial_state.hpp"
-#include "pendcore/simulate/switching_state.hpp"
+#include "simulate/initial_state.hpp"
+#include "simulate/switching_state.hpp"
 
 namespace pendcore {
 

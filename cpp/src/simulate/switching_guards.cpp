@@ -1,9 +1,9 @@
 // The guards of Switching: which there are, and their values.
 #include <cmath>
 
-#include "pendcore/arithmetic/epsilon.hpp"
-#include "pendcore/dynamics/kinematics.hpp"
-#include "pendcore/simulate/switching.hpp"
+#include "arithmetic/epsilon.hpp"
+#include "dynamics/kinematics.hpp"
+#include "simulate/switching.hpp"
 
 namespace pendcore {
 

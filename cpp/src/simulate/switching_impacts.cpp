@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pendcore/arithmetic/epsilon.hpp"
-#include "pendcore/dynamics/contact/impact.hpp"
-#include "pendcore/dynamics/kinematics.hpp"
-#include "pendcore/simulate/switching.hpp"
-#include "pendcore/text/message.hpp"
+#include "arithmetic/epsilon.hpp"
+#include "dynamics/contact/impact.hpp"
+#include "dynamics/kinematics.hpp"
+#include "simulate/switching.hpp"
+#include "text/message.hpp"
 
 namespace pendcore {
 /// Computes an impact and what the joints do after it. Rates have jumped, so that every law with

@@ -2,11 +2,12 @@
 #include <stdexcept>
 #include <string>
 
-#include "pendcore/dynamics/equations_of_motion.hpp"
-#include "pendcore/dynamics/series/few_links_series.hpp"
-#include "pendcore/dynamics/series/series_with_holds.hpp"
-#include "pendcore/integrate/taylor/taylor_stepper.hpp"
-#include "pendcore/simulate/simulate.hpp"
+#include "dynamics/equations_of_motion.hpp"
+#include "dynamics/series/few_links_series.hpp"
+#include "dynamics/series/series_with_holds.hpp"
+#include "integrate/taylor/taylor_stepper.hpp"
+#include "scene/effects_of_scene.hpp"
+#include "simulate/steppers.hpp"
 
 namespace pendcore {
 

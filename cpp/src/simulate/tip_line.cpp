@@ -1,11 +1,13 @@
-#include "pendcore/simulate/tip_line.hpp"
+#include "simulate/tip_line.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "pendcore/arithmetic/epsilon.hpp"
-#include "pendcore/arithmetic/sine_cosine.hpp"
+#include "arithmetic/epsilon.hpp"
+#include "arithmetic/sine_cosine.hpp"
+#include "effects/pivot_motion.hpp"
 #include "pendcore/effects/driven_pivot.hpp"
+#include "scene/effects_of_scene.hpp"
 
 namespace pendcore {
 namespace {

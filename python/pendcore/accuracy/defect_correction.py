@@ -1,7 +1,7 @@
 """The error of a run, from the defect of its own curve.
 
 While the run is made, the core integrates the equation that its error obeys
-(cpp/include/pendcore/analysis/defect_correction.hpp). This takes the right-hand side of the
+(cpp/src/analysis/defect_correction.hpp). This takes the right-hand side of the
 equations of motion, which shares no code with a Taylor series, a few times in each step. It is done
 twice, with different numbers of points: the distance of the two is the error of the correction
 itself. Where rounding may matter, it is also done for neighbours of the scene, whose constants and

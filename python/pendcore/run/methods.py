@@ -1,4 +1,4 @@
-"""The methods of the core, as their descriptors in ``method_info.hpp`` describe them."""
+"""The methods of the core, as their descriptors in ``methods.hpp`` describe them."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """How to run: the keywords of `pendcore.simulate`, as their descriptors tell them.
 
 The core has a descriptor of each option that it knows
-(cpp/include/pendcore/simulate/options.hpp); the three that only Python knows stand here. The
+(cpp/include/pendcore/options.hpp); the three that only Python knows stand here. The
 signature and docstring of `pendcore.simulate`, the checks of cases, and the tables in the
 documentation are made from them.
 """

@@ -1,6 +1,6 @@
 """The numbers of a scene by name, such as ``"link[1].mass"`` and ``"effect[2].wind.x"``.
 
-The core lists the names (cpp/include/pendcore/scene/parameters.hpp); here a scene is made again
+The core lists the names (cpp/include/pendcore/parameters.hpp); here a scene is made again
 with other values.
 """
 

@@ -21,7 +21,7 @@
 #include <string_view>
 #include <utility>
 
-#include "pendcore/text/descriptor.hpp"
+#include "pendcore/descriptor.hpp"
 
 namespace pendcore {
 
@@ -95,25 +95,6 @@ inline constexpr ParameterInfo link_number{.name = "link",
 /// A part of an effect with parameters of its own, such as a Sinusoid, that may be left out.
 template <class Value>
 concept OptionalPart = requires { Value::value_type::parameters; };
-
-/// A part whose parameters must fit together: check(where) throws if they do not.
-template <class Struct>
-concept HasCheck = requires(const Struct& one, const std::string& where) {
-  { one.check(where) } -> std::same_as<void>;
-};
-
-/// Throws std::invalid_argument for a parameter out of its range, naming it after `where`, as in
-/// "effect 2 (viscous_joint): ".
-template <class Struct>
-void check_parameters(const std::string& where, const Struct& effect) {
-  for_each_parameter(effect, [&]<class Value>(const ParameterInfo& info, const Value& value) {
-    check_value(where, info, value);
-    if constexpr (OptionalPart<Value>) {
-      if (value) check_parameters(where + std::string(info.name) + ".", *value);
-    }
-  });
-  if constexpr (HasCheck<Struct>) effect.check(where);
-}
 
 /// A time that never comes, or a bound that does not exist.
 inline constexpr double never = std::numeric_limits<double>::infinity();

@@ -12,7 +12,7 @@
 #pragma once
 
 #include "pendcore/effects/effect.hpp"
-#include "pendcore/effects/wave.hpp"
+#include "pendcore/effects/function_of_time.hpp"
 
 namespace pendcore {
 

@@ -1,4 +1,4 @@
-#include "pendcore/dynamics/chain/chain.hpp"
+#include "dynamics/chain/chain.hpp"
 
 namespace pendcore {
 

@@ -1,4 +1,4 @@
-#include "pendcore/dynamics/chain/chain_link.hpp"
+#include "dynamics/chain/chain_link.hpp"
 
 namespace pendcore {
 

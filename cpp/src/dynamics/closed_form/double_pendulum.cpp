@@ -1,4 +1,4 @@
-#include "pendcore/dynamics/closed_form/double_pendulum.hpp"
+#include "dynamics/closed_form/double_pendulum.hpp"
 
 namespace pendcore {
 

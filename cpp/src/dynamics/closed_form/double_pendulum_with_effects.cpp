@@ -1,6 +1,6 @@
-#include "pendcore/dynamics/closed_form/double_pendulum_with_effects.hpp"
+#include "dynamics/closed_form/double_pendulum_with_effects.hpp"
 
-#include "pendcore/effects/behaviour.hpp"
+#include "effects/behaviour.hpp"
 #include "pendcore/effects/rotor_inertia.hpp"
 
 namespace pendcore {

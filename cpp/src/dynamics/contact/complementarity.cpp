@@ -1,11 +1,11 @@
-#include "pendcore/dynamics/contact/complementarity.hpp"
+#include "dynamics/contact/complementarity.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <utility>
 
-#include "pendcore/arithmetic/epsilon.hpp"
+#include "arithmetic/epsilon.hpp"
 
 namespace pendcore {
 namespace {

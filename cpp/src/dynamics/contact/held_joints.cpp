@@ -1,15 +1,16 @@
-#include "pendcore/dynamics/contact/held_joints.hpp"
+#include "dynamics/contact/held_joints.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "pendcore/arithmetic/epsilon.hpp"
-#include "pendcore/dynamics/equations_of_motion.hpp"
-#include "pendcore/dynamics/kinematics.hpp"
-#include "pendcore/effects/behaviour.hpp"
+#include "arithmetic/epsilon.hpp"
+#include "dynamics/equations_of_motion.hpp"
+#include "dynamics/kinematics.hpp"
+#include "effects/behaviour.hpp"
 #include "pendcore/effects/joint_stop.hpp"
 #include "pendcore/effects/lock.hpp"
-#include "pendcore/scene/singular.hpp"
+#include "scene/effects_of_scene.hpp"
+#include "scene/singular.hpp"
 
 namespace pendcore {
 namespace {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pendcore/dynamics/contact/held_joints.hpp"
-#include "pendcore/dynamics/contact/momenta.hpp"
-#include "pendcore/dynamics/equations_of_motion.hpp"
-#include "pendcore/dynamics/kinematics.hpp"
+#include "dynamics/contact/held_joints.hpp"
+#include "dynamics/contact/momenta.hpp"
+#include "dynamics/equations_of_motion.hpp"
+#include "dynamics/kinematics.hpp"
 
 namespace pendcore {
 double HeldJoints::into(int joint, const double* q, const double* qd) const {

@@ -1,9 +1,9 @@
-#include "pendcore/dynamics/contact/joint_support.hpp"
+#include "dynamics/contact/joint_support.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "pendcore/effects/behaviour.hpp"
+#include "effects/behaviour.hpp"
 #include "pendcore/effects/joint_stop.hpp"
 #include "pendcore/effects/lock.hpp"
 

@@ -1,4 +1,4 @@
-#include "pendcore/dynamics/contact/momenta.hpp"
+#include "dynamics/contact/momenta.hpp"
 
 namespace pendcore {
 

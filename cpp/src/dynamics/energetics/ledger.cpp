@@ -1,9 +1,9 @@
-#include "pendcore/dynamics/energetics/ledger.hpp"
+#include "dynamics/energetics/ledger.hpp"
 
 #include <algorithm>
 
-#include "pendcore/dynamics/kinematics.hpp"
-#include "pendcore/effects/behaviour.hpp"
+#include "dynamics/kinematics.hpp"
+#include "effects/behaviour.hpp"
 #include "pendcore/effects/payload.hpp"
 
 namespace pendcore {

@@ -1,18 +1,13 @@
-#include "pendcore/dynamics/energetics/reactions.hpp"
+#include "dynamics/energetics/reactions.hpp"
 
 #include <vector>
 
-#include "pendcore/dynamics/energetics/ledger.hpp"
-#include "pendcore/dynamics/equations_of_motion.hpp"
+#include "dynamics/energetics/ledger.hpp"
+#include "dynamics/equations_of_motion.hpp"
 #include "pendcore/effects/payload.hpp"
-#include "pendcore/text/message.hpp"
+#include "text/message.hpp"
 
 namespace pendcore {
-
-void reactions(const Scene& scene, double t, std::span<const double> q, std::span<const double> qd,
-               std::span<const double> qdd, std::span<double> forces) {
-  reactions(scene, *effects_in_force(scene), t, q, qd, qdd, forces);
-}
 
 void reactions(const Scene& scene, EffectsInForce& effects, double t, std::span<const double> q,
                std::span<const double> qd, std::span<const double> qdd, std::span<double> forces) {

@@ -1,4 +1,4 @@
-#include "pendcore/dynamics/series/double_pendulum_series.hpp"
+#include "dynamics/series/double_pendulum_series.hpp"
 
 namespace pendcore {
 

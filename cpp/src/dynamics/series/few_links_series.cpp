@@ -1,4 +1,4 @@
-#include "pendcore/dynamics/series/few_links_series.hpp"
+#include "dynamics/series/few_links_series.hpp"
 
 #include <algorithm>
 #include <utility>

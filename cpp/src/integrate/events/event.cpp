@@ -1,8 +1,8 @@
-#include "pendcore/integrate/events/event.hpp"
+#include "pendcore/events.hpp"
 
 #include <cmath>
 
-#include "pendcore/text/message.hpp"
+#include "text/message.hpp"
 
 namespace pendcore {
 namespace {

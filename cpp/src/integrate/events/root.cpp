@@ -1,4 +1,4 @@
-#include "pendcore/integrate/events/root.hpp"
+#include "integrate/events/root.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,11 +1,11 @@
-#include "pendcore/integrate/loop/first_step.hpp"
+#include "integrate/loop/first_step.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
-#include "pendcore/arithmetic/power.hpp"
+#include "arithmetic/power.hpp"
 
 namespace pendcore {
 

@@ -1,13 +1,13 @@
-#include "pendcore/integrate/loop/guards.hpp"
+#include "integrate/loop/guards.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include "pendcore/arithmetic/epsilon.hpp"
-#include "pendcore/arithmetic/pack.hpp"
-#include "pendcore/integrate/events/root.hpp"
+#include "arithmetic/epsilon.hpp"
+#include "arithmetic/pack.hpp"
+#include "integrate/events/root.hpp"
 
 namespace pendcore {
 namespace {

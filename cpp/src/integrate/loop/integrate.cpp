@@ -1,18 +1,32 @@
-#include "pendcore/integrate/loop/integrate.hpp"
+#include "integrate/loop/integrate.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <new>
 
-#include "pendcore/arithmetic/epsilon.hpp"
-#include "pendcore/integrate/loop/resume_point.hpp"
-#include "pendcore/integrate/loop/run_limits.hpp"
-#include "pendcore/integrate/loop/statistics.hpp"
-#include "pendcore/integrate/loop/stiffness.hpp"
-#include "pendcore/integrate/loop/trial.hpp"
+#include "arithmetic/epsilon.hpp"
+#include "integrate/loop/resume_point.hpp"
+#include "integrate/loop/run_limits.hpp"
+#include "integrate/loop/stiffness.hpp"
+#include "integrate/loop/trial.hpp"
 
 namespace pendcore {
 namespace {
+
+/// Counts an accepted step of size h. A step that was cut does not count for the smallest and the
+/// largest step.
+void count_accepted(Statistics& statistics, double h, bool cut, bool at_max_step) {
+  ++statistics.accepted;
+  ++(cut           ? statistics.limited_by_break
+     : at_max_step ? statistics.limited_by_max_step
+                   : statistics.limited_by_tolerance);
+  const long long uncut = statistics.accepted - statistics.limited_by_break;
+  if (cut && uncut > 0) return;
+  const double size = std::abs(h);
+  const bool first = uncut <= 1;
+  statistics.min_step = first ? size : std::min(statistics.min_step, size);
+  statistics.max_step = first ? size : std::max(statistics.max_step, size);
+}
 
 class Run {
  public:

@@ -1,4 +1,4 @@
-#include "pendcore/integrate/loop/resume_point.hpp"
+#include "integrate/loop/resume_point.hpp"
 
 namespace pendcore {
 

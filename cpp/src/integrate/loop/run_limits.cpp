@@ -1,4 +1,4 @@
-#include "pendcore/integrate/loop/run_limits.hpp"
+#include "integrate/loop/run_limits.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "pendcore/integrate/loop/stiffness.hpp"
+#include "integrate/loop/stiffness.hpp"
 
 namespace pendcore {
 

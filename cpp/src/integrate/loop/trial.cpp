@@ -1,9 +1,9 @@
-#include "pendcore/integrate/loop/trial.hpp"
+#include "integrate/loop/trial.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "pendcore/arithmetic/epsilon.hpp"
+#include "arithmetic/epsilon.hpp"
 
 namespace pendcore {
 namespace {
@@ -14,6 +14,12 @@ constexpr int most_halvings_of_step = 20;
 /// The dense output of a fixed step locates a guard's zero only roughly: the step is not shortened
 /// below this share at once.
 constexpr double least_share_of_fixed = 0.1;
+
+/// Whether time resolves nothing within a step of size h at t. Near t = 0 doubles resolve more than
+/// steps can: what happens within the least step of a run happens at once.
+bool is_short(double h, double t) {
+  return std::abs(h) <= std::max(few_bits * last_bits(t, t), Limits{}.least_step);
+}
 
 /// The component of the attempted step whose new value, or new rate, is not finite, or -1.
 int bad_component_of(Stepper& stepper, double t_new) {
@@ -70,7 +76,7 @@ Trial::Verdict Trial::follow_guards() {
     }
     // A shorter step may resolve what the whole step passed over, such as friction's peak at rest.
     h_ *= std::max(0.5 * crossing_.theta, fixed_step_ ? least_share_of_fixed : 0.0);
-    if (std::abs(h_) <= few_bits * last_bits(t_, t_ + h_)) return Verdict::changes_at_start;
+    if (is_short(h_, t_)) return Verdict::changes_at_start;
     if (!fixed_step_) return Verdict::is_tried_again;
     if (!take_again()) return give_up(h_);
   }
@@ -80,16 +86,16 @@ Trial::Verdict Trial::follow_guards() {
 /// output may be wrong by its own error.
 Trial::Verdict Trial::verify_guard_start() {
   for (int halvings = 0;; ++halvings) {
-    const bool is_short = std::abs(h_) <= few_bits * last_bits(t_, t_);
-    crossing_ = guards_->first(t_, h_, !is_short);
+    const bool is_shortest = is_short(h_, t_);
+    crossing_ = guards_->first(t_, h_, !is_shortest);
     const double at_start = epsilon * std::max(few_bits * std::abs(t_), 2.0 * std::abs(h_));
     if (crossing_.guard >= 0 && crossing_.theta * std::abs(h_) <= at_start) {
       // A fixed step that is too long for its method shows slopes that the motion does not have.
-      if (is_short || (crossing_.is_of_slope && !fixed_step_) ||
+      if (is_shortest || (crossing_.is_of_slope && !fixed_step_) ||
           guards_->falls_at_start(crossing_.guard, t_, h_, halvings)) {
         return Verdict::changes_at_start;
       }
-    } else if (is_short || halvings == most_halvings_of_step ||
+    } else if (is_shortest || halvings == most_halvings_of_step ||
                !guards_->contradicts_law_at_start(crossing_, h_)) {
       return Verdict::accepted;
     }
@@ -106,7 +112,7 @@ bool Trial::take_again() {
     look_for_bad_component();
     if (!fixed_step_) return integrator_.trial_was_finite && attempt_.squared_error <= 1.0;
     if (integrator_.trial_was_finite) return true;
-    if (std::abs(h_) <= few_bits * last_bits(t_, t_)) return false;
+    if (is_short(h_, t_)) return false;
     h_ *= 0.5;
   }
 }

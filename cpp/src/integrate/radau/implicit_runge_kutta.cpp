@@ -1,11 +1,11 @@
-#include "pendcore/integrate/radau/implicit_runge_kutta.hpp"
+#include "integrate/radau/implicit_runge_kutta.hpp"
 
 #include <limits>
 #include <stdexcept>
 #include <vector>
 
-#include "pendcore/integrate/horner.hpp"
-#include "pendcore/integrate/runge_kutta/compensation.hpp"
+#include "integrate/horner.hpp"
+#include "integrate/runge_kutta/compensation.hpp"
 
 namespace pendcore {
 namespace {

@@ -1,4 +1,4 @@
-#include "pendcore/integrate/runge_kutta/runge_kutta_in_memory.hpp"
+#include "integrate/runge_kutta/runge_kutta_in_memory.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "pendcore/integrate/horner.hpp"
-#include "pendcore/integrate/methods.hpp"
-#include "pendcore/integrate/runge_kutta/compensation.hpp"
-#include "pendcore/integrate/runge_kutta/step.hpp"
+#include "integrate/horner.hpp"
+#include "integrate/method_list.hpp"
+#include "integrate/runge_kutta/compensation.hpp"
+#include "integrate/runge_kutta/step.hpp"
 
 namespace pendcore {
 namespace {

@@ -1,9 +1,9 @@
-#include "pendcore/integrate/taylor/dominant_eigenvalue.hpp"
+#include "integrate/taylor/dominant_eigenvalue.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "pendcore/integrate/taylor/taylor.hpp"
+#include "integrate/taylor/taylor.hpp"
 
 namespace pendcore {
 

@@ -1,10 +1,10 @@
-#include "pendcore/integrate/taylor/taylor.hpp"
+#include "integrate/taylor/taylor.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "pendcore/arithmetic/order_of_series.hpp"
-#include "pendcore/arithmetic/power.hpp"
+#include "arithmetic/order_of_series.hpp"
+#include "arithmetic/power.hpp"
 
 namespace pendcore {
 

@@ -1,0 +1,51 @@
+/// \file
+/// The vectors and matrices of the API are Eigen's.
+///
+/// What the library returns owns memory of malloc (Eigen::DontAlign), so that a program may free it
+/// whatever instruction set (-march) either of the two is compiled for.
+#pragma once
+
+#include <Eigen/Core>
+#include <initializer_list>
+#include <span>
+#include <vector>
+
+namespace pendcore {
+
+using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::DontAlign>;
+using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic,  //
+                             Eigen::RowMajor | Eigen::DontAlign>;
+/// A row x, y for each point; x right, y down.
+using Points = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor | Eigen::DontAlign>;
+
+/// Numbers that belong to something else.
+using View = Eigen::Map<const Eigen::VectorXd>;
+
+/// The argument of a function that takes a vector: one of Eigen's, a std::vector, or numbers in
+/// braces. It copies none but what has gaps or is an expression.
+class Numbers : public Eigen::Ref<const Vector> {
+ public:
+  using Ref = Eigen::Ref<const Vector>;
+  using Ref::Ref;
+  Numbers(std::span<const double> numbers)  // NOLINT(google-explicit-constructor)
+      : Ref(View(numbers.data(), static_cast<Eigen::Index>(numbers.size()))) {}
+  Numbers(const std::vector<double>& numbers)  // NOLINT(google-explicit-constructor)
+      : Numbers(std::span(numbers)) {}
+  Numbers(std::initializer_list<double> numbers)
+      : Numbers(std::span(numbers.begin(), numbers.size())) {}
+  Numbers(const Numbers&) = delete;
+  Numbers& operator=(const Numbers&) = delete;
+  ~Numbers() = default;
+
+  /// The same numbers for what works without Eigen.
+  std::span<const double> span() const {
+    return {data(), static_cast<std::size_t>(size())};
+  }
+};
+
+/// The numbers of a matrix, row by row.
+inline std::span<double> as_span(Points& points) {
+  return {points.data(), static_cast<std::size_t>(points.size())};
+}
+
+}  // namespace pendcore

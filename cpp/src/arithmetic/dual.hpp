@@ -1,0 +1,169 @@
+/// \file
+/// A dual number: a value, and its derivative along one direction.
+///
+///     (x + x' e)(y + y' e) = x y + (x y' + x' y) e,   e^2 = 0
+///
+/// Code for a row of numbers (a double, a pair, a pack) runs unchanged on a dual row. It gives the
+/// exact derivative beside the value, and the value has the same bits as without the derivative.
+///
+/// Source: Griewank and Walther, Evaluating Derivatives (2008), chapter 3, the forward mode. Cost:
+/// two to three times the cost of the row. At x = 0, |x| has the derivative that it has for x > 0.
+#pragma once
+
+#include "arithmetic/exponential.hpp"
+#include "arithmetic/row_of_links.hpp"
+
+namespace pendcore {
+
+template <class Row>
+struct Dual {
+  Row value;
+  Row slope;
+
+  Dual() = default;
+  PENDCORE_INLINE Dual(const Row& constant)  // NOLINT(google-explicit-constructor): as a row would
+      : value(constant), slope{} {}
+  PENDCORE_INLINE Dual(const Row& x, const Row& along) : value(x), slope(along) {}
+  // GCC would copy the structure in parts of 16 bytes. The load of a wider pack cannot be forwarded
+  // from several stores, and waits for them: series took twice as long.
+  PENDCORE_INLINE Dual(const Dual& x)
+      : value(x.value), slope(x.slope) {}           // NOLINT(*-use-equals-default)
+  PENDCORE_INLINE Dual& operator=(const Dual& x) {  // NOLINT(*-use-equals-default)
+    value = x.value;
+    slope = x.slope;
+    return *this;
+  }
+  ~Dual() = default;
+
+  PENDCORE_INLINE friend Dual operator-(const Dual& x) { return {-x.value, -x.slope}; }
+  PENDCORE_INLINE friend Dual operator+(const Dual& x, const Dual& y) {
+    return {x.value + y.value, x.slope + y.slope};
+  }
+  PENDCORE_INLINE friend Dual operator-(const Dual& x, const Dual& y) {
+    return {x.value - y.value, x.slope - y.slope};
+  }
+  PENDCORE_INLINE friend Dual operator*(const Dual& x, const Dual& y) {
+    return {x.value * y.value, pendcore::fma(x.value, y.slope, Row(x.slope * y.value))};
+  }
+  PENDCORE_INLINE friend Dual operator*(double x, const Dual& y) {
+    return {x * y.value, x * y.slope};
+  }
+  PENDCORE_INLINE friend Dual operator/(double x, const Dual& y) {
+    const Row quotient = x / y.value;
+    return {quotient, -(quotient * y.slope) / y.value};
+  }
+  PENDCORE_INLINE friend Dual fma(const Dual& a, const Dual& b, const Dual& c) {
+    return {pendcore::fma(a.value, b.value, c.value),
+            pendcore::fma(a.value, b.slope, pendcore::fma(a.slope, b.value, c.slope))};
+  }
+  PENDCORE_INLINE friend Dual fma(double a, const Dual& b, const Dual& c) {
+    return {pendcore::fma(a, b.value, c.value), pendcore::fma(a, b.slope, c.slope)};
+  }
+  PENDCORE_INLINE Dual& operator+=(const Dual& x) { return *this = *this + x; }
+  PENDCORE_INLINE Dual& operator-=(const Dual& x) { return *this = *this - x; }
+};
+
+/// Products with a row of constants.
+template <class Row>
+PENDCORE_INLINE Dual<Row> operator*(const Row& x, const Dual<Row>& y) {
+  return {x * y.value, x * y.slope};
+}
+template <class Row>
+PENDCORE_INLINE Dual<Row> fma(const Row& a, const Dual<Row>& b, const Dual<Row>& c) {
+  return {fma(a, b.value, c.value), fma(a, b.slope, c.slope)};
+}
+
+/// The type of a constant beside a row: that of the row, or of its value if it is dual.
+template <class Row>
+struct WithoutSlope {
+  using Type = Row;
+};
+template <class Row>
+struct WithoutSlope<Dual<Row>> {
+  using Type = Row;
+};
+template <class Row>
+using ConstantOf = typename WithoutSlope<Row>::Type;
+
+/// A lane of a dual row is a dual number.
+template <class Row>
+struct Lanes<Dual<Row>> {
+  static constexpr int width = Lanes<Row>::width;
+  using Number = Dual<double>;
+};
+
+template <class Row>
+struct Constants<Dual<Row>> {
+  template <class Constant>
+  PENDCORE_INLINE static Dual<Row> of(const Constant& x)
+    requires requires { Constants<Row>::of(x); }
+  {
+    return Dual<Row>(Constants<Row>::of(x));
+  }
+};
+
+/// Loads a row from consecutive numbers in memory, or stores it. Plain numbers are constants.
+template <class DualRow>
+  requires requires(DualRow x) { x.slope; }
+PENDCORE_INLINE DualRow load(const double* from) {
+  return load<decltype(DualRow::value)>(from);
+}
+template <class DualRow>
+PENDCORE_INLINE DualRow load(const Dual<double>* from) {
+  DualRow x;
+  for (int i = 0; i < Lanes<DualRow>::width; ++i) {
+    set_lane(x.value, i, from[i].value);
+    set_lane(x.slope, i, from[i].slope);
+  }
+  return x;
+}
+template <class Row>
+PENDCORE_INLINE void store(Dual<double>* to, const Dual<Row>& x) {
+  for (int i = 0; i < Lanes<Row>::width; ++i) to[i] = {lane(x.value, i), lane(x.slope, i)};
+}
+
+template <class Row>
+PENDCORE_INLINE Dual<Row> other(const Dual<Row>& x) {
+  return {other(x.value), other(x.slope)};
+}
+template <class Row>
+PENDCORE_INLINE Dual<Row> before(const Dual<Row>& x) {
+  return {before(x.value), before(x.slope)};
+}
+template <class Row>
+PENDCORE_INLINE Dual<Row> after(const Dual<Row>& x) {
+  return {after(x.value), after(x.slope)};
+}
+template <class Row>
+PENDCORE_INLINE Dual<Row> before(const Dual<Row>& x, const Dual<Row>& row_before) {
+  return {before(x.value, row_before.value), before(x.slope, row_before.slope)};
+}
+template <class Row>
+PENDCORE_INLINE Dual<Row> after(const Dual<Row>& x, const Dual<Row>& row_after) {
+  return {after(x.value, row_after.value), after(x.slope, row_after.slope)};
+}
+
+template <class Row>
+PENDCORE_INLINE Dual<Row> absolute(const Dual<Row>& x) {
+  return {absolute(x.value), x.value < Row{} ? Row(-x.slope) : x.slope};
+}
+template <class Row>
+PENDCORE_INLINE void sine_cosine(const Dual<Row>& x, Dual<Row>& sine, Dual<Row>& cosine) {
+  Row s, c;
+  sine_cosine(x.value, s, c);
+  sine = {s, c * x.slope};
+  cosine = {c, -(s * x.slope)};
+}
+template <class Row>
+PENDCORE_INLINE Dual<Row> exponential(const Dual<Row>& x) {
+  const Row value = exponential(x.value);
+  return {value, value * x.slope};
+}
+/// x^p for x >= 0 and p >= 1.
+template <class Row>
+PENDCORE_INLINE Dual<Row> power(const Dual<Row>& x, double p) {
+  if (p == 1.0) return x;
+  return {power(x.value, p), broadcast<Row>(p) * power(x.value, p - 1.0) * x.slope};
+}
+
+}  // namespace pendcore

@@ -1,0 +1,214 @@
+/// \file
+/// The compiled effects of a scene: the sum of the couples on each row of joints, and a list of the
+/// other laws. What a scene does not have costs nothing.
+///
+/// All couples of a row together cost as much as one, and effects of one kind on different joints
+/// of a row share a law. Effects that only change constants of the mass matrix are in inertia.hpp.
+#pragma once
+
+#include <memory>
+#include <tuple>
+#include <variant>
+#include <vector>
+
+#include "arithmetic/dual.hpp"
+#include "arithmetic/sine_cosine.hpp"
+#include "effects/behaviour.hpp"
+#include "pendcore/scene.hpp"
+
+namespace pendcore {
+
+/// The first two waves that act on a double pendulum, and what they add to its equations:
+/// Q += sum_k sin(wave k) (torque_k + on_sine_k sin q + on_cosine_k cos q).
+template <class Links>
+struct WavesOf {
+  Links angular_frequency{}, phase{};
+  Links torque[2]{};     ///< amplitudes of motors
+  Links on_sine[2]{};    ///< amplitudes of a xdd_0 of the pivot
+  Links on_cosine[2]{};  ///< amplitudes of -a ydd_0 of the pivot
+
+  template <class Any>
+  static auto fields(Any& x) {
+    return std::tie(x.angular_frequency, x.phase, x.torque, x.on_sine, x.on_cosine);
+  }
+};
+using TwoWaves = WavesOf<Pair>;
+
+/// The part of the compiled effects that does not depend on the width of a row: modes, waves, and
+/// the motion of the pivot. An object belongs to one run and one thread, because modes change along
+/// the run.
+class EffectsInForce {
+ public:
+  virtual ~EffectsInForce() = default;
+
+  /// Freezes effect number i (from 0) to a mode.
+  virtual void put_mode(std::size_t i, int mode) = 0;
+
+  /// Eliminates a joint (counted from 0), or sets it free.
+  void hold(int joint, bool is_held);
+
+  /// Computes sine and cosine of the waves from number `known` on, at time t.
+  PENDCORE_INLINE void compute_waves(double t, int known) const {
+    for (int k = known; k < waves; k += 4) {
+      Pack<4> s, c;
+      sine_cosine(wave_angles<Pack<4>>(t, k), s, c);
+      store(&wave_sine[k], s);
+      store(&wave_cosine[k], c);
+    }
+  }
+  template <class Real>
+  PENDCORE_INLINE Real wave_angles(double t, int k) const {
+    return fma(load<Real>(&angular_frequency[k]), broadcast<Real>(t), load<Real>(&phase[k]));
+  }
+
+  /// The acceleration (m/s^2) and the velocity (m/s) of the pivot. compute_waves() comes first.
+  PENDCORE_INLINE void pivot_acceleration(double t, double& x, double& y) const {
+    x = y = 0.0;
+    for (const PivotLaw& law : pivots) law.add_acceleration(t, wave_sine.data(), x, y);
+  }
+  PENDCORE_INLINE void pivot_velocity(double t, double& x, double& y) const {
+    x = y = 0.0;
+    for (const PivotLaw& law : pivots) law.add_velocity(t, wave_cosine.data(), x, y);
+  }
+
+  /// Computes what a user's function adds to Q (n); Q is zero on entry.
+  PENDCORE_INLINE void call(const UserLaw& user, double t, const double* q, const double* qd,
+                            double* Q) const {
+    user(t, static_cast<int>(held.size()), q, qd, Q);
+  }
+  /// The same with the derivative along the slopes. It is taken by central differences, because the
+  /// function takes doubles.
+  void call(const UserLaw& user, double t, const Dual<double>* q, const Dual<double>* qd,
+            Dual<double>* Q) const;
+
+  std::vector<Effect> effects;
+  std::vector<int> modes;           ///< the mode of each effect
+  std::vector<int> number_of_wave;  ///< the first wave of each effect, or -1
+  std::vector<JointWave> joint_waves;
+  std::vector<char> held;  ///< whether each joint is eliminated, as it does not turn
+  std::vector<PivotLaw> pivots;
+  std::vector<UserLaw> users;
+  bool has_modes = false;   ///< some law is only piecewise smooth
+  bool has_forces = false;  ///< some law adds forces, not only couples
+  bool any_held = false;
+
+  int waves = 0;
+  TwoWaves two_waves;
+  std::vector<double> angular_frequency;  ///< one for each wave, padded to whole packs
+  std::vector<double> phase;
+  mutable std::vector<double> wave_sine;
+  mutable std::vector<double> wave_cosine;
+
+ protected:
+  explicit EffectsInForce(const Scene& scene);
+  void add_waves(std::size_t i);  ///< those of effect number i
+  void put_pivot(std::size_t i, const PivotLaw& law);
+  void finish_waves();
+
+  /// The number of an effect among the pivots, the functions or the laws like its own.
+  std::vector<std::size_t> number_of_law_;
+
+ private:
+  mutable std::vector<double> user_room_;
+};
+
+/// A law that effects on one row share, with a lane for each. Its alignment is the one
+/// of Couples.
+template <template <class> class Law, class Row>
+struct alignas(sizeof(Row)) SharedLaw {
+  Law<Row> law;
+  int row;
+  Account account;     ///< where the ledger books its work
+  unsigned taken = 0;  ///< a bit for each lane in use
+};
+
+/// The laws of a scene, a vector for each law of the list, and a pointer to one of them.
+template <class List>
+struct LawsOf;
+template <template <class> class... Laws, class Row>
+struct LawsOf<std::variant<Laws<Row>...>> {
+  using Storage = std::tuple<std::vector<SharedLaw<Laws, Row>>...>;
+  using Pointer = std::variant<const SharedLaw<Laws, Row>*...>;
+};
+
+/// The compiled effects of a scene whose links are taken in rows of `width`.
+template <class Row>
+class ActingEffects final : public EffectsInForce {
+ public:
+  static constexpr int width = Lanes<Row>::width;
+
+  using Laws = LawsOf<LawOn<Row>>;
+
+  struct Entry {
+    typename Laws::Pointer law;
+    int row;
+    Account account;
+  };
+
+  explicit ActingEffects(const Scene& scene);
+  ActingEffects(const ActingEffects&) = delete;  // its entries point to its own laws
+  ActingEffects& operator=(const ActingEffects&) = delete;
+  void put_mode(std::size_t i, int mode) override;
+
+  /// Calls visit(law) with the law of an entry in its own type.
+  template <class Visit>
+  PENDCORE_INLINE static void visit(const Entry& entry, Visit visit) {
+    visit_one_of(entry, visit,
+                 std::make_index_sequence<std::variant_size_v<typename Laws::Pointer>>{});
+  }
+
+  /// Adds the law of an entry to the loads of its row.
+  template <class At, class Loads>
+  PENDCORE_INLINE static void add(const Entry& entry, const At& at, Loads& loads) {
+    visit(entry, [&](const auto& law) __attribute__((always_inline)) { law.add(at, loads); });
+  }
+
+  std::vector<Couples<Row>> couples;  ///< one for each row that has couples
+  std::vector<Entry> entries;         ///< in the order of their first effects in the scene
+
+  /// Adds all entries, compiled for the instruction set of this processor. It is for forms of the
+  /// equations that rarely have entries.
+  template <class At, class Loads>
+  static void add_all(const ActingEffects* effects, const At* at, Loads* loads) {
+    static const auto add_on_this_processor = fastest<&add_in_turn<At, Loads>>();
+    add_on_this_processor(effects, at, loads);
+  }
+
+ private:
+  template <class At, class Loads>
+  PENDCORE_INLINE static void add_in_turn(const ActingEffects* effects, const At* at,
+                                          Loads* loads) {
+    for (const Entry& entry : effects->entries) add(entry, *at, *loads);
+  }
+  void sum_couples(int joint);
+  void find_two_waves(const Scene& scene);
+
+  template <class Visit, std::size_t... kinds>
+  PENDCORE_INLINE static void visit_one_of(const Entry& entry, Visit& visit,
+                                           std::index_sequence<kinds...>) {
+    (visit_if<kinds>(entry, visit), ...);
+  }
+  template <std::size_t kind, class Visit>
+  PENDCORE_INLINE static void visit_if(const Entry& entry, Visit& visit) {
+    if (entry.law.index() == kind) visit(std::get<kind>(entry.law)->law);
+  }
+
+  template <template <class> class Law>
+  std::vector<SharedLaw<Law, Row>>& laws_like(const Law<double>& /*one*/) {
+    return std::get<std::vector<SharedLaw<Law, Row>>>(laws_);
+  }
+  void add_law(std::size_t i);
+
+  std::vector<int> place_of_;  ///< the joint or link of each effect, from 0; -1 if none
+  std::vector<LinkConstants> link_there_;
+  typename Laws::Storage laws_;
+};
+
+/// The sum of what the users' functions add, N m.
+template <class Row>
+Row of_users(const EffectsInForce& effects, double t, const Row& q, const Row& qd);
+
+/// Compiles the effects of a scene, with the width of a row that its number of links calls for.
+std::shared_ptr<EffectsInForce> effects_in_force(const Scene& scene);
+
+}  // namespace pendcore

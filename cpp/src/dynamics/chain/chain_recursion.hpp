@@ -1,0 +1,275 @@
+/// \file
+/// The recursion of chain.hpp.
+#pragma once
+
+#include <algorithm>
+
+#include "dynamics/chain/chain.hpp"
+#include "dynamics/chain/free_links.hpp"
+#include "dynamics/row.hpp"
+
+namespace pendcore {
+
+/// Copies n links, plain ones in whole packs.
+PENDCORE_INLINE void copy_links(const double* from, int n, double* to) {
+  int i = 0;
+  for (; i + 4 <= n; i += 4) store(to + i, load<Pack<4>>(from + i));
+  if (i == n) return;
+  Pack<4> rest{from[i], 0.0, 0.0, 0.0};
+  if (i + 1 < n) rest[1] = from[i + 1];
+  if (i + 2 < n) rest[2] = from[i + 2];
+  store(to + i, rest);
+}
+PENDCORE_INLINE void copy_links(const Dual<double>* from, int n, Dual<double>* to) {
+  std::copy_n(from, n, to);
+}
+
+template <class Number>
+PENDCORE_INLINE void ChainOf<Number>::prepare(const Number* q, const Number* qd) const {
+  Number* const s = in(s_);
+  Number* const c = in(c_);
+  copy_links(q, n_, in(q_));
+  copy_links(qd, n_, in(qd_));
+  for (int i = 0; i < padded_; i += 4) {
+    const Row rate = load<Row>(in(qd_) + i);
+    Row sine, cosine;
+    sine_cosine(load<Row>(in(q_) + i), sine, cosine);
+    store(s + i, sine);
+    store(c + i, cosine);
+    const Row square = rate * rate;
+    store(in(centripetal_) + i, Row(load<Row>(in(length_) + i) * square));
+    store(in(center_) + i, Row(load<Row>(in(mass_moment_) + i) * square));
+  }
+  for (int i = 0; i < padded_; i += 4) {
+    const Row sine = load<Row>(s + i);
+    const Row cosine = load<Row>(c + i);
+    const Row sine_before = before(sine, load<Row>(s + i - 4));
+    const Row cosine_before = before(cosine, load<Row>(c + i - 4));
+    const Row cos = fma(cosine, cosine_before, sine * sine_before);
+    const Row sin = fma(sine, cosine_before, -(cosine * sine_before));
+    store(in(cos_) + i, cos);
+    store(in(sin_) + i, sin);
+    store(in(cc_) + i, Row(cos * cos));
+    store(in(ss_) + i, Row(sin * sin));
+    store(in(sc_) + i, Row(sin * cos));
+  }
+}
+
+/// The loads that a law adds on a row of four links.
+template <class Row>
+struct ChainLoads {
+  using Number = typename Lanes<Row>::Number;
+  Number *couples, *moments, *fx, *fy;
+  PENDCORE_INLINE static void add(Number* to, const Row& x) { store(to, Row(load<Row>(to) + x)); }
+  PENDCORE_INLINE void couple(const Row& tau) { add(couples, tau); }
+  PENDCORE_INLINE void generalised(const Row& Q) { add(moments, Q); }
+  PENDCORE_INLINE void force(const Row& moment, const Row& x, const Row& y) {
+    add(moments, moment);
+    add(fx, x);
+    add(fy, y);
+  }
+};
+
+/// Collects the torque on each link, and the force on it in its own frame.
+template <class Number>
+PENDCORE_INLINE void ChainOf<Number>::collect_loads(double t) const {
+  using Effects = ActingEffects<Pack<4>>;
+  const Effects& effects = *effects_;
+  const bool forces = effects.has_forces;
+  Number* const couple = in(couple_);
+  Number* const torque = in(torque_);
+  Number* const fx = in(fx_);
+  Number* const fy = in(fy_);
+  for (int i = 0; i < padded_; i += 4) {
+    store(couple + i, Row{});
+    store(torque + i, Row{});
+    store(fx + i, Row{});
+    store(fy + i, Row{});
+  }
+  if (forces) {
+    double pivot_x = 0.0;
+    double pivot_y = 0.0;
+    if (!effects.pivots.empty()) effects.pivot_velocity(t, pivot_x, pivot_y);
+    Number x = pivot_x;
+    Number y = pivot_y;
+    for (int i = 0; i < n_; ++i) {
+      in(vx_)[i] = x;
+      in(vy_)[i] = y;
+      const Number speed = in(length_)[i] * in(qd_)[i];
+      x = fma(-speed, in(s_)[i], x);
+      y = fma(speed, in(c_)[i], y);
+    }
+  }
+  const ArraysOver<Number> links{in(q_), in(qd_), in(s_), in(c_), in(length_), in(vx_), in(vy_)};
+  auto loads_of = [&](int row) {
+    return ChainLoads<Row>{couple + 4 * row, torque + 4 * row, fx + 4 * row, fy + 4 * row};
+  };
+  for (const Couples<Pack<4>>& one : effects.couples) {
+    loads_of(one.row).couple(one.torque(RowInArrays<Row>(links, t, one.row)));
+  }
+  for (const JointWave& one : effects.joint_waves) {
+    couple[one.joint] += one.gain * effects.wave_sine[one.wave];
+  }
+  for (const auto& entry : effects.entries) {
+    ChainLoads<Row> loads = loads_of(entry.row);
+    Effects::add(entry, RowInArrays<Row>(links, t, entry.row), loads);
+  }
+  for (const UserLaw& user : effects.users) {
+    Number* const Q = in(user_);
+    for (int i = 0; i < n_; ++i) Q[i] = Number{};
+    effects.call(user, t, in(q_), in(qd_), Q);
+    for (int i = 0; i < n_; ++i) torque[i] += Q[i];
+  }
+  for (int i = 0; i < padded_; i += 4) {
+    const Row couples = load<Row>(couple + i);
+    store(torque + i,
+          Row(load<Row>(torque + i) + couples - after(couples, load<Row>(couple + i + 4))));
+    if (forces) {
+      const Row x = load<Row>(fx + i);
+      const Row y = load<Row>(fy + i);
+      const Row s = load<Row>(in(s_) + i);
+      const Row c = load<Row>(in(c_) + i);
+      store(fx + i, fma(c, x, s * y));
+      store(fy + i, fma(c, y, -(s * x)));
+    }
+  }
+}
+
+template <class Number>
+template <bool loaded, int size>
+PENDCORE_INLINE void ChainOf<Number>::tip_to_base() const {
+  const int n = size > 0 ? size : n_;
+  JointForce<Number> force{{payload_mass_, 0.0, payload_mass_}, 0.0, 0.0};
+#pragma GCC unroll 3
+  for (int i = n - 1; i >= 0; --i) {
+    LinkInMotion<Number> at{.s = in(s_)[i],
+                            .c = in(c_)[i],
+                            .cos = in(cos_)[i],
+                            .sin = in(sin_)[i],
+                            .cc = in(cc_)[i],
+                            .ss = in(ss_)[i],
+                            .sc = in(sc_)[i],
+                            .centripetal = in(centripetal_)[i],
+                            .center = in(center_)[i],
+                            .torque = {},
+                            .force_u = {},
+                            .force_n = {}};
+    if constexpr (loaded) {
+      at.torque = in(torque_)[i];
+      at.force_u = in(fx_)[i];
+      at.force_n = in(fy_)[i];
+    }
+    const FreeResponse<Number> found = force.template add_free<loaded>(links_[i], at);
+    response_[i] = {found.free, found.x, found.y, 0.0};
+  }
+}
+
+template <class Number>
+template <int size>
+PENDCORE_INLINE void ChainOf<Number>::base_to_tip(const Number& ax, const Number& ay,
+                                                  Number* qdd) const {
+  const int n = size > 0 ? size : n_;
+  JointAcceleration<Number> of_joint{ax, ay};
+#pragma GCC unroll 3
+  for (int i = 0; i < n; ++i) {
+    const Response& k = response_[i];
+    const Number L = in(length_)[i];
+    qdd[i] = go_to_next_joint(FreeResponse<Number>{k.free, k.x, k.y}, in(s_)[i], in(c_)[i], L,
+                              in(centripetal_)[i], of_joint);
+  }
+}
+
+template <class Number>
+PENDCORE_INLINE void ChainOf<Number>::tip_to_base_coupled() const {
+  ForcePerAcceleration<Number> B{payload_mass_, 0.0, payload_mass_};
+  Number b_u = 0.0;
+  Number b_n = 0.0;
+  Number beta_u = 0.0;  // force per angular acceleration of the link before
+  Number beta_n = 0.0;
+  Number kappa = 0.0;  // torque per angular acceleration
+  Number t = 0.0;      // the rest of the torque
+  for (int i = n_ - 1; i >= 0; --i) {
+    const ChainLink& k = links_[i];
+    const Number centripetal = in(centripetal_)[i];
+    const Number pu = fma(-centripetal, B.uu, b_u);
+    const Number pn = fma(-centripetal, B.un, b_n);
+    const Number D = fma(k.LL, B.nn, k.Io) + fma(2.0 * k.L, beta_n, kappa);
+    const double J = rotor_[i];
+    const bool is_held = effects_->held[i];
+    const Number r = is_held ? Number(0.0) : 1.0 / (D + J);
+    const Number share = is_held ? Number(1.0) : J * r;
+    const Number wu = fma(k.L, B.un, beta_u);
+    const Number wn = fma(k.L, B.nn, k.mc) + beta_n;
+    const Number torque = in(torque_)[i] - fma(k.L, pn, fma(-centripetal, beta_u, t));
+    const Number free = r * torque;
+    const Number fu = fma(wu, free, pu - in(center_)[i] - in(fx_)[i]);
+    const Number fn = fma(wn, free, pn - in(fy_)[i]);
+    const Number s = in(s_)[i];
+    const Number c = in(c_)[i];
+    response_[i] = {free, r * fma(wu, c, -(wn * s)), r * fma(wu, s, wn * c), share};
+
+    B.add_coupled(k, r, wu, wn, in(cc_)[i], in(ss_)[i], in(sc_)[i]);
+    const Number cos = in(cos_)[i];
+    const Number sin = in(sin_)[i];
+    b_u = fma(fu, cos, -(fn * sin));
+    b_n = fma(fu, sin, fn * cos);
+    beta_u = share * fma(wu, cos, -(wn * sin));
+    beta_n = share * fma(wu, sin, wn * cos);
+    kappa = share * D;
+    t = -share * torque;
+  }
+}
+
+template <class Number>
+PENDCORE_INLINE void ChainOf<Number>::base_to_tip_coupled(Number ax, Number ay, Number* qdd) const {
+  Number before = 0.0;
+  for (int i = 0; i < n_; ++i) {
+    const Response& k = response_[i];
+    const Number s = in(s_)[i];
+    const Number c = in(c_)[i];
+    const Number L = in(length_)[i];
+    const Number centripetal = in(centripetal_)[i];
+    const Number found = fma(-k.y, ay, fma(-k.x, ax, fma(k.from_before, before, k.free)));
+    qdd[i] = before = found;
+    ax = fma(-(L * s), found, fma(-centripetal, c, ax));
+    ay = fma(L * c, found, fma(-centripetal, s, ay));
+  }
+}
+
+template <class Number>
+PENDCORE_INLINE void ChainOf<Number>::accelerations(double t, const Number* q, const Number* qd,
+                                                    Number* qdd) const {
+  double ax = 0.0;
+  double ay = 0.0;
+  prepare(q, qd);
+  if (loaded_) {
+    effects_->compute_waves(t, 0);
+    if (!effects_->pivots.empty()) effects_->pivot_acceleration(t, ax, ay);
+    collect_loads(t);
+  }
+  ay -= gravity_;
+  if (has_rotors_ || effects_->any_held) {
+    tip_to_base_coupled();
+    base_to_tip_coupled(ax, ay, qdd);
+    return;
+  }
+  if (n_ == 3) {
+    recursion<3>(ax, ay, qdd);
+  } else {
+    recursion<0>(ax, ay, qdd);
+  }
+}
+
+template <class Number>
+template <int size>
+PENDCORE_INLINE void ChainOf<Number>::recursion(const Number& ax, const Number& ay,
+                                                Number* qdd) const {
+  if (loaded_) {
+    tip_to_base<true, size>();
+  } else {
+    tip_to_base<false, size>();
+  }
+  base_to_tip<size>(ax, ay, qdd);
+}
+
+}  // namespace pendcore

@@ -1,0 +1,248 @@
+/// \file
+/// Fills lanes with members and takes their steps, whatever the method.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+
+#include "ensemble/lane_recording.hpp"
+#include "integrate/method_list.hpp"
+#include "pendcore/methods.hpp"
+#include "pendcore/simulate.hpp"
+#include "pendcore/solution.hpp"
+#include "simulate/checked_options.hpp"
+#include "simulate/method_choice.hpp"
+#include "simulate/steppers.hpp"
+
+namespace pendcore {
+
+/// So many members take less time one after the other than in lanes.
+template <int width>
+constexpr int few_lanes = width / 2;
+/// Steps between two looks at whether to go on: a fraction of a millisecond.
+inline constexpr int rounds_at_once = 256;
+
+/// The part of a runner that does not depend on the method.
+template <int width>
+class LaneLoop : public RecordingLanes<width> {
+  using Base = RecordingLanes<width>;
+  using Base::members_;
+  using Base::options_;
+  using Base::scene_;
+  using Base::statistics_;
+  using Base::t0_;
+  using Base::t_end_;
+
+ public:
+  LaneLoop(const Scene& scene, double t0, double t_end, const Options& options,
+           std::string_view method)
+      : RecordingLanes<width>(scene, t0, t_end, options),
+        method_(method),
+        interval_{t_end, options.max_step, options.max_steps},
+        rtol_(relative_tolerances(options, scene.links.size())),
+        atol_(absolute_tolerances(options, scene.links.size())),
+        rate_(2 * scene.links.size()) {}
+
+  void run(LaneSource& source) override {
+    this->choose_what_is_recorded(source);
+    bool goes_on = true;
+    for (int lane = 0; lane < width; ++lane) fill(lane, source);
+    while (steps().active != 0 && goes_on) {
+      if (is_exhausted_ && std::popcount(steps().active) <= few_lanes<width>) {
+        for (int lane = 0; lane < width; ++lane) {
+          if ((steps().active & (1U << lane)) != 0) finish_alone(lane, source);
+        }
+        return;
+      }
+      Attention attention = take_steps();
+      for (int lane = 0; lane < width; ++lane) {
+        const LaneBits bit = 1U << lane;
+        if ((attention.looks & bit) != 0 && looks_stiff(lane)) attention.runs_alone |= bit;
+        const bool is_recorded =
+            (attention.recorded & bit) != 0 && (attention.runs_alone & bit) == 0;
+        const AfterRecording after =
+            is_recorded ? this->record_step(lane) : AfterRecording::goes_on;
+        if ((attention.runs_alone & bit) != 0 || after == AfterRecording::runs_alone) {
+          source.runs_alone(members_[lane].number);
+        } else if (after == AfterRecording::ends) {
+          end(lane, source, Status::event);
+        } else if ((attention.ended & bit) != 0) {
+          end(lane, source, Status::finished);
+        } else if ((attention.used_up & bit) != 0) {
+          end(lane, source, Status::max_steps);
+        } else {
+          continue;
+        }
+        fill(lane, source);
+      }
+      goes_on = source.goes_on();
+    }
+  }
+
+ protected:
+  using AfterRecording = typename Base::AfterRecording;
+  using Base::get_state;
+  using Base::steps;
+  /// The derivative at the state of a lane, and what the method keeps between steps.
+  virtual void get_derivative(int lane, double* dydt) = 0;
+  virtual std::vector<double> saved_state(int lane) = 0;
+  virtual Attention take_steps() = 0;
+  /// Puts the equations into a lane; false if they have another form than those of the others.
+  virtual bool put_equations(int lane) = 0;
+  /// Called before put_equations() whenever the next members have other equations.
+  virtual void equations_are_new(const Scene& /*scene*/, const EquationsOfMotion& /*equations*/) {}
+  /// Puts a start, at which the rates are rate(), into a lane.
+  virtual void put_start(int lane, const std::vector<double>& y) = 0;
+  virtual long long evaluations_of(int lane) const = 0;
+  /// Whether the last step of a lane suggests that the member is stiff.
+  virtual bool looks_stiff(int /*lane*/) { return false; }
+
+  /// Those of the members that begin.
+  const EquationsOfMotion& equations() const { return *equations_; }
+  Stepper& stepper(int lane) const override { return *steppers_[lane]; }
+  const std::vector<double>& rate() const { return rate_; }
+  const std::vector<double>& rtol() const { return rtol_; }
+  const std::vector<double>& atol() const { return atol_; }
+  const LaneInterval& interval() const { return interval_; }
+
+ private:
+  /// Begins the next member in a lane, if there is one.
+  void fill(int lane, LaneSource& source) {
+    LaneMember& member = members_[lane];
+    steps().active &= ~(1U << lane);
+    while (const Scene* scene = source.next(member)) {
+      if (begin(lane, *scene, source)) {
+        steps().active |= 1U << lane;
+        return;
+      }
+      source.runs_alone(member.number);
+    }
+    is_exhausted_ = true;
+  }
+
+  /// Goes on with the member of a lane as a single run, from where the lane stands.
+  void finish_alone(int lane, LaneSource& source) {
+    LaneMember& member = members_[lane];
+    if (steps().accepted[lane] + steps().rejected[lane] == 0) {
+      source.runs_alone(member.number);
+      return;
+    }
+    const Scene& scene = source.scene_of(member.number);
+    const Solution begun = stopped_run(lane);
+    const long long left =
+        options_.max_steps - begun.statistics.accepted - begun.statistics.rejected;
+    const Solution whole = resume(scene, begun, t_end_, {}, left, std::nullopt,
+                                  [&source](double) { return source.goes_on(); });
+    if (whole.status == Status::interrupted) return;
+    member.state = whole.y_reached;
+    member.t = whole.t_reached;
+    member.status = whole.status;
+    member.recorded.states = whole.states;
+    member.recorded.found = whole.found;
+    statistics_.accepted += whole.statistics.accepted;
+    statistics_.rejected += whole.statistics.rejected;
+    statistics_.nfev += whole.statistics.nfev;
+    source.ended(member);
+  }
+
+  /// The run of a lane so far, as if a limit had stopped it.
+  Solution stopped_run(int lane) {
+    const LaneSteps<width>& at = steps();
+    const std::size_t size = 2 * scene_.links.size();
+    Solution run = members_[lane].recorded;
+    run.options.method = find_method(chosen_method(scene_, options_)).name;
+    run.t0 = t0_;
+    run.t_end = t_end_;
+    run.n = static_cast<int>(scene_.links.size());
+    run.dimension = static_cast<int>(size);
+    run.start.resize(size);
+    run.resumable_found = run.found.size();
+    run.resumable_t = run.t.size();
+    IntegratorState state;
+    state.t = {at.t[lane], at.t_low[lane]};
+    state.h = at.h[lane];
+    state.h_is_max_step = std::abs(state.h) >= options_.max_step;
+    state.control = {at.log2_error_before[lane], at.after_rejection[lane] != 0};
+    state.statistics.accepted = at.accepted[lane];
+    state.statistics.rejected = at.rejected[lane];
+    state.statistics.nfev = evaluations_of(lane);
+    state.y.resize(size);
+    state.dydt.resize(size);
+    get_state(lane, state.y.data());
+    get_derivative(lane, state.dydt.data());
+    state.stepper.memory = saved_state(lane);
+    run.dense.degree = stepper_->interpolant_degree();
+    run.statistics = state.statistics;
+    run.t_reached = state.t.high;
+    run.y_reached = state.y;
+    run.resumable = std::make_shared<const IntegratorState>(std::move(state));
+    return run;
+  }
+
+  /// Returns false if the beginning is not that of a usual run.
+  bool begin(int lane, const Scene& scene, LaneSource& source) {
+    const std::vector<double>& y = members_[lane].state;
+    const bool is_varied = &scene != &scene_;
+    if (is_varied && !is_allowed(scene)) return false;
+    if (!equations_ || is_varied) {
+      equations_ = std::make_unique<const EquationsOfMotion>(equations_of_motion(scene));
+      equations_are_new(scene, *equations_);
+      stepper_ = make_stepper(scene, *equations_, method_, false, false);
+      stepper_->set_tolerances(rtol_.data(), atol_.data());
+    }
+    if (!put_equations(lane)) return false;
+    steppers_[lane] = stepper_;
+    stepper_->evaluate(t0_, y.data(), rate_.data());
+    if (bad_component(y) >= 0 || bad_component(rate_) >= 0) return false;
+    LaneSteps<width>& at = steps();
+    at.t[lane] = t0_;
+    at.t_low[lane] = 0.0;
+    at.log2_error_before[lane] = StepControl::log2_smallest_error;
+    at.after_rejection[lane] = 0;
+    at.accepted[lane] = at.rejected[lane] = 0;
+    at.steps_to_look[lane] = first_stiffness_look;
+    put_start(lane, y);
+    this->start_recording(lane, scene, source);
+    return true;
+  }
+
+  static bool is_allowed(const Scene& scene) {
+    try {
+      check(scene);
+    } catch (const std::invalid_argument&) {
+      return false;
+    }
+    return true;
+  }
+
+  void end(int lane, LaneSource& source, Status status) {
+    LaneMember& member = members_[lane];
+    get_state(lane, member.state.data());
+    member.t = steps().t[lane];
+    member.status = status;
+    statistics_.accepted += steps().accepted[lane];
+    statistics_.rejected += steps().rejected[lane];
+    statistics_.nfev += evaluations_of(lane);
+    source.ended(member);
+  }
+
+  std::string_view method_;
+  LaneInterval interval_;
+  std::vector<double> rtol_, atol_;
+  std::vector<double> rate_;
+  std::unique_ptr<const EquationsOfMotion> equations_;
+  std::shared_ptr<Stepper> stepper_;  ///< of the members that begin
+  std::array<std::shared_ptr<Stepper>, width> steppers_;
+  bool is_exhausted_ = false;  ///< no member is left to begin
+};
+
+/// The runner of Taylor series; null if the scene has none in lanes.
+template <InstructionSet set>
+std::unique_ptr<LaneRunner> make_series_lanes(const Scene& scene, double t0, double t_end,
+                                              const Options& options);
+
+}  // namespace pendcore

@@ -1,0 +1,120 @@
+/// \file
+/// Explicit Runge-Kutta steps of several trajectories at once: the kernel of a step is that of a
+/// single run (integrate/runge_kutta/step.hpp), on packs.
+#pragma once
+
+#include <tuple>
+#include <utility>
+
+#include "dynamics/first_order.hpp"
+#include "ensemble/few_links_in_lanes.hpp"
+#include "ensemble/lane_steps.hpp"
+#include "ensemble/one_link_in_lanes.hpp"
+#include "integrate/runge_kutta/step.hpp"
+
+namespace pendcore {
+
+/// The lanes of a method on a form of the equations.
+template <const auto& method, class Form, int width>
+struct RungeKuttaLanes : LaneSteps<width> {
+  using Real = Pack<width>;
+  using Equations = LaneEquations<Form, Real>;
+  using System = FirstOrder<typename Equations::Type>;
+  using Memory = StepMemory<method, System>;
+  using Block = typename Memory::Block;
+  static constexpr int stages = Memory::stages;
+  static constexpr int size = 2 * Equations::links;
+  static_assert(method.first_same_as_last && method.info.error_order > 0);
+
+  Memory memory;
+  // For dense output:
+  Block y_before[Memory::blocks] = {};      ///< the state before the last step
+  Block rates_before[Memory::blocks] = {};  ///< its derivative
+  /// The dense output of the last step in powers of theta, (degree + 1) rows of a state.
+  Real rows[(Memory::degree + 1) * size] = {};
+};
+
+/// Computes the dense output of the last step of each lane. Returns the lanes in which an event may
+/// lie within it.
+template <const auto& method, class Form, int width>
+PENDCORE_INLINE LaneBits interpolate_step(RungeKuttaLanes<method, Form, width>* all) {
+  using All = RungeKuttaLanes<method, Form, width>;
+  using Memory = typename All::Memory;
+  using Real = typename All::Real;
+  constexpr int links = All::Equations::links;
+  auto& memory = all->memory;
+  const auto swap_rates = [all, &memory] {
+    for (int i = 0; i < Memory::blocks; ++i) std::swap(memory.k[0][i], all->rates_before[i]);
+  };
+  swap_rates();
+  if constexpr (Memory::all_stages > Memory::stages) {
+    typename All::Block z[Memory::blocks];
+    evaluate_stages<method, Memory::stages, Memory::all_stages>(
+        memory.system, all->t_before, all->h_before, all->y_before, memory.k, z);
+  }
+  for (int i = 0; i < Memory::blocks; ++i) {
+    typename All::Block powers[Memory::degree];
+    interpolant_of_block<method>(all->h_before, StageBlock(memory.k, i), powers);
+    for (int link = 0; link < links; ++link) {
+      Real* const column = all->rows + i * links + link;
+      column[0] = All::Equations::number(all->y_before[i], link);
+      for (int p = 0; p < Memory::degree; ++p) {
+        column[static_cast<std::ptrdiff_t>(p + 1) * All::size] =
+            All::Equations::number(powers[p], link);
+      }
+    }
+  }
+  swap_rates();
+  return lanes_detail::bits_of(may_have_event(*all, all->rows, all->rows + All::size, All::size,
+                                              Memory::degree, broadcast<Real>(1.0)));
+}
+
+/// Takes up to `rounds` steps in each lane, until some need attention.
+template <const auto& method, class Form, int width>
+PENDCORE_INLINE Attention take_steps(RungeKuttaLanes<method, Form, width>* all,
+                                     const LaneInterval* interval, int rounds) {
+  namespace detail = lanes_detail;
+  using All = RungeKuttaLanes<method, Form, width>;
+  using Real = typename All::Real;
+  using Integers = typename All::Integers;
+  auto& memory = all->memory;
+  Attention attention;
+  for (int round = 0; round < rounds && !attention.is_needed(); ++round) {
+    const NextStep<width> next = next_step<width>(*all, *interval);
+    const Real gain = method.info.log2_safety + method.info.beta * all->log2_error_before;
+    const ErrorAndFactor<Real> found = judged_step(&memory, all->t, next.h, gain);
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    Integers runs_alone =
+        next.runs_alone | ~is_less(found.squared_error, broadcast<Real>(infinity));
+
+    if constexpr (method.info.stability != 0.0) {
+      const Integers is_looked_at =
+          (all->steps_to_look == 0) & is_at_most(found.squared_error, broadcast<Real>(1.0));
+      if (detail::bits_of(is_looked_at) != 0) [[unlikely]] {
+        const Real stiffness =
+            stiffness_of_step<method, Real>(next.h, All::Memory::blocks, [&](int i) {
+              return std::tuple(memory.y[i], memory.y_new[i], StageBlock(memory.k, i));
+            });
+        runs_alone |= is_looked_at & is_less(broadcast<Real>(method.info.stability), stiffness);
+        all->steps_to_look = is_looked_at ? Integers{} + stiffness_looks_every : all->steps_to_look;
+      }
+    }
+    const Integers all_tried = Integers{} - 1;
+    const Integers is_accepted =
+        finish_step<method, width>(*all, *interval, next, found, runs_alone, all_tried, attention);
+    if (all->needs_dense_output) {
+      for (int i = 0; i < All::Memory::blocks; ++i) {
+        all->y_before[i] = memory.y[i];
+        all->rates_before[i] = memory.k[0][i];
+      }
+    }
+    for (int i = 0; i < All::Memory::blocks; ++i) {
+      memory.y[i] = All::Equations::select(is_accepted, memory.y_new[i], memory.y[i]);
+      memory.k[0][i] =
+          All::Equations::select(is_accepted, memory.k[All::stages - 1][i], memory.k[0][i]);
+    }
+  }
+  return attention;
+}
+
+}  // namespace pendcore

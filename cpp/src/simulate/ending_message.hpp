@@ -1,0 +1,19 @@
+/// \file
+/// The message at the end of a run.
+#pragma once
+
+#include <string>
+
+#include "integrate/loop/integrate.hpp"
+#include "pendcore/solution.hpp"
+
+namespace pendcore {
+
+/// Says what happened, with advice, and where a failed run ended. `remark` says what holds a scene
+/// at rest; `ended_by` is the number of the event that ended the run, from 0; `integrator` is the
+/// state of the run at its end.
+std::string ending_message(const Ending& ending, const Scene& scene, const Solution& solution,
+                           const IntegratorState& integrator, const std::string& remark,
+                           int ended_by);
+
+}  // namespace pendcore

@@ -1,0 +1,71 @@
+/// \file
+/// Records what the options ask for of each step, and the events that are found on the steps.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "integrate/loop/integrate.hpp"
+#include "pendcore/solution.hpp"
+#include "simulate/event_finder.hpp"
+#include "simulate/step_watch.hpp"
+
+namespace pendcore {
+
+/// The number of the first time, from `first` on, that is not before t_new, the end of a step of
+/// size h.
+inline std::size_t first_not_before(const std::vector<double>& times, std::size_t first,
+                                    double t_new, double h) {
+  while (first < times.size() && (times[first] - t_new) * h < 0.0) ++first;
+  return first;
+}
+
+class Recorder final : public Observer {
+ public:
+  /// `passed_events` are the numbers of occurrences of each event that do not end the run: it ended
+  /// there, and was continued.
+  Recorder(Solution& solution, const StepOutput& output, const Scene& scene,
+           const std::vector<long long>& passed_events);
+
+  void start(double t, const std::vector<double>& y);
+  StepEnd step_accepted(StepOutput& output, const TwoDouble& t_old, double h,
+                        double t_new) override;
+  void state_jumped(double t, const double* before, const double* after) override;
+  void state_settled(double t, const double* after) override;
+  void restarts_here() override { count(kept()); }
+  void restarts_at_step() override { count(at_step_start_); }
+  bool may_end() const override { return may_throw_ || (finder_ && finder_->may_end()); }
+  void step_begins() override { at_step_start_ = kept(); }
+  bool has_ended() const override { return finder_ && finder_->ended_by() >= 0; }
+
+  /// The event that ended the run; -1 if none did.
+  int ended_by() const { return finder_ ? finder_->ended_by() : -1; }
+
+ private:
+  struct Kept {
+    std::size_t t, steps, found;
+  };
+  void interpolate(StepOutput& output, double h);  ///< sets polynomial_
+  Kept kept() const;
+  void count(const Kept& kept);  ///< so much is also in a run that never stopped
+  void sample_step(StepOutput& output, const TwoDouble& t_old, double h, double t_new,
+                   bool with_end = true);
+  void keep_clipped(StepOutput& output, const TwoDouble& t_old, double h, double theta, double t);
+  double* append(double t);  ///< returns memory for the state at t
+  void show_step(StepOutput& output, double t, double h, double share);
+
+  Solution& solution_;
+  StepWatch* watch_;
+  bool watch_asks_for_polynomials_;
+  std::optional<EventFinder> finder_;
+  bool may_throw_;  ///< whether there are users' functions
+  Kept at_step_start_{};
+  bool keeps_polynomials_;
+  bool keeps_steps_;
+  std::size_t dimension_;
+  std::size_t degree_;
+  std::vector<double> polynomial_;  ///< the dense output of one step
+  std::vector<double> shown_;       ///< the state that the watch sees
+};
+
+}  // namespace pendcore
