@@ -38,9 +38,7 @@ class Numbers : public Eigen::Ref<const Vector> {
   ~Numbers() = default;
 
   /// The same numbers for what works without Eigen.
-  std::span<const double> span() const {
-    return {data(), static_cast<std::size_t>(size())};
-  }
+  std::span<const double> span() const { return {data(), static_cast<std::size_t>(size())}; }
 };
 
 /// The numbers of a matrix, row by row.

@@ -85,8 +85,6 @@ Derivatives jacobian(const Scene& scene, double t, const Numbers& q, const Numbe
 Points reactions(const Scene& scene, double t, const Numbers& q, const Numbers& qd) {
   return Equations(scene).reactions(t, q, qd);
 }
-Matrix mass_matrix(const Scene& scene, const Numbers& q) {
-  return Equations(scene).mass_matrix(q);
-}
+Matrix mass_matrix(const Scene& scene, const Numbers& q) { return Equations(scene).mass_matrix(q); }
 
 }  // namespace pendcore
