@@ -12,6 +12,7 @@
 #include "dynamics/energetics/reactions.hpp"
 #include "dynamics/equations_of_motion.hpp"
 #include "dynamics/jacobian.hpp"
+#include "dynamics/joint_forces.hpp"
 #include "dynamics/kinematics.hpp"
 #include "pendcore/mechanics.hpp"
 #include "simulate/initial_state.hpp"
@@ -177,7 +178,7 @@ void bind_scene(py::module_& module) {
             Array result({angles.count(), n, n});
             for (py::ssize_t i = 0; i < angles.count(); ++i) {
               forces.set_mass_matrix(angles[i].data());
-              std::ranges::copy(forces.mass, row(result, i).begin());
+              std::ranges::copy_n(forces.mass.data(), n * n, row(result, i).begin());
             }
             return result;
           },

@@ -6,6 +6,7 @@
 
 #include "arithmetic/floating_point_environment.hpp"
 #include "arithmetic/pack.hpp"
+#include "dynamics/contact/held_joints.hpp"
 #include "dynamics/equations_of_motion.hpp"
 #include "dynamics/joint_forces.hpp"
 
@@ -83,7 +84,7 @@ class Torques {
     double torque = 0.0;
     for (std::size_t j = n_; j-- > 0;) {
       for (std::size_t i = 0; i < n_; ++i) {
-        torque += forces_.mass[j * n_ + i] * (slope[i] - qdd_[i]);
+        torque += forces_.mass(j, i) * (slope[i] - qdd_[i]);
       }
       const auto& held = equations_.held_joints;
       if (held && held->is_held(static_cast<int>(j))) continue;

@@ -73,7 +73,7 @@ Matrix Equations::mass_matrix(const Numbers& q) {
   require_size("q", q.span(), n);
   JointForces forces(compiled_->scene);
   forces.set_mass_matrix(q.data());
-  return Eigen::Map<const Matrix>(forces.mass.data(), q.size(), q.size());
+  return forces.mass;
 }
 
 Vector accelerations(const Scene& scene, double t, const Numbers& q, const Numbers& qd) {

@@ -4,6 +4,7 @@
 
 #include "dynamics/accelerations_kernel.hpp"
 #include "dynamics/chain/chain_recursion.hpp"
+#include "dynamics/contact/held_joints.hpp"
 #include "dynamics/kinematics.hpp"
 #include "effects/behaviour.hpp"
 #include "pendcore/effects/joint_stop.hpp"
@@ -12,6 +13,9 @@
 #include "pendcore/effects/rotor_inertia.hpp"
 
 namespace pendcore {
+
+bool EquationsOfMotion::can_hold() const { return held_joints && held_joints->can_hold(); }
+
 bool is_bare(const Scene& scene) {
   return std::ranges::all_of(scene.effects, [](const Effect& effect) {
     return effect.is<Payload>() || (effect.is<RotorInertia>() && effect->joint() == 1);
@@ -98,8 +102,10 @@ RightHandSide right_hand_side(const EquationsOfMotion& equations) {
         } else {
           static const auto compute = fastest<&accelerations_of_form<Form>, best_for(2)>();
           if constexpr (has_special_kernels_of_rare_runs && takes_states_in_lanes<Form>) {
-            static const auto three = fastest<&derivatives_of_three_of_form<Form>>();
-            return {&form, compute, three};
+            constexpr InstructionSet least = least_of_special_kernels;
+            static const auto three =
+                fastest<&derivatives_of_three_of_form<Form>, InstructionSet::x86_64_v4, least>();
+            return {&form, compute, instruction_set() < least ? nullptr : three};
           }
           return {&form, compute};
         }

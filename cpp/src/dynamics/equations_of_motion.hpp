@@ -12,9 +12,10 @@
 #include "dynamics/closed_form/double_pendulum_with_effects.hpp"
 #include "dynamics/closed_form/single_pendulum.hpp"
 #include "dynamics/closed_form/single_pendulum_with_effects.hpp"
-#include "dynamics/contact/held_joints.hpp"
 
 namespace pendcore {
+
+class HeldJoints;
 
 struct EquationsOfMotion {
   std::variant<SinglePendulum, DoublePendulum, SinglePendulumWithEffects,
@@ -28,7 +29,7 @@ struct EquationsOfMotion {
   /// Whether no effect changes its law or holds a joint along a run.
   bool are_steady() const { return held_joints == nullptr; }
   /// Whether friction or stops may hold a joint; locks do in any case.
-  bool can_hold() const { return held_joints && held_joints->can_hold(); }
+  bool can_hold() const;
   bool may_have_held_joints() const { return can_hold() || (effects && effects->any_held); }
 };
 

@@ -5,7 +5,6 @@
 #include "dynamics/kinematics.hpp"
 #include "pendcore/effects/payload.hpp"
 #include "pendcore/effects/rotor_inertia.hpp"
-#include "text/message.hpp"
 
 namespace pendcore {
 
@@ -40,22 +39,6 @@ std::vector<double> Inertia::rotors_between_links() const {
   std::vector<double> rotors(links.size());
   for (std::size_t i = 1; i < links.size(); ++i) rotors[i] = links[i].rotor;
   return rotors;
-}
-
-void mass_matrix(const Inertia& inertia, std::span<const double> sine,
-                 std::span<const double> cosine, std::span<double> matrix) {
-  const std::size_t n = inertia.links.size();
-  require_size("sine", sine, n);
-  require_size("cosine", cosine, n);
-  require_size("matrix", matrix, n * n);
-  for (std::size_t i = 0; i < n; ++i) {
-    matrix[i * n + i] = inertia.links[i].diagonal;
-    for (std::size_t j = 0; j < i; ++j) {
-      const double of_difference = cosine[i] * cosine[j] + sine[i] * sine[j];
-      const double of_rotor = j + 1 == i ? inertia.links[i].rotor : 0.0;
-      matrix[i * n + j] = matrix[j * n + i] = inertia.coupling(i, j) * of_difference - of_rotor;
-    }
-  }
 }
 
 }  // namespace pendcore

@@ -7,11 +7,10 @@
 ///
 /// They give T = 1/2 sum_ij A_ij cos(q_i - q_j) qd_i qd_j and V = -g sum_i a_i sin q_i. A rotor J_j
 /// in joint j adds J_j to M_jj and M_{j-1,j-1} and -J_j to M_{j,j-1}.
-/// Cost: O(n) for the constants, O(n^2) for the matrix. The scene must have passed check().
+/// Cost: O(n). The scene must have passed check().
 /// Every effect that only changes constants (a payload, a rotor's inertia) changes them here.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "pendcore/scene.hpp"
@@ -39,10 +38,5 @@ struct Inertia {
   /// The rotors between two links, (n): 0 and J_2 .. J_n. In a chain, link 1 includes J_1.
   std::vector<double> rotors_between_links() const;
 };
-
-/// M_ij, that is A_ij cos(q_i - q_j) and the rotors, (n, n), kg m^2, from the sines and cosines of
-/// the angles, (n). A span of another size is refused with std::invalid_argument.
-void mass_matrix(const Inertia& inertia, std::span<const double> sine,
-                 std::span<const double> cosine, std::span<double> matrix);
 
 }  // namespace pendcore

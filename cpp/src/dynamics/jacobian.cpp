@@ -90,14 +90,16 @@ void Jacobian::compute(double t) const {
 
 void Jacobian::operator()(double t, const double* q, const double* qd, double* by_q,
                           double* by_qd) const {
-  if (chain_ || !has_special_kernels_of_rare_runs) {
+  // Both matrices at once have the bits of each direction alone, and are only faster.
+  constexpr InstructionSet least = least_of_special_kernels;
+  if (chain_ || !has_special_kernels_of_rare_runs || instruction_set() < least) {
     return direction_by_direction(t, q, qd, by_q, by_qd);
   }
   std::visit(
       [=]<class Form>(const Form& form) {
         if constexpr (has_special_kernels_of_rare_runs &&
                       !std::is_same_v<Form, std::shared_ptr<Chain>>) {
-          static const auto both = fastest<&jacobian_in_memory<Form>, best_for(2)>();
+          static const auto both = fastest<&jacobian_in_memory<Form>, best_for(2), least>();
           both(&form, t, q, qd, by_q, by_qd);
         }
       },

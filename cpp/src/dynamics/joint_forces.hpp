@@ -19,32 +19,34 @@ struct JointForces {
   Inertia inertia;
   std::vector<int> joints;           ///< the joints in the problem, ascending, from 0
   ForcesBetweenBounds problem;       ///< it has a row for each of these joints
-  std::vector<double> mass;          ///< M of all links, (n, n), row-major
+  Matrix mass;                       ///< M of all links, (n, n)
   std::vector<double> sine, cosine;  ///< functions of the angles of M, (n)
 
   explicit JointForces(const Scene& scene) : JointForces(scene, std::vector<bool>()) {}
   /// `rigid` says of each joint whether it never turns; if it is empty, all joints do.
   JointForces(const Scene& scene, const std::vector<bool>& rigid);
 
+  /// M_ij = A_ij cos(q_i - q_j), and the rotors (inertia.hpp). Cost: O(n^2).
   void set_mass_matrix(const double* q);
   /// Computes W for `joints`, of which none is rigid, from M. The caller fills in a and the bounds
   /// of the problem.
   void set_up();
-  /// Adds M^-1 J^T lambda to x, (n).
-  void add_response(double* x) const { add_response(problem.lambda, x); }
-  /// Computes x = M^-1 J^T lambda, (n), and refines lambda and x until J x + a = 0 in the joints
-  /// between their bounds and M x = J^T lambda, both to the rounding of x. What W and the factors
-  /// of M alone give loses as many digits as the condition of M has.
-  void refined_response(double* x);
+  /// M^-1 J^T lambda, (n).
+  Vector response() const { return response(problem.lambda); }
+  /// x = M^-1 J^T lambda, (n). Refines lambda and x until J x + a = 0 in the joints between their
+  /// bounds and M x = J^T lambda, both to the rounding of x. What W and the factors of M alone give
+  /// loses as many digits as the condition of M has.
+  Vector refined_response();
 
  private:
   int body_before(int joint) const { return joint > 0 ? body_[joint - 1] : -1; }
-  void add_response(const std::vector<double>& lambda, double* x) const;
+  Vector response(const Vector& lambda) const;
+  Vector of_links(const Vector& bodies) const;  ///< what the body of each link has, 0 on the ground
 
   int bodies_ = 0;
-  std::vector<int> body_;         ///< of each link, from 0; -1 for the ground
-  std::vector<double> factor_;    ///< M = L D L^T
-  std::vector<double> response_;  ///< L^-1 J^T, a row for each joint
+  std::vector<int> body_;  ///< of each link, from 0; -1 for the ground
+  Matrix factor_;          ///< M = L D L^T of the bodies
+  Matrix response_;        ///< L^-1 J^T, a row for each joint
 };
 
 }  // namespace pendcore

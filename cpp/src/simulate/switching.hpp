@@ -17,6 +17,7 @@
 #include <functional>
 #include <limits>
 
+#include "dynamics/contact/held_joints.hpp"
 #include "dynamics/equations_of_motion.hpp"
 #include "integrate/loop/discontinuities.hpp"
 

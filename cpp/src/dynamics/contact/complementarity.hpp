@@ -16,16 +16,18 @@
 #include <functional>
 #include <vector>
 
+#include "pendcore/vector.hpp"
+
 namespace pendcore {
 
 enum class Bound : signed char { lower = -1, between = 0, upper = 1 };
 
 struct ForcesBetweenBounds {
   int size = 0;
-  std::vector<double> W;  ///< (size, size), symmetric, positive definite
-  std::vector<double> a, lower, upper;
-  std::vector<double> lambda, w;  ///< the solution
-  std::vector<Bound> at;          ///< where each force of the solution is
+  Matrix W;  ///< (size, size), symmetric, positive definite
+  Vector a, lower, upper;
+  Vector lambda, w;       ///< the solution
+  std::vector<Bound> at;  ///< where each force of the solution is
 
   /// Called from time to time in long computations; it may throw.
   std::function<void()> look;
@@ -38,26 +40,27 @@ struct ForcesBetweenBounds {
   void factor_between();
   /// The forces that change w by -slip where the solution is between its bounds, and are 0
   /// elsewhere, from these factors.
-  std::vector<double> forces_against(const std::vector<double>& slip) const;
+  Vector forces_against(const Vector& slip) const;
 
  private:
   void solve_between();
   int wrong(int i) const;
   bool descend();
-  void slope_at(const std::vector<double>& x, std::vector<double>& slope) const;
-  bool goes_down(const std::vector<double>& from, const std::vector<double>& slope) const;
+  Vector slope_at(const Vector& x) const;
+  bool goes_down(const Vector& from, const Vector& slope) const;
   double rounding(int i) const;  ///< what rounding may add to w_i
-  std::vector<double> factor_;
+  Matrix factor_;
   std::vector<int> free_;
 };
 
-/// Computes A = L D L^T in place of the lower half of A, (n, n) row-major, with D on the diagonal.
-/// The order of operations is fixed and there are no square roots, so that with units twice as
-/// large every bit of the digits is the same.
-void factor_symmetric(int n, double* a);
+/// Computes A = L D L^T in place of the lower half of A, with D on the diagonal. The order of
+/// operations is fixed and there are no square roots, so that with units twice as large every bit
+/// of the digits is the same. Eigen's LDLT, which chooses pivots and sums in blocks, promises
+/// neither.
+void factor_symmetric(Matrix& A);
 /// solve_lower() replaces x, which is zero before `first`, by L^-1 x; solve_upper() replaces x by
 /// L^-T D^-1 x.
-void solve_lower(int n, const double* factor, double* x, int first = 0);
-void solve_upper(int n, const double* factor, double* x);
+void solve_lower(const Matrix& factor, Eigen::Ref<Vector> x, int first = 0);
+void solve_upper(const Matrix& factor, Eigen::Ref<Vector> x);
 
 }  // namespace pendcore

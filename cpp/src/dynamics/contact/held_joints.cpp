@@ -105,7 +105,7 @@ std::vector<double> HeldJoints::without_rounding(const double* qd) const {
 
 void HeldJoints::solve() {
   has_failed_ |= !forces_.problem.solve();
-  for (const double force : forces_.problem.lambda) has_failed_ |= !std::isfinite(force);
+  has_failed_ |= !forces_.problem.lambda.allFinite();
 }
 
 void HeldJoints::choose(const EquationsOfMotion& equations, double t, const double* q,
@@ -138,9 +138,9 @@ void HeldJoints::choose(const EquationsOfMotion& equations, double t, const doub
       const int j = joints[r];
       const bool is_locked = supports_[j].is_locked;
       const Side side = contact(j, q);
-      problem.a[r] = relative(free_qdd_.data(), j + 1);
-      problem.lower[r] = is_locked || side == Side::upper ? -never : -supports_[j].friction;
-      problem.upper[r] = is_locked || side == Side::lower ? never : supports_[j].friction;
+      problem.a(r) = relative(free_qdd_.data(), j + 1);
+      problem.lower(r) = is_locked || side == Side::upper ? -never : -supports_[j].friction;
+      problem.upper(r) = is_locked || side == Side::lower ? never : supports_[j].friction;
     }
     solve();
   }
@@ -171,8 +171,8 @@ void HeldJoints::set_slack(const EquationsOfMotion& equations, double t, const d
     const int j = forces_.joints[r];
     if (!is_held(j) || supports_[j].is_locked) continue;
     const double slack = 64.0 * epsilon * (size_[j] + supports_[j].friction);
-    holds_[j].least = std::min(problem.lower[r], torque_[j]) - slack;
-    holds_[j].most = std::max(problem.upper[r], torque_[j]) + slack;
+    holds_[j].least = std::min(problem.lower(r), torque_[j]) - slack;
+    holds_[j].most = std::max(problem.upper(r), torque_[j]) + slack;
   }
 }
 
@@ -194,10 +194,10 @@ void HeldJoints::torques(const EquationsOfMotion& equations, double t, const dou
                      joint.damping * (std::abs(qd[j]) + rate_before) + joint.torque);
   }
   for (int i = n_ - 1; i >= 0; --i) {
-    const double* const row = forces_.mass.data() + static_cast<std::ptrdiff_t>(i) * n_;
+    const auto row = forces_.mass.row(i);
     for (int k = 0; k < n_; ++k) {
-      sum += row[k] * (held_qdd_[k] - free_qdd_[k]);
-      size += std::abs(row[k]) * (std::abs(held_qdd_[k]) + std::abs(free_qdd_[k]));
+      sum += row(k) * (held_qdd_[k] - free_qdd_[k]);
+      size += std::abs(row(k)) * (std::abs(held_qdd_[k]) + std::abs(free_qdd_[k]));
     }
     torque[i] = sum;
     size_[i] = size;

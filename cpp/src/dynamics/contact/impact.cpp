@@ -42,9 +42,9 @@ void HeldJoints::set_up_impact(const double* q, const double* qd, TakesPart take
     const int j = joints[r];
     const Side side = contact(j, q);
     const bool must_stay = supports_[j].is_locked || is_captured(j);
-    problem.a[r] = direction_ * relative(qd, j + 1);
-    problem.lower[r] = must_stay || side == Side::upper ? -never : 0.0;
-    problem.upper[r] = must_stay || side == Side::lower ? never : 0.0;
+    problem.a(r) = direction_ * relative(qd, j + 1);
+    problem.lower(r) = must_stay || side == Side::upper ? -never : 0.0;
+    problem.upper(r) = must_stay || side == Side::lower ? never : 0.0;
   }
 }
 
@@ -54,9 +54,7 @@ void HeldJoints::solve_impact(const double* q, double* qd) {
   const ForcesBetweenBounds& problem = forces_.problem;
   solve();
   if (has_failed_) return;
-  std::vector<double> change(n_);
-  forces_.refined_response(change.data());
-  for (int i = 0; i < n_; ++i) qd[i] += direction_ * change[i];
+  Eigen::Map<Vector>(qd, n_) += direction_ * forces_.refined_response();
   for (int r = 0; r < problem.size; ++r) {
     const int j = forces_.joints[r];
     const bool stops = bounces_[r] == 0 && problem.at[r] == Bound::between;
@@ -78,7 +76,7 @@ void HeldJoints::bounce(const double* q, double* qd, bool is_plastic, bool with_
     const bool bounces = !supports_[j].is_locked && !is_plastic && stop.restitution > 0.0 &&
                          speed > 0.0 && speed >= stop.capture_speed;
     bounced_[j] = bounces_[r] = bounces ? 1 : 0;
-    if (bounces) problem.a[r] += stop.restitution * problem.a[r];
+    if (bounces) problem.a(r) += stop.restitution * problem.a(r);
   }
   solve_impact(q, qd);
 }
