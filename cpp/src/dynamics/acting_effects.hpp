@@ -48,7 +48,7 @@ class EffectsInForce {
   void hold(int joint, bool is_held);
 
   /// Computes sine and cosine of the waves from number `known` on, at time t.
-  PENDCORE_INLINE void compute_waves(double t, int known) const {
+  PENDCORE_INLINE_UNLESS_SMALL void compute_waves(double t, int known) const {
     for (int k = known; k < waves; k += 4) {
       Pack<4> s, c;
       sine_cosine(wave_angles<Pack<4>>(t, k), s, c);
