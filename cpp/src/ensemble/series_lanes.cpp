@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "ensemble/chain_series_in_lanes.hpp"
@@ -24,8 +25,7 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
  public:
   /// `one` has the kinds of the laws of all members.
   SeriesRunner(const One& one, const Scene& scene, double t0, double t_end, const Options& options)
-      : LaneLoop<width>(scene, t0, t_end, options, taylor.info.name),
-        eigenvalue_(static_cast<int>(scene.links.size()), 0) {
+      : LaneLoop<width>(scene, t0, t_end, options, taylor.info.name) {
     double tightest = 1.0;
     for (std::size_t i = 0; i < this->rtol().size(); ++i) {
       tightest = std::min(tightest, std::max(this->rtol()[i], this->atol()[i]));
@@ -87,27 +87,26 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
   }
   long long evaluations_of(int lane) const override {
     return 1 + all_.accepted[lane] + all_.rejected[lane] +
-           DominantEigenvalue::evaluations * look_count_[lane];
+           evaluations_of_stiffness * look_count_[lane];
   }
   /// As Taylor::stiffness() does.
   bool looks_stiff(int lane) override {
     ++look_count_[lane];
-    double* const direction = eigenvalue_.direction();
+    std::vector<double> last(all_.size());
     std::vector<double> y(all_.size());
     for (int i = 0; i < all_.size(); ++i) {
-      direction[i] = all_.rows_new[all_.order * all_.size() + i][lane];
+      last[i] = all_.rows_new[all_.order * all_.size() + i][lane];
       y[i] = all_.y_new[i][lane];
     }
     const auto rates = [this, lane](double t, const double* state, double* dydt) {
       this->stepper(lane).evaluate(t, state, dydt);
     };
-    return stiffness_of_series(eigenvalue_, rates, all_.t_before[lane], y.data(),
-                               all_.h_before[lane], all_.order) > taylor.info.stability;
+    return stiffness_of_series(rates, all_.t_before[lane], y, std::move(last), all_.h_before[lane],
+                               all_.order) > taylor.info.stability;
   }
 
   All all_{};
   std::array<long long, width> look_count_{};
-  DominantEigenvalue eigenvalue_;
   std::optional<One> one_;
   Attention (*take_steps_)(All*, const LaneInterval*,
                            int) = only<&take_series_steps<Form, width>, set>();

@@ -18,33 +18,13 @@
 
 namespace pendcore {
 
-class DominantEigenvalue {
- public:
-  static constexpr int evaluations = 4;
+/// The right-hand sides that stiffness_of_series() counts as.
+inline constexpr int evaluations_of_stiffness = 4;
 
-  /// The state has n angles, n rates and some quadratures, which are left out of account.
-  DominantEigenvalue(int n, int quadratures) : n_(n), quadratures_(quadratures) {}
-
-  /// Memory for the direction, 2n numbers (rad, rad/s), which the caller writes before each
-  /// computation. The first call allocates it: few runs come to ask for an eigenvalue.
-  double* direction();
-
-  /// Computes |lambda| at time t (s) and state y; `rate` (1/s) says how many rad/s weigh as much as
-  /// a radian. Returns 0 if the direction is zero or not finite.
-  double operator()(const Rates& rates, double t, const double* y, double rate);
-
- private:
-  /// Replaces v by J v divided by its size, and returns that size.
-  double multiply(const Rates& rates, double t, const double* y, double rate);
-  double norm(double rate) const;
-
-  int n_, quadratures_;
-  std::vector<double> v_, state_, ahead_, behind_;
-};
-
-/// h |lambda| over the order of the series, for a step of size h from the state y at time t;
-/// `eigenvalue` has the last coefficient of the series there as its direction.
-double stiffness_of_series(DominantEigenvalue& eigenvalue, const Rates& rates, double t,
-                           const double* y, double h, int order);
+/// h |lambda| over the order of a series, for a step of size h from the state y at time t. The last
+/// coefficient of the series there is the direction v, n angles and n rates; the quadratures that y
+/// may have after these are left out of account. Returns 0 if v is zero or not finite.
+double stiffness_of_series(const Rates& rates, double t, const std::vector<double>& y,
+                           std::vector<double> v, double h, int order);
 
 }  // namespace pendcore

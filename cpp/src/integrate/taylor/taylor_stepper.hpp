@@ -38,8 +38,7 @@ class Taylor final : public Stepper {
         given_rates_(static_cast<std::size_t>(2 * n_ + quadratures)),
         sums_(quadratures),
         sums_new_(quadratures),
-        powers_(static_cast<std::size_t>(GaussQuadrature::points) * quadratures),
-        eigenvalue_(n_, quadratures) {
+        powers_(static_cast<std::size_t>(GaussQuadrature::points) * quadratures) {
     memory_.blocks = size_ / width;
     memory_.log2_count = approximate_log2(static_cast<double>(controlled()));
   }
@@ -156,12 +155,12 @@ class Taylor final : public Stepper {
   /// The stiffness of the part that dominates the last coefficient of the series at the start of
   /// the attempt.
   double stiffness(double h) override {
-    write_rows(memory_.rows + static_cast<std::ptrdiff_t>(memory_.order) * size_,
-               eigenvalue_.direction());
+    std::vector<double> last(controlled());
+    write_rows(memory_.rows + static_cast<std::ptrdiff_t>(memory_.order) * size_, last.data());
     std::vector<double> state(dimension());
     get_state(state.data());
-    evaluations += DominantEigenvalue::evaluations;
-    return stiffness_of_series(eigenvalue_, rates_, t_, state.data(), h, memory_.order);
+    evaluations += evaluations_of_stiffness;
+    return stiffness_of_series(rates_, t_, state, std::move(last), h, memory_.order);
   }
 
   /// The low part of the state, if compensated, and sigma: with another sigma, the size of a step
@@ -328,7 +327,6 @@ class Taylor final : public Stepper {
   bool has_new_series_ = false;
   bool stays_ = false;
   double t_ = 0.0, t_new_ = 0.0;  ///< the start and the end of the attempt
-  DominantEigenvalue eigenvalue_;
   Attempt (*attempt_)(Memory*, double, double) = compensated_ ? attempt_kernel<true>()
                                                               : attempt_kernel<false>();
   bool (*expand_)(Memory*, double, const double*, double*, double&,
