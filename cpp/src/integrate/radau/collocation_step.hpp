@@ -28,6 +28,7 @@
 #include "arithmetic/two_double.hpp"
 #include "integrate/general_system.hpp"
 #include "integrate/radau/newton_systems.hpp"
+#include "integrate/stepper.hpp"
 
 namespace pendcore {
 
@@ -50,9 +51,7 @@ struct CollocationStep {
   const DifferentiableSystem& system;
   Sizes sizes;
   bool compensated;
-  long long evaluations = 0;
-  long long jacobians = 0;
-  long long factorisations = 0;
+  Stepper& counts;  ///< what has been computed so far is counted there
 
   double newton_tolerance = 0.0;
   Rows<1> rtol, atol, y, dydt, y_new;
@@ -77,8 +76,12 @@ struct CollocationStep {
   bool is_retry = false;
 
   CollocationStep(const Collocation& one, const DifferentiableSystem& rates_of, const Sizes& given,
-                  bool carries_rounding)
-      : method(one), system(rates_of), sizes(given), compensated(carries_rounding) {
+                  bool carries_rounding, Stepper& stepper)
+      : method(one),
+        system(rates_of),
+        sizes(given),
+        compensated(carries_rounding),
+        counts(stepper) {
     for (auto* row : {&rtol, &atol, &y, &dydt, &y_new, &error, &slope, &scale}) {
       Sizes::allocate(*row, sizes.size);
     }
@@ -105,7 +108,7 @@ struct CollocationStep {
 
   PENDCORE_INLINE void evaluate(double t, const double* state, double* rate) {
     system(t, state, rate);
-    ++evaluations;
+    ++counts.evaluations;
   }
 
   PENDCORE_INLINE void set_scale() {
@@ -177,7 +180,7 @@ struct CollocationStep {
       }
     }
     system.derivatives_of_three(times, trial.data(), rates.data());
-    evaluations += 3;
+    counts.evaluations += 3;
   }
 
   /// Improves the stages by one iteration of Newton's, and returns the size of the improvement.

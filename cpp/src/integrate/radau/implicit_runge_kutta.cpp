@@ -25,8 +25,8 @@ PENDCORE_INLINE Attempt attempt_collocation(CollocationStep<Sizes>* step, double
   s.predict(h);
   const bool converges = s.iterate(t, h);  // if a user's function throws here, nothing was tried
   const bool is_careful = s.is_retry || s.h_before == 0.0;
-  if (!s.is_retry) ++s.jacobians;
-  s.factorisations += 2;
+  if (!s.is_retry) ++s.counts.jacobians;
+  s.counts.factorisations += 2;
   s.is_retry = true;
   if (!converges) return {{undefined, 0.0}, !std::isfinite(s.squared_norm(s.y_new.data()))};
   s.polish(h);
@@ -94,7 +94,7 @@ class ImplicitRungeKutta final : public Stepper {
  public:
   ImplicitRungeKutta(const Collocation& method, std::unique_ptr<DifferentiableSystem> system,
                      const Sizes& sizes, bool compensated)
-      : system_(std::move(system)), step_(method, *system_, sizes, compensated) {}
+      : system_(std::move(system)), step_(method, *system_, sizes, compensated, *this) {}
 
   const MethodInfo& info() const override { return step_.method.info; }
   int dimension() const override { return step_.sizes.size; }
@@ -131,13 +131,9 @@ class ImplicitRungeKutta final : public Stepper {
     drop_changed(y, step_.y_new.data(), low_size(), step_.low_new.data());
     std::copy_n(y, dimension(), step_.y_new.begin());
   }
-  void evaluate(double t, const double* y, double* dydt) override {
-    step_.evaluate(t, y, dydt);
-    count();
-  }
+  void evaluate(double t, const double* y, double* dydt) override { step_.evaluate(t, y, dydt); }
 
   Attempt attempt(const TwoDouble& time, double h, double /*gain*/) override {
-    const Counts counts(*this);
     return attempt_(&step_, time.high, h, &keep_going);
   }
 
@@ -151,10 +147,7 @@ class ImplicitRungeKutta final : public Stepper {
     step_.squared_error = 0.0;
   }
 
-  void accept(double t_new) override {
-    const Counts counts(*this);
-    accept_(&step_, t_new);
-  }
+  void accept(double t_new) override { accept_(&step_, t_new); }
 
   void interpolant(double /*h*/, double* coefficients) override {
     interpolant_(&step_, coefficients);
@@ -195,22 +188,6 @@ class ImplicitRungeKutta final : public Stepper {
   }
 
  private:
-  /// Brings the counts of a call up to date at its end, also if a user's function throws.
-  class Counts {
-   public:
-    explicit Counts(ImplicitRungeKutta& owner) : owner_(owner) {}
-    ~Counts() { owner_.count(); }
-    Counts(const Counts&) = delete;
-    Counts& operator=(const Counts&) = delete;
-
-   private:
-    ImplicitRungeKutta& owner_;
-  };
-  void count() {
-    evaluations = step_.evaluations;
-    jacobians = step_.jacobians;
-    factorisations = step_.factorisations;
-  }
   int low_size() const { return step_.compensated ? dimension() : 0; }
 
   std::unique_ptr<DifferentiableSystem> system_;
