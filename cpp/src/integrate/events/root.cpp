@@ -14,12 +14,6 @@ using Bernstein = std::array<double, room>;
 constexpr std::size_t small = 16;
 constexpr std::size_t large = 36;
 
-double value(const double* c, int degree, double theta) {
-  double sum = c[degree];
-  for (int k = degree - 1; k >= 0; --k) sum = sum * theta + c[k];
-  return sum;
-}
-
 /// 1/C(degree, k)
 constexpr std::array<Bernstein<large>, large> inverse_binomials = [] {
   std::array<Bernstein<large>, large> table{};
@@ -49,7 +43,16 @@ double bisect(const double* c, int degree, double low, double high) {
   while (true) {
     const double middle = 0.5 * (low + high);
     if (middle <= low || middle >= high) return high;
-    (value(c, degree, middle) < 0.0 ? high : low) = middle;
+    (polynomial_at(c, degree, middle) < 0.0 ? high : low) = middle;
+  }
+}
+
+/// Takes the first half of the interval into `left`, and leaves the second in `right`, by de
+/// Casteljau's algorithm.
+void halve(double* left, double* right, int degree) {
+  for (int i = 0; i <= degree; ++i) {
+    left[i] = right[0];
+    for (int k = 0; k < degree - i; ++k) right[k] = 0.5 * (right[k] + right[k + 1]);
   }
 }
 
@@ -63,14 +66,11 @@ double search(const double* c, int degree, const Bernstein<room>& b, double low,
   for (int i = 1; i <= degree; ++i) changes += (b[i] < 0.0) != (b[i - 1] < 0.0);
   if (changes == 0) return low;
   if (changes == 1 && b[0] >= 0.0) return bisect(c, degree, low, high);
-  if (depth == 50) return value(c, degree, high) < 0.0 ? high : none;  // it only touches zero
-  // de Casteljau's algorithm for both halves
+  // A polynomial that is not negative at the end of so short an interval only touches zero.
+  if (depth == 50) return polynomial_at(c, degree, high) < 0.0 ? high : none;
   Bernstein<room> left{};
   Bernstein<room> right = b;
-  for (int i = 0; i <= degree; ++i) {
-    left[i] = right[0];
-    for (int k = 0; k < degree - i; ++k) right[k] = 0.5 * (right[k] + right[k + 1]);
-  }
+  halve(left.data(), right.data(), degree);
   const double middle = 0.5 * (low + high);
   const double found = search(c, degree, left, low, middle, depth + 1);
   return found <= 1.0 ? found : search(c, degree, right, middle, high, depth + 1);
@@ -95,15 +95,7 @@ double first_negative(const double* coefficients, int degree) {
 
 namespace {
 
-using LongForm = std::array<double, highest_degree + 1>;
-
-/// Takes the first half of the interval into `left`, and leaves the second in `right`.
-void halve(LongForm& left, LongForm& right, int degree) {
-  for (int i = 0; i <= degree; ++i) {
-    left[i] = right[0];
-    for (int k = 0; k < degree - i; ++k) right[k] = 0.5 * (right[k] + right[k + 1]);
-  }
-}
+using LongForm = Bernstein<highest_degree + 1>;
 
 /// Finds the turning points of a polynomial on low .. high from the Bernstein form b of its
 /// derivative. Turning points that are closer together than 2^-30 of the step differ by less than
@@ -131,14 +123,14 @@ class TurningPoints {
     if (depth == 30) return append(middle);
     LongForm left{};
     LongForm right = b;
-    halve(left, right, last);
+    halve(left.data(), right.data(), last);
     search(left, low, middle, depth + 1);
     if (right[0] == 0.0) append(middle);
     search(right, middle, high, depth + 1);
   }
 
  private:
-  void append(double theta) { found_.push_back({theta, value(c_, degree_, theta)}); }
+  void append(double theta) { found_.push_back({theta, polynomial_at(c_, degree_, theta)}); }
   double slope(double theta) const {
     double sum = degree_ * c_[degree_];
     for (int k = degree_ - 1; k > 0; --k) sum = sum * theta + k * c_[k];
@@ -186,7 +178,7 @@ bool find_roots(const double* coefficients, int degree, double end, double noise
   for (int i = 0; i < degree; ++i) slopes[i] = b[i + 1] - b[i];
   std::vector<TurningPoint> turning_points;
   TurningPoints(coefficients, degree, turning_points).search(slopes, 0.0, 1.0, 0);
-  return find_roots([=](double theta) { return value(coefficients, degree, theta); }, start,
+  return find_roots([=](double theta) { return polynomial_at(coefficients, degree, theta); }, start,
                     turning_points, end, noise, found);
 }
 

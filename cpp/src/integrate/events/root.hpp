@@ -47,6 +47,13 @@ struct TurningPoint {
 /// order. The degree is at most 63.
 void find_turning_points(const double* coefficients, int degree, std::vector<TurningPoint>& found);
 
+/// sum_k coefficients[k] theta^k
+inline double polynomial_at(const double* coefficients, int degree, double theta) {
+  double value = coefficients[degree];
+  for (int k = degree - 1; k >= 0; --k) value = value * theta + coefficients[k];
+  return value;
+}
+
 inline int sign(double x) { return (x > 0.0) - (x < 0.0); }
 
 /// Where f takes the sign `after`, which it has at `high` and not at `low`; to the last bits.

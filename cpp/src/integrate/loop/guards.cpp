@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "arithmetic/epsilon.hpp"
-#include "arithmetic/pack.hpp"
 #include "integrate/events/root.hpp"
+#include "integrate/horner.hpp"
 
 namespace pendcore {
 namespace {
@@ -45,12 +45,6 @@ double slope_at_end(const double* coefficients, int degree) {
   double slope = 0.0;
   for (int p = degree; p > 0; --p) slope += p * coefficients[p];
   return slope;
-}
-
-double value_of(const double* coefficients, int degree, double theta) {
-  double value = coefficients[degree];
-  for (int p = degree - 1; p >= 0; --p) value = value * theta + coefficients[p];
-  return value;
 }
 
 /// The polynomial between theta and 1, as a function of the share of that part.
@@ -97,11 +91,7 @@ int Guards::along_step(int k) {
 /// Sets state_ to the dense output at theta.
 void Guards::sample(double theta) {
   for (int c = 0; c < dimension_; ++c) {
-    double value = rows_[static_cast<std::size_t>(degree_) * dimension_ + c];
-    for (int p = degree_ - 1; p >= 0; --p) {
-      value = fma(theta, value, rows_[static_cast<std::size_t>(p) * dimension_ + c]);
-    }
-    state_[c] = value;
+    state_[c] = horner<double>(&rows_[c], degree_, dimension_, theta);
   }
 }
 
@@ -169,9 +159,9 @@ Crossing Guards::where_slope_allows(Crossing crossing, double t, double h, int d
     const double turns = from + share * (1.0 - from);
     double dip = 0.0;  // the depth to which the errors reach
     for (const double node : nodes) {
-      dip = std::min(dip, value_of(polynomial_.data(), degree, from + node * (turns - from)));
+      dip = std::min(dip, polynomial_at(polynomial_.data(), degree, from + node * (turns - from)));
     }
-    if (value_of(polynomial_.data(), degree, turns) <= -dip) return {k, turns, true};
+    if (polynomial_at(polynomial_.data(), degree, turns) <= -dip) return {k, turns, true};
     // The guard has risen above the errors, so its next zero is real.
     const std::vector<double> rest = beyond(polynomial_.data(), degree, turns);
     const double next = first_negative(rest.data(), degree);
@@ -277,7 +267,7 @@ bool Guards::goes_below(double theta) {
     double x = std::min(theta, 2.0);
     for (int halvings = 0; halvings < shares; ++halvings) {
       x *= 0.5;
-      if (value_of(polynomial_.data(), degree_, x) < least) return true;
+      if (polynomial_at(polynomial_.data(), degree_, x) < least) return true;
     }
   }
   return false;
