@@ -162,7 +162,7 @@ PENDCORE_INLINE NextStep<width> next_step(const LaneSteps<width>& lanes,
   next.bits = last_bits(lanes.t, t_end);
   next.is_in_reach = is_at_most(
       absolute(left), Real(reach(lanes.h, broadcast<Real>(interval.max_step)) + next.bits));
-  next.runs_alone = is_too_small(lanes.h, lanes.t, broadcast<Real>(Limits{}.least_step)) |
+  next.runs_alone = is_too_small(lanes.h, lanes.t) |
                     (next.is_in_reach & is_at_most(absolute(left), Real(few_bits * next.bits)));
   next.h = next.is_in_reach ? left : lanes.h;
   return next;

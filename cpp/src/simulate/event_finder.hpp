@@ -15,8 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "integrate/loop/step_end.hpp"
-#include "integrate/step_output.hpp"
+#include "integrate/loop/integrate.hpp"
 #include "pendcore/events.hpp"
 #include "simulate/tip_line.hpp"
 

@@ -115,7 +115,7 @@ class Run {
     }
     const Target target = next_target(left);
     double h = integrator_.h;
-    const bool resolves_nothing = is_too_small(h, t, limits_.least_step);
+    const bool resolves_nothing = is_too_small(h, t);
     // If the target is the next time that a double can hold, one step to it may be tried.
     if (resolves_nothing && (!target.is_in_reach || integrator_.control.after_rejection)) {
       const bool is_coarse = integrator_.trial_was_finite || was_stretched_;

@@ -13,7 +13,6 @@
 #include "arithmetic/two_double.hpp"
 #include "integrate/loop/discontinuities.hpp"
 #include "integrate/loop/step_control.hpp"
-#include "integrate/loop/step_end.hpp"
 #include "integrate/stepper.hpp"
 #include "pendcore/status.hpp"
 
@@ -40,13 +39,32 @@ struct IntegratorState {
 
 struct Limits {
   double t_end;
-  double least_step = 1e-300;  ///< s, below which a step is too small
   double max_step = std::numeric_limits<double>::infinity();  ///< s
   bool fixed_step = false;  ///< every step has the size h of the state, whatever its error
   long long max_steps = std::numeric_limits<long long>::max();  ///< attempted, accepted or not
   double time_limit = std::numeric_limits<double>::infinity();  ///< s, of the clock on the wall
   Monitor monitor;
   bool begins_anew = false;  ///< a continued run begins at the start again
+};
+
+/// Where in an accepted step the run is to end, if anywhere.
+struct StepEnd {
+  enum class Kind {
+    whole,           ///< the run takes the step to its end
+    within,          ///< an event ends the run at the share theta of the step, below 1
+    too_many_turns,  ///< the step has events in too many turns: nothing was kept of it
+  };
+  Kind kind = Kind::whole;
+  double theta = 1.0;
+
+  /// An event that ends the run at the end of the step leaves the step whole.
+  static constexpr StepEnd at(double theta) {
+    return theta < 1.0 ? StepEnd{Kind::within, theta} : StepEnd{};
+  }
+  static constexpr StepEnd too_many_turns() { return {Kind::too_many_turns, 0.0}; }
+
+  constexpr bool is_within() const { return kind == Kind::within; }
+  constexpr bool has_too_many_turns() const { return kind == Kind::too_many_turns; }
 };
 
 /// Called for each accepted step before the state advances.

@@ -30,6 +30,8 @@ namespace pendcore {
 inline constexpr double last_step_stretch = 1.01;
 /// A step of at most this many last bits of time resolves nothing.
 inline constexpr double few_bits = 10.0;
+/// s; a shorter step is too small.
+inline constexpr double least_step = 1e-300;
 
 /// 1/k - 3/4 beta
 constexpr double exponent(const MethodInfo& method) {
@@ -82,10 +84,10 @@ PENDCORE_INLINE Real reach(const Real& h, const Real& max_step) {
 
 /// Whether a step of size h at time t resolves nothing.
 template <class Real>
-PENDCORE_INLINE Condition<Real> is_too_small(const Real& h, const Real& t, const Real& least_step) {
+PENDCORE_INLINE Condition<Real> is_too_small(const Real& h, const Real& t) {
   const Real size = absolute(h);
   const Condition<Real> is_lost = is_at_most(size, Real(few_bits * epsilon * absolute(t)));
-  const Condition<Real> is_below = is_less(size, least_step);
+  const Condition<Real> is_below = is_less(size, broadcast<Real>(least_step));
   return is_lost | is_below;
 }
 

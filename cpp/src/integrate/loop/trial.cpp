@@ -18,7 +18,7 @@ constexpr double least_share_of_fixed = 0.1;
 /// Whether time resolves nothing within a step of size h at t. Near t = 0 doubles resolve more than
 /// steps can: what happens within the least step of a run happens at once.
 bool is_short(double h, double t) {
-  return std::abs(h) <= std::max(few_bits * last_bits(t, t), Limits{}.least_step);
+  return std::abs(h) <= std::max(few_bits * last_bits(t, t), least_step);
 }
 
 /// The component of the attempted step whose new value, or new rate, is not finite, or -1.
