@@ -31,7 +31,7 @@ class Guards {
   /// Finds the crossing in the attempted step of size h from time t. Over a few last bits of time,
   /// the dense output does not show how a guard leaves zero from rest; such a step is asked without
   /// `from_rest_too`.
-  Crossing first(double t, double h, bool from_rest_too = true);
+  Crossing first(double t, double h, bool from_rest_too);
 
   /// Whether a guard that the dense output makes negative at the start of the step does fall there.
   /// A guard that is positive there, or rises from zero, does not. Where this is not known, the

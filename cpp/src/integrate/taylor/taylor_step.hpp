@@ -21,6 +21,7 @@
 #include "arithmetic/pack.hpp"
 #include "arithmetic/power.hpp"
 #include "arithmetic/two_double.hpp"
+#include "integrate/horner.hpp"
 #include "integrate/loop/attempt.hpp"
 #include "integrate/taylor/taylor.hpp"
 
@@ -241,7 +242,7 @@ PENDCORE_INLINE void sample_series(const double* coefficients, TwoDouble start, 
                                    const double* times, int count, double* states, int dimension,
                                    int order) {
   for (int k = 0; k < count; ++k) {
-    const double theta = ((times[k] - start.high) - start.low) / h;
+    const double theta = theta_at(times[k], start, h);
     double* const state = states + static_cast<std::ptrdiff_t>(k) * dimension;
     auto value = [&]<class Block>(int at) __attribute__((always_inline)) {
       const Block change =

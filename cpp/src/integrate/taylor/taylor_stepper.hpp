@@ -35,10 +35,10 @@ class Taylor final : public Stepper {
         n_(memory_.series.links()),
         row_(memory_.series.row()),
         size_(2 * row_),
-        given_rates_(static_cast<std::size_t>(2 * n_ + quadratures)),
-        sums_(quadratures),
-        sums_new_(quadratures),
-        powers_(static_cast<std::size_t>(GaussQuadrature::points) * quadratures) {
+        dydt_(static_cast<std::size_t>(2 * n_ + quadratures)),
+        quadratures_(quadratures),
+        quadratures_new_(quadratures),
+        quadrature_rates_(static_cast<std::size_t>(GaussQuadrature::points) * quadratures) {
     memory_.blocks = size_ / width;
     memory_.log2_count = approximate_log2(static_cast<double>(controlled()));
   }
@@ -49,7 +49,7 @@ class Taylor final : public Stepper {
   ~Taylor() override = default;
 
   const MethodInfo& info() const override { return taylor.info; }
-  int dimension() const override { return controlled() + static_cast<int>(sums_.size()); }
+  int dimension() const override { return controlled() + static_cast<int>(quadratures_.size()); }
   int controlled() const override { return 2 * n_; }
   int interpolant_degree() const override { return memory_.order; }
 
@@ -64,27 +64,27 @@ class Taylor final : public Stepper {
 
   void start(const double* y, const double* dydt) override {
     if (compensated_) drop_low_parts(y, memory_.y, memory_.low);
-    read(y, memory_.y, sums_);
-    std::copy_n(dydt, dimension(), given_rates_.begin());
+    read(y, memory_.y, quadratures_);
+    std::copy_n(dydt, dimension(), dydt_.begin());
     const double rate = taylor_detail::squared_rate(dydt, n_);
     starts_at_rest_ = rate == 0.0;
     memory_.sigma = taylor_detail::first_sigma(rate);
     has_series_ = false;
   }
-  void get_state(double* y) const override { write(memory_.y, sums_, y); }
+  void get_state(double* y) const override { write(memory_.y, quadratures_, y); }
   void get_derivative(double* dydt) const override {
     if (!has_series_) {
-      std::copy_n(given_rates_.begin(), dimension(), dydt);
+      std::copy_n(dydt_.begin(), dimension(), dydt);
       return;
     }
     write_rows(memory_.rows + size_, dydt);
     for (int i = 0; i < controlled(); ++i) dydt[i] /= memory_.sigma;
-    std::copy(given_rates_.begin() + controlled(), given_rates_.end(), dydt + controlled());
+    std::copy(dydt_.begin() + controlled(), dydt_.end(), dydt + controlled());
   }
-  void get_new_state(double* y) const override { write(memory_.y_new, sums_new_, y); }
+  void get_new_state(double* y) const override { write(memory_.y_new, quadratures_new_, y); }
   void set_new_state(const double* y) override {
     if (compensated_) drop_low_parts(y, memory_.y_new, memory_.low_new);
-    read(y, memory_.y_new, sums_new_);
+    read(y, memory_.y_new, quadratures_new_);
     has_new_series_ = false;
   }
   void evaluate(double t, const double* y, double* dydt) override {
@@ -106,15 +106,15 @@ class Taylor final : public Stepper {
     t_new_ = (t + h).high;
     has_new_series_ = true;
     const Attempt attempt = attempt_(&memory_, t_new_, h);
-    if (!sums_.empty()) integrate_quadratures(t.high, h);
+    if (!quadratures_.empty()) integrate_quadratures(t.high, h);
     return attempt;
   }
   void stay() override {
     const std::size_t bytes = size_ * sizeof(double);
     __builtin_memcpy(memory_.y_new, memory_.y, bytes);
     if (compensated_) __builtin_memcpy(memory_.low_new, memory_.low, bytes);
-    sums_new_ = sums_;
-    std::ranges::fill(powers_, 0.0);
+    quadratures_new_ = quadratures_;
+    std::ranges::fill(quadrature_rates_, 0.0);
     has_new_series_ = false;
     stays_ = true;
   }
@@ -127,21 +127,21 @@ class Taylor final : public Stepper {
     std::swap(memory_.rows, memory_.rows_new);
     std::swap(memory_.sigma, memory_.sigma_new);
     std::swap(memory_.largest, memory_.largest_new);
-    std::swap(sums_, sums_new_);
+    std::swap(quadratures_, quadratures_new_);
     has_series_ = is_whole;
     if (!has_series_) begin(t_new);
-    if (sums_.empty()) return;
+    if (quadratures_.empty()) return;
     std::vector<double> y(dimension());
     get_state(y.data());
-    evaluate(t_new, y.data(), given_rates_.data());
+    evaluate(t_new, y.data(), dydt_.data());
   }
 
   void interpolant(double h, double* coefficients) override {
-    write(memory_.y, sums_, coefficients);
+    write(memory_.y, quadratures_, coefficients);
     write_powers(h, dimension(), coefficients);
     const int first = controlled();
-    for (std::size_t i = 0; i < sums_.size(); ++i) {
-      const auto powers = GaussQuadrature::powers(&powers_[i * GaussQuadrature::points]);
+    for (std::size_t i = 0; i < quadratures_.size(); ++i) {
+      const auto powers = GaussQuadrature::powers(&quadrature_rates_[i * GaussQuadrature::points]);
       for (int k = 1; k <= memory_.order; ++k) {
         coefficients[static_cast<std::size_t>(k) * dimension() + first + i] =
             k <= GaussQuadrature::points ? h * powers[k - 1] : 0.0;
@@ -303,12 +303,13 @@ class Taylor final : public Stepper {
     for (int j = 0; j < Gauss::points; ++j) {
       std::copy_n(states + static_cast<std::ptrdiff_t>(j) * controlled(), controlled(), state);
       evaluate(t + Gauss::theta[j] * h, state, rate);
-      for (std::size_t i = 0; i < sums_.size(); ++i) {
-        powers_[i * Gauss::points + j] = rate[controlled() + i];
+      for (std::size_t i = 0; i < quadratures_.size(); ++i) {
+        quadrature_rates_[i * Gauss::points + j] = rate[controlled() + i];
       }
     }
-    for (std::size_t i = 0; i < sums_.size(); ++i) {
-      sums_new_[i] = sums_[i] + h * Gauss::whole(&powers_[i * Gauss::points]);
+    for (std::size_t i = 0; i < quadratures_.size(); ++i) {
+      quadratures_new_[i] =
+          quadratures_[i] + h * Gauss::whole(&quadrature_rates_[i * Gauss::points]);
     }
   }
 
@@ -318,11 +319,12 @@ class Taylor final : public Stepper {
   int n_;
   int row_;
   int size_;
-  std::vector<double> given_rates_;      ///< at the start of a run or part of it; of sums_ always
-  std::vector<double> sums_, sums_new_;  ///< quadratures
-  std::vector<double> powers_;           ///< their rates along the attempt, (sum, point)
-  std::vector<double> numbers_;
-  bool starts_at_rest_ = false;  ///< nothing has a rate yet
+  /// The right-hand side at y. Where there is a series, only the rates of quadratures are kept.
+  std::vector<double> dydt_;
+  std::vector<double> quadratures_, quadratures_new_;
+  std::vector<double> quadrature_rates_;  ///< along the attempt, (quadrature, point)
+  std::vector<double> numbers_;           ///< all that memory_ points to
+  bool starts_at_rest_ = false;           ///< nothing has a rate yet
   bool has_series_ = false;
   bool has_new_series_ = false;
   bool stays_ = false;
