@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "integrate/horner.hpp"
+#include "integrate/radau/collocation_step.hpp"
 #include "integrate/runge_kutta/compensation.hpp"
 
 namespace pendcore {

@@ -4,7 +4,8 @@
 
 #include <memory>
 
-#include "integrate/radau/collocation_step.hpp"
+#include "integrate/general_system.hpp"
+#include "integrate/radau/collocation.hpp"
 #include "integrate/stepper.hpp"
 
 namespace pendcore {
