@@ -9,11 +9,8 @@
 #include "arithmetic/floating_point_environment.hpp"
 #include "bind_effects.hpp"
 #include "dynamics/cost.hpp"
-#include "dynamics/energetics/reactions.hpp"
 #include "dynamics/equations_of_motion.hpp"
-#include "dynamics/jacobian.hpp"
-#include "dynamics/joint_forces.hpp"
-#include "dynamics/kinematics.hpp"
+#include "pendcore/equations.hpp"
 #include "pendcore/mechanics.hpp"
 #include "simulate/initial_state.hpp"
 
@@ -60,21 +57,15 @@ class Rows {
   const Array& array_;
 };
 
-/// Row i of an array with two more axes.
-std::span<double> row(Array& array, py::ssize_t i) {
-  return {array.mutable_data(i, 0, 0), static_cast<std::size_t>(array.shape(1) * array.shape(2))};
-}
-
-using Points = void(const Scene&, double t, std::span<const double> q, std::span<double>);
-
-/// positions() or mass_centers() for each row of angles, with `count` points each.
-Array points_of_rows(Points compute, const Scene& scene, const Array& t, const Array& q,
-                     std::size_t count) {
+/// An array of that shape with compute(i), a vector or a matrix, for each i along its first axis.
+template <class Compute>
+Array array_of(const std::vector<py::ssize_t>& shape, const Compute& compute) {
   const FloatingPointEnvironment ieee;
-  const Rows angles(scene, "q", q);
-  Array result({angles.count(), static_cast<py::ssize_t>(count), py::ssize_t{2}});
-  for (py::ssize_t i = 0; i < angles.count(); ++i) {
-    compute(scene, t.at(i), angles[i], row(result, i));
+  Array result(shape);
+  double* to = result.mutable_data();
+  for (py::ssize_t i = 0; i < shape[0]; ++i) {
+    const auto one = compute(i);
+    to = std::copy_n(one.data(), one.size(), to);
   }
   return result;
 }
@@ -115,19 +106,16 @@ std::optional<Array> acceleration_of_state(const Scene& scene, py::handle t, py:
 
 /// The derivatives of the accelerations by the angles and by the rates, (m, n, n) each.
 py::tuple jacobian_rows(const Scene& scene, const Array& t, const Array& q, const Array& qd) {
-  const FloatingPointEnvironment ieee;
   const Rows angles(scene, "q", q);
   const Rows rates(scene, "qd", qd);
-  const EquationsOfMotion equations = equations_of_motion(scene);
-  const Jacobian jacobian(scene, equations);
+  Equations equations(scene);
   const auto n = static_cast<py::ssize_t>(scene.links.size());
   Array by_q({angles.count(), n, n});
   Array by_qd({angles.count(), n, n});
   for (py::ssize_t i = 0; i < angles.count(); ++i) {
-    const double* const at = angles[i].data();
-    const double* const turning = rates[i].data();
-    if (equations.effects) choose_modes(*equations.effects, t.at(i), at, turning, true);
-    jacobian(t.at(i), at, turning, by_q.mutable_data(i, 0, 0), by_qd.mutable_data(i, 0, 0));
+    const Derivatives found = equations.jacobian(t.at(i), angles[i], rates[i]);
+    std::copy_n(found.by_q.data(), n * n, by_q.mutable_data(i, 0, 0));
+    std::copy_n(found.by_qd.data(), n * n, by_qd.mutable_data(i, 0, 0));
   }
   give_nan_one_sign(by_q);
   give_nan_one_sign(by_qd);
@@ -135,16 +123,12 @@ py::tuple jacobian_rows(const Scene& scene, const Array& t, const Array& q, cons
 }
 
 Array reaction_forces(const Scene& scene, const Array& t, const Array& q, const Array& qd) {
-  const FloatingPointEnvironment ieee;
-  const Array qdd = acceleration_rows(scene, t, q, qd);
   const Rows angles(scene, "q", q);
   const Rows rates(scene, "qd", qd);
-  const Rows second(scene, "qdd", qdd);
-  const auto effects = effects_in_force(scene);
-  Array result({q.shape(0), q.shape(1), py::ssize_t{2}});
-  for (py::ssize_t i = 0; i < angles.count(); ++i) {
-    reactions(scene, *effects, t.at(i), angles[i], rates[i], second[i], row(result, i));
-  }
+  Equations equations(scene);
+  Array result = array_of({q.shape(0), q.shape(1), 2}, [&](py::ssize_t i) {
+    return equations.reactions(t.at(i), angles[i], rates[i]);
+  });
   give_nan_one_sign(result);
   return result;
 }
@@ -171,28 +155,26 @@ void bind_scene(py::module_& module) {
       .def(
           "mass_matrix",
           [](const Scene& scene, const Array& q) {
-            const FloatingPointEnvironment ieee;
             const Rows angles(scene, "q", q);
-            const auto n = static_cast<py::ssize_t>(scene.links.size());
-            JointForces forces(scene);
-            Array result({angles.count(), n, n});
-            for (py::ssize_t i = 0; i < angles.count(); ++i) {
-              forces.set_mass_matrix(angles[i].data());
-              std::ranges::copy_n(forces.mass.data(), n * n, row(result, i).begin());
-            }
-            return result;
+            Equations equations(scene);
+            return array_of({q.shape(0), q.shape(1), q.shape(1)},
+                            [&](py::ssize_t i) { return equations.mass_matrix(angles[i]); });
           },
           py::arg("q"))
       .def(
           "positions",
           [](const Scene& scene, const Array& t, const Array& q) {
-            return points_of_rows(positions, scene, t, q, scene.links.size() + 1);
+            const Rows angles(scene, "q", q);
+            return array_of({q.shape(0), q.shape(1) + 1, 2},
+                            [&](py::ssize_t i) { return positions(scene, t.at(i), angles[i]); });
           },
           py::arg("t"), py::arg("q"))
       .def(
           "mass_centers",
           [](const Scene& scene, const Array& t, const Array& q) {
-            return points_of_rows(mass_centers, scene, t, q, scene.links.size());
+            const Rows angles(scene, "q", q);
+            return array_of({q.shape(0), q.shape(1), 2},
+                            [&](py::ssize_t i) { return mass_centers(scene, t.at(i), angles[i]); });
           },
           py::arg("t"), py::arg("q"))
       .def(

@@ -3,9 +3,13 @@
 #include <optional>
 
 #include "arithmetic/floating_point_environment.hpp"
-#include "dynamics/energetics/reactions.hpp"
+#include "arithmetic/sine_cosine.hpp"
+#include "dynamics/energetics/ledger.hpp"
 #include "dynamics/jacobian.hpp"
 #include "dynamics/joint_forces.hpp"
+#include "pendcore/effects/payload.hpp"
+#include "pendcore/mechanics.hpp"
+#include "scene/effects_of_scene.hpp"
 #include "text/message.hpp"
 
 namespace pendcore {
@@ -22,6 +26,7 @@ struct Equations::Compiled {
   EquationsOfMotion equations;
   std::optional<Jacobian> derivatives{};
   std::shared_ptr<EffectsInForce> loads = nullptr;  ///< for reactions
+  std::optional<JointForces> inertia{};             ///< for the mass matrix
 };
 
 Equations::Equations(const Scene& scene) {
@@ -59,21 +64,41 @@ Derivatives Equations::jacobian(double t, const Numbers& q, const Numbers& qd) {
 
 Points Equations::reactions(double t, const Numbers& q, const Numbers& qd) {
   const FloatingPointEnvironment ieee;
+  using PlaneVector = Eigen::RowVector2d;
+  const Scene& scene = compiled_->scene;
   const Vector qdd = accelerations(t, q, qd);
-  if (!compiled_->loads) compiled_->loads = effects_in_force(compiled_->scene);
-  Points forces(q.size(), 2);
-  pendcore::reactions(compiled_->scene, *compiled_->loads, t, q.span(), qd.span(),
-                      Numbers(qdd).span(), as_span(forces));
+  if (!compiled_->loads) compiled_->loads = effects_in_force(scene);
+  EffectsInForce& effects = *compiled_->loads;
+  if (effects.has_modes) choose_modes(effects, t, q.data(), qd.data(), true);
+  Points loads(q.size(), 2);
+  effect_forces(scene, effects, t, q.data(), qd.data(), as_span(loads));
+
+  const PlaneVector gravity(0.0, scene.gravity);
+  Points forces = mass_center_accelerations(scene, t, q, qd, qdd);
+  PlaneVector beyond(0.0, 0.0);  // F_{i,i+1}
+  for (const Payload& payload : effects_of<Payload>(scene)) {
+    // a_tip = a_C + (L - c)(qdd n - qd^2 u)
+    const Eigen::Index i = q.size() - 1;
+    const double rest = scene.links[i].length - scene.links[i].center;
+    double s, c;
+    sine_cosine(q.data() + i, 1, &s, &c);
+    const PlaneVector of_unit_length =
+        qdd[i] * PlaneVector(-s, c) - qd[i] * qd[i] * PlaneVector(c, s);
+    beyond += payload.mass * (forces.row(i) + rest * of_unit_length - gravity);
+  }
+  for (Eigen::Index i = q.size(); i-- > 0;) {
+    beyond += scene.links[i].mass * (forces.row(i) - gravity) - loads.row(i);
+    forces.row(i) = beyond;
+  }
   return forces;
 }
 
 Matrix Equations::mass_matrix(const Numbers& q) {
   const FloatingPointEnvironment ieee;
-  const std::size_t n = compiled_->scene.links.size();
-  require_size("q", q.span(), n);
-  JointForces forces(compiled_->scene);
-  forces.set_mass_matrix(q.data());
-  return forces.mass;
+  require_size("q", q.span(), compiled_->scene.links.size());
+  if (!compiled_->inertia) compiled_->inertia.emplace(compiled_->scene);
+  compiled_->inertia->set_mass_matrix(q.data());
+  return compiled_->inertia->mass;
 }
 
 Vector accelerations(const Scene& scene, double t, const Numbers& q, const Numbers& qd) {

@@ -1,9 +1,7 @@
 #include "pendcore/mechanics.hpp"
 
-#include <vector>
-
+#include "arithmetic/sine_cosine.hpp"
 #include "dynamics/kinematics.hpp"
-
 #include "effects/behaviour.hpp"
 #include "effects/pivot_motion.hpp"
 #include "pendcore/effects/payload.hpp"
@@ -12,51 +10,75 @@
 #include "text/message.hpp"
 
 namespace pendcore {
+namespace {
+
+using PlaneVector = Eigen::RowVector2d;
+
+/// u_i, a row for each link.
+Eigen::Matrix<double, Eigen::Dynamic, 2> directions(const Scene& scene, const Numbers& q) {
+  require_size("q", q.span(), scene.links.size());
+  Eigen::Matrix<double, Eigen::Dynamic, 2> u(q.size(), 2);
+  sine_cosine(q.data(), q.size(), u.col(1).data(), u.col(0).data());
+  return u;
+}
+
+/// n_i for a row u_i.
+PlaneVector across(const PlaneVector& u) { return {-u[1], u[0]}; }
+
+}  // namespace
 
 Points positions(const Scene& scene, double t, const Numbers& q) {
-  Points points(scene.links.size() + 1, 2);
-  positions(scene, t, q.span(), as_span(points));
+  const auto u = directions(scene, q);
+  Points points(q.size() + 1, 2);
+  points.row(0) = PlaneVector(pivot_motion(scene, t).position);
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    points.row(i + 1) = points.row(i) + scene.links[i].length * u.row(i);
+  }
   return points;
 }
 
 Points mass_centers(const Scene& scene, double t, const Numbers& q) {
-  Points centers(scene.links.size(), 2);
-  mass_centers(scene, t, q.span(), as_span(centers));
+  const auto u = directions(scene, q);
+  Points centers(q.size(), 2);
+  PlaneVector joint(pivot_motion(scene, t).position);
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    centers.row(i) = joint + scene.links[i].center * u.row(i);
+    joint += scene.links[i].length * u.row(i);
+  }
   return centers;
 }
 
 Points mass_center_accelerations(const Scene& scene, double t, const Numbers& q, const Numbers& qd,
                                  const Numbers& qdd) {
-  Points accelerations(scene.links.size(), 2);
-  mass_center_accelerations(scene, t, q.span(), qd.span(), qdd.span(), as_span(accelerations));
+  const auto u = directions(scene, q);
+  require_size("qd", qd.span(), scene.links.size());
+  require_size("qdd", qdd.span(), scene.links.size());
+  Points accelerations(q.size(), 2);
+  PlaneVector joint(pivot_motion(scene, t).acceleration);
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    const PlaneVector of_unit_length = qdd[i] * across(u.row(i)) - qd[i] * qd[i] * u.row(i);
+    accelerations.row(i) = joint + scene.links[i].center * of_unit_length;
+    joint += scene.links[i].length * of_unit_length;
+  }
   return accelerations;
 }
 
-double kinetic_energy(const Scene& scene, double t, const Numbers& angles, const Numbers& rates) {
-  const std::span q = angles.span();
-  const std::span qd = rates.span();
-  const std::size_t n = scene.links.size();
-  require_size("q", q, n);
-  require_size("qd", qd, n);
-  std::vector<double> u(2 * n);
-  directions(q, u);
-  const PivotMotion pivot = pivot_motion(scene, t);
-  double joint_x = pivot.velocity[0];  // velocity of the joint where link i begins
-  double joint_y = pivot.velocity[1];
+double kinetic_energy(const Scene& scene, double t, const Numbers& q, const Numbers& qd) {
+  const auto u = directions(scene, q);
+  require_size("qd", qd.span(), scene.links.size());
+  PlaneVector joint(pivot_motion(scene, t).velocity);  // of the joint where link i begins
   double twice = 0.0;
-  for (std::size_t i = 0; i < n; ++i) {
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
     const Link& link = scene.links[i];
-    const double x = -qd[i] * u[2 * i + 1];
-    const double y = qd[i] * u[2 * i];
-    const double center_x = joint_x + link.center * x;
-    const double center_y = joint_y + link.center * y;
-    twice += link.mass * (center_x * center_x + center_y * center_y) + link.inertia * qd[i] * qd[i];
-    joint_x += link.length * x;
-    joint_y += link.length * y;
+    const PlaneVector of_unit_length = qd[i] * across(u.row(i));
+    const PlaneVector center = joint + link.center * of_unit_length;
+    twice += link.mass * center.squaredNorm() + link.inertia * qd[i] * qd[i];
+    joint += link.length * of_unit_length;
   }
   for (const Payload& payload : effects_of<Payload>(scene)) {
-    twice += payload.mass * (joint_x * joint_x + joint_y * joint_y);
-    twice += payload.inertia * qd[n - 1] * qd[n - 1];
+    const double rate = qd[qd.size() - 1];
+    twice += payload.mass * joint.squaredNorm();
+    twice += payload.inertia * rate * rate;
   }
   for (const RotorInertia& rotor : effects_of<RotorInertia>(scene)) {
     const double phid = relative(qd.data(), rotor.joint);
@@ -65,17 +87,13 @@ double kinetic_energy(const Scene& scene, double t, const Numbers& angles, const
   return 0.5 * twice;
 }
 
-double potential_energy(const Scene& scene, double t, const Numbers& angles) {
-  const std::span q = angles.span();
-  const std::size_t n = scene.links.size();
-  std::vector<double> centers(2 * n);
-  mass_centers(scene, t, q, centers);
+double potential_energy(const Scene& scene, double t, const Numbers& q) {
+  const Points centers = mass_centers(scene, t, q);
   double moment = 0.0;
-  for (std::size_t i = 0; i < n; ++i) moment += scene.links[i].mass * centers[2 * i + 1];
+  for (Eigen::Index i = 0; i < q.size(); ++i) moment += scene.links[i].mass * centers(i, 1);
   if (auto payloads = effects_of<Payload>(scene); !payloads.empty()) {
-    std::vector<double> joints(2 * n + 2);
-    positions(scene, t, q, joints);
-    for (const Payload& payload : payloads) moment += payload.mass * joints.back();
+    const double tip_y = positions(scene, t, q)(q.size(), 1);
+    for (const Payload& payload : payloads) moment += payload.mass * tip_y;
   }
   double kept = 0.0;
   for (const Effect& effect : scene.effects) {

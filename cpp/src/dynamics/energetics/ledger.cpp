@@ -134,7 +134,7 @@ void Ledger::add_users(double t, const double* q, const double* qd, Powers& powe
   }
 }
 
-/// Adds F_01 . v_0, where F_01 is the force that accelerates the mass centres (reactions.hpp) less
+/// Adds F_01 . v_0, where F_01 is the force that accelerates the mass centres (equations.hpp) less
 /// the forces of the laws.
 void Ledger::add_drive(double t, const double* qdd, Powers& power) const {
   double ax, ay;
