@@ -1,10 +1,12 @@
 #include "simulate/ending_message.hpp"
 
-#include "integrate/loop/integrate.hpp"
+#include <cmath>
+#include <cstdio>
+
 #include "pendcore/methods.hpp"
 #include "scene/effects_of_scene.hpp"
+#include "simulate/fast_mode.hpp"
 #include "simulate/initial_state.hpp"
-#include "simulate/not_finite.hpp"
 #include "text/message.hpp"
 
 namespace pendcore {
@@ -42,6 +44,72 @@ std::string laws_that_may_jump(const Scene& scene) {
          ": name the times of its jumps, breaks=[...], and smooth what jumps with the state";
 }
 
+/// Where numbers stop being finite.
+struct NotFinite {
+  int component = -1;  ///< the component of (q, qd), or -1
+  int effect = -1;     ///< the effect that is not finite by itself, or -1
+};
+
+std::vector<double> accelerations_of(const Scene& scene, double t, const std::vector<double>& y) {
+  const std::size_t n = scene.links.size();
+  std::vector<double> qdd(n);
+  accelerations(equations_of_motion(scene), t, y.data(), y.data() + n, qdd.data());
+  return qdd;
+}
+
+NotFinite not_finite_at(const Scene& scene, double t, const std::vector<double>& y) {
+  const int n = static_cast<int>(scene.links.size());
+  if (const int bad = bad_component(y); bad >= 0) return {.component = bad};
+  const int bad = bad_component(accelerations_of(scene, t, y));
+  if (bad < 0) return {};
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    Scene alone = scene;
+    alone.effects = {scene.effects[i]};
+    if (bad_component(accelerations_of(alone, t, y)) >= 0) {
+      return {.component = n + bad, .effect = static_cast<int>(i)};
+    }
+  }
+  return {.component = n + bad};
+}
+
+/// Looks ahead along the slope at the end of a run, as far as the run's last attempts reached: each
+/// attempt was longer than the next. It does not look beyond t_end.
+NotFinite find_what_is_not_finite(const Scene& scene, const IntegratorState& integrator,
+                                  double t_end) {
+  const std::size_t n = scene.links.size();
+  // What is not finite may lie some steps ahead; the tangent leads roughly there.
+  for (const double share : {0.0, 1.0, 4.0, 16.0, 64.0, 256.0}) {
+    const double h = share * integrator.h;
+    if ((integrator.t.high + h - t_end) * h > 0.0) break;
+    std::vector<double> y(2 * n);
+    for (std::size_t i = 0; i < y.size(); ++i) y[i] = integrator.y[i] + h * integrator.dydt[i];
+    try {
+      const NotFinite found = not_finite_at(scene, integrator.t.high + h, y);
+      if (found.component >= 0) return found;
+    } catch (...) {  // a user's function threw, which the run did not call here
+      return {};
+    }
+  }
+  return {};
+}
+
+std::string short_text(double x) {
+  char digits[32];
+  std::snprintf(digits, sizeof digits, "%.3g", x);
+  return digits;
+}
+
+/// The frequency and damping ratio of a mode in words; for an overdamped mode, the rate at which it
+/// dies out.
+std::string measure_of(const FastMode& mode) {
+  if (mode.damping_ratio > 10.0) return "overdamped, " + short_text(mode.fastest) + " 1/s";
+  const double ratio = std::abs(mode.damping_ratio) < 1e-6 ? 0.0 : mode.damping_ratio;
+  return short_text(mode.frequency) + " rad/s, damping ratio " + short_text(ratio);
+}
+
+constexpr long long many_steps = 1000;
+constexpr std::size_t many_links = 100;
+
 }  // namespace
 
 std::string ending_message(const Ending& ending, const Scene& scene, const Solution& solution,
@@ -52,29 +120,26 @@ std::string ending_message(const Ending& ending, const Scene& scene, const Solut
   const bool wants_another_method = statistics.stiff && statistics.njev == 0;
   // For a stiff run, the remark on stiffness gives the advice: another method, not more steps.
   if (ending.status == Status::max_steps && wants_another_method) message.resize(message.find(':'));
+  const auto at = [&] { return " (at t = " + text(solution.t_reached) + " s"; };
   if (ending.status == Status::at_rest) {
     const double since = solution.resumable->t.high;
     return message + " (at t = " + text(since) + " s: " + remark + ")";
   }
   if (ending.status == Status::event) {
-    const std::vector<Event>& events = solution.options.events;
-    return message + " (at t = " + text(solution.t_reached) +
-           " s: " + event_name(events[ended_by], ended_by) + ")";
+    return message + at() + ": " + event_name(solution.options.events[ended_by], ended_by) + ')';
   }
   if (ending.status == Status::max_turns) {
     return event_name(solution.options.events[ended_by], ended_by) +
            ": every_turn = true: the steps of this run went through more than a million turns, "
-           "not counting one a step (at t = " +
-           text(solution.t_reached) +
-           " s): leave every_turn out, or keep the steps below a turn by max_step; resume goes on "
+           "not counting one a step" +
+           at() +
+           "): leave every_turn out, or keep the steps below a turn by max_step; resume goes on "
            "with another million";
   }
   if (text(ending.status).success) return message;
   if (ending.chatters) {
-    return "no step gets further: the law changes back and forth (at t = " +
-           text(solution.t_reached) +
-           " s), as where dry friction reverses at once or two limits meet: move one of the "
-           "limits, "
+    return "no step gets further: the law changes back and forth" + at() +
+           "), as where dry friction reverses at once or two limits meet: move one of the limits, "
            "or give the joint some damping";
   }
   const bool forward = !(solution.t_end < solution.t0);
@@ -82,13 +147,12 @@ std::string ending_message(const Ending& ending, const Scene& scene, const Solut
                           ? table_that_ends(scene, solution.t_reached, forward)
                           : std::string();
   if (!table.empty()) return table;
-  const std::string at = " (at t = " + text(solution.t_reached) + " s";
   if (ending.bad >= 2 * solution.n) {
     const Account account = solution.accounts[ending.bad - 2 * solution.n];
     return "the ledger's " + std::string(account_name(account)) +
-           " stopped being finite: without ledger=True the motion can go on" + at + ')';
+           " stopped being finite: without ledger=True the motion can go on" + at() + ')';
   }
-  message += at;
+  message += at();
   if (ending.status == Status::max_steps && jumps_under_users(scene, statistics)) {
     message +=
         "; most steps were rejected: a law of yours that jumps, as sign(w) does, is not "
@@ -106,6 +170,51 @@ std::string ending_message(const Ending& ending, const Scene& scene, const Solut
     message += "; where the fixed step is too long, a shorter one helps, or method=\"radau5\"";
   }
   return message + ')';
+}
+
+std::string remark_on_steps(const Scene& scene, const EquationsOfMotion& equations,
+                            const Solution& solution, const IntegratorState& integrator) {
+  std::string remark;
+  const MethodInfo& method = find_method(solution.options.method);
+  const Statistics& statistics = integrator.statistics;
+  const auto since = [&integrator] { return text(integrator.stiff_since) + " s"; };
+  if (statistics.stiff && solution.last_method == method.second_of_pair) {
+    remark += "; stiff: went on with " + solution.last_method + " from t = " + since();
+  } else if (statistics.stiff && method.kind == MethodKind::pair) {
+    remark += "; stiff at t = " + since() + ", but " + std::string(method.second_of_pair) +
+              " does not pay: accuracy hardly allows it longer steps";
+  } else if (statistics.stiff) {
+    remark += "; from t = " + since() +
+              " on the steps are limited by stability, not by accuracy: the problem is stiff: "
+              "method=\"radau5\" takes longer ones, and " +
+              (solution.options.step ? "\"dopri5-radau5\"" : "\"auto\"") +
+              " changes over by itself";
+  }
+  if (statistics.njev > 0) {
+    for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+      if (!scene.effects[i].info().is_function) continue;
+      remark += "; derivatives of " + effect_name(scene, i) + " by differences";
+    }
+  }
+  const std::size_t n = scene.links.size();
+  const bool asks_users = equations.effects && !equations.effects->users.empty();
+  if (statistics.limited_by_tolerance <= many_steps || scene.effects.empty() || n > many_links ||
+      asks_users) {
+    return remark;
+  }
+  const double* const y = integrator.y.data();
+  const double h =
+      std::abs(integrator.t.high - solution.t0) / static_cast<double>(statistics.accepted);
+  const auto mode = fast_mode(scene, equations, integrator.t.high, y, y + n);
+  // The mode that set the steps turns by about a radian a step, or is at the border of stability.
+  if (!mode || !(0.01 < h * mode->fastest && h * mode->fastest < 10.0)) return remark;
+  remark += "; a fast mode set " + std::to_string(statistics.limited_by_tolerance) +
+            " steps: " + measure_of(*mode) + ", in joint " + std::to_string(mode->joint);
+  if (mode->effect) remark += ", from " + effect_name(scene, *mode->effect);
+  if (mode->damping_ratio < 0.5) {
+    remark += ": as long as it swings, every method has to follow it; damp it, or lock the joint";
+  }
+  return remark;
 }
 
 }  // namespace pendcore

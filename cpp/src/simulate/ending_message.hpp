@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "dynamics/equations_of_motion.hpp"
 #include "integrate/loop/integrate.hpp"
 #include "pendcore/solution.hpp"
 
@@ -15,5 +16,12 @@ namespace pendcore {
 std::string ending_message(const Ending& ending, const Scene& scene, const Solution& solution,
                            const IntegratorState& integrator, const std::string& remark,
                            int ended_by);
+
+/// What the message goes on to say about the steps, "; ..." or nothing: whether stability limited
+/// them, since when, and what to do; which mode set them, if one did for long; whether the run
+/// changed its method to the one with which it ended; which effects were differentiated
+/// numerically.
+std::string remark_on_steps(const Scene& scene, const EquationsOfMotion& equations,
+                            const Solution& solution, const IntegratorState& integrator);
 
 }  // namespace pendcore

@@ -1,5 +1,5 @@
 /// \file
-/// Which mode of a scene is so fast that it sets the steps, and what is told of it.
+/// Which mode of a scene is so fast that it sets the steps.
 ///
 /// The modes are those of the equations linearised about one state, of the eigenvalues lambda of
 /// ((0, 1), (A, B)) with the exact A and B of dynamics/jacobian.hpp. A pair of them, conjugate or
@@ -12,10 +12,8 @@
 #pragma once
 
 #include <optional>
-#include <string>
 
 #include "dynamics/equations_of_motion.hpp"
-#include "integrate/loop/integrate.hpp"
 
 namespace pendcore {
 
@@ -31,12 +29,5 @@ struct FastMode {
 /// the effects that are in force, if it is 30 times faster than any of the links without effects.
 std::optional<FastMode> fast_mode(const Scene& scene, const EquationsOfMotion& equations, double t,
                                   const double* q, const double* qd);
-
-/// What a run's message says about its steps, "; ..." or nothing: whether stability limited them,
-/// since when, and what to do; which mode set them, if one did for long; whether the run changed
-/// its method to the one in force; which effects were differentiated numerically.
-std::string remark_on_steps(const Scene& scene, const EquationsOfMotion& equations,
-                            const IntegratorState& integrator, const MethodInfo& method,
-                            const MethodInfo& in_force, bool fixed_step, double t0);
 
 }  // namespace pendcore

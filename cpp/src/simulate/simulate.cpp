@@ -12,11 +12,9 @@
 #include "integrate/loop/first_step.hpp"
 #include "integrate/loop/integrate.hpp"
 #include "integrate/loop/run_limits.hpp"
-#include "pendcore/methods.hpp"
 #include "pendcore/solution.hpp"
 #include "simulate/checked_options.hpp"
 #include "simulate/ending_message.hpp"
-#include "simulate/fast_mode.hpp"
 #include "simulate/initial_state.hpp"
 #include "simulate/method_choice.hpp"
 #include "simulate/recorder.hpp"
@@ -188,8 +186,7 @@ void run(const Scene& scene, Solution& solution, IntegratorState integrator, dou
                                     switching ? switching->remark() : "", recorder.ended_by());
   if (switching) solution.message += switching->remark_on_impacts();
   solution.last_method = stepper->info().name;
-  solution.message += remark_on_steps(scene, equations, integrator, find_method(options.method),
-                                      stepper->info(), options.step.has_value(), solution.t0);
+  solution.message += remark_on_steps(scene, equations, solution, integrator);
   solution.error = ending.error;
   solution.options.watch = nullptr;
   solution.y_reached = std::move(integrator.y);

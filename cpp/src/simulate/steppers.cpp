@@ -1,16 +1,67 @@
 // Makes the stepper of a method in the list for a scene, whatever form its equations have.
 #include "simulate/steppers.hpp"
+
+#include "dynamics/energetics/ledger.hpp"
 #include "dynamics/first_order.hpp"
+#include "dynamics/jacobian.hpp"
 #include "integrate/method_list.hpp"
 #include "integrate/radau/implicit_runge_kutta.hpp"
 #include "integrate/runge_kutta/runge_kutta_fixed.hpp"
 #include "integrate/runge_kutta/runge_kutta_in_memory.hpp"
 #include "pendcore/methods.hpp"
-#include "simulate/scene_system.hpp"
 
 namespace pendcore {
 
 namespace {
+
+/// The equations of motion of a scene, in any form, as a system in memory: dy/dt of (q, qd), and
+/// the powers of the ledger beside it where the run keeps one.
+class SceneSystem final : public DifferentiableSystem {
+ public:
+  /// Rows of `row_size` numbers, of which the first belong to links.
+  SceneSystem(const Scene& scene, const EquationsOfMotion& equations, int row_size,
+              bool keeps_ledger)
+      : DifferentiableSystem(row_size,
+                             keeps_ledger ? static_cast<int>(accounts_of(scene).size()) : 0),
+        equations_(equations),
+        right_hand_side_(right_hand_side(equations_)),
+        n_(static_cast<int>(scene.links.size())) {
+    if (quadratures > 0) ledger_ = std::make_unique<Ledger>(scene, equations.effects);
+  }
+  SceneSystem(const SceneSystem&) = delete;  // the right-hand side points into the equations
+  SceneSystem& operator=(const SceneSystem&) = delete;
+
+  void operator()(double t, const double* y, double* dydt) const override {
+    for (int i = 0; i < n_; ++i) dydt[i] = y[row + i];
+    right_hand_side_(t, y, y + row, dydt + row);
+    if (ledger_) {
+      ledger_->powers(t, y, y + row, dydt + row, dydt + static_cast<std::ptrdiff_t>(2) * row);
+    }
+  }
+
+  void derivatives_of_three(const double* t, const double* y, double* dydt) const override {
+    // The kernel knows states of two links, and nothing beside them.
+    const bool has_kernel =
+        right_hand_side_.compute_three != nullptr && row == 2 && quadratures == 0;
+    if (!has_kernel) return DifferentiableSystem::derivatives_of_three(t, y, dydt);
+    right_hand_side_.compute_three(right_hand_side_.form, t, y, dydt);
+  }
+
+  /// Makes jacobian() available.
+  void differentiate(const Scene& scene) {
+    jacobian_ = std::make_unique<Jacobian>(scene, equations_);
+  }
+  void jacobian(double t, const double* y, double* by_q, double* by_qd) const override {
+    (*jacobian_)(t, y, y + row, by_q, by_qd);
+  }
+
+ private:
+  EquationsOfMotion equations_;
+  RightHandSide right_hand_side_;
+  int n_;
+  std::unique_ptr<Ledger> ledger_;
+  std::unique_ptr<Jacobian> jacobian_;
+};
 
 /// Steppers that are written for the form of the equations are the fastest. Rarer runs keep the
 /// state in memory and give the same bits: long chains, compensated steps, runs that keep the
