@@ -5,18 +5,12 @@
 #include <memory>
 #include <stdexcept>
 
-#include "analysis/tangent_series.hpp"
+#include "analysis/tangent_stepper.hpp"
 #include "arithmetic/exponential.hpp"
 #include "arithmetic/floating_point_environment.hpp"
-#include "dynamics/jacobian.hpp"
-#include "dynamics/series/double_pendulum_series.hpp"
-#include "dynamics/series/few_links_series.hpp"
-#include "dynamics/tangent_space.hpp"
 #include "integrate/loop/first_step.hpp"
 #include "integrate/loop/integrate.hpp"
-#include "integrate/runge_kutta/dormand_prince_8.hpp"
-#include "integrate/runge_kutta/runge_kutta_in_memory.hpp"
-#include "integrate/taylor/taylor_stepper.hpp"
+#include "pendcore/effects/lock.hpp"
 #include "pendcore/options.hpp"
 #include "scene/effects_of_scene.hpp"
 #include "simulate/checked_options.hpp"
@@ -27,73 +21,57 @@ namespace pendcore {
 
 namespace {
 
-/// The state and k changes of it as one second-order system: rows (q, dq_1 .. dq_k) and
-/// (qd, dqd_1 .. dqd_k).
-class TangentSystem final : public GeneralSystem {
- public:
-  /// A row has `size` numbers, padding included.
-  TangentSystem(const Scene& scene, int count, int size, double t_end, bool forward)
-      : GeneralSystem(size, 0),
-        equations_(equations_of_motion(scene)),
-        jacobian_(scene, equations_),
-        n_(static_cast<int>(scene.links.size())),
-        count_(count),
-        t_end_(t_end),
-        forward_(forward) {}
-
-  void operator()(double t, const double* y, double* dydt) const override {
-    const double* const qd = y + row;
-    double* const qdd = dydt + row;
-    __builtin_memcpy(dydt, qd, row * sizeof(double));
-    std::fill_n(qdd, row, 0.0);
-    choose_laws(t, y, qd);
-    for (int change = n_; change <= count_ * n_; change += n_) {
-      jacobian_.along(t, y, qd, y + change, qd + change, qdd, qdd + change);
+/// An orthonormal basis of the small changes that locks allow, (2m, 2n) row-major, each row a
+/// change (dq, dqd): for each of the m groups of links that turn together, a change of its angles,
+/// and then for each a change of its rates. Links that are locked to the ground do not turn.
+std::vector<double> tangent_basis(const Scene& scene) {
+  const int n = static_cast<int>(scene.links.size());
+  std::vector<char> locked(n);
+  for (const Lock& lock : effects_of<Lock>(scene)) locked[lock.joint - 1] = 1;
+  std::vector<double> basis;
+  for (const int part : {0, n}) {
+    for (int first = 0; first < n;) {
+      int end = first + 1;
+      while (end < n && locked[end] != 0) ++end;
+      if (locked[first] == 0) {
+        const std::size_t row = basis.size();
+        basis.resize(row + 2 * static_cast<std::size_t>(n));
+        for (int i = first; i < end; ++i) basis[row + part + i] = 1.0 / std::sqrt(end - first);
+      }
+      first = end;
     }
   }
+  return basis;
+}
 
- private:
-  /// A law whose pieces meet without a jump takes the piece that the state calls for. A table takes
-  /// its last piece where the run ends with the table.
-  void choose_laws(double t, const double* q, const double* qd) const {
-    if (!equations_.effects || !equations_.effects->has_modes) return;
-    const bool is_within = forward_ ? t < t_end_ : t > t_end_;
-    choose_modes(*equations_.effects, is_within ? t : t_end_, q, qd, is_within == forward_);
-  }
-
-  EquationsOfMotion equations_;
-  Jacobian jacobian_;
-  int n_;
-  int count_;
-  double t_end_;
-  bool forward_;
-};
-
-/// Taylor series where those of dynamics/series/double_pendulum_series.hpp or few_links_series.hpp
-/// hold along the whole run; dop853 for all other scenes.
-std::unique_ptr<Stepper> tangent_stepper(const Scene& scene, int count, double t_end,
-                                         bool forward) {
-  const int numbers = static_cast<int>(scene.links.size()) * (1 + count);
-  const EquationsOfMotion equations = equations_of_motion(scene);
-  const auto& effects = equations.effects;
-  const auto by_series = [&]<class Series>(Series series) -> std::unique_ptr<Stepper> {
-    auto system = std::make_shared<TangentSystem>(scene, count, numbers, t_end, forward);
-    auto rates = [system](double t, const double* y, double* dydt) { (*system)(t, y, dydt); };
-    return std::make_unique<Taylor<TangentSeries<Series>>>(
-        TangentSeries<Series>(std::move(series), count), std::move(rates), 0);
+/// Makes the rows of `vectors`, (k, size) row-major, orthonormal by the Gram-Schmidt process,
+/// applied twice so that it is exact to rounding. The rows of `alike` go through the same linear
+/// combinations. `length` (k) becomes the diagonal of R: the length of each row without its
+/// components along the rows before.
+void orthonormalise(int k, int size, double* vectors, double* alike, double* length) {
+  auto dot = [size](const double* a, const double* b) {
+    double sum = 0.0;
+    for (int i = 0; i < size; ++i) sum += a[i] * b[i];
+    return sum;
   };
-  if (auto bare = bare_series(equations)) return by_series(*std::move(bare));
-  if (effects && equations.are_steady() && !without_series(scene)) {
-    if (auto loaded = series_with_torque(equations)) return by_series(*std::move(loaded));
-    if (FewLinksSeries::has(scene, equations)) {
-      return by_series(
-          FewLinksSeries(scene, std::dynamic_pointer_cast<ActingEffects<Pack<4>>>(effects)));
+  for (int j = 0; j < k; ++j) {
+    double* const v = vectors + j * size;
+    double* const w = alike + j * size;
+    for (int pass = 0; pass < 2; ++pass) {
+      for (int before = 0; before < j; ++before) {
+        const double along = dot(v, vectors + before * size);
+        for (int i = 0; i < size; ++i) {
+          v[i] -= along * vectors[before * size + i];
+          w[i] -= along * alike[before * size + i];
+        }
+      }
+    }
+    length[j] = std::sqrt(dot(v, v));
+    for (int i = 0; i < size; ++i) {
+      v[i] /= length[j];
+      w[i] /= length[j];
     }
   }
-  const int row = row_in_memory(numbers, false);
-  return runge_kutta_in_memory(dormand_prince_8.info.name,
-                               std::make_unique<TangentSystem>(scene, count, row, t_end, forward),
-                               numbers);
 }
 
 /// Sums up the growth, and records it at the times asked for.
