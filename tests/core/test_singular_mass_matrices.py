@@ -83,7 +83,8 @@ def least(links: list[Body], effects: list[Any]) -> float:
         while step > 1e-8:  # along one axis and along the diagonals of two
             ways = [np.array(d) for d in itertools.product((-1, 0, 1), repeat=len(free)) if any(d)]
             near = min(((value(x + step * d), tuple(x + step * d)) for d in ways), default=None)
-            if near is not None and near[0] < here:
+            # What falls by rounding alone could lead on and on through a valley.
+            if near is not None and near[0] < here - 1e-14:
                 here, x = near[0], np.array(near[1])
             else:
                 step /= 2

@@ -270,6 +270,14 @@ def kernels_call_no_libm(root: Path) -> Iterator[str]:
                 yield f"{path.relative_to(root)} calls {found}...)"
 
 
+def matrices_own_memory_of_malloc(root: Path) -> Iterator[str]:
+    """Aligned memory is allocated and freed as -march says, and users choose their own."""
+    aligned = re.compile(r"(?<!Map<const )(?<!Map<)Eigen::(?:Matrix|Vector|RowVector|Array)X\w+")
+    for path in files(root, {".hpp", ".cpp"}, "cpp"):
+        for found in aligned.findall(without_comments(path.read_text())):
+            yield f"{path.relative_to(root)} has a {found}: use the types of vector.hpp"
+
+
 def builds_use_no_flag_that_changes_bits(root: Path) -> Iterator[str]:
     places = [*root.glob("CMake*"), *files(root, {".cmake", ".txt"}, "cpp", "tests/cpp")]
     for path in places:
@@ -308,6 +316,7 @@ RULES: list[Rule] = [
     files_are_short,
     comments_have_a_subject,
     kernels_call_no_libm,
+    matrices_own_memory_of_malloc,
     builds_use_no_flag_that_changes_bits,
     version_is_the_same_everywhere,
     workflows_are_pinned,

@@ -103,6 +103,10 @@ BREACHES = {
         (".github/workflows/a.yml", f"- uses: a/b@{40 * 'c'}", "not a commit and its version"),
         (".github/workflows/a.yml", "permissions: write-all", "the permission to read alone"),
     ],
+    rules.matrices_own_memory_of_malloc: [
+        (f"{CORE}/simulate/modes.cpp", "Eigen::MatrixXd M(n, n);", "has a Eigen::MatrixXd"),
+        (f"{DOOR}/scene.hpp", "Eigen::VectorXcd values;", "has a Eigen::VectorXcd"),
+    ],
     rules.builds_use_no_flag_that_changes_bits: [
         ("CMakeLists.txt", "add_compile_options(-march=native)", "-march=native"),
         ("cpp/cmake/speed.cmake", "set(fast -O3 -ffast-math)", "-ffast-math"),

@@ -4,9 +4,9 @@
 
 namespace pendcore {
 
-Eigenpairs eigenpairs(const Eigen::MatrixXd& matrix) {
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(matrix);
-  const Eigen::MatrixXd& columns = solver.pseudoEigenvectors();
+Eigenpairs eigenpairs(const RealMatrix& matrix) {
+  const Eigen::EigenSolver<RealMatrix> solver(matrix);
+  const RealMatrix& columns = solver.pseudoEigenvectors();
   Eigenpairs pairs{solver.eigenvalues(), columns.cast<std::complex<double>>()};
   for (Eigen::Index k = 0; k < matrix.cols(); ++k) {
     if (!(pairs.values[k].imag() > 0.0)) continue;

@@ -6,16 +6,24 @@
 /// compiled.
 #pragma once
 
+#include <complex>
 #include <Eigen/Core>
 
 namespace pendcore {
 
+// As in vector.hpp, memory is that of malloc: a program may bring other functions of Eigen that
+// allocate and free what is aligned, and the linker keeps one of each.
+using RealMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign>;
+using ComplexMatrix =
+    Eigen::Matrix<std::complex<double>, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign>;
+using ComplexVector = Eigen::Matrix<std::complex<double>, Eigen::Dynamic, 1, Eigen::DontAlign>;
+
 struct Eigenpairs {
-  Eigen::VectorXcd values;
-  Eigen::MatrixXcd vectors;  ///< a column for each value, not normalised
+  ComplexVector values;
+  ComplexMatrix vectors;  ///< a column for each value, not normalised
 };
 
 /// The eigenvalues and eigenvectors of a square matrix of finite numbers.
-Eigenpairs eigenpairs(const Eigen::MatrixXd& matrix);
+Eigenpairs eigenpairs(const RealMatrix& matrix);
 
 }  // namespace pendcore

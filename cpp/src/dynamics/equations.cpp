@@ -30,6 +30,7 @@ struct Equations::Compiled {
 };
 
 Equations::Equations(const Scene& scene) {
+  const FloatingPointEnvironment ieee;
   check(scene);
   compiled_ = std::make_unique<Compiled>(scene);
 }

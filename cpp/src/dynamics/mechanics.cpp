@@ -1,5 +1,6 @@
 #include "pendcore/mechanics.hpp"
 
+#include "arithmetic/floating_point_environment.hpp"
 #include "arithmetic/sine_cosine.hpp"
 #include "dynamics/kinematics.hpp"
 #include "effects/behaviour.hpp"
@@ -13,11 +14,12 @@ namespace pendcore {
 namespace {
 
 using PlaneVector = Eigen::RowVector2d;
+using Columns = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::DontAlign>;
 
 /// u_i, a row for each link.
-Eigen::Matrix<double, Eigen::Dynamic, 2> directions(const Scene& scene, const Numbers& q) {
+Columns directions(const Scene& scene, const Numbers& q) {
   require_size("q", q.span(), scene.links.size());
-  Eigen::Matrix<double, Eigen::Dynamic, 2> u(q.size(), 2);
+  Columns u(q.size(), 2);
   sine_cosine(q.data(), q.size(), u.col(1).data(), u.col(0).data());
   return u;
 }
@@ -28,6 +30,7 @@ PlaneVector across(const PlaneVector& u) { return {-u[1], u[0]}; }
 }  // namespace
 
 Points positions(const Scene& scene, double t, const Numbers& q) {
+  const FloatingPointEnvironment ieee;
   const auto u = directions(scene, q);
   Points points(q.size() + 1, 2);
   points.row(0) = PlaneVector(pivot_motion(scene, t).position);
@@ -38,6 +41,7 @@ Points positions(const Scene& scene, double t, const Numbers& q) {
 }
 
 Points mass_centers(const Scene& scene, double t, const Numbers& q) {
+  const FloatingPointEnvironment ieee;
   const auto u = directions(scene, q);
   Points centers(q.size(), 2);
   PlaneVector joint(pivot_motion(scene, t).position);
@@ -50,6 +54,7 @@ Points mass_centers(const Scene& scene, double t, const Numbers& q) {
 
 Points mass_center_accelerations(const Scene& scene, double t, const Numbers& q, const Numbers& qd,
                                  const Numbers& qdd) {
+  const FloatingPointEnvironment ieee;
   const auto u = directions(scene, q);
   require_size("qd", qd.span(), scene.links.size());
   require_size("qdd", qdd.span(), scene.links.size());
@@ -64,6 +69,7 @@ Points mass_center_accelerations(const Scene& scene, double t, const Numbers& q,
 }
 
 double kinetic_energy(const Scene& scene, double t, const Numbers& q, const Numbers& qd) {
+  const FloatingPointEnvironment ieee;
   const auto u = directions(scene, q);
   require_size("qd", qd.span(), scene.links.size());
   PlaneVector joint(pivot_motion(scene, t).velocity);  // of the joint where link i begins
@@ -88,6 +94,7 @@ double kinetic_energy(const Scene& scene, double t, const Numbers& q, const Numb
 }
 
 double potential_energy(const Scene& scene, double t, const Numbers& q) {
+  const FloatingPointEnvironment ieee;
   const Points centers = mass_centers(scene, t, q);
   double moment = 0.0;
   for (Eigen::Index i = 0; i < q.size(); ++i) moment += scene.links[i].mass * centers(i, 1);

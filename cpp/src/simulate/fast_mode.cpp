@@ -80,7 +80,7 @@ std::optional<FastMode> fast_mode(const Scene& scene, const EquationsOfMotion& e
   if (!(bound_of(whole) > slow)) return std::nullopt;  // the usual case: no eigenvalue is needed
 
   const auto n = static_cast<Eigen::Index>(scene.links.size());
-  Eigen::MatrixXd first_order(2 * n, 2 * n);
+  RealMatrix first_order(2 * n, 2 * n);
   first_order << Matrix::Zero(n, n), Matrix::Identity(n, n), whole.by_q, whole.by_qd;
   const Eigenpairs pairs = eigenpairs(first_order);
   Eigen::Index first;
@@ -90,7 +90,7 @@ std::optional<FastMode> fast_mode(const Scene& scene, const EquationsOfMotion& e
   const std::complex<double> one = pairs.values[first];
   const std::complex<double> other = pairs.values[partner_of(first, pairs)];
   const double omega = std::sqrt(std::abs(one * other));
-  Eigen::VectorXcd turned = pairs.vectors.col(first).head(n);  // the angles of joints
+  ComplexVector turned = pairs.vectors.col(first).head(n);  // the angles of joints
   turned.tail(n - 1) -= turned.head(n - 1).eval();
   Eigen::Index joint;
   turned.cwiseAbs().maxCoeff(&joint);
