@@ -47,6 +47,14 @@ def test_an_outside_project_gets_the_bits_of_python_whatever_its_flags(
     assert run(tmp_path / "forces") == forces_of_python()
 
 
+def test_the_library_shares_no_solver_of_eigen_with_a_program() -> None:
+    """Both may bring one, for other instruction sets, and the linker keeps one of each name."""
+    library = (Path(pc.__file__).parent / "lib/libpendcore.a").read_bytes()
+    solver = b"11EigenSolver"
+    assert b"14pendcore_eigen" + solver in library
+    assert b"5Eigen" + solver not in library
+
+
 def forces_of_python() -> str:
     """Return what forces.cpp prints, by the same run in Python."""
     rod = pc.Link(mass=1.0, length=1.0)

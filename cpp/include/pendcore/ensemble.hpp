@@ -23,7 +23,7 @@ namespace pendcore {
 /// What tells the members apart.
 struct Members {
   std::size_t count = 0;
-  std::vector<std::string> names;  ///< of the parameters that vary (scene/parameters.hpp)
+  std::vector<std::string> names;  ///< of the parameters that vary (parameters.hpp)
   /// Writes the start of member i, angles (rad, n) and rates (rad/s, n), and its values of the
   /// parameters. Several threads call it at once.
   std::function<void(std::size_t i, double* q0, double* qd0, double* values)> read;
@@ -53,9 +53,10 @@ struct MemberResults {
   std::span<double> states;
   /// s, (count, events): when each event of the options was first found; empty if not wanted
   std::span<double> first_found;
-  std::span<double> extremes = {};      ///< (count, 2, 2n): see reducers.hpp; empty if not wanted
+  std::span<double> extremes =
+      {};  ///< (count, 2, 2n): the least and the largest of each; empty if not wanted
   std::span<double> energy_drift = {};  ///< J, (count); empty if not wanted
-  /// 1/s, (count): the largest Lyapunov exponent (analysis/lyapunov.hpp); empty if not wanted
+  /// 1/s, (count): the largest Lyapunov exponent (lyapunov.hpp); empty if not wanted
   std::span<double> largest_exponent = {};
 };
 

@@ -5,8 +5,8 @@
 ///     d(dq)/dt = dqd,   d(dqd)/dt = (d qdd/d q) dq + (d qdd/d qd) dqd
 ///
 /// They are integrated beside the state for k small changes (dq, dqd) of it at once, with exact
-/// derivatives of the right-hand side (dynamics/jacobian.hpp), or of the Taylor series where the
-/// scene has one on dual numbers (tangent_stepper.hpp). The changes are part of the error norm, as
+/// derivatives of the right-hand side (equations.hpp), or of the Taylor series where the
+/// scene has one on dual numbers. The changes are part of the error norm, as
 /// the state is. They are made orthonormal again, Phi = Q R, as soon as an R_ii is not within
 /// [1/16, 16], and the logarithms of the diagonal of R are summed:
 ///

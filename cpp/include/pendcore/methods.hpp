@@ -8,8 +8,8 @@
 
 namespace pendcore {
 
-/// The family: a table of tableau.hpp, a table of collocation.hpp, taylor.hpp, or
-/// stiff_switching.hpp.
+/// The family: explicit Runge-Kutta, implicit Runge-Kutta, Taylor series, or two methods of which
+/// the second goes on where the first is limited by stability.
 enum class MethodKind { explicit_one, implicit_one, taylor_one, pair };
 
 /// How figures draw a method, in matplotlib's terms. A dash may be lengths of ink and gap, "6 2".

@@ -71,7 +71,7 @@ struct Solution {
   std::size_t resumable_found = 0;  ///< and so many events
 
   /// The states kept, in their order: i = 0 .. t.size() - 1. solution.back().q(1) is the second
-  /// angle at the end.
+  /// angle at the last of them. Throws std::out_of_range where none is kept.
   StateView operator[](std::size_t i) const;
   StateView back() const { return (*this)[t.size() - 1]; }
   /// Their angles and rates, (n_t, n).

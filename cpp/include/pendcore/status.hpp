@@ -23,7 +23,7 @@ struct Statistics {
   long long limited_by_break = 0;      ///< accepted steps cut by the end or by a break point
   double min_step = 0.0;               ///< s, the smallest accepted step, not cut (unless all are)
   double max_step = 0.0;               ///< s, the largest, likewise
-  bool stiff = false;                  ///< stability was found to limit the steps: stiffness.hpp
+  bool stiff = false;                  ///< stability, not accuracy, was found to limit the steps
 };
 
 enum class Status {

@@ -22,7 +22,7 @@ using Points = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor | Eigen:
 using View = Eigen::Map<const Eigen::VectorXd>;
 
 /// The argument of a function that takes a vector: one of Eigen's, a std::vector, or numbers in
-/// braces. It copies none but what has gaps or is an expression.
+/// braces. Only vectors with gaps and expressions are copied.
 class Numbers : public Eigen::Ref<const Vector> {
  public:
   using Ref = Eigen::Ref<const Vector>;
@@ -40,10 +40,5 @@ class Numbers : public Eigen::Ref<const Vector> {
   /// The same numbers for what works without Eigen.
   std::span<const double> span() const { return {data(), static_cast<std::size_t>(size())}; }
 };
-
-/// The numbers of a matrix, row by row.
-inline std::span<double> as_span(Points& points) {
-  return {points.data(), static_cast<std::size_t>(points.size())};
-}
 
 }  // namespace pendcore

@@ -10,7 +10,6 @@
 #include "arithmetic/floating_point_environment.hpp"
 #include "integrate/loop/first_step.hpp"
 #include "integrate/loop/integrate.hpp"
-#include "pendcore/effects/lock.hpp"
 #include "pendcore/options.hpp"
 #include "scene/effects_of_scene.hpp"
 #include "simulate/checked_options.hpp"
@@ -26,14 +25,13 @@ namespace {
 /// and then for each a change of its rates. Links that are locked to the ground do not turn.
 std::vector<double> tangent_basis(const Scene& scene) {
   const int n = static_cast<int>(scene.links.size());
-  std::vector<char> locked(n);
-  for (const Lock& lock : effects_of<Lock>(scene)) locked[lock.joint - 1] = 1;
+  const std::vector<bool> locked = locked_joints(scene);
   std::vector<double> basis;
   for (const int part : {0, n}) {
     for (int first = 0; first < n;) {
       int end = first + 1;
-      while (end < n && locked[end] != 0) ++end;
-      if (locked[first] == 0) {
+      while (end < n && locked[end]) ++end;
+      if (!locked[first]) {
         const std::size_t row = basis.size();
         basis.resize(row + 2 * static_cast<std::size_t>(n));
         for (int i = first; i < end; ++i) basis[row + part + i] = 1.0 / std::sqrt(end - first);

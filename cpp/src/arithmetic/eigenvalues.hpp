@@ -3,27 +3,21 @@
 ///
 /// Its source is the only one that includes Eigen's solvers, whose templates take longer to compile
 /// than the rest of a file, and it includes nothing else of the core: a change elsewhere leaves it
-/// compiled.
+/// compiled. There, Eigen has another name, and nothing of Eigen crosses this header: a program may
+/// bring the same templates, compiled for another -march, and the linker keeps one of each name.
 #pragma once
 
 #include <complex>
-#include <Eigen/Core>
+#include <vector>
 
 namespace pendcore {
 
-// As in vector.hpp, memory is that of malloc: a program may bring other functions of Eigen that
-// allocate and free what is aligned, and the linker keeps one of each.
-using RealMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign>;
-using ComplexMatrix =
-    Eigen::Matrix<std::complex<double>, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign>;
-using ComplexVector = Eigen::Matrix<std::complex<double>, Eigen::Dynamic, 1, Eigen::DontAlign>;
-
 struct Eigenpairs {
-  ComplexVector values;
-  ComplexMatrix vectors;  ///< a column for each value, not normalised
+  std::vector<std::complex<double>> values;   ///< (n)
+  std::vector<std::complex<double>> vectors;  ///< (n, n), one after the other, not normalised
 };
 
-/// The eigenvalues and eigenvectors of a square matrix of finite numbers.
-Eigenpairs eigenpairs(const RealMatrix& matrix);
+/// The eigenvalues and eigenvectors of an (n, n) row-major matrix of finite numbers.
+Eigenpairs eigenpairs(const double* matrix, int n);
 
 }  // namespace pendcore

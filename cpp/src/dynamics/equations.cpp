@@ -26,7 +26,7 @@ struct Equations::Compiled {
   EquationsOfMotion equations;
   std::optional<Jacobian> derivatives{};
   std::shared_ptr<EffectsInForce> loads = nullptr;  ///< for reactions
-  std::optional<JointForces> inertia{};             ///< for the mass matrix
+  std::optional<JointForces> joint_forces{};        ///< for the mass matrix
 };
 
 Equations::Equations(const Scene& scene) {
@@ -72,7 +72,8 @@ Points Equations::reactions(double t, const Numbers& q, const Numbers& qd) {
   EffectsInForce& effects = *compiled_->loads;
   if (effects.has_modes) choose_modes(effects, t, q.data(), qd.data(), true);
   Points loads(q.size(), 2);
-  effect_forces(scene, effects, t, q.data(), qd.data(), as_span(loads));
+  effect_forces(scene, effects, t, q.data(), qd.data(),
+                {loads.data(), static_cast<std::size_t>(loads.size())});
 
   const PlaneVector gravity(0.0, scene.gravity);
   Points forces = mass_center_accelerations(scene, t, q, qd, qdd);
@@ -97,9 +98,9 @@ Points Equations::reactions(double t, const Numbers& q, const Numbers& qd) {
 Matrix Equations::mass_matrix(const Numbers& q) {
   const FloatingPointEnvironment ieee;
   require_size("q", q.span(), compiled_->scene.links.size());
-  if (!compiled_->inertia) compiled_->inertia.emplace(compiled_->scene);
-  compiled_->inertia->set_mass_matrix(q.data());
-  return compiled_->inertia->mass;
+  if (!compiled_->joint_forces) compiled_->joint_forces.emplace(compiled_->scene);
+  compiled_->joint_forces->set_mass_matrix(q.data());
+  return compiled_->joint_forces->mass;
 }
 
 Vector accelerations(const Scene& scene, double t, const Numbers& q, const Numbers& qd) {

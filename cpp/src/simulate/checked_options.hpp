@@ -9,7 +9,7 @@
 
 namespace pendcore {
 
-/// What is kept of a run whose `store` is not given.
+/// The mode of a run whose `store` is not given: it keeps the times asked for, or else everything.
 inline Store usual_store(const Options& options) {
   return options.t_eval.empty() ? Store::dense : Store::times;
 }

@@ -77,7 +77,7 @@ NotFinite not_finite_at(const Scene& scene, double t, const std::vector<double>&
 NotFinite find_what_is_not_finite(const Scene& scene, const IntegratorState& integrator,
                                   double t_end) {
   const std::size_t n = scene.links.size();
-  // What is not finite may lie some steps ahead; the tangent leads roughly there.
+  // A number may stop being finite some steps ahead, roughly where the tangent leads.
   for (const double share : {0.0, 1.0, 4.0, 16.0, 64.0, 256.0}) {
     const double h = share * integrator.h;
     if ((integrator.t.high + h - t_end) * h > 0.0) break;

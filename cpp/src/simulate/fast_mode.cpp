@@ -12,6 +12,10 @@
 namespace pendcore {
 namespace {
 
+using ComplexVector = Eigen::Matrix<std::complex<double>, Eigen::Dynamic, 1, Eigen::DontAlign>;
+using ComplexMatrix =
+    Eigen::Matrix<std::complex<double>, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign>;
+
 /// A and B of qdd = A q + B qd about a state.
 Derivatives linearized(const Scene& scene, const EquationsOfMotion& equations, double t,
                        const double* q, const double* qd) {
@@ -42,12 +46,25 @@ double bound_of(const Scene& scene, double t, const double* q, const double* qd)
   return bound_of(linearized(scene, equations, t, q, qd));
 }
 
+/// The eigenvalues of the first-order system, and the angles of links in its eigenvectors.
+struct ModesOfLinks {
+  ComplexVector values;  ///< (2n), 1/s
+  ComplexMatrix angles;  ///< (n, 2n)
+};
+
+ModesOfLinks modes_of(const Derivatives& second_order) {
+  const Eigen::Index n = second_order.by_q.rows();
+  Matrix first_order(2 * n, 2 * n);
+  first_order << Matrix::Zero(n, n), Matrix::Identity(n, n), second_order.by_q, second_order.by_qd;
+  const Eigenpairs pairs = eigenpairs(first_order.data(), static_cast<int>(2 * n));
+  return {.values = Eigen::Map<const ComplexVector>(pairs.values.data(), 2 * n),
+          .angles = Eigen::Map<const ComplexMatrix>(pairs.vectors.data(), 2 * n, 2 * n).topRows(n)};
+}
+
 /// The number of the eigenvalue that makes a mode with number `first`: its conjugate, or the real
 /// one that moves the links most alike.
-Eigen::Index partner_of(Eigen::Index first, const Eigenpairs& pairs) {
-  const auto& [values, vectors] = pairs;
-  const Eigen::Index n = values.size() / 2;
-  const auto angles = vectors.topRows(n);
+Eigen::Index partner_of(Eigen::Index first, const ModesOfLinks& modes) {
+  const auto& [values, angles] = modes;
   Eigen::Index partner = first;
   double most_alike = -1.0;
   for (Eigen::Index k = 0; k < values.size(); ++k) {
@@ -79,19 +96,16 @@ std::optional<FastMode> fast_mode(const Scene& scene, const EquationsOfMotion& e
   const double slow = far_faster * bound_of(links, t, q, qd);
   if (!(bound_of(whole) > slow)) return std::nullopt;  // the usual case: no eigenvalue is needed
 
-  const auto n = static_cast<Eigen::Index>(scene.links.size());
-  RealMatrix first_order(2 * n, 2 * n);
-  first_order << Matrix::Zero(n, n), Matrix::Identity(n, n), whole.by_q, whole.by_qd;
-  const Eigenpairs pairs = eigenpairs(first_order);
+  const ModesOfLinks modes = modes_of(whole);
   Eigen::Index first;
-  const double fastest = pairs.values.cwiseAbs().maxCoeff(&first);
+  const double fastest = modes.values.cwiseAbs().maxCoeff(&first);
   if (!(fastest > slow)) return std::nullopt;
 
-  const std::complex<double> one = pairs.values[first];
-  const std::complex<double> other = pairs.values[partner_of(first, pairs)];
+  const std::complex<double> one = modes.values[first];
+  const std::complex<double> other = modes.values[partner_of(first, modes)];
   const double omega = std::sqrt(std::abs(one * other));
-  ComplexVector turned = pairs.vectors.col(first).head(n);  // the angles of joints
-  turned.tail(n - 1) -= turned.head(n - 1).eval();
+  ComplexVector turned = modes.angles.col(first);  // the angles of joints
+  turned.tail(turned.size() - 1) -= turned.head(turned.size() - 1).eval();
   Eigen::Index joint;
   turned.cwiseAbs().maxCoeff(&joint);
   FastMode mode{.frequency = omega,

@@ -26,7 +26,16 @@ namespace pendcore {
 namespace {
 
 /// Checks that a run is continued from where it ended, to times that it has not been asked for.
-void check_continuation(const Solution& solution, double t_end, const std::vector<double>& t_eval) {
+void check_continuation(const Scene& scene, const Solution& solution, double t_end,
+                        const std::vector<double>& t_eval) {
+  if (solution.resumable == nullptr) {
+    throw std::invalid_argument("solution: is empty: must be what simulate() or resume() returned");
+  }
+  if (scene.links.size() != static_cast<std::size_t>(solution.n)) {
+    throw std::invalid_argument("scene: has " + std::to_string(scene.links.size()) +
+                                " links, and the solution has " + std::to_string(solution.n) +
+                                ": must be the scene of the solution");
+  }
   const double reached = solution.t_reached;
   // A run of no length has no direction yet: it takes the direction of its continuation.
   const bool has_length = solution.t_end != solution.t0;
@@ -246,7 +255,7 @@ Solution resume(const Scene& scene, const Solution& solution, double t_end,
   const FloatingPointEnvironment ieee;
   Solution longer = solution;
   Options& options = longer.options;
-  check_continuation(solution, t_end, t_eval);
+  check_continuation(scene, solution, t_end, t_eval);
   options.max_steps = max_steps;
   options.time_limit = time_limit;
   options.t_eval.insert(options.t_eval.end(), t_eval.begin(), t_eval.end());

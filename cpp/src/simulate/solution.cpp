@@ -58,6 +58,9 @@ State Solution::at(double time) const {
 }
 
 StateView Solution::operator[](std::size_t i) const {
+  if (i >= t.size()) {
+    throw std::out_of_range("this solution keeps " + std::to_string(t.size()) + " states");
+  }
   const double* const y = states.data() + i * static_cast<std::size_t>(dimension);
   return {.t = t[i], .q = {y, n}, .qd = {y + n, n}, .accounts = {y + 2 * n, dimension - 2 * n}};
 }
