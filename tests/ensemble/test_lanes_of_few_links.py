@@ -16,13 +16,13 @@ ONE_BY_ONE = {
     "rotor between links": OF_ANY_CHAIN["rotor between links"],
     "friction": [E.DryJointFriction(joint=2, coulomb=0.2)],
     "lock": [E.Lock(joint=2)],
-    "five waves": [E.Motor(1, sinusoid=E.Sinusoid(1.0, 6.0 + k)) for k in range(5)],
-    "drag and a shaken pivot": [DRAG, E.DrivenPivot(y=E.Sinusoid(0.05, 40.0))],
 }
 OF_RUNGE_KUTTA = {
     **SCENES,
     **{name: effects for name, effects in OF_ANY_CHAIN.items() if name not in ONE_BY_ONE},
     "drag": [DRAG],
+    "five waves": [E.Motor(1, sinusoid=E.Sinusoid(1.0, 6.0 + k)) for k in range(5)],
+    "drag and a shaken pivot": [DRAG, E.DrivenPivot(y=E.Sinusoid(0.05, 40.0))],
     "drag and wind on two links, a motor and damping": [
         DRAG.replace(link=1, wind=(4.0, -1.0)),
         E.Motor(joint=3, sinusoid=E.Sinusoid(1.0, 5.0)),

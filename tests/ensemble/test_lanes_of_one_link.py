@@ -30,6 +30,8 @@ SCENES = {
         E.DrivenPivot(x=E.Sinusoid(0.05, 9.0)),
     ],
     "drag": [DRAG],
+    "five waves": [E.Motor(1, sinusoid=E.Sinusoid(1.0, 6.0 + k)) for k in range(5)],
+    "drag and a shaken pivot": [DRAG, E.DrivenPivot(y=E.Sinusoid(0.05, 40.0))],
     "drag, wind, a motor and damping": [
         DRAG.replace(diameter=0.4, wind=(3.0, -1.0)),
         E.Motor(1, sinusoid=WAVE),
@@ -39,8 +41,6 @@ SCENES = {
 ONE_BY_ONE = {
     "friction": [E.DryJointFriction(joint=1, coulomb=0.2)],
     "lock": [E.Lock(joint=1)],
-    "five waves": [E.Motor(1, sinusoid=E.Sinusoid(1.0, 6.0 + k)) for k in range(5)],
-    "drag and a shaken pivot": [DRAG, E.DrivenPivot(y=E.Sinusoid(0.05, 40.0))],
     "table": [E.Motor(1, table=E.Table([0.0, 1.0, 4.0], [0.0, 1.0, -1.0]))],
 }
 

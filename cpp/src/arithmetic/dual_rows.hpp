@@ -31,10 +31,10 @@ PENDCORE_INLINE Dual<Pairs> turned(const Dual<Pairs>& x) {
   return {turned(x.value), turned(x.slope)};
 }
 
-PENDCORE_INLINE Dual<double> of_link(const Dual<Pack<4>>& row, int i) {
+PENDCORE_INLINE Dual<double> number_of(const Dual<Pack<4>>& row, int i) {
   return {row.value[i], row.slope[i]};
 }
-PENDCORE_INLINE void set_link(Dual<Pack<4>>& row, int i, const Dual<double>& x) {
+PENDCORE_INLINE void set_number(Dual<Pack<4>>& row, int i, const Dual<double>& x) {
   row.value[i] = x.value;
   row.slope[i] = x.slope;
 }

@@ -58,6 +58,12 @@ PENDCORE_INLINE const Real& number_of(const Two<Real>& x, int k) {
   return k == 0 ? x.first : x.second;
 }
 
+PENDCORE_INLINE void set_number(Pair& x, int k, double value) { x[k] = value; }
+template <class Real>
+PENDCORE_INLINE void set_number(Two<Real>& x, int k, const Real& value) {
+  (k == 0 ? x.first : x.second) = value;
+}
+
 /// Two pairs beside each other: (x_1, x_2, y_1, y_2).
 using Pairs = Pack<4>;
 

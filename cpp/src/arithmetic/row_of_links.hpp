@@ -155,14 +155,14 @@ struct Constants<EachLink<Real, links>> {
 };
 
 /// The number of one link.
-PENDCORE_INLINE double of_link(const Pack<4>& row, int i) { return row[i]; }
+PENDCORE_INLINE double number_of(const Pack<4>& row, int i) { return row[i]; }
 template <class Real, int links>
-PENDCORE_INLINE const Real& of_link(const EachLink<Real, links>& row, int i) {
+PENDCORE_INLINE const Real& number_of(const EachLink<Real, links>& row, int i) {
   return row.of[i];
 }
-PENDCORE_INLINE void set_link(Pack<4>& row, int i, double x) { row[i] = x; }
+PENDCORE_INLINE void set_number(Pack<4>& row, int i, double x) { row[i] = x; }
 template <class Real, int links>
-PENDCORE_INLINE void set_link(EachLink<Real, links>& row, int i, const Real& x) {
+PENDCORE_INLINE void set_number(EachLink<Real, links>& row, int i, const Real& x) {
   row.of[i] = x;
 }
 

@@ -15,6 +15,12 @@ EffectsInForce::EffectsInForce(const Scene& scene)
       number_of_law_(scene.effects.size(), 0) {
   held.assign(scene.links.size(), 0);
   for (const Lock& lock : effects_of<Lock>(scene)) hold(lock.joint - 1, true);
+  std::vector<Sinusoid> all;
+  const auto add_waves = [&](std::size_t i) {
+    const std::vector<Sinusoid> of_effect = effects[i]->waves();
+    if (!of_effect.empty()) number_of_wave[i] = static_cast<int>(all.size());
+    all.insert(all.end(), of_effect.begin(), of_effect.end());
+  };
   for (std::size_t i = 0; i < effects.size(); ++i) {  // the first waves are those of the pivots
     const auto law = effects[i]->pivot_law(0);
     if (!law) continue;
@@ -23,14 +29,13 @@ EffectsInForce::EffectsInForce(const Scene& scene)
     pivots.emplace_back();
     put_pivot(i, *law);
   }
-}
-
-void EffectsInForce::add_waves(std::size_t i) {
-  for (const Sinusoid& wave : effects[i]->waves()) {
-    if (number_of_wave[i] < 0) number_of_wave[i] = waves;
-    angular_frequency.push_back(wave.angular_frequency);
-    phase.push_back(wave.phase);
-    ++waves;
+  for (std::size_t i = 0; i < effects.size(); ++i) {
+    if (number_of_wave[i] < 0) add_waves(i);
+  }
+  make_room_for_waves(static_cast<int>(all.size()));
+  for (int k = 0; k < waves; ++k) {
+    angular_frequency.set(k, all[k].angular_frequency);
+    phase.set(k, all[k].phase);
   }
 }
 
@@ -80,18 +85,6 @@ void EffectsInForce::call(const UserLaw& user, double t, const Dual<double>* q,
   }
 }
 
-void EffectsInForce::finish_waves() {
-  for (int k = 0; k < std::min(waves, 2); ++k) {
-    two_waves.angular_frequency[k] = angular_frequency[k];
-    two_waves.phase[k] = phase[k];
-  }
-  const std::size_t room = waves + 8;
-  angular_frequency.resize(room);
-  phase.resize(room);
-  wave_sine.assign(room, 0.0);
-  wave_cosine.assign(room, 0.0);
-}
-
 namespace {
 
 template <class Row>
@@ -125,7 +118,6 @@ ActingEffects<Row>::ActingEffects(const Scene& scene) : EffectsInForce(scene) {
     place_of_.push_back(place);
     const Link& link = scene.links[std::max(place, 0)];
     link_there_.push_back({link.mass, link.length, link.center, scene.gravity});
-    if (number_of_wave[i] < 0) add_waves(i);  // those of pivots are there
     if (auto law = effect.user_law(0)) {
       number_of_law_[i] = users.size();
       users.push_back(*law);
@@ -138,7 +130,7 @@ ActingEffects<Row>::ActingEffects(const Scene& scene) : EffectsInForce(scene) {
       add_law(i);
     }
   }
-  finish_waves();
+  are_couples_alone = waves == 0 && pivots.empty() && users.empty() && entries.empty();
   if constexpr (width == 2) find_two_waves(scene);
   for (std::size_t i = 0; i < effects.size(); ++i) {
     has_modes |= effects[i]->has_modes();
@@ -230,6 +222,21 @@ void ActingEffects<Row>::sum_couples(int joint) {
   Couples<Row>& row = *std::ranges::find(couples, joint / width, &Couples<Row>::row);
   const int lane = joint % width;
   each_field(row, sum, [lane](Row& all, double one) { set_lane(all, lane, one); });
+  row.has_powers = sum_of_lanes(Row(absolute(row.on_phid2) + absolute(row.on_phid3))) != 0.0;
+}
+
+template <class Row>
+std::vector<int> ActingEffects<Row>::kinds() const {
+  std::vector<int> kinds{waves, static_cast<int>(users.size()), static_cast<int>(pivots.size())};
+  for (const PivotLaw& law : pivots) kinds.insert(kinds.end(), {law.x.wave, law.y.wave});
+  kinds.push_back(static_cast<int>(joint_waves.size()));
+  for (const JointWave& one : joint_waves) kinds.insert(kinds.end(), {one.joint, one.wave});
+  kinds.push_back(static_cast<int>(couples.size()));
+  for (const auto& one : couples) kinds.insert(kinds.end(), {one.row, int{one.has_powers}});
+  for (const Entry& entry : entries) {
+    kinds.insert(kinds.end(), {static_cast<int>(entry.law.index()), entry.row});
+  }
+  return kinds;
 }
 
 /// Finds what the first two waves do to the pivot; sum_couples() does this for motors.

@@ -12,64 +12,28 @@
 #include <vector>
 
 #include "arithmetic/dual.hpp"
-#include "arithmetic/sine_cosine.hpp"
+#include "dynamics/drives.hpp"
 #include "effects/behaviour.hpp"
 #include "pendcore/scene.hpp"
 
 namespace pendcore {
 
-/// The first two waves that act on a double pendulum, and what they add to its equations:
-/// Q += sum_k sin(wave k) (torque_k + on_sine_k sin q + on_cosine_k cos q).
-template <class Links>
-struct WavesOf {
-  Links angular_frequency{}, phase{};
-  Links torque[2]{};     ///< amplitudes of motors
-  Links on_sine[2]{};    ///< amplitudes of a xdd_0 of the pivot
-  Links on_cosine[2]{};  ///< amplitudes of -a ydd_0 of the pivot
-
-  template <class Any>
-  static auto fields(Any& x) {
-    return std::tie(x.angular_frequency, x.phase, x.torque, x.on_sine, x.on_cosine);
-  }
-};
-using TwoWaves = WavesOf<Pair>;
-
 /// The part of the compiled effects that does not depend on the width of a row: modes, waves, and
 /// the motion of the pivot. An object belongs to one run and one thread, because modes change along
 /// the run.
-class EffectsInForce {
+class EffectsInForce : public Drives<double> {
  public:
   virtual ~EffectsInForce() = default;
 
   /// Freezes effect number i (from 0) to a mode.
   virtual void put_mode(std::size_t i, int mode) = 0;
 
+  /// What effects have beside their numbers: which laws there are, and what each acts on. Only
+  /// trajectories that have this in common can share lanes.
+  virtual std::vector<int> kinds() const = 0;
+
   /// Eliminates a joint (counted from 0), or sets it free.
   void hold(int joint, bool is_held);
-
-  /// Computes sine and cosine of the waves from number `known` on, at time t.
-  PENDCORE_INLINE_UNLESS_SMALL void compute_waves(double t, int known) const {
-    for (int k = known; k < waves; k += 4) {
-      Pack<4> s, c;
-      sine_cosine(wave_angles<Pack<4>>(t, k), s, c);
-      store(&wave_sine[k], s);
-      store(&wave_cosine[k], c);
-    }
-  }
-  template <class Real>
-  PENDCORE_INLINE Real wave_angles(double t, int k) const {
-    return fma(load<Real>(&angular_frequency[k]), broadcast<Real>(t), load<Real>(&phase[k]));
-  }
-
-  /// The acceleration (m/s^2) and the velocity (m/s) of the pivot. compute_waves() comes first.
-  PENDCORE_INLINE void pivot_acceleration(double t, double& x, double& y) const {
-    x = y = 0.0;
-    for (const PivotLaw& law : pivots) law.add_acceleration(t, wave_sine.data(), x, y);
-  }
-  PENDCORE_INLINE void pivot_velocity(double t, double& x, double& y) const {
-    x = y = 0.0;
-    for (const PivotLaw& law : pivots) law.add_velocity(t, wave_cosine.data(), x, y);
-  }
 
   /// Computes what a user's function adds to Q (n); Q is zero on entry.
   PENDCORE_INLINE void call(const UserLaw& user, double t, const double* q, const double* qd,
@@ -84,26 +48,17 @@ class EffectsInForce {
   std::vector<Effect> effects;
   std::vector<int> modes;           ///< the mode of each effect
   std::vector<int> number_of_wave;  ///< the first wave of each effect, or -1
-  std::vector<JointWave> joint_waves;
-  std::vector<char> held;  ///< whether each joint is eliminated, as it does not turn
-  std::vector<PivotLaw> pivots;
+  std::vector<char> held;           ///< whether each joint is eliminated, as it does not turn
   std::vector<UserLaw> users;
   bool has_modes = false;   ///< some law is only piecewise smooth
   bool has_forces = false;  ///< some law adds forces, not only couples
   bool any_held = false;
-
-  int waves = 0;
-  TwoWaves two_waves;
-  std::vector<double> angular_frequency;  ///< one for each wave, padded to whole packs
-  std::vector<double> phase;
-  mutable std::vector<double> wave_sine;
-  mutable std::vector<double> wave_cosine;
+  bool are_couples_alone = false;  ///< no waves, pivots, users' functions or laws of the list
+  WavesOf<Pair> two_waves;
 
  protected:
   explicit EffectsInForce(const Scene& scene);
-  void add_waves(std::size_t i);  ///< those of effect number i
   void put_pivot(std::size_t i, const PivotLaw& law);
-  void finish_waves();
 
   /// The number of an effect among the pivots, the functions or the laws like its own.
   std::vector<std::size_t> number_of_law_;
@@ -115,7 +70,7 @@ class EffectsInForce {
 /// A law that effects on one row share, with a lane for each. Its alignment is the one
 /// of Couples.
 template <template <class> class Law, class Row>
-struct alignas(sizeof(Row)) SharedLaw {
+struct alignas(std::bit_floor(sizeof(Row))) SharedLaw {
   Law<Row> law;
   int row;
   Account account;     ///< where the ledger books its work
@@ -132,9 +87,11 @@ struct LawsOf<std::variant<Laws<Row>...>> {
 };
 
 /// The compiled effects of a scene whose links are taken in rows of `width`.
-template <class Row>
+template <class AnyRow>
 class ActingEffects final : public EffectsInForce {
  public:
+  using Row = AnyRow;
+  using Number = double;
   static constexpr int width = Lanes<Row>::width;
 
   using Laws = LawsOf<LawOn<Row>>;
@@ -149,6 +106,9 @@ class ActingEffects final : public EffectsInForce {
   ActingEffects(const ActingEffects&) = delete;  // its entries point to its own laws
   ActingEffects& operator=(const ActingEffects&) = delete;
   void put_mode(std::size_t i, int mode) override;
+  std::vector<int> kinds() const override;
+
+  static constexpr bool are_any() { return true; }
 
   /// Calls visit(law) with the law of an entry in its own type.
   template <class Visit>

@@ -15,7 +15,7 @@ struct RowAt {
 
   V q, qd, s, c, L;  // packs first, so that no padding parts them
   Time t;
-  double pivot_vx, pivot_vy;
+  Time pivot_vx, pivot_vy;
 
   PENDCORE_INLINE V phi() const { return q - before(q); }
   PENDCORE_INLINE V phid() const { return qd - before(qd); }

@@ -77,6 +77,7 @@ struct Couple {
 template <class Row>
 struct alignas(std::bit_floor(sizeof(Row))) Couples {
   int row = 0;
+  bool has_powers = false;  ///< whether some torque depends on the square or cube of its rate
   Row held{}, slope{}, start{}, on_phi{}, on_phid{}, on_phid2{}, on_phid3{};
 
   template <class Any>
@@ -104,18 +105,17 @@ struct alignas(std::bit_floor(sizeof(Row))) Couples {
     }
     return fma(Constants<V>::of(slope), since_start, Constants<V>::of(held));
   }
-  /// Whether some torque depends on the square or the cube of its rate.
-  PENDCORE_INLINE bool has_powers() const {
-    return sum_of_lanes(Row(absolute(on_phid2) + absolute(on_phid3))) != 0.0;
-  }
 };
 
-/// A wave that drives a joint: tau += gain sin(wave).
-struct JointWave {
+/// A wave that drives a joint: tau += gain sin(wave). `Number` is a double, or a pack with a
+/// trajectory in each lane.
+template <class Number>
+struct alignas(sizeof(Number)) JointWaveOf {
   int joint;  ///< counted from 0
   int wave;
-  double gain;
+  Number gain;
 };
+using JointWave = JointWaveOf<double>;
 
 /// Constants for a law, from the link on which its effect acts or which begins at its joint.
 struct LinkConstants {
@@ -237,28 +237,48 @@ using AnyLaw = LawOn<double>;
 
 /// The acceleration of the pivot along each axis, in one piece of a spline or for a sinusoid:
 /// x'' = held + slope (t - start) + gain sin(wave).
-struct PivotLaw {
-  struct Axis {
-    double held = 0.0, slope = 0.0;  // the acceleration in a piece
-    double velocity = 0.0;           // the velocity at the start of the piece
-    double gain = 0.0, swing = 0.0;  // -A omega^2 and A omega
-    int wave = 0;                    // the gain and the swing are 0 if none drives the axis
+template <class Number>
+struct alignas(sizeof(Number)) PivotLawOf {
+  struct alignas(sizeof(Number)) Axis {
+    Number held{}, slope{};  // the acceleration in a piece
+    Number velocity{};       // the velocity at the start of the piece
+    Number gain{}, swing{};  // -A omega^2 and A omega
+    int wave = 0;            // the gain and the swing are 0 if none drives the axis
+
+    template <class Any>
+    static auto fields(Any& a) {
+      return std::tie(a.held, a.slope, a.velocity, a.gain, a.swing);
+    }
   };
   Axis x, y;
-  double start = 0.0;  // s, where the piece begins
+  Number start{};  // s, where the piece begins
 
-  template <class Real>
-  PENDCORE_INLINE void add_acceleration(double t, const double* sines, Real& ax, Real& ay) const {
+  template <class Any>
+  static auto fields(Any& law) {
+    return std::tie(law.x, law.y, law.start);
+  }
+
+  /// `sines` and `cosines` are those of all waves, by their numbers.
+  template <class Sines, class Real>
+  PENDCORE_INLINE void add_acceleration(const Number& t, const Sines& sines, Real& ax,
+                                        Real& ay) const {
     const Real since = t - start;
     ax = ax + fma(Real(x.slope), since, fma(Real(x.gain), Real(sines[x.wave]), Real(x.held)));
     ay = ay + fma(Real(y.slope), since, fma(Real(y.gain), Real(sines[y.wave]), Real(y.held)));
   }
-  PENDCORE_INLINE void add_velocity(double t, const double* cosines, double& vx, double& vy) const {
-    const double since = t - start;
-    vx += x.velocity + since * fma(0.5 * x.slope, since, x.held) + x.swing * cosines[x.wave];
-    vy += y.velocity + since * fma(0.5 * y.slope, since, y.held) + y.swing * cosines[y.wave];
+  template <class Cosines>
+  PENDCORE_INLINE void add_velocity(const Number& t, const Cosines& cosines, Number& vx,
+                                    Number& vy) const {
+    const Number since = t - start;
+    const auto add = [&](const Axis& a, Number& v) __attribute__((always_inline)) {
+      v = v + (a.velocity + since * fma(Number(0.5 * a.slope), since, a.held) +
+               a.swing * cosines[a.wave]);
+    };
+    add(x, vx);
+    add(y, vy);
   }
 };
+using PivotLaw = PivotLawOf<double>;
 
 /// A function of the user's (user.hpp), in one piece between its breaks.
 struct UserLaw {

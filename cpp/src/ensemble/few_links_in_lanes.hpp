@@ -1,7 +1,6 @@
 /// \file
 /// The equations of three and four links in lanes of Runge-Kutta methods: the recursion of
-/// chain.hpp, bare, or with couples, waves (waves_in_lanes.hpp) and drag (DragInLanes in
-/// lane_equations.hpp), but without rotors between links.
+/// chain.hpp in registers, without rotors between links.
 #pragma once
 
 #include <memory>
@@ -11,35 +10,46 @@
 #include "dynamics/chain/free_links.hpp"
 #include "dynamics/row.hpp"
 #include "ensemble/lane_equations.hpp"
-#include "ensemble/waves_in_lanes.hpp"
 
 namespace pendcore {
 
-/// n links in every lane.
 template <class Real, int n>
 struct FewLinksInLanes {
   using Links = EachLink<Real, n>;
+  using Effects = EffectsInLanes<Links, Real>;
   /// These equations are so long that a step loops over its stages around one copy of them.
   static constexpr bool is_long = true;
 
-  Couples<Links> couples;
-  ChainLinkOf<Real> link[n] = {};
-  Real payload_mass = {}, gravity = {};
-  DragInLanes<Links> drag;
-  WavesInLanes<Real> waves;
-  bool is_loaded = false, has_couples = false;
+  static bool has(const Scene& scene, const EquationsOfMotion& equations) {
+    if (scene.links.size() != n || !equations.are_steady()) return false;
+    const Chain& chain = *std::get<std::shared_ptr<Chain>>(equations.form);
+    return !chain.has_rotors() && !chain.effects()->any_held && Effects::has(*chain.effects());
+  }
+  void prepare(const Scene& /*scene*/, const EquationsOfMotion& one) {
+    const Chain& chain = *std::get<std::shared_ptr<Chain>>(one.form);
+    is_loaded = chain.is_loaded();
+    effects.prepare(*chain.effects(), n);
+  }
+  void put(int lane, const Scene& /*scene*/, const EquationsOfMotion& one) {
+    const Chain& chain = *std::get<std::shared_ptr<Chain>>(one.form);
+    for (int i = 0; i < n; ++i) put_constants(link[i], lane, chain.link(i));
+    payload_mass[lane] = chain.payload_mass();
+    gravity[lane] = chain.gravity();
+    effects.put(lane, *chain.effects());
+  }
 
   /// As ChainOf computes it, in the same order.
   PENDCORE_INLINE Links accelerations(const Real& t, const Links& q, const Links& qd) const {
     Links s, c;
     sine_cosine(q, s, c);
     if (!is_loaded) return recursion<false>(qd, s, c, {}, {Real{}, Real(Real{} - gravity)});
-    Real wave[most_waves_in_lanes];
-    waves.compute(t, wave);
     JointAcceleration<Real> of_pivot{};
-    waves.add_acceleration(wave, of_pivot.x, of_pivot.y);
+    if (!effects.are_couples_alone) {
+      effects.compute_waves(t, 0);
+      effects.pivot_acceleration(t, of_pivot.x, of_pivot.y);
+    }
     of_pivot.y = of_pivot.y - gravity;
-    return recursion<true>(qd, s, c, loads(t, q, qd, s, c, wave), of_pivot);
+    return recursion<true>(qd, s, c, loads(t, q, qd, s, c), of_pivot);
   }
 
  private:
@@ -54,7 +64,7 @@ struct FewLinksInLanes {
   }
 
   PENDCORE_INLINE Loads loads(const Real& t, const Links& q, const Links& qd, const Links& s,
-                              const Links& c, const Real* wave) const {
+                              const Links& c) const {
     RowOfLinksAt<Links, Real> at{.q = q,
                                  .qd = qd,
                                  .s = s,
@@ -63,8 +73,9 @@ struct FewLinksInLanes {
                                  .t = t,
                                  .vx_of_joint = {},
                                  .vy_of_joint = {}};
-    if (drag.is_there) {
+    if (effects.has_forces) {
       Real x{}, y{};
+      if (!effects.pivots.empty()) effects.pivot_velocity(t, x, y);
 #pragma GCC unroll 4
       for (int i = 0; i < n; ++i) {
         at.vx_of_joint.of[i] = x;
@@ -75,15 +86,16 @@ struct FewLinksInLanes {
       }
     }
     RowLoads<Links> sums;
-    if (has_couples) sums.couple(couples.torque(at));
-    for (int k = 0; k < waves.motor_count; ++k) {
-      const auto& motor = waves.motor[k];
-      Real& couple = sums.couples.of[motor.joint];
-      couple = couple + motor.gain * wave[motor.wave];
+    for (const auto& one : effects.couples) sums.couple(one.torque(at));
+    if (!effects.are_couples_alone) {
+      for (const auto& one : effects.joint_waves) {
+        Real& couple = sums.couples.of[one.joint];
+        couple = couple + one.gain * effects.wave_sine[one.wave];
+      }
+      for (const auto& entry : effects.entries) Effects::add(entry, at, sums);
     }
-    if (drag.is_there) drag.law.add(at, sums);
     Loads found{(sums.moments + sums.couples) - after(sums.couples), {}, {}};
-    if (drag.is_there) {
+    if (effects.has_forces) {
       found.force_u = fma(c, sums.fx, s * sums.fy);
       found.force_n = fma(c, sums.fy, -(s * sums.fx));
     }
@@ -126,50 +138,16 @@ struct FewLinksInLanes {
     }
     return found;
   }
+
+  ChainLinkOf<Real> link[n] = {};
+  Real payload_mass = {}, gravity = {};
+  bool is_loaded = false;
+  Effects effects;
 };
 
-/// A chain of n links without rotors between them: only a name for a form of LaneEquations.
-template <int n>
-struct FreeChain;
-
-template <class Real, int n>
-struct LaneEquations<FreeChain<n>, Real> : StatesOfLinks<Real, n> {
-  using Type = FewLinksInLanes<Real, n>;
-
-  /// Whether the equations of a chain have lanes.
-  static bool has(const EquationsOfMotion& equations) {
-    const auto* const form = std::get_if<std::shared_ptr<Chain>>(&equations.form);
-    if (form == nullptr || (*form)->links() != n || !equations.are_steady()) return false;
-    const ActingEffects<Pack<4>>& effects = *(*form)->effects();
-    return !(*form)->has_rotors() && effects.users.empty() && !effects.any_held &&
-           DragInLanes<EachLink<Real, n>>::has(effects) && WavesInLanes<Real>::has(effects);
-  }
-  static void prepare(Type& equations, const EquationsOfMotion& one) {
-    const Chain& chain = *std::get<std::shared_ptr<Chain>>(one.form);
-    const ActingEffects<Pack<4>>& effects = *chain.effects();
-    // Lanes without a member divide by D, too: it must not be 0.
-    for (ChainLinkOf<Real>& link : equations.link) link.Io = broadcast<Real>(1.0);
-    equations.is_loaded = chain.is_loaded();
-    equations.has_couples = !effects.couples.empty();
-    equations.drag.is_there = !effects.entries.empty();
-    equations.waves.prepare(effects);
-  }
-  static bool put(Type& equations, int lane, const EquationsOfMotion& from) {
-    if (!has(from)) return false;
-    const Chain& chain = *std::get<std::shared_ptr<Chain>>(from.form);
-    const ActingEffects<Pack<4>>& effects = *chain.effects();
-    const bool is_alike = equations.is_loaded == chain.is_loaded() &&
-                          equations.has_couples == !effects.couples.empty() &&
-                          equations.drag.is_there == !effects.entries.empty();
-    if (!is_alike) return false;
-    for (int i = 0; i < n; ++i) put_constants(equations.link[i], lane, chain.link(i));
-    equations.payload_mass[lane] = chain.payload_mass();
-    equations.gravity[lane] = chain.gravity();
-    if (equations.has_couples) put_constants(equations.couples, lane, effects.couples.front());
-    const auto* const drag = DragInLanes<EachLink<Real, n>>::law_of(effects);
-    if (drag != nullptr) put_constants(equations.drag.law, lane, *drag);
-    return equations.waves.put(lane, effects);
-  }
-};
+template <class Real>
+using ThreeLinksInLanes = FewLinksInLanes<Real, 3>;
+template <class Real>
+using FourLinksInLanes = FewLinksInLanes<Real, 4>;
 
 }  // namespace pendcore

@@ -9,6 +9,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "ensemble/lane_equations.hpp"
 #include "ensemble/lane_recording.hpp"
 #include "integrate/method_list.hpp"
 #include "pendcore/methods.hpp"
@@ -26,6 +27,14 @@ constexpr int few_lanes = width / 2;
 /// Steps between two looks at whether to go on: a fraction of a millisecond.
 inline constexpr int rounds_at_once = 256;
 
+/// What is run in lanes: a scene, whose members may differ from it, with its equations.
+struct LaneTask {
+  const Scene& scene;
+  std::shared_ptr<const EquationsOfMotion> equations;
+  double t0, t_end;
+  const Options& options;
+};
+
 /// The part of a runner that does not depend on the method.
 template <int width>
 class LaneLoop : public RecordingLanes<width> {
@@ -38,14 +47,15 @@ class LaneLoop : public RecordingLanes<width> {
   using Base::t_end_;
 
  public:
-  LaneLoop(const Scene& scene, double t0, double t_end, const Options& options,
-           std::string_view method)
-      : RecordingLanes<width>(scene, t0, t_end, options),
+  LaneLoop(const LaneTask& task, std::string_view method)
+      : RecordingLanes<width>(task.scene, task.t0, task.t_end, task.options),
         method_(method),
-        interval_{t_end, options.max_step, options.max_steps},
-        rtol_(relative_tolerances(options, scene.links.size())),
-        atol_(absolute_tolerances(options, scene.links.size())),
-        rate_(2 * scene.links.size()) {}
+        interval_{t_end_, options_.max_step, options_.max_steps},
+        rtol_(relative_tolerances(options_, scene_.links.size())),
+        atol_(absolute_tolerances(options_, scene_.links.size())),
+        rate_(2 * scene_.links.size()),
+        kinds_(kinds_of(*task.equations)),
+        equations_(task.equations) {}
 
   void run(LaneSource& source) override {
     this->choose_what_is_recorded(source);
@@ -91,16 +101,20 @@ class LaneLoop : public RecordingLanes<width> {
   virtual void get_derivative(int lane, double* dydt) = 0;
   virtual std::vector<double> saved_state(int lane) = 0;
   virtual Attention take_steps() = 0;
-  /// Puts the equations into a lane; false if they have another form than those of the others.
-  virtual bool put_equations(int lane) = 0;
-  /// Called before put_equations() whenever the next members have other equations.
-  virtual void equations_are_new(const Scene& /*scene*/, const EquationsOfMotion& /*equations*/) {}
+  /// Puts equations(), those of a scene, into a lane.
+  virtual void put_equations(int lane, const Scene& scene) = 0;
   /// Puts a start, at which the rates are rate(), into a lane.
   virtual void put_start(int lane, const std::vector<double>& y) = 0;
   virtual long long evaluations_of(int lane) const = 0;
   /// Whether the last step of a lane suggests that the member is stiff.
   virtual bool looks_stiff(int /*lane*/) { return false; }
 
+  /// Prepares equations in lanes. Those without a member have numbers that do no harm.
+  template <class InLanes>
+  void prepare(InLanes& in_lanes) const {
+    in_lanes.prepare(scene_, *equations_);
+    for (int lane = 0; lane < width; ++lane) in_lanes.put(lane, scene_, *equations_);
+  }
   /// Those of the members that begin.
   const EquationsOfMotion& equations() const { return *equations_; }
   Stepper& stepper(int lane) const override { return *steppers_[lane]; }
@@ -188,13 +202,14 @@ class LaneLoop : public RecordingLanes<width> {
     const std::vector<double>& y = members_[lane].state;
     const bool is_varied = &scene != &scene_;
     if (is_varied && !is_allowed(scene)) return false;
-    if (!equations_ || is_varied) {
-      equations_ = std::make_unique<const EquationsOfMotion>(equations_of_motion(scene));
-      equations_are_new(scene, *equations_);
+    if (!stepper_ || is_varied) {
+      if (is_varied)
+        equations_ = std::make_shared<const EquationsOfMotion>(equations_of_motion(scene));
       stepper_ = make_stepper(scene, *equations_, method_, false, false);
       stepper_->set_tolerances(rtol_.data(), atol_.data());
     }
-    if (!put_equations(lane)) return false;
+    if (is_varied && kinds_of(*equations_) != kinds_) return false;
+    if (steppers_[lane] != stepper_) put_equations(lane, scene);
     steppers_[lane] = stepper_;
     stepper_->evaluate(t0_, y.data(), rate_.data());
     if (bad_component(y) >= 0 || bad_component(rate_) >= 0) return false;
@@ -234,7 +249,8 @@ class LaneLoop : public RecordingLanes<width> {
   LaneInterval interval_;
   std::vector<double> rtol_, atol_;
   std::vector<double> rate_;
-  std::unique_ptr<const EquationsOfMotion> equations_;
+  std::vector<int> kinds_;  ///< what all members have in common
+  std::shared_ptr<const EquationsOfMotion> equations_;
   std::shared_ptr<Stepper> stepper_;  ///< of the members that begin
   std::array<std::shared_ptr<Stepper>, width> steppers_;
   bool is_exhausted_ = false;  ///< no member is left to begin
@@ -242,7 +258,6 @@ class LaneLoop : public RecordingLanes<width> {
 
 /// The runner of Taylor series; null if the scene has none in lanes.
 template <InstructionSet set>
-std::unique_ptr<LaneRunner> make_series_lanes(const Scene& scene, double t0, double t_end,
-                                              const Options& options);
+std::unique_ptr<LaneRunner> make_series_lanes(const LaneTask& task);
 
 }  // namespace pendcore

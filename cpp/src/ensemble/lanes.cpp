@@ -9,27 +9,37 @@
 namespace pendcore {
 namespace {
 
-template <const auto& method, class Form, InstructionSet set>
+template <const auto& method, template <class> class Form, InstructionSet set>
 class RungeKuttaRunner final : public LaneLoop<width_on(set)> {
   static constexpr int width = width_on(set);
   using All = RungeKuttaLanes<method, Form, width>;
-  using Equations = typename All::Equations;
+  using Block = typename All::Block;
 
  public:
-  RungeKuttaRunner(const Scene& scene, double t0, double t_end, const Options& options)
-      : LaneLoop<width>(scene, t0, t_end, options, method.info.name), n_(scene.links.size()) {
-    Equations::prepare(all_.memory.system.dynamics, equations_of_motion(scene));
+  explicit RungeKuttaRunner(const LaneTask& task)
+      : LaneLoop<width>(task, method.info.name), n_(task.scene.links.size()) {
+    this->prepare(all_.memory.system.dynamics);
     for (int lane = 0; lane < width; ++lane) {
       for (int i = 0; i < 2; ++i) {
-        Equations::put_state(all_.memory.rtol[i], lane, this->rtol().data() + i * n_);
-        Equations::put_state(all_.memory.atol[i], lane, this->atol().data() + i * n_);
+        put_row(all_.memory.rtol[i], lane, this->rtol().data() + i * n_);
+        put_row(all_.memory.atol[i], lane, this->atol().data() + i * n_);
       }
     }
   }
 
  private:
+  static void put_row(Block& row, int lane, const double* from) {
+    for (int i = 0; i < All::links; ++i) {
+      auto of_link = number_of(row, i);
+      of_link[lane] = from[i];
+      set_number(row, i, of_link);
+    }
+  }
+  static void get_row(const Block& row, int lane, double* to) {
+    for (int i = 0; i < All::links; ++i) to[i] = number_of(row, i)[lane];
+  }
   void get_derivative(int lane, double* dydt) override {
-    for (int i = 0; i < 2; ++i) Equations::get_state(all_.memory.k[0][i], lane, dydt + i * n_);
+    for (int i = 0; i < 2; ++i) get_row(all_.memory.k[0][i], lane, dydt + i * n_);
   }
   std::vector<double> saved_state(int /*lane*/) override { return {}; }
   LaneSteps<width>& steps() override { return all_; }
@@ -42,8 +52,8 @@ class RungeKuttaRunner final : public LaneLoop<width_on(set)> {
     }
     return attention;
   }
-  bool put_equations(int lane) override {
-    return Equations::put(all_.memory.system.dynamics, lane, this->equations());
+  void put_equations(int lane, const Scene& scene) override {
+    all_.memory.system.dynamics.put(lane, scene, this->equations());
   }
   void put_start(int lane, const std::vector<double>& y) override {
     const Options& options = this->options();
@@ -56,18 +66,18 @@ class RungeKuttaRunner final : public LaneLoop<width_on(set)> {
     }
     all_.h[lane] = this->direction() * h;
     for (int i = 0; i < 2; ++i) {
-      Equations::put_state(all_.memory.y[i], lane, y.data() + i * n_);
-      Equations::put_state(all_.memory.k[0][i], lane, this->rate().data() + i * n_);
+      put_row(all_.memory.y[i], lane, y.data() + i * n_);
+      put_row(all_.memory.k[0][i], lane, this->rate().data() + i * n_);
     }
   }
   void put_state(int lane, const double* y) override {
-    for (int i = 0; i < 2; ++i) Equations::put_state(all_.memory.y[i], lane, y + i * n_);
+    for (int i = 0; i < 2; ++i) put_row(all_.memory.y[i], lane, y + i * n_);
   }
   void get_state(int lane, double* y) const override {
-    for (int i = 0; i < 2; ++i) Equations::get_state(all_.memory.y[i], lane, y + i * n_);
+    for (int i = 0; i < 2; ++i) get_row(all_.memory.y[i], lane, y + i * n_);
   }
   void get_state_before(int lane, double* y) const override {
-    for (int i = 0; i < 2; ++i) Equations::get_state(all_.y_before[i], lane, y + i * n_);
+    for (int i = 0; i < 2; ++i) get_row(all_.y_before[i], lane, y + i * n_);
   }
   bool write_interpolant(int lane, double* coefficients) const override {
     for (const auto& number : all_.rows) *coefficients++ = number[lane];
@@ -87,56 +97,62 @@ class RungeKuttaRunner final : public LaneLoop<width_on(set)> {
   LaneBits (*interpolate_)(All*) = only<&interpolate_step<method, Form, width>, set>();
 };
 
-template <class Form, InstructionSet set>
-std::unique_ptr<LaneRunner> runge_kutta_lanes(std::string_view method, const Scene& scene,
-                                              double t0, double t_end, const Options& options) {
+template <template <class> class Form, InstructionSet set>
+std::unique_ptr<LaneRunner> runge_kutta_lanes(std::string_view method, const LaneTask& task) {
   if (method == dormand_prince_5.info.name) {
-    using Of = RungeKuttaRunner<dormand_prince_5, Form, set>;
-    return std::make_unique<Of>(scene, t0, t_end, options);
+    return std::make_unique<RungeKuttaRunner<dormand_prince_5, Form, set>>(task);
   }
-  if (method == dormand_prince_8.info.name) {
-    using Of = RungeKuttaRunner<dormand_prince_8, Form, set>;
-    return std::make_unique<Of>(scene, t0, t_end, options);
-  }
-  return nullptr;
+  return std::make_unique<RungeKuttaRunner<dormand_prince_8, Form, set>>(task);
+}
+
+/// Calls use<Form>() with the first form that the equations have; returns whether they have one.
+template <class Use>
+bool with_form(const Scene& scene, const EquationsOfMotion& equations, const Use& use) {
+  const auto try_form = [&]<template <class> class Form>() {
+    if (!Form<Pack<4>>::has(scene, equations)) return false;
+    use.template operator()<Form>();
+    return true;
+  };
+  return try_form.template operator()<OneLinkWithCouples>() ||
+         try_form.template operator()<OneLinkWithEverything>() ||
+         try_form.template operator()<TwoBareLinksInLanes>() ||
+         try_form.template operator()<TwoLinksWithCouples>() ||
+         try_form.template operator()<TwoLinksWithWaves>() ||
+         try_form.template operator()<TwoLinksWithLaws>() ||
+         try_form.template operator()<TwoLinksWithEverything>() ||
+         try_form.template operator()<ThreeLinksInLanes>() ||
+         try_form.template operator()<FourLinksInLanes>();
 }
 
 template <InstructionSet set>
-std::unique_ptr<LaneRunner> lanes_of(std::string_view method, const Scene& scene, double t0,
-                                     double t_end, const Options& options) {
+std::unique_ptr<LaneRunner> lanes_of(std::string_view method, const LaneTask& task) {
+  if (method == taylor.info.name) return make_series_lanes<set>(task);
+  std::unique_ptr<LaneRunner> runner;
+  with_form(task.scene, *task.equations, [&]<template <class> class Form>() {
+    runner = runge_kutta_lanes<Form, set>(method, task);
+  });
+  return runner;
+}
+
+/// Whether the lanes of a method have the equations of a scene.
+bool has_lanes(std::string_view method, const Scene& scene, const EquationsOfMotion& equations) {
+  if (instruction_set() < least_of_special_kernels || !equations.are_steady()) return false;
   if (method == taylor.info.name) {
-    return options.first_step ? nullptr : make_series_lanes<set>(scene, t0, t_end, options);
+    const std::size_t n = scene.links.size();
+    return n >= 2 && n <= most_links_in_lanes && !without_series(scene);
   }
-  switch (scene.links.size()) {
-    case 1: return runge_kutta_lanes<SinglePendulum, set>(method, scene, t0, t_end, options);
-    case 3: return runge_kutta_lanes<FreeChain<3>, set>(method, scene, t0, t_end, options);
-    case 4: return runge_kutta_lanes<FreeChain<4>, set>(method, scene, t0, t_end, options);
-    default: break;
-  }
-  const EquationsOfMotion equations = equations_of_motion(scene);
-  if (std::holds_alternative<DoublePendulum>(equations.form)) {
-    return runge_kutta_lanes<DoublePendulum, set>(method, scene, t0, t_end, options);
-  }
-  return runge_kutta_lanes<TwoLinksWithEffects, set>(method, scene, t0, t_end, options);
+  const bool is_embedded =
+      method == dormand_prince_5.info.name || method == dormand_prince_8.info.name;
+  return is_embedded && with_form(scene, equations, []<template <class> class>() {});
 }
 
 }  // namespace
 
 std::vector<std::string_view> methods_with_lanes(const Scene& scene) {
-  if (instruction_set() < least_of_special_kernels) return {};
   const EquationsOfMotion equations = equations_of_motion(scene);
-  if (!equations.are_steady()) return {};
-  std::vector<std::string_view> methods;
-  if (std::holds_alternative<DoublePendulum>(equations.form) ||
-      LaneEquations<TwoLinksWithEffects, Pack<4>>::has(equations) ||
-      LaneEquations<SinglePendulum, Pack<4>>::has(equations) ||
-      LaneEquations<FreeChain<3>, Pack<4>>::has(equations) ||
-      LaneEquations<FreeChain<4>, Pack<4>>::has(equations)) {
-    methods = {dormand_prince_5.info.name, dormand_prince_8.info.name};
-  }
-  const std::size_t n = scene.links.size();
-  const bool has_series = n >= 2 && n <= most_links_in_lanes && !without_series(scene);
-  if (has_series) methods.push_back(taylor.info.name);
+  std::vector<std::string_view> methods{dormand_prince_5.info.name, dormand_prince_8.info.name,
+                                        taylor.info.name};
+  std::erase_if(methods, [&](std::string_view one) { return !has_lanes(one, scene, equations); });
   return methods;
 }
 
@@ -146,17 +162,20 @@ std::unique_ptr<LaneRunner> make_lanes(const Scene& scene, double t0, double t_e
                         (options.store == Store::times || options.store == Store::end);
   if (!is_plain || t0 == t_end) return nullptr;
   const std::string_view method = find_method(chosen_method(scene, options)).first();
-  if (std::ranges::count(methods_with_lanes(scene), method) == 0) return nullptr;
+  if (method == taylor.info.name && options.first_step) return nullptr;
+  const auto equations = std::make_shared<const EquationsOfMotion>(equations_of_motion(scene));
+  if (!has_lanes(method, scene, *equations)) return nullptr;
   const auto is_function = [](const Event& event) {
     return std::holds_alternative<events::Function>(event.function);
   };
   if (std::ranges::any_of(options.events, is_function)) return nullptr;
+  const LaneTask task{scene, equations, t0, t_end, options};
   if constexpr (PENDCORE_CLONES != 0) {
     if (instruction_set() == InstructionSet::x86_64_v4) {
-      return lanes_of<InstructionSet::x86_64_v4>(method, scene, t0, t_end, options);
+      return lanes_of<InstructionSet::x86_64_v4>(method, task);
     }
   }
-  return lanes_of<InstructionSet::x86_64_v3>(method, scene, t0, t_end, options);
+  return lanes_of<InstructionSet::x86_64_v3>(method, task);
 }
 
 }  // namespace pendcore

@@ -9,21 +9,20 @@
 #include "dynamics/first_order.hpp"
 #include "ensemble/few_links_in_lanes.hpp"
 #include "ensemble/lane_steps.hpp"
-#include "ensemble/one_link_in_lanes.hpp"
 #include "integrate/runge_kutta/step.hpp"
 
 namespace pendcore {
 
 /// The lanes of a method on a form of the equations.
-template <const auto& method, class Form, int width>
+template <const auto& method, template <class> class Form, int width>
 struct RungeKuttaLanes : LaneSteps<width> {
   using Real = Pack<width>;
-  using Equations = LaneEquations<Form, Real>;
-  using System = FirstOrder<typename Equations::Type>;
-  using Memory = StepMemory<method, System>;
+  using Equations = Form<Real>;
+  using Memory = StepMemory<method, FirstOrder<Equations>>;
   using Block = typename Memory::Block;
   static constexpr int stages = Memory::stages;
-  static constexpr int size = 2 * Equations::links;
+  static constexpr int links = links_in_row<Block>;
+  static constexpr int size = 2 * links;
   static_assert(method.first_same_as_last && method.info.error_order > 0);
 
   Memory memory;
@@ -34,14 +33,23 @@ struct RungeKuttaLanes : LaneSteps<width> {
   Real rows[(Memory::degree + 1) * size] = {};
 };
 
+/// Makes a row another one in some lanes.
+template <class Integers, class Row>
+PENDCORE_INLINE void select(const Integers& which, const Row& other, Row& row) {
+#pragma GCC unroll 4
+  for (int i = 0; i < links_in_row<Row>; ++i) {
+    set_number(row, i, which ? number_of(other, i) : number_of(row, i));
+  }
+}
+
 /// Computes the dense output of the last step of each lane. Returns the lanes in which an event may
 /// lie within it.
-template <const auto& method, class Form, int width>
+template <const auto& method, template <class> class Form, int width>
 PENDCORE_INLINE LaneBits interpolate_step(RungeKuttaLanes<method, Form, width>* all) {
   using All = RungeKuttaLanes<method, Form, width>;
   using Memory = typename All::Memory;
   using Real = typename All::Real;
-  constexpr int links = All::Equations::links;
+  constexpr int links = All::links;
   auto& memory = all->memory;
   const auto swap_rates = [all, &memory] {
     for (int i = 0; i < Memory::blocks; ++i) std::swap(memory.k[0][i], all->rates_before[i]);
@@ -57,10 +65,9 @@ PENDCORE_INLINE LaneBits interpolate_step(RungeKuttaLanes<method, Form, width>* 
     interpolant_of_block<method>(all->h_before, StageBlock(memory.k, i), powers);
     for (int link = 0; link < links; ++link) {
       Real* const column = all->rows + i * links + link;
-      column[0] = All::Equations::number(all->y_before[i], link);
+      column[0] = number_of(all->y_before[i], link);
       for (int p = 0; p < Memory::degree; ++p) {
-        column[static_cast<std::ptrdiff_t>(p + 1) * All::size] =
-            All::Equations::number(powers[p], link);
+        column[static_cast<std::ptrdiff_t>(p + 1) * All::size] = number_of(powers[p], link);
       }
     }
   }
@@ -70,7 +77,7 @@ PENDCORE_INLINE LaneBits interpolate_step(RungeKuttaLanes<method, Form, width>* 
 }
 
 /// Takes up to `rounds` steps in each lane, until some need attention.
-template <const auto& method, class Form, int width>
+template <const auto& method, template <class> class Form, int width>
 PENDCORE_INLINE Attention take_steps(RungeKuttaLanes<method, Form, width>* all,
                                      const LaneInterval* interval, int rounds) {
   namespace detail = lanes_detail;
@@ -109,9 +116,8 @@ PENDCORE_INLINE Attention take_steps(RungeKuttaLanes<method, Form, width>* all,
       }
     }
     for (int i = 0; i < All::Memory::blocks; ++i) {
-      memory.y[i] = All::Equations::select(is_accepted, memory.y_new[i], memory.y[i]);
-      memory.k[0][i] =
-          All::Equations::select(is_accepted, memory.k[All::stages - 1][i], memory.k[0][i]);
+      select(is_accepted, memory.y_new[i], memory.y[i]);
+      select(is_accepted, memory.k[All::stages - 1][i], memory.k[0][i]);
     }
   }
   return attention;

@@ -2,76 +2,37 @@
 /// The forms of the equations whose Taylor series are computed in lanes: those of a single run
 /// (dynamics/series), with a trajectory, and its constants, in each lane.
 ///
-/// A form has, for a pack of trajectories: the number of `links`, or 0 if it is known at run time
-/// and count() tells it; `block`, how many numbers of its state a single run takes at once, and
-/// `place_of_rates`, the place of the first rate in its block; `One`, the constants of one
-/// trajectory; one_of(), the constants of a scene, or nothing if its equations have another form;
-/// prepare(), which sets the kinds of laws and gives lanes without a member numbers that do no
-/// harm; put(), which puts constants into a lane and returns false if their laws are of other
-/// kinds, so that the lane must not be used; set_order(), if it needs memory for the orders; and
-/// expand(), which computes the series.
-///
-/// Here are the forms of a few links; chain_series_in_lanes.hpp has those of chains with any smooth
-/// effects.
+/// A form has what lane_equations.hpp says, and, for a pack of trajectories: the number of `links`,
+/// or 0 if it is known at run time and count() tells it; `block`, how many numbers of its state a
+/// single run takes at once, and `place_of_rates`, the place of the first rate in its block;
+/// set_order(), if it needs memory for the orders; and expand(), which computes the series.
 #pragma once
 
-#include <optional>
-#include <variant>
+#include <memory>
+#include <type_traits>
 
+#include "dynamics/series/chain_series_recurrence.hpp"
 #include "dynamics/series/double_pendulum_series.hpp"
 #include "dynamics/series/few_links_series.hpp"
 #include "ensemble/lane_equations.hpp"
+#include "scene/effects_of_scene.hpp"
 
 namespace pendcore {
-
-/// The torques of couples and waves in lanes. `Row` is the row of a single run.
-template <class Rows, class Row, class Real>
-struct TorquesInLanes {
-  using One = TorqueLaws<Row, double>;
-
-  Couples<Rows> couples;
-  TorqueLaws<Rows, Real> laws;
-
-  TorquesInLanes() = default;
-  TorquesInLanes(const TorquesInLanes&) = delete;  // its laws point to its own couples
-  TorquesInLanes& operator=(const TorquesInLanes&) = delete;
-  TorquesInLanes(TorquesInLanes&&) = delete;
-  TorquesInLanes& operator=(TorquesInLanes&&) = delete;
-  ~TorquesInLanes() = default;
-
-  /// Sets the kinds of laws.
-  void prepare(const One& one) {
-    laws.couples = one.couples != nullptr ? &couples : nullptr;
-    laws.has_powers = one.has_powers;
-    laws.waves = one.waves;
-  }
-  bool put(int lane, const One& one) {
-    const bool is_alike = (laws.couples != nullptr) == (one.couples != nullptr) &&
-                          laws.has_powers == one.has_powers && laws.waves == one.waves;
-    if (!is_alike) return false;
-    if (one.couples != nullptr) put_constants(couples, lane, *one.couples);
-    put_constants(laws, lane, one);
-    return true;
-  }
-};
 
 template <class Real>
 struct BareDoublePendulumSeries {
   static constexpr int links = 2;
   static constexpr int block = 4;
   static constexpr int place_of_rates = 2;
-  using One = DoublePendulumConstants;
 
   ConstantsOfDoublePendulum<Real> constants{};
 
-  static std::optional<One> one_of(const Scene& /*scene*/, const EquationsOfMotion& equations) {
-    const auto series = bare_series(equations);
-    return series ? std::optional(series->constants()) : std::nullopt;
+  static bool has(const Scene& /*scene*/, const EquationsOfMotion& equations) {
+    return bare_series(equations).has_value();
   }
-  void prepare(const One& /*one*/) { constants.delta = broadcast<Real>(1.0); }
-  bool put(int lane, const One& one) {
-    put_constants(constants, lane, one);
-    return true;
+  void prepare(const Scene& /*scene*/, const EquationsOfMotion& /*one*/) {}
+  void put(int lane, const Scene& /*scene*/, const EquationsOfMotion& one) {
+    put_constants(constants, lane, bare_series(one)->constants());
   }
   PENDCORE_INLINE void expand(const Real& /*t*/, const Real* y, const Real& sigma, int order,
                               Real* rows) const {
@@ -85,30 +46,27 @@ struct LoadedDoublePendulumSeries {
   static constexpr int links = 2;
   static constexpr int block = 4;
   static constexpr int place_of_rates = 2;
-  struct One {
-    DoublePendulumConstants constants;
-    TorqueLaws<Pair, double> laws;
-  };
 
   ConstantsOfDoublePendulum<Real> constants{};
-  TorquesInLanes<Two<Real>, Pair, Real> torques;
+  EffectsInLanes<Two<Real>, Real> effects;
+  Two<Real> factor{};
 
-  static std::optional<One> one_of(const Scene& /*scene*/, const EquationsOfMotion& equations) {
-    if (!equations.are_steady()) return std::nullopt;
-    const auto series = series_with_torque(equations);
-    return series ? std::optional(One{series->constants(), series->laws()}) : std::nullopt;
+  static bool has(const Scene& /*scene*/, const EquationsOfMotion& equations) {
+    return equations.are_steady() && series_with_torque(equations).has_value();
   }
-  void prepare(const One& one) {
-    constants.delta = broadcast<Real>(1.0);
-    torques.prepare(one.laws);
+  void prepare(const Scene& /*scene*/, const EquationsOfMotion& one) {
+    effects.prepare(effects_on<Pair>(one), links);
   }
-  bool put(int lane, const One& one) {
-    put_constants(constants, lane, one.constants);
-    return torques.put(lane, one.laws);
+  void put(int lane, const Scene& /*scene*/, const EquationsOfMotion& one) {
+    const auto series = series_with_torque(one);
+    put_constants(constants, lane, series->constants());
+    put_number(factor, lane, series->torque().factor);
+    effects.put(lane, effects_on<Pair>(one));
   }
   PENDCORE_INLINE void expand(const Real& t, const Real* y, const Real& sigma, int order,
                               Real* rows) const {
-    TorqueOrders<Two<Real>, Real> orders(torques.laws, t, sigma);
+    const auto laws = torque_laws(effects, factor);
+    TorqueOrders<Two<Real>, Real> orders(laws, t, sigma);
     expand_double_pendulum(constants, y, sigma, order, orders, rows);
   }
 };
@@ -118,41 +76,74 @@ struct FewLinksSeriesInLanes {
   static constexpr int links = n;
   static constexpr int block = 4;
   static constexpr int place_of_rates = 0;
-  struct One {
-    ConstantsOfFewLinks<double, n> constants;
-    TorqueLaws<Pack<4>, double> laws;
-  };
+  using Row = EachLink<Real, n>;
 
   ConstantsOfFewLinks<Real, n> constants{};
-  TorquesInLanes<EachLink<Real, n>, Pack<4>, Real> torques;
+  EffectsInLanes<Row, Real> effects;
 
-  static std::optional<One> one_of(const Scene& scene, const EquationsOfMotion& equations) {
-    if (scene.links.size() != n || !FewLinksSeries::has(scene, equations) ||
-        !equations.are_steady()) {
-      return std::nullopt;
-    }
-    One one{constants_of_few_links<n>(scene), {}};
-    if (is_bare(scene)) return one;
-    const auto& effects = dynamic_cast<const ActingEffects<Pack<4>>&>(*equations.effects);
-    one.laws = torque_laws(effects, broadcast<Pack<4>>(1.0));
-    return one;
+  static bool has(const Scene& scene, const EquationsOfMotion& equations) {
+    return scene.links.size() == n && equations.are_steady() &&
+           FewLinksSeries::has(scene, equations);
   }
-  void prepare(const One& one) {
-    for (ChainLinkOf<Real>& link : constants.link) link.Io = broadcast<Real>(1.0);
-    torques.prepare(one.laws);
+  void prepare(const Scene& /*scene*/, const EquationsOfMotion& one) {
+    effects.prepare(effects_on<Pack<4>>(one), n);
   }
-  bool put(int lane, const One& one) {
-    put_constants(constants, lane, one.constants);
-    return torques.put(lane, one.laws);
+  void put(int lane, const Scene& scene, const EquationsOfMotion& one) {
+    put_constants(constants, lane, constants_of_few_links<n>(scene));
+    effects.put(lane, effects_on<Pack<4>>(one));
   }
   PENDCORE_INLINE void expand(const Real& t, const Real* y, const Real& sigma, int order,
                               Real* rows) const {
-    expand_few_links<Real, n>(constants, torques.laws, t, y, sigma, order, rows);
+    const auto laws = torque_laws(effects, Constants<Row>::of(1.0));
+    expand_few_links<Real, n>(constants, laws, t, y, sigma, order, rows);
   }
 };
 template <class Real>
 using ThreeLinksSeries = FewLinksSeriesInLanes<Real, 3>;
 template <class Real>
 using FourLinksSeries = FewLinksSeriesInLanes<Real, 4>;
+
+/// A chain with any smooth effects, for what the other forms do not have. `n` is the number of its
+/// links, or 0 for any number from three on, which is known at run time.
+template <class Real, int n>
+class ChainSeriesInLanes {
+ public:
+  static constexpr int links = n;
+  static constexpr int block = n == 2 ? 2 : 4;
+  static constexpr int place_of_rates = 0;
+  using Effects = EffectsInLanes<Real, Real>;
+  using RowOfRun = std::conditional_t<n == 2, Pair, Pack<4>>;
+
+  static bool has(const Scene& scene, const EquationsOfMotion& equations) {
+    const int count = static_cast<int>(scene.links.size());
+    return (n == 0 ? count >= 3 : count == n) && equations.effects && equations.are_steady() &&
+           !without_series(scene);
+  }
+  int count() const { return series_->links(); }
+  void prepare(const Scene& scene, const EquationsOfMotion& one) {
+    const int count = static_cast<int>(scene.links.size());
+    effects_->prepare(effects_on<RowOfRun>(one), count);
+    ConstantsOfChain<Real> constants(count);
+    constants.put(0, ConstantsOfChain<double>(scene));  // say whether there are rotors
+    series_ = std::make_unique<ChainSeries<Real, Effects>>(std::move(constants), effects_);
+  }
+  void set_order(int order) { series_->set_order(order); }
+  void put(int lane, const Scene& scene, const EquationsOfMotion& one) {
+    series_->constants().put(lane, ConstantsOfChain<double>(scene));
+    effects_->put(lane, effects_on<RowOfRun>(one));
+  }
+  PENDCORE_INLINE void expand(const Real& t, const Real* y, const Real& sigma, int order,
+                              Real* rows) const {
+    series_->expand(t, y, sigma, order, rows);
+  }
+
+ private:
+  std::shared_ptr<Effects> effects_ = std::make_shared<Effects>();
+  std::unique_ptr<ChainSeries<Real, Effects>> series_;
+};
+template <class Real>
+using ChainOfTwo = ChainSeriesInLanes<Real, 2>;
+template <class Real>
+using LongerChain = ChainSeriesInLanes<Real, 0>;
 
 }  // namespace pendcore

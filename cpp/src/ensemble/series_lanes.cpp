@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "ensemble/chain_series_in_lanes.hpp"
 #include "ensemble/lane_loop.hpp"
 #include "ensemble/series_of_double_pendulums.hpp"
 #include "integrate/taylor/dominant_eigenvalue.hpp"
@@ -20,17 +19,14 @@ template <template <class> class Form, InstructionSet set>
 class SeriesRunner final : public LaneLoop<width_on(set)> {
   static constexpr int width = width_on(set);
   using All = SeriesLanes<Form, width>;
-  using One = typename All::Equations::One;
 
  public:
-  /// `one` has the kinds of the laws of all members.
-  SeriesRunner(const One& one, const Scene& scene, double t0, double t_end, const Options& options)
-      : LaneLoop<width>(scene, t0, t_end, options, taylor.info.name) {
+  explicit SeriesRunner(const LaneTask& task) : LaneLoop<width>(task, taylor.info.name) {
     double tightest = 1.0;
     for (std::size_t i = 0; i < this->rtol().size(); ++i) {
       tightest = std::min(tightest, std::max(this->rtol()[i], this->atol()[i]));
     }
-    all_.equations.prepare(one);
+    this->prepare(all_.equations);
     all_.expand_kernel = expand_kernel_on<Form, set>();
     all_.make_room(taylor_order(tightest));
     for (int i = 0; i < all_.size(); ++i) {
@@ -52,10 +48,9 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
   LaneSteps<width>& steps() override { return all_; }
   const LaneSteps<width>& steps() const override { return all_; }
   Attention take_steps() override { return take_steps_(&all_, &this->interval(), rounds_at_once); }
-  void equations_are_new(const Scene& scene, const EquationsOfMotion& equations) override {
-    one_ = All::Equations::one_of(scene, equations);
+  void put_equations(int lane, const Scene& scene) override {
+    all_.equations.put(lane, scene, this->equations());
   }
-  bool put_equations(int lane) override { return one_ && all_.equations.put(lane, *one_); }
   void put_start(int lane, const std::vector<double>& y) override {
     put_state(lane, y.data());
     const double rate = taylor_detail::squared_rate(this->rate().data(), all_.links());
@@ -107,42 +102,31 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
 
   All all_{};
   std::array<long long, width> look_count_{};
-  std::optional<One> one_;
   Attention (*take_steps_)(All*, const LaneInterval*,
                            int) = only<&take_series_steps<Form, width>, set>();
 };
 
-template <InstructionSet set, template <class> class... Forms>
-std::unique_ptr<LaneRunner> first_of(const Scene& scene, double t0, double t_end,
-                                     const Options& options) {
-  const EquationsOfMotion equations = equations_of_motion(scene);
-  std::unique_ptr<LaneRunner> runner;
-  const auto try_form = [&]<template <class> class Form>() {
-    if (runner) return;
-    const auto one = Form<Pack<width_on(set)>>::one_of(scene, equations);
-    if (!one) return;
-    runner = std::make_unique<SeriesRunner<Form, set>>(*one, scene, t0, t_end, options);
-  };
-  (try_form.template operator()<Forms>(), ...);
-  return runner;
+/// The lanes of the first of these forms that the equations have; null if they have none.
+template <InstructionSet set, template <class> class Form, template <class> class... Others>
+std::unique_ptr<LaneRunner> first_of(const LaneTask& task) {
+  if (Form<Pack<width_on(set)>>::has(task.scene, *task.equations)) {
+    return std::make_unique<SeriesRunner<Form, set>>(task);
+  }
+  if constexpr (sizeof...(Others) > 0) return first_of<set, Others...>(task);
+  return nullptr;
 }
 
 }  // namespace
 
 template <InstructionSet set>
-std::unique_ptr<LaneRunner> make_series_lanes(const Scene& scene, double t0, double t_end,
-                                              const Options& options) {
+std::unique_ptr<LaneRunner> make_series_lanes(const LaneTask& task) {
   return first_of<set, BareDoublePendulumSeries, LoadedDoublePendulumSeries, ThreeLinksSeries,
-                  FourLinksSeries, ChainOfTwo, LongerChain>(scene, t0, t_end, options);
+                  FourLinksSeries, ChainOfTwo, LongerChain>(task);
 }
 
-template std::unique_ptr<LaneRunner> make_series_lanes<InstructionSet::x86_64_v3>(const Scene&,
-                                                                                  double, double,
-                                                                                  const Options&);
+template std::unique_ptr<LaneRunner> make_series_lanes<InstructionSet::x86_64_v3>(const LaneTask&);
 #if PENDCORE_CLONES
-template std::unique_ptr<LaneRunner> make_series_lanes<InstructionSet::x86_64_v4>(const Scene&,
-                                                                                  double, double,
-                                                                                  const Options&);
+template std::unique_ptr<LaneRunner> make_series_lanes<InstructionSet::x86_64_v4>(const LaneTask&);
 #endif
 
 }  // namespace pendcore

@@ -30,7 +30,7 @@ std::unique_ptr<Stepper> make_taylor_stepper(const Scene& scene, const Equations
                                             compensated);
   };
   auto chain = [&]<class Row>() {
-    return ChainSeries<Row>(scene,
+    return ChainSeries<Row>(ConstantsOfChain<double>(scene),
                             std::dynamic_pointer_cast<const ActingEffects<Row>>(equations.effects));
   };
   if (auto bare = bare_series(equations)) return of(*std::move(bare));

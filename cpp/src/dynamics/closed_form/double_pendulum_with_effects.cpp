@@ -11,10 +11,10 @@ constexpr Couples<Pair> no_couples;
 
 }  // namespace
 
-template <Parts parts>
-DoublePendulumWithEffects<parts>::DoublePendulumWithEffects(const Scene& scene,
-                                                            const Inertia& inertia,
-                                                            const ActingEffects<Pair>* in_force)
+template <class AnyEffects, Parts parts>
+LoadedDoublePendulum<AnyEffects, parts>::LoadedDoublePendulum(const Scene& scene,
+                                                              const Inertia& inertia,
+                                                              const Effects* in_force)
     : couples(in_force->couples.empty() ? &no_couples : in_force->couples.data()),
       effects(in_force) {
   // Let A' be A without the rotor in joint 2. Then A_11 A_22 - (A_12 C - J)^2
@@ -46,13 +46,12 @@ DoublePendulumWithEffects<parts>::DoublePendulumWithEffects(const Scene& scene,
 }
 
 // The kernels instantiate the rest.
-template DoublePendulumWithEffects<Parts::couples>::DoublePendulumWithEffects(
-    const Scene&, const Inertia&, const ActingEffects<Pair>*);
-template DoublePendulumWithEffects<Parts::waves>::DoublePendulumWithEffects(
-    const Scene&, const Inertia&, const ActingEffects<Pair>*);
-template DoublePendulumWithEffects<Parts::laws>::DoublePendulumWithEffects(
-    const Scene&, const Inertia&, const ActingEffects<Pair>*);
-template DoublePendulumWithEffects<Parts::everything>::DoublePendulumWithEffects(
-    const Scene&, const Inertia&, const ActingEffects<Pair>*);
+#define PENDCORE_WITH_EFFECTS(parts)                                                      \
+  template LoadedDoublePendulum<ActingEffects<Pair>, Parts::parts>::LoadedDoublePendulum( \
+      const Scene&, const Inertia&, const ActingEffects<Pair>*);
+PENDCORE_WITH_EFFECTS(couples)
+PENDCORE_WITH_EFFECTS(waves)
+PENDCORE_WITH_EFFECTS(laws)
+PENDCORE_WITH_EFFECTS(everything)
 
 }  // namespace pendcore

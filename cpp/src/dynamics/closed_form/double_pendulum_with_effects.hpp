@@ -28,26 +28,84 @@ enum class Parts {
   everything,  ///< any number of waves, any motion of the pivot, users' functions
 };
 
-/// What all forms share: constants, and the equations for a torque on each link. Types are those of
-/// DoublePendulumEquations.
-template <class AnyLinks, class Number>
+/// The equations of all forms. `AnyEffects` are ActingEffects<Pair>, or EffectsInLanes with a
+/// trajectory in each lane.
+template <class AnyEffects, Parts parts>
 struct LoadedDoublePendulum {
-  using Links = AnyLinks;
+  using Effects = AnyEffects;
+  using Links = typename Effects::Row;
+  using Number = typename Effects::Number;
+  static constexpr bool everything = parts == Parts::everything;
+  static constexpr bool is_long = everything;
 
-  AnyLinks inverse_diagonal;  ///< 1/A
-  AnyLinks weight;            ///< a g/A
-  AnyLinks coupling;          ///< rho
-  AnyLinks rotor;             ///< sigma
-  Number product;             ///< rho rho'
-  Number delta;
-  Number epsilon;
+  Links inverse_diagonal{};  ///< 1/A
+  Links weight{};            ///< a g/A
+  Links coupling{};          ///< rho
+  Links rotor{};             ///< sigma
+  Links length{};
+  Links diagonal{};  ///< A, kg m^2
+  Links moment{};    ///< a/A, 1/m
+  Number product{};  ///< rho rho'
+  Number delta{};
+  Number epsilon{};
+  const Couples<Links>* couples = nullptr;  ///< the couples on both joints
+  const Effects* effects = nullptr;
+
+  LoadedDoublePendulum() = default;
+  /// The equations of a run.
+  LoadedDoublePendulum(const Scene& scene, const Inertia& inertia, const Effects* in_force);
 
   template <class Any>
   static auto fields(Any& x) {
-    return std::tie(x.inverse_diagonal, x.weight, x.coupling, x.rotor, x.product, x.delta,
-                    x.epsilon);
+    return std::tie(x.inverse_diagonal, x.weight, x.coupling, x.rotor, x.length, x.diagonal,
+                    x.moment, x.product, x.delta, x.epsilon);
   }
 
+  /// `t` is a pack if each lane of V has a time of its own, which couples alone take in a run.
+  template <class V, class Time>
+    requires(std::is_same_v<Time, Number> || parts == Parts::couples)
+  PENDCORE_INLINE V accelerations(const Time& t, const V& q, const V& qd) const {
+    using Constant = Constants<V>;
+    V s, c;
+    [[maybe_unused]] PairOf<Number> wave;
+    if constexpr (parts == Parts::waves || everything) {
+      wave = sines(t, q, s, c);
+    } else {
+      sine_cosine(q, s, c);
+    }
+    const Between<V> between(s, c);
+    V pull = Constant::of(weight) * c;
+    RowAt<V, Time> at{.q = q,
+                      .qd = qd,
+                      .s = s,
+                      .c = c,
+                      .L = Constant::of(length),
+                      .t = t,
+                      .pivot_vx = {},
+                      .pivot_vy = {}};
+    RowLoads<V> loads{.couples = couples->torque(at)};
+    if constexpr (everything) add_everything(at, loads, pull);
+    if constexpr (parts == Parts::laws) {
+      // Most scenes have one law: a loop would part the registers of lanes.
+      Effects::add(effects->entries.front(), at, loads);
+      for (std::size_t i = 1; i < effects->entries.size(); ++i) [[unlikely]]
+        Effects::add(effects->entries[i], at, loads);
+    }
+    V torque = loads.torque_of_couples();
+    if constexpr (parts == Parts::waves) torque = with_two_waves(torque, wave, s, c);
+    if constexpr (parts == Parts::laws || everything) {
+      torque = torque + loads.moments;
+      if (effects->has_forces) torque = torque + loads.torque_of_forces(at);
+    }
+
+    const V f = alone(torque, pull, between, qd);
+    const V k = kappa(between);
+    if (effects->any_held) [[unlikely]]
+      return with_joints_held(f, k);
+    return both_free(f, k, between);
+  }
+
+ private:
   /// C and S of a state.
   template <class V>
   struct Between {
@@ -77,121 +135,64 @@ struct LoadedDoublePendulum {
                               fma(Constant::of(epsilon), between.cosine, Constant::of(delta)));
     return fma(-kappa, other(alone), alone) * (1.0 / determinant);
   }
-};
 
-/// What two waves, whose sines are `wave`, add to a torque (TwoWaves).
-template <class V, class Waves, class Sines>
-PENDCORE_INLINE V with_waves(V torque, const Waves& two, const Sines& wave, const V& s,
-                             const V& c) {
-  using Constant = Constants<V>;
-#pragma GCC unroll 2
-  for (int k = 0; k < 2; ++k) {
-    const V size = fma(Constant::of(two.on_sine[k]), s,
-                       fma(Constant::of(two.on_cosine[k]), c, Constant::of(two.torque[k])));
-    torque = fma(Constant::of(number_of(wave, k)), size, torque);
-  }
-  return torque;
-}
-
-template <Parts parts>
-struct DoublePendulumWithEffects : LoadedDoublePendulum<Pair, double> {
-  static constexpr bool is_long = parts == Parts::everything;
-
-  Pair length;
-  Pair diagonal;                 ///< A, kg m^2
-  Pair moment;                   ///< a/A, 1/m
-  const Couples<Pair>* couples;  ///< the couples on both joints
-  const ActingEffects<Pair>* effects;
-
-  DoublePendulumWithEffects(const Scene& scene, const Inertia& inertia,
-                            const ActingEffects<Pair>* in_force);
-
-  /// `t` is a pack if each lane of V has a time of its own, which couples alone take.
+  /// Adds what no other form has. Users' functions take the state of one trajectory.
   template <class V, class Time>
-    requires(std::is_same_v<Time, double> || parts == Parts::couples)
-  PENDCORE_INLINE V accelerations(const Time& t, const V& q, const V& qd) const {
+  PENDCORE_INLINE void add_everything(RowAt<V, Time>& at, RowLoads<V>& loads, V& pull) const {
     using Constant = Constants<V>;
-    constexpr bool everything = parts == Parts::everything;
-    V s, c;
-    [[maybe_unused]] Pair wave;
-    if constexpr (everything || parts == Parts::waves) {
-      wave = sines(t, q, s, c);
-    } else {
-      sine_cosine(q, s, c);
+    for (const auto& one : effects->joint_waves) {
+      Links torque{};
+      set_number(torque, one.joint, Number(one.gain * effects->wave_sine[one.wave]));
+      loads.couple(Constant::of(torque));
     }
-    const Between<V> between(s, c);
-    V pull = Constant::of(weight) * c;
-    RowAt<V, Time> at{.q = q,
-                      .qd = qd,
-                      .s = s,
-                      .c = c,
-                      .L = Constant::of(length),
-                      .t = t,
-                      .pivot_vx = 0.0,
-                      .pivot_vy = 0.0};
-    RowLoads<V> loads{.couples = couples->torque(at)};
-    if constexpr (everything) {
-      for (const JointWave& one : effects->joint_waves) add_wave(one, loads);
-      if (!effects->pivots.empty()) {
-        double x, y;
-        effects->pivot_acceleration(t, x, y);
-        pull = fma(Constant::of(moment), Constant::of(x) * s - Constant::of(y) * c, pull);
-        if (effects->has_forces) effects->pivot_velocity(t, at.pivot_vx, at.pivot_vy);
-      }
-      if (!effects->entries.empty()) ActingEffects<Pair>::add_all(effects, &at, &loads);
-      if constexpr (Lanes<V>::width == 2) {
-        if (!effects->users.empty()) loads.generalised(of_users(*effects, t, q, qd));
-      }
-    } else if constexpr (parts == Parts::laws) {
-      for (const auto& entry : effects->entries) ActingEffects<Pair>::add(entry, at, loads);
+    if (!effects->pivots.empty()) {
+      Number x, y;
+      effects->pivot_acceleration(at.t, x, y);
+      pull = fma(Constant::of(moment), Constant::of(x) * at.s - Constant::of(y) * at.c, pull);
+      if (effects->has_forces) effects->pivot_velocity(at.t, at.pivot_vx, at.pivot_vy);
     }
-    V torque = loads.torque_of_couples();
-    if constexpr (parts == Parts::laws || everything) torque = torque + loads.moments;
-    if constexpr (parts == Parts::waves) {
-      torque = with_waves(torque, effects->two_waves, wave, s, c);
+    if (!effects->entries.empty()) Effects::add_all(effects, &at, &loads);
+    if constexpr (Lanes<V>::width == 2) {
+      if (!effects->users.empty()) loads.generalised(of_users(*effects, at.t, at.q, at.qd));
     }
-    if constexpr (parts == Parts::laws || everything) {
-      if (effects->has_forces) torque = torque + loads.torque_of_forces(at);
-    }
-
-    const V f = alone(torque, pull, between, qd);
-    const V k = kappa(between);
-    if (effects->any_held) [[unlikely]]
-      return with_joints_held(f, k);
-    return both_free(f, k, between);
   }
 
- private:
-  /// Computes the sines of the links and of the first two waves. For a single trajectory they fit
-  /// into one pack.
+  /// Adds what the first two waves give, WavesOf.
+  template <class V>
+  PENDCORE_INLINE V with_two_waves(V torque, const PairOf<Number>& wave, const V& s,
+                                   const V& c) const {
+    using Constant = Constants<V>;
+    const WavesOf<Links>& two = effects->two_waves;
+#pragma GCC unroll 2
+    for (int k = 0; k < 2; ++k) {
+      const V size = fma(Constant::of(two.on_sine[k]), s,
+                         fma(Constant::of(two.on_cosine[k]), c, Constant::of(two.torque[k])));
+      torque = fma(Constant::of(number_of(wave, k)), size, torque);
+    }
+    return torque;
+  }
+
+  /// Computes the sines of the links and of all waves, and returns those of the first two. For a
+  /// single trajectory these and the links fit into one pack.
   PENDCORE_INLINE Pair sines(double t, const Pair& q, Pair& s, Pair& c) const {
-    const TwoWaves& two = effects->two_waves;
-    const Pair wave = fma(two.angular_frequency, Pair{t, t}, two.phase);
+    const Pair wave = fma(effects->angular_frequency.pair(0), Pair{t, t}, effects->phase.pair(0));
     Pack<4> sine, cosine;
     sine_cosine(joined(q, wave), sine, cosine);
     s = low_half(sine);
     c = low_half(cosine);
-    const Pair wave_sine = high_half(sine);
-    if constexpr (parts == Parts::everything) {
-      store(&effects->wave_sine[0], wave_sine);
-      store(&effects->wave_cosine[0], high_half(cosine));
+    if constexpr (everything) {
+      effects->wave_sine.set_row(0, high_half(sine));
+      effects->wave_cosine.set_row(0, high_half(cosine));
       if (effects->waves > 2) [[unlikely]]
         effects->compute_waves(t, 2);
     }
-    return wave_sine;
+    return high_half(sine);
   }
   template <class V>
-  PENDCORE_INLINE Pair sines(double t, const V& q, V& s, V& c) const {
+  PENDCORE_INLINE PairOf<Number> sines(const Number& t, const V& q, V& s, V& c) const {
     sine_cosine(q, s, c);
     effects->compute_waves(t, 0);
-    return load<Pair>(effects->wave_sine.data());
-  }
-
-  template <class V>
-  PENDCORE_INLINE void add_wave(const JointWave& one, RowLoads<V>& loads) const {
-    Pair torque{};
-    torque[one.joint] = one.gain * effects->wave_sine[one.wave];
-    loads.couple(Constants<V>::of(torque));
+    return effects->wave_sine.pair(0);
   }
 
   /// With joint 2 held, qdd is (A_1 f_1 + A_2 f_2)/(A_1 + A_2 + 2 M_12) for both links. With joint
@@ -208,5 +209,8 @@ struct DoublePendulumWithEffects : LoadedDoublePendulum<Pair, double> {
     return (moments + other(moments)) * (1.0 / (inertia + other(inertia)));
   }
 };
+
+template <Parts parts>
+using DoublePendulumWithEffects = LoadedDoublePendulum<ActingEffects<Pair>, parts>;
 
 }  // namespace pendcore

@@ -5,77 +5,113 @@
 /// Cost: the bare equation, 4 more operations, and the effects.
 #pragma once
 
+#include "arithmetic/row_of_links.hpp"
 #include "dynamics/acting_effects.hpp"
 #include "dynamics/inertia.hpp"
 #include "dynamics/row.hpp"
 
 namespace pendcore {
 
-struct SinglePendulumWithEffects {
-  using Links = double;
+/// `AnyEffects` are ActingEffects<double>, or EffectsInLanes with a trajectory in each lane. There,
+/// a form for couples alone saves a seventh of the time of a short step.
+template <class AnyEffects, bool couples_alone = false>
+struct LoadedSinglePendulum {
+  using Effects = AnyEffects;
+  using Links = typename Effects::Row;
+  using Number = typename Effects::Number;
 
-  double length;
-  double inverse_inertia;  ///< 1/A_11
-  double moment;           ///< a_1/A_11, 1/m
-  double weight;           ///< a_1 g/A_11
-  const ActingEffects<double>* effects;
+  Links length{};
+  Links inverse_inertia{};  ///< 1/A_11
+  Links moment{};           ///< a_1/A_11, 1/m
+  Links weight{};           ///< a_1 g/A_11
+  const Effects* effects = nullptr;
 
-  SinglePendulumWithEffects(const Scene& scene, const Inertia& inertia,
-                            const ActingEffects<double>* in_force)
+  LoadedSinglePendulum() = default;
+  /// The equations of a run.
+  LoadedSinglePendulum(const Scene& scene, const Inertia& inertia, const Effects* in_force)
       : length(inertia.links[0].length),
         inverse_inertia(1.0 / inertia.links[0].divisor()),
         moment(inertia.links[0].first_moment / inertia.links[0].divisor()),
         weight(inertia.links[0].first_moment * scene.gravity / inertia.links[0].divisor()),
         effects(in_force) {}
 
+  template <class Any>
+  static auto fields(Any& x) {
+    return std::tie(x.length, x.inverse_inertia, x.moment, x.weight);
+  }
+
   template <class V>
-  PENDCORE_INLINE V accelerations(double t, const V& q, const V& qd) const {
+  PENDCORE_INLINE V accelerations(const Number& t, const V& q, const V& qd) const {
+    using Constant = Constants<V>;
     V s, c;
-    sines(t, q, s, c);
-    V pull = weight * c;
-    RowAt<V> at{
-        .q = q, .qd = qd, .s = s, .c = c, .L = length, .t = t, .pivot_vx = 0.0, .pivot_vy = 0.0};
-    if (!effects->pivots.empty()) {
-      double x, y;
-      effects->pivot_acceleration(t, x, y);
-      pull = fma(V(moment), x * s - y * c, pull);
-      if (effects->has_forces) effects->pivot_velocity(t, at.pivot_vx, at.pivot_vy);
+    if constexpr (couples_alone) {
+      sine_cosine(q, s, c);
+    } else {
+      sines(t, q, s, c);
     }
+    V pull = Constant::of(weight) * c;
+    if (!effects->are_any()) return pull;
+    RowAt<V, Number> at{.q = q,
+                        .qd = qd,
+                        .s = s,
+                        .c = c,
+                        .L = Constant::of(length),
+                        .t = t,
+                        .pivot_vx = {},
+                        .pivot_vy = {}};
     RowLoads<V> loads;
-    for (const auto& one : effects->couples) loads.couple(one.torque(at));
-    for (const JointWave& one : effects->joint_waves) {
-      loads.couple(one.gain * effects->wave_sine[one.wave]);
+    if (!effects->couples.empty()) loads.couple(effects->couples.front().torque(at));
+    if constexpr (!couples_alone) {
+      if (!effects->are_couples_alone) add_more(at, loads, pull);
     }
-    for (const auto& entry : effects->entries) ActingEffects<double>::add(entry, at, loads);
-    V torque = loads.torque_of_couples() + loads.moments;
-    if (!effects->users.empty()) torque += of_users(*effects, t, q, qd);
-    return effects->any_held ? V(0.0) : fma(V(inverse_inertia), torque, pull);
+    const V torque = loads.torque_of_couples() + loads.moments;
+    return effects->any_held ? Constant::of(0.0) : fma(Constant::of(inverse_inertia), torque, pull);
   }
 
  private:
+  /// Adds what is not a couple without a wave.
+  template <class V>
+  PENDCORE_INLINE void add_more(RowAt<V, Number>& at, RowLoads<V>& loads, V& pull) const {
+    using Constant = Constants<V>;
+    if (!effects->pivots.empty()) {
+      Number x, y;
+      effects->pivot_acceleration(at.t, x, y);
+      pull = fma(Constant::of(moment), Constant::of(x) * at.s - Constant::of(y) * at.c, pull);
+      if (effects->has_forces) effects->pivot_velocity(at.t, at.pivot_vx, at.pivot_vy);
+    }
+    for (const auto& one : effects->joint_waves) {
+      loads.couple(Constant::of(Number(one.gain * effects->wave_sine[one.wave])));
+    }
+    for (const auto& entry : effects->entries) Effects::add(entry, at, loads);
+    if constexpr (requires { effects->users; }) {
+      if (!effects->users.empty()) loads.generalised(of_users(*effects, at.t, at.q, at.qd));
+    }
+  }
+
   /// Computes the sine of the link in one pack with the first three waves.
   PENDCORE_INLINE void sines(double t, double q, double& s, double& c) const {
     if (effects->waves == 0) {
       sine_cosine(q, s, c);
       return;
     }
-    const double* frequency = effects->angular_frequency.data();
-    const double* phase = effects->phase.data();
-    Pack<4> angle = fma(load<Pack<4>>(frequency), broadcast<Pack<4>>(t), load<Pack<4>>(phase));
+    Pack<4> angle =
+        fma(effects->angular_frequency.row(0), broadcast<Pack<4>>(t), effects->phase.row(0));
     angle = Pack<4>{angle[0], angle[1], angle[2], q};
     Pack<4> sine, cosine;
     sine_cosine(angle, sine, cosine);
     s = sine[3];
     c = cosine[3];
-    store(&effects->wave_sine[0], sine);
-    store(&effects->wave_cosine[0], cosine);
+    effects->wave_sine.set_row(0, sine);
+    effects->wave_cosine.set_row(0, cosine);
     effects->compute_waves(t, 3);
   }
   template <class V>
-  PENDCORE_INLINE void sines(double t, const V& q, V& s, V& c) const {
+  PENDCORE_INLINE void sines(const Number& t, const V& q, V& s, V& c) const {
     effects->compute_waves(t, 0);
     sine_cosine(q, s, c);
   }
 };
+
+using SinglePendulumWithEffects = LoadedSinglePendulum<ActingEffects<double>>;
 
 }  // namespace pendcore

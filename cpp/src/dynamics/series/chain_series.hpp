@@ -28,42 +28,14 @@
 
 #include <memory>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #include "arithmetic/order_of_series.hpp"
+#include "arithmetic/rows_in_memory.hpp"
 #include "dynamics/acting_effects.hpp"
 #include "dynamics/chain/chain_link.hpp"
 
 namespace pendcore {
-
-/// Numbers in memory, one for each link or order. `Number` is a double, or a pack with a trajectory
-/// in each lane. `Row` is as many numbers as `places`, side by side.
-template <class Row, class Number>
-class RowsInMemory {
-  static constexpr int lanes = Lanes<Number>::width;
-
- public:
-  static constexpr int places = Lanes<Row>::width / lanes;
-
-  void assign(std::size_t count) { numbers_.assign(count * lanes, 0.0); }
-  PENDCORE_INLINE Number number(std::ptrdiff_t i) const {
-    return load<Number>(numbers_.data() + i * lanes);
-  }
-  PENDCORE_INLINE void set(std::ptrdiff_t i, const Number& x) {
-    store(numbers_.data() + i * lanes, x);
-  }
-  /// Sets number i of one trajectory.
-  void put(std::ptrdiff_t i, int lane, double x) { numbers_[i * lanes + lane] = x; }
-  /// The row that begins at number i.
-  PENDCORE_INLINE Row row(std::ptrdiff_t i) const { return load<Row>(numbers_.data() + i * lanes); }
-  PENDCORE_INLINE void set_row(std::ptrdiff_t i, const Row& x) {
-    store(numbers_.data() + i * lanes, x);
-  }
-
- private:
-  std::vector<double> numbers_;
-};
 
 /// The constants of the links: those of chain_link.hpp, and the rotors between links.
 template <class Number>
@@ -94,15 +66,14 @@ class ConstantsOfChain {
 
   int links() const { return links_; }
   PENDCORE_INLINE ChainLinkOf<Number> link(int i) const {
-    const auto number = [this, i](int k) __attribute__((always_inline)) {
-      return numbers_.number(each * i + k);
-    };
+    const auto number = [this, i](int k)
+                            __attribute__((always_inline)) { return numbers_[each * i + k]; };
     return {number(0), number(1), number(2), number(3), number(4), number(5), number(6), number(7)};
   }
-  PENDCORE_INLINE Number rotor(int i) const { return numbers_.number(each * i + 8); }
-  PENDCORE_INLINE Number gravity() const { return numbers_.number(each * links_); }
-  PENDCORE_INLINE Number payload_mass() const { return numbers_.number(each * links_ + 1); }
-  PENDCORE_INLINE Number number(std::ptrdiff_t i) const { return numbers_.number(i); }
+  PENDCORE_INLINE Number rotor(int i) const { return numbers_[each * i + 8]; }
+  PENDCORE_INLINE Number gravity() const { return numbers_[each * links_]; }
+  PENDCORE_INLINE Number payload_mass() const { return numbers_[each * links_ + 1]; }
+  PENDCORE_INLINE Number number(std::ptrdiff_t i) const { return numbers_[i]; }
   /// Whether there are rotors between links.
   bool has_rotors() const {
     for (int i = 0; i < links_; ++i) {
@@ -117,68 +88,9 @@ class ConstantsOfChain {
   RowsInMemory<Number, Number> numbers_;
 };
 
-/// A wave that drives a joint, and an axis of a pivot (effects/laws.hpp).
-template <class Number>
-struct JointWaveOf {
-  int joint, wave;
-  Number gain;
-};
-template <class Number>
-struct PivotAxisOf {
-  int wave;
-  Number held, slope, gain;
-};
-inline PivotAxisOf<double> axis_of(const PivotLaw::Axis& one) {
-  return {one.wave, one.held, one.slope, one.gain};
-}
-
-/// The effects of a trajectory, in the modes that are in force.
-template <class Row>
-class EffectsOfChain {
- public:
-  using Number = double;
-
-  /// Null for a chain without effects.
-  explicit EffectsOfChain(std::shared_ptr<const ActingEffects<Row>> effects)
-      : effects_(std::move(effects)) {}
-
-  bool are_any() const { return effects_ != nullptr; }
-  bool any_held() const { return effects_->any_held; }
-  bool is_held(int joint) const { return effects_->held[joint] != 0; }
-
-  int waves() const { return effects_->waves; }
-  double angular_frequency(int wave) const { return effects_->angular_frequency[wave]; }
-  /// Writes the sines and cosines of the waves at time t.
-  PENDCORE_INLINE void compute_waves(double t, RowsInMemory<Row, double>& sine,
-                                     RowsInMemory<Row, double>& cosine) const {
-    effects_->compute_waves(t, 0);
-    for (int k = 0; k < waves(); ++k) {
-      sine.set(k, effects_->wave_sine[k]);
-      cosine.set(k, effects_->wave_cosine[k]);
-    }
-  }
-
-  int pivots() const { return static_cast<int>(effects_->pivots.size()); }
-  double start_of_pivot(int i) const { return effects_->pivots[i].start; }
-  PivotAxisOf<double> pivot_x(int i) const { return axis_of(effects_->pivots[i].x); }
-  PivotAxisOf<double> pivot_y(int i) const { return axis_of(effects_->pivots[i].y); }
-
-  int couples() const { return static_cast<int>(effects_->couples.size()); }
-  const Couples<Row>& couple(int i) const { return effects_->couples[i]; }
-  bool has_powers(int i) const { return couple(i).has_powers(); }
-  int joint_waves() const { return static_cast<int>(effects_->joint_waves.size()); }
-  JointWaveOf<double> joint_wave(int i) const {
-    const JointWave& one = effects_->joint_waves[i];
-    return {one.joint, one.wave, one.gain};
-  }
-
- private:
-  std::shared_ptr<const ActingEffects<Row>> effects_;
-};
-
 /// Computes one series at a time, in one thread, in memory of its own. `Row` is the type of the
-/// effects' rows.
-template <class Row, class Effects = EffectsOfChain<Row>>
+/// effects' rows; `Effects` are ActingEffects, or EffectsInLanes with a trajectory in each lane.
+template <class Row, class Effects = ActingEffects<Row>>
 class ChainSeries {
  public:
   using Number = typename Effects::Number;
@@ -189,11 +101,9 @@ class ChainSeries {
   static constexpr InstructionSet least = InstructionSet::baseline;
   static constexpr int places = RowsInMemory<Row, Number>::places;
 
-  /// All trajectories have rotors between their links, or none has.
-  ChainSeries(int links, ConstantsOfChain<Number> constants, Effects effects);
-  /// `effects` is null for a chain without effects.
-  ChainSeries(const Scene& scene, std::shared_ptr<const ActingEffects<Row>> effects)
-    requires(std::is_same_v<Number, double>);
+  /// All trajectories have rotors between their links, or none has. `effects` are null for a chain
+  /// without effects.
+  ChainSeries(ConstantsOfChain<Number> constants, std::shared_ptr<const Effects> effects);
 
   int links() const { return n_; }
   static constexpr bool depends_on_time() { return true; }
@@ -201,8 +111,6 @@ class ChainSeries {
   void set_order(int order);
 
   ConstantsOfChain<Number>& constants() { return constants_; }
-  bool has_rotors() const { return has_rotors_; }
-  Effects& effects() { return effects_; }
 
   /// Fills rows 1 .. order of `coefficients`, each (q, qd), both padded to whole rows, with time in
   /// units of sigma.
@@ -254,7 +162,7 @@ class ChainSeries {
   }
   /// The number of link i in order 0.
   PENDCORE_INLINE Number order_zero_of(Quantity quantity, int i) const {
-    return series_.number(at(quantity, i / places, 0) + i % places);
+    return series_[at(quantity, i / places, 0) + i % places];
   }
 
   int n_;
@@ -262,7 +170,7 @@ class ChainSeries {
   int groups_;
   ConstantsOfChain<Number> constants_;
   bool has_rotors_;
-  Effects effects_;
+  std::shared_ptr<const Effects> effects_;
   // Memory for one series:
   std::ptrdiff_t room_ = 0;
   mutable Rows series_;
@@ -270,7 +178,6 @@ class ChainSeries {
   mutable std::vector<Passing> passing_;
   mutable Rows beta_x_, beta_y_, torque_, alpha_, hx_, hy_;
   mutable Rows couple_, angle_, speed_;  ///< with a margin before and after
-  mutable Rows wave_sine_, wave_cosine_;
 };
 
 }  // namespace pendcore

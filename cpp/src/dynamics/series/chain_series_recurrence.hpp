@@ -14,9 +14,9 @@ inline constexpr int margin = 4;  ///< numbers before and after those of the joi
 }  // namespace chain_series_detail
 
 template <class Row, class Effects>
-ChainSeries<Row, Effects>::ChainSeries(int links, ConstantsOfChain<Number> constants,
-                                       Effects effects)
-    : n_(links),
+ChainSeries<Row, Effects>::ChainSeries(ConstantsOfChain<Number> constants,
+                                       std::shared_ptr<const Effects> effects)
+    : n_(constants.links()),
       row_((n_ + places - 1) / places * places),
       groups_(row_ / places),
       constants_(std::move(constants)),
@@ -27,18 +27,7 @@ ChainSeries<Row, Effects>::ChainSeries(int links, ConstantsOfChain<Number> const
   for (Rows* rows : {&beta_x_, &beta_y_, &torque_, &alpha_, &hx_, &hy_}) rows->assign(row_);
   const std::size_t room = row_ + 2 * static_cast<std::size_t>(chain_series_detail::margin);
   for (Rows* rows : {&couple_, &angle_, &speed_}) rows->assign(room);
-  if (effects_.are_any()) {
-    wave_sine_.assign(effects_.waves() + 1);
-    wave_cosine_.assign(effects_.waves() + 1);
-  }
 }
-
-template <class Row, class Effects>
-ChainSeries<Row, Effects>::ChainSeries(const Scene& scene,
-                                       std::shared_ptr<const ActingEffects<Row>> effects)
-  requires(std::is_same_v<Number, double>)
-    : ChainSeries(static_cast<int>(scene.links.size()), ConstantsOfChain<double>(scene),
-                  Effects(std::move(effects))) {}
 
 template <class Row, class Effects>
 void ChainSeries<Row, Effects>::set_order(int order) {
@@ -50,7 +39,7 @@ void ChainSeries<Row, Effects>::set_order(int order) {
 /// what is kept is along x and y.
 template <class Row, class Effects>
 PENDCORE_INLINE void ChainSeries<Row, Effects>::factor() const {
-  const bool coupled = has_rotors_ || (effects_.are_any() && effects_.any_held());
+  const bool coupled = has_rotors_ || (effects_ && effects_->any_held);
   const Number payload_mass = constants_.payload_mass();
   ForcePerAcceleration<Number> B{payload_mass, Number{}, payload_mass};
   Number fu{};
@@ -71,7 +60,7 @@ PENDCORE_INLINE void ChainSeries<Row, Effects>::factor() const {
     const Number D = fma(k.LL, B.nn, k.Io) + fma(2.0 * k.L, fn, kappa);
     const Number wu = fma(k.L, B.un, fu);
     const Number wn = fma(k.L, B.nn, k.mc) + fn;
-    const bool is_held = effects_.are_any() && effects_.is_held(i);
+    const bool is_held = effects_ && effects_->held[i];
     const Number rotor = constants_.rotor(i);
     here.r = is_held ? Number{} : Number(1.0 / (D + rotor));
     here.s = is_held ? broadcast<Number>(1.0) : Number(rotor * here.r);
@@ -99,12 +88,12 @@ PENDCORE_INLINE void ChainSeries<Row, Effects>::factor() const {
 /// Takes the waves sin(phase + omega sigma theta) from order k to the next.
 template <class Row, class Effects>
 PENDCORE_INLINE void ChainSeries<Row, Effects>::advance_waves(const Number& sigma, int k) const {
-  if (!effects_.are_any()) return;
-  for (int i = 0; i < effects_.waves(); ++i) {
-    const Number factor = effects_.angular_frequency(i) * sigma * inverse_of[k + 1];
-    const Number sine = wave_sine_.number(i);
-    wave_sine_.set(i, factor * wave_cosine_.number(i));
-    wave_cosine_.set(i, -(factor * sine));
+  if (!effects_) return;
+  for (int i = 0; i < effects_->waves; ++i) {
+    const Number factor = effects_->angular_frequency[i] * sigma * inverse_of[k + 1];
+    const Number sine = effects_->wave_sine[i];
+    effects_->wave_sine.set(i, factor * effects_->wave_cosine[i]);
+    effects_->wave_cosine.set(i, -(factor * sine));
   }
 }
 
@@ -114,17 +103,16 @@ PENDCORE_INLINE void ChainSeries<Row, Effects>::pivot_acceleration(const Number&
                                                                    Number& x, Number& y) const {
   x = Number{};
   y = k == 0 ? Number(-(sigma * sigma * constants_.gravity())) : Number{};
-  if (!effects_.are_any()) return;
-  for (int i = 0; i < effects_.pivots(); ++i) {
-    const Number start = effects_.start_of_pivot(i);
-    const auto along = [&](const PivotAxisOf<Number>& axis) __attribute__((always_inline)) {
-      const Number of_piece = k == 0   ? fma(axis.slope, Number(t - start), axis.held)
+  if (!effects_) return;
+  for (const PivotLawOf<Number>& law : effects_->pivots) {
+    const auto along = [&](const auto& axis) __attribute__((always_inline)) {
+      const Number of_piece = k == 0   ? fma(axis.slope, Number(t - law.start), axis.held)
                               : k == 1 ? Number(sigma * axis.slope)
                                        : Number{};
-      return Number(sigma * sigma * fma(axis.gain, wave_sine_.number(axis.wave), of_piece));
+      return Number(sigma * sigma * fma(axis.gain, effects_->wave_sine[axis.wave], of_piece));
     };
-    x += along(effects_.pivot_x(i));
-    y += along(effects_.pivot_y(i));
+    x += along(law.x);
+    y += along(law.y);
   }
 }
 
@@ -133,18 +121,17 @@ template <class Row, class Effects>
 PENDCORE_INLINE void ChainSeries<Row, Effects>::add_couples(const Number& t, const Number& sigma,
                                                             int k) const {
   constexpr int margin = chain_series_detail::margin;
-  if (!effects_.are_any() || (effects_.couples() == 0 && effects_.joint_waves() == 0)) return;
+  if (!effects_ || (effects_->couples.empty() && effects_->joint_waves.empty())) return;
   for (int i = 0; i < row_; i += places) couple_.set_row(margin + i, Row{});
   const Number square = sigma * sigma;
-  for (int i = 0; i < effects_.couples(); ++i) {
-    const Couples<Row>& one = effects_.couple(i);
+  for (const Couples<Row>& one : effects_->couples) {
     const int at = margin + one.row * places;
     const Row phi = angle_.row(at) - angle_.row(at - 1);
     const Row w = speed_.row(at) - speed_.row(at - 1);
     Row torque = fma(Row(square * one.on_phi), phi, Row(sigma * one.on_phid * w));
     if (k == 0) torque = torque + square * one.template in_time<Row>(t);
     if (k == 1) torque = torque + square * sigma * one.slope;
-    if (effects_.has_powers(i)) {
+    if (one.has_powers) {
       const int row = one.row;
       const auto rate = [this, row](int j) __attribute__((always_inline)) {
         return order_of(relative_of, row, j);
@@ -160,11 +147,10 @@ PENDCORE_INLINE void ChainSeries<Row, Effects>::add_couples(const Number& t, con
     }
     couple_.set_row(at, torque);
   }
-  for (int i = 0; i < effects_.joint_waves(); ++i) {
-    const JointWaveOf<Number> one = effects_.joint_wave(i);
+  for (const JointWaveOf<Number>& one : effects_->joint_waves) {
     const int at = margin + one.joint;
-    const Number driven = sigma * sigma * one.gain * wave_sine_.number(one.wave);
-    couple_.set(at, couple_.number(at) + driven);
+    const Number driven = sigma * sigma * one.gain * effects_->wave_sine[one.wave];
+    couple_.set(at, couple_[at] + driven);
   }
   for (int i = 0; i < row_; i += places) {
     const Row difference = couple_.row(margin + i) - couple_.row(margin + i + 1);
@@ -181,12 +167,12 @@ PENDCORE_INLINE void ChainSeries<Row, Effects>::solve(Number ax, Number ay) cons
   for (int i = n_ - 1; i >= 0; --i) {
     const ChainLinkOf<Number> k = constants_.link(i);
     const Factors& here = factors_[i];
-    const Number x = beta_x_.number(i);
-    const Number y = beta_y_.number(i);
+    const Number x = beta_x_[i];
+    const Number y = beta_y_[i];
     const Number px = fma(k.L, fma(here.Bxx, x, here.Bxy * y), bx);
     const Number py = fma(k.L, fma(here.Bxy, x, here.Byy * y), by);
     const Number of_beta = fma(k.L, fma(here.fx, x, here.fy * y), t);
-    const Number torque = torque_.number(i) - fma(k.L, fma(here.nx, px, here.ny * py), of_beta);
+    const Number torque = torque_[i] - fma(k.L, fma(here.nx, px, here.ny * py), of_beta);
     const Number free = here.r * torque;
     passing_[i] = {bx, by, t, free};
     bx = fma(here.wx, free, fma(k.mc, x, px));
@@ -200,8 +186,8 @@ PENDCORE_INLINE void ChainSeries<Row, Effects>::solve(Number ax, Number ay) cons
     const Passing& passing = passing_[i];
     const Number alpha =
         fma(here.s, before, fma(-here.r, fma(here.wx, ax, here.wy * ay), passing.free));
-    const Number x = fma(k.L, fma(alpha, here.nx, beta_x_.number(i)), ax);
-    const Number y = fma(k.L, fma(alpha, here.ny, beta_y_.number(i)), ay);
+    const Number x = fma(k.L, fma(alpha, here.nx, beta_x_[i]), ax);
+    const Number y = fma(k.L, fma(alpha, here.ny, beta_y_[i]), ay);
     const Number force_x = fma(here.fx, alpha, fma(here.Bxx, x, fma(here.Bxy, y, passing.bx)));
     const Number force_y = fma(here.fy, alpha, fma(here.Bxy, x, fma(here.Byy, y, passing.by)));
     hx_.set(i, fma(k.mc, ax, Number(k.L * force_x)));
@@ -241,9 +227,7 @@ PENDCORE_INLINE void ChainSeries<Row, Effects>::expand(const Number& t, const Nu
     speed_.set_row(margin + at, w);
   }
   factor();
-  if (effects_.are_any() && effects_.waves() > 0) {
-    effects_.compute_waves(t, wave_sine_, wave_cosine_);
-  }
+  if (effects_) effects_->compute_waves(t, 0);
 
   for (int k = 0; k < order; ++k) {
     const double next = k + 1.0;

@@ -151,12 +151,7 @@ class DoublePendulumSeries {
   void set_order(int /*order*/) {}
 
   const DoublePendulumConstants& constants() const { return constants_; }
-  /// The laws of its torques that are in force now.
-  PENDCORE_INLINE TorqueLaws<Pair, double> laws() const
-    requires(Torque::is_there)
-  {
-    return torque_laws(*torque_.effects, torque_.factor);
-  }
+  const Torque& torque() const { return torque_; }
 
   /// Fills rows 1 .. order of `coefficients` with y_k of y(t + theta sigma) = sum_k theta^k y_k,
   /// from the state y. The order is even, and at least `lowest_taylor_order`.
@@ -375,7 +370,7 @@ template <class Number>
 PENDCORE_INLINE void DoublePendulumSeries<Torque>::expand(double t, const Number* y, double sigma,
                                                           int order, Number* coefficients) const {
   if constexpr (Torque::is_there) {
-    const TorqueLaws<Pair, double> in_force = laws();
+    const TorqueLaws<Pair, double> in_force = torque_laws(*torque_.effects, torque_.factor);
     TorqueOrders<typename SeriesOf<Number>::Half, double> orders(in_force, t, sigma);
     expand_double_pendulum(constants_, y, sigma, order, orders, coefficients);
   } else {

@@ -149,15 +149,15 @@ PENDCORE_INLINE InverseMassMatrix<Row, links> inverse_mass_matrix(
 #pragma GCC unroll 4
   for (int i = links - 1; i >= 0; --i) {
     const ChainLinkOf<ConstantOf<Number>>& k = constants.link[i];
-    const Number c = of_link(cosine, i);
-    const Number s = of_link(sine, i);
+    const Number c = number_of(cosine, i);
+    const Number s = number_of(sine, i);
     const Number wu = k.L * B.un;
     const Number wn = fma(k.L, B.nn, k.mc);
     const Number r = 1.0 / fma(k.LL, B.nn, k.Io);
     turning[i] = {r, fma(wu, c, Number(-(wn * s))), fma(wu, s, Number(wn * c))};
     if (i == 0) break;
-    const Number c_before = of_link(cosine, i - 1);
-    const Number s_before = of_link(sine, i - 1);
+    const Number c_before = number_of(cosine, i - 1);
+    const Number s_before = number_of(sine, i - 1);
     const Number cos = fma(c, c_before, Number(s * s_before));
     const Number sin = fma(s, c_before, Number(-(c * s_before)));
     B.add_free(k, r, wu, cos * cos, sin * sin, sin * cos);
@@ -166,15 +166,15 @@ PENDCORE_INLINE InverseMassMatrix<Row, links> inverse_mass_matrix(
   // A torque on link j pushes the links before, through the forces in their joints: column j of U.
 #pragma GCC unroll 4
   for (int j = 0; j < links; ++j) {
-    set_link(inverse.r, j, turning[j].r);
+    set_number(inverse.r, j, turning[j].r);
     Number x = turning[j].wx * turning[j].r;
     Number y = turning[j].wy * turning[j].r;
 #pragma GCC unroll 4
     for (int i = j - 1; i >= 0; --i) {
-      const Number across = fma(of_link(cosine, i), y, Number(-(of_link(sine, i) * x)));
+      const Number across = fma(number_of(cosine, i), y, Number(-(number_of(sine, i) * x)));
       const Number entry = -(constants.link[i].L * across);
-      set_link(inverse.upper[j - i], i, entry);
-      set_link(inverse.transposed[links + i - j], j, entry);
+      set_number(inverse.upper[j - i], i, entry);
+      set_number(inverse.transposed[links + i - j], j, entry);
       const Number turned = turning[i].r * entry;
       x = fma(turning[i].wx, turned, x);
       y = fma(turning[i].wy, turned, y);

@@ -35,33 +35,29 @@ struct NoTorque {
 template <class Links, class Number>
 struct TorqueLaws {
   const Couples<Links>* couples = nullptr;      ///< of effects that outlive this; null without any
-  bool has_powers = false;                      ///< whether a law has a square or cube of a rate
   int waves = 0;                                ///< at most two
   PairOf<Number> angular_frequency{}, phase{};  ///< of each wave, rad/s and rad
   Links gain[2]{};                              ///< what each wave gives to the joints, N m
   Links factor{};                               ///< multiplies the result
-
-  template <class Any>
-  static auto fields(Any& x) {
-    return std::tie(x.angular_frequency, x.phase, x.gain, x.factor);
-  }
 };
 
-/// The laws of a scene that are in force now: a motor at its limit has no wave.
-template <class Links>
-PENDCORE_INLINE TorqueLaws<Links, double> torque_laws(const ActingEffects<Links>& effects,
-                                                      const Links& factor) {
-  TorqueLaws<Links, double> laws;
+/// The laws of a scene that are in force now: a motor at its limit has no wave. `Effects` are
+/// ActingEffects, or EffectsInLanes with a trajectory in each lane.
+template <class Effects, class Links = typename Effects::Row>
+PENDCORE_INLINE TorqueLaws<Links, typename Effects::Number> torque_laws(const Effects& effects,
+                                                                        const Links& factor) {
+  using Number = typename Effects::Number;
+  TorqueLaws<Links, Number> laws;
   laws.factor = factor;
-  if (!effects.couples.empty()) {
-    laws.couples = &effects.couples.front();
-    laws.has_powers = laws.couples->has_powers();
-  }
+  if (!effects.couples.empty()) laws.couples = &effects.couples.front();
   if (effects.waves == 0) return laws;
   laws.waves = effects.waves;
-  laws.angular_frequency = effects.two_waves.angular_frequency;
-  laws.phase = effects.two_waves.phase;
-  for (const JointWave& one : effects.joint_waves) laws.gain[one.wave][one.joint] += one.gain;
+  laws.angular_frequency = effects.angular_frequency.pair(0);
+  laws.phase = effects.phase.pair(0);
+  for (const auto& one : effects.joint_waves) {
+    Links& gain = laws.gain[one.wave];
+    set_number(gain, one.joint, Number(number_of(gain, one.joint) + one.gain));
+  }
   return laws;
 }
 
@@ -98,7 +94,7 @@ class TorqueOrders {
       couple = fma(damping_, scaled_rate, Links(couples.on_phi * (angle - before(angle))));
       if (k == 0) couple = couple + in_time_;
       if (k == 1) couple = couple + sigma_ * couples.slope;
-      if (laws_.has_powers) couple = couple + of_powers(k, per_sigma_ * scaled_rate);
+      if (couples.has_powers) couple = couple + of_powers(k, per_sigma_ * scaled_rate);
     }
     if (laws_.waves != 0) {
       couple = fma(number_of(sine_, 0), laws_.gain[0], couple);
