@@ -68,8 +68,9 @@ bench: build-bench  ## what the parts of the core cost, in nanoseconds
 OLD ?= $(error say which commit to compare with: make against OLD=COMMIT)
 NEW ?= HEAD
 ROUNDS ?= 30
+PROCESSES ?= 8
 against: $(DONE)/installed  ## is a commit slower? OLD=COMMIT and NEW=COMMIT (HEAD), the same calls in turns; ONLY="taylor chain"
-	python bench/against.py $(OLD) $(NEW) --rounds $(ROUNDS) $(if $(ONLY),--only $(ONLY))
+	python bench/against.py $(OLD) $(NEW) --rounds $(ROUNDS) --processes $(PROCESSES) $(if $(ONLY),--only $(ONLY))
 
 build-bench: $(DONE)/installed $(DONE)/bench-requirements
 	cmake -B $(BUILT) -DPENDCORE_BENCH=ON

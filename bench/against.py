@@ -1,19 +1,24 @@
 """Is one commit slower than another? Builds both and times the same calls of both in turns.
 
-    python bench/against.py OLD [NEW] [--only WORDS ...] [--rounds 30] [--seconds 300]
+    python bench/against.py OLD [NEW] [--only WORDS ...]
+                            [--processes 8] [--rounds 30] [--seconds 300]
 
 Both are built with the packages of this Python's environment and run in it, so nothing but
-pendcore differs; builds are kept in build/against. What is not committed is not built. The table
-has the least time of each call in both, the ratio of these, the median of the ratios of all turns,
-and between which ratios half of the turns lie: with OLD twice, that is the noise of the machine. A
-call that a commit lacks has a "-". The exit status is 1 where by both ratios a call is slower by
-more than 5 %.
+pendcore differs; builds are kept in build/against. What is not committed is not built.
+
+Where memory happens to lie makes a process fast or slow for as long as it lives: for ensembles, by
+up to 1.4. So the calls are timed in several pairs of fresh processes, one of each commit, and a
+process counts by the least time that it took for a call. The table has the least time of each call
+over all processes of a commit, the ratio of these, the ratio of the processes' medians, and between
+which ratios half of the pairs lie: with OLD twice, that is the noise of the machine. A call that a
+commit lacks has a "-". The exit status is 1 where by both ratios a call is slower by more than 5 %.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import math
 import os
 import resource
 import shutil
@@ -31,7 +36,7 @@ from timed_calls import prepared_calls
 ROOT = Path(__file__).parents[1]
 KEPT = ROOT / "build" / "against"
 FELT = 1.05
-LEAST_TURNS = 3
+LEAST_TURNS = 2
 BURST_SECONDS = 0.02
 PIP_INSTALL = ["pip", "install", "--quiet", "--no-deps", "--no-build-isolation"]
 # A compiler's cache would hide what a build costs.
@@ -47,27 +52,23 @@ class Build:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """A call's times in both builds, one of each turn; none where the commit lacks the call."""
+    """A call's least times in the processes of both commits; none where one lacks the call."""
 
     name: str
-    old: Sequence[float]
-    new: Sequence[float]
+    old: list[float]
+    new: list[float]
 
     @property
     def ratio(self) -> float:
         return min(self.new) / min(self.old)
 
     @property
-    def ratios(self) -> list[float]:
-        return [new / old for old, new in zip(self.old, self.new, strict=True)]
-
-    @property
     def median(self) -> float:
-        return statistics.median(self.ratios)
+        return statistics.median(self.new) / statistics.median(self.old)
 
     @property
     def is_slower(self) -> bool:
-        """One ratio alone may be chance: a disturbed turn, or one that was lucky."""
+        """One ratio alone may be chance: disturbed processes, or one that was lucky."""
         return bool(self.old and self.new) and min(self.ratio, self.median) > FELT
 
     def __str__(self) -> str:
@@ -79,7 +80,8 @@ class Comparison:
             return line
         line += f" {self.ratio:7.3f} {self.median:7.3f}"
         if len(self.old) > 1:
-            low, _, high = statistics.quantiles(self.ratios, n=4, method="inclusive")
+            pairs = [new / old for old, new in zip(self.old, self.new, strict=True)]
+            low, _, high = statistics.quantiles(pairs, n=4, method="inclusive")
             line += f"  {low:.3f} to {high:.3f}"
         return line + (" slower" if self.is_slower else "")
 
@@ -155,20 +157,37 @@ class Worker:
         return 1e6 * float(answer)
 
 
-def in_turns(name: str, old: Worker, new: Worker, rounds: int, seconds: float) -> Comparison:
-    """Time a call in both builds, each first in every other turn, until `seconds` are spent."""
+def in_turns(one: Comparison, old: Worker, new: Worker, rounds: int, seconds: float) -> None:
+    """Time a call in two processes, each first in every other turn, until `seconds` are spent."""
     times: dict[Worker, list[float]] = {old: [], new: []}
     end = time.perf_counter() + seconds
     for turn in range(rounds):
         if turn >= LEAST_TURNS and time.perf_counter() > end:
             break
         for worker in (old, new) if turn % 2 else (new, old):
-            found = worker.microseconds(name, BURST_SECONDS)
+            found = worker.microseconds(one.name, BURST_SECONDS)
             if found is not None:
                 times[worker].append(found)
         if not (times[old] and times[new]):
             break
-    return Comparison(name, times[old], times[new])
+    for side, worker in ((one.old, old), (one.new, new)):
+        if times[worker]:
+            side.append(min(times[worker]))
+
+
+def in_pairs_of_processes(
+    names: Sequence[str], old: Build, new: Build, processes: int, rounds: int, seconds: float
+) -> list[Comparison]:
+    """Time all calls in one pair of fresh processes after the other."""
+    compared = [Comparison(name, [], []) for name in names]
+    for pair in range(processes):
+        print(f"processes {pair + 1} of {processes}", file=sys.stderr)
+        with closing(Worker(old)) as first, closing(Worker(new)) as second:
+            for one in compared:
+                if pair == 0 or (one.old and one.new):
+                    share = seconds / processes / len(names)
+                    in_turns(one, first, second, math.ceil(rounds / processes), share)
+    return compared
 
 
 def chosen(words: Sequence[str]) -> list[str]:
@@ -184,23 +203,21 @@ def main() -> int:
     parser.add_argument("old", metavar="OLD", help="a commit")
     parser.add_argument("new", metavar="NEW", nargs="?", default="HEAD", help="another: HEAD")
     parser.add_argument("--only", metavar="WORDS", nargs="+", default=[], help="calls with these")
-    parser.add_argument("--rounds", type=int, default=30, help="turns of each call: 30")
+    parser.add_argument("--processes", type=int, default=8, help="of each commit: 8")
+    parser.add_argument("--rounds", type=int, default=30, help="turns of each call, in all: 30")
     parser.add_argument("--seconds", type=float, default=300.0, help="for all the timing: 300")
     given = parser.parse_args()
     names = chosen(given.only)
     old, new = build(given.old), build(given.new)
+    build_times = ([one.processor_seconds] for one in (old, new))
+    calls = in_pairs_of_processes(names, old, new, given.processes, given.rounds, given.seconds)
+    compared = [Comparison("build, processor seconds", *build_times), *calls]
     print(
-        f"{'microseconds':36} {old.commit:>12} {new.commit:>12}   ratio  median  half of the turns"
+        f"{'microseconds':36} {old.commit:>12} {new.commit:>12}   ratio  median  half of the pairs"
     )
-    built = Comparison("build, processor seconds", [old.processor_seconds], [new.processor_seconds])
-    print(built, flush=True)
-    compared = [built]
-    with closing(Worker(old)) as first, closing(Worker(new)) as second:
-        for name in names:
-            compared.append(in_turns(name, first, second, given.rounds, given.seconds / len(names)))
-            print(compared[-1], flush=True)
+    print(*compared, sep="\n")
     slower = [one.name for one in compared if one.is_slower]
-    medians = [one.median for one in compared[1:] if one.old and one.new]
+    medians = [one.median for one in calls if one.old and one.new]
     if medians:
         print(
             f"{len(medians)} calls: the median of their medians is {statistics.median(medians):.3f}"

@@ -1,4 +1,4 @@
-"""What says whether a commit is slower: the ratios of its turns, and calls that there still are."""
+"""What says whether a commit is slower: ratios of times, and which calls there still are."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from against import Build, Comparison, Worker
 NEVER_CALLED = Path("the folder of no build")
 
 
-def test_the_ratio_is_that_of_the_least_times_and_the_median_that_of_the_turns() -> None:
-    """By hand: 2 / 1; the turns have 2 / 4, 6 / 1 and 6 / 2, of which 3 is the middle one."""
+def test_the_ratios_are_those_of_the_least_times_and_of_the_medians_of_processes() -> None:
+    """By hand: 2 / 1 and 6 / 2; half of 2 / 4, 6 / 1 and 6 / 2 lie between 1.75 and 4.5."""
     compared = Comparison("one step", old=[4.0, 1.0, 2.0], new=[2.0, 6.0, 6.0])
     assert compared.ratio == 2.0
     assert compared.median == 3.0
-    assert "2.000   3.000" in str(compared)
+    assert str(compared).endswith("2.000   3.000  1.750 to 4.500 slower")
 
 
 @pytest.mark.parametrize(
@@ -43,7 +43,7 @@ def test_a_call_is_slower_when_both_ratios_say_so(new: list[float], slower: bool
     assert str(compared).endswith(" slower") is slower
 
 
-def test_one_lucky_turn_of_the_old_commit_makes_no_call_slower() -> None:
+def test_one_lucky_process_of_the_old_commit_makes_no_call_slower() -> None:
     assert not Comparison("one step", old=[0.9, 1.0, 1.0], new=[1.0, 1.0, 1.0]).is_slower
 
 
@@ -54,30 +54,58 @@ def test_a_call_that_a_commit_lacks_has_a_dash_and_is_not_slower() -> None:
 
 
 class Recorded(Worker):
-    """Answers what it is told to, and writes down that it was asked."""
+    """Gives one answer after the other, and writes down that it was asked."""
 
-    def __init__(self, name: str, asked: list[str], answer: float | None) -> None:
-        self.name, self.asked, self.told = name, asked, answer
+    def __init__(self, name: str, asked: list[str], *answers: float | None) -> None:
+        self.name, self.asked, self.answers = name, asked, iter(answers)
 
     def microseconds(self, name: str, seconds: float) -> float | None:
         self.asked.append(self.name)
-        return self.told
+        return next(self.answers)
+
+    def close(self) -> None:
+        pass
 
 
-def test_each_commit_is_first_in_every_other_turn() -> None:
+def test_each_commit_is_first_in_every_other_turn_and_a_process_gives_its_least_time() -> None:
     asked: list[str] = []
-    old, new = Recorded("old", asked, 1.0), Recorded("new", asked, 2.0)
-    compared = against.in_turns("one step", old, new, rounds=4, seconds=math.inf)
+    one = Comparison("one step", [7.0], [8.0])
+    old, new = (
+        Recorded("old", asked, 3.0, 1.0, 2.0, 4.0),
+        Recorded("new", asked, 9.0, 3.0, 4.0, 2.0),
+    )
+    against.in_turns(one, old, new, rounds=4, seconds=math.inf)
     assert asked == ["new", "old", "old", "new"] * 2
-    assert compared.ratios == [2.0] * 4
+    assert (one.old, one.new) == ([7.0, 1.0], [8.0, 2.0])
 
 
 def test_turns_end_with_their_time_and_with_the_first_lack() -> None:
     asked: list[str] = []
-    old, new = Recorded("old", asked, 1.0), Recorded("new", asked, 1.0)
-    assert len(against.in_turns("one step", old, new, rounds=99, seconds=0.0).old) == 3
-    lacks = Recorded("lacks", asked, None)
-    assert against.in_turns("one step", lacks, new, rounds=99, seconds=math.inf).new == [1.0]
+    old, new = Recorded("old", asked, *[1.0] * 3), Recorded("new", asked, *[1.0] * 3)
+    one = Comparison("one step", [], [])
+    against.in_turns(one, old, new, rounds=99, seconds=0.0)
+    assert len(asked) == 4
+    lacks = Comparison("error=1e-6", [], [])
+    against.in_turns(lacks, Recorded("lacks", asked, None), new, rounds=99, seconds=math.inf)
+    assert (lacks.old, lacks.new) == ([], [1.0])
+
+
+def test_each_pair_of_processes_is_fresh_and_leaves_out_what_the_first_lacked(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked: list[str] = []
+    begun: list[str] = []
+
+    def fresh(built: Build) -> Recorded:
+        begun.append(built.commit)
+        return Recorded(built.commit, asked, *(None if built.commit == "old" else 1.0,) * 2)
+
+    monkeypatch.setattr(against, "Worker", fresh)
+    builds = [Build(commit, NEVER_CALLED, 0.0) for commit in ("old", "new")]
+    (one,) = against.in_pairs_of_processes(["one step"], *builds, 3, 30, 300.0)
+    assert begun == ["old", "new"] * 3
+    assert asked == ["new", "old"]
+    assert (one.old, one.new) == ([], [1.0])
 
 
 @pytest.mark.parametrize("prepare", timed_calls.prepared_calls().values())
