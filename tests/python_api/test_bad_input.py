@@ -90,8 +90,8 @@ def test_a_start_that_is_not_finite_is_named_with_its_place(name, bad):
 
 
 OUT_OF_RANGE = {
-    "t_span start": ({"t_span": (nan, 1)}, r"t_span.* = nan: must be finite \(s\)"),
-    "t_span end": ({"t_span": (0, inf)}, r"t_span.* = inf: must be finite \(s\)"),
+    "t_span start": ({"t_span": (nan, 1)}, r"start of the run = nan: must be finite \(s\)"),
+    "t_span end": ({"t_span": (0, inf)}, r"end of the run = inf: must be finite \(s\)"),
     "rtol zero": ({"rtol": 0}, r"rtol = 0\.0: must be finite and > 0"),
     "rtol negative": ({"rtol": -1e-9}, r"rtol = -1e-0?9: must be finite and > 0"),
     "rtol nan": ({"rtol": nan}, r"rtol = nan: must be finite and > 0"),
@@ -121,11 +121,11 @@ OUT_OF_RANGE = {
     "t_eval twice": ({"t_eval": [0.5, 0.5]}, r"t_eval\[1\] = 0\.5: must be beyond .*each once"),
     "t_eval before": (
         {"t_eval": [-0.5]},
-        r"t_eval\[0\] = -0\.5: must be within t_span, 0\.0 to 1\.0 s",
+        r"t_eval\[0\] = -0\.5: must be within the run, 0\.0 to 1\.0 s",
     ),
     "t_eval after": (
         {"t_eval": [0.5, 2]},
-        r"t_eval\[1\] = 2\.0: must be within t_span, 0\.0 to 1\.0 s",
+        r"t_eval\[1\] = 2\.0: must be within the run, 0\.0 to 1\.0 s",
     ),
     "t_eval nan": ({"t_eval": [nan]}, r"t_eval\[0\] = nan: must"),
     "times and no place": (

@@ -50,7 +50,7 @@ void check_times(const std::vector<double>& times, double t0, double t_end) {
   for (std::size_t i = 0; i < times.size(); ++i) {
     if (!((times[i] - t0) * direction >= 0.0 && (t_end - times[i]) * direction >= 0.0)) {
       refuse("t_eval[" + std::to_string(i) + "]", times[i],
-             "within t_span, " + text(t0) + " to " + text(t_end) + " s");
+             "within the run, " + text(t0) + " to " + text(t_end) + " s");
     }
     if (i > 0 && !((times[i] - times[i - 1]) * direction > 0.0)) {
       refuse("t_eval[" + std::to_string(i) + "]", times[i],
@@ -89,7 +89,7 @@ void check(const Options& options) {
   if (options.compensated && !method.compensates) {
     throw std::invalid_argument(
         "compensated: method \"" + std::string(method.name) +
-        "\" cannot carry the rounding error to the next step: must be False");
+        "\" cannot carry the rounding error to the next step: leave it out");
   }
 }
 

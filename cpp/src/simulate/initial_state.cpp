@@ -20,7 +20,7 @@ void check_numbers(const char* name, std::span<const double> values, std::size_t
                    const char* unit) {
   if (values.size() != n) {
     throw std::invalid_argument(std::string(name) + ": has " + std::to_string(values.size()) +
-                                " numbers: must have " + std::to_string(n) + ", one a link");
+                                " numbers: must have " + std::to_string(n) + ", one for each link");
   }
   for (std::size_t i = 0; i < n; ++i) {
     if (!std::isfinite(values[i])) {
@@ -40,7 +40,7 @@ void check_stop(const JointStop& stop, const std::string& name, std::span<const 
   }
   if (backward && stop.restitution < 1.0) {
     throw std::invalid_argument(
-        "t_span: runs backward: " + name +
+        "the run goes back in time: " + name +
         ": with a restitution below 1 the past is not unique: run it forward");
   }
 }
@@ -51,7 +51,7 @@ void check_effects_at_start(const Scene& scene, std::span<const double> q0,
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
     const auto name = [&scene, i] { return effect_name(scene, i); };
     if (t_end < t0 && scene.effects[i]->holding_torque()) {
-      throw std::invalid_argument("t_span: runs backward: " + name() +
+      throw std::invalid_argument("the run goes back in time: " + name() +
                                   ": with dry friction the past is not unique: run it forward");
     }
     if (const auto* stop = scene.effects[i].get_if<JointStop>()) {
@@ -94,10 +94,10 @@ void check_start(const Scene& scene, std::span<const double> q0, std::span<const
   const std::size_t n = scene.links.size();
   check_numbers("q0", q0, n, "finite (rad)");
   check_numbers("qd0", qd0, n, "finite (rad/s)");
-  if (!std::isfinite(t0)) refuse("t_span[0]", t0, "finite (s)");
-  if (!std::isfinite(t_end)) refuse("t_span[1]", t_end, "finite (s)");
+  if (!std::isfinite(t0)) refuse("start of the run", t0, "finite (s)");
+  if (!std::isfinite(t_end)) refuse("end of the run", t_end, "finite (s)");
   if (!std::isfinite(t_end - t0)) {
-    refuse("t_span[1]", t_end, "less than 1.8e308 s from t_span[0] = " + text(t0));
+    refuse("end of the run", t_end, "less than 1.8e308 s from its start, " + text(t0) + " s");
   }
   check_effects_at_start(scene, q0, qd0, t0, t_end);
   check_locks_of_start(scene, q0);
