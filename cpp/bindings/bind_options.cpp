@@ -86,7 +86,7 @@ py::object given(const Options& options, const Value& value) {
     return is_usual ? py::object(py::none()) : string(store_name(*value));
   } else if constexpr (std::same_as<Value, Tolerance>) {
     return value.size() == 1 ? py::object(py::float_(value[0])) : all(value);
-  } else if constexpr (std::same_as<Value, std::vector<double>>) {
+  } else if constexpr (std::same_as<Value, NumberList>) {
     return value.empty() ? py::object(py::none()) : all(value);
   } else {
     return py::cast(value);

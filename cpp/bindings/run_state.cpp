@@ -28,11 +28,9 @@ class Writer {
   void operator()(const std::string& key, const Number& value) {
     fields[py::str(key)] = value;
   }
-  void operator()(const std::string& key, const std::vector<double>& values) {
+  template <std::derived_from<std::vector<double>> List>
+  void operator()(const std::string& key, const List& values) {
     fields[py::str(key)] = copy(values, {static_cast<py::ssize_t>(values.size())});
-  }
-  void operator()(const std::string& key, const Tolerance& values) {
-    (*this)(key, static_cast<const std::vector<double>&>(values));
   }
   /// A number that was not given is a NaN.
   void operator()(const std::string& key, const std::optional<double>& value) {
@@ -60,11 +58,9 @@ class Reader {
       throw py::value_error(key + ": is not what a solution keeps there");
     }
   }
-  void operator()(const std::string& key, std::vector<double>& values) const {
+  template <std::derived_from<std::vector<double>> List>
+  void operator()(const std::string& key, List& values) const {
     values = numbers(key.c_str(), field(key));
-  }
-  void operator()(const std::string& key, Tolerance& values) const {
-    (*this)(key, static_cast<std::vector<double>&>(values));
   }
   void operator()(const std::string& key, std::optional<double>& value) const {
     double number = 0.0;

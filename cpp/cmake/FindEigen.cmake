@@ -1,5 +1,5 @@
 # Provides Eigen 3.4's headers as Eigen3::Eigen: the system's (Debian: libeigen3-dev), or else those
-# that PyPI's cmeel-eigen has installed for the Python that is found.
+# of PyPI's cmeel-eigen, beside the Python package that holds this file or in the Python found.
 find_package(Eigen3 3.4 CONFIG QUIET)
 
 if(NOT TARGET Eigen3::Eigen)
@@ -8,7 +8,8 @@ if(NOT TARGET Eigen3::Eigen)
           "print(installed('cmeel-eigen').locate_file('cmeel.prefix'), end='')")
   list(JOIN ask "\n" ask)
   execute_process(COMMAND ${Python_EXECUTABLE} -c ${ask} OUTPUT_VARIABLE prefix ERROR_QUIET)
-  find_package(Eigen3 3.4 CONFIG QUIET PATHS "${prefix}" NO_DEFAULT_PATH)
+  set(beside "${CMAKE_CURRENT_LIST_DIR}/../../../../cmeel.prefix")  # site-packages/cmeel.prefix
+  find_package(Eigen3 3.4 CONFIG QUIET PATHS "${beside}" "${prefix}" NO_DEFAULT_PATH)
 endif()
 
 include(FindPackageHandleStandardArgs)

@@ -1,6 +1,9 @@
 // What C++ users give and get: vectors of any kind, tolerances, states of a run, its continuation.
 #include <doctest/doctest.h>
 #include <array>
+#include <limits>
+#include <string>
+#include <type_traits>
 #include <vector>
 
 #include "pendcore/pendcore.hpp"
@@ -22,7 +25,9 @@ TEST_CASE(
   const std::vector<double> numbers = {3.0, 4.0};
   const Eigen::Vector2d fixed(3.0, 4.0);
   const Eigen::MatrixXd columns = Eigen::MatrixXd::Constant(2, 2, 3.0);
+  const std::array<double, 2> pair = {3.0, 4.0};
   CHECK(Numbers(numbers).data() == numbers.data());
+  CHECK(Numbers(pair).data() == pair.data());
   CHECK(Numbers(fixed).data() == fixed.data());
   CHECK(Numbers(columns.col(1)).data() == columns.data() + 2);
   CHECK(first_of({3.0, 4.0}) == 3.0);
@@ -41,6 +46,44 @@ TEST_CASE("one tolerance stands for all components") {
   options.rtol = {1e-6, 1e-6, 1e-6};
   CHECK_THROWS_WITH(run_of(1.0, options),
                     "rtol: has 3 numbers: must have 1, or 4 (q_1 .. q_n, qd_1 .. qd_n)");
+}
+
+TEST_CASE("tolerances and times are given as a vector of any kind") {
+  const Eigen::Vector4d each(1e-6, 1e-7, 1e-8, 1e-9);
+  const Tolerance listed = {1e-6, 1e-7, 1e-8, 1e-9};
+  CHECK(Tolerance(each) == listed);
+  CHECK(Tolerance(2.0 * each).back() == 2e-9);
+  CHECK(Tolerance(std::array{1e-6, 1e-7, 1e-8, 1e-9}) == listed);
+  const Solution run = run_of(1.0, {.rtol = each, .t_eval = Eigen::Vector3d::LinSpaced(0.0, 1.0)});
+  CHECK(run.options.rtol == listed);
+  CHECK(run.t == std::vector{0.0, 0.5, 1.0});
+  CHECK(run.t == run_of(1.0, {.t_eval = std::array{0.0, 0.5, 1.0}}).t);
+  const Solution longer = resume(Scene::textbook(), run, 3.0, Eigen::Vector2d(2.0, 3.0));
+  CHECK(longer.t == std::vector{0.0, 0.5, 1.0, 2.0, 3.0});
+}
+
+TEST_CASE("a kind of event is an event that ends no run") {
+  const events::LinkAngle down{.link = 1, .value = 1.5};
+  const Solution run = run_of(2.0, {.events = {down, {.function = down, .terminal = 2}}});
+  REQUIRE(run.found.size() == 4);
+  CHECK(run.status == Status::event);
+  CHECK(run.found[2].t == run.t.back());
+  CHECK(std::abs(run.found[2].y[0] - 1.5) < 1e-12);
+}
+
+TEST_CASE("what is read of a solution that nobody keeps is a copy") {
+  const Solution run = run_of(1.0);
+  const auto end = run_of(1.0).back();
+  const auto begin = run_of(1.0)[0];
+  const auto q = run_of(1.0).q();
+  static_assert(std::is_same_v<decltype(end), const State>);
+  static_assert(std::is_same_v<decltype(begin), const State>);
+  static_assert(std::is_same_v<decltype(q), const Matrix>);
+  static_assert(std::is_same_v<decltype(run_of(1.0).qd()), Matrix>);
+  static_assert(!std::is_convertible_v<State, StateView>);
+  CHECK(end.q == run.back().q);
+  CHECK(begin.qd == run[0].qd);
+  CHECK(q == run.q());
 }
 
 TEST_CASE("every way to read a run reads the same states") {
@@ -96,7 +139,46 @@ TEST_CASE("equations at a state are those of a run, and of each other") {
   CHECK_THROWS_WITH(Equations{heavier}, doctest::Contains("link 2: mass = -1.0"));
 }
 
-TEST_CASE("a run goes on with its own scene, and with no other number of links") {
+TEST_CASE("a refused start is told in no language's words") {
+  const double inf = std::numeric_limits<double>::infinity();
+  CHECK_THROWS_WITH(run_of(inf), "end of the run = inf: must be finite (s)");
+  CHECK_THROWS_WITH(run_of(1.0, {.t_eval = {2.0}}),
+                    "t_eval[0] = 2.0: must be within the run, 0.0 to 1.0 s");
+  CHECK_THROWS_WITH(simulate(Scene::textbook(), {0.1}, {0.0, 0.0}, 0.0, 1.0),
+                    "q0: has 1 numbers: must have 2, one for each link");
+  Scene stopped = Scene::textbook();
+  stopped.effects = {DryJointFriction{.joint = 1, .coulomb = 0.1}};
+  CHECK_THROWS_WITH(
+      simulate(stopped, {0.1, 0.2}, {0.0, 0.0}, 1.0, 0.0),
+      doctest::Contains("the run goes back in time: effect 1 (dry_joint_friction): "));
+}
+
+TEST_CASE("a number that is left out and has no default is refused by its name") {
+  Scene scene = Scene::textbook();
+  const auto told = [&](const Effect& effect) {
+    scene.effects = {effect};
+    try {
+      check(scene);
+    } catch (const std::invalid_argument& refusal) {
+      return std::string(refusal.what()).substr(std::string("effect 1 (").size());
+    }
+    return std::string();
+  };
+  CHECK(told(ViscousJoint{.joint = 2}) ==
+        "viscous_joint): damping = nan: must be finite (N m s/rad)");
+  CHECK(told(ViscousJoint{.damping = 0.1}) ==
+        "viscous_joint): joint = 0: must be a whole number, 1 or more");
+  CHECK(told(JointStop{.joint = 1}) ==
+        "joint_stop): range[0] = nan: must be a number; -inf or inf for none (rad)");
+  CHECK(told(Motor{.joint = 1, .sinusoid = Sinusoid{.amplitude = 2.0}}) ==
+        "motor): sinusoid.angular_frequency = nan: must be finite (rad/s)");
+  for_each_kind([&](const auto& nothing) { CHECK_FALSE(told(nothing).empty()); });
+  scene.effects.clear();
+  scene.links[0] = {.mass = 1.0, .length = 1.0, .inertia = 0.1};
+  CHECK_THROWS_WITH(check(scene), doctest::Contains("link 1: center = nan: must be finite (m, "));
+}
+
+TEST_CASE("a run goes on with its own scene, and with no other") {
   const Solution run = run_of(1.0);
   const Scene scene = Scene::textbook();
   CHECK(fingerprint(resume(scene, run, 2.0)) == fingerprint(run_of(2.0)));
@@ -105,6 +187,16 @@ TEST_CASE("a run goes on with its own scene, and with no other number of links")
   CHECK_THROWS_WITH(
       resume(longer, run, 2.0),
       "scene: has 3 links, and the solution has 2: must be the scene of the solution");
+  Scene heavier = scene;
+  heavier.links[1].mass = 1.5;
+  CHECK_THROWS_WITH(resume(heavier, run, 2.0),
+                    "scene: link[2].mass = 1.5, and the solution has 1.0: must be the scene of the "
+                    "solution");
+  Scene damped = scene;
+  damped.effects = {ViscousJoint{.joint = 1, .damping = 0.1}};
+  CHECK_THROWS_WITH(
+      resume(damped, run, 2.0),
+      "scene: has other effects than the solution: must be the scene of the solution");
   CHECK_THROWS_WITH(resume(scene, Solution(), 2.0),
                     "solution: is empty: must be what simulate() or resume() returned");
 }

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import subprocess
-import sys
 from importlib.metadata import entry_points, version
 from pathlib import Path
 
@@ -36,15 +35,22 @@ def test_an_outside_project_gets_the_bits_of_python_whatever_its_flags(
     flags: str, tmp_path: Path
 ) -> None:
     root = Path(pc.__file__).parent
-    where = [f"-Dpendcore_ROOT={root}", f"-DPython_EXECUTABLE={sys.executable}"]
+    # Neither the system nor Python says where Eigen is: it lies beside the package.
+    hidden = [
+        "-DCMAKE_IGNORE_PATH=/usr/share/eigen3/cmake",
+        "-DCMAKE_DISABLE_FIND_PACKAGE_Python=ON",
+    ]
+    where = [f"-Dpendcore_ROOT={root}", *hidden]
     configured = run(CMAKE, "-S", PROJECT, "-B", tmp_path, *where, f"-DCMAKE_CXX_FLAGS={flags}")
     assert f"pendcore {version('pendcore')}" in configured
+    assert "cmeel.prefix" in configured
     run(CMAKE, "--build", tmp_path)
 
     printed = [float.fromhex(word) for word in run(tmp_path / "end_angles").split()]
     solution = pc.simulate(pc.Scene.textbook(), q0=[np.pi / 4, np.pi / 3], t_span=(0, 5))
     assert printed == list(solution.q[-1])
     assert run(tmp_path / "forces") == forces_of_python()
+    assert run(tmp_path / "events") == events_of_python()
 
 
 def test_the_library_shares_no_solver_of_eigen_with_a_program() -> None:
@@ -78,10 +84,29 @@ def forces_of_python() -> str:
     )
 
 
+def events_of_python() -> str:
+    """Return what events.cpp prints, by the same run in Python."""
+    turn = pc.events.RateZero(link=1)
+    passage = pc.events.TipLine(point=(0.0, 0.0), normal=(1.0, 0.0), direction=-1, terminal=3)
+    solution = pc.simulate(
+        pc.Scene.textbook(), [0.8, 1.0], 0, (0, 10), rtol=1e-10, events=[turn, passage]
+    )
+    found = [
+        (one.t, told, *one.q)
+        for told, events in zip(("first link turns", "tip passes"), solution.events, strict=True)
+        for one in events
+    ]
+    rows = [f"{t:.6f} s: the {told} at q {q1:.6f} {q2:.6f}" for t, told, q1, q2 in sorted(found)]
+    return "\n".join([*rows, solution.message, ""])
+
+
 def test_the_page_shows_this_project_and_what_it_prints() -> None:
-    programs = [(PROJECT / f"{name}.cpp").read_text() for name in ("end_angles", "forces")]
+    programs = [
+        (PROJECT / f"{name}.cpp").read_text() for name in ("end_angles", "forces", "events")
+    ]
     assert re.findall(r"```cpp\n(.*?)```", PAGE, re.DOTALL) == programs
-    assert f"```text\n{forces_of_python()}```" in PAGE
+    for printed in (forces_of_python(), events_of_python()):
+        assert f"```text\n{printed}```" in PAGE
     lines = (PROJECT / "CMakeLists.txt").read_text().splitlines()
     for line in (line for line in lines if "end_angles" in line):
         assert f"\n{line}\n" in PAGE

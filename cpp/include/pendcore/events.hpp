@@ -31,6 +31,9 @@
 
 namespace pendcore {
 
+struct Event;
+
+// Each kind converts to an event with the defaults: {.events = {events::LinkAngle{.link = 2}}}.
 namespace events {
 
 struct JointAngle {
@@ -38,6 +41,7 @@ struct JointAngle {
   double value = 0.0;       ///< rad
   bool every_turn = false;  ///< whether value + 2 pi k counts for every k
   static constexpr std::string_view kind = "joint_angle";
+  operator Event() const;
 };
 
 struct LinkAngle {
@@ -45,6 +49,7 @@ struct LinkAngle {
   double value = 0.0;
   bool every_turn = false;
   static constexpr std::string_view kind = "link_angle";
+  operator Event() const;
 };
 
 /// The rate of a joint or of a link becomes zero: one of the two is given.
@@ -52,12 +57,14 @@ struct RateZero {
   std::optional<int> joint;
   std::optional<int> link;
   static constexpr std::string_view kind = "rate_zero";
+  operator Event() const;
 };
 
 struct TipLine {
   std::array<double, 2> point = {};   ///< a point of the line, m; x right, y down
   std::array<double, 2> normal = {};  ///< across the line
   static constexpr std::string_view kind = "tip_line";
+  operator Event() const;
 };
 
 /// Sign changes between samples are found. A step has `samples` of them, and there is one at least
@@ -67,6 +74,7 @@ struct Function {
   int samples = 8;
   double max_step = std::numeric_limits<double>::infinity();  ///< s
   static constexpr std::string_view kind = "function";
+  operator Event() const;
 };
 
 /// Whether a kind of event can be asked for at every turn.
@@ -86,6 +94,12 @@ struct Event {
   long long terminal = 0;  ///< the run ends whenever so many have occurred; 0: never
   std::string name = {};
 };
+
+inline events::JointAngle::operator Event() const { return {.function = *this}; }
+inline events::LinkAngle::operator Event() const { return {.function = *this}; }
+inline events::RateZero::operator Event() const { return {.function = *this}; }
+inline events::TipLine::operator Event() const { return {.function = *this}; }
+inline events::Function::operator Event() const { return {.function = *this}; }
 
 /// An event that was found.
 struct FoundEvent {

@@ -37,7 +37,7 @@ struct LyapunovOptions {
   double rtol = 1e-9;                ///< relative tolerance of the state
   double atol = 1e-12;               ///< rad and rad/s; the changes have `rtol` of their length
   std::optional<double> since{};     ///< s, from which growth counts; else the start
-  std::vector<double> t_eval;        ///< s, strictly monotone along the run; empty: the end
+  NumberList t_eval;                 ///< s, strictly monotone along the run; empty: the end
   double max_step = std::numeric_limits<double>::infinity();  ///< s
   long long max_steps = 10'000'000;
   double time_limit = std::numeric_limits<double>::infinity();  ///< s of computing

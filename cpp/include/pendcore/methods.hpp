@@ -41,7 +41,7 @@ struct MethodInfo {
   std::string_view first_of_pair = {};  ///< the method with which a pair begins; else empty
   std::string_view second_of_pair = {};
   /// The typical largest position error of a run as a multiple of rtol, measured on the four
-  /// hundred scenes of regular_scenes.py (seeds 200 to 599). 0 for methods that take
+  /// hundred scenes of tests/models/regular_scenes.py (seeds 200 to 599). 0 for methods that take
   /// fixed steps only: `error=` never takes them.
   double error_over_rtol = 0.0;
   /// Its place among the methods that give second opinions and serve as references, counted from 1,

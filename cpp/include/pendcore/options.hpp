@@ -3,18 +3,17 @@
 #pragma once
 
 #include <array>
-#include <initializer_list>
 #include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <tuple>
-#include <utility>
 #include <vector>
 
 #include "pendcore/descriptor.hpp"
 #include "pendcore/events.hpp"
 #include "pendcore/status.hpp"
+#include "pendcore/vector.hpp"
 
 namespace pendcore {
 
@@ -48,20 +47,18 @@ inline constexpr std::string_view automatic = "auto";
 class StepWatch;
 
 /// The tolerance of all 2n components of the state, or one for each.
-class Tolerance : public std::vector<double> {
+class Tolerance : public NumberList {
  public:
-  Tolerance(double one) : std::vector<double>{one} {}  // NOLINT(google-explicit-constructor)
-  Tolerance(std::initializer_list<double> each) : std::vector<double>(each) {}
-  Tolerance(std::vector<double> each)  // NOLINT(google-explicit-constructor)
-      : std::vector<double>(std::move(each)) {}
+  using NumberList::NumberList;
+  Tolerance(double one) : NumberList{one} {}  // NOLINT(google-explicit-constructor)
 };
 
 /// Kept with the solution, so that it can be resumed. `parameters` says what each field means.
 struct Options {
   std::string method{automatic};
   Tolerance rtol = 1e-9;
-  Tolerance atol = 1e-12;           ///< rad, rad/s
-  std::vector<double> t_eval = {};  ///< strictly monotone along the run
+  Tolerance atol = 1e-12;  ///< rad, rad/s
+  NumberList t_eval = {};  ///< strictly monotone along the run
   std::optional<Store> store = {};
   std::optional<double> first_step = {};
   double max_step = std::numeric_limits<double>::infinity();

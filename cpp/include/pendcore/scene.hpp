@@ -27,10 +27,10 @@ namespace pendcore {
 
 /// A rigid link between its proximal joint (towards the pivot) and its distal one.
 struct Link {
-  double mass;     ///< m, kg; > 0, or 0 where something else resists its rotation
-  double length;   ///< L, m, from joint to joint; > 0
-  double center;   ///< c, m, from the proximal joint to the mass centre, along the link
-  double inertia;  ///< I, kg m^2, about the mass centre; >= 0
+  double mass = not_given;     ///< m, kg; > 0, or 0 where something else resists its rotation
+  double length = not_given;   ///< L, m, from joint to joint; > 0
+  double center = not_given;   ///< c, m, from the proximal joint to the mass centre, along the link
+  double inertia = not_given;  ///< I, kg m^2, about the mass centre; >= 0
 
   /// The inertia about its own joint without the links beyond it, kg m^2: I + m c^2.
   double inertia_about_joint() const;

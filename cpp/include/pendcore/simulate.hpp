@@ -23,10 +23,10 @@ Solution simulate(const Scene& scene, const Numbers& q0, const Numbers& qd0, dou
 /// The solution of the same run of the same scene, continued to t_end, bit for bit as if it had
 /// never stopped. `t_eval` names further times of a run that was asked for times; max_steps,
 /// time_limit and monitor count for this leg. Throws std::invalid_argument for an end, or times,
-/// that the run has passed, for a scene with another number of links, and for a solution that is
+/// that the run has passed, for a scene with other links or parameters, and for a solution that is
 /// empty.
 Solution resume(const Scene& scene, const Solution& solution, double t_end,
-                const std::vector<double>& t_eval = {}, long long max_steps = 10'000'000,
+                const NumberList& t_eval = {}, long long max_steps = 10'000'000,
                 std::optional<double> time_limit = {}, const Monitor& monitor = {});
 
 }  // namespace pendcore

@@ -35,7 +35,11 @@ struct State {
 struct StateView {
   double t;
   View q, qd, accounts;
+  operator State() const { return {t, q, qd, accounts}; }
 };
+
+/// Columns of the states that a solution keeps; they live as long as the solution does.
+using Rows = Eigen::Map<const Matrix, 0, Eigen::OuterStride<>>;
 
 struct IntegratorState;
 
@@ -52,6 +56,7 @@ struct Solution {
   std::vector<double> states;
   DenseOutput dense;
 
+  Scene scene;  ///< whose run it is; without links in one that was read from a file
   Options options;
   double t0 = 0.0;                ///< s, as asked for
   double t_end = 0.0;             ///< s, as asked for
@@ -72,11 +77,16 @@ struct Solution {
 
   /// The states kept, in their order: i = 0 .. t.size() - 1. solution.back().q(1) is the second
   /// angle at the last of them. Throws std::out_of_range where none is kept.
-  StateView operator[](std::size_t i) const;
-  StateView back() const { return (*this)[t.size() - 1]; }
+  StateView operator[](std::size_t i) const&;
+  StateView back() const& { return (*this)[t.size() - 1]; }
   /// Their angles and rates, (n_t, n).
-  Eigen::Map<const Matrix, 0, Eigen::OuterStride<>> q() const;
-  Eigen::Map<const Matrix, 0, Eigen::OuterStride<>> qd() const;
+  Rows q() const&;
+  Rows qd() const&;
+  // A solution that nobody keeps, as in simulate(...).back(), gives copies.
+  State operator[](std::size_t i) const&& { return (*this)[i]; }
+  State back() const&& { return back(); }
+  Matrix q() const&& { return q(); }
+  Matrix qd() const&& { return qd(); }
 
   /// The state at a time within the run, or a row for each of m times, (m, dimension), from the
   /// dense output; where two steps meet, the state itself. Throws std::invalid_argument outside the

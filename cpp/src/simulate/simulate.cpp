@@ -1,7 +1,6 @@
 #include "pendcore/simulate.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -14,56 +13,16 @@
 #include "integrate/loop/run_limits.hpp"
 #include "pendcore/solution.hpp"
 #include "simulate/checked_options.hpp"
+#include "simulate/continuation.hpp"
 #include "simulate/ending_message.hpp"
 #include "simulate/initial_state.hpp"
 #include "simulate/method_choice.hpp"
 #include "simulate/recorder.hpp"
 #include "simulate/steppers.hpp"
 #include "simulate/switching.hpp"
-#include "text/message.hpp"
 
 namespace pendcore {
 namespace {
-
-/// Checks that a run is continued from where it ended, to times that it has not been asked for.
-void check_continuation(const Scene& scene, const Solution& solution, double t_end,
-                        const std::vector<double>& t_eval) {
-  if (solution.resumable == nullptr) {
-    throw std::invalid_argument("solution: is empty: must be what simulate() or resume() returned");
-  }
-  if (scene.links.size() != static_cast<std::size_t>(solution.n)) {
-    throw std::invalid_argument("scene: has " + std::to_string(scene.links.size()) +
-                                " links, and the solution has " + std::to_string(solution.n) +
-                                ": must be the scene of the solution");
-  }
-  const double reached = solution.t_reached;
-  // A run of no length has no direction yet: it takes the direction of its continuation.
-  const bool has_length = solution.t_end != solution.t0;
-  const double span = (has_length ? solution.t_end : t_end) - solution.t0;
-  auto before = [span](double a, double b) { return span < 0.0 ? b < a : span > 0.0 && a < b; };
-  const std::string beyond = span < 0.0 ? "before " : "beyond ";
-  const std::string way = span < 0.0 ? " s: this run goes back in time" : " s";
-  if (!std::isfinite(t_end) || before(t_end, reached)) {
-    refuse("t_end", t_end,
-           "finite and at or " + beyond + "the end reached, " + text(reached) + way);
-  }
-  const std::vector<double>& asked = solution.options.t_eval;
-  if (!asked.empty() && before(t_end, asked.back())) {
-    refuse("t_end", t_end,
-           "at or " + beyond + "the last time asked for, " + text(asked.back()) + way);
-  }
-  if (t_eval.empty()) return;
-  if (asked.empty()) {
-    throw std::invalid_argument(
-        "t_eval: this run was not asked for times, and keeps what it kept so far: leave t_eval "
-        "out");
-  }
-  check_times(t_eval, reached, t_end);
-  if (!before(asked.back(), t_eval.front())) {
-    refuse("t_eval[0]", t_eval.front(),
-           beyond + "the last time asked for so far, " + text(asked.back()) + way);
-  }
-}
 
 /// What a solution has before a run: nothing, a start without a direction of time, or steps.
 enum class Before { nothing, a_start, steps };
@@ -232,6 +191,7 @@ Solution simulate(const Scene& scene, const Numbers& q0, const Numbers& qd0, dou
   options.store = options.store.value_or(usual_store(options));
   Limits limits = limits_of(options, t_end);
   Solution solution(std::move(options));
+  solution.scene = scene;
   solution.options.monitor = nullptr;
   solution.t0 = t0;
   solution.t_end = t_end;
@@ -250,8 +210,8 @@ Solution simulate(const Scene& scene, const Numbers& q0, const Numbers& qd0, dou
 }
 
 Solution resume(const Scene& scene, const Solution& solution, double t_end,
-                const std::vector<double>& t_eval, long long max_steps,
-                std::optional<double> time_limit, const Monitor& monitor) {
+                const NumberList& t_eval, long long max_steps, std::optional<double> time_limit,
+                const Monitor& monitor) {
   const FloatingPointEnvironment ieee;
   Solution longer = solution;
   Options& options = longer.options;

@@ -57,7 +57,7 @@ State Solution::at(double time) const {
   return {.t = time, .q = y.head(n), .qd = y.segment(n, n), .accounts = y.tail(dimension - 2 * n)};
 }
 
-StateView Solution::operator[](std::size_t i) const {
+StateView Solution::operator[](std::size_t i) const& {
   if (i >= t.size()) {
     throw std::out_of_range("this solution keeps " + std::to_string(t.size()) + " states");
   }
@@ -65,11 +65,11 @@ StateView Solution::operator[](std::size_t i) const {
   return {.t = t[i], .q = {y, n}, .qd = {y + n, n}, .accounts = {y + 2 * n, dimension - 2 * n}};
 }
 
-Eigen::Map<const Matrix, 0, Eigen::OuterStride<>> Solution::q() const {
+Rows Solution::q() const& {
   return {states.data(), static_cast<Eigen::Index>(t.size()), n, Eigen::OuterStride<>(dimension)};
 }
 
-Eigen::Map<const Matrix, 0, Eigen::OuterStride<>> Solution::qd() const {
+Rows Solution::qd() const& {
   return {states.data() + n, static_cast<Eigen::Index>(t.size()), n,
           Eigen::OuterStride<>(dimension)};
 }

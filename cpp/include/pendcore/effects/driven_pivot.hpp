@@ -14,9 +14,9 @@
 namespace pendcore {
 
 struct DrivenPivot {
-  std::optional<Sinusoid> x = {};
-  std::optional<Sinusoid> y = {};
-  std::optional<Spline> spline = {};
+  std::optional<Sinusoid> x = {};     ///< m, to the right
+  std::optional<Sinusoid> y = {};     ///< m, downward
+  std::optional<Spline> spline = {};  ///< m, along both axes, in place of the two
 
   static constexpr EffectInfo info{
       .name = "DrivenPivot",

@@ -13,11 +13,11 @@
 namespace pendcore {
 
 struct DryJointFriction {
-  int joint = 0;
-  double coulomb = 0.0;
-  std::optional<double> static_ = {};  ///< equal to coulomb unless given
-  double stribeck_velocity = 0.1;
-  double exponent = 2.0;
+  int joint = 0;                       ///< counted from 1
+  double coulomb = not_given;          ///< t_c, N m, while it slides
+  std::optional<double> static_ = {};  ///< t_s, N m, holds it; equal to coulomb unless given
+  double stribeck_velocity = 0.1;      ///< w_s, rad/s
+  double exponent = 2.0;               ///< p, without a unit
 
   static constexpr EffectInfo info{
       .name = "DryJointFriction",

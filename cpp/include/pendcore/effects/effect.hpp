@@ -7,10 +7,10 @@
 ///                  else others must know of its kind
 ///     parameters   a tuple of `parameter(&Struct::field, {...})`: symbol, unit, range, a sentence
 ///
-/// and a field `joint` or `link`, if it acts on one. What it does is its behaviour (behaviour.hpp),
-/// which the function behaviour() in the source of the same name makes. The Python class,
-/// the TOML keys, the repr, the checks and their messages, the page of documentation and the tests
-/// come from `info` and `parameters`.
+/// and a field `joint` or `link`, if it acts on one. What it does is its behaviour, which the
+/// function behaviour() makes; docs/how_to/add_an_effect.md shows one. The Python class, the TOML
+/// keys, the repr, the checks and their messages, the page of documentation and the tests come from
+/// `info` and `parameters`.
 #pragma once
 
 #include <array>
@@ -98,6 +98,9 @@ concept OptionalPart = requires { Value::value_type::parameters; };
 
 /// A time that never comes, or a bound that does not exist.
 inline constexpr double never = std::numeric_limits<double>::infinity();
+
+/// A number that must be given: simulate() refuses a scene that leaves it so.
+inline constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
 
 class EffectBehaviour;
 

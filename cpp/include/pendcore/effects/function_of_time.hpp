@@ -17,9 +17,9 @@
 namespace pendcore {
 
 struct Sinusoid {
-  double amplitude = 0.0;
-  double angular_frequency = 0.0;
-  double phase = 0.0;
+  double amplitude = not_given;          ///< A, in the unit of what it drives: N m or m
+  double angular_frequency = not_given;  ///< omega, rad/s
+  double phase = 0.0;                    ///< phi, rad
 
   static constexpr std::string_view name = "Sinusoid";
   static constexpr std::string_view sentence =
@@ -43,9 +43,9 @@ struct Sinusoid {
 /// The value is value + slope (t - t_k) from t_k to t_{k+1}; the slope is 0 if values are held. Two
 /// equal times make a step: the first has the value before it, the second the value after it.
 struct Table {
-  std::vector<double> t = {};
-  std::vector<double> torque = {};
-  bool hold = false;
+  std::vector<double> t = {};       ///< s, increasing
+  std::vector<double> torque = {};  ///< N m, one for each time
+  bool hold = false;                ///< whether each torque holds until the next time
 
   static constexpr std::string_view name = "Table";
   static constexpr std::string_view sentence =
@@ -71,10 +71,11 @@ struct Table {
   void check(const std::string& where) const;
 };
 
+/// A controller that holds a joint at an angle: kp (reference - phi) - kd w.
 struct PD {
-  double kp = 0.0;
-  double kd = 0.0;
-  double reference = 0.0;
+  double kp = not_given;         ///< N m/rad
+  double kd = not_given;         ///< N m s/rad
+  double reference = not_given;  ///< rad
 
   static constexpr std::string_view name = "PD";
   static constexpr std::string_view sentence =
@@ -100,9 +101,9 @@ struct PD {
 
 /// Natural cubic splines x(t) and y(t).
 struct Spline {
-  std::vector<double> t = {};
-  std::vector<double> x = {};
-  std::vector<double> y = {};
+  std::vector<double> t = {};  ///< s, increasing
+  std::vector<double> x = {};  ///< m, to the right, one for each time
+  std::vector<double> y = {};  ///< m, downward, one for each time
 
   static constexpr std::string_view name = "Spline";
   static constexpr std::string_view sentence =

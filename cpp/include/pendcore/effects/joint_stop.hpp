@@ -5,8 +5,9 @@
 ///
 /// Below the capture speed the joint stays at the stop (e = 0). The stop holds it there until the
 /// holding torque would have to pull. An impact on one stop loses (1 - e^2) phid^2 /
-/// (2 J M^-1 J^T); impact.hpp has impacts on several stops at once. Source: Brogliato, Nonsmooth
-/// Mechanics (2016), sections 4.1 (Newton's law of restitution) and 5.2 (several contacts).
+/// (2 J M^-1 J^T). Impacts on several stops at once obey the same law, with impulses that only
+/// push. Source: Brogliato, Nonsmooth Mechanics (2016), sections 4.1 (Newton's law of restitution)
+/// and 5.2 (several contacts).
 #pragma once
 
 #include "pendcore/effects/effect.hpp"
@@ -14,10 +15,10 @@
 namespace pendcore {
 
 struct JointStop {
-  int joint = 0;
-  std::array<double, 2> range = {-never, never};
-  double restitution = 0.0;
-  std::optional<double> capture_speed = {};
+  int joint = 0;                                         ///< counted from 1
+  std::array<double, 2> range = {not_given, not_given};  ///< lo, hi, rad; +-never: no stop there
+  double restitution = 0.0;                              ///< e, 0 to 1
+  std::optional<double> capture_speed = {};  ///< rad/s; 1e-9 of a natural speed unless given
 
   static constexpr EffectInfo info{
       .name = "JointStop",

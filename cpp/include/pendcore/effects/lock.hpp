@@ -12,8 +12,8 @@
 namespace pendcore {
 
 struct Lock {
-  int joint = 0;
-  std::optional<double> angle = {};  ///< the angle at the start, unless given
+  int joint = 0;                     ///< counted from 1
+  std::optional<double> angle = {};  ///< rad; the angle at the start, unless given
 
   static constexpr EffectInfo info{
       .name = "Lock",

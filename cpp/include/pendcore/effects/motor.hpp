@@ -17,12 +17,12 @@
 namespace pendcore {
 
 struct Motor {
-  int joint = 0;
-  std::optional<double> constant = {};
-  std::optional<Sinusoid> sinusoid = {};
-  std::optional<Table> table = {};
-  std::optional<PD> pd = {};
-  double limit = never;
+  int joint = 0;                          ///< counted from 1
+  std::optional<double> constant = {};    ///< N m; one of these four is given
+  std::optional<Sinusoid> sinusoid = {};  ///< N m
+  std::optional<Table> table = {};        ///< N m
+  std::optional<PD> pd = {};              ///< N m
+  double limit = never;                   ///< N m, the largest torque in either direction
 
   static constexpr EffectInfo info{
       .name = "Motor",

@@ -12,8 +12,8 @@
 namespace pendcore {
 
 struct Payload {
-  double mass = 0.0;
-  double inertia = 0.0;
+  double mass = not_given;  ///< m_p, kg
+  double inertia = 0.0;     ///< I_p, kg m^2, about its mass centre, which is at the tip
 
   static constexpr EffectInfo info{.name = "Payload",
                                    .kind = "payload",

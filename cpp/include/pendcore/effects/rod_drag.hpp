@@ -12,11 +12,11 @@
 namespace pendcore {
 
 struct RodDrag {
-  int link = 0;
-  double drag_coefficient = 0.0;
-  double diameter = 0.0;
-  double air_density = 1.225;
-  std::array<double, 2> wind = {0.0, 0.0};
+  int link = 0;                             ///< counted from 1
+  double drag_coefficient = not_given;      ///< C_d, without a unit
+  double diameter = not_given;              ///< d, m
+  double air_density = 1.225;               ///< rho, kg/m^3
+  std::array<double, 2> wind = {0.0, 0.0};  ///< m/s, x right and y down
 
   static constexpr EffectInfo info{
       .name = "RodDrag",

@@ -13,8 +13,8 @@
 namespace pendcore {
 
 struct RotorInertia {
-  int joint = 0;
-  double armature = 0.0;
+  int joint = 0;                ///< counted from 1
+  double armature = not_given;  ///< J, kg m^2, as the joint feels it
 
   static constexpr EffectInfo info{
       .name = "RotorInertia",

@@ -11,9 +11,9 @@
 namespace pendcore {
 
 struct TorsionalSpring {
-  int joint = 0;
-  double stiffness = 0.0;
-  double rest_angle = 0.0;
+  int joint = 0;                 ///< counted from 1
+  double stiffness = not_given;  ///< k, N m/rad
+  double rest_angle = 0.0;       ///< phi_0, rad
 
   static constexpr EffectInfo info{
       .name = "TorsionalSpring",

@@ -26,9 +26,9 @@
 namespace pendcore {
 
 struct CompiledUser {
-  std::uintptr_t address = 0;
-  std::uintptr_t data = 0;
-  std::vector<double> breaks = {};
+  std::uintptr_t address = 0;       ///< of f
+  std::uintptr_t data = 0;          ///< is passed to f
+  std::vector<double> breaks = {};  ///< s, increasing
 
   static constexpr EffectInfo info{
       .name = "CompiledUser",

@@ -15,10 +15,10 @@
 namespace pendcore {
 
 struct ViscousJoint {
-  int joint = 0;
-  double damping = 0.0;
-  double damping2 = 0.0;
-  double damping3 = 0.0;
+  int joint = 0;               ///< counted from 1
+  double damping = not_given;  ///< b, N m s/rad
+  double damping2 = 0.0;       ///< b2, N m s^2/rad^2
+  double damping3 = 0.0;       ///< b3, N m s^3/rad^3
 
   static constexpr EffectInfo info{
       .name = "ViscousJoint",
