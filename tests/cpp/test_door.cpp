@@ -148,9 +148,8 @@ TEST_CASE("a refused start is told in no language's words") {
                     "q0: has 1 numbers: must have 2, one for each link");
   Scene stopped = Scene::textbook();
   stopped.effects = {DryJointFriction{.joint = 1, .coulomb = 0.1}};
-  CHECK_THROWS_WITH(
-      simulate(stopped, {0.1, 0.2}, {0.0, 0.0}, 1.0, 0.0),
-      doctest::Contains("the run goes back in time: effect 1 (dry_joint_friction): "));
+  CHECK_THROWS_WITH(simulate(stopped, {0.1, 0.2}, {0.0, 0.0}, 1.0, 0.0),
+                    doctest::Contains("the run goes backward: effect 1 (dry_joint_friction): "));
 }
 
 TEST_CASE("a number that is left out and has no default is refused by its name") {

@@ -40,7 +40,7 @@ void check_stop(const JointStop& stop, const std::string& name, std::span<const 
   }
   if (backward && stop.restitution < 1.0) {
     throw std::invalid_argument(
-        "the run goes back in time: " + name +
+        "the run goes backward: " + name +
         ": with a restitution below 1 the past is not unique: run it forward");
   }
 }
@@ -51,7 +51,7 @@ void check_effects_at_start(const Scene& scene, std::span<const double> q0,
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
     const auto name = [&scene, i] { return effect_name(scene, i); };
     if (t_end < t0 && scene.effects[i]->holding_torque()) {
-      throw std::invalid_argument("the run goes back in time: " + name() +
+      throw std::invalid_argument("the run goes backward: " + name() +
                                   ": with dry friction the past is not unique: run it forward");
     }
     if (const auto* stop = scene.effects[i].get_if<JointStop>()) {
