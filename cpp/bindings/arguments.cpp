@@ -1,43 +1,26 @@
 #include "arguments.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace pendcore::bindings {
 namespace {
-
-[[noreturn]] void refuse_type(const char* name, py::handle value, const char* wanted) {
-  throw py::type_error(std::string(name) + " = " + py::repr(value).cast<std::string>() +
-                       ": must be " + wanted);
-}
 
 bool is_plain_number(py::handle value) {
   return PyFloat_Check(value.ptr()) || (PyLong_Check(value.ptr()) && !PyBool_Check(value.ptr()));
 }
 
-[[noreturn]] void refuse_size(const char* name, const char* range) {
-  PyErr_Clear();
-  throw py::value_error(std::string(name) + ": is too large: must be " + range);
+bool is_list_or_tuple(py::handle value) {
+  return PyList_Check(value.ptr()) || PyTuple_Check(value.ptr());
 }
 
-double plain_number(const char* name, py::handle value) {
-  const double x = PyFloat_AsDouble(value.ptr());
-  if (x == -1.0 && PyErr_Occurred() != nullptr) refuse_size(name, "below 1.8e308");
-  return x;
+std::span<PyObject* const> items_of(py::handle list_or_tuple) {
+  return {PySequence_Fast_ITEMS(list_or_tuple.ptr()),
+          static_cast<std::size_t>(PySequence_Fast_GET_SIZE(list_or_tuple.ptr()))};
 }
 
 /// NumPy's array itself, and none of its kin, which may mean something else by their numbers.
 bool is_plain_array(py::handle value) {
   return Py_TYPE(value.ptr()) == py::detail::npy_api::get().PyArray_Type_;
-}
-
-void refuse_masked(const char* name, py::handle value) {
-  if (is_plain_array(value) || !py::detail::npy_api::get().PyArray_Check_(value.ptr())) return;
-  if (!py::module_::import("numpy.ma").attr("is_masked")(value).cast<bool>()) return;
-  throw py::value_error(
-      std::string(name) +
-      ": has masked values: must have a number everywhere: x.compressed() leaves masked ones out, "
-      "x.filled(...) replaces them");
 }
 
 /// An array that needs no conversion. The same question to py::array_t makes a new dtype each time.
@@ -51,10 +34,28 @@ bool is_array_of_doubles(py::handle value) {
          (array->flags & plain) == plain;
 }
 
+[[noreturn]] void refuse_size(std::string_view name, const char* range) {
+  PyErr_Clear();
+  throw py::value_error(std::string(name) + ": is too large: must be " + range);
+}
+
+/// Refuses an integer beyond the range of doubles, and what has masked values: NumPy would make
+/// objects of the one, and forget the masks of the other.
+void refuse_what_numpy_takes(std::string_view name, py::handle value) {
+  double ignored = 0.0;
+  if (is_plain_number(value) && !take_plain(value, ignored)) refuse_size(name, "below 1.8e308");
+  if (is_plain_array(value) || !py::detail::npy_api::get().PyArray_Check_(value.ptr())) return;
+  if (!py::module_::import("numpy.ma").attr("is_masked")(value).cast<bool>()) return;
+  throw py::value_error(
+      std::string(name) +
+      ": has masked values: must have a number everywhere: x.compressed() leaves masked ones out, "
+      "x.filled(...) replaces them");
+}
+
 /// Any array-like of real numbers, or an empty optional where it is something else.
-std::optional<Array> real_array(const char* name, py::handle value) {
+std::optional<Array> real_array(std::string_view name, py::handle value) {
   if (is_array_of_doubles(value)) return py::reinterpret_borrow<Array>(value);
-  refuse_masked(name, value);
+  refuse_what_numpy_takes(name, value);
   if (py::isinstance<py::str>(value) || py::isinstance<py::bytes>(value)) return std::nullopt;
   const py::array any = py::array::ensure(value);
   if (!any) {
@@ -68,19 +69,23 @@ std::optional<Array> real_array(const char* name, py::handle value) {
 
 }  // namespace
 
-double number(const char* name, py::handle value) {
-  if (is_plain_number(value)) return plain_number(name, value);
+std::string name_and_value(std::string_view name, py::handle value) {
+  return std::string(name) + " = " + py::repr(value).cast<std::string>();
+}
+
+void refuse_type(std::string_view name, py::handle value, std::string_view wanted) {
+  throw py::type_error(name_and_value(name, value) + ": must be " + std::string(wanted));
+}
+
+double number(std::string_view name, py::handle value) {
+  double plain = 0.0;
+  if (take_plain(value, plain)) return plain;
   const auto array = real_array(name, value);
   if (!array || array->ndim() != 0) refuse_type(name, value, "a real number");
   return *array->data();
 }
 
-std::optional<double> optional_number(const char* name, py::handle value) {
-  if (value.is_none()) return std::nullopt;
-  return number(name, value);
-}
-
-long long whole_number(const char* name, py::handle value) {
+long long whole_number(std::string_view name, py::handle value) {
   if (PyBool_Check(value.ptr()) || !PyIndex_Check(value.ptr())) {
     refuse_type(name, value, "a whole number");
   }
@@ -91,26 +96,28 @@ long long whole_number(const char* name, py::handle value) {
   return result;
 }
 
-bool truth(const char* name, py::handle value) {
+bool truth(std::string_view name, py::handle value) {
   py::detail::make_caster<bool> caster;
   if (!caster.load(value, /*convert=*/false)) refuse_type(name, value, "True or False");
   return caster;
 }
 
-std::vector<double> numbers(const char* name, py::handle value, const std::string& wanted,
+std::optional<std::string> text_of(py::handle value) {
+  try {
+    if (py::isinstance<py::str>(value)) return value.cast<std::string>();
+  } catch (const py::cast_error&) {
+  }
+  return std::nullopt;
+}
+
+std::vector<double> numbers(std::string_view name, py::handle value, const std::string& wanted,
                             std::size_t copies) {
-  if (is_plain_number(value)) return std::vector<double>(copies, plain_number(name, value));
-  if (PyList_Check(value.ptr()) || PyTuple_Check(value.ptr())) {
-    const auto size = static_cast<std::size_t>(PySequence_Fast_GET_SIZE(value.ptr()));
-    PyObject* const* items = PySequence_Fast_ITEMS(value.ptr());
-    std::vector<double> result(size);
-    std::size_t i = 0;
-    while (i < size && is_plain_number(items[i])) {
-      result[i] = plain_number(name, items[i]);
-      ++i;
-    }
-    if (i == size) return result;
-    for (; i < size; ++i) refuse_masked(name, items[i]);
+  double alone = 0.0;
+  if (take_plain(value, alone)) return std::vector<double>(copies, alone);
+  if (is_list_or_tuple(value)) {
+    std::vector<double> result(items_of(value).size());
+    if (take_plain(value, result)) return result;
+    for (PyObject* const item : items_of(value)) refuse_what_numpy_takes(name, item);
   }
   const auto array = real_array(name, value);
   if (!array) refuse_type(name, value, "real numbers");
@@ -126,19 +133,16 @@ std::vector<double> numbers(const char* name, py::handle value, const std::strin
 bool take_plain(py::handle value, double& x) {
   if (!is_plain_number(value)) return false;
   x = PyFloat_AsDouble(value.ptr());
-  if (x == -1.0 && PyErr_Occurred() != nullptr) {  // an integer beyond the range of doubles
-    PyErr_Clear();
-    return false;
-  }
-  return std::isfinite(x);
+  if (x != -1.0 || PyErr_Occurred() == nullptr) return true;
+  PyErr_Clear();  // an integer beyond the range of doubles
+  return false;
 }
 
 bool take_plain(py::handle value, std::span<double> into) {
-  if (PyList_Check(value.ptr()) || PyTuple_Check(value.ptr())) {
-    const auto size = static_cast<std::size_t>(PySequence_Fast_GET_SIZE(value.ptr()));
-    if (size != into.size()) return false;
-    PyObject* const* items = PySequence_Fast_ITEMS(value.ptr());
-    for (std::size_t i = 0; i < size; ++i) {
+  if (is_list_or_tuple(value)) {
+    const std::span<PyObject* const> items = items_of(value);
+    if (items.size() != into.size()) return false;
+    for (std::size_t i = 0; i < items.size(); ++i) {
       if (!take_plain(items[i], into[i])) return false;
     }
     return true;
@@ -147,7 +151,7 @@ bool take_plain(py::handle value, std::span<double> into) {
   const auto array = py::reinterpret_borrow<Array>(value);
   if (array.ndim() != 1 || static_cast<std::size_t>(array.size()) != into.size()) return false;
   std::copy_n(array.data(), into.size(), into.begin());
-  return std::ranges::all_of(into, [](double x) { return std::isfinite(x); });
+  return true;
 }
 
 py::array view(const std::vector<double>& numbers, std::vector<py::ssize_t> shape,
@@ -159,6 +163,10 @@ py::array view(const std::vector<double>& numbers, std::vector<py::ssize_t> shap
 
 py::array copy(std::span<const double> numbers, std::vector<py::ssize_t> shape) {
   return Array(std::move(shape), numbers.data());
+}
+
+py::array copy(std::span<const double> numbers) {
+  return copy(numbers, {static_cast<py::ssize_t>(numbers.size())});
 }
 
 }  // namespace pendcore::bindings

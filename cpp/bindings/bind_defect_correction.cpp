@@ -30,11 +30,8 @@ py::array errors_of(const DefectCorrection& correction) {
 void bind_defect_correction(py::module_& module) {
   py::class_<DefectCorrection>(module, "DefectCorrection")
       .def(py::init(&with_neighbours), py::arg("neighbours"), py::arg("parts"))
-      .def_property_readonly("t",
-                             [](const DefectCorrection& correction) {
-                               const auto times = static_cast<py::ssize_t>(correction.t().size());
-                               return copy(correction.t(), {times});
-                             })
+      .def_property_readonly(
+          "t", [](const DefectCorrection& correction) { return copy(correction.t()); })
       .def_property_readonly("errors", &errors_of)
       .def_property_readonly("errors_at_end",
                              [](const DefectCorrection& correction) {

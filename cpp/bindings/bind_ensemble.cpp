@@ -3,13 +3,12 @@
 #include <utility>
 
 #include "arguments.hpp"
-#include "bind_events.hpp"
 #include "bind_options.hpp"
 #include "ensemble/lanes.hpp"
+#include "kind_and_values.hpp"
 #include "pendcore/ensemble.hpp"
 #include "pendcore/parameters.hpp"
 #include "python_monitor.hpp"
-#include "run_state.hpp"
 #include "scene/degrees.hpp"
 
 namespace pendcore::bindings {

@@ -1,6 +1,5 @@
 #include "pendcore/lyapunov.hpp"
 #include "python_monitor.hpp"
-#include "run_state.hpp"
 #include "start.hpp"
 
 namespace pendcore::bindings {
@@ -12,14 +11,14 @@ py::dict exponents(const Scene& scene, py::handle q0, py::handle qd0, py::handle
                    py::handle time_limit, py::handle progress, py::handle warn) {
   PythonMonitor monitor(progress);
   LyapunovOptions options;
-  if (!count.is_none()) options.count = whole_number("count", count);
-  options.rtol = number("rtol", rtol);
-  options.atol = number("atol", atol);
-  options.since = number("since", since);
-  options.t_eval = numbers("t_eval", t_eval);
-  options.max_step = number("max_step", max_step);
-  options.max_steps = whole_number("max_steps", max_steps);
-  options.time_limit = optional_number("time_limit", time_limit).value_or(options.time_limit);
+  take("count", count, options.count);
+  take("rtol", rtol, options.rtol);
+  take("atol", atol, options.atol);
+  take("since", since, options.since);
+  take("t_eval", t_eval, options.t_eval);
+  take("max_step", max_step, options.max_step);
+  take("max_steps", max_steps, options.max_steps);
+  if (!time_limit.is_none()) take("time_limit", time_limit, options.time_limit);
   options.monitor = monitor.for_core();
   const Start start = start_of(scene, q0, qd0, t0, t_end, warn);
   TangentGrowth found;

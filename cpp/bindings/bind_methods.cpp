@@ -70,27 +70,24 @@ py::dict tableau_named(MethodList<tables...>, std::string_view name) {
 }
 
 py::dict describe(const MethodInfo& info) {
-  py::list aliases;
-  for (std::string_view alias : info.aliases) aliases.append(string(alias));
   py::dict result;
-  result["name"] = string(info.name);
-  result["aliases"] = aliases;
+  result["name"] = info.name;
+  result["aliases"] = std::vector(info.aliases.begin(), info.aliases.end());
   constexpr std::string_view kinds[] = {"explicit", "implicit", "taylor", "pair"};
-  result["kind"] = string(kinds[static_cast<std::size_t>(info.kind)]);
-  result["first"] = string(info.first());
-  result["second"] = string(info.second_of_pair);
+  result["kind"] = kinds[static_cast<std::size_t>(info.kind)];
+  result["first"] = info.first();
+  result["second"] = info.second_of_pair;
   result["dense_output_is_series"] = info.dense_output_is_series;
   result["order"] = info.order;
   result["error_order"] = info.error_order;
   result["interpolant_order"] = info.interpolant_order;
   result["beta"] = info.beta;
   result["compensates"] = info.compensates;
-  result["sentence"] = string(info.sentence);
-  result["citation"] = string(info.citation);
+  result["sentence"] = info.sentence;
+  result["citation"] = info.citation;
   result["error_over_rtol"] = info.error_over_rtol;
   result["second_opinion"] = info.second_opinion;
-  result["line"] =
-      py::make_tuple(string(info.line.color), string(info.line.dash), string(info.line.marker));
+  result["line"] = py::make_tuple(info.line.color, info.line.dash, info.line.marker);
   return result;
 }
 

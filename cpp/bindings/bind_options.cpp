@@ -6,74 +6,43 @@
 #include <string>
 
 #include "arguments.hpp"
-#include "bind_events.hpp"
+#include "kind_and_values.hpp"
 #include "simulate/checked_options.hpp"
 
 namespace pendcore::bindings {
 namespace {
 
-/// Each of these takes the value of an option from Python.
-struct Taken {
-  const ParameterInfo& info;
-  py::handle value;
-  std::size_t n;  ///< links
-  const char* name = info.name.data();
-
-  void into(double& x) const { x = number(name, value); }
-  void into(std::optional<double>& x) const { x = optional_number(name, value); }
-  void into(long long& x) const { x = whole_number(name, value); }
-  void into(bool& x) const { x = truth(name, value); }
-
-  void into(std::string& text) const {
-    const std::optional<std::string> word = valid_text();
-    if (!word) throw py::type_error(name_and_value() + ": must be the name of a method");
-    text = *word;
-  }
-
-  void into(std::optional<Store>& store) const {
+/// Takes the value of an option from Python, for a chain of n links.
+template <class Value>
+void take_option(std::string_view name, py::handle value, std::size_t n, Value& into) {
+  if constexpr (std::same_as<Value, std::string>) {
+    std::optional<std::string> word = text_of(value);
+    if (!word) refuse_type(name, value, "the name of a method");
+    into = *std::move(word);
+  } else if constexpr (std::same_as<Value, std::optional<Store>>) {
     if (value.is_none()) return;
-    const std::optional<std::string> word = valid_text();
-    const std::optional<Store> found = word ? find_store(*word) : std::nullopt;
-    if (!found) throw py::value_error(name_and_value() + ": " + std::string(must_be_store));
-    store = found;
-  }
-
-  void into(Tolerance& tolerance) const {
+    into = find_store(text_of(value).value_or(""));
+    if (!into) {
+      throw py::value_error(name_and_value(name, value) + ": " + std::string(must_be_store));
+    }
+  } else if constexpr (std::same_as<Value, Tolerance>) {
     double alone = 0.0;
     if (take_plain(value, alone)) {
-      tolerance.assign(1, alone);
+      into.assign(1, alone);
     } else {
-      tolerance = numbers(name, value, "a number or (" + std::to_string(2 * n) + ",)");
+      into = numbers(name, value, "a number or (" + std::to_string(2 * n) + ",)");
     }
-  }
-
-  void into(std::vector<double>& times) const {
+  } else if constexpr (std::same_as<Value, NumberList>) {
     if (value.is_none()) return;
-    times = numbers(name, value);
-    if (times.empty()) {
+    into = numbers(name, value);
+    if (into.empty()) {
       throw py::value_error(std::string(name) + ": is empty: must hold a time (s), or be left out");
     }
+  } else if constexpr (std::same_as<Value, std::vector<Event>>) {
+    for (const py::handle event : value) into.push_back(make_event(event));
+  } else {
+    take(name, value, into);
   }
-
-  void into(std::vector<Event>& events) const {
-    for (const py::handle event : value) events.push_back(make_event(event));
-  }
-
-  /// The value, unless it is no text, or text that no encoding has (a lone surrogate).
-  std::optional<std::string> valid_text() const {
-    try {
-      if (py::isinstance<py::str>(value)) return value.cast<std::string>();
-    } catch (const py::cast_error&) {
-    }
-    return std::nullopt;
-  }
-  std::string name_and_value() const {
-    return std::string(name) + " = " + py::repr(value).cast<std::string>();
-  }
-};
-
-py::array all(const std::vector<double>& numbers) {
-  return copy(numbers, {static_cast<py::ssize_t>(numbers.size())});
 }
 
 /// The value of one of the options, for Python.
@@ -83,11 +52,11 @@ py::object given(const Options& options, const Value& value) {
     return py::tuple();
   } else if constexpr (std::same_as<Value, std::optional<Store>>) {
     const bool is_usual = value.value_or(usual_store(options)) == usual_store(options);
-    return is_usual ? py::object(py::none()) : string(store_name(*value));
+    return is_usual ? py::object(py::none()) : py::object(py::str(store_name(*value)));
   } else if constexpr (std::same_as<Value, Tolerance>) {
-    return value.size() == 1 ? py::object(py::float_(value[0])) : all(value);
+    return value.size() == 1 ? py::object(py::float_(value[0])) : copy(value);
   } else if constexpr (std::same_as<Value, NumberList>) {
-    return value.empty() ? py::object(py::none()) : all(value);
+    return value.empty() ? py::object(py::none()) : copy(value);
   } else {
     return py::cast(value);
   }
@@ -121,7 +90,7 @@ py::dict descriptor(const ParameterInfo& info, std::string_view annotation, py::
 }
 
 /// The text of a keyword. A cast would note the string in a table, to keep it alive.
-std::string_view text_of(py::handle keyword) {
+std::string_view keyword_text(py::handle keyword) {
   Py_ssize_t size = 0;
   const char* const text = PyUnicode_AsUTF8AndSize(keyword.ptr(), &size);
   if (text == nullptr) throw py::error_already_set();
@@ -133,15 +102,15 @@ std::string_view text_of(py::handle keyword) {
 Options options_of(const py::dict& given, std::size_t n) {
   Options options;
   for (const auto& [key, value] : given) {
-    const std::string_view name = text_of(key);
-    const auto take = [&, &value = value](const auto& one) {
+    const std::string_view name = keyword_text(key);
+    const auto take_one = [&, &value = value](const auto& one) {
       if (one.info.name != name) return false;
-      Taken{one.info, value, n}.into(options.*(one.field));
+      take_option(name, value, n, options.*(one.field));
       return true;
     };
     // They are asked until one takes the value.
-    const bool is_known =
-        std::apply([&](const auto&... each) { return (take(each) || ...); }, Options::parameters);
+    const bool is_known = std::apply([&](const auto&... each) { return (take_one(each) || ...); },
+                                     Options::parameters);
     if (!is_known) throw py::type_error("no option of a run is called " + std::string(name));
   }
   return options;
@@ -150,7 +119,7 @@ Options options_of(const py::dict& given, std::size_t n) {
 py::dict as_python(const Options& options) {
   py::dict result;
   for_each_parameter(options, [&](const ParameterInfo& info, const auto& value) {
-    result[string(info.name)] = given(options, value);
+    result[py::str(info.name)] = given(options, value);
   });
   return result;
 }

@@ -7,22 +7,17 @@
 
 #include "analysis/defect.hpp"
 #include "arguments.hpp"
-#include "bind_events.hpp"
 #include "bind_options.hpp"
+#include "kind_and_values.hpp"
 #include "pendcore/simulate.hpp"
 #include "pendcore/solution.hpp"
 #include "python_monitor.hpp"
-#include "run_state.hpp"
 
 namespace pendcore::bindings {
 namespace {
 
 py::ssize_t size(const std::vector<double>& numbers) {
   return static_cast<py::ssize_t>(numbers.size());
-}
-
-py::array copy_flat(std::span<const double> numbers) {
-  return copy(numbers, {static_cast<py::ssize_t>(numbers.size())});
 }
 
 /// Every event that was asked for, as (kind, values).
@@ -41,8 +36,8 @@ py::list found(const Run& run) {
   py::list result;
   for (const FoundEvent& one : run.solution.found) {
     const py::object before =
-        one.y_before.empty() ? py::object(py::none()) : py::object(copy_flat(one.y_before));
-    result.append(py::make_tuple(one.event, one.t, one.direction, copy_flat(one.y), before));
+        one.y_before.empty() ? py::object(py::none()) : py::object(copy(one.y_before));
+    result.append(py::make_tuple(one.event, one.t, one.direction, copy(one.y), before));
   }
   return result;
 }
@@ -52,8 +47,8 @@ py::dict arguments(const Run& run) {
   const Solution& s = run.solution;
   const std::ptrdiff_t n = s.n;
   py::dict result = as_python(s.options);
-  result["q0"] = copy_flat(std::span(s.start).first(n));
-  result["qd0"] = copy_flat(std::span(s.start).subspan(n, n));
+  result["q0"] = copy(std::span(s.start).first(n));
+  result["qd0"] = copy(std::span(s.start).subspan(n, n));
   result["t_start"] = s.t0;
   result["t_end"] = s.t_end;
   result["events"] = event_pairs(run);
@@ -67,7 +62,8 @@ Run resume_run(const Run& run, py::handle t_end, py::handle t_eval, py::handle m
   const std::vector<double> times =
       t_eval.is_none() ? std::vector<double>{} : numbers("t_eval", t_eval);
   const long long most = whole_number("max_steps", max_steps);
-  const std::optional<double> limit = optional_number("time_limit", time_limit);
+  std::optional<double> limit;
+  take("time_limit", time_limit, limit);
   const Scene& scene = scene_of(run);
   const auto without_lock = [&] {
     const py::gil_scoped_release released;
@@ -116,7 +112,7 @@ py::dict entries(const Solution& s, const py::array& rows) {
   int column = 2 * s.n;
   for (const Account account : s.accounts) {
     const py::array entry = columns(rows, column, column + 1);
-    result[string(account_name(account))] = entry.attr("reshape")(-1);
+    result[py::str(account_name(account))] = entry.attr("reshape")(-1);
     ++column;
   }
   return result;
@@ -149,12 +145,15 @@ py::tuple defect_of_steps(const Run& run, std::size_t first, std::size_t end, co
   }
   const Defect found = defect(scene_of(run), s, first, end, q);
   const auto steps = static_cast<py::ssize_t>(end - first);
-  return py::make_tuple(copy(found.torque, {steps, s.n}), copy_flat(found.apart), copy_flat(q));
+  return py::make_tuple(copy(found.torque, {steps, s.n}), copy(found.apart), copy(q));
 }
 
 }  // namespace
 
 void bind_run(py::module_& module) {
+  const auto of_solution = [](auto Solution::* field) {
+    return [field](const Run& run) { return run.solution.*field; };
+  };
   py::class_<Run>(module, "Run", py::custom_type_setup(&collect_cycles),
                   "The result of a simulation, as the core holds it.")
       .def_property_readonly("t",
@@ -170,19 +169,19 @@ void bind_run(py::module_& module) {
                              })
       .def_property_readonly("ledger", &ledger)
       .def_property_readonly("found", &found)
-      .def_property_readonly("t_reached", [](const Run& run) { return run.solution.t_reached; })
+      .def_property_readonly("t_reached", of_solution(&Solution::t_reached))
       .def_property_readonly("y_reached",
                              [](const Run& run) {
                                const std::vector<double>& y = run.solution.y_reached;
-                               return copy_flat(std::span(y).first(2 * run.solution.n));
+                               return copy(std::span(y).first(2 * run.solution.n));
                              })
       .def_property_readonly("status",
                              [](const Run& run) { return text(run.solution.status).name; })
-      .def_property_readonly("message", [](const Run& run) { return run.solution.message; })
+      .def_property_readonly("message", of_solution(&Solution::message))
       .def_property_readonly("success",
                              [](const Run& run) { return text(run.solution.status).success; })
       .def_property_readonly("method", [](const Run& run) { return run.solution.options.method; })
-      .def_property_readonly("last_method", [](const Run& run) { return run.solution.last_method; })
+      .def_property_readonly("last_method", of_solution(&Solution::last_method))
       .def_property_readonly(
           "store", [](const Run& run) { return store_name(run.solution.options.store.value()); })
       .def_property_readonly("statistics",

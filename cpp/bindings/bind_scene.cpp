@@ -7,9 +7,9 @@
 
 #include "arguments.hpp"
 #include "arithmetic/floating_point_environment.hpp"
-#include "bind_effects.hpp"
 #include "dynamics/cost.hpp"
 #include "dynamics/equations_of_motion.hpp"
+#include "kind_and_values.hpp"
 #include "pendcore/equations.hpp"
 #include "pendcore/mechanics.hpp"
 #include "simulate/initial_state.hpp"
@@ -38,24 +38,10 @@ py::object scene_of_python(const std::vector<LinkNumbers>& links, double gravity
   return scene;
 }
 
-/// The rows of an (m, n) array of the Python layer, seen as vectors of n numbers.
-class Rows {
- public:
-  Rows(const Scene& scene, const char* name, const Array& array)
-      : n_(static_cast<py::ssize_t>(scene.links.size())), array_(array) {
-    if (array.ndim() != 2 || array.shape(1) != n_) {
-      throw py::value_error(std::string(name) + ": must be (m, " + std::to_string(n_) + ")");
-    }
-  }
-  py::ssize_t count() const { return array_.shape(0); }
-  std::span<const double> operator[](py::ssize_t i) const {
-    return {array_.data(i, 0), static_cast<std::size_t>(n_)};
-  }
-
- private:
-  py::ssize_t n_;
-  const Array& array_;
-};
+/// A row of an (m, n) array of the Python layer. The core refuses rows that are too long or short.
+std::span<const double> row(const Array& array, py::ssize_t i) {
+  return {array.data(i, 0), static_cast<std::size_t>(array.shape(1))};
+}
 
 /// An array of that shape with compute(i), a vector or a matrix, for each i along its first axis.
 template <class Compute>
@@ -64,20 +50,22 @@ Array array_of(const std::vector<py::ssize_t>& shape, const Compute& compute) {
   Array result(shape);
   double* to = result.mutable_data();
   for (py::ssize_t i = 0; i < shape[0]; ++i) {
-    const auto one = compute(i);
+    const auto& one = compute(i);
     to = std::copy_n(one.data(), one.size(), to);
   }
+  give_nan_one_sign(result);
   return result;
 }
 
+/// Without Equations, whose checks of every row would take a third of the time.
 Array acceleration_rows(const Scene& scene, const Array& t, const Array& q, const Array& qd) {
   const FloatingPointEnvironment ieee;
-  const Rows angles(scene, "q", q);
-  const Rows rates(scene, "qd", qd);
+  const auto n = static_cast<py::ssize_t>(scene.links.size());
+  if (q.shape(1) != n || qd.shape(1) != n) throw py::value_error("q and qd: must be (m, n)");
   const EquationsOfMotion equations = equations_of_motion(scene);
-  Array result({angles.count(), static_cast<py::ssize_t>(scene.links.size())});
-  for (py::ssize_t i = 0; i < angles.count(); ++i) {
-    accelerations(equations, t.at(i), angles[i].data(), rates[i].data(), result.mutable_data(i, 0));
+  Array result({q.shape(0), n});
+  for (py::ssize_t i = 0; i < q.shape(0); ++i) {
+    accelerations(equations, t.at(i), q.data(i, 0), qd.data(i, 0), result.mutable_data(i, 0));
   }
   give_nan_one_sign(result);
   return result;
@@ -91,10 +79,11 @@ std::optional<Array> acceleration_of_state(const Scene& scene, py::handle t, py:
   const FloatingPointEnvironment ieee;
   const std::size_t n = scene.links.size();
   double time = 0.0;
-  std::vector<double> state(2 * n);
+  Vector state(2 * n);
   const std::span<double> angles(state.data(), n);
   const std::span<double> rates(state.data() + n, n);
-  if (!take_plain(t, time) || !take_plain(q, angles) || !take_plain(qd, rates)) {
+  if (!take_plain(t, time) || !take_plain(q, angles) || !take_plain(qd, rates) ||
+      !std::isfinite(time) || !state.allFinite()) {
     return std::nullopt;
   }
   Array result(static_cast<py::ssize_t>(n));
@@ -106,14 +95,12 @@ std::optional<Array> acceleration_of_state(const Scene& scene, py::handle t, py:
 
 /// The derivatives of the accelerations by the angles and by the rates, (m, n, n) each.
 py::tuple jacobian_rows(const Scene& scene, const Array& t, const Array& q, const Array& qd) {
-  const Rows angles(scene, "q", q);
-  const Rows rates(scene, "qd", qd);
   Equations equations(scene);
-  const auto n = static_cast<py::ssize_t>(scene.links.size());
-  Array by_q({angles.count(), n, n});
-  Array by_qd({angles.count(), n, n});
-  for (py::ssize_t i = 0; i < angles.count(); ++i) {
-    const Derivatives found = equations.jacobian(t.at(i), angles[i], rates[i]);
+  const py::ssize_t n = q.shape(1);
+  Array by_q({q.shape(0), n, n});
+  Array by_qd({q.shape(0), n, n});
+  for (py::ssize_t i = 0; i < q.shape(0); ++i) {
+    const Derivatives found = equations.jacobian(t.at(i), row(q, i), row(qd, i));
     std::copy_n(found.by_q.data(), n * n, by_q.mutable_data(i, 0, 0));
     std::copy_n(found.by_qd.data(), n * n, by_qd.mutable_data(i, 0, 0));
   }
@@ -123,14 +110,10 @@ py::tuple jacobian_rows(const Scene& scene, const Array& t, const Array& q, cons
 }
 
 Array reaction_forces(const Scene& scene, const Array& t, const Array& q, const Array& qd) {
-  const Rows angles(scene, "q", q);
-  const Rows rates(scene, "qd", qd);
   Equations equations(scene);
-  Array result = array_of({q.shape(0), q.shape(1), 2}, [&](py::ssize_t i) {
-    return equations.reactions(t.at(i), angles[i], rates[i]);
+  return array_of({q.shape(0), q.shape(1), 2}, [&](py::ssize_t i) {
+    return equations.reactions(t.at(i), row(q, i), row(qd, i));
   });
-  give_nan_one_sign(result);
-  return result;
 }
 
 }  // namespace
@@ -155,39 +138,34 @@ void bind_scene(py::module_& module) {
       .def(
           "mass_matrix",
           [](const Scene& scene, const Array& q) {
-            const Rows angles(scene, "q", q);
             Equations equations(scene);
             return array_of({q.shape(0), q.shape(1), q.shape(1)},
-                            [&](py::ssize_t i) { return equations.mass_matrix(angles[i]); });
+                            [&](py::ssize_t i) { return equations.mass_matrix(row(q, i)); });
           },
           py::arg("q"))
       .def(
           "positions",
           [](const Scene& scene, const Array& t, const Array& q) {
-            const Rows angles(scene, "q", q);
             return array_of({q.shape(0), q.shape(1) + 1, 2},
-                            [&](py::ssize_t i) { return positions(scene, t.at(i), angles[i]); });
+                            [&](py::ssize_t i) { return positions(scene, t.at(i), row(q, i)); });
           },
           py::arg("t"), py::arg("q"))
       .def(
           "mass_centers",
           [](const Scene& scene, const Array& t, const Array& q) {
-            const Rows angles(scene, "q", q);
             return array_of({q.shape(0), q.shape(1), 2},
-                            [&](py::ssize_t i) { return mass_centers(scene, t.at(i), angles[i]); });
+                            [&](py::ssize_t i) { return mass_centers(scene, t.at(i), row(q, i)); });
           },
           py::arg("t"), py::arg("q"))
       .def(
           "energy",
           [](const Scene& scene, const Array& t, const Array& q, const Array& qd) {
             const FloatingPointEnvironment ieee;
-            const Rows angles(scene, "q", q);
-            const Rows rates(scene, "qd", qd);
-            Array kinetic(angles.count());
-            Array potential(angles.count());
-            for (py::ssize_t i = 0; i < angles.count(); ++i) {
-              kinetic.mutable_at(i) = kinetic_energy(scene, t.at(i), angles[i], rates[i]);
-              potential.mutable_at(i) = potential_energy(scene, t.at(i), angles[i]);
+            Array kinetic(q.shape(0));
+            Array potential(q.shape(0));
+            for (py::ssize_t i = 0; i < q.shape(0); ++i) {
+              kinetic.mutable_at(i) = kinetic_energy(scene, t.at(i), row(q, i), row(qd, i));
+              potential.mutable_at(i) = potential_energy(scene, t.at(i), row(q, i));
             }
             give_nan_one_sign(kinetic);
             give_nan_one_sign(potential);

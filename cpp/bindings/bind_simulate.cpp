@@ -2,8 +2,8 @@
 #include <utility>
 
 #include "analysis/defect_correction.hpp"
-#include "bind_events.hpp"
 #include "bind_options.hpp"
+#include "kind_and_values.hpp"
 #include "pendcore/simulate.hpp"
 #include "python_monitor.hpp"
 #include "simulate/checked_options.hpp"

@@ -21,7 +21,7 @@ void call(double t, int n, const double* q, const double* qd, double* forces, vo
   const std::string name = name_of("User: ", function);
   const std::string wanted =
       "(" + std::to_string(n) + ",), the generalised forces of the absolute angles (N m)";
-  const std::vector<double> values = numbers(name.c_str(), result, wanted);
+  const std::vector<double> values = numbers(name, result, wanted);
   if (values.size() != size) {
     throw py::value_error(name + ": shape (" + std::to_string(values.size()) + ",): must be " +
                           wanted);
@@ -44,17 +44,20 @@ std::function<double(double, std::span<const double>, std::span<const double>)> 
     const auto n = static_cast<py::ssize_t>(q.size());
     const py::object result = function(t, Array(n, q.data()), Array(n, qd.data()));
     if (PyFloat_CheckExact(result.ptr()) != 0) return PyFloat_AS_DOUBLE(result.ptr());
-    return number(name_of("Function: ", function).c_str(), result);
+    return number(name_of("Function: ", function), result);
   };
+}
+
+py::object python_exception(const py::error_already_set& raised) {
+  if (raised.trace()) PyException_SetTraceback(raised.value().ptr(), raised.trace().ptr());
+  return raised.value();
 }
 
 py::object python_exception(const std::exception_ptr& error) {
   try {
     std::rethrow_exception(error);
   } catch (const py::error_already_set& raised) {
-    const py::object value = raised.value();
-    if (raised.trace()) PyException_SetTraceback(value.ptr(), raised.trace().ptr());
-    return value;
+    return python_exception(raised);
   } catch (const py::builtin_exception& raised) {
     raised.set_error();
   } catch (const std::domain_error& raised) {

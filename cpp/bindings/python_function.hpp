@@ -23,7 +23,8 @@ CompiledUser effect_of_function(py::handle function, const std::vector<double>& 
 std::function<double(double, std::span<const double>, std::span<const double>)> event_function(
     py::handle function);
 
-/// An exception of Python or of the core, as a Python object.
+/// An exception of Python with its traceback; one of the core as Python has it.
+py::object python_exception(const py::error_already_set& raised);
 py::object python_exception(const std::exception_ptr& error);
 
 }  // namespace pendcore::bindings

@@ -16,14 +16,8 @@ bool PythonMonitor::operator()(double fraction) {
     Py_XDECREF(result);
     if (result != nullptr) return true;
   }
-  keep_error();
+  error_ = python_exception(py::error_already_set());
   return false;
-}
-
-void PythonMonitor::keep_error() {
-  const py::error_already_set error;
-  error_ = error.value();
-  if (error.trace()) PyException_SetTraceback(error_.ptr(), error.trace().ptr());
 }
 
 void PythonMonitor::close(Run& run) {
@@ -36,7 +30,7 @@ py::object PythonMonitor::close(Status& status, std::string& message, std::excep
   if (!error_) {
     // Ctrl-C came after the core last looked for it: the run is complete, and is not lost.
     if (PyErr_CheckSignals() == 0) return py::none();
-    keep_error();
+    error_ = python_exception(py::error_already_set());
     return error_;
   }
   const bool stopped = PyErr_GivenExceptionMatches(error_.ptr(), PyExc_KeyboardInterrupt) != 0;

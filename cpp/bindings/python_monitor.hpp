@@ -28,8 +28,6 @@ class PythonMonitor {
   py::object close(Status& status, std::string& message, std::exception_ptr& error);
 
  private:
-  void keep_error();
-
   py::handle progress_;
   py::object error_;
 };

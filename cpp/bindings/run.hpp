@@ -21,4 +21,13 @@ struct Run {
 
 inline const Scene& scene_of(const Run& run) { return run.scene.cast<const Scene&>(); }
 
+py::dict statistics(const Statistics& statistics);
+
+/// The run as numbers, strings and arrays of numbers, so that it fits a pickle and an npz alike.
+py::dict get_state(const Run& run);
+
+/// Raises TypeError for a field of another type, and ValueError for one that is missing and for
+/// parts that do not fit together.
+Run set_state(const py::dict& state);
+
 }  // namespace pendcore::bindings

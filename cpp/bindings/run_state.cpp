@@ -1,16 +1,13 @@
-#include "run_state.hpp"
+#include "run.hpp"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
 #include "arguments.hpp"
-#include "bind_effects.hpp"
 #include "dynamics/energetics/ledger.hpp"
-#include "event_state.hpp"
 #include "integrate/loop/integrate.hpp"
 #include "integrate/method_list.hpp"
+#include "kind_and_values.hpp"
 #include "pendcore/effects/user.hpp"
 #include "pendcore/methods.hpp"
 #include "pendcore/solution.hpp"
@@ -19,29 +16,26 @@
 namespace pendcore::bindings {
 namespace {
 
-/// Puts fields into a dictionary.
+/// Puts fields into a dictionary. A number that was not given is a NaN there.
 class Writer {
  public:
   py::dict fields;
 
-  template <class Number>
-  void operator()(const std::string& key, const Number& value) {
-    fields[py::str(key)] = value;
-  }
-  template <std::derived_from<std::vector<double>> List>
-  void operator()(const std::string& key, const List& values) {
-    fields[py::str(key)] = copy(values, {static_cast<py::ssize_t>(values.size())});
-  }
-  /// A number that was not given is a NaN.
-  void operator()(const std::string& key, const std::optional<double>& value) {
-    fields[py::str(key)] = value.value_or(std::numeric_limits<double>::quiet_NaN());
-  }
-  void operator()(const std::string& key, Status status) {
-    const std::string_view word = text(status).name;
-    fields[py::str(key)] = py::str(word.data(), word.size());
-  }
-  void operator()(const std::string& key, const std::optional<Store>& store) {
-    (*this)(key, std::string(store_name(store.value())));
+  template <class Value>
+  void operator()(const std::string& key, const Value& value) {
+    fields[py::str(key)] = [&] {
+      if constexpr (std::convertible_to<const Value&, const std::vector<double>&>) {
+        return copy(value);
+      } else if constexpr (std::same_as<Value, std::optional<double>>) {
+        return value.value_or(std::numeric_limits<double>::quiet_NaN());
+      } else if constexpr (std::same_as<Value, std::optional<Store>>) {
+        return store_name(value.value());
+      } else if constexpr (std::same_as<Value, Status>) {
+        return text(value).name;
+      } else {
+        return value;
+      }
+    }();
   }
 };
 
@@ -50,50 +44,30 @@ class Reader {
  public:
   explicit Reader(const py::dict& fields) : fields_(fields) {}
 
-  template <class Number>
-  void operator()(const std::string& key, Number& value) const {
-    try {
-      value = field(key).template cast<Number>();
-    } catch (const py::cast_error&) {
-      throw py::value_error(key + ": is not what a solution keeps there");
+  template <class Value>
+  void operator()(const std::string& key, Value& value) const {
+    if (!fields_.contains(key)) throw py::value_error(key + ": is missing from this solution");
+    const py::object kept = fields_[py::str(key)];
+    if constexpr (std::same_as<Value, std::optional<double>>) {
+      const double x = number(key, kept);
+      value = std::isnan(x) ? std::nullopt : std::optional(x);
+    } else if constexpr (std::same_as<Value, std::optional<Store>>) {
+      value = named(key, kept, find_store);
+    } else if constexpr (std::same_as<Value, Status>) {
+      value = named(key, kept, find_status);
+    } else {
+      take(key, kept, value);
     }
-  }
-  template <std::derived_from<std::vector<double>> List>
-  void operator()(const std::string& key, List& values) const {
-    values = numbers(key.c_str(), field(key));
-  }
-  void operator()(const std::string& key, std::optional<double>& value) const {
-    double number = 0.0;
-    (*this)(key, number);
-    value = std::isnan(number) ? std::nullopt : std::optional(number);
-  }
-  void operator()(const std::string& key, Status& status) const {
-    std::string word;
-    (*this)(key, word);
-    for (std::size_t i = 0; i < status_texts.size(); ++i) {
-      if (status_texts[i].name == word) {
-        status = static_cast<Status>(i);
-        return;
-      }
-    }
-    throw py::value_error("status = \"" + word + "\": is none");
-  }
-  void operator()(const std::string& key, std::optional<Store>& store) const {
-    std::string word;
-    (*this)(key, word);
-    for (std::size_t i = 0; i < store_names.size(); ++i) {
-      if (store_names[i] == word) {
-        store = static_cast<Store>(i);
-        return;
-      }
-    }
-    throw py::value_error("store = \"" + word + "\": is none");
   }
 
  private:
-  py::object field(const std::string& key) const {
-    if (!fields_.contains(key)) throw py::value_error(key + ": is missing from this solution");
-    return fields_[py::str(key)];
+  /// What `find` finds by the name that is kept.
+  static auto named(const std::string& key, py::handle kept, const auto& find) {
+    std::string name;
+    take(key, kept, name);
+    const auto found = find(name);
+    if (!found) throw py::value_error(key + " = \"" + name + "\": is none");
+    return *found;
   }
 
   const py::dict& fields_;
@@ -130,7 +104,7 @@ void visit(Archive& io, AnySolution& s) {
   io("dense_coefficients", s.dense.coefficients);
   for_each_parameter(s.options, [&]<class Value>(const ParameterInfo& info, Value& value) {
     if constexpr (!std::same_as<std::remove_const_t<Value>, std::vector<Event>>) {
-      io(std::string(info.name), value);  // event_state.hpp has the events
+      io(std::string(info.name), value);  // the events are kept as JSON
     }
   });
   io("t_start", s.t0);
@@ -194,15 +168,12 @@ bool polynomials_fit(const Solution& s) {
 
 /// Whether a run could have these counts: they are far below where adding to them overflows.
 bool counts_fit(const Statistics& s) {
-  const long long counts[] = {s.nfev,
-                              s.njev,
-                              s.nlu,
-                              s.accepted,
-                              s.rejected,
-                              s.limited_by_tolerance,
-                              s.limited_by_max_step,
-                              s.limited_by_break};
-  return std::ranges::all_of(counts, [](long long n) { return n >= 0 && n < 1LL << 60; });
+  bool fit = true;
+  const auto look = [&]<class Number>(const std::string& /*key*/, const Number& n) {
+    if constexpr (std::same_as<Number, long long>) fit = fit && n >= 0 && n < 1LL << 60;
+  };
+  visit_statistics(look, "", s);
+  return fit;
 }
 
 bool position_fits(const IntegratorState& p) {
@@ -212,27 +183,102 @@ bool position_fits(const IntegratorState& p) {
          std::abs(p.control.log2_error_before) < 1100.0;
 }
 
-/// The effects as JSON, which keeps every number to the last bit.
-std::string json_of_effects(const Scene& scene) {
-  py::list effects;
-  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
-    effects.append(kind_and_values(effect_name(scene, i) + ": ", scene.effects[i]));
-  }
-  return py::module_::import("json").attr("dumps")(effects).cast<std::string>();
+/// Effects or events as JSON, which keeps every number to the last bit.
+std::string json_of(const py::list& pairs) {
+  return py::module_::import("json").attr("dumps")(pairs).cast<std::string>();
 }
 
-std::vector<Effect> effects_of_json(const std::string& json) {
-  std::vector<Effect> effects;
-  const py::object listed = py::module_::import("json").attr("loads")(json);
-  for (const py::handle effect : listed) {
-    const auto kind = effect.cast<std::pair<std::string, py::object>>().first;
-    // A file that could name an address could have anything called.
-    if (kind == "user" || kind == CompiledUser::info.kind) {
-      throw py::value_error("effects: " + kind + ": a function cannot come from a file");
+/// Calls visit(pair) for each effect or event. A file that could name a function, or an address,
+/// could have anything called.
+template <class Visit>
+void for_each_in_json(const char* key, const std::string& json, const Visit& visit) {
+  for (const py::handle pair : py::module_::import("json").attr("loads")(json)) {
+    const auto kind = pair.cast<KindAndValues>().first;
+    if (kind == "user" || kind == CompiledUser::info.kind || kind == events::Function::kind) {
+      throw py::value_error(std::string(key) + ": " + kind +
+                            ": a function cannot come from a file");
     }
-    effects.push_back(make_effect(effect));
+    visit(pair);
   }
-  return effects;
+}
+
+/// The effects that act in a scene. Raises TypeError for a function, which cannot be kept.
+std::string json_of_effects(const Scene& scene) {
+  py::list pairs;
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    if (scene.effects[i].info().is_function) {
+      throw py::type_error(effect_name(scene, i) +
+                           ": is a function: a run with it cannot be pickled or saved");
+    }
+    pairs.append(kind_and_values(scene.effects[i]));
+  }
+  return json_of(pairs);
+}
+
+/// The events that a run looked for. Raises TypeError for a function, which cannot be kept.
+std::string json_of_events(const std::vector<Event>& events) {
+  py::list pairs;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    if (std::holds_alternative<events::Function>(events[i].function)) {
+      throw py::type_error(event_name(events[i], i) +
+                           ": is a function: a run that looks for it cannot be pickled or saved");
+    }
+    pairs.append(kind_and_values(events[i], py::none()));
+  }
+  return json_of(pairs);
+}
+
+/// The events that were found, as columns.
+struct FoundColumns {
+  std::vector<double> event{}, t{}, direction{}, y{};
+  std::vector<double> y_before{};  ///< NaN where the state does not jump
+};
+
+template <class Archive, class AnyColumns>
+void visit_found(Archive& io, AnyColumns& found) {
+  io("found_event", found.event);
+  io("found_t", found.t);
+  io("found_direction", found.direction);
+  io("found_y", found.y);
+  io("found_y_before", found.y_before);
+}
+
+FoundColumns columns_of(const std::vector<FoundEvent>& found) {
+  FoundColumns columns;
+  for (const FoundEvent& one : found) {
+    columns.event.push_back(one.event);
+    columns.t.push_back(one.t);
+    columns.direction.push_back(one.direction);
+    columns.y.insert(columns.y.end(), one.y.begin(), one.y.end());
+    columns.y_before.insert(columns.y_before.end(), one.y_before.begin(), one.y_before.end());
+    columns.y_before.resize(columns.y.size(), std::nan(""));
+  }
+  return columns;
+}
+
+/// Raises ValueError for what does not fit together, or to the events that were looked for.
+std::vector<FoundEvent> found_events(const FoundColumns& columns, const Solution& solution) {
+  const auto& [event, t, direction, y, y_before] = columns;
+  const std::size_t count = event.size();
+  const std::size_t n = 2 * static_cast<std::size_t>(solution.n);
+  bool fits = t.size() == count && direction.size() == count && y.size() == count * n &&
+              y_before.size() == count * n && solution.resumable_found <= count;
+  std::vector<FoundEvent> found;
+  for (std::size_t i = 0; fits && i < count; ++i) {
+    fits = event[i] >= 0.0 && event[i] < static_cast<double>(solution.options.events.size()) &&
+           std::abs(direction[i]) <= 1.0;
+    if (!fits) break;
+    const double* const state = y.data() + i * n;
+    const double* const before = y_before.data() + i * n;
+    found.push_back({.event = static_cast<int>(event[i]),
+                     .t = t[i],
+                     .direction = static_cast<int>(direction[i]),
+                     .y = {state, state + n},
+                     .y_before = {}});
+    if (!std::isnan(*before)) found.back().y_before.assign(before, before + n);
+  }
+  if (!fits) throw py::value_error("the events of this solution do not fit together");
+  return found;
 }
 
 /// A damaged file must end in an error, never in memory that is not ours.
@@ -263,7 +309,9 @@ py::dict get_state(const Run& run) {
   io("effects", json_of_effects(scene));
   visit(io, run.solution);
   visit_position(io, *run.solution.resumable);
-  put_events(io.fields, run.solution);
+  const FoundColumns found = columns_of(run.solution.found);
+  io("events", json_of_events(run.solution.options.events));
+  visit_found(io, found);
   return io.fields;
 }
 
@@ -277,9 +325,10 @@ Run set_state(const py::dict& state) {
     scene.links.push_back({links[i], links[i + 1], links[i + 2], links[i + 3]});
   }
   io("gravity", scene.gravity);
-  std::string effects;
-  io("effects", effects);
-  scene.effects = effects_of_json(effects);
+  std::string json;
+  io("effects", json);
+  for_each_in_json("effects", json,
+                   [&](py::handle pair) { scene.effects.push_back(make_effect(pair)); });
   check(scene);
   Solution s;
   visit(io, s);
@@ -293,7 +342,14 @@ Run set_state(const py::dict& state) {
   if (s.options.ledger) s.accounts = accounts_of(scene);
   s.dimension = 2 * s.n + static_cast<int>(s.accounts.size());
   check_parts(s);
-  take_events(state, s);
+  io("events", json);
+  for_each_in_json("events", json, [&](py::handle pair) {
+    s.options.events.push_back(make_event(pair));
+    check_event("events: ", s.options.events.back(), s.n);
+  });
+  FoundColumns found;
+  visit_found(io, found);
+  s.found = found_events(found, s);
   return {.scene = py::cast(std::move(scene)), .solution = std::move(s)};
 }
 

@@ -8,12 +8,9 @@
  */
 
 const MAGIC = [0x00, 0x61, 0x73, 0x6d, 0x01, 0x00, 0x00, 0x00];
-const SECTION = { export: 7, code: 10 };
-const FUNCTION = 0;
 const CALL = 0x10;
 /** f64x2.relaxed_madd, and three nops: as long as a call whose function's number has five bytes. */
 const INSTRUCTION = [0xfd, 0x87, 0x02, 0x01, 0x01, 0x01];
-const SITE = INSTRUCTION.length;
 
 /** (func (param $a f64) (param $b f64) (param $c f64) (result f64)) by relaxed_madd on two lanes. */
 // biome-ignore format: a row is a section
@@ -36,68 +33,26 @@ export function fuses() {
   return f(1 + tiny, 1 - tiny, -1) === -(tiny ** 2) && f(3, 1 / 3, -1) === -(2 ** -54);
 }
 
-/** A reader of the numbers of a module, which are in LEB128. */
-class Reader {
-  constructor(bytes) {
-    this.bytes = bytes;
-    this.at = MAGIC.length;
-  }
-  byte() {
-    return this.bytes[this.at++];
-  }
-  number() {
-    let value = 0;
-    for (let shift = 0; ; shift += 7) {
-      const byte = this.byte();
-      value += (byte & 0x7f) * 2 ** shift;
-      if (byte < 0x80) return value;
-    }
-  }
-  text() {
-    const size = this.number();
-    this.at += size;
-    return new TextDecoder().decode(this.bytes.subarray(this.at - size, this.at));
-  }
-  /** Where each section begins and ends, by its number. */
-  sections() {
-    const found = {};
-    while (this.at < this.bytes.length) {
-      const kind = this.byte();
-      const size = this.number();
-      found[kind] = { begin: this.at, end: this.at + size };
-      this.at += size;
-    }
-    return found;
-  }
-}
-
-/** The number of an exported function. */
-function functionNumber(bytes, exports, name) {
-  const reader = new Reader(bytes);
-  reader.at = exports.begin;
-  for (let left = reader.number(); left > 0; --left) {
-    const text = reader.text();
-    const kind = reader.byte();
-    const number = reader.number();
-    if (kind === FUNCTION && text === name) return number;
-  }
-  throw new Error(`the module exports no function ${name}: it is not a module of pendcore`);
-}
-
 /**
  * The module's bytes with the instruction in the place of all calls of `pendcore_fma`.
  *
- * The linker writes a function's number in five bytes, the last of them 0, so a call has six. That
- * these six bytes stand elsewhere by chance has a probability of 1e-8 in a module of this size.
+ * The number of that function is the name that an instance of the module gives it, by the JavaScript
+ * interface of WebAssembly. The linker writes a function's number in five bytes, the last of them 0,
+ * so a call has six. That these six bytes stand elsewhere by chance has a probability of 1e-8 in a
+ * module of this size.
  */
-export function withInstructions(given) {
-  const bytes = Uint8Array.from(given);
-  const sections = new Reader(bytes).sections();
-  let number = functionNumber(bytes, sections[SECTION.export], "pendcore_fma");
+export async function withInstructions(given) {
+  const { instance } = await WebAssembly.instantiate(given, imports({}));
+  /** @type {any} */
+  const { pendcore_fma } = instance.exports;
+  if (!pendcore_fma) throw new Error("this is not a module of pendcore: it has no pendcore_fma");
+  let number = Number(pendcore_fma.name);
+  if (!Number.isInteger(number)) return { bytes: given, calls: 0 }; // the calls do as well
   const call = [CALL];
   for (let i = 0; i < 5; ++i, number >>>= 7) call.push((number & 0x7f) | (i < 4 ? 0x80 : 0));
+  const bytes = Uint8Array.from(given);
   let calls = 0;
-  for (let at = sections[SECTION.code].begin; at + SITE <= sections[SECTION.code].end; ++at) {
+  for (let at = bytes.indexOf(CALL); at >= 0; at = bytes.indexOf(CALL, at + 1)) {
     if (!call.every((byte, i) => bytes[at + i] === byte)) continue;
     bytes.set(INSTRUCTION, at);
     ++calls;
@@ -106,8 +61,8 @@ export function withInstructions(given) {
 }
 
 /** The bytes of the module that is fastest on this engine. */
-export function fastest(bytes) {
-  return fuses() ? withInstructions(bytes).bytes : bytes;
+export async function fastest(bytes) {
+  return fuses() ? (await withInstructions(bytes)).bytes : bytes;
 }
 
 /** Thrown where the core throws: the message is the core's. */

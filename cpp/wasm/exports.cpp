@@ -2,7 +2,8 @@
 //
 // A scene and the options of a run are drafted by name, one call for each value; the draft then
 // becomes a scene or a run, which is an address until it is freed. Text and numbers come in through
-// two buffers. Numbers go out as addresses, which hold until the next call.
+// two buffers: the text is a name, and the value either the word after a zero in it, or the
+// numbers. Numbers go out as addresses, which hold until the next call.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -24,6 +25,7 @@ using namespace pendcore;
 std::string text_in;
 std::string text_out;
 std::vector<double> numbers_in;
+std::optional<std::string> word_in;
 std::vector<double> numbers_out;
 Scene draft;
 Options options;
@@ -37,53 +39,53 @@ struct Run {
   throw std::invalid_argument(where + std::string(name) + ": there is no such name");
 }
 
-void one_number(const std::string& name) {
-  if (numbers_in.size() != 1) throw std::invalid_argument(name + ": must be a number");
+[[noreturn]] void refuse_value(const std::string& name_and_value, const char* wanted) {
+  throw std::invalid_argument(name_and_value + ": must be " + wanted);
 }
 
-/// Each of these takes the value of an option or of a parameter from the numbers given.
-void take(const std::string& name, double& x) {
-  one_number(name);
-  x = numbers_in[0];
-}
-void take(const std::string& name, std::optional<double>& x) {
-  one_number(name);
-  x = numbers_in[0];
-}
-void take(const std::string& /*name*/, std::vector<double>& x) { x = numbers_in; }
-void take(const std::string& /*name*/, Tolerance& x) { x = numbers_in; }
-void take(const std::string& name, bool& x) {
-  one_number(name);
-  x = numbers_in[0] != 0.0;
-}
-template <class Whole>
-  requires std::integral<Whole>
-void take(const std::string& name, Whole& x) {
-  one_number(name);
-  constexpr double most = std::same_as<Whole, int> ? 1e9 : 0x1p53;
-  if (!(std::abs(numbers_in[0]) <= most) || std::floor(numbers_in[0]) != numbers_in[0]) {
-    throw std::invalid_argument(name + " = " + text(numbers_in[0]) +
-                                ": must be a whole number, at most " + text(most));
-  }
-  x = static_cast<Whole>(numbers_in[0]);
-}
-void take(const std::string& name, std::array<double, 2>& x) {
-  if (numbers_in.size() != 2) throw std::invalid_argument(name + ": must be two numbers");
-  x = {numbers_in[0], numbers_in[1]};
-}
-
-/// Fills the parameter called `name`; that of a part is called "sinusoid.amplitude", say.
-template <class Struct>
-bool fill(Struct& effect, std::string_view name, const std::string& where) {
-  bool found = false;
-  for_each_parameter(effect, [&]<class Value>(const ParameterInfo& info, Value& value) {
-    if constexpr (OptionalPart<Value>) {
-      if (!name.starts_with(info.name) || name.size() == info.name.size() ||
-          name[info.name.size()] != '.') {
-        return;
+/// Takes the value of an option or of a parameter: the word, if one is given, or else the numbers.
+template <class Value>
+void take(const std::string& name, Value& x) {
+  if constexpr (std::same_as<Value, std::vector<Event>>) {
+    throw std::invalid_argument(name + ": not offered to JavaScript");
+  } else if constexpr (std::same_as<Value, std::string>) {
+    if (!word_in) refuse_value(name, "a word");
+    x = *word_in;
+  } else if constexpr (std::same_as<Value, std::optional<Store>>) {
+    if (!word_in) refuse_value(name, "a word");
+    x = find_store(*word_in);
+    if (!x) throw std::invalid_argument((name + " = \"" + *word_in + "\": ").append(must_be_store));
+  } else if (word_in) {
+    refuse_value(name + " = " + *word_in, "a number");
+  } else if constexpr (std::convertible_to<Value&, std::vector<double>&>) {
+    x = numbers_in;
+  } else if constexpr (std::same_as<Value, std::array<double, 2>>) {
+    if (numbers_in.size() != 2) refuse_value(name, "two numbers");
+    x = {numbers_in[0], numbers_in[1]};
+  } else {
+    if (numbers_in.size() != 1) refuse_value(name, "a number");
+    const double given = numbers_in[0];
+    if constexpr (std::integral<Value> && !std::same_as<Value, bool>) {
+      constexpr double most = std::same_as<Value, int> ? 1e9 : 0x1p53;
+      if (!(std::abs(given) <= most) || std::floor(given) != given) {
+        refuse(name, given, "a whole number, at most " + text(most));
       }
+    }
+    x = static_cast<Value>(given);
+  }
+}
+
+/// Sets the parameter or option called `name`; that of a part is called "sinusoid.amplitude", say.
+/// Returns whether there is one.
+template <class Struct>
+bool set(Struct& changed, std::string_view name, const std::string& where) {
+  bool found = false;
+  for_each_parameter(changed, [&]<class Value>(const ParameterInfo& info, Value& value) {
+    if constexpr (OptionalPart<Value>) {
+      const std::string part = std::string(info.name) + '.';
+      if (!name.starts_with(part)) return;
       if (!value) value.emplace();
-      found = found || fill(*value, name.substr(info.name.size() + 1), where);
+      found = set(*value, name.substr(part.size()), where);
     } else if (name == info.name) {
       take(where + std::string(name), value);
       found = true;
@@ -92,34 +94,12 @@ bool fill(Struct& effect, std::string_view name, const std::string& where) {
   return found;
 }
 
-/// Sets an option from the numbers given, or from a word.
-template <class Value>
-void set_option(const std::string& name, const std::string* word, Value& value) {
-  if constexpr (std::same_as<Value, std::string>) {
-    if (word == nullptr) throw std::invalid_argument(name + ": must be a word");
-    value = *word;
-  } else if constexpr (std::same_as<Value, std::optional<Store>>) {
-    if (word == nullptr) throw std::invalid_argument(name + ": must be a word");
-    value = find_store(*word);
-    if (!value) {
-      throw std::invalid_argument((name + " = \"" + *word + "\": ").append(must_be_store));
-    }
-  } else if constexpr (std::same_as<Value, std::vector<Event>>) {
-    throw std::invalid_argument(name + ": not offered to JavaScript");
-  } else {
-    if (word != nullptr) throw std::invalid_argument(name + " = " + *word + ": must be a number");
-    take(name, value);
-  }
-}
-
-void set_option_called(const std::string& name, const std::string* word) {
-  bool is_known = false;
-  for_each_parameter(options, [&](const ParameterInfo& info, auto& value) {
-    if (info.name != name) return;
-    set_option(name, word, value);
-    is_known = true;
-  });
-  if (!is_known) refuse_name("option ", name);
+/// The name in the text, without the word that may follow it after a zero.
+std::string take_name() {
+  const std::size_t end = text_in.find('\0');
+  word_in.reset();
+  if (end != std::string::npos) word_in = text_in.substr(end + 1);
+  return text_in.substr(0, end);
 }
 
 /// n angles and n rates.
@@ -175,15 +155,16 @@ EXPORTED(add_effect) void add_effect() {
   if (text_in == "user") refuse_name("kind = ", text_in);
   draft.effects.push_back(effect_of_kind(text_in, [](auto& /*given*/) {}));
 }
-/// Sets a parameter of the effect added last; the text is its name.
+/// Sets a parameter of the effect added last.
 EXPORTED(set_parameter) void set_parameter() {
+  const std::string name = take_name();
   const std::string where = effect_name(draft, draft.effects.size() - 1) + ": ";
   bool found = false;
-  visit_parameters(draft.effects.back(), [&](auto given) {
-    found = fill(given, text_in, where);
-    if (found) draft.effects.back() = std::move(given);
+  visit_parameters(draft.effects.back(), [&](auto changed) {
+    found = set(changed, name, where);
+    if (found) draft.effects.back() = std::move(changed);
   });
-  if (!found) refuse_name(where, text_in);
+  if (!found) refuse_name(where, name);
 }
 EXPORTED(end_scene) const Scene* end_scene() {
   constexpr std::size_t most_links = 10'000;  // their matrices would not fit into 32 bits
@@ -199,13 +180,9 @@ EXPORTED(free_scene) void free_scene(const Scene* scene) { delete scene; }
 // These make a run.
 
 EXPORTED(begin_options) void begin_options() { options = Options(); }
-/// The text is the option's name.
-EXPORTED(set_numbers) void set_numbers() { set_option_called(text_in, nullptr); }
-/// The text is the option's name, a zero, and the word.
-EXPORTED(set_word) void set_word() {
-  const std::size_t end = text_in.find('\0');
-  const std::string word = text_in.substr(end + 1);
-  set_option_called(text_in.substr(0, end), &word);
+EXPORTED(set_option) void set_option() {
+  const std::string name = take_name();
+  if (!set(options, name, "")) refuse_name("option ", name);
 }
 /// The numbers are the state at t0.
 EXPORTED(simulate) const Run* simulate_run(const Scene* scene, double t0, double t_end) {

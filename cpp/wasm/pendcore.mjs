@@ -23,7 +23,7 @@ const BYTES_PER_NUMBER = 8;
 /** Compiles the module for this engine. */
 export async function load(bytes) {
   const host = {};
-  const module = await WebAssembly.compile(fastest(new Uint8Array(bytes)));
+  const module = await WebAssembly.compile(await fastest(new Uint8Array(bytes)));
   const instance = await WebAssembly.instantiate(module, imports(host));
   /** @type {any} */
   const exports = instance.exports;
@@ -54,37 +54,29 @@ class Core {
     for (const { kind, ...parameters } of effects) {
       this.putText(kind);
       this.call("add_effect");
-      this.#setParameters("", parameters);
+      this.#set("set_parameter", parameters);
     }
     return new Scene(this, this.call("end_scene"), links.length);
   }
 
-  #setParameters(prefix, parameters) {
-    for (const [name, value] of Object.entries(parameters)) {
+  /** Sets parameters or options by name; a part's have its name and a dot before them. */
+  #set(how, values, part = "") {
+    for (const [name, value] of Object.entries(values)) {
       if (value === undefined || value === null) continue;
       if (isPart(value)) {
-        this.#setParameters(`${prefix}${name}.`, value);
-      } else {
-        this.putText(prefix + name);
-        this.putNumbers(isList(value) ? value : [value]);
-        this.call("set_parameter");
+        this.#set(how, value, `${part}${name}.`);
+        continue;
       }
+      const isWord = typeof value === "string";
+      this.putText(part + name + (isWord ? `\0${value}` : ""));
+      if (!isWord) this.putNumbers(isList(value) ? value : [value]);
+      this.call(how);
     }
   }
 
   setOptions(options) {
     this.call("begin_options");
-    for (const [name, value] of Object.entries(options)) {
-      if (value === undefined || value === null) continue;
-      if (typeof value === "string") {
-        this.putText(`${name}\0${value}`);
-        this.call("set_word");
-      } else {
-        this.putText(name);
-        this.putNumbers(isList(value) ? value : [Number(value)]);
-        this.call("set_numbers");
-      }
-    }
+    this.#set("set_option", options);
   }
 
   /**

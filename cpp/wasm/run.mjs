@@ -23,7 +23,7 @@ const given = readFileSync(words[0]);
 let bytes = given;
 if (!emulated) {
   if (!fuses()) fail("this engine has no instruction that fuses: give --emulated");
-  const found = withInstructions(given);
+  const found = await withInstructions(given);
   if (found.calls === 0) fail(`${words[0]} has no call of pendcore_fma to replace`);
   bytes = found.bytes;
 }

@@ -1,6 +1,7 @@
 /// \file
-/// The descriptors of what users give: parameters of effects, and options of a run. Checks,
-/// messages, Python, case files, pages and WebAssembly read all that they say of one from here.
+/// The descriptors of what users give: parameters of effects and events, and options of a run.
+/// Checks, messages, Python, case files, pages and WebAssembly read all that they say of one from
+/// here.
 ///
 /// A struct with such fields lists them in `parameters`, a tuple of parameter(&Struct::field, ...).
 #pragma once
@@ -61,7 +62,7 @@ struct ParameterInfo {
   std::string_view name;         ///< as in Python and TOML
   std::string_view symbol = {};  ///< as in the law; empty if it is not a quantity
   std::string_view unit = {};
-  std::string_view sentence;
+  std::string_view sentence = {};
   Range range = Range::any;
   bool required = false;                                    ///< if not, the struct has the default
   std::array<std::string_view, 2> components = {"x", "y"};  ///< the names of a pair's two numbers

@@ -26,8 +26,11 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <variant>
 #include <vector>
+
+#include "pendcore/descriptor.hpp"
 
 namespace pendcore {
 
@@ -41,6 +44,11 @@ struct JointAngle {
   double value = 0.0;       ///< rad
   bool every_turn = false;  ///< whether value + 2 pi k counts for every k
   static constexpr std::string_view kind = "joint_angle";
+  static constexpr auto parameters =
+      std::tuple{parameter(&JointAngle::joint, {.name = "joint", .required = true}),
+                 parameter(&JointAngle::value, {.name = "value", .unit = "rad", .required = true}),
+                 parameter(&JointAngle::every_turn, {.name = "every_turn"})};
+
   operator Event() const;
 };
 
@@ -49,6 +57,11 @@ struct LinkAngle {
   double value = 0.0;
   bool every_turn = false;
   static constexpr std::string_view kind = "link_angle";
+  static constexpr auto parameters =
+      std::tuple{parameter(&LinkAngle::link, {.name = "link", .required = true}),
+                 parameter(&LinkAngle::value, {.name = "value", .unit = "rad", .required = true}),
+                 parameter(&LinkAngle::every_turn, {.name = "every_turn"})};
+
   operator Event() const;
 };
 
@@ -57,6 +70,9 @@ struct RateZero {
   std::optional<int> joint;
   std::optional<int> link;
   static constexpr std::string_view kind = "rate_zero";
+  static constexpr auto parameters = std::tuple{parameter(&RateZero::joint, {.name = "joint"}),
+                                                parameter(&RateZero::link, {.name = "link"})};
+
   operator Event() const;
 };
 
@@ -64,6 +80,10 @@ struct TipLine {
   std::array<double, 2> point = {};   ///< a point of the line, m; x right, y down
   std::array<double, 2> normal = {};  ///< across the line
   static constexpr std::string_view kind = "tip_line";
+  static constexpr auto parameters =
+      std::tuple{parameter(&TipLine::point, {.name = "point", .unit = "m", .required = true}),
+                 parameter(&TipLine::normal, {.name = "normal", .unit = "1", .required = true})};
+
   operator Event() const;
 };
 
@@ -74,6 +94,11 @@ struct Function {
   int samples = 8;
   double max_step = std::numeric_limits<double>::infinity();  ///< s
   static constexpr std::string_view kind = "function";
+  static constexpr auto parameters = std::tuple{
+      parameter(&Function::samples, {.name = "samples"}),
+      parameter(&Function::max_step,
+                {.name = "max_step", .unit = "s", .range = Range::positive_or_infinite})};
+
   operator Event() const;
 };
 
@@ -93,6 +118,15 @@ struct Event {
   int direction = 0;       ///< 1: where it rises; -1: where it falls; 0: both, and where it touches
   long long terminal = 0;  ///< the run ends whenever so many have occurred; 0: never
   std::string name = {};
+
+  static constexpr auto parameters = std::tuple{parameter(&Event::direction, {.name = "direction"}),
+                                                parameter(&Event::terminal, {.name = "terminal"}),
+                                                parameter(&Event::name, {.name = "name"})};
+
+  /// "joint_angle".
+  std::string_view kind() const {
+    return std::visit([](const auto& one) { return one.kind; }, function);
+  }
 };
 
 inline events::JointAngle::operator Event() const { return {.function = *this}; }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <string_view>
 
 namespace pendcore {
@@ -69,6 +70,14 @@ inline constexpr std::array<StatusText, 11> status_texts = {{
 
 constexpr const StatusText& text(Status status) {
   return status_texts[static_cast<std::size_t>(status)];
+}
+
+/// The status of that name, if there is one.
+constexpr std::optional<Status> find_status(std::string_view name) {
+  for (std::size_t i = 0; i < status_texts.size(); ++i) {
+    if (status_texts[i].name == name) return static_cast<Status>(i);
+  }
+  return std::nullopt;
 }
 
 }  // namespace pendcore

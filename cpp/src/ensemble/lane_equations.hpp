@@ -4,7 +4,7 @@
 ///
 /// All equations in lanes, these and the series of series_equations.hpp, have
 ///
-///     has(scene, equations)      whether a trajectory has this form; another trajectory of the same
+///     has(scene, equations)      whether a trajectory has this form; another one of the same
 ///                                kind (kinds_of) has it, too
 ///     prepare(scene, equations)  makes room for trajectories like this one
 ///     put(lane, scene, equations)  puts the constants of a trajectory into a lane

@@ -94,7 +94,10 @@ inline constexpr ParameterInfo link_number{.name = "link",
 
 /// A part of an effect with parameters of its own, such as a Sinusoid, that may be left out.
 template <class Value>
-concept OptionalPart = requires { Value::value_type::parameters; };
+concept OptionalPart = requires(const Value& value) {
+  Value::value_type::parameters;
+  value.has_value();
+};
 
 /// A time that never comes, or a bound that does not exist.
 inline constexpr double never = std::numeric_limits<double>::infinity();

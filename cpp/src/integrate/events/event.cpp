@@ -1,45 +1,34 @@
 #include "pendcore/events.hpp"
 
-#include <cmath>
-
+#include "text/check.hpp"
 #include "text/message.hpp"
 
 namespace pendcore {
 namespace {
 
-void check_number(const std::string& where, const char* name, int number, int n) {
+void check_place(const std::string& where, const char* name, int number, int n) {
   if (number >= 1 && number <= n) return;
   const std::string range =
       n == std::numeric_limits<int>::max() ? ">= 1" : "1 to " + std::to_string(n);
   throw std::invalid_argument(where + name + " = " + std::to_string(number) + ": must be " + range);
 }
 
-void check_finite(const std::string& field, double value, const char* unit) {
-  if (!std::isfinite(value)) refuse(field, value, std::string("finite (") + unit + ")");
-}
-
 void check_function(const std::string& where, const events::JointAngle& event, int n) {
-  check_number(where, "joint", event.joint, n);
-  check_finite(where + "value", event.value, "rad");
+  check_place(where, "joint", event.joint, n);
 }
 
 void check_function(const std::string& where, const events::LinkAngle& event, int n) {
-  check_number(where, "link", event.link, n);
-  check_finite(where + "value", event.value, "rad");
+  check_place(where, "link", event.link, n);
 }
 
 void check_function(const std::string& where, const events::RateZero& event, int n) {
   if (event.joint.has_value() == event.link.has_value()) {
     throw std::invalid_argument(where + "needs joint or link, one of the two");
   }
-  check_number(where, event.joint ? "joint" : "link", event.joint ? *event.joint : *event.link, n);
+  check_place(where, event.joint ? "joint" : "link", event.joint ? *event.joint : *event.link, n);
 }
 
 void check_function(const std::string& where, const events::TipLine& event, int /*n*/) {
-  check_finite(where + "point[0]", event.point[0], "m");
-  check_finite(where + "point[1]", event.point[1], "m");
-  check_finite(where + "normal[0]", event.normal[0], "1");
-  check_finite(where + "normal[1]", event.normal[1], "1");
   if (event.normal[0] == 0.0 && event.normal[1] == 0.0) {
     throw std::invalid_argument(where + "normal = (0.0, 0.0): must point across the line");
   }
@@ -57,13 +46,20 @@ void check_function(const std::string& where, const events::Function& event, int
 }  // namespace
 
 std::string event_name(const Event& event, std::size_t i) {
-  const std::string kind(std::visit([](const auto& one) { return one.kind; }, event.function));
   const std::string name = event.name.empty() ? "" : ", '" + event.name + "'";
-  return "event " + std::to_string(i + 1) + " (" + kind + name + ")";
+  return "event " + std::to_string(i + 1) + " (" + std::string(event.kind()) + name + ")";
 }
 
 void check_event(const std::string& where, const Event& event, int n) {
-  std::visit([&](const auto& one) { check_function(where, one, n); }, event.function);
+  std::visit(
+      [&](const auto& one) {
+        check_function(where, one, n);
+        for_each_parameter(one, [&]<class Value>(const ParameterInfo& info, const Value& value) {
+          // The counts have ranges of their own.
+          if constexpr (!std::integral<Value>) check_value(where, info, value);
+        });
+      },
+      event.function);
   if (event.direction < -1 || event.direction > 1) {
     throw std::invalid_argument(where + "direction = " + std::to_string(event.direction) +
                                 ": must be 1 (rising), -1 (falling) or 0 (both)");
