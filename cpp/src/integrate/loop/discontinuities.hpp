@@ -15,10 +15,6 @@ class Discontinuities {
  public:
   virtual ~Discontinuities() = default;
 
-  /// Chooses the laws for a start at time t, and may adjust the state. Returns whether the state
-  /// jumped.
-  virtual bool begin(double t, double* y, bool forward) = 0;
-
   /// The next time after t, in the run's direction, that no step may cross; infinite if none.
   virtual double next_time(double t) const = 0;
   /// The longest step that cannot miss the cause of a guard's change: the load on a held joint does
@@ -29,7 +25,8 @@ class Discontinuities {
   virtual int guards() const = 0;
   virtual int linear_guards() const = 0;
   /// The multiplicity of the zero that a guard has at the start of the next step: how many of its
-  /// value, slope and curvature are zero, whatever rounding makes of them.
+  /// value, slope and curvature are zero, whatever rounding makes of them. It is 0 for a guard that
+  /// is not linear.
   virtual int multiplicity_at_start(int k) const = 0;
   /// The coefficients of a linear guard along the dense output, a polynomial given by (degree + 1)
   /// rows of `dimension` numbers.

@@ -140,8 +140,7 @@ void Guards::slopes_along_step(int k, double t, double h, double from) {
 /// makes the guard fall.
 Crossing Guards::where_slope_allows(Crossing crossing, double t, double h, int degree) {
   const int k = crossing.guard;
-  const bool was_released =
-      k < discontinuities_.linear_guards() && discontinuities_.multiplicity_at_start(k) > 1;
+  const bool was_released = discontinuities_.multiplicity_at_start(k) > 1;
   for (int dips = 0; dips < points; ++dips) {
     const double theta = crossing.theta;
     const bool at_start = theta * std::abs(h) <= last_bits_share * std::abs(t);
@@ -208,8 +207,7 @@ double Guards::rise_at_start(int k, double h) {
 
 /// Whether guard k belongs to a joint that rests on its stop and is pushed away from it.
 bool Guards::rises_from_rest(int k) {
-  if (k >= discontinuities_.linear_guards() || discontinuities_.multiplicity_at_start(k) == 0)
-    return false;
+  if (discontinuities_.multiplicity_at_start(k) == 0) return false;
   const std::array<double, 3> along = start_of(k);
   return along[1] == 0.0 && along[2] > 0.0;
 }
@@ -226,9 +224,7 @@ bool Guards::leaves_its_zero(int k, double t, double h, double value, double rou
 bool Guards::falls_at_start(int k, double t, double h, int halvings) {
   if (halvings == most_halvings) return true;
   stepper_.get_state(state_.data());
-  const int zeros =
-      k < discontinuities_.linear_guards() ? discontinuities_.multiplicity_at_start(k) : 0;
-  if (zeros == 0) {
+  if (discontinuities_.multiplicity_at_start(k) == 0) {
     const double value = value_at(k, t);  // comes first, because rounding() uses it
     const double rounding = discontinuities_.rounding(k, state_.data());
     return value <= rounding && !leaves_its_zero(k, t, h, value, rounding);
@@ -245,9 +241,7 @@ bool Guards::contradicts_law_at_start(const Crossing& crossing, double h) {
 /// twice the crossing's share of the step. Then the crossing is an error of the dense output.
 bool Guards::is_of_error(const Crossing& crossing, double h) {
   const int k = crossing.guard;
-  if (k < 0 || k >= discontinuities_.linear_guards() ||
-      discontinuities_.multiplicity_at_start(k) == 0)
-    return false;
+  if (k < 0 || discontinuities_.multiplicity_at_start(k) == 0) return false;
   const int degree = along_step(k);
   const std::array<double, 3> along = start_of(k);
   if (discontinuities_.multiplicity_at_start(k) < 2) polynomial_[1] = along[1] * h;
@@ -292,7 +286,7 @@ Guards::Miss Guards::miss(const Crossing& crossing, double t, double h) {
   const double slope = slope_at_end(polynomial_.data(), degree);
   if (slope == 0.0) return {0.0, 0.0};
   double g = 0.0;
-  if (other < 0 && discontinuities_.multiplicity_at_start(k) > 0) {
+  if (discontinuities_.multiplicity_at_start(k) > 0) {
     // The growth since the start of the step, without the rounding of the state itself.
     for (int p = degree; p > 0; --p) g += polynomial_[p];
     return {g / slope, 0.0};
