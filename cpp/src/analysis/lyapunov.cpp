@@ -10,6 +10,7 @@
 #include "arithmetic/floating_point_environment.hpp"
 #include "integrate/loop/first_step.hpp"
 #include "integrate/loop/integrate.hpp"
+#include "integrate/loop/run_limits.hpp"
 #include "pendcore/options.hpp"
 #include "scene/effects_of_scene.hpp"
 #include "simulate/checked_options.hpp"
@@ -287,22 +288,20 @@ TangentGrowth lyapunov(const Scene& scene, const Numbers& q0, const Numbers& qd0
                       .time_limit = options.time_limit,
                       .monitor = options.monitor};
   Ending ending{.status = Status::finished, .cut = false};
-  try {
+  const Interruption found = interruption_of([&] {
     stepper.evaluate(t0, integrator.y.data(), integrator.dydt.data());
     stepper.start(integrator.y.data(), integrator.dydt.data());
     recorder.start(t0, integrator.y);
-    if (t0 != t_end) {
-      const double h =
-          first_step(stepper, t0, t_end, options.max_step, relative.data(), absolute.data()).h;
-      integrator.h = t_end < t0 ? -h : h;
-      IntegratorState resumable = integrator;
-      ending = integrate(stepper, integrator, resumable, limits, recorder, nullptr);
-    }
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (...) {  // an exception of a user's function
-    ending.status = Status::callback_error;
-    ending.error = std::current_exception();
+    if (t0 == t_end) return;
+    const double h =
+        first_step(stepper, t0, t_end, options.max_step, relative.data(), absolute.data()).h;
+    integrator.h = t_end < t0 ? -h : h;
+    IntegratorState resumable = integrator;
+    ending = integrate(stepper, integrator, resumable, limits, recorder, nullptr);
+  });
+  if (found.status != Status::finished) {
+    ending.status = found.status;
+    ending.error = found.error;
   }
   result.status = ending.status;
   result.message = text(ending.status).sentence;

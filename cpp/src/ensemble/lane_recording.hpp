@@ -50,8 +50,12 @@ class RecordingLanes : public LaneRunner {
   void choose_what_is_recorded(const LaneSource& source) {
     const bool watches = source.watches();
     LaneSteps<width>& at = steps();
-    std::vector<FoundEvent> none;
-    differences_ = EventFinder(scene_, options_.events, none, {}, t0_).differences();
+    const int n = static_cast<int>(scene_.links.size());
+    for (const Event& event : options_.events) {
+      if (const auto difference = difference_of(event.function, n)) {
+        differences_.push_back(*difference);
+      }
+    }
     const bool may_be_screened = differences_.size() == options_.events.size();
     at.every_step_is_recorded = watches || !may_be_screened;
     if (may_be_screened && !watches) at.differences = differences_;
@@ -99,7 +103,7 @@ class RecordingLanes : public LaneRunner {
       std::vector<double>& y = members_[lane].state;
       std::vector<double> rows((step.interpolant_degree() + 1) * y.size());
       step.finite_interpolant(h, rows, y.size());
-      step.sample(rows.data(), {}, 1.0, &end.theta, 1, y.data());
+      step.state_within(rows.data(), end.theta, y.data());
       put_state(lane, y.data());
       at.t[lane] = t.high;
     }
@@ -149,7 +153,7 @@ class RecordingLanes : public LaneRunner {
   std::array<std::unique_ptr<Recorder>, width> recorders_;
   std::array<long long, width> interpolated_{};  ///< steps whose dense output was computed
   bool records_ = false;                         ///< whether members have recorders
-  std::vector<EventFinder::Difference> differences_;
+  std::vector<Difference> differences_;
 };
 
 }  // namespace pendcore

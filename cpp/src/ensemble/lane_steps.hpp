@@ -15,7 +15,7 @@
 #include "integrate/loop/step_control.hpp"
 #include "integrate/loop/stiffness.hpp"
 #include "integrate/loop/trial.hpp"
-#include "simulate/event_finder.hpp"
+#include "simulate/event_levels.hpp"
 
 namespace pendcore {
 
@@ -63,7 +63,7 @@ struct LaneSteps {
   Real t_before = {}, t_low_before = {}, h_before = {};
   Real next_time = {};  ///< s, at which a state is asked for; infinite if there is none
   /// All events, if each is a level of an angle or a rate; else every step is recorded.
-  std::span<const EventFinder::Difference> differences;
+  std::span<const Difference> differences;
   LaneBits active = 0;     ///< the lanes that have a member
   bool has_times = false;  ///< whether states at given times are asked for
   bool every_step_is_recorded = false;
@@ -99,11 +99,10 @@ PENDCORE_INLINE LaneBits bits_of(const Integers& holds) {
 /// with rows of `size` numbers, from the first power on, and which begins at y: not if the level is
 /// farther away than the sizes of all terms together.
 template <class Real>
-PENDCORE_INLINE typename Lanes<Real>::Integers may_reach(const EventFinder::Difference& level,
-                                                         const Real* y, const Real* powers,
-                                                         std::ptrdiff_t size, int degree,
-                                                         const Real& x) {
-  constexpr double turn = 6.283185307179586;
+PENDCORE_INLINE typename Lanes<Real>::Integers may_reach(const Difference& level, const Real* y,
+                                                         const Real* powers, std::ptrdiff_t size,
+                                                         int degree, const Real& x) {
+  constexpr double turn = Levels::turn;
   const auto difference = [&](const Real* row) __attribute__((always_inline)) {
     return level.minus < 0 ? row[level.plus] : Real(row[level.plus] - row[level.minus]);
   };
@@ -135,7 +134,7 @@ PENDCORE_INLINE typename LaneSteps<width>::Integers may_have_event(const LaneSte
                                                                    std::ptrdiff_t size, int degree,
                                                                    const Real& x) {
   typename LaneSteps<width>::Integers may_happen{};
-  for (const EventFinder::Difference& one : lanes.differences) {
+  for (const Difference& one : lanes.differences) {
     may_happen |= lanes_detail::may_reach(one, y, powers, size, degree, x);
   }
   return may_happen;

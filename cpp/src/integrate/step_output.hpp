@@ -43,6 +43,10 @@ class StepOutput {
   /// dimension) row-major.
   virtual void sample(const double* coefficients, const TwoDouble& start, double h,
                       const double* times, int count, double* states) const = 0;
+  /// The state at a share theta of the step.
+  void state_within(const double* coefficients, double theta, double* y) const {
+    sample(coefficients, {}, 1.0, &theta, 1, y);
+  }
 };
 
 }  // namespace pendcore

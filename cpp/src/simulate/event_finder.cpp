@@ -4,233 +4,204 @@
 #include <cmath>
 #include <stdexcept>
 #include <tuple>
+#include <utility>
 
 #include "arithmetic/epsilon.hpp"
-#include "arithmetic/pack.hpp"
-#include "integrate/loop/integrate.hpp"
 #include "text/message.hpp"
 
 namespace pendcore {
 namespace {
 
-constexpr double turn = 6.283185307179586;
 constexpr double most_turns = 1e6;  // these take seconds, and fit into a list
+/// The rounding at the start of a run, as a share of the sizes of what is added up.
+constexpr double share_at_start = 8.0 * last_bits_share;
 
 }  // namespace
 
 EventFinder::EventFinder(const Scene& scene, const std::vector<Event>& events,
-                         std::vector<FoundEvent>& found, std::vector<long long> passed, double t0)
-    : events_(events),
-      found_(found),
-      passed_(std::move(passed)),
-      counts_(events.size()),
-      tip_line_of_(events.size(), -1),
+                         std::vector<FoundEvent>& found, const std::vector<long long>& passed,
+                         double t0)
+    : found_(found),
       n_(static_cast<int>(scene.links.size())),
-      unarmed_within_(events.size()),
       t0_(t0),
       node_t_(t0),
-      node_y_(2 * scene.links.size(), std::nan("")),
-      node_values_(events.size()) {
-  passed_.resize(events.size());
-  for (const FoundEvent& one : found) ++counts_[one.event];
-  // A continued run may begin between two changes at one time.
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    if (found[i].t == found.back().t) at_the_end_.push_back(i);
-  }
+      node_y_(2 * scene.links.size(), std::nan("")) {
+  watched_.reserve(events.size());
   for (std::size_t k = 0; k < events.size(); ++k) {
+    watched_.push_back({.event = events[k],
+                        .number = static_cast<int>(k),
+                        .difference = difference_of(events[k].function, n_)});
+    Watched& one = watched_.back();
+    if (k < passed.size()) one.passed = passed[k];
     if (const auto* line = std::get_if<events::TipLine>(&events[k].function)) {
-      tip_line_of_[k] = static_cast<int>(tip_lines_.size());
-      tip_lines_.emplace_back(scene, *line);
+      one.tip_line.emplace(scene, *line);
     }
+  }
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    ++watched_[found[i].event].count;
+    // A continued run may begin between two changes at one time.
+    if (found[i].t == found.back().t) at_the_end_.push_back(i);
   }
 }
 
 bool EventFinder::may_end() const {
-  return std::ranges::any_of(events_, [](const Event& event) {
-    if (event.terminal > 0) return true;
-    return std::visit(
-        []<class Kind>(const Kind& one) {
-          if constexpr (events::CountsTurns<Kind>) return one.every_turn;
-          return std::is_same_v<Kind, events::Function>;
-        },
-        event.function);
+  return std::ranges::any_of(watched_, [](const Watched& one) {
+    if (one.event.terminal > 0) return true;
+    if (one.difference) return one.difference->every_turn;
+    return !one.tip_line;
   });
-}
-
-EventFinder::Difference EventFinder::difference_of(const EventFunction& function) const {
-  const auto of_joint = [](int joint, int first) {
-    return Difference{first + joint - 1, joint > 1 ? first + joint - 2 : -1};
-  };
-  const auto at_levels = [](Difference difference, const auto& angle) {
-    difference.value = angle.value;
-    difference.every_turn = angle.every_turn;
-    return difference;
-  };
-  if (const auto* angle = std::get_if<events::JointAngle>(&function)) {
-    return at_levels(of_joint(angle->joint, 0), *angle);
-  }
-  if (const auto* angle = std::get_if<events::LinkAngle>(&function)) {
-    return at_levels({angle->link - 1, -1}, *angle);
-  }
-  const auto& rate = std::get<events::RateZero>(function);
-  if (rate.joint) return of_joint(*rate.joint, n_);
-  return {n_ + rate.link.value_or(1) - 1, -1};
-}
-
-std::vector<EventFinder::Difference> EventFinder::differences() const {
-  std::vector<Difference> all;
-  for (const Event& event : events_) {
-    if (std::holds_alternative<events::TipLine>(event.function) ||
-        std::holds_alternative<events::Function>(event.function)) {
-      return {};
-    }
-    all.push_back(difference_of(event.function));
-  }
-  return all;
-}
-
-double EventFinder::Difference::from(double level, const double* y) const {
-  const double x = of(y) - level;
-  const double size = std::abs(y[plus]) + (minus < 0 ? 0.0 : std::abs(y[minus])) + std::abs(level);
-  return std::abs(x) <= last_bits_share * size ? 0.0 : x;
-}
-
-double EventFinder::Levels::at(int i) const { return fma(first + i, turn, value); }
-
-EventFinder::Levels EventFinder::levels_between(const Difference& difference, double low,
-                                                double high) {
-  const double value = difference.value;
-  if (!difference.every_turn) return {value, 0.0, 1.0};
-  const double from = (low - value) / turn;
-  const double to = (high - value) / turn;
-  const double margin = 1e-9 + last_bits_share * (std::abs(from) + std::abs(to));
-  const double first = std::ceil(from - margin);
-  return {value, first, std::floor(to + margin) - first + 1.0};
-}
-
-/// The levels that the difference may pass, within the bounds of its polynomial.
-EventFinder::Levels EventFinder::levels_along(const Difference& difference, int degree, double end,
-                                              double noise) {
-  if (!difference.every_turn) return levels_between(difference, 0.0, 0.0);
-  bernstein_.resize(polynomial_.size());
-  bernstein_form(polynomial_.data(), degree, bernstein_.data());
-  const auto [least, most] = std::ranges::minmax(bernstein_);
-  return levels_between(difference, std::min(least, end) - noise, std::max(most, end) + noise);
 }
 
 /// The number of levels, or none once there were too many in this run. Turns beyond one a step are
 /// counted, because max_steps does not bound them.
-int EventFinder::count_turns(std::size_t k, const Levels& levels) {
+int EventFinder::count_turns(const Watched& watched, const Levels& levels) {
   if (!(levels.count <= 1.0)) turns_ += levels.count - 1.0;
   if (turns_ <= most_turns) return static_cast<int>(levels.count);
-  too_many_of_ = static_cast<int>(k);
+  too_many_of_ = watched.number;
   return 0;
 }
 
-void EventFinder::find_difference(std::size_t k, const Step& step) {
-  const Difference difference = difference_of(events_[k].function);
+/// The rates of all links and those that the accelerations give them within a radian, rad/s. The
+/// first step of a run may be much shorter than the step on which its start lay as an event, so it
+/// does not tell the sizes of the numbers there.
+double EventFinder::natural_rate(const Step& step) const {
+  double rate = 0.0;
+  double acceleration = 0.0;
+  for (int i = n_; i < 2 * n_; ++i) {
+    rate = std::max(rate, std::abs(step.rows[i]));
+    acceleration = std::max(acceleration, std::abs(step.row(1)[i] / step.h));
+  }
+  return rate + std::sqrt(acceleration);
+}
+
+void EventFinder::find_difference(Watched& watched, const Step& step) {
+  const Difference& difference = *watched.difference;
   const int degree = step.output.interpolant_degree();
-  const int dimension = step.output.dimension();
   polynomial_.resize(degree + 1);
   double size = 0.0;
   double moved = 0.0;
   double moved_with_its_links = 0.0;
   for (int p = 0; p <= degree; ++p) {
-    const double* const row = step.rows + static_cast<std::ptrdiff_t>(p) * dimension;
-    polynomial_[p] = difference.of(row);
-    double size_of_row = std::abs(row[difference.plus]);
-    if (difference.minus >= 0) size_of_row += std::abs(row[difference.minus]);
+    polynomial_[p] = difference.of(step.row(p));
+    const double size_of_row = difference.size(step.row(p));
     size += size_of_row;
     if (p == 0) continue;
     moved += std::abs(polynomial_[p]);
     moved_with_its_links = std::max(moved_with_its_links, size_of_row);
   }
-  if (step.t_old.high == t0_) unarmed_within_[k] = rounding_at_start(difference, step);
+  if (step.t_old.high == t0_) {
+    const double natural_size =
+        difference.plus < n_ ? 1.0 + std::abs(difference.value) : natural_rate(step);
+    watched.unarmed_within = share_at_start * (natural_size + size);
+  }
   // A held joint passes no level, whatever the last bits of its links' angles do.
   if (moved <= 64.0 * epsilon * moved_with_its_links) return;
   const double end = difference.of(y_new_.data());
-  const Levels levels = levels_along(difference, degree, end, 8.0 * epsilon * size);
-  const int count = count_turns(k, levels);
+  const Levels levels = levels_along(difference, polynomial_, end, 8.0 * epsilon * size);
+  const int count = count_turns(watched, levels);
   bool is_armed = true;
   for (int i = 0; i < count; ++i) {
     const double level = levels.at(i);
-    const double start = difference.from(level, step.rows);
     const double there = difference.from(level, y_new_.data());
-    polynomial_[0] = armed_value(k, start);
-    const double within = polynomial_[0] == 0.0 ? unarmed_within_[k] : 0.0;
+    polynomial_[0] = watched.armed(difference.from(level, step.rows));
+    const double within = polynomial_[0] == 0.0 ? watched.unarmed_within : 0.0;
     const double noise = std::max(8.0 * epsilon * (size + std::abs(level)), within);
     const bool has_left = find_roots(polynomial_.data(), degree, there, noise, roots_);
     is_armed &= has_left || std::abs(there) > within;
   }
-  if (is_armed) unarmed_within_[k] = 0.0;
+  if (is_armed) watched.unarmed_within = 0.0;
 }
 
-void EventFinder::find_tip_line(std::size_t k, const Step& step) {
-  double start, end;
-  node_values(k, step, start, end);
-  const bool has_left = tip_lines_[tip_line_of_[k]].find(
-      step.rows, step.output.interpolant_degree(), step.output.dimension(), step.t_old.high, step.h,
-      armed_value(k, start), end, unarmed_within_[k], roots_);
-  if (has_left || std::abs(end) > unarmed_within_[k]) unarmed_within_[k] = 0.0;
+/// Finds the zeros of a TipLine or a Function. It costs more than a difference, so the value at the
+/// start of a step is known from the step before.
+void EventFinder::find_value(Watched& watched, const Step& step) {
+  const double t = step.t_old.high;
+  const bool is_known = node_t_ == t && std::equal(node_y_.begin(), node_y_.end(), step.rows);
+  double start = is_known ? watched.node_value : value(watched, t, step.rows);
+  if (t == t0_) watched.unarmed_within = rounding_at_start(watched, step, start);
+  if (!watched.is_within_rounding(start)) watched.unarmed_within = 0.0;
+  const double end = watched.node_value = value(watched, step.t_new, y_new_.data());
+  start = watched.armed(start);
+  // After the start, the value of a Function tells nothing of rounding: the function may jump.
+  bool is_armed = true;
+  if (watched.tip_line) {
+    const bool has_left =
+        watched.tip_line->find(step.rows, step.output.interpolant_degree(), step.output.dimension(),
+                               t, step.h, start, end, watched.unarmed_within, roots_);
+    is_armed = has_left || !watched.is_within_rounding(end);
+  } else {
+    find_between_samples(watched, step, start, end);
+  }
+  if (is_armed) watched.unarmed_within = 0.0;
 }
 
-void EventFinder::find_function(std::size_t k, const events::Function& event, const Step& step) {
-  double start, end;
-  node_values(k, step, start, end);
-  const double spaced = std::ceil(std::abs(step.h) / event.max_step);
-  const int samples = static_cast<int>(std::clamp(spaced, double(event.samples), 1e6));
+/// Finds the zeros of a Function between its values at the ends of a step.
+void EventFinder::find_between_samples(Watched& watched, const Step& step, double start,
+                                       double end) {
+  const auto& function = std::get<events::Function>(watched.event.function);
+  const auto sampled = [&](double theta) {
+    step.output.state_within(step.rows, theta, y_.data());
+    return value(watched, fma(theta, step.h, step.t_old.high), y_.data());
+  };
+  const double spaced = std::ceil(std::abs(step.h) / function.max_step);
+  const int samples = static_cast<int>(std::clamp(spaced, double(function.samples), 1e6));
   samples_.clear();
   for (int i = 1; i < samples; ++i) {
     const double theta = static_cast<double>(i) / samples;
-    samples_.push_back({theta, sampled(k, step, theta)});
+    samples_.push_back({theta, sampled(theta)});
   }
-  // After the start, a value tells nothing of rounding: the function may jump.
-  start = armed_value(k, start);
-  unarmed_within_[k] = 0.0;
-  find_roots([&](double theta) { return sampled(k, step, theta); }, start, samples_, end, 0.0,
-             roots_);
+  find_roots(sampled, start, samples_, end, 0.0, roots_);
 }
 
-/// The values at both ends of a step, for functions that cost more than a difference. The value at
-/// the start is known from the step before.
-void EventFinder::node_values(std::size_t k, const Step& step, double& start, double& end) {
-  const bool is_known =
-      node_t_ == step.t_old.high && std::equal(node_y_.begin(), node_y_.end(), step.rows);
-  start = is_known ? node_values_[k] : function_at(k, step.t_old.high, step.rows);
-  if (step.t_old.high == t0_) unarmed_within_[k] = rounding_at_start(k, step, start);
-  if (std::abs(start) > unarmed_within_[k]) unarmed_within_[k] = 0.0;
-  end = node_values_[k] = function_at(k, step.t_new, y_new_.data());
-}
-
-double EventFinder::sampled(std::size_t k, const Step& step, double theta) {
-  step.output.sample(step.rows, {}, 1.0, &theta, 1, y_.data());
-  return function_at(k, fma(theta, step.h, step.t_old.high), y_.data());
+/// What rounding may do, at the start of a run, to a TipLine or a Function with the value `start`.
+/// A Function is asked how much it changes as each of its arguments goes on by its rounding; it may
+/// be undefined there. A run of a few units in the last place of its time has events of time in
+/// each of them.
+double EventFinder::rounding_at_start(const Watched& watched, const Step& step, double start) {
+  double t = step.t_old.high;
+  if (watched.tip_line) return 8.0 * watched.tip_line->rounding(t, step.rows);
+  const auto n = static_cast<std::size_t>(n_);
+  const double rate = natural_rate(step);
+  std::copy_n(step.rows, 2 * n, y_.begin());
+  double sum = 0.0;
+  const auto& function = std::get<events::Function>(watched.event.function);
+  const auto add_change_to = [&](double& argument, double there) {
+    const double before = std::exchange(argument, there);
+    const double value = function.f(t, std::span(y_.data(), n), std::span(y_.data() + n, n));
+    argument = before;
+    if (!std::isnan(value)) sum += std::abs(value - start);
+  };
+  const double moment =
+      std::min(share_at_start * (std::abs(t) + std::abs(step.h)), 0x1p-12 * std::abs(step.h));
+  add_change_to(t, t + std::copysign(moment, step.h));
+  for (std::size_t i = 0; i < 2 * n; ++i) {
+    const double size = i < n ? 1.0 + std::abs(y_[i]) : rate;
+    add_change_to(y_[i], y_[i] + std::copysign(share_at_start * size, step.row(1)[i]));
+  }
+  return sum;
 }
 
 /// Computes a TipLine or a Function at a state.
-double EventFinder::function_at(std::size_t k, double t, const double* y) {
-  if (tip_line_of_[k] >= 0) return tip_lines_[tip_line_of_[k]].at(t, y);
+double EventFinder::value(Watched& watched, double t, const double* y) {
+  if (watched.tip_line) return watched.tip_line->at(t, y);
   const auto n = static_cast<std::size_t>(n_);
   const double value =
-      std::get<events::Function>(events_[k].function).f(t, std::span(y, n), std::span(y + n, n));
+      std::get<events::Function>(watched.event.function).f(t, std::span(y, n), std::span(y + n, n));
   if (!std::isnan(value)) return value;
-  throw std::domain_error(event_name(events_[k], k) + ": is NaN at t = " + text(t) +
+  throw std::domain_error(event_name(watched.event, watched.number) + ": is NaN at t = " + text(t) +
                           " s: must be a number");
 }
 
-void EventFinder::find(std::size_t k, const Step& step) {
+void EventFinder::find(Watched& watched, const Step& step) {
   roots_.clear();
-  const EventFunction& function = events_[k].function;
-  if (tip_line_of_[k] >= 0) {
-    find_tip_line(k, step);
-  } else if (const auto* own = std::get_if<events::Function>(&function)) {
-    find_function(k, *own, step);
+  if (watched.difference) {
+    find_difference(watched, step);
   } else {
-    find_difference(k, step);
+    find_value(watched, step);
   }
   for (const Root& root : roots_) {
-    if (events_[k].direction != 0 && root.direction != events_[k].direction) continue;
-    candidates_.push_back({root.theta, root.direction, static_cast<int>(k)});
+    if (watched.event.direction != 0 && root.direction != watched.event.direction) continue;
+    candidates_.push_back({root.theta, root.direction, watched.number});
   }
 }
 
@@ -242,8 +213,10 @@ StepEnd EventFinder::look(const StepOutput& output, const double* rows, const Tw
   const Step step{output, rows, t_old, h, t_new};
   candidates_.clear();
   at_the_end_.clear();
-  if (t_old.high != node_t_) std::ranges::fill(unarmed_within_, 0.0);
-  for (std::size_t k = 0; k < events_.size() && too_many_of_ < 0; ++k) find(k, step);
+  for (Watched& one : watched_) {
+    if (t_old.high != node_t_) one.unarmed_within = 0.0;
+    if (too_many_of_ < 0) find(one, step);
+  }
   if (too_many_of_ >= 0) {
     ended_by_ = too_many_of_;
     return StepEnd::too_many_turns();
@@ -260,7 +233,7 @@ StepEnd EventFinder::look(const StepOutput& output, const double* rows, const Tw
       at_the_end_.push_back(found_.size());
       append(candidate, t_new, y_new_.data());
     } else {
-      output.sample(rows, {}, 1.0, &candidate.theta, 1, y_.data());
+      output.state_within(rows, candidate.theta, y_.data());
       append(candidate, time_in_step(t_old, h, candidate.theta, t_new).high, y_.data());
     }
     if (ended_by_ >= 0) stop = candidate.theta;
@@ -274,9 +247,10 @@ void EventFinder::append(const Candidate& candidate, double t, const double* y) 
                     .direction = candidate.direction,
                     .y = std::vector<double>(y, y + 2 * static_cast<std::ptrdiff_t>(n_)),
                     .y_before = {}});
-  const long long count = ++counts_[candidate.event];
-  const long long terminal = events_[candidate.event].terminal;
-  const bool ends = terminal > 0 && count % terminal == 0 && count > passed_[candidate.event];
+  Watched& watched = watched_[candidate.event];
+  ++watched.count;
+  const long long terminal = watched.event.terminal;
+  const bool ends = terminal > 0 && watched.count % terminal == 0 && watched.count > watched.passed;
   if (ends && ended_by_ < 0) ended_by_ = candidate.event;
 }
 
@@ -287,47 +261,39 @@ void EventFinder::jump(double t, const double* before, const double* after) {
     if (found_[i].y_before.empty()) found_[i].y_before.assign(before, before + size);
     found_[i].y.assign(after, after + size);
   }
-  for (std::size_t k = 0; k < events_.size(); ++k) {
-    const EventFunction& function = events_[k].function;
-    const bool is_difference =
-        tip_line_of_[k] < 0 && !std::holds_alternative<events::Function>(function);
-    if (!is_difference) {
-      const double value_before = armed_value(k, function_at(k, t, before));
-      node_values_[k] = function_at(k, t, after);
-      if (std::abs(node_values_[k]) > unarmed_within_[k]) unarmed_within_[k] = 0.0;
-      cross(k, value_before, node_values_[k], t, before, after);
-      continue;
-    }
-    const Difference difference = difference_of(function);
-    const double low = difference.of(before);
-    const double high = difference.of(after);
-    const Levels levels = levels_between(difference, std::min(low, high), std::max(low, high));
-    const int count = count_turns(k, levels);
+  for (Watched& one : watched_) {
     bool is_armed = true;
-    for (int i = 0; i < count; ++i) {
-      const double level = levels.at(i);
-      const double there = difference.from(level, after);
-      is_armed &= std::abs(there) > unarmed_within_[k];
-      cross(k, armed_value(k, difference.from(level, before)), there, t, before, after);
+    // A change of sign by a jump is an event. If the value before the jump was zero, the event was
+    // found before, or was not armed.
+    const auto cross = [&](double value_before, double value_after) {
+      is_armed &= !one.is_within_rounding(value_after);
+      const int from = sign(one.armed(value_before));
+      if (from == 0 || sign(value_after) == from) return;
+      const int direction = -from;
+      if (one.event.direction != 0 && direction != one.event.direction) return;
+      at_the_end_.push_back(found_.size());
+      append({1.0, direction, one.number}, t, after);
+      found_.back().y_before.assign(before, before + size);
+    };
+    if (one.difference) {
+      const double there = one.difference->of(before);
+      const double beyond = one.difference->of(after);
+      const Levels levels =
+          levels_between(*one.difference, std::min(there, beyond), std::max(there, beyond));
+      const int count = count_turns(one, levels);
+      for (int i = 0; i < count; ++i) {
+        const double level = levels.at(i);
+        cross(one.difference->from(level, before), one.difference->from(level, after));
+      }
+    } else {
+      const double value_before = value(one, t, before);
+      one.node_value = value(one, t, after);
+      cross(value_before, one.node_value);
     }
-    if (is_armed) unarmed_within_[k] = 0.0;
+    if (is_armed) one.unarmed_within = 0.0;
   }
   node_t_ = t;
   std::copy_n(after, node_y_.size(), node_y_.begin());
-}
-
-/// A change of sign by a jump is an event. If the value before the jump was zero, the event was
-/// found before, or was not armed.
-void EventFinder::cross(std::size_t k, double before, double after, double t,
-                        const double* y_before, const double* y_after) {
-  const int from = sign(before);
-  const int to = sign(after);
-  if (from == 0 || to == from) return;
-  const int direction = -from;
-  if (events_[k].direction != 0 && direction != events_[k].direction) return;
-  at_the_end_.push_back(found_.size());
-  append({1.0, direction, static_cast<int>(k)}, t, y_after);
-  found_.back().y_before.assign(y_before, y_before + 2 * static_cast<std::ptrdiff_t>(n_));
 }
 
 }  // namespace pendcore

@@ -7,16 +7,20 @@
 /// the end of the step before.
 ///
 /// A run may start where an event ended another one, on a zero to rounding only. There, an event is
-/// not armed until its function has left zero by more than rounding (event_start.cpp). After that,
-/// what happened before a step never matters, so that a resumed run finds the same events as a run
-/// that never stopped.
+/// not armed until its function has left zero by more than rounding: the state that a run stored at
+/// an event is the dense output at the event's time, so it is off the event by the rounding of the
+/// state, of the polynomial and of time, each relative to the sizes of what is added up. After
+/// that, what happened before a step never matters, so that a resumed run finds the same events as
+/// a run that never stopped.
 #pragma once
 
-#include <string>
+#include <cmath>
+#include <optional>
 #include <vector>
 
 #include "integrate/loop/integrate.hpp"
 #include "pendcore/events.hpp"
+#include "simulate/event_levels.hpp"
 #include "simulate/tip_line.hpp"
 
 namespace pendcore {
@@ -26,7 +30,7 @@ class EventFinder {
   /// Adds events to `found`, which may have some already. The first passed[k] occurrences of event
   /// number k do not end the run: a run that ended there was continued. The run starts at t0.
   EventFinder(const Scene& scene, const std::vector<Event>& events, std::vector<FoundEvent>& found,
-              std::vector<long long> passed, double t0);
+              const std::vector<long long>& passed, double t0);
 
   /// Whether an event may end the run: a terminal one, a function that may throw, too many turns.
   bool may_end() const;
@@ -42,21 +46,23 @@ class EventFinder {
   /// The event that ended the run; -1 if none did.
   int ended_by() const { return ended_by_; }
 
-  /// An angle or a rate: y[plus] - y[minus], or y[plus] alone if `minus` is negative. The event is
-  /// where it is `value`, or where it is `value` plus any number of turns.
-  struct Difference {
-    int plus;
-    int minus;
-    double value = 0.0;
-    bool every_turn = false;
-    double of(const double* y) const { return minus < 0 ? y[plus] : y[plus] - y[minus]; }
-    /// The difference minus a level; 0 within the rounding of the state.
-    double from(double level, const double* y) const;
-  };
-  /// The differences of all events; empty if one of them is of another kind.
-  std::vector<Difference> differences() const;
-
  private:
+  struct Watched {
+    const Event& event;
+    int number;
+    std::optional<Difference> difference = {};
+    std::optional<TipLine> tip_line = {};
+    long long passed = 0;
+    long long count = 0;
+    /// How close to zero the function may come by rounding before the event is armed; 0 from then
+    /// on.
+    double unarmed_within = 0.0;
+    double node_value = 0.0;  ///< at the end of the last step, used again at the start of the next
+
+    /// The value with which a step begins or a jump is entered: 0 if the event is not armed there.
+    double armed(double value) const { return is_within_rounding(value) ? 0.0 : value; }
+    bool is_within_rounding(double value) const { return std::abs(value) <= unarmed_within; }
+  };
   struct Candidate {
     double theta;
     int direction;
@@ -68,37 +74,24 @@ class EventFinder {
     const TwoDouble& t_old;
     double h;
     double t_new;
-  };
-  /// value + (first + i) 2 pi for i = 0 ... count - 1
-  struct Levels {
-    double value, first, count;
-    double at(int i) const;
+
+    const double* row(int power) const {
+      return rows + static_cast<std::ptrdiff_t>(power) * output.dimension();
+    }
   };
 
-  Difference difference_of(const EventFunction& function) const;
-  double function_at(std::size_t k, double t, const double* y);
-  void find(std::size_t k, const Step& step);
-  double rounding_at_start(const Difference& difference, const Step& step) const;
-  double rounding_at_start(std::size_t k, const Step& step, double start);
-  double armed_value(std::size_t k, double value) const;
-  void find_difference(std::size_t k, const Step& step);
-  int count_turns(std::size_t k, const Levels& levels);
-  void find_tip_line(std::size_t k, const Step& step);
-  void find_function(std::size_t k, const events::Function& event, const Step& step);
-  void node_values(std::size_t k, const Step& step, double& start, double& end);
-  double sampled(std::size_t k, const Step& step, double theta);
-  static Levels levels_between(const Difference& difference, double low, double high);
-  Levels levels_along(const Difference& difference, int degree, double end, double noise);
+  double value(Watched& watched, double t, const double* y);
+  void find(Watched& watched, const Step& step);
+  double natural_rate(const Step& step) const;
+  double rounding_at_start(const Watched& watched, const Step& step, double start);
+  void find_difference(Watched& watched, const Step& step);
+  int count_turns(const Watched& watched, const Levels& levels);
+  void find_value(Watched& watched, const Step& step);
+  void find_between_samples(Watched& watched, const Step& step, double start, double end);
   void append(const Candidate& candidate, double t, const double* y);
-  void cross(std::size_t k, double before, double after, double t, const double* y_before,
-             const double* y_after);
 
-  const std::vector<Event>& events_;
+  std::vector<Watched> watched_;
   std::vector<FoundEvent>& found_;
-  std::vector<long long> passed_;
-  std::vector<long long> counts_;
-  std::vector<TipLine> tip_lines_;
-  std::vector<int> tip_line_of_;  ///< the number of each event's tip line, or -1
   int n_;
   int ended_by_ = -1;
   double turns_ = 0.0;    ///< turns that steps went through, not counting one a step
@@ -108,17 +101,11 @@ class EventFinder {
   std::vector<Candidate> candidates_;
   std::vector<std::size_t> at_the_end_;  ///< the events found at the end of the last step
   std::vector<double> polynomial_;
-  std::vector<double> bernstein_;
   std::vector<double> y_new_;
   std::vector<double> y_;
-  /// How close to zero an event's function may come by rounding before the event is armed; 0 from
-  /// then on.
-  std::vector<double> unarmed_within_;
   double t0_;
-  // Values at the end of the last step, which are used again at the start of the next.
-  double node_t_;
+  double node_t_;  ///< the end of the last step, and the state there
   std::vector<double> node_y_;
-  std::vector<double> node_values_;
 };
 
 }  // namespace pendcore

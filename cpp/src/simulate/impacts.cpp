@@ -36,8 +36,8 @@ void Impacts::strike(double t, double* y, bool begins) {
 }
 
 /// Computes impacts at one time until no joint moves into its stop. A joint at rest that nothing
-/// pushes against its stop counts as leaving it, which more exact numbers might show. Returns whether
-/// the order of the impacts is unknown.
+/// pushes against its stop counts as leaving it, which more exact numbers might show. Returns
+/// whether the order of the impacts is unknown.
 bool Impacts::bounce_in_turn(double t, double* y, bool begins) {
   double* const qd = y + n_;
   const bool is_plastic = modes_.changes().may_be_rounding();

@@ -11,6 +11,7 @@
 #include "scene/degrees.hpp"
 #include "scene/effects_of_scene.hpp"
 #include "scene/singular.hpp"
+#include "simulate/checked_options.hpp"
 #include "text/message.hpp"
 
 namespace pendcore {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pendcore/scene.hpp"
+#include "pendcore/solution.hpp"
 
 namespace pendcore {
 
@@ -16,7 +17,6 @@ namespace pendcore {
 /// the past is not unique.
 void check_start(const Scene& scene, std::span<const double> q0, std::span<const double> qd0,
                  double t0, double t_end);
-
 /// Warnings of what is possible in a run but hardly intended, a sentence each: a start that looks
 /// like degrees, a table that ends before the run does.
 std::vector<std::string> run_warnings(const Scene& scene, std::span<const double> q0, double t0,

@@ -90,8 +90,8 @@ double JointGuard::rounding(const double* y, int n) const {
 void JointGuard::polynomial(const double* rows, int degree, int dimension, int n,
                             double* coefficients) const {
   for (int p = 0; p <= degree; ++p, rows += dimension) {
-    coefficients[p] = linear.on_phi * relative(rows, joint + 1) +
-                      linear.on_phid * relative(rows + n, joint + 1);
+    coefficients[p] =
+        linear.on_phi * relative(rows, joint + 1) + linear.on_phid * relative(rows + n, joint + 1);
   }
   coefficients[0] += linear.offset;
 }

@@ -23,11 +23,11 @@ struct JointGuard {
     most_torque
   };
   Kind kind;
-  int joint;                ///< counted from 0
-  Guard linear = {};        ///< in words of the joint's angle and rate
-  std::size_t effect = 0;   ///< whose law changes,
-  std::size_t number = 0;   ///< at the guard of its mode with this number
-  int multiplicity = 0;     ///< of its zero at the start of the next step
+  int joint;               ///< counted from 0
+  Guard linear = {};       ///< in words of the joint's angle and rate
+  std::size_t effect = 0;  ///< whose law changes,
+  std::size_t number = 0;  ///< at the guard of its mode with this number
+  int multiplicity = 0;    ///< of its zero at the start of the next step
 
   bool is_linear() const { return kind < Kind::least_torque; }
   bool is_on_rate() const { return kind == Kind::side || kind == Kind::friction; }

@@ -29,9 +29,7 @@ Recorder::Recorder(Solution& solution, const StepOutput& output, const Scene& sc
 
 void Recorder::start(double t, const std::vector<double>& y) {
   if (watch_ != nullptr) watch_->starts(t, y);
-  const std::vector<double>& samples = solution_.options.t_eval;
-  const bool asked_for = !samples.empty() && samples.front() == t;
-  if (keeps_steps_ || asked_for) std::ranges::copy(y, append(t));
+  if (keeps_steps_ || is_asked_for(t)) std::ranges::copy(y, append(t));
 }
 
 StepEnd Recorder::step_accepted(StepOutput& output, const TwoDouble& t_old, double h,
@@ -52,49 +50,32 @@ StepEnd Recorder::step_accepted(StepOutput& output, const TwoDouble& t_old, doub
     dense.h.push_back(h);
     dense.coefficients.insert(dense.coefficients.end(), polynomial_.begin(), polynomial_.end());
   }
-  if (watch_ != nullptr) show_step(output, t_end, h, end.is_within() ? end.theta : 1.0);
-  if (end.is_within()) {
-    keep_clipped(output, t_old, h, end.theta, t_end);
-  } else if (keeps_steps_) {
-    output.get_new_state(append(t_new));
-  } else {
-    sample_step(output, t_old, h, t_new);
+  const auto get_end = [&](double* y) {
+    if (end.is_within()) {
+      output.state_within(polynomial_.data(), end.theta, y);
+    } else {
+      output.get_new_state(y);
+    }
+  };
+  if (watch_ != nullptr) {
+    shown_.resize(dimension_);
+    get_end(shown_.data());
+    watch_->steps({.t = t_end,
+                   .h = h,
+                   .y = shown_,
+                   .rows = polynomial_.data(),
+                   .degree = static_cast<int>(degree_),
+                   .share = end.is_within() ? end.theta : 1.0});
   }
+  if (!keeps_steps_) sample_before(output, t_old, h, t_end);
+  const bool is_at_start = end.is_within() && !solution_.t.empty() && solution_.t.back() == t_end;
+  if ((keeps_steps_ || is_asked_for(t_end)) && !is_at_start) get_end(append(t_end));
   return end;
 }
 
 void Recorder::interpolate(StepOutput& output, double h) {
   polynomial_.resize((degree_ + 1) * dimension_);
   output.finite_interpolant(h, polynomial_, dimension_);
-}
-
-/// Shows a step of size h, up to a share of it at time t, to what looks on.
-void Recorder::show_step(StepOutput& output, double t, double h, double share) {
-  shown_.resize(dimension_);
-  if (share < 1.0) {
-    output.sample(polynomial_.data(), {}, 1.0, &share, 1, shown_.data());
-  } else {
-    output.get_new_state(shown_.data());
-  }
-  watch_->steps({.t = t,
-                 .h = h,
-                 .y = shown_,
-                 .rows = polynomial_.data(),
-                 .degree = static_cast<int>(degree_),
-                 .share = share});
-}
-
-/// Keeps the step up to an event within it, at time t.
-void Recorder::keep_clipped(StepOutput& output, const TwoDouble& t_old, double h, double theta,
-                            double t) {
-  const std::vector<double>& samples = solution_.options.t_eval;
-  const bool is_new = solution_.t.empty() || solution_.t.back() != t;
-  bool is_kept = keeps_steps_;
-  if (!keeps_steps_) {
-    sample_step(output, t_old, h, t, false);
-    is_kept = solution_.t.size() < samples.size() && samples[solution_.t.size()] == t;
-  }
-  if (is_kept && is_new) output.sample(polynomial_.data(), {}, 1.0, &theta, 1, append(t));
 }
 
 /// Keeps the states before and after the jump, with the same time. If only times that were asked
@@ -127,20 +108,24 @@ void Recorder::count(const Kept& kept) {
   solution_.resumable_found = kept.found;
 }
 
-void Recorder::sample_step(StepOutput& output, const TwoDouble& t_old, double h, double t_new,
-                           bool with_end) {
+/// Keeps the states at the times asked for that lie within a step, before t_end.
+void Recorder::sample_before(StepOutput& output, const TwoDouble& t_old, double h, double t_end) {
   const std::vector<double>& samples = solution_.options.t_eval;
   const std::size_t first = solution_.t.size();
-  const std::size_t end = first_not_before(samples, first, t_new, h);
-  if (end > first) {
-    for (std::size_t k = first; k < end; ++k) solution_.t.push_back(samples[k]);
-    solution_.states.resize(end * dimension_);
-    interpolate(output, h);
-    output.sample(polynomial_.data(), t_old, h, samples.data() + first,
-                  static_cast<int>(end - first), solution_.states.data() + first * dimension_);
-  }
-  if (with_end && end < samples.size() && samples[end] == t_new)
-    output.get_new_state(append(t_new));
+  std::size_t end = first;
+  while (end < samples.size() && (samples[end] - t_end) * h < 0.0) ++end;
+  if (end == first) return;
+  for (std::size_t k = first; k < end; ++k) solution_.t.push_back(samples[k]);
+  solution_.states.resize(end * dimension_);
+  interpolate(output, h);
+  output.sample(polynomial_.data(), t_old, h, samples.data() + first, static_cast<int>(end - first),
+                solution_.states.data() + first * dimension_);
+}
+
+/// Whether t is the next of the times asked for.
+bool Recorder::is_asked_for(double t) const {
+  const std::vector<double>& samples = solution_.options.t_eval;
+  return solution_.t.size() < samples.size() && samples[solution_.t.size()] == t;
 }
 
 double* Recorder::append(double t) {

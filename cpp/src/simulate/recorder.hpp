@@ -12,14 +12,6 @@
 
 namespace pendcore {
 
-/// The number of the first time, from `first` on, that is not before t_new, the end of a step of
-/// size h.
-inline std::size_t first_not_before(const std::vector<double>& times, std::size_t first,
-                                    double t_new, double h) {
-  while (first < times.size() && (times[first] - t_new) * h < 0.0) ++first;
-  return first;
-}
-
 class Recorder final : public Observer {
  public:
   /// `passed_events` are the numbers of occurrences of each event that do not end the run: it ended
@@ -48,11 +40,9 @@ class Recorder final : public Observer {
   void interpolate(StepOutput& output, double h);  ///< sets polynomial_
   Kept kept() const;
   void count(const Kept& kept);  ///< so much is also in a run that never stopped
-  void sample_step(StepOutput& output, const TwoDouble& t_old, double h, double t_new,
-                   bool with_end = true);
-  void keep_clipped(StepOutput& output, const TwoDouble& t_old, double h, double theta, double t);
+  void sample_before(StepOutput& output, const TwoDouble& t_old, double h, double t_end);
+  bool is_asked_for(double t) const;
   double* append(double t);  ///< returns memory for the state at t
-  void show_step(StepOutput& output, double t, double h, double share);
 
   Solution& solution_;
   StepWatch* watch_;

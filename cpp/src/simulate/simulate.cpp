@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -13,8 +14,8 @@
 #include "integrate/loop/run_limits.hpp"
 #include "pendcore/solution.hpp"
 #include "simulate/checked_options.hpp"
-#include "simulate/continuation.hpp"
 #include "simulate/ending_message.hpp"
+#include "simulate/continuation.hpp"
 #include "simulate/initial_state.hpp"
 #include "simulate/method_choice.hpp"
 #include "simulate/recorder.hpp"
@@ -24,145 +25,149 @@
 namespace pendcore {
 namespace {
 
-/// What a solution has before a run: nothing, a start without a direction of time, or steps.
-enum class Before { nothing, a_start, steps };
+/// Whether a run has come further than its start. One that has not begins anew.
+bool has_begun(const IntegratorState& state) { return state.h != 0.0; }
 
-/// The laws, the rates and the first step at the beginning of a run. If a user's function throws,
-/// or an impact is not finite, nothing of this is kept, and a continued run begins anew.
-struct Beginning {
-  const Options& options;
-  Stepper& stepper;
-  Switching* switching;
-  Recorder& recorder;
-  const std::vector<double>& rtol;
-  const std::vector<double>& atol;
-  bool depends_on_end = false;  ///< whether the first step depends on the end of the run
-
-  /// Makes the beginning. `integrator` is not valid if the ending is cut.
-  Ending make(IntegratorState& integrator, double t_end) {
-    recorder.restarts_here();
-    Ending ending{.status = Status::finished, .cut = false};
-    try {
-      ending.bad = try_to(integrator, t_end);
-      if (ending.bad >= 0) ending.status = Status::non_finite;
-    } catch (const std::bad_alloc&) {
-      throw;
-    } catch (const Stopped& stopped) {
-      ending.status = stopped.status;
-    } catch (...) {
-      ending.status = Status::callback_error;
-      ending.error = std::current_exception();
+/// A run of a scene, from its start or from where another one ended, into a solution.
+class SceneRun {
+ public:
+  SceneRun(const Scene& scene, Solution& solution, IntegratorState start, Limits limits,
+           const std::vector<long long>& passed_events)
+      : scene_(scene),
+        solution_(solution),
+        options_(solution.options),
+        limits_(std::move(limits)),
+        state_(std::move(start)),
+        resumable_(state_),
+        equations_(equations_of_motion(scene)),
+        stepper_(make_stepper(scene, equations_, options_.method, options_.ledger,
+                              options_.compensated)),
+        rtol_(relative_tolerances(options_, scene.links.size())),
+        atol_(absolute_tolerances(options_, scene.links.size())) {
+    stepper_->set_tolerances(rtol_.data(), atol_.data());
+    recorder_.emplace(solution, *stepper_, scene, passed_events);
+    const int degree = stepper_->interpolant_degree();
+    if (solution.resumable == nullptr) {
+      solution.dense.degree = degree;
+      recorder_->start(state_.t.high, state_.y);
+    } else if (solution.dense.degree != degree) {
+      throw std::invalid_argument("the dense output of this solution is not that of its method");
     }
-    ending.cut = ending.status != Status::finished;
-    return ending;
-  }
-
- private:
-  /// Makes the beginning, and returns the component that is not finite, or -1.
-  int try_to(IntegratorState& integrator, double t_end) {
-    const double t = integrator.t.high;
-    const double direction = t_end < t ? -1.0 : 1.0;
-    std::vector<double>& y = integrator.y;
-    std::vector<double> before;
-    bool jumped = false;
-    if (switching != nullptr) {
-      before = y;
-      jumped = switching->begin(t, y.data(), direction > 0.0);
-    }
-    if (const int bad = bad_component(y); bad >= 0) return bad;
-    stepper.evaluate(t, y.data(), integrator.dydt.data());
-    stepper.start(y.data(), integrator.dydt.data());
-    if (t != t_end) {
-      double size = options.step.value_or(
-          std::min(options.first_step.value_or(options.max_step), options.max_step));
-      if (!options.step && !options.first_step) {
-        const FirstStep first =
-            first_step(stepper, t, t_end, options.max_step, rtol.data(), atol.data());
-        size = first.h;
-        depends_on_end = first.is_bounded;
-      }
-      integrator.h = direction * size;
-      integrator.h_is_max_step = options.step || size == options.max_step;
-    }
-    if (jumped) {
-      recorder.state_jumped(t, before.data(), y.data());
-    } else {
-      recorder.state_settled(t, y.data());
-    }
-    return -1;
-  }
-};
-
-/// Runs from where the integrator stands to t_end.
-void run(const Scene& scene, Solution& solution, IntegratorState integrator, double t_end,
-         Limits limits, Before before, const std::vector<long long>& passed_events = {}) {
-  const Options& options = solution.options;
-  const EquationsOfMotion equations = equations_of_motion(scene);
-  const auto stepper =
-      make_stepper(scene, equations, options.method, options.ledger, options.compensated);
-  std::optional<Switching> switching;
-  if (equations.held_joints) switching.emplace(scene, equations, solution.accounts);
-  const std::size_t n = scene.links.size();
-  const std::vector<double> rtol = relative_tolerances(options, n);
-  const std::vector<double> atol = absolute_tolerances(options, n);
-  stepper->set_tolerances(rtol.data(), atol.data());
-
-  Recorder recorder(solution, *stepper, scene, passed_events);
-  if (before != Before::nothing && solution.dense.degree != stepper->interpolant_degree()) {
-    throw std::invalid_argument("the dense output of this solution is not that of its method");
-  }
-  solution.dense.degree = stepper->interpolant_degree();
-  IntegratorState resumable = integrator;
-  if (before == Before::nothing) recorder.start(integrator.t.high, integrator.y);
-  Switching* const discontinuities = switching ? &*switching : nullptr;
-  std::optional<RunLimits> clock;
-  // Deciding which joints are held is not a step, and takes long in a long chain.
-  if (switching && stopped_is_caught) {
-    clock.emplace(limits, integrator.t.high);
-    switching->look_up_in_long_work([&clock, &integrator] {
-      const Status status = clock->look(integrator.t.high);
+    if (!equations_.held_joints) return;
+    switching_.emplace(scene, equations_, solution.accounts);
+    if (!stopped_is_caught) return;
+    // Deciding which joints are held is not a step, and takes long in a long chain.
+    clock_.emplace(limits_, state_.t.high);
+    equations_.held_joints->look_up_in_long_work([this] {
+      const Status status = clock_->look(state_.t.high);
       if (status != Status::finished) throw Stopped{status};
     });
   }
-  Ending ending{.status = Status::finished, .cut = false};
-  if (before == Before::steps) {
-    const double t = integrator.t.high;
-    if (switching)
-      switching->restore(integrator.discontinuities, t, integrator.y.data(), !(t_end < t));
-    stepper->start(integrator.y.data(), integrator.dydt.data());
-    stepper->restore(integrator.stepper);
-    integrator.statistics.nfev += stepper->evaluations;
-  } else {
-    Beginning beginning{options, *stepper, discontinuities, recorder, rtol, atol};
-    ending = beginning.make(integrator, t_end);
-    if (ending.cut) integrator = resumable;  // which is the start
-    limits.begins_anew = beginning.depends_on_end;
-    integrator.statistics.nfev = stepper->evaluations;
+  SceneRun(const SceneRun&) = delete;  // the clock refers to it
+  SceneRun& operator=(const SceneRun&) = delete;
+
+  void go() {
+    const Ending ending = has_begun(state_) ? go_on() : begin();
+    if (!ending.cut) recorder_->restarts_here();
+    complete_solution(ending);
   }
-  if (ending.status == Status::finished) {
-    if (switching) integrator.discontinuities = switching->saved_state();
-    ending = integrate(*stepper, integrator, resumable, limits, recorder, discontinuities);
-  } else {
-    resumable = integrator;
+
+ private:
+  bool is_forward() const { return !(limits_.t_end < state_.t.high); }
+
+  Ending go_on() {
+    if (switching_) {
+      switching_->restore(state_.discontinuities, state_.t.high, state_.y.data(), is_forward());
+    }
+    stepper_->start(state_.y.data(), state_.dydt.data());
+    stepper_->restore(state_.stepper);
+    state_.statistics.nfev += stepper_->evaluations;
+    return take_steps();
   }
-  if (!ending.cut) recorder.restarts_here();
-  solution.status = ending.status;
-  solution.statistics = integrator.statistics;
-  solution.t_reached = integrator.t.high;
-  solution.resumable = std::make_shared<const IntegratorState>(std::move(resumable));
-  solution.message = ending_message(ending, scene, solution, integrator,
-                                    switching ? switching->remark() : "", recorder.ended_by());
-  if (switching) solution.message += switching->remark_on_impacts();
-  solution.last_method = stepper->info().name;
-  solution.message += remark_on_steps(scene, equations, solution, integrator);
-  solution.error = ending.error;
-  solution.options.watch = nullptr;
-  solution.y_reached = std::move(integrator.y);
-  if (options.store == Store::end) {
-    solution.t = {solution.t_reached};
-    solution.states = solution.y_reached;
+
+  /// If a user's function throws at the beginning, or an impact is not finite, nothing of it is
+  /// kept, and a continued run begins anew.
+  Ending begin() {
+    recorder_->restarts_here();
+    int bad = -1;
+    const Interruption found = interruption_of([&] { bad = choose_first_step(); });
+    const Status status = bad >= 0 ? Status::non_finite : found.status;
+    if (status != Status::finished) state_ = resumable_;
+    state_.statistics.nfev = stepper_->evaluations;
+    if (status == Status::finished) return take_steps();
+    resumable_ = state_;
+    return {.status = status, .cut = true, .bad = bad, .error = found.error};
   }
-}
+
+  /// Chooses the laws, the rates and the first step at the start. Returns the component that is not
+  /// finite, or -1.
+  int choose_first_step() {
+    const double t = state_.t.high;
+    std::vector<double>& y = state_.y;
+    const std::vector<double> before = y;
+    const bool jumped = switching_ && switching_->begin(t, y.data(), is_forward());
+    if (const int bad = bad_component(y); bad >= 0) return bad;
+    stepper_->evaluate(t, y.data(), state_.dydt.data());
+    stepper_->start(y.data(), state_.dydt.data());
+    if (t != limits_.t_end) {
+      double size = options_.step.value_or(
+          std::min(options_.first_step.value_or(options_.max_step), options_.max_step));
+      if (!options_.step && !options_.first_step) {
+        const FirstStep first =
+            first_step(*stepper_, t, limits_.t_end, options_.max_step, rtol_.data(), atol_.data());
+        size = first.h;
+        limits_.begins_anew = first.is_bounded;
+      }
+      state_.h = is_forward() ? size : -size;
+      state_.h_is_max_step = options_.step || size == options_.max_step;
+    }
+    if (jumped) {
+      recorder_->state_jumped(t, before.data(), y.data());
+    } else {
+      recorder_->state_settled(t, y.data());
+    }
+    return -1;
+  }
+
+  Ending take_steps() {
+    if (switching_) state_.discontinuities = switching_->saved_state();
+    return integrate(*stepper_, state_, resumable_, limits_, *recorder_,
+                     switching_ ? &*switching_ : nullptr);
+  }
+
+  void complete_solution(const Ending& ending) {
+    solution_.status = ending.status;
+    solution_.statistics = state_.statistics;
+    solution_.t_reached = state_.t.high;
+    solution_.resumable = std::make_shared<const IntegratorState>(std::move(resumable_));
+    solution_.message =
+        ending_message(ending, scene_, solution_, state_, switching_ ? switching_->remark() : "",
+                       recorder_->ended_by());
+    if (switching_) solution_.message += switching_->remark_on_impacts();
+    solution_.last_method = stepper_->info().name;
+    solution_.message += remark_on_steps(scene_, equations_, solution_, state_);
+    solution_.error = ending.error;
+    solution_.options.watch = nullptr;
+    solution_.y_reached = std::move(state_.y);
+    if (options_.store == Store::end) {
+      solution_.t = {solution_.t_reached};
+      solution_.states = solution_.y_reached;
+    }
+  }
+
+  const Scene& scene_;
+  Solution& solution_;
+  const Options& options_;
+  Limits limits_;
+  IntegratorState state_;
+  IntegratorState resumable_;
+  EquationsOfMotion equations_;
+  std::unique_ptr<Stepper> stepper_;
+  std::vector<double> rtol_, atol_;
+  std::optional<Recorder> recorder_;
+  std::optional<Switching> switching_;
+  std::optional<RunLimits> clock_;
+};
 
 long long attempts(const Statistics& statistics) {
   return statistics.accepted + statistics.rejected;
@@ -191,8 +196,8 @@ Solution simulate(const Scene& scene, const Numbers& q0, const Numbers& qd0, dou
   options.store = options.store.value_or(usual_store(options));
   Limits limits = limits_of(options, t_end);
   Solution solution(std::move(options));
-  solution.scene = scene;
   solution.options.monitor = nullptr;
+  solution.scene = scene;
   solution.t0 = t0;
   solution.t_end = t_end;
   solution.n = static_cast<int>(n);
@@ -205,7 +210,7 @@ Solution simulate(const Scene& scene, const Numbers& q0, const Numbers& qd0, dou
   std::ranges::copy(qd0.span(), std::ranges::copy(q0.span(), start.y.begin()).out);
   solution.start = start.y;
   start.dydt.resize(dimension);
-  run(scene, solution, std::move(start), t_end, std::move(limits), Before::nothing);
+  SceneRun(scene, solution, std::move(start), std::move(limits), {}).go();
   return solution;
 }
 
@@ -222,10 +227,8 @@ Solution resume(const Scene& scene, const Solution& solution, double t_end,
   check(options);
 
   longer.t_end = t_end;
-  // A run without steps begins anew.
   const IntegratorState& from = *solution.resumable;
-  const bool has_begun = from.h != 0.0;
-  if (!has_begun) {
+  if (!has_begun(from)) {
     const std::span start(solution.start);
     check_start(scene, start.first(solution.n), start.subspan(solution.n, solution.n), solution.t0,
                 t_end);
@@ -250,8 +253,7 @@ Solution resume(const Scene& scene, const Solution& solution, double t_end,
     const long long most = std::numeric_limits<long long>::max() - max_steps;
     limits.max_steps += std::clamp(again, 0LL, most);
   }
-  run(scene, longer, from, t_end, std::move(limits), has_begun ? Before::steps : Before::a_start,
-      passed_events);
+  SceneRun(scene, longer, from, std::move(limits), passed_events).go();
   return longer;
 }
 

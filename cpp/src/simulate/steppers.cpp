@@ -14,19 +14,28 @@ namespace pendcore {
 
 namespace {
 
+/// What a stepper is made for. The scene must outlive the stepper of a pair.
+struct Wanted {
+  const Scene& scene;
+  EquationsOfMotion equations;
+  bool keeps_ledger;
+  bool compensated;
+
+  int links() const { return static_cast<int>(scene.links.size()); }
+};
+
 /// The equations of motion of a scene, in any form, as a system in memory: dy/dt of (q, qd), and
 /// the powers of the ledger beside it where the run keeps one.
 class SceneSystem final : public DifferentiableSystem {
  public:
   /// Rows of `row_size` numbers, of which the first belong to links.
-  SceneSystem(const Scene& scene, const EquationsOfMotion& equations, int row_size,
-              bool keeps_ledger)
-      : DifferentiableSystem(row_size,
-                             keeps_ledger ? static_cast<int>(accounts_of(scene).size()) : 0),
-        equations_(equations),
+  SceneSystem(const Wanted& wanted, int row_size)
+      : DifferentiableSystem(
+            row_size, wanted.keeps_ledger ? static_cast<int>(accounts_of(wanted.scene).size()) : 0),
+        equations_(wanted.equations),
         right_hand_side_(right_hand_side(equations_)),
-        n_(static_cast<int>(scene.links.size())) {
-    if (quadratures > 0) ledger_ = std::make_unique<Ledger>(scene, equations.effects);
+        n_(wanted.links()) {
+    if (quadratures > 0) ledger_ = std::make_unique<Ledger>(wanted.scene, equations_.effects);
   }
   SceneSystem(const SceneSystem&) = delete;  // the right-hand side points into the equations
   SceneSystem& operator=(const SceneSystem&) = delete;
@@ -67,17 +76,14 @@ class SceneSystem final : public DifferentiableSystem {
 /// state in memory and give the same bits: long chains, compensated steps, runs that keep the
 /// ledger, and processors from before 2013; in a small module, scenes with effects.
 template <const auto& table>
-std::unique_ptr<Stepper> explicit_stepper(const Scene& scene, const EquationsOfMotion& equations,
-                                          bool keeps_ledger, bool compensated) {
+std::unique_ptr<Stepper> explicit_stepper(const Wanted& wanted) {
   constexpr InstructionSet least = least_of_special_kernels;
   auto in_memory = [&]() -> std::unique_ptr<Stepper> {
-    const int n = static_cast<int>(scene.links.size());
-    return runge_kutta_in_memory(table.info.name,
-                                 std::make_unique<SceneSystem>(
-                                     scene, equations, row_in_memory(n, compensated), keeps_ledger),
-                                 n, compensated);
+    const int row = row_in_memory(wanted.links(), wanted.compensated);
+    return runge_kutta_in_memory(table.info.name, std::make_unique<SceneSystem>(wanted, row),
+                                 wanted.links(), wanted.compensated);
   };
-  if (compensated || keeps_ledger || instruction_set() < least) return in_memory();
+  if (wanted.compensated || wanted.keeps_ledger || instruction_set() < least) return in_memory();
   return std::visit(
       [&]<class Form>(const Form& form) -> std::unique_ptr<Stepper> {
         constexpr bool is_bare =
@@ -88,52 +94,41 @@ std::unique_ptr<Stepper> explicit_stepper(const Scene& scene, const EquationsOfM
         } else {
           using System = FirstOrder<Form>;
           return std::make_unique<RungeKuttaFixed<table, System, least>>(System{form},
-                                                                         equations.effects);
+                                                                         wanted.equations.effects);
         }
       },
-      equations.form);
+      wanted.equations.form);
 }
 
 /// One stepper serves all forms: the form hardly changes what an implicit step costs.
-std::unique_ptr<Stepper> implicit(const Collocation& method, const Scene& scene,
-                                  const EquationsOfMotion& equations, bool keeps_ledger,
-                                  bool compensated) {
-  auto system = std::make_unique<SceneSystem>(scene, equations,
-                                              static_cast<int>(scene.links.size()), keeps_ledger);
-  system->differentiate(scene);
-  return implicit_runge_kutta(method, std::move(system), compensated);
+std::unique_ptr<Stepper> implicit(const Collocation& method, const Wanted& wanted) {
+  auto system = std::make_unique<SceneSystem>(wanted, wanted.links());
+  system->differentiate(wanted.scene);
+  return implicit_runge_kutta(method, std::move(system), wanted.compensated);
 }
 
 template <const auto& table>
-std::unique_ptr<Stepper> stepper_of(const Scene& scene, const EquationsOfMotion& equations,
-                                    bool keeps_ledger, bool compensated) {
+std::unique_ptr<Stepper> stepper_of(const Wanted& wanted) {
   if constexpr (table.info.kind == MethodKind::taylor_one) {
-    auto system = std::make_shared<SceneSystem>(scene, equations,
-                                                static_cast<int>(scene.links.size()), keeps_ledger);
+    auto system = std::make_shared<SceneSystem>(wanted, wanted.links());
     auto rates = [system](double t, const double* y, double* dydt) { (*system)(t, y, dydt); };
-    return make_taylor_stepper(scene, equations, rates, system->quadratures, compensated);
+    return make_taylor_stepper(wanted.scene, wanted.equations, rates, system->quadratures,
+                               wanted.compensated);
   } else if constexpr (table.info.kind == MethodKind::implicit_one) {
-    return implicit(table, scene, equations, keeps_ledger, compensated);
+    return implicit(table, wanted);
   } else if constexpr (table.info.kind == MethodKind::pair) {
     return std::make_unique<StiffSwitchingStepper>(
-        stepper_of<table.first>(scene, equations, keeps_ledger, compensated),
-        [&scene, equations, keeps_ledger, compensated] {
-          return implicit(table.second, scene, equations, keeps_ledger, compensated);
-        });
+        stepper_of<table.first>(wanted), [wanted] { return implicit(table.second, wanted); });
   } else {
-    return explicit_stepper<table>(scene, equations, keeps_ledger, compensated);
+    return explicit_stepper<table>(wanted);
   }
 }
 
 template <const auto&... tables>
 std::unique_ptr<Stepper> stepper_of(MethodList<tables...>, std::string_view name,
-                                    const Scene& scene, const EquationsOfMotion& equations,
-                                    bool keeps_ledger, bool compensated) {
+                                    const Wanted& wanted) {
   std::unique_ptr<Stepper> stepper;
-  ((tables.info.name == name
-        ? void(stepper = stepper_of<tables>(scene, equations, keeps_ledger, compensated))
-        : void()),
-   ...);
+  ((tables.info.name == name ? void(stepper = stepper_of<tables>(wanted)) : void()), ...);
   return stepper;
 }
 
@@ -142,8 +137,8 @@ std::unique_ptr<Stepper> stepper_of(MethodList<tables...>, std::string_view name
 std::unique_ptr<Stepper> make_stepper(const Scene& scene, const EquationsOfMotion& equations,
                                       std::string_view method, bool ledger, bool compensated) {
   const bool keeps_ledger = ledger && !accounts_of(scene).empty();
-  return stepper_of(Methods{}, find_method(method).name, scene, equations, keeps_ledger,
-                    compensated);
+  return stepper_of(Methods{}, find_method(method).name,
+                    {scene, equations, keeps_ledger, compensated});
 }
 
 std::unique_ptr<Stepper> make_stepper(const Scene& scene, std::string_view method) {

@@ -13,7 +13,6 @@
 /// * The torque that holds a joint leaves its range: the joint is released.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -59,11 +58,6 @@ class Switching final : public Discontinuities {
   bool is_over() const override { return modes_.is_over() || joints_.has_failed(); }
   bool rests() const override { return !remark_.empty(); }
   std::vector<double> saved_state() const override;
-
-  /// `look` is called from time to time in long decisions on which joints are held, and may throw.
-  void look_up_in_long_work(const std::function<void()>& look) {
-    joints_.look_up_in_long_work(look);
-  }
 
   /// The remark of a run that ended at rest, or empty.
   const std::string& remark() const { return remark_; }

@@ -2,77 +2,56 @@
 
 #include <climits>
 #include <stdexcept>
+#include <type_traits>
 
 namespace pendcore {
 namespace {
 
-/// Writes numbers to a list, or reads them from it.
-class NumberList {
- public:
-  NumberList(std::vector<double>& list, bool is_read) : list_(list), is_read_(is_read) {}
-
-  std::size_t left() const { return list_.size() - at_; }
-
-  void operator()(double& x) {
-    if (!is_read_) return list_.push_back(x);
-    require_modes_fit(left() > 0);
-    x = list_[at_++];
-  }
-  void operator()(bool& x) { whole(x, 0, 1); }
-  void operator()(int& x, int least, int most) { whole(x, least, most); }
-
- private:
-  template <class Whole>
-  void whole(Whole& x, int least, int most) {
-    double number = x;
-    (*this)(number);
-    require_modes_fit(number >= least && number <= most);
-    x = static_cast<Whole>(number);
-  }
-
-  std::vector<double>& list_;
-  bool is_read_;
-  std::size_t at_ = 0;
-};
-
-void visit(NumberList& io, SwitchingState& s) {
-  for (int& mode : s.modes) io(mode, -1, INT_MAX);
-  io(s.changes.t);
-  io(s.changes.further, 0, INT_MAX);
-  io(s.impacts.lost);
-  io(s.impacts.last_impact);
-  for (int& struck : s.impacts.struck) io(struck, 0, 1);
-  for (int& direction : s.changes.release_direction) io(direction, -1, 1);
+/// Calls visit(number, least, most) for every number but the multiplicities, with its range.
+template <class Visit>
+void for_each_number(SwitchingState& s, const Visit& visit) {
+  for (int& mode : s.modes) visit(mode, -1, INT_MAX);
+  visit(s.changes.t, -never, never);
+  visit(s.changes.further, 0, INT_MAX);
+  visit(s.impacts.lost, -never, never);
+  visit(s.impacts.last_impact, -never, never);
+  for (int& struck : s.impacts.struck) visit(struck, 0, 1);
+  for (int& direction : s.changes.release_direction) visit(direction, -1, 1);
   for (SavedHold& saved : s.holds) {
-    io(saved.hold.is_held);
-    io(saved.hold.angle);
-    io(saved.hold.least);
-    io(saved.hold.most);
-    io(saved.torque_size);
+    visit(saved.hold.is_held, 0, 1);
+    visit(saved.hold.angle, -never, never);
+    visit(saved.hold.least, -never, never);
+    visit(saved.hold.most, -never, never);
+    visit(saved.torque_size, -never, never);
   }
-  io(s.has_failed);
+  visit(s.has_failed, 0, 1);
 }
 
 }  // namespace
 
 std::vector<double> numbers_of(SwitchingState state) {
   std::vector<double> numbers;
-  NumberList io(numbers, false);
-  visit(io, state);
+  for_each_number(state, [&](auto number, double, double) { numbers.push_back(number); });
   numbers.insert(numbers.end(), state.multiplicities.begin(), state.multiplicities.end());
   return numbers;
 }
 
-SwitchingState switching_state(std::vector<double> numbers, std::size_t m, std::size_t n) {
+SwitchingState switching_state(const std::vector<double>& numbers, std::size_t m, std::size_t n) {
   SwitchingState state;
   state.modes.resize(m);
   state.impacts.struck.resize(n);
   state.changes.release_direction.resize(n);
   state.holds.resize(n);
-  NumberList io(numbers, true);
-  visit(io, state);
-  state.multiplicities.resize(io.left());
-  for (int& multiplicity : state.multiplicities) io(multiplicity, 0, 3);
+  std::size_t at = 0;
+  const auto read = [&]<class Number>(Number& number, double least, double most) {
+    require_modes_fit(at < numbers.size());
+    const double x = numbers[at++];
+    if constexpr (!std::is_same_v<Number, double>) require_modes_fit(x >= least && x <= most);
+    number = static_cast<Number>(x);
+  };
+  for_each_number(state, read);
+  state.multiplicities.resize(numbers.size() - at);
+  for (int& multiplicity : state.multiplicities) read(multiplicity, 0, 3);
   return state;
 }
 

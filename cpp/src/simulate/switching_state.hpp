@@ -24,7 +24,7 @@ std::vector<double> numbers_of(SwitchingState state);
 
 /// Takes a state of m effects and n links out of its numbers. They may come from a damaged file:
 /// throws std::invalid_argument if there are too few, or one is out of its range.
-SwitchingState switching_state(std::vector<double> numbers, std::size_t m, std::size_t n);
+SwitchingState switching_state(const std::vector<double>& numbers, std::size_t m, std::size_t n);
 
 void require_modes_fit(bool fits);
 

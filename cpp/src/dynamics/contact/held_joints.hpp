@@ -50,6 +50,7 @@ class HeldJoints {
  public:
   explicit HeldJoints(const Scene& scene);
 
+  /// `look` is called from time to time in long decisions on which joints are held, and may throw.
   void look_up_in_long_work(const std::function<void()>& look) { forces_.problem.look = look; }
 
   /// Whether the scene has friction or stops, which can hold a joint for a while.

@@ -12,7 +12,7 @@ constexpr double none = 2.0;
 template <std::size_t room>
 using Bernstein = std::array<double, room>;
 constexpr std::size_t small = 16;
-constexpr std::size_t large = 36;
+constexpr std::size_t large = highest_degree + 1;
 
 /// 1/C(degree, k)
 constexpr std::array<Bernstein<large>, large> inverse_binomials = [] {
@@ -26,17 +26,6 @@ constexpr std::array<Bernstein<large>, large> inverse_binomials = [] {
   }
   return table;
 }();
-
-/// The coefficients on [0, 1]: b_i = sum_{k <= i} C(i, k)/C(degree, k) c_k, by Pascal's triangle.
-template <std::size_t room>
-Bernstein<room> bernstein(const double* c, int degree) {
-  Bernstein<room> b{};
-  for (int k = 0; k <= degree; ++k) b[k] = inverse_binomials[degree][k] * c[k];
-  for (int k = 1; k <= degree; ++k) {
-    for (int i = degree; i >= k; --i) b[i] += b[i - 1];
-  }
-  return b;
-}
 
 /// Finds a sign change between low and high, p(low) >= 0 > p(high), to the last bits of theta.
 double bisect(const double* c, int degree, double low, double high) {
@@ -56,6 +45,8 @@ void halve(double* left, double* right, int degree) {
   }
 }
 
+/// Searches low .. high for the first negative value, from the Bernstein form b of the polynomial
+/// there.
 template <std::size_t room>
 double search(const double* c, int degree, const Bernstein<room>& b, double low, double high,
               int depth) {
@@ -76,7 +67,22 @@ double search(const double* c, int degree, const Bernstein<room>& b, double low,
   return found <= 1.0 ? found : search(c, degree, right, middle, high, depth + 1);
 }
 
+template <std::size_t room>
+double search_step(const double* c, int degree) {
+  Bernstein<room> b{};
+  bernstein_form(c, degree, b.data());
+  return search(c, degree, b, 0.0, 1.0, 0);
+}
+
 }  // namespace
+
+/// b_i = sum_{k <= i} C(i, k)/C(degree, k) c_k, by Pascal's triangle.
+void bernstein_form(const double* coefficients, int degree, double* bernstein) {
+  for (int k = 0; k <= degree; ++k) bernstein[k] = inverse_binomials[degree][k] * coefficients[k];
+  for (int k = 1; k <= degree; ++k) {
+    for (int i = degree; i >= k; --i) bernstein[i] += bernstein[i - 1];
+  }
+}
 
 double first_negative(const double* coefficients, int degree) {
   double least = coefficients[0];  // a lower bound
@@ -88,14 +94,10 @@ double first_negative(const double* coefficients, int degree) {
   const double* const c = from_zero ? coefficients + 1 : coefficients;  // p/theta has p's signs
   const int rest = from_zero ? degree - 1 : degree;
   if (!(largest > 0.0)) return coefficients[0] < 0.0 ? 0.0 : none;
-  return rest < static_cast<int>(small)
-             ? search<small>(c, rest, bernstein<small>(c, rest), 0.0, 1.0, 0)
-             : search<large>(c, rest, bernstein<large>(c, rest), 0.0, 1.0, 0);
+  return rest < static_cast<int>(small) ? search_step<small>(c, rest) : search_step<large>(c, rest);
 }
 
 namespace {
-
-using LongForm = Bernstein<highest_degree + 1>;
 
 /// Finds the turning points of a polynomial on low .. high from the Bernstein form b of its
 /// derivative. Turning points that are closer together than 2^-30 of the step differ by less than
@@ -105,7 +107,7 @@ class TurningPoints {
   TurningPoints(const double* c, int degree, std::vector<TurningPoint>& found)
       : c_(c), degree_(degree), found_(found) {}
 
-  void search(const LongForm& b, double low, double high, int depth) {
+  void search(const Bernstein<large>& b, double low, double high, int depth) {
     const int last = degree_ - 1;
     int changes = 0;
     int sign_before = 0;
@@ -121,8 +123,8 @@ class TurningPoints {
     }
     const double middle = 0.5 * (low + high);
     if (depth == 30) return append(middle);
-    LongForm left{};
-    LongForm right = b;
+    Bernstein<large> left{};
+    Bernstein<large> right = b;
     halve(left.data(), right.data(), last);
     search(left, low, middle, depth + 1);
     if (right[0] == 0.0) append(middle);
@@ -142,25 +144,20 @@ class TurningPoints {
   std::vector<TurningPoint>& found_;
 };
 
-}  // namespace
-
-void bernstein_form(const double* coefficients, int degree, double* bernstein) {
-  double binomial = 1.0;
-  for (int k = 0; k <= degree; ++k) {
-    bernstein[k] = coefficients[k] / binomial;
-    binomial = binomial * (degree - k) / (k + 1);
-  }
-  for (int k = 1; k <= degree; ++k) {
-    for (int i = degree; i >= k; --i) bernstein[i] += bernstein[i - 1];
-  }
-}
-
-void find_turning_points(const double* coefficients, int degree, std::vector<TurningPoint>& found) {
-  LongForm b{};
-  bernstein_form(coefficients, degree, b.data());
-  LongForm slopes{};
+/// Adds the turning points of a polynomial, given in its Bernstein form b as well.
+void find_turning_points(const double* coefficients, int degree, const Bernstein<large>& b,
+                         std::vector<TurningPoint>& found) {
+  Bernstein<large> slopes{};
   for (int i = 0; i < degree; ++i) slopes[i] = b[i + 1] - b[i];
   TurningPoints(coefficients, degree, found).search(slopes, 0.0, 1.0, 0);
+}
+
+}  // namespace
+
+void find_turning_points(const double* coefficients, int degree, std::vector<TurningPoint>& found) {
+  Bernstein<large> b{};
+  bernstein_form(coefficients, degree, b.data());
+  find_turning_points(coefficients, degree, b, found);
 }
 
 bool find_roots(const double* coefficients, int degree, double end, double noise,
@@ -169,15 +166,13 @@ bool find_roots(const double* coefficients, int degree, double end, double noise
   double reach = noise;  // an upper bound of |p(theta) - p(0)|
   for (int k = 1; k <= degree; ++k) reach += std::abs(coefficients[k]);
   if (std::abs(start) > reach && sign(start) == sign(end)) return true;
-  LongForm b{};
+  Bernstein<large> b{};
   bernstein_form(coefficients, degree, b.data());
   b[degree] = end;
   const auto [least, largest] = std::minmax_element(b.begin(), b.begin() + degree + 1);
   if (*least > noise || *largest < -noise) return true;
-  LongForm slopes{};
-  for (int i = 0; i < degree; ++i) slopes[i] = b[i + 1] - b[i];
   std::vector<TurningPoint> turning_points;
-  TurningPoints(coefficients, degree, turning_points).search(slopes, 0.0, 1.0, 0);
+  find_turning_points(coefficients, degree, b, turning_points);
   return find_roots([=](double theta) { return polynomial_at(coefficients, degree, theta); }, start,
                     turning_points, end, noise, found);
 }

@@ -22,10 +22,10 @@ namespace pendcore {
 /// The least theta in (0, 1] from which p(theta) = sum_k coefficients[k] theta^k is negative, to
 /// the last bits; above 1 if there is none. At 0 the function must be positive, or have just been
 /// zero: a value there that is below 1e-13 of the other coefficients counts as zero, and the result
-/// is where the polynomial becomes negative next. The degree is at most 35.
+/// is where the polynomial becomes negative next.
 double first_negative(const double* coefficients, int degree);
 
-inline constexpr int highest_degree = 63;  ///< the highest degree for find_roots()
+inline constexpr int highest_degree = 63;  ///< the highest degree of all polynomials here
 
 /// The coefficients of the Bernstein form on [0, 1], (degree + 1). The polynomial lies between the
 /// least and the largest of them.
@@ -44,7 +44,7 @@ struct TurningPoint {
 };
 
 /// Adds the turning points of p(theta) = sum_k coefficients[k] theta^k in 0 < theta < 1, in their
-/// order. The degree is at most 63.
+/// order.
 void find_turning_points(const double* coefficients, int degree, std::vector<TurningPoint>& found);
 
 /// sum_k coefficients[k] theta^k
@@ -108,8 +108,7 @@ bool find_roots(const Function& f, double start, const std::vector<TurningPoint>
   return true;
 }
 
-/// The same for p(theta) = sum_k coefficients[k] theta^k, with the value `end` at 1. The degree is
-/// at most 63.
+/// The same for p(theta) = sum_k coefficients[k] theta^k, with the value `end` at 1.
 bool find_roots(const double* coefficients, int degree, double end, double noise,
                 std::vector<Root>& found);
 

@@ -180,43 +180,41 @@ double Guards::value_at(int k, double t) {
   return samples_[other];
 }
 
-/// The value, slope and curvature (half the second derivative) of a linear guard at the start of
-/// the step, from the law: 1, 1/s, 1/s^2. The second derivative of a guard on a rate is not known.
-std::array<double, 3> Guards::start_of(int k) {
+/// How a linear guard starts the step by the law. The curvature of a guard on a rate is not known:
+/// it is 0.
+Guards::Start Guards::start_of(int k) {
   const int n = stepper_.controlled() / 2;
   std::vector<double> rows(3 * static_cast<std::size_t>(dimension_), 0.0);
   double* const rates = &rows[dimension_];
   stepper_.get_derivative(rates);
-  for (int i = 0; i < n; ++i)
-    rows[2 * static_cast<std::size_t>(dimension_) + i] = 0.5 * rates[n + i];
+  for (int i = 0; i < n; ++i) rates[dimension_ + i] = 0.5 * rates[n + i];
   std::array<double, 3> along{};
   discontinuities_.polynomial(k, rows.data(), 2, dimension_, along.data());
-  return along;
+  return {.slope = along[1], .curvature = along[2]};
 }
 
 /// How a guard that begins at zero rises: its slope from the law or, where that is zero too, its
 /// curvature; 0 where neither is known.
 double Guards::rise_at_start(int k, double h) {
-  const std::array<double, 3> along = start_of(k);
-  for (int order = discontinuities_.multiplicity_at_start(k); order <= 2; ++order) {
-    const double rise = order == 1 ? along[1] * h : along[2];
-    if (rise != 0.0) return rise;
-  }
-  return 0.0;
+  const Start start = start_of(k);
+  const int zeros = discontinuities_.multiplicity_at_start(k);
+  const double rise = start.slope * h;
+  if (zeros == 1 && rise != 0.0) return rise;
+  return zeros <= 2 ? start.curvature : 0.0;
 }
 
 /// Whether guard k belongs to a joint that rests on its stop and is pushed away from it.
 bool Guards::rises_from_rest(int k) {
   if (discontinuities_.multiplicity_at_start(k) == 0) return false;
-  const std::array<double, 3> along = start_of(k);
-  return along[1] == 0.0 && along[2] > 0.0;
+  const Start start = start_of(k);
+  return start.slope == 0.0 && start.curvature > 0.0;
 }
 
 /// Whether a linear guard is zero at the start of the step, apart from the last bits of its value
 /// and of time, and the law makes it rise.
 bool Guards::leaves_its_zero(int k, double t, double h, double value, double rounding) {
   if (k >= discontinuities_.linear_guards()) return false;
-  const double slope = start_of(k)[1];
+  const double slope = start_of(k).slope;
   const double missed = std::abs(slope) * last_bits_share * std::max(std::abs(t), std::abs(h));
   return slope * h > 0.0 && value >= -(rounding + missed);
 }
@@ -243,10 +241,10 @@ bool Guards::is_of_error(const Crossing& crossing, double h) {
   const int k = crossing.guard;
   if (k < 0 || discontinuities_.multiplicity_at_start(k) == 0) return false;
   const int degree = along_step(k);
-  const std::array<double, 3> along = start_of(k);
-  if (discontinuities_.multiplicity_at_start(k) < 2) polynomial_[1] = along[1] * h;
-  const bool has_curvature = discontinuities_.multiplicity_at_start(k) < 3 && along[2] != 0.0;
-  if (has_curvature) polynomial_[2] = along[2] * h * h;
+  const Start start = start_of(k);
+  const int zeros = discontinuities_.multiplicity_at_start(k);
+  if (zeros < 2) polynomial_[1] = start.slope * h;
+  if (zeros < 3 && start.curvature != 0.0) polynomial_[2] = start.curvature * h * h;
   return first_negative(polynomial_.data(), degree) > 2.0 * crossing.theta;
 }
 

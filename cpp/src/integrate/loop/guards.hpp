@@ -6,7 +6,6 @@
 /// Chebyshev points of the step and interpolated; its zero is then located by its own values.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "integrate/loop/discontinuities.hpp"
@@ -60,8 +59,13 @@ class Guards {
     double share, rounding;
   };
   Miss miss(const Crossing& crossing, double t, double h);
+  /// How a linear guard changes where the step starts.
+  struct Start {
+    double slope;      ///< 1/s
+    double curvature;  ///< half the second derivative, 1/s^2
+  };
   int along_step(int k);
-  std::array<double, 3> start_of(int k);
+  Start start_of(int k);
   void sample(double theta);
   void slopes_along_step(int k, double t, double h, double from);
   Crossing where_slope_allows(Crossing crossing, double t, double h, int degree);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <new>
 
 #include "arithmetic/epsilon.hpp"
 #include "integrate/loop/resume_point.hpp"
@@ -59,21 +58,15 @@ class Run {
       return end_with(Status::non_finite, bad);
     }
     resume_.step_begins();
-    try {
+    const Interruption found = interruption_of([this] {
       while (!has_ended() && step()) {
       }
-      return end_with(status_, bad_ >= 0 ? bad_ : trial_.bad());
-    } catch (const std::bad_alloc&) {
-      throw;
-    } catch (const Stopped& stopped) {
-      resume_.interrupt();
-      return end_with(stopped.status);
-    } catch (...) {  // an exception of a user's function
-      resume_.interrupt();
-      Ending ending = end_with(Status::callback_error);
-      ending.error = std::current_exception();
-      return ending;
-    }
+    });
+    if (found.status == Status::finished) return end_with(status_, bad_ >= 0 ? bad_ : trial_.bad());
+    resume_.interrupt();
+    Ending ending = end_with(found.status);
+    ending.error = found.error;
+    return ending;
   }
 
  private:
@@ -243,7 +236,7 @@ class Run {
     std::vector<double> polynomial(rows * stepper_.dimension());
     stepper_.finite_interpolant(h, polynomial, stepper_.dimension());
     make_room();
-    stepper_.sample(polynomial.data(), {}, 1.0, &theta, 1, state_.data());
+    stepper_.state_within(polynomial.data(), theta, state_.data());
     stepper_.get_derivative(rate_.data());
     stepper_.start(state_.data(), rate_.data());
     integrator_.t = t;
