@@ -83,17 +83,18 @@ TEST_CASE("the Jacobian has the bits of each direction alone") {
   for (const Scene& scene : of_two_links) {
     const Jacobian jacobian(scene, equations_of_motion(scene));
     for (int round = 0; round < 100; ++round) {
-      std::vector<double> y(4), by_q(4), by_qd(4), found(8), alone(8);
+      std::vector<double> y(4), found(8), alone(8);
+      Matrix by_q(2, 2), by_qd(2, 2);
       std::ranges::generate(y, [&] { return any(random); });
       const double t = any(random);
-      jacobian(t, y.data(), y.data() + 2, by_q.data(), by_qd.data());
+      jacobian(t, y.data(), y.data() + 2, by_q, by_qd);
       for (int j = 0; j < 4; ++j) {
         double direction[4] = {};
         direction[j] = 1.0;
         double qdd[2], change[2];
         jacobian.along(t, y.data(), y.data() + 2, direction, direction + 2, qdd, change);
         for (int i = 0; i < 2; ++i) {
-          found[2 * j + i] = j < 2 ? by_q[2 * i + j] : by_qd[2 * i + j - 2];
+          found[2 * j + i] = j < 2 ? by_q(i, j) : by_qd(i, j - 2);
           alone[2 * j + i] = change[i];
         }
       }

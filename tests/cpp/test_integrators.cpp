@@ -59,10 +59,11 @@ class OfTheRate final : public DifferentiableSystem {
     dydt[0] = y[1];
     dydt[1] = f(t, y[1]);
   }
-  void jacobian(double t, const double* y, double* by_q, double* by_qd) const override {
+  void jacobian(double t, const double* y, Eigen::Ref<Matrix> by_q,
+                Eigen::Ref<Matrix> by_qd) const override {
     const double step = 1e-6 * std::max(1.0, std::abs(y[1]));
-    by_q[0] = 0.0;
-    by_qd[0] = (f(t, y[1] + step) - f(t, y[1] - step)) / (2 * step);
+    by_q(0, 0) = 0.0;
+    by_qd(0, 0) = (f(t, y[1] + step) - f(t, y[1] - step)) / (2 * step);
   }
 };
 

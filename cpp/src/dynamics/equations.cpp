@@ -59,7 +59,7 @@ Derivatives Equations::jacobian(double t, const Numbers& q, const Numbers& qd) {
   if (!compiled_->derivatives) compiled_->derivatives.emplace(compiled_->scene, equations);
   if (equations.effects) choose_modes(*equations.effects, t, q.data(), qd.data(), true);
   Derivatives result{.by_q = Matrix(q.size(), q.size()), .by_qd = Matrix(q.size(), q.size())};
-  (*compiled_->derivatives)(t, q.data(), qd.data(), result.by_q.data(), result.by_qd.data());
+  (*compiled_->derivatives)(t, q.data(), qd.data(), result.by_q, result.by_qd);
   return result;
 }
 

@@ -1,5 +1,7 @@
 #include "dynamics/jacobian.hpp"
 
+#include <algorithm>
+
 #include "dynamics/accelerations_kernel.hpp"
 #include "dynamics/chain/chain_recursion.hpp"
 
@@ -88,46 +90,48 @@ void Jacobian::compute(double t) const {
   }
 }
 
-void Jacobian::operator()(double t, const double* q, const double* qd, double* by_q,
-                          double* by_qd) const {
+void Jacobian::operator()(double t, const double* q, const double* qd, Eigen::Ref<Matrix> by_q,
+                          Eigen::Ref<Matrix> by_qd) const {
   // Both matrices at once have the bits of each direction alone, and are only faster.
   constexpr InstructionSet least = least_of_special_kernels;
   if (chain_ || !has_special_kernels_of_rare_runs || instruction_set() < least) {
     return direction_by_direction(t, q, qd, by_q, by_qd);
   }
   std::visit(
-      [=]<class Form>(const Form& form) {
+      [&]<class Form>(const Form& form) {
         if constexpr (has_special_kernels_of_rare_runs &&
                       !std::is_same_v<Form, std::shared_ptr<Chain>>) {
           static const auto both = fastest<&jacobian_in_memory<Form>, best_for(2), least>();
-          both(&form, t, q, qd, by_q, by_qd);
+          both(&form, t, q, qd, by_q.data(), by_qd.data());
         }
       },
       equations_.form);
   if (!equations_.effects) return;
   for (int i = 0; i < n_; ++i) {
     if (equations_.effects->held[i] == 0) continue;
-    for (double* const matrix : {by_q, by_qd}) {
-      for (int j = 0; j < n_; ++j) matrix[i * n_ + j] = i > 0 ? matrix[(i - 1) * n_ + j] : 0.0;
+    for (Eigen::Ref<Matrix>* const matrix : {&by_q, &by_qd}) {
+      if (i > 0) {
+        matrix->row(i) = matrix->row(i - 1);
+      } else {
+        matrix->row(i).setZero();
+      }
     }
   }
 }
 
-void Jacobian::direction_by_direction(double t, const double* q, const double* qd, double* by_q,
-                                      double* by_qd) const {
-  for (int i = 0; i < n_; ++i) {
-    q_[i] = q[i];
-    qd_[i] = qd[i];
-  }
-  auto one = [&](Dual<double>& variable, double* column) {
+void Jacobian::direction_by_direction(double t, const double* q, const double* qd,
+                                      Eigen::Ref<Matrix> by_q, Eigen::Ref<Matrix> by_qd) const {
+  std::copy_n(q, n_, q_.begin());
+  std::copy_n(qd, n_, qd_.begin());
+  auto one = [&](Dual<double>& variable, auto column) {
     variable.slope = 1.0;
     compute(t);
     variable.slope = 0.0;
-    for (int i = 0; i < n_; ++i) column[i * n_] = qdd_[i].slope;
+    for (int i = 0; i < n_; ++i) column[i] = qdd_[i].slope;
   };
   for (int j = 0; j < n_; ++j) {
-    one(q_[j], by_q + j);
-    one(qd_[j], by_qd + j);
+    one(q_[j], by_q.col(j));
+    one(qd_[j], by_qd.col(j));
   }
 }
 

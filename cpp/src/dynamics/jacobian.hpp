@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "dynamics/equations_of_motion.hpp"
+#include "pendcore/vector.hpp"
 
 namespace pendcore {
 
@@ -23,8 +24,9 @@ class Jacobian {
   /// The Jacobian shares the modes in force with the equations of its scene.
   Jacobian(const Scene& scene, const EquationsOfMotion& equations);
 
-  /// by_q and by_qd, (n, n) row-major, from the time (s), angles (rad) and rates (rad/s), (n) each.
-  void operator()(double t, const double* q, const double* qd, double* by_q, double* by_qd) const;
+  /// by_q and by_qd, (n, n), from the time (s), angles (rad) and rates (rad/s), (n) each.
+  void operator()(double t, const double* q, const double* qd, Eigen::Ref<Matrix> by_q,
+                  Eigen::Ref<Matrix> by_qd) const;
 
   /// Computes qdd at (q, qd), and its derivative (n) along one direction (dq, dqd) of the state,
   /// by_q dq + by_qd dqd. Cost: two to three right-hand sides.
@@ -37,8 +39,8 @@ class Jacobian {
  private:
   /// Computes qdd_ from q_ and qd_.
   void compute(double t) const;
-  void direction_by_direction(double t, const double* q, const double* qd, double* by_q,
-                              double* by_qd) const;
+  void direction_by_direction(double t, const double* q, const double* qd, Eigen::Ref<Matrix> by_q,
+                              Eigen::Ref<Matrix> by_qd) const;
 
   int n_;
   EquationsOfMotion equations_;

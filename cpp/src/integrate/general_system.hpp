@@ -2,6 +2,8 @@
 /// A system whose size the compiler does not know, for steppers that have their state in memory.
 #pragma once
 
+#include "pendcore/vector.hpp"
+
 namespace pendcore {
 
 /// dy/dt of a state in memory: two rows (q and qd) of `row` numbers each, and then quadratures.
@@ -22,7 +24,8 @@ class GeneralSystem {
 class DifferentiableSystem : public GeneralSystem {
  public:
   using GeneralSystem::GeneralSystem;
-  virtual void jacobian(double t, const double* y, double* by_q, double* by_qd) const = 0;
+  virtual void jacobian(double t, const double* y, Eigen::Ref<Matrix> by_q,
+                        Eigen::Ref<Matrix> by_qd) const = 0;
   /// Computes the derivatives of three states at three times, all in a row.
   virtual void derivatives_of_three(const double* t, const double* y, double* dydt) const {
     const int size = 2 * row + quadratures;

@@ -21,7 +21,7 @@ Derivatives linearized(const Scene& scene, const EquationsOfMotion& equations, d
                        const double* q, const double* qd) {
   const auto n = static_cast<Eigen::Index>(scene.links.size());
   Derivatives result{.by_q = Matrix(n, n), .by_qd = Matrix(n, n)};
-  Jacobian(scene, equations)(t, q, qd, result.by_q.data(), result.by_qd.data());
+  Jacobian(scene, equations)(t, q, qd, result.by_q, result.by_qd);
   return result;
 }
 

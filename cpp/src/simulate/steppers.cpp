@@ -60,7 +60,8 @@ class SceneSystem final : public DifferentiableSystem {
   void differentiate(const Scene& scene) {
     jacobian_ = std::make_unique<Jacobian>(scene, equations_);
   }
-  void jacobian(double t, const double* y, double* by_q, double* by_qd) const override {
+  void jacobian(double t, const double* y, Eigen::Ref<Matrix> by_q,
+                Eigen::Ref<Matrix> by_qd) const override {
     (*jacobian_)(t, y, y + row, by_q, by_qd);
   }
 

@@ -22,11 +22,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <type_traits>
 
 #include "arithmetic/epsilon.hpp"
+#include "arithmetic/pack.hpp"
 #include "arithmetic/power.hpp"
 #include "arithmetic/two_double.hpp"
 #include "integrate/general_system.hpp"
+#include "integrate/radau/collocation.hpp"
 #include "integrate/radau/newton_systems.hpp"
 #include "integrate/stepper.hpp"
 
@@ -37,73 +41,111 @@ PENDCORE_INLINE double small_power(double x, double p) {
   return approximate_exp2(p * approximate_log2(x));
 }
 
-template <class Sizes>
+/// The step of so many links, or of any number (Eigen::Dynamic), then also with quadratures. If the
+/// compiler knows the number, all angles and rates are one pack, and the kernel has its state in
+/// registers: a step of two links takes a quarter of the time of one of three.
+template <int links>
 struct CollocationStep {
-  using Block = typename Sizes::Block;
+  static constexpr bool is_fixed = links != Eigen::Dynamic;
+  static constexpr int numbers = is_fixed ? 2 * links : Eigen::Dynamic;
+  using Block = std::conditional_t<is_fixed, Pack<is_fixed ? numbers : 2>, double>;
   static constexpr int width = Lanes<Block>::width;
-  template <int rows>
-  using Rows = typename Sizes::template Rows<rows>;
+  using Row = Eigen::Matrix<double, numbers, 1>;
+  using Rows = Eigen::Matrix<double, 3, numbers, Eigen::RowMajor>;
+  using Square = typename NewtonSystem<double, links>::template Square<double>;
 
   static constexpr int most_iterations = 20;  // a fixed step may be long
   static constexpr int usual_iterations = 7;  // more than these make the next step shorter
 
   const Collocation& method;
   const DifferentiableSystem& system;
-  Sizes sizes;
-  bool compensated;
   Stepper& counts;  ///< what has been computed so far is counted there
+  bool compensated;
 
   double newton_tolerance = 0.0;
-  Rows<1> rtol, atol, y, dydt, y_new;
-  Rows<3> stages, transformed, rates, increment;
-  Rows<3> trial;  ///< states for which rates are wanted: mostly those of the stages
-  Rows<1> error;
-  Rows<1> slope;  ///< h u'(t) of the dense output
-  Rows<1> scale;  ///< what the tolerances allow at y and y_new
-  NewtonSystems<Sizes> systems;
+  Row rtol, atol, y, dydt, y_new;
+  Rows stages, transformed, rates, increment;
+  Rows trial;  ///< states for which rates are wanted: mostly those of the stages
+  Row error;
+  Row slope;  ///< h u'(t) of the dense output
+  Row scale;  ///< what the tolerances allow at y and y_new
+  Row low, low_new;  ///< the rounding errors of y and y_new, if compensated
+  Square by_q, by_qd;  ///< A and B
+  NewtonSystem<double, links> real;
+  NewtonSystem<Complex, links> complex;
   bool has_jacobian = false;
   int iterations = 0;  ///< iterations of the last attempt
   double h_tried = 0.0;
   double squared_error = 0.0;
   double contraction_of_attempt = 1.0;
-  Rows<1> low, low_new;  ///< the rounding errors of y and y_new, if compensated
 
   // What the next step takes from the step before; h_before is 0 if there is none.
-  Rows<3> polynomial;  ///< powers 1 to 3
+  Rows polynomial;  ///< powers 1 to 3
   double h_before = 0.0;
   double log2_error_before = 0.0;
   double contraction = 1.0;
   bool is_retry = false;
 
-  CollocationStep(const Collocation& one, const DifferentiableSystem& rates_of, const Sizes& given,
+  CollocationStep(const Collocation& one, const DifferentiableSystem& rates_of,
                   bool carries_rounding, Stepper& stepper)
       : method(one),
         system(rates_of),
-        sizes(given),
+        counts(stepper),
         compensated(carries_rounding),
-        counts(stepper) {
-    for (auto* row : {&rtol, &atol, &y, &dydt, &y_new, &error, &slope, &scale}) {
-      Sizes::allocate(*row, sizes.size);
+        by_q(rates_of.row, rates_of.row),
+        by_qd(rates_of.row, rates_of.row),
+        real(rates_of.row),
+        complex(rates_of.row) {
+    const int count = 2 * rates_of.row + rates_of.quadratures;
+    for (auto* row : {&rtol, &atol, &y, &dydt, &y_new, &error, &slope, &scale, &low, &low_new}) {
+      row->setZero(count);
     }
     for (auto* rows : {&stages, &transformed, &rates, &increment, &trial, &polynomial}) {
-      Sizes::allocate(*rows, 3 * sizes.size);
+      rows->setZero(3, count);
     }
-    for (auto* row : {&low, &low_new}) Sizes::allocate(*row, compensated ? sizes.size : 0);
   }
 
-  PENDCORE_INLINE Block at(const double* row, int i) const { return load<Block>(row + i); }
+  /// The numbers in q, in q and qd, and in these and the quadratures.
+  PENDCORE_INLINE int n() const { return is_fixed ? links : system.row; }
+  PENDCORE_INLINE int state() const { return 2 * n(); }
+  PENDCORE_INLINE int size() const { return static_cast<int>(y.size()); }
+
+  PENDCORE_INLINE Block at(const Row& row, int i) const { return load<Block>(&row[i]); }
+  PENDCORE_INLINE Block at(const Rows& rows, int k, int i) const {
+    return load<Block>(&rows(k, i));
+  }
   /// A row of the matrix times three numbers.
   template <class Number>
   PENDCORE_INLINE static Number product(const Collocation::Row& row, const Number& x,
                                         const Number& y, const Number& z) {
     return row[0] * x + row[1] * y + row[2] * z;
   }
+  /// The same times the three rows at i.
+  template <class Number = Block>
+  PENDCORE_INLINE static Number product(const Collocation::Row& row, const Rows& of, int i) {
+    return product(row, load<Number>(&of(0, i)), load<Number>(&of(1, i)),
+                   load<Number>(&of(2, i)));
+  }
   /// The coefficient of theta^(p + 1) of u, through the stages.
-  template <class Number>
+  template <class Number = Block>
   PENDCORE_INLINE Number power_of_stages(int p, int i) const {
-    const double* const z = stages.data() + i;
-    return product(method.interpolant[p], load<Number>(z), load<Number>(z + sizes.size),
-                   load<Number>(z + 2 * sizes.size));
+    return product<Number>(method.interpolant[p], stages, i);
+  }
+  /// Stores what angle(i) and rate(i) are for each link, as a pack (pack.hpp says why).
+  template <class Angle, class Rate>
+  PENDCORE_INLINE void store_state(double* to, const Angle& angle, const Rate& rate) const {
+    if constexpr (is_fixed) {
+      Block both;
+#pragma GCC unroll 2
+      for (int i = 0; i < links; ++i) {
+        set_lane(both, i, angle(i));
+        set_lane(both, links + i, rate(i));
+      }
+      store(to, both);
+    } else {
+      for (int i = 0; i < n(); ++i) to[i] = angle(i);
+      for (int i = 0; i < n(); ++i) to[n() + i] = rate(i);
+    }
   }
 
   PENDCORE_INLINE void evaluate(double t, const double* state, double* rate) {
@@ -112,56 +154,53 @@ struct CollocationStep {
   }
 
   PENDCORE_INLINE void set_scale() {
-    for (int i = 0; i < sizes.state; i += width) {
-      const Block largest = larger(absolute(at(y_new.data(), i)), absolute(at(y.data(), i)));
+    for (int i = 0; i < state(); i += width) {
+      const Block largest = larger(absolute(at(y_new, i)), absolute(at(y, i)));
       // 1e-300 avoids 0/0.
-      store(&scale[i], at(atol.data(), i) + at(rtol.data(), i) * largest + 1e-300);
+      store(&scale[i], at(atol, i) + at(rtol, i) * largest + 1e-300);
     }
   }
   PENDCORE_INLINE double squared_norm(const double* row) const {
     double sum = 0.0;
-    for (int i = 0; i < sizes.state; i += width) {
-      const Block ratio = at(row, i) / at(scale.data(), i);
+    for (int i = 0; i < state(); i += width) {
+      const Block ratio = load<Block>(row + i) / at(scale, i);
       const Block square = ratio * ratio;
       for (int k = 0; k < width; ++k) sum += lane(square, k);
     }
-    return sum / sizes.state;
+    return sum / state();
   }
 
   /// Predicts the stages by continuing the polynomial of the step before: Z_i = u(1 + x) - u(1), x
   /// = c_i h/h_before.
   PENDCORE_INLINE void predict(double h) {
-    const int size = sizes.size;
 #pragma GCC unroll 3
     for (int k = 0; k < 3; ++k) {
       const double x = h_before == 0.0 ? 0.0 : method.c[k] * (h / h_before);
       const double square = x * (2.0 + x);
       const double cube = x * (3.0 + x * (3.0 + x));
-      for (int i = 0; i < sizes.state; i += width) {
-        const double* const p = polynomial.data() + i;
-        const Block predicted = x * at(p, 0) + square * at(p, size) + cube * at(p, 2 * size);
-        store(&stages[k * size + i], h_before == 0.0 ? Block{} : predicted);
+      for (int i = 0; i < state(); i += width) {
+        const Block predicted =
+            x * at(polynomial, 0, i) + square * at(polynomial, 1, i) + cube * at(polynomial, 2, i);
+        store(&stages(k, i), h_before == 0.0 ? Block{} : predicted);
       }
     }
 #pragma GCC unroll 3
     for (int k = 0; k < 3; ++k) {
-      for (int i = 0; i < sizes.state; i += width) {
-        const double* const z = stages.data() + i;
-        store(&transformed[k * size + i],
-              product(method.inverse[k], at(z, 0), at(z, size), at(z, 2 * size)));
+      for (int i = 0; i < state(); i += width) {
+        store(&transformed(k, i), product(method.inverse[k], stages, i));
       }
     }
   }
 
   /// Whether the last increment is no larger than the rounding errors of rates and states.
   bool is_rounding(double h) const {
-    for (int i = 0; i < sizes.state; ++i) {
+    for (int i = 0; i < state(); ++i) {
       double largest = std::abs(y[i]) + std::abs(y_new[i]);
       double change = 0.0;
 #pragma GCC unroll 3
       for (int k = 0; k < 3; ++k) {
-        largest += std::abs(h * rates[k * sizes.size + i]);
-        change = std::max(change, std::abs(increment[k * sizes.size + i]));
+        largest += std::abs(h * rates(k, i));
+        change = std::max(change, std::abs(increment(k, i)));
       }
       if (!(change <= 16.0 * epsilon * largest)) return false;
     }
@@ -170,57 +209,96 @@ struct CollocationStep {
 
   /// Evaluates the right-hand side at the three stages.
   PENDCORE_INLINE void evaluate_stages(double t, double h) {
-    const int size = sizes.size;
     double times[3];
 #pragma GCC unroll 3
     for (int k = 0; k < 3; ++k) {
       times[k] = t + method.c[k] * h;
-      for (int i = 0; i < sizes.state; i += width) {
-        store(&trial[k * size + i], at(y.data(), i) + at(&stages[k * size], i));
+      for (int i = 0; i < state(); i += width) {
+        store(&trial(k, i), at(y, i) + at(stages, k, i));
       }
     }
     system.derivatives_of_three(times, trial.data(), rates.data());
     counts.evaluations += 3;
   }
 
+  /// Replaces (r, s) by the solution of the real system.
+  PENDCORE_INLINE void solve_real(double* sides) {
+    const int count = n();
+#pragma GCC unroll 2
+    for (int i = 0; i < count; ++i) {
+      real.x[i] = sides[i];
+      real.y[i] = sides[count + i];
+    }
+    real.solve(by_q);
+    store_state(
+        sides, [this](int i) __attribute__((always_inline)) { return real.x[i]; },
+        [this](int i) __attribute__((always_inline)) { return real.y[i]; });
+  }
+  PENDCORE_INLINE void solve_complex(double* re, double* im) {
+    const int count = n();
+#pragma GCC unroll 2
+    for (int i = 0; i < count; ++i) {
+      complex.x[i] = {re[i], im[i]};
+      complex.y[i] = {re[count + i], im[count + i]};
+    }
+    complex.solve(by_q);
+    store_state(
+        re, [this](int i) __attribute__((always_inline)) { return complex.x[i].real(); },
+        [this](int i) __attribute__((always_inline)) { return complex.y[i].real(); });
+    store_state(
+        im, [this](int i) __attribute__((always_inline)) { return complex.x[i].imag(); },
+        [this](int i) __attribute__((always_inline)) { return complex.y[i].imag(); });
+  }
+
+  /// Factors both systems for a step of size h. Calls `keep_going` from time to time; returns false
+  /// if that did.
+  PENDCORE_INLINE bool factor(double h, const std::function<bool()>& keep_going) {
+    real.g = method.real / h;
+    real.h = h / method.real;
+    real.matrix = -real.h * (by_qd + real.h * by_q);
+    real.matrix.diagonal().array() += 1.0;
+    complex.g = {method.alpha / h, method.beta / h};
+    const double scale_of_h = h / (method.alpha * method.alpha + method.beta * method.beta);
+    complex.h = {method.alpha * scale_of_h, -method.beta * scale_of_h};
+    complex.matrix = -complex.h * by_qd - complex.h * complex.h * by_q;
+    complex.matrix.diagonal().array() += 1.0;
+    return real.factor(keep_going) && complex.factor(keep_going);
+  }
+
   /// Improves the stages by one iteration of Newton's, and returns the size of the improvement.
   PENDCORE_INLINE double improve() {
-    const int size = sizes.size;
-    double* const w = transformed.data();
-    double* const d = increment.data();
-    const double real = systems.real_g;
-    const Complex g = systems.complex_g;
-    for (int i = 0; i < sizes.state; i += width) {
-      const double* const f = rates.data() + i;
+    const double re = complex.g.real();
+    const double im = complex.g.imag();
+    for (int i = 0; i < state(); i += width) {
       Block rate[3];
 #pragma GCC unroll 3
-      for (int k = 0; k < 3; ++k) {
-        rate[k] = product(method.inverse[k], at(f, 0), at(f, size), at(f, 2 * size));
-      }
-      const Block re = at(w, size + i);
-      const Block im = at(w, 2 * size + i);
-      store(d + i, rate[0] - real * at(w, i));
-      store(d + size + i, rate[1] - (g.re * re - g.im * im));
-      store(d + 2 * size + i, rate[2] - (g.im * re + g.re * im));
+      for (int k = 0; k < 3; ++k) rate[k] = product(method.inverse[k], rates, i);
+      const Block w_re = at(transformed, 1, i);
+      const Block w_im = at(transformed, 2, i);
+      store(&increment(0, i), rate[0] - real.g * at(transformed, 0, i));
+      store(&increment(1, i), rate[1] - (re * w_re - im * w_im));
+      store(&increment(2, i), rate[2] - (im * w_re + re * w_im));
     }
-    systems.solve_real(sizes.n, d);
-    systems.solve_complex(sizes.n, d + size, d + 2 * size);
-    for (int i = 0; i < sizes.state; i += width) {
+    solve_real(&increment(0, 0));
+    solve_complex(&increment(1, 0), &increment(2, 0));
+    for (int i = 0; i < state(); i += width) {
       Block moved[3];
 #pragma GCC unroll 3
       for (int k = 0; k < 3; ++k) {
-        moved[k] = at(w, k * size + i) + at(d, k * size + i);
-        store(w + k * size + i, moved[k]);
+        moved[k] = at(transformed, k, i) + at(increment, k, i);
+        store(&transformed(k, i), moved[k]);
       }
 #pragma GCC unroll 3
       for (int k = 0; k < 3; ++k) {
         const Block stage = product(method.transformation[k], moved[0], moved[1], moved[2]);
-        store(&stages[k * size + i], stage);
-        if (k == 2) store(&y_new[i], at(y.data(), i) + stage);
+        store(&stages(k, i), stage);
+        if (k == 2) store(&y_new[i], at(y, i) + stage);
       }
     }
     set_scale();
-    return std::sqrt((squared_norm(d) + squared_norm(d + size) + squared_norm(d + 2 * size)) / 3.0);
+    return std::sqrt((squared_norm(&increment(0, 0)) + squared_norm(&increment(1, 0)) +
+                      squared_norm(&increment(2, 0))) /
+                     3.0);
   }
 
   /// Solves for the stages by Newton's iteration. Returns false if it does not converge.
@@ -260,37 +338,31 @@ struct CollocationStep {
   /// the transformation T costs. A rate that nothing changes, as in a held joint, keeps its last
   /// bit.
   PENDCORE_INLINE void polish(double h) {
-    const int n = sizes.n;
-    const int size = sizes.size;
-    for (int i = n; i < sizes.state; ++i) {
-      if (rates[i] != 0.0 || rates[size + i] != 0.0 || rates[2 * size + i] != 0.0) continue;
+    for (int i = n(); i < state(); ++i) {
+      if (rates(0, i) != 0.0 || rates(1, i) != 0.0 || rates(2, i) != 0.0) continue;
 #pragma GCC unroll 3
-      for (int k = 0; k < 3; ++k) stages[k * size + i] = 0.0;
+      for (int k = 0; k < 3; ++k) stages(k, i) = 0.0;
     }
 #pragma GCC unroll 3
     for (int k = 0; k < 3; ++k) {
       const auto angle = [&](int i) __attribute__((always_inline)) {
-        const double* const rate = &stages[n + i];
-        return h *
-               (method.c[k] * y[n + i] + product(method.a[k], rate[0], rate[size], rate[2 * size]));
+        const int rate = n() + i;
+        return h * (method.c[k] * y[rate] + product<double>(method.a[k], stages, rate));
       };
       const auto rate = [&](int i)
-                            __attribute__((always_inline)) { return stages[k * size + n + i]; };
-      Sizes::store_state(&stages[k * size], n, angle, rate);
+                            __attribute__((always_inline)) { return stages(k, n() + i); };
+      store_state(&stages(k, 0), angle, rate);
     }
   }
 
   /// Computes y + Z_3, with the rounding error if the method is compensated.
   PENDCORE_INLINE void advance() {
-    const double* const change = &stages[2 * sizes.size];
     if (!compensated) {
-      for (int i = 0; i < sizes.size; i += width) {
-        store(&y_new[i], at(y.data(), i) + at(change, i));
-      }
+      for (int i = 0; i < size(); i += width) store(&y_new[i], at(y, i) + at(stages, 2, i));
       return;
     }
-    for (int i = 0; i < sizes.size; ++i) {
-      const double whole = change[i] + low[i];
+    for (int i = 0; i < size(); ++i) {
+      const double whole = stages(2, i) + low[i];
       y_new[i] = y[i] + whole;
       low_new[i] = left_over(y[i], whole, y_new[i]);
     }
@@ -299,23 +371,19 @@ struct CollocationStep {
   /// Computes Z = h a P for the quadratures from their rates P at the stages that were found.
   /// Quadratures take no part in the iteration and in the error.
   PENDCORE_INLINE void integrate_quadratures(double t, double h) {
-    const int size = sizes.size;
     evaluate_stages(t, h);
-    for (int i = sizes.state; i < size; ++i) {
+    for (int i = state(); i < size(); ++i) {
 #pragma GCC unroll 3
-      for (int k = 0; k < 3; ++k) {
-        stages[k * size + i] =
-            h * product(method.a[k], rates[i], rates[size + i], rates[2 * size + i]);
-      }
+      for (int k = 0; k < 3; ++k) stages(k, i) = h * product<double>(method.a[k], rates, i);
     }
   }
 
   /// The square of the error that a rate at the start of the step shows.
   PENDCORE_INLINE double filtered(const double* rate, double h) {
-    for (int i = 0; i < sizes.state; i += width) {
-      store(&error[i], at(rate, i) - power_of_stages<Block>(0, i) / h);
+    for (int i = 0; i < state(); i += width) {
+      store(&error[i], load<Block>(rate + i) - power_of_stages(0, i) / h);
     }
-    systems.solve_real(sizes.n, error.data());
+    solve_real(error.data());
     return squared_norm(error.data());
   }
 
@@ -325,26 +393,17 @@ struct CollocationStep {
   /// slope that the motion does not have anywhere in the step.
   PENDCORE_INLINE void set_slope(double h) {
     bool all_are_exact = true;
-    for (int i = 0; i < sizes.size; ++i) {
+    for (int i = 0; i < size(); ++i) {
       const double of_stages = power_of_stages<double>(0, i);
       const double exact = h * dydt[i];
       double of_error = 0.0;
       bool is_exact = all_are_exact;
-      if (i < sizes.state) {
+      if (i < state()) {
         of_error = method.real * error[i];
         is_exact = std::abs(exact - of_stages) <= std::max(2.0 * std::abs(of_error), scale[i]);
         all_are_exact = all_are_exact && is_exact;
       }
       slope[i] = is_exact ? exact : of_stages + of_error;
-    }
-  }
-
-  PENDCORE_INLINE void write_polynomial(double* rows) const {
-#pragma GCC unroll 3
-    for (int p = 0; p < 3; ++p) {
-      for (int i = 0; i < sizes.size; i += width) {
-        store(rows + p * sizes.size + i, power_of_stages<Block>(p, i));
-      }
     }
   }
 };

@@ -12,17 +12,17 @@ namespace pendcore {
 namespace {
 
 /// Tries a step, as Stepper::attempt says.
-template <class Sizes>
-PENDCORE_INLINE Attempt attempt_collocation(CollocationStep<Sizes>* step, double t, double h,
+template <int links>
+PENDCORE_INLINE Attempt attempt_collocation(CollocationStep<links>* step, double t, double h,
                                             const std::function<bool()>* keep_going) {
-  CollocationStep<Sizes>& s = *step;
+  CollocationStep<links>& s = *step;
   if (!s.has_jacobian) {
-    s.system.jacobian(t, s.y.data(), s.systems.by_q.data(), s.systems.by_qd.data());
+    s.system.jacobian(t, s.y.data(), s.by_q, s.by_qd);
     s.has_jacobian = true;
   }
   s.h_tried = h;
   constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
-  if (!s.systems.factor(s.sizes.n, s.method, h, *keep_going)) return {{undefined, 0.0}};
+  if (!s.factor(h, *keep_going)) return {{undefined, 0.0}};
   s.predict(h);
   const bool converges = s.iterate(t, h);  // if a user's function throws here, nothing was tried
   const bool is_careful = s.is_retry || s.h_before == 0.0;
@@ -31,20 +31,20 @@ PENDCORE_INLINE Attempt attempt_collocation(CollocationStep<Sizes>* step, double
   s.is_retry = true;
   if (!converges) return {{undefined, 0.0}, !std::isfinite(s.squared_norm(s.y_new.data()))};
   s.polish(h);
-  if (s.sizes.size > s.sizes.state) s.integrate_quadratures(t, h);
+  if (s.size() > s.state()) s.integrate_quadratures(t, h);
   s.advance();
   s.set_scale();
   s.squared_error = s.filtered(s.dydt.data(), h);
   s.set_slope(h);
   if (is_careful && s.squared_error >= 1.0) {
     // The error is filtered once more: a fast transient that is damped away is not an error.
-    for (int i = 0; i < s.sizes.state; ++i) s.trial[i] = s.y[i] + s.error[i];
+    for (int i = 0; i < s.state(); ++i) s.trial(0, i) = s.y[i] + s.error[i];
     s.evaluate(t, s.trial.data(), s.rates.data());
     s.squared_error = s.filtered(s.rates.data(), h);
   }
 
   const double log2_error = 0.5 * approximate_log2(s.squared_error);
-  constexpr int usual = CollocationStep<Sizes>::usual_iterations;
+  constexpr int usual = CollocationStep<links>::usual_iterations;
   const double safety = 0.9 * (1 + 2 * usual) / (s.iterations + 2 * usual);
   double factor = approximate_exp2(approximate_log2(safety) - 0.25 * log2_error);
   if (s.h_before != 0.0) {
@@ -55,11 +55,14 @@ PENDCORE_INLINE Attempt attempt_collocation(CollocationStep<Sizes>* step, double
 }
 
 /// Accepts the attempted step.
-template <class Sizes>
-PENDCORE_INLINE void accept_collocation(CollocationStep<Sizes>* step, double t_new) {
+template <int links>
+PENDCORE_INLINE void accept_collocation(CollocationStep<links>* step, double t_new) {
   constexpr double log2_smallest_error = -6.643856189774724;  // log2(1e-2)
-  CollocationStep<Sizes>& s = *step;
-  s.write_polynomial(s.polynomial.data());
+  CollocationStep<links>& s = *step;
+#pragma GCC unroll 3
+  for (int p = 0; p < 3; ++p) {
+    for (int i = 0; i < s.size(); i += s.width) store(&s.polynomial(p, i), s.power_of_stages(p, i));
+  }
   s.h_before = s.h_tried;
   s.log2_error_before = std::max(0.5 * approximate_log2(s.squared_error), log2_smallest_error);
   s.contraction = s.contraction_of_attempt;
@@ -71,35 +74,34 @@ PENDCORE_INLINE void accept_collocation(CollocationStep<Sizes>* step, double t_n
 }
 
 /// The dense output of the attempted step, as Stepper::interpolant says.
-template <class Sizes>
-PENDCORE_INLINE void interpolant_of_collocation(const CollocationStep<Sizes>* step,
+template <int links>
+PENDCORE_INLINE void interpolant_of_collocation(const CollocationStep<links>* step,
                                                 double* coefficients) {
-  using Block = typename Sizes::Block;
-  const CollocationStep<Sizes>& s = *step;
-  const int size = s.sizes.size;
-  double* const rows = coefficients + size;
-  for (int i = 0; i < size; i += CollocationStep<Sizes>::width) {
-    store(coefficients + i, s.at(s.y.data(), i));
-    const Block own = s.at(s.slope.data(), i);
-    const Block change = own - s.template power_of_stages<Block>(0, i);
-    store(rows + i, own);
+  using Block = typename CollocationStep<links>::Block;
+  const CollocationStep<links>& s = *step;
+  const int size = s.size();
+  for (int i = 0; i < size; i += s.width) {
+    const Block own = s.at(s.slope, i);
+    const Block change = own - s.power_of_stages(0, i);
+    store(coefficients + i, s.at(s.y, i));
+    store(coefficients + size + i, own);
     for (int p = 1; p < Collocation::degree; ++p) {
-      const Block before = p < 3 ? s.template power_of_stages<Block>(p, i) : Block{};
-      store(rows + p * size + i, before + s.method.correction[p] * change);
+      const Block before = p < 3 ? s.power_of_stages(p, i) : Block{};
+      store(coefficients + (p + 1) * size + i, before + s.method.correction[p] * change);
     }
   }
 }
 
-template <class Sizes>
+template <int links>
 class ImplicitRungeKutta final : public Stepper {
  public:
   ImplicitRungeKutta(const Collocation& method, std::unique_ptr<DifferentiableSystem> system,
-                     const Sizes& sizes, bool compensated)
-      : system_(std::move(system)), step_(method, *system_, sizes, compensated, *this) {}
+                     bool compensated)
+      : system_(std::move(system)), step_(method, *system_, compensated, *this) {}
 
   const MethodInfo& info() const override { return step_.method.info; }
-  int dimension() const override { return step_.sizes.size; }
-  int controlled() const override { return step_.sizes.state; }
+  int dimension() const override { return step_.size(); }
+  int controlled() const override { return step_.state(); }
   int interpolant_degree() const override { return Collocation::degree; }
 
   void set_tolerances(const double* rtol, const double* atol) override {
@@ -115,11 +117,9 @@ class ImplicitRungeKutta final : public Stepper {
   }
 
   void start(const double* y, const double* dydt) override {
-    // The systems are allocated only here, because a pair of methods may never need them.
-    step_.systems.allocate(step_.sizes.n);
     drop_changed(y, step_.y.data(), low_size(), step_.low.data());
-    std::copy_n(y, dimension(), step_.y.begin());
-    std::copy_n(dydt, dimension(), step_.dydt.begin());
+    step_.y = View(y, dimension());
+    step_.dydt = View(dydt, dimension());
     step_.has_jacobian = false;
     step_.h_before = 0.0;
     step_.contraction = 1.0;
@@ -130,7 +130,7 @@ class ImplicitRungeKutta final : public Stepper {
   void get_new_state(double* y) const override { std::ranges::copy(step_.y_new, y); }
   void set_new_state(const double* y) override {
     drop_changed(y, step_.y_new.data(), low_size(), step_.low_new.data());
-    std::copy_n(y, dimension(), step_.y_new.begin());
+    step_.y_new = View(y, dimension());
   }
   void evaluate(double t, const double* y, double* dydt) override { step_.evaluate(t, y, dydt); }
 
@@ -143,8 +143,8 @@ class ImplicitRungeKutta final : public Stepper {
   void stay() override {
     step_.y_new = step_.y;
     step_.low_new = step_.low;
-    std::ranges::fill(step_.stages, 0.0);
-    std::ranges::fill(step_.slope, 0.0);
+    step_.stages.setZero();
+    step_.slope.setZero();
     step_.squared_error = 0.0;
   }
 
@@ -164,24 +164,24 @@ class ImplicitRungeKutta final : public Stepper {
   /// The low part of the state, if compensated. The polynomial, size and error of the accepted
   /// step, and the contraction of its iteration. Whether a step from here was tried already.
   StepperState saved_state() const override {
-    const CollocationStep<Sizes>& s = step_;
-    std::vector<double> memory(s.low.begin(), s.low.begin() + low_size());
-    memory.insert(memory.end(), s.polynomial.begin(), s.polynomial.end());
+    const CollocationStep<links>& s = step_;
+    std::vector<double> memory(s.low.data(), s.low.data() + low_size());
+    memory.insert(memory.end(), s.polynomial.data(), s.polynomial.data() + s.polynomial.size());
     memory.insert(memory.end(),
                   {s.h_before, s.log2_error_before, s.contraction, s.is_retry ? 1.0 : 0.0});
     return {.memory = std::move(memory)};
   }
   void restore(const StepperState& saved) override {
     const std::vector<double>& memory = saved.memory;
-    CollocationStep<Sizes>& s = step_;
-    if (memory.size() != s.polynomial.size() + 4 + low_size()) {
+    CollocationStep<links>& s = step_;
+    const Eigen::Index past = s.polynomial.size();
+    if (static_cast<Eigen::Index>(memory.size()) != low_size() + past + 4) {
       throw std::invalid_argument(
           "what the method kept of its last step does not belong to this scene");
     }
-    std::copy_n(memory.begin(), low_size(), s.low.begin());
-    const double* const past = memory.data() + low_size();
-    std::copy_n(past, s.polynomial.size(), s.polynomial.begin());
-    const double* const rest = past + s.polynomial.size();
+    s.low.head(low_size()) = View(memory.data(), low_size());
+    std::copy_n(memory.data() + low_size(), past, s.polynomial.data());
+    const double* const rest = memory.data() + low_size() + past;
     s.h_before = rest[0];
     s.log2_error_before = rest[1];
     s.contraction = rest[2];
@@ -192,37 +192,30 @@ class ImplicitRungeKutta final : public Stepper {
   int low_size() const { return step_.compensated ? dimension() : 0; }
 
   std::unique_ptr<DifferentiableSystem> system_;
-  CollocationStep<Sizes> step_;
+  CollocationStep<links> step_;
 
   static constexpr InstructionSet best = best_for(2);
-  Attempt (*attempt_)(CollocationStep<Sizes>*, double, double,
-                      const std::function<bool()>*) = fastest<&attempt_collocation<Sizes>, best>();
-  void (*accept_)(CollocationStep<Sizes>*, double) = fastest<&accept_collocation<Sizes>, best>();
-  void (*interpolant_)(const CollocationStep<Sizes>*,
-                       double*) = fastest<&interpolant_of_collocation<Sizes>, best>();
+  Attempt (*attempt_)(CollocationStep<links>*, double, double,
+                      const std::function<bool()>*) = fastest<&attempt_collocation<links>, best>();
+  void (*accept_)(CollocationStep<links>*, double) = fastest<&accept_collocation<links>, best>();
+  void (*interpolant_)(const CollocationStep<links>*,
+                       double*) = fastest<&interpolant_of_collocation<links>, best>();
 };
-
-template <class Sizes>
-std::unique_ptr<Stepper> made(const Collocation& method,
-                              std::unique_ptr<DifferentiableSystem> system, const Sizes& sizes,
-                              bool compensated) {
-  return std::make_unique<ImplicitRungeKutta<Sizes>>(method, std::move(system), sizes, compensated);
-}
 
 }  // namespace
 
 std::unique_ptr<Stepper> implicit_runge_kutta(const Collocation& method,
                                               std::unique_ptr<DifferentiableSystem> system,
                                               bool compensated) {
-  const int n = system->row;
-  const int quadratures = system->quadratures;
+  const int links = has_special_kernels_of_rare_runs && system->quadratures == 0 ? system->row : 0;
+  const auto made = [&]<int known>() -> std::unique_ptr<Stepper> {
+    return std::make_unique<ImplicitRungeKutta<known>>(method, std::move(system), compensated);
+  };
   if constexpr (has_special_kernels_of_rare_runs) {
-    if (n == 1 && quadratures == 0)
-      return made(method, std::move(system), SizesOf<1>{}, compensated);
-    if (n == 2 && quadratures == 0)
-      return made(method, std::move(system), SizesOf<2>{}, compensated);
+    if (links == 1) return made.template operator()<1>();
+    if (links == 2) return made.template operator()<2>();
   }
-  return made(method, std::move(system), SizesInMemory{n, 2 * n, 2 * n + quadratures}, compensated);
+  return made.template operator()<Eigen::Dynamic>();
 }
 
 }  // namespace pendcore
