@@ -6,86 +6,67 @@
 
 #include "arithmetic/floating_point_environment.hpp"
 #include "arithmetic/pack.hpp"
+#include "arithmetic/two_double.hpp"
 #include "dynamics/contact/held_joints.hpp"
 #include "dynamics/equations_of_motion.hpp"
 #include "dynamics/joint_forces.hpp"
+#include "integrate/horner.hpp"
 
 namespace pendcore {
 namespace {
 
-/// The dense output of one step, and the curve that its rates make.
-class Curve {
- public:
-  Curve(const Solution& solution, std::size_t step)
-      : n_(static_cast<std::size_t>(solution.n)),
-        degree_(solution.dense.degree),
-        row_(static_cast<std::size_t>(solution.dimension)),
-        h_(solution.dense.h[step]),
-        start_(solution.dense.start[step]),
-        start_low_(solution.dense.start_low[step]),
-        rows_(solution.dense.coefficients.data() + step * (degree_ + 1) * row_) {}
-
-  double h() const { return h_; }
-  double time(double theta) const { return start_ + fma(theta, h_, start_low_); }
-  /// The theta up to which the run used the step.
-  double end(double t_reached) const {
-    return std::min(1.0, ((t_reached - start_) - start_low_) / h_);
-  }
-  /// The angle by which the dense output has turned since the step began, rad.
-  double turned(std::size_t link, double theta) const { return theta * sum(link, theta, 0); }
-  double angle(std::size_t link, double theta) const { return rows_[link] + turned(link, theta); }
-  double rate(std::size_t link, double theta) const {
-    const double* const w = rows_ + n_ + link;
-    return *w + theta * sum(n_ + link, theta, 0);
-  }
-  /// d(qd)/dt
-  double slope(std::size_t link, double theta) const { return sum(n_ + link, theta, 1) / h_; }
-  /// The integral of the rate since the step began.
-  double integral(std::size_t link, double theta) const {
-    const double* const w = rows_ + n_ + link;
-    return theta * h_ * (*w + theta * sum(n_ + link, theta, -1));
-  }
-
- private:
-  /// The sum over p >= 1 of theta^(p-1) c_p, with a factor in each term: p for the derivative, 1
-  /// for the polynomial, 1/(p+1) for the integral.
-  double sum(std::size_t column, double theta, int derivatives) const {
-    double total = 0.0;
-    for (int p = degree_; p >= 1; --p) {
-      const double c = rows_[p * row_ + column];
-      total = total * theta + (derivatives > 0 ? p * c : derivatives < 0 ? c / (p + 1) : c);
-    }
-    return total;
-  }
-
-  std::size_t n_;
-  int degree_;
-  std::size_t row_;
-  double h_, start_, start_low_;
-  const double* rows_;
+/// A step at some theta, a row for each of them and a column for each link.
+struct StepAtTheta {
+  Matrix rates;   ///< qd
+  Matrix slopes;  ///< d(qd)/dt
+  Matrix turns;   ///< the integral of the rates since the step began
+  Matrix turned;  ///< by how much the angles of the dense output have turned since
+  Vector first;   ///< these angles where the step began
 };
+
+StepAtTheta step_at(const Solution& solution, std::size_t step, const Vector& theta) {
+  const Eigen::Index n = solution.n;
+  const int degree = solution.dense.degree;
+  const double h = solution.dense.h[step];
+  const Eigen::Index size = Eigen::Index{degree + 1} * solution.dimension;
+  const Eigen::Map<const Matrix> rows(
+      solution.dense.coefficients.data() + static_cast<Eigen::Index>(step) * size, degree + 1,
+      solution.dimension);
+  const auto of_angles = rows.leftCols(n);
+  const auto of_rates = rows.middleCols(n, n);
+  Matrix powers = Matrix::Ones(theta.size(), degree + 1);
+  for (Eigen::Index p = 1; p <= degree; ++p) {
+    powers.col(p) = powers.col(p - 1).cwiseProduct(theta);
+  }
+  const Vector number = Vector::LinSpaced(degree + 1, 1.0, 1.0 + degree);
+  return {.rates = powers * of_rates,
+          .slopes = powers.leftCols(degree) * number.head(degree).asDiagonal() *
+                    of_rates.bottomRows(degree) / h,
+          .turns = h * theta.asDiagonal() * powers * number.cwiseInverse().asDiagonal() * of_rates,
+          .turned = powers.rightCols(degree) * of_angles.bottomRows(degree),
+          .first = of_angles.row(0)};
+}
 
 /// The torques that are missing in the equations of motion.
 class Torques {
  public:
-  Torques(const Scene& scene, std::size_t n)
-      : equations_(equations_of_motion(scene)), forces_(scene), n_(n), qdd_(n) {}
+  explicit Torques(const Scene& scene)
+      : equations_(equations_of_motion(scene)), forces_(scene), qdd_(scene.links.size()) {}
 
   /// Chooses the modes in the middle of a step. They hold for the whole step, because steps end
   /// where a law changes.
-  void choose_modes(double t, const std::vector<double>& q, const std::vector<double>& qd) {
+  void choose_modes(double t, const Vector& q, const Vector& qd) {
     accelerations(equations_, t, q.data(), qd.data(), qdd_.data());
   }
   /// Raises `largest` to |tau_j| where that is larger.
-  void raise(double t, const std::vector<double>& q, const std::vector<double>& qd,
-             const std::vector<double>& slope, double* largest) {
+  void raise(double t, const Vector& q, const Vector& qd, const Vector& slope,
+             Eigen::Ref<Vector> largest) {
     accelerations_in_force(equations_, t, q.data(), qd.data(), qdd_.data());
     forces_.set_mass_matrix(q.data());
+    const Vector of_links = forces_.mass * (slope - qdd_);
     double torque = 0.0;
-    for (std::size_t j = n_; j-- > 0;) {
-      for (std::size_t i = 0; i < n_; ++i) {
-        torque += forces_.mass(j, i) * (slope[i] - qdd_[i]);
-      }
+    for (Eigen::Index j = of_links.size(); j-- > 0;) {
+      torque += of_links[j];
       const auto& held = equations_.held_joints;
       if (held && held->is_held(static_cast<int>(j))) continue;
       if (!(std::abs(torque) <= largest[j])) largest[j] = std::abs(torque);
@@ -95,8 +76,7 @@ class Torques {
  private:
   EquationsOfMotion equations_;
   JointForces forces_;
-  std::size_t n_;
-  std::vector<double> qdd_;
+  Vector qdd_;
 };
 
 }  // namespace
@@ -108,37 +88,37 @@ Defect defect(const Scene& scene, const Solution& solution, std::size_t first, s
     throw std::invalid_argument(
         "defect: this solution keeps no dense output: simulate with store=\"dense\"");
   }
-  const auto n = static_cast<std::size_t>(solution.n);
+  const Eigen::Index n = solution.n;
   const int grid = 4 * (solution.dense.degree + 1);
-  Torques torques(scene, n);
+  Torques torques(scene);
   Defect found{std::vector<double>((end - first) * n), std::vector<double>(end - first)};
-  std::vector<double> angles(n), rates(n), slopes(n);
   for (std::size_t step = first; step < end; ++step) {
-    const Curve curve(solution, step);
-    const double last = curve.end(solution.t_reached);
-    for (std::size_t i = 0; i < n; ++i) {
-      angles[i] = curve.angle(i, 0.5 * last);
-      rates[i] = curve.rate(i, 0.5 * last);
-    }
-    torques.choose_modes(curve.time(0.5 * last), angles, rates);
-    if (q.empty()) {
-      for (std::size_t i = 0; i < n; ++i) q.push_back(curve.angle(i, 0.0));
-    }
+    const double h = solution.dense.h[step];
+    const TwoDouble start{solution.dense.start[step], solution.dense.start_low[step]};
+    // The run may have used a part of its last step only.
+    const double last = std::min(1.0, theta_at(solution.t_reached, start, h));
+    // The points of the grid, and then the middle and the end.
+    Vector theta = last * Vector::LinSpaced(grid + 2, 0.5, grid + 1.5) / grid;
+    theta.tail<2>() << 0.5 * last, last;
+    const auto time = [&](Eigen::Index k) { return start.high + fma(theta[k], h, start.low); };
+    const StepAtTheta curve = step_at(solution, step, theta);
+    if (q.empty()) q.assign(curve.first.begin(), curve.first.end());
+    Eigen::Map<Vector> from(q.data(), n);
+
+    torques.choose_modes(time(grid), curve.first + curve.turned.row(grid).transpose(),
+                         curve.rates.row(grid));
+    const Eigen::Index row = static_cast<Eigen::Index>(step - first) * n;
+    Eigen::Map<Vector> largest(found.torque.data() + row, n);
     double& apart = found.apart[step - first];
-    for (int k = 0; k < grid; ++k) {
-      const double theta = last * (k + 0.5) / grid;
-      for (std::size_t i = 0; i < n; ++i) {
-        angles[i] = q[i] + curve.integral(i, theta);
-        rates[i] = curve.rate(i, theta);
-        slopes[i] = curve.slope(i, theta);
-        const double between =
-            (q[i] - curve.angle(i, 0.0)) + (curve.integral(i, theta) - curve.turned(i, theta));
-        if (!(std::abs(between) <= apart)) apart = std::abs(between);
+    for (Eigen::Index k = 0; k < grid; ++k) {
+      const Vector turn = curve.turns.row(k);
+      torques.raise(time(k), from + turn, curve.rates.row(k), curve.slopes.row(k), largest);
+      const Vector between = (from - curve.first) + (turn - curve.turned.row(k).transpose());
+      for (const double one : between) {
+        if (!(std::abs(one) <= apart)) apart = std::abs(one);  // NaN too
       }
-      torques.raise(curve.time(theta), angles, rates, slopes,
-                    found.torque.data() + (step - first) * n);
     }
-    for (std::size_t i = 0; i < n; ++i) q[i] += curve.integral(i, last);
+    from += curve.turns.row(grid + 1);
   }
   return found;
 }

@@ -21,79 +21,107 @@ namespace pendcore {
 
 namespace {
 
-/// An orthonormal basis of the small changes that locks allow, (2m, 2n) row-major, each row a
-/// change (dq, dqd): for each of the m groups of links that turn together, a change of its angles,
-/// and then for each a change of its rates. Links that are locked to the ground do not turn.
-std::vector<double> tangent_basis(const Scene& scene) {
+/// An orthonormal basis of the small changes that locks allow, (2m, 2n), each row a change (dq,
+/// dqd): for each of the m groups of links that turn together, a change of its angles, and then for
+/// each a change of its rates. Links that are locked to the ground do not turn.
+Matrix tangent_basis(const Scene& scene) {
   const int n = static_cast<int>(scene.links.size());
   const std::vector<bool> locked = locked_joints(scene);
-  std::vector<double> basis;
-  for (const int part : {0, n}) {
-    for (int first = 0; first < n;) {
-      int end = first + 1;
-      while (end < n && locked[end]) ++end;
-      if (!locked[first]) {
-        const std::size_t row = basis.size();
-        basis.resize(row + 2 * static_cast<std::size_t>(n));
-        for (int i = first; i < end; ++i) basis[row + part + i] = 1.0 / std::sqrt(end - first);
-      }
-      first = end;
-    }
+  Matrix turns = Matrix::Zero(n, n);
+  Eigen::Index groups = 0;
+  for (int first = 0; first < n;) {
+    int end = first + 1;
+    while (end < n && locked[end]) ++end;
+    const int count = end - first;
+    if (!locked[first]) turns.row(groups++).segment(first, count).fill(1.0 / std::sqrt(count));
+    first = end;
   }
+  Matrix basis = Matrix::Zero(2 * groups, 2 * n);
+  basis.topLeftCorner(groups, n) = basis.bottomRightCorner(groups, n) = turns.topRows(groups);
   return basis;
 }
 
-/// Makes the rows of `vectors`, (k, size) row-major, orthonormal by the Gram-Schmidt process,
-/// applied twice so that it is exact to rounding. The rows of `alike` go through the same linear
-/// combinations. `length` (k) becomes the diagonal of R: the length of each row without its
-/// components along the rows before.
-void orthonormalise(int k, int size, double* vectors, double* alike, double* length) {
-  auto dot = [size](const double* a, const double* b) {
-    double sum = 0.0;
-    for (int i = 0; i < size; ++i) sum += a[i] * b[i];
-    return sum;
-  };
-  for (int j = 0; j < k; ++j) {
-    double* const v = vectors + j * size;
-    double* const w = alike + j * size;
+/// Makes the rows of `vectors` orthonormal by the Gram-Schmidt process, applied twice so that it is
+/// exact to rounding. The rows of `alike` go through the same linear combinations. Returns the
+/// diagonal of R: the length of each row without its components along those before. It is positive,
+/// which that of Eigen's HouseholderQR is not. The changes belong to the trajectory: each sum runs
+/// from the first number to the last, as Eigen's do without packets (DefaultTraversal in Redux.h).
+Vector orthonormalise(Matrix& vectors, Matrix& alike) {
+  Vector lengths(vectors.rows());
+  for (Eigen::Index j = 0; j < vectors.rows(); ++j) {
+    auto v = vectors.row(j);
+    auto w = alike.row(j);
     for (int pass = 0; pass < 2; ++pass) {
-      for (int before = 0; before < j; ++before) {
-        const double along = dot(v, vectors + before * size);
-        for (int i = 0; i < size; ++i) {
-          v[i] -= along * vectors[before * size + i];
-          w[i] -= along * alike[before * size + i];
-        }
+      for (Eigen::Index before = 0; before < j; ++before) {
+        const double along = v.dot(vectors.row(before));
+        v -= along * vectors.row(before);
+        w -= along * alike.row(before);
       }
     }
-    length[j] = std::sqrt(dot(v, v));
-    for (int i = 0; i < size; ++i) {
-      v[i] /= length[j];
-      w[i] /= length[j];
-    }
+    lengths[j] = v.norm();
+    v /= lengths[j];
+    w /= lengths[j];
   }
+  return lengths;
+}
+
+/// The rows (q, dq_1 .. dq_k) and (qd, dqd_1 .. dqd_k) of a state of tangent_stepper.hpp.
+class RowsOfTangents {
+ public:
+  RowsOfTangents(int links, int count) : n(links), k(count) {}
+
+  Eigen::Index dimension() const { return 2 * half(); }
+  Vector motion(const Vector& y) const {
+    Vector both(2 * n);
+    both << y.head(n), y.segment(half(), n);
+    return both;
+  }
+  template <class Angles, class Rates>
+  void set_motion(const Angles& q, const Rates& qd, Vector& y) const {
+    y.head(n) = q;
+    y.segment(half(), n) = qd;
+  }
+  /// The changes (dq, dqd), (k, 2n).
+  Matrix changes(const Vector& y) const {
+    Matrix both(k, 2 * n);
+    both << Rows(y.data() + n, k, n), Rows(y.data() + half() + n, k, n);
+    return both;
+  }
+  void set_changes(const Matrix& changes, Vector& y) const {
+    Eigen::Map<Matrix>(y.data() + n, k, n) = changes.leftCols(n);
+    Eigen::Map<Matrix>(y.data() + half() + n, k, n) = changes.rightCols(n);
+  }
+
+  const Eigen::Index n, k;
+
+ private:
+  using Rows = Eigen::Map<const Matrix>;
+  Eigen::Index half() const { return n * (1 + k); }
+};
+
+Vector logarithms(const Vector& lengths) {
+  return lengths.unaryExpr([](double length) { return logarithm(length); });
 }
 
 /// Sums up the growth, and records it at the times asked for.
 class GrowthRecorder final : public Observer {
  public:
-  GrowthRecorder(Stepper& stepper, int n, const std::vector<double>& times, TangentGrowth& result)
+  GrowthRecorder(Stepper& stepper, const RowsOfTangents& rows, const std::vector<double>& times,
+                 TangentGrowth& result)
       : stepper_(stepper),
-        n_(n),
-        k_(result.count),
+        rows_(rows),
         times_(times),
         result_(result),
-        sums_(k_),
-        lengths_(k_),
-        state_(stepper.dimension()),
-        rate_(stepper.dimension()),
-        changes_(static_cast<std::size_t>(k_) * 2 * n),
-        slopes_(changes_.size()) {}
+        sums_(Vector::Zero(rows.k)),
+        state_(rows.dimension()),
+        rate_(rows.dimension()) {}
 
   void start(double t, const std::vector<double>& y) {
-    if (next_ < times_.size() && times_[next_] == t) keep(t, y);
+    state_ = View(y.data(), state_.size());
+    if (next_ < times_.size() && times_[next_] == t) keep(t);
   }
   StepEnd step_accepted(StepOutput& step, const TwoDouble& t_old, double h, double t_new) override {
-    has_polynomial_ = false;
+    polynomial_.clear();
     was_stepped_ = true;
     while (next_ < times_.size() && (times_[next_] - t_new) * h <= 0.0) {
       const double t = times_[next_];
@@ -102,7 +130,7 @@ class GrowthRecorder final : public Observer {
       } else {
         interpolate(step, t_old, h, t);
       }
-      keep(t, state_);
+      keep(t);
     }
     return {};
   }
@@ -117,59 +145,37 @@ class GrowthRecorder final : public Observer {
     was_stepped_ = false;
     stepper_.get_state(state_.data());
     stepper_.get_derivative(rate_.data());
-    gather(state_, changes_);
-    gather(rate_, slopes_);
+    Matrix changes = rows_.changes(state_);
     // The derivatives of the changes are linear in the changes, so nothing needs to be evaluated
     // again.
-    orthonormalise(k_, 2 * n_, changes_.data(), slopes_.data(), lengths_.data());
+    Matrix slopes = rows_.changes(rate_);
+    const Vector lengths = orthonormalise(changes, slopes);
     const auto is_near_one = [](double length) { return 1.0 / far < length && length < far; };
-    if (std::ranges::all_of(lengths_, is_near_one)) return;
-    for (int i = 0; i < k_; ++i) sums_[i] += logarithm(lengths_[i]);
-    scatter(changes_, state_);
-    scatter(slopes_, rate_);
+    if (std::ranges::all_of(lengths, is_near_one)) return;
+    sums_ += logarithms(lengths);
+    rows_.set_changes(changes, state_);
+    rows_.set_changes(slopes, rate_);
     stepper_.start(state_.data(), rate_.data());
   }
 
  private:
   void interpolate(StepOutput& step, const TwoDouble& t_old, double h, double t) {
-    if (!has_polynomial_) {
+    if (polynomial_.empty()) {
       polynomial_.resize(static_cast<std::size_t>(step.interpolant_degree() + 1) *
                          step.dimension());
       step.finite_interpolant(h, polynomial_, step.dimension());
-      has_polynomial_ = true;
     }
     step.sample(polynomial_.data(), t_old, h, &t, 1, state_.data());
   }
-  void keep(double t, const std::vector<double>& y) {
-    gather(y, changes_);
-    slopes_ = changes_;
-    orthonormalise(k_, 2 * n_, changes_.data(), slopes_.data(), lengths_.data());
+  void keep(double t) {
+    Matrix changes = rows_.changes(state_);
+    Matrix unused = changes;
+    const Vector growth = sums_ + logarithms(orthonormalise(changes, unused));
+    const Vector motion = rows_.motion(state_);
     result_.t.push_back(t);
-    for (int i = 0; i < k_; ++i) result_.growth.push_back(sums_[i] + logarithm(lengths_[i]));
-    const auto q = y.begin();
-    const auto qd = q + half();
-    result_.states.insert(result_.states.end(), q, q + n_);
-    result_.states.insert(result_.states.end(), qd, qd + n_);
+    result_.growth.insert(result_.growth.end(), growth.begin(), growth.end());
+    result_.states.insert(result_.states.end(), motion.begin(), motion.end());
     ++next_;
-  }
-  std::ptrdiff_t half() const { return static_cast<std::ptrdiff_t>(n_) * (1 + k_); }
-  /// gather() copies the changes from the two halves of a state to rows (dq, dqd); scatter() copies
-  /// them back.
-  void gather(const std::vector<double>& y, std::vector<double>& rows) const {
-    for (int i = 0; i < k_; ++i) {
-      const auto dq = y.begin() + static_cast<std::ptrdiff_t>(i + 1) * n_;
-      const auto row = rows.begin() + static_cast<std::ptrdiff_t>(i) * 2 * n_;
-      std::copy_n(dq, n_, row);
-      std::copy_n(dq + half(), n_, row + n_);
-    }
-  }
-  void scatter(const std::vector<double>& rows, std::vector<double>& y) const {
-    for (int i = 0; i < k_; ++i) {
-      const auto dq = y.begin() + static_cast<std::ptrdiff_t>(i + 1) * n_;
-      const auto row = rows.begin() + static_cast<std::ptrdiff_t>(i) * 2 * n_;
-      std::copy_n(row, n_, dq);
-      std::copy_n(row + n_, n_, dq + half());
-    }
   }
 
   /// As long as R_ii are within [1/far, far], the changes stay as they are: then a series that ends
@@ -177,17 +183,14 @@ class GrowthRecorder final : public Observer {
   static constexpr double far = 16.0;
 
   Stepper& stepper_;
-  int n_;
-  int k_;
+  const RowsOfTangents& rows_;
   const std::vector<double>& times_;
   TangentGrowth& result_;
   std::size_t next_ = 0;
   bool was_stepped_ = false;
-  bool has_polynomial_ = false;
-  std::vector<double> sums_, lengths_;
-  std::vector<double> state_, rate_;
-  std::vector<double> changes_, slopes_;
-  std::vector<double> polynomial_;
+  Vector sums_;
+  Vector state_, rate_;
+  std::vector<double> polynomial_;  ///< of the last step; empty until it is needed
 };
 
 /// The options of the run, checked like the options of a simulation.
@@ -215,9 +218,7 @@ void check_has_exponents(const Scene& scene) {
   }
 }
 
-int lyapunov_count(const Scene& scene) {
-  return static_cast<int>(tangent_basis(scene).size() / (2 * scene.links.size()));
-}
+int lyapunov_count(const Scene& scene) { return static_cast<int>(tangent_basis(scene).rows()); }
 
 namespace {
 
@@ -241,9 +242,9 @@ TangentGrowth lyapunov(const Scene& scene, const Numbers& q0, const Numbers& qd0
   check(scene);
   check_start(scene, q0.span(), qd0.span(), t0, t_end);
   check_has_exponents(scene);
-  const std::vector<double> basis = tangent_basis(scene);
+  const Matrix basis = tangent_basis(scene);
   const int n = static_cast<int>(scene.links.size());
-  const int all = static_cast<int>(basis.size()) / (2 * n);
+  const int all = static_cast<int>(basis.rows());
   const long long wanted = options.count.value_or(all);
   if (wanted > all || (options.count && wanted < 1)) {
     throw std::invalid_argument(
@@ -256,32 +257,25 @@ TangentGrowth lyapunov(const Scene& scene, const Numbers& q0, const Numbers& qd0
 
   TangentGrowth result;
   result.count = static_cast<int>(wanted);
-  const int numbers = n * (1 + result.count);
+  const RowsOfTangents rows(n, result.count);
   const std::unique_ptr<Stepper> made = tangent_stepper(scene, result.count, t_end, !(t_end < t0));
   Stepper& stepper = *made;
 
   IntegratorState integrator;
   integrator.t = {t0, 0.0};
-  integrator.y.resize(2 * static_cast<std::size_t>(numbers));
+  Vector y(rows.dimension());
+  rows.set_motion(q0, qd0, y);
+  rows.set_changes(basis.topRows(rows.k), y);
+  integrator.y.assign(y.begin(), y.end());
   integrator.dydt.resize(integrator.y.size());
   const double rtol = relative_tolerances(run, n)[0];
-  const std::vector<double> relative(integrator.y.size(), rtol);
-  std::vector<double> absolute(integrator.y.size(), rtol);
-  const double atol = absolute_tolerances(run, n)[0];
-  for (int i = 0; i < n; ++i) {
-    integrator.y[i] = q0[i];
-    integrator.y[numbers + i] = qd0[i];
-    absolute[i] = absolute[numbers + i] = atol;
-  }
-  for (int change = 0; change < result.count; ++change) {
-    for (int i = 0; i < n; ++i) {
-      integrator.y[(change + 1) * n + i] = basis[change * 2 * n + i];
-      integrator.y[numbers + (change + 1) * n + i] = basis[change * 2 * n + n + i];
-    }
-  }
+  const Vector relative = Vector::Constant(y.size(), rtol);
+  const Vector of_motion = Vector::Constant(n, absolute_tolerances(run, n)[0]);
+  Vector absolute = relative;
+  rows.set_motion(of_motion, of_motion, absolute);
   stepper.set_tolerances(relative.data(), absolute.data());
 
-  GrowthRecorder recorder(stepper, n, times, result);
+  GrowthRecorder recorder(stepper, rows, times, result);
   const Limits limits{.t_end = t_end,
                       .max_step = options.max_step,
                       .max_steps = options.max_steps,

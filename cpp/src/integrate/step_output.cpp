@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "integrate/horner.hpp"
+
 namespace pendcore {
 
 void StepOutput::straighten(double* coefficients) {
@@ -27,6 +29,13 @@ void StepOutput::straighten(double* coefficients) {
     coefficients[size + i] = y_new[i] - y[i];
     for (std::ptrdiff_t p = 2; p <= degree; ++p) coefficients[p * size + i] = 0.0;
   }
+}
+
+void StepOutput::sample(const double* coefficients, const TwoDouble& start, double h,
+                        const double* times, int count, double* states) const {
+  static const auto sample_on_this_processor = fastest<&sample_rows>();
+  sample_on_this_processor(coefficients, start, h, times, count, states, dimension(),
+                           interpolant_degree());
 }
 
 }  // namespace pendcore

@@ -48,11 +48,10 @@ template <int links>
 struct CollocationStep {
   static constexpr bool is_fixed = links != Eigen::Dynamic;
   static constexpr int numbers = is_fixed ? 2 * links : Eigen::Dynamic;
-  using Block = std::conditional_t<is_fixed, Pack<is_fixed ? numbers : 2>, double>;
+  using Block = BlockOfState<links>;
   static constexpr int width = Lanes<Block>::width;
   using Row = Eigen::Matrix<double, numbers, 1>;
   using Rows = Eigen::Matrix<double, 3, numbers, Eigen::RowMajor>;
-  using Square = typename NewtonSystem<double, links>::template Square<double>;
 
   static constexpr int most_iterations = 20;  // a fixed step may be long
   static constexpr int usual_iterations = 7;  // more than these make the next step shorter
@@ -67,12 +66,10 @@ struct CollocationStep {
   Rows stages, transformed, rates, increment;
   Rows trial;  ///< states for which rates are wanted: mostly those of the stages
   Row error;
-  Row slope;  ///< h u'(t) of the dense output
-  Row scale;  ///< what the tolerances allow at y and y_new
+  Row slope;         ///< h u'(t) of the dense output
+  Row scale;         ///< what the tolerances allow at y and y_new
   Row low, low_new;  ///< the rounding errors of y and y_new, if compensated
-  Square by_q, by_qd;  ///< A and B
-  NewtonSystem<double, links> real;
-  NewtonSystem<Complex, links> complex;
+  NewtonSystems<links> systems;
   bool has_jacobian = false;
   int iterations = 0;  ///< iterations of the last attempt
   double h_tried = 0.0;
@@ -92,10 +89,7 @@ struct CollocationStep {
         system(rates_of),
         counts(stepper),
         compensated(carries_rounding),
-        by_q(rates_of.row, rates_of.row),
-        by_qd(rates_of.row, rates_of.row),
-        real(rates_of.row),
-        complex(rates_of.row) {
+        systems(rates_of.row) {
     const int count = 2 * rates_of.row + rates_of.quadratures;
     for (auto* row : {&rtol, &atol, &y, &dydt, &y_new, &error, &slope, &scale, &low, &low_new}) {
       row->setZero(count);
@@ -123,31 +117,13 @@ struct CollocationStep {
   /// The same times the three rows at i.
   template <class Number = Block>
   PENDCORE_INLINE static Number product(const Collocation::Row& row, const Rows& of, int i) {
-    return product(row, load<Number>(&of(0, i)), load<Number>(&of(1, i)),
-                   load<Number>(&of(2, i)));
+    return product(row, load<Number>(&of(0, i)), load<Number>(&of(1, i)), load<Number>(&of(2, i)));
   }
   /// The coefficient of theta^(p + 1) of u, through the stages.
   template <class Number = Block>
   PENDCORE_INLINE Number power_of_stages(int p, int i) const {
     return product<Number>(method.interpolant[p], stages, i);
   }
-  /// Stores what angle(i) and rate(i) are for each link, as a pack (pack.hpp says why).
-  template <class Angle, class Rate>
-  PENDCORE_INLINE void store_state(double* to, const Angle& angle, const Rate& rate) const {
-    if constexpr (is_fixed) {
-      Block both;
-#pragma GCC unroll 2
-      for (int i = 0; i < links; ++i) {
-        set_lane(both, i, angle(i));
-        set_lane(both, links + i, rate(i));
-      }
-      store(to, both);
-    } else {
-      for (int i = 0; i < n(); ++i) to[i] = angle(i);
-      for (int i = 0; i < n(); ++i) to[n() + i] = rate(i);
-    }
-  }
-
   PENDCORE_INLINE void evaluate(double t, const double* state, double* rate) {
     system(t, state, rate);
     ++counts.evaluations;
@@ -176,12 +152,9 @@ struct CollocationStep {
 #pragma GCC unroll 3
     for (int k = 0; k < 3; ++k) {
       const double x = h_before == 0.0 ? 0.0 : method.c[k] * (h / h_before);
-      const double square = x * (2.0 + x);
-      const double cube = x * (3.0 + x * (3.0 + x));
+      const Collocation::Row powers = {x, x * (2.0 + x), x * (3.0 + x * (3.0 + x))};
       for (int i = 0; i < state(); i += width) {
-        const Block predicted =
-            x * at(polynomial, 0, i) + square * at(polynomial, 1, i) + cube * at(polynomial, 2, i);
-        store(&stages(k, i), h_before == 0.0 ? Block{} : predicted);
+        store(&stages(k, i), h_before == 0.0 ? Block{} : product(powers, polynomial, i));
       }
     }
 #pragma GCC unroll 3
@@ -221,66 +194,22 @@ struct CollocationStep {
     counts.evaluations += 3;
   }
 
-  /// Replaces (r, s) by the solution of the real system.
-  PENDCORE_INLINE void solve_real(double* sides) {
-    const int count = n();
-#pragma GCC unroll 2
-    for (int i = 0; i < count; ++i) {
-      real.x[i] = sides[i];
-      real.y[i] = sides[count + i];
-    }
-    real.solve(by_q);
-    store_state(
-        sides, [this](int i) __attribute__((always_inline)) { return real.x[i]; },
-        [this](int i) __attribute__((always_inline)) { return real.y[i]; });
-  }
-  PENDCORE_INLINE void solve_complex(double* re, double* im) {
-    const int count = n();
-#pragma GCC unroll 2
-    for (int i = 0; i < count; ++i) {
-      complex.x[i] = {re[i], im[i]};
-      complex.y[i] = {re[count + i], im[count + i]};
-    }
-    complex.solve(by_q);
-    store_state(
-        re, [this](int i) __attribute__((always_inline)) { return complex.x[i].real(); },
-        [this](int i) __attribute__((always_inline)) { return complex.y[i].real(); });
-    store_state(
-        im, [this](int i) __attribute__((always_inline)) { return complex.x[i].imag(); },
-        [this](int i) __attribute__((always_inline)) { return complex.y[i].imag(); });
-  }
-
-  /// Factors both systems for a step of size h. Calls `keep_going` from time to time; returns false
-  /// if that did.
-  PENDCORE_INLINE bool factor(double h, const std::function<bool()>& keep_going) {
-    real.g = method.real / h;
-    real.h = h / method.real;
-    real.matrix = -real.h * (by_qd + real.h * by_q);
-    real.matrix.diagonal().array() += 1.0;
-    complex.g = {method.alpha / h, method.beta / h};
-    const double scale_of_h = h / (method.alpha * method.alpha + method.beta * method.beta);
-    complex.h = {method.alpha * scale_of_h, -method.beta * scale_of_h};
-    complex.matrix = -complex.h * by_qd - complex.h * complex.h * by_q;
-    complex.matrix.diagonal().array() += 1.0;
-    return real.factor(keep_going) && complex.factor(keep_going);
-  }
-
   /// Improves the stages by one iteration of Newton's, and returns the size of the improvement.
   PENDCORE_INLINE double improve() {
-    const double re = complex.g.real();
-    const double im = complex.g.imag();
+    const double re = systems.complex.g.real();
+    const double im = systems.complex.g.imag();
     for (int i = 0; i < state(); i += width) {
       Block rate[3];
 #pragma GCC unroll 3
       for (int k = 0; k < 3; ++k) rate[k] = product(method.inverse[k], rates, i);
       const Block w_re = at(transformed, 1, i);
       const Block w_im = at(transformed, 2, i);
-      store(&increment(0, i), rate[0] - real.g * at(transformed, 0, i));
+      store(&increment(0, i), rate[0] - systems.real.g * at(transformed, 0, i));
       store(&increment(1, i), rate[1] - (re * w_re - im * w_im));
       store(&increment(2, i), rate[2] - (im * w_re + re * w_im));
     }
-    solve_real(&increment(0, 0));
-    solve_complex(&increment(1, 0), &increment(2, 0));
+    systems.solve_real(&increment(0, 0));
+    systems.solve_complex(&increment(1, 0), &increment(2, 0));
     for (int i = 0; i < state(); i += width) {
       Block moved[3];
 #pragma GCC unroll 3
@@ -345,13 +274,13 @@ struct CollocationStep {
     }
 #pragma GCC unroll 3
     for (int k = 0; k < 3; ++k) {
-      const auto angle = [&](int i) __attribute__((always_inline)) {
-        const int rate = n() + i;
+      const auto angle = [&](Eigen::Index i) {
+        const int rate = n() + static_cast<int>(i);
         return h * (method.c[k] * y[rate] + product<double>(method.a[k], stages, rate));
       };
-      const auto rate = [&](int i)
-                            __attribute__((always_inline)) { return stages(k, n() + i); };
-      store_state(&stages(k, 0), angle, rate);
+      store_state<links>(&stages(k, 0), n(),
+                         Eigen::Matrix<double, links, 1>::NullaryExpr(n(), angle),
+                         stages.row(k).segment(n(), n()));
     }
   }
 
@@ -383,7 +312,7 @@ struct CollocationStep {
     for (int i = 0; i < state(); i += width) {
       store(&error[i], load<Block>(rate + i) - power_of_stages(0, i) / h);
     }
-    solve_real(error.data());
+    systems.solve_real(error.data());
     return squared_norm(error.data());
   }
 

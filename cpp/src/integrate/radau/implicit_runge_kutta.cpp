@@ -4,7 +4,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include "integrate/horner.hpp"
 #include "integrate/radau/collocation_step.hpp"
 #include "integrate/runge_kutta/compensation.hpp"
 
@@ -17,12 +16,12 @@ PENDCORE_INLINE Attempt attempt_collocation(CollocationStep<links>* step, double
                                             const std::function<bool()>* keep_going) {
   CollocationStep<links>& s = *step;
   if (!s.has_jacobian) {
-    s.system.jacobian(t, s.y.data(), s.by_q, s.by_qd);
+    s.system.jacobian(t, s.y.data(), s.systems.by_q, s.systems.by_qd);
     s.has_jacobian = true;
   }
   s.h_tried = h;
   constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
-  if (!s.factor(h, *keep_going)) return {{undefined, 0.0}};
+  if (!s.systems.factor(s.method, h, *keep_going)) return {{undefined, 0.0}};
   s.predict(h);
   const bool converges = s.iterate(t, h);  // if a user's function throws here, nothing was tried
   const bool is_careful = s.is_retry || s.h_before == 0.0;
@@ -152,12 +151,6 @@ class ImplicitRungeKutta final : public Stepper {
 
   void interpolant(double /*h*/, double* coefficients) override {
     interpolant_(&step_, coefficients);
-  }
-  void sample(const double* coefficients, const TwoDouble& start, double h, const double* times,
-              int count, double* states) const override {
-    static const auto sample_on_this_processor = fastest<&sample_rows>();
-    sample_on_this_processor(coefficients, start, h, times, count, states, dimension(),
-                             Collocation::degree);
   }
   double stiffness(double /*h*/) override { return 0.0; }  // stability limits no step
 
