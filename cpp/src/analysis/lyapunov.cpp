@@ -81,11 +81,10 @@ class RowsOfTangents {
     y.head(n) = q;
     y.segment(half(), n) = qd;
   }
-  /// The changes (dq, dqd), (k, 2n).
-  Matrix changes(const Vector& y) const {
-    Matrix both(k, 2 * n);
-    both << Rows(y.data() + n, k, n), Rows(y.data() + half() + n, k, n);
-    return both;
+  /// Copies the changes (dq, dqd), (k, 2n), from a state, and back.
+  void get_changes(const Vector& y, Matrix& changes) const {
+    changes.leftCols(n) = Eigen::Map<const Matrix>(y.data() + n, k, n);
+    changes.rightCols(n) = Eigen::Map<const Matrix>(y.data() + half() + n, k, n);
   }
   void set_changes(const Matrix& changes, Vector& y) const {
     Eigen::Map<Matrix>(y.data() + n, k, n) = changes.leftCols(n);
@@ -95,7 +94,6 @@ class RowsOfTangents {
   const Eigen::Index n, k;
 
  private:
-  using Rows = Eigen::Map<const Matrix>;
   Eigen::Index half() const { return n * (1 + k); }
 };
 
@@ -114,7 +112,9 @@ class GrowthRecorder final : public Observer {
         result_(result),
         sums_(Vector::Zero(rows.k)),
         state_(rows.dimension()),
-        rate_(rows.dimension()) {}
+        rate_(rows.dimension()),
+        changes_(rows.k, 2 * rows.n),
+        slopes_(changes_) {}
 
   void start(double t, const std::vector<double>& y) {
     state_ = View(y.data(), state_.size());
@@ -145,16 +145,16 @@ class GrowthRecorder final : public Observer {
     was_stepped_ = false;
     stepper_.get_state(state_.data());
     stepper_.get_derivative(rate_.data());
-    Matrix changes = rows_.changes(state_);
+    rows_.get_changes(state_, changes_);
+    rows_.get_changes(rate_, slopes_);
     // The derivatives of the changes are linear in the changes, so nothing needs to be evaluated
     // again.
-    Matrix slopes = rows_.changes(rate_);
-    const Vector lengths = orthonormalise(changes, slopes);
+    const Vector lengths = orthonormalise(changes_, slopes_);
     const auto is_near_one = [](double length) { return 1.0 / far < length && length < far; };
     if (std::ranges::all_of(lengths, is_near_one)) return;
     sums_ += logarithms(lengths);
-    rows_.set_changes(changes, state_);
-    rows_.set_changes(slopes, rate_);
+    rows_.set_changes(changes_, state_);
+    rows_.set_changes(slopes_, rate_);
     stepper_.start(state_.data(), rate_.data());
   }
 
@@ -168,9 +168,9 @@ class GrowthRecorder final : public Observer {
     step.sample(polynomial_.data(), t_old, h, &t, 1, state_.data());
   }
   void keep(double t) {
-    Matrix changes = rows_.changes(state_);
-    Matrix unused = changes;
-    const Vector growth = sums_ + logarithms(orthonormalise(changes, unused));
+    rows_.get_changes(state_, changes_);
+    slopes_ = changes_;
+    const Vector growth = sums_ + logarithms(orthonormalise(changes_, slopes_));
     const Vector motion = rows_.motion(state_);
     result_.t.push_back(t);
     result_.growth.insert(result_.growth.end(), growth.begin(), growth.end());
@@ -190,6 +190,7 @@ class GrowthRecorder final : public Observer {
   bool was_stepped_ = false;
   Vector sums_;
   Vector state_, rate_;
+  Matrix changes_, slopes_;
   std::vector<double> polynomial_;  ///< of the last step; empty until it is needed
 };
 

@@ -59,6 +59,7 @@ struct CollocationStep {
   const Collocation& method;
   const DifferentiableSystem& system;
   Stepper& counts;  ///< what has been computed so far is counted there
+  int angles;       ///< numbers in q
   bool compensated;
 
   double newton_tolerance = 0.0;
@@ -88,6 +89,7 @@ struct CollocationStep {
       : method(one),
         system(rates_of),
         counts(stepper),
+        angles(rates_of.row),
         compensated(carries_rounding),
         systems(rates_of.row) {
     const int count = 2 * rates_of.row + rates_of.quadratures;
@@ -99,8 +101,9 @@ struct CollocationStep {
     }
   }
 
-  /// The numbers in q, in q and qd, and in these and the quadratures.
-  PENDCORE_INLINE int n() const { return is_fixed ? links : system.row; }
+  /// The numbers in q, in q and qd, and in these and the quadratures. Hot loops keep them in a
+  /// variable: for all the compiler knows, the store of a pack may change any member.
+  PENDCORE_INLINE int n() const { return is_fixed ? links : angles; }
   PENDCORE_INLINE int state() const { return 2 * n(); }
   PENDCORE_INLINE int size() const { return static_cast<int>(y.size()); }
 
@@ -130,20 +133,22 @@ struct CollocationStep {
   }
 
   PENDCORE_INLINE void set_scale() {
-    for (int i = 0; i < state(); i += width) {
+    const int count = state();
+    for (int i = 0; i < count; i += width) {
       const Block largest = larger(absolute(at(y_new, i)), absolute(at(y, i)));
       // 1e-300 avoids 0/0.
       store(&scale[i], at(atol, i) + at(rtol, i) * largest + 1e-300);
     }
   }
   PENDCORE_INLINE double squared_norm(const double* row) const {
+    const int count = state();
     double sum = 0.0;
-    for (int i = 0; i < state(); i += width) {
+    for (int i = 0; i < count; i += width) {
       const Block ratio = load<Block>(row + i) / at(scale, i);
       const Block square = ratio * ratio;
       for (int k = 0; k < width; ++k) sum += lane(square, k);
     }
-    return sum / state();
+    return sum / count;
   }
 
   /// Predicts the stages by continuing the polynomial of the step before: Z_i = u(1 + x) - u(1), x
@@ -182,11 +187,12 @@ struct CollocationStep {
 
   /// Evaluates the right-hand side at the three stages.
   PENDCORE_INLINE void evaluate_stages(double t, double h) {
+    const int count = state();
     double times[3];
 #pragma GCC unroll 3
     for (int k = 0; k < 3; ++k) {
       times[k] = t + method.c[k] * h;
-      for (int i = 0; i < state(); i += width) {
+      for (int i = 0; i < count; i += width) {
         store(&trial(k, i), at(y, i) + at(stages, k, i));
       }
     }
@@ -196,9 +202,10 @@ struct CollocationStep {
 
   /// Improves the stages by one iteration of Newton's, and returns the size of the improvement.
   PENDCORE_INLINE double improve() {
+    const int count = state();
     const double re = systems.complex.g.real();
     const double im = systems.complex.g.imag();
-    for (int i = 0; i < state(); i += width) {
+    for (int i = 0; i < count; i += width) {
       Block rate[3];
 #pragma GCC unroll 3
       for (int k = 0; k < 3; ++k) rate[k] = product(method.inverse[k], rates, i);
@@ -210,7 +217,7 @@ struct CollocationStep {
     }
     systems.solve_real(&increment(0, 0));
     systems.solve_complex(&increment(1, 0), &increment(2, 0));
-    for (int i = 0; i < state(); i += width) {
+    for (int i = 0; i < count; i += width) {
       Block moved[3];
 #pragma GCC unroll 3
       for (int k = 0; k < 3; ++k) {
