@@ -13,17 +13,14 @@
 namespace pendcore {
 namespace {
 
-/// The data of one step: rows of blocks.
+/// The data of one step: rows of blocks, `stages` of them for k.
 struct StepInMemory {
   const GeneralSystem* system;
-  int stages;
-  int size;        ///< of the state, filled up to whole blocks
-  int error_size;  ///< of its part in the error norm
-  double count;    ///< numbers in that part
-  Matrix k = Matrix::Zero(stages, size);
-  Vector y = Vector::Zero(size), y_new = y, rtol = y;
-  Vector atol = Vector::Ones(size);  ///< also in places without a component
-  Vector low = y, low_new = y;       ///< rounding errors of y and y_new, if compensated
+  int blocks;        ///< blocks of the state
+  int error_blocks;  ///< blocks of its part in the error norm
+  double count;      ///< numbers in that part
+  double *y, *y_new, *k, *rtol, *atol;
+  double *low, *low_new;  ///< rounding errors of y and y_new, if compensated
 };
 
 /// One block of the stages k, rows of `size` numbers.
@@ -36,68 +33,67 @@ struct StageInMemory {
 
 /// Stages first .. end - 1, as in step.hpp.
 template <const auto& method, class Block, int first, int end>
-PENDCORE_INLINE void stages_in_memory(StepInMemory* memory, double t, double h, double* z) {
+PENDCORE_INLINE void stages_in_memory(const StepInMemory* memory, double t, double h, double* z) {
   constexpr int width = Lanes<Block>::width;
-  const int size = memory->size;
-  const double* const y = memory->y.data();
-  double* const k = memory->k.data();
-  const auto block = [=](int at) { return StageInMemory<Block>{k + at, size}; };
+  const int size = memory->blocks * width;
+  const auto block = [=](int at) { return StageInMemory<Block>{memory->k + at, size}; };
   if constexpr (method.written_out) {
 #pragma GCC unroll 16
     for (int s = first; s < end; ++s) {
       for (int at = 0; at < size; at += width) {
-        store(z + at, advance(load<Block>(y + at), h, method.a[s], block(at), s));
+        store(z + at, advance(load<Block>(memory->y + at), h, method.a[s], block(at), s));
       }
-      (*memory->system)(t + method.c[s].value * h, z, k + s * size);
+      (*memory->system)(t + method.c[s].value * h, z, memory->k + s * size);
     }
   } else {
     static constexpr auto rows = rows_of(method);
 #pragma GCC unroll 1
     for (int s = first; s < end; ++s) {
       for (int at = 0; at < size; at += width) {
-        store(z + at, advance(load<Block>(y + at), h, rows[s], block(at)));
+        store(z + at, advance(load<Block>(memory->y + at), h, rows[s], block(at)));
       }
-      (*memory->system)(t + rows[s].node * h, z, k + s * size);
+      (*memory->system)(t + rows[s].node * h, z, memory->k + s * size);
     }
   }
 }
 
 template <const auto& method, class Block, bool compensated>
-PENDCORE_INLINE Attempt attempt_in_memory(StepInMemory* memory, double t, double h, double gain) {
+PENDCORE_INLINE Attempt attempt_in_memory(const StepInMemory* memory, double t, double h,
+                                          double gain) {
   constexpr int width = Lanes<Block>::width;
   constexpr int stages = std::remove_cvref_t<decltype(method)>::stages;
-  const int size = memory->size;
-  const double* const y = memory->y.data();
-  double* const z = memory->y_new.data();
-  double* const k = memory->k.data();
+  const int blocks = memory->blocks;
+  const int size = blocks * width;
+  double* const z = memory->y_new;
+  double* const k = memory->k;
   constexpr int before_end = stages - (compensated && method.first_same_as_last ? 1 : 0);
   stages_in_memory<method, Block, 1, before_end>(memory, t, h, z);
   if constexpr (compensated) {
     for (int at = 0; at < size; at += width) {
       Block after;
       store(z + at,
-            advance_compensated(load<Block>(y + at), load<Block>(&memory->low[at]), h, method.b,
-                                StageInMemory<Block>{k + at, size}, before_end, after));
-      store(&memory->low_new[at], after);
+            advance_compensated(load<Block>(memory->y + at), load<Block>(memory->low + at), h,
+                                method.b, StageInMemory<Block>{k + at, size}, before_end, after));
+      store(memory->low_new + at, after);
     }
     if constexpr (method.first_same_as_last) {
       (*memory->system)(t + h, z, k + static_cast<std::ptrdiff_t>(stages - 1) * size);
     }
   } else if constexpr (!method.first_same_as_last) {
     for (int at = 0; at < size; at += width) {
-      store(z + at,
-            advance(load<Block>(y + at), h, method.b, StageInMemory<Block>{k + at, size}, stages));
+      store(z + at, advance(load<Block>(memory->y + at), h, method.b,
+                            StageInMemory<Block>{k + at, size}, stages));
     }
   }
   SquaredErrors<method, double, Block> squares;
-  const double* const rtol = memory->rtol.data();
-  const double* const atol = memory->atol.data();
-  for (int at = 0; at < memory->error_size; at += width) {
-    const Block before = load<Block>(y + at);
+  for (int i = 0; i < memory->error_blocks; ++i) {
+    const int at = i * width;
+    const Block before = load<Block>(memory->y + at);
     const Block after = load<Block>(z + at);
     const Block larger_one = larger(absolute(before), absolute(after));
-    const Block scale = h / fma(load<Block>(rtol + at), larger_one, load<Block>(atol + at));
-    squares.add(after, scale, StageInMemory<Block>{k + at, size}, at == 0);
+    const Block scale =
+        h / fma(load<Block>(memory->rtol + at), larger_one, load<Block>(memory->atol + at));
+    squares.add(after, scale, StageInMemory<Block>{k + at, size}, i == 0);
   }
   const double squared_error = squares.mean(1.0 / memory->count);
   return {{squared_error, scaled_power(squared_error, -0.5 * exponent(method.info), gain)}};
@@ -106,7 +102,8 @@ PENDCORE_INLINE Attempt attempt_in_memory(StepInMemory* memory, double t, double
 /// Computes the stages of the attempted step, from time t, that only the dense output needs; `z` is
 /// memory for a state.
 template <const auto& method, class Block>
-PENDCORE_INLINE void dense_stages_in_memory(StepInMemory* memory, double t, double h, double* z) {
+PENDCORE_INLINE void dense_stages_in_memory(const StepInMemory* memory, double t, double h,
+                                            double* z) {
   using Method = std::remove_cvref_t<decltype(method)>;
   if constexpr (Method::all_stages > Method::stages) {
     stages_in_memory<method, Block, Method::stages, Method::all_stages>(memory, t, h, z);
@@ -118,13 +115,11 @@ PENDCORE_INLINE void interpolant_in_memory(const StepInMemory* memory, double h,
                                            double* coefficients) {
   using Method = std::remove_cvref_t<decltype(method)>;
   constexpr int width = Lanes<Block>::width;
-  const int size = memory->size;
-  const double* const y = memory->y.data();
-  const double* const k = memory->k.data();
+  const int size = memory->blocks * width;
   for (int at = 0; at < size; at += width) {
-    store(coefficients + at, load<Block>(y + at));
+    store(coefficients + at, load<Block>(memory->y + at));
     Block powers[Method::degree];
-    interpolant_of_block<method>(h, StageInMemory<Block>{k + at, size}, powers);
+    interpolant_of_block<method>(h, StageInMemory<Block>{memory->k + at, size}, powers);
 #pragma GCC unroll 16
     for (int p = 0; p < Method::degree; ++p) {
       store(coefficients + (p + 1) * size + at, powers[p]);
@@ -142,6 +137,7 @@ class RungeKuttaInMemory final : public Stepper {
   static constexpr int stages = Method::stages;
   static constexpr int all_stages = Method::all_stages;
   static constexpr int degree = Method::degree;
+  static constexpr int rows = 4 + all_stages + 2;
   static_assert(degree <= 15, "as root.hpp has it");
 
  public:
@@ -150,12 +146,22 @@ class RungeKuttaInMemory final : public Stepper {
         compensated_(compensated),
         n_(n),
         row_(system_->row),
-        memory_{.system = system_.get(),
-                .stages = all_stages,
-                .size = 2 * row_ + (system_->quadratures + width - 1) / width * width,
-                .error_size = 2 * row_,
-                .count = 2.0 * n},
-        rows_(degree + 1, memory_.size) {}
+        size_(2 * row_ + (system_->quadratures + width - 1) / width * width),
+        numbers_(static_cast<std::size_t>(size_) * (rows + degree + 1)) {
+    memory_.system = system_.get();
+    memory_.blocks = size_ / width;
+    memory_.error_blocks = 2 * row_ / width;
+    memory_.count = 2.0 * n;
+    memory_.y = numbers_.data();
+    memory_.y_new = memory_.y + size_;
+    memory_.rtol = memory_.y_new + size_;
+    memory_.atol = memory_.rtol + size_;
+    memory_.k = memory_.atol + size_;
+    memory_.low = memory_.k + static_cast<std::ptrdiff_t>(all_stages) * size_;
+    memory_.low_new = memory_.low + size_;
+    rows_ = numbers_.data() + static_cast<std::ptrdiff_t>(rows) * size_;
+    for (int i = 0; i < size_; ++i) memory_.atol[i] = 1.0;  // places without a component
+  }
 
   const MethodInfo& info() const override { return method.info; }
   int dimension() const override { return 2 * n_ + system_->quadratures; }
@@ -163,21 +169,25 @@ class RungeKuttaInMemory final : public Stepper {
   int interpolant_degree() const override { return degree; }
 
   void set_tolerances(const double* rtol, const double* atol) override {
-    read_rows(rtol, memory_.rtol.data());
-    read_rows(atol, memory_.atol.data());
+    read_rows(rtol, memory_.rtol);
+    read_rows(atol, memory_.atol);
   }
   void start(const double* y, const double* dydt) override {
-    set_state(y, memory_.y, memory_.low);
-    read(dydt, memory_.k.data());
+    if (compensated_) drop_low_parts(y, memory_.y, memory_.low);
+    read(y, memory_.y);
+    read(dydt, memory_.k);
   }
-  void get_state(double* y) const override { write(memory_.y.data(), y); }
-  void get_derivative(double* dydt) const override { write(memory_.k.data(), dydt); }
-  void get_new_state(double* y) const override { write(memory_.y_new.data(), y); }
-  void set_new_state(const double* y) override { set_state(y, memory_.y_new, memory_.low_new); }
+  void get_state(double* y) const override { write(memory_.y, y); }
+  void get_derivative(double* dydt) const override { write(memory_.k, dydt); }
+  void get_new_state(double* y) const override { write(memory_.y_new, y); }
+  void set_new_state(const double* y) override {
+    if (compensated_) drop_low_parts(y, memory_.y_new, memory_.low_new);
+    read(y, memory_.y_new);
+  }
 
   void evaluate(double t, const double* y, double* dydt) override {
-    Vector state = Vector::Zero(memory_.size);
-    Vector rate = state;
+    std::vector<double> state(size_);
+    std::vector<double> rate(size_);
     read(y, state.data());
     (*system_)(t, state.data(), rate.data());
     write(rate.data(), dydt);
@@ -190,62 +200,64 @@ class RungeKuttaInMemory final : public Stepper {
     return attempt_(&memory_, t.high, h, gain);
   }
   void stay() override {
-    memory_.y_new = memory_.y;
-    memory_.low_new = memory_.low;
-    memory_.k.setZero();
+    const std::size_t bytes = size_ * sizeof(double);
+    __builtin_memcpy(memory_.y_new, memory_.y, bytes);
+    if (compensated_) __builtin_memcpy(memory_.low_new, memory_.low, bytes);
+    std::fill_n(memory_.k, static_cast<std::ptrdiff_t>(all_stages) * size_, 0.0);
     has_dense_stages_ = true;
   }
   void accept(double t_new) override {
-    memory_.y = memory_.y_new;
-    if (compensated_) memory_.low = memory_.low_new;
+    const std::size_t bytes = size_ * sizeof(double);
+    __builtin_memcpy(memory_.y, memory_.y_new, bytes);
+    if (compensated_) __builtin_memcpy(memory_.low, memory_.low_new, bytes);
     if constexpr (method.first_same_as_last) {
-      memory_.k.row(0) = memory_.k.row(stages - 1);
+      __builtin_memcpy(memory_.k, memory_.k + static_cast<std::ptrdiff_t>(stages - 1) * size_,
+                       bytes);
     } else {
-      (*system_)(t_new, memory_.y.data(), memory_.k.data());
+      (*system_)(t_new, memory_.y, memory_.k);
       ++evaluations;
     }
   }
   void interpolant(double h, double* coefficients) override {
     if (!has_dense_stages_) {
       evaluations += all_stages - stages;
-      dense_stages_(&memory_, t_, h, rows_.data());
+      dense_stages_(&memory_, t_, h, rows_);
       has_dense_stages_ = true;
     }
-    interpolant_(&memory_, h, rows_.data());
-    for (int p = 0; p <= degree; ++p) write(&rows_(p, 0), coefficients + p * dimension());
+    interpolant_(&memory_, h, rows_);
+    for (int p = 0; p <= degree; ++p) write(rows_ + p * size_, coefficients + p * dimension());
   }
   StepperState saved_state() const override {
     std::vector<double> low;
     if (compensated_) {
       low.resize(dimension());
-      write(memory_.low.data(), low.data());
+      write(memory_.low, low.data());
     }
     return {.memory = std::move(low)};
   }
   void restore(const StepperState& saved) override {
     if (compensated_) {
-      if (has_low_part(saved.memory, dimension())) read(saved.memory.data(), memory_.low.data());
+      if (has_low_part(saved.memory, dimension())) read(saved.memory.data(), memory_.low);
     }
   }
   double stiffness(double h) override {
     if constexpr (method.info.stability == 0.0) {
       return 0.0;
     } else {
-      return stiffness_of_step<method>(h, memory_.error_size / width, [this](int i) {
+      return stiffness_of_step<method>(h, memory_.error_blocks, [this](int i) {
         const int at = i * width;
-        return std::tuple(load<Block>(&memory_.y[at]), load<Block>(&memory_.y_new[at]),
-                          StageInMemory<Block>{memory_.k.data() + at, memory_.size});
+        return std::tuple(load<Block>(memory_.y + at), load<Block>(memory_.y_new + at),
+                          StageInMemory<Block>{memory_.k + at, size_});
       });
     }
   }
 
  private:
-  void set_state(const double* y, Vector& state, Vector& low) const {
-    const Vector before = state;
-    read(y, state.data());
-    if (compensated_) drop_changed(state.data(), before.data(), memory_.size, low.data());
+  void drop_low_parts(const double* y, const double* before, double* low) const {
+    drop_changed(y, before, n_, low);
+    drop_changed(y + n_, before + row_, n_, low + row_);
+    drop_changed(y + 2 * n_, before + 2 * row_, system_->quadratures, low + 2 * row_);
   }
-  // Rows are short: a call of memmove for each costs a twentieth of a step with dense output.
   void read_rows(const double* from, double* to) const {
     for (int i = 0; i < n_; ++i) {
       to[i] = from[i];
@@ -268,15 +280,17 @@ class RungeKuttaInMemory final : public Stepper {
   bool compensated_;
   int n_;
   int row_;
+  int size_;
+  std::vector<double> numbers_;
+  double* rows_;  ///< the rows of an interpolant
   StepInMemory memory_;
-  Matrix rows_;     ///< of an interpolant
   double t_ = 0.0;  ///< the time of the attempt
   bool has_dense_stages_ = false;
-  Attempt (*attempt_)(StepInMemory*, double, double,
+  Attempt (*attempt_)(const StepInMemory*, double, double,
                       double) = compensated_
                                     ? fastest<&attempt_in_memory<method, Block, true>, best>()
                                     : fastest<&attempt_in_memory<method, Block, false>, best>();
-  void (*dense_stages_)(StepInMemory*, double, double,
+  void (*dense_stages_)(const StepInMemory*, double, double,
                         double*) = fastest<&dense_stages_in_memory<method, Block>, best>();
   void (*interpolant_)(const StepInMemory*, double,
                        double*) = fastest<&interpolant_in_memory<method, Block>, best>();
