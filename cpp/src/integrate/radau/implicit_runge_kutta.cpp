@@ -67,8 +67,8 @@ PENDCORE_INLINE void accept_collocation(CollocationStep<links>* step, double t_n
   s.contraction = s.contraction_of_attempt;
   s.is_retry = false;
   s.has_jacobian = false;
-  s.y = s.y_new;
-  s.low = s.low_new;
+  for (int i = 0; i < s.size(); i += s.width) store(&s.y[i], s.at(s.y_new, i));
+  if (s.compensated) s.low = s.low_new;
   s.evaluate(t_new, s.y.data(), s.dydt.data());
 }
 
