@@ -15,7 +15,7 @@ struct RowAt {
 
   V q, qd, s, c, L;  // packs first, so that no padding parts them
   Time t;
-  Time pivot_vx, pivot_vy;
+  Time pivot_vx{}, pivot_vy{};  ///< m/s
 
   PENDCORE_INLINE V phi() const { return q - before(q); }
   PENDCORE_INLINE V phid() const { return qd - before(qd); }
@@ -24,7 +24,19 @@ struct RowAt {
   PENDCORE_INLINE V vy() const { return Constants<V>::of(pivot_vy) + before(L * qd * c); }
 };
 
-/// The same for three and four links in lanes: the velocities of their joints are sums over all
+/// Adds to `pull`, what gravity gives each link alone, what the motion of the pivot gives it:
+/// a (xdd_0 sin q - ydd_0 cos q)/A, with moment = a/A.
+template <class Effects, class V, class Time>
+PENDCORE_INLINE void add_pivot(const Effects& effects, const V& moment, RowAt<V, Time>& at,
+                               V& pull) {
+  if (effects.pivots.empty()) return;
+  Time x, y;
+  effects.pivot_acceleration(at.t, x, y);
+  pull = fma(moment, Constants<V>::of(x) * at.s - Constants<V>::of(y) * at.c, pull);
+  if (effects.has_forces) effects.pivot_velocity(at.t, at.pivot_vx, at.pivot_vy);
+}
+
+/// What laws see of three and four links in lanes: the velocities of their joints are sums over all
 /// links before.
 template <class V, class Time>
 struct RowOfLinksAt {

@@ -30,6 +30,18 @@ inline std::vector<int> kinds_of(const EquationsOfMotion& equations) {
   return kinds;
 }
 
+/// Calls use<Form>() with the first of these forms that a trajectory has. Returns whether there is
+/// one.
+template <template <class> class Form, template <class> class... Others, class Use>
+bool with_first_form(const Scene& scene, const EquationsOfMotion& equations, const Use& use) {
+  if (Form<Pack<4>>::has(scene, equations)) {
+    use.template operator()<Form>();
+    return true;
+  }
+  if constexpr (sizeof...(Others) > 0) return with_first_form<Others...>(scene, equations, use);
+  return false;
+}
+
 /// The effects of one trajectory, which are compiled for rows of this type.
 template <class RowOfRun>
 const ActingEffects<RowOfRun>& effects_on(const EquationsOfMotion& equations) {

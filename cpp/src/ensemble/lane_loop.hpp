@@ -27,7 +27,8 @@ constexpr int few_lanes = width / 2;
 /// Steps between two looks at whether to go on: a fraction of a millisecond.
 inline constexpr int rounds_at_once = 256;
 
-/// What is run in lanes: a scene, whose members may differ from it, with its equations.
+/// Lanes run members of this scene. A member may have other parameters; the equations are those of
+/// the scene itself.
 struct LaneTask {
   const Scene& scene;
   std::shared_ptr<const EquationsOfMotion> equations;

@@ -105,23 +105,12 @@ std::unique_ptr<LaneRunner> runge_kutta_lanes(std::string_view method, const Lan
   return std::make_unique<RungeKuttaRunner<dormand_prince_8, Form, set>>(task);
 }
 
-/// Calls use<Form>() with the first form that the equations have; returns whether they have one.
 template <class Use>
 bool with_form(const Scene& scene, const EquationsOfMotion& equations, const Use& use) {
-  const auto try_form = [&]<template <class> class Form>() {
-    if (!Form<Pack<4>>::has(scene, equations)) return false;
-    use.template operator()<Form>();
-    return true;
-  };
-  return try_form.template operator()<OneLinkWithCouples>() ||
-         try_form.template operator()<OneLinkWithEverything>() ||
-         try_form.template operator()<TwoBareLinksInLanes>() ||
-         try_form.template operator()<TwoLinksWithCouples>() ||
-         try_form.template operator()<TwoLinksWithWaves>() ||
-         try_form.template operator()<TwoLinksWithLaws>() ||
-         try_form.template operator()<TwoLinksWithEverything>() ||
-         try_form.template operator()<ThreeLinksInLanes>() ||
-         try_form.template operator()<FourLinksInLanes>();
+  return with_first_form<OneLinkWithCouples, OneLinkWithEverything, TwoBareLinksInLanes,
+                         TwoLinksWithCouples, TwoLinksWithWaves, TwoLinksWithLaws,
+                         TwoLinksWithEverything, ThreeLinksInLanes, FourLinksInLanes>(
+      scene, equations, use);
 }
 
 template <InstructionSet set>

@@ -106,22 +106,17 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
                            int) = only<&take_series_steps<Form, width>, set>();
 };
 
-/// The lanes of the first of these forms that the equations have; null if they have none.
-template <InstructionSet set, template <class> class Form, template <class> class... Others>
-std::unique_ptr<LaneRunner> first_of(const LaneTask& task) {
-  if (Form<Pack<width_on(set)>>::has(task.scene, *task.equations)) {
-    return std::make_unique<SeriesRunner<Form, set>>(task);
-  }
-  if constexpr (sizeof...(Others) > 0) return first_of<set, Others...>(task);
-  return nullptr;
-}
-
 }  // namespace
 
 template <InstructionSet set>
 std::unique_ptr<LaneRunner> make_series_lanes(const LaneTask& task) {
-  return first_of<set, BareDoublePendulumSeries, LoadedDoublePendulumSeries, ThreeLinksSeries,
-                  FourLinksSeries, ChainOfTwo, LongerChain>(task);
+  std::unique_ptr<LaneRunner> runner;
+  with_first_form<BareDoublePendulumSeries, LoadedDoublePendulumSeries, ThreeLinksSeries,
+                  FourLinksSeries, ChainOfTwo, LongerChain>(
+      task.scene, *task.equations, [&]<template <class> class Form>() {
+        runner = std::make_unique<SeriesRunner<Form, set>>(task);
+      });
+  return runner;
 }
 
 template std::unique_ptr<LaneRunner> make_series_lanes<InstructionSet::x86_64_v3>(const LaneTask&);

@@ -11,7 +11,7 @@
 
 namespace pendcore {
 
-/// What is known of the order in which stops were struck.
+/// A run knows this of the order in which joints struck their stops.
 struct ImpactOrder {
   /// s, the time at which impacts first came so close together that their order is not known; NaN
   /// if it always was.

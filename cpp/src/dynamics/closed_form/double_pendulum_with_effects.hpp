@@ -75,14 +75,7 @@ struct LoadedDoublePendulum {
     }
     const Between<V> between(s, c);
     V pull = Constant::of(weight) * c;
-    RowAt<V, Time> at{.q = q,
-                      .qd = qd,
-                      .s = s,
-                      .c = c,
-                      .L = Constant::of(length),
-                      .t = t,
-                      .pivot_vx = {},
-                      .pivot_vy = {}};
+    RowAt<V, Time> at{.q = q, .qd = qd, .s = s, .c = c, .L = Constant::of(length), .t = t};
     RowLoads<V> loads{.couples = couples->torque(at)};
     if constexpr (everything) add_everything(at, loads, pull);
     if constexpr (parts == Parts::laws) {
@@ -145,12 +138,7 @@ struct LoadedDoublePendulum {
       set_number(torque, one.joint, Number(one.gain * effects->wave_sine[one.wave]));
       loads.couple(Constant::of(torque));
     }
-    if (!effects->pivots.empty()) {
-      Number x, y;
-      effects->pivot_acceleration(at.t, x, y);
-      pull = fma(Constant::of(moment), Constant::of(x) * at.s - Constant::of(y) * at.c, pull);
-      if (effects->has_forces) effects->pivot_velocity(at.t, at.pivot_vx, at.pivot_vy);
-    }
+    add_pivot(*effects, Constant::of(moment), at, pull);
     if (!effects->entries.empty()) Effects::add_all(effects, &at, &loads);
     if constexpr (Lanes<V>::width == 2) {
       if (!effects->users.empty()) loads.generalised(of_users(*effects, at.t, at.q, at.qd));

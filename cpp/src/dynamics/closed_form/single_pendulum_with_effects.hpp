@@ -51,14 +51,7 @@ struct LoadedSinglePendulum {
     }
     V pull = Constant::of(weight) * c;
     if (!effects->are_any()) return pull;
-    RowAt<V, Number> at{.q = q,
-                        .qd = qd,
-                        .s = s,
-                        .c = c,
-                        .L = Constant::of(length),
-                        .t = t,
-                        .pivot_vx = {},
-                        .pivot_vy = {}};
+    RowAt<V, Number> at{.q = q, .qd = qd, .s = s, .c = c, .L = Constant::of(length), .t = t};
     RowLoads<V> loads;
     if (!effects->couples.empty()) loads.couple(effects->couples.front().torque(at));
     if constexpr (!couples_alone) {
@@ -73,12 +66,7 @@ struct LoadedSinglePendulum {
   template <class V>
   PENDCORE_INLINE void add_more(RowAt<V, Number>& at, RowLoads<V>& loads, V& pull) const {
     using Constant = Constants<V>;
-    if (!effects->pivots.empty()) {
-      Number x, y;
-      effects->pivot_acceleration(at.t, x, y);
-      pull = fma(Constant::of(moment), Constant::of(x) * at.s - Constant::of(y) * at.c, pull);
-      if (effects->has_forces) effects->pivot_velocity(at.t, at.pivot_vx, at.pivot_vy);
-    }
+    add_pivot(*effects, Constant::of(moment), at, pull);
     for (const auto& one : effects->joint_waves) {
       loads.couple(Constant::of(Number(one.gain * effects->wave_sine[one.wave])));
     }
