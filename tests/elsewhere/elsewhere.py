@@ -44,6 +44,7 @@ CATCH = (
     "a low part is restored, and*",
     "events that are out of range are refused*",
     "an exception in a callable*",
+    "a number that is left out and*",
 )
 """Test cases that catch an exception, which WebAssembly gives to JavaScript instead."""
 
