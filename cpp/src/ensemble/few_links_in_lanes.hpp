@@ -17,7 +17,7 @@ template <class Real, int n>
 struct FewLinksInLanes {
   using Links = EachLink<Real, n>;
   using Effects = EffectsInLanes<Links, Real>;
-  /// These equations are so long that a step loops over its stages around one copy of them.
+  static constexpr bool is_called = n > 3;
   static constexpr bool is_long = true;
 
   static bool has(const Scene& scene, const EquationsOfMotion& equations) {

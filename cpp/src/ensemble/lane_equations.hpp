@@ -6,8 +6,12 @@
 ///
 ///     has(scene, equations)      whether a trajectory has this form; another one of the same
 ///                                kind (kinds_of) has it, too
-///     prepare(scene, equations)  makes room for trajectories like this one
+///     prepare(scene, equations)  makes room for trajectories like this one; the form stays where it
+///                                is from then on
 ///     put(lane, scene, equations)  puts the constants of a trajectory into a lane
+///
+/// and those of Runge-Kutta methods `is_called`: whether a step calls them (CalledEquations); if
+/// not, they are written into it.
 #pragma once
 
 #include <memory>
@@ -52,7 +56,7 @@ const ActingEffects<RowOfRun>& effects_on(const EquationsOfMotion& equations) {
 template <class Real, bool couples_alone>
 struct OneLinkInLanes
     : LoadedSinglePendulum<EffectsInLanes<EachLink<Real, 1>, Real>, couples_alone> {
-  OneLinkInLanes() { this->effects = &in_lanes; }
+  static constexpr bool is_called = !couples_alone;
 
   static bool has(const Scene& /*scene*/, const EquationsOfMotion& equations) {
     if (std::holds_alternative<SinglePendulum>(equations.form)) return couples_alone;
@@ -62,6 +66,7 @@ struct OneLinkInLanes
            EffectsInLanes<EachLink<Real, 1>, Real>::has(effects);
   }
   void prepare(const Scene& /*scene*/, const EquationsOfMotion& one) {
+    this->effects = &in_lanes;
     if (one.effects) in_lanes.prepare(effects_on<double>(one), 1);
   }
   void put(int lane, const Scene& /*scene*/, const EquationsOfMotion& one) {
@@ -85,6 +90,8 @@ using OneLinkWithEverything = OneLinkInLanes<Real, false>;
 /// Two links without effects.
 template <class Real>
 struct TwoBareLinksInLanes : DoublePendulumEquations<Two<Real>, Real> {
+  static constexpr bool is_called = false;
+
   static bool has(const Scene& /*scene*/, const EquationsOfMotion& equations) {
     return std::holds_alternative<DoublePendulum>(equations.form);
   }
@@ -98,13 +105,14 @@ struct TwoBareLinksInLanes : DoublePendulumEquations<Two<Real>, Real> {
 /// up to a fifth longer: its loops over waves and laws part the registers of the equations.
 template <class Real, Parts parts>
 struct TwoLinksInLanes : LoadedDoublePendulum<EffectsInLanes<Two<Real>, Real>, parts> {
-  TwoLinksInLanes() { this->effects = &in_lanes; }
+  static constexpr bool is_called = parts != Parts::couples;
 
   static bool has(const Scene& /*scene*/, const EquationsOfMotion& equations) {
     return std::holds_alternative<OfRun>(equations.form) && equations.are_steady() &&
            EffectsInLanes<Two<Real>, Real>::has(effects_on<Pair>(equations));
   }
   void prepare(const Scene& /*scene*/, const EquationsOfMotion& one) {
+    this->effects = &in_lanes;
     in_lanes.prepare(effects_on<Pair>(one), 2);
     this->couples = in_lanes.couples.empty() ? &no_couples : in_lanes.couples.data();
   }

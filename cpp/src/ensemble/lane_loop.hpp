@@ -257,7 +257,10 @@ class LaneLoop : public RecordingLanes<width> {
   bool is_exhausted_ = false;  ///< no member is left to begin
 };
 
-/// The runner of Taylor series; null if the scene has none in lanes.
+/// The runners of the methods of Dormand and Prince, and of Taylor series; null if the scene has
+/// none in lanes. Each set of instructions has its runners in a file of its own.
+template <InstructionSet set>
+std::unique_ptr<LaneRunner> make_runge_kutta_lanes(std::string_view method, const LaneTask& task);
 template <InstructionSet set>
 std::unique_ptr<LaneRunner> make_series_lanes(const LaneTask& task);
 

@@ -1,0 +1,10 @@
+#include "ensemble/runge_kutta_runner.hpp"
+
+namespace pendcore {
+
+#if PENDCORE_CLONES
+template std::unique_ptr<LaneRunner> make_runge_kutta_lanes<InstructionSet::x86_64_v4>(
+    std::string_view, const LaneTask&);
+#endif
+
+}  // namespace pendcore
