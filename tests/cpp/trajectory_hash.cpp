@@ -78,6 +78,20 @@ void print_switching_and_stiff_runs() {
   }
 }
 
+/// Implicit steps whose complex system is one of three links, of some, and of many.
+void print_stiff_chains() {
+  Options options;
+  options.method = "radau5";
+  options.rtol = {1e-6};
+  for (const int n : {3, 10, 20}) {
+    const Scene chain{.links = std::vector<Link>(n, Link::uniform_rod(0.4, 0.3)),
+                      .effects = {ViscousJoint{.joint = n, .damping = 1e3}}};
+    const std::string name = "stiff chain radau5, " + std::to_string(n) + " links";
+    print(name.c_str(),
+          simulate(chain, std::vector(n, 0.5), std::vector(n, -2.0), 0, 0.2, options));
+  }
+}
+
 /// Series of few links, bare and with torques of each kind.
 void print_series() {
   Options options;
@@ -156,6 +170,7 @@ int main() {
                                       {4.0, -9.0, 1.0, 2.0, 3.0, 4.0, 5.0}, 0, 2, tight));
   print_switching_and_stiff_runs();
   print_explicit_runs();
+  print_stiff_chains();
   print_series();
   print_runs_without_a_method();
   return 0;
