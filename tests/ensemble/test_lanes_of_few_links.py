@@ -13,13 +13,17 @@ E = pc.effects
 METHODS = ["dopri5", "dop853", "dopri5-radau5", "dop853-radau5"]
 DRAG = E.RodDrag(link=2, drag_coefficient=1.2, diameter=0.2)
 ONE_BY_ONE = {
-    "rotor between links": OF_ANY_CHAIN["rotor between links"],
     "friction": [E.DryJointFriction(joint=2, coulomb=0.2)],
     "lock": [E.Lock(joint=2)],
 }
 OF_RUNGE_KUTTA = {
     **SCENES,
-    **{name: effects for name, effects in OF_ANY_CHAIN.items() if name not in ONE_BY_ONE},
+    **OF_ANY_CHAIN,
+    "rotors in all joints, drag and damping": [
+        *[E.RotorInertia(joint=k + 1, armature=0.1 + 0.05 * k) for k in range(3)],
+        DRAG,
+        E.ViscousJoint(joint=3, damping=0.1),
+    ],
     "drag": [DRAG],
     "five waves": [E.Motor(1, sinusoid=E.Sinusoid(1.0, 6.0 + k)) for k in range(5)],
     "drag and a shaken pivot": [DRAG, E.DrivenPivot(y=E.Sinusoid(0.05, 40.0))],

@@ -1,29 +1,30 @@
 /// \file
 /// The equations of three and four links in lanes of Runge-Kutta methods: the recursion of
-/// chain.hpp in registers, without rotors between links.
+/// chain.hpp in registers.
 #pragma once
 
 #include <memory>
 #include <variant>
 
 #include "dynamics/chain/chain.hpp"
-#include "dynamics/chain/free_links.hpp"
 #include "dynamics/row.hpp"
 #include "ensemble/lane_equations.hpp"
 
 namespace pendcore {
 
-template <class Real, int n>
+/// `coupled` are links with rotors between them.
+template <class Real, int n, bool coupled>
 struct FewLinksInLanes {
   using Links = EachLink<Real, n>;
   using Effects = EffectsInLanes<Links, Real>;
-  static constexpr bool is_called = n > 3;
+  static constexpr bool is_called = coupled || n > 3;
   static constexpr bool is_long = true;
 
   static bool has(const Scene& scene, const EquationsOfMotion& equations) {
     if (scene.links.size() != n || !equations.are_steady()) return false;
     const Chain& chain = *std::get<std::shared_ptr<Chain>>(equations.form);
-    return !chain.has_rotors() && !chain.effects()->any_held && Effects::has(*chain.effects());
+    return chain.has_rotors() == coupled && !chain.effects()->any_held &&
+           Effects::has(*chain.effects());
   }
   void prepare(const Scene& /*scene*/, const EquationsOfMotion& one) {
     const Chain& chain = *std::get<std::shared_ptr<Chain>>(one.form);
@@ -32,7 +33,10 @@ struct FewLinksInLanes {
   }
   void put(int lane, const Scene& /*scene*/, const EquationsOfMotion& one) {
     const Chain& chain = *std::get<std::shared_ptr<Chain>>(one.form);
-    for (int i = 0; i < n; ++i) put_constants(link[i], lane, chain.link(i));
+    for (int i = 0; i < n; ++i) {
+      put_constants(link[i], lane, chain.link(i));
+      rotor[i][lane] = chain.rotor(i);
+    }
     payload_mass[lane] = chain.payload_mass();
     gravity[lane] = chain.gravity();
     effects.put(lane, *chain.effects());
@@ -107,8 +111,9 @@ struct FewLinksInLanes {
                                   const Loads& loads, JointAcceleration<Real> of_joint) const {
     const Links square = qd * qd;
     const Links centripetal = length() * square;
-    JointForce<Real> force{{payload_mass, Real{}, payload_mass}, Real{}, Real{}};
-    FreeResponse<Real> response[n];
+    using Force = std::conditional_t<coupled, CoupledForce<Real>, JointForce<Real>>;
+    Force force{.B = {payload_mass, Real{}, payload_mass}, .b_u = {}, .b_n = {}};
+    std::conditional_t<coupled, CoupledResponse<Real>, FreeResponse<Real>> response[n];
 #pragma GCC unroll 4
     for (int i = n - 1; i >= 0; --i) {
       LinkInMotion<Real> at{};
@@ -128,26 +133,39 @@ struct FewLinksInLanes {
         at.force_u = loads.force_u.of[i];
         at.force_n = loads.force_n.of[i];
       }
-      response[i] = force.template add_free<loaded>(link[i], at);
+      if constexpr (coupled) {
+        response[i] = force.add(link[i], rotor[i], false, at);
+      } else {
+        response[i] = force.template add_free<loaded>(link[i], at);
+      }
     }
     Links found;
+    Real before{};
 #pragma GCC unroll 4
     for (int i = 0; i < n; ++i) {
-      found.of[i] =
-          go_to_next_joint(response[i], s.of[i], c.of[i], link[i].L, centripetal.of[i], of_joint);
+      Real free = response[i].free;
+      if constexpr (coupled) free = fma(response[i].from_before, before, free);
+      before = go_to_next_joint(FreeResponse<Real>{free, response[i].x, response[i].y}, s.of[i],
+                                c.of[i], link[i].L, centripetal.of[i], of_joint);
+      found.of[i] = before;
     }
     return found;
   }
 
   ChainLinkOf<Real> link[n] = {};
+  Real rotor[n] = {};
   Real payload_mass = {}, gravity = {};
   bool is_loaded = false;
   Effects effects;
 };
 
 template <class Real>
-using ThreeLinksInLanes = FewLinksInLanes<Real, 3>;
+using ThreeLinksInLanes = FewLinksInLanes<Real, 3, false>;
 template <class Real>
-using FourLinksInLanes = FewLinksInLanes<Real, 4>;
+using ThreeCoupledLinks = FewLinksInLanes<Real, 3, true>;
+template <class Real>
+using FourLinksInLanes = FewLinksInLanes<Real, 4, false>;
+template <class Real>
+using FourCoupledLinks = FewLinksInLanes<Real, 4, true>;
 
 }  // namespace pendcore

@@ -6,8 +6,8 @@
 ///
 ///     has(scene, equations)      whether a trajectory has this form; another one of the same
 ///                                kind (kinds_of) has it, too
-///     prepare(scene, equations)  makes room for trajectories like this one; the form stays where it
-///                                is from then on
+///     prepare(scene, equations)  makes room for trajectories like this one; from then on, the form
+///                                stays where it is
 ///     put(lane, scene, equations)  puts the constants of a trajectory into a lane
 ///
 /// and those of Runge-Kutta methods `is_called`: whether a step calls them (CalledEquations); if

@@ -20,8 +20,8 @@ template <class Use>
 bool with_form(const Scene& scene, const EquationsOfMotion& equations, const Use& use) {
   return with_first_form<OneLinkWithCouples, OneLinkWithEverything, TwoBareLinksInLanes,
                          TwoLinksWithCouples, TwoLinksWithWaves, TwoLinksWithLaws,
-                         TwoLinksWithEverything, ThreeLinksInLanes, FourLinksInLanes>(
-      scene, equations, use);
+                         TwoLinksWithEverything, ThreeLinksInLanes, ThreeCoupledLinks,
+                         FourLinksInLanes, FourCoupledLinks>(scene, equations, use);
 }
 
 /// A form of the equations that a step calls: one step of a method serves all forms with such rows.

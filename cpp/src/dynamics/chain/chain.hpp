@@ -36,6 +36,7 @@
 
 #include "dynamics/acting_effects.hpp"
 #include "dynamics/chain/chain_link.hpp"
+#include "dynamics/chain/links_in_motion.hpp"
 
 namespace pendcore {
 
@@ -55,6 +56,7 @@ class ChainOf {
 
   const ActingEffects<Pack<4>>* effects() const { return effects_.get(); }
   const ChainLink& link(int i) const { return links_[i]; }
+  double rotor(int i) const { return rotor_[i]; }        ///< kg m^2
   double payload_mass() const { return payload_mass_; }  ///< kg
   double gravity() const { return gravity_; }            ///< m/s^2
   bool is_loaded() const { return loaded_; }
@@ -70,10 +72,10 @@ class ChainOf {
   PENDCORE_INLINE void recursion(const Number& ax, const Number& ay, Number* qdd) const;
   template <bool loaded, int size>
   PENDCORE_INLINE void tip_to_base() const;
-  template <int size>
-  PENDCORE_INLINE void base_to_tip(const Number& ax, const Number& ay, Number* qdd) const;
   PENDCORE_INLINE void tip_to_base_coupled() const;
-  PENDCORE_INLINE void base_to_tip_coupled(Number ax, Number ay, Number* qdd) const;
+  template <bool coupled, int size>
+  PENDCORE_INLINE void base_to_tip(const Number& ax, const Number& ay, Number* qdd) const;
+  PENDCORE_INLINE LinkInMotion<Number> in_motion(int i) const;
 
   /// Arrays over the links have a pack of zeros before and after them, except that the cosine
   /// before the first link is 1.
@@ -104,10 +106,7 @@ class ChainOf {
   mutable std::vector<Number> cc_, ss_, sc_, cos_, sin_;  // products and cos, sin of q_i - q_{i-1}
   // Forces (fx, fy) are collected in the frame of the ground, and then turned into each link's.
   mutable std::vector<Number> couple_, torque_, fx_, fy_, vx_, vy_, user_;
-  struct Response {
-    Number free, x, y, from_before;  // qdd = free - (x, y) . a + from_before qdd_{i-1}
-  };
-  mutable std::vector<Response> response_;
+  mutable std::vector<CoupledResponse<Number>> response_;
 };
 
 using Chain = ChainOf<double>;

@@ -1,6 +1,6 @@
 /// \file
 /// One link in the recursion of chain.hpp: its constants, and the step that takes B from a link to
-/// the link before. The accelerations (free_links.hpp, chain_recursion.hpp) and their series
+/// the link before. The accelerations (links_in_motion.hpp, chain_recursion.hpp) and their series
 /// (chain_series_recurrence.hpp, few_links_series.hpp) use it.
 #pragma once
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "dynamics/chain/chain.hpp"
-#include "dynamics/chain/free_links.hpp"
 #include "dynamics/row.hpp"
 
 namespace pendcore {
@@ -136,103 +135,55 @@ PENDCORE_INLINE void ChainOf<Number>::collect_loads(double t) const {
 }
 
 template <class Number>
+PENDCORE_INLINE LinkInMotion<Number> ChainOf<Number>::in_motion(int i) const {
+  return {.s = in(s_)[i],
+          .c = in(c_)[i],
+          .cos = in(cos_)[i],
+          .sin = in(sin_)[i],
+          .cc = in(cc_)[i],
+          .ss = in(ss_)[i],
+          .sc = in(sc_)[i],
+          .centripetal = in(centripetal_)[i],
+          .center = in(center_)[i],
+          .torque = in(torque_)[i],
+          .force_u = in(fx_)[i],
+          .force_n = in(fy_)[i]};
+}
+
+template <class Number>
 template <bool loaded, int size>
 PENDCORE_INLINE void ChainOf<Number>::tip_to_base() const {
   const int n = size > 0 ? size : n_;
   JointForce<Number> force{{payload_mass_, 0.0, payload_mass_}, 0.0, 0.0};
 #pragma GCC unroll 3
   for (int i = n - 1; i >= 0; --i) {
-    LinkInMotion<Number> at{.s = in(s_)[i],
-                            .c = in(c_)[i],
-                            .cos = in(cos_)[i],
-                            .sin = in(sin_)[i],
-                            .cc = in(cc_)[i],
-                            .ss = in(ss_)[i],
-                            .sc = in(sc_)[i],
-                            .centripetal = in(centripetal_)[i],
-                            .center = in(center_)[i],
-                            .torque = {},
-                            .force_u = {},
-                            .force_n = {}};
-    if constexpr (loaded) {
-      at.torque = in(torque_)[i];
-      at.force_u = in(fx_)[i];
-      at.force_n = in(fy_)[i];
-    }
-    const FreeResponse<Number> found = force.template add_free<loaded>(links_[i], at);
+    const FreeResponse<Number> found = force.template add_free<loaded>(links_[i], in_motion(i));
     response_[i] = {found.free, found.x, found.y, 0.0};
   }
 }
 
 template <class Number>
-template <int size>
+PENDCORE_INLINE void ChainOf<Number>::tip_to_base_coupled() const {
+  CoupledForce<Number> force{.B = {payload_mass_, 0.0, payload_mass_}};
+  for (int i = n_ - 1; i >= 0; --i) {
+    response_[i] = force.add(links_[i], rotor_[i], effects_->held[i] != 0, in_motion(i));
+  }
+}
+
+template <class Number>
+template <bool coupled, int size>
 PENDCORE_INLINE void ChainOf<Number>::base_to_tip(const Number& ax, const Number& ay,
                                                   Number* qdd) const {
   const int n = size > 0 ? size : n_;
   JointAcceleration<Number> of_joint{ax, ay};
+  Number before = 0.0;
 #pragma GCC unroll 3
   for (int i = 0; i < n; ++i) {
-    const Response& k = response_[i];
-    const Number L = in(length_)[i];
-    qdd[i] = go_to_next_joint(FreeResponse<Number>{k.free, k.x, k.y}, in(s_)[i], in(c_)[i], L,
-                              in(centripetal_)[i], of_joint);
-  }
-}
-
-template <class Number>
-PENDCORE_INLINE void ChainOf<Number>::tip_to_base_coupled() const {
-  ForcePerAcceleration<Number> B{payload_mass_, 0.0, payload_mass_};
-  Number b_u = 0.0;
-  Number b_n = 0.0;
-  Number beta_u = 0.0;  // force per angular acceleration of the link before
-  Number beta_n = 0.0;
-  Number kappa = 0.0;  // torque per angular acceleration
-  Number t = 0.0;      // the rest of the torque
-  for (int i = n_ - 1; i >= 0; --i) {
-    const ChainLink& k = links_[i];
-    const Number centripetal = in(centripetal_)[i];
-    const Number pu = fma(-centripetal, B.uu, b_u);
-    const Number pn = fma(-centripetal, B.un, b_n);
-    const Number D = fma(k.LL, B.nn, k.Io) + fma(2.0 * k.L, beta_n, kappa);
-    const double J = rotor_[i];
-    const bool is_held = effects_->held[i];
-    const Number r = is_held ? Number(0.0) : 1.0 / (D + J);
-    const Number share = is_held ? Number(1.0) : J * r;
-    const Number wu = fma(k.L, B.un, beta_u);
-    const Number wn = fma(k.L, B.nn, k.mc) + beta_n;
-    const Number torque = in(torque_)[i] - fma(k.L, pn, fma(-centripetal, beta_u, t));
-    const Number free = r * torque;
-    const Number fu = fma(wu, free, pu - in(center_)[i] - in(fx_)[i]);
-    const Number fn = fma(wn, free, pn - in(fy_)[i]);
-    const Number s = in(s_)[i];
-    const Number c = in(c_)[i];
-    response_[i] = {free, r * fma(wu, c, -(wn * s)), r * fma(wu, s, wn * c), share};
-
-    B.add_coupled(k, r, wu, wn, in(cc_)[i], in(ss_)[i], in(sc_)[i]);
-    const Number cos = in(cos_)[i];
-    const Number sin = in(sin_)[i];
-    b_u = fma(fu, cos, -(fn * sin));
-    b_n = fma(fu, sin, fn * cos);
-    beta_u = share * fma(wu, cos, -(wn * sin));
-    beta_n = share * fma(wu, sin, wn * cos);
-    kappa = share * D;
-    t = -share * torque;
-  }
-}
-
-template <class Number>
-PENDCORE_INLINE void ChainOf<Number>::base_to_tip_coupled(Number ax, Number ay, Number* qdd) const {
-  Number before = 0.0;
-  for (int i = 0; i < n_; ++i) {
-    const Response& k = response_[i];
-    const Number s = in(s_)[i];
-    const Number c = in(c_)[i];
-    const Number L = in(length_)[i];
-    const Number centripetal = in(centripetal_)[i];
-    const Number found = fma(-k.y, ay, fma(-k.x, ax, fma(k.from_before, before, k.free)));
-    qdd[i] = before = found;
-    ax = fma(-(L * s), found, fma(-centripetal, c, ax));
-    ay = fma(L * c, found, fma(-centripetal, s, ay));
+    const CoupledResponse<Number>& k = response_[i];
+    const Number free = coupled ? fma(k.from_before, before, k.free) : k.free;
+    before = go_to_next_joint(FreeResponse<Number>{free, k.x, k.y}, in(s_)[i], in(c_)[i],
+                              Number(in(length_)[i]), in(centripetal_)[i], of_joint);
+    qdd[i] = before;
   }
 }
 
@@ -250,7 +201,7 @@ PENDCORE_INLINE void ChainOf<Number>::accelerations(double t, const Number* q, c
   ay -= gravity_;
   if (has_rotors_ || effects_->any_held) {
     tip_to_base_coupled();
-    base_to_tip_coupled(ax, ay, qdd);
+    base_to_tip<true, 0>(ax, ay, qdd);
     return;
   }
   if (n_ == 3) {
@@ -269,7 +220,7 @@ PENDCORE_INLINE void ChainOf<Number>::recursion(const Number& ax, const Number& 
   } else {
     tip_to_base<false, size>();
   }
-  base_to_tip<size>(ax, ay, qdd);
+  base_to_tip<false, size>(ax, ay, qdd);
 }
 
 }  // namespace pendcore

@@ -1,7 +1,6 @@
 /// \file
-/// One link in the recursion of chain.hpp where no rotor or held joint couples links: from the tip
-/// to the base, and back. A single run (chain_recursion.hpp) and lanes
-/// (ensemble/few_links_in_lanes.hpp) go over the links.
+/// One link in the recursion of chain.hpp: from the tip to the base, and back. A single run
+/// (chain_recursion.hpp) and lanes (ensemble/few_links_in_lanes.hpp) go over the links.
 #pragma once
 
 #include "dynamics/chain/chain_link.hpp"
@@ -65,6 +64,49 @@ struct JointForce {
     b_u = fma(fu, at.cos, -(fn * at.sin));
     b_n = fma(fu, at.sin, fn * at.cos);
     return response;
+  }
+};
+
+/// How a link responds whose rotation is coupled with the link before:
+/// qdd = free - (x, y) . a + from_before qdd_{i-1}.
+template <class Number>
+struct CoupledResponse {
+  Number free, x, y, from_before;
+};
+
+/// The force and the torque at a joint, with all links beyond it, where rotors or held joints
+/// couple rotations.
+template <class Number>
+struct CoupledForce {
+  ForcePerAcceleration<Number> B;
+  Number b_u{}, b_n{};
+  Number beta_u{}, beta_n{};  ///< force per angular acceleration of the link before
+  Number kappa{};             ///< torque per angular acceleration
+  Number t{};                 ///< the rest of the torque
+
+  /// Adds link k, with a rotor of inertia J in its joint, which may be held.
+  template <class Constant>
+  PENDCORE_INLINE CoupledResponse<Number> add(const ChainLinkOf<Constant>& k, const Constant& J,
+                                              bool is_held, const LinkInMotion<Number>& at) {
+    const Number pu = fma(-at.centripetal, B.uu, b_u);
+    const Number pn = fma(-at.centripetal, B.un, b_n);
+    const Number D = fma(k.LL, B.nn, k.Io) + fma(2.0 * k.L, beta_n, kappa);
+    const Number r = is_held ? Number{} : 1.0 / (D + J);
+    const Number share = is_held ? Number{} + 1.0 : J * r;
+    const Number wu = fma(k.L, B.un, beta_u);
+    const Number wn = fma(k.L, B.nn, k.mc) + beta_n;
+    const Number torque = at.torque - fma(k.L, pn, fma(-at.centripetal, beta_u, t));
+    const Number free = r * torque;
+    const Number fu = fma(wu, free, pu - at.center - at.force_u);
+    const Number fn = fma(wn, free, pn - at.force_n);
+    B.add_coupled(k, r, wu, wn, at.cc, at.ss, at.sc);
+    b_u = fma(fu, at.cos, -(fn * at.sin));
+    b_n = fma(fu, at.sin, fn * at.cos);
+    beta_u = share * fma(wu, at.cos, -(wn * at.sin));
+    beta_n = share * fma(wu, at.sin, wn * at.cos);
+    kappa = share * D;
+    t = -share * torque;
+    return {free, r * fma(wu, at.c, -(wn * at.s)), r * fma(wu, at.s, wn * at.c), share};
   }
 };
 
