@@ -44,7 +44,7 @@ class CountingSource final : public LaneSource {
   bool watches() const override { return false; }
   bool watches_dense_output() const override { return false; }
   void ended(const LaneMember& member) override { CHECK(member.status == Status::finished); }
-  void runs_alone(std::size_t) override {
+  void run_alone(std::size_t) override {
     if (!is_exhausted_) ++alone;
   }
   bool goes_on() override { return true; }

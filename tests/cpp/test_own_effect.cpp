@@ -46,4 +46,11 @@ TEST_CASE("an exception in a callable ends the run and is kept with what was com
   CHECK(solution.status == Status::callback_error);
   CHECK(solution.t_reached > 0.5);
   CHECK_THROWS_WITH(std::rethrow_exception(solution.error), "out of reach");
+  auto never = [](double, std::span<const double>, std::span<const double>, std::span<double>) {
+    throw std::runtime_error("not even once");
+  };
+  const Solution none = run({.links = scene.links, .effects = {CompiledUser::of(never)}});
+  CHECK(none.status == Status::callback_error);
+  CHECK(none.t_reached == 0.0);
+  CHECK_THROWS_WITH(std::rethrow_exception(none.error), "not even once");
 }

@@ -28,8 +28,8 @@ class EffectsInForce : public Drives<double> {
   /// Freezes effect number i (from 0) to a mode.
   virtual void put_mode(std::size_t i, int mode) = 0;
 
-  /// What effects have beside their numbers: which laws there are, and what each acts on. Only
-  /// trajectories that have this in common can share lanes.
+  /// All about the effects but the values of their parameters: which laws there are, and what each
+  /// acts on. Only trajectories that have this in common can share lanes.
   virtual std::vector<int> kinds() const = 0;
 
   /// Eliminates a joint (counted from 0), or sets it free.

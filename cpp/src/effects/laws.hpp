@@ -1,5 +1,6 @@
 /// \file
-/// A right-hand side computes what stands here: the sums of couples and the other laws of effects.
+/// A right-hand side computes what stands here, and the sums of couples (couples.hpp): the laws of
+/// effects.
 ///
 /// A law is written once, for a row of joints or links: `Row` is double for a chain of one link, a
 /// Pair for two links, and a Pack<4> for every four links of a longer chain. Its fields are rows of
@@ -38,84 +39,10 @@
 #include "arithmetic/exponential.hpp"
 #include "arithmetic/fields.hpp"
 #include "arithmetic/pair.hpp"
+#include "effects/couples.hpp"
 #include "pendcore/effects/effect.hpp"
 
 namespace pendcore {
-
-/// The torque of an effect whose law, in each of its modes, is a polynomial in time, angle and rate
-/// of its joint, and a wave:
-///
-///     tau = held + slope (t - start) + on_phi phi + on_phid w + on_phid2 w^2 + on_phid3 w^3
-///           + gain sin(wave)
-///
-/// All such effects on one joint are summed once, when the scene is compiled or a mode changes, and
-/// together they cost as much as one.
-struct Couple {
-  double held = 0.0;
-  double slope = 0.0;
-  double start = 0.0;
-  double on_phi = 0.0;
-  double on_phid = 0.0;
-  double on_phid2 = 0.0;
-  double on_phid3 = 0.0;
-  double gain = 0.0;
-
-  /// Those that Couples add up.
-  template <class Any>
-  static auto fields(Any& x) {
-    return std::tie(x.held, x.slope, x.start, x.on_phi, x.on_phid, x.on_phid2, x.on_phid3);
-  }
-
-  double torque(double t, double phi, double phid, double sine) const {
-    const double of_rate = ((on_phid3 * phid + on_phid2) * phid + on_phid) * phid;
-    return held + slope * (t - start) + on_phi * phi + of_rate + gain * sine;
-  }
-};
-
-/// The sums of the couples on a row of joints. The alignment is set here: GCC reports the alignment
-/// of a wide pack as on the baseline, and its clones rely on the true alignment.
-template <class Row>
-struct alignas(std::bit_floor(sizeof(Row))) Couples {
-  int row = 0;
-  bool has_powers = false;  ///< whether some torque depends on the square or cube of its rate
-  Row held{}, slope{}, start{}, on_phi{}, on_phid{}, on_phid2{}, on_phid3{};
-
-  template <class Any>
-  static auto fields(Any& x) {
-    return std::tie(x.held, x.slope, x.start, x.on_phi, x.on_phid, x.on_phid2, x.on_phid3);
-  }
-
-  template <class At>
-  PENDCORE_INLINE typename At::Value torque(const At& at) const {
-    using V = typename At::Value;
-    const V w = at.phid();
-    const V of_rate = fma(fma(Constants<V>::of(on_phid3), w, Constants<V>::of(on_phid2)), w,
-                          Constants<V>::of(on_phid));
-    return fma(of_rate, w, fma(Constants<V>::of(on_phi), at.phi(), in_time<V>(at.t)));
-  }
-
-  /// held + slope (t - start)
-  template <class V, class Time>
-  PENDCORE_INLINE V in_time(const Time& t) const {
-    V since_start;
-    if constexpr (requires { Constants<Row>::of(t); }) {
-      since_start = Constants<V>::of(Constants<Row>::of(t) - start);
-    } else {  // each lane has a time of its own, and the constants are those of all
-      since_start = Constants<V>::of(t) - Constants<V>::of(start);
-    }
-    return fma(Constants<V>::of(slope), since_start, Constants<V>::of(held));
-  }
-};
-
-/// A wave that drives a joint: tau += gain sin(wave). `Number` is a double, or a pack with a
-/// trajectory in each lane.
-template <class Number>
-struct alignas(sizeof(Number)) JointWaveOf {
-  int joint;  ///< counted from 0
-  int wave;
-  Number gain;
-};
-using JointWave = JointWaveOf<double>;
 
 /// Constants for a law, from the link on which its effect acts or which begins at its joint.
 struct LinkConstants {

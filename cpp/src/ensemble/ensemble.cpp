@@ -25,8 +25,8 @@
 namespace pendcore {
 namespace {
 
-/// Members that a worker takes at once: some milliseconds of work, and for a small ensemble no more
-/// than leaves something for everyone.
+/// Members that a worker takes at once: some milliseconds of work, and in a small ensemble few
+/// enough that every worker gets some.
 constexpr std::size_t usual_chunk = 256;
 std::size_t chunk_for(std::size_t count, int workers) {
   return std::clamp<std::size_t>(count / (8 * static_cast<std::size_t>(workers)), 1, usual_chunk);
@@ -190,11 +190,11 @@ class OneByOne {
   Scene varied_;
 };
 
-/// A worker's share of the members, for lanes.
-class Share final : public LaneSource {
+/// The members that a worker takes, for lanes.
+class MembersOfWorker final : public LaneSource {
  public:
-  Share(SharedWork& work, bool on_calling_thread, OneByOne& one_by_one,
-        const MemberResults& results, bool keeps_times)
+  MembersOfWorker(SharedWork& work, bool on_calling_thread, OneByOne& one_by_one,
+                  const MemberResults& results, bool keeps_times)
       : work_(work),
         on_calling_thread_(on_calling_thread),
         one_by_one_(one_by_one),
@@ -226,7 +226,7 @@ class Share final : public LaneSource {
     results_.status[member.number] = code(member.status);
     work_.count(1);
   }
-  void runs_alone(std::size_t number) override {
+  void run_alone(std::size_t number) override {
     if (one_by_one_.run(number, [this] { return goes_on(); })) work_.count(1);
   }
   bool goes_on() override { return work_.goes_on(on_calling_thread_); }
@@ -267,15 +267,17 @@ EnsembleEnding run_ensemble(const Scene& scene, const Members& members, double t
   work.run(workers, [&](bool on_calling_thread) {
     const FloatingPointEnvironment ieee;
     OneByOne one_by_one(scene, members, choice, t0, t_end, own, results);
-    Share share(work, on_calling_thread, one_by_one, results, own.store == Store::times);
+    MembersOfWorker members_of_worker(work, on_calling_thread, one_by_one, results,
+                                      own.store == Store::times);
     // The largest exponent takes a run of its own.
     const std::unique_ptr<LaneRunner> lanes =
         results.largest_exponent.empty() ? make_lanes(scene, t0, t_end, own) : nullptr;
     if (lanes) {
-      lanes->run(share);
+      lanes->run(members_of_worker);
     } else {
       LaneMember member;
-      while (share.goes_on() && share.next(member) != nullptr) share.runs_alone(member.number);
+      while (members_of_worker.goes_on() && members_of_worker.next(member) != nullptr)
+        members_of_worker.run_alone(member.number);
     }
     const std::scoped_lock lock(mutex);
     add(ending.statistics, one_by_one.statistics());

@@ -21,7 +21,7 @@
 
 namespace pendcore {
 
-/// So many members take less time one after the other than in lanes.
+/// With this many members left, or fewer, to run them one by one is faster than in lanes.
 template <int width>
 constexpr int few_lanes = width / 2;
 /// Steps between two looks at whether to go on: a fraction of a millisecond.
@@ -78,7 +78,7 @@ class LaneLoop : public RecordingLanes<width> {
         const AfterRecording after =
             is_recorded ? this->record_step(lane) : AfterRecording::goes_on;
         if ((attention.runs_alone & bit) != 0 || after == AfterRecording::runs_alone) {
-          source.runs_alone(members_[lane].number);
+          source.run_alone(members_[lane].number);
         } else if (after == AfterRecording::ends) {
           end(lane, source, Status::event);
         } else if ((attention.ended & bit) != 0) {
@@ -110,13 +110,14 @@ class LaneLoop : public RecordingLanes<width> {
   /// Whether the last step of a lane suggests that the member is stiff.
   virtual bool looks_stiff(int /*lane*/) { return false; }
 
-  /// Prepares equations in lanes. Those without a member have numbers that do no harm.
+  /// Prepares equations in lanes. Lanes without a member have the constants of the scene itself, so
+  /// that their steps do no harm.
   template <class InLanes>
   void prepare(InLanes& in_lanes) const {
     in_lanes.prepare(scene_, *equations_);
     for (int lane = 0; lane < width; ++lane) in_lanes.put(lane, scene_, *equations_);
   }
-  /// Those of the members that begin.
+  /// Those of the member that begins.
   const EquationsOfMotion& equations() const { return *equations_; }
   Stepper& stepper(int lane) const override { return *steppers_[lane]; }
   const std::vector<double>& rate() const { return rate_; }
@@ -134,7 +135,7 @@ class LaneLoop : public RecordingLanes<width> {
         steps().active |= 1U << lane;
         return;
       }
-      source.runs_alone(member.number);
+      source.run_alone(member.number);
     }
     is_exhausted_ = true;
   }
@@ -143,7 +144,7 @@ class LaneLoop : public RecordingLanes<width> {
   void finish_alone(int lane, LaneSource& source) {
     LaneMember& member = members_[lane];
     if (steps().accepted[lane] + steps().rejected[lane] == 0) {
-      source.runs_alone(member.number);
+      source.run_alone(member.number);
       return;
     }
     const Scene& scene = source.scene_of(member.number);

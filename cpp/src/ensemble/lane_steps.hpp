@@ -46,7 +46,7 @@ struct Attention {
   }
 };
 
-/// Where the trajectories of all lanes stand, but for their states.
+/// Where the trajectories of all lanes stand, except their states.
 template <int width>
 struct LaneSteps {
   using Real = Pack<width>;

@@ -5,7 +5,8 @@
 /// as soon as one has ended: none waits for another. The kernel of a step is that of a single run
 /// (integrate/runge_kutta/step.hpp) on packs, so that a member has the bits of simulate(). What is
 /// rare (a step that is not finite, that looks stiff, or becomes too small) is not handled here:
-/// such a member is run by simulate() from its start.
+/// such a member is run by simulate() from its start. The last few members, too few to fill the
+/// lanes, go on one by one from where they stand.
 #pragma once
 
 #include <cstddef>
@@ -44,8 +45,8 @@ class LaneSource {
   /// The scene of a member that has begun; a varied one is valid until the next call.
   virtual const Scene& scene_of(std::size_t number) = 0;
   virtual void ended(const LaneMember& member) = 0;
-  /// This member has to be run by simulate().
-  virtual void runs_alone(std::size_t number) = 0;
+  /// Runs this member by simulate().
+  virtual void run_alone(std::size_t number) = 0;
   /// Whether to go on; is asked from time to time.
   virtual bool goes_on() = 0;
 };
@@ -62,8 +63,8 @@ class LaneRunner {
 };
 
 /// The methods that have lanes for the equations of a scene; none where a law may change. Those of
-/// Dormand and Prince have them for one to four links with some effects (lane_equations.hpp),
-/// Taylor series for two to `most_links_in_lanes` links with all effects that have a series.
+/// Dormand and Prince have them for one to four links with all effects but users' functions, Taylor
+/// series for two to `most_links_in_lanes` links with all effects that have a series.
 std::vector<std::string_view> methods_with_lanes(const Scene& scene);
 /// Longer chains run one by one: the series of eight of them leave a processor's second cache.
 inline constexpr std::size_t most_links_in_lanes = 100;

@@ -39,7 +39,7 @@ struct SeriesLanes : LaneSteps<width> {
   using Integers = typename Lanes<Real>::Integers;
   using Equations = Form<Real>;
   /// Not std::vector: its allocator asks alignof, which GCC reports as on the baseline
-  /// (effects/laws.hpp), while `new` has the true alignment.
+  /// (effects/couples.hpp), while `new` has the true alignment.
   using Packs = std::unique_ptr<Real[]>;
 
   Equations equations;

@@ -50,7 +50,8 @@ void SharedWork::run(int workers, const std::function<void(bool)>& work) {
     std::vector<std::jthread> others;
     for (int i = 1; i < workers; ++i) others.emplace_back(guarded, false);
     guarded(true);
-    // The calling thread is done before others are, which may run for long: it looks on.
+    // The calling thread may be done long before the others: until they are, it looks at the clock
+    // and calls the monitor.
     while (done() < count_ && goes_on(true) && workers > 1) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }

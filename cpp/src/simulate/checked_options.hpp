@@ -14,7 +14,7 @@ inline Store usual_store(const Options& options) {
   return options.t_eval.empty() ? Store::dense : Store::times;
 }
 
-/// Throws std::invalid_argument for options out of their range or at odds with each other, but for
+/// Throws std::invalid_argument for options out of their range or at odds with each other, except
 /// the number of tolerances and the order of times.
 void check(const Options& options);
 
@@ -29,7 +29,7 @@ std::vector<double> relative_tolerances(const Options& options, std::size_t n);
 /// Throws std::invalid_argument for a wrong number of them.
 std::vector<double> absolute_tolerances(const Options& options, std::size_t n);
 
-/// Throws std::invalid_argument for options with which no start of the scene can be run, but for
+/// Throws std::invalid_argument for options with which no start of the scene can be run, except
 /// methods and tolerances, which make_stepper() and relative_tolerances() check.
 void check_options(const Scene& scene, const Options& options, double t0, double t_end);
 

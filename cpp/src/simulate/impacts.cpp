@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "arithmetic/epsilon.hpp"
-#include "dynamics/contact/impact.hpp"
+#include "dynamics/contact/impact_laws.hpp"
 #include "dynamics/kinematics.hpp"
 #include "text/message.hpp"
 

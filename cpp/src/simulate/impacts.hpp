@@ -1,6 +1,6 @@
 /// \file
 /// The impacts of joints on their stops, and what the joints do after them. The laws are those of
-/// dynamics/contact/impact.hpp.
+/// dynamics/contact/impact_laws.hpp.
 #pragma once
 
 #include <limits>

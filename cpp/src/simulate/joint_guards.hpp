@@ -24,7 +24,7 @@ struct JointGuard {
   };
   Kind kind;
   int joint;               ///< counted from 0
-  Guard linear = {};       ///< in words of the joint's angle and rate
+  Guard linear = {};       ///< in terms of the joint's angle and rate
   std::size_t effect = 0;  ///< whose law changes,
   std::size_t number = 0;  ///< at the guard of its mode with this number
   int multiplicity = 0;    ///< of its zero at the start of the next step

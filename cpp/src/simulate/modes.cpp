@@ -93,7 +93,7 @@ void Modes::choose_sides(double t, const double* y) {
 }
 
 void Modes::choose_held(double t, const double* y, int changed_last) {
-  joints_.choose(equations_, t, y, y + n_, changes_.do_not_end() ? changed_last : -1);
+  joints_.choose(equations_, t, y, y + n_, changes_.seem_endless() ? changed_last : -1);
 }
 
 void Modes::begin_change(double t) {

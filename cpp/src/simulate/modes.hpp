@@ -20,8 +20,8 @@ struct ChangesAtOnce {
 
   /// After many changes, the sign of an acceleration may be nothing but rounding.
   bool may_be_rounding() const { return further > 8; }
-  /// Whether the changes do not end by themselves.
-  bool do_not_end() const { return further > 24; }
+  /// Whether the changes seem to go on without end.
+  bool seem_endless() const { return further > 24; }
 };
 
 /// The modes of the effects and the holds of the joints belong to the equations; this class changes

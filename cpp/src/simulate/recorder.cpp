@@ -102,7 +102,7 @@ Recorder::Kept Recorder::kept() const {
   return {solution_.t.size(), solution_.dense.h.size(), solution_.found.size()};
 }
 
-void Recorder::count(const Kept& kept) {
+void Recorder::mark_resumable(const Kept& kept) {
   solution_.resumable_t = kept.t;
   solution_.resumable_steps = kept.steps;
   solution_.resumable_found = kept.found;

@@ -14,8 +14,8 @@ namespace pendcore {
 
 class Recorder final : public Observer {
  public:
-  /// `passed_events` are the numbers of occurrences of each event that do not end the run: it ended
-  /// there, and was continued.
+  /// `passed_events` says of each event how many of its first occurrences do not end the run,
+  /// because an earlier part of it ended there.
   Recorder(Solution& solution, const StepOutput& output, const Scene& scene,
            const std::vector<long long>& passed_events);
 
@@ -24,8 +24,8 @@ class Recorder final : public Observer {
                         double t_new) override;
   void state_jumped(double t, const double* before, const double* after) override;
   void state_settled(double t, const double* after) override;
-  void restarts_here() override { count(kept()); }
-  void restarts_at_step() override { count(at_step_start_); }
+  void restarts_here() override { mark_resumable(kept()); }
+  void restarts_at_step() override { mark_resumable(at_step_start_); }
   bool may_end() const override { return may_throw_ || (finder_ && finder_->may_end()); }
   void step_begins() override { at_step_start_ = kept(); }
   bool has_ended() const override { return finder_ && finder_->ended_by() >= 0; }
@@ -39,7 +39,8 @@ class Recorder final : public Observer {
   };
   void interpolate(StepOutput& output, double h);  ///< sets polynomial_
   Kept kept() const;
-  void count(const Kept& kept);  ///< so much is also in a run that never stopped
+  /// A continued run goes on after what is kept so far; a run that never stopped has it, too.
+  void mark_resumable(const Kept& kept);
   void sample_before(StepOutput& output, const TwoDouble& t_old, double h, double t_end);
   bool is_asked_for(double t) const;
   double* append(double t);  ///< returns memory for the state at t

@@ -14,7 +14,7 @@ struct WatchedStep {
   /// The dense output in powers of theta, (degree + 1, size of y), if the watch asks for it.
   const double* rows;
   int degree;
-  double share;  ///< of the step: theta at its end, 1 but where an event ends it
+  double share;  ///< of the step: theta at its end, 1 unless an event ends it
 };
 
 class StepWatch {

@@ -202,7 +202,8 @@ void Switching::come_to_rest(int k, double t, double* y) {
   const int joint = guards_[k].joint;
   // If the torques begin to hold the joint just now, rounding must not decide whether they do.
   const bool is_border = joints_.is_rounding(joint, slope_at_rest(k, t, y));
-  joints_.choose(equations_, t, y, y + n_, is_border || modes_.changes().do_not_end() ? joint : -1);
+  joints_.choose(equations_, t, y, y + n_,
+                 is_border || modes_.changes().seem_endless() ? joint : -1);
 }
 
 std::vector<double> Switching::saved_state() const {

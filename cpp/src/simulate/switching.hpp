@@ -1,5 +1,5 @@
 /// \file
-/// The laws of a scene along a run: when they change, to what, and what is exact there.
+/// The laws of a scene along a run: when they change, to what, and what is set exactly there.
 ///
 /// Dynamics and integration meet here. The loop sees discontinuities
 /// (integrate/loop/discontinuities.hpp), the laws see the mode that they are frozen to

@@ -64,8 +64,8 @@ struct CompiledUser {
                                         .sentence = "times at which the forces may jump, "
                                                     "increasing"}),
   };
-  /// Calls f(t, q, qd, Q) with spans, (n) each; f is not copied. An exception in f ends the run;
-  /// an exception before the first step passes through simulate().
+  /// Calls f(t, q, qd, Q) with spans, (n) each; f is not copied. An exception in f ends the run
+  /// with Status::callback_error, and is in Solution::error.
   template <class Function>
   static CompiledUser of(Function& f) {
     const UserFunction call = [](double t, int n, const double* q, const double* qd, double* Q,

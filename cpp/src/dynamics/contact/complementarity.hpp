@@ -54,9 +54,8 @@ struct ForcesBetweenBounds {
 };
 
 /// Computes A = L D L^T in place of the lower half of A, with D on the diagonal. The order of
-/// operations is fixed and there are no square roots, so that with units twice as large every bit
-/// of the digits is the same. Eigen's LDLT, which chooses pivots and sums in blocks, promises
-/// neither.
+/// operations is fixed and there are no square roots, so that units twice as large change no bit
+/// of the mantissas. Eigen's LDLT, which chooses pivots and sums in blocks, promises neither.
 void factor_symmetric(Matrix& A);
 /// solve_lower() replaces x, which is zero before `first`, by L^-1 x; solve_upper() replaces x by
 /// L^-T D^-1 x.

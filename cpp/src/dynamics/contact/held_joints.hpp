@@ -13,8 +13,8 @@
 ///
 ///     lambda_j = sum over i >= j of (M (qdd_held - qdd_free))_i
 ///
-/// An impact is a problem of the same kind (impact.hpp). Source: Brogliato, Nonsmooth Mechanics
-/// (2016), chapter 5.
+/// An impact is a problem of the same kind (impact_laws.hpp). Source: Brogliato, Nonsmooth
+/// Mechanics (2016), chapter 5.
 /// Cost: three right-hand sides and O(n^3) for a decision, O(n^3) for an impact, two right-hand
 /// sides and O(n^2) for the torques.
 #pragma once
@@ -111,11 +111,11 @@ class HeldJoints {
   /// them: the dense output of a joint that is held is off by it.
   std::vector<double> without_rounding(const double* qd) const;
 
-  /// Begins an impact at these angles, by the laws of impact.hpp.
+  /// Begins an impact at these angles, by the laws of impact_laws.hpp.
   void begin_impact(const double* q);
-  /// Applies Newton's law of impact to all joints that move into their stops. Joints at rest at a
-  /// stop take part if they are held, or all of them if `with_all_at_rest`. If `is_plastic`, there
-  /// is no restitution.
+  /// Applies Newton's law of impact, with restitution, to all joints that move into their stops.
+  /// Joints at rest at a stop take part if they are held, or all of them if `with_all_at_rest`. If
+  /// `is_plastic`, there is no restitution.
   void bounce(const double* q, double* qd, bool is_plastic, bool with_all_at_rest);
   bool has_bounced(int joint) const { return bounced_[joint] != 0; }  ///< in this impact
   /// Captures a joint: it is to stay at its stop.

@@ -20,7 +20,7 @@
 /// A trajectory alone takes its links in rows, as its effects do. With a trajectory in each lane
 /// (ensemble/), a row is one link, and the same operations on it have the same bits.
 ///
-/// The effects are those that have a Couple (effects/laws.hpp): polynomials of time, angle and
+/// The effects are those that have a Couple (effects/couples.hpp): polynomials of time, angle and
 /// rate, and waves. The source is the one of double_pendulum_series.hpp. Cost: four sums of
 /// products and some 40 operations for each link and order; a sine and cosine, a division and some
 /// 60 operations for each link and series.
@@ -120,7 +120,7 @@ class ChainSeries {
  private:
   using Rows = RowsInMemory<Row, Number>;
   /// The factors of one link, which are the same for all orders of a series. The alignment is set
-  /// for the same reason as that of Couples (effects/laws.hpp).
+  /// for the same reason as that of Couples (effects/couples.hpp).
   struct alignas(sizeof(Number)) Factors {
     Number nx, ny;         ///< across the link
     Number Bxx, Bxy, Byy;  ///< B of the links beyond

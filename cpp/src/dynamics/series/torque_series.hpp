@@ -1,7 +1,7 @@
 /// \file
 /// The Taylor series of the torques of effects on the joints of a few links. The effects are
-/// couples (effects/laws.hpp): polynomials of the time and of the angle and rate of a joint, and up
-/// to two waves.
+/// couples (effects/couples.hpp): polynomials of the time and of the angle and rate of a joint, and
+/// up to two waves.
 ///
 ///     tau = held + slope (t - start) + on_phi phi + on_phid w + on_phid2 w^2 + on_phid3 w^3
 ///           + gain sin(omega t + phase)

@@ -1,5 +1,5 @@
 /// \file
-/// The wall clock for the loop: when to stop, and when to report.
+/// What ends a run early: an exception of a user's function, the wall clock, and the monitor.
 #pragma once
 
 #include <chrono>

@@ -4,7 +4,8 @@
 ///
 /// The size follows from the error of this step by PI control:
 ///
-///     h_next = h clamp(safety err^-(1/k - 3/4 beta) err_before^beta),  k = error_order + 1
+///     h_next = h clamp(safety err^-(1/k - 3/4 beta) err_before^beta, shrink, growth)
+///     k = error_order + 1
 ///
 /// After a rejection h_next = h max(shrink, safety err^-(1/k - 3/4 beta)), and the step after it
 /// does not grow. Source: Hairer and Wanner, Solving Ordinary Differential Equations II (1996),

@@ -51,7 +51,7 @@ Trial::Verdict Trial::judge(bool is_shortest, bool at_any_error) {
   look_for_bad_component();
   const bool is_accepted = attempt_.squared_error <= 1.0 || fixed_step_ || at_any_error;
   if (!integrator_.trial_was_finite || !is_accepted) {
-    return give_up(h_ * integrator_.control.reject(stepper_.info(), attempt_));
+    return try_again_with(h_ * integrator_.control.reject(stepper_.info(), attempt_));
   }
   return guards_ && !is_shortest ? follow_guards() : Verdict::accepted;
 }
@@ -67,7 +67,8 @@ Trial::Verdict Trial::follow_guards() {
         guards_->locate(crossing_, t_, h_, integrator_.control.gain(stepper_.info()), bits);
     if (located.is_found) {
       if (!fixed_step_ && located.attempt.squared_error > 1.0) {
-        return give_up(located.h * integrator_.control.reject(stepper_.info(), located.attempt));
+        return try_again_with(located.h *
+                              integrator_.control.reject(stepper_.info(), located.attempt));
       }
       h_ = located.h;
       attempt_ = located.attempt;
@@ -78,7 +79,7 @@ Trial::Verdict Trial::follow_guards() {
     h_ *= std::max(0.5 * crossing_.theta, fixed_step_ ? least_share_of_fixed : 0.0);
     if (is_short(h_, t_)) return Verdict::changes_at_start;
     if (!fixed_step_) return Verdict::is_tried_again;
-    if (!take_again()) return give_up(h_);
+    if (!take_again()) return try_again_with(h_);
   }
 }
 
@@ -100,7 +101,7 @@ Trial::Verdict Trial::verify_guard_start() {
       return Verdict::accepted;
     }
     h_ *= 0.5;
-    if (!take_again()) return give_up(0.5 * h_);
+    if (!take_again()) return try_again_with(0.5 * h_);
   }
 }
 
@@ -118,7 +119,7 @@ bool Trial::take_again() {
 }
 
 /// Lets a step of size h be tried next, unless all steps have a fixed size.
-Trial::Verdict Trial::give_up(double h) {
+Trial::Verdict Trial::try_again_with(double h) {
   if (fixed_step_) return Verdict::fails;
   h_ = h;
   return Verdict::is_tried_again;

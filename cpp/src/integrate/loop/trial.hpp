@@ -45,7 +45,7 @@ class Trial {
   Verdict follow_guards();
   Verdict verify_guard_start();
   bool take_again();
-  Verdict give_up(double h);
+  Verdict try_again_with(double h);
   void look_for_bad_component();
   bool is_far_off();
   int bad_component_between();

@@ -1,4 +1,4 @@
-// The impacts of HeldJoints.
+// The impacts of HeldJoints, by the laws of impact_laws.hpp.
 
 #include <algorithm>
 #include <cmath>
@@ -76,6 +76,7 @@ void HeldJoints::bounce(const double* q, double* qd, bool is_plastic, bool with_
     const bool bounces = !supports_[j].is_locked && !is_plastic && stop.restitution > 0.0 &&
                          speed > 0.0 && speed >= stop.capture_speed;
     bounced_[j] = bounces_[r] = bounces ? 1 : 0;
+    // The problem is then one for w+ + e w- instead of w+.
     if (bounces) problem.a(r) += stop.restitution * problem.a(r);
   }
   solve_impact(q, qd);

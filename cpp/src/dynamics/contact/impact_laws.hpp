@@ -1,6 +1,6 @@
 /// \file
-/// The laws of impacts of joints on their stops. HeldJoints (held_joints.hpp) computes them, and
-/// Switching applies them in turn.
+/// The laws of impacts of joints on their stops. HeldJoints (held_joints.hpp) computes them, in
+/// impact_laws.cpp, and Impacts (simulate/impacts.hpp) applies them in turn.
 ///
 /// Let w be the rates of joints, positive away from the stop that they touch, and Lambda the
 /// impulses, both as in the problem of joint_forces.hpp. Two laws follow each other:
@@ -11,9 +11,9 @@
 ///
 ///    e = 0 below the capture speed. A joint that was leaving its stop and is thrown back strikes
 ///    it in a later impact at the same time. So do joints whose impacts alternate faster and faster
-///    between their stops, once double precision cannot tell the times apart. Therefore a joint at
-///    rest at its stop counts as leaving if nothing pushes it against the stop. At the start of a
-///    run, no joint counts as leaving.
+///    between their stops, once double precision cannot tell the times apart. To treat both alike,
+///    a joint at rest at its stop counts as leaving it unless something pushes it against the stop;
+///    at the start of a run, no joint does.
 /// 2. A joint that is pushed back to its stop is captured if it did not bounce and leaves more
 ///    slowly than the capture speed, or if it is back before double precision can tell the times
 ///    apart. A last impact, plastic at all closed stops, stops it. The rates v+ are the nearest to
