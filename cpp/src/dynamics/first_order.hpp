@@ -25,8 +25,12 @@ struct FirstOrder {
   /// If each lane of a block is a trajectory of its own, `t` is a pack, too.
   template <class Time>
   PENDCORE_INLINE void operator()(const Time& t, const Block* y, Block* dydt) const {
-    dydt[0] = y[1];
-    dydt[1] = accelerations_at(dynamics, t, y[0], y[1]);
+    if constexpr (requires { dynamics.derivative(t, y, dydt); }) {
+      dynamics.derivative(t, y, dydt);
+    } else {
+      dydt[0] = y[1];
+      dydt[1] = accelerations_at(dynamics, t, y[0], y[1]);
+    }
   }
 };
 

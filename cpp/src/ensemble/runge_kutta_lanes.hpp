@@ -33,21 +33,20 @@ struct CalledEquations {
   using Links = Row;
 
   std::shared_ptr<void> form;
-  void (*compute)(const void* form, const Real& t, const Row& q, const Row& qd, Row& qdd);
+  /// Computes the derivative of a state (q, qd).
+  void (*compute)(const void* form, const Real& t, const Row* y, Row* dydt);
   // As lane_equations.hpp says.
   std::function<void(const Scene&, const EquationsOfMotion&)> prepare;
   std::function<void(int lane, const Scene&, const EquationsOfMotion&)> put;
 
-  PENDCORE_INLINE Row accelerations(const Real& t, const Row& q, const Row& qd) const {
-    Row qdd;
-    compute(form.get(), t, q, qd, qdd);
-    return qdd;
+  PENDCORE_INLINE void derivative(const Real& t, const Row* y, Row* dydt) const {
+    compute(form.get(), t, y, dydt);
   }
 };
 template <class Form, class Real, class Row>
-PENDCORE_INLINE void accelerations_in_lanes(const void* form, const Real& t, const Row& q,
-                                            const Row& qd, Row& qdd) {
-  qdd = static_cast<const Form*>(form)->accelerations(t, q, qd);
+PENDCORE_INLINE void derivative_in_lanes(const void* form, const Real& t, const Row* y, Row* dydt) {
+  dydt[0] = y[1];
+  dydt[1] = static_cast<const Form*>(form)->accelerations(t, y[0], y[1]);
 }
 
 /// The lanes of a method on equations: a form that is written into the step, or CalledEquations.

@@ -116,7 +116,7 @@ std::unique_ptr<LaneRunner> runner_of(const LaneTask& task) {
       using Called = CalledEquations<Real, Row>;
       runner = std::make_unique<RungeKuttaRunner<method, Called, set>>(
           task, Called{.form = form,
-                       .compute = only<&accelerations_in_lanes<Form, Real, Row>, set>(),
+                       .compute = only<&derivative_in_lanes<Form, Real, Row>, set>(),
                        .prepare = [form](const auto&... one) { form->prepare(one...); },
                        .put = [form](const auto&... one) { form->put(one...); }});
     } else {
