@@ -30,8 +30,7 @@ class TangentSeries {
   using Block = Pack<4>;
   static constexpr int blocks = 0;  ///< known at run time only
   static constexpr bool is_short = false;
-  static constexpr InstructionSet best = InstructionSet::x86_64_v3;
-  static constexpr InstructionSet least = InstructionSet::baseline;
+  static constexpr Sets sets = clones::usual;
 
   TangentSeries(Motion motion, int count)
       : motion_(std::move(motion)),

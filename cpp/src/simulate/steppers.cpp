@@ -78,13 +78,14 @@ class SceneSystem final : public DifferentiableSystem {
 /// ledger, and processors from before 2013; in a small module, scenes with effects.
 template <const auto& table>
 std::unique_ptr<Stepper> explicit_stepper(const Wanted& wanted) {
-  constexpr InstructionSet least = least_of_special_kernels;
+  constexpr Sets special = clones::special;
   auto in_memory = [&]() -> std::unique_ptr<Stepper> {
     const int row = row_in_memory(wanted.links(), wanted.compensated);
     return runge_kutta_in_memory(table.info.name, std::make_unique<SceneSystem>(wanted, row),
                                  wanted.links(), wanted.compensated);
   };
-  if (wanted.compensated || wanted.keeps_ledger || instruction_set() < least) return in_memory();
+  if (wanted.compensated || wanted.keeps_ledger || instruction_set() < special.least)
+    return in_memory();
   return std::visit(
       [&]<class Form>(const Form& form) -> std::unique_ptr<Stepper> {
         constexpr bool is_bare =
@@ -94,8 +95,8 @@ std::unique_ptr<Stepper> explicit_stepper(const Wanted& wanted) {
           return in_memory();
         } else {
           using System = FirstOrder<Form>;
-          return std::make_unique<RungeKuttaFixed<table, System, least>>(System{form},
-                                                                         wanted.equations.effects);
+          return std::make_unique<RungeKuttaFixed<table, System, special>>(
+              System{form}, wanted.equations.effects);
         }
       },
       wanted.equations.form);

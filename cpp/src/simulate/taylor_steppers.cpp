@@ -37,7 +37,7 @@ std::unique_ptr<Stepper> make_taylor_stepper(const Scene& scene, const Equations
   const auto& effects = equations.effects;
   if (auto free = series_with_torque(equations)) {
     if constexpr (has_special_kernels_of_rare_runs) {
-      if (!equations.may_have_held_joints() && instruction_set() >= free->least)
+      if (!equations.may_have_held_joints() && instruction_set() >= free->sets.least)
         return of(*std::move(free));
     }
     return of(SeriesWithHolds(*std::move(free), chain.template operator()<Pair>(), effects));

@@ -97,8 +97,7 @@ class ChainSeries {
   using Block = Row;
   static constexpr int blocks = 0;  ///< known at run time only
   static constexpr bool is_short = false;
-  static constexpr InstructionSet best = InstructionSet::x86_64_v3;
-  static constexpr InstructionSet least = InstructionSet::baseline;
+  static constexpr Sets sets = clones::usual;
   static constexpr int places = RowsInMemory<Row, Number>::places;
 
   /// All trajectories have rotors between their links, or none has. `effects` are null for a chain

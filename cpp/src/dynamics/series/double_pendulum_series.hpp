@@ -137,10 +137,7 @@ class DoublePendulumSeries {
   using Block = Pack<4>;
   static constexpr int blocks = 1;
   static constexpr bool is_short = !Torque::is_there;  ///< bare, without a torque
-  static constexpr InstructionSet best = best_for(is_short ? 4 : 2);
-  /// Where it has no clone, series_with_holds.hpp has the same bits.
-  static constexpr InstructionSet least =
-      is_short ? InstructionSet::baseline : least_of_special_kernels;
+  static constexpr Sets sets = is_short ? clones::wide : clones::special;
 
   DoublePendulumSeries(const DoublePendulumConstants& constants, Torque torque)
       : constants_(constants), torque_(std::move(torque)) {}

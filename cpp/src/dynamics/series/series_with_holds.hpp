@@ -19,8 +19,7 @@ class SeriesWithHolds {
   using Block = Free::Block;
   static constexpr int blocks = Free::blocks;
   static constexpr bool is_short = false;
-  static constexpr InstructionSet best = InstructionSet::x86_64_v3;
-  static constexpr InstructionSet least = InstructionSet::baseline;
+  static constexpr Sets sets = clones::usual;
 
   SeriesWithHolds(Free free, ChainSeries<Pair> held, std::shared_ptr<const EffectsInForce> effects)
       : free_(std::move(free)), held_(std::move(held)), effects_(std::move(effects)) {}

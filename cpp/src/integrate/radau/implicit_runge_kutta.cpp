@@ -187,12 +187,11 @@ class ImplicitRungeKutta final : public Stepper {
   std::unique_ptr<DifferentiableSystem> system_;
   CollocationStep<links> step_;
 
-  static constexpr InstructionSet best = best_for(2);
   Attempt (*attempt_)(CollocationStep<links>*, double, double,
-                      const std::function<bool()>*) = fastest<&attempt_collocation<links>, best>();
-  void (*accept_)(CollocationStep<links>*, double) = fastest<&accept_collocation<links>, best>();
+                      const std::function<bool()>*) = fastest<&attempt_collocation<links>>();
+  void (*accept_)(CollocationStep<links>*, double) = fastest<&accept_collocation<links>>();
   void (*interpolant_)(const CollocationStep<links>*,
-                       double*) = fastest<&interpolant_of_collocation<links>, best>();
+                       double*) = fastest<&interpolant_of_collocation<links>>();
 };
 
 }  // namespace

@@ -27,14 +27,12 @@ PENDCORE_INLINE void evaluate_system(const System* system, double t, const doubl
   for (int i = 0; i < System::blocks; ++i) store(dydt + i * width, rate[i]);
 }
 
-/// `least` is the lowest instruction set that it is compiled for.
-template <const auto& method, class System, InstructionSet least = InstructionSet::baseline>
+template <const auto& method, class System, Sets sets = clones::usual>
 class RungeKuttaFixed final : public Stepper {
   using Memory = StepMemory<method, System>;
   using Block = typename Memory::Block;
   static constexpr int blocks = Memory::blocks;
   static constexpr int width = Lanes<Block>::width;
-  static constexpr InstructionSet best = best_for(width);
   static constexpr int stages = Memory::stages;
 
  public:
@@ -132,15 +130,15 @@ class RungeKuttaFixed final : public Stepper {
   double t_ = 0.0;  ///< the time of the attempt
   bool has_dense_stages_ = false;
   Attempt (*attempt_)(Memory*, double, double,
-                      double) = fastest<&attempt_step<method, System>, best, least>();
+                      double) = fastest<&attempt_step<method, System>, sets>();
   void (*dense_stages_)(Memory*, double,
-                        double) = fastest<&dense_stages_of_step<method, System>, best, least>();
-  void (*interpolant_)(const Block*, const Block (*)[blocks], double, double*) =
-      fastest<&interpolant_of_step<method, Block, blocks>, best, least>();
+                        double) = fastest<&dense_stages_of_step<method, System>, sets>();
+  void (*interpolant_)(const Block*, const Block (*)[blocks], double,
+                       double*) = fastest<&interpolant_of_step<method, Block, blocks>, sets>();
   void (*sample_)(const double*, TwoDouble, double, const double*, int,
-                  double*) = fastest<&sample_blocks<Block, blocks, Memory::degree>, best, least>();
+                  double*) = fastest<&sample_blocks<Block, blocks, Memory::degree>, sets>();
   void (*evaluate_)(const System*, double, const double*,
-                    double*) = fastest<&evaluate_system<System>, best, least>();
+                    double*) = fastest<&evaluate_system<System>, sets>();
 };
 
 }  // namespace pendcore

@@ -133,7 +133,7 @@ template <const auto& method, class Block>
 class RungeKuttaInMemory final : public Stepper {
   using Method = std::remove_cvref_t<decltype(method)>;
   static constexpr int width = Lanes<Block>::width;
-  static constexpr InstructionSet best = best_for(width);
+  static constexpr Sets sets = width >= 4 ? clones::wide : clones::usual;
   static constexpr int stages = Method::stages;
   static constexpr int all_stages = Method::all_stages;
   static constexpr int degree = Method::degree;
@@ -288,12 +288,12 @@ class RungeKuttaInMemory final : public Stepper {
   bool has_dense_stages_ = false;
   Attempt (*attempt_)(const StepInMemory*, double, double,
                       double) = compensated_
-                                    ? fastest<&attempt_in_memory<method, Block, true>, best>()
-                                    : fastest<&attempt_in_memory<method, Block, false>, best>();
+                                    ? fastest<&attempt_in_memory<method, Block, true>, sets>()
+                                    : fastest<&attempt_in_memory<method, Block, false>, sets>();
   void (*dense_stages_)(const StepInMemory*, double, double,
-                        double*) = fastest<&dense_stages_in_memory<method, Block>, best>();
+                        double*) = fastest<&dense_stages_in_memory<method, Block>, sets>();
   void (*interpolant_)(const StepInMemory*, double,
-                       double*) = fastest<&interpolant_in_memory<method, Block>, best>();
+                       double*) = fastest<&interpolant_in_memory<method, Block>, sets>();
 };
 
 template <const auto& method>

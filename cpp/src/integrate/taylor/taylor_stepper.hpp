@@ -24,8 +24,7 @@ class Taylor final : public Stepper {
   using Memory = TaylorMemory<Series>;
   using Block = typename Series::Block;
   static constexpr int width = Lanes<Block>::width;
-  static constexpr InstructionSet best = Series::best;
-  static constexpr InstructionSet least = Series::least;
+  static constexpr Sets sets = Series::sets;
 
  public:
   Taylor(Series series, Rates rates, int quadratures, bool compensated = false)
@@ -195,16 +194,16 @@ class Taylor final : public Stepper {
   /// Without the kernel for short series, where that is not compiled.
   template <bool compensated>
   static Attempt attempt_in_parts(Memory* memory, double t_new, double h) {
-    static const auto advance = fastest<&advance_series<Series, compensated>, best, least>();
-    static const auto expand = fastest<&taylor_detail::expand<Series>, best, least>();
+    static const auto advance = fastest<&advance_series<Series, compensated>, sets>();
+    static const auto expand = fastest<&taylor_detail::expand<Series>, sets>();
     return attempt_series(memory, t_new, h, advance, expand);
   }
   template <bool compensated>
   static auto attempt_kernel() {
     if constexpr (Series::is_short && (!compensated || has_special_kernels_of_rare_runs)) {
-      constexpr InstructionSet special = least_of_special_kernels;
-      if (instruction_set() < special) return &Taylor::attempt_in_parts<compensated>;
-      return fastest<&attempt_short_series<Series, compensated>, best, special>();
+      constexpr Sets special{least_of_special_kernels, sets.best};
+      if (instruction_set() < special.least) return &Taylor::attempt_in_parts<compensated>;
+      return fastest<&attempt_short_series<Series, compensated>, special>();
     } else {
       return &Taylor::attempt_in_parts<compensated>;
     }
@@ -332,9 +331,9 @@ class Taylor final : public Stepper {
   Attempt (*attempt_)(Memory*, double, double) = compensated_ ? attempt_kernel<true>()
                                                               : attempt_kernel<false>();
   bool (*expand_)(Memory*, double, const double*, double*, double&,
-                  double&) = fastest<&taylor_detail::expand<Series>, best, least>();
+                  double&) = fastest<&taylor_detail::expand<Series>, sets>();
   void (*powers_of_step_)(const Memory*, double, int, int, int,
-                          double*) = fastest<&powers_of_step<Series>, best, least>();
+                          double*) = fastest<&powers_of_step<Series>, sets>();
   void (*sample_)(const double*, TwoDouble, double, const double*, int, double*, int,
                   int) = fastest<&sample_series>();
 };
