@@ -35,9 +35,13 @@ void c_library(const double* angle, double* sums) {
   for (int i = 0; i < angles; ++i) sums[i] = std::sin(angle[i]) + std::cos(angle[i]);
 }
 
+/// As runs compile kernels on packs of this width.
+template <class Real>
+constexpr Sets sets_of = Lanes<Real>::width >= 4 ? wide_sets : usual_sets;
+
 template <class Real>
 void latency(benchmark::State& state) {
-  const auto kernel = fastest<&chain<Real>>();
+  const auto kernel = fastest<&chain<Real>, sets_of<Real>>();
   std::vector<double> angle(8, 1.0);
   for (auto _ : state) kernel(angle.data());
   benchmark::DoNotOptimize(angle.data());
@@ -57,7 +61,7 @@ void stream(benchmark::State& state, void (*kernel)(const double*, double*)) {
 
 template <class Real>
 void throughput(benchmark::State& state) {
-  stream(state, fastest<&apart<Real>>());
+  stream(state, fastest<&apart<Real>, sets_of<Real>>());
 }
 
 void throughput_c_library(benchmark::State& state) { stream(state, c_library); }

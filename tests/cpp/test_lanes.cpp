@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <utility>
 
 #include "arithmetic/instruction_set.hpp"
@@ -114,6 +115,12 @@ TEST_CASE("members of another form, or that are not allowed, are left to single 
       at_odd([](Scene& scene) { scene.effects[0] = RotorInertia{.joint = 2, .armature = 0.0}; });
   CHECK(left_to_single_runs(chain(6, {RotorInertia{.joint = 2, .armature = 0.1}}), "taylor",
                             has_no_rotor) == 10);
+  for (const std::size_t n : {3, 4}) {
+    for (const char* method : {"dopri5", "dop853"}) {
+      CHECK(left_to_single_runs(chain(n, {RotorInertia{.joint = 2, .armature = 0.1}}), method,
+                                has_no_rotor) == 10);
+    }
+  }
   const auto is_negative = at_odd([](Scene& scene) { scene.links[1].mass = -0.5; });
   CHECK(left_to_single_runs(chain(2), "taylor", is_negative) == 10);
   CHECK(left_to_single_runs(chain(2), "dop853", is_negative) == 10);
@@ -127,7 +134,13 @@ TEST_CASE("scenes and methods that have lanes, and those that have none") {
     CHECK(have_lanes(chain(2), method));
     CHECK(have_lanes(chain(3), method));
     CHECK(have_lanes(chain(4), method));
+    CHECK(have_lanes(chain(3, {RotorInertia{.joint = 3, .armature = 0.1}}), method));
+    CHECK(have_lanes(chain(4, {RotorInertia{.joint = 2, .armature = 0.1}}), method));
     CHECK_FALSE(have_lanes(chain(5), method));
+    auto none = [](double, std::span<const double>, std::span<const double>, std::span<double>) {};
+    for (const std::size_t n : {1, 2, 3, 4}) {
+      CHECK_FALSE(have_lanes(chain(n, {CompiledUser::of(none)}), method));
+    }
   }
   CHECK(have_lanes(chain(1), "auto"));
   CHECK_FALSE(have_lanes(chain(1), "taylor"));

@@ -22,6 +22,7 @@ ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs/how_to/add_an_effect.md").read_text()
 STEPS, OTHER_LAWS = PAGE.split("## Other kinds of law")
 HEADER, ROW_LAW, LIST, SOURCE, *LINES_OF_CPP = re.findall(r"```cpp\n(.*?)```", STEPS, re.DOTALL)
+COUPLE = re.findall(r"```c\+\+\n(.*?)```", PAGE, re.DOTALL)[0]
 GIVEN = ROOT / "cpp/include/pendcore/effects"
 EFFECTS = ROOT / "cpp/src/effects"
 LAW, *LINES_OF_PYTHON = re.findall(r"```python\n(.*?)```", STEPS, re.DOTALL)
@@ -106,6 +107,10 @@ def test_the_lines_to_add_stand_where_it_says() -> None:
     assert kind == "magnetic_brake"
     assert {*told} == set(re.findall(r"\.name = \"(\w+)\"", HEADER)) - {"MagneticBrake"} | {"joint"}
     assert "SMOOTH" in (ROOT / "tests/effects/test_ledger.py").read_text()
+
+
+def test_the_couple_that_it_shows_is_that_of_a_torsional_spring() -> None:
+    assert COUPLE in (EFFECTS / "torsional_spring.cpp").read_text()
 
 
 ELSEWHERE = {

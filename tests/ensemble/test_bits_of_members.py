@@ -53,6 +53,13 @@ SCENES = {
         links=chain(3),
         effects=[E.Motor(joint=3, sinusoid=WAVE), E.ViscousJoint(joint=3, damping=0.1)],
     ),
+    "three links with rotors": pc.Scene(
+        links=chain(3), effects=[E.RotorInertia(joint=j, armature=0.1) for j in (1, 3)]
+    ),
+    "four links with a rotor": pc.Scene(
+        links=chain(4),
+        effects=[E.RotorInertia(joint=2, armature=0.1), E.ViscousJoint(joint=2, damping=0.1)],
+    ),
     "four links": pc.Scene(links=chain(4), effects=[E.TorsionalSpring(joint=4, stiffness=3.0)]),
     "five links": pc.Scene(links=chain(5)),
     "eight links": pc.Scene(links=chain(8), effects=[E.RotorInertia(joint=3, armature=0.1)]),

@@ -56,14 +56,22 @@ def test_what_has_no_lanes_of_runge_kutta_runs_one_by_one(name):
     assert_same(scene, starts(7, 3, 2, 0.5), 0.0, (0, 1), method="dop853")
 
 
+VARIED = {
+    "drag and wind on two links, a motor and damping": [
+        "effect[1].diameter", "effect[2].sinusoid.amplitude", "effect[4].damping",
+    ],
+    "rotors in all joints, drag and damping": [
+        "effect[2].armature", "effect[3].armature", "effect[4].diameter",
+    ],
+}  # fmt: skip
+
+
 @pytest.mark.parametrize("method", ["dopri5", "dop853"])
 @pytest.mark.parametrize("n", [3, 4])
-def test_parameters_differ_from_lane_to_lane(n, method):
-    scene = chain(n, OF_RUNGE_KUTTA["drag and wind on two links, a motor and damping"])
-    names = [
-        "link[1].mass", "link[3].length", "gravity", "effect[1].diameter",
-        "effect[2].sinusoid.amplitude", "effect[4].damping",
-    ]  # fmt: skip
+@pytest.mark.parametrize("effects", VARIED)
+def test_parameters_differ_from_lane_to_lane(effects, n, method):
+    scene = chain(n, OF_RUNGE_KUTTA[effects])
+    names = ["link[1].mass", "link[3].length", "gravity", *VARIED[effects]]
     values = pc.draw.uniform(0.1, 2.0, (13, len(names)), seed=6)
     values[5, 4] = values[7, 5] = 0.0  # which may give these members other equations
     vary = {name: values[:, k] for k, name in enumerate(names)}

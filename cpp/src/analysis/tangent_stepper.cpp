@@ -30,7 +30,7 @@ class TangentSeries {
   using Block = Pack<4>;
   static constexpr int blocks = 0;  ///< known at run time only
   static constexpr bool is_short = false;
-  static constexpr Sets sets = clones::usual;
+  static constexpr Sets sets = usual_sets;
 
   TangentSeries(Motion motion, int count)
       : motion_(std::move(motion)),

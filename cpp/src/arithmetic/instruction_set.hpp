@@ -66,20 +66,19 @@ struct Sets {
 constexpr InstructionSet least_of_special_kernels =
     PENDCORE_CLONES != 0 ? InstructionSet::x86_64_v3 : InstructionSet::baseline;
 
-/// All clones that there are, but those of lanes, which have a kernel of their own for the width of
-/// each set's registers (only()). One number or two at a time, series of chains, dense output and
-/// its defect take as long on x86-64-v4 as on x86-64-v3, to 2 %.
-namespace clones {
-inline constexpr Sets usual{InstructionSet::baseline, InstructionSet::x86_64_v3};
-/// Chains in memory, four numbers at a time: x86-64-v4 takes 5 to 8 % less for their steps, 6 to
-/// 12 % for their Jacobian. The series of a bare double pendulum: 3 %.
-inline constexpr Sets wide{InstructionSet::baseline, InstructionSet::x86_64_v4};
+// The table of clones. Those of lanes are not in it: they have a kernel of their own for the width
+// of each set's registers, only(). docs/background/one_equation.md has the figures.
+
+/// x86-64-v4 gains nothing: one number or two at a time, series, dense output and its defect.
+inline constexpr Sets usual_sets{InstructionSet::baseline, InstructionSet::x86_64_v3};
+/// Four numbers at a time: chains in memory; and the series of a bare double pendulum.
+inline constexpr Sets wide_sets{InstructionSet::baseline, InstructionSet::x86_64_v4};
 /// Kernels that are only faster than a general one.
-inline constexpr Sets special{least_of_special_kernels, InstructionSet::x86_64_v3};
-}  // namespace clones
+inline constexpr Sets special_sets{least_of_special_kernels, InstructionSet::x86_64_v3};
+inline constexpr Sets wide_special_sets{least_of_special_kernels, InstructionSet::x86_64_v4};
 
 /// The clone of `kernel` for this processor, which has at least the lowest of the sets.
-template <auto kernel, Sets sets = clones::usual>
+template <auto kernel, Sets sets = usual_sets>
 typename Clones<kernel>::Function fastest() {
 #if PENDCORE_CLONES
   const InstructionSet offered = instruction_set();

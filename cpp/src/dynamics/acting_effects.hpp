@@ -6,6 +6,7 @@
 /// of a row share a law. Effects that only change constants of the mass matrix are in inertia.hpp.
 #pragma once
 
+#include <bit>
 #include <memory>
 #include <tuple>
 #include <variant>

@@ -97,14 +97,13 @@ RightHandSide right_hand_side(const EquationsOfMotion& equations) {
   return std::visit(
       []<class Form>(const Form& form) -> RightHandSide {
         if constexpr (std::is_same_v<Form, std::shared_ptr<Chain>>) {
-          static const auto compute = fastest<&accelerations_of_form<Chain>, clones::wide>();
+          static const auto compute = fastest<&accelerations_of_form<Chain>, wide_sets>();
           return {form.get(), compute};
         } else {
           static const auto compute = fastest<&accelerations_of_form<Form>>();
           if constexpr (has_special_kernels_of_rare_runs && takes_states_in_lanes<Form>) {
-            constexpr Sets special = clones::special;
-            static const auto three = fastest<&derivatives_of_three_of_form<Form>, special>();
-            return {&form, compute, instruction_set() < special.least ? nullptr : three};
+            static const auto three = fastest<&derivatives_of_three_of_form<Form>, special_sets>();
+            return {&form, compute, instruction_set() < special_sets.least ? nullptr : three};
           }
           return {&form, compute};
         }

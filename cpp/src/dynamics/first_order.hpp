@@ -25,7 +25,7 @@ struct FirstOrder {
   /// If each lane of a block is a trajectory of its own, `t` is a pack, too.
   template <class Time>
   PENDCORE_INLINE void operator()(const Time& t, const Block* y, Block* dydt) const {
-    if constexpr (requires { dynamics.derivative(t, y, dydt); }) {
+    if constexpr (requires { dynamics.derivative(t, y, dydt); }) {  // CalledEquations write it
       dynamics.derivative(t, y, dydt);
     } else {
       dydt[0] = y[1];

@@ -74,8 +74,7 @@ void Jacobian::compute(double t) const {
       [&]<class Form>(const Form& form) {
         if constexpr (std::is_same_v<Form, std::shared_ptr<Chain>>) {
           static const auto accelerations =
-              fastest<&accelerations_in_memory<ChainOf<Dual<double>>, Dual<double>>,
-                      clones::wide>();
+              fastest<&accelerations_in_memory<ChainOf<Dual<double>>, Dual<double>>, wide_sets>();
           accelerations(chain_.get(), t, q_.data(), qd_.data(), qdd_.data());
         } else {
           static const auto accelerations = fastest<&accelerations_in_memory<Form, Dual<double>>>();
@@ -93,15 +92,14 @@ void Jacobian::compute(double t) const {
 void Jacobian::operator()(double t, const double* q, const double* qd, Eigen::Ref<Matrix> by_q,
                           Eigen::Ref<Matrix> by_qd) const {
   // Both matrices at once have the bits of each direction alone, and are only faster.
-  constexpr Sets special = clones::special;
-  if (chain_ || !has_special_kernels_of_rare_runs || instruction_set() < special.least) {
+  if (chain_ || !has_special_kernels_of_rare_runs || instruction_set() < special_sets.least) {
     return direction_by_direction(t, q, qd, by_q, by_qd);
   }
   std::visit(
       [&]<class Form>(const Form& form) {
         if constexpr (has_special_kernels_of_rare_runs &&
                       !std::is_same_v<Form, std::shared_ptr<Chain>>) {
-          static const auto both = fastest<&jacobian_in_memory<Form>, special>();
+          static const auto both = fastest<&jacobian_in_memory<Form>, special_sets>();
           both(&form, t, q, qd, by_q.data(), by_qd.data());
         }
       },

@@ -1,6 +1,5 @@
 /// \file
-/// A right-hand side computes what stands here, and the sums of couples (couples.hpp): the laws of
-/// effects.
+/// The laws of effects that a right-hand side computes; the sums of couples are in couples.hpp.
 ///
 /// A law is written once, for a row of joints or links: `Row` is double for a chain of one link, a
 /// Pair for two links, and a Pack<4> for every four links of a longer chain. Its fields are rows of
@@ -32,7 +31,6 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <tuple>
 #include <variant>
 

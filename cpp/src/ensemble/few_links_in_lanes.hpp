@@ -18,6 +18,7 @@ struct FewLinksInLanes {
   using Links = EachLink<Real, n>;
   using Effects = EffectsInLanes<Links, Real>;
   static constexpr bool is_called = coupled || n > 3;
+  /// Where they are not called: a step loops over its stages around one copy of them.
   static constexpr bool is_long = true;
 
   static bool has(const Scene& scene, const EquationsOfMotion& equations) {
@@ -35,7 +36,7 @@ struct FewLinksInLanes {
     const Chain& chain = *std::get<std::shared_ptr<Chain>>(one.form);
     for (int i = 0; i < n; ++i) {
       put_constants(link[i], lane, chain.link(i));
-      rotor[i][lane] = chain.rotor(i);
+      if constexpr (coupled) rotor[i][lane] = chain.rotor(i);
     }
     payload_mass[lane] = chain.payload_mass();
     gravity[lane] = chain.gravity();
@@ -153,7 +154,7 @@ struct FewLinksInLanes {
   }
 
   ChainLinkOf<Real> link[n] = {};
-  Real rotor[n] = {};
+  Real rotor[coupled ? n : 1] = {};
   Real payload_mass = {}, gravity = {};
   bool is_loaded = false;
   Effects effects;
@@ -167,5 +168,15 @@ template <class Real>
 using FourLinksInLanes = FewLinksInLanes<Real, 4, false>;
 template <class Real>
 using FourCoupledLinks = FewLinksInLanes<Real, 4, true>;
+
+/// Calls use<Form>() with the form of a trajectory that Runge-Kutta methods take in lanes. Returns
+/// whether there is one.
+template <class Use>
+bool with_runge_kutta_form(const Scene& scene, const EquationsOfMotion& equations, const Use& use) {
+  return with_first_form<OneLinkWithCouples, OneLinkWithEverything, TwoBareLinksInLanes,
+                         TwoLinksWithCouples, TwoLinksWithWaves, TwoLinksWithLaws,
+                         TwoLinksWithEverything, ThreeLinksInLanes, ThreeCoupledLinks,
+                         FourLinksInLanes, FourCoupledLinks>(scene, equations, use);
+}
 
 }  // namespace pendcore

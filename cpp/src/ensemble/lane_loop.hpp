@@ -21,7 +21,7 @@
 
 namespace pendcore {
 
-/// With this many members left, or fewer, to run them one by one is faster than in lanes.
+/// With this many members left, or fewer, running them one by one is faster.
 template <int width>
 constexpr int few_lanes = width / 2;
 /// Steps between two looks at whether to go on: a fraction of a millisecond.
@@ -259,7 +259,7 @@ class LaneLoop : public RecordingLanes<width> {
 };
 
 /// The runners of the methods of Dormand and Prince, and of Taylor series; null if the scene has
-/// none in lanes. Each set of instructions has its runners in a file of its own.
+/// none in lanes. The former are compiled in lanes_of_four.cpp and lanes_of_eight.cpp.
 template <InstructionSet set>
 std::unique_ptr<LaneRunner> make_runge_kutta_lanes(std::string_view method, const LaneTask& task);
 template <InstructionSet set>

@@ -1,7 +1,7 @@
 #include "ensemble/lanes.hpp"
 
+#include "ensemble/few_links_in_lanes.hpp"
 #include "ensemble/lane_loop.hpp"
-#include "ensemble/runge_kutta_lanes.hpp"
 #include "pendcore/methods.hpp"
 #include "scene/effects_of_scene.hpp"
 
@@ -23,7 +23,7 @@ bool has_lanes(std::string_view method, const Scene& scene, const EquationsOfMot
   }
   const bool is_embedded =
       method == dormand_prince_5.info.name || method == dormand_prince_8.info.name;
-  return is_embedded && with_form(scene, equations, []<template <class> class>() {});
+  return is_embedded && with_runge_kutta_form(scene, equations, []<template <class> class>() {});
 }
 
 }  // namespace

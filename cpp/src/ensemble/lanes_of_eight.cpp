@@ -1,3 +1,4 @@
+// Lanes of Runge-Kutta methods for AVX-512: eight trajectories in a pack.
 #include "ensemble/runge_kutta_runner.hpp"
 
 namespace pendcore {

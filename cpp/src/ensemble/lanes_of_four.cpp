@@ -1,3 +1,4 @@
+// Lanes of Runge-Kutta methods for AVX2, and for builds without clones: four trajectories a pack.
 #include "ensemble/runge_kutta_runner.hpp"
 
 namespace pendcore {

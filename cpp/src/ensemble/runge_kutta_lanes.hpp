@@ -15,15 +15,6 @@
 
 namespace pendcore {
 
-/// Calls use<Form>() with the form of a trajectory. Returns whether there is one.
-template <class Use>
-bool with_form(const Scene& scene, const EquationsOfMotion& equations, const Use& use) {
-  return with_first_form<OneLinkWithCouples, OneLinkWithEverything, TwoBareLinksInLanes,
-                         TwoLinksWithCouples, TwoLinksWithWaves, TwoLinksWithLaws,
-                         TwoLinksWithEverything, ThreeLinksInLanes, ThreeCoupledLinks,
-                         FourLinksInLanes, FourCoupledLinks>(scene, equations, use);
-}
-
 /// A form of the equations that a step calls: one step of a method serves all forms with such rows.
 /// One link or two with couples alone, and three links, take 4 to 12 % less if they are written
 /// into the step. With other effects nothing is lost, and dopri5 takes 13 % less with a law in a

@@ -108,7 +108,7 @@ template <const auto& method, InstructionSet set>
 std::unique_ptr<LaneRunner> runner_of(const LaneTask& task) {
   using Real = Pack<width_on(set)>;
   std::unique_ptr<LaneRunner> runner;
-  with_form(task.scene, *task.equations, [&]<template <class> class AnyForm>() {
+  with_runge_kutta_form(task.scene, *task.equations, [&]<template <class> class AnyForm>() {
     using Form = AnyForm<Real>;
     using Row = typename Form::Links;
     if constexpr (Form::is_called) {

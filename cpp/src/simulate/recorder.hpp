@@ -39,7 +39,7 @@ class Recorder final : public Observer {
   };
   void interpolate(StepOutput& output, double h);  ///< sets polynomial_
   Kept kept() const;
-  /// A continued run goes on after what is kept so far; a run that never stopped has it, too.
+  /// What is kept so far is also in a run that never stopped; a continued run goes on from there.
   void mark_resumable(const Kept& kept);
   void sample_before(StepOutput& output, const TwoDouble& t_old, double h, double t_end);
   bool is_asked_for(double t) const;

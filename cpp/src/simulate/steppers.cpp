@@ -78,13 +78,12 @@ class SceneSystem final : public DifferentiableSystem {
 /// ledger, and processors from before 2013; in a small module, scenes with effects.
 template <const auto& table>
 std::unique_ptr<Stepper> explicit_stepper(const Wanted& wanted) {
-  constexpr Sets special = clones::special;
   auto in_memory = [&]() -> std::unique_ptr<Stepper> {
     const int row = row_in_memory(wanted.links(), wanted.compensated);
     return runge_kutta_in_memory(table.info.name, std::make_unique<SceneSystem>(wanted, row),
                                  wanted.links(), wanted.compensated);
   };
-  if (wanted.compensated || wanted.keeps_ledger || instruction_set() < special.least)
+  if (wanted.compensated || wanted.keeps_ledger || instruction_set() < special_sets.least)
     return in_memory();
   return std::visit(
       [&]<class Form>(const Form& form) -> std::unique_ptr<Stepper> {
@@ -95,7 +94,7 @@ std::unique_ptr<Stepper> explicit_stepper(const Wanted& wanted) {
           return in_memory();
         } else {
           using System = FirstOrder<Form>;
-          return std::make_unique<RungeKuttaFixed<table, System, special>>(
+          return std::make_unique<RungeKuttaFixed<table, System, special_sets>>(
               System{form}, wanted.equations.effects);
         }
       },

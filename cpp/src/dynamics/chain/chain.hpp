@@ -56,7 +56,7 @@ class ChainOf {
 
   const ActingEffects<Pack<4>>* effects() const { return effects_.get(); }
   const ChainLink& link(int i) const { return links_[i]; }
-  double rotor(int i) const { return rotor_[i]; }        ///< kg m^2
+  double rotor(int i) const { return rotor_[i]; }        ///< kg m^2, between links i - 1 and i
   double payload_mass() const { return payload_mass_; }  ///< kg
   double gravity() const { return gravity_; }            ///< m/s^2
   bool is_loaded() const { return loaded_; }

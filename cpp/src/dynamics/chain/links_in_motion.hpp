@@ -15,7 +15,7 @@ struct LinkInMotion {
   Number cc, ss, sc;        ///< the products of these
   Number centripetal;       ///< L qd^2, m/s^2
   Number center;            ///< m c qd^2, N
-  Number torque;            ///< N m; neither this nor the force is read if nothing loads the chain
+  Number torque;            ///< N m; add_free<false> reads neither this nor the force
   Number force_u, force_n;  ///< N, along the link and across it
 };
 

@@ -185,7 +185,7 @@ void HeldJoints::torques(const EquationsOfMotion& equations, double t, const dou
   for (int j = 0; j < n_; ++j) effects.hold(j, is_held(j));
   forces_.set_mass_matrix(q);
   double sum = 0.0;
-  double size = 0.0;  // the laws' terms count by an eighth: few roundings are in them
+  double size = 0.0;  // the laws' terms count for an eighth: they carry few roundings
   for (int j = 0; j < n_; ++j) {
     const JointSupport& joint = supports_[j];
     const double before = j > 0 ? std::abs(q[j - 1]) : 0.0;

@@ -13,7 +13,7 @@
 ///    it in a later impact at the same time. So do joints whose impacts alternate faster and faster
 ///    between their stops, once double precision cannot tell the times apart. To treat both alike,
 ///    a joint at rest at its stop counts as leaving it unless something pushes it against the stop;
-///    at the start of a run, no joint does.
+///    at the start of a run, no joint counts as leaving.
 /// 2. A joint that is pushed back to its stop is captured if it did not bounce and leaves more
 ///    slowly than the capture speed, or if it is back before double precision can tell the times
 ///    apart. A last impact, plastic at all closed stops, stops it. The rates v+ are the nearest to

@@ -97,7 +97,7 @@ class ChainSeries {
   using Block = Row;
   static constexpr int blocks = 0;  ///< known at run time only
   static constexpr bool is_short = false;
-  static constexpr Sets sets = clones::usual;
+  static constexpr Sets sets = usual_sets;
   static constexpr int places = RowsInMemory<Row, Number>::places;
 
   /// All trajectories have rotors between their links, or none has. `effects` are null for a chain

@@ -137,7 +137,7 @@ class DoublePendulumSeries {
   using Block = Pack<4>;
   static constexpr int blocks = 1;
   static constexpr bool is_short = !Torque::is_there;  ///< bare, without a torque
-  static constexpr Sets sets = is_short ? clones::wide : clones::special;
+  static constexpr Sets sets = is_short ? wide_sets : special_sets;
 
   DoublePendulumSeries(const DoublePendulumConstants& constants, Torque torque)
       : constants_(constants), torque_(std::move(torque)) {}

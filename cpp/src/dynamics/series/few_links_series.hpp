@@ -72,7 +72,7 @@ class FewLinksSeries {
   using Effects = std::shared_ptr<const ActingEffects<Pack<4>>>;
   static constexpr int blocks = 2;
   static constexpr bool is_short = false;
-  static constexpr Sets sets = clones::usual;
+  static constexpr Sets sets = usual_sets;
 
   /// Whether this is the series of a scene whose effects all have one (without_series()): not if
   /// links are coupled by a rotor or may be held, if the pivot moves, or with more than two waves.

@@ -19,7 +19,7 @@ class SeriesWithHolds {
   using Block = Free::Block;
   static constexpr int blocks = Free::blocks;
   static constexpr bool is_short = false;
-  static constexpr Sets sets = clones::usual;
+  static constexpr Sets sets = usual_sets;
 
   SeriesWithHolds(Free free, ChainSeries<Pair> held, std::shared_ptr<const EffectsInForce> effects)
       : free_(std::move(free)), held_(std::move(held)), effects_(std::move(effects)) {}

@@ -27,7 +27,7 @@ PENDCORE_INLINE void evaluate_system(const System* system, double t, const doubl
   for (int i = 0; i < System::blocks; ++i) store(dydt + i * width, rate[i]);
 }
 
-template <const auto& method, class System, Sets sets = clones::usual>
+template <const auto& method, class System, Sets sets = usual_sets>
 class RungeKuttaFixed final : public Stepper {
   using Memory = StepMemory<method, System>;
   using Block = typename Memory::Block;

@@ -133,7 +133,7 @@ template <const auto& method, class Block>
 class RungeKuttaInMemory final : public Stepper {
   using Method = std::remove_cvref_t<decltype(method)>;
   static constexpr int width = Lanes<Block>::width;
-  static constexpr Sets sets = width >= 4 ? clones::wide : clones::usual;
+  static constexpr Sets sets = width >= 4 ? wide_sets : usual_sets;
   static constexpr int stages = Method::stages;
   static constexpr int all_stages = Method::all_stages;
   static constexpr int degree = Method::degree;

@@ -201,9 +201,10 @@ class Taylor final : public Stepper {
   template <bool compensated>
   static auto attempt_kernel() {
     if constexpr (Series::is_short && (!compensated || has_special_kernels_of_rare_runs)) {
-      constexpr Sets special{least_of_special_kernels, sets.best};
-      if (instruction_set() < special.least) return &Taylor::attempt_in_parts<compensated>;
-      return fastest<&attempt_short_series<Series, compensated>, special>();
+      if (instruction_set() < least_of_special_kernels) {
+        return &Taylor::attempt_in_parts<compensated>;
+      }
+      return fastest<&attempt_short_series<Series, compensated>, wide_special_sets>();
     } else {
       return &Taylor::attempt_in_parts<compensated>;
     }
