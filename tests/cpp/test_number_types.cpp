@@ -91,7 +91,7 @@ TEST_CASE("with effects, too, trajectories in a pack have the same bits as each 
                    Motor{.joint = 1, .pd = PD{2.0, 0.3, 1.0}},
                    RotorInertia{.joint = 2, .armature = 0.05},
                    DrivenPivot{.x = Sinusoid{0.1, 5.0, 0.0}, .y = Sinusoid{0.05, 11.0, 0.2}}};
-  const ActingEffects<Pair> effects(scene);
+  const EffectsInRows<Pair> effects(scene);
   const DoublePendulumWithEffects<Parts::everything> pendulum(scene, Inertia(scene), &effects);
   std::mt19937_64 random(5);
   std::uniform_real_distribution any(-4.0, 4.0);

@@ -10,7 +10,7 @@
 #include "arithmetic/floating_point_environment.hpp"
 #include "integrate/loop/first_step.hpp"
 #include "integrate/loop/integrate.hpp"
-#include "integrate/loop/run_limits.hpp"
+#include "integrate/loop/interruption.hpp"
 #include "pendcore/options.hpp"
 #include "scene/effects_of_scene.hpp"
 #include "simulate/checked_options.hpp"

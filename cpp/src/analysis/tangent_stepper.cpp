@@ -140,7 +140,7 @@ std::unique_ptr<Stepper> tangent_stepper(const Scene& scene, int count, double t
     if (auto loaded = series_with_torque(equations)) return by_series(*std::move(loaded));
     if (FewLinksSeries::has(scene, equations)) {
       return by_series(
-          FewLinksSeries(scene, std::dynamic_pointer_cast<ActingEffects<Pack<4>>>(effects)));
+          FewLinksSeries(scene, std::dynamic_pointer_cast<EffectsInRows<Pack<4>>>(effects)));
     }
   }
   const int row = row_in_memory(numbers, false);

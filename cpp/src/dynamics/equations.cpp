@@ -25,8 +25,8 @@ struct Equations::Compiled {
   Scene scene;
   EquationsOfMotion equations;
   std::optional<Jacobian> derivatives{};
-  std::shared_ptr<EffectsInForce> loads = nullptr;  ///< for reactions
-  std::optional<JointForces> joint_forces{};        ///< for the mass matrix
+  std::shared_ptr<EffectsOfRun> loads = nullptr;  ///< for reactions
+  std::optional<JointForces> joint_forces{};      ///< for the mass matrix
 };
 
 Equations::Equations(const Scene& scene) {
@@ -68,8 +68,8 @@ Points Equations::reactions(double t, const Numbers& q, const Numbers& qd) {
   using PlaneVector = Eigen::RowVector2d;
   const Scene& scene = compiled_->scene;
   const Vector qdd = accelerations(t, q, qd);
-  if (!compiled_->loads) compiled_->loads = effects_in_force(scene);
-  EffectsInForce& effects = *compiled_->loads;
+  if (!compiled_->loads) compiled_->loads = effects_of_run(scene);
+  EffectsOfRun& effects = *compiled_->loads;
   if (effects.has_modes) choose_modes(effects, t, q.data(), qd.data(), true);
   Points loads(q.size(), 2);
   effect_forces(scene, effects, t, q.data(), qd.data(),

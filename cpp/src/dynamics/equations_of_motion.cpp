@@ -48,11 +48,11 @@ EquationsOfMotion form_of_motion(const Scene& scene) {
   if (n == 1 && is_bare(scene)) return {SinglePendulum(inertia, scene.gravity)};
   if (n == 2 && is_bare(scene)) return {DoublePendulum(scene, inertia), nullptr};
   if (n == 1) {
-    auto effects = std::make_shared<ActingEffects<double>>(scene);
+    auto effects = std::make_shared<EffectsInRows<double>>(scene);
     return {SinglePendulumWithEffects(scene, inertia, effects.get()), effects};
   }
   if (n == 2) {
-    auto effects = std::make_shared<ActingEffects<Pair>>(scene);
+    auto effects = std::make_shared<EffectsInRows<Pair>>(scene);
     const auto* in_force = effects.get();
     const bool has_spline = std::ranges::any_of(scene.effects, [](const Effect& effect) {
       return effect.info().moves_pivot && effect->has_modes();
@@ -69,7 +69,7 @@ EquationsOfMotion form_of_motion(const Scene& scene) {
     }
     return {DoublePendulumWithEffects<Parts::couples>(scene, inertia, in_force), effects};
   }
-  auto effects = std::make_shared<ActingEffects<Pack<4>>>(scene);
+  auto effects = std::make_shared<EffectsInRows<Pack<4>>>(scene);
   return {std::make_shared<Chain>(scene, effects), effects};
 }
 
@@ -81,7 +81,7 @@ EquationsOfMotion equations_of_motion(const Scene& scene) {
   return equations;
 }
 
-void choose_modes(EffectsInForce& effects, double t, const double* q, const double* qd,
+void choose_modes(EffectsOfRun& effects, double t, const double* q, const double* qd,
                   bool forward) {
   for (std::size_t i = 0; i < effects.effects.size(); ++i) {
     const EffectBehaviour& effect = *effects.effects[i];

@@ -23,7 +23,7 @@ struct EquationsOfMotion {
                DoublePendulumWithEffects<Parts::laws>, DoublePendulumWithEffects<Parts::everything>,
                std::shared_ptr<Chain>>
       form;
-  std::shared_ptr<EffectsInForce> effects = nullptr;  ///< null for a bare form
+  std::shared_ptr<EffectsOfRun> effects = nullptr;    ///< null for a bare form
   std::shared_ptr<HeldJoints> held_joints = nullptr;  ///< null where no law may change
 
   /// Whether no effect changes its law or holds a joint along a run.
@@ -75,7 +75,6 @@ void accelerations_in_force(const EquationsOfMotion& equations, double t, const 
 
 /// Freezes every effect to the mode that a state calls for. Where two modes meet, `forward`, the
 /// direction of time, decides.
-void choose_modes(EffectsInForce& effects, double t, const double* q, const double* qd,
-                  bool forward);
+void choose_modes(EffectsOfRun& effects, double t, const double* q, const double* qd, bool forward);
 
 }  // namespace pendcore

@@ -61,7 +61,7 @@ Jacobian::Jacobian(const Scene& scene, const EquationsOfMotion& equations)
     : n_(static_cast<int>(scene.links.size())), equations_(equations), q_(n_), qd_(n_), qdd_(n_) {
   if (std::holds_alternative<std::shared_ptr<Chain>>(equations.form)) {
     chain_ = std::make_shared<ChainOf<Dual<double>>>(
-        scene, std::dynamic_pointer_cast<ActingEffects<Pack<4>>>(equations.effects));
+        scene, std::dynamic_pointer_cast<EffectsInRows<Pack<4>>>(equations.effects));
   }
 }
 

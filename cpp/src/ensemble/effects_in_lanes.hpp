@@ -1,7 +1,7 @@
 /// \file
 /// The effects of several trajectories, one in each lane, for the equations that take them as they
-/// take ActingEffects. Their laws never change, and have the same kinds in all lanes
-/// (EffectsInForce::kinds).
+/// take EffectsInRows. Their laws never change, and have the same kinds in all lanes
+/// (EffectsOfRun::kinds).
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "arithmetic/row_of_links.hpp"
-#include "dynamics/acting_effects.hpp"
+#include "dynamics/effects_in_rows.hpp"
 
 namespace pendcore {
 
@@ -61,7 +61,7 @@ class EffectsInLanes : public Drives<Real> {
 
   /// Whether the effects of a trajectory have lanes.
   template <class RowOfRun>
-  static bool has(const ActingEffects<RowOfRun>& effects) {
+  static bool has(const EffectsInRows<RowOfRun>& effects) {
     const auto is_drag = [](const auto& entry) {
       return std::holds_alternative<const SharedLaw<RodDragLaw, RowOfRun>*>(entry.law);
     };
@@ -81,7 +81,7 @@ class EffectsInLanes : public Drives<Real> {
 
   /// Makes room for effects of the kinds of a trajectory of `links` links.
   template <class RowOfRun>
-  void prepare(const ActingEffects<RowOfRun>& one, int links) {
+  void prepare(const EffectsInRows<RowOfRun>& one, int links) {
     are_any_ = true;
     links_ = links;
     has_forces = one.has_forces;
@@ -105,7 +105,7 @@ class EffectsInLanes : public Drives<Real> {
 
   /// Puts the numbers of a trajectory into a lane.
   template <class RowOfRun>
-  void put(int lane, const ActingEffects<RowOfRun>& one) {
+  void put(int lane, const EffectsInRows<RowOfRun>& one) {
     for (int k = 0; k < this->waves; ++k) {
       this->angular_frequency.put(k, lane, one.angular_frequency[k]);
       this->phase.put(k, lane, one.phase[k]);

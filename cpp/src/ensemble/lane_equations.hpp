@@ -48,8 +48,8 @@ bool with_first_form(const Scene& scene, const EquationsOfMotion& equations, con
 
 /// The effects of one trajectory, which are compiled for rows of this type.
 template <class RowOfRun>
-const ActingEffects<RowOfRun>& effects_on(const EquationsOfMotion& equations) {
-  return dynamic_cast<const ActingEffects<RowOfRun>&>(*equations.effects);
+const EffectsInRows<RowOfRun>& effects_on(const EquationsOfMotion& equations) {
+  return dynamic_cast<const EffectsInRows<RowOfRun>&>(*equations.effects);
 }
 
 /// One link, bare or with effects.
@@ -61,7 +61,7 @@ struct OneLinkInLanes
   static bool has(const Scene& /*scene*/, const EquationsOfMotion& equations) {
     if (std::holds_alternative<SinglePendulum>(equations.form)) return couples_alone;
     if (!std::holds_alternative<SinglePendulumWithEffects>(equations.form)) return false;
-    const ActingEffects<double>& effects = effects_on<double>(equations);
+    const EffectsInRows<double>& effects = effects_on<double>(equations);
     return equations.are_steady() && effects.are_couples_alone == couples_alone &&
            EffectsInLanes<EachLink<Real, 1>, Real>::has(effects);
   }

@@ -5,7 +5,7 @@
 #include <new>
 #include <utility>
 
-#include "integrate/loop/run_limits.hpp"
+#include "integrate/loop/interruption.hpp"
 
 namespace pendcore {
 namespace {

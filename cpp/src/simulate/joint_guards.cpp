@@ -10,7 +10,7 @@ namespace {
 
 using Kind = JointGuard::Kind;
 
-void add_guards_of_laws(const EffectsInForce& effects, const HeldJoints& joints,
+void add_guards_of_laws(const EffectsOfRun& effects, const HeldJoints& joints,
                         std::vector<JointGuard>& guards) {
   for (std::size_t i = 0; i < effects.effects.size(); ++i) {
     const EffectBehaviour& effect = *effects.effects[i];
@@ -27,7 +27,7 @@ void add_guards_of_laws(const EffectsInForce& effects, const HeldJoints& joints,
   }
 }
 
-void add_guards_of_stops(const EffectsInForce& effects, const HeldJoints& joints,
+void add_guards_of_stops(const EffectsOfRun& effects, const HeldJoints& joints,
                          std::vector<JointGuard>& guards) {
   for (int j = 0; j < static_cast<int>(effects.held.size()); ++j) {
     const JointSupport& support = joints.supports()[j];
@@ -57,7 +57,7 @@ int multiplicity_at_start(const JointGuard& guard, const HeldJoints& joints,
 
 std::vector<JointGuard> joint_guards(const EquationsOfMotion& equations,
                                      const ChangesAtOnce& changes, const double* y) {
-  const EffectsInForce& effects = *equations.effects;
+  const EffectsOfRun& effects = *equations.effects;
   const HeldJoints& joints = *equations.held_joints;
   const int n = static_cast<int>(effects.held.size());
   std::vector<JointGuard> guards;

@@ -68,7 +68,7 @@ class Modes {
   bool is_at_its_border(int joint, double t, const double* y) const;
 
   EquationsOfMotion equations_;
-  EffectsInForce& effects_;
+  EffectsOfRun& effects_;
   HeldJoints& joints_;
   int n_;
   bool forward_ = true;

@@ -11,6 +11,7 @@
 #include "dynamics/energetics/ledger.hpp"
 #include "integrate/loop/first_step.hpp"
 #include "integrate/loop/integrate.hpp"
+#include "integrate/loop/interruption.hpp"
 #include "integrate/loop/run_limits.hpp"
 #include "pendcore/solution.hpp"
 #include "simulate/checked_options.hpp"

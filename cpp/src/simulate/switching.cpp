@@ -16,7 +16,7 @@ namespace {
 /// The longest step: an eighth of a period of the fastest wave, where a joint is held that the wave
 /// could release. With users' functions, of which no period is known, no step is longer than a
 /// hundredth of the time in which the fastest joint turns by a radian.
-double longest_step_of(const EffectsInForce& effects, const HeldJoints& joints) {
+double longest_step_of(const EffectsOfRun& effects, const HeldJoints& joints) {
   constexpr double eighth_turn = 0.785398163397448;
   constexpr double share_under_users = 0.01;
   double longest = never;
@@ -31,8 +31,7 @@ double longest_step_of(const EffectsInForce& effects, const HeldJoints& joints) 
 }
 
 /// Says what holds every joint for ever, or nothing where something moves or changes with time.
-std::string remark_at_rest(const EffectsInForce& effects, const HeldJoints& joints,
-                           const double* y) {
+std::string remark_at_rest(const EffectsOfRun& effects, const HeldJoints& joints, const double* y) {
   if (!joints.any_held_for_now()) return {};
   const auto changes = [](const Effect& effect) {
     return !effect->waves().empty() || effect->last_time() < never || effect.info().depends_on_time;

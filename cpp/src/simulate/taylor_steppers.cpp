@@ -31,7 +31,7 @@ std::unique_ptr<Stepper> make_taylor_stepper(const Scene& scene, const Equations
   };
   auto chain = [&]<class Row>() {
     return ChainSeries<Row>(ConstantsOfChain<double>(scene),
-                            std::dynamic_pointer_cast<const ActingEffects<Row>>(equations.effects));
+                            std::dynamic_pointer_cast<const EffectsInRows<Row>>(equations.effects));
   };
   if (auto bare = bare_series(equations)) return of(*std::move(bare));
   const auto& effects = equations.effects;
@@ -43,7 +43,7 @@ std::unique_ptr<Stepper> make_taylor_stepper(const Scene& scene, const Equations
     return of(SeriesWithHolds(*std::move(free), chain.template operator()<Pair>(), effects));
   }
   if (FewLinksSeries::has(scene, equations)) {
-    auto rows = std::dynamic_pointer_cast<const ActingEffects<Pack<4>>>(effects);
+    auto rows = std::dynamic_pointer_cast<const EffectsInRows<Pack<4>>>(effects);
     return of(FewLinksSeries(scene, std::move(rows)));
   }
   switch (scene.links.size()) {

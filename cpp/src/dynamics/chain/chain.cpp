@@ -3,7 +3,7 @@
 namespace pendcore {
 
 template <class Number>
-ChainOf<Number>::ChainOf(const Scene& scene, std::shared_ptr<ActingEffects<Pack<4>>> effects)
+ChainOf<Number>::ChainOf(const Scene& scene, std::shared_ptr<EffectsInRows<Pack<4>>> effects)
     : n_(static_cast<int>(scene.links.size())),
       padded_((n_ + 3) / 4 * 4),
       gravity_(scene.gravity),
@@ -33,7 +33,7 @@ ChainOf<Number>::ChainOf(const Scene& scene, std::shared_ptr<ActingEffects<Pack<
 }
 
 // The kernels instantiate the rest.
-template ChainOf<double>::ChainOf(const Scene&, std::shared_ptr<ActingEffects<Pack<4>>>);
-template ChainOf<Dual<double>>::ChainOf(const Scene&, std::shared_ptr<ActingEffects<Pack<4>>>);
+template ChainOf<double>::ChainOf(const Scene&, std::shared_ptr<EffectsInRows<Pack<4>>>);
+template ChainOf<Dual<double>>::ChainOf(const Scene&, std::shared_ptr<EffectsInRows<Pack<4>>>);
 
 }  // namespace pendcore

@@ -34,9 +34,9 @@
 
 #include <memory>
 
-#include "dynamics/acting_effects.hpp"
 #include "dynamics/chain/chain_link.hpp"
 #include "dynamics/chain/links_in_motion.hpp"
+#include "dynamics/effects_in_rows.hpp"
 
 namespace pendcore {
 
@@ -45,7 +45,7 @@ namespace pendcore {
 template <class Number>
 class ChainOf {
  public:
-  ChainOf(const Scene& scene, std::shared_ptr<ActingEffects<Pack<4>>> effects);
+  ChainOf(const Scene& scene, std::shared_ptr<EffectsInRows<Pack<4>>> effects);
 
   int links() const { return n_; }
 
@@ -54,7 +54,7 @@ class ChainOf {
   PENDCORE_INLINE void accelerations(double t, const Number* q, const Number* qd,
                                      Number* qdd) const;
 
-  const ActingEffects<Pack<4>>* effects() const { return effects_.get(); }
+  const EffectsInRows<Pack<4>>* effects() const { return effects_.get(); }
   const ChainLink& link(int i) const { return links_[i]; }
   double rotor(int i) const { return rotor_[i]; }        ///< kg m^2, between links i - 1 and i
   double payload_mass() const { return payload_mass_; }  ///< kg
@@ -94,7 +94,7 @@ class ChainOf {
   double payload_mass_;
   bool has_rotors_ = false;  ///< in joints after the first
   bool loaded_;              ///< has effects that add loads
-  std::shared_ptr<ActingEffects<Pack<4>>> effects_;
+  std::shared_ptr<EffectsInRows<Pack<4>>> effects_;
 
   std::vector<ChainLink> links_;
   std::vector<double> length_, mass_moment_;  // L, m c

@@ -72,7 +72,7 @@ struct ChainLoads {
 /// Collects the torque on each link, and the force on it in its own frame.
 template <class Number>
 PENDCORE_INLINE void ChainOf<Number>::collect_loads(double t) const {
-  using Effects = ActingEffects<Pack<4>>;
+  using Effects = EffectsInRows<Pack<4>>;
   const Effects& effects = *effects_;
   const bool forces = effects.has_forces;
   Number* const couple = in(couple_);

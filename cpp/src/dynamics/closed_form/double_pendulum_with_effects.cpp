@@ -47,8 +47,8 @@ LoadedDoublePendulum<AnyEffects, parts>::LoadedDoublePendulum(const Scene& scene
 
 // The kernels instantiate the rest.
 #define PENDCORE_WITH_EFFECTS(parts)                                                      \
-  template LoadedDoublePendulum<ActingEffects<Pair>, Parts::parts>::LoadedDoublePendulum( \
-      const Scene&, const Inertia&, const ActingEffects<Pair>*);
+  template LoadedDoublePendulum<EffectsInRows<Pair>, Parts::parts>::LoadedDoublePendulum( \
+      const Scene&, const Inertia&, const EffectsInRows<Pair>*);
 PENDCORE_WITH_EFFECTS(couples)
 PENDCORE_WITH_EFFECTS(waves)
 PENDCORE_WITH_EFFECTS(laws)

@@ -14,8 +14,8 @@
 /// throws.
 #pragma once
 
-#include "dynamics/acting_effects.hpp"
 #include "dynamics/closed_form/double_pendulum.hpp"
+#include "dynamics/effects_in_rows.hpp"
 #include "dynamics/row.hpp"
 
 namespace pendcore {
@@ -28,7 +28,7 @@ enum class Parts {
   everything,  ///< any number of waves, any motion of the pivot, users' functions
 };
 
-/// The equations of all forms. `AnyEffects` are ActingEffects<Pair>, or EffectsInLanes with a
+/// The equations of all forms. `AnyEffects` are EffectsInRows<Pair>, or EffectsInLanes with a
 /// trajectory in each lane.
 template <class AnyEffects, Parts parts>
 struct LoadedDoublePendulum {
@@ -199,6 +199,6 @@ struct LoadedDoublePendulum {
 };
 
 template <Parts parts>
-using DoublePendulumWithEffects = LoadedDoublePendulum<ActingEffects<Pair>, parts>;
+using DoublePendulumWithEffects = LoadedDoublePendulum<EffectsInRows<Pair>, parts>;
 
 }  // namespace pendcore

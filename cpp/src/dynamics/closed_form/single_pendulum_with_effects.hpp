@@ -6,13 +6,13 @@
 #pragma once
 
 #include "arithmetic/row_of_links.hpp"
-#include "dynamics/acting_effects.hpp"
+#include "dynamics/effects_in_rows.hpp"
 #include "dynamics/inertia.hpp"
 #include "dynamics/row.hpp"
 
 namespace pendcore {
 
-/// `AnyEffects` are ActingEffects<double>, or EffectsInLanes with a trajectory in each lane. There,
+/// `AnyEffects` are EffectsInRows<double>, or EffectsInLanes with a trajectory in each lane. There,
 /// a form for couples alone saves a seventh of the time of a short step.
 template <class AnyEffects, bool couples_alone = false>
 struct LoadedSinglePendulum {
@@ -100,6 +100,6 @@ struct LoadedSinglePendulum {
   }
 };
 
-using SinglePendulumWithEffects = LoadedSinglePendulum<ActingEffects<double>>;
+using SinglePendulumWithEffects = LoadedSinglePendulum<EffectsInRows<double>>;
 
 }  // namespace pendcore

@@ -49,11 +49,11 @@ bool HeldJoints::any_held_for_now() const {
   return false;
 }
 
-void HeldJoints::put_friction(EffectsInForce& effects, int joint, int mode) {
+void HeldJoints::put_friction(EffectsOfRun& effects, int joint, int mode) {
   for (const std::size_t i : supports_[joint].friction_effects) effects.put_mode(i, mode);
 }
 
-void HeldJoints::hold(EffectsInForce& effects, int joint, double angle) {
+void HeldJoints::hold(EffectsOfRun& effects, int joint, double angle) {
   holds_[joint] = {.is_held = true, .angle = angle, .least = -never, .most = never};
   put_friction(effects, joint, 0);
   effects.hold(joint, true);
@@ -64,11 +64,11 @@ void HeldJoints::lock(int joint, double angle, double* q) {
   set_relative(q, joint + 1, angle);
 }
 
-void HeldJoints::set_free(EffectsInForce& effects) {
+void HeldJoints::set_free(EffectsOfRun& effects) {
   for (int j = 0; j < n_; ++j) effects.hold(j, is_rigid(j));
 }
 
-void HeldJoints::release(EffectsInForce& effects, int joint, int direction) {
+void HeldJoints::release(EffectsOfRun& effects, int joint, int direction) {
   holds_[joint] = Hold{};
   effects.hold(joint, false);
   put_friction(effects, joint, direction);
@@ -110,7 +110,7 @@ void HeldJoints::solve() {
 
 void HeldJoints::choose(const EquationsOfMotion& equations, double t, const double* q,
                         const double* qd, int held_in_any_case) {
-  EffectsInForce& effects = *equations.effects;
+  EffectsOfRun& effects = *equations.effects;
   std::vector<int>& joints = forces_.joints;
   ForcesBetweenBounds& problem = forces_.problem;
   joints.clear();
@@ -178,7 +178,7 @@ void HeldJoints::set_slack(const EquationsOfMotion& equations, double t, const d
 
 void HeldJoints::torques(const EquationsOfMotion& equations, double t, const double* q,
                          const double* qd, double* torque) {
-  EffectsInForce& effects = *equations.effects;
+  EffectsOfRun& effects = *equations.effects;
   accelerations_in_force(equations, t, q, qd, held_qdd_.data());
   set_free(effects);
   accelerations_in_force(equations, t, q, qd, free_qdd_.data());
@@ -223,7 +223,7 @@ std::vector<SavedHold> HeldJoints::saved_state() const {
   return saved;
 }
 
-void HeldJoints::restore(EffectsInForce& effects, const std::vector<SavedHold>& saved,
+void HeldJoints::restore(EffectsOfRun& effects, const std::vector<SavedHold>& saved,
                          bool has_failed) {
   has_failed_ = has_failed;
   for (int j = 0; j < n_; ++j) {

@@ -29,7 +29,7 @@
 namespace pendcore {
 
 struct EquationsOfMotion;
-class EffectsInForce;
+class EffectsOfRun;
 
 /// How a joint is held.
 struct Hold {
@@ -97,7 +97,7 @@ class HeldJoints {
   }
 
   /// Releases a joint, which then slides towards larger (1) or smaller (-1) angles.
-  void release(EffectsInForce& effects, int joint, int direction);
+  void release(EffectsOfRun& effects, int joint, int direction);
 
   /// The stop that a joint touches.
   Side contact(int joint, const double* q) const;
@@ -136,13 +136,13 @@ class HeldJoints {
   std::vector<SavedHold> saved_state() const;  ///< (n)
   /// Continues from the saved_state() and the has_failed() of an earlier run, and puts its holds
   /// into `effects`.
-  void restore(EffectsInForce& effects, const std::vector<SavedHold>& saved, bool has_failed);
+  void restore(EffectsOfRun& effects, const std::vector<SavedHold>& saved, bool has_failed);
 
  private:
   bool is_rigid(int joint) const { return !rigid_.empty() && rigid_[joint]; }
-  void put_friction(EffectsInForce& effects, int joint, int mode);
-  void hold(EffectsInForce& effects, int joint, double angle);
-  void set_free(EffectsInForce& effects);
+  void put_friction(EffectsOfRun& effects, int joint, int mode);
+  void hold(EffectsOfRun& effects, int joint, double angle);
+  void set_free(EffectsOfRun& effects);
   void solve();
   void set_slack(const EquationsOfMotion& equations, double t, const double* q, const double* qd);
   template <class TakesPart>

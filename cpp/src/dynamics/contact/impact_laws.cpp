@@ -99,7 +99,7 @@ double HeldJoints::loss(const double* before, const double* after) const {
 
 double HeldJoints::work_of_drive(const EquationsOfMotion& equations, double t,
                                  const std::vector<double>& before, const double* after) const {
-  EffectsInForce& effects = *equations.effects;
+  EffectsOfRun& effects = *equations.effects;
   if (effects.pivots.empty()) return 0.0;
   double x, y;
   effects.compute_waves(t, 0);

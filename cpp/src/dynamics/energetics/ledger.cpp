@@ -12,20 +12,20 @@ namespace {
 /// Calls visit(entry, at, loads) for each law of the effects, if the rows of the laws are of type
 /// Row. Returns whether they are.
 template <class Row, class Visit>
-bool visit_rows(const EffectsInForce& effects, double t, const LinkMemory& links, Visit& visit) {
-  const auto* acting = dynamic_cast<const ActingEffects<Row>*>(&effects);
+bool visit_rows(const EffectsOfRun& effects, double t, const LinkMemory& links, Visit& visit) {
+  const auto* acting = dynamic_cast<const EffectsInRows<Row>*>(&effects);
   if (acting == nullptr) return false;
   for (const auto& entry : acting->entries) {
     const RowInArrays<Row> at(links.arrays(), t, entry.row);
     RowLoads<Row> loads;
-    ActingEffects<Row>::add(entry, at, loads);
+    EffectsInRows<Row>::add(entry, at, loads);
     visit(entry, at, loads);
   }
   return true;
 }
 
 template <class Visit>
-void for_each_law(const EffectsInForce& effects, double t, const LinkMemory& links, Visit visit) {
+void for_each_law(const EffectsOfRun& effects, double t, const LinkMemory& links, Visit visit) {
   visit_rows<double>(effects, t, links, visit) || visit_rows<Pair>(effects, t, links, visit) ||
       visit_rows<Pack<4>>(effects, t, links, visit);
 }
@@ -54,7 +54,7 @@ LinkMemory::LinkMemory(const Scene& scene) : n_(static_cast<int>(scene.links.siz
   for (int i = 0; i < n_; ++i) length[i + 1] = scene.links[i].length;
 }
 
-void LinkMemory::fill(const EffectsInForce& effects, double t, const double* angles,
+void LinkMemory::fill(const EffectsOfRun& effects, double t, const double* angles,
                       const double* rates) {
   effects.compute_waves(t, 0);
   double x, y;
@@ -70,7 +70,7 @@ void LinkMemory::fill(const EffectsInForce& effects, double t, const double* ang
   }
 }
 
-Ledger::Ledger(const Scene& scene, std::shared_ptr<EffectsInForce> effects)
+Ledger::Ledger(const Scene& scene, std::shared_ptr<EffectsOfRun> effects)
     : scene_(scene),
       effects_(std::move(effects)),
       accounts_(accounts_of(scene)),
@@ -100,7 +100,7 @@ void Ledger::add_laws(double t, Powers& power) {
     force_x_ += sum_of_lanes(loads.fx);
     force_y_ += sum_of_lanes(loads.fy);
     double value = sum_of_lanes(all);
-    ActingEffects<Row>::visit(entry, [&]<class Law>(const Law& law) {
+    EffectsInRows<Row>::visit(entry, [&]<class Law>(const Law& law) {
       if constexpr (requires { law.dissipation(at); }) {
         const double lost = sum_of_lanes(law.dissipation(at));
         book(power, Account::wind, value + lost);
@@ -158,7 +158,7 @@ void Ledger::add_drive(double t, const double* qdd, Powers& power) const {
   book(power, Account::drive, x * links_.vx[1] + y * links_.vy[1]);
 }
 
-void effect_forces(const Scene& scene, const EffectsInForce& effects, double t, const double* q,
+void effect_forces(const Scene& scene, const EffectsOfRun& effects, double t, const double* q,
                    const double* qd, std::span<double> forces) {
   std::ranges::fill(forces, 0.0);
   if (!effects.has_forces) return;

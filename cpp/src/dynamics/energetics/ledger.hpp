@@ -25,7 +25,7 @@ std::vector<Account> accounts_of(const Scene& scene);
 class LinkMemory {
  public:
   explicit LinkMemory(const Scene& scene);
-  void fill(const EffectsInForce& effects, double t, const double* q, const double* qd);
+  void fill(const EffectsOfRun& effects, double t, const double* q, const double* qd);
   /// Index 0 is link 1.
   LinkArrays arrays() const { return {&q[1], &qd[1], &s[1], &c[1], &length[1], &vx[1], &vy[1]}; }
 
@@ -40,7 +40,7 @@ class LinkMemory {
 /// allocates nothing.
 class Ledger {
  public:
-  Ledger(const Scene& scene, std::shared_ptr<EffectsInForce> effects);
+  Ledger(const Scene& scene, std::shared_ptr<EffectsOfRun> effects);
   std::size_t size() const { return accounts_.size(); }
   void powers(double t, const double* q, const double* qd, const double* qdd, double* result);
 
@@ -52,7 +52,7 @@ class Ledger {
   void add_drive(double t, const double* qdd, Powers& power) const;
 
   Scene scene_;
-  std::shared_ptr<EffectsInForce> effects_;
+  std::shared_ptr<EffectsOfRun> effects_;
   std::vector<Account> accounts_;
   LinkMemory links_;
   double force_x_ = 0.0;  ///< the sum of the laws' forces on all links
@@ -61,7 +61,7 @@ class Ledger {
 };
 
 /// The forces of the effects on the links, N, (n, 2); zero where none acts.
-void effect_forces(const Scene& scene, const EffectsInForce& effects, double t, const double* q,
+void effect_forces(const Scene& scene, const EffectsOfRun& effects, double t, const double* q,
                    const double* qd, std::span<double> forces);
 
 }  // namespace pendcore

@@ -32,8 +32,8 @@
 
 #include "arithmetic/order_of_series.hpp"
 #include "arithmetic/rows_in_memory.hpp"
-#include "dynamics/acting_effects.hpp"
 #include "dynamics/chain/chain_link.hpp"
+#include "dynamics/effects_in_rows.hpp"
 
 namespace pendcore {
 
@@ -89,8 +89,8 @@ class ConstantsOfChain {
 };
 
 /// Computes one series at a time, in one thread, in memory of its own. `Row` is the type of the
-/// effects' rows; `Effects` are ActingEffects, or EffectsInLanes with a trajectory in each lane.
-template <class Row, class Effects = ActingEffects<Row>>
+/// effects' rows; `Effects` are EffectsInRows, or EffectsInLanes with a trajectory in each lane.
+template <class Row, class Effects = EffectsInRows<Row>>
 class ChainSeries {
  public:
   using Number = typename Effects::Number;

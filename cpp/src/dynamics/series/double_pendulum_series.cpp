@@ -14,7 +14,7 @@ std::optional<DoublePendulumSeries<CoupleTorque<Pair>>> series_with_torque(
   std::optional<DoublePendulumSeries<CoupleTorque<Pair>>> found;
   const auto take = [&](const auto* form) {
     if (form == nullptr || !equations.effects->pivots.empty()) return;
-    auto effects = std::dynamic_pointer_cast<const ActingEffects<Pair>>(equations.effects);
+    auto effects = std::dynamic_pointer_cast<const EffectsInRows<Pair>>(equations.effects);
     found.emplace(DoublePendulumConstants{form->weight, form->coupling, form->rotor, form->product,
                                           form->delta, form->epsilon},
                   CoupleTorque<Pair>{std::move(effects), form->inverse_diagonal});

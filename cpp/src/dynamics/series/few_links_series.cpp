@@ -28,7 +28,7 @@ template ConstantsOfFewLinks<double, 4> constants_of_few_links<4>(const Scene& s
 bool FewLinksSeries::has(const Scene& scene, const EquationsOfMotion& equations) {
   const std::size_t n = scene.links.size();
   if ((n != 3 && n != 4) || !equations.effects) return false;
-  const EffectsInForce& effects = *equations.effects;
+  const EffectsOfRun& effects = *equations.effects;
   const auto couples_links = [](const RotorInertia& rotor) { return rotor.joint > 1; };
   return !equations.may_have_held_joints() && effects.pivots.empty() && effects.waves <= 2 &&
          std::ranges::none_of(effects_of<RotorInertia>(scene), couples_links);

@@ -69,7 +69,7 @@ ConstantsOfFewLinks<double, links> constants_of_few_links(const Scene& scene);
 class FewLinksSeries {
  public:
   using Block = Pack<4>;
-  using Effects = std::shared_ptr<const ActingEffects<Pack<4>>>;
+  using Effects = std::shared_ptr<const EffectsInRows<Pack<4>>>;
   static constexpr int blocks = 2;
   static constexpr bool is_short = false;
   static constexpr Sets sets = usual_sets;

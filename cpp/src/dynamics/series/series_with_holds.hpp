@@ -21,7 +21,7 @@ class SeriesWithHolds {
   static constexpr bool is_short = false;
   static constexpr Sets sets = usual_sets;
 
-  SeriesWithHolds(Free free, ChainSeries<Pair> held, std::shared_ptr<const EffectsInForce> effects)
+  SeriesWithHolds(Free free, ChainSeries<Pair> held, std::shared_ptr<const EffectsOfRun> effects)
       : free_(std::move(free)), held_(std::move(held)), effects_(std::move(effects)) {}
 
   static constexpr int row() { return 2; }
@@ -41,7 +41,7 @@ class SeriesWithHolds {
  private:
   Free free_;
   ChainSeries<Pair> held_;
-  std::shared_ptr<const EffectsInForce> effects_;
+  std::shared_ptr<const EffectsOfRun> effects_;
 };
 
 }  // namespace pendcore

@@ -21,7 +21,7 @@
 #include "arithmetic/dual_rows.hpp"
 #include "arithmetic/order_of_series.hpp"
 #include "arithmetic/power.hpp"
-#include "dynamics/acting_effects.hpp"
+#include "dynamics/effects_in_rows.hpp"
 
 namespace pendcore {
 
@@ -42,7 +42,7 @@ struct TorqueLaws {
 };
 
 /// The laws of a scene that are in force now: a motor at its limit has no wave. `Effects` are
-/// ActingEffects, or EffectsInLanes with a trajectory in each lane.
+/// EffectsInRows, or EffectsInLanes with a trajectory in each lane.
 template <class Effects, class Links = typename Effects::Row>
 PENDCORE_INLINE TorqueLaws<Links, typename Effects::Number> torque_laws(const Effects& effects,
                                                                         const Links& factor) {
@@ -149,7 +149,7 @@ template <class Links>
 struct CoupleTorque {
   static constexpr bool is_there = true;
 
-  std::shared_ptr<const ActingEffects<Links>> effects;
+  std::shared_ptr<const EffectsInRows<Links>> effects;
   Links factor;
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "arithmetic/epsilon.hpp"
+#include "integrate/loop/interruption.hpp"
 #include "integrate/loop/resume_point.hpp"
 #include "integrate/loop/run_limits.hpp"
 #include "integrate/loop/stiffness.hpp"

@@ -22,9 +22,9 @@ namespace pendcore {
 /// The part of the compiled effects that does not depend on the width of a row: modes, waves, and
 /// the motion of the pivot. An object belongs to one run and one thread, because modes change along
 /// the run.
-class EffectsInForce : public Drives<double> {
+class EffectsOfRun : public Drives<double> {
  public:
-  virtual ~EffectsInForce() = default;
+  virtual ~EffectsOfRun() = default;
 
   /// Freezes effect number i (from 0) to a mode.
   virtual void put_mode(std::size_t i, int mode) = 0;
@@ -58,7 +58,7 @@ class EffectsInForce : public Drives<double> {
   WavesOf<Pair> two_waves;
 
  protected:
-  explicit EffectsInForce(const Scene& scene);
+  explicit EffectsOfRun(const Scene& scene);
   void put_pivot(std::size_t i, const PivotLaw& law);
 
   /// The number of an effect among the pivots, the functions or the laws like its own.
@@ -89,7 +89,7 @@ struct LawsOf<std::variant<Laws<Row>...>> {
 
 /// The compiled effects of a scene whose links are taken in rows of `width`.
 template <class AnyRow>
-class ActingEffects final : public EffectsInForce {
+class EffectsInRows final : public EffectsOfRun {
  public:
   using Row = AnyRow;
   using Number = double;
@@ -103,9 +103,9 @@ class ActingEffects final : public EffectsInForce {
     Account account;
   };
 
-  explicit ActingEffects(const Scene& scene);
-  ActingEffects(const ActingEffects&) = delete;  // its entries point to its own laws
-  ActingEffects& operator=(const ActingEffects&) = delete;
+  explicit EffectsInRows(const Scene& scene);
+  EffectsInRows(const EffectsInRows&) = delete;  // its entries point to its own laws
+  EffectsInRows& operator=(const EffectsInRows&) = delete;
   void put_mode(std::size_t i, int mode) override;
   std::vector<int> kinds() const override;
 
@@ -130,14 +130,14 @@ class ActingEffects final : public EffectsInForce {
   /// Adds all entries, compiled for the instruction set of this processor. It is for forms of the
   /// equations that rarely have entries.
   template <class At, class Loads>
-  static void add_all(const ActingEffects* effects, const At* at, Loads* loads) {
+  static void add_all(const EffectsInRows* effects, const At* at, Loads* loads) {
     static const auto add_on_this_processor = fastest<&add_in_turn<At, Loads>>();
     add_on_this_processor(effects, at, loads);
   }
 
  private:
   template <class At, class Loads>
-  PENDCORE_INLINE static void add_in_turn(const ActingEffects* effects, const At* at,
+  PENDCORE_INLINE static void add_in_turn(const EffectsInRows* effects, const At* at,
                                           Loads* loads) {
     for (const Entry& entry : effects->entries) add(entry, *at, *loads);
   }
@@ -167,9 +167,9 @@ class ActingEffects final : public EffectsInForce {
 
 /// The sum of what the users' functions add, N m.
 template <class Row>
-Row of_users(const EffectsInForce& effects, double t, const Row& q, const Row& qd);
+Row of_users(const EffectsOfRun& effects, double t, const Row& q, const Row& qd);
 
 /// Compiles the effects of a scene, with the width of a row that its number of links calls for.
-std::shared_ptr<EffectsInForce> effects_in_force(const Scene& scene);
+std::shared_ptr<EffectsOfRun> effects_of_run(const Scene& scene);
 
 }  // namespace pendcore

@@ -1,4 +1,4 @@
-#include "dynamics/acting_effects.hpp"
+#include "dynamics/effects_in_rows.hpp"
 
 #include <algorithm>
 
@@ -8,7 +8,7 @@
 
 namespace pendcore {
 
-EffectsInForce::EffectsInForce(const Scene& scene)
+EffectsOfRun::EffectsOfRun(const Scene& scene)
     : effects(scene.effects),
       modes(scene.effects.size(), 0),
       number_of_wave(scene.effects.size(), -1),
@@ -40,19 +40,19 @@ EffectsInForce::EffectsInForce(const Scene& scene)
 }
 
 /// Puts the law of a pivot in force, with the numbers that its waves have among all.
-void EffectsInForce::put_pivot(std::size_t i, const PivotLaw& law) {
+void EffectsOfRun::put_pivot(std::size_t i, const PivotLaw& law) {
   PivotLaw& pivot = pivots[number_of_law_[i]];
   pivot = law;
   for (PivotLaw::Axis* axis : {&pivot.x, &pivot.y}) axis->wave += std::max(number_of_wave[i], 0);
 }
 
-void EffectsInForce::hold(int joint, bool is_held) {
+void EffectsOfRun::hold(int joint, bool is_held) {
   held[joint] = is_held ? 1 : 0;
   any_held = std::ranges::find(held, 1) != held.end();
 }
 
-void EffectsInForce::call(const UserLaw& user, double t, const Dual<double>* q,
-                          const Dual<double>* qd, Dual<double>* Q) const {
+void EffectsOfRun::call(const UserLaw& user, double t, const Dual<double>* q,
+                        const Dual<double>* qd, Dual<double>* Q) const {
   const std::size_t n = held.size();
   user_room_.resize(3 * n);
   double* const angles = user_room_.data();
@@ -111,7 +111,7 @@ bool is_couple(const Effect& effect) { return effect->couple(0).has_value(); }
 }  // namespace
 
 template <class Row>
-ActingEffects<Row>::ActingEffects(const Scene& scene) : EffectsInForce(scene) {
+EffectsInRows<Row>::EffectsInRows(const Scene& scene) : EffectsOfRun(scene) {
   for (std::size_t i = 0; i < effects.size(); ++i) {
     const EffectBehaviour& effect = *effects[i];
     const int place = std::max(effect.joint(), effect.link()) - 1;
@@ -140,7 +140,7 @@ ActingEffects<Row>::ActingEffects(const Scene& scene) : EffectsInForce(scene) {
 
 /// Puts effect number i into a free lane of a law that it can share, or else into a new law.
 template <class Row>
-void ActingEffects<Row>::add_law(std::size_t i) {
+void EffectsInRows<Row>::add_law(std::size_t i) {
   const auto any = effects[i]->law(0, link_there_[i]);
   if (!any) return;
   const int row = place_of_[i] / width;
@@ -167,7 +167,7 @@ void ActingEffects<Row>::add_law(std::size_t i) {
 }
 
 template <class Row>
-void ActingEffects<Row>::put_mode(std::size_t i, int mode) {
+void EffectsInRows<Row>::put_mode(std::size_t i, int mode) {
   modes[i] = mode;
   if (const auto law = effects[i]->pivot_law(mode)) {
     put_pivot(i, *law);
@@ -186,7 +186,7 @@ void ActingEffects<Row>::put_mode(std::size_t i, int mode) {
 
 /// Adds up the couples of all effects on one joint, in its lane.
 template <class Row>
-void ActingEffects<Row>::sum_couples(int joint) {
+void EffectsInRows<Row>::sum_couples(int joint) {
   Couple sum;
   bool has_start = false;
   std::erase_if(joint_waves, [&](const JointWave& wave) { return wave.joint == joint; });
@@ -226,7 +226,7 @@ void ActingEffects<Row>::sum_couples(int joint) {
 }
 
 template <class Row>
-std::vector<int> ActingEffects<Row>::kinds() const {
+std::vector<int> EffectsInRows<Row>::kinds() const {
   std::vector<int> kinds{waves, static_cast<int>(users.size()), static_cast<int>(pivots.size())};
   for (const PivotLaw& law : pivots) kinds.insert(kinds.end(), {law.x.wave, law.y.wave});
   kinds.push_back(static_cast<int>(joint_waves.size()));
@@ -241,7 +241,7 @@ std::vector<int> ActingEffects<Row>::kinds() const {
 
 /// Finds what the first two waves do to the pivot; sum_couples() does this for motors.
 template <class Row>
-void ActingEffects<Row>::find_two_waves(const Scene& scene) {
+void EffectsInRows<Row>::find_two_waves(const Scene& scene) {
   const Inertia inertia(scene);
   for (int i = 0; i < 2; ++i) {
     const double a = inertia.links[i].first_moment;
@@ -252,12 +252,12 @@ void ActingEffects<Row>::find_two_waves(const Scene& scene) {
   }
 }
 
-template class ActingEffects<double>;
-template class ActingEffects<Pair>;
-template class ActingEffects<Pack<4>>;
+template class EffectsInRows<double>;
+template class EffectsInRows<Pair>;
+template class EffectsInRows<Pack<4>>;
 
 template <class Row>
-Row of_users(const EffectsInForce& effects, double t, const Row& q, const Row& qd) {
+Row of_users(const EffectsOfRun& effects, double t, const Row& q, const Row& qd) {
   using Number = typename Lanes<Row>::Number;
   constexpr int n = Lanes<Row>::width;
   Number angles[n];
@@ -273,17 +273,17 @@ Row of_users(const EffectsInForce& effects, double t, const Row& q, const Row& q
   return sum;
 }
 
-template double of_users(const EffectsInForce&, double, const double&, const double&);
-template Pair of_users(const EffectsInForce&, double, const Pair&, const Pair&);
-template Dual<double> of_users(const EffectsInForce&, double, const Dual<double>&,
+template double of_users(const EffectsOfRun&, double, const double&, const double&);
+template Pair of_users(const EffectsOfRun&, double, const Pair&, const Pair&);
+template Dual<double> of_users(const EffectsOfRun&, double, const Dual<double>&,
                                const Dual<double>&);
-template Dual<Pair> of_users(const EffectsInForce&, double, const Dual<Pair>&, const Dual<Pair>&);
+template Dual<Pair> of_users(const EffectsOfRun&, double, const Dual<Pair>&, const Dual<Pair>&);
 
-std::shared_ptr<EffectsInForce> effects_in_force(const Scene& scene) {
+std::shared_ptr<EffectsOfRun> effects_of_run(const Scene& scene) {
   switch (scene.links.size()) {
-    case 1: return std::make_shared<ActingEffects<double>>(scene);
-    case 2: return std::make_shared<ActingEffects<Pair>>(scene);
-    default: return std::make_shared<ActingEffects<Pack<4>>>(scene);
+    case 1: return std::make_shared<EffectsInRows<double>>(scene);
+    case 2: return std::make_shared<EffectsInRows<Pair>>(scene);
+    default: return std::make_shared<EffectsInRows<Pack<4>>>(scene);
   }
 }
 
