@@ -138,7 +138,7 @@ class EffectsInLanes : public Drives<Real> {
   template <class RowOfRun, class Use>
   void each_row(const Couples<RowOfRun>& of_row, const Use& use) const {
     constexpr int width = Lanes<RowOfRun>::width;
-    for (int i = 0; i < width && of_row.row * width + i < links_; i += places) {
+    for (int i = 0; i + places <= width && of_row.row * width + i < links_; i += places) {
       use((of_row.row * width + i) / places, i);
     }
   }

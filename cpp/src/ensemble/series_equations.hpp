@@ -32,7 +32,7 @@ struct BareDoublePendulumSeries {
   }
   void prepare(const Scene& /*scene*/, const EquationsOfMotion& /*one*/) {}
   void put(int lane, const Scene& /*scene*/, const EquationsOfMotion& one) {
-    put_constants(constants, lane, bare_series(one)->constants());
+    if (const auto series = bare_series(one)) put_constants(constants, lane, series->constants());
   }
   PENDCORE_INLINE void expand(const Real& /*t*/, const Real* y, const Real& sigma, int order,
                               Real* rows) const {
@@ -58,9 +58,10 @@ struct LoadedDoublePendulumSeries {
     effects.prepare(effects_on<Pair>(one), links);
   }
   void put(int lane, const Scene& /*scene*/, const EquationsOfMotion& one) {
-    const auto series = series_with_torque(one);
-    put_constants(constants, lane, series->constants());
-    put_number(factor, lane, series->torque().factor);
+    if (const auto series = series_with_torque(one)) {
+      put_constants(constants, lane, series->constants());
+      put_number(factor, lane, series->torque().factor);
+    }
     effects.put(lane, effects_on<Pair>(one));
   }
   PENDCORE_INLINE void expand(const Real& t, const Real* y, const Real& sigma, int order,

@@ -74,8 +74,8 @@ double EventFinder::natural_rate(const Step& step) const {
   return rate + std::sqrt(acceleration);
 }
 
-void EventFinder::find_difference(Watched& watched, const Step& step) {
-  const Difference& difference = *watched.difference;
+void EventFinder::find_difference(Watched& watched, const Difference& difference,
+                                  const Step& step) {
   const int degree = step.output.interpolant_degree();
   polynomial_.resize(degree + 1);
   double size = 0.0;
@@ -195,7 +195,7 @@ double EventFinder::value(Watched& watched, double t, const double* y) {
 void EventFinder::find(Watched& watched, const Step& step) {
   roots_.clear();
   if (watched.difference) {
-    find_difference(watched, step);
+    find_difference(watched, *watched.difference, step);
   } else {
     find_value(watched, step);
   }
@@ -276,14 +276,15 @@ void EventFinder::jump(double t, const double* before, const double* after) {
       found_.back().y_before.assign(before, before + size);
     };
     if (one.difference) {
-      const double there = one.difference->of(before);
-      const double beyond = one.difference->of(after);
+      const Difference& difference = *one.difference;
+      const double there = difference.of(before);
+      const double beyond = difference.of(after);
       const Levels levels =
-          levels_between(*one.difference, std::min(there, beyond), std::max(there, beyond));
+          levels_between(difference, std::min(there, beyond), std::max(there, beyond));
       const int count = count_turns(one, levels);
       for (int i = 0; i < count; ++i) {
         const double level = levels.at(i);
-        cross(one.difference->from(level, before), one.difference->from(level, after));
+        cross(difference.from(level, before), difference.from(level, after));
       }
     } else {
       const double value_before = value(one, t, before);

@@ -84,7 +84,7 @@ class EventFinder {
   void find(Watched& watched, const Step& step);
   double natural_rate(const Step& step) const;
   double rounding_at_start(const Watched& watched, const Step& step, double start);
-  void find_difference(Watched& watched, const Step& step);
+  void find_difference(Watched& watched, const Difference& difference, const Step& step);
   int count_turns(const Watched& watched, const Levels& levels);
   void find_value(Watched& watched, const Step& step);
   void find_between_samples(Watched& watched, const Step& step, double start, double end);

@@ -41,16 +41,14 @@ class SceneRun {
         state_(std::move(start)),
         resumable_(state_),
         equations_(equations_of_motion(scene)),
-        stepper_(make_stepper(scene, equations_, options_.method, options_.ledger,
-                              options_.compensated)),
         rtol_(relative_tolerances(options_, scene.links.size())),
-        atol_(absolute_tolerances(options_, scene.links.size())) {
-    stepper_->set_tolerances(rtol_.data(), atol_.data());
-    recorder_.emplace(solution, *stepper_, scene, passed_events);
+        atol_(absolute_tolerances(options_, scene.links.size())),
+        stepper_(stepper_with_tolerances()),
+        recorder_(solution, *stepper_, scene, passed_events) {
     const int degree = stepper_->interpolant_degree();
     if (solution.resumable == nullptr) {
       solution.dense.degree = degree;
-      recorder_->start(state_.t.high, state_.y);
+      recorder_.start(state_.t.high, state_.y);
     } else if (solution.dense.degree != degree) {
       throw std::invalid_argument("the dense output of this solution is not that of its method");
     }
@@ -58,9 +56,9 @@ class SceneRun {
     switching_.emplace(scene, equations_, solution.accounts);
     if (!stopped_is_caught) return;
     // Deciding which joints are held is not a step, and takes long in a long chain.
-    clock_.emplace(limits_, state_.t.high);
-    equations_.held_joints->look_up_in_long_work([this] {
-      const Status status = clock_->look(state_.t.high);
+    RunLimits& clock = clock_.emplace(limits_, state_.t.high);
+    equations_.held_joints->look_up_in_long_work([this, &clock] {
+      const Status status = clock.look(state_.t.high);
       if (status != Status::finished) throw Stopped{status};
     });
   }
@@ -69,11 +67,17 @@ class SceneRun {
 
   void go() {
     const Ending ending = has_begun(state_) ? go_on() : begin();
-    if (!ending.cut) recorder_->restarts_here();
+    if (!ending.cut) recorder_.restarts_here();
     complete_solution(ending);
   }
 
  private:
+  std::unique_ptr<Stepper> stepper_with_tolerances() const {
+    auto stepper =
+        make_stepper(scene_, equations_, options_.method, options_.ledger, options_.compensated);
+    stepper->set_tolerances(rtol_.data(), atol_.data());
+    return stepper;
+  }
   bool is_forward() const { return !(limits_.t_end < state_.t.high); }
 
   Ending go_on() {
@@ -89,7 +93,7 @@ class SceneRun {
   /// If a user's function throws at the beginning, or an impact is not finite, nothing of it is
   /// kept, and a continued run begins anew.
   Ending begin() {
-    recorder_->restarts_here();
+    recorder_.restarts_here();
     int bad = -1;
     const Interruption found = interruption_of([&] { bad = choose_first_step(); });
     const Status status = bad >= 0 ? Status::non_finite : found.status;
@@ -123,16 +127,16 @@ class SceneRun {
       state_.h_is_max_step = options_.step || size == options_.max_step;
     }
     if (jumped) {
-      recorder_->state_jumped(t, before.data(), y.data());
+      recorder_.state_jumped(t, before.data(), y.data());
     } else {
-      recorder_->state_settled(t, y.data());
+      recorder_.state_settled(t, y.data());
     }
     return -1;
   }
 
   Ending take_steps() {
     if (switching_) state_.discontinuities = switching_->saved_state();
-    return integrate(*stepper_, state_, resumable_, limits_, *recorder_,
+    return integrate(*stepper_, state_, resumable_, limits_, recorder_,
                      switching_ ? &*switching_ : nullptr);
   }
 
@@ -143,7 +147,7 @@ class SceneRun {
     solution_.resumable = std::make_shared<const IntegratorState>(std::move(resumable_));
     solution_.message =
         ending_message(ending, scene_, solution_, state_, switching_ ? switching_->remark() : "",
-                       recorder_->ended_by());
+                       recorder_.ended_by());
     if (switching_) solution_.message += switching_->remark_on_impacts();
     solution_.last_method = stepper_->info().name;
     solution_.message += remark_on_steps(scene_, equations_, solution_, state_);
@@ -163,9 +167,9 @@ class SceneRun {
   IntegratorState state_;
   IntegratorState resumable_;
   EquationsOfMotion equations_;
-  std::unique_ptr<Stepper> stepper_;
   std::vector<double> rtol_, atol_;
-  std::optional<Recorder> recorder_;
+  std::unique_ptr<Stepper> stepper_;
+  Recorder recorder_;
   std::optional<Switching> switching_;
   std::optional<RunLimits> clock_;
 };
