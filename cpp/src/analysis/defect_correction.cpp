@@ -14,8 +14,8 @@
 namespace pendcore {
 namespace {
 
-constexpr double lost = 0.2;  ///< of the total length
-constexpr int divisions = 6;  ///< of a part, at which a dense run's errors are kept
+constexpr double lost_share = 0.2;  ///< of the total length
+constexpr int divisions = 6;        ///< of a part, at which a dense run's errors are kept
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
@@ -220,7 +220,7 @@ void DefectCorrection::compare() {
     between += share * std::abs(first - second);
     largest += share * std::max(std::abs(first), std::abs(second));
   }
-  if (!(largest <= lost && between <= lost)) {  // NaN too
+  if (!(largest <= lost_share && between <= lost_share)) {  // NaN too
     agreement_.at_loss =
         std::isfinite(between + largest) ? largest : std::numeric_limits<double>::infinity();
     return;
