@@ -66,14 +66,16 @@ struct Sets {
 constexpr InstructionSet least_of_special_kernels =
     PENDCORE_CLONES != 0 ? InstructionSet::x86_64_v3 : InstructionSet::baseline;
 
-// The table of clones. Those of lanes are not in it: they have a kernel of their own for the width
+// This is the table of clones. Lanes are not in it: they have a kernel of their own for the width
 // of each set's registers, only(). docs/background/one_equation.md has the figures.
 
-/// x86-64-v4 gains nothing: one number or two at a time, series, dense output and its defect.
+/// For kernels that gain nothing by x86-64-v4: those of one number or two at a time, of series, of
+/// dense output and its defect.
 inline constexpr Sets usual_sets{InstructionSet::baseline, InstructionSet::x86_64_v3};
-/// Four numbers at a time: chains in memory; and the series of a bare double pendulum.
+/// For chains in memory, which are computed four numbers at a time, and the series of a bare double
+/// pendulum.
 inline constexpr Sets wide_sets{InstructionSet::baseline, InstructionSet::x86_64_v4};
-/// Kernels that are only faster than a general one.
+/// For kernels that are only faster than a general one, of the first kind and of the second.
 inline constexpr Sets special_sets{least_of_special_kernels, InstructionSet::x86_64_v3};
 inline constexpr Sets wide_special_sets{least_of_special_kernels, InstructionSet::x86_64_v4};
 

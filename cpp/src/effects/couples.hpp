@@ -50,7 +50,7 @@ struct alignas(std::bit_floor(sizeof(Row))) Couples {
 
   template <class Any>
   static auto fields(Any& x) {
-    return std::tie(x.held, x.slope, x.start, x.on_phi, x.on_phid, x.on_phid2, x.on_phid3);
+    return Couple::fields(x);
   }
 
   template <class At>

@@ -23,7 +23,7 @@ template <class Real, class Row>
 struct CalledEquations {
   using Links = Row;
 
-  std::shared_ptr<void> form;
+  std::shared_ptr<void> form;  ///< the form as a first-order system
   /// Computes the derivative of a state (q, qd).
   void (*compute)(const void* form, const Real& t, const Row* y, Row* dydt);
   // As lane_equations.hpp says.
@@ -34,10 +34,9 @@ struct CalledEquations {
     compute(form.get(), t, y, dydt);
   }
 };
-template <class Form, class Real, class Row>
+template <class System, class Real, class Row>
 PENDCORE_INLINE void derivative_in_lanes(const void* form, const Real& t, const Row* y, Row* dydt) {
-  dydt[0] = y[1];
-  dydt[1] = static_cast<const Form*>(form)->accelerations(t, y[0], y[1]);
+  (*static_cast<const System*>(form))(t, y, dydt);
 }
 
 /// The lanes of a method on equations: a form that is written into the step, or CalledEquations.

@@ -112,13 +112,14 @@ std::unique_ptr<LaneRunner> runner_of(const LaneTask& task) {
     using Form = AnyForm<Real>;
     using Row = typename Form::Links;
     if constexpr (Form::is_called) {
-      const auto form = std::make_shared<Form>();
+      using System = FirstOrder<Form>;
+      const auto form = std::make_shared<System>();
       using Called = CalledEquations<Real, Row>;
       runner = std::make_unique<RungeKuttaRunner<method, Called, set>>(
           task, Called{.form = form,
-                       .compute = only<&derivative_in_lanes<Form, Real, Row>, set>(),
-                       .prepare = [form](const auto&... one) { form->prepare(one...); },
-                       .put = [form](const auto&... one) { form->put(one...); }});
+                       .compute = only<&derivative_in_lanes<System, Real, Row>, set>(),
+                       .prepare = [form](const auto&... one) { form->dynamics.prepare(one...); },
+                       .put = [form](const auto&... one) { form->dynamics.put(one...); }});
     } else {
       runner = std::make_unique<RungeKuttaRunner<method, Form, set>>(task, Form());
     }

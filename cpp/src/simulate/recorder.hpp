@@ -39,7 +39,8 @@ class Recorder final : public Observer {
   };
   void interpolate(StepOutput& output, double h);  ///< sets polynomial_
   Kept kept() const;
-  /// What is kept so far is also in a run that never stopped; a continued run goes on from there.
+  /// Notes that a run which never stopped would have kept this much, too: a continued run goes on
+  /// after it.
   void mark_resumable(const Kept& kept);
   void sample_before(StepOutput& output, const TwoDouble& t_old, double h, double t_end);
   bool is_asked_for(double t) const;
