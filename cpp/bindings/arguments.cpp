@@ -103,10 +103,11 @@ bool truth(std::string_view name, py::handle value) {
 }
 
 std::optional<std::string> text_of(py::handle value) {
-  try {
-    if (py::isinstance<py::str>(value)) return value.cast<std::string>();
-  } catch (const py::cast_error&) {
-  }
+  if (PyUnicode_Check(value.ptr()) == 0) return std::nullopt;
+  Py_ssize_t size = 0;
+  const char* const text = PyUnicode_AsUTF8AndSize(value.ptr(), &size);
+  if (text != nullptr) return std::string(text, static_cast<std::size_t>(size));
+  PyErr_Clear();
   return std::nullopt;
 }
 

@@ -175,6 +175,9 @@ std::string why_singular(const Body& body, const Motions& next) {
 }  // namespace
 
 std::string singular_somewhere(const Scene& scene) {
+  // Links that all resist their own rotation leave no motion without energy.
+  const auto resists = [](const Link& one) { return one.inertia > 0.0; };
+  if (std::ranges::all_of(scene.links, resists)) return {};
   const bool has_payload = std::ranges::any_of(
       effects_of<Payload>(scene), [](const Payload& payload) { return payload.mass > 0.0; });
   Motions motions = has_payload ? joint_rests : any_motion;

@@ -14,10 +14,10 @@ namespace pendcore {
 namespace {
 
 /// One number for all components or one for each, none below `least`.
-std::vector<double> tolerances(const std::string& name, const std::vector<double>& given,
+std::vector<double> tolerances(const char* name, const std::vector<double>& given,
                                std::size_t dimension, double least) {
   if (given.size() != 1 && given.size() != dimension) {
-    throw std::invalid_argument(name + ": has " + std::to_string(given.size()) +
+    throw std::invalid_argument(std::string(name) + ": has " + std::to_string(given.size()) +
                                 " numbers: must have 1, or " + std::to_string(dimension) +
                                 " (q_1 .. q_n, qd_1 .. qd_n)");
   }
