@@ -23,7 +23,7 @@ SOURCES := pyproject.toml CMakeLists.txt $(shell find cpp python ! -path '*__pyc
 .DEFAULT_GOAL := help
 .PHONY: demo test test-all compare hard-cases bench against build-bench lint tidy sanitize sanitize-few \
     sanitized references threads lowest long horizon asked-errors default-method book-speed fuzz fuzz-readers \
-    test-error elsewhere wasm page wheel site core clean help flip-map film
+    test-error mutants elsewhere wasm page wheel site core clean help flip-map film
 
 demo: $(DONE)/installed  ## build, run the textbook's case, say where its figure and summary are
 	pendcore run -o out/textbook
@@ -198,6 +198,13 @@ test-error: $(DONE)/installed $(DONE)/error-requirements  ## true errors (SEEDS,
 	    --workers $(ERROR_WORKERS) --output out/true_error/scenes.json \
 	    --record $(or $(RECORD),out/true_error/record.json) $(PAGE:%=--page %)
 
+PARTS ?= core package
+COUNT ?= 200
+mutants: $(DONE)/installed $(DONE)/mutant-requirements  ## which small mistakes the tests notice: COUNT in each of PARTS, drawn by SEED; hours, goes on where it stopped
+	for part in $(PARTS); do \
+	    PYTHONPATH=tests python -m mutants.campaign $$part --count $(COUNT) --seed $(SEED) || exit 1; \
+	done
+
 SECONDS_EACH ?= 60
 fuzz-readers: $(DONE)/installed $(DONE)/fuzz-requirements  ## damaged files and pickles, by coverage
 	for reader in case archive state scene store; do \
@@ -252,6 +259,10 @@ $(DONE)/error-requirements: pyproject.toml | $(DONE)/test-requirements
 
 $(DONE)/fuzz-requirements: pyproject.toml | $(DONE)/test-requirements
 	python setup/requirements.py fuzz | $(PIP_INSTALL) -r /dev/stdin
+	@touch $@
+
+$(DONE)/mutant-requirements: pyproject.toml | $(DONE)/test-requirements
+	python setup/requirements.py mutants | $(PIP_INSTALL) -r /dev/stdin
 	@touch $@
 
 $(DONE)/site-requirements: pyproject.toml | $(DONE)/build-requirements

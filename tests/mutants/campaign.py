@@ -1,0 +1,126 @@
+"""`make mutants`: which small mistakes, drawn by a seed, the tests of `make test` notice.
+
+    PYTHONPATH=tests python -m mutants.campaign core --count 200 --seed 1
+    PYTHONPATH=tests python -m mutants.campaign package --count 200 --seed 1
+    PYTHONPATH=tests python -m mutants.campaign package --only 17      # that one again
+
+A line is drawn of all lines in which a mistake can be made, and a mistake on it. A mistake that
+makes no program, or the same one, does not count. Each outcome is written down at once; the same
+command goes on where it was broken off, and then shows what is alive.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import subprocess
+import sys
+import time
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import asdict
+from pathlib import Path
+from random import Random
+from typing import Any
+
+from tqdm import tqdm
+
+from mutants.mutation import PARSERS, Mutant, mutants
+from mutants.workshop import ROOT, SOURCE, Workshop
+
+PARTS = {"core": ["cpp/src", "cpp/include", "cpp/bindings"], "package": ["python/pendcore"]}
+COUNTED = ("killed", "alive")
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run a campaign, or go on with it."""
+    parser = argparse.ArgumentParser(prog="mutants.campaign", description=__doc__.split("\n")[0])
+    parser.add_argument("part", choices=PARTS)
+    parser.add_argument("--count", type=int, default=200)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--commit", default="HEAD", help="of which the mutants are made")
+    parser.add_argument("--only", type=int, help="the number of one mutant, tried again")
+    parser.add_argument("--seconds", type=float, default=1e9, help="begin no mutant after these")
+    parser.add_argument("--record", type=Path, help="default: out/mutants/PART.jsonl")
+    asked = parser.parse_args(arguments)
+    record = asked.record or Path(f"out/mutants/{asked.part}.jsonl")
+    commit = git(ROOT, "rev-parse", asked.commit)
+    told = read(record, commit)
+    workshop = Workshop(commit)
+    if not told and asked.only is None and (plain := workshop.tested(None)).what != "alive":
+        print(f"the tests fail without a mistake: {plain.by}")
+        return 1
+    began = time.monotonic()
+    counted = sum(one["outcome"] in COUNTED for one in told)
+    record.parent.mkdir(parents=True, exist_ok=True)
+    with tqdm(total=asked.count, initial=counted, unit="mutant", disable=None) as bar:
+        for number, mutant in enumerate(drawn(asked.part, asked.seed)):
+            is_next = number == asked.only if asked.only is not None else number >= len(told)
+            if counted >= asked.count or time.monotonic() - began > asked.seconds:
+                break
+            if not is_next:
+                continue
+            start = time.monotonic()
+            outcome = workshop.tested(mutant)
+            one = {
+                "number": number, "commit": commit, **asdict(mutant), "outcome": outcome.what,
+                "by": outcome.by, "seconds": round(time.monotonic() - start, 1),
+            }  # fmt: skip
+            if asked.only is not None:
+                print(json.dumps(one, indent=1))
+                return 0
+            told.append(one)
+            with record.open("a") as lines:
+                print(json.dumps(one), file=lines)
+            if outcome.what in COUNTED:
+                counted += 1
+                bar.update()
+    print(report(told))
+    return 0
+
+
+def drawn(part: str, seed: int) -> Iterator[Mutant]:
+    """Return the mutants of a part of the program, each line once, in an order drawn by a seed."""
+    dice = Random(f"{seed} {part}")
+    by_line: dict[tuple[str, int], list[Mutant]] = {}
+    for path in git(SOURCE, "ls-files", *PARTS[part]).splitlines():
+        if Path(path).suffix in PARSERS:
+            for mutant in mutants(path, (SOURCE / path).read_bytes()):
+                by_line.setdefault((mutant.path, mutant.line), []).append(mutant)
+    lines = sorted(by_line)
+    dice.shuffle(lines)
+    for line in lines:
+        yield dice.choice(by_line[line])
+
+
+def read(record: Path, commit: str) -> list[dict[str, Any]]:
+    """Return what a campaign has found so far."""
+    told = [json.loads(line) for line in record.read_text().splitlines()] if record.exists() else []
+    if any(one["commit"] != commit for one in told):
+        other = told[0]["commit"]
+        raise SystemExit(f"{record} is of {other[:12]}: give --commit {other[:12]} or --record")
+    return told
+
+
+def report(told: list[dict[str, Any]]) -> str:
+    """Return how many are killed, of each kind, and those that are alive."""
+    outcomes = Counter(one["outcome"] for one in told)
+    lines = [f"{count:5d}  {what}" for what, count in outcomes.most_common()]
+    for kind in sorted({one["kind"] for one in told}):
+        of_kind = Counter(one["outcome"] for one in told if one["kind"] == kind)
+        lines.append(
+            f"{kind}: {of_kind['killed']} of {of_kind['killed'] + of_kind['alive']} killed"
+        )
+    for one in told:
+        if one["outcome"] == "alive":
+            place = f"{one['number']}  {one['path']}:{one['line']}"
+            lines.append(f"alive: {place}: {one['kind']}: {one['before']!r} -> {one['after']!r}")
+    return "\n".join(lines)
+
+
+def git(folder: Path, *words: str) -> str:
+    return subprocess.check_output(["git", *words], cwd=folder, text=True).strip()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

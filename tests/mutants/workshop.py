@@ -1,0 +1,150 @@
+"""Where mutants are built and tested: a clone, its core, and a package beside the installed one."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+
+import pybind11
+
+from mutants.mutation import Mutant
+from mutants.related import related_first
+
+ROOT = Path(__file__).parents[2]
+PLACE = ROOT / "build/mutants"
+SOURCE, BUILD, SITE = PLACE / "source", PLACE / "core", PLACE / "site"
+SILENT = 180.0
+"""A test that takes so long has lost its way, s."""
+PATIENCE = 1800.0
+"""No build and no run of all tests takes so long, s."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of a mutant (killed, alive, no program, the same program), by which test."""
+
+    what: str
+    by: str = ""
+
+
+class Workshop:
+    """A clone of a commit, its core built, its package without a mistake."""
+
+    def __init__(self, commit: str) -> None:
+        self.commit = commit
+        self.environment = os.environ | {"PYTHONPATH": str(SITE), "MPLBACKEND": "Agg"}
+        if not (SOURCE / ".git").exists():
+            shutil.rmtree(PLACE, ignore_errors=True)
+            run(["git", "clone", "--quiet", ROOT, SOURCE])
+        run(["git", "-C", SOURCE, "fetch", "--quiet"])
+        run(["git", "-C", SOURCE, "checkout", "--quiet", "--force", commit])
+        run([
+            "cmake", "-G", "Ninja", "-S", SOURCE, "-B", BUILD, "-DCMAKE_BUILD_TYPE=Release",
+            "-DPENDCORE_PYTHON=ON", "-DPENDCORE_TESTS=ON", f"-DPython_EXECUTABLE={sys.executable}",
+            f"-Dpybind11_DIR={pybind11.get_cmake_dir()}",
+        ])  # fmt: skip
+        self.built()
+        shutil.rmtree(SITE, ignore_errors=True)
+        shutil.copytree(SOURCE / "python/pendcore", SITE / "pendcore")
+        self.installed()
+        self.core = self.bytes_of_core()
+
+    def tested(self, mutant: Mutant | None) -> Outcome:
+        """Return what becomes of a mutant; without one, of the program itself."""
+        if mutant is None:
+            return self.killed("", is_core=True)
+        file = SOURCE / mutant.path
+        right = file.read_bytes()
+        wrong = mutant.applied(right)
+        if mutant.path.endswith(".py"):
+            file = SITE / mutant.path.removeprefix("python/")
+            if not compiles(wrong):
+                return Outcome("no program")
+        file.write_bytes(wrong)
+        try:
+            if mutant.path.endswith(".py"):
+                return self.killed(mutant.path, is_core=False)
+            if not self.built():
+                return Outcome("no program")
+            file.write_bytes(right)  # tests that build anew build what is right
+            self.installed()
+            if self.bytes_of_core() == self.core:
+                return Outcome("same program")
+            return self.killed(mutant.path, is_core=True)
+        finally:
+            file.write_bytes(right)
+
+    def built(self) -> bool:
+        targets = ["all", "tests/cpp/all"]
+        return self.call(["cmake", "--build", BUILD, "--target", *targets])[0] == 0
+
+    def installed(self) -> None:
+        run(["cmake", "--install", BUILD, "--prefix", SITE / "pendcore", "--component", "python"])
+
+    def bytes_of_core(self) -> str:
+        (core,) = (SITE / "pendcore").glob("_core*.so")
+        return sha256(core.read_bytes()).hexdigest()
+
+    def killed(self, path: str, is_core: bool) -> Outcome:
+        """Run the tests of `make test` until one fails; those first that speak of the file."""
+        if is_core:
+            code, said = self.call(
+                ["ctest", "--test-dir", BUILD, "--stop-on-failure", "--timeout", "300"]
+            )
+            if code:
+                return Outcome("killed", first(r"\d+ - (\S+) \(", said) or "ctest")
+        pytest = [
+            sys.executable, "-m", "pytest", "-q", "-x", "-n", "auto", "--maxschedchunk", "8",
+            "-p", "no:cacheprovider", "-o", f"faulthandler_timeout={SILENT:g}",
+            "-o", "faulthandler_exit_on_timeout=true", "--hypothesis-seed=0",
+        ]  # fmt: skip
+        files = related_first(SOURCE, path)
+        for chosen in ("not outside_build", "outside_build"):
+            code, said = self.call([*pytest, "-m", chosen, *files])
+            if code not in (0, 5):  # 5: no test is chosen
+                return Outcome("killed", first(r"^(?:FAILED|ERROR) (\S+)", said) or last_line(said))
+        return Outcome("alive")
+
+    def call(self, command: list[object]) -> tuple[int, str]:
+        """Return how a command ended, and what it said; all that it started ends with it."""
+        process = subprocess.Popen(
+            [*map(str, command)], cwd=SOURCE, env=self.environment, text=True, errors="replace",
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True,
+        )  # fmt: skip
+        try:
+            said, _ = process.communicate(timeout=PATIENCE)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            return 1, f"{process.communicate()[0]}\nlonger than {PATIENCE:g} s"
+        except BaseException:
+            os.killpg(process.pid, signal.SIGKILL)
+            raise
+        return process.returncode, said
+
+
+def compiles(source: bytes) -> bool:
+    try:
+        compile(source, "mutant", "exec")
+    except SyntaxError:
+        return False
+    return True
+
+
+def run(command: list[object]) -> None:
+    subprocess.run([*map(str, command)], check=True, stdout=subprocess.DEVNULL)
+
+
+def first(pattern: str, said: str) -> str:
+    found = re.search(pattern, said, re.MULTILINE)
+    return found[1] if found else ""
+
+
+def last_line(said: str) -> str:
+    return said.strip().rpartition("\n")[2][:200]
