@@ -15,7 +15,7 @@ scene = pc.Scene.textbook()
 over = [pc.events.JointAngle(2, side * np.pi, terminal=True, name="over") for side in (-1, 1)]
 for degrees in (90, 100, 110, 120):
     start = pc.angles_from_vertical(np.radians([degrees, degrees]))
-    sol = pc.simulate(scene, start, t_span=(0, 100), events=over)
+    sol = pc.simulate(scene, q0=start, t_span=(0, 100), events=over)
     when = f"turns over at t = {sol.t[-1]:.6f} s" if sol.status == "event" else "does not turn over"
     print(f"from {degrees} degrees: {when}")
 

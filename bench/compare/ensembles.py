@@ -91,7 +91,7 @@ def by_ensemble(method: str, workers: int | None) -> Callable[..., Callable[[], 
 
         def solve() -> Array:
             found = pc.ensemble(
-                made, q0, t_span=(0.0, T_END), method=method, rtol=tolerance, atol=tolerance,
+                made, q0=q0, t_span=(0.0, T_END), method=method, rtol=tolerance, atol=tolerance,
                 workers=workers, progress=False,
             )  # fmt: skip
             return found.q
@@ -107,7 +107,7 @@ def by_loop(case: Case, q0: Array, tolerance: float) -> Callable[[], Array]:
     def solve() -> Array:
         return np.array([
             pc.simulate(
-                made, start, t_span=(0.0, T_END), rtol=tolerance, atol=tolerance, store="end"
+                made, q0=start, t_span=(0.0, T_END), rtol=tolerance, atol=tolerance, store="end"
             ).q[-1]
             for start in q0
         ])  # fmt: skip

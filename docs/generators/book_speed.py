@@ -102,7 +102,9 @@ def solvers(module: dict[str, Any]) -> dict[str, Callable[[float, float], Any]]:
     from scipy.integrate import solve_ivp
 
     def by_core(rtol: float, atol: float, method: str) -> pc.Solution:
-        return pc.simulate(BOOK, START, 0.0, SPAN, method=method, rtol=rtol, atol=atol)
+        return pc.simulate(
+            BOOK, q0=START, qd0=0.0, t_span=SPAN, method=method, rtol=rtol, atol=atol
+        )
 
     def by_scipy(rtol: float, atol: float) -> Any:
         state = [*START, 0.0, 0.0]
@@ -122,7 +124,9 @@ def looked_at(
 
     The error is the larger of the two angles' errors at the end, rad, against a far tighter run.
     """
-    exact = pc.simulate(BOOK, START, 0.0, SPAN, method="taylor", rtol=1e-15, atol=1e-16).q[-1]
+    exact = pc.simulate(
+        BOOK, q0=START, qd0=0.0, t_span=SPAN, method="taylor", rtol=1e-15, atol=1e-16
+    ).q[-1]
     found = {}
     for named, pair in TOLERANCES.items():
         for way in WAYS:

@@ -26,7 +26,13 @@ def draw() -> plt.Figure:
     figure, axes = plt.subplots(figsize=(7, 4), layout="constrained")
     for method, rtol, style, color in RUNS:
         sol = pc.simulate(
-            scene, [np.pi / 4, np.pi / 3], 0, (0, 5), method=method, rtol=rtol, atol=rtol
+            scene,
+            q0=[np.pi / 4, np.pi / 3],
+            qd0=0,
+            t_span=(0, 5),
+            method=method,
+            rtol=rtol,
+            atol=rtol,
         )
         found = sol.defect()
         edges = np.append(found.t, sol.t[-1])

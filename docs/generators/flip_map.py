@@ -78,7 +78,7 @@ def computed(count: int, t_end: float, workers: int | None) -> dict[str, Any]:
     begin = perf_counter()
     keep = {name: pc.keep.FirstEvent(one) for name, one in EVENTS.items()}
     asked = {"t_span": (0, t_end), "keep": keep, "max_steps": 10**9, "workers": workers}
-    found = pc.ensemble(BOOK, q0[~forbidden], **asked, progress=True)
+    found = pc.ensemble(BOOK, q0=q0[~forbidden], **asked, progress=True)
     seconds = perf_counter() - begin
     other = found.second(workers=workers, progress=True)
     both = perf_counter() - begin

@@ -50,8 +50,8 @@ def trusted(method: str, rtol: float) -> dict[str, Any]:
     valid, right = [], []
     for case in record.chaotic_starts():
         run = pc.simulate(
-            case.scene, case.q0, case.qd0, (0, record.T_END), method=method, rtol=rtol,
-            atol=1e-3 * rtol,
+            case.scene, q0=case.q0, qd0=case.qd0, t_span=(0, record.T_END), method=method,
+            rtol=rtol, atol=1e-3 * rtol,
         )  # fmt: skip
         last = case.last_right(run, LIMIT)
         if last < record.T_END:
@@ -154,7 +154,7 @@ def draw_run(path: Path) -> None:
     """Draw one run, what is past its horizon, and its error: true, estimated, largest so far."""
     from matplotlib.figure import Figure
 
-    run = pc.simulate(BOOK, START, 0, SPAN)
+    run = pc.simulate(BOOK, q0=START, qd0=0, t_span=SPAN)
     times = np.linspace(*SPAN, 281)
     true = np.abs(run(times)[:2].T - truth(times)).max(axis=1)
     found, valid = run.error(), run.valid_until(LIMIT)

@@ -132,6 +132,6 @@ def test_no_error_is_none_to_ask_for(error):
 
 @pytest.mark.parametrize("limit", [0, -1, np.nan])
 def test_an_estimate_of_the_error_checks_its_limit_too(limit):
-    sol = pc.simulate(BOOK, [0.7, 1.0], 0, (0, 1))
+    sol = pc.simulate(BOOK, q0=[0.7, 1.0], qd0=0, t_span=(0, 1))
     with pytest.raises(ValueError, match=r"time_limit = .*: must be > 0 \(s\)"):
         sol.error(time_limit=limit)

@@ -85,7 +85,7 @@ def test_the_error_is_kept_against_multiple_precision(reference_case, name, erro
     links = [pc.Link(mass=m, length=x) for m, x in zip(known.masses, known.lengths, strict=True)]
     scene = pc.Scene(links=links, gravity=known.gravity)
     span = (known.t[0], known.t[-1])
-    sol = pc.simulate(scene, known.q0, known.qd0, span, t_eval=known.t, error=error)
+    sol = pc.simulate(scene, q0=known.q0, qd0=known.qd0, t_span=span, t_eval=known.t, error=error)
     tips = [known.lengths * np.exp(1j * q) for q in (sol.q, known.q)]
     apart = abs(np.cumsum(tips[0] - tips[1], axis=1)).max() / known.lengths.sum()
     assert apart <= sol.accuracy.achieved <= error
@@ -180,7 +180,7 @@ def test_a_chaotic_span_is_refused_and_told_until_when_it_holds():
     until = caught.value.solution.accuracy.until
     assert 10 < until < 40
     q0, qd0, _ = CHAOTIC
-    assert pc.simulate(BOOK, q0, qd0, (0, 0.6 * until), error=1e-3).accuracy.reached
+    assert pc.simulate(BOOK, q0=q0, qd0=qd0, t_span=(0, 0.6 * until), error=1e-3).accuracy.reached
 
 
 def test_the_page_says_until_when_it_holds(capsys):
@@ -197,7 +197,7 @@ def test_the_page_says_until_when_it_holds(capsys):
 def test_the_rounding_of_a_late_start_is_told():
     """Near t = 1e6 s a time in doubles is off by up to 6e-11 s, which no tolerance mends."""
     with pytest.raises(pc.AccuracyError, match="to 1e-10 s; begin nearer to 0") as caught:
-        pc.simulate(BOOK, START[0], 0, (1e6, 1e6 + 5), error=1e-10)
+        pc.simulate(BOOK, q0=START[0], qd0=0, t_span=(1e6, 1e6 + 5), error=1e-10)
     assert 1e-10 < caught.value.least < 1e-9
 
 
@@ -205,7 +205,7 @@ def test_it_is_refused_as_well_when_no_round_is_left(monkeypatch):
     monkeypatch.setattr("pendcore.accuracy.target_error.MOST_RUNS", 2)
     q0, qd0, _ = CHAOTIC
     with pytest.raises(pc.AccuracyError, match="the search ended after 2 runs") as caught:
-        pc.simulate(BOOK, q0, qd0, (0, 10), error=1e-3)
+        pc.simulate(BOOK, q0=q0, qd0=qd0, t_span=(0, 10), error=1e-3)
     assert not caught.value.solution.accuracy.reached
 
 
@@ -216,7 +216,7 @@ def test_a_law_that_is_not_smooth_is_never_called_kept():
     is_refused = False
     try:
         how = {"error": 1e-9, "max_steps": 2000, "check": False}
-        sol = pc.simulate(scene, [0.7, 1.0], 0, (0, 0.5), **how)
+        sol = pc.simulate(scene, q0=[0.7, 1.0], qd0=0, t_span=(0, 0.5), **how)
     except pc.AccuracyError as refusal:
         sol, is_refused = refusal.solution, True
     assert sol.accuracy.outcome in ("refused", "ended early")
@@ -275,7 +275,7 @@ def test_a_short_span_is_verified_by_other_steps():
 @pytest.mark.parametrize("options", [{}, {"store": "end"}, {"t_eval": [1.0, 2.0]}], ids=str)
 def test_what_rests_from_the_start_takes_no_steps_and_has_no_error(options):
     stuck = pc.Scene(links=[ROD], effects=[E.DryJointFriction(1, coulomb=25.0, static=25.0)])
-    sol = pc.simulate(stuck, 0.3, 0, (0, 3), error=1e-7, **options)
+    sol = pc.simulate(stuck, q0=0.3, qd0=0, t_span=(0, 3), error=1e-7, **options)
     assert sol.status == "at_rest"
     assert sol.accuracy.reached
 
@@ -284,9 +284,9 @@ def test_what_rests_from_the_start_takes_no_steps_and_has_no_error(options):
 def test_a_run_that_rests_after_two_steps_is_verified(static, rate):
     friction = E.DryJointFriction(1, coulomb=10.0, static=static, stribeck_velocity=1.0)
     scene = pc.Scene(links=[ROD], gravity=0.0, effects=[friction])
-    sol = pc.simulate(scene, 0.3, rate, (0, 10), error=1e-5, store="end")
+    sol = pc.simulate(scene, q0=0.3, qd0=rate, t_span=(0, 10), error=1e-5, store="end")
     fine = {"method": "dop853", "rtol": 1e-13, "atol": 1e-15, "max_step": 1e-3}
-    truth = pc.simulate(scene, 0.3, rate, (0, 10), store="end", **fine)
+    truth = pc.simulate(scene, q0=0.3, qd0=rate, t_span=(0, 10), store="end", **fine)
     apart = 2 * abs(math.sin((sol.q - truth.q).item() / 2))
     assert sol.accuracy.reached
     assert apart <= sol.accuracy.achieved <= 1e-5
@@ -311,7 +311,9 @@ def test_a_terminal_event_may_come_before_the_times(times):
 
 
 def test_time_is_limited_for_all_runs_together():
-    sol = pc.simulate(BOOK, [-1.5, -1.4], 0, (0, 1e6), error=1e-3, time_limit=0.2, check=False)
+    sol = pc.simulate(
+        BOOK, q0=[-1.5, -1.4], qd0=0, t_span=(0, 1e6), error=1e-3, time_limit=0.2, check=False
+    )
     assert sol.status == "time_limit"
     assert not sol.accuracy.reached
     assert "not verified: the run ended early: time_limit" in str(sol.accuracy)
@@ -335,7 +337,7 @@ def test_an_interrupt_hands_over_the_best_run_so_far_and_says_what_it_is(at, sta
 
     slow = pc.Scene(links=[ROD], effects=[E.User(law)])
     with pytest.raises(KeyboardInterrupt) as caught:
-        pc.simulate(slow, 1.2, 0, (0, 50), error=1e-6, progress=report)
+        pc.simulate(slow, q0=1.2, qd0=0, t_span=(0, 50), error=1e-6, progress=report)
     assert seen == sorted(seen)
     best = caught.value.solution
     assert best.status == status
@@ -369,7 +371,7 @@ def test_an_interrupt_hands_over_the_best_run_so_far_and_says_what_it_is(at, sta
 )
 def test_what_cannot_be_asked_is_named(options, complaint):
     with pytest.raises((ValueError, TypeError), match=complaint):
-        pc.simulate(BOOK, START[0], **({"t_span": START[2]} | options))
+        pc.simulate(BOOK, q0=START[0], **({"t_span": START[2]} | options))
 
 
 def test_a_case_and_the_command_know_it(tmp_path, monkeypatch, capsys):

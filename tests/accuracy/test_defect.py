@@ -37,7 +37,7 @@ def run(scene: pc.Scene, method: str, t_end: float = 1.0, **options: Any) -> pc.
     if not METHODS[method]["error_order"]:
         options = {"step": 0.01}
     q0, qd0 = [0.4, -0.9, 1.3][:n], [2.0, -1.0, 3.0][:n]
-    return pc.simulate(scene, q0, qd0, (0, t_end), method=method, **options)
+    return pc.simulate(scene, q0=q0, qd0=qd0, t_span=(0, t_end), method=method, **options)
 
 
 def value(coefficients: list[Any], theta: Any) -> Any:
@@ -87,7 +87,9 @@ def test_it_falls_at_the_order_of_the_interpolant(method: str) -> None:
     how = {"rtol": 1e-3, "atol": 1e-3} if is_series else {"rtol": 1e-13, "atol": 1e-16}
 
     def with_steps(count: int) -> pc.Defect:
-        sol = pc.simulate(BOOK, START, 0, (0, 0.5), method=method, step=0.5 / count, **how)
+        sol = pc.simulate(
+            BOOK, q0=START, qd0=0, t_span=(0, 0.5), method=method, step=0.5 / count, **how
+        )
         return sol.defect()
 
     counts = np.array([6, 8, 10, 12, 14, 16, 20, 24] if is_series else [20, 28, 40])
@@ -104,8 +106,8 @@ def test_the_defect_of_a_pair_that_changed_over_is_that_of_its_second_method(met
     """Before the change a run has the defect of the first method; resumed past it, the second's."""
     stiff = BOOK.replace(effects=[fx.ViscousJoint(joint=2, damping=1e6 / 3)])
     first, second = method.split("-")
-    before = pc.simulate(stiff, [0.8, 1.0], 0.1, (0, 1e-5), method=method)
-    alone = pc.simulate(stiff, [0.8, 1.0], 0.1, (0, 1e-5), method=first).defect()
+    before = pc.simulate(stiff, q0=[0.8, 1.0], qd0=0.1, t_span=(0, 1e-5), method=method)
+    alone = pc.simulate(stiff, q0=[0.8, 1.0], qd0=0.1, t_span=(0, 1e-5), method=first).defect()
     assert not before.stats.stiff
     assert (before.defect().order, before.defect().is_bound) == (alone.order, alone.is_bound)
     after = before.resume(1.0)
@@ -121,7 +123,9 @@ def test_an_exact_curve_has_none_but_rounding() -> None:
     """Rods turning freely or under a constant torque move along polynomials."""
     rod = pc.Scene(links=[pc.Link(mass=3, length=1)], gravity=0.0)
     for effects in ([], [fx.Motor(joint=1, constant=2.0)]):
-        sol = pc.simulate(rod.replace(effects=effects), 0.3, 1.5, (0, 2), method="dopri5")
+        sol = pc.simulate(
+            rod.replace(effects=effects), q0=0.3, qd0=1.5, t_span=(0, 2), method="dopri5"
+        )
         found = sol.defect()
         assert found.largest < 1e-13
         assert found.apart.max() < 1e-14
@@ -167,7 +171,7 @@ def test_what_holds_a_joint_takes_any_torque() -> None:
         links=BOOK.links,
         effects=[fx.DryJointFriction(joint=1, coulomb=30.0), fx.JointStop(2, range=(-0.5, 0.9))],
     )
-    sol = pc.simulate(stick, [0.4, 0.8], [0.0, 2.0], (0, 3), rtol=1e-10, atol=1e-12)
+    sol = pc.simulate(stick, q0=[0.4, 0.8], qd0=[0.0, 2.0], t_span=(0, 3), rtol=1e-10, atol=1e-12)
     found = sol.defect()
     assert found.largest < 1e-5
     held = np.abs(np.diff(sol(found.t + 1e-9).T[:, 2:], axis=1)) == 0
@@ -176,9 +180,11 @@ def test_what_holds_a_joint_takes_any_torque() -> None:
 
 def test_a_run_that_an_event_ends_counts_as_far_as_it_went() -> None:
     """The last polynomial continues past the end; that part does not belong to the curve."""
-    whole = pc.simulate(BOOK, START, 0, (0, 1), method="dop853", step=0.1)
+    whole = pc.simulate(BOOK, q0=START, qd0=0, t_span=(0, 1), method="dop853", step=0.1)
     here = pc.events.LinkAngle(2, float(whole(0.501)[1]), terminal=True)
-    sol = pc.simulate(BOOK, START, 0, (0, 1), method="dop853", step=0.1, events=[here])
+    sol = pc.simulate(
+        BOOK, q0=START, qd0=0, t_span=(0, 1), method="dop853", step=0.1, events=[here]
+    )
     cut = sol.defect().torque
     assert sol.t[-1] == pytest.approx(0.501)
     np.testing.assert_allclose(cut[:5], whole.defect().torque[:5], rtol=1e-9)
@@ -207,12 +213,12 @@ def test_its_bar_says_what_it_does(capsys: pytest.CaptureFixture[str]) -> None:
 @pytest.mark.parametrize("store", ["end", "steps"])
 def test_without_dense_output_it_says_so(store: str) -> None:
     with pytest.raises(ValueError, match="defect: this solution keeps no dense output"):
-        pc.simulate(BOOK, START, 0, (0, 1), store=store).defect()
+        pc.simulate(BOOK, q0=START, qd0=0, t_span=(0, 1), store=store).defect()
 
 
 def test_backward_is_the_mirror_of_forward() -> None:
-    forward = pc.simulate(BOOK, START, 0, (0, 1)).defect()
-    backward = pc.simulate(BOOK, START, 0, (0, -1)).defect()
+    forward = pc.simulate(BOOK, q0=START, qd0=0, t_span=(0, 1)).defect()
+    backward = pc.simulate(BOOK, q0=START, qd0=0, t_span=(0, -1)).defect()
     np.testing.assert_allclose(backward.torque, forward.torque, rtol=1e-6, atol=1e-12)
 
 

@@ -182,7 +182,7 @@ def test_unstable_correction_is_not_trusted_and_second_runs_take_its_place() -> 
     start = Start(damped, [2.0, 1.0, 1.5], 0.0, 0.0, 1.0)
     solution, correction = corrected(start, damped, WAYS[0], rtol=1e-8)
     assert defect_correction.error_from_defect(solution, correction, WAYS[0], "") is None
-    sol = pc.simulate(damped, start.q0, 0.0, (0, 1), error=1e-7)
+    sol = pc.simulate(damped, q0=start.q0, qd0=0.0, t_span=(0, 1), error=1e-7)
     assert sol.accuracy.outcome == "kept"
     assert not sol.accuracy.verified_by.startswith("the defect")
     t = np.linspace(0, 1, 101)
@@ -259,7 +259,7 @@ def test_correction_looks_on_one_run_only_and_wants_neighbours_alike() -> None:
 
 def test_what_was_not_trusted_did_not_verify() -> None:
     damped = pc.Scene(links=CHAIN.links, effects=[pc.effects.ViscousJoint(joint=1, damping=300.0)])
-    told = pc.simulate(damped, [2.0, 1.0, 1.5], 0.0, (0, 1), error=1e-7).accuracy
+    told = pc.simulate(damped, q0=[2.0, 1.0, 1.5], qd0=0.0, t_span=(0, 1), error=1e-7).accuracy
     verified = [paid.method for paid in told.paid if paid.purpose == "verify"]
     assert verified
     assert not any(method.startswith("defect of") for method in verified)

@@ -64,10 +64,19 @@ def test_every_point_is_a_run_of_its_own(work: pc.HorizonWork) -> None:
         assert (np.diff([point.nfev for point in points]) > 0).all()
         assert all(1e-6 < point.seconds < 1 for point in points)
     one = work.of("dop853")[1]
-    run = pc.simulate(BOOK, CHAOTIC, 0, (0, 30), method="dop853", rtol=1e-6, atol=1e-9)
+    run = pc.simulate(
+        BOOK, q0=CHAOTIC, qd0=0, t_span=(0, 30), method="dop853", rtol=1e-6, atol=1e-9
+    )
     assert run.valid_until(work.limit) == one.valid
     so_far = pc.simulate(
-        BOOK, CHAOTIC, 0, (0, one.valid), method="dop853", rtol=1e-6, atol=1e-9, store="end"
+        BOOK,
+        q0=CHAOTIC,
+        qd0=0,
+        t_span=(0, one.valid),
+        method="dop853",
+        rtol=1e-6,
+        atol=1e-9,
+        store="end",
     )
     assert so_far.stats.nfev == one.nfev
 

@@ -126,7 +126,13 @@ def spread_of_roundings(case: ChaoticStart) -> NDArray[np.float64]:
     slopes = [np.abs(growth(case, one) - growth(case, -one)) / (2 * small) for one in changes]
     at_most = np.maximum.accumulate(slopes, axis=1)
     run = pc.simulate(
-        case.scene, case.q0, case.qd0, (0, T_END), method="dop853", rtol=1e-14, atol=1e-16
+        case.scene,
+        q0=case.q0,
+        qd0=case.qd0,
+        t_span=(0, T_END),
+        method="dop853",
+        rtol=1e-14,
+        atol=1e-16,
     )
     of_components = np.finfo(float).eps / 2 / np.sqrt(3) * np.abs(run.y).max(axis=1)
     of_a_step = np.linalg.norm(of_components[:, np.newaxis] * at_most, axis=0)
@@ -153,7 +159,9 @@ def differences(scene: pc.Scene, q0: list[float], t: float) -> float:
     """Return the ln of how much longer a change of q_1 has become, from two runs."""
     small = 1e-6
     ends = [
-        pc.simulate(scene, [q0[0] + change, *q0[1:]], 0, (0, t), rtol=1e-12, atol=1e-14).y[:, -1]
+        pc.simulate(
+            scene, q0=[q0[0] + change, *q0[1:]], qd0=0, t_span=(0, t), rtol=1e-12, atol=1e-14
+        ).y[:, -1]
         for change in (small, -small)
     ]
     return float(np.log(np.linalg.norm(ends[0] - ends[1]) / (2 * small)))
@@ -287,7 +295,7 @@ def test_growth_counts_from_the_end_of_the_transient() -> None:
 
 
 def test_exponents_of_a_solution_follow_its_run() -> None:
-    sol = pc.simulate(rods(2), [-2.0, -1.0], 0, (0, 10), method="dop853")
+    sol = pc.simulate(rods(2), q0=[-2.0, -1.0], qd0=0, t_span=(0, 10), method="dop853")
     found = sol.lyapunov(count=2)
     assert found.growth == pytest.approx(
         pc.lyapunov(sol.scene, [-2.0, -1.0], 0, (0, 10), count=2).growth, abs=1e-12
@@ -335,7 +343,7 @@ def test_bad_arguments_are_named(bad: dict[str, object], message: str) -> None:
 
 def test_a_run_of_no_length_has_none() -> None:
     with pytest.raises(ValueError, match="lyapunov: the run ended where it began"):
-        pc.simulate(rods(2), [1.0, 1.0], 0, (2, 2)).lyapunov()
+        pc.simulate(rods(2), q0=[1.0, 1.0], qd0=0, t_span=(2, 2)).lyapunov()
 
 
 def test_what_was_found_so_far_is_not_lost() -> None:

@@ -36,9 +36,11 @@ def test_an_error_in_step_with_a_grid_of_times_is_seen():
     period = 4 * float(mpmath.ellipk(math.sin(0.5) ** 2)) / math.sqrt(9.807)
     rod = pc.Scene(links=[pc.Link.point_mass(mass=1.0, length=1.0)])
     span = (0, 50 * period)
-    sol = pc.simulate(rod, np.pi / 2 - 1, 0, span, error=1e-6)
+    sol = pc.simulate(rod, q0=np.pi / 2 - 1, qd0=0, t_span=span, error=1e-6)
     t = np.linspace(*span, 4001)
-    exact = pc.simulate(rod, np.pi / 2 - 1, 0, span, t_eval=t, method="taylor", rtol=1e-14)
+    exact = pc.simulate(
+        rod, q0=np.pi / 2 - 1, qd0=0, t_span=span, t_eval=t, method="taylor", rtol=1e-14
+    )
     apart = 2 * abs(np.sin((sol(t)[0] - exact.q[:, 0]) / 2)).max()
     on_the_grid = 2 * abs(np.sin((sol(t)[0] - exact.q[:, 0]) / 2))[::40].max()
     assert on_the_grid < apart / 5
@@ -50,7 +52,7 @@ def test_an_error_in_step_with_a_grid_of_times_is_seen():
     [([1.84, 0.78], 100.0, 1e-4), ([2.96, 2.39], 100.0, 1e-3), ([-3.0, 2.7], 60.0, 1e-3)],
 )
 def test_what_ended_in_a_recursion_error_is_kept(q0, t_end, error):
-    assert pc.simulate(BOOK, q0, t_span=(0, t_end), error=error).accuracy.outcome == "kept"
+    assert pc.simulate(BOOK, q0=q0, t_span=(0, t_end), error=error).accuracy.outcome == "kept"
 
 
 @pytest.mark.parametrize(
@@ -64,7 +66,7 @@ def test_what_ended_in_a_recursion_error_is_kept(q0, t_end, error):
 def test_near_the_end_of_double_precision_rounded_constants_are_seen(error, t_end, q0):
     """Runs that share such constants agree, yet lie 10 to 136 times as far from the truth."""
     with pytest.raises(pc.AccuracyError, match="not reached") as caught:
-        pc.simulate(BOOK, q0, 0, (0, t_end), error=error)
+        pc.simulate(BOOK, q0=q0, qd0=0, t_span=(0, t_end), error=error)
     assert caught.value.least > error
     assert caught.value.solution.accuracy.until < t_end
 
@@ -81,7 +83,7 @@ def test_second_runs_that_share_the_truncation_of_a_tight_trial_do_not_verify_it
     The run at 1.5e-14 happens to be better: it keeps three quarters of one of these, but not half.
     """
     with pytest.raises(pc.AccuracyError) as refusal:
-        pc.simulate(BOOK, q0, t_span=(0, t_end), error=0.5 * true)
+        pc.simulate(BOOK, q0=q0, t_span=(0, t_end), error=0.5 * true)
     assert refusal.value.least > true
 
 
@@ -98,7 +100,7 @@ def test_a_trial_is_handed_over_if_the_interrupt_falls_while_runs_are_compared(
 
     monkeypatch.setattr(f"pendcore.accuracy.trials.{estimate}", interrupted)
     with pytest.raises(KeyboardInterrupt) as stop:
-        pc.simulate(scene, [0.7, 1.2], t_span=(0, 10), error=1e-6)
+        pc.simulate(scene, q0=[0.7, 1.2], t_span=(0, 10), error=1e-6)
     sol = stop.value.solution  # type: ignore[attr-defined]
     assert sol.success
     assert sol.accuracy.outcome == "ended early"
@@ -112,7 +114,7 @@ def test_when_the_time_is_up_a_whole_trial_is_returned_and_called_unverified(
 
     monkeypatch.setattr(Trials, "_time_left", up_after_the_first)
     with pytest.warns(pc.PendcoreWarning, match="finished, but not verified: the time limit"):
-        sol = pc.simulate(BOOK, [-1.5, -1.4], t_span=(0, 30), error=1e-3)
+        sol = pc.simulate(BOOK, q0=[-1.5, -1.4], t_span=(0, 30), error=1e-3)
     assert sol.t[-1] == 30
     assert sol.accuracy.outcome == "ended early"
 
@@ -125,7 +127,7 @@ def test_the_last_bit_of_a_time_is_a_part_of_the_error(t_start: float, error: fl
     spring = pc.effects.TorsionalSpring(joint=1, stiffness=stiffness)
     scene = pc.Scene(links=[rod], effects=[spring], gravity=0.0)
     try:
-        sol = pc.simulate(scene, 1.0, 0, (t_start, t_start + 2.0**-10), error=error)
+        sol = pc.simulate(scene, q0=1.0, qd0=0, t_span=(t_start, t_start + 2.0**-10), error=error)
     except pc.AccuracyError as refusal:
         sol = refusal.solution
     exact = np.cos(np.sqrt(np.longdouble(stiffness)) * (sol.t - np.longdouble(t_start)))
@@ -146,8 +148,8 @@ def test_a_run_is_verified_to_the_event_that_ends_it() -> None:
     end = pc.events.LinkAngle(1, 1.2904680194292113, terminal=True)
     for error in np.geomspace(1e-11, 1e-9, 9):
         sol = pc.simulate(
-            scene, 1.5105808821167965, 2.312735409753138, (-3.7, -2.7), error=error, store="steps",
-            events=[end],
+            scene, q0=1.5105808821167965, qd0=2.312735409753138, t_span=(-3.7, -2.7), error=error,
+            store="steps", events=[end],
         )  # fmt: skip
         assert sol.error().t[-1] == sol.t[-1]
 
@@ -187,9 +189,9 @@ def point_masses(*links: tuple[float, float]) -> pc.Scene:
 def test_a_run_whose_link_is_lost_is_not_kept_though_positions_agree_until_then() -> None:
     """The last link is 4 mm long; its angle is lost at 1.15 s, while positions are still right."""
     scene = point_masses((1, 1), (1, 0.004))
-    sol = pc.simulate(scene, (0.3, 2.0), 0, (0, 20), error=0.01)
+    sol = pc.simulate(scene, q0=(0.3, 2.0), qd0=0, t_span=(0, 20), error=0.01)
     assert sol.accuracy.until == 20.0
-    exact = pc.simulate(scene, (0.3, 2.0), 0, (0, 20), method="dop853", rtol=1e-14)
+    exact = pc.simulate(scene, q0=(0.3, 2.0), qd0=0, t_span=(0, 20), method="dop853", rtol=1e-14)
     t = np.linspace(0, 20, 2001)
     n = len(scene.links)
     assert distances(scene, sol(t)[:n].T, exact(t)[:n].T).max() <= sol.accuracy.achieved <= 0.01
@@ -204,14 +206,16 @@ def test_a_run_whose_link_is_lost_is_not_kept_though_positions_agree_until_then(
     ],
 )
 def test_a_loose_trial_that_fails_does_not_end_the_search(masses, q0, t_end, error) -> None:
-    sol = pc.simulate(point_masses(*masses), q0, 0, (0, t_end), error=error)
+    sol = pc.simulate(point_masses(*masses), q0=q0, qd0=0, t_span=(0, t_end), error=error)
     assert sol.accuracy.outcome == "kept"
     assert sol.accuracy.until == sol.t[-1] == t_end
 
 
 def test_what_no_double_knows_is_refused_and_not_called_known_everywhere() -> None:
     with pytest.raises(pc.AccuracyError, match="part too fast") as caught:
-        pc.simulate(point_masses((1, 1), (0.5, 0.02)), (0.3, 2.0), 0, (0, 60), error=0.06)
+        pc.simulate(
+            point_masses((1, 1), (0.5, 0.02)), q0=(0.3, 2.0), qd0=0, t_span=(0, 60), error=0.06
+        )
     told = caught.value.solution.accuracy
     assert told.until < 60
     assert not told.everywhere
@@ -241,7 +245,7 @@ def test_second_runs_take_other_steps_where_breaks_limit_them() -> None:
 def test_what_is_told_of_a_run_that_ended_early_is_one_estimate() -> None:
     blows_up = [pc.effects.ViscousJoint(joint=1, damping=0, damping3=-1.0)]
     scene = pc.Scene.textbook().replace(effects=blows_up)
-    sol = pc.simulate(scene, [0.7, 1.0], 0, (0, 5), error=1e-6)
+    sol = pc.simulate(scene, q0=[0.7, 1.0], qd0=0, t_span=(0, 5), error=1e-6)
     told = sol.accuracy
     assert told.outcome == "ended early"
     assert told.achieved == sol.error().largest

@@ -22,9 +22,9 @@ def damped(damping: float) -> pc.Scene:
 
 def test_the_rounding_of_large_angles_is_told() -> None:
     with pytest.raises(pc.AccuracyError, match="to 1e-10 rad; begin with fewer turns") as caught:
-        pc.simulate(BOOK, [1e6, 1e6 + 0.5], 0, (0, 5), error=1e-9)
+        pc.simulate(BOOK, q0=[1e6, 1e6 + 0.5], qd0=0, t_span=(0, 5), error=1e-9)
     turns = 2 * np.pi * round(1e6 / (2 * np.pi))
-    fewer = pc.simulate(BOOK, [1e6 - turns, 1e6 - turns + 0.5], 0, (0, 5), error=1e-9)
+    fewer = pc.simulate(BOOK, q0=[1e6 - turns, 1e6 - turns + 0.5], qd0=0, t_span=(0, 5), error=1e-9)
     assert fewer.accuracy is not None
     assert fewer.accuracy.reached
     assert caught.value.least > 1e-9
@@ -33,7 +33,7 @@ def test_the_rounding_of_large_angles_is_told() -> None:
 def test_turns_are_not_to_blame_for_chaos() -> None:
     q0, qd0, span = CHAOTIC
     with pytest.raises(pc.AccuracyError, match="neighbouring motions part too fast"):
-        pc.simulate(BOOK, np.array(q0) + 34 * np.pi, qd0, span, error=1e-3)
+        pc.simulate(BOOK, q0=np.array(q0) + 34 * np.pi, qd0=qd0, t_span=span, error=1e-3)
 
 
 @pytest.mark.parametrize(
@@ -50,10 +50,10 @@ def test_the_least_error_is_kept(
     scene: pc.Scene, q0: list[float], t_end: float, error: float
 ) -> None:
     with pytest.raises(pc.AccuracyError) as caught:
-        pc.simulate(scene, q0, 0, (0, t_end), error=error)
+        pc.simulate(scene, q0=q0, qd0=0, t_span=(0, t_end), error=error)
     least = caught.value.least
     assert f"ask for error = {least:.1e} or more" in str(caught.value)
-    told = pc.simulate(scene, q0, 0, (0, t_end), error=least).accuracy
+    told = pc.simulate(scene, q0=q0, qd0=0, t_span=(0, t_end), error=least).accuracy
     assert told is not None
     assert told.reached
 
@@ -72,7 +72,7 @@ def test_the_search_for_the_least_error_gives_no_warning_again() -> None:
     with warnings.catch_warnings(record=True) as given:
         warnings.simplefilter("always")
         with pytest.raises(pc.AccuracyError):
-            pc.simulate(BOOK, [90, 30], 0, (0, 5), error=1e-15)  # degrees, by mistake
+            pc.simulate(BOOK, q0=[90, 30], qd0=0, t_span=(0, 5), error=1e-15)  # degrees, by mistake
     assert len([one for one in given if "rad" in str(one.message)]) == 1
 
 
@@ -87,7 +87,7 @@ def test_what_breaks_off_the_search_for_the_least_error_leaves_the_refused_run(
 
     monkeypatch.setattr("pendcore.accuracy.trials.Trials.for_least", searched)
     with pytest.raises(Stop) as caught:
-        pc.simulate(BOOK, [0.7, 1.0], 0, (0, 5), error=1e-16)
+        pc.simulate(BOOK, q0=[0.7, 1.0], qd0=0, t_span=(0, 5), error=1e-16)
     accuracy = caught.value.solution.accuracy  # type: ignore[attr-defined]
     assert accuracy.outcome == "refused"
     assert 1e-16 < accuracy.achieved < 1e-12
@@ -99,14 +99,16 @@ def test_the_search_for_the_least_error_ends_with_the_time(monkeypatch: pytest.M
         lambda runs: np.inf if runs.tries_the_least else 1e-6,
     )
     with pytest.raises(pc.AccuracyError, match="no search kept an error so small") as caught:
-        pc.simulate(BOOK, [0.7, 1.0], 0, (0, 5), error=1e-16)
+        pc.simulate(BOOK, q0=[0.7, 1.0], qd0=0, t_span=(0, 5), error=1e-16)
     assert caught.value.least == np.inf
 
 
 def test_progress_goes_on_in_the_search_for_the_least_error() -> None:
     fractions: list[float] = []
     with pytest.raises(pc.AccuracyError) as caught:
-        pc.simulate(BOOK, [0.7, 1.0], 0, (0, 2000), error=1e-16, progress=fractions.append)
+        pc.simulate(
+            BOOK, q0=[0.7, 1.0], qd0=0, t_span=(0, 2000), error=1e-16, progress=fractions.append
+        )
     assert len(fractions) > 1
     assert fractions == sorted(fractions)
     assert sum(paid.purpose == "choose" for paid in caught.value.solution.accuracy.paid) > 1

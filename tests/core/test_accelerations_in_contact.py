@@ -26,7 +26,7 @@ def test_accelerations_in_contact_are_the_slopes_of_the_rates(restitution, metho
         fx.Motor(joint=1, sinusoid=fx.Sinusoid(8.0, angular_frequency=3.0)),
     ]
     scene = pc.Scene.textbook().replace(effects=effects)
-    sol = pc.simulate(scene, 1.5, 0, (0, 10), rtol=1e-9, method=method)
+    sol = pc.simulate(scene, q0=1.5, qd0=0, t_span=(0, 10), rtol=1e-9, method=method)
     phi = sol.q[:, 1] - sol.q[:, 0]
     still = sol.qd[:, 1] == sol.qd[:, 0]
     pairs = still[:-1] & still[1:] & (np.diff(sol.t) > 1e-3) & (np.abs(phi[:-1] - 0.2) < 1e-9)

@@ -25,7 +25,7 @@ def rods(n: int, length: float = 1.0, mass: float = 1.0, **options: Any) -> pc.S
 
 def solve(scene: pc.Scene, q: ArrayLike, qd: ArrayLike, t_end: float, **options: Any) -> Any:
     told = {"rtol": 1e-12, "atol": 1e-13, **options}
-    sol = pc.simulate(scene, q, qd, (0.0, t_end), **told)
+    sol = pc.simulate(scene, q0=q, qd0=qd, t_span=(0.0, t_end), **told)
     assert sol.success
     return sol
 

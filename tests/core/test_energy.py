@@ -174,7 +174,7 @@ def test_springs_are_part_of_what_the_energy_allows():
 
 def test_a_spring_that_pushes_has_no_bound():
     pushed = pc.Scene(links=[ROD], effects=[fx.TorsionalSpring(1, -0.5)])
-    run = pc.simulate(pushed, 0.5, t_span=(0, 1), store="end")
+    run = pc.simulate(pushed, q0=0.5, t_span=(0, 1), store="end")
     assert not energy_drift(run).too_large
 
 
@@ -183,7 +183,7 @@ def test_energies_of_a_moving_pivot_are_those_of_its_motion():
     moving = fx.DrivenPivot(x=fx.Sinusoid(amplitude=0.5, angular_frequency=2.0))
     scene = pc.Scene(links=[ROD], effects=[moving, fx.Lock(1)])
     # Nothing turns, so nothing but max_step keeps the steps short enough for the ledger.
-    run = pc.simulate(scene, pi / 2, t_span=(0, 2), ledger=True, max_step=0.02)
+    run = pc.simulate(scene, q0=pi / 2, t_span=(0, 2), ledger=True, max_step=0.02)
     speed = 0.5 * 2.0 * np.cos(2.0 * run.t)
     np.testing.assert_allclose(run.energy().kinetic, speed**2 / 2, atol=1e-12)
     np.testing.assert_allclose(run.positions()[:, 0, 0], 0.5 * np.sin(2.0 * run.t), atol=1e-15)

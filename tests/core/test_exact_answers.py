@@ -35,14 +35,16 @@ TWO, ONE = rods(M, M), rods(M)
 def solve(
     scene: pc.Scene, q: ArrayLike, qd: ArrayLike, t_end: float, tolerance: float = 1e-13
 ) -> pc.Solution:
-    sol = pc.simulate(scene, q, qd, (0.0, t_end), rtol=tolerance, atol=1e-2 * tolerance)
+    sol = pc.simulate(
+        scene, q0=q, qd0=qd, t_span=(0.0, t_end), rtol=tolerance, atol=1e-2 * tolerance
+    )
     assert sol.success
     return sol
 
 
 def reactions(scene: pc.Scene, q: ArrayLike, qd: ArrayLike = 0.0) -> Array:
     """Return the forces on the links at one instant, in weights of a rod."""
-    now = pc.simulate(scene, q, qd, (0.0, 0.0), store="steps")
+    now = pc.simulate(scene, q0=q, qd0=qd, t_span=(0.0, 0.0), store="steps")
     return np.asarray(now.reactions()[0] / (M * G))
 
 
@@ -111,7 +113,7 @@ def test_upright_at_rest_it_falls_from_where_the_start_rounds_to(tolerance: floa
         theory = float(to_go * mpmath.sqrt(2 * mpmath.mpf(L) / (3 * mpmath.mpf(G))))
     marks = [pc.events.LinkAngle(1, UPRIGHT + side, terminal=True) for side in (1, -1)]
     how = {"rtol": tolerance, "atol": 1e-3 * tolerance, "events": marks}
-    sol = pc.simulate(ONE, UPRIGHT, 0.0, (0.0, 40.0), **how)
+    sol = pc.simulate(ONE, q0=UPRIGHT, qd0=0.0, t_span=(0.0, 40.0), **how)
     assert sol.status == "event"
     assert sol.t[-1] == pytest.approx(theory, abs=0.5)
 
@@ -119,10 +121,10 @@ def test_upright_at_rest_it_falls_from_where_the_start_rounds_to(tolerance: floa
 def test_upright_at_rest_it_stands_in_steps_too_short_for_any_push() -> None:
     """A step would move the rod by less than half a last bit; carried on, the pushes add up."""
     how = {"method": "dopri5", "rtol": 1e-13, "atol": 1e-20, "max_steps": 100_000}
-    sol = pc.simulate(ONE, UPRIGHT, 0.0, (0.0, 20.0), **how)
+    sol = pc.simulate(ONE, q0=UPRIGHT, qd0=0.0, t_span=(0.0, 20.0), **how)
     assert sol.success
     assert set(sol.q[:, 0]) == {UPRIGHT}
-    carried = pc.simulate(ONE, UPRIGHT, 0.0, (0.0, 20.0), **how, compensated=True)
+    carried = pc.simulate(ONE, q0=UPRIGHT, qd0=0.0, t_span=(0.0, 20.0), **how, compensated=True)
     assert np.abs(carried.q - UPRIGHT).max() > 1
     known_limits = " ".join((ROOT / "docs/background/trust.md").read_text().split())
     assert "it stands for ever" in known_limits

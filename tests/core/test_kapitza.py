@@ -30,9 +30,9 @@ def multipliers(eps: float, w: float) -> NDArray[np.float64]:
     def after(start: NDArray[np.float64]) -> NDArray[np.float64]:
         sol = pc.simulate(
             scene,
-            UPRIGHT + start[:2],
-            start[2:],
-            (0.0, period),
+            q0=UPRIGHT + start[:2],
+            qd0=start[2:],
+            t_span=(0.0, period),
             rtol=1e-13,
             atol=1e-17 * scale,
             store="end",
@@ -84,5 +84,7 @@ def test_far_inside_it_stands_for_a_long_time_and_outside_it_falls_at_once() -> 
             gravity=1.0,
             effects=[pc.effects.DrivenPivot(y=shaking)],
         )
-        sol = pc.simulate(scene, [UPRIGHT + 0.01, UPRIGHT - 0.01], 0.0, (0.0, 50.0), store="steps")
+        sol = pc.simulate(
+            scene, q0=[UPRIGHT + 0.01, UPRIGHT - 0.01], qd0=0.0, t_span=(0.0, 50.0), store="steps"
+        )
         assert (np.abs(sol.q - UPRIGHT).max() > 1.0) == falls

@@ -96,7 +96,7 @@ def test_accelerations_reactions_and_energy_are_those_of_newton_and_euler(name: 
     n = len(q)
     equations = rig.equations(rig.instant(0.3, q, qd))
     unknowns = np.array(equations.solve(FORTY), dtype=float)
-    now = pc.simulate(scene, q, qd, (0.3, 0.3), store="steps")
+    now = pc.simulate(scene, q0=q, qd0=qd, t_span=(0.3, 0.3), store="steps")
     size = 1e-12 * np.abs(unknowns).max()
     np.testing.assert_allclose(scene.accelerations(0.3, q, qd), unknowns[:n], rtol=0, atol=size)
     np.testing.assert_allclose(now.accelerations()[0], unknowns[:n], rtol=0, atol=size)
@@ -131,7 +131,9 @@ def end_of_the_reference(name: str) -> NDArray[np.float64]:
 def test_every_method_follows_the_run_of_the_reference(name: str, method: str) -> None:
     scene, _, q, qd = case(name)
     y = end_of_the_reference(name)
-    sol = pc.simulate(scene, q, qd, (0, 0.2), method=method, rtol=1e-9, atol=1e-11, ledger=True)
+    sol = pc.simulate(
+        scene, q0=q, qd0=qd, t_span=(0, 0.2), method=method, rtol=1e-9, atol=1e-11, ledger=True
+    )
     assert sol.success, sol.message
     np.testing.assert_allclose(np.r_[sol.q[-1], sol.qd[-1]], y, rtol=0, atol=1e-7)
     energy = sol.energy()
@@ -145,9 +147,9 @@ def test_members_of_an_ensemble_have_the_bits_of_the_run_alone(name: str) -> Non
     for method in ("dop853", "taylor"):
         options: dict[str, Any] = {"method": method, "store": "end"}
         sweep = np.array(q) + 0.01 * np.arange(9)[:, None]
-        many = pc.ensemble(scene, sweep, qd, t_span=(0, 0.5), method=method)
+        many = pc.ensemble(scene, q0=sweep, qd0=qd, t_span=(0, 0.5), method=method)
         for k in (0, 8):
-            alone = pc.simulate(scene, sweep[k], qd, (0, 0.5), **options)
+            alone = pc.simulate(scene, q0=sweep[k], qd0=qd, t_span=(0, 0.5), **options)
             np.testing.assert_array_equal(many.q[k], alone.q[-1])
 
 
@@ -184,8 +186,8 @@ def test_friction_and_stops_see_locked_links_as_one(angle: float, effects: list[
     one = pc.Scene(links=[merged(angle)], gravity=9.81, effects=moved)
     options: dict[str, Any] = {"rtol": 1e-11, "atol": 1e-12, "ledger": True}
     times = np.linspace(0, 3, 31)
-    a = pc.simulate(two, [0.5, 0.5 + angle], 0.0, (0, 3), t_eval=times, **options)
-    b = pc.simulate(one, [0.5 + bent], 0.0, (0, 3), t_eval=times, **options)
+    a = pc.simulate(two, q0=[0.5, 0.5 + angle], qd0=0.0, t_span=(0, 3), t_eval=times, **options)
+    b = pc.simulate(one, q0=[0.5 + bent], qd0=0.0, t_span=(0, 3), t_eval=times, **options)
     assert len(a.t) > 5
     m = min(len(a.t), len(b.t))
     np.testing.assert_allclose(a.q[:m, 0] + bent, b.q[:m, 0], rtol=0, atol=1e-7)
@@ -200,9 +202,9 @@ def test_a_lock_where_the_run_starts_is_looked_at_there() -> None:
     """Folded back on a link as long, a point mass is in the pivot: nothing resists the rotation."""
     links = [pc.Link(mass=0.0, length=0.8), pc.Link.point_mass(mass=1.5, length=0.8)]
     scene = pc.Scene(links=links, gravity=9.81, effects=[fx.Lock(joint=2)])
-    assert pc.simulate(scene, [0.3, 0.9], 0.0, (0, 1)).success
+    assert pc.simulate(scene, q0=[0.3, 0.9], qd0=0.0, t_span=(0, 1)).success
     with pytest.raises(ValueError, match="link 1: inertia about its joint"):
-        pc.simulate(scene, [0.3, 0.3 + np.pi], 0.0, (0, 1))
+        pc.simulate(scene, q0=[0.3, 0.3 + np.pi], qd0=0.0, t_span=(0, 1))
     with pytest.raises(ValueError, match="link 1: inertia about its joint"):
         scene.replace(effects=[fx.Lock(joint=2, angle=-np.pi)])
 
@@ -213,10 +215,10 @@ def test_a_lock_that_makes_a_link_as_long_as_the_next_only_if_straight_is_taken_
     effects = [fx.Lock(joint=2), fx.RotorInertia(joint=3, armature=0.3)]
     scene = pc.Scene(links=links, effects=effects)
     bent, straight = [0.3, 1.3, 0.5], [0.3, 0.3, 0.5]
-    assert pc.simulate(scene, bent, t_span=(0, 1)).success
+    assert pc.simulate(scene, q0=bent, t_span=(0, 1)).success
     message = "q0: with joints locked as it says: link 1: has neither mass nor inertia"
     with pytest.raises(ValueError, match=message):
-        pc.simulate(scene, straight, t_span=(0, 1))
-    many = pc.ensemble(scene, [bent, straight], t_span=(0, 1), check=False)
+        pc.simulate(scene, q0=straight, t_span=(0, 1))
+    many = pc.ensemble(scene, q0=[bent, straight], t_span=(0, 1), check=False)
     assert list(many.status) == ["finished", "refused"]
     assert many.message((1,)).startswith(message)

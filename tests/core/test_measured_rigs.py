@@ -39,7 +39,9 @@ class Swing(NamedTuple):
 
     def angles(self, scene: pc.Scene, start: Array) -> Array:
         n = len(scene.links)
-        sol = pc.simulate(scene, start[:n], start[n:], (0.0, self.t[-1]), t_eval=self.t)
+        sol = pc.simulate(
+            scene, q0=start[:n], qd0=start[n:], t_span=(0.0, self.t[-1]), t_eval=self.t
+        )
         assert sol.success, sol.message
         return sol.q
 

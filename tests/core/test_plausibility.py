@@ -152,7 +152,7 @@ def test_angles_of_effects_that_may_well_be_meant_are_not_warned_of(angle):
 def test_a_run_under_a_table_ends_where_that_does():
     scene = SCENE.replace(effects=[fx.Motor(1, table=TABLE)])
     with pytest.warns(pc.PendcoreWarning):
-        run = pc.simulate(scene, [0.5, 1.0], t_span=(0, 2))
+        run = pc.simulate(scene, q0=[0.5, 1.0], t_span=(0, 2))
     assert run.t[-1] == 1.0
     assert not run.success
     assert "table" in run.message

@@ -48,7 +48,7 @@ def check_instant(
 ) -> None:
     q, qd = state
     scene = scene_of(bodies, gravity)
-    now = pc.simulate(scene, q, qd, t_span=(0.0, 0.0), store="steps")
+    now = pc.simulate(scene, q0=q, qd0=qd, t_span=(0.0, 0.0), store="steps")
     exact = newton_euler(bodies, gravity, q, qd, arithmetic=arithmetic)
 
     masses, lengths, *_ = np.array(bodies).T

@@ -191,9 +191,11 @@ def test_what_is_stored_or_sampled_changes_no_step(method):
 
 def test_threads_that_share_a_scene_do_not_disturb_each_other():
     starts = [[0.1 * k, 1.0 - 0.2 * k] for k in range(40)]
-    alone = [pc.simulate(BOOK, q0, 0, (0, 20)).y for q0 in starts]
+    alone = [pc.simulate(BOOK, q0=q0, qd0=0, t_span=(0, 20)).y for q0 in starts]
     with ThreadPoolExecutor(8) as pool:
-        together = list(pool.map(lambda q0: pc.simulate(BOOK, q0, 0, (0, 20)).y, starts))
+        together = list(
+            pool.map(lambda q0: pc.simulate(BOOK, q0=q0, qd0=0, t_span=(0, 20)).y, starts)
+        )
     assert all(np.array_equal(a, b) for a, b in zip(alone, together, strict=True))
 
 
@@ -205,8 +207,12 @@ def test_a_resumed_run_has_the_bits_of_one_that_never_stopped(method, store, sto
     early, late = grid[grid <= stop], grid[grid > stop]
     how = {"method": method, "store": store, "step": None if ERROR_ORDERS[method] else 0.01}
     sampled = store == "times"
-    whole = pc.simulate(BOOK, [-1.4, -1.1], 0, (0, 10), t_eval=grid if sampled else None, **how)
-    begun = pc.simulate(BOOK, [-1.4, -1.1], 0, (0, stop), t_eval=early if sampled else None, **how)
+    whole = pc.simulate(
+        BOOK, q0=[-1.4, -1.1], qd0=0, t_span=(0, 10), t_eval=grid if sampled else None, **how
+    )
+    begun = pc.simulate(
+        BOOK, q0=[-1.4, -1.1], qd0=0, t_span=(0, stop), t_eval=early if sampled else None, **how
+    )
     resumed = begun.resume(10, t_eval=late if sampled else None)
     assert np.array_equal(whole.t, resumed.t)
     assert np.array_equal(whole.y, resumed.y)
@@ -218,8 +224,8 @@ def test_a_resumed_run_has_the_bits_of_one_that_never_stopped(method, store, sto
 def test_mirrored_starts_move_as_mirror_images():
     # without gravity the plane may be turned over about the horizontal: q becomes -q
     floating = pc.Scene(links=BOOK.links, gravity=0.0)
-    one = pc.simulate(floating, [0.3, 1.1], [2.0, -1.0], (0, 10))
-    other = pc.simulate(floating, [-0.3, -1.1], [-2.0, 1.0], (0, 10))
+    one = pc.simulate(floating, q0=[0.3, 1.1], qd0=[2.0, -1.0], t_span=(0, 10))
+    other = pc.simulate(floating, q0=[-0.3, -1.1], qd0=[-2.0, 1.0], t_span=(0, 10))
     assert np.array_equal(one.t, other.t)
     assert np.array_equal(one.y, -other.y)
 

@@ -84,7 +84,9 @@ def test_reactions_and_energies_are_the_core_s(name: str, n: int) -> None:
         drawn = scene(name, n, seed)
         for state in states(drawn, seed):
             *forces, kinetic, potential = evaluated(drawn, state, solved(drawn, state))
-            now = pc.simulate(drawn, state.q, state.qd, t_span=(state.t, state.t), store="steps")
+            now = pc.simulate(
+                drawn, q0=state.q, qd0=state.qd, t_span=(state.t, state.t), store="steps"
+            )
             assert_close(now.reactions()[0].ravel(), forces)
             energy = now.energy()
             assert_close([energy.kinetic[0], energy.potential[0]], [kinetic, potential])

@@ -43,7 +43,7 @@ def motion(name: str, n: int, seed: int) -> tuple[dict[Any, float], pc.Solution]
     """Return what the core says of a state, by the derivation's symbols, and its solution."""
     drawn = scene(name, n, seed)
     (state,) = states(drawn, seed, count=1)
-    now = pc.simulate(drawn, state.q, state.qd, t_span=(state.t, state.t), store="steps")
+    now = pc.simulate(drawn, q0=state.q, qd0=state.qd, t_span=(state.t, state.t), store="steps")
     derivation = derived(name, n)
     s = derivation.symbols
     known = dict(Derivation(drawn).values)

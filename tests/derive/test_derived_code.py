@@ -115,7 +115,7 @@ def test_numbers_of_a_module_may_be_changed() -> None:
 def test_python_runs_in_scipy() -> None:
     integrate = pytest.importorskip("scipy.integrate")
     made, how = module("effects_2"), {"rtol": 1e-11, "atol": 1e-12, "method": "DOP853"}
-    run = pc.simulate(SCENES["effects_2"], START, 0.0, TIMES, rtol=1e-12, atol=1e-13)
+    run = pc.simulate(SCENES["effects_2"], q0=START, qd0=0.0, t_span=TIMES, rtol=1e-12, atol=1e-13)
     for vectorized in (False, True):
         found = integrate.solve_ivp(
             made.right_hand_side, TIMES, [*START, 0.0, 0.0], vectorized=vectorized, **how
@@ -265,7 +265,7 @@ def test_the_book_s_lines_give_the_book_s_figure(tmp_path: Path) -> None:
         """.replace("        g\n", "        run('g.m');\n"),
         tmp_path,
     )
-    run = pc.simulate(pc.Scene.textbook(), START, 0.0, TIMES)
+    run = pc.simulate(pc.Scene.textbook(), q0=START, qd0=0.0, t_span=TIMES)
     drawn = np.reshape(said[0], (-1, 5))
     assert len(drawn) > 30
     off = np.degrees(drawn[:, 1::2] - np.array([run(t)[:2] for t in drawn[:, 0]]))

@@ -72,7 +72,7 @@ def test_the_lines_of_the_first_steps_run(tmp_path, monkeypatch, capsys):
     assert rubbed == hard_case()
     names = {}
     exec(at_once, names)
-    alone = pc.simulate(pc.Scene.textbook(), names["starts"][3], t_span=(0, 5))
+    alone = pc.simulate(pc.Scene.textbook(), q0=names["starts"][3], t_span=(0, 5))
     assert np.array_equal(names["many"].q[3], alone.q[-1])
 
 

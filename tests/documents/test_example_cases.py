@@ -44,7 +44,7 @@ def test_a_shaken_pivot_keeps_an_inverted_pendulum_up_and_half_the_shaking_does_
             phase=drive.y.phase,
         )
         scene = with_effects(shaken.scene, pc.effects.DrivenPivot(y=y))
-        sol = pc.simulate(scene, shaken.q0, shaken.qd0, shaken.t_span)
+        sol = pc.simulate(scene, q0=shaken.q0, qd0=shaken.qd0, t_span=shaken.t_span)
         assert sol.t[-1] == 10.0
         tilts.append(np.degrees(np.abs(sol.q + np.pi / 2).max(axis=0)))
     assert (tilts[0] < 20).all()

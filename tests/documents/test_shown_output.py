@@ -50,7 +50,7 @@ def test_what_ensembles_keep_has_the_names_of_the_page():
         getattr(pc.keep, name) for name in pc.keep.__all__ if name != "Reducer"
     }
     for name, reducer in kept.items():
-        found = pc.ensemble(pc.Scene.textbook(), [[1.0, 1.0]], t_span=(0, 0.1), keep=reducer)
+        found = pc.ensemble(pc.Scene.textbook(), q0=[[1.0, 1.0]], t_span=(0, 0.1), keep=reducer)
         assert found[name].shape[0] == 1
         with pytest.raises(ValueError, match=f"keep = '{name}': must be"):
-            pc.ensemble(pc.Scene.textbook(), [[1.0, 1.0]], t_span=(0, 0.1), keep=name)
+            pc.ensemble(pc.Scene.textbook(), q0=[[1.0, 1.0]], t_span=(0, 0.1), keep=name)

@@ -47,7 +47,7 @@ def test_curves_are_the_angles_in_degrees(sol):
 
 @pytest.mark.parametrize("t_span", [(0, 5), (5, 0)])
 def test_curves_are_smooth_where_the_steps_are_long(t_span):
-    run = pc.simulate(SCENE, [0.5, 1.0], t_span=t_span, rtol=1e-3)
+    run = pc.simulate(SCENE, q0=[0.5, 1.0], t_span=t_span, rtol=1e-3)
     assert len(run.t) < 100
     line = run.plot()[0]
     assert len(line.get_xdata()) > 1000
@@ -63,13 +63,13 @@ def test_curves_are_smooth_where_the_steps_are_long(t_span):
     ],
 )
 def test_curves_go_from_the_first_to_the_last_of_several_kept_times(kept, span):
-    line = pc.simulate(SCENE, 1.0, t_span=(0, 5), **kept).plot()[0]
+    line = pc.simulate(SCENE, q0=1.0, t_span=(0, 5), **kept).plot()[0]
     assert (line.get_xdata()[0], line.get_xdata()[-1]) == span
     assert len(line.get_xdata()) > 1000
 
 
 def test_a_single_point_can_be_seen():
-    line = pc.simulate(SCENE, 1.0, t_span=(5, 5)).plot()[0]
+    line = pc.simulate(SCENE, q0=1.0, t_span=(5, 5)).plot()[0]
     assert len(line.get_xdata()) == 1
     assert line.get_marker() == "."
 
@@ -91,7 +91,7 @@ def test_one_axes_takes_all_curves_and_names_them(sol):
 def test_solutions_on_the_same_axes_can_be_told_apart(sol):
     first = sol.plot(label="rtol 1e-9")
     axes = [line.axes for line in first]
-    second = pc.simulate(SCENE, 1.0, t_span=(0, 5)).plot(axes, label="another start")
+    second = pc.simulate(SCENE, q0=1.0, t_span=(0, 5)).plot(axes, label="another start")
     for i in range(2):
         assert first[i].get_linestyle() != second[i].get_linestyle()
         legend = [text.get_text() for text in axes[i].get_legend().get_texts()]
@@ -115,7 +115,7 @@ def test_lines_are_drawn_as_asked(sol, names):
 
 
 def test_rest_looks_like_rest():
-    hanging = pc.simulate(SCENE, np.pi / 2, t_span=(0, 5))
+    hanging = pc.simulate(SCENE, q0=np.pi / 2, t_span=(0, 5))
     line = hanging.plot()[0]
     low, high = line.axes.get_ylim()
     assert high - low == pytest.approx(0.1)
@@ -125,13 +125,13 @@ def test_rest_looks_like_rest():
 
 def test_late_times_are_written_out():
     """They do not appear as the last digits of an offset in the corner."""
-    line = pc.simulate(SCENE, 1.0, t_span=(2e4, 2e4 + 1)).plot()[0]
+    line = pc.simulate(SCENE, q0=1.0, t_span=(2e4, 2e4 + 1)).plot()[0]
     line.figure.canvas.draw()
     assert line.axes.xaxis.get_major_formatter().get_offset() == ""
 
 
 def test_what_is_drawn_after_rest_is_seen_whole(sol):
-    hanging = pc.simulate(SCENE, np.pi / 2, t_span=(0, 5)).plot()
+    hanging = pc.simulate(SCENE, q0=np.pi / 2, t_span=(0, 5)).plot()
     sol.plot([line.axes for line in hanging])
     low, high = hanging[0].axes.get_ylim()
     assert low < np.rad2deg(sol.q[:, 0]).min()
@@ -146,7 +146,7 @@ def test_what_is_no_axes_is_refused_by_name(sol, ax):
 
 def test_a_single_link_has_a_single_axes():
     rod = pc.Scene(links=[pc.Link(mass=1, length=1)])
-    (line,) = pc.simulate(rod, 1.0, t_span=(0, 1)).plot()
+    (line,) = pc.simulate(rod, q0=1.0, t_span=(0, 1)).plot()
     assert line.axes.get_ylabel() == "q1 (deg)"
     assert len(line.figure.axes) == 1
 

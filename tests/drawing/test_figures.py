@@ -15,7 +15,9 @@ from pendcore.figures.poses import forces_on_links
 @pytest.fixture(scope="module")
 def sol() -> pc.Solution:
     down = pc.events.LinkAngle(1, np.pi / 2)
-    return pc.simulate(pc.Scene.textbook(), [0.8, 1.0], t_span=(0, 5), events=[down], ledger=True)
+    return pc.simulate(
+        pc.Scene.textbook(), q0=[0.8, 1.0], t_span=(0, 5), events=[down], ledger=True
+    )
 
 
 def axes(rows: int = 1) -> Any:
@@ -44,7 +46,7 @@ def test_reactions_have_components_and_sizes_in_newtons(sol: pc.Solution) -> Non
 
 def test_the_energy_has_its_ledger_below(sol: pc.Solution) -> None:
     damped = pc.Scene.textbook().replace(effects=[pc.effects.ViscousJoint(joint=1, damping=0.5)])
-    run = pc.simulate(damped, 0.5, t_span=(0, 5), ledger=True)
+    run = pc.simulate(damped, q0=0.5, t_span=(0, 5), ledger=True)
     lines = run.plot(axes(2), what="energy")
     found = {line.get_label(): line.get_data() for line in lines}
     assert set(found) == {"kinetic", "potential", "total", "viscous (lost)", "residual"}
@@ -52,7 +54,7 @@ def test_the_energy_has_its_ledger_below(sol: pc.Solution) -> None:
     lost = np.interp(t, *found["viscous (lost)"])
     assert total + lost == pytest.approx(np.full(len(t), total[0]), abs=0.05)
     assert found["kinetic"][1][0] == 0.0
-    bare = pc.simulate(damped, 0.5, t_span=(0, 5))
+    bare = pc.simulate(damped, q0=0.5, t_span=(0, 5))
     assert len(bare.plot(axes(), what="energy")) == 3
 
 
@@ -98,7 +100,7 @@ def test_a_strip_has_a_pose_and_its_time_for_each_time(sol: pc.Solution) -> None
     lines, texts = artists[::2], artists[1::2]
     assert [text.get_text() for text in texts] == ["0 s", "1.5 s", "4 s"]
     pose = np.array(lines[1].get_data()).T
-    true = pc.simulate(sol.scene, [0.8, 1.0], t_span=(0, 5), t_eval=[1.5]).positions()[0]
+    true = pc.simulate(sol.scene, q0=[0.8, 1.0], t_span=(0, 5), t_eval=[1.5]).positions()[0]
     assert pose - pose[0] == pytest.approx(true - true[0], abs=1e-6)
 
 
@@ -110,7 +112,7 @@ def test_the_forces_on_a_free_body_are_its_mass_times_its_acceleration() -> None
         pc.effects.DrivenPivot(x=pc.effects.Sinusoid(amplitude=0.05, angular_frequency=7.0)),
     ]
     scene = pc.Scene.textbook().replace(effects=effects)
-    run = pc.simulate(scene, [0.3, 0.9], [2.0, -5.0], t_span=(0, 1), rtol=1e-11, atol=1e-12)
+    run = pc.simulate(scene, q0=[0.3, 0.9], qd0=[2.0, -5.0], t_span=(0, 1), rtol=1e-11, atol=1e-12)
     h, at = 2e-4, 0.6
     times = at + h * np.array([-1, 0, 1])
     states = run(times).T
@@ -155,7 +157,7 @@ def test_free_bodies_show_each_force_by_its_size(sol: pc.Solution) -> None:
 
 
 def test_what_is_past_the_horizon_is_shaded_or_pale() -> None:
-    chaotic = pc.simulate(pc.Scene.textbook(), 0.0, t_span=(0, 30))
+    chaotic = pc.simulate(pc.Scene.textbook(), q0=0.0, t_span=(0, 30))
     until = chaotic.valid_until()
     assert until < 25
     for what, rows in (("rates", 2), ("reactions", 2), ("energy", 1)):
@@ -206,7 +208,7 @@ def test_poses_are_from_the_first_to_the_last_of_the_kept_times_unless_others_ar
     None
 ):
     run = pc.Case.textbook().simulate().case()
-    later = pc.simulate(run.scene, run.q0, t_span=(0, 5), t_eval=[1.0, 4.5])
+    later = pc.simulate(run.scene, q0=run.q0, t_span=(0, 5), t_eval=[1.0, 4.5])
     texts = [text.get_text() for text in later.plot(axes(), what="strip")[1::2]]
     assert texts == ["1 s", "1.5 s", "2 s", "2.5 s", "3 s", "3.5 s", "4 s", "4.5 s"]
     assert later.plot(axes(), what="free_bodies")[0].axes.get_title() == "t = 1 s"
@@ -217,6 +219,6 @@ def test_poses_are_from_the_first_to_the_last_of_the_kept_times_unless_others_ar
 @pytest.mark.parametrize("links", [1, 3])
 def test_every_figure_is_drawn_into_a_file(tmp_path: Any, what: str, links: int) -> None:
     rods = [pc.Link(mass=1.0, length=0.5)] * links
-    run = pc.simulate(pc.Scene(links=rods), 0.4, t_span=(0, 2))
+    run = pc.simulate(pc.Scene(links=rods), q0=0.4, t_span=(0, 2))
     save_figure(run, tmp_path / "figure.png", what=what)
     assert (tmp_path / "figure.png").stat().st_size > 5_000

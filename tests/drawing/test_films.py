@@ -21,7 +21,7 @@ from PIL import Image
 
 @pytest.fixture(scope="module")
 def sol() -> pc.Solution:
-    return pc.simulate(pc.Scene.textbook(), [0.8, 1.0], t_span=(0, 2))
+    return pc.simulate(pc.Scene.textbook(), q0=[0.8, 1.0], t_span=(0, 2))
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +32,7 @@ def bouncing() -> pc.Solution:
         pc.effects.DryJointFriction(joint=1, coulomb=0.6),
     ]
     scene = pc.Scene(links=[pc.Link(mass=1.0, length=1.0)], effects=effects)
-    return pc.simulate(scene, 0.2, t_span=(0, 8))
+    return pc.simulate(scene, q0=0.2, t_span=(0, 8))
 
 
 def stage(*runs: pc.Solution, **given: Any) -> Stage:
@@ -62,7 +62,7 @@ def test_each_frame_shows_the_chain_at_its_time(sol: pc.Solution) -> None:
 
 
 def test_a_run_that_goes_backward_is_shown_backward() -> None:
-    back = pc.simulate(pc.Scene.textbook(), 0.8, t_span=(2, 0))
+    back = pc.simulate(pc.Scene.textbook(), q0=0.8, t_span=(2, 0))
     times = frame_times([back], 30.0, 1.0)
     assert (times[0], np.sign(times[1] - times[0])) == (2.0, -1.0)
     assert moves_of(back, times).places.shape == (61, 3, 2)
@@ -78,7 +78,7 @@ def test_impacts_and_rest_are_shown_where_they_are(bouncing: pc.Solution) -> Non
 
 
 def test_two_runs_last_as_long_as_the_longer_one(sol: pc.Solution) -> None:
-    longer = pc.simulate(sol.scene, 1.0, t_span=(0, 3))
+    longer = pc.simulate(sol.scene, q0=1.0, t_span=(0, 3))
     film = stage(sol, longer)
     assert len(film.times) == 91
     assert np.array_equal(chain(film, 80), chain(film, 90))  # the shorter one stays where it ends
@@ -108,7 +108,7 @@ def test_arrows_are_the_reactions(sol: pc.Solution) -> None:
 
 
 def test_a_run_is_pale_past_its_horizon() -> None:
-    chaotic = pc.simulate(pc.Scene.textbook(), 0.0, t_span=(0, 30))
+    chaotic = pc.simulate(pc.Scene.textbook(), q0=0.0, t_span=(0, 30))
     film = stage(chaotic, horizon=0.1)
     until = chaotic.valid_until()
     right, wrong = (int(np.searchsorted(film.times, until)) + k for k in (-2, 2))

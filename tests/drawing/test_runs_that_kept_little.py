@@ -27,7 +27,7 @@ def test_each_frame_of_a_film_is_the_dense_output(pair: tuple[pc.Solution, pc.So
         assert kept.run.t_reached == dense.run.t_reached
     else:
         dense = pc.simulate(
-            kept.scene, [1.8, 2.5], t_span=(0, 10), method=kept.method,
+            kept.scene, q0=[1.8, 2.5], t_span=(0, 10), method=kept.method,
             **{name: kept.run.arguments[name] for name in ("rtol", "atol", "compensated")},
         )  # fmt: skip
     film = stage(kept, reactions=True, trace=np.inf)

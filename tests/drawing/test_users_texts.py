@@ -17,7 +17,7 @@ NAMES = [*UNREADABLE, "_a", "__", "_$$", "5 $", r"$\theta$ sweep", "plain", "#%&
 
 @pytest.fixture(scope="module")
 def sol() -> pc.Solution:
-    return pc.simulate(pc.Scene.textbook(), [0.8, 1.0], t_span=(0, 0.5))
+    return pc.simulate(pc.Scene.textbook(), q0=[0.8, 1.0], t_span=(0, 0.5))
 
 
 def pixels(figure: Figure) -> Any:
@@ -83,7 +83,7 @@ def test_a_comparison_and_a_map_can_be_drawn_under_any_name(name: str) -> None:
     figure = Figure()
     cost.plot(figure.subplots())
     found = pc.ensemble(
-        book.scene, np.linspace(0, 1, 4)[:, None] * [1.0, 0.5], t_span=(0, 0.1),
+        book.scene, q0=np.linspace(0, 1, 4)[:, None] * [1.0, 0.5], t_span=(0, 0.1),
         keep={name: pc.keep.EnergyDrift()},
     )  # fmt: skip
     found.plot(name, ax=figure.add_subplot())

@@ -53,7 +53,7 @@ def test_constant_friction_stops_the_rod_after_its_momentum_over_the_friction(
 ) -> None:
     friction = pc.effects.DryJointFriction(joint=1, coulomb=0.4)
     stop = J * abs(w0) / 0.4
-    sol = pc.simulate(rod(friction), 0.2, w0, (0, 2 * stop), rtol=rtol, method=method)
+    sol = pc.simulate(rod(friction), q0=0.2, qd0=w0, t_span=(0, 2 * stop), rtol=rtol, method=method)
     assert_rests(sol)
     assert time_of_rest(sol) == pytest.approx(stop, rel=1e-12)
     assert sol.q[-1, 0] - 0.2 == pytest.approx(w0 * stop / 2, rel=1e-11)
@@ -81,7 +81,9 @@ def test_with_stribecks_law_it_stops_a_little_sooner(
     )
 
     stop = time_to_stop(w0, friction)
-    sol = pc.simulate(rod(friction), 0.2, w0, (0, 10), rtol=rtol, atol=1e-2 * rtol, method=method)
+    sol = pc.simulate(
+        rod(friction), q0=0.2, qd0=w0, t_span=(0, 10), rtol=rtol, atol=1e-2 * rtol, method=method
+    )
     assert_rests(sol)
     # radau5 keeps an estimate of order 3 below its tolerance, while its error is of order 5. The
     # tolerance is chosen such that the error falls as rtol, times a factor for the sharpness of the
@@ -127,7 +129,14 @@ def test_a_peak_of_friction_that_is_far_narrower_than_the_run_is_not_strided_ove
         friction.stribeck_velocity * 36 ** (1 / friction.exponent), friction
     )
     sol = pc.simulate(
-        rod(friction), 0.2, w0, (0, 10), rtol=rtol, atol=atol, method=method, max_steps=10_000
+        rod(friction),
+        q0=0.2,
+        qd0=w0,
+        t_span=(0, 10),
+        rtol=rtol,
+        atol=atol,
+        method=method,
+        max_steps=10_000,
     )
     assert_rests(sol)
     # The rate falls by 1 rad/s in the time to stop, so an error of the rate in rad/s is the error
@@ -154,7 +163,7 @@ def test_a_narrow_peak_of_friction_shortens_every_run_by_the_same_time(
     sooner = J * peak_ends / coulomb - time_to_stop(peak_ends, friction)
     for w0 in np.random.default_rng(6).uniform(0.5, 20, 100):
         how = {"method": method, "rtol": rtol, "atol": 1e-2 * rtol, "max_steps": 10_000}
-        sol = pc.simulate(rod(friction), 0.2, w0, (0, 100), **how)
+        sol = pc.simulate(rod(friction), q0=0.2, qd0=w0, t_span=(0, 100), **how)
         assert_rests(sol)
         assert time_of_rest(sol) == pytest.approx(J * w0 / coulomb - sooner, rel=allowed)
 
@@ -173,7 +182,7 @@ def test_a_rod_on_a_spring_with_friction_swings_less_by_the_same_each_time(
     while stiffness * abs(turns[-1]) > coulomb:
         turns.append(-(turns[-1] - np.sign(turns[-1]) * 2 * coulomb / stiffness))
     scene = rod(spring, friction)
-    sol = pc.simulate(scene, rest + side * amplitude, 0, (0, 20), **fine)
+    sol = pc.simulate(scene, q0=rest + side * amplitude, qd0=0, t_span=(0, 20), **fine)
     assert_rests(sol)
     assert time_of_rest(sol) == pytest.approx(half * (len(turns) - 1), rel=1e-10)
     at_turns = half * np.arange(len(turns))
@@ -187,7 +196,7 @@ def test_friction_holds_a_rod_at_rest_if_and_only_if_it_can(q: float, method: st
     needed = abs(M * G * L / 2 * np.cos(q))
     for share, holds in ((1 + 1e-9, True), (1 - 1e-9, False)):
         friction = pc.effects.DryJointFriction(joint=1, coulomb=share * needed)
-        sol = pc.simulate(rod(friction, gravity=G), q, 0, (0, 1.0), method=method)
+        sol = pc.simulate(rod(friction, gravity=G), q0=q, qd0=0, t_span=(0, 1.0), method=method)
         if holds:
             assert_rests(sol)
             assert time_of_rest(sol) == 0.0
@@ -203,8 +212,8 @@ def test_static_friction_above_the_sliding_one_holds_and_once_broken_does_not(
     torque = pc.effects.Motor(joint=1, constant=0.5)
     friction = pc.effects.DryJointFriction(joint=1, coulomb=0.4, static=0.6, stribeck_velocity=0.01)
     scene = rod(torque, friction)
-    assert_rests(pc.simulate(scene, 0.0, 0.0, (0, 1), method=method))
-    slid = pc.simulate(scene, 0.0, 0.1, (0, 10), rtol=1e-10, method=method)
+    assert_rests(pc.simulate(scene, q0=0.0, qd0=0.0, t_span=(0, 1), method=method))
+    slid = pc.simulate(scene, q0=0.0, qd0=0.1, t_span=(0, 10), rtol=1e-10, method=method)
     assert slid.status == "finished"
     # In sliding 0.1 N m are left over; the Stribeck peak is passed from above within 0.01 rad/s.
     assert slid.qd[-1, 0] == pytest.approx(0.1 + 0.1 * 10 / J, rel=1e-6)

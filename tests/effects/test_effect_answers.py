@@ -31,7 +31,7 @@ def rod(*effects: Any, gravity: float = 0.0, links: int = 1) -> pc.Scene:
 
 def solve(scene: pc.Scene, q: Any, qd: Any, t_end: float = 5.0, **options: Any) -> pc.Solution:
     told = {"rtol": 1e-13, "atol": 1e-15, **options}
-    sol = pc.simulate(scene, q, qd, (0.0, t_end), **told)
+    sol = pc.simulate(scene, q0=q, qd0=qd, t_span=(0.0, t_end), **told)
     assert sol.success
     return sol
 
@@ -270,8 +270,8 @@ def test_a_later_start_is_another_phase() -> None:
         return rod(pc.effects.DrivenPivot(x=drive, y=drive), motor, gravity=G, links=2)
 
     told = {"rtol": 1e-12, "atol": 1e-13}
-    at_once = pc.simulate(scene(7.0), [0.3, 1.0], [1.0, -2.0], (0.0, 2.0), **told)
-    later = pc.simulate(scene(0.0), [0.3, 1.0], [1.0, -2.0], (7.0, 9.0), **told)
+    at_once = pc.simulate(scene(7.0), q0=[0.3, 1.0], qd0=[1.0, -2.0], t_span=(0.0, 2.0), **told)
+    later = pc.simulate(scene(0.0), q0=[0.3, 1.0], qd0=[1.0, -2.0], t_span=(7.0, 9.0), **told)
     t = np.linspace(0.0, 2.0, 50)
     np.testing.assert_allclose(later(7.0 + t), at_once(t), atol=1e-8)
 
@@ -288,8 +288,8 @@ def test_there_and_back_across_the_knots_of_a_table_and_a_spline() -> None:
         links=2,
     )
     told = {"rtol": 1e-12, "atol": 1e-13}
-    there = pc.simulate(scene, [0.3, 1.0], [1.0, -2.0], (0.0, 2.5), **told)
-    back = pc.simulate(scene, there.q[-1], there.qd[-1], (2.5, 0.0), **told)
+    there = pc.simulate(scene, q0=[0.3, 1.0], qd0=[1.0, -2.0], t_span=(0.0, 2.5), **told)
+    back = pc.simulate(scene, q0=there.q[-1], qd0=there.qd[-1], t_span=(2.5, 0.0), **told)
     np.testing.assert_allclose(back.y[:, -1], there.y[:, 0], atol=1e-8)
     for knot in KNOTS[1:-1]:
         assert np.isin(knot, there.t)

@@ -33,7 +33,7 @@ def rig(*more: fx.Effect) -> pc.Scene:
 
 def run(scene: pc.Scene, qd0: object = RIG.qd0, **options: object) -> pc.Solution:
     times = np.linspace(0, RIG.t_span[1], 201)
-    return pc.simulate(scene, RIG.q0, qd0, RIG.t_span, t_eval=times, **options)
+    return pc.simulate(scene, q0=RIG.q0, qd0=qd0, t_span=RIG.t_span, t_eval=times, **options)
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -120,7 +120,7 @@ def test_a_pushed_rod_slides_and_sticks_as_the_closed_form_has_it(
     times = np.linspace(0, 12, 121)
     sol = pc.simulate(
         scene,
-        0.0,
+        q0=0.0,
         t_span=(0, 12),
         t_eval=times,
         method=method,

@@ -90,7 +90,7 @@ def simulate(
 ) -> pc.Solution:
     scene = scene_of(BODIES, G, described)
     told = {"rtol": 1e-11, "atol": 1e-13, "ledger": True, **options}
-    sol = pc.simulate(scene, Q, qd, (0.0, t_end), **told)
+    sol = pc.simulate(scene, q0=Q, qd0=qd, t_span=(0.0, t_end), **told)
     assert sol.success
     return sol
 
@@ -212,7 +212,9 @@ J = 1.7 * 0.6**2 / 3
 
 def turning(kind: str, w0: float = 3.0, t_end: float = 2.0, **told: Any) -> pc.Solution:
     scene = scene_of([ROD], 0.0, [(kind, told)])
-    return pc.simulate(scene, 0.2, w0, (0.0, t_end), rtol=1e-12, atol=1e-14, ledger=True)
+    return pc.simulate(
+        scene, q0=0.2, qd0=w0, t_span=(0.0, t_end), rtol=1e-12, atol=1e-14, ledger=True
+    )
 
 
 def test_damping_takes_the_kinetic_energy() -> None:
@@ -255,7 +257,7 @@ def test_a_drive_along_the_rod_gives_the_rod_its_speed() -> None:
     scene = scene_of([ROD], 0.0, [("driven_pivot", {"x": drive})])
     # The rod does not turn, so that nothing but max_step keeps the steps short.
     told = {"rtol": 1e-12, "atol": 1e-14, "max_step": 0.005, "ledger": True}
-    sol = pc.simulate(scene, 0.0, 0.0, (0.0, 3.0), **told)
+    sol = pc.simulate(scene, q0=0.0, qd0=0.0, t_span=(0.0, 3.0), **told)
     kinetic = 1.7 / 2 * (1.4 * np.cos(7 * sol.t + 0.3)) ** 2
     np.testing.assert_allclose(sol.energy().ledger.drive, kinetic - kinetic[0], atol=1e-10)
 
@@ -304,8 +306,8 @@ def test_the_ledger_between_the_steps_closes_as_the_dense_output_allows() -> Non
 def test_a_backward_run_gives_back_what_the_forward_one_took() -> None:
     scene = scene_of(BODIES, G, [one for one in ALL if one[0] != "compiled_user"])
     told = {"rtol": 1e-11, "atol": 1e-13, "ledger": True, "store": "steps"}
-    there = pc.simulate(scene, Q, QD, (0.0, 0.5), **told)
-    back = pc.simulate(scene, there.q[-1], there.qd[-1], (0.5, 0.0), **told)
+    there = pc.simulate(scene, q0=Q, qd0=QD, t_span=(0.0, 0.5), **told)
+    back = pc.simulate(scene, q0=there.q[-1], qd0=there.qd[-1], t_span=(0.5, 0.0), **told)
     forth, again = there.energy().ledger, back.energy().ledger
     for name, entry in entries(forth).items():
         assert getattr(again, name)[-1] == pytest.approx(-entry[-1], rel=1e-7, abs=1e-9)
@@ -321,7 +323,9 @@ def test_a_ledger_that_overflows_ends_the_run_and_is_named() -> None:
         (heavy, stop, 1.0, 1e10, "impact"),
     ):
         scene = pc.Scene(links=[link], gravity=0.0, effects=[effect])
-        sol = pc.simulate(scene, q0, qd0, (0, 0.5), max_steps=300, ledger=True, check=False)
+        sol = pc.simulate(
+            scene, q0=q0, qd0=qd0, t_span=(0, 0.5), max_steps=300, ledger=True, check=False
+        )
         assert sol.status == "non_finite"
         assert f"the ledger's {account} stopped being finite" in sol.message
         assert np.isfinite(getattr(sol.energy().ledger, account)).all()

@@ -41,7 +41,7 @@ def assert_close(computed: ArrayLike, exact: object, scale: ArrayLike) -> None:
 def check_instant(drawn: DrawnRig) -> None:
     bodies, gravity, described, (t, q, qd) = drawn
     n, scene = len(bodies), scene_of(bodies, gravity, described)
-    now = pc.simulate(scene, q, qd, t_span=(t, t), store="steps")
+    now = pc.simulate(scene, q0=q, qd0=qd, t_span=(t, t), store="steps")
     laws = [law(one) for one in described]
     rig = Rig(bodies=bodies, gravity=gravity, effects=laws, arithmetic=FORTY)
     instant = rig.instant(t, q, qd)

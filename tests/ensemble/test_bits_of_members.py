@@ -100,14 +100,14 @@ def one_by_one(scene, method):
 
 def ensemble(scene, method, **of_the_whole):
     q0, qd0, how = asked(scene, method)
-    return pc.ensemble(scene, q0, qd0, **how, **of_the_whole)
+    return pc.ensemble(scene, q0=q0, qd0=qd0, **how, **of_the_whole)
 
 
 def allowed(scene, method):
     """Whether the scene can be run by the method: not all effects have Taylor series."""
     q0, qd0, how = asked(scene, method)
     try:
-        pc.simulate(scene, q0[0], np.broadcast_to(qd0, q0.shape)[0], **how)
+        pc.simulate(scene, q0=q0[0], qd0=np.broadcast_to(qd0, q0.shape)[0], **how)
     except ValueError:
         return False
     return True

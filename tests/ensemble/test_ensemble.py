@@ -35,9 +35,9 @@ def starts(count, n, seed=1):
 def test_a_member_has_the_bits_of_simulate(name, workers):
     scene = SCENES[name]
     q0 = starts(7, len(scene.links))
-    found = pc.ensemble(scene, q0, 0.5, (0.5, 3), workers=workers)
+    found = pc.ensemble(scene, q0=q0, qd0=0.5, t_span=(0.5, 3), workers=workers)
     for i, start in enumerate(q0):
-        alone = pc.simulate(scene, start, 0.5, (0.5, 3))
+        alone = pc.simulate(scene, q0=start, qd0=0.5, t_span=(0.5, 3))
         assert found.status[i] == alone.status
         assert (found.t[i], *found.q[i], *found.qd[i]) == (alone.t[-1], *alone.y[:, -1])
 
@@ -46,9 +46,11 @@ def test_a_member_has_the_bits_of_simulate(name, workers):
 @pytest.mark.parametrize("rtol", [1e-3, 1e-6, 1e-10])
 def test_so_it_has_with_every_method_and_tolerance(method, rtol):
     q0 = starts(5, 2, seed=3)
-    found = pc.ensemble(BOOK, q0, t_span=(0, 4), method=method, rtol=rtol, atol=rtol / 100)
+    found = pc.ensemble(BOOK, q0=q0, t_span=(0, 4), method=method, rtol=rtol, atol=rtol / 100)
     for i in range(5):
-        alone = pc.simulate(BOOK, q0[i], t_span=(0, 4), method=method, rtol=rtol, atol=rtol / 100)
+        alone = pc.simulate(
+            BOOK, q0=q0[i], t_span=(0, 4), method=method, rtol=rtol, atol=rtol / 100
+        )
         assert np.array_equal(found.q[i], alone.q[-1])
         assert np.array_equal(found.member(i).y, alone.y)
 
@@ -57,7 +59,7 @@ def test_starts_and_parameters_broadcast():
     masses = np.array([0.5, 1.0, 2.0])[:, None]
     gravity = np.array([9.8, 1.6])
     found = pc.ensemble(
-        DAMPED, [0.3, 0.8], t_span=(0, 2),
+        DAMPED, q0=[0.3, 0.8], t_span=(0, 2),
         vary={"link[2].mass": masses, "gravity": gravity, "effect[1].damping": 0.2},
     )  # fmt: skip
     assert found.shape == (3, 2)
@@ -66,19 +68,19 @@ def test_starts_and_parameters_broadcast():
         scene = DAMPED.with_parameters(
             {"link[2].mass": masses[i, 0], "gravity": gravity[j], "effect[1].damping": 0.2}
         )
-        alone = pc.simulate(scene, [0.3, 0.8], t_span=(0, 2))
+        alone = pc.simulate(scene, q0=[0.3, 0.8], t_span=(0, 2))
         assert np.array_equal(found.q[i, j], alone.q[-1])
         assert np.array_equal(found.member((i, j)).q[-1], alone.q[-1])
-    assert pc.ensemble(BOOK, [0.1, 0.2], t_span=(0, 1)).shape == ()
+    assert pc.ensemble(BOOK, q0=[0.1, 0.2], t_span=(0, 1)).shape == ()
 
 
 def test_states_at_times():
     times = np.linspace(0, 2, 5)
-    found = pc.ensemble(BOOK, starts(4, 2), t_span=(0, 2), keep="times", t_eval=times)
+    found = pc.ensemble(BOOK, q0=starts(4, 2), t_span=(0, 2), keep="times", t_eval=times)
     assert found.q.shape == (4, 5, 2)
     assert np.array_equal(found.t, times)
     for i in range(4):
-        alone = pc.simulate(BOOK, starts(4, 2)[i], t_span=(0, 2), t_eval=times)
+        alone = pc.simulate(BOOK, q0=starts(4, 2)[i], t_span=(0, 2), t_eval=times)
         assert np.array_equal(found.q[i], alone.q)
         assert np.array_equal(found.qd[i], alone.qd)
 
@@ -87,12 +89,12 @@ def test_the_first_event_of_each_member():
     q0 = starts(30, 2, seed=5)
     last = pc.events.LinkAngle(1, np.pi / 2, terminal=3)
     found = pc.ensemble(
-        BOOK, q0, t_span=(0, 10), events=[last], keep={"over": pc.keep.FirstEvent(UPRIGHT)}
+        BOOK, q0=q0, t_span=(0, 10), events=[last], keep={"over": pc.keep.FirstEvent(UPRIGHT)}
     )
     assert set(found.counts()) == {"event", "finished"}
     over = found["over"]
     for i in range(30):
-        alone = pc.simulate(BOOK, q0[i], t_span=(0, 10), events=[last, UPRIGHT])
+        alone = pc.simulate(BOOK, q0=q0[i], t_span=(0, 10), events=[last, UPRIGHT])
         first = alone.events[1].t[0] if len(alone.events[1].t) else math.nan
         assert over[i] == first or (math.isnan(over[i]) and math.isnan(first))
         assert found.t[i] == alone.t[-1]
@@ -103,7 +105,7 @@ def test_the_first_event_of_each_member():
 
 def test_members_fail_alone():
     q0 = np.array([[1.5, 1.5], [np.nan, 1.0], [0.5, 1.0]])
-    short = pc.ensemble(BOOK, q0, t_span=(0, 9), max_steps=100, check=False)
+    short = pc.ensemble(BOOK, q0=q0, t_span=(0, 9), max_steps=100, check=False)
     assert short.status.tolist() == ["finished", "refused", "max_steps"]
     assert short.success.tolist() == [True, False, False]
     assert short.failed.tolist() == [[1], [2]]
@@ -113,11 +115,11 @@ def test_members_fail_alone():
     assert np.isfinite(short.q[2]).all()
     again = short.rerun(max_steps=10_000, check=False)
     assert again.status.tolist() == ["refused", "finished"]
-    assert np.array_equal(again.q[1], pc.simulate(BOOK, q0[2], t_span=(0, 9)).q[-1])
+    assert np.array_equal(again.q[1], pc.simulate(BOOK, q0=q0[2], t_span=(0, 9)).q[-1])
     with pytest.warns(pc.PendcoreWarning, match=r"of 3 members 1 finished, 1 max_steps, 1 refused"):
-        pc.ensemble(BOOK, q0, t_span=(0, 9), max_steps=100)
+        pc.ensemble(BOOK, q0=q0, t_span=(0, 9), max_steps=100)
     with pytest.raises(RuntimeError, match="the first is") as raised:
-        pc.ensemble(BOOK, q0, t_span=(0, 9), max_steps=100, check=True)
+        pc.ensemble(BOOK, q0=q0, t_span=(0, 9), max_steps=100, check=True)
     assert raised.value.ensemble.success[0]  # type: ignore[attr-defined]
 
 
@@ -128,7 +130,7 @@ def test_a_function_that_raises_ends_its_member_alone():
         return [0.0, 0.0]
 
     scene = BOOK.replace(effects=[E.User(torque)])
-    found = pc.ensemble(scene, [[0.5, 1.0], [1.56, 1.57]], t_span=(0, 0.1), check=False)
+    found = pc.ensemble(scene, q0=[[0.5, 1.0], [1.56, 1.57]], t_span=(0, 0.1), check=False)
     assert found.status.tolist() == ["finished", "callback_error"]
 
 
@@ -139,14 +141,14 @@ def test_ctrl_c_and_a_time_limit_keep_what_is_done():
 
     q0 = starts(100_000, 2)
     with pytest.raises(KeyboardInterrupt) as raised:
-        pc.ensemble(BOOK, q0, t_span=(0, 100), progress=stop)
+        pc.ensemble(BOOK, q0=q0, t_span=(0, 100), progress=stop)
     found = raised.value.ensemble  # type: ignore[attr-defined]
     counts = found.counts()
     assert counts["finished"] > 1000
     assert counts["not_run"] > 1000
     done = np.flatnonzero(found.success)[-1]
-    assert np.array_equal(found.q[done], pc.simulate(BOOK, q0[done], t_span=(0, 100)).q[-1])
-    limited = pc.ensemble(BOOK, q0, t_span=(0, 100), time_limit=0.2, check=False)
+    assert np.array_equal(found.q[done], pc.simulate(BOOK, q0=q0[done], t_span=(0, 100)).q[-1])
+    limited = pc.ensemble(BOOK, q0=q0, t_span=(0, 100), time_limit=0.2, check=False)
     assert limited.ending == "time_limit"
     assert limited.counts()["not_run"] > 1000
 
@@ -222,10 +224,10 @@ def test_every_parameter_varies_in_the_core_as_in_python():
     )
     for name, value in scene.parameters().items():
         found = pc.ensemble(
-            scene, [0.5, 1.0], t_span=(0, 1), vary={name: [value, 1.01 * value + 0.01]}
+            scene, q0=[0.5, 1.0], t_span=(0, 1), vary={name: [value, 1.01 * value + 0.01]}
         )
         alone = pc.simulate(
-            scene.with_parameters({name: 1.01 * value + 0.01}), [0.5, 1.0], t_span=(0, 1)
+            scene.with_parameters({name: 1.01 * value + 0.01}), q0=[0.5, 1.0], t_span=(0, 1)
         )
         assert np.array_equal(found.q[1], alone.q[-1]), name
 
@@ -254,7 +256,7 @@ def test_samples_that_cannot_be_drawn():
 
 def test_xarray_has_units_and_coordinates():
     pytest.importorskip("xarray")
-    found = pc.ensemble(BOOK, [0.5, 1.0], t_span=(0, 1), vary={"gravity": [1.6, 9.8, 3.7]})
+    found = pc.ensemble(BOOK, q0=[0.5, 1.0], t_span=(0, 1), vary={"gravity": [1.6, 9.8, 3.7]})
     data = found.to_xarray()
     assert data.q.dims == ("member_0", "link")
     assert data.gravity.attrs["units"] == "m/s^2"
@@ -263,25 +265,31 @@ def test_xarray_has_units_and_coordinates():
 
 def test_starts_in_degrees_are_told_once():
     with pytest.warns(pc.PendcoreWarning, match=r"q0\[0, 0\] = 45.0 rad: that is 2578 deg") as told:
-        pc.ensemble(BOOK, [[45, 60], [30, 90]], t_span=(0, 0.1))
+        pc.ensemble(BOOK, q0=[[45, 60], [30, 90]], t_span=(0, 0.1))
     assert len(told) == 1
     with pytest.warns(pc.PendcoreWarning, match=r"^q0\[1\] = 60.0 rad"):  # as it was given
-        pc.ensemble(BOOK, [0, 60], t_span=(0, 0.1), vary={"gravity": [9.8, 1.6]})
+        pc.ensemble(BOOK, q0=[0, 60], t_span=(0, 0.1), vary={"gravity": [9.8, 1.6]})
     with pytest.warns(pc.PendcoreWarning, match=r"^q0 = 45.0 rad"):
-        pc.ensemble(BOOK, 45, t_span=(0, 0.1))
-    pc.ensemble(BOOK, [[45.5, 60], [30, 90]], t_span=(0, 0.1))
-    pc.ensemble(BOOK, [[0, 5], [10, 0]], t_span=(0, 0.1))
+        pc.ensemble(BOOK, q0=45, t_span=(0, 0.1))
+    pc.ensemble(BOOK, q0=[[45.5, 60], [30, 90]], t_span=(0, 0.1))
+    pc.ensemble(BOOK, q0=[[0, 5], [10, 0]], t_span=(0, 0.1))
 
 
 def test_one_member_without_axes_is_run_once_more():
-    short = pc.ensemble(BOOK, [1.0, 1.0], t_span=(0, 5), max_steps=3, check=False)
+    short = pc.ensemble(BOOK, q0=[1.0, 1.0], t_span=(0, 5), max_steps=3, check=False)
     assert short.rerun(max_steps=1000).status == ["finished"]
 
 
 def test_a_member_that_was_not_run_says_so():
     with ThreadPoolExecutor(1) as pool:
         found = pc.ensemble(
-            BOOK, starts(5, 2), t_span=(0, 1), time_limit=1e-9, check=False, executor=pool, chunk=1
+            BOOK,
+            q0=starts(5, 2),
+            t_span=(0, 1),
+            time_limit=1e-9,
+            check=False,
+            executor=pool,
+            chunk=1,
         )
     assert found.status[4] == "not_run"
     assert found.message(4).startswith("was not run: ")

@@ -20,7 +20,7 @@ STARTS = pc.draw.uniform(-2, 2, (40, 2), seed=1)
 
 
 def plain(scene=BOOK, **asked):
-    return pc.ensemble(scene, STARTS, t_span=(0, 3), **asked)
+    return pc.ensemble(scene, q0=STARTS, t_span=(0, 3), **asked)
 
 
 @pytest.mark.parametrize("chunk", [1, 7, 1000])
@@ -28,7 +28,7 @@ def plain(scene=BOOK, **asked):
 def test_an_executor_changes_no_bit(kind, chunk):
     pool = ThreadPoolExecutor(2) if kind == "threads" else ProcessPoolExecutor(2)
     with pool:
-        found = pc.ensemble(BOOK, STARTS, t_span=(0, 3), executor=pool, chunk=chunk)
+        found = pc.ensemble(BOOK, q0=STARTS, t_span=(0, 3), executor=pool, chunk=chunk)
     assert np.array_equal(found.q, plain().q)
     assert found.counts() == {"finished": 40}
     assert found.statistics == plain().statistics
@@ -38,8 +38,8 @@ def test_effects_and_events_travel_to_processes():
     scene = BOOK.replace(effects=[pc.effects.JointStop(joint=2, range=(-1, 1), restitution=0.5)])
     asked = {"keep": pc.keep.FirstEvent(pc.events.RateZero(link=1)), "method": "dop853"}
     with ProcessPoolExecutor(1) as pool:
-        found = pc.ensemble(scene, STARTS / 9, t_span=(0, 3), executor=pool, chunk=9, **asked)
-    here = pc.ensemble(scene, STARTS / 9, t_span=(0, 3), **asked)
+        found = pc.ensemble(scene, q0=STARTS / 9, t_span=(0, 3), executor=pool, chunk=9, **asked)
+    here = pc.ensemble(scene, q0=STARTS / 9, t_span=(0, 3), **asked)
     assert np.array_equal(found["first_event"], here["first_event"], equal_nan=True)
     assert np.array_equal(found.q, here.q)
 
@@ -75,14 +75,20 @@ def test_processes_that_die_are_told():
         threading.Timer(0.3, os.kill, (pid, signal.SIGKILL)).start()
         with pytest.raises(RuntimeError, match="the executor's workers died"):
             pc.ensemble(
-                BOOK, STARTS, t_span=(0, 1e6), max_steps=10**9, executor=pool, chunk=1, check=False
+                BOOK,
+                q0=STARTS,
+                t_span=(0, 1e6),
+                max_steps=10**9,
+                executor=pool,
+                chunk=1,
+                check=False,
             )
 
 
 def test_a_time_limit_ends_the_whole():
     with ThreadPoolExecutor(1) as pool:
         found = pc.ensemble(
-            BOOK, STARTS, t_span=(0, 3000), executor=pool, chunk=1, time_limit=0.05, check=False
+            BOOK, q0=STARTS, t_span=(0, 3000), executor=pool, chunk=1, time_limit=0.05, check=False
         )
     assert found.ending == "time_limit"
     assert found.counts().get("not_run", 0) > 0
@@ -102,15 +108,15 @@ def test_a_cluster_changes_no_bit_and_makes_good_a_worker_that_dies(cluster, tmp
 
     here, there = tmp_path / "here.zarr", tmp_path / "there.zarr"
     asked = {"t_span": (0, 3000), "chunk": 2, "check": False}
-    pc.ensemble(BOOK, STARTS, store=here, **asked)
+    pc.ensemble(BOOK, q0=STARTS, store=here, **asked)
     killer = threading.Thread(target=kill_a_worker, args=(cluster, there))
     killer.start()
-    found = pc.ensemble(BOOK, STARTS, store=there, executor=cluster, **asked)
+    found = pc.ensemble(BOOK, q0=STARTS, store=there, executor=cluster, **asked)
     killer.join()
     assert "not_run" not in found.counts()
     assert contents(here) == contents(there)
 
 
 def test_without_a_store_results_come_back(cluster):
-    found = pc.ensemble(BOOK, STARTS, t_span=(0, 3), executor=cluster, chunk=7)
+    found = pc.ensemble(BOOK, q0=STARTS, t_span=(0, 3), executor=cluster, chunk=7)
     assert np.array_equal(found.q, plain().q)

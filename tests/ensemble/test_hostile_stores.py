@@ -31,14 +31,14 @@ class RunsCode:
 def stored(tmp_path_factory):
     path = tmp_path_factory.mktemp("store") / "whole.zarr"
     times = {"keep": "times", "t_eval": [0.5, 1.0]}
-    pc.ensemble(BOOK, STARTS, store=path, chunk=7, **(ASKED | times | {"t_span": (0, 1)}))
+    pc.ensemble(BOOK, q0=STARTS, store=path, chunk=7, **(ASKED | times | {"t_span": (0, 1)}))
     return path
 
 
 @pytest.fixture(scope="module")
 def reduced(tmp_path_factory):
     path = tmp_path_factory.mktemp("store") / "reduced.zarr"
-    pc.ensemble(BOOK, STARTS, store=path, chunk=7, **ASKED)
+    pc.ensemble(BOOK, q0=STARTS, store=path, chunk=7, **ASKED)
     return path
 
 
@@ -89,7 +89,7 @@ def test_no_code_runs_from_a_group_of_zarr_2(tmp_path):
     with pytest.raises(ValueError, match=r"hostile\.zarr': is no store of an ensemble"):
         pc.load(tmp_path / "hostile.zarr")
     with pytest.raises(ValueError, match=r"hostile\.zarr': is no store of an ensemble"):
-        pc.ensemble(BOOK, STARTS, store=tmp_path / "hostile.zarr", **ASKED)
+        pc.ensemble(BOOK, q0=STARTS, store=tmp_path / "hostile.zarr", **ASKED)
     assert not mark.exists()
 
 
@@ -274,7 +274,7 @@ ARCHIVED = ["pendcore", "case", "keep", "vary", "shape", "axes", "axes/q0", "axe
 @pytest.fixture(scope="module")
 def archived(tmp_path_factory):
     path = tmp_path_factory.mktemp("archive") / "all.npz"
-    pc.ensemble(BOOK, STARTS, **ASKED).save(path)
+    pc.ensemble(BOOK, q0=STARTS, **ASKED).save(path)
     with np.load(path) as entries:
         return dict(entries)
 

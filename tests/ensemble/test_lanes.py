@@ -21,16 +21,18 @@ def assert_same(scene, q0, qd0, t_span, **options):
     With one thread, lanes are full whatever the number of processors.
     """
     options = {"workers": 1} | options
-    found = pc.ensemble(scene, q0, qd0, t_span, check=False, **options)
+    found = pc.ensemble(scene, q0=q0, qd0=qd0, t_span=t_span, check=False, **options)
     evaluations = 0
     q, qd = (np.broadcast_to(x, (*found.shape, len(scene.links))) for x in (q0, qd0))
     for i in np.ndindex(found.shape):
         options.pop("workers", None)
         if found.status[i] == "refused":
             with pytest.raises(ValueError, match="must be"):
-                pc.simulate(scene, q[i], qd[i], t_span, **options)
+                pc.simulate(scene, q0=q[i], qd0=qd[i], t_span=t_span, **options)
             continue
-        alone = pc.simulate(scene, q[i], qd[i], t_span, check=False, store="end", **options)
+        alone = pc.simulate(
+            scene, q0=q[i], qd0=qd[i], t_span=t_span, check=False, store="end", **options
+        )
         evaluations += alone.stats.nfev
         assert found.status[i] == alone.status, i
         assert found.t[i] == alone.t[-1], i
@@ -90,10 +92,10 @@ def test_parameters_differ_from_lane_to_lane(method):
     vary = {
         name: values[:, k] for k, name in enumerate(["link[1].mass", "link[2].length", "gravity"])
     }
-    found = pc.ensemble(BOOK, [0.5, 1.0], t_span=(0, 3), vary=vary, method=method)
+    found = pc.ensemble(BOOK, q0=[0.5, 1.0], t_span=(0, 3), vary=vary, method=method)
     for i in range(11):
         scene = BOOK.with_parameters({name: x[i] for name, x in vary.items()})
-        alone = pc.simulate(scene, [0.5, 1.0], t_span=(0, 3), method=method)
+        alone = pc.simulate(scene, q0=[0.5, 1.0], t_span=(0, 3), method=method)
         assert np.array_equal(found.q[i], alone.q[-1])
 
 
@@ -132,19 +134,19 @@ def test_few_members_which_finish_alone(count, method):
     gravity = np.linspace(9.0, 10.0, count)
     event = pc.events.LinkAngle(2, 0.5, terminal=2)
     found = pc.ensemble(
-        BOOK, q0, t_span=(0, 3), method=method, vary={"gravity": gravity}, events=[event]
+        BOOK, q0=q0, t_span=(0, 3), method=method, vary={"gravity": gravity}, events=[event]
     )
     for i in range(count):
         scene = BOOK.replace(gravity=gravity[i])
-        alone = pc.simulate(scene, q0[i], t_span=(0, 3), method=method, events=[event])
+        alone = pc.simulate(scene, q0=q0[i], t_span=(0, 3), method=method, events=[event])
         assert (found.status[i], found.t[i]) == (alone.status, alone.t[-1])
         assert np.array_equal(found.q[i], alone.q[-1])
 
 
 def test_a_single_member_and_none():
     assert_same(BOOK, np.array([[0.5, 1.0]]), 0.0, (0, 2), method="dopri5")
-    assert pc.ensemble(BOOK, np.zeros((0, 2)), t_span=(0, 2), method="dopri5").q.shape == (0, 2)
-    assert pc.ensemble(BOOK, np.zeros((3, 2)), t_span=(0, 0), method="dop853").success.all()
+    assert pc.ensemble(BOOK, q0=np.zeros((0, 2)), t_span=(0, 2), method="dopri5").q.shape == (0, 2)
+    assert pc.ensemble(BOOK, q0=np.zeros((3, 2)), t_span=(0, 0), method="dop853").success.all()
 
 
 EVENTS = {
@@ -168,11 +170,13 @@ def test_first_events_are_those_of_simulate(name, terminal, rtol, method):
     how = {"method": method, "rtol": rtol, "atol": rtol}
     for t_span in ((0, 4), (1e5, 1e5 - 3)):
         found = pc.ensemble(
-            BOOK, q0, 0.25, t_span, keep=pc.keep.FirstEvent(event), workers=1, **how
+            BOOK, q0=q0, qd0=0.25, t_span=t_span, keep=pc.keep.FirstEvent(event), workers=1, **how
         )
         evaluations = 0
         for i, start in enumerate(q0):
-            alone = pc.simulate(BOOK, start, 0.25, t_span, store="end", events=[event], **how)
+            alone = pc.simulate(
+                BOOK, q0=start, qd0=0.25, t_span=t_span, store="end", events=[event], **how
+            )
             evaluations += alone.stats.nfev
             first = alone.events[0].t[:1]
             assert np.array_equal(found["first_event"][i : i + 1][: len(first)], first)
@@ -189,9 +193,9 @@ def test_several_events_of_which_one_ends_the_run():
         "turns": pc.keep.FirstEvent(EVENTS["turns"]),
         "rate": pc.keep.FirstEvent(EVENTS["rate"]),
     }
-    found = pc.ensemble(BOOK, q0, t_span=(0, 6), events=events, keep=keep)
+    found = pc.ensemble(BOOK, q0=q0, t_span=(0, 6), events=events, keep=keep)
     for i, start in enumerate(q0):
-        alone = pc.simulate(BOOK, start, t_span=(0, 6), events=[*events, EVENTS["turns"]])
+        alone = pc.simulate(BOOK, q0=start, t_span=(0, 6), events=[*events, EVENTS["turns"]])
         for name, which in (("turns", 2), ("rate", 0)):
             first = alone.events[which].t[:1]
             assert np.array_equal(found[name][i : i + 1][: len(first)], first)
@@ -207,12 +211,12 @@ def test_events_of_members_with_lengths_of_their_own(method):
     q0 = pc.draw.uniform(-3.0, 3.0, (19, 2), seed=10)
     length = pc.draw.uniform(0.5, 1.5, 19, seed=11)
     found = pc.ensemble(
-        BOOK, q0, t_span=(0, 3), vary={"link[2].length": length}, method=method,
+        BOOK, q0=q0, t_span=(0, 3), vary={"link[2].length": length}, method=method,
         keep=pc.keep.FirstEvent(TIP), workers=1,
     )  # fmt: skip
     for i, start in enumerate(q0):
         scene = BOOK.replace(links=[BOOK.links[0], BOOK.links[1].replace(length=length[i])])
-        alone = pc.simulate(scene, start, t_span=(0, 3), method=method, events=[TIP])
+        alone = pc.simulate(scene, q0=start, t_span=(0, 3), method=method, events=[TIP])
         first = alone.events[0].t[:1]
         assert np.array_equal(found["first_event"][i : i + 1][: len(first)], first)
         assert np.array_equal(found.q[i], alone.q[-1])

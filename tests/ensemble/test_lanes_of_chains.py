@@ -163,10 +163,10 @@ def test_parameters_of_chains_differ_from_lane_to_lane(n, effects, names):
     values[7, -1] = 0.0
     vary = {name: values[:, k] for k, name in enumerate(names)}
     start = np.linspace(0.4, 1.2, n)
-    found = pc.ensemble(scene, start, t_span=(0, 3), vary=vary, method="taylor", workers=1)
+    found = pc.ensemble(scene, q0=start, t_span=(0, 3), vary=vary, method="taylor", workers=1)
     for i in range(13):
         one = scene.with_parameters({name: x[i] for name, x in vary.items()})
-        alone = pc.simulate(one, start, t_span=(0, 3), method="taylor")
+        alone = pc.simulate(one, q0=start, t_span=(0, 3), method="taylor")
         assert np.array_equal(found.q[i], alone.q[-1])
 
 
@@ -176,10 +176,12 @@ def test_first_events_of_chains_are_those_of_simulate(terminal):
     event = pc.events.LinkAngle(3, -np.pi / 2, every_turn=True, terminal=terminal)
     q0 = starts(23, 3, 8, 3.0)
     found = pc.ensemble(
-        scene, q0, t_span=(0, 3), method="taylor", keep=pc.keep.FirstEvent(event), rtol=1e-9
+        scene, q0=q0, t_span=(0, 3), method="taylor", keep=pc.keep.FirstEvent(event), rtol=1e-9
     )
     for i, start in enumerate(q0):
-        alone = pc.simulate(scene, start, t_span=(0, 3), method="taylor", events=[event], rtol=1e-9)
+        alone = pc.simulate(
+            scene, q0=start, t_span=(0, 3), method="taylor", events=[event], rtol=1e-9
+        )
         first = alone.events[0].t[:1]
         assert np.array_equal(found["first_event"][i : i + 1][: len(first)], first)
         assert (found.t[i], *found.q[i]) == (alone.t[-1], *alone.q[-1])
@@ -192,7 +194,7 @@ def test_a_heavy_payload_on_light_links_agrees_with_another_method():
     scene = pc.Scene(links=light, gravity=9.807, effects=[E.Payload(mass=10.0)])
     start = [0.3, 0.9, -0.2]
     ends = [
-        pc.simulate(scene, start, t_span=(0, 2), method=m, rtol=1e-13, atol=1e-13).q[-1]
+        pc.simulate(scene, q0=start, t_span=(0, 2), method=m, rtol=1e-13, atol=1e-13).q[-1]
         for m in ("taylor", "dop853")
     ]
     np.testing.assert_allclose(*ends, rtol=0, atol=5e-10)

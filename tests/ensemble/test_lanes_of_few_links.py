@@ -76,10 +76,10 @@ def test_parameters_differ_from_lane_to_lane(effects, n, method):
     values[5, 4] = values[7, 5] = 0.0  # which may give these members other equations
     vary = {name: values[:, k] for k, name in enumerate(names)}
     start = np.linspace(0.4, 1.2, n)
-    found = pc.ensemble(scene, start, t_span=(0, 2), vary=vary, method=method, workers=1)
+    found = pc.ensemble(scene, q0=start, t_span=(0, 2), vary=vary, method=method, workers=1)
     for i in range(13):
         one = scene.with_parameters({name: x[i] for name, x in vary.items()})
-        alone = pc.simulate(one, start, t_span=(0, 2), method=method)
+        alone = pc.simulate(one, q0=start, t_span=(0, 2), method=method)
         assert np.array_equal(found.q[i], alone.q[-1])
 
 
@@ -89,12 +89,12 @@ def test_times_and_events_are_those_of_simulate(method):
     event = pc.events.LinkAngle(3, -np.pi / 2, every_turn=True)
     times = np.linspace(0.0, 2.0, 7)
     q0 = starts(23, 3, 8, 3.0)
-    found = pc.ensemble(scene, q0, t_span=(0, 2), method=method, keep=pc.keep.FirstEvent(event))
-    states = pc.ensemble(scene, q0, t_span=(0, 2), method=method, keep="times", t_eval=times)
+    found = pc.ensemble(scene, q0=q0, t_span=(0, 2), method=method, keep=pc.keep.FirstEvent(event))
+    states = pc.ensemble(scene, q0=q0, t_span=(0, 2), method=method, keep="times", t_eval=times)
     for i, start in enumerate(q0):
-        alone = pc.simulate(scene, start, t_span=(0, 2), method=method, events=[event])
+        alone = pc.simulate(scene, q0=start, t_span=(0, 2), method=method, events=[event])
         first = [*alone.events[0].t, np.nan][0]
         assert np.array_equal(found["first_event"][i], first, equal_nan=True)
-        sampled = pc.simulate(scene, start, t_span=(0, 2), method=method, t_eval=times)
+        sampled = pc.simulate(scene, q0=start, t_span=(0, 2), method=method, t_eval=times)
         assert np.array_equal(states.q[i], sampled.q)
     assert np.isfinite(found["first_event"]).any()

@@ -81,8 +81,8 @@ def test_parameters_differ_from_lane_to_lane(method):
     values = pc.draw.uniform(0.1, 2.0, (13, len(names)), seed=6)
     values[5, 2] = values[7, 3] = 0.0
     vary = {name: values[:, k] for k, name in enumerate(names)}
-    found = pc.ensemble(scene, 0.4, t_span=(0, 3), vary=vary, method=method)
+    found = pc.ensemble(scene, q0=0.4, t_span=(0, 3), vary=vary, method=method)
     for i in range(13):
         one = scene.with_parameters({name: x[i] for name, x in vary.items()})
-        alone = pc.simulate(one, 0.4, t_span=(0, 3), method=method)
+        alone = pc.simulate(one, q0=0.4, t_span=(0, 3), method=method)
         assert np.array_equal(found.q[i], alone.q[-1])

@@ -94,10 +94,10 @@ def test_parameters_of_effects_differ_from_lane_to_lane(method):
     ]  # fmt: skip
     values = pc.draw.uniform(0.5, 2.0, (13, len(names)), seed=6)
     vary = {name: values[:, k] for k, name in enumerate(names)}
-    found = pc.ensemble(scene, [0.5, 1.0], t_span=(0, 3), vary=vary, method=method)
+    found = pc.ensemble(scene, q0=[0.5, 1.0], t_span=(0, 3), vary=vary, method=method)
     for i in range(13):
         one = scene.with_parameters({name: x[i] for name, x in vary.items()})
-        alone = pc.simulate(one, [0.5, 1.0], t_span=(0, 3), method=method)
+        alone = pc.simulate(one, q0=[0.5, 1.0], t_span=(0, 3), method=method)
         assert np.array_equal(found.q[i], alone.q[-1])
 
 
@@ -115,13 +115,15 @@ def test_drag_differs_from_lane_to_lane(n, method):
     values[4, 0] = 0.0
     values[9, 0] = -1.0  # which is not allowed
     vary = {name: values[:, k] for k, name in enumerate(names)}
-    found = pc.ensemble(scene, 0.4, t_span=(0, 3), vary=vary, method=method, workers=1, check=False)
+    found = pc.ensemble(
+        scene, q0=0.4, t_span=(0, 3), vary=vary, method=method, workers=1, check=False
+    )
     for i in range(21):
         if i == 9:
             assert found.status[i] == "refused"
             continue
         one = scene.with_parameters({name: x[i] for name, x in vary.items()})
-        alone = pc.simulate(one, 0.4, t_span=(0, 3), method=method)
+        alone = pc.simulate(one, q0=0.4, t_span=(0, 3), method=method)
         assert np.array_equal(found.q[i], alone.q[-1])
 
 
@@ -130,11 +132,11 @@ def test_a_member_whose_motor_is_at_its_limit_beside_others(method):
     scene = scene_of([E.Motor(joint=1, sinusoid=E.Sinusoid(3.0, 6.0), limit=9.0)])
     limits = np.array([9.0, 2.0, 8.0, 1.0, 7.0, 7.5, 8.5])
     found = pc.ensemble(
-        scene, [0.5, 1.0], t_span=(0, 3), vary={"effect[1].limit": limits}, method=method
+        scene, q0=[0.5, 1.0], t_span=(0, 3), vary={"effect[1].limit": limits}, method=method
     )
     for i, limit in enumerate(limits):
         one = scene.with_parameters({"effect[1].limit": limit})
-        alone = pc.simulate(one, [0.5, 1.0], t_span=(0, 3), method=method)
+        alone = pc.simulate(one, q0=[0.5, 1.0], t_span=(0, 3), method=method)
         assert np.array_equal(found.q[i], alone.q[-1])
 
 
@@ -162,12 +164,12 @@ def test_stiffness_is_that_of_the_member_of_the_lane():
     scene = scene_of([E.ViscousJoint(joint=2, damping=0.1)])
     damping = np.tile([200.0, 60.0, 0.1, 0.2, 0.3, 0.4, 0.5], 6)
     found = pc.ensemble(
-        scene, [0.5, 1.0], t_span=(0, 20), vary={"effect[1].damping": damping},
+        scene, q0=[0.5, 1.0], t_span=(0, 20), vary={"effect[1].damping": damping},
         method="taylor-radau5",
     )  # fmt: skip
     for i, one in enumerate(damping):
         alone = pc.simulate(
-            scene.with_parameters({"effect[1].damping": one}), [0.5, 1.0], t_span=(0, 20),
+            scene.with_parameters({"effect[1].damping": one}), q0=[0.5, 1.0], t_span=(0, 20),
             method="taylor-radau5",
         )  # fmt: skip
         assert np.array_equal(found.q[i], alone.q[-1]), one

@@ -46,10 +46,12 @@ def methods(scene):
 
 def assert_same_at_times(scene, q0, t_span, times, **options):
     how = {"keep": "times", "t_eval": times, "check": False, "workers": 1}
-    found = pc.ensemble(scene, q0, 0.3, t_span, **how, **options)
+    found = pc.ensemble(scene, q0=q0, qd0=0.3, t_span=t_span, **how, **options)
     evaluations = 0
     for i, start in enumerate(q0):
-        alone = pc.simulate(scene, start, 0.3, t_span, t_eval=times, check=False, **options)
+        alone = pc.simulate(
+            scene, q0=start, qd0=0.3, t_span=t_span, t_eval=times, check=False, **options
+        )
         reached = len(alone.t)
         assert found.status[i] == alone.status
         assert np.array_equal(found.q[i, :reached], alone.q)
@@ -114,13 +116,13 @@ def test_members_that_lanes_leave_to_single_runs(rtol, method):
     qd0[9] = [1e9, -1e9]
     times = np.linspace(0, 2, 9)
     asked = {"t_eval": times, "rtol": rtol, "max_steps": 300, "check": False, "method": method}
-    found = pc.ensemble(BOOK, q0, qd0, (0, 2), keep="times", **asked)
+    found = pc.ensemble(BOOK, q0=q0, qd0=qd0, t_span=(0, 2), keep="times", **asked)
     are_cut = method == "dopri5" and rtol == 1e-9  # four more runs, by max_steps
     assert found.counts()["finished"] == (6 if are_cut else 10)
     for i in range(13):
         if found.status[i] == "refused":
             continue
-        alone = pc.simulate(BOOK, q0[i], qd0[i], (0, 2), **asked)
+        alone = pc.simulate(BOOK, q0=q0[i], qd0=qd0[i], t_span=(0, 2), **asked)
         reached = len(alone.t)
         assert found.status[i] == alone.status
         assert np.array_equal(found.q[i, :reached], alone.q)

@@ -36,7 +36,7 @@ def empty(path):
 
 def replace(path):
     move(path)
-    pc.ensemble(BOOK, STARTS + 0.1, store=path, chunk=7, time_limit=1e-9, check=False, **ASKED)
+    pc.ensemble(BOOK, q0=STARTS + 0.1, store=path, chunk=7, time_limit=1e-9, check=False, **ASKED)
 
 
 def once(done, path):
@@ -53,7 +53,7 @@ def once(done, path):
 @pytest.fixture(scope="module")
 def stored(tmp_path_factory):
     path = tmp_path_factory.mktemp("store") / "whole.zarr"
-    pc.ensemble(BOOK, STARTS, store=path, chunk=7, **ASKED)
+    pc.ensemble(BOOK, q0=STARTS, store=path, chunk=7, **ASKED)
     return path
 
 
@@ -65,7 +65,7 @@ def test_a_store_that_goes_while_it_is_written_is_told_and_made_by_nobody(tmp_pa
     path.parent.mkdir()
     how = {"store": path, "chunk": 7, "check": False} | ASKED
     with pool_of(kind) as pool, pytest.raises(OSError, match=r"a\.zarr': is no longer there: it w"):
-        pc.ensemble(BOOK, STARTS, progress=once(lost, path), executor=pool, **how)
+        pc.ensemble(BOOK, q0=STARTS, progress=once(lost, path), executor=pool, **how)
     if lost not in (remove, empty):  # which take their time, in which a worker may write on
         assert not path.exists()
 
@@ -88,14 +88,14 @@ def test_a_store_that_is_put_back_loses_nothing(tmp_path, stored, kind):
     path = tmp_path / "a.zarr"
     how = {"store": path, "chunk": 7} | ASKED
     with pool_of(kind) as pool, pytest.raises(OSError, match="is no longer there") as told:
-        pc.ensemble(BOOK, STARTS, progress=once(move, path), executor=pool, **how)
+        pc.ensemble(BOOK, q0=STARTS, progress=once(move, path), executor=pool, **how)
     moved = tmp_path / "elsewhere.zarr"
     done = len([*moved.glob("status/c/*/*")])
     assert done >= 2
     moved.rename(path)
     assert told.value.ensemble.counts()["not_run"] < len(STARTS) * 9
     fractions = []
-    pc.ensemble(BOOK, STARTS, progress=fractions.append, **how)
+    pc.ensemble(BOOK, q0=STARTS, progress=fractions.append, **how)
     assert contents(path) == contents(stored)
 
 
@@ -104,7 +104,7 @@ def test_a_store_that_goes_while_a_cluster_writes_it_is_told(tmp_path, cluster):
     path = tmp_path / "a.zarr"
     how = {"store": path, "chunk": 7} | ASKED
     with pytest.raises(OSError, match="is no longer there"):
-        pc.ensemble(BOOK, STARTS, progress=once(move, path), executor=cluster, **how)
+        pc.ensemble(BOOK, q0=STARTS, progress=once(move, path), executor=cluster, **how)
     until = monotonic() + 10  # nobody can wait for a worker of a cluster that takes its file back
     while path.exists() and monotonic() < until:
         sleep(0.01)
@@ -114,7 +114,7 @@ def test_a_store_that_goes_while_a_cluster_writes_it_is_told(tmp_path, cluster):
 def test_nothing_is_written_into_a_store_that_took_the_place(tmp_path, stored):
     path = tmp_path / "a.zarr"
     with pytest.raises(OSError, match="is no longer there"):
-        pc.ensemble(BOOK, STARTS, store=path, chunk=7, progress=once(replace, path), **ASKED)
+        pc.ensemble(BOOK, q0=STARTS, store=path, chunk=7, progress=once(replace, path), **ASKED)
     with pytest.warns(pc.PendcoreWarning, match="54 of 54 members were not run"):
         assert pc.load(path).counts() == {"not_run": 54}
 
@@ -131,7 +131,7 @@ def test_what_was_written_beside_a_store_that_has_just_gone_is_taken_back(tmp_pa
 
     monkeypatch.setattr(store_module, "named", gone_before_the_write)
     with pytest.raises(OSError, match="is no longer there"):
-        pc.ensemble(BOOK, STARTS, store=path, chunk=7, **ASKED)
+        pc.ensemble(BOOK, q0=STARTS, store=path, chunk=7, **ASKED)
     assert [one.name for one in tmp_path.iterdir()] == ["elsewhere.zarr"]
 
 
@@ -139,7 +139,7 @@ def test_another_current_folder_changes_nothing(tmp_path, stored, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "other").mkdir()
     to_other = once(lambda path: os.chdir(path), tmp_path / "other")
-    pc.ensemble(BOOK, STARTS, store="a.zarr", chunk=7, progress=to_other, **ASKED)
+    pc.ensemble(BOOK, q0=STARTS, store="a.zarr", chunk=7, progress=to_other, **ASKED)
     assert contents(tmp_path / "a.zarr") == contents(stored)
     assert not [*(tmp_path / "other").iterdir()]
 
@@ -158,8 +158,8 @@ def test_a_file_that_goes_while_a_store_is_written_is_told_and_made_anew(
 
     told = rf"files of 7 of 54 members are gone, the first of them is {name}/c/[0-9/]+: some"
     with pool_of(kind) as pool, pytest.raises(OSError, match=told):
-        pc.ensemble(BOOK, STARTS, progress=once(remove_one, path), executor=pool, **how)
-    pc.ensemble(BOOK, STARTS, **how)
+        pc.ensemble(BOOK, q0=STARTS, progress=once(remove_one, path), executor=pool, **how)
+    pc.ensemble(BOOK, q0=STARTS, **how)
     assert contents(path) == contents(stored)
 
 
@@ -173,7 +173,7 @@ def test_a_file_that_is_missing_is_told_by_load_and_made_anew(tmp_path, stored, 
     told = f"of 54 members .* missing, the first of them is {first.relative_to(path)}: repeat"
     with pytest.warns(pc.PendcoreWarning, match=told):
         assert pc.load(path).ending == "interrupted"
-    pc.ensemble(BOOK, STARTS, store=path, **ASKED)
+    pc.ensemble(BOOK, q0=STARTS, store=path, **ASKED)
     assert contents(path) == contents(stored)
 
 
@@ -190,7 +190,7 @@ def test_a_chunk_of_nothing_but_nan_is_written_as_well(tmp_path):
     """A missing file would else mean two things: no event in a whole block, and a lost block."""
     never = pc.keep.FirstEvent(pc.events.LinkAngle(2, 1e6, every_turn=False))
     path = tmp_path / "a.zarr"
-    found = pc.ensemble(BOOK, STARTS, t_span=(0, 1), store=path, chunk=7, keep=never)
+    found = pc.ensemble(BOOK, q0=STARTS, t_span=(0, 1), store=path, chunk=7, keep=never)
     assert np.isnan(found["first_event"]).all()
     assert np.isnan(pc.load(path)["first_event"]).all()  # and load warns of nothing
 
@@ -217,5 +217,5 @@ def test_a_store_that_cannot_be_written_any_more_is_told(tmp_path, lost, kind):
         pool_of(kind) if kind else nullcontext() as pool,
         pytest.raises(OSError, match=r"the same call goes on with it: '.*a\.zarr'") as told,
     ):
-        pc.ensemble(BOOK, STARTS, progress=once(lost, path), executor=pool, **how)
+        pc.ensemble(BOOK, q0=STARTS, progress=once(lost, path), executor=pool, **how)
     assert 0 < told.value.ensemble.counts()["not_run"] < 54

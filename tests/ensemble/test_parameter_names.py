@@ -19,6 +19,6 @@ def test_a_parameter_of_another_part_is_named():
 
 def test_a_name_that_is_no_text_is_refused():
     with pytest.raises(TypeError, match="parameter 1: must be a name, such as"):
-        pc.ensemble(BOOK, [0.5, 1.0], t_span=(0, 1), vary={1: [1.0]})
+        pc.ensemble(BOOK, q0=[0.5, 1.0], t_span=(0, 1), vary={1: [1.0]})
     with pytest.raises(TypeError, match="parameter 1: must be a name, such as"):
         BOOK.with_parameters({1: 1.0})

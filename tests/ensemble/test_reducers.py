@@ -29,11 +29,11 @@ def test_extremes_are_those_of_the_dense_output(name, method):
         method = "dopri5-radau5"
     q0 = starts(4, len(scene.links))
     asked = {"t_span": (0, 3), "method": method, "rtol": 1e-5}
-    found = pc.ensemble(scene, q0, keep=pc.keep.Extremes(), **asked)
-    plain = pc.ensemble(scene, q0, **asked)
+    found = pc.ensemble(scene, q0=q0, keep=pc.keep.Extremes(), **asked)
+    plain = pc.ensemble(scene, q0=q0, **asked)
     assert np.array_equal(found.q, plain.q)
     for i, start in enumerate(q0):
-        sol = pc.simulate(scene, start, **asked)
+        sol = pc.simulate(scene, q0=start, **asked)
         t = np.unique(np.concatenate([np.linspace(0, 3, 300_001), sol.t]))
         states = np.concatenate([sol(t).T, sol.y.T])  # both sides of every jump are kept
         least, greatest = found["extremes"][i]
@@ -45,7 +45,7 @@ def test_extremes_are_those_of_the_dense_output(name, method):
 
 def test_extremes_end_with_the_event_that_ends_the_run():
     top = pc.events.RateZero(link=1, terminal=True)
-    found = pc.ensemble(BOOK, [0.5, 1.0], t_span=(0, 9), events=[top], keep=pc.keep.Extremes())
+    found = pc.ensemble(BOOK, q0=[0.5, 1.0], t_span=(0, 9), events=[top], keep=pc.keep.Extremes())
     assert found.status == "event"
     assert found["extremes"][1, 0] == pytest.approx(float(found.q[0]), abs=1e-12)
 
@@ -55,11 +55,11 @@ def test_the_energy_drift_is_that_of_the_run(name):
     scene = SCENES[name]
     q0 = starts(4, len(scene.links))
     asked = {"t_span": (0, 3), "rtol": 1e-6}
-    found = pc.ensemble(scene, q0, keep=pc.keep.EnergyDrift(), **asked)
-    plain = pc.ensemble(scene, q0, **asked)
+    found = pc.ensemble(scene, q0=q0, keep=pc.keep.EnergyDrift(), **asked)
+    plain = pc.ensemble(scene, q0=q0, **asked)
     assert np.array_equal(found.q, plain.q)
     for i, start in enumerate(q0):
-        sol = pc.simulate(scene, start, ledger=bool(scene.effects), **asked)
+        sol = pc.simulate(scene, q0=start, ledger=bool(scene.effects), **asked)
         energy = sol.energy()
         drift = energy.total - energy.total[0] if energy.ledger is None else energy.ledger.residual
         assert found["energy_drift"][i] == pytest.approx(np.abs(drift).max(), rel=1e-6, abs=1e-13)
@@ -70,19 +70,19 @@ def test_the_energy_drift_is_that_of_the_run(name):
 def test_the_largest_exponent_is_that_of_lyapunov(name):
     scene = SCENES[name]
     q0 = starts(3, len(scene.links))
-    found = pc.ensemble(scene, q0, t_span=(0, 8), keep=pc.keep.LargestExponent())
+    found = pc.ensemble(scene, q0=q0, t_span=(0, 8), keep=pc.keep.LargestExponent())
     for i, start in enumerate(q0):
         alone = pc.lyapunov(scene, start, t_span=(0, 8), count=1, t_eval=[8.0])
         assert found["largest_exponent"][i] == alone.largest
-    assert np.array_equal(found.q, pc.ensemble(scene, q0, t_span=(0, 8)).q)
+    assert np.array_equal(found.q, pc.ensemble(scene, q0=q0, t_span=(0, 8)).q)
 
 
 def test_a_scene_without_exponents_is_refused():
     with pytest.raises(ValueError, match="remove dry friction and stops"):
-        pc.ensemble(SCENES["stop"], [0.1, 0.1], t_span=(0, 1), keep=pc.keep.LargestExponent())
+        pc.ensemble(SCENES["stop"], q0=[0.1, 0.1], t_span=(0, 1), keep=pc.keep.LargestExponent())
     with pytest.raises(TypeError, match=r"rtol: must be one number with pc.keep.LargestExponent"):
         pc.ensemble(
-            BOOK, [0.1, 0.1], t_span=(0, 1), rtol=[1e-6] * 4, keep=pc.keep.LargestExponent()
+            BOOK, q0=[0.1, 0.1], t_span=(0, 1), rtol=[1e-6] * 4, keep=pc.keep.LargestExponent()
         )
 
 
@@ -97,9 +97,9 @@ def test_several_reducers_at_once(workers):
         "second": pc.keep.FirstEvent(pc.events.RateZero(link=2)),
     }
     q0 = starts(6, 2)
-    found = pc.ensemble(BOOK, q0, t_span=(0, 3), keep=keep, workers=workers)
+    found = pc.ensemble(BOOK, q0=q0, t_span=(0, 3), keep=keep, workers=workers)
     for name, one in keep.items():
-        alone = pc.ensemble(BOOK, q0, t_span=(0, 3), keep=one)
+        alone = pc.ensemble(BOOK, q0=q0, t_span=(0, 3), keep=one)
         assert np.array_equal(found[name], alone[one.usual_name], equal_nan=True), name
     assert "drift: in 6 of 6" in str(found)
 
@@ -107,7 +107,7 @@ def test_several_reducers_at_once(workers):
 def test_members_that_were_not_run_have_no_numbers():
     keep = {"a": pc.keep.Extremes(), "b": pc.keep.EnergyDrift(), "c": pc.keep.LargestExponent()}
     q0 = [[0.1, 0.2], [np.nan, 0.2]]
-    found = pc.ensemble(BOOK, q0, t_span=(0, 1), keep=keep, check=False)
+    found = pc.ensemble(BOOK, q0=q0, t_span=(0, 1), keep=keep, check=False)
     for name in keep:
         assert np.isfinite(found[name][0]).all()
         assert np.isnan(found[name][1]).all()
@@ -115,7 +115,7 @@ def test_members_that_were_not_run_have_no_numbers():
 
 def test_names_that_are_taken():
     with pytest.raises(ValueError, match=r"keep\[.q.\]: this name is taken"):
-        pc.ensemble(BOOK, [0.1, 0.2], t_span=(0, 1), keep={"q": pc.keep.EnergyDrift()})
+        pc.ensemble(BOOK, q0=[0.1, 0.2], t_span=(0, 1), keep={"q": pc.keep.EnergyDrift()})
 
 
 IN_LANES = {
@@ -154,12 +154,12 @@ def test_members_in_lanes_have_the_numbers_of_single_members(name, beside, backw
         for names in wanted:
             keep = {name: reducers[name] for name in names}
             how = asked | {"method": method, "keep": keep}
-            whole = pc.ensemble(scene, q0, qd0, vary={"link[1].mass": mass}, **how)
+            whole = pc.ensemble(scene, q0=q0, qd0=qd0, vary={"link[1].mass": mass}, **how)
             assert len(whole.counts()) > 1
             evaluations = 0
             for i in range(13):
                 vary = {"link[1].mass": mass[i : i + 1]}
-                one = pc.ensemble(scene, q0[i], qd0[i], vary=vary, **how)
+                one = pc.ensemble(scene, q0=q0[i], qd0=qd0[i], vary=vary, **how)
                 evaluations += one.statistics["nfev"]
                 assert np.array_equal(numbers(whole, i), numbers(one, 0), equal_nan=True)
                 for name in names:

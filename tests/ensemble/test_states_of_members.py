@@ -34,12 +34,12 @@ def assert_those_of_single_runs(found):
 def test_they_are_those_of_single_runs(scene, vary, t_eval):
     keep = "end" if t_eval is None else "times"
     how = {"t_span": (0, 2), "keep": keep, "t_eval": t_eval, "vary": VARIED[vary]}
-    assert_those_of_single_runs(pc.ensemble(scene, STARTS, **how))
+    assert_those_of_single_runs(pc.ensemble(scene, q0=STARTS, **how))
 
 
 def test_an_event_ends_each_member_at_its_own_time():
     passes = pc.events.LinkAngle(1, np.pi / 2, every_turn=True, terminal=True)
-    found = pc.ensemble(SHAKEN, STARTS, t_span=(0, 9), events=[passes])
+    found = pc.ensemble(SHAKEN, q0=STARTS, t_span=(0, 9), events=[passes])
     assert len(set(found.t)) == 3
     assert_those_of_single_runs(found)
 
@@ -47,7 +47,7 @@ def test_an_event_ends_each_member_at_its_own_time():
 @pytest.mark.parametrize("t_eval", [None, [0.5, 2.0]], ids=["end", "times"])
 def test_those_of_a_refused_member_are_nan(t_eval):
     found = pc.ensemble(
-        BOOK, [[0.5, 1.0], [np.nan, 1.0]], t_span=(0, 2), vary={"link[2].mass": [[1.0], [-1.0]]},
+        BOOK, q0=[[0.5, 1.0], [np.nan, 1.0]], t_span=(0, 2), vary={"link[2].mass": [[1.0], [-1.0]]},
         keep="end" if t_eval is None else "times", t_eval=t_eval, check=False,
     )  # fmt: skip
     totals, positions = found.energy().total, found.positions()
@@ -59,12 +59,12 @@ def test_those_of_a_refused_member_are_nan(t_eval):
 
 
 def test_one_member_and_none():
-    assert_those_of_single_runs(pc.ensemble(BOOK, [0.5, 1.0], t_span=(0, 2)))
-    none = pc.ensemble(BOOK, np.zeros((0, 2)), t_span=(0, 2))
+    assert_those_of_single_runs(pc.ensemble(BOOK, q0=[0.5, 1.0], t_span=(0, 2)))
+    none = pc.ensemble(BOOK, q0=np.zeros((0, 2)), t_span=(0, 2))
     assert (none.energy().total.shape, none.positions().shape) == ((0,), (0, 3, 2))
     assert repr(none.energy()) == "<Energy: kinetic, potential, total, each (0,)>"
 
 
 def test_implausible_members_do_not_warn_again():
-    found = pc.ensemble(BOOK, [0.5, 1.0], t_span=(0, 0.1), vary={"link[1].inertia": [0.1, 1e9]})
+    found = pc.ensemble(BOOK, q0=[0.5, 1.0], t_span=(0, 0.1), vary={"link[1].inertia": [0.1, 1e9]})
     assert np.isfinite(found.energy().total).all()

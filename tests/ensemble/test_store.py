@@ -39,13 +39,13 @@ def contents(folder):
 
 @pytest.fixture(scope="module")
 def plain():
-    return pc.ensemble(BOOK, STARTS, **ASKED)
+    return pc.ensemble(BOOK, q0=STARTS, **ASKED)
 
 
 @pytest.fixture(scope="module")
 def stored(tmp_path_factory):
     path = tmp_path_factory.mktemp("store") / "plain.zarr"
-    pc.ensemble(BOOK, STARTS, store=path, chunk=7, **ASKED)
+    pc.ensemble(BOOK, q0=STARTS, store=path, chunk=7, **ASKED)
     return path
 
 
@@ -58,7 +58,7 @@ def assert_same(one, other):
 
 @pytest.mark.parametrize("chunk", [1, 7, 1000, None])
 def test_a_store_has_the_bits_of_memory(tmp_path, plain, chunk):
-    found = pc.ensemble(BOOK, STARTS, store=tmp_path / "a.zarr", chunk=chunk, **ASKED)
+    found = pc.ensemble(BOOK, q0=STARTS, store=tmp_path / "a.zarr", chunk=chunk, **ASKED)
     assert_same(found, plain)
     assert found.statistics == plain.statistics
 
@@ -80,7 +80,7 @@ def test_an_npz_file_keeps_all_of_it_as_well(tmp_path, plain):
     assert_same(found, plain)
     assert found.request == plain.request
     assert (found.statistics, found.ending) == (plain.statistics, "finished")
-    times = pc.ensemble(BOOK, [0.5, 1.0], t_span=(0, 1), keep="times", t_eval=[0.5, 1.0])
+    times = pc.ensemble(BOOK, q0=[0.5, 1.0], t_span=(0, 1), keep="times", t_eval=[0.5, 1.0])
     times.save(tmp_path / "times.npz")
     again = pc.load(tmp_path / "times.npz")
     assert np.array_equal(again.q, times.q)
@@ -120,13 +120,13 @@ def test_an_interrupted_store_ends_as_the_same_bytes(tmp_path, stored, kind):
     path = tmp_path / "plain.zarr"
     how = {"store": path, "chunk": 7} | ASKED
     with pool_of(kind) as pool, pytest.raises(KeyboardInterrupt) as stop:
-        pc.ensemble(BOOK, STARTS, progress=stop_early, executor=pool, **how)
+        pc.ensemble(BOOK, q0=STARTS, progress=stop_early, executor=pool, **how)
     done = stop.value.ensemble.counts()
     assert 0 < done.get("not_run", 0) < len(STARTS) * 9
     missing = f"{done['not_run']} of 54 members were not run, or files of theirs are missing, the"
     with pytest.warns(pc.PendcoreWarning, match=missing):
         assert pc.load(path).ending == "interrupted"
-    found = pc.ensemble(BOOK, STARTS, **how)
+    found = pc.ensemble(BOOK, q0=STARTS, **how)
     assert "not_run" not in found.counts()
     assert contents(path) == contents(stored)
 
@@ -144,7 +144,7 @@ pc.ensemble(
 @pytest.mark.unsanitized
 def test_what_kill_leaves_is_finished_to_the_same_bytes(tmp_path):
     whole, killed = tmp_path / "whole.zarr", tmp_path / "killed.zarr"
-    pc.ensemble(BOOK, STARTS, t_span=(0, 2000), store=whole, chunk=2, check=False)
+    pc.ensemble(BOOK, q0=STARTS, t_span=(0, 2000), store=whole, chunk=2, check=False)
     process = subprocess.Popen([sys.executable, "-c", KILLED, str(killed)])
     until = time.monotonic() + 60
     while not [*killed.glob("status/c/*")] and time.monotonic() < until:
@@ -152,7 +152,7 @@ def test_what_kill_leaves_is_finished_to_the_same_bytes(tmp_path):
     process.send_signal(signal.SIGKILL)
     assert process.wait() == -signal.SIGKILL
     (killed / "q" / "c" / "left.partial").write_text("of a write that kill ended")
-    found = pc.ensemble(BOOK, STARTS, t_span=(0, 2000), store=killed, check=False)
+    found = pc.ensemble(BOOK, q0=STARTS, t_span=(0, 2000), store=killed, check=False)
     assert "not_run" not in found.counts()
     assert contents(killed) == contents(whole)
 
@@ -171,11 +171,11 @@ def test_what_kill_leaves_is_finished_to_the_same_bytes(tmp_path):
 def test_results_are_never_mixed(stored, changed, told):
     before = contents(stored)
     with pytest.raises(ValueError, match=told):
-        pc.ensemble(BOOK, STARTS, store=stored, **(ASKED | changed))
+        pc.ensemble(BOOK, q0=STARTS, store=stored, **(ASKED | changed))
     with pytest.raises(ValueError, match="another scene"):
-        pc.ensemble(BOOK.replace(gravity=9.0), STARTS, store=stored, **ASKED)
+        pc.ensemble(BOOK.replace(gravity=9.0), q0=STARTS, store=stored, **ASKED)
     with pytest.raises(ValueError, match="other starts"):
-        pc.ensemble(BOOK, STARTS + 1, store=stored, **ASKED)
+        pc.ensemble(BOOK, q0=STARTS + 1, store=stored, **ASKED)
     assert contents(stored) == before
 
 
@@ -186,29 +186,29 @@ def test_another_version_is_refused(stored, tmp_path):
     text = path.read_text()
     path.write_text(text.replace(f'"pendcore": "{pc.__version__}"', '"pendcore": "0.0"'))
     with pytest.raises(ValueError, match=rf"pendcore 0\.0, not {pc.__version__}"):
-        pc.ensemble(BOOK, STARTS, store=other, **ASKED)
+        pc.ensemble(BOOK, q0=STARTS, store=other, **ASKED)
 
 
 def test_what_cannot_be_a_store(tmp_path):
     (tmp_path / "other").mkdir()
     (tmp_path / "other" / "notes.txt").touch()
     with pytest.raises(ValueError, match="is no store of an ensemble"):
-        pc.ensemble(BOOK, STARTS, t_span=(0, 1), store=tmp_path / "other")
+        pc.ensemble(BOOK, q0=STARTS, t_span=(0, 1), store=tmp_path / "other")
     with pytest.raises(ValueError, match="is no store of an ensemble"):
         pc.load(tmp_path / "other")
     (tmp_path / "file").touch()
     with pytest.raises(OSError, match=r"file': is a file: choose another name"):
-        pc.ensemble(BOOK, STARTS, t_span=(0, 1), store=tmp_path / "file")
+        pc.ensemble(BOOK, q0=STARTS, t_span=(0, 1), store=tmp_path / "file")
     (tmp_path / "file").unlink()
     with pytest.raises(OSError, match=r"the folder .* does not exist"):
-        pc.ensemble(BOOK, STARTS, t_span=(0, 1), store=tmp_path / "none" / "a.zarr")
+        pc.ensemble(BOOK, q0=STARTS, t_span=(0, 1), store=tmp_path / "none" / "a.zarr")
     own = BOOK.replace(effects=[pc.effects.User(lambda t, q, qd: -qd)])
     with pytest.raises(TypeError, match="cannot be saved"):
-        pc.ensemble(own, STARTS, t_span=(0, 1), store=tmp_path / "own.zarr")
+        pc.ensemble(own, q0=STARTS, t_span=(0, 1), store=tmp_path / "own.zarr")
     with pytest.raises(TypeError, match="chunk: counts only with"):
-        pc.ensemble(BOOK, STARTS, t_span=(0, 1), chunk=3)
+        pc.ensemble(BOOK, q0=STARTS, t_span=(0, 1), chunk=3)
     with pytest.raises(ValueError, match="chunk = 0: must be 1 or more members"):
-        pc.ensemble(BOOK, STARTS, t_span=(0, 1), store=tmp_path / "a.zarr", chunk=0)
+        pc.ensemble(BOOK, q0=STARTS, t_span=(0, 1), store=tmp_path / "a.zarr", chunk=0)
     assert [path.name for path in tmp_path.iterdir()] == ["other"]
 
 
@@ -216,7 +216,7 @@ def test_a_disk_that_is_too_small_is_told_before_the_work(tmp_path, monkeypatch)
     free = shutil.disk_usage(tmp_path)._replace(free=1000)
     monkeypatch.setattr(shutil, "disk_usage", lambda path: free)
     with pytest.raises(OSError, match=r"needs up to [\d.]+ kB, but 1 kB are free"):
-        pc.ensemble(BOOK, STARTS, t_span=(0, 1), store=tmp_path / "a.zarr")
+        pc.ensemble(BOOK, q0=STARTS, t_span=(0, 1), store=tmp_path / "a.zarr")
 
 
 @pytest.mark.unsanitized
@@ -239,7 +239,9 @@ except OSError as error:
     told = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True).stdout
     assert "the same call goes on with it" in told
     assert "not_run" in told
-    found = pc.ensemble(BOOK, pc.draw.uniform(-2, 2, (64, 2), seed=1), t_span=(0, 1000), store=path)
+    found = pc.ensemble(
+        BOOK, q0=pc.draw.uniform(-2, 2, (64, 2), seed=1), t_span=(0, 1000), store=path
+    )
     assert found.counts() == {"finished": 64}
 
 
@@ -247,7 +249,7 @@ except OSError as error:
 def test_a_folder_that_cannot_be_written(tmp_path):
     tmp_path.chmod(0o500)
     with pytest.raises(OSError, match=r"a\.zarr': the folder .* cannot be written"):
-        pc.ensemble(BOOK, STARTS, t_span=(0, 1), store=tmp_path / "a.zarr")
+        pc.ensemble(BOOK, q0=STARTS, t_span=(0, 1), store=tmp_path / "a.zarr")
 
 
 @pytest.mark.unsanitized
@@ -276,11 +278,11 @@ def test_a_store_has_one_writer_at_a_time(tmp_path, stored):
     how = {"store": tmp_path / "plain.zarr", "chunk": 7} | ASKED
 
     def write_too(fraction):
-        pc.ensemble(BOOK, STARTS, **how)
+        pc.ensemble(BOOK, q0=STARTS, **how)
 
     with pytest.raises(OSError, match=r"plain.zarr': another run is writing it: wait until"):
-        pc.ensemble(BOOK, STARTS, progress=write_too, **how)
-    pc.ensemble(BOOK, STARTS, **how)
+        pc.ensemble(BOOK, q0=STARTS, progress=write_too, **how)
+    pc.ensemble(BOOK, q0=STARTS, **how)
     assert contents(tmp_path / "plain.zarr") == contents(stored)
 
 
@@ -291,7 +293,7 @@ def test_arrays_of_a_store_are_as_those_in_memory(stored, plain):
 
 
 def test_an_empty_folder_becomes_a_store(tmp_path, stored):
-    pc.ensemble(BOOK, STARTS, store=tmp_path, chunk=7, **ASKED)
+    pc.ensemble(BOOK, q0=STARTS, store=tmp_path, chunk=7, **ASKED)
     assert contents(tmp_path) == contents(stored)
 
 
@@ -318,7 +320,7 @@ def test_a_chunk_that_is_damaged_is_named_and_can_be_made_anew(tmp_path, stored,
         read.get(name, lambda found: found[name])(found)
     (remedy,) = re.findall(r"remove (\S+) from the store", str(said.value))
     (path / remedy).unlink()
-    pc.ensemble(BOOK, STARTS, store=path, **ASKED)
+    pc.ensemble(BOOK, q0=STARTS, store=path, **ASKED)
     assert contents(path) == contents(stored)
 
 
@@ -341,12 +343,12 @@ def test_of_two_runs_that_make_one_store_the_later_is_refused(tmp_path, monkeypa
 
     monkeypatch.setattr(Path, "rename", be_late)
     with pytest.raises(OSError, match=r"one.zarr': another run is writing it"):
-        pc.ensemble(BOOK, STARTS, store=tmp_path / "one.zarr", **ASKED)
+        pc.ensemble(BOOK, q0=STARTS, store=tmp_path / "one.zarr", **ASKED)
 
 
 @pytest.mark.parametrize("chunk", [None, 1])
 def test_a_store_of_one_member_without_axes(tmp_path, chunk):
     how = {"t_span": (0, 1), "vary": {"gravity": 5.0}}
-    found = pc.ensemble(BOOK, [0.5, 1.0], store=tmp_path / "one.zarr", chunk=chunk, **how)
+    found = pc.ensemble(BOOK, q0=[0.5, 1.0], store=tmp_path / "one.zarr", chunk=chunk, **how)
     assert found.shape == ()
-    assert np.array_equal(found.q, pc.ensemble(BOOK, [0.5, 1.0], **how).q)
+    assert np.array_equal(found.q, pc.ensemble(BOOK, q0=[0.5, 1.0], **how).q)

@@ -22,7 +22,7 @@ def test_a_store_that_was_interrupted_is_written_no_more(tmp_path):
     how = {"t_span": (0, 2000), "store": tmp_path / "a.zarr", "chunk": 2, "check": False}
     with ProcessPoolExecutor(2) as pool:
         with pytest.raises(KeyboardInterrupt):
-            pc.ensemble(BOOK, STARTS, executor=pool, progress=stop_early, **how)
+            pc.ensemble(BOOK, q0=STARTS, executor=pool, progress=stop_early, **how)
         left = contents(tmp_path / "a.zarr")
         time.sleep(1.0)
         assert contents(tmp_path / "a.zarr") == left
@@ -54,7 +54,7 @@ def test_workers_that_outlive_their_run_do_not_hold_its_store(tmp_path):
     process.kill()
     process.wait()
     try:
-        found = pc.ensemble(BOOK, STARTS, t_span=(0, 2000), store=path, chunk=2, check=False)
+        found = pc.ensemble(BOOK, q0=STARTS, t_span=(0, 2000), store=path, chunk=2, check=False)
     finally:
         with suppress(ProcessLookupError):
             os.killpg(process.pid, signal.SIGKILL)
@@ -65,4 +65,4 @@ def test_a_folder_that_cannot_be_replaced_is_no_store(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for path in (".", tmp_path):
         with pytest.raises(OSError, match="is the current folder or a disk: name a folder in it"):
-            pc.ensemble(BOOK, STARTS, store=path, **ASKED)
+            pc.ensemble(BOOK, q0=STARTS, store=path, **ASKED)

@@ -23,17 +23,17 @@ def plane(count, span=np.pi):
 
 def test_a_chaotic_motion_is_resolved_as_long_as_doubles_know_it():
     starts = [[1.5, 1.5], [0.0, 0.0]]  # regular, chaotic
-    short = pc.ensemble(BOOK, starts, t_span=(0, 10))
-    long = pc.ensemble(BOOK, starts, t_span=(0, 100))
+    short = pc.ensemble(BOOK, q0=starts, t_span=(0, 10))
+    long = pc.ensemble(BOOK, q0=starts, t_span=(0, 100))
     assert short.resolved().tolist() == [True, True]
     assert long.resolved().tolist() == [True, False]
-    until = pc.simulate(BOOK, starts[1], t_span=(0, 100)).valid_until()
+    until = pc.simulate(BOOK, q0=starts[1], t_span=(0, 100)).valid_until()
     assert 10 < until < 100
 
 
 def test_a_coarse_run_is_not_resolved_at_its_own_fault():
-    coarse = pc.ensemble(BOOK, plane(4), t_span=(0, 20), rtol=1e-3, atol=1e-3)
-    fine = pc.ensemble(BOOK, plane(4), t_span=(0, 20), rtol=1e-12, atol=1e-12)
+    coarse = pc.ensemble(BOOK, q0=plane(4), t_span=(0, 20), rtol=1e-3, atol=1e-3)
+    fine = pc.ensemble(BOOK, q0=plane(4), t_span=(0, 20), rtol=1e-12, atol=1e-12)
     told = coarse.resolved()
     wrong = np.abs(coarse.q - fine.q).max(axis=-1) > 0.2
     assert wrong.any()
@@ -43,9 +43,9 @@ def test_a_coarse_run_is_not_resolved_at_its_own_fault():
 
 def test_the_second_ensemble_has_another_method_and_other_bits():
     scene = BOOK.replace(effects=[pc.effects.ViscousJoint(joint=1, damping=0.1)])
-    found = pc.ensemble(scene, plane(2), t_span=(0, 1), vary={"gravity": [9.0, 8.0]}, rtol=1e-6)
+    found = pc.ensemble(scene, q0=plane(2), t_span=(0, 1), vary={"gravity": [9.0, 8.0]}, rtol=1e-6)
     members, request = second(found.members, found.request)
-    first = pc.simulate(scene, plane(2)[0, 0], t_span=(0, 1), rtol=1e-6).method
+    first = pc.simulate(scene, q0=plane(2)[0, 0], t_span=(0, 1), rtol=1e-6).method
     assert request.options["method"].partition("-")[0] != first.partition("-")[0]
     assert request.options["rtol"] == pytest.approx(1e-8)
     assert 0 < np.abs(members.q0 - found.members.q0).max() < 2e-14
@@ -56,9 +56,9 @@ def test_the_second_ensemble_has_another_method_and_other_bits():
 
 
 def test_the_second_ensemble_keeps_series_that_find_events():
-    found = pc.ensemble(BOOK, plane(2), t_span=(0, 1), keep=pc.keep.FirstEvent(UPRIGHT))
+    found = pc.ensemble(BOOK, q0=plane(2), t_span=(0, 1), keep=pc.keep.FirstEvent(UPRIGHT))
     _, request = second(found.members, found.request)
-    assert request.options["method"] == pc.simulate(BOOK, plane(2)[0, 0], t_span=(0, 1)).method
+    assert request.options["method"] == pc.simulate(BOOK, q0=plane(2)[0, 0], t_span=(0, 1)).method
     assert request.options["rtol"] == pytest.approx(0.01 * found.request.options["rtol"])
     tight = found.request.with_options(rtol=1e-14, atol=1e-14)  # nothing is tighter
     _, request = second(found.members, tight)
@@ -66,7 +66,7 @@ def test_the_second_ensemble_keeps_series_that_find_events():
 
 
 def test_events_are_compared_by_their_times():
-    found = pc.ensemble(BOOK, plane(4), t_span=(0, 10), keep=pc.keep.FirstEvent(UPRIGHT))
+    found = pc.ensemble(BOOK, q0=plane(4), t_span=(0, 10), keep=pc.keep.FirstEvent(UPRIGHT))
     other = found.second()
     times = found["first_event"], other["first_event"]
     assert found.resolved(other).all()
@@ -83,7 +83,7 @@ def test_energy_forbids_what_does_not_happen():
     forbidden = is_forbidden(members_of(BOOK, q0, 0.0, None), UPRIGHT)
     heyl = 3 * np.cos(theta[..., 0]) + np.cos(theta[..., 1]) > 2  # Heyl (2008)
     assert np.array_equal(forbidden, heyl)
-    found = pc.ensemble(BOOK, q0, t_span=(0, 15), keep=pc.keep.FirstEvent(UPRIGHT))
+    found = pc.ensemble(BOOK, q0=q0, t_span=(0, 15), keep=pc.keep.FirstEvent(UPRIGHT))
     assert np.isnan(found["first_event"][forbidden]).all()
     assert np.isfinite(found["first_event"]).mean() > 0.5
 
@@ -98,7 +98,7 @@ def test_nothing_that_happens_is_called_forbidden(link, value):
     q0 = pc.draw.uniform(-3, 3, (60, 3), seed=link)
     qd0 = pc.draw.uniform(-2, 2, (60, 3), seed=link + 9)
     forbidden = is_forbidden(members_of(scene, q0, qd0, None), event)
-    found = pc.ensemble(scene, q0, qd0, (0, 10), keep=pc.keep.FirstEvent(event))
+    found = pc.ensemble(scene, q0=q0, qd0=qd0, t_span=(0, 10), keep=pc.keep.FirstEvent(event))
     assert not np.isfinite(found["first_event"][forbidden]).any()
 
 
@@ -130,14 +130,14 @@ def test_a_map_is_refined_where_neighbours_differ():
 
 
 def test_decreasing_starts_name_an_axis_too():
-    found = pc.ensemble(BOOK, [[1.0, 0.5], [0.5, 0.5], [0.2, 0.5]], t_span=(0, 0.1))
+    found = pc.ensemble(BOOK, q0=[[1.0, 0.5], [0.5, 0.5], [0.2, 0.5]], t_span=(0, 0.1))
     [line] = found.plot("q[1]")
     assert line.axes.get_xlabel() == "q0[1] (rad)"
     assert line.get_xdata().tolist() == [1.0, 0.5, 0.2]
 
 
 def test_what_cannot_be_drawn():
-    found = pc.ensemble(BOOK, [[1.0, 0.5]] * 2, t_span=(0, 1), keep="times", t_eval=[0.5, 1.0])
+    found = pc.ensemble(BOOK, q0=[[1.0, 0.5]] * 2, t_span=(0, 1), keep="times", t_eval=[0.5, 1.0])
     for name in (None, "q[1]"):
         with pytest.raises(ValueError, match="keeps states at several times, which are not one"):
             found.plot(name)
@@ -146,7 +146,7 @@ def test_what_cannot_be_drawn():
 
 
 def test_figures_name_their_axes_and_units():
-    found = pc.ensemble(BOOK, plane(6), t_span=(0, 10), keep=pc.keep.FirstEvent(UPRIGHT))
+    found = pc.ensemble(BOOK, q0=plane(6), t_span=(0, 10), keep=pc.keep.FirstEvent(UPRIGHT))
     [image] = found.plot()
     assert image.axes.get_xlabel() == "q0[1] (rad)"
     assert image.axes.get_ylabel() == "q0[2] (rad)"
@@ -159,7 +159,7 @@ def test_figures_name_their_axes_and_units():
     assert np.array_equal(trust.get_array(), mask.T)
     assert trust.axes is not image.axes
 
-    swept = pc.ensemble(BOOK, [0.5, 1.0], t_span=(0, 1), vary={"link[2].mass": [0.5, 1.0, 2.0]})
+    swept = pc.ensemble(BOOK, q0=[0.5, 1.0], t_span=(0, 1), vary={"link[2].mass": [0.5, 1.0, 2.0]})
     [line] = swept.plot("q[2]")
     assert line.axes.get_xlabel() == "link[2].mass (kg)"
     assert np.array_equal(line.get_ydata(), swept.q[:, 1])
@@ -172,5 +172,5 @@ def test_figures_name_their_axes_and_units():
     with pytest.raises(ValueError, match=r"resolved: shape \(2,\): must be \(3,\)"):
         swept.plot(resolved=[True, False])
     with pytest.raises(ValueError, match="a figure needs one axis or two"):
-        pc.ensemble(BOOK, [0.5, 1.0], t_span=(0, 1)).plot()
+        pc.ensemble(BOOK, q0=[0.5, 1.0], t_span=(0, 1)).plot()
     plt.close("all")

@@ -63,7 +63,7 @@ def test_a_repr_shows_what_was_given() -> None:
 
 def test_a_solution_keeps_what_was_asked_for_and_found(tmp_path: Path) -> None:
     free = [event.replace(terminal=False) for event in KEPT]
-    sol = pc.simulate(BOOK, [0.8, 1.0], 0, (0, 3), events=free)
+    sol = pc.simulate(BOOK, q0=[0.8, 1.0], qd0=0, t_span=(0, 3), events=free)
     sol.save(tmp_path / "run.npz")
     for other in (
         pickle.loads(pickle.dumps(sol)),
@@ -87,7 +87,7 @@ any_case: Any = case_of
 
 
 def any_run(events: Any) -> pc.Solution:
-    return pc.simulate(BOOK, 1, t_span=(0, 1), events=events)
+    return pc.simulate(BOOK, q0=1, t_span=(0, 1), events=events)
 
 
 BAD: dict[str, Any] = {
@@ -172,7 +172,7 @@ DAMAGE: dict[str, Any] = {
 
 @pytest.mark.parametrize("field", DAMAGE)
 def test_damaged_events_are_refused(field: str) -> None:
-    sol = pc.simulate(BOOK, [0.8, 1.0], 0, (0, 1), events=[ev.LinkAngle(1, 1.0)])
+    sol = pc.simulate(BOOK, q0=[0.8, 1.0], qd0=0, t_span=(0, 1), events=[ev.LinkAngle(1, 1.0)])
     assert len(sol.events[0]) == 1
     state = sol.run.__getstate__() | {field: DAMAGE[field]}
     with pytest.raises(ValueError, match=r"do not fit together|cannot come from a file"):

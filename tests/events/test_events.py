@@ -34,7 +34,9 @@ def times(found: list[ev.Found]) -> list[float]:
 def parabola(t_0: float, t_end: float, step: float, method: str, *wanted: ev.Event) -> Any:
     """Find events on q = t^2 - 1.5 t, which is least at t = 0.75."""
     q, rate = t_0 * t_0 - 1.5 * t_0, 2 * t_0 - 1.5
-    sol = pc.simulate(TURNED, q, rate, (t_0, t_end), method=method, step=step, events=wanted)
+    sol = pc.simulate(
+        TURNED, q0=q, qd0=rate, t_span=(t_0, t_end), method=method, step=step, events=wanted
+    )
     assert sol.success
     return sol
 
@@ -117,7 +119,9 @@ def test_a_rod_swings_with_the_period_of_elliptic_integrals() -> None:
     theta_0 = 2.5
     scene = pc.Scene(links=[pc.Link(mass=1.7, length=0.6)], gravity=9.81)
     wanted = [ev.LinkAngle(1, np.pi / 2), ev.RateZero(link=1), ev.TipLine((0.0, 0.0), (1.0, 0.0))]
-    sol = pc.simulate(scene, np.pi / 2 - theta_0, 0, (0, 10), rtol=1e-13, atol=1e-15, events=wanted)
+    sol = pc.simulate(
+        scene, q0=np.pi / 2 - theta_0, qd0=0, t_span=(0, 10), rtol=1e-13, atol=1e-15, events=wanted
+    )
     modulus = mpmath.sin(mpmath.mpf(theta_0) / 2)
     period = float(4 * mpmath.ellipk(modulus**2) * mpmath.sqrt(mpmath.mpf(2 * 0.6) / (3 * 9.81)))
     through, turns, line = (np.array(times(found)) for found in sol.events)
@@ -134,7 +138,7 @@ def test_a_mode_of_small_oscillations_passes_the_vertical_at_its_frequency() -> 
     frequency = np.sqrt((3 - 6 / np.sqrt(7)) * 9.807)
     start = np.pi / 2 + 1e-6 * np.array([1.0, 3 / (3 - 6 / np.sqrt(7)) - 8 / 3])
     events = [ev.LinkAngle(i, np.pi / 2) for i in (1, 2)]
-    sol = pc.simulate(BOOK, start, 0, (0, 20), rtol=1e-12, atol=1e-18, events=events)
+    sol = pc.simulate(BOOK, q0=start, qd0=0, t_span=(0, 20), rtol=1e-12, atol=1e-18, events=events)
     for found in sol.events:
         exact = (np.arange(len(found)) + 0.5) * np.pi / frequency
         assert len(found) == int(20 * frequency / np.pi + 0.5)
@@ -156,7 +160,13 @@ def test_sections_are_where_the_multiple_precision_references_are(
             wanted.append(ev.LinkAngle(i, q, direction=int(np.sign(qd))))
             expected.append((case.t[k], case.q[k], case.qd[k]))
     sol = pc.simulate(
-        scene, case.q0, case.qd0, (0, case.t[-1]), rtol=1e-14, atol=1e-15, events=wanted
+        scene,
+        q0=case.q0,
+        qd0=case.qd0,
+        t_span=(0, case.t[-1]),
+        rtol=1e-14,
+        atol=1e-15,
+        events=wanted,
     )
     assert len(expected) > 20
     for found, (t, q, qd) in zip(sol.events, expected, strict=True):
@@ -170,7 +180,7 @@ def test_every_turn_of_a_spinning_rod_is_found() -> None:
     """At 30 rad/s without gravity each multiple of 2 pi is found, also several in a step."""
     for step in (0.01, 0.1, 0.5, 1.0):
         sol = pc.simulate(
-            rod(), 0.5, -30.0, (0, 10), step=step,
+            rod(), q0=0.5, qd0=-30.0, t_span=(0, 10), step=step,
             events=[ev.LinkAngle(1, 1.0, every_turn=True), ev.JointAngle(1, 1.0)],
         )  # fmt: skip
         turns, once = sol.events
@@ -183,7 +193,7 @@ def test_every_turn_of_a_spinning_rod_is_found() -> None:
 
 def test_turns_are_found_backward_and_far_from_zero() -> None:
     turns = ev.LinkAngle(1, 1.0 - 2e6 * np.pi, every_turn=True)
-    sol = pc.simulate(rod(), 1e6, 20.0, (0, -10), step=0.5, events=[turns])
+    sol = pc.simulate(rod(), q0=1e6, qd0=20.0, t_span=(0, -10), step=0.5, events=[turns])
     first = np.ceil((1e6 - 200 - 1) / (2 * np.pi))
     exact = (1e6 - (1 + 2 * np.pi * np.arange(first, first + 32)[::-1])) / -20
     exact = exact[exact < 0]
@@ -195,13 +205,13 @@ def test_turns_without_end_end_the_run_before_the_step_that_has_them_and_say_so(
     """At 4e5 turns a step, the millionth turn comes in the third step."""
     turns = ev.LinkAngle(1, 0.0, every_turn=True, direction=-1)
     rate = 4e5 * 2 * np.pi
-    sol = pc.simulate(rod(), 0.5, rate, (0, 4), step=1.0, events=[turns], check=False)
+    sol = pc.simulate(rod(), q0=0.5, qd0=rate, t_span=(0, 4), step=1.0, events=[turns], check=False)
     assert (sol.status, sol.success) == ("max_turns", False)
     assert [*sol.t] == [0.0, 1.0, 2.0]
     assert sol.stats.accepted == 2
     assert sol.message.startswith("event 1 (link_angle): every_turn = true: ")
     assert "more than a million turns, not counting one a step (at t = 2.0 s)" in sol.message
-    longer, whole = sol.resume(4.0), pc.simulate(rod(), 0.5, rate, (0, 4), step=1.0)
+    longer, whole = sol.resume(4.0), pc.simulate(rod(), q0=0.5, qd0=rate, t_span=(0, 4), step=1.0)
     assert longer.status == "finished"
     np.testing.assert_array_equal(longer.y, whole.y)
     assert longer.stats == whole.stats
@@ -209,19 +219,21 @@ def test_turns_without_end_end_the_run_before_the_step_that_has_them_and_say_so(
 
 def test_a_turn_a_step_is_never_too_many() -> None:
     turns = ev.LinkAngle(1, 1.0, every_turn=True, direction=-1)
-    sol = pc.simulate(rod(), 0.5, 6.0, (0, 1_100_000), step=1.0, store="end", events=[turns])
+    sol = pc.simulate(
+        rod(), q0=0.5, qd0=6.0, t_span=(0, 1_100_000), step=1.0, store="end", events=[turns]
+    )
     assert sol.status == "finished"
 
 
 def test_a_step_of_more_turns_than_numbers_ends_the_run() -> None:
     turns = [ev.LinkAngle(1, 0.0, every_turn=True)]
-    sol = pc.simulate(rod(), 0.5, 1e300, (0, 1), step=1.0, events=turns, check=False)
+    sol = pc.simulate(rod(), q0=0.5, qd0=1e300, t_span=(0, 1), step=1.0, events=turns, check=False)
     assert (sol.status, sol.t[-1], sol.events) == ("max_turns", 0.0, [[]])
 
 
 def test_an_event_before_time_can_tell_ends_the_run_where_the_step_began() -> None:
     here = ev.LinkAngle(1, 1e-13, terminal=True)  # after 1e-18 s, and more than rounding away
-    sol = pc.simulate(rod(), 0.0, 1e5, (1, 1.001), step=1e-5, events=[here])
+    sol = pc.simulate(rod(), q0=0.0, qd0=1e5, t_span=(1, 1.001), step=1e-5, events=[here])
     assert (sol.status, [*sol.t], len(sol.events[0])) == ("event", [1.0], 1)
     np.testing.assert_array_equal(sol(sol.t).T, sol.y.T)
     assert sol.resume(1.001).status == "finished"
@@ -231,7 +243,9 @@ def test_an_event_before_time_can_tell_ends_the_run_where_the_step_began() -> No
 @pytest.mark.parametrize("store", ["dense", "steps", "end"])
 def test_a_run_may_end_in_its_first_step(method: str, store: str) -> None:
     here = ev.LinkAngle(1, 0.25, terminal=True)
-    sol = pc.simulate(rod(), 0.0, 0.5, (0, 10), method=method, step=1.0, store=store, events=[here])
+    sol = pc.simulate(
+        rod(), q0=0.0, qd0=0.5, t_span=(0, 10), method=method, step=1.0, store=store, events=[here]
+    )
     assert (sol.status, sol.q[-1, 0]) == ("event", 0.25)
     assert sol.t[-1] == pytest.approx(0.5, rel=0, abs=WITHIN_STEPS.get(method, 0.0))
     assert sol.stats.accepted == 1
@@ -242,7 +256,9 @@ def test_a_run_may_end_in_its_first_step(method: str, store: str) -> None:
 def test_events_a_hair_apart_come_in_their_order(sense: int) -> None:
     near = [ev.Function(lambda t, q, qd, at=at: t - sense * at) for at in (2e-8, 1e-8, 0.5 + 1e-8)]
     angle = ev.LinkAngle(1, sense * 0.5 * 1e-8)
-    sol = pc.simulate(rod(), 0.0, 0.5, (0, sense), step=1.0, events=[*near, angle, angle])
+    sol = pc.simulate(
+        rod(), q0=0.0, qd0=0.5, t_span=(0, sense), step=1.0, events=[*near, angle, angle]
+    )
     assert [times(found) for found in sol.events] == [
         pytest.approx([sense * t], abs=1e-16) for t in (2e-8, 1e-8, 0.5 + 1e-8, 1e-8, 1e-8)
     ]
@@ -253,7 +269,7 @@ def test_simultaneous_events_are_all_found_and_the_first_that_was_asked_for_ends
     here = ev.LinkAngle(1, 0.25)
     wanted = [here, here.replace(terminal=True, name="b"), here.replace(terminal=True, name="c")]
     how = {"method": "dopri5", "step": 1.0}
-    sol = pc.simulate(rod(), 0.0, 0.5, (0, 1), **how, events=[*wanted, here])
+    sol = pc.simulate(rod(), q0=0.0, qd0=0.5, t_span=(0, 1), **how, events=[*wanted, here])
     assert [times(found) for found in sol.events] == [[0.5]] * 4
     assert sol.message == ("stopped at a terminal event (at t = 0.5 s: event 2 (link_angle, 'b'))")
 
@@ -264,8 +280,10 @@ def test_a_run_ends_at_as_many_occurrences_in_the_direction_that_counts(
     count: int, direction: int
 ) -> None:
     down = ev.LinkAngle(1, np.pi / 2, direction=direction)
-    free = pc.simulate(BOOK, [0.8, 1.0], 0, (0, 20), events=[down])
-    sol = pc.simulate(BOOK, [0.8, 1.0], 0, (0, 20), events=[down.replace(terminal=count)])
+    free = pc.simulate(BOOK, q0=[0.8, 1.0], qd0=0, t_span=(0, 20), events=[down])
+    sol = pc.simulate(
+        BOOK, q0=[0.8, 1.0], qd0=0, t_span=(0, 20), events=[down.replace(terminal=count)]
+    )
     assert sol.status == "event"
     assert sol.success
     assert times(sol.events[0]) == times(free.events[0])[:count]
@@ -277,7 +295,7 @@ def test_a_run_ends_at_as_many_occurrences_in_the_direction_that_counts(
 def test_a_joint_that_comes_to_rest_by_friction_is_found_once() -> None:
     scene = rod(pc.effects.DryJointFriction(joint=1, coulomb=0.5))
     wanted = [ev.RateZero(joint=1), ev.RateZero(link=1, direction=1)]
-    sol = pc.simulate(scene, 0.0, 1.0, (0, 10), events=wanted)
+    sol = pc.simulate(scene, q0=0.0, qd0=1.0, t_span=(0, 10), events=wanted)
     assert times(sol.events[0]) == pytest.approx([2.0], abs=1e-14)
     assert sol.events[0][0].qd[0] == 0.0
     assert sol.events[1] == []
@@ -288,6 +306,6 @@ def test_a_rod_at_rest_has_no_event() -> None:
         ev.LinkAngle(1, 0.5), ev.RateZero(joint=1), ev.TipLine((np.cos(0.5), 0.0), (1.0, 0.0)),
         ev.Function(lambda t, q, qd: qd[0]),
     ]  # fmt: skip
-    sol = pc.simulate(rod(links=2), [0.5, 0.5], 0.0, (0, 100), events=wanted)
+    sol = pc.simulate(rod(links=2), q0=[0.5, 0.5], qd0=0.0, t_span=(0, 100), events=wanted)
     assert sol.success
     assert sol.events == [[]] * 4

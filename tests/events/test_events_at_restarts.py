@@ -59,14 +59,18 @@ def restarts(
         t, end = float(dice.choice([0.0, 7.3])), 4.0
         q, qd = dice.uniform(-3, 3, size=n), dice.uniform(-4, 4, size=n)
         for _ in range(4):
-            sol = pc.simulate(scene, q, qd, (t, t + sense * end), events=[event], **options)
+            sol = pc.simulate(
+                scene, q0=q, qd0=qd, t_span=(t, t + sense * end), events=[event], **options
+            )
             if sol.status != "event":
                 break
             t, y = float(sol.t[-1]), sol.y[:, -1]
             q, qd = y[:n], y[n:]
             goes_on = sol.resume(t + sense * 0.5)
             yield (
-                pc.simulate(scene, q, qd, (t, t + sense * 0.5), events=[event], **options),
+                pc.simulate(
+                    scene, q0=q, qd0=qd, t_span=(t, t + sense * 0.5), events=[event], **options
+                ),
                 goes_on,
             )
 
@@ -100,7 +104,7 @@ def switched(
     t, rate, times = 0.0, 0.0, []
     while True:
         sol = pc.simulate(
-            scene_of(sign), q, rate, (t, 30.0 * sense), events=[event], method=method,
+            scene_of(sign), q0=q, qd0=rate, t_span=(t, 30.0 * sense), events=[event], method=method,
             step=0.01 if method == "rk4" else None, rtol=1e-10, atol=1e-12,
         )  # fmt: skip
         if sol.status != "event" or len(times) > 100:
@@ -166,7 +170,9 @@ def test_events_that_come_close_after_the_start_are_found(
         ev.Function(lambda t, q, qd: q[0] - value),
     ]  # fmt: skip
     step = 0.01 if method == "rk4" else None
-    sol = pc.simulate(rod(), q0, 2.0, (0, sense * 0.5), events=watched, method=method, step=step)
+    sol = pc.simulate(
+        rod(), q0=q0, qd0=2.0, t_span=(0, sense * 0.5), events=watched, method=method, step=step
+    )
     for found in sol.events:
         (one,) = found
         assert one.t == pytest.approx(sense * distance / 2, abs=3e-15)
@@ -181,8 +187,8 @@ def test_a_rate_that_is_zero_close_after_the_start_is_found(
     """Phi'' = -1 from the rate `distance`, which is zero after as many seconds."""
     step = 0.01 if method == "rk4" else None
     sol = pc.simulate(
-        rod(fx.Motor(1, constant=-1.0)), 0.0, sense * distance, (0, sense * 0.5), method=method,
-        events=[ev.RateZero(joint=1), ev.RateZero(link=1)], step=step,
+        rod(fx.Motor(1, constant=-1.0)), q0=0.0, qd0=sense * distance, t_span=(0, sense * 0.5),
+        method=method, events=[ev.RateZero(joint=1), ev.RateZero(link=1)], step=step,
     )  # fmt: skip
     for found in sol.events:
         (one,) = found
@@ -199,7 +205,9 @@ def test_a_run_that_starts_on_an_event_finds_the_way_back(method: str, rate: flo
     step = rate / 50 if method == "rk4" else None
     line = ev.TipLine((np.cos(off), np.sin(off)), (-np.sin(off), np.cos(off)))
     watched = [ev.JointAngle(1, off), line, ev.Function(lambda t, q, qd: q[0] - off)]
-    sol = pc.simulate(scene, 0.7, rate, (0, 3 * rate), events=watched, method=method, step=step)
+    sol = pc.simulate(
+        scene, q0=0.7, qd0=rate, t_span=(0, 3 * rate), events=watched, method=method, step=step
+    )
     for found in sol.events:
         (one,) = found
         assert one.t == pytest.approx(back, rel=1e-9, abs=2e-15 / rate)
@@ -215,7 +223,7 @@ def test_members_find_the_events_of_the_run_alone_from_an_event(kind: str) -> No
         starts = np.array([y] * 4)
         starts[1:, 0] += 1e-3
         many = pc.ensemble(
-            again.scene, starts[:, :n], starts[:, n:], (t, t + 0.5), method="dopri5",
+            again.scene, q0=starts[:, :n], qd0=starts[:, n:], t_span=(t, t + 0.5), method="dopri5",
             keep=pc.keep.FirstEvent(event), workers=1,
         )  # fmt: skip
         (found,) = again.events

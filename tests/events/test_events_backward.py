@@ -21,7 +21,7 @@ def test_elastic_impacts_are_events_on_the_way_back_too(fine: Any) -> None:
     scene = rod(fx.Motor(joint=1, constant=-2.0), stop)
     watched = [ev.JointAngle(joint=1, value=0.0), ev.RateZero(joint=1), ev.JointAngle(1, 0.3)]
     fall, rate = np.sqrt(0.4), 2 * np.sqrt(0.4)
-    sol = pc.simulate(scene, 0.4, 0.0, (0, -6.2), events=watched, **fine)
+    sol = pc.simulate(scene, q0=0.4, qd0=0.0, t_span=(0, -6.2), events=watched, **fine)
     touches, zeros, passed = sol.events
     assert [one.t for one in touches] == pytest.approx(-fall * np.arange(1, 10, 2), abs=1e-10)
     assert [one.t for one in zeros] == pytest.approx(-fall * np.arange(1, 10), abs=1e-10)
@@ -49,7 +49,12 @@ def test_what_elastic_impacts_of_a_chain_are_found_backward_is_found_of_its_mirr
 
     def run(sign: int) -> pc.Solution:
         return pc.simulate(
-            scene, [1.0, 1.1, 1.2], sign * rates, (0, sign * 3.0), events=watched, **fine
+            scene,
+            q0=[1.0, 1.1, 1.2],
+            qd0=sign * rates,
+            t_span=(0, sign * 3.0),
+            events=watched,
+            **fine,
         )
 
     turned = np.array([1.0] * 3 + [-1.0] * 3)

@@ -48,7 +48,7 @@ def in_numbers(sol: pc.Solution) -> list[list[tuple[float, int, list[float]]]]:
 
 
 def run(scene: pc.Scene = BOOK, t_end: float = 10.0, **options: Any) -> pc.Solution:
-    return pc.simulate(scene, [-1.4, -1.1], 0.1, (0, t_end), **options)
+    return pc.simulate(scene, q0=[-1.4, -1.1], qd0=0.1, t_span=(0, t_end), **options)
 
 
 def but_for_dense_stages(stats: pc.Statistics) -> pc.Statistics:
@@ -132,8 +132,8 @@ def test_a_run_that_stops_at_events_goes_on_as_if_it_never_had(
 
 
 def test_a_run_backward_stops_and_goes_on_likewise() -> None:
-    whole = pc.simulate(BOOK, [-1.4, -1.1], 0.1, (0, -10), events=sections())
-    sol = pc.simulate(BOOK, [-1.4, -1.1], 0.1, (0, -10), events=sections(terminal=2))
+    whole = pc.simulate(BOOK, q0=[-1.4, -1.1], qd0=0.1, t_span=(0, -10), events=sections())
+    sol = pc.simulate(BOOK, q0=[-1.4, -1.1], qd0=0.1, t_span=(0, -10), events=sections(terminal=2))
     while sol.status == "event":
         sol = sol.resume(-10)
     assert np.array_equal(sol.y, whole.y)
@@ -212,12 +212,12 @@ def test_an_event_within_the_last_bit_of_the_start(store: str) -> None:
     how = {**STORES[store], "events": [ev.LinkAngle(1, 1.0 + 1e-9, terminal=True)]}
     if "t_eval" in how:
         how["t_eval"] = 1e9 + how["t_eval"]
-    sol = pc.simulate(rod, 1.0, 1.0, (1e9, 1e9 + 10), **how)
+    sol = pc.simulate(rod, q0=1.0, qd0=1.0, t_span=(1e9, 1e9 + 10), **how)
     assert sol.status == "event"
     assert sol.events[0][0].t == sol.run.t_reached == 1e9
     assert sol.events[0][0].q[0] == pytest.approx(1.0 + 1e-9, abs=1e-15)
     longer = pickle.loads(pickle.dumps(sol)).resume(1e9 + 10)
-    free = pc.simulate(rod, 1.0, 1.0, (1e9, 1e9 + 10), **how | {"events": []})
+    free = pc.simulate(rod, q0=1.0, qd0=1.0, t_span=(1e9, 1e9 + 10), **how | {"events": []})
     assert np.array_equal(longer.t, free.t)
     assert np.array_equal(longer.y, free.y)
 
@@ -235,12 +235,12 @@ def test_chaotic_sections_are_counted_alike_whatever_is_kept() -> None:
     """Some thousand crossings over 500 s agree, in one go, in pieces, with and without stops."""
     section = ev.JointAngle(2, 0.0, every_turn=True, direction=1)
     span, start = (0, 500), [-1.4, -1.1]
-    whole = pc.simulate(BOOK, start, 0, span, store="end", events=[section])
-    pieces = pc.simulate(BOOK, start, 0, (0, 100), store="steps", events=[section])
+    whole = pc.simulate(BOOK, q0=start, qd0=0, t_span=span, store="end", events=[section])
+    pieces = pc.simulate(BOOK, q0=start, qd0=0, t_span=(0, 100), store="steps", events=[section])
     for t_end in (200, 300.5, 500):
         pieces = pieces.resume(t_end)
     stopping = [section.replace(terminal=100)]
-    stops = pc.simulate(BOOK, start, 0, span, store="end", events=stopping)
+    stops = pc.simulate(BOOK, q0=start, qd0=0, t_span=span, store="end", events=stopping)
     while stops.status == "event":
         assert len(stops.events[0]) % 100 == 0
         stops = stops.resume(500)

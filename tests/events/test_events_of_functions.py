@@ -16,7 +16,7 @@ BOOK = pc.Scene.textbook()
 
 
 def run(*events: ev.Event, t_end: float = 3.0, **options: Any) -> pc.Solution:
-    return pc.simulate(BOOK, [0.8, 1.0], 0, (0, t_end), events=events, **options)
+    return pc.simulate(BOOK, q0=[0.8, 1.0], qd0=0, t_span=(0, t_end), events=events, **options)
 
 
 def height(t: float, q: Any, qd: Any) -> float:
@@ -70,7 +70,9 @@ def test_more_samples_see_what_comes_and_goes_between_fewer() -> None:
 
     still = pc.Scene(links=[pc.Link(mass=1, length=1)], gravity=0)
     found = [
-        pc.simulate(still, 0, 0, (0, 1), step=1.0, events=[ev.Function(narrow, **how)]).events[0]
+        pc.simulate(
+            still, q0=0, qd0=0, t_span=(0, 1), step=1.0, events=[ev.Function(narrow, **how)]
+        ).events[0]
         for how in ({"samples": 3}, {"samples": 101}, {"max_step": 0.01}, {"samples": 2})
     ]
     assert [len(each) for each in found] == [0, 2, 2, 2]

@@ -32,7 +32,9 @@ def distance(sol: pc.Solution, line: ev.TipLine, t: Array) -> Array:
 def test_a_spinning_tip_crosses_a_line_twice_a_turn(step: float, sense: int, method: str) -> None:
     """As q = 7 t exactly, x = 0.3 where cos(7 t) = 0.3, several times in a step."""
     line = ev.TipLine((0.3, 5.0), (2.0, 0.0))
-    sol = pc.simulate(rod(), 0.0, 7.0, (0, 10 * sense), method=method, step=step, events=[line])
+    sol = pc.simulate(
+        rod(), q0=0.0, qd0=7.0, t_span=(0, 10 * sense), method=method, step=step, events=[line]
+    )
     turns = 2 * np.pi * np.arange(14)
     exact = np.sort(np.concatenate([turns + np.arccos(0.3), turns - np.arccos(0.3)]))
     exact = exact[(exact > 0) & (exact <= 70)] / 7
@@ -44,7 +46,7 @@ def test_a_spinning_tip_crosses_a_line_twice_a_turn(step: float, sense: int, met
 def test_a_tip_that_touches_a_line_is_told_as_touching(method: str) -> None:
     """The rod's tip is lowest, y = 1, at q = pi/2; the line just below is never reached."""
     lines = [ev.TipLine((0.0, 1.0 + gap), (0.0, 1.0)) for gap in (0.0, 1e-13, -1e-13)]
-    sol = pc.simulate(rod(), 0.0, 1.0, (0, 4), method=method, step=4.0, events=lines)
+    sol = pc.simulate(rod(), q0=0.0, qd0=1.0, t_span=(0, 4), method=method, step=4.0, events=lines)
     touches, clear, crosses = sol.events
     assert [one.direction for one in touches] == [0]
     assert touches[0].t == pytest.approx(np.pi / 2, abs=1e-7)
@@ -63,7 +65,7 @@ def test_no_crossing_that_samples_see_is_missed(
         ev.TipLine((0.1, 0.2), (1.0, 0.0)), ev.TipLine((0.0, 0.9), (0.3, 1.0)),
         ev.TipLine((-0.4, 0.3), (1.0, -2.0)), ev.TipLine((5.0, 5.0), (1.0, 0.0)),
     ]  # fmt: skip
-    sol = pc.simulate(scene, start, 0, (0, 4), method=method, rtol=1e-6, events=lines)
+    sol = pc.simulate(scene, q0=start, qd0=0, t_span=(0, 4), method=method, rtol=1e-6, events=lines)
     t = np.linspace(0, 4, 100_001)
     for line, found in zip(lines, sol.events, strict=True):
         times = np.array([one.t for one in found])
@@ -84,7 +86,9 @@ def test_a_pivot_alone_takes_a_tip_across(method: str) -> None:
     """The rod is locked where it hangs, and the pivot sways: x = 0.3 sin 5 t crosses 0.2."""
     scene = rod(SWAY, pc.effects.Lock(joint=1))
     line = ev.TipLine((0.2, 0.0), (1.0, 0.0))
-    sol = pc.simulate(scene, np.pi / 2, 0, (0, 2), method=method, step=1.0, events=[line])
+    sol = pc.simulate(
+        scene, q0=np.pi / 2, qd0=0, t_span=(0, 2), method=method, step=1.0, events=[line]
+    )
     phase = np.arcsin(0.2 / 0.3)
     exact = np.array([phase, np.pi - phase, 2 * np.pi + phase, 3 * np.pi - phase]) / 5
     assert [one.t for one in sol.events[0]] == pytest.approx(exact, abs=1e-15)

@@ -42,14 +42,20 @@ def test_both_passages_of_a_mark_just_short_of_the_turn_are_found_in_every_swing
     known, end = passages(amplitude, amplitude - short, 20)
     mark = pc.events.JointAngle(joint=1, value=np.pi / 2 - (amplitude - short))
     how = {"method": method, "rtol": 1e-12, "atol": 1e-14, "events": [mark]}
-    sol = pc.simulate(rod(gravity=G), np.pi / 2 + amplitude, 0, (0, sign * end), **how)
+    sol = pc.simulate(
+        rod(gravity=G), q0=np.pi / 2 + amplitude, qd0=0, t_span=(0, sign * end), **how
+    )
     assert sol.success
     found = sign * np.array(times_of(sol))
     assert found.size == len(known)
     # an angle's error of 1e-10 is a time's of 1e-10/rate, and the rate is sqrt(2 short) or so
     np.testing.assert_allclose(found, known, atol=1e-10 / np.sqrt(short))
     without = pc.simulate(
-        rod(gravity=G), np.pi / 2 + amplitude, 0, (0, sign * end), **how | {"events": []}
+        rod(gravity=G),
+        q0=np.pi / 2 + amplitude,
+        qd0=0,
+        t_span=(0, sign * end),
+        **how | {"events": []},
     )
     np.testing.assert_array_equal(sol.y, without.y)
 
@@ -65,14 +71,14 @@ def marks_at(sol: pc.Solution, row: int) -> list[pc.events.Event]:
 @pytest.mark.parametrize("method", METHODS)
 def test_a_mark_at_the_start_is_no_event_and_one_at_the_end_is_one(method: str, sign: int) -> None:
     """A rod turns at 1 rad/s; the marks at the end are where the run gets to, to the bit."""
-    free = pc.simulate(rod(), 0.2, 1, (0, sign * 1.0), method=method)
+    free = pc.simulate(rod(), q0=0.2, qd0=1, t_span=(0, sign * 1.0), method=method)
     marks = marks_at(free, 0) + marks_at(free, -1)
     how = {"method": method, "events": marks}
-    sol = pc.simulate(rod(), 0.2, 1, (0, sign * 1.0), **how)
+    sol = pc.simulate(rod(), q0=0.2, qd0=1, t_span=(0, sign * 1.0), **how)
     assert [times_of(sol, k) for k in range(6)] == [[]] * 3 + [[sign * 1.0]] * 3
     assert {event.direction for found in sol.events for event in found} == {sign}
     once = [[]] * 3 + [pytest.approx([sign * 1.0], abs=1e-14)] * 3
-    again = pc.simulate(rod(), 0.2, 1, (0, sign * 1.5), **how)
+    again = pc.simulate(rod(), q0=0.2, qd0=1, t_span=(0, sign * 1.5), **how)
     assert [times_of(again, k) for k in range(6)] == once
     went_on = sol.resume(sign * 1.5)
     assert [times_of(went_on, k) for k in range(6)] == once
@@ -87,7 +93,12 @@ def test_a_rate_that_is_zero_at_the_start_is_no_event(sign: int, fine: Any) -> N
     """A rod is let go at rest, and its next rest is the other turn."""
     quarter = passages(1.0, 0.0, 1)[0][0]
     sol = pc.simulate(
-        rod(gravity=G), np.pi / 2 + 1, 0, (0, sign * 5 * quarter), **fine, events=ZEROS
+        rod(gravity=G),
+        q0=np.pi / 2 + 1,
+        qd0=0,
+        t_span=(0, sign * 5 * quarter),
+        **fine,
+        events=ZEROS,
     )
     for found in sol.events:
         assert [event.t for event in found] == pytest.approx(
@@ -98,12 +109,12 @@ def test_a_rate_that_is_zero_at_the_start_is_no_event(sign: int, fine: Any) -> N
 def test_a_rate_that_is_zero_at_the_end_is_an_event(fine: Any) -> None:
     """Friction stops the rod, to the bit, after 2 s; a step that ends there may be the last."""
     scene = rod(pc.effects.DryJointFriction(joint=1, coulomb=0.5))
-    whole = pc.simulate(scene, 0, 1, (0, 3), **fine)
+    whole = pc.simulate(scene, q0=0, qd0=1, t_span=(0, 3), **fine)
     stopped = float(whole.t[np.flatnonzero(whole.qd[:, 0] == 0)[0]])
     assert stopped == pytest.approx(2.0, abs=1e-12)
     # two bits later, as a step cut where the rod is found to stop may end a bit of the rate before
     stopped += 2 * np.spacing(stopped)
-    sol = pc.simulate(scene, 0, 1, (0, stopped), **fine, events=ZEROS)
+    sol = pc.simulate(scene, q0=0, qd0=1, t_span=(0, stopped), **fine, events=ZEROS)
     assert [times_of(sol, k) for k in range(2)] == [[stopped]] * 2
     assert sol.events[0][0].y.tolist() == sol.y[:, -1].tolist()
     assert sol.qd[-1, 0] == 0.0
@@ -124,8 +135,8 @@ def test_a_mark_at_the_end_of_a_step_is_met_once(method: str, value: float, sign
     ]
     how = {"t_span": (0, sign), "method": method, "step": 0.25}
     runs = [
-        (pc.simulate(rod(), 0, sign, events=marks, **how), [1, 1, 1, -1, 1]),
-        (pc.simulate(TURNED_BACK, 0, sign * 2 * value, events=ZEROS, **how), [-sign] * 2),
+        (pc.simulate(rod(), q0=0, qd0=sign, events=marks, **how), [1, 1, 1, -1, 1]),
+        (pc.simulate(TURNED_BACK, q0=0, qd0=sign * 2 * value, events=ZEROS, **how), [-sign] * 2),
     ]
     for sol, directions in runs:
         for found, direction in zip(sol.events, directions, strict=True):
@@ -136,7 +147,9 @@ def test_a_mark_at_the_end_of_a_step_is_met_once(method: str, value: float, sign
 def test_a_swing_that_only_touches_the_mark_does_not_pass_it_twice_the_wrong_way(fine: Any) -> None:
     """A mark a hair beyond the turn is never passed."""
     mark = pc.events.JointAngle(joint=1, value=np.pi / 2 - (1 + 1e-9))
-    sol = pc.simulate(rod(gravity=G), np.pi / 2 + 1, 0, (0, 20), **fine, events=[mark])
+    sol = pc.simulate(
+        rod(gravity=G), q0=np.pi / 2 + 1, qd0=0, t_span=(0, 20), **fine, events=[mark]
+    )
     assert times_of(sol) == []
 
 
@@ -145,7 +158,7 @@ def test_each_bounce_is_an_event_with_the_states_on_both_sides(fine: Any) -> Non
     stop = pc.effects.JointStop(joint=1, range=(0, np.inf), restitution=0.8, capture_speed=1e-3)
     scene = rod(pc.effects.Motor(joint=1, constant=-2.0), stop)
     bound = pc.events.JointAngle(joint=1, value=0.0)
-    sol = pc.simulate(scene, 0.4, 0, (0, 3.0), **fine, events=[bound])
+    sol = pc.simulate(scene, q0=0.4, qd0=0, t_span=(0, 3.0), **fine, events=[bound])
     first = np.sqrt(2 * 2.0 * 0.4)
     assert len(sol.events[0]) > 0
     for k, event in enumerate(sol.events[0]):

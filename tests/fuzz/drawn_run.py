@@ -36,7 +36,9 @@ class Drawn:
         options = self.options | changes
         if "method" in options:
             options["method"] = carried(options["method"], self.scene)
-        return pc.simulate(self.scene, self.q0, self.qd0, self.t_span, check=False, **options)
+        return pc.simulate(
+            self.scene, q0=self.q0, qd0=self.qd0, t_span=self.t_span, check=False, **options
+        )
 
     def __repr__(self) -> str:
         keywords = "".join(f"    {name}={value!r},\n" for name, value in self.options.items())

@@ -53,13 +53,21 @@ def whole_solutions() -> list[pc.Solution]:
     moved = pc.Scene(links=[rod, rod, rod], effects=driven)
     locked = pc.Scene(links=[rod, rod], effects=[fx.Lock(2), fx.RodDrag(1, 1.0, 0.1)])
     return [
-        pc.simulate(plain, [0.3, 1.0], 0, (0, 0.2)),
-        pc.simulate(plain, [0.3, 1.0], 0, (0.2, 0), store="steps", max_steps=5, check=False),
-        pc.simulate(plain, [0.3, 1.0], 0, (0, 0.2), t_eval=[0.0, 0.1, 0.2], ledger=True),
-        pc.simulate(moved, [0.3, 1.0, 0.5], [0, 1.0, 0], (0, 0.4), ledger=True),
-        pc.simulate(moved, [0.3, 1.0, 0.5], [0, 1.0, 0], (0, 1.0), max_steps=9, check=False),
-        pc.simulate(locked, [0.3, 1.0], [1.0, 1.0], (0, 0.3), rtol=[1e-6] * 4, max_step=0.01),
-        pc.simulate(plain, [0.3, 1.0], 0, (0, 0)),
+        pc.simulate(plain, q0=[0.3, 1.0], qd0=0, t_span=(0, 0.2)),
+        pc.simulate(
+            plain, q0=[0.3, 1.0], qd0=0, t_span=(0.2, 0), store="steps", max_steps=5, check=False
+        ),
+        pc.simulate(
+            plain, q0=[0.3, 1.0], qd0=0, t_span=(0, 0.2), t_eval=[0.0, 0.1, 0.2], ledger=True
+        ),
+        pc.simulate(moved, q0=[0.3, 1.0, 0.5], qd0=[0, 1.0, 0], t_span=(0, 0.4), ledger=True),
+        pc.simulate(
+            moved, q0=[0.3, 1.0, 0.5], qd0=[0, 1.0, 0], t_span=(0, 1.0), max_steps=9, check=False
+        ),
+        pc.simulate(
+            locked, q0=[0.3, 1.0], qd0=[1.0, 1.0], t_span=(0, 0.3), rtol=[1e-6] * 4, max_step=0.01
+        ),
+        pc.simulate(plain, q0=[0.3, 1.0], qd0=0, t_span=(0, 0)),
         *_hard_solutions(),
     ]
 
@@ -80,7 +88,7 @@ def _hard_solutions() -> list[pc.Solution]:
     till_the_second = [ev.JointAngle(1, 1.5, every_turn=True, terminal=2)]
 
     def solution(scene: pc.Scene, **how: Any) -> pc.Solution:
-        return pc.simulate(scene, [0.3, 1.0], [2.0, 0.0], (0, 0.2), rtol=1e-4, **how)
+        return pc.simulate(scene, q0=[0.3, 1.0], qd0=[2.0, 0.0], t_span=(0, 0.2), rtol=1e-4, **how)
 
     return [
         solution(bouncing, events=watched, ledger=True),
@@ -88,7 +96,9 @@ def _hard_solutions() -> list[pc.Solution]:
         solution(bouncing, method="dopri5", compensated=True, store="steps"),
         solution(damped, method="radau5", compensated=True),
         solution(damped, method="dopri5-radau5", ledger=True),
-        pc.simulate(bouncing.replace(effects=[]), [0.3, 1], 0, (0, 9), events=till_the_second),
+        pc.simulate(
+            bouncing.replace(effects=[]), q0=[0.3, 1], qd0=0, t_span=(0, 9), events=till_the_second
+        ),
     ]
 
 
@@ -119,7 +129,7 @@ def whole_stores() -> list[dict[str, bytes]]:
     for one in asked:
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder, "a.zarr")
-            pc.ensemble(scene, starts, t_span=(0, 0.2), store=path, chunk=2, check=False, **one)
+            pc.ensemble(scene, q0=starts, t_span=(0, 0.2), store=path, chunk=2, check=False, **one)
             files = sorted(file for file in path.rglob("*") if file.is_file())
             found.append({file.relative_to(path).as_posix(): file.read_bytes() for file in files})
     left_out = [name for name in found[-1] if name.startswith("status/c/1/")]
@@ -206,7 +216,7 @@ def a_scene(choices: Choices) -> None:
         gravity = choices.one_of(damage.VALUES)
     found = build(links, gravity, effects)
     q0 = np.linspace(0.1, 0.3, len(found.links))
-    repr(found), use(pc.simulate(found, q0, 0, (0, 0.1), **STEPS))
+    repr(found), use(pc.simulate(found, q0=q0, qd0=0, t_span=(0, 0.1), **STEPS))
 
 
 def _a_part(choices: Choices, whole: Any) -> Any:

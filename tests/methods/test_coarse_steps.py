@@ -36,7 +36,9 @@ def test_a_step_of_coarse_tolerances_overflows_nowhere(
 ) -> None:
     """The new state is finite, but the stages of the dense output overflow, so it is a line."""
     scene = pc.Scene(links=[ROD] * links, gravity=9.807, effects=[law])
-    sol = pc.simulate(scene, 0.0, qd0, (0.0, t_end), max_steps=1000, check=False, **options)
+    sol = pc.simulate(
+        scene, q0=0.0, qd0=qd0, t_span=(0.0, t_end), max_steps=1000, check=False, **options
+    )
     assert sol.stats.accepted > 0
     assert np.isfinite(between(sol)).all()
 
@@ -45,7 +47,7 @@ def test_dense_output_is_finite_under_a_law_of_1e145() -> None:
     """A rate far below atol has a torque whose cube overflows in the stages of dense output."""
     law = fx.ViscousJoint(joint=1, damping=10.0, damping3=4.376330066954931e145)
     scene = pc.Scene(links=[ROD], gravity=9.807, effects=[law])
-    sol = pc.simulate(scene, 0.0, t_span=(0.0, 0.19498208047693533), max_steps=3000, check=False)
+    sol = pc.simulate(scene, q0=0.0, t_span=(0.0, 0.19498208047693533), max_steps=3000, check=False)
     assert sol.stats.accepted > 0
     assert np.isfinite(between(sol)).all()
     assert (sol(sol.t) == sol.y).all()
@@ -72,7 +74,7 @@ def test_a_ledger_that_overflows_leaves_the_dense_output_as_it_is() -> None:
     q0 = [0.0, -4.999833471907522e-09, 0.0, 0.0, -100.67072600291924, 0.0]
     plain, booked = (
         pc.simulate(
-            scene, q0, t_span=(0.0, 2.690715162498401), step=1e4, method="rk4", ledger=ledger,
+            scene, q0=q0, t_span=(0.0, 2.690715162498401), step=1e4, method="rk4", ledger=ledger,
             check=False,
         )
         for ledger in (False, True)
@@ -92,7 +94,7 @@ def test_a_fixed_step_beyond_stability_is_not_said_to_chatter(step: float) -> No
     )
     scene = pc.Scene(links=[ROD] * 3, gravity=9.807, effects=[law])
     sol = pc.simulate(
-        scene, [0.0, 0.0, 0.5], t_span=(-2.5, -1.578), step=step, method="rk4", check=False
+        scene, q0=[0.0, 0.0, 0.5], t_span=(-2.5, -1.578), step=step, method="rk4", check=False
     )
     assert sol.stats.accepted > 0
     assert "back and forth" not in sol.message
@@ -116,7 +118,7 @@ def test_a_coarse_fixed_step_from_the_limit_of_a_motor_is_not_said_to_chatter() 
         ],
     )
     q0 = [0.4982294823897364, 0.0, 1.4740807834029885, 0.0]
-    sol = pc.simulate(scene, q0, t_span=(0.0, -0.281), step=0.02, check=False)
+    sol = pc.simulate(scene, q0=q0, t_span=(0.0, -0.281), step=0.02, check=False)
     assert sol.stats.accepted > 0
     assert "back and forth" not in sol.message
 
@@ -127,9 +129,9 @@ def test_a_coarse_fixed_step_from_next_to_rest_is_not_said_to_chatter() -> None:
     scene = pc.Scene(links=[ROD] * 4, gravity=0.0, effects=[law])
     sol = pc.simulate(
         scene,
-        [0.0, 0.0, -0.7, 0.0],
-        [0.0, -4.763463850557999, 0.0, 1.8869389483316333e-190],
-        (0.0, 3.49),
+        q0=[0.0, 0.0, -0.7, 0.0],
+        qd0=[0.0, -4.763463850557999, 0.0, 1.8869389483316333e-190],
+        t_span=(0.0, 3.49),
         step=35.0,
         max_steps=10,
         check=False,
@@ -147,9 +149,9 @@ def test_a_coarse_fixed_step_from_a_stop_is_not_said_to_chatter() -> None:
     scene = pc.Scene(links=[ROD] * 4, gravity=9.807, effects=stops)
     sol = pc.simulate(
         scene,
-        [-0.7653118469929439, 0.0, 1.040044893883345, -3.96349286902832],
-        [0.24456355560734552, -10.0, 1.8644822435241977, -10.0],
-        (0.0, 4.291248774290121),
+        q0=[-0.7653118469929439, 0.0, 1.040044893883345, -3.96349286902832],
+        qd0=[0.24456355560734552, -10.0, 1.8644822435241977, -10.0],
+        t_span=(0.0, 4.291248774290121),
         method="rk4",
         step=6.847012340570351,
         check=False,

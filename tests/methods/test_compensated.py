@@ -33,7 +33,12 @@ def test_a_hundred_thousand_increments_add_up_to_the_last_bit(method: str) -> No
     how = {"method": method, "step": 0.1, "store": "end"}
     exact = float(Fraction(0.3) * 10_000 + 1)
     rounded, carried = (
-        abs(pc.simulate(FLOATING, 1.0, 0.3, (0, 10_000), **how, compensated=c).q[-1, 0] - exact)
+        abs(
+            pc.simulate(FLOATING, q0=1.0, qd0=0.3, t_span=(0, 10_000), **how, compensated=c).q[
+                -1, 0
+            ]
+            - exact
+        )
         for c in (False, True)
     )
     ulp = np.spacing(exact)
@@ -56,7 +61,14 @@ def increment_of_step(method: str, rate: float = 0.75, h: float = 2.0**-5) -> Fr
 def test_high_and_low_part_together_are_the_sum_to_thirty_digits(method: str) -> None:
     # a step, a rate and weights whose products are exact
     sol = pc.simulate(
-        FLOATING, 1 / 3, 0.75, (0, 2000), method=method, step=2.0**-5, store="end", compensated=True
+        FLOATING,
+        q0=1 / 3,
+        qd0=0.75,
+        t_span=(0, 2000),
+        method=method,
+        step=2.0**-5,
+        store="end",
+        compensated=True,
     )
     state = sol.run.__getstate__()
     steps = round(state["position_t"] * 2**5)
@@ -75,9 +87,9 @@ def test_a_ledger_changes_no_bit_of_a_compensated_run(method: str, links: int) -
     effects = BUSY if links > 1 else BUSY[:1] + BUSY[2:]
     scene = pc.Scene(links=[pc.Link(mass=1.0, length=0.5)] * links, effects=effects)
     how = {"method": method, "compensated": True, "step": 0.01, "store": "steps"}
-    bare = pc.simulate(scene, 0.7, 1.0, (0, 5), **how)
-    booked = pc.simulate(scene, 0.7, 1.0, (0, 5), **how, ledger=True)
-    rounded = pc.simulate(scene, 0.7, 1.0, (0, 5), **(how | {"compensated": False}))
+    bare = pc.simulate(scene, q0=0.7, qd0=1.0, t_span=(0, 5), **how)
+    booked = pc.simulate(scene, q0=0.7, qd0=1.0, t_span=(0, 5), **how, ledger=True)
+    rounded = pc.simulate(scene, q0=0.7, qd0=1.0, t_span=(0, 5), **(how | {"compensated": False}))
     assert np.array_equal(bare.y, booked.y)
     assert not np.array_equal(bare.y, rounded.y)
     assert np.array_equal(low_part(bare)[: 2 * links], low_part(booked)[: 2 * links])
@@ -88,7 +100,7 @@ def test_a_ledger_changes_no_bit_of_a_compensated_run(method: str, links: int) -
 
 def test_the_low_part_is_below_the_last_bit() -> None:
     how = {"method": "dop853", "max_step": 1e-3, "compensated": True}
-    sol = pc.simulate(BOOK, [0.8, 1.0], 0, (0, 20), **how)
+    sol = pc.simulate(BOOK, q0=[0.8, 1.0], qd0=0, t_span=(0, 20), **how)
     y = sol.run.__getstate__()["position_y"]
     assert (np.abs(low_part(sol)) <= 0.5 * np.spacing(np.abs(y))).all()
 
@@ -96,7 +108,8 @@ def test_the_low_part_is_below_the_last_bit() -> None:
 def test_increments_below_the_last_bit_of_a_large_angle_are_not_lost() -> None:
     how = {"step": 1e-3, "store": "end", "max_steps": 10**6}
     rounded, carried = (
-        pc.simulate(FLOATING, 1e8, 1e-6, (0, 100), **how, compensated=c).q[-1, 0] - 1e8
+        pc.simulate(FLOATING, q0=1e8, qd0=1e-6, t_span=(0, 100), **how, compensated=c).q[-1, 0]
+        - 1e8
         for c in (False, True)
     )
     assert rounded == 0.0  # 1e-9 rad a step, where doubles are 1.5e-8 rad apart
@@ -108,8 +121,8 @@ def test_increments_below_the_last_bit_of_a_large_angle_are_not_lost() -> None:
 def test_a_compensated_run_goes_on_as_if_it_had_never_stopped(stop: float, ledger: bool) -> None:
     scene = pc.Scene(links=BOOK.links, effects=BUSY)
     how = {"compensated": True, "ledger": ledger, "max_step": 0.01}
-    whole = pc.simulate(scene, [0.8, 1.0], 0, (0, 6), **how)
-    begun = pc.simulate(scene, [0.8, 1.0], 0, (0, stop), **how)
+    whole = pc.simulate(scene, q0=[0.8, 1.0], qd0=0, t_span=(0, 6), **how)
+    begun = pc.simulate(scene, q0=[0.8, 1.0], qd0=0, t_span=(0, stop), **how)
     resumed = pickle.loads(pickle.dumps(begun)).resume(6)
     assert np.array_equal(resumed.t, whole.t)
     assert np.array_equal(resumed.y, whole.y)
@@ -118,7 +131,9 @@ def test_a_compensated_run_goes_on_as_if_it_had_never_stopped(stop: float, ledge
 
 
 def test_a_low_part_of_another_state_is_refused() -> None:
-    begun = pc.simulate(BOOK, [0.8, 1.0], 0, (0, 1), method="dop853", compensated=True)
+    begun = pc.simulate(
+        BOOK, q0=[0.8, 1.0], qd0=0, t_span=(0, 1), method="dop853", compensated=True
+    )
     state = begun.run.__getstate__() | {"position_stepper": [1e-20]}
     run = _core.Run.__new__(_core.Run)
     run.__setstate__(state)
@@ -131,7 +146,7 @@ def test_what_is_set_exactly_has_no_low_part() -> None:
     scene = pc.Scene(links=BOOK.links, effects=[fx.Lock(1), fx.ViscousJoint(2, 0.1)])
     for ledger in (False, True):
         how = {"compensated": True, "ledger": ledger, "max_step": 0.01}
-        sol = pc.simulate(scene, [0.8, 1.0], [0.0, 2.0], (0, 3), **how)
+        sol = pc.simulate(scene, q0=[0.8, 1.0], qd0=[0.0, 2.0], t_span=(0, 3), **how)
         low = low_part(sol)
         assert (sol.q[:, 0] == 0.8).all()
         assert not sol.qd[:, 0].any()
@@ -146,7 +161,8 @@ def test_what_a_change_of_law_leaves_alone_keeps_its_low_part() -> None:
     scene = pc.Scene(links=FLOATING.links, gravity=0.0, effects=[fx.Motor(1, table=table)])
     exact = float(1 + Fraction(0.3) * 10)
     rounded, carried = (
-        pc.simulate(scene, 1.0, 0.3, (0, 10), compensated=c, store="end") for c in (False, True)
+        pc.simulate(scene, q0=1.0, qd0=0.3, t_span=(0, 10), compensated=c, store="end")
+        for c in (False, True)
     )
     assert carried.stats.limited_by_break > 4999
     assert abs(carried.q[-1, 0] - exact) <= 2 * np.spacing(exact)
@@ -157,16 +173,20 @@ def test_methods_that_cannot_are_refused_by_name() -> None:
     for name, method in METHODS.items():
         step = None if method["error_order"] else 0.01
         if method["compensates"]:
-            assert pc.simulate(BOOK, 0.8, 0, (0, 0.1), method=name, step=step, compensated=True)
+            assert pc.simulate(
+                BOOK, q0=0.8, qd0=0, t_span=(0, 0.1), method=name, step=step, compensated=True
+            )
         else:
             with pytest.raises(ValueError, match=rf'^compensated: method "{name}" cannot'):
-                pc.simulate(BOOK, 0.8, 0, (0, 0.1), method=name, step=step, compensated=True)
+                pc.simulate(
+                    BOOK, q0=0.8, qd0=0, t_span=(0, 0.1), method=name, step=step, compensated=True
+                )
 
 
 @pytest.mark.parametrize("wrong", [1, "yes", None, np.array([True])])
 def test_compensated_must_be_true_or_false(wrong: object) -> None:
     with pytest.raises(TypeError, match=r"^compensated = "):
-        pc.simulate(BOOK, 0.8, 0, (0, 0.1), compensated=wrong)
+        pc.simulate(BOOK, q0=0.8, qd0=0, t_span=(0, 0.1), compensated=wrong)
 
 
 def test_a_case_keeps_compensated(tmp_path) -> None:

@@ -39,7 +39,9 @@ CLIPPED = fx.Motor(joint=2, pd=fx.PD(kp=1e7, kd=1e5, reference=0.5), limit=30.0)
 
 def default(scene: pc.Scene, t_end: float = 0.1, **how: Any) -> pc.Solution:
     n = len(scene.links)
-    return pc.simulate(scene, START[0] if n == 1 else np.linspace(*START, n), 0, (0, t_end), **how)
+    return pc.simulate(
+        scene, q0=START[0] if n == 1 else np.linspace(*START, n), qd0=0, t_span=(0, t_end), **how
+    )
 
 
 def with_(*effects: Any) -> pc.Scene:
@@ -93,7 +95,7 @@ def test_neither_start_nor_end_has_a_say() -> None:
     begins = [(START, (0, 1e-3)), ([3.0, -3.0], (0, 0)), ([0.0, 0.0], (5, 4))]
     scene = with_(DAMPER)
     runs = [
-        pc.simulate(scene, q0, [1e3, 0], t_span, max_steps=100, check=False)
+        pc.simulate(scene, q0=q0, qd0=[1e3, 0], t_span=t_span, max_steps=100, check=False)
         for q0, t_span in begins
     ]
     assert {run.method for run in runs} == {"taylor-radau5"}
@@ -127,25 +129,26 @@ def test_what_ran_goes_on_and_runs_again_without_the_rule(scene: pc.Scene) -> No
     ids=["damper", "damper and drag", "held", "pulled", "rubbed", "clipped at the start"],
 )
 def test_stiff_scenes_are_flagged_in_bounded_work(effects: list[Any], q0: list[float]) -> None:
-    sol = pc.simulate(with_(*effects), q0, 0, (0, 5), max_steps=30_000)
+    sol = pc.simulate(with_(*effects), q0=q0, qd0=0, t_span=(0, 5), max_steps=30_000)
     assert sol.success, sol.message
     assert sol.stats.stiff
     assert sol.stats.njev > 0
     assert "stiff: went on with radau5 from t = " in sol.message
-    exact = pc.simulate(with_(*effects), q0, 0, (0, 5), method="radau5", rtol=1e-11)
+    exact = pc.simulate(with_(*effects), q0=q0, qd0=0, t_span=(0, 5), method="radau5", rtol=1e-11)
     assert np.abs(sol.y[:2, -1] - exact.y[:2, -1]).max() < 1e-6
 
 
 def test_tolerances_have_no_say_in_a_fixed_step() -> None:
     loose, tight = (
-        pc.simulate(with_(DRAG), START, 0, (0, 1), step=1e-2, rtol=rtol) for rtol in (1e-3, 1e-12)
+        pc.simulate(with_(DRAG), q0=START, qd0=0, t_span=(0, 1), step=1e-2, rtol=rtol)
+        for rtol in (1e-3, 1e-12)
     )
     assert np.array_equal(loose.y, tight.y)
     assert loose.method == tight.method == "dopri5"
 
 
 def test_a_fixed_step_that_is_too_long_is_told_so() -> None:
-    sol = pc.simulate(with_(DAMPER), START, 0, (0, 5), step=1e-2, check=False)
+    sol = pc.simulate(with_(DAMPER), q0=START, qd0=0, t_span=(0, 5), step=1e-2, check=False)
     assert sol.status == "non_finite"
     assert 'a shorter one helps, or method="radau5"' in sol.message
 
@@ -199,7 +202,7 @@ def test_a_run_that_is_about_to_ask_goes_on_bit_by_bit() -> None:
 @pytest.mark.parametrize("method", ["taylor", "dop853"])
 def test_a_swing_that_every_method_has_to_follow_is_not_stiff(method: str) -> None:
     spring = fx.TorsionalSpring(joint=2, stiffness=1e5, rest_angle=0.2)
-    sol = pc.simulate(with_(spring), [0.8, 1.1], 0, (0, 20), method=method)
+    sol = pc.simulate(with_(spring), q0=[0.8, 1.1], qd0=0, t_span=(0, 20), method=method)
     assert sol.stats.accepted > 3000
     assert not sol.stats.stiff
     assert "a fast mode set" in sol.message

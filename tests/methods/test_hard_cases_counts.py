@@ -31,7 +31,9 @@ def time_to(x: str) -> float:
 
 def swing(*effects: Any, t_end: float, rtol: float, **how: Any) -> pc.Solution:
     scene = rod(*effects, gravity=GRAVITY)
-    return pc.simulate(scene, BOTTOM - 1, 0, (0, t_end), rtol=rtol, atol=rtol / 100, **how)
+    return pc.simulate(
+        scene, q0=BOTTOM - 1, qd0=0, t_span=(0, t_end), rtol=rtol, atol=rtol / 100, **how
+    )
 
 
 def beyond(sol: pc.Solution, joint: int, bound: float) -> float:
@@ -67,7 +69,7 @@ def test_bounces_of_a_driven_chain_stay_within_the_range_for_a_thousand_seconds(
         gravity=9.81,
         links=2,
     )
-    sol = pc.simulate(scene, BOTTOM, 0, (0, 1000), method=method, rtol=1e-6)
+    sol = pc.simulate(scene, q0=BOTTOM, qd0=0, t_span=(0, 1000), method=method, rtol=1e-6)
     assert sol.status == "finished"
     assert np.count_nonzero(np.diff(sol.t) == 0) > 1000
     assert beyond(sol, 2, 0.25) <= 1e-13

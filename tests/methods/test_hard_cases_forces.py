@@ -21,7 +21,7 @@ def test_a_blow_up_ends_at_its_pole(rate: float) -> None:
     """W' = w^3: the pole is at 1/(2 w_0^2)."""
     scene = rod(fx.ViscousJoint(joint=1, damping=0, damping3=-1.0))
     pole = 1 / (2 * rate**2)
-    sol = pc.simulate(scene, 0, rate, (0, 3 * pole), rtol=1e-12, atol=1e-14)
+    sol = pc.simulate(scene, q0=0, qd0=rate, t_span=(0, 3 * pole), rtol=1e-12, atol=1e-14)
     assert sol.status in {"step_too_small", "non_finite"}
     assert not sol.success
     assert np.isfinite(sol.y).all()
@@ -44,7 +44,7 @@ def test_what_is_no_number_beyond_a_time_or_an_angle_ends_there(at: float) -> No
             return 0 * np.sqrt(np.array([at - t]))
 
     for law in (by_angle, by_time):
-        sol = pc.simulate(rod(fx.User(law)), 0, 1, (0, 5), check=False)
+        sol = pc.simulate(rod(fx.User(law)), q0=0, qd0=1, t_span=(0, 5), check=False)
         assert sol.status == "non_finite"
         np.testing.assert_allclose(sol.y[:, -1], [sol.t[-1], 1], rtol=1e-9)
         assert sol.t[-1] == pytest.approx(at, abs=1e-6)
@@ -69,7 +69,7 @@ def test_a_payload_of_a_million_links_swings_as_a_pendulum_on_a_string(ratio: fl
     amplitude = 1e-3
     period = 2 * np.pi / np.sqrt(squares[slow])
     start = np.pi / 2 + amplitude * shape
-    sol = pc.simulate(scene, start, t_span=(0, period), rtol=1e-10, atol=1e-13, store="end")
+    sol = pc.simulate(scene, q0=start, t_span=(0, period), rtol=1e-10, atol=1e-13, store="end")
     assert sol.success
     # to the second order of the amplitude
     np.testing.assert_allclose(sol.q[-1], start, atol=amplitude**2)
@@ -84,7 +84,7 @@ def test_a_stiff_damper_is_flagged_in_bounded_work(damping: float) -> None:
     scene = BOOK.replace(effects=[fx.ViscousJoint(joint=2, damping=damping)])
     start = [np.pi / 4, np.pi / 3]
     how = {"max_steps": 10_000, "store": "steps", "check": False}
-    sol = pc.simulate(scene, start, t_span=(0, 5), method="dopri5", **how)
+    sol = pc.simulate(scene, q0=start, t_span=(0, 5), method="dopri5", **how)
     assert sol.status == "max_steps"
     assert sol.stats.stiff
     # joint 2 has hardly moved by then: phid decays within 1e-2/damping s
@@ -104,9 +104,11 @@ def test_a_stiff_servo_ends_at_the_limit_of_steps_or_gets_there(effect: Any) -> 
     """The rods move as one bent rod, but for what the servo or spring yields, load/stiffness."""
     start = [np.pi / 4, np.pi / 3]
     stiff = BOOK.replace(effects=[effect])
-    sol = pc.simulate(stiff, start, t_span=(0, 0.5), max_steps=400_000, store="steps", check=False)
+    sol = pc.simulate(
+        stiff, q0=start, t_span=(0, 0.5), max_steps=400_000, store="steps", check=False
+    )
     assert sol.status in {"finished", "max_steps"}
-    bent = pc.simulate(BOOK.replace(effects=[fx.Lock(joint=2)]), start, t_span=(0, 0.5))
+    bent = pc.simulate(BOOK.replace(effects=[fx.Lock(joint=2)]), q0=start, t_span=(0, 0.5))
     give = 50 / getattr(effect, "stiffness", 1e6) if effect.kind != "motor" else 50 / 1e6
     np.testing.assert_allclose(sol.q[-1], bent(sol.t[-1])[:2], atol=20 * give)
 
@@ -124,7 +126,7 @@ def test_a_chain_of_a_thousand_links_keeps_its_energy() -> None:
     slope = [float(mpmath.besselj(1, 2 * w * np.sqrt(x / g)) / np.sqrt(x)) for x in below]
     shape = np.array(slope) / max(slope)
     amplitude, t_end = 1e-3, 0.3
-    sol = pc.simulate(scene, np.pi / 2 + amplitude * shape, t_span=(0, t_end), rtol=1e-9)
+    sol = pc.simulate(scene, q0=np.pi / 2 + amplitude * shape, t_span=(0, t_end), rtol=1e-9)
     assert sol.success
     energy = sol.energy().total
     assert np.ptp(energy) < 1e-14 * np.abs(energy).max()  # rounding
@@ -150,7 +152,7 @@ def test_what_a_fixed_step_keeps_is_finite_between_its_ends_as_well(
             effects=[fx.ViscousJoint(joint=1, damping=damping)],
         )
         sol = pc.simulate(
-            scene, 0.4, 1.0, (0, 30), method=method, step=0.3, rtol=rtol, atol=rtol,
+            scene, q0=0.4, qd0=1.0, t_span=(0, 30), method=method, step=0.3, rtol=rtol, atol=rtol,
             t_eval=np.linspace(0, 30, 301), check=False,
         )  # fmt: skip
         ends.add(sol.status)

@@ -28,7 +28,12 @@ def test_a_narrow_pulse_of_a_table_gives_a_turning_rod_its_impulse(
     last_bits = 1e-13 + 4 * np.spacing(at) / half  # by the last bits of the times within the pulse
     # a finer tolerance would ask for more than these bits can give
     sol = pc.simulate(
-        rod(pulse(at, half)), 0, 0.1, (0, 2 * at), method=method, rtol=max(1e-9, last_bits)
+        rod(pulse(at, half)),
+        q0=0,
+        qd0=0.1,
+        t_span=(0, 2 * at),
+        method=method,
+        rtol=max(1e-9, last_bits),
     )
     assert sol.status == "finished"
     assert sol.stats.accepted < 30
@@ -39,7 +44,7 @@ def test_a_narrow_pulse_of_a_table_gives_a_turning_rod_its_impulse(
 def test_pulses_of_both_signs_move_a_rod_a_step_and_leave_it_there(method: str) -> None:
     """A table has two pulses within one long step; without either, the rod is elsewhere."""
     there_and_back = [pulse(3.0, 1e-6), pulse(7.0, 1e-6, -1.0)]
-    sol = pc.simulate(rod(*there_and_back), 0, 0, (0, 12), method=method)
+    sol = pc.simulate(rod(*there_and_back), q0=0, qd0=0, t_span=(0, 12), method=method)
     assert sol.status == "finished"
     assert sol.qd[-1, 0] == pytest.approx(0, abs=1e-13)
     assert sol.q[-1, 0] == pytest.approx(4.0, rel=1e-12)
@@ -68,7 +73,7 @@ def test_a_narrow_pulse_of_a_table_knocks_a_stuck_rod_as_far_as_friction_lets_it
 ) -> None:
     scene = rod(pulse(at, half, impulse), fx.DryJointFriction(joint=1, coulomb=FRICTION))
     how = {"method": method, "rtol": max(1e-12, 4 * np.spacing(at) / half), "atol": 1e-14}
-    sol = pc.simulate(scene, 0, 0, (0, 2 * at), **how)
+    sol = pc.simulate(scene, q0=0, qd0=0, t_span=(0, 2 * at), **how)
     assert sol.status == "finished"
     assert sol.stats.accepted < 60
     way, past = slide(half, impulse)
@@ -88,7 +93,7 @@ def test_a_pulse_that_grows_within_the_last_bits_of_time_knocks_a_stuck_rod_as_f
     """From one time to the next the torque changes by more than the rounding of its limit."""
     scene = rod(pulse(at, half, impulse), fx.DryJointFriction(joint=1, coulomb=FRICTION))
     last_bits = 1e-9 + 8 * np.spacing(at) / half
-    sol = pc.simulate(scene, 0, 0, (0, 2 * at + 2), method=method, rtol=last_bits)
+    sol = pc.simulate(scene, q0=0, qd0=0, t_span=(0, 2 * at + 2), method=method, rtol=last_bits)
     assert sol.status == "finished"
     assert sol.stats.accepted < 60
     way, past = slide(half, impulse)
@@ -107,7 +112,7 @@ def test_a_narrow_pulse_of_ones_own_knocks_a_stuck_rod_where_max_step_is_as_shor
 
     how: dict[str, Any] = {} if half > 0.01 else {"max_step": half / 2}
     effects = [fx.User(blow), fx.DryJointFriction(joint=1, coulomb=FRICTION)]
-    sol = pc.simulate(rod(*effects), 0, 0, (0, 1.5), method=method, rtol=1e-9, **how)
+    sol = pc.simulate(rod(*effects), q0=0, qd0=0, t_span=(0, 1.5), method=method, rtol=1e-9, **how)
     assert sol.status == "finished"
     way, past = slide(half, 0.2)
     assert sol.q[-1, 0] == pytest.approx(way, rel=1e-5)

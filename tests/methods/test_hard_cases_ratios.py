@@ -38,7 +38,7 @@ def test_extreme_ratios_of_mass_keep_energy_and_motion(ratio: float, fine: Any) 
     y, h = np.array([0.5, 1.2, 0, 0]), period / 100
     for _ in range(100):
         y = extrapolated_step(rates, 0.0, y, h)
-    sol = pc.simulate(two(mass=ratio), [0.5, 1.2], 0, (0, period), **fine)
+    sol = pc.simulate(two(mass=ratio), q0=[0.5, 1.2], qd0=0, t_span=(0, period), **fine)
     np.testing.assert_allclose(sol.y[:, -1], y, atol=1e-9)
     energy = sol.energy()
     assert np.ptp(energy.total) < 1e-10 * energy.kinetic.max()
@@ -54,7 +54,11 @@ def test_below_a_rod_without_mass_the_modes_are_five_more_or_less_the_root_of_19
     shape = np.array([1.0, 2 * (1 - s) / s])
     times = np.linspace(0, 2 * np.pi / np.sqrt((5 - np.sqrt(19)) * G), 9)
     sol = pc.simulate(
-        two(mass=1e12), np.pi / 2 + amplitude * shape, 0, (0, times[-1]), **fine | {"atol": 1e-16}
+        two(mass=1e12),
+        q0=np.pi / 2 + amplitude * shape,
+        qd0=0,
+        t_span=(0, times[-1]),
+        **fine | {"atol": 1e-16},
     )
     moved, rates = np.split(sol(times) / amplitude, 2)
     exact = shape[:, None] * np.cos(w * times)
@@ -65,7 +69,9 @@ def test_below_a_rod_without_mass_the_modes_are_five_more_or_less_the_root_of_19
 def test_a_rod_that_bears_next_to_nothing_swings_as_if_alone(fine: Any) -> None:
     amplitude = 2.0
     period = 4 * float(ellipk(sin(amplitude / 2) ** 2)) * np.sqrt(2 / (3 * G))
-    sol = pc.simulate(two(mass=1e-12), [np.pi / 2 - amplitude, 0.3], 0, (0, period), **fine)
+    sol = pc.simulate(
+        two(mass=1e-12), q0=[np.pi / 2 - amplitude, 0.3], qd0=0, t_span=(0, period), **fine
+    )
     assert sol.q[-1, 0] == pytest.approx(np.pi / 2 - amplitude, abs=1e-9)
     assert sol.qd[-1, 0] == pytest.approx(0, abs=1e-9)
 
@@ -91,8 +97,8 @@ def test_two_rods_of_which_one_is_next_to_a_point_swing_as_one(
     times = np.linspace(0, 2 * np.pi / w, 9)
     for method in methods:
         sol = pc.simulate(
-            two(length=length), np.pi / 2 + amplitude * np.array(shape), 0, (0, times[-1]),
-            method=method, rtol=1e-10, atol=[1e-12] * 2 + [1e-12 * w] * 2,
+            two(length=length), q0=np.pi / 2 + amplitude * np.array(shape), qd0=0,
+            t_span=(0, times[-1]), method=method, rtol=1e-10, atol=[1e-12] * 2 + [1e-12 * w] * 2,
         )  # fmt: skip
         moved = (sol(times)[:2] - np.pi / 2) / amplitude
         within = 3e-7 + 3 * min(length, 1 / length)

@@ -122,7 +122,9 @@ def order_seen(method: dict[str, Any], counts: list[int], times: list[int]) -> f
     t, exact = case.t[times], np.hstack([case.q, case.qd])[times].T
     # The tolerances say how far an implicit method solves its equations.
     how = {"method": method["name"], "compensated": True, "rtol": 1e-13, "atol": 1e-16}
-    runs = [pc.simulate(BOOK, START, 0, (0, 0.5), step=0.5 / n, **how) for n in counts]
+    runs = [
+        pc.simulate(BOOK, q0=START, qd0=0, t_span=(0, 0.5), step=0.5 / n, **how) for n in counts
+    ]
     errors = np.array([np.abs(run(t) - exact).max() for run in runs])
     decades = np.log10(errors[: np.argmax(errors < 2.5e-14)] if min(errors) < 2.5e-14 else errors)
     assert decades[0] - decades[-1] > 4
@@ -152,10 +154,20 @@ def test_a_step_between_the_knots_shows_the_order_of_the_interpolant_itself(of_o
     local = []
     for h in (0.04, 0.02, 0.01):
         coarse = pc.simulate(
-            BOOK, START, [1.0, -0.5], (0.0, 1.5 * h), method=of_one_order["name"], step=h
+            BOOK,
+            q0=START,
+            qd0=[1.0, -0.5],
+            t_span=(0.0, 1.5 * h),
+            method=of_one_order["name"],
+            step=h,
         )
         fine = pc.simulate(
-            BOOK, START, [1.0, -0.5], (0.0, 1.5 * h), method=of_one_order["name"], step=h / 64
+            BOOK,
+            q0=START,
+            qd0=[1.0, -0.5],
+            t_span=(0.0, 1.5 * h),
+            method=of_one_order["name"],
+            step=h / 64,
         )
         local.append(np.abs(coarse(theta * h) - fine(theta * h)).max())
     slopes = -np.diff(np.log2(local))
@@ -172,7 +184,7 @@ def test_the_slope_of_the_dense_output_has_the_order_of_the_interpolant(of_one_o
     worst = []
     for h in (0.04, 0.02, 0.01):
         how = {"method": of_one_order["name"], "rtol": 1e-13, "atol": 1e-16, "step": h}
-        run = pc.simulate(BOOK, START, [1.0, -0.5], (0.0, 1.5 * h), **how)
+        run = pc.simulate(BOOK, q0=START, qd0=[1.0, -0.5], t_span=(0.0, 1.5 * h), **how)
         step = np.polynomial.chebyshev.Chebyshev.fit
         curves = [step(points, curve, 8).deriv() for curve in run(points * h)]
         slopes = np.array([curve([0.0, *between, 1.0]) / h for curve in curves])
@@ -181,14 +193,14 @@ def test_the_slope_of_the_dense_output_has_the_order_of_the_interpolant(of_one_o
             expected = [*qd, *BOOK.accelerations(0, q, qd)]
             np.testing.assert_allclose(slopes[:, column], expected, atol=1e-10)
         fine = {"rtol": 1e-13, "atol": 1e-15, "t_eval": np.multiply(between, h)}
-        exact = pc.simulate(BOOK, START, [1.0, -0.5], (0.0, h), **fine)
+        exact = pc.simulate(BOOK, q0=START, qd0=[1.0, -0.5], t_span=(0.0, h), **fine)
         expected = np.hstack([exact.qd, exact.accelerations()]).T
         worst.append(np.abs(slopes[:, 1:-1] - expected).max())
     assert -np.diff(np.log2(worst))[-1] == pytest.approx(of_one_order["interpolant_order"], abs=0.2)
 
 
 def test_the_dense_output_is_continuous_and_meets_the_steps(method):
-    run = pc.simulate(BOOK, START, 0, (0.0, 5.0), method=method["name"], step=0.01)
+    run = pc.simulate(BOOK, q0=START, qd0=0, t_span=(0.0, 5.0), method=method["name"], step=0.01)
     assert np.array_equal(run(run.t), run.y)
     before = run(run.t[1:] * (1 - 1e-15))
     assert np.abs(before - run.y[:, 1:]).max() < 1e-12
@@ -196,7 +208,7 @@ def test_the_dense_output_is_continuous_and_meets_the_steps(method):
 
 def test_a_method_without_an_error_estimate_takes_fixed_steps_and_says_so(method):
     def run(**options: Any) -> pc.Solution:
-        return pc.simulate(BOOK, START, 0, (0, 1), method=method["name"], **options)
+        return pc.simulate(BOOK, q0=START, qd0=0, t_span=(0, 1), method=method["name"], **options)
 
     if method["error_order"]:
         assert len(set(np.diff(run().t))) > 2

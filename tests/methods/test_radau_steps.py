@@ -31,7 +31,9 @@ def solve(case: Any, t_end: float, **options: Any) -> pc.Solution:
         if b != 0
     ]
     scene = pc.Scene(links=links, gravity=case.gravity, effects=dampers)
-    sol = pc.simulate(scene, case.q0, case.qd0, (0.0, t_end), method="radau5", **options)
+    sol = pc.simulate(
+        scene, q0=case.q0, qd0=case.qd0, t_span=(0.0, t_end), method="radau5", **options
+    )
     assert sol.success
     return sol
 

@@ -41,10 +41,10 @@ def test_it_is_measured_where_taylor_carries_it_and_only_there(kind):
     scene = pc.Scene(links=[pc.Link(mass=1, length=1)] * 2, effects=[EFFECTS[kind]])
     assert (kind in TOGETHER) != (kind in NOT_CARRIED)
     if kind in TOGETHER:
-        assert pc.simulate(scene, [0.7, 0.8], 0, (0, 0.1), method="taylor").success
+        assert pc.simulate(scene, q0=[0.7, 0.8], qd0=0, t_span=(0, 0.1), method="taylor").success
     else:
         with pytest.raises(ValueError, match="taylor"):
-            pc.simulate(scene, [0.7, 0.8], 0, (0, 0.1), method="taylor")
+            pc.simulate(scene, q0=[0.7, 0.8], qd0=0, t_span=(0, 0.1), method="taylor")
 
 
 def test_more_digits_take_longer_series():

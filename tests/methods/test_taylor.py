@@ -36,7 +36,9 @@ def errors_at_fixed_steps(rtol: float, counts: list[int], inside: bool) -> np.nd
     rows = [1, 2, 3, 4, 6, 7, 8, 9] if inside else [2, 4, 6, 8, 10]
     exact = np.hstack([case.q, case.qd])[rows].T
     how = {"method": "taylor", "rtol": rtol, "atol": rtol, "compensated": True}
-    runs = [pc.simulate(BOOK, START, 0, (0, 0.5), step=0.5 / n, **how) for n in counts]
+    runs = [
+        pc.simulate(BOOK, q0=START, qd0=0, t_span=(0, 0.5), step=0.5 / n, **how) for n in counts
+    ]
     return np.array([np.abs(run(case.t[rows]) - exact).max() for run in runs])
 
 
@@ -78,7 +80,12 @@ def growth_of_small_changes(case: Trajectory, options: dict[str, object]) -> flo
     for change in np.vstack([np.zeros(2 * n), size * np.eye(2 * n)]):
         start = np.concatenate([case.q0, case.qd0]) + change
         run = pc.simulate(
-            scene_of(case), start[:n], start[n:], (0, case.t[-1]), t_eval=case.t, **options
+            scene_of(case),
+            q0=start[:n],
+            qd0=start[n:],
+            t_span=(0, case.t[-1]),
+            t_eval=case.t,
+            **options,
         )
         runs.append(run.y)
     return max(float(np.abs(run - runs[0]).max()) for run in runs[1:]) / size
@@ -87,7 +94,9 @@ def growth_of_small_changes(case: Trajectory, options: dict[str, object]) -> flo
 @pytest.mark.parametrize("name", CASES)
 def test_the_references_are_met_to_what_their_conditioning_allows(name):
     case = trajectory(name)
-    run = pc.simulate(scene_of(case), case.q0, case.qd0, (0, case.t[-1]), t_eval=case.t, **FINEST)
+    run = pc.simulate(
+        scene_of(case), q0=case.q0, qd0=case.qd0, t_span=(0, case.t[-1]), t_eval=case.t, **FINEST
+    )
     assert run.success
     growth = growth_of_small_changes(case, {"method": "taylor", "rtol": 1e-13, "atol": 1e-15})
     exact = np.hstack([case.q, case.qd]).T
@@ -100,17 +109,19 @@ def test_the_references_are_met_to_what_their_conditioning_allows(name):
 
 
 def test_there_and_back_over_a_minute():
-    there = pc.simulate(BOOK, START, 0, (0, 60), store="end", compensated=True, **FINEST)
+    there = pc.simulate(
+        BOOK, q0=START, qd0=0, t_span=(0, 60), store="end", compensated=True, **FINEST
+    )
     q, qd = np.split(there.y[:, -1], 2)
-    back = pc.simulate(BOOK, q, qd, (60, 0), store="end", compensated=True, **FINEST)
+    back = pc.simulate(BOOK, q0=q, qd0=qd, t_span=(60, 0), store="end", compensated=True, **FINEST)
     assert np.abs(back.y[:, -1] - [*START, 0, 0]).max() < 1e-11
 
 
 def test_over_a_million_steps_energy_wanders_no_faster_than_their_root():
     scale = 2 * 9.807  # J, of two rods upright against hanging
     seconds, drifts, steps = [10.0, 100.0, 1e3, 1e4, 7.5e4], [], []
-    run = pc.simulate(BOOK, START, 0, (0, 1), store="end", compensated=True, **FINEST)
-    start = pc.simulate(BOOK, START, 0, (0, 0), store="end").energy().total[0]
+    run = pc.simulate(BOOK, q0=START, qd0=0, t_span=(0, 1), store="end", compensated=True, **FINEST)
+    start = pc.simulate(BOOK, q0=START, qd0=0, t_span=(0, 0), store="end").energy().total[0]
     for t in seconds:
         run = run.resume(t)
         drifts.append(abs(run.energy().total[-1] - start) / scale)
@@ -126,8 +137,10 @@ def test_energies_from_many_starts_walk_by_half_a_rounding_a_step():
     scale = 2 * 9.807  # J, as above
     walks = []
     for start in START + np.random.default_rng(1).uniform(-0.1, 0.1, (24, 2)):
-        begin = pc.simulate(BOOK, start, 0, (0, 0), store="end").energy().total[0]
-        run = pc.simulate(BOOK, start, 0, (0, 7500), store="end", compensated=True, **FINEST)
+        begin = pc.simulate(BOOK, q0=start, qd0=0, t_span=(0, 0), store="end").energy().total[0]
+        run = pc.simulate(
+            BOOK, q0=start, qd0=0, t_span=(0, 7500), store="end", compensated=True, **FINEST
+        )
         assert run.stats.accepted > 1e5
         drift = (run.energy().total[-1] - begin) / scale
         walks.append(drift / (EPS * np.sqrt(run.stats.accepted)))
@@ -139,7 +152,7 @@ def test_a_scene_that_has_no_series_is_refused_by_the_effect():
     scene = pc.Scene(links=BOOK.links, effects=[pc.effects.ViscousJoint(joint=1, damping=1), drag])
     message = r'method = "taylor": effect 2 \(rod_drag\) has no Taylor series'
     with pytest.raises(ValueError, match=message):
-        pc.simulate(scene, START, t_span=(0, 1), method="taylor")
+        pc.simulate(scene, q0=START, t_span=(0, 1), method="taylor")
 
 
 @pytest.mark.parametrize("n", [1, 2, 3, 5, 9])
@@ -163,7 +176,7 @@ def test_chains_with_every_effect_that_has_a_series_move_as_other_methods_say(n)
     )
     start = np.linspace(0.1, 1.0, n)
     runs = [
-        pc.simulate(scene, start, t_span=(0, 3), method=m, rtol=1e-13, atol=1e-14, ledger=True)
+        pc.simulate(scene, q0=start, t_span=(0, 3), method=m, rtol=1e-13, atol=1e-14, ledger=True)
         for m in ("taylor", "dop853")
     ]
     times = np.linspace(0, 3, 40)
@@ -177,7 +190,8 @@ def test_chains_with_every_effect_that_has_a_series_move_as_other_methods_say(n)
 def test_the_ledger_changes_no_bit_of_the_motion():
     scene = pc.Scene(links=BOOK.links, effects=[pc.effects.ViscousJoint(joint=1, damping=0.3)])
     runs = [
-        pc.simulate(scene, START, t_span=(0, 3), method="taylor", ledger=on) for on in (False, True)
+        pc.simulate(scene, q0=START, t_span=(0, 3), method="taylor", ledger=on)
+        for on in (False, True)
     ]
     assert np.array_equal(runs[0].y, runs[1].y)
 
@@ -197,7 +211,7 @@ def test_laws_that_change_along_the_run_are_those_in_force(n, with_friction):
         laws.append(effects.DryJointFriction(joint=n, coulomb=0.4))
     scene = pc.Scene(links=[pc.Link(mass=1.0, length=1.0)] * n, effects=laws)
     runs = [
-        pc.simulate(scene, 0.8, t_span=(0, 4), method=m, rtol=1e-12, atol=1e-13, ledger=True)
+        pc.simulate(scene, q0=0.8, t_span=(0, 4), method=m, rtol=1e-12, atol=1e-13, ledger=True)
         for m in ("taylor", "dop853")
     ]
     times = np.linspace(0, 4, 81)
@@ -208,7 +222,9 @@ def test_laws_that_change_along_the_run_are_those_in_force(n, with_friction):
 
 def test_orders_are_those_that_the_pages_tell():
     orders = [
-        pc.simulate(BOOK, START, 0, (0, 0.01), method="taylor", rtol=tol, atol=0).run.dense_degree
+        pc.simulate(
+            BOOK, q0=START, qd0=0, t_span=(0, 0.01), method="taylor", rtol=tol, atol=0
+        ).run.dense_degree
         for tol in [0.5, *(10.0**-k for k in range(1, 18)), 1e-300]
     ]
     assert orders == sorted(orders)
@@ -223,13 +239,13 @@ def test_dense_output_is_finite_where_powers_of_the_step_overflow() -> None:
         links=[pc.Link(mass=1.0, length=1.0)], effects=[pc.effects.Lock(joint=1)]
     )
     times = [0.0, 7e121, 1.2e123, 1.6e123]
-    sol = pc.simulate(scene, 0.5, t_span=(0.0, 1.6e123), method="taylor", t_eval=times)
+    sol = pc.simulate(scene, q0=0.5, t_span=(0.0, 1.6e123), method="taylor", t_eval=times)
     assert sol.q[:, 0].tolist() == [0.5] * 4
     assert not sol.qd.any()
 
 
 def continued_with_unit_of_time(factor):
-    begun = pc.simulate(pc.Scene.textbook(), [0.8, 1.0], t_span=(0, 1), method="taylor")
+    begun = pc.simulate(pc.Scene.textbook(), q0=[0.8, 1.0], t_span=(0, 1), method="taylor")
     state = begun.run.__getstate__()
     (unit,) = state["position_stepper"]
     state["position_stepper"] = [factor * unit]

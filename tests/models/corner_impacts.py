@@ -58,7 +58,9 @@ class CornerCase:
     def simulate(self, start: float = 0.0, **options: Any) -> pc.Solution:
         """Run the core from that time on: nothing here depends on it."""
         ends = (start, start + TIMES[-1])
-        return pc.simulate(self.scene, self.q0, self.qd0, ends, max_steps=100_000, **options)
+        return pc.simulate(
+            self.scene, q0=self.q0, qd0=self.qd0, t_span=ends, max_steps=100_000, **options
+        )
 
     def off(self, sol: pc.Solution, start: float = 0.0) -> float:
         """How far the core is from the record, at worst, rad."""

@@ -77,7 +77,7 @@ def known(scene: pc.Scene) -> Known:
             qd[:, effect.joint - 1] = qd[:, effect.joint - 2]
     forces, energies = [], []
     for time, angles, rates in zip(t, q, qd, strict=True):
-        at = pc.simulate(scene, angles, rates, (time, time))
+        at = pc.simulate(scene, q0=angles, qd0=rates, t_span=(time, time))
         forces.append(at.reactions()[0])
         energies.append([at.energy().kinetic[0], at.energy().potential[0]])
     return Known(t, q, qd, scene.accelerations(t, q, qd), np.array(forces), np.array(energies))

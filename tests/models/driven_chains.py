@@ -66,7 +66,7 @@ class DrivenChain:
                 effects.append(fx.JointStop(joint=j + 1, range=self.stops[j]))
         chain = self.chain
         scene = pc.Scene(links=links(chain), gravity=chain.gravity, effects=effects)
-        return pc.simulate(scene, np.pi / 2, t_span=(0, self.t_end), **options)
+        return pc.simulate(scene, q0=np.pi / 2, t_span=(0, self.t_end), **options)
 
 
 class ModeByMode(NamedTuple):

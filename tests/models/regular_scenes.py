@@ -78,7 +78,9 @@ def regular(seed: int) -> Regular:
 def growth(scene: pc.Scene, q0: np.ndarray, qd0: np.ndarray, span: tuple[float, float]) -> float:
     """Return by how much neighbours part."""
     options = {"method": "dop853", "rtol": 1e-12, "atol": 1e-14, "t_eval": time_grid(*span)}
-    one, other = (pc.simulate(scene, q0 + d, qd0, span, **options).q for d in (0, NUDGE))
+    one, other = (
+        pc.simulate(scene, q0=q0 + d, qd0=qd0, t_span=span, **options).q for d in (0, NUDGE)
+    )
     return float(distances(scene, one, other).max()) / NUDGE
 
 

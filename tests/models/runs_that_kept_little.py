@@ -41,7 +41,7 @@ def loaded(run: pc.Solution, folder: Path) -> Any:
 
 def member(**options: Any) -> pc.Solution:
     starts = np.array([[1.8, 2.5], [1.9, 2.5]])
-    return pc.ensemble(TEXTBOOK, starts, t_span=(0, 10), check=False, **options).member(0)
+    return pc.ensemble(TEXTBOOK, q0=starts, t_span=(0, 10), check=False, **options).member(0)
 
 
 RUNS: dict[str, tuple[Callable[[Path], pc.Solution], Callable[[], pc.Solution]]] = {

@@ -18,7 +18,7 @@ def rod(*effects: Any, gravity: float = 0.0, links: int = 1) -> pc.Scene:
 
 def solve(scene: pc.Scene, q: Any, qd: Any, t_end: float, **options: Any) -> pc.Solution:
     """Simulate; max_steps ends a run that has lost its end and would go on for ever."""
-    return pc.simulate(scene, q, qd, (0, t_end), max_steps=10_000, **options)
+    return pc.simulate(scene, q0=q, qd0=qd, t_span=(0, t_end), max_steps=10_000, **options)
 
 
 def time_of_rest(sol: pc.Solution) -> float:

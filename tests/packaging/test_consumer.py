@@ -69,7 +69,7 @@ def forces_of_python() -> str:
     ]  # fmt: skip
     scene = pc.Scene(links=[rod, rod], gravity=9.81, effects=effects)
     solution = pc.simulate(
-        scene, [0.8, 1.0], 0, (0, 5), t_eval=[0.0, 2.5, 5.0],
+        scene, q0=[0.8, 1.0], qd0=0, t_span=(0, 5), t_eval=[0.0, 2.5, 5.0],
         method="dop853", rtol=1e-10, atol=1e-12, ledger=True,
     )  # fmt: skip
     energy = solution.energy()
@@ -89,7 +89,12 @@ def events_of_python() -> str:
     turn = pc.events.RateZero(link=1)
     passage = pc.events.TipLine(point=(0.0, 0.0), normal=(1.0, 0.0), direction=-1, terminal=3)
     solution = pc.simulate(
-        pc.Scene.textbook(), [0.8, 1.0], 0, (0, 10), rtol=1e-10, events=[turn, passage]
+        pc.Scene.textbook(),
+        q0=[0.8, 1.0],
+        qd0=0,
+        t_span=(0, 10),
+        rtol=1e-10,
+        events=[turn, passage],
     )
     found = [
         (one.t, told, *one.q)

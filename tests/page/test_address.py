@@ -39,7 +39,7 @@ LINES = "a = 1\n[run]\nt_end = 9\n#"
 
 def run() -> pc.Solution:
     return pc.simulate(
-        SCENE, [0.8, 1.0], t_span=(0, 4), rtol=[1e-7] * 4, t_eval=[1.0, 2.0], store="dense"
+        SCENE, q0=[0.8, 1.0], t_span=(0, 4), rtol=[1e-7] * 4, t_eval=[1.0, 2.0], store="dense"
     )
 
 

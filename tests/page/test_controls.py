@@ -17,7 +17,7 @@ pytestmark = [pytest.mark.unsanitized, pytest.mark.usefixtures("core")]
 @pytest.fixture(scope="module")
 def sol() -> pc.Solution:
     damped = pc.Scene.textbook().replace(effects=[pc.effects.ViscousJoint(joint=2, damping=0.05)])
-    return pc.simulate(damped, [0.8, 1.0], t_span=(0, 8))
+    return pc.simulate(damped, q0=[0.8, 1.0], t_span=(0, 8))
 
 
 @pytest.mark.parametrize("size", ["desktop", "phone"])
@@ -49,7 +49,7 @@ def test_dragging_the_tip_starts_the_run_elsewhere(
         x - 40 - page.ask("pendcorePage.view.pixels") * np.cos(0.8),
     )
     assert moved[1] == pytest.approx(wanted, abs=0.05)
-    run = pc.simulate(sol.scene, moved, t_span=(0, 8))
+    run = pc.simulate(sol.scene, q0=moved, t_span=(0, 8))
     assert page.ask("pendcorePage.hash") == run.run.fingerprint
 
 
@@ -142,7 +142,7 @@ def test_sliders_change_parameters_and_the_run(
     assert field.get_attribute("value") == "0.5"
     damped = pc.effects.ViscousJoint(joint=2, damping=0.5)
     scene = sol.scene.replace(effects=[damped])
-    run = pc.simulate(scene, [0.8, 1.0], t_span=(0, 8))
+    run = pc.simulate(scene, q0=[0.8, 1.0], t_span=(0, 8))
     assert page.ask("pendcorePage.hash") == run.run.fingerprint
 
 
@@ -206,7 +206,7 @@ def test_a_run_that_is_refused_leaves_the_picture_and_says_nothing_of_it(
 
 
 def test_a_tolerance_for_each_component_is_understood(sol: pc.Solution, opened: Open) -> None:
-    run = pc.simulate(sol.scene, [0.8, 1.0], t_span=(0, 8), rtol=[1e-6, 1e-6, 1e-7, 1e-7])
+    run = pc.simulate(sol.scene, q0=[0.8, 1.0], t_span=(0, 8), rtol=[1e-6, 1e-6, 1e-7, 1e-7])
     page = opened(run)
     page.wait("pendcorePage.validUntil !== null")
     assert page.ask("document.querySelector('#method input').value") == "7"
@@ -216,7 +216,7 @@ def test_a_tolerance_for_each_component_is_understood(sol: pc.Solution, opened: 
 def test_fixed_steps_keep_their_method_until_another_is_chosen(
     sol: pc.Solution, opened: Open
 ) -> None:
-    run = pc.simulate(sol.scene, 0.8, t_span=(0, 4), method="rk4", step=0.01)
+    run = pc.simulate(sol.scene, q0=0.8, t_span=(0, 4), method="rk4", step=0.01)
     page = opened(run)
     assert page.ask("document.querySelector('#method select').value") == "rk4"
     page.do(
@@ -280,7 +280,7 @@ def test_methods_and_tolerances_are_chosen_in_the_page(sol: pc.Solution, opened:
         "const f = document.querySelector('#method input'); f.value = '11';"
         "f.dispatchEvent(new Event('input'))"
     )
-    run = pc.simulate(sol.scene, [0.8, 1.0], t_span=(0, 8), method="dop853", rtol=1e-11)
+    run = pc.simulate(sol.scene, q0=[0.8, 1.0], t_span=(0, 8), method="dop853", rtol=1e-11)
     assert page.ask("pendcorePage.hash") == run.run.fingerprint
 
 
@@ -304,7 +304,7 @@ def test_any_quantity_is_drawn_over_any_other(sol: pc.Solution, opened: Open) ->
     phase = drawn(page)
     t = np.linspace(0, 8, len(phase[0]["x"]))
     states = sol(t)
-    beside = pc.simulate(sol.scene, [0.8, 1.0], t_span=(0, 8), t_eval=t)
+    beside = pc.simulate(sol.scene, q0=[0.8, 1.0], t_span=(0, 8), t_eval=t)
     assert [one["name"] for one in phase] == ["link 1", "link 2"]
     for i, one in enumerate(phase):
         np.testing.assert_allclose(one["x"], states[i], atol=1e-10)
@@ -346,7 +346,7 @@ def test_sliders_have_the_size_of_a_small_rig(opened: Open) -> None:
             pc.effects.JointStop(joint=1, range=(-np.pi / 3, np.pi / 3), restitution=0.5),
         ],
     )
-    page = opened(pc.simulate(rig, [0.3], t_span=(0, 2)))
+    page = opened(pc.simulate(rig, q0=[0.3], t_span=(0, 2)))
     page.click("tab-setup")
     sliders = {
         name: (float(low), float(high), float(step))
@@ -365,7 +365,7 @@ def test_sliders_have_the_size_of_a_small_rig(opened: Open) -> None:
 
 
 def test_the_trace_of_a_fast_link_is_round(opened: Open) -> None:
-    page = opened(pc.simulate(pc.Scene.textbook(), [0.3, 0.3], [0.0, 60.0], t_span=(0, 2)))
+    page = opened(pc.simulate(pc.Scene.textbook(), q0=[0.3, 0.3], qd0=[0.0, 60.0], t_span=(0, 2)))
     page.do(
         "const { view } = pendcorePage; const draw = view.draw.bind(view);"
         "view.draw = (shown) => { window.path = shown.path; draw(shown) }; pendcorePage.go(2)"
@@ -378,7 +378,7 @@ def test_the_trace_of_a_fast_link_is_round(opened: Open) -> None:
 def test_what_does_not_change_is_drawn_too(opened: Open) -> None:
     """Without gravity, the kinetic energy of one rod changes in its last bit alone."""
     free = pc.Scene(links=[pc.Link(mass=1, length=1)], gravity=0.0)
-    page = opened(pc.simulate(free, [0.3], [4.0], t_span=(0, 2)))
+    page = opened(pc.simulate(free, q0=[0.3], qd0=[4.0], t_span=(0, 2)))
     choose(page, "across", "kinetic energy (J)")
     choose(page, "up", "potential energy (J)")
     (one,) = drawn(page)

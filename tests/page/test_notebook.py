@@ -19,7 +19,7 @@ from pendcore.page.html import core_for_browsers
 def sol() -> pc.Solution:
     effects = [pc.effects.ViscousJoint(joint=2, damping=0.05), pc.effects.Payload(mass=0.2)]
     scene = pc.Scene.textbook().replace(effects=effects)
-    return pc.simulate(scene, [0.8, 1.0], t_span=(0, 8), error=1e-6)
+    return pc.simulate(scene, q0=[0.8, 1.0], t_span=(0, 8), error=1e-6)
 
 
 def objects(sol: pc.Solution) -> dict[str, Any]:
@@ -67,7 +67,7 @@ def test_the_drawing_is_the_chain_with_y_downwards(sol: pc.Solution) -> None:
 
 
 def test_the_last_pose_is_drawn_last_in_a_run_of_many_times() -> None:
-    run = pc.simulate(pc.Scene.textbook(), 0.0, t_span=(0, 60))
+    run = pc.simulate(pc.Scene.textbook(), q0=0.0, t_span=(0, 60))
     assert len(run.t) > 450
     told = re.findall(r"points='([^']+)'", run._repr_html_())
     last = np.array([pair.split(",") for pair in told[-1].split()], dtype=float)

@@ -23,7 +23,7 @@ MOST_BYTES = 900_000
 @pytest.fixture(scope="module")
 def sol() -> pc.Solution:
     damped = pc.Scene.textbook().replace(effects=[pc.effects.ViscousJoint(joint=2, damping=0.05)])
-    return pc.simulate(damped, [0.8, 1.0], t_span=(0, 8))
+    return pc.simulate(damped, q0=[0.8, 1.0], t_span=(0, 8))
 
 
 def test_a_page_is_one_small_file_that_names_no_other(sol: pc.Solution, tmp_path: Path) -> None:
@@ -57,15 +57,16 @@ def test_the_core_in_the_page_has_the_bits_of_python(name: str, opened: Open) ->
     effects, options = CASES[name]
     start = STARTS.get(name, START)
     run = pc.simulate(
-        scene_in_python(effects), start["q0"], start["qd0"], (start["t0"], start["t_end"]),
-        check=False, **options,
+        scene_in_python(effects), q0=start["q0"], qd0=start["qd0"],
+        t_span=(start["t0"], start["t_end"]), check=False, **options,
     )  # fmt: skip
     page = opened(run)
     told = page.text("bits")
     assert told == f"the bits of Python: hash {run.run.fingerprint} = {run.run.fingerprint}"
     states = np.array(page.ask("[1.7, 3.9].map((t) => [...pendcorePage.run.state(t)])"))
     assert np.array_equal(states, pc.simulate(
-        run.scene, start["q0"], start["qd0"], (start["t0"], start["t_end"]), check=False, **options
+        run.scene, q0=start["q0"], qd0=start["qd0"], t_span=(start["t0"], start["t_end"]),
+        check=False, **options,
     )([1.7, 3.9]).T)  # fmt: skip
 
 
@@ -82,7 +83,7 @@ plain = html._plain_case
 
 
 def test_what_is_kept_at_times_has_the_bits_of_python_too(sol: pc.Solution, opened: Open) -> None:
-    run = pc.simulate(sol.scene, 0.5, t_span=(0, 5), t_eval=np.linspace(0, 5, 11))
+    run = pc.simulate(sol.scene, q0=0.5, t_span=(0, 5), t_eval=np.linspace(0, 5, 11))
     assert opened(run).text("bits").endswith(f"= {run.run.fingerprint}")
 
 
@@ -155,14 +156,14 @@ def test_what_the_worker_runs_is_freed(sol: pc.Solution, opened: Open) -> None:
 def test_a_run_with_events_has_a_hash_of_its_own(sol: pc.Solution, opened: Open) -> None:
     """The page knows no events, and does not claim their bits."""
     down = pc.events.LinkAngle(1, np.pi / 2)
-    run = pc.simulate(sol.scene, [0.8, 1.0], t_span=(0, 8), events=[down])
+    run = pc.simulate(sol.scene, q0=[0.8, 1.0], t_span=(0, 8), events=[down])
     page = opened(run)
     assert re.fullmatch("hash [0-9a-f]{16}", page.text("bits"))
     assert page.ask("pendcorePage.hash") == sol.run.fingerprint
 
 
 def test_a_backward_run_is_trusted_backward(opened: Open) -> None:
-    run = pc.simulate(pc.Scene.textbook(), 0.8, t_span=(5, 0))
+    run = pc.simulate(pc.Scene.textbook(), q0=0.8, t_span=(5, 0))
     page = opened(run)
     page.wait("pendcorePage.validUntil !== null")
     assert page.ask("pendcorePage.validUntil") == pytest.approx(0.0, abs=1e-9)
@@ -173,13 +174,13 @@ def test_a_blow_up_and_a_rest_are_told_as_python_tells_them(opened: Open) -> Non
     feeds = pc.effects.ViscousJoint(joint=2, damping=0.0, damping3=-50.0)
     with pytest.warns(pc.PendcoreWarning, match="feeds energy"):
         wild = pc.Scene.textbook().replace(effects=[feeds])
-    blown = pc.simulate(wild, [0.8, 1.0], [0, 5], (0, 4), check=False)
+    blown = pc.simulate(wild, q0=[0.8, 1.0], qd0=[0, 5], t_span=(0, 4), check=False)
     assert not blown.success
     assert opened(blown).text("message") == blown.message
     stuck = pc.Scene.textbook().replace(
         effects=[pc.effects.DryJointFriction(joint=j, coulomb=40.0) for j in (1, 2)]
     )
-    resting = pc.simulate(stuck, [1.5, 1.6], t_span=(0, 4))
+    resting = pc.simulate(stuck, q0=[1.5, 1.6], t_span=(0, 4))
     assert resting.status == "at_rest"
     page = opened(resting)
     assert page.ask("pendcorePage.run.message") == resting.message
@@ -187,7 +188,7 @@ def test_a_blow_up_and_a_rest_are_told_as_python_tells_them(opened: Open) -> Non
 
 
 def test_it_is_pale_past_the_time_until_which_it_is_right(opened: Open) -> None:
-    chaotic = pc.simulate(pc.Scene.textbook(), 0.0, t_span=(0, 30))
+    chaotic = pc.simulate(pc.Scene.textbook(), q0=0.0, t_span=(0, 30))
     page = opened(chaotic)
     page.wait("pendcorePage.validUntil !== null")
     assert page.ask("pendcorePage.validUntil") == pytest.approx(chaotic.valid_until(), abs=3.0)
@@ -207,7 +208,7 @@ def test_neighbours_are_the_runs_beside_this_one(sol: pc.Solution, opened: Open)
     page.wait("pendcorePage.neighbours?.count === 1000")
     found = page.ask("[...pendcorePage.neighbours.angles.slice(60 * 2000, 60 * 2000 + 8)]")
     q0 = np.array([[0.8, 1.0 + 1e-5 * (k + 1)] for k in range(4)])
-    beside = pc.ensemble(sol.scene, q0, t_span=(0, 8), t_eval=[1.0], keep="times", rtol=1e-9)
+    beside = pc.ensemble(sol.scene, q0=q0, t_span=(0, 8), t_eval=[1.0], keep="times", rtol=1e-9)
     assert found == pytest.approx(beside.q.ravel(), abs=1e-6)
 
 
@@ -248,6 +249,6 @@ def test_whoever_wants_less_motion_gets_a_page_that_waits(
 
 
 def test_the_phase_portrait_of_a_fast_link_has_no_corners(opened: Open) -> None:
-    page = opened(pc.simulate(pc.Scene.textbook(), [0.3, 0.3], [0.0, 48.0], t_span=(0, 10)))
+    page = opened(pc.simulate(pc.Scene.textbook(), q0=[0.3, 0.3], qd0=[0.0, 48.0], t_span=(0, 10)))
     x = np.array(page.ask("pendcorePage.curves.chosen.curves[1].x"))
     assert np.abs(np.diff(x)).max() < 0.12  # rad

@@ -15,7 +15,7 @@ pytestmark = pytest.mark.unsanitized
 
 @pytest.fixture
 def sol() -> pc.Solution:
-    return pc.simulate(pc.Scene.textbook(), [0.8, 1.0], t_span=(0, 8))
+    return pc.simulate(pc.Scene.textbook(), q0=[0.8, 1.0], t_span=(0, 8))
 
 
 def test_an_install_without_the_core_plays_back_and_says_what_is_missing(
@@ -37,7 +37,7 @@ def test_an_install_without_the_core_plays_back_and_says_what_is_missing(
 
 def test_functions_of_ones_own_are_played_back(opened: Open) -> None:
     brake = pc.effects.User(function=lambda t, q, qd: [-0.1 * qd[0], 0.0])
-    run = pc.simulate(pc.Scene.textbook().replace(effects=[brake]), 0.5, t_span=(0, 4))
+    run = pc.simulate(pc.Scene.textbook().replace(effects=[brake]), q0=0.5, t_span=(0, 4))
     page = opened(run)
     assert "functions of one's own stay in Python" in page.text("about")
     assert page.ask("[...pendcorePage.run.state(4)]") == pytest.approx([*run(4.0)], abs=1e-5)

@@ -123,7 +123,7 @@ def test_what_else_is_in_a_file_is_left_alone(sol, tmp_path):
 def test_a_warning_about_the_scene_is_not_given_again(tmp_path):
     with pytest.warns(pc.PendcoreWarning):
         scene = pc.Scene(links=[pc.Link(mass=1, length=1, inertia=5)])
-    run = pc.simulate(scene, 0, 0, (0, 1))
+    run = pc.simulate(scene, q0=0, qd0=0, t_span=(0, 1))
     run.save(tmp_path / "run.npz")
     assert pc.load(tmp_path / "run.npz").scene == pickle.loads(pickle.dumps(run)).scene == scene
 

@@ -66,7 +66,7 @@ def run_with(name: str) -> Ask:
     return ask
 
 
-DENSE = pc.simulate(SCENE, [0.25, 1.0], [0.5, -1.0], (0, 2))
+DENSE = pc.simulate(SCENE, q0=[0.25, 1.0], qd0=[0.5, -1.0], t_span=(0, 2))
 TAKEN: dict[str, tuple[list[float], Ask]] = {
     "q0": ([0.25, 1.0], run_with("q0")),
     "qd0": ([0.5, -1.0], run_with("qd0")),
@@ -112,7 +112,7 @@ ALSO_TAKEN: dict[str, tuple[Any, Ask]] = {
     "vary": ([9.0, 10.0], lambda x: members("vary")({"gravity": x})),
     "t_eval of members": (
         [0.25, 1.0],
-        lambda x: pc.ensemble(SCENE, [0.25, 1.0], t_span=(0, 1), keep="times", t_eval=x).q,
+        lambda x: pc.ensemble(SCENE, q0=[0.25, 1.0], t_span=(0, 1), keep="times", t_eval=x).q,
     ),
     "jacobian's neighbour": ([0.25, 1.0], lambda x: SCENE.accelerations(0.5, [0, 0], x)),
     "times of accelerations": ([0.25, 1.0], lambda x: SCENE.accelerations(x, [0, 0], [0, 0])),
@@ -122,10 +122,10 @@ ALSO_TAKEN: dict[str, tuple[Any, Ask]] = {
         lambda x: np.array([pc.effects.Spline(t=[0, 1, 2], x=x, y=[0, 0, 0]).x]),
     ),
     "case": ([0.25, 1.0], lambda x: np.array(pc.Case(scene=SCENE, q0=x, t_span=(0, 1)).q0)),
-    "t_span": ([0.0, 1.0], lambda x: pc.simulate(SCENE, 0.5, t_span=x).t),
+    "t_span": ([0.0, 1.0], lambda x: pc.simulate(SCENE, q0=0.5, t_span=x).t),
     "resume": (
         [0.5, 1.0],
-        lambda x: pc.simulate(SCENE, 0.5, t_span=(0, 0.25), t_eval=[0.25]).resume(2, x).t,
+        lambda x: pc.simulate(SCENE, q0=0.5, t_span=(0, 0.25), t_eval=[0.25]).resume(2, x).t,
     ),
     "lyapunov": ([0.25, 1.0], lambda x: pc.lyapunov(SCENE, x, t_span=(0, 1)).exponents),
     "tip line": ([0.25, 1.0], lambda x: np.array([pc.events.TipLine(x, normal=(0, 1)).point])),
@@ -176,13 +176,15 @@ def test_tables_of_states_are_read_in_either_order(order: Any) -> None:
 
 def test_what_was_handed_over_may_be_changed_afterwards() -> None:
     q0, times, rtol = np.array([0.25, 1.0]), np.array([0.5, 1.0]), np.full(4, 1e-6)
-    sol = pc.simulate(SCENE, q0, 0, (0, 1), t_eval=times, rtol=rtol)
+    sol = pc.simulate(SCENE, q0=q0, qd0=0, t_span=(0, 1), t_eval=times, rtol=rtol)
     before, case = sol.y.copy(), sol.case()
     for x in (q0, times, rtol):
         x[:] = 7.0
     assert np.array_equal(sol.y, before)
     assert sol.case() == case
-    longer = pc.simulate(SCENE, [0.25, 1.0], 0, (0, 2), t_eval=[0.5, 1.0], rtol=[1e-6] * 4)
+    longer = pc.simulate(
+        SCENE, q0=[0.25, 1.0], qd0=0, t_span=(0, 2), t_eval=[0.5, 1.0], rtol=[1e-6] * 4
+    )
     assert np.array_equal(sol.resume(2).y, longer.y)
 
 

@@ -169,7 +169,7 @@ def test_a_scene_alone_is_told_what_is_missing():
     with pytest.raises(TypeError, match=r"^q0 is missing: give"):
         pc.simulate(pc.Scene.textbook())
     with pytest.raises(TypeError, match=r"^t_span is missing: write"):
-        pc.simulate(pc.Scene.textbook(), 1)
+        pc.simulate(pc.Scene.textbook(), q0=1)
 
 
 def test_whoever_simulates_a_case_is_told_how():
@@ -224,7 +224,7 @@ def test_a_link_out_of_range_is_told_by_number(case):
 
 def test_a_massless_link_may_carry_another_but_not_be_the_last():
     massless = pc.Link(mass=0, length=1)
-    assert pc.simulate(pc.Scene(links=[massless, ROD]), 1, t_span=(0, 1)).success
+    assert pc.simulate(pc.Scene(links=[massless, ROD]), q0=1, t_span=(0, 1)).success
     with pytest.raises(ValueError, match=r"^link 1: mass = 0\.0: must be finite and > 0"):
         pc.Scene(links=[massless])
 

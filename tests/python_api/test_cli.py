@@ -222,7 +222,7 @@ def test_wrong_usage_is_told_in_a_line_and_ends_with_2(mistake, capsys):
     Path("t_eval.toml").write_text(CASE + "\nt_eval = [2.0, 1.0]\n")
     three = CASE.replace("[start]", "[[link]]\nmass = 1\nlength = 1\n[start]")
     Path("links.toml").write_text(three)
-    pc.simulate(pc.Scene.textbook(), 1, t_span=(0, 1)).save("run.npz")
+    pc.simulate(pc.Scene.textbook(), q0=1, t_span=(0, 1)).save("run.npz")
     argv, message = MISTAKES[mistake]
     assert main(argv) == 2
     out, err = capsys.readouterr()

@@ -77,7 +77,7 @@ def test_options_of_the_command_take_the_place_of_those_of_the_case(
     options = [word for name, value in given.items() for word in (f"--{name}", str(value))]
     assert main(["run", "case.toml", "-o", "o", "--no-horizon", *options]) == 0
     book = pc.Case.textbook()
-    same = pc.simulate(book.scene, book.q0, t_span=book.t_span, **given, **kept)
+    same = pc.simulate(book.scene, q0=book.q0, t_span=book.t_span, **given, **kept)
     assert np.array_equal(pc.load("o/solution.npz").y, same.y)
 
 

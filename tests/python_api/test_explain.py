@@ -262,11 +262,11 @@ def test_the_first_step_is_safe_at_rest_near_an_equilibrium(scene):
             step = told.first_step
             for method in ("auto", "dopri5"):
                 how = {"method": method, "first_step": step}
-                run = pc.simulate(scene, found.q + off, t_span=(0, step), **how)
+                run = pc.simulate(scene, q0=found.q + off, t_span=(0, step), **how)
                 assert (run.stats.accepted, run.stats.rejected) == (1, 0)
     bold = 10 * told.first_step
     how = {"method": "dopri5", "first_step": bold}
-    assert pc.simulate(scene, found.q + off, t_span=(0, bold), **how).stats.rejected
+    assert pc.simulate(scene, q0=found.q + off, t_span=(0, bold), **how).stats.rejected
 
 
 def test_the_fastest_of_nature_and_drives_chooses_the_first_step():
@@ -298,7 +298,7 @@ def test_the_summary_of_a_run_tells_the_same():
     scene = rods(2, fx.ViscousJoint(1, 0.1))
     from pendcore.views.summary import facts, text
 
-    found = facts(pc.simulate(scene, 1.0, t_span=(0, 1), ledger=True))
+    found = facts(pc.simulate(scene, q0=1.0, t_span=(0, 1), ledger=True))
     told = scene.explain().to_dict()["not_simulated"]
     assert found["not_simulated"] == told
     assert found["effects"][0]["kind"] == "viscous_joint"

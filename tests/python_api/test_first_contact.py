@@ -22,7 +22,7 @@ from pendcore.cli import main
 from pendcore.derive.report import conversion
 
 ROD = "[[link]]\nmass = 1.0\nlength = 1.0\n"
-RUN = pc.simulate(pc.Scene.textbook(), 1.0, t_span=(0, 0.01))
+RUN = pc.simulate(pc.Scene.textbook(), q0=1.0, t_span=(0, 0.01))
 CHAOS = f"{ROD}{ROD}[start]\nq_deg = [-85, -80]\n[run]\nt_end = 40.0\n"
 
 
@@ -42,7 +42,7 @@ CHAOS = f"{ROD}{ROD}[start]\nq_deg = [-85, -80]\n[run]\nt_end = 40.0\n"
             "Case: takes what it is given by name: Case(",
         ),
         (
-            lambda: pc.simulate(pc.Scene.textbook(), 1.0, 0.0, (0, 1), "dopri5"),
+            lambda: pc.simulate(pc.Scene.textbook(), q0=1.0, qd0=0.0, t_span=(0, 1), "dopri5"),
             "simulate: takes scene, q0, qd0, t_span by position, and by name: method=..., rtol=",
         ),
         (lambda: RUN.resume(), "Solution.resume: needs t_end: Solution.resume(t_end=...)"),
@@ -60,7 +60,7 @@ def test_a_call_that_does_not_fit_says_how_it_goes(call: Callable[[], Any], sent
 
 
 def test_what_is_printed_of_a_result_fits_on_a_screen() -> None:
-    sol = pc.simulate(pc.Scene.textbook(), [0.8, 1.0], t_span=(0, 20))
+    sol = pc.simulate(pc.Scene.textbook(), q0=[0.8, 1.0], t_span=(0, 20))
     for result in (sol.defect(), sol.lyapunov(), sol.error()):
         assert len(repr(result)) < 600
         assert repr(result) == str(result)
@@ -68,7 +68,7 @@ def test_what_is_printed_of_a_result_fits_on_a_screen() -> None:
 
 def test_found_events_are_a_list_that_has_arrays() -> None:
     event = pc.events.RateZero(link=1)
-    sol = pc.simulate(pc.Scene.textbook(), [0.8, 1.0], t_span=(0, 5), events=[event])
+    sol = pc.simulate(pc.Scene.textbook(), q0=[0.8, 1.0], t_span=(0, 5), events=[event])
     found = sol.events[0]
     assert len(found) > 2
     assert found.t.tolist() == [one.t for one in found]
@@ -78,7 +78,8 @@ def test_found_events_are_a_list_that_has_arrays() -> None:
     assert np.array_equal(found[1:].q, found.q[1:])
     assert found[::-1][0] is found[-1]
     assert np.array_equal(pickle.loads(pickle.dumps(found))[:1].y, found.y[:1])
-    none = pc.simulate(pc.Scene.textbook(), [0.8, 1.0], t_span=(0, 1e-3), events=[event]).events[0]
+    short = pc.simulate(pc.Scene.textbook(), q0=[0.8, 1.0], t_span=(0, 1e-3), events=[event])
+    none = short.events[0]
     assert none.q.shape == (0, 2)
 
 
@@ -267,7 +268,7 @@ def test_even_times_need_not_be_listed() -> None:
 
 def test_degrees_are_told_without_noise() -> None:
     with pytest.warns(pc.PendcoreWarning, match=r"that is 2578 degrees"):
-        pc.simulate(pc.Scene.textbook(), [45.0, 60.0], t_span=(0, 0.01))
+        pc.simulate(pc.Scene.textbook(), q0=[45.0, 60.0], t_span=(0, 0.01))
 
 
 def test_without_pandoc_the_report_says_why_there_is_no_page(

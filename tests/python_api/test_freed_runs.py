@@ -76,11 +76,11 @@ KEPT: dict[str, dict[str, Any]] = {
 
 
 def resumed() -> None:
-    pc.simulate(BOOK, [-1.0, -1.0], t_span=(0, 1)).resume(1e9, progress=show)
+    pc.simulate(BOOK, q0=[-1.0, -1.0], t_span=(0, 1)).resume(1e9, progress=show)
 
 
 def resumed_by_event() -> None:
-    sol = pc.simulate(BOOK, [-1.0, -1.0], t_span=(0, 1), events=[pc.events.Function(crossing)])
+    sol = pc.simulate(BOOK, q0=[-1.0, -1.0], t_span=(0, 1), events=[pc.events.Function(crossing)])
     sol.resume(20)
 
 
@@ -94,11 +94,11 @@ def of_a_case() -> None:
 
 
 def of_its_error() -> None:
-    pc.simulate(BOOK, [0.5, 0.5], t_span=(0, 2000)).error(progress=show)
+    pc.simulate(BOOK, q0=[0.5, 0.5], t_span=(0, 2000)).error(progress=show)
 
 
 def members(**options: Any) -> None:
-    pc.ensemble(BOOK, np.zeros((64, 2)), t_span=(0, 2e3), progress=show, **options)
+    pc.ensemble(BOOK, q0=np.zeros((64, 2)), t_span=(0, 2e3), progress=show, **options)
 
 
 STORES = TemporaryDirectory()
@@ -114,7 +114,7 @@ def by_threads() -> None:
 
 
 def members_with_check() -> None:
-    pc.ensemble(BOOK, np.zeros((4, 2)), t_span=(0, 1), max_steps=2, check=True)
+    pc.ensemble(BOOK, q0=np.zeros((4, 2)), t_span=(0, 1), max_steps=2, check=True)
 
 
 def with_check() -> None:
@@ -237,9 +237,9 @@ MADE: dict[str, Callable[[Rig], Any]] = {
     "run for an error": lambda rig: pc.simulate(rig.scene(), **START, error=1e-6),
     "error": lambda rig: pc.simulate(rig.scene(), **START).error(),
     "case": lambda rig: pc.Case(scene=rig.scene(), **START, options={"events": rig.events()}),
-    "ensemble": lambda rig: pc.ensemble(rig.scene(), [[0.3, 0.4]] * 3, t_span=(0, 1)),
+    "ensemble": lambda rig: pc.ensemble(rig.scene(), q0=[[0.3, 0.4]] * 3, t_span=(0, 1)),
     "ensemble with events": lambda rig: pc.ensemble(
-        BOOK, [[0.3, 0.4]] * 3, t_span=(0, 1), keep=pc.keep.FirstEvent(*rig.events())
+        BOOK, q0=[[0.3, 0.4]] * 3, t_span=(0, 1), keep=pc.keep.FirstEvent(*rig.events())
     ),
     "exponents": lambda rig: pc.lyapunov(rig.scene(), [0.3, 0.4], t_span=(0, 1)),
 }  # fmt: skip

@@ -59,7 +59,7 @@ def forces_at(solution: pc.Solution, t: Any) -> Any:
 def test_it_is_that_of_a_far_finer_evaluation(
     scene: pc.Scene, q0: Any, t_span: Any, method: str
 ) -> None:
-    solution = pc.simulate(scene, q0, t_span=t_span, method=method)
+    solution = pc.simulate(scene, q0=q0, t_span=t_span, method=method)
     at_kept_times = np.linalg.norm(solution.reactions(), axis=-1).max(axis=0)
     for one, kept in zip(solution.largest_reactions(), at_kept_times, strict=True):
         assert kept <= one.force
@@ -72,7 +72,7 @@ def test_it_is_that_of_a_far_finer_evaluation(
 
 
 def test_a_rod_that_falls_from_the_horizontal_pulls_with_five_halves_of_its_weight() -> None:
-    solution = pc.simulate(ROD_ALONE, 0.0, t_span=(0, 3))
+    solution = pc.simulate(ROD_ALONE, q0=0.0, t_span=(0, 3))
     (one,) = solution.largest_reactions()
     assert one.force == pytest.approx(2.5 * G, rel=1e-9)
     bottom = np.cos(solution(one.t)[0])
@@ -84,7 +84,7 @@ def test_a_rod_that_falls_from_the_horizontal_pulls_with_five_halves_of_its_weig
 def test_the_side_before_an_impact_counts() -> None:
     """At the stop it is caught, and from then on carries the weight alone."""
     scene = ROD_ALONE.replace(effects=[fx.JointStop(joint=1, range=(-1.0, pi / 2))])
-    solution = pc.simulate(scene, 0.0, t_span=(0, 1))
+    solution = pc.simulate(scene, q0=0.0, t_span=(0, 1))
     (one,) = solution.largest_reactions()
     assert one.force == pytest.approx(2.5 * G, rel=1e-9)
     assert one.just_before
@@ -98,8 +98,8 @@ def test_the_side_after_an_impact_counts_as_that_before_it_does() -> None:
     scene = TWO.replace(
         gravity=0.0, effects=[fx.JointStop(joint=2, range=(-1.0, 0.0), restitution=1.0)]
     )
-    there = pc.simulate(scene, [0.0, -0.2], [-1.0, 2.0], (0, 0.3), method="dop853")
-    back = pc.simulate(scene, there.q[-1], -there.qd[-1], (0, 0.3), method="dop853")
+    there = pc.simulate(scene, q0=[0.0, -0.2], qd0=[-1.0, 2.0], t_span=(0, 0.3), method="dop853")
+    back = pc.simulate(scene, q0=there.q[-1], qd0=-there.qd[-1], t_span=(0, 0.3), method="dop853")
     before, after = there.largest_reactions()[0], back.largest_reactions()[0]
     assert before.just_before
     assert not after.just_before
@@ -110,14 +110,14 @@ def test_the_side_after_an_impact_counts_as_that_before_it_does() -> None:
 def test_a_drive_that_is_faster_than_the_steps_is_followed() -> None:
     swing = fx.DrivenPivot(x=fx.Sinusoid(0.5, 200.0))
     scene = ROD_ALONE.replace(effects=[swing, fx.Lock(joint=1)])
-    solution = pc.simulate(scene, 0.3, t_span=(0, 5))
+    solution = pc.simulate(scene, q0=0.3, t_span=(0, 5))
     assert solution.stats.accepted < 5 * 200 / (2 * pi)
     (one,) = solution.largest_reactions()
     assert one.force == pytest.approx(sqrt((0.5 * 200.0**2) ** 2 + G**2), rel=1e-12)
 
 
 def test_what_hangs_at_rest_has_its_weight_throughout() -> None:
-    solution = pc.simulate(TWO, pi / 2, t_span=(0, 1))
+    solution = pc.simulate(TWO, q0=pi / 2, t_span=(0, 1))
     found = solution.largest_reactions()
     assert [one.steady for one in found] == [True, True]
     assert [one.force for one in found] == pytest.approx([2 * G, G], rel=1e-12)
@@ -127,14 +127,17 @@ def test_what_hangs_at_rest_has_its_weight_throughout() -> None:
 def test_a_joint_that_is_held_is_held_between_the_steps_of_an_implicit_method_too() -> None:
     """The interpolant turns the joint by a last bit, with which it would slide."""
     one, other = (
-        [x.force for x in pc.simulate(RUBBED, pi / 2, t_span=(0, 9), method=m).largest_reactions()]
+        [
+            x.force
+            for x in pc.simulate(RUBBED, q0=pi / 2, t_span=(0, 9), method=m).largest_reactions()
+        ]
         for m in ("radau5", "dop853")
     )
     assert one == pytest.approx(other, rel=1e-8)
 
 
 def test_a_run_that_takes_no_time_has_the_forces_of_its_start() -> None:
-    solution = pc.simulate(TWO, [pi / 4, pi / 3], t_span=(2.0, 2.0))
+    solution = pc.simulate(TWO, q0=[pi / 4, pi / 3], t_span=(2.0, 2.0))
     at_start = np.linalg.norm(solution.reactions()[0], axis=-1)
     found = solution.largest_reactions()
     assert [one.t for one in found] == [2.0, 2.0]
@@ -143,7 +146,7 @@ def test_a_run_that_takes_no_time_has_the_forces_of_its_start() -> None:
 
 def test_without_interpolants_it_is_the_largest_of_the_kept_times() -> None:
     for kept in ({"store": "steps"}, {"store": "end"}, {"t_eval": [1.0, 2.0]}):
-        solution = pc.simulate(TWO, [pi / 4, pi / 3], t_span=(0, 5), **kept)
+        solution = pc.simulate(TWO, q0=[pi / 4, pi / 3], t_span=(0, 5), **kept)
         sizes = np.linalg.norm(solution.reactions(), axis=-1)
         found = [one.force for one in solution.largest_reactions()]
         assert found == pytest.approx(sizes.max(axis=0), rel=1e-15)
@@ -152,8 +155,8 @@ def test_without_interpolants_it_is_the_largest_of_the_kept_times() -> None:
 
 
 def test_times_asked_for_beside_the_interpolants_take_nothing_away() -> None:
-    asked = pc.simulate(TWO, [1, 2], t_span=(0, 5), t_eval=[1.0], store="dense")
-    whole = pc.simulate(TWO, [1, 2], t_span=(0, 5))
+    asked = pc.simulate(TWO, q0=[1, 2], t_span=(0, 5), t_eval=[1.0], store="dense")
+    whole = pc.simulate(TWO, q0=[1, 2], t_span=(0, 5))
     assert asked.largest_reactions() == whole.largest_reactions()
     assert "kept time" not in text(facts(asked))
 
@@ -169,7 +172,7 @@ def test_as_many_digits_are_printed_as_are_right(
     assert main(["run", "swing.toml"]) == 0
     line = next(x for x in capsys.readouterr().out.splitlines() if "largest reaction" in x)
     printed = line.split("joint 1: ")[1].split(" N")[0]
-    right = pc.simulate(TWO, [pi / 4, pi / 3], t_span=(0, 5), method="taylor", rtol=1e-14)
+    right = pc.simulate(TWO, q0=[pi / 4, pi / 3], t_span=(0, 5), method="taylor", rtol=1e-14)
     exact = right.largest_reactions()[0].force
     decimals = len(printed.partition(".")[2])
     assert float(printed) == pytest.approx(exact, abs=0.6 * 10.0**-decimals)
@@ -180,7 +183,7 @@ def test_as_many_digits_are_printed_as_are_right(
 def test_a_long_run_takes_no_more_memory_than_a_short_one() -> None:
     peaks = []
     for t_end in (2.0, 20.0):
-        solution = pc.simulate(TWO, [1, 2], t_span=(0, t_end), method="rk4", step=2e-4)
+        solution = pc.simulate(TWO, q0=[1, 2], t_span=(0, t_end), method="rk4", step=2e-4)
         tracemalloc.start()
         solution.largest_reactions()
         peaks.append(tracemalloc.get_traced_memory()[1])
@@ -191,7 +194,7 @@ def test_a_long_run_takes_no_more_memory_than_a_short_one() -> None:
 
 def test_progress_goes_up_to_the_end(monkeypatch: Any) -> None:
     monkeypatch.setattr(largest_reactions, "AT_ONCE", 1)
-    solution = pc.simulate(TWO, [1, 2], t_span=(0, 5), method="dopri5")
+    solution = pc.simulate(TWO, q0=[1, 2], t_span=(0, 5), method="dopri5")
     told: list[float] = []
     solution.largest_reactions(progress=told.append)
     assert len(told) > 10
@@ -200,12 +203,12 @@ def test_progress_goes_up_to_the_end(monkeypatch: Any) -> None:
 
 
 def test_forces_that_no_double_holds_are_said_to_be_so() -> None:
-    solution = pc.simulate(ROD_ALONE, 0.0, 1e160, t_span=(0, 1e-170), store="end")
+    solution = pc.simulate(ROD_ALONE, q0=0.0, qd0=1e160, t_span=(0, 1e-170), store="end")
     assert solution.largest_reactions()[0].force == np.inf
     assert "joint 1: beyond the range of doubles at t = " in text(facts(solution))
 
 
 def test_what_is_known_at_one_time_is_not_told_to_be_steady() -> None:
-    sol = pc.simulate(pc.Scene.textbook(), [0.7, 1.2], t_span=(0, 5), store="end")
+    sol = pc.simulate(pc.Scene.textbook(), q0=[0.7, 1.2], t_span=(0, 5), store="end")
     assert len(sol.t) == 1
     assert not any(one.steady for one in sol.largest_reactions())

@@ -42,7 +42,7 @@ MISSPELLED = {
         "simulate: has no parameter 'tmax': did you mean 't_span'?",
     ),
     "run, nothing near": (
-        lambda: pc.simulate(SCENE, 1.0, t_span=(0, 1), xyzzy=1),
+        lambda: pc.simulate(SCENE, q0=1.0, t_span=(0, 1), xyzzy=1),
         "simulate: has no parameter 'xyzzy': known are scene, q0, qd0, t_span, method, rtol",
     ),
     "event": (
@@ -50,11 +50,11 @@ MISSPELLED = {
         "JointAngle: has no parameter 'val': did you mean 'value'?",
     ),
     "a method of none": (
-        lambda: pc.simulate(SCENE, 1.0, t_span=(0, 1)).reactions(joint=1),
+        lambda: pc.simulate(SCENE, q0=1.0, t_span=(0, 1)).reactions(joint=1),
         "Solution.reactions: has no parameter 'joint': there are none",
     ),
     "a method of none, by place": (
-        lambda: pc.simulate(SCENE, 1.0, t_span=(0, 1)).reactions(1),
+        lambda: pc.simulate(SCENE, q0=1.0, t_span=(0, 1)).reactions(1),
         "Solution.reactions: takes nothing: Solution.reactions()",
     ),
     "explanation": (lambda: SCENE.explain(q0=1.0), "Scene.explain: has no parameter 'q0'"),
@@ -107,12 +107,12 @@ def test_a_start_off_its_lock_is_told_by_the_locks_name():
     scene = pc.Scene(links=[ROD, ROD], effects=[fx.Lock(2, angle=0.0)])
     said = r"^q0: angle of joint 2 = 0\.5: must be 0\.0 rad, as effect 1 \(lock\) says: start there"
     with pytest.raises(ValueError, match=said):
-        pc.simulate(scene, [0.5, 1.0], t_span=(0, 1))
+        pc.simulate(scene, q0=[0.5, 1.0], t_span=(0, 1))
 
 
 def test_an_entry_that_the_ledger_has_not_is_told_with_those_that_it_has():
     scene = SCENE.replace(effects=[fx.ViscousJoint(1, 0.1)])
-    ledger = pc.simulate(scene, 1.0, t_span=(0, 1), ledger=True).energy().ledger
+    ledger = pc.simulate(scene, q0=1.0, t_span=(0, 1), ledger=True).energy().ledger
     message = "the ledger has no entry 'viscos': it has viscous, residual"
     with pytest.raises(KeyError, match=message):
         ledger["viscos"]
@@ -124,7 +124,7 @@ def test_an_entry_that_the_ledger_has_not_is_told_with_those_that_it_has():
 
 def test_a_run_under_a_function_is_not_saved_and_says_how_to_keep_its_numbers(tmp_path):
     scene = SCENE.replace(effects=[fx.User(lambda t, q, qd: 0 * q)])
-    sol = pc.simulate(scene, 1.0, t_span=(0, 1))
+    sol = pc.simulate(scene, q0=1.0, t_span=(0, 1))
     with pytest.raises(TypeError, match=r"cannot be saved: .*sol\.to_pandas\(\) or numpy\.savez\("):
         sol.save(tmp_path / "run.npz")
     assert [*tmp_path.iterdir()] == []

@@ -32,7 +32,7 @@ DOORS: dict[str, Callable[[pc.Solution, Path], object]] = {
         BOOK.scene, BOOK.q0, t_span=(0, 0.1), methods="dopri5", name=HALF
     ),
     "name of a reducer": lambda sol, path: pc.ensemble(
-        BOOK.scene, [BOOK.q0], t_span=(0, 0.1), keep={HALF: pc.keep.EnergyDrift()}
+        BOOK.scene, q0=[BOOK.q0], t_span=(0, 0.1), keep={HALF: pc.keep.EnergyDrift()}
     ),
 }
 

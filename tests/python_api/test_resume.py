@@ -14,17 +14,17 @@ Q0 = [0.8, 1.0]
 
 
 def begun(t_end=5.0, **options):
-    return pc.simulate(BOOK, Q0, 0, (0, t_end), **options)
+    return pc.simulate(BOOK, q0=Q0, qd0=0, t_span=(0, t_end), **options)
 
 
 def test_a_run_that_goes_back_in_time_goes_on_to_earlier_times() -> None:
-    back = pc.simulate(BOOK, 0.5, t_span=(3, 2), t_eval=[2.5, 2.0])
+    back = pc.simulate(BOOK, q0=0.5, t_span=(3, 2), t_eval=[2.5, 2.0])
     way = "s: this run goes back in time$"
     with pytest.raises(ValueError, match=rf"^t_end = 2\.5: .* at or before .* 2\.0 {way}"):
         back.resume(2.5)
     with pytest.raises(ValueError, match=rf"^t_eval\[0\] = 2\.0: must be before .* 2\.0 {way}"):
         back.resume(1.0, [2.0, 1.5])
-    later = pc.simulate(BOOK, 0.5, t_span=(3, 1), t_eval=[1.5], max_steps=2, check=False)
+    later = pc.simulate(BOOK, q0=0.5, t_span=(3, 1), t_eval=[1.5], max_steps=2, check=False)
     with pytest.raises(ValueError, match=rf"^t_end = 1\.75: .* at or before .* 1\.5 {way}"):
         later.resume(1.75)
     assert back.resume(1.0, [1.5]).t[-1] == 1.5
@@ -65,8 +65,8 @@ def test_a_run_of_no_length_goes_on_as_one_made_that_way(
 ) -> None:
     """At a time where a law changes, the law of the side to which the run goes holds."""
     scene = pc.Scene(links=BOOK.links, effects=[effect])
-    direct = pc.simulate(scene, Q0, 1.0, (0, t_end), max_steps=10_000)
-    resumed = pc.simulate(scene, Q0, 1.0, (0, 0)).resume(t_end, max_steps=10_000)
+    direct = pc.simulate(scene, q0=Q0, qd0=1.0, t_span=(0, t_end), max_steps=10_000)
+    resumed = pc.simulate(scene, q0=Q0, qd0=1.0, t_span=(0, 0)).resume(t_end, max_steps=10_000)
     assert (resumed.status, resumed.t[-1]) == (direct.status, t_end) == ("finished", t_end)
     assert np.array_equal(resumed.t, direct.t)
     assert np.array_equal(resumed.y, direct.y)
@@ -79,11 +79,11 @@ def test_a_run_of_no_length_with_dry_friction_goes_forward_alone(rate: float) ->
     friction = pc.effects.DryJointFriction(joint=1, coulomb=0.1)
     scene = pc.Scene(links=[pc.Link(mass=1, length=1)], gravity=0, effects=[friction])
     with pytest.raises(ValueError, match=r"backward.*dry_joint_friction.*run it forward"):
-        pc.simulate(scene, 0, rate, (0, -1))
-    point = pc.simulate(scene, 0, rate, (0, 0))
+        pc.simulate(scene, q0=0, qd0=rate, t_span=(0, -1))
+    point = pc.simulate(scene, q0=0, qd0=rate, t_span=(0, 0))
     with pytest.raises(ValueError, match=r"backward.*dry_joint_friction.*run it forward"):
         point.resume(-1)
-    direct = pc.simulate(scene, 0, rate, (0, 1))
+    direct = pc.simulate(scene, q0=0, qd0=rate, t_span=(0, 1))
     assert np.array_equal(point.resume(1).y, direct.y)
 
 
@@ -104,8 +104,8 @@ def test_an_end_before_the_times_asked_for_is_refused():
 def test_a_few_attempts_at_a_time_get_past_one_that_the_end_cut_short():
     """The first attempt would go beyond the end, on which the run depends: it is made anew."""
     how = {"method": "dopri5", "first_step": 2.0}
-    few = pc.simulate(BOOK, Q0, 0, (0, 1), max_steps=8, check=False, **how)
-    whole = pc.simulate(BOOK, Q0, 0, (0, 1), **how)
+    few = pc.simulate(BOOK, q0=Q0, qd0=0, t_span=(0, 1), max_steps=8, check=False, **how)
+    whole = pc.simulate(BOOK, q0=Q0, qd0=0, t_span=(0, 1), **how)
     assert np.array_equal(few.resume(1).y, whole.y)
     attempts = whole.stats.accepted + whole.stats.rejected
     same = few
@@ -116,12 +116,12 @@ def test_a_few_attempts_at_a_time_get_past_one_that_the_end_cut_short():
     later = few
     while later.status == "max_steps":
         later = later.resume(3, max_steps=8, check=False)
-    assert np.array_equal(later.y, pc.simulate(BOOK, Q0, 0, (0, 3), **how).y)
+    assert np.array_equal(later.y, pc.simulate(BOOK, q0=Q0, qd0=0, t_span=(0, 3), **how).y)
 
 
 def test_sampled_states_are_those_of_the_motion():
     resumed = begun(t_eval=[0, 1]).resume(10, t_eval=[5, 6, 7])
-    whole = pc.simulate(BOOK, Q0, 0, (0, 10), t_eval=[0, 1, 5, 6, 7])
+    whole = pc.simulate(BOOK, q0=Q0, qd0=0, t_span=(0, 10), t_eval=[0, 1, 5, 6, 7])
     assert np.array_equal(resumed.t, whole.t)
     assert np.array_equal(resumed.y, whole.y)
 
@@ -188,7 +188,7 @@ def test_a_blow_up_is_told_alike_whether_the_run_goes_on_or_never_stopped():
     damped = pc.effects.ViscousJoint(joint=1, damping=0.5, damping2=0.375)
     scene = pc.Scene(links=[pc.Link(mass=1.0, length=0.6)] * 2, effects=[damped])
     how = {"method": "rk4", "step": 0.003, "ledger": True, "check": False}
-    whole = pc.simulate(scene, 1.0, 2.0, (0, -2.5), **how)
+    whole = pc.simulate(scene, q0=1.0, qd0=2.0, t_span=(0, -2.5), **how)
     assert whole.status == "non_finite"
-    leg = pc.simulate(scene, 1.0, 2.0, (0, -1.0), **how)
+    leg = pc.simulate(scene, q0=1.0, qd0=2.0, t_span=(0, -1.0), **how)
     assert leg.resume(-2.5, check=False).message == whole.message

@@ -242,9 +242,11 @@ RUBBED = pc.Scene(
 @pytest.mark.parametrize("rtol", [1e-3, 1e-8])
 def test_one_attempt_a_leg_is_the_same_run(ledger: bool, rtol: float) -> None:
     how = {"ledger": ledger, "rtol": rtol, "compensated": ledger}
-    whole = pc.simulate(RUBBED, [0.4, 1.0], [3.0, -2.0], (0, 1.0), **how)
+    whole = pc.simulate(RUBBED, q0=[0.4, 1.0], qd0=[3.0, -2.0], t_span=(0, 1.0), **how)
     assert whole.stats.limited_by_break > 2
-    sol = pc.simulate(RUBBED, [0.4, 1.0], [3.0, -2.0], (0, 1.0), max_steps=1, check=False, **how)
+    sol = pc.simulate(
+        RUBBED, q0=[0.4, 1.0], qd0=[3.0, -2.0], t_span=(0, 1.0), max_steps=1, check=False, **how
+    )
     legs = 1
     while sol.status == "max_steps" and legs < 10_000:
         sol = sol.resume(1.0, max_steps=1, check=False)
@@ -264,10 +266,10 @@ def test_a_ledger_does_not_go_on_without_the_spline_that_moves_the_pivot(
         links=[pc.Link(mass=1.0, length=0.6)], effects=[fx.DrivenPivot(spline=spline), fx.Lock(1)]
     )
     with pytest.warns(pc.PendcoreWarning, match="its spline goes from"):
-        whole = pc.simulate(scene, 1.0, 0.0, (0, t_end), ledger=True, check=False)
+        whole = pc.simulate(scene, q0=1.0, qd0=0.0, t_span=(0, t_end), ledger=True, check=False)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", pc.PendcoreWarning)
-        begun = pc.simulate(scene, 1.0, 0.0, (0, cut * t_end), ledger=True)
+        begun = pc.simulate(scene, q0=1.0, qd0=0.0, t_span=(0, cut * t_end), ledger=True)
     assert (whole.status, whole.t[-1]) == ("non_finite", 3.5 if t_end > 0 else -1.0)
     assert np.isfinite(whole.energy().ledger.residual).all()
     assert differences(whole, begun.resume(t_end, check=False)) == []
@@ -295,7 +297,7 @@ def test_whichever_call_of_a_users_function_raises_the_run_goes_on_the_same(
     def run(law: Raises) -> pc.Solution:
         scene = RUBBED.replace(effects=[*RUBBED.effects, fx.User(law)])
         try:
-            return pc.simulate(scene, [0.4, 1.0], [3.0, -2.0], (0, 1.0), **how)
+            return pc.simulate(scene, q0=[0.4, 1.0], qd0=[3.0, -2.0], t_span=(0, 1.0), **how)
         except LookupError as stop:
             so_far = getattr(stop, "solution", None)
             return so_far.resume(1.0) if so_far else run(law)  # before there was a run
@@ -328,7 +330,7 @@ def stopped(way: str, **how: Any) -> pc.Solution:
             how["progress"] = raises
         else:
             how |= {"time_limit": 0.1, "check": False}
-        return pc.simulate(pc.Scene.textbook(), [0.8, 1.0], 0, (0, 3000.0), **how)
+        return pc.simulate(pc.Scene.textbook(), q0=[0.8, 1.0], qd0=0, t_span=(0, 3000.0), **how)
     except (KeyboardInterrupt, LookupError) as stop:
         return stop.solution  # type: ignore[union-attr]
 
@@ -341,7 +343,7 @@ def test_a_run_that_was_stopped_from_outside_goes_on_the_same(way: str, compensa
     assert begun.status != "finished"
     reached = float(begun.t[-1])
     assert 0 < reached < 3000
-    whole = pc.simulate(pc.Scene.textbook(), [0.8, 1.0], 0, (0, reached + 1.0), **how)
+    whole = pc.simulate(pc.Scene.textbook(), q0=[0.8, 1.0], qd0=0, t_span=(0, reached + 1.0), **how)
     assert differences(whole, pickle.loads(pickle.dumps(begun)).resume(reached + 1.0)) == []
 
 
@@ -372,8 +374,8 @@ def test_another_process_with_other_instructions_goes_on_the_same(
         "method": method, "rtol": 1e-6, "events": WATCHED, "ledger": True,
         "compensated": METHODS[method]["compensates"],
     }  # fmt: skip
-    whole = pc.simulate(scene, [0.4, 0.9], [3.0, -2.0], (0, 1.0), **how)
-    begun = pc.simulate(scene, [0.4, 0.9], [3.0, -2.0], (0, cut), **how)
+    whole = pc.simulate(scene, q0=[0.4, 0.9], qd0=[3.0, -2.0], t_span=(0, 1.0), **how)
+    begun = pc.simulate(scene, q0=[0.4, 0.9], qd0=[3.0, -2.0], t_span=(0, cut), **how)
     assert whole.success
     bounces = [np.count_nonzero(np.diff(sol.t) == 0) for sol in (begun, whole)]
     assert 0 < bounces[0] < bounces[1]

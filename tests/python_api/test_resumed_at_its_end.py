@@ -20,9 +20,11 @@ def test_one_attempt_a_leg_gets_past_a_last_step_that_is_rejected(
 ) -> None:
     free = pc.Scene(links=[pc.Link(mass=1.0, length=0.6)] * 2)
     how = {"method": method, "rtol": rtol}
-    whole = pc.simulate(free, [0.4, 1.0], [3.0, -2.0], (0, t_end), **how)
-    longer = pc.simulate(free, [0.4, 1.0], [3.0, -2.0], (0, t_end + 1), **how)
-    sol = pc.simulate(free, [0.4, 1.0], [3.0, -2.0], (0, t_end), max_steps=1, check=False, **how)
+    whole = pc.simulate(free, q0=[0.4, 1.0], qd0=[3.0, -2.0], t_span=(0, t_end), **how)
+    longer = pc.simulate(free, q0=[0.4, 1.0], qd0=[3.0, -2.0], t_span=(0, t_end + 1), **how)
+    sol = pc.simulate(
+        free, q0=[0.4, 1.0], qd0=[3.0, -2.0], t_span=(0, t_end), max_steps=1, check=False, **how
+    )
     attempts = whole.stats.accepted + whole.stats.rejected
     for _ in range(attempts - 1):
         assert sol.status == "max_steps"

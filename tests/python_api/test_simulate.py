@@ -81,14 +81,15 @@ def read_only():
     ids=["list", "array", "read-only", "strided", "reversed", "big-endian", "long double"],
 )
 def test_the_same_start_in_any_form_gives_the_same_bits(q0):
-    assert same_bits(pc.simulate(pc.Scene.textbook(), q0, 0.0, (0, 5)), textbook())
+    assert same_bits(pc.simulate(pc.Scene.textbook(), q0=q0, qd0=0.0, t_span=(0, 5)), textbook())
 
 
 @pytest.mark.parametrize("start", [[1, 2], np.array([1, 2]), np.array([1, 2], dtype=np.float32)])
 def test_integers_and_single_precision_are_taken_for_what_they_are(start):
     scene = pc.Scene.textbook()
     assert same_bits(
-        pc.simulate(scene, start, start, (0, 1)), pc.simulate(scene, [1.0, 2.0], [1.0, 2.0], (0, 1))
+        pc.simulate(scene, q0=start, qd0=start, t_span=(0, 1)),
+        pc.simulate(scene, q0=[1.0, 2.0], qd0=[1.0, 2.0], t_span=(0, 1)),
     )
 
 
@@ -96,13 +97,14 @@ def test_integers_and_single_precision_are_taken_for_what_they_are(start):
 def test_scalars_hold_for_every_link(start):
     scene = pc.Scene.textbook()
     assert same_bits(
-        pc.simulate(scene, start, start, (0, 1)), pc.simulate(scene, [1, 1], [1, 1], (0, 1))
+        pc.simulate(scene, q0=start, qd0=start, t_span=(0, 1)),
+        pc.simulate(scene, q0=[1, 1], qd0=[1, 1], t_span=(0, 1)),
     )
 
 
 @pytest.mark.parametrize("t_span", [[0, 5], np.array([0, 5]), (np.float64(0), np.int64(5))])
 def test_t_span_may_be_any_pair(t_span):
-    assert same_bits(pc.simulate(pc.Scene.textbook(), Q0, t_span=t_span), textbook())
+    assert same_bits(pc.simulate(pc.Scene.textbook(), q0=Q0, t_span=t_span), textbook())
 
 
 def test_tolerances_may_be_given_for_every_component():
@@ -110,7 +112,7 @@ def test_tolerances_may_be_given_for_every_component():
     assert same_bits(
         textbook(rtol=1e-8, atol=1e-10), textbook(rtol=np.full(4, 1e-8), atol=[1e-10] * 4)
     )
-    tight_rates = pc.simulate(scene, Q0, 0.0, (0, 5), rtol=[1e-3, 1e-3, 1e-9, 1e-9])
+    tight_rates = pc.simulate(scene, q0=Q0, qd0=0.0, t_span=(0, 5), rtol=[1e-3, 1e-3, 1e-9, 1e-9])
     assert tight_rates.stats.accepted > textbook(rtol=1e-3).stats.accepted
 
 
@@ -138,14 +140,16 @@ def test_dense_output_may_be_kept_beside_the_times_asked_for():
 
 def test_a_run_may_go_backward_and_comes_back_to_its_start():
     there = textbook(rtol=1e-12)
-    back = pc.simulate(pc.Scene.textbook(), there.q[-1], there.qd[-1], (5, 0), rtol=1e-12)
+    back = pc.simulate(
+        pc.Scene.textbook(), q0=there.q[-1], qd0=there.qd[-1], t_span=(5, 0), rtol=1e-12
+    )
     assert np.all(np.diff(back.t) < 0)
     np.testing.assert_allclose(back.y[:, -1], there.y[:, 0], rtol=0, atol=1e-9)
     assert np.array_equal(back(5.0), there.y[:, -1])
 
 
 def test_a_run_of_no_length_is_its_start(method):
-    run = pc.simulate(pc.Scene.textbook(), Q0, 0.5, (2, 2), method=method)
+    run = pc.simulate(pc.Scene.textbook(), q0=Q0, qd0=0.5, t_span=(2, 2), method=method)
     assert run.success
     assert np.array_equal(run.y[:, -1], [*Q0, 0.5, 0.5])
     assert np.array_equal(run(2.0), run.y[:, -1])
@@ -160,7 +164,13 @@ def test_a_fixed_step_is_kept_but_for_the_last():
 @pytest.mark.parametrize("t_end", [5.0, -5.0])
 def test_steps_are_no_longer_than_max_step(t_end, method):
     run = pc.simulate(
-        pc.Scene.textbook(), Q0, 0.0, (0.0, t_end), max_step=0.003, method=method, rtol=1e-6
+        pc.Scene.textbook(),
+        q0=Q0,
+        qd0=0.0,
+        t_span=(0.0, t_end),
+        max_step=0.003,
+        method=method,
+        rtol=1e-6,
     )
     assert run.t[-1] == t_end
     assert np.abs(np.diff(run.t)).max() <= 0.003 * (1 + 1e-12)
@@ -170,7 +180,9 @@ def test_steps_are_no_longer_than_max_step(t_end, method):
 
 @pytest.mark.parametrize("t_end", [5.0, -5.0])
 def test_the_first_step_is_as_asked(t_end, method):
-    run = pc.simulate(pc.Scene.textbook(), Q0, 0.0, (0.0, t_end), first_step=1e-4, method=method)
+    run = pc.simulate(
+        pc.Scene.textbook(), q0=Q0, qd0=0.0, t_span=(0.0, t_end), first_step=1e-4, method=method
+    )
     assert run.t[1] == np.copysign(1e-4, t_end)
 
 
@@ -216,7 +228,7 @@ def test_a_progress_function_gets_growing_fractions():
     fractions = []
     scene = pc.Scene.textbook()
     how = {"store": "end", "time_limit": 0.4, "check": False}
-    pc.simulate(scene, Q0, 0.0, (0, 1e9), **how, progress=fractions.append)
+    pc.simulate(scene, q0=Q0, qd0=0.0, t_span=(0, 1e9), **how, progress=fractions.append)
     assert len(fractions) >= 3
     assert fractions == sorted(fractions)
     assert 0 <= fractions[0] <= fractions[-1] <= 1

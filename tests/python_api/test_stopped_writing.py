@@ -201,7 +201,7 @@ def test_a_save_that_fails_names_its_file_and_leaves_the_earlier_one(monkeypatch
 
 def test_progress_of_a_save_goes_up_to_the_end() -> None:
     told: list[float] = []
-    solution = pc.simulate(pc.Scene.textbook(), [1, 2], t_span=(0, 50))
+    solution = pc.simulate(pc.Scene.textbook(), q0=[1, 2], t_span=(0, 50))
     solution.save("run.npz", progress=told.append)
     assert told == sorted(told)
     assert told[0] < 0.1

@@ -89,7 +89,7 @@ def test_a_fit_does_not_take_a_shorter_run_for_the_whole() -> None:
 
 
 def test_a_resumed_run_is_checked_by_what_resume_is_told() -> None:
-    begun = pc.simulate(BOOK, START["q0"], t_span=(0, 1), check=True)
+    begun = pc.simulate(BOOK, q0=START["q0"], t_span=(0, 1), check=True)
     with pytest.warns(pc.PendcoreWarning, match=r"before t_end = 3 s, with status max_steps"):
         begun.resume(3, max_steps=2)
     with pytest.raises(pc.RunError) as end:
@@ -148,9 +148,9 @@ def test_what_is_no_check_is_refused_before_anything_is_run(check: Any) -> None:
     message = rf"^check = {re.escape(repr(check))}: must be None \(warn.*, True .*or False"
     endless = {"t_span": (0, 1e12), "store": "end"}
     with pytest.raises(TypeError, match=message):
-        pc.simulate(BOOK, 0.3, **endless, check=check)
+        pc.simulate(BOOK, q0=0.3, **endless, check=check)
     with pytest.raises(TypeError, match=message):
-        pc.simulate(BOOK, 0.3, t_span=(0, 1)).resume(1e12, check=check)
+        pc.simulate(BOOK, q0=0.3, t_span=(0, 1)).resume(1e12, check=check)
     case = pc.Case(scene=BOOK, q0=0.3, t_span=(0, 1e12), options={"check": check})
     for asked in (None, False):
         with pytest.raises(TypeError, match=message):

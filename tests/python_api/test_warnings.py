@@ -22,21 +22,21 @@ def scene(mass: float) -> pc.Scene:
 
 
 def short(k: int) -> None:
-    pc.simulate(pc.Scene.textbook(), [0.5, 0.1 * k], t_span=(0, 5 + k), max_steps=5 + k)
+    pc.simulate(pc.Scene.textbook(), q0=[0.5, 0.1 * k], t_span=(0, 5 + k), max_steps=5 + k)
 
 
 def in_degrees(k: int) -> None:
-    pc.simulate(pc.Scene.textbook(), [45.0, 60.0 + 5 * k], t_span=(0, 0.1))
+    pc.simulate(pc.Scene.textbook(), q0=[45.0, 60.0 + 5 * k], t_span=(0, 0.1))
 
 
 def members(k: int) -> None:
-    pc.ensemble(pc.Scene.textbook(), np.zeros((k + 1, 2)), t_span=(0, 5), max_steps=2)
+    pc.ensemble(pc.Scene.textbook(), q0=np.zeros((k + 1, 2)), t_span=(0, 5), max_steps=2)
 
 
 def wave(k: int) -> None:
     driven = pc.effects.Motor(1, table=pc.effects.Table(t=[0, 0.5 + k], torque=[1, 2]))
     one = pc.Scene.textbook().replace(effects=[driven])
-    pc.simulate(one, 0.3, t_span=(0, 1 + k), check=False)
+    pc.simulate(one, q0=0.3, t_span=(0, 1 + k), check=False)
 
 
 LOOPS: dict[str, tuple[Callable[[int], object], int]] = {
@@ -108,10 +108,10 @@ def test_filters_do_as_they_say(action: Any, shown: list[Any]) -> None:
 def test_what_the_package_does_in_silence_leaves_pythons_filters_alone(
     tmp_path: Path, shown: list[Any]
 ) -> None:
-    sol = pc.simulate(scene(HEAVY), 0.5, t_span=(0, 0.1))
+    sol = pc.simulate(scene(HEAVY), q0=0.5, t_span=(0, 0.1))
     sol.save(tmp_path / "run.npz")
     varied = {"link[1].mass": [HEAVY, 2 * HEAVY]}
-    found = pc.ensemble(sol.scene, [0.5, 0.5], t_span=(0, 0.1), vary=varied)
+    found = pc.ensemble(sol.scene, q0=[0.5, 0.5], t_span=(0, 0.1), vary=varied)
     assert len(shown) == 2
     for k in range(3):
         scene(HEAVY + k)

@@ -23,7 +23,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture(scope="module")
 def sol() -> pc.Solution:
-    return pc.simulate(BOOK.scene, BOOK.q0, t_span=(0, 0.5))
+    return pc.simulate(BOOK.scene, q0=BOOK.q0, t_span=(0, 0.5))
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +38,7 @@ WRITERS: dict[str, Callable[[pc.Solution, pc.AccuracyCost], object]] = {
     "a.html": lambda sol, cost: sol.to_html("a.html"),
     "a.gif": lambda sol, cost: sol.to_video("a.gif", fps=4),
     "a.json": lambda sol, cost: cost.to_json("a.json"),
-    "all.npz": lambda sol, cost: pc.ensemble(BOOK.scene, [BOOK.q0] * 2, t_span=(0, 0.1)).save(
+    "all.npz": lambda sol, cost: pc.ensemble(BOOK.scene, q0=[BOOK.q0] * 2, t_span=(0, 0.1)).save(
         "all.npz"
     ),
     "a.png": lambda sol, cost: main(["show", "-o", "a.png"]),
@@ -92,7 +92,7 @@ def test_two_writers_of_one_path_do_not_meet() -> None:
 
 
 def test_threads_that_save_to_one_path_always_leave_a_whole_file(sol: pc.Solution) -> None:
-    other = pc.simulate(BOOK.scene, [-1, -1], t_span=(0, 20))
+    other = pc.simulate(BOOK.scene, q0=[-1, -1], t_span=(0, 20))
     lengths = {len(sol.t), len(other.t)}
     sol.save("a.npz")
     failures: list[BaseException] = []

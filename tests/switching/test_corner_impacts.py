@@ -96,19 +96,21 @@ def test_two_stops_reached_at_one_time_are_told_as_for_rounding_to_say(
 ) -> None:
     """Both joints turn towards stops that they reach at 0.05 s, or one of them a little later."""
     free = pc.Scene(links=links(TWO), gravity=0.0)
-    reached = pc.simulate(free, [0.3, 0.9], [1.0, 4.0], (0, 0.05), **FINE).q[-1]
+    reached = pc.simulate(free, q0=[0.3, 0.9], qd0=[1.0, 4.0], t_span=(0, 0.05), **FINE).q[-1]
     ends = reached[0], reached[1] - reached[0] + apart
     stops = [
         fx.JointStop(joint=j + 1, range=(-np.inf, end), restitution=0.5)
         for j, end in enumerate(ends)
     ]
-    sol = pc.simulate(free.replace(effects=stops), [0.3, 0.9], [1.0, 4.0], (0, 0.06), **FINE)
+    sol = pc.simulate(
+        free.replace(effects=stops), q0=[0.3, 0.9], qd0=[1.0, 4.0], t_span=(0, 0.06), **FINE
+    )
     assert ("rounding has decided" in sol.message) == is_told
 
 
 def test_impacts_at_the_very_start_are_one_problem_and_need_no_remark() -> None:
     stops = [fx.JointStop(joint=j, range=(-1.0, end)) for j, end in ((1, 0.3), (2, 0.5))]
     scene = pc.Scene(links=links(TWO), gravity=0.0, effects=stops)
-    sol = pc.simulate(scene, [0.3, 0.8], [1.0, 4.0], (0, 0.1))
+    sol = pc.simulate(scene, q0=[0.3, 0.8], qd0=[1.0, 4.0], t_span=(0, 0.1))
     assert sol.t[1] == 0.0
     assert "rounding" not in sol.message

@@ -105,7 +105,7 @@ def test_impacts_of_light_links_add_no_energy(n: int, locked: bool) -> None:
     impacts = 0
     for seed in range(40):
         scene, q, qd = chain(n, seed, locked=locked)
-        sol = pc.simulate(scene, q, qd, (0, 1e-9), ledger=True, max_steps=2000)
+        sol = pc.simulate(scene, q0=q, qd0=qd, t_span=(0, 1e-9), ledger=True, max_steps=2000)
         if len(sol.t) < 2 or sol.t[1] != 0.0:
             continue  # no joint moves into its stop
         booked = sol.energy().ledger.impact
@@ -142,7 +142,7 @@ def test_links_of_grams_under_links_of_kilograms_bounce_without_gaining_energy()
         scene = pc.Scene(links=links, gravity=9.807, effects=effects)
     q = [1.1896105221836761, 1.305811112181916, 1.7884018699391542, 2.5616076481272216, 3.17850003]
     qd = [1.512648075168805, -2.7298521238442603, -7.468426526689257, -14.67869747, -10.9402457]
-    sol = pc.simulate(scene, q, qd, (0, 0.2), ledger=True, max_steps=100_000)
+    sol = pc.simulate(scene, q0=q, qd0=qd, t_span=(0, 0.2), ledger=True, max_steps=100_000)
     booked = sol.energy().ledger.impact
     rows = np.flatnonzero(np.diff(sol.t) == 0)
     assert len(rows) > 5

@@ -127,7 +127,7 @@ def test_elastic_bounces_keep_the_energy_and_their_beat(fine: Any) -> None:
     bounces = 1000
     end = first / torque * (1 + 2 * bounces)
     scene = pressed(torque, restitution=1.0)
-    sol = pc.simulate(scene, height, 0, (0, end), ledger=True, **fine)
+    sol = pc.simulate(scene, q0=height, qd0=0, t_span=(0, end), ledger=True, **fine)
     assert sol.status == "finished"
     assert len(jumps(sol)) in {bounces, bounces + 1}
     assert np.abs(sol.energy().ledger.impact).max() < 1e-12
@@ -175,7 +175,7 @@ def test_a_pendulum_on_a_stop_at_the_bottom_swings_less_by_the_restitution(fine:
 def test_there_and_back_over_elastic_bounces_is_where_it_began(fine: Any) -> None:
     scene = pressed(2.0, restitution=1.0)
     there = solve(scene, 0.4, 0.1, 3, **fine)
-    back = pc.simulate(scene, there.q[-1], there.qd[-1], (3, 0), **fine)
+    back = pc.simulate(scene, q0=there.q[-1], qd0=there.qd[-1], t_span=(3, 0), **fine)
     assert back.success
     np.testing.assert_allclose(back.y[:, -1], [0.4, 0.1], atol=1e-10)
     assert len(jumps(back)) == len(jumps(there)) > 0
@@ -184,4 +184,4 @@ def test_there_and_back_over_elastic_bounces_is_where_it_began(fine: Any) -> Non
 @pytest.mark.parametrize("e", [0.0, 0.5, 0.999])
 def test_an_inelastic_stop_is_refused_backward_by_name(e: float) -> None:
     with pytest.raises(ValueError, match=r"joint_stop"):
-        pc.simulate(pressed(2.0, restitution=e), 0.4, 0, (1, 0))
+        pc.simulate(pressed(2.0, restitution=e), q0=0.4, qd0=0, t_span=(1, 0))

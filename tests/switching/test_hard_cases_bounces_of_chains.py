@@ -55,7 +55,9 @@ class Bounces:
         effects = [stop, fx.Motor(joint=1, sinusoid=hum)] if self.amplitude else [stop]
         chain = self.chain
         scene = pc.Scene(links=links(chain), gravity=chain.gravity, effects=effects)
-        return pc.simulate(scene, self.start, 0, (0, self.t_end), ledger=True, **options)
+        return pc.simulate(
+            scene, q0=self.start, qd0=0, t_span=(0, self.t_end), ledger=True, **options
+        )
 
 
 RUNS = {

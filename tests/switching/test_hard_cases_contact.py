@@ -52,7 +52,7 @@ def test_a_biased_push_lets_go_at_its_arcsine(fine: Any) -> None:
     lean = fx.Motor(joint=1, constant=0.3)
     t0 = np.pi / (2 * w)  # where the push is largest
     release = (np.pi - np.arcsin(0.3)) / w
-    sol = pc.simulate(rod(hum, lean, stop(0, inf)), 0, 0, (t0, release + 0.2), **fine)
+    sol = pc.simulate(rod(hum, lean, stop(0, inf)), q0=0, qd0=0, t_span=(t0, release + 0.2), **fine)
     assert np.abs(sol.t - release).min() < 1e-12
     assert not sol.qd[sol.t < release * (1 - 1e-12)].any()
     end = release + 0.2
@@ -126,8 +126,8 @@ def test_a_stop_that_is_never_reached_changes_no_bit(links: int, method: str) ->
         effects=[stop(-51.0, 51.0, joint=j + 1, restitution=0.5) for j in range(links)]
     )
     start = np.linspace(0.3, 1.2, links)
-    free = pc.simulate(bare, start, 0.1, (0, 3), method=method)
-    never = pc.simulate(stopped, start, 0.1, (0, 3), method=method)
+    free = pc.simulate(bare, q0=start, qd0=0.1, t_span=(0, 3), method=method)
+    never = pc.simulate(stopped, q0=start, qd0=0.1, t_span=(0, 3), method=method)
     np.testing.assert_array_equal(never.t, free.t)
     np.testing.assert_array_equal(never.y, free.y)
     times = np.linspace(0, 3, 50)
@@ -169,13 +169,15 @@ def test_a_joint_of_a_chain_grazes_its_stop_if_and_only_if_its_swing_reaches_it(
     start = [1.0, 0.9]
     fine = {**fine, "rtol": 1e-13}  # a hundredth of the least miss
     turn = ev.RateZero(joint=2, direction=-1)
-    free = pc.simulate(free_scene, start, 0, (0, 2), events=[turn], **fine)
+    free = pc.simulate(free_scene, q0=start, qd0=0, t_span=(0, 2), events=[turn], **fine)
     top = max(free.events[0], key=lambda found: found.q[1] - found.q[0])
     angle = top.q[1] - top.q[0]
 
     def run(bound: float) -> pc.Solution:
         effects = [stop(-inf, bound, joint=2, restitution=e)]
-        return pc.simulate(free_scene.replace(effects=effects), start, 0, (0, 2), **fine)
+        return pc.simulate(
+            free_scene.replace(effects=effects), q0=start, qd0=0, t_span=(0, 2), **fine
+        )
 
     np.testing.assert_array_equal(run(angle + miss).y, free.y)
     short = run(angle - miss)

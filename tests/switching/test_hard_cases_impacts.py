@@ -48,7 +48,9 @@ def test_an_impact_turns_the_joint_and_jerks_the_others_as_the_law_says(
         phi[joint - 1] = 0.1
         phid = random.uniform(-2, 2, n)
         phid[joint - 1] = 3.0
-        sol = pc.simulate(scene, np.cumsum(phi), np.cumsum(phid), (0, 0.6), ledger=True, **fine)
+        sol = pc.simulate(
+            scene, q0=np.cumsum(phi), qd0=np.cumsum(phid), t_span=(0, 0.6), ledger=True, **fine
+        )
         assert sol.success, sol.message
         row_j = joints(n)[joint - 1]
         angle = sol.relative_angles()[:, joint - 1]
@@ -97,7 +99,7 @@ def test_stops_hit_at_once_share_the_impulse_by_complementarity(n: int, fine: An
         normals = -side[:, None] * joints(n)
         m = chain.mass_matrix(q)
         exact, impulses = rates_after_impact(m, qd, normals, restitution)
-        sol = pc.simulate(scene, q, qd, (0, 1e-5), ledger=True, **fine)
+        sol = pc.simulate(scene, q0=q, qd0=qd, t_span=(0, 1e-5), ledger=True, **fine)
         assert sol.success, f"seed {seed}: {sol.message}"
         lost = kinetic(m, qd) - kinetic(m, exact)
         assert lost >= -1e-12 * kinetic(m, qd)
@@ -119,12 +121,14 @@ def two_stops(apart: float, fine: Any) -> tuple[pc.Solution, Any, Any]:
     """
     free = pc.Scene(links=links(TWO), gravity=0.0)
     start, rates = [0.3, 0.9], [1.0, 4.0]
-    reached = pc.simulate(free, start, rates, (0, 0.05), **fine)
+    reached = pc.simulate(free, q0=start, qd0=rates, t_span=(0, 0.05), **fine)
     q, qd = reached.q[-1], reached.qd[-1]
     phi = np.array([q[0], q[1] - q[0] + apart])
     assert (joints(2) @ qd > 0).all()
     stops = [fx.JointStop(joint=j + 1, range=(-inf, phi[j]), restitution=0.5) for j in range(2)]
-    sol = pc.simulate(free.replace(effects=stops), start, rates, (0, 0.05 + 1e-8), **fine)
+    sol = pc.simulate(
+        free.replace(effects=stops), q0=start, qd0=rates, t_span=(0, 0.05 + 1e-8), **fine
+    )
     assert sol.success
     assert (sol.relative_angles() <= phi + 1e-15).all()
     return sol, TWO.mass_matrix(q), qd
@@ -171,7 +175,7 @@ def test_an_impact_sets_a_stuck_joint_free_and_friction_gives_no_impulse(fine: A
         fx.JointStop(joint=2, range=(-inf, 0.5), restitution=0.3),
     ]
     scene = pc.Scene(links=links(chain), gravity=0.0, effects=effects)
-    sol = pc.simulate(scene, [0.2, 0.3], [0.0, 2.0], (0, 1), **fine)
+    sol = pc.simulate(scene, q0=[0.2, 0.3], qd0=[0.0, 2.0], t_span=(0, 1), **fine)
     row = int(np.flatnonzero(np.diff(sol.t) == 0)[0])
     assert sol.qd[row, 0] == 0.0
     assert sol.q[row, 0] == 0.2
@@ -191,7 +195,7 @@ def test_the_drive_pays_its_share_of_an_impact_on_a_moving_pivot(fine: Any) -> N
         fx.JointStop(joint=2, range=(-0.5, 0.4), restitution=0.4),
     ]
     scene = pc.Scene(links=[rod, rod], gravity=9.81, effects=effects)
-    sol = pc.simulate(scene, [1.5, 1.6], 0, (0, 3), ledger=True, **fine)
+    sol = pc.simulate(scene, q0=[1.5, 1.6], qd0=0, t_span=(0, 3), ledger=True, **fine)
     assert sol.success
     ledger = sol.energy().ledger
     assert ledger.impact[-1] > 0.1

@@ -70,12 +70,14 @@ def test_chains_of_many_contacts_get_to_their_end_within_their_stops(
     how: dict[str, Any] = {"method": method, "rtol": 1e-9, "atol": 1e-11, "max_steps": 50_000}
     for seed in range(60 * block, 60 * block + 60):
         scene, q0, qd0 = drawn(seed)
-        runs = [pc.simulate(scene, q0, qd0, (0, 3), ledger=True, **how)]
+        runs = [pc.simulate(scene, q0=q0, qd0=qd0, t_span=(0, 3), ledger=True, **how)]
         # Nothing but max_step limits the error of the work where a shaken chain is held.
         drives = [effect.x for effect in scene.effects if effect.kind == "driven_pivot"]
         for drive in drives:
             fine = 2 * np.pi / drive.angular_frequency / 50
-            runs.append(pc.simulate(scene, q0, qd0, (0, 3), ledger=True, max_step=fine, **how))
+            runs.append(
+                pc.simulate(scene, q0=q0, qd0=qd0, t_span=(0, 3), ledger=True, max_step=fine, **how)
+            )
         for sol in runs:
             assert sol.status in {"finished", "at_rest"}, (seed, sol.message)
             assert sol.t[-1] == 3.0

@@ -34,7 +34,7 @@ def resting(seed: int) -> tuple[pc.Scene, np.ndarray]:
 def test_chains_that_rest_at_their_stops_get_going(seeds, method):
     for seed in seeds:
         scene, q0 = resting(seed)
-        sol = pc.simulate(scene, q0, 0, (0, 1), method=method, max_steps=20_000)
+        sol = pc.simulate(scene, q0=q0, qd0=0, t_span=(0, 1), method=method, max_steps=20_000)
         assert sol.success, (seed, sol.message)
         assert_within_its_stops(sol)
 
@@ -48,16 +48,18 @@ def test_a_dense_output_that_begins_with_its_own_error_is_not_taken_for_an_impac
         fx.JointStop(joint=3, range=(q0[2] - q0[1], -0.5)),
     ]
     scene = pc.Scene(links=[pc.Link(mass=1, length=1)] * 3, gravity=0, effects=[*stops, hum])
-    sol = pc.simulate(scene, q0, 0, (0, 0.1), method=method, rtol=1e-10)
+    sol = pc.simulate(scene, q0=q0, qd0=0, t_span=(0, 0.1), method=method, rtol=1e-10)
     assert sol.success, sol.message
     # Without the stops the same motion: they only let go.
-    free = pc.simulate(scene.replace(effects=[hum]), q0, 0, (0, 0.1), method=method, rtol=1e-10)
+    free = pc.simulate(
+        scene.replace(effects=[hum]), q0=q0, qd0=0, t_span=(0, 0.1), method=method, rtol=1e-10
+    )
     np.testing.assert_allclose(sol(0.1), free(0.1), atol=1e-12)
 
 
 @pytest.mark.parametrize("seed", [392, 1656, 6741])
 def test_chains_of_many_contacts_that_went_back_and_forth_get_to_their_end(seed, method):
     scene, q0, qd0 = drawn(seed)
-    sol = pc.simulate(scene, q0, qd0, (0, 3), method=method, max_steps=50_000)
+    sol = pc.simulate(scene, q0=q0, qd0=qd0, t_span=(0, 3), method=method, max_steps=50_000)
     assert sol.success, sol.message
     assert_within_its_stops(sol)

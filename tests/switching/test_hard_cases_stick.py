@@ -49,7 +49,9 @@ def test_a_rod_held_at_30_degrees_under_a_hum_moves_by_nothing_in_1e6_s(
     hum: Any, method: str
 ) -> None:
     """Friction of twice what it needs: the hum takes up less than the other half."""
-    sol = pc.simulate(inclined(2.0, hum), np.pi / 6, 0, (0, 1e6), store="steps", method=method)
+    sol = pc.simulate(
+        inclined(2.0, hum), q0=np.pi / 6, qd0=0, t_span=(0, 1e6), store="steps", method=method
+    )
     assert sol.t[-1] == 1e6 or sol.status == "at_rest"
     assert_never_moved(sol, np.pi / 6)
 

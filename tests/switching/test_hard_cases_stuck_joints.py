@@ -111,7 +111,13 @@ def test_a_run_from_rest_begins_as_the_law_says(n: int, method: str) -> None:
         case = drawn(n, 10_000 + seed, at_rest=True)
         exact, stuck = answer(case)
         sol = pc.simulate(
-            scene_of(case), case["q"], 0, (0, 1e-6), method=method, rtol=1e-10, atol=1e-16
+            scene_of(case),
+            q0=case["q"],
+            qd0=0,
+            t_span=(0, 1e-6),
+            method=method,
+            rtol=1e-10,
+            atol=1e-16,
         )
         if len(stuck) == n:
             assert (sol.status, time_of_rest(sol)) == ("at_rest", 0.0), f"seed {seed}"
@@ -140,7 +146,7 @@ def test_a_joint_that_is_stuck_may_let_go_because_another_moves(fine: Any) -> No
         links=links(chain), gravity=9.81, effects=[fx.DryJointFriction(joint=1, coulomb=limit)]
     )
     start = np.array([np.pi / 2, 0.3])
-    sol = pc.simulate(scene, start, 0, (0, 2.0), **fine)
+    sol = pc.simulate(scene, q0=start, qd0=0, t_span=(0, 2.0), **fine)
     assert sol.success
     first_free = int(np.argmax(sol.qd[:, 0] != 0))
     assert first_free > 1

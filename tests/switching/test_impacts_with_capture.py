@@ -59,7 +59,7 @@ def test_a_captured_joint_is_stopped_after_the_others_have_bounced(
     for seed in range(200):
         stops, qd = drawn(n, seed)
         exact, captured = stops.after_impact(qd)
-        sol = pc.simulate(scene_of(stops), stops.q, qd, (0, 1e-6), ledger=True)
+        sol = pc.simulate(scene_of(stops), q0=stops.q, qd0=qd, t_span=(0, 1e-6), ledger=True)
         assert sol.success, (seed, sol.message)
         after = sol(0.0)[n:]
         size = np.abs(qd).max()
@@ -98,7 +98,9 @@ def test_chains_whose_captures_once_gave_them_energy_lose_some(which: int) -> No
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", pc.PendcoreWarning)  # two links are counterweights
         scene = pc.Scene(links=chain, effects=found, gravity=9.807)
-    sol = pc.simulate(scene, case["q0"], case["qd0"], (0, 1), ledger=True, max_steps=100_000)
+    sol = pc.simulate(
+        scene, q0=case["q0"], qd0=case["qd0"], t_span=(0, 1), ledger=True, max_steps=100_000
+    )
     assert sol.success, sol.message
     energy = sol.energy()
     assert np.diff(energy.ledger.impact).min() >= 0.0

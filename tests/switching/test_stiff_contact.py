@@ -30,7 +30,7 @@ CONTACTS = {
 def test_what_changes_after_the_change_of_method_is_found_as_under_a_lock(contact: str) -> None:
     def run(joint_2: Any, **how: Any) -> pc.Solution:
         scene = pc.Scene.textbook().replace(effects=[joint_2, CONTACTS[contact]])
-        return pc.simulate(scene, 0.5, 0, (0, 3), events=WATCHED, **how)
+        return pc.simulate(scene, q0=0.5, qd0=0, t_span=(0, 3), events=WATCHED, **how)
 
     stiff = run(fx.ViscousJoint(joint=2, damping=1e5), method="dopri5-radau5", rtol=1e-8)
     locked = run(fx.Lock(joint=2), rtol=1e-10)
@@ -59,7 +59,7 @@ def test_the_rate_of_a_joint_that_is_held_is_nothing_in_and_between_stiff_steps(
     )
     watched = [ev.RateZero(joint=1), ev.RateZero(link=1), ev.JointAngle(joint=1, value=1.1)]
     sol = pc.simulate(
-        scene, [1.1, 1.6], [0, rate], (0, 1), method=method, rtol=1e-6, events=watched
+        scene, q0=[1.1, 1.6], qd0=[0, rate], t_span=(0, 1), method=method, rtol=1e-6, events=watched
     )
     assert sol.status == "finished"
     assert abs(sol.qd[-1, 1]) > 1e-6

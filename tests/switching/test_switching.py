@@ -80,7 +80,7 @@ def late(
     method: str, scene: pc.Scene, w0: float, t_span: tuple[float, float]
 ) -> tuple[pc.Solution, float]:
     """A run, and a bound of the rounding of its state in the steps' sums; torques are up to w0."""
-    sol = pc.simulate(scene, 0, w0, t_span, method=method, max_steps=10_000)
+    sol = pc.simulate(scene, q0=0, qd0=w0, t_span=t_span, method=method, max_steps=10_000)
     assert (sol.status, sol.t[-1]) == ("finished", t_span[1]), sol.message
     assert (np.diff(sol.t) > 0).all()
     stages = rounding.of_new_state(method) * abs(w0) * (t_span[1] - t_span[0])
@@ -179,7 +179,7 @@ def test_a_reversal_at_the_end_of_a_run_backward_is_where_it_ends() -> None:
     random = np.random.default_rng(3)
     for w0, t_end in random.uniform(0.1, 10, (200, 2)):
         scene = rod(fx.Motor(joint=1, constant=-w0 / t_end), FAINT)
-        sol = pc.simulate(scene, 0, -w0, (2 * t_end, t_end), max_steps=10_000)
+        sol = pc.simulate(scene, q0=0, qd0=-w0, t_span=(2 * t_end, t_end), max_steps=10_000)
         assert (sol.status, sol.t[-1]) == ("finished", t_end), sol.message
         assert (np.diff(sol.t) < 0).all()
         np.testing.assert_allclose(sol.y[:, -1], [w0 * t_end / 2, 0], rtol=1e-12, atol=1e-13 * w0)
@@ -198,7 +198,7 @@ def test_an_end_or_a_start_a_few_bits_from_a_reversal_is_met() -> None:
         rising = fx.Motor(joint=1, table=fx.Table(t=[0, knot, knot + 1], torque=[-w0, -w0, w0]))
         for bits in range(-5, 6):
             span = bits_on(knot, bits), knot + 1
-            sol = pc.simulate(rod(rising, FAINT), 0, 0, span, max_steps=10_000)
+            sol = pc.simulate(rod(rising, FAINT), q0=0, qd0=0, t_span=span, max_steps=10_000)
             assert (sol.status, sol.t[-1]) == ("finished", knot + 1), sol.message
             assert (np.diff(sol.t) > 0).all()
             assert abs(sol.qd[-1, 0]) < 1e-12 * w0 * (1 + knot)  # as much forth as back
@@ -222,7 +222,7 @@ def test_a_rod_that_starts_where_it_reverses_is_damped_as_it_goes() -> None:
     sol = solve(scene, 0, 0, 2, rtol=1e-11)
     assert_sound(sol, 2)
     assert sol.qd[-1, 0] == pytest.approx(-np.tanh(2), rel=1e-9)
-    before = pc.simulate(scene, 0, 0, (0, -1), rtol=1e-11, max_steps=10_000)
+    before = pc.simulate(scene, q0=0, qd0=0, t_span=(0, -1), rtol=1e-11, max_steps=10_000)
     assert before.status == "finished"
     assert before.qd[-1, 0] == pytest.approx(np.tan(1), rel=1e-9)
 

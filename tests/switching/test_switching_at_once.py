@@ -85,7 +85,14 @@ def test_laws_that_meet_lead_on(method: str, step: float | None, block: int) -> 
     for seed in range(10 * block, 10 * block + 10):
         scene, q0, qd0 = drawn_chain(np.random.default_rng(seed))
         sol = pc.simulate(
-            scene, q0, qd0, (0, 3), method=method, max_steps=100_000, check=False, **ways
+            scene,
+            q0=q0,
+            qd0=qd0,
+            t_span=(0, 3),
+            method=method,
+            max_steps=100_000,
+            check=False,
+            **ways,
         )
         may_fail = method == "radau5" and step is not None  # in so long a step
         assert sol.success or (may_fail and sol.status == "not_converged"), (seed, sol.message)
@@ -99,7 +106,9 @@ def test_two_joints_are_let_go_at_one_time(method: str, rtol: float, start: floa
     effects: list[Any] = []
     for j in (1, 2):
         effects += [fx.DryJointFriction(joint=j, coulomb=0.5), fx.Motor(joint=j, sinusoid=hum)]
-    run = pc.simulate(rod(*effects, links=2), 0, 0, (start, start + 2), method=method, rtol=rtol)
+    run = pc.simulate(
+        rod(*effects, links=2), q0=0, qd0=0, t_span=(start, start + 2), method=method, rtol=rtol
+    )
     assert run.status == "finished", run.message
     moving = run.t[(run.qd != 0).any(axis=1)]
     assert moving[0] > start + np.pi / 6
@@ -111,7 +120,9 @@ def test_a_pulse_is_seen_however_far_away_the_end_is(method: str) -> None:
     """1e3 N m at the top of 2e-6 s give an impulse of 1e-3, which friction takes in 0.1 s."""
     table = fx.Table(t=[-1, 1.0, 1.000001, 1.000002, 1e11], torque=[0, 0, 1e3, 0, 0])
     scene = rod(fx.Motor(joint=1, table=table), fx.DryJointFriction(joint=1, coulomb=0.01))
-    ends = [pc.simulate(scene, 0, 0, (0, t), method=method).q[-1, 0] for t in (10.0, 1e9)]
+    ends = [
+        pc.simulate(scene, q0=0, qd0=0, t_span=(0, t), method=method).q[-1, 0] for t in (10.0, 1e9)
+    ]
     assert ends[0] == pytest.approx(0.001**2 / (2 * 0.01), rel=1e-3)
     assert ends[1] == ends[0]
 
@@ -126,7 +137,9 @@ def test_coarse_steps_pump_no_energy_into_a_joint_at_its_stop(step: float, metho
     ]
     scene = pc.Scene(links=links, effects=effects)
     start = [-0.15020579195563455, -1.115133372329371]
-    sol = pc.simulate(scene, start, 0, (0, 3), method=method, step=step, max_steps=3000)
+    sol = pc.simulate(
+        scene, q0=start, qd0=0, t_span=(0, 3), method=method, step=step, max_steps=3000
+    )
     assert sol.success, sol.message
     assert np.count_nonzero(np.diff(sol.t) == 0) < 30
     assert np.diff(sol.energy().total).max() < 1e-3
@@ -141,7 +154,7 @@ def test_a_joint_that_is_held_passes_no_mark_beside_its_angle() -> None:
     )
     marks = [pc.events.JointAngle(joint=2, value=at + k * 1e-16) for k in range(-30, 31)]
     q1 = 0.34787724978537016
-    sol = pc.simulate(scene, [q1, q1 + at], [1.0, 1.0], (0, 3), events=marks)
+    sol = pc.simulate(scene, q0=[q1, q1 + at], qd0=[1.0, 1.0], t_span=(0, 3), events=marks)
     assert sol.success
     assert (sol.qd[:, 0] == sol.qd[:, 1]).all()
     assert [found for found in sol.events if found] == []
@@ -192,7 +205,7 @@ def test_a_joint_turns_where_its_acceleration_is_zero_but_for_rounding(
     law = fx.ViscousJoint(joint=n, damping=damping[0], damping2=damping[1], damping3=damping[2])
     links = [pc.Link(mass=m, length=a) for m, a in zip(masses, lengths, strict=True)]
     scene = pc.Scene(links=links, gravity=9.807, effects=[law])
-    sol = pc.simulate(scene, q0, qd0, span, **options)
+    sol = pc.simulate(scene, q0=q0, qd0=qd0, t_span=span, **options)
     assert sol.success, sol.message
     exact = integrate(rates, np.concatenate([q0, qd0]), span, rtol=1e-8, atol=1e-8)
     assert np.abs(sol.q[-1] - exact.y[-1][:n]).max() < bar

@@ -126,6 +126,8 @@ def test_rest_that_lasts_is_told_without_a_reservation() -> None:
 def test_a_joint_that_sticks_before_the_least_double_of_time_sticks_at_once() -> None:
     """The friction of the fuzzer's case 6105 stops the joint within w/tc = 1.5e-434 s."""
     friction = fx.DryJointFriction(joint=1, coulomb=1.8e150, stribeck_velocity=2.1e-61)
-    sol = pc.simulate(rod(friction), 0.0, 2.8e-284, (0.0, 3.1e-322), first_step=1.5e-151)
+    sol = pc.simulate(
+        rod(friction), q0=0.0, qd0=2.8e-284, t_span=(0.0, 3.1e-322), first_step=1.5e-151
+    )
     assert (sol.status, sol.stats.accepted, *sol.t) == ("at_rest", 0, 0.0, 3.1e-322)
     assert sol.qd[0] == sol.qd[-1] == 0.0

@@ -48,7 +48,7 @@ def pendcore() -> Outcome:
         pc.effects.JointStop(joint=1, range=(0, np.inf), restitution=RESTITUTION),
     ]
     scene = pc.Scene(links=[pc.Link(mass=3, length=1)], gravity=0, effects=effects)
-    sol = pc.simulate(scene, HEIGHT, t_span=(0, T_END), rtol=1e-11)
+    sol = pc.simulate(scene, q0=HEIGHT, t_span=(0, T_END), rtol=1e-11)
     moving = np.flatnonzero(sol.qd[:, 0])
     t_last = sol.t[moving[-1] + 1] if sol.status == "at_rest" else None
     return judged(sol.q[-1, 0], t_last, traced=sol(TRACED)[0])

@@ -33,7 +33,7 @@ def judged(states: Any, words: str) -> Outcome:
 def pendcore(**how: Any) -> Outcome:
     import pendcore as pc
 
-    sol = pc.simulate(pc.Scene.textbook(), START, t_span=(0, T_END), t_eval=TIMES, **how)
+    sol = pc.simulate(pc.Scene.textbook(), q0=START, t_span=(0, T_END), t_eval=TIMES, **how)
     return judged(sol.y.T, f"{sol.stats.accepted} steps")
 
 

@@ -37,7 +37,7 @@ def pendcore() -> Outcome:
 
     friction = pc.effects.DryJointFriction(joint=1, coulomb=FRICTION)
     scene = pc.Scene(links=[pc.Link(mass=3, length=1)], gravity=G, effects=[friction])
-    sol = pc.simulate(scene, START, t_span=(0, T_END))
+    sol = pc.simulate(scene, q0=START, t_span=(0, T_END))
     held = moved(abs(sol.q[-1, 0] - START), traced=sol(TRACED)[0] - START)
     return replace(held, said=f"{held.said}; status `{sol.status}`")
 

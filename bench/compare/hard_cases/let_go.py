@@ -78,7 +78,7 @@ def pendcore(**tolerances: float) -> Outcome:
     import pendcore as pc
 
     scene = pc.Scene(links=[pc.Link(mass=MASS, length=LENGTH)] * LINKS, gravity=G)
-    sol = pc.simulate(scene, 0.0, t_span=(0, T_END), store="end", **tolerances)
+    sol = pc.simulate(scene, q0=0.0, t_span=(0, T_END), store="end", **tolerances)
     return judged(sol.q[-1], f"{sol.stats.accepted} steps")
 
 

@@ -27,7 +27,7 @@ def pendcore(**how: Any) -> Outcome:
     import pendcore as pc
 
     scene = pc.Scene(links=[pc.Link(mass=1, length=1)], gravity=G)
-    sol = pc.simulate(scene, np.pi / 2 - AMPLITUDE, t_span=(0, PERIOD), **how)
+    sol = pc.simulate(scene, q0=np.pi / 2 - AMPLITUDE, t_span=(0, PERIOD), **how)
     return judged(np.pi / 2 - sol.q[-1, 0])
 
 

@@ -58,7 +58,7 @@ def pendcore(w: float) -> float:
         effects=[pc.effects.DrivenPivot(y=shaking)],
     )
     sol = pc.simulate(
-        scene, UPRIGHT + SMALL, t_span=(0, 2 * pi / w), rtol=1e-13, atol=1e-17, store="end"
+        scene, q0=UPRIGHT + SMALL, t_span=(0, 2 * pi / w), rtol=1e-13, atol=1e-17, store="end"
     )
     return float(sol.q[-1, 0] - UPRIGHT)
 

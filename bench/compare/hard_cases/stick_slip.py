@@ -57,7 +57,7 @@ def pendcore() -> Outcome:
         pc.effects.DryJointFriction(joint=1, coulomb=FRICTION),
     ]
     scene = pc.Scene(links=[pc.Link(mass=3, length=1)], gravity=0, effects=effects)
-    sol = pc.simulate(scene, 0, t_span=(0, T_END), rtol=1e-11)
+    sol = pc.simulate(scene, q0=0, t_span=(0, T_END), rtol=1e-11)
     return judged(sol.q[-1, 0], float(sol(resting())[1]))
 
 

@@ -54,7 +54,7 @@ def pendcore(method: str, max_steps: int = 10_000_000) -> Outcome:
     damper = pc.effects.ViscousJoint(joint=2, damping=DAMPING)
     scene = pc.Scene.textbook().replace(effects=[damper])
     sol = pc.simulate(
-        scene, START[:2], t_span=(0, T_END), method=method, rtol=1e-8, atol=1e-10,
+        scene, q0=START[:2], t_span=(0, T_END), method=method, rtol=1e-8, atol=1e-10,
         max_steps=max_steps, store="end", check=False,
     )  # fmt: skip
     words = f"{sol.stats.accepted} steps{', says `stiff`' if sol.stats.stiff else ''}"

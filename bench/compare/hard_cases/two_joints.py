@@ -72,7 +72,7 @@ def pendcore() -> Outcome:
     effects: list[Any] = [pc.effects.Motor(joint=1, sinusoid=hum)]
     effects += [pc.effects.DryJointFriction(joint=j, coulomb=FRICTION[j - 1]) for j in (1, 2)]
     scene = pc.Scene.textbook().replace(effects=effects)
-    sol = pc.simulate(scene, np.pi / 2, t_span=(0, T_END), rtol=1e-11)
+    sol = pc.simulate(scene, q0=np.pi / 2, t_span=(0, T_END), rtol=1e-11)
     return judged(sol(TIMES).T, sol(rest()))
 
 

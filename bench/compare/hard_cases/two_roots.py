@@ -54,7 +54,7 @@ def pendcore(**how: float) -> Outcome:
     scene = pc.Scene(links=[pc.Link(mass=3, length=1)], gravity=G)
     mark = pc.events.JointAngle(joint=1, value=np.pi / 2 - MARK)
     span = (0, reference()["end"][0])
-    sol = pc.simulate(scene, np.pi / 2 + AMPLITUDE, t_span=span, events=[mark], **how)
+    sol = pc.simulate(scene, q0=np.pi / 2 + AMPLITUDE, t_span=span, events=[mark], **how)
     return judged([event.t for event in sol.events[0]], sol.t)
 
 

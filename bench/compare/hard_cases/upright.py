@@ -64,7 +64,7 @@ def first(distance: Callable[[float], float], times: Array) -> float:
 def pendcore() -> Outcome:
     import pendcore as pc
 
-    sol = pc.simulate(pc.Scene.textbook(), START, t_span=(0, T_END), rtol=1e-12, atol=1e-15)
+    sol = pc.simulate(pc.Scene.textbook(), q0=START, t_span=(0, T_END), rtol=1e-12, atol=1e-15)
     return judged(first(lambda t: np.abs(sol(t)[:2] - UPRIGHT).max(), sol.t))
 
 

@@ -196,7 +196,7 @@ class Solution(DrawnResult):
         --------
         >>> case = pc.Case.textbook()
         >>> longer = case.simulate().resume(10.0)
-        >>> whole = pc.simulate(case.scene, case.q0, t_span=(0, 10), method="ode45")
+        >>> whole = pc.simulate(case.scene, q0=case.q0, t_span=(0, 10), method="ode45")
         >>> np.array_equal(longer.y, whole.y)  # every bit
         True
         """
